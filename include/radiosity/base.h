@@ -1,0 +1,63 @@
+// What every room shares: vectors, errors, progress and the thread count.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <stdexcept>
+#include <string>
+
+namespace radiosity {
+
+using Vec2 = glm::dvec2;
+using Vec3 = glm::dvec3;
+using Index = std::uint32_t;
+
+/// "There is no such element": an absent texture, camera, twin.
+inline constexpr Index kNone = 0xffffffffu;
+
+/// Bad input or arguments: a file, the element in it and the cure, on one line. Exit code 2.
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The run itself failed (disk full, memory limit). Exit code 1.
+class RunError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Thrown out of a long computation after Progress::cancel(); nothing half-written stays.
+class Cancelled : public RunError {
+ public:
+  Cancelled() : RunError("interrupted; nothing was written") {}
+};
+
+/// Where a long computation says how far it is. The default one is silent.
+/// advance() and cancelled() may be called from any thread.
+class Progress {
+ public:
+  virtual ~Progress() = default;
+  /// A stage of `total` equal steps begins.
+  virtual void begin(const std::string& /*stage*/, std::size_t /*total*/) {}
+  virtual void advance(std::size_t /*steps*/ = 1) {}
+  virtual void end() {}
+  void cancel() { cancelled_.store(true, std::memory_order_relaxed); }
+  bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
+  /// Throws Cancelled once cancel() was called. Call it between steps, on the calling thread.
+  void check() const {
+    if (cancelled()) throw Cancelled();
+  }
+
+ private:
+  std::atomic<bool> cancelled_{false};
+};
+
+/// Limits all later parallel work of the process to `threads` threads (0: all cores).
+/// Results do not depend on it, to the bit.
+void setThreads(int threads);
+
+}  // namespace radiosity

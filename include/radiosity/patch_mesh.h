@@ -1,0 +1,133 @@
+// The scene cut into patches: planar, conforming, each knowing where it came from.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "radiosity/base.h"
+#include "radiosity/scene.h"
+
+namespace radiosity {
+
+/// Planar polygons: the coarse faces of the scene, coplanar neighbours of a surface merged, cut
+/// where others touch or cross. They are what occludes and what is rasterised. A polygon is one or
+/// more loops: outer ones counter-clockwise about `normal`, holes clockwise; the inside is
+/// even-odd. Neighbouring polygons share their edges vertex for vertex (no T-junctions), except
+/// with faces_as_patches on a file that has them.
+struct PlanarPolygons {
+  std::vector<std::size_t> loop_offset;    ///< P + 1, into loop_begin: loops of polygon p
+  std::vector<std::size_t> corner_offset;  ///< L + 1, into corners: corners of loop l
+  std::vector<Index> corners;              ///< vertices (of PatchMesh::vertices)
+  std::vector<Vec3> normal;                ///< P, unit, of the front
+  std::vector<Vec3> origin;                ///< P, a point of the plane, inside or near the polygon
+  std::vector<Index> surface;              ///< P
+  std::vector<Index> index_in_surface;     ///< P, with surface name: the identity ties are broken by
+  std::vector<std::uint8_t> back_is_patch; ///< P, 1: the back carries patches too (two-sided)
+
+  std::size_t size() const { return normal.size(); }
+  std::size_t loopBegin(std::size_t p) const { return loop_offset[p]; }
+  std::size_t loopEnd(std::size_t p) const { return loop_offset[p + 1]; }
+  std::span<const Index> loop(std::size_t l) const {
+    return {corners.data() + corner_offset[l], corner_offset[l + 1] - corner_offset[l]};
+  }
+};
+
+/// N patches, structure of arrays, double precision. All fronts come first, then the backs of
+/// two-sided patches; a back has its own centroid, normal (flipped) and corners (reversed).
+struct PatchMesh {
+  std::vector<Vec3> vertices;              ///< metres
+  std::vector<std::size_t> corner_offset;  ///< N + 1, into corners
+  std::vector<Index> corners;              ///< outline, counter-clockwise seen from its side
+  std::vector<std::size_t> piece_offset;   ///< N + 1, in triangles, into pieces
+  std::vector<std::array<Index, 3>> pieces;///< triangles that tile each patch, same orientation
+  std::vector<Vec3> centroid;              ///< N; area centroid, moved inside for concave patches
+  std::vector<Vec3> normal;                ///< N, unit; 0 for a degenerate patch
+  std::vector<double> area;                ///< N, m^2; 0 for a degenerate patch
+  std::vector<Index> polygon;              ///< N, into polygons; kNone for a degenerate patch
+  std::vector<Index> surface;              ///< N, into surface_names
+  std::vector<Index> index_in_surface;     ///< N; with the surface name: identity, seeds come from it
+  std::vector<Index> source_face;          ///< N, face of the Scene
+  std::vector<std::uint8_t> side;          ///< N, 0 front, 1 back
+  std::vector<Index> twin;                 ///< N, the patch on the other side, or kNone
+  PlanarPolygons polygons;
+  std::vector<std::string> surface_names;  ///< as Scene::surfaces, in order
+
+  std::size_t size() const { return area.size(); }
+  std::size_t frontCount() const;
+  std::span<const Index> outline(std::size_t i) const {
+    return {corners.data() + corner_offset[i], corner_offset[i + 1] - corner_offset[i]};
+  }
+};
+
+struct MeshOptions {
+  std::size_t patches = 2000;     ///< about how many patches (both sides counted once); 1 or more
+  double max_edge = 0;            ///< metres; longest patch edge; 0: derived from `patches`
+  double weld = 1e-7;             ///< coincidence, as a fraction of the scene's diagonal; 0 to 1e-2
+  bool faces_as_patches = false;  ///< patch k is face k of the file; nothing welded, cut, reordered
+  /// Throws InputError naming the option and its range.
+  void validate() const;
+};
+
+/// Where area went on one surface, m^2, one side.
+struct SurfaceAreas {
+  std::string name;
+  double given = 0;       ///< area of the faces in the file
+  double kept = 0;        ///< area of the patches (front side)
+  double buried = 0;      ///< dropped: in contact, or inside a closed solid
+  double overlapped = 0;  ///< dropped: coplanar overlap with a surface that wins
+  double degenerate = 0;  ///< dropped: faces thinner than coincidence
+};
+
+/// What meshing did; every figure `radiosity mesh` prints.
+struct MeshReport {
+  std::vector<SurfaceAreas> surfaces;
+  std::size_t welded_vertices = 0;
+  std::size_t degenerate_faces = 0;
+  std::size_t duplicate_faces = 0;
+  std::size_t nonplanar_faces = 0;      ///< split into triangles
+  double largest_deviation = 0;         ///< metres, of the non-planar faces
+  std::size_t cuts = 0;                 ///< contact and crossing segments that cut a polygon
+  std::size_t split_edges = 0;          ///< edges of the file split at vertices on them
+  std::size_t hidden_sides = 0;         ///< sides of two-sided surfaces dropped: they see nothing
+  std::size_t nonmanifold_edges = 0;
+  std::size_t polygons = 0;
+  std::size_t triangles = 0;            ///< patches that are triangles
+  std::size_t quads = 0;
+  std::size_t t_junctions = 0;          ///< counted by an independent checker; 0 unless faces_as_patches
+  std::size_t crossings = 0;            ///< faces_as_patches: pairs of faces that cross, not repaired
+  double smallest_angle = 0;            ///< degrees, over all patches
+  std::string smallest_angle_surface;
+  double longest_edge = 0;              ///< metres
+  std::vector<Note> notes;              ///< what was repaired, by name
+};
+
+struct MeshResult {
+  PatchMesh mesh;
+  MeshReport report;
+};
+
+/// Cuts the scene into patches. Errors: InputError if the scene has no face with area.
+MeshResult meshScene(const Scene& scene, const MeshOptions& options, Progress& progress);
+
+/// T-junctions of any mesh: vertices that lie inside an edge of a patch (closer than
+/// `tolerance` metres) without being one of its ends. Brute force by a grid; knows nothing of how
+/// the mesh was made.
+std::size_t countTJunctions(const PatchMesh& mesh, double tolerance);
+
+/// Interior angles in degrees: the smallest over all patches of non-zero area.
+double smallestAngle(const PatchMesh& mesh);
+
+/// Reflectance and emission of every patch, textures averaged over the patch's area.
+struct PatchMaterials {
+  std::vector<Vec3> reflectance;  ///< N, 0 to 1
+  std::vector<Vec3> emission;     ///< N, exitance, W/m^2
+};
+PatchMaterials patchMaterials(const Scene& scene, const PatchMesh& mesh);
+
+/// Identity of the geometry a form-factor matrix belongs to: vertices, patches, sides, surface
+/// names. Not reflectance or emission. 16 hex digits.
+std::string geometryHash(const PatchMesh& mesh);
+
+}  // namespace radiosity

@@ -1,0 +1,71 @@
+// Pictures of a lit mesh, and pictures that explain one.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "radiosity/base.h"
+#include "radiosity/patch_mesh.h"
+#include "radiosity/scene.h"
+
+namespace radiosity {
+
+/// RGBA, float, row-major, top row first, straight (not premultiplied) linear colour.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<float> rgba;  ///< width * height * 4; alpha 0 where nothing was hit
+};
+
+struct RenderOptions {
+  int width = 512;          ///< 1 to 16384
+  int height = 512;
+  int samples = 4;          ///< anti-aliasing: samples x samples a pixel, 1 to 16
+  bool smooth = true;       ///< interpolate over vertices; false: constant patches
+  double crease = 30;       ///< degrees; values are not shared across sharper edges
+  bool show_backs = true;   ///< false: one-sided patches are transparent from behind
+  void validate() const;
+};
+
+/// A camera that frames the mesh: inside a closed scene (looking at its largest extent), outside an
+/// open one, on the side most patches face.
+Camera framingCamera(const PatchMesh& mesh, bool closed, double aspect);
+
+/// "eye=x,y,z;target=x,y,z;up=x,y,z;fov=DEGREES" (up and fov may be left out) -> Camera.
+/// InputError says which part is wrong.
+Camera parseCamera(const std::string& text);
+
+/// Corner values for Gouraud interpolation: for every entry of mesh.corners, `bands` values, the
+/// area-weighted mean of `values` over the patches that share the vertex and bend less than
+/// `crease` degrees and are reached through such neighbours on the same side. A constant field
+/// stays that constant. values: N * bands; result: mesh.corners.size() * bands, row-major.
+std::vector<double> cornerValues(const PatchMesh& mesh, std::span<const double> values, int bands,
+                                 double crease);
+
+/// The picture of a field over the patches (N * 3, row-major): linear values, no tone mapping.
+/// One-sided patches seen from behind are black (they return nothing).
+Image render(const PatchMesh& mesh, std::span<const double> values, const Camera& camera,
+             const RenderOptions& options, Progress& progress);
+
+/// Exposure value: the picture is multiplied by 2^ev before the sRGB curve. Automatic: the 99th
+/// percentile of luminance over hit pixels maps to 0.8 (emitters clip).
+double autoExposure(const Image& image);
+
+/// Multiplies by 2^ev; colours only.
+Image exposed(const Image& image, double ev);
+
+/// A scalar field in false colour (viridis-like, perceptually ordered), with a legend: title, unit,
+/// lowest and highest value. The result is display-referred: ready for an sRGB file.
+/// values: N. Range: [low, high] or, where low >= high, that of the visible values.
+struct FalseColour {
+  std::string title;
+  std::string unit;
+  double low = 0;
+  double high = 0;
+};
+Image renderFalseColour(const PatchMesh& mesh, std::span<const double> values, FalseColour legend,
+                        const Camera& camera, const RenderOptions& options, Progress& progress);
+
+}  // namespace radiosity

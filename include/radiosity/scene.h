@@ -1,0 +1,132 @@
+// A scene as its file describes it: faces, surfaces, materials, cameras. Geometry is in metres,
+// double precision, as the file has it: nothing is welded, merged or dropped here.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "radiosity/base.h"
+
+namespace radiosity {
+
+enum class Severity { info, warning, loud };
+
+/// One thing a reader of the scene should know; `text` is one line and names the element.
+struct Note {
+  Severity severity = Severity::info;
+  std::string text;
+};
+
+/// Linear RGB texels, row-major, top row first.
+struct Texture {
+  std::string name;
+  int width = 0;
+  int height = 0;
+  std::vector<float> texels;  ///< width * height * 3, linear
+  bool repeat = true;         ///< outside [0,1]: repeat (true) or clamp to the edge
+};
+
+/// An ideal diffuse material. Bands are linear RGB (Rec. 709 primaries).
+struct Material {
+  std::string name;
+  Vec3 reflectance{0.5};  ///< rho, 0 to 1
+  Vec3 emission{0.0};     ///< radiant exitance M = pi L in W/m^2 (the file gives radiance L)
+  bool two_sided = false;
+  Index texture = kNone;  ///< into Scene::textures; multiplies `reflectance`
+};
+
+/// Faces of one object (or node) with one material. The unit people name on the command line.
+struct Surface {
+  std::string object;  ///< object, group or node name
+  Index material = kNone;
+  std::string name;  ///< "object/material", unique in the scene; results are keyed by it
+};
+
+/// A pinhole camera. `up` need not be perpendicular to the view direction.
+struct Camera {
+  std::string name;
+  Vec3 eye{0.0};
+  Vec3 target{0.0, 0.0, -1.0};
+  Vec3 up{0.0, 1.0, 0.0};
+  double vertical_fov = 0.7;  ///< full angle, radians, 0 to pi
+  double aspect = 0.0;        ///< width / height; 0: the picture's own
+};
+
+/// Structure of arrays. F faces are polygons of 3 or more corners (concave ones allowed),
+/// counter-clockwise seen from the front.
+struct Scene {
+  std::string file;                       ///< where it came from, for messages
+  std::vector<Vec3> vertices;             ///< metres
+  std::vector<std::size_t> face_offset;   ///< F + 1, into corners; front() is 0
+  std::vector<Index> corners;             ///< vertex of each corner
+  std::vector<Vec2> texcoords;            ///< one per corner, or empty
+  std::vector<Index> face_surface;        ///< F
+  std::vector<std::size_t> face_element;  ///< F: line in an OBJ; running primitive face in a glTF
+  std::vector<Surface> surfaces;
+  std::vector<Material> materials;
+  std::vector<Texture> textures;
+  std::vector<Camera> cameras;
+  std::string unit = "m";  ///< the file's unit before conversion: mm, cm, m, in, ft
+  std::vector<Note> notes;
+
+  std::size_t faceCount() const { return face_surface.size(); }
+  std::span<const Index> face(std::size_t f) const {
+    return {corners.data() + face_offset[f], face_offset[f + 1] - face_offset[f]};
+  }
+  const Material& materialOf(std::size_t f) const {
+    return materials[surfaces[face_surface[f]].material];
+  }
+};
+
+/// How a file is read. The defaults are the ones the README states.
+struct SceneOptions {
+  std::string unit;                      ///< mm|cm|m|in|ft; empty: metres
+  bool kd_is_srgb = false;               ///< Kd and base colour of an OBJ are sRGB, linearise them
+  double default_reflectance = 0.5;      ///< where a face has no material; 0 to 1
+  bool textures = true;                  ///< false: the material's factor alone
+  std::vector<std::string> set;          ///< "NAME.PROPERTY=VALUE", see applyOverrides()
+  std::string materials_file;            ///< JSON {"NAME": {"reflectance": .., "emission": ..}}
+  std::vector<std::string> one_sided;    ///< material, object or surface names, or "all"
+  std::vector<std::string> two_sided;    ///< the same; one_sided is applied first
+  /// Throws InputError naming the option and its range.
+  void validate() const;
+};
+
+/// Reads .obj (+ .mtl), .gltf or .glb (by extension) and applies the overrides.
+/// Errors: InputError, one line with file, element and cure.
+Scene loadScene(const std::string& path, const SceneOptions& options = {});
+
+/// Applies `set`, `materials_file`, `one_sided`, `two_sided` to a scene already in memory (one
+/// that came back from a results file). NAME is a surface, material or object, tried in that
+/// order; PROPERTY is reflectance, emission (exitance, W/m^2) or radiance (W/m^2/sr); VALUE is one
+/// number or three with commas. A surface that shares its material gets a copy of its own.
+/// Unknown names are an InputError that lists the names there are.
+void applyOverrides(Scene& scene, const SceneOptions& options);
+
+/// What `radiosity info` prints about one surface.
+struct SurfaceInfo {
+  std::string name;
+  std::string material;
+  std::size_t faces = 0;
+  double area = 0;        ///< m^2, one side
+  Vec3 emitted_power{0};  ///< W per band, both sides where two-sided
+};
+
+/// What was read and what looks wrong, by name.
+struct SceneInfo {
+  std::vector<SurfaceInfo> surfaces;
+  Vec3 lower{0.0};
+  Vec3 upper{0.0};
+  std::size_t triangles = 0;       ///< after triangulating polygons
+  Vec3 emitted_power{0};           ///< W per band
+  bool closed = false;             ///< every edge is shared by two faces, oppositely (after weld)
+  std::size_t open_edges = 0;
+  std::vector<Note> problems;      ///< flipped normals, duplicates, degenerates, overlaps, no emitter
+};
+
+/// Inspects a scene (does not change it). `weld`: coincidence, as a fraction of the diagonal.
+SceneInfo inspectScene(const Scene& scene, double weld = 1e-7);
+
+}  // namespace radiosity

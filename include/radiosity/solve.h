@@ -1,0 +1,71 @@
+// B = E + rho F B, every band in one pass over the matrix.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "radiosity/base.h"
+#include "radiosity/form_factors.h"
+
+namespace radiosity {
+
+enum class Solver { jacobi, gauss_seidel };
+
+struct SolveOptions {
+  Solver solver = Solver::gauss_seidel;
+  double tolerance = 1e-6;    ///< stop when max_i |r_i| <= tolerance * max_i |E_i| in every band
+  int max_iterations = 10000; ///< 1 or more
+  void validate() const;
+};
+
+enum class SolveStatus {
+  converged,       ///< |E + rho F B - B|_inf <= tolerance |E|_inf in every band; usable
+  no_convergence,  ///< the iteration limit came first; B is the last iterate, not usable as it is
+  no_light,        ///< E = 0 in every band: B = 0; usable, but dark
+  singular,        ///< rho = 1 in a closed room without an absorber; B is empty
+};
+
+/// Where the light goes, W, one value a band. emitted = absorbed + to_sky + on_backs + imbalance;
+/// imbalance is what missing reciprocity of F and the residual leave over, 0 for an exact F and B.
+struct EnergyAccount {
+  std::vector<double> emitted;
+  std::vector<double> absorbed;
+  std::vector<double> to_sky;
+  std::vector<double> on_backs;
+  std::vector<double> imbalance;
+};
+
+struct SolveSummary {
+  SolveStatus status = SolveStatus::no_convergence;
+  int iterations = 0;                     ///< sweeps over the matrix
+  double residual = 0;                    ///< max |E + rho F B - B| / max |E|, true, worst band
+  /// An upper bound of |B - B*|_inf, W/m^2, worst band, B* being this matrix's exact solution:
+  /// w_i max_k |r_k| / ((I - rho F) w)_k for a vector w > 0 with (I - rho F) w > 0. Empty: no such
+  /// vector was found, "no certificate".
+  std::optional<double> error_bound;
+  EnergyAccount energy;
+  double seconds = 0;
+  std::vector<double> residual_history;   ///< relative, one a sweep
+  std::string message;                    ///< plain words, with numbers; says if B is usable
+  bool usable() const {
+    return status == SolveStatus::converged || status == SolveStatus::no_light;
+  }
+};
+
+struct Solution {
+  int bands = 3;
+  std::vector<double> radiosity;   ///< N * bands, row-major, W/m^2
+  std::vector<double> irradiance;  ///< N * bands: H = F B
+  SolveSummary summary;
+};
+
+/// `reflectance`, `emission`: N * bands, row-major; 0 <= rho <= 1, E >= 0, finite, else InputError
+/// naming the patch. Needs a matrix of N rows. Not converging is data, not an exception.
+/// `group_names[group[i]]` names patch i's surface in messages; both may be empty.
+Solution solve(const FormFactors& factors, std::span<const double> reflectance,
+               std::span<const double> emission, int bands, const SolveOptions& options,
+               Progress& progress, std::span<const Index> group = {},
+               std::span<const std::string> group_names = {});
+
+}  // namespace radiosity

@@ -1,0 +1,41 @@
+// FNV-1a, 64 bits: identities for caching and for seeds. Not for security.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+namespace radiosity {
+
+class Hash {
+ public:
+  void bytes(const void* data, std::size_t size) {
+    const auto* p = static_cast<const unsigned char*>(data);
+    for (std::size_t k = 0; k < size; ++k) state_ = (state_ ^ p[k]) * 0x100000001b3ull;
+  }
+  void text(std::string_view s) {
+    const std::uint64_t length = s.size();
+    bytes(&length, sizeof length);
+    bytes(s.data(), s.size());
+  }
+  /// The raw bytes of a contiguous container of trivially copyable values, and its length.
+  template <class Container>
+  void array(const Container& values) {
+    const std::uint64_t length = values.size();
+    bytes(&length, sizeof length);
+    bytes(values.data(), values.size() * sizeof(*values.data()));
+  }
+  std::uint64_t value() const { return state_; }
+  std::string hex() const {
+    char out[17];
+    std::snprintf(out, sizeof out, "%016llx", static_cast<unsigned long long>(state_));
+    return out;
+  }
+
+ private:
+  std::uint64_t state_ = 0xcbf29ce484222325ull;
+};
+
+}  // namespace radiosity

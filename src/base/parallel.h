@@ -1,0 +1,21 @@
+// Parallel loops whose results do not depend on the number of threads.
+#pragma once
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <cstddef>
+
+namespace radiosity {
+
+/// Calls body(i) for 0 <= i < count on all threads setThreads() allows. Bodies must write to
+/// disjoint places; an exception thrown by one reaches the caller.
+template <class Body>
+void parallelFor(std::size_t count, std::size_t grain, const Body& body) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+                    });
+}
+
+}  // namespace radiosity
