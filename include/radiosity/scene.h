@@ -61,7 +61,8 @@ struct Scene {
   std::vector<Vec3> vertices;             ///< metres
   std::vector<std::size_t> face_offset;   ///< F + 1, into corners; front() is 0
   std::vector<Index> corners;             ///< vertex of each corner
-  std::vector<Vec2> texcoords;            ///< one per corner, or empty
+  std::vector<Vec2> texcoords;            ///< one per corner, or empty; (0,0) is the top left of
+                                          ///< the first texel, v grows downwards (as in glTF)
   std::vector<Index> face_surface;        ///< F
   std::vector<std::size_t> face_element;  ///< F: line in an OBJ; running primitive face in a glTF
   std::vector<Surface> surfaces;
@@ -94,7 +95,10 @@ struct SceneOptions {
   void validate() const;
 };
 
-/// Reads .obj (+ .mtl), .gltf or .glb (by extension) and applies the overrides.
+/// Reads .obj (+ .mtl), .gltf or .glb (by extension) and applies the overrides. Face f of the
+/// scene is face f of the file. An OBJ has no cameras of its own; a comment line
+/// `# camera eye=x,y,z target=x,y,z up=x,y,z fov=DEGREES` (file units, vertical field of view) is
+/// read as one.
 /// Errors: InputError, one line with file, element and cure.
 Scene loadScene(const std::string& path, const SceneOptions& options = {});
 
