@@ -11,20 +11,25 @@ namespace radiosity {
 
 /// One planar polygon of the complex: connected, of one surface, all facing alike.
 struct CoarsePolygon {
-  /// Loops of vertices: outer counter-clockwise about `normal`, holes clockwise.
+  /// Loops of vertices: first the outer one, counter-clockwise about `normal`, then the holes,
+  /// clockwise. A loop visits no vertex twice; two loops may touch at a vertex.
   std::vector<std::vector<Index>> loops;
   /// Edges inside the polygon that the patches must respect: contact lines of other polygons.
   std::vector<std::array<Index, 2>> inner_edges;
   Vec3 normal{0.0};
   Index surface = kNone;
-  bool front = true;   ///< the front carries patches
-  bool back = false;   ///< the back carries patches
+  bool front = true;  ///< the front carries patches (always: a lone back is turned over)
+  bool back = false;  ///< the back carries patches
+  /// Polygon on the same area that faces the other way (a plate without thickness), or kNone. Its
+  /// loops are these reversed, its inner edges are these.
+  Index opposite = kNone;
   /// Faces of the scene this polygon was merged from (for source_face and textures).
   std::vector<Index> faces;
 };
 
 /// Planar polygons that meet vertex for vertex: no vertex lies inside an edge (closer than
-/// `coincidence`) of any loop or inner edge, and no two polygons cross or overlap.
+/// `coincidence`) of any loop or inner edge, and no two polygons cross or overlap (two that
+/// coincide whole, back to back, name each other as `opposite`).
 struct CoarseComplex {
   std::vector<Vec3> vertices;  ///< recentred on `origin`
   Vec3 origin{0.0};            ///< add to a vertex to be back in the scene
