@@ -25,7 +25,7 @@ struct RenderOptions {
   int samples = 4;          ///< anti-aliasing: samples x samples a pixel, 1 to 16
   bool smooth = true;       ///< interpolate over vertices; false: constant patches
   double crease = 30;       ///< degrees; values are not shared across sharper edges
-  bool show_backs = true;   ///< false: one-sided patches are transparent from behind
+  bool show_backs = false;  ///< one-sided patches seen from behind: true black, false transparent
   void validate() const;
 };
 
@@ -39,13 +39,16 @@ Camera parseCamera(const std::string& text);
 
 /// Corner values for Gouraud interpolation: for every entry of mesh.corners, `bands` values, the
 /// area-weighted mean of `values` over the patches that share the vertex and bend less than
-/// `crease` degrees and are reached through such neighbours on the same side. A constant field
-/// stays that constant. values: N * bands; result: mesh.corners.size() * bands, row-major.
+/// `crease` degrees and are reached through such neighbours on the same side. Neighbours share an
+/// edge and a surface: a lamp does not bleed into its ceiling, a red wall not into a white one. A
+/// constant field stays that constant to the bit. values: N * bands; result: mesh.corners.size() * bands, row-major.
 std::vector<double> cornerValues(const PatchMesh& mesh, std::span<const double> values, int bands,
                                  double crease);
 
-/// The picture of a field over the patches (N * 3, row-major): linear values, no tone mapping.
-/// One-sided patches seen from behind are black (they return nothing).
+/// The picture of a field over the patches (N * 3, row-major, finite): linear values, no tone
+/// mapping. Colour is the mean over the samples that hit, alpha their share. Pixels are square;
+/// where the picture is narrower than the camera's own aspect the vertical field grows, so that
+/// all the camera would show is in it. Errors: InputError naming the option, camera or patch.
 Image render(const PatchMesh& mesh, std::span<const double> values, const Camera& camera,
              const RenderOptions& options, Progress& progress);
 

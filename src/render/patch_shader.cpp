@@ -1,0 +1,96 @@
+#include "render/patch_shader.h"
+
+#include <algorithm>
+
+namespace radiosity {
+
+PatchShader::PatchShader(const PatchMesh& mesh, const ItemBuffer& items, const PatchField& field)
+    : mesh_(mesh), items_(items), field_(field) {}
+
+void PatchShader::setPiece(Index piece) {
+  const Index patch = items_.patchOf(piece);
+  corners_ = 0;
+  if (field_.corners.empty()) {
+    for (int b = 0; b < field_.bands; ++b) {
+      base_[b] = field_.values[std::size_t(patch) * field_.bands + b];
+    }
+    return;
+  }
+  if (convexQuad(patch)) {
+    setConvexQuad(patch);
+  } else {
+    setTriangle(patch, piece);
+  }
+}
+
+/// Fills the corner areas; false unless the patch is a quad with all corners bending one way.
+bool PatchShader::convexQuad(Index patch) {
+  const auto outline = mesh_.outline(patch);
+  if (outline.size() != 4) return false;
+  for (int k = 0; k < 4; ++k) {
+    const Vec3& before = mesh_.vertices[outline[(k + 3) % 4]];
+    const Vec3& corner = mesh_.vertices[outline[k]];
+    const Vec3& after = mesh_.vertices[outline[(k + 1) % 4]];
+    area_[k] = glm::dot(glm::cross(corner - before, after - corner), mesh_.normal[patch]);
+    if (!(area_[k] > 0)) return false;
+  }
+  return true;
+}
+
+void PatchShader::setConvexQuad(Index patch) {
+  const auto outline = mesh_.outline(patch);
+  const std::size_t first = mesh_.corner_offset[patch];
+  corners_ = 4;
+  for (int k = 0; k < 4; ++k) {
+    edge_[k] = items_.edgeFunction(outline[k], outline[(k + 1) % 4]);
+    for (int b = 0; b < field_.bands; ++b) {
+      const double value = field_.corners[(first + k) * field_.bands + b];
+      if (k == 0) base_[b] = value;
+      rise_[k][b] = value - base_[b];
+    }
+  }
+}
+
+void PatchShader::setTriangle(Index patch, Index piece) {
+  const auto outline = mesh_.outline(patch);
+  const std::size_t first = mesh_.corner_offset[patch];
+  const auto& p = mesh_.pieces[piece];
+  corners_ = 3;
+  for (int k = 0; k < 3; ++k) {
+    edge_[k] = items_.edgeFunction(p[k], p[(k + 1) % 3]);
+    const auto found = std::find(outline.begin(), outline.end(), p[k]);
+    // A piece may have a vertex inside the patch; there the patch's own value stands.
+    const bool on_outline = found != outline.end();
+    const std::size_t corner = first + std::size_t(found - outline.begin());
+    for (int b = 0; b < field_.bands; ++b) {
+      const double value = on_outline ? field_.corners[corner * field_.bands + b]
+                                      : field_.values[std::size_t(patch) * field_.bands + b];
+      if (k == 0) base_[b] = value;
+      rise_[k][b] = value - base_[b];
+    }
+  }
+}
+
+std::array<double, 3> PatchShader::at(double x, double y) const {
+  std::array<double, 3> value = base_;
+  if (corners_ == 0) return value;
+  std::array<double, 4> a{};
+  for (int k = 0; k < corners_; ++k) {
+    // A corner of a quad that is planar only up to coincidence may lie outside by a rounding error.
+    a[k] = std::max(edge_[k].x * x + edge_[k].y * y + edge_[k].z, 0.0);
+  }
+  std::array<double, 4> w{};
+  double sum = 0;
+  for (int k = 0; k < corners_; ++k) {
+    w[k] = corners_ == 4 ? area_[k] * a[(k + 1) % 4] * a[(k + 2) % 4] : a[(k + 1) % 3];
+    sum += w[k];
+  }
+  if (!(sum > 0)) return value;  // the patch is seen as a point
+  // Differences to one corner: a constant field stays that constant to the bit.
+  for (int k = 1; k < corners_; ++k) {
+    for (int b = 0; b < field_.bands; ++b) value[b] += w[k] / sum * rise_[k][b];
+  }
+  return value;
+}
+
+}  // namespace radiosity

@@ -1,0 +1,54 @@
+// The value of a field at a point of a patch, seen through a sample.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "radiosity/patch_mesh.h"
+#include "render/item_buffer.h"
+
+namespace radiosity {
+
+/// A field over the patches: constant on each, or interpolated from values at the corners.
+struct PatchField {
+  std::span<const double> values;  ///< N * bands, row-major
+  std::vector<double> corners;     ///< mesh.corners.size() * bands, or empty: constant patches
+  int bands = 1;                   ///< 1 to 3
+};
+
+/// Interpolates with Wachspress' coordinates (Wachspress, "A Rational Finite Element Basis", 1975;
+/// Meyer, Lee, Barr & Desbrun 2002): in a convex polygon corner i weighs
+///   w_i = C_i * product of A_j over the edges j that do not touch corner i,
+/// C_i the area of the triangle of corner i and its two neighbours, A_j the area of the triangle of
+/// edge j and the point. On a triangle these are the barycentric coordinates, on a parallelogram
+/// the bilinear ones; linear fields come out exactly, the field is smooth inside a quad and linear
+/// along its edges, so neighbours agree there. A quad split into two triangles has a crease along
+/// its diagonal, one split into four has two; both show as Mach bands, this has none.
+///
+/// The areas A_j are the edge functions det(a, b, d) of the rasteriser up to one common factor,
+/// which cancels: the interpolation is perspective-correct without a division by depth.
+class PatchShader {
+ public:
+  PatchShader(const PatchMesh& mesh, const ItemBuffer& items, const PatchField& field);
+
+  /// The patch and piece the next samples lie on.
+  void setPiece(Index piece);
+  /// `field.bands` values at pixel position (x, y), inside the piece.
+  std::array<double, 3> at(double x, double y) const;
+
+ private:
+  void setConvexQuad(Index patch);
+  bool convexQuad(Index patch);
+  void setTriangle(Index patch, Index piece);
+
+  const PatchMesh& mesh_;
+  const ItemBuffer& items_;
+  const PatchField& field_;
+  int corners_ = 0;               ///< 0: constant, else 3 or 4
+  std::array<Vec3, 4> edge_{};    ///< edge functions, >= 0 inside; edge k: corner k to k + 1
+  std::array<double, 4> area_{};  ///< C_i
+  std::array<double, 3> base_{};  ///< value of corner 0, or of the patch
+  std::array<std::array<double, 3>, 4> rise_{};  ///< values of the corners less `base_`
+};
+
+}  // namespace radiosity

@@ -1,0 +1,95 @@
+// The picture of a field: every pixel the mean of the samples that hit something.
+#include "radiosity/render.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "render/samples.h"
+
+namespace radiosity {
+namespace {
+
+/// Colour: the mean over the samples that hit; alpha: the share of them. The mean is taken as a
+/// difference to the first hit, so that a constant field keeps its value to the bit.
+class RgbPixel {
+ public:
+  explicit RgbPixel(Image& image) : image_(image) {}
+
+  void begin() {
+    hits_ = samples_ = 0;
+    sum_ = {};
+  }
+  void sample(Seen seen, const std::array<double, 3>& value) {
+    ++samples_;
+    if (seen == Seen::nothing) return;
+    const std::array<double, 3> colour = seen == Seen::front ? value : std::array<double, 3>{};
+    if (hits_++ == 0) first_ = colour;
+    for (int b = 0; b < 3; ++b) sum_[b] += colour[b] - first_[b];
+  }
+  void end(int x, int y) {
+    if (hits_ == 0) return;
+    float* out = image_.rgba.data() + (std::size_t(y) * image_.width + x) * 4;
+    for (int b = 0; b < 3; ++b) out[b] = float(first_[b] + sum_[b] / hits_);
+    out[3] = float(hits_) / float(samples_);
+  }
+
+ private:
+  Image& image_;
+  int hits_ = 0;
+  int samples_ = 0;
+  std::array<double, 3> first_{};
+  std::array<double, 3> sum_{};
+};
+
+template <class Number>
+void checkRange(const char* option, Number value, Number low, Number high, const char* unit = "") {
+  if (value >= low && value <= high) return;
+  throw InputError(
+      fmt::format("{} is {}; it must lie between {} and {}{}", option, value, low, high, unit));
+}
+
+}  // namespace
+
+void RenderOptions::validate() const {
+  checkRange("width", width, 1, 16384, " pixels");
+  checkRange("height", height, 1, 16384, " pixels");
+  checkRange("samples", samples, 1, 16);
+  checkRange("crease", crease, 0.0, 180.0, " degrees");
+}
+
+PatchField makeField(const PatchMesh& mesh, std::span<const double> values, int bands,
+                     const RenderOptions& options) {
+  if (values.size() != mesh.size() * std::size_t(bands)) {
+    throw InputError(
+        fmt::format("render: {} values a patch are needed, {} were given for {} patches", bands,
+                    values.size(), mesh.size()));
+  }
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (std::isfinite(values[k])) continue;
+    throw InputError(fmt::format("render: the value of patch {} is {}, not a finite number",
+                                 k / bands, values[k]));
+  }
+  PatchField field;
+  field.values = values;
+  field.bands = bands;
+  if (options.smooth) field.corners = cornerValues(mesh, values, bands, options.crease);
+  return field;
+}
+
+Image render(const PatchMesh& mesh, std::span<const double> values, const Camera& camera,
+             const RenderOptions& options, Progress& progress) {
+  options.validate();
+  const View view = makeView(camera, options.width, options.height);
+  const PatchField field = makeField(mesh, values, 3, options);
+  const ItemBuffer items(mesh, view, options.samples, options.show_backs);
+  Image image{options.width, options.height, {}};
+  image.rgba.assign(std::size_t(image.width) * image.height * 4, 0.0f);
+  progress.begin("picture", items.tileCount());
+  forSamples(
+      mesh, items, field, [&](std::size_t) { return RgbPixel(image); }, progress);
+  progress.end();
+  return image;
+}
+
+}  // namespace radiosity

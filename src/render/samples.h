@@ -1,0 +1,55 @@
+// The loop over tiles, pixels and samples that every picture shares.
+#pragma once
+
+#include "base/parallel.h"
+#include "radiosity/render.h"
+#include "render/item_buffer.h"
+#include "render/patch_shader.h"
+
+namespace radiosity {
+
+/// What one sample sees.
+enum class Seen { nothing, front, back };
+
+/// Calls pixel(x, y, first sample) ... in tiles on all threads. `Pixel` is a class with
+///   void begin();                                        a new pixel
+///   void sample(Seen, const std::array<double, 3>&);     S^2 times; values for Seen::front only
+///   void end(int x, int y);                              the pixel is complete
+/// One Pixel is made per tile by make(tile); pixels come row by row, samples always in one order.
+template <class Make>
+void forSamples(const PatchMesh& mesh, const ItemBuffer& items, const PatchField& field,
+                const Make& make, Progress& progress) {
+  parallelFor(items.tileCount(), 1, [&](std::size_t tile) {
+    progress.check();
+    thread_local TileItems seen;
+    items.resolve(int(tile), seen);
+    auto pixel = make(tile);
+    PatchShader shader(mesh, items, field);
+    Index piece = kNone;
+    const int count = seen.samples * seen.samples;
+    for (int y = seen.y; y < seen.y + seen.height; ++y) {
+      for (int x = seen.x; x < seen.x + seen.width; ++x) {
+        pixel.begin();
+        for (int s = 0; s < count; ++s) {
+          const Index hit = seen.piece[seen.at(x, y, s)];
+          if (hit == kNone || items.seenFromBehind(hit)) {
+            pixel.sample(hit == kNone ? Seen::nothing : Seen::back, {});
+            continue;
+          }
+          if (hit != piece) shader.setPiece(piece = hit);
+          const Vec2 offset = sampleOffset(s, seen.samples);
+          pixel.sample(Seen::front, shader.at(x + offset.x, y + offset.y));
+        }
+        pixel.end(x, y);
+      }
+    }
+    progress.advance();
+  });
+}
+
+/// The field as a picture with these options needs it. Throws InputError unless there are `bands`
+/// finite values a patch.
+PatchField makeField(const PatchMesh& mesh, std::span<const double> values, int bands,
+                     const RenderOptions& options);
+
+}  // namespace radiosity
