@@ -1,0 +1,220 @@
+#include "scene/gltf_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <filesystem>
+
+#include "scene/text.h"
+
+namespace radiosity {
+
+namespace {
+
+/// Keeps an image's encoded bytes: which of them are needed is known later.
+bool keepEncoded(tinygltf::Image* image, const int /*index*/, std::string* /*error*/,
+                 std::string* /*warning*/, int /*width*/, int /*height*/,
+                 const unsigned char* bytes, int size, void* /*user*/) {
+  image->image.assign(bytes, bytes + size);
+  image->as_is = true;
+  return true;
+}
+
+std::string onOneLine(std::string_view text) {
+  std::string line(trimmed(text));
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  return line;
+}
+
+template <class T>
+double loadAs(const unsigned char* bytes) {
+  T value;
+  std::memcpy(&value, bytes, sizeof value);
+  return double(value);
+}
+
+double loadComponent(const unsigned char* bytes, int type) {
+  switch (type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      return loadAs<std::int8_t>(bytes);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return loadAs<std::uint8_t>(bytes);
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      return loadAs<std::int16_t>(bytes);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return loadAs<std::uint16_t>(bytes);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+      return loadAs<std::uint32_t>(bytes);
+    default:
+      return loadAs<float>(bytes);
+  }
+}
+
+/// What an integer is divided by when it stands for a fraction (glTF 2.0, 3.6.2.2).
+double normalisation(int type) {
+  switch (type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      return 127;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return 255;
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      return 32767;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return 65535;
+    default:
+      return 1;
+  }
+}
+
+bool isComponentType(int type) {
+  constexpr std::array<int, 6> kTypes = {
+      TINYGLTF_COMPONENT_TYPE_BYTE,         TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE,
+      TINYGLTF_COMPONENT_TYPE_SHORT,        TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
+      TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_COMPONENT_TYPE_FLOAT};
+  return std::find(kTypes.begin(), kTypes.end(), type) != kTypes.end();
+}
+
+bool isIndexType(int type) {
+  return type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+         type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
+         type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+}
+
+void checkExtensions(const GltfFile& file) {
+  std::vector<std::string> unknown;
+  for (const std::string& name : file.model.extensionsRequired) {
+    if (!isSupportedGltfExtension(name)) unknown.push_back(name);
+  }
+  if (unknown.empty()) return;
+  file.fail(fmt::format(
+      "requires what this program does not read: {}; export without it (no compression)",
+      joinNames(unknown)));
+}
+
+}  // namespace
+
+bool isSupportedGltfExtension(const std::string& name) {
+  constexpr std::array<std::string_view, 3> kSupported = {
+      "KHR_materials_emissive_strength", "KHR_texture_transform", "KHR_mesh_quantization"};
+  return std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end();
+}
+
+GltfFile parseGltf(const std::string& path, bool binary) {
+  const std::string content = readWholeFile(path);
+  if (content.size() > std::size_t(std::numeric_limits<unsigned int>::max())) {
+    throw InputError(path + ": is larger than 4 GiB; split the scene");
+  }
+  GltfFile file;
+  file.path = path;
+  tinygltf::TinyGLTF parser;
+  parser.SetImageLoader(keepEncoded, nullptr);
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  const auto size = static_cast<unsigned int>(content.size());
+  std::string error;
+  std::string warning;
+  const bool good =
+      binary
+          ? parser.LoadBinaryFromMemory(&file.model, &error, &warning,
+                                        reinterpret_cast<const unsigned char*>(content.data()),
+                                        size, folder)
+          : parser.LoadASCIIFromString(&file.model, &error, &warning, content.data(), size, folder);
+  if (!good) {
+    file.fail(fmt::format("cannot be read as glTF 2.0 ({}); export the scene again",
+                          error.empty() ? "no reason given" : onOneLine(error)));
+  }
+  if (!file.model.asset.version.starts_with("2.")) {
+    file.fail(fmt::format("is glTF {}; export it as glTF 2.0", file.model.asset.version));
+  }
+  checkExtensions(file);
+  return file;
+}
+
+const unsigned char* GltfFile::viewBytes(int view_index, std::size_t offset, std::size_t stride,
+                                         std::size_t element, std::size_t count,
+                                         const std::string& what) const {
+  const tinygltf::BufferView& view = at(model.bufferViews, view_index, "buffer view", what);
+  const tinygltf::Buffer& buffer = at(model.buffers, view.buffer, "buffer", what);
+  const bool view_fits = view.byteOffset <= buffer.data.size() &&
+                         view.byteLength <= buffer.data.size() - view.byteOffset;
+  // Written so that nothing overflows, whatever the file claims.
+  const bool fits = view_fits && offset <= view.byteLength && element <= view.byteLength - offset &&
+                    (count - 1) <= (view.byteLength - offset - element) / stride;
+  if (!fits) fail(what + " reaches beyond the end of its buffer; export the scene again");
+  return buffer.data.data() + view.byteOffset + offset;
+}
+
+std::vector<double> GltfFile::readNumbers(int accessor_index, int components,
+                                          const std::string& what) const {
+  const tinygltf::Accessor& accessor = at(model.accessors, accessor_index, "accessor", what);
+  const int type = accessor.componentType;
+  if (!isComponentType(type) || accessor.count == 0 ||
+      tinygltf::GetNumComponentsInType(std::uint32_t(accessor.type)) != components) {
+    fail(fmt::format("{} is not a list of {} numbers an element; export the scene again", what,
+                     components));
+  }
+  const auto size = std::size_t(tinygltf::GetComponentSizeInBytes(std::uint32_t(type)));
+  const auto width = std::size_t(components);
+  std::vector<double> values;
+  if (accessor.bufferView >= 0) {
+    const std::size_t given_stride =
+        at(model.bufferViews, accessor.bufferView, "buffer view", what).byteStride;
+    const std::size_t stride = given_stride != 0 ? given_stride : size * width;
+    const unsigned char* bytes = viewBytes(accessor.bufferView, accessor.byteOffset, stride,
+                                           size * width, accessor.count, what);
+    values.reserve(accessor.count * width);
+    for (std::size_t k = 0; k < accessor.count; ++k) {
+      for (std::size_t c = 0; c < width; ++c) {
+        values.push_back(loadComponent(bytes + k * stride + c * size, type));
+      }
+    }
+  } else {
+    // Nothing but sparse values bounds the claimed size: 2^28 elements are far beyond any scene.
+    if (accessor.count > (std::size_t(1) << 28)) fail(what + " claims too many elements");
+    values.assign(accessor.count * width, 0.0);
+  }
+  if (accessor.sparse.isSparse) applySparse(accessor, components, values, what);
+  if (accessor.normalized) {
+    for (double& value : values) value = std::max(value / normalisation(type), -1.0);
+  }
+  return values;
+}
+
+void GltfFile::applySparse(const tinygltf::Accessor& accessor, int components,
+                           std::vector<double>& values, const std::string& what) const {
+  const auto& sparse = accessor.sparse;
+  const int index_type = sparse.indices.componentType;
+  if (sparse.count < 1 || !isIndexType(index_type) || sparse.indices.byteOffset < 0 ||
+      sparse.values.byteOffset < 0) {
+    fail(what + " has a malformed sparse part; export the scene again");
+  }
+  const auto count = std::size_t(sparse.count);
+  const auto width = std::size_t(components);
+  const auto size =
+      std::size_t(tinygltf::GetComponentSizeInBytes(std::uint32_t(accessor.componentType)));
+  const auto index_size = std::size_t(tinygltf::GetComponentSizeInBytes(std::uint32_t(index_type)));
+  const unsigned char* indices =
+      viewBytes(sparse.indices.bufferView, std::size_t(sparse.indices.byteOffset), index_size,
+                index_size, count, what);
+  const unsigned char* bytes =
+      viewBytes(sparse.values.bufferView, std::size_t(sparse.values.byteOffset), size * width,
+                size * width, count, what);
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto target = std::size_t(loadComponent(indices + k * index_size, index_type));
+    if (target >= accessor.count) fail(what + " has a sparse index beyond its end");
+    for (std::size_t c = 0; c < width; ++c) {
+      values[target * width + c] =
+          loadComponent(bytes + (k * width + c) * size, accessor.componentType);
+    }
+  }
+}
+
+std::vector<Index> GltfFile::readIndices(int accessor_index, const std::string& what) const {
+  const tinygltf::Accessor& accessor = at(model.accessors, accessor_index, "accessor", what);
+  if (!isIndexType(accessor.componentType)) {
+    fail(what + " are not unsigned integers; export the scene again");
+  }
+  const std::vector<double> numbers = readNumbers(accessor_index, 1, what);
+  return {numbers.begin(), numbers.end()};
+}
+
+}  // namespace radiosity

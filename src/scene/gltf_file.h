@@ -1,0 +1,52 @@
+// A parsed glTF file with every reference checked: the library checks few of them.
+#pragma once
+
+#include <fmt/format.h>
+#include <tiny_gltf.h>
+
+#include <string>
+#include <vector>
+
+#include "radiosity/scene.h"
+
+namespace radiosity {
+
+/// Extensions that are read; a file may require these and no others.
+bool isSupportedGltfExtension(const std::string& name);
+
+struct GltfFile {
+  std::string path;
+  tinygltf::Model model;
+
+  [[noreturn]] void fail(const std::string& what) const { throw InputError(path + ": " + what); }
+
+  /// elements[index], or an InputError "PATH: WHAT refers to KIND 7, which does not exist".
+  template <class Element>
+  const Element& at(const std::vector<Element>& elements, int index, const char* kind,
+                    const std::string& what) const {
+    if (index < 0 || std::size_t(index) >= elements.size()) {
+      fail(fmt::format("{} refers to {} {}, which does not exist; export the scene again", what,
+                       kind, index));
+    }
+    return elements[std::size_t(index)];
+  }
+
+  /// All values of an accessor of `components` numbers an element, row-major; normalised integers
+  /// are mapped to [-1, 1] or [0, 1]; sparse ones are filled in.
+  std::vector<double> readNumbers(int accessor, int components, const std::string& what) const;
+
+  /// All values of an index accessor.
+  std::vector<Index> readIndices(int accessor, const std::string& what) const;
+
+ private:
+  const unsigned char* viewBytes(int view, std::size_t offset, std::size_t stride,
+                                 std::size_t element, std::size_t count,
+                                 const std::string& what) const;
+  void applySparse(const tinygltf::Accessor& accessor, int components, std::vector<double>& values,
+                   const std::string& what) const;
+};
+
+/// Parses and checks version and required extensions. Images are kept as their encoded bytes.
+GltfFile parseGltf(const std::string& path, bool binary);
+
+}  // namespace radiosity

@@ -1,0 +1,201 @@
+#include "scene/gltf_materials.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include "scene/texture.h"
+
+namespace radiosity {
+
+namespace {
+
+Vec2 pairOf(const tinygltf::Value& value, const Vec2& otherwise) {
+  if (!value.IsArray() || value.ArrayLen() != 2) return otherwise;
+  return {value.Get(0).GetNumberAsDouble(), value.Get(1).GetNumberAsDouble()};
+}
+
+class MaterialReader {
+ public:
+  MaterialReader(const GltfFile& file, const SceneOptions& options, Scene& scene,
+                 FeatureNotes& ignored)
+      : file_(file), options_(options), scene_(scene), ignored_(ignored) {}
+
+  GltfMaterials read();
+
+ private:
+  Material convert(const tinygltf::Material& gltf, const std::string& name);
+  Vec3 emission(const tinygltf::Material& gltf, const std::string& name) const;
+  Index texture(const tinygltf::TextureInfo& info, const std::string& material);
+  bool repeats(const tinygltf::Texture& texture, const std::string& material);
+  TexcoordSource texcoords(const tinygltf::TextureInfo& info) const;
+  void noteIgnored(const tinygltf::Material& gltf, const std::string& name);
+
+  const GltfFile& file_;
+  const SceneOptions& options_;
+  Scene& scene_;
+  FeatureNotes& ignored_;
+  struct LoadedTexture {
+    Index index = kNone;
+    std::string problem;
+  };
+  std::map<std::pair<int, bool>, LoadedTexture> texture_of_;  ///< by image, repeat
+};
+
+GltfMaterials MaterialReader::read() {
+  GltfMaterials result;
+  UniqueNames names;
+  for (std::size_t m = 0; m < file_.model.materials.size(); ++m) {
+    const tinygltf::Material& gltf = file_.model.materials[m];
+    const std::string name =
+        names.make(gltf.name.empty() ? fmt::format("material{}", m) : gltf.name);
+    scene_.materials.push_back(convert(gltf, name));
+    result.texcoords.push_back(texcoords(gltf.pbrMetallicRoughness.baseColorTexture));
+    noteIgnored(gltf, name);
+  }
+  return result;
+}
+
+Material MaterialReader::convert(const tinygltf::Material& gltf, const std::string& name) {
+  Material material;
+  material.name = name;
+  material.two_sided = gltf.doubleSided;
+  const tinygltf::PbrMetallicRoughness& pbr = gltf.pbrMetallicRoughness;
+  if (pbr.baseColorFactor.size() < 3) {
+    file_.fail(fmt::format("material {}: baseColorFactor is not 4 numbers; correct it", name));
+  }
+  for (int band = 0; band < 3; ++band) {
+    material.reflectance[band] = pbr.baseColorFactor[std::size_t(band)];
+  }
+  checkReflectance(file_.path, name, material.reflectance);
+  material.emission = emission(gltf, name);
+  if (pbr.baseColorTexture.index >= 0) {
+    if (options_.textures) {
+      material.texture = texture(pbr.baseColorTexture, name);
+    } else {
+      ignored_.add("textures are off; the factor alone counts, material", name);
+    }
+  }
+  if (material.texture == kNone && material.reflectance == Vec3(1.0)) {
+    ignored_.add("reflectance 1, glTF's default base colour: all light is returned, material", name,
+                 Severity::warning);
+  }
+  return material;
+}
+
+/// Radiance is emissiveFactor x KHR_materials_emissive_strength; exitance is pi times that.
+Vec3 MaterialReader::emission(const tinygltf::Material& gltf, const std::string& name) const {
+  Vec3 factor{0.0};
+  if (gltf.emissiveFactor.size() == 3) {
+    factor = {gltf.emissiveFactor[0], gltf.emissiveFactor[1], gltf.emissiveFactor[2]};
+  } else if (!gltf.emissiveFactor.empty()) {
+    file_.fail(fmt::format("material {}: emissiveFactor is not 3 numbers; correct it", name));
+  }
+  double strength = 1;
+  const auto extension = gltf.extensions.find("KHR_materials_emissive_strength");
+  if (extension != gltf.extensions.end() && extension->second.Has("emissiveStrength")) {
+    strength = extension->second.Get("emissiveStrength").GetNumberAsDouble();
+  }
+  const Vec3 exitance = std::numbers::pi * strength * factor;
+  checkEmission(file_.path, name, factor);
+  checkEmission(file_.path, name, exitance);
+  return exitance;
+}
+
+Index MaterialReader::texture(const tinygltf::TextureInfo& info, const std::string& material) {
+  const std::string what = "material " + material;
+  const tinygltf::Texture& gltf = file_.at(file_.model.textures, info.index, "texture", what);
+  const auto unusable = [&](const std::string& problem) {
+    ignored_.add(problem + "; the factor alone counts, material", material, Severity::warning);
+    return kNone;
+  };
+  // An extension such as KHR_texture_basisu may hold the only source.
+  if (gltf.source < 0) return unusable("texture has no image in PNG or JPEG");
+  const tinygltf::Image& image = file_.at(file_.model.images, gltf.source, "image", what);
+  std::string name = image.name.empty() ? image.uri : image.name;
+  if (name.empty()) name = fmt::format("image{}", gltf.source);
+  if (image.image.empty()) return unusable("texture " + name + " is not there");
+  const bool repeat = repeats(gltf, material);
+  const auto [place, is_new] = texture_of_.try_emplace({gltf.source, repeat});
+  LoadedTexture& loaded = place->second;
+  if (is_new) {
+    TextureResult result = decodeTexture(name, image.image);
+    loaded.problem = result.problem;
+    if (result.has_alpha) ignored_.add("alpha is not used, texture", name);
+    if (loaded.problem.empty()) {
+      result.texture.repeat = repeat;
+      loaded.index = Index(scene_.textures.size());
+      scene_.textures.push_back(std::move(result.texture));
+    }
+  }
+  if (loaded.index == kNone) return unusable("texture " + name + " " + loaded.problem);
+  return loaded.index;
+}
+
+bool MaterialReader::repeats(const tinygltf::Texture& texture, const std::string& material) {
+  if (texture.sampler < 0) return true;
+  const tinygltf::Sampler& sampler =
+      file_.at(file_.model.samplers, texture.sampler, "sampler", "material " + material);
+  const bool clamp = sampler.wrapS == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+  const bool mirrored = sampler.wrapS == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ||
+                        sampler.wrapT == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT;
+  if (mirrored || sampler.wrapS != sampler.wrapT) {
+    ignored_.add(fmt::format("texture wrapping that is mirrored or differs by axis is taken as {}, "
+                             "material",
+                             clamp ? "clamped" : "repeated"),
+                 material, Severity::warning);
+  }
+  return !clamp;
+}
+
+TexcoordSource MaterialReader::texcoords(const tinygltf::TextureInfo& info) const {
+  TexcoordSource source;
+  source.set = info.texCoord;
+  const auto extension = info.extensions.find("KHR_texture_transform");
+  if (extension == info.extensions.end()) return source;
+  const tinygltf::Value& transform = extension->second;
+  if (!transform.IsObject()) return source;
+  source.offset = pairOf(transform.Get("offset"), source.offset);
+  source.scale = pairOf(transform.Get("scale"), source.scale);
+  source.rotation = transform.Get("rotation").GetNumberAsDouble();
+  if (transform.Has("texCoord")) source.set = transform.Get("texCoord").GetNumberAsInt();
+  return source;
+}
+
+void MaterialReader::noteIgnored(const tinygltf::Material& gltf, const std::string& name) {
+  const tinygltf::PbrMetallicRoughness& pbr = gltf.pbrMetallicRoughness;
+  if (pbr.metallicFactor != 0) {
+    ignored_.add("metalness is not used (glTF's default is 1), material", name);
+  }
+  if (gltf.alphaMode != "OPAQUE") {
+    ignored_.add("transparency (alphaMode) is not used, material", name, Severity::warning);
+  }
+  if (gltf.emissiveTexture.index >= 0) {
+    ignored_.add("the emissive texture is not used, its factor alone emits, material", name,
+                 Severity::warning);
+  }
+  for (const auto& [extension, value] : gltf.extensions) {
+    if (isSupportedGltfExtension(extension)) continue;
+    ignored_.add(extension + " is not used, material", name);
+  }
+}
+
+}  // namespace
+
+/// KHR_texture_transform: scale, then a turn that is counter-clockwise as seen, v growing
+/// downwards, then the offset.
+Vec2 TexcoordSource::apply(const Vec2& uv) const {
+  const Vec2 scaled = uv * scale;
+  const double c = std::cos(rotation);
+  const double s = std::sin(rotation);
+  return Vec2(c * scaled.x + s * scaled.y, c * scaled.y - s * scaled.x) + offset;
+}
+
+GltfMaterials readGltfMaterials(const GltfFile& file, const SceneOptions& options, Scene& scene,
+                                FeatureNotes& ignored) {
+  return MaterialReader(file, options, scene, ignored).read();
+}
+
+}  // namespace radiosity

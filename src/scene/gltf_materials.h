@@ -1,0 +1,30 @@
+// Materials and textures of a glTF file.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/gltf_file.h"
+#include "scene/scene_builder.h"
+
+namespace radiosity {
+
+/// Where a material's texture coordinates come from: TEXCOORD_set, then KHR_texture_transform.
+struct TexcoordSource {
+  int set = 0;
+  Vec2 offset{0.0};
+  Vec2 scale{1.0};
+  double rotation = 0;
+  Vec2 apply(const Vec2& uv) const;
+};
+
+struct GltfMaterials {
+  std::vector<TexcoordSource> texcoords;  ///< one per material of the scene
+  Index none = kNone;                     ///< the default material; kNone until one is needed
+};
+
+/// Fills scene.materials (as in the file, in order, with unique names) and scene.textures.
+GltfMaterials readGltfMaterials(const GltfFile& file, const SceneOptions& options, Scene& scene,
+                                FeatureNotes& ignored);
+
+}  // namespace radiosity

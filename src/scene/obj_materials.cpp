@@ -1,0 +1,199 @@
+#include "scene/obj_materials.h"
+
+#include <fmt/format.h>
+#include <tiny_obj_loader.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <numbers>
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include "scene/mtl_scan.h"
+#include "scene/text.h"
+#include "scene/texture.h"
+
+namespace radiosity {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class MaterialReader {
+ public:
+  MaterialReader(const SceneOptions& options, Scene& scene) : options_(options), scene_(scene) {}
+
+  void readLibraries(const ObjScan& scan);
+  std::vector<Index> resolve(const ObjScan& scan);
+
+ private:
+  void readLibrary(const fs::path& path);
+  Material convert(const MtlMaterial& mtl, const tinyobj::material_t& parsed,
+                   const fs::path& folder);
+  Index texture(const MtlMaterial& mtl, const tinyobj::material_t& parsed, const fs::path& folder);
+  void note(Severity severity, std::string text) {
+    scene_.notes.push_back({severity, std::move(text)});
+  }
+
+  const SceneOptions& options_;
+  Scene& scene_;
+  std::map<std::string, Index> index_of_;
+  struct LoadedTexture {
+    Index index = kNone;
+    std::string problem;
+  };
+  std::map<std::pair<std::string, bool>, LoadedTexture> texture_of_;  ///< by path, repeat
+  std::set<fs::path> read_;
+  bool library_missing_ = false;
+  FeatureNotes ignored_;
+};
+
+void MaterialReader::readLibraries(const ObjScan& scan) {
+  const fs::path folder = fs::path(scene_.file).parent_path();
+  for (const auto& [line, text] : scan.libraries) {
+    std::error_code error;
+    // The format separates several names by blanks; exporters write one name with blanks in it.
+    std::vector<std::string_view> names = {text};
+    if (!fs::is_regular_file(folder / text, error)) names = splitWords(text);
+    for (const std::string_view name : names) {
+      const fs::path path = folder / name;
+      if (!fs::is_regular_file(path, error)) {
+        library_missing_ = true;
+        note(Severity::warning,
+             fmt::format("{}:{}: material file {} is not there; give materials by --set or a JSON "
+                         "materials file",
+                         scene_.file, line, path.string()));
+      } else if (fs::file_size(path, error) == 0) {
+        note(Severity::warning, fmt::format("{}: the material file is empty", path.string()));
+      } else if (read_.insert(path.lexically_normal()).second) {
+        readLibrary(path);
+      }
+    }
+  }
+  ignored_.appendTo(scene_.notes);
+}
+
+void MaterialReader::readLibrary(const fs::path& path) {
+  const std::string file = path.string();
+  const MtlScan scan = scanMtl(file, readWholeFile(file), ignored_);
+  const std::vector<MtlMaterial>& scanned = scan.materials;
+  if (scanned.empty()) {
+    note(Severity::warning, fmt::format("{}: defines no material", file));
+    return;
+  }
+  std::map<std::string, int> by_name;
+  std::vector<tinyobj::material_t> parsed;
+  std::string warnings;
+  std::string errors;
+  std::istringstream stream(scan.text);
+  tinyobj::LoadMtl(&by_name, &parsed, &stream, &warnings, &errors);
+  if (!errors.empty() || parsed.size() != scanned.size()) {
+    throw InputError(fmt::format("{}: cannot be read as MTL ({}); export the materials again", file,
+                                 trimmed(errors)));
+  }
+  for (std::size_t m = 0; m < scanned.size(); ++m) {
+    const MtlMaterial& mtl = scanned[m];
+    if (!index_of_.try_emplace(mtl.name, Index(scene_.materials.size())).second) {
+      note(Severity::warning,
+           fmt::format("{}:{}: material {} is defined twice; the first definition counts", file,
+                       mtl.line, mtl.name));
+      continue;
+    }
+    scene_.materials.push_back(convert(mtl, parsed[m], path.parent_path()));
+  }
+}
+
+Material MaterialReader::convert(const MtlMaterial& mtl, const tinyobj::material_t& parsed,
+                                 const fs::path& folder) {
+  Material material = defaultMaterial(mtl.name, options_);
+  if (mtl.textured && options_.textures) {
+    material.texture = texture(mtl, parsed, folder);
+  } else if (mtl.textured) {
+    ignored_.add("textures are off; the factor alone counts, material", mtl.name);
+  }
+  if (mtl.reflectance) {
+    material.reflectance = *mtl.reflectance;
+    if (options_.kd_is_srgb) {
+      for (int b = 0; b < 3; ++b) material.reflectance[b] = srgbToLinear(material.reflectance[b]);
+    }
+  } else if (material.texture != kNone) {
+    material.reflectance = Vec3(1.0);
+  } else {
+    note(Severity::info, fmt::format("material {} gives no Kd: reflectance {}", mtl.name,
+                                     options_.default_reflectance));
+  }
+  if (mtl.radiance) material.emission = std::numbers::pi * *mtl.radiance;
+  return material;
+}
+
+Index MaterialReader::texture(const MtlMaterial& mtl, const tinyobj::material_t& parsed,
+                              const fs::path& folder) {
+  const tinyobj::texture_option_t& option = parsed.diffuse_texopt;
+  const auto differs = [](const tinyobj::real_t* v, double expected) {
+    return v[0] != expected || v[1] != expected || v[2] != expected;
+  };
+  if (differs(option.scale, 1) || differs(option.origin_offset, 0)) {
+    ignored_.add("map_Kd options -s and -o are not used, material", mtl.name, Severity::warning);
+  }
+  std::string name(trimmed(parsed.diffuse_texname));
+  if (name.empty()) {
+    note(Severity::warning,
+         fmt::format("material {}: map_Kd names no file that can be told from its options; the "
+                     "factor alone counts",
+                     mtl.name));
+    return kNone;
+  }
+  std::replace(name.begin(), name.end(), '\\', '/');
+  const std::string path = (folder / name).string();
+  const auto [place, is_new] = texture_of_.try_emplace({path, !option.clamp});
+  LoadedTexture& loaded = place->second;
+  if (is_new) {
+    TextureResult result = readTexture(path);
+    loaded.problem = result.problem;
+    if (result.has_alpha) ignored_.add("alpha is not used, texture", path);
+    if (loaded.problem.empty()) {
+      result.texture.repeat = !option.clamp;
+      loaded.index = Index(scene_.textures.size());
+      scene_.textures.push_back(std::move(result.texture));
+    }
+  }
+  if (loaded.index == kNone) {
+    ignored_.add(
+        fmt::format("texture {} {}; the factor alone counts, material", path, loaded.problem),
+        mtl.name, Severity::warning);
+  }
+  return loaded.index;
+}
+
+std::vector<Index> MaterialReader::resolve(const ObjScan& scan) {
+  std::vector<Index> material_of;
+  std::vector<std::string> unknown;
+  for (const std::string& name : scan.materials) {
+    const auto [place, is_new] = index_of_.try_emplace(name, Index(scene_.materials.size()));
+    if (is_new) {
+      scene_.materials.push_back(defaultMaterial(name, options_));
+      unknown.push_back(name);
+    }
+    material_of.push_back(place->second);
+  }
+  if (!unknown.empty()) {
+    note(Severity::warning,
+         fmt::format("reflectance {} and no emission for materials that {}: {}",
+                     options_.default_reflectance,
+                     library_missing_ ? "the missing file would define" : "no file defines",
+                     joinNames(unknown)));
+  }
+  return material_of;
+}
+
+}  // namespace
+
+std::vector<Index> readObjMaterials(const ObjScan& scan, const SceneOptions& options,
+                                    Scene& scene) {
+  MaterialReader reader(options, scene);
+  reader.readLibraries(scan);
+  return reader.resolve(scan);
+}
+
+}  // namespace radiosity

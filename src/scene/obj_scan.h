@@ -1,0 +1,45 @@
+// Reads an OBJ file token by token before the library does: what the library would guess in
+// silence is an error with its line here, and names, lines and cameras are kept.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "radiosity/scene.h"
+
+namespace radiosity {
+
+/// Calls visit(line number, text) for every statement of an OBJ or MTL file, comments included.
+/// A line that ends in a backslash goes on in the next one; blank lines are left out.
+void forEachStatement(std::string_view text,
+                      const std::function<void(std::size_t, std::string_view)>& visit);
+
+struct ObjFace {
+  std::size_t line;
+  Index object;    ///< into ObjScan::objects
+  Index material;  ///< into ObjScan::materials, or kNone
+};
+
+struct ObjScan {
+  /// Only the v, vt, vn and f statements, one a line: what the library gets to see.
+  std::string geometry;
+  /// File units. Correctly rounded, which the library's own numbers are not.
+  std::vector<Vec3> vertices;
+  std::vector<ObjFace> faces;          ///< in file order
+  std::vector<std::string> objects;    ///< names, from `o` and `g`
+  std::vector<std::string> materials;  ///< names, from `usemtl`
+  /// Line and text of every mtllib statement.
+  std::vector<std::pair<std::size_t, std::string>> libraries;
+  /// (object, material): the object names no material and goes on with the last one.
+  std::vector<std::pair<Index, Index>> inherited;
+  std::vector<Camera> cameras;  ///< file units
+  std::vector<Note> notes;
+};
+
+/// Errors: InputError "FILE:LINE: what is wrong; cure".
+ObjScan scanObj(const std::string& file, std::string_view text);
+
+}  // namespace radiosity

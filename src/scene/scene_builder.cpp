@@ -1,0 +1,116 @@
+#include "scene/scene_builder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/text.h"
+
+namespace radiosity {
+
+std::string UniqueNames::make(const std::string& wanted) {
+  std::string name = wanted;
+  for (int k = 2; !taken_.insert(name).second; ++k) name = fmt::format("{}#{}", wanted, k);
+  return name;
+}
+
+void FeatureNotes::add(const std::string& feature, const std::string& name, Severity severity) {
+  auto entry = std::find_if(entries_.begin(), entries_.end(),
+                            [&](const Entry& e) { return e.feature == feature; });
+  if (entry == entries_.end()) {
+    entry = entries_.insert(entry, {feature, severity, {}});
+  }
+  if (std::find(entry->names.begin(), entry->names.end(), name) == entry->names.end()) {
+    entry->names.push_back(name);
+  }
+}
+
+void FeatureNotes::appendTo(std::vector<Note>& notes) const {
+  for (const Entry& entry : entries_) {
+    notes.push_back({entry.severity, entry.feature + ": " + joinNames(entry.names)});
+  }
+}
+
+SceneBuilder::SceneBuilder(Scene& scene) : scene_(scene) { scene_.face_offset.assign(1, 0); }
+
+Index SceneBuilder::surface(const std::string& object, Index material) {
+  const auto [place, is_new] =
+      surface_of_.try_emplace({object, material}, Index(scene_.surfaces.size()));
+  if (is_new) {
+    scene_.surfaces.push_back({object, material, ""});
+    lacks_texcoords_.push_back(false);
+  }
+  return place->second;
+}
+
+void SceneBuilder::addFace(std::span<const Index> corners, std::span<const Vec2> texcoords,
+                           Index surface, std::size_t element) {
+  scene_.corners.insert(scene_.corners.end(), corners.begin(), corners.end());
+  scene_.face_offset.push_back(scene_.corners.size());
+  scene_.face_surface.push_back(surface);
+  scene_.face_element.push_back(element);
+  if (texcoords.empty()) {
+    lacks_texcoords_[surface] = true;
+    scene_.texcoords.resize(scene_.corners.size(), Vec2(0.0));
+  } else {
+    scene_.texcoords.insert(scene_.texcoords.end(), texcoords.begin(), texcoords.end());
+  }
+}
+
+void SceneBuilder::finish() {
+  dropUnusableTextures();
+  UniqueNames names;
+  for (Surface& surface : scene_.surfaces) {
+    surface.name = names.make(surface.object + "/" + scene_.materials[surface.material].name);
+  }
+}
+
+void SceneBuilder::dropUnusableTextures() {
+  FeatureNotes notes;
+  bool textured = false;
+  for (std::size_t s = 0; s < scene_.surfaces.size(); ++s) {
+    Surface& surface = scene_.surfaces[s];
+    if (scene_.materials[surface.material].texture == kNone) continue;
+    if (!lacks_texcoords_[s]) {
+      textured = true;
+      continue;
+    }
+    Material plain = scene_.materials[surface.material];
+    plain.texture = kNone;
+    notes.add("texture not used, faces without texture coordinates; the factor alone counts",
+              surface.object + "/" + plain.name, Severity::warning);
+    surface.material = Index(scene_.materials.size());
+    scene_.materials.push_back(std::move(plain));
+  }
+  if (!textured) scene_.texcoords.clear();
+  notes.appendTo(scene_.notes);
+}
+
+Material defaultMaterial(const std::string& name, const SceneOptions& options) {
+  Material material;
+  material.name = name;
+  material.reflectance = Vec3(options.default_reflectance);
+  return material;
+}
+
+void checkReflectance(const std::string& where, const std::string& name, const Vec3& reflectance) {
+  for (int band = 0; band < 3; ++band) {
+    if (reflectance[band] >= 0 && reflectance[band] <= 1) continue;
+    throw InputError(fmt::format(
+        "{}: material {}: reflectance {} is outside 0 to 1; a surface returns no more light than "
+        "it gets, scale it down",
+        where, name, describeBands(reflectance)));
+  }
+}
+
+void checkEmission(const std::string& where, const std::string& name, const Vec3& emission) {
+  for (int band = 0; band < 3; ++band) {
+    if (emission[band] >= 0 && std::isfinite(emission[band])) continue;
+    throw InputError(
+        fmt::format("{}: material {}: emission {} is not a finite value of 0 or more; correct it",
+                    where, name, describeBands(emission)));
+  }
+}
+
+}  // namespace radiosity

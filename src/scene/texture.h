@@ -1,0 +1,28 @@
+// Images into linear texels.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "radiosity/scene.h"
+
+namespace radiosity {
+
+/// sRGB electro-optical transfer function (IEC 61966-2-1), [0,1] -> [0,1].
+double srgbToLinear(double encoded);
+
+/// Outcome of reading an image: a texture, or `problem` says in a few words why there is none.
+struct TextureResult {
+  Texture texture;
+  bool has_alpha = false;  ///< a channel that is not used
+  std::string problem;
+};
+
+/// Reads an image file. Integer samples are sRGB-encoded unless the file says that they are
+/// linear; float samples are linear. Grey is repeated in all bands, alpha is left out.
+TextureResult readTexture(const std::string& path);
+
+/// The same for an image that is already in memory; the format is told by its first bytes.
+TextureResult decodeTexture(const std::string& name, std::span<const unsigned char> bytes);
+
+}  // namespace radiosity
