@@ -1,0 +1,55 @@
+// Which face of the scene lies under a point of a planar polygon.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "mesh/plane_frame.h"
+#include "radiosity/scene.h"
+
+namespace radiosity {
+
+/// Triangles that tile a simple polygon in the plane (counter-clockwise or clockwise; they turn
+/// the same way), by ear clipping: n - 2 of them. Collinear and repeated corners are allowed and
+/// may give triangles without area. O(n^2).
+std::vector<std::array<Index, 3>> triangulateOutline(std::span<const Vec2> outline);
+
+/// Some faces of a scene, flattened onto one plane.
+class FaceLocator {
+ public:
+  /// `frame` is relative to `origin`, a point of the scene near the faces.
+  FaceLocator(const Scene& scene, std::span<const Index> faces, const PlaneFrame& frame,
+              const Vec3& origin);
+
+  /// A point of a face as a mean of three of its corners (into Scene::corners).
+  struct Place {
+    Index face = kNone;
+    std::array<std::size_t, 3> corners{};
+    std::array<double, 3> weights{};
+  };
+
+  /// The face under `p` (relative to the origin): of those whose outline holds it, the nearest to
+  /// the plane through p; where none does, the one whose outline is nearest. `preferred` wins
+  /// where it holds p. Needs at least one face.
+  Place locate(const Vec3& p, Index preferred = kNone) const;
+
+ private:
+  struct Triangle {
+    Index face;
+    std::array<std::size_t, 3> corners;
+    std::array<Vec2, 3> p;
+    std::array<double, 3> height;  ///< of the corners above the frame's plane
+  };
+  std::size_t cell(double x, int axis) const;
+  Place place(const Triangle& triangle, const Vec2& q) const;
+
+  PlaneFrame frame_;
+  std::vector<Triangle> triangles_;
+  Vec2 lower_{0.0};
+  Vec2 inverse_cell_{0.0};
+  std::array<std::size_t, 2> count_{1, 1};
+  std::vector<std::vector<Index>> grid_;
+};
+
+}  // namespace radiosity

@@ -1,0 +1,30 @@
+// From cells of polygons to the arrays of a PatchMesh.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mesh/polygon_cells.h"
+
+namespace radiosity {
+
+/// The polygon whose cells polygon `p` has: its own, or, reversed, those of the one it lies back to
+/// back with, so that both are cut alike.
+inline std::size_t cellSource(const CoarseComplex& complex, std::size_t p) {
+  const Index opposite = complex.polygons[p].opposite;
+  return opposite != kNone && opposite < p ? opposite : p;
+}
+
+/// All fronts polygon by polygon, then the backs. Areas are measured along the polygon's normal, so
+/// that the patches of a polygon sum up to it although its vertices leave the plane by up to the
+/// coincidence. `cells`: of every polygon that is its own cellSource().
+PatchMesh assemblePatches(const CoarseComplex& complex, const Scene& scene, const EdgeCuts& cuts,
+                          std::span<const PolygonCells> cells, Progress& progress);
+
+/// Appends the back of every patch in `fronts`, in order: reversed, flipped, twins linked.
+void appendBacks(PatchMesh& mesh, std::span<const Index> fronts);
+
+/// Numbers patches and polygons within their surfaces, in order.
+void numberWithinSurfaces(PatchMesh& mesh);
+
+}  // namespace radiosity

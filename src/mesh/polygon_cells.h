@@ -1,0 +1,30 @@
+// One planar polygon cut into cells.
+#pragma once
+
+#include <vector>
+
+#include "mesh/edge_cuts.h"
+#include "mesh/region.h"
+
+namespace radiosity {
+
+/// Cells of one polygon, counter-clockwise about its normal. Corner c is boundary[c] (a point of
+/// the EdgeCuts) below boundary.size(), else interior[c - boundary.size()].
+struct PolygonCells {
+  std::vector<Index> boundary;
+  std::vector<Vec3> interior;
+  std::vector<Cell> cells;
+};
+
+/// How large the cells are to be.
+struct CellSize {
+  double size = 0;     ///< metres, of cells inside polygons
+  double longest = 0;  ///< metres, of any new edge; infinite: no limit
+};
+
+/// A grid of convex quadrilaterals where the polygon has four sides cut alike, triangles and
+/// quadrilaterals over a background grid elsewhere. The boundary is taken as `cuts` has it.
+PolygonCells cellsOf(const CoarseComplex& complex, const EdgeCuts& cuts, std::size_t polygon,
+                     const CellSize& size);
+
+}  // namespace radiosity

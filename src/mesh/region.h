@@ -1,0 +1,47 @@
+// Triangulating a planar region without touching its boundary, in the plane's own coordinates.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "radiosity/base.h"
+
+namespace radiosity {
+
+/// A region bounded by loops of short pieces, with constraint pieces inside. Points are distinct.
+struct Region {
+  std::vector<Vec2> points;                 ///< ends of all pieces
+  std::vector<std::vector<Index>> loops;    ///< into points; the region lies on the left
+  std::vector<std::array<Index, 2>> inner;  ///< pieces inside that triangles must respect
+  Vec2 along{1.0, 0.0};                     ///< unit; the background grid follows it
+  double size = 0;                          ///< wanted distance of points inside
+  double longest = std::numeric_limits<double>::infinity();  ///< no new edge is longer
+};
+
+/// A triangle (last entry kNone) or a convex quadrilateral, counter-clockwise.
+using Cell = std::array<Index, 4>;
+
+/// Cells over region.points followed by `interior`.
+struct RegionMesh {
+  std::vector<Vec2> interior;
+  std::vector<Cell> cells;
+};
+
+/// Points of a square grid of about `region.size` inside the region, none closer to a piece than
+/// 0.6 of the spacing. `inside` is decided by even-odd over the loops.
+std::vector<Vec2> backgroundGrid(const Region& region);
+
+/// Constrained Delaunay triangulation of the region's pieces and a background grid, improved by
+/// points and moves inside until all angles are at least 25 degrees, or those that the boundary
+/// allows; then pairs of triangles are joined. Pieces are never split. Throws RunError where pieces
+/// cross.
+RegionMesh meshRegion(const Region& region);
+
+/// Joins pairs of triangles into convex quadrilaterals with angles within 45 degrees of a right
+/// angle, the squarest first; never across a piece of the region. Remaining triangles stay.
+std::vector<Cell> pairTriangles(const Region& region, const std::vector<Vec2>& interior,
+                                const std::vector<std::array<Index, 3>>& triangles);
+
+}  // namespace radiosity

@@ -1,0 +1,404 @@
+#include <CGAL/Constrained_Delaunay_triangulation_2.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_face_base_with_info_2.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <deque>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+#include <iterator>
+#include <unordered_set>
+
+#include "mesh/edge_key.h"
+#include "mesh/plane_frame.h"
+#include "mesh/region.h"
+
+namespace radiosity {
+
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<Index, Kernel>;
+using FaceBase =
+    CGAL::Triangulation_face_base_with_info_2<bool, Kernel,
+                                              CGAL::Constrained_triangulation_face_base_2<Kernel>>;
+using DataStructure = CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>;
+using Cdt = CGAL::Constrained_Delaunay_triangulation_2<Kernel, DataStructure,
+                                                       CGAL::No_constraint_intersection_tag>;
+using Face = Cdt::Face_handle;
+using Vertex = Cdt::Vertex_handle;
+
+const double kWantedAngle = glm::radians(25.0);    // triangles below are worked on
+const double kAcceptedAngle = glm::radians(18.0);  // a new point must reach this around itself
+const double kWorthwhile = glm::radians(2.0);      // and gain this much
+constexpr int kRounds = 4;                         // refine, smooth, triangulate anew
+constexpr int kSweeps = 4;                         // of smoothing, a round
+
+Vec2 positionOf(Vertex v) { return {v->point().x(), v->point().y()}; }
+Cdt::Point pointOf(const Vec2& p) { return {p.x, p.y}; }
+double smallestOf(const Vec2& a, const Vec2& b, const Vec2& c) {
+  return std::min({angleAt(c, a, b), angleAt(a, b, c), angleAt(b, c, a)});
+}
+
+/// The smallest angle that points and moves inside can change: those between two constraints are
+/// given. A triangle that is turned over has angle -1.
+double smallestFreeAngle(Face f) {
+  const Vec2 p[3] = {positionOf(f->vertex(0)), positionOf(f->vertex(1)), positionOf(f->vertex(2))};
+  if (cross2(p[1] - p[0], p[2] - p[0]) <= 0) return -1;
+  double smallest = glm::radians(180.0);
+  for (int i = 0; i < 3; ++i) {
+    const int next = Cdt::ccw(i);
+    const int last = Cdt::cw(i);
+    if (f->is_constrained(next) && f->is_constrained(last)) continue;
+    smallest = std::min(smallest, angleAt(p[next], p[i], p[last]));
+  }
+  return smallest;
+}
+
+/// Where a point might mend the triangle p: its circumcentre, its centroid, and apexes of good
+/// triangles over its shortest edge (Uengoer's off-centres).
+std::vector<Vec2> candidatesFor(const Vec2 (&p)[3]) {
+  const Vec2 a = p[1] - p[0];
+  const Vec2 b = p[2] - p[0];
+  const Vec2 turned(b.y * glm::dot(a, a) - a.y * glm::dot(b, b),
+                    a.x * glm::dot(b, b) - b.x * glm::dot(a, a));
+  std::vector<Vec2> candidates = {p[0] + turned / (2 * cross2(a, b)), (p[0] + p[1] + p[2]) / 3.0};
+  int apex = 0;  // opposite the shortest edge
+  for (int i = 1; i < 3; ++i) {
+    if (glm::length(p[Cdt::ccw(i)] - p[Cdt::cw(i)]) <
+        glm::length(p[Cdt::ccw(apex)] - p[Cdt::cw(apex)])) {
+      apex = i;
+    }
+  }
+  const Vec2 middle = 0.5 * (p[Cdt::ccw(apex)] + p[Cdt::cw(apex)]);
+  const Vec2 edge = p[Cdt::cw(apex)] - p[Cdt::ccw(apex)];
+  const Vec2 normal(-edge.y, edge.x);  // towards the apex: the triangle is counter-clockwise
+  for (const double angle : {30.0, 45.0, 60.0, 80.0}) {
+    candidates.push_back(middle + normal * (0.5 / std::tan(0.5 * glm::radians(angle))));
+  }
+  return candidates;
+}
+
+class RegionMesher {
+ public:
+  explicit RegionMesher(const Region& region) : region_(region) {
+    for (const auto& loop : region.loops) {
+      for (std::size_t k = 0; k < loop.size(); ++k) {
+        outline_.insert(edgeKey(loop[k], loop[(k + 1) % loop.size()]));
+      }
+    }
+    interior_ = backgroundGrid(region);
+    budget_ = 2 * (region.points.size() + interior_.size()) + 32;
+  }
+
+  RegionMesh run() {
+    triangulate();
+    for (int round = 0; round < kRounds && smallestAngle() < kWantedAngle; ++round) {
+      refine();
+      smooth();
+      takePositions();
+      triangulate();
+    }
+    std::vector<Cell> cells = pairTriangles(region_, interior_, triangles());
+    while (shorten(cells)) cells = pairTriangles(region_, interior_, triangles());
+    return {std::move(interior_), std::move(cells)};
+  }
+
+ private:
+  void triangulate();
+  void markInside();
+  void constrain(Vertex a, Vertex b);
+  bool isOutline(Face f, int i) const {
+    return f->is_constrained(i) && outline_.count(edgeKey(f->vertex(Cdt::cw(i))->info(),
+                                                          f->vertex(Cdt::ccw(i))->info())) > 0;
+  }
+  bool isFree(Vertex v) const { return v->info() >= region_.points.size(); }
+  double smallestAngle() const;
+  void refine();
+  bool improve(Face bad, std::vector<Face>& changed);
+  struct Trial {
+    Face where;          ///< holds the point
+    double gain = 0;     ///< the smallest angle around it, if that is worth a point; else 0
+    bool clear = false;  ///< removes the bad face and keeps out of the circles over constraints
+  };
+  Trial tryPoint(const Cdt::Point& p, Face bad);
+  Vertex insert(const Cdt::Point& p, Face where);
+  void smooth();
+  bool relax(Vertex v);
+  double smallestAround(Vertex v);
+  bool shorten(const std::vector<Cell>& cells);
+  void takePositions();
+  std::vector<std::array<Index, 3>> triangles() const;
+
+  const Region& region_;
+  std::unordered_set<std::uint64_t> outline_;
+  std::vector<Vec2> interior_;
+  Cdt cdt_;
+  std::size_t inserted_ = 0;
+  std::size_t budget_ = 0;
+};
+
+void RegionMesher::constrain(Vertex a, Vertex b) {
+  try {
+    cdt_.insert_constraint(a, b);
+  } catch (const Cdt::Intersection_of_constraints_exception&) {
+    throw RunError("two edges of a polygon cross");
+  }
+}
+
+void RegionMesher::triangulate() {
+  cdt_.clear();
+  const auto add = [&](const Vec2& p, std::size_t id, Face hint) {
+    const Vertex v = cdt_.insert(pointOf(p), hint);
+    v->info() = Index(id);
+    return v;
+  };
+  // Every second of the points between those already in, again and again: points in a row, one
+  // after the other, would make each insertion flip all edges of the row so far.
+  const std::size_t count = region_.points.size();
+  std::vector<Vertex> vertices(count);
+  vertices[0] = add(region_.points[0], 0, Face());
+  for (std::size_t stride = std::bit_ceil(count); stride > 0; stride /= 2) {
+    for (std::size_t k = stride; k < count; k += 2 * stride) {
+      vertices[k] = add(region_.points[k], k, vertices[k - stride]->face());
+    }
+  }
+  for (const auto& loop : region_.loops) {
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      constrain(vertices[loop[k]], vertices[loop[(k + 1) % loop.size()]]);
+    }
+  }
+  for (const auto& [from, to] : region_.inner) constrain(vertices[from], vertices[to]);
+  Face hint;
+  for (std::size_t k = 0; k < interior_.size(); ++k) {
+    hint = add(interior_[k], count + k, hint)->face();
+  }
+  markInside();
+}
+
+/// Faces reached from the left of the loops' pieces without crossing any of them.
+void RegionMesher::markInside() {
+  for (Face f : cdt_.all_face_handles()) f->info() = false;
+  std::vector<Face> stack;
+  const auto visit = [&](Face f) {
+    if (f->info() || cdt_.is_infinite(f)) return;
+    f->info() = true;
+    stack.push_back(f);
+  };
+  std::unordered_set<std::uint64_t> directed;
+  for (const auto& loop : region_.loops) {
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      directed.insert(directedKey(loop[k], loop[(k + 1) % loop.size()]));
+    }
+  }
+  for (Face f : cdt_.finite_face_handles()) {
+    for (int i = 0; i < 3; ++i) {
+      const Index from = f->vertex(Cdt::ccw(i))->info();
+      const Index to = f->vertex(Cdt::cw(i))->info();
+      if (directed.count(directedKey(from, to)) > 0) visit(f);
+    }
+  }
+  while (!stack.empty()) {
+    const Face f = stack.back();
+    stack.pop_back();
+    for (int i = 0; i < 3; ++i) {
+      if (!isOutline(f, i)) visit(f->neighbor(i));
+    }
+  }
+}
+
+double RegionMesher::smallestAngle() const {
+  double smallest = glm::radians(180.0);
+  for (Face f : cdt_.finite_face_handles()) {
+    if (f->info()) smallest = std::min(smallest, smallestFreeAngle(f));
+  }
+  return smallest;
+}
+
+/// Delaunay refinement without encroachment rules: instead of reasoning about where a point may
+/// go, candidates are judged by the triangles they would make.
+void RegionMesher::refine() {
+  std::vector<std::array<Vertex, 3>> worst;
+  const auto note = [&](Face f) {
+    if (f->info() && smallestFreeAngle(f) < kWantedAngle) {
+      worst.push_back({f->vertex(0), f->vertex(1), f->vertex(2)});
+    }
+  };
+  for (Face f : cdt_.finite_face_handles()) note(f);
+  std::vector<Face> changed;
+  for (std::size_t k = 0; k < worst.size() && inserted_ < budget_; ++k) {
+    Face f;
+    if (!cdt_.is_face(worst[k][0], worst[k][1], worst[k][2], f) || !f->info()) continue;
+    changed.clear();
+    if (improve(f, changed)) {
+      for (Face g : changed) note(g);
+    }
+  }
+}
+
+/// Judges a point at p that would remove `bad` by the triangles it would make, which are known
+/// beforehand: p joined to the boundary of the zone it is in conflict with (Bowyer-Watson).
+RegionMesher::Trial RegionMesher::tryPoint(const Cdt::Point& p, Face bad) {
+  Trial trial;
+  Face& where = trial.where;
+  Cdt::Locate_type type;
+  int i = 0;
+  where = cdt_.locate(p, type, i, bad);
+  if (type == Cdt::VERTEX || cdt_.is_infinite(where) || !where->info()) return trial;
+  if (type == Cdt::EDGE && where->is_constrained(i)) return trial;
+  std::vector<Face> zone;
+  std::vector<Cdt::Edge> rim;
+  cdt_.get_conflicts_and_boundary(p, std::back_inserter(zone), std::back_inserter(rim), where);
+  double before = glm::radians(180.0);
+  bool removes = false;
+  for (Face f : zone) {
+    before = std::min(before, smallestFreeAngle(f));
+    removes = removes || f == bad;
+  }
+  if (!removes) return trial;
+  double after = glm::radians(180.0);
+  trial.clear = true;
+  for (const auto& [f, side] : rim) {
+    const Vec2 a = positionOf(f->vertex(Cdt::ccw(side)));
+    const Vec2 b = positionOf(f->vertex(Cdt::cw(side)));
+    const Vec2 q(p.x(), p.y());
+    after = std::min(after, smallestOf(q, a, b));
+    if (f->is_constrained(side) && glm::dot(a - q, b - q) < 0) trial.clear = false;
+  }
+  if (after >= kAcceptedAngle && after >= before + kWorthwhile) trial.gain = after;
+  return trial;
+}
+
+Vertex RegionMesher::insert(const Cdt::Point& p, Face where) {
+  const Vertex v = cdt_.insert(p, where);
+  v->info() = Index(region_.points.size() + interior_.size());
+  interior_.emplace_back(p.x(), p.y());
+  ++inserted_;
+  Cdt::Face_circulator f = cdt_.incident_faces(v);
+  const Cdt::Face_circulator end = f;
+  do {
+    f->info() = true;  // the conflict zone never crosses a constraint
+  } while (++f != end);
+  return v;
+}
+
+bool RegionMesher::improve(Face bad, std::vector<Face>& changed) {
+  const Vec2 p[3] = {positionOf(bad->vertex(0)), positionOf(bad->vertex(1)),
+                     positionOf(bad->vertex(2))};
+  Trial best;
+  Cdt::Point best_point;
+  bool first = true;
+  for (const Vec2& candidate : candidatesFor(p)) {
+    const Cdt::Point q = pointOf(candidate);
+    if (!std::isfinite(q.x()) || !std::isfinite(q.y())) continue;
+    const Trial trial = tryPoint(q, bad);
+    // The first candidate is the circumcentre. Clear of the boundary it may go in without a gain of
+    // its own: no edge it makes is shorter than the triangle's radius, so that points spread out
+    // from small features, farther and farther apart (Ruppert 1995).
+    const bool spread = first && trial.clear;
+    first = false;
+    if (!spread && trial.gain <= best.gain) continue;
+    best = trial;
+    best_point = q;
+    if (spread) break;
+  }
+  if (best.where == Face()) return false;
+  const Vertex v = insert(best_point, best.where);
+  Cdt::Face_circulator f = cdt_.incident_faces(v);
+  const Cdt::Face_circulator end = f;
+  do {
+    changed.push_back(f);
+  } while (++f != end);
+  return true;
+}
+
+double RegionMesher::smallestAround(Vertex v) {
+  double smallest = glm::radians(180.0);
+  Cdt::Face_circulator f = cdt_.incident_faces(v);
+  const Cdt::Face_circulator end = f;
+  do {
+    smallest = std::min(smallest, smallestFreeAngle(f));
+  } while (++f != end);
+  return smallest;
+}
+
+/// Moves a free vertex towards the mean of its neighbours as far as its smallest angle grows.
+bool RegionMesher::relax(Vertex v) {
+  const double before = smallestAround(v);
+  if (before >= kWantedAngle) return false;
+  Vec2 mean(0.0);
+  double count = 0;
+  Cdt::Vertex_circulator w = cdt_.incident_vertices(v);
+  const Cdt::Vertex_circulator end = w;
+  do {
+    mean += positionOf(w);
+    count += 1;
+  } while (++w != end);
+  mean /= count;
+  const Cdt::Point old = v->point();
+  const Vec2 from = positionOf(v);
+  for (const double step : {1.0, 0.5, 0.25, -0.25}) {
+    v->set_point(pointOf(from + step * (mean - from)));
+    if (smallestAround(v) > before) return true;
+  }
+  v->set_point(old);
+  return false;
+}
+
+void RegionMesher::smooth() {
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    bool moved = false;
+    for (Vertex v : cdt_.finite_vertex_handles()) {
+      if (isFree(v)) moved = relax(v) || moved;
+    }
+    if (!moved) return;
+  }
+}
+
+/// Cuts inside edges of cells that are too long at their middle. False: there are none.
+bool RegionMesher::shorten(const std::vector<Cell>& cells) {
+  if (!std::isfinite(region_.longest)) return false;
+  std::vector<Vertex> vertices(region_.points.size() + interior_.size());
+  for (Vertex v : cdt_.finite_vertex_handles()) vertices[v->info()] = v;
+  const double limit = region_.longest * (1 + 1e-9);  // an edge that was meant to be as long
+  bool found = false;
+  for (const Cell& cell : cells) {
+    const std::size_t corners = cell[3] == kNone ? 3 : 4;
+    for (std::size_t k = 0; k < corners; ++k) {
+      const Vertex a = vertices[cell[k]];
+      const Vertex b = vertices[cell[(k + 1) % corners]];
+      Face f;
+      int i = 0;
+      if (glm::length(positionOf(a) - positionOf(b)) <= limit) continue;
+      if (!cdt_.is_edge(a, b, f, i) || f->is_constrained(i)) continue;
+      insert(pointOf(0.5 * (positionOf(a) + positionOf(b))), f);
+      found = true;
+    }
+  }
+  return found;
+}
+
+void RegionMesher::takePositions() {
+  for (Vertex v : cdt_.finite_vertex_handles()) {
+    if (isFree(v)) interior_[v->info() - region_.points.size()] = positionOf(v);
+  }
+}
+
+std::vector<std::array<Index, 3>> RegionMesher::triangles() const {
+  std::vector<std::array<Index, 3>> result;
+  for (Face f : cdt_.finite_face_handles()) {
+    if (f->info()) {
+      result.push_back({f->vertex(0)->info(), f->vertex(1)->info(), f->vertex(2)->info()});
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+RegionMesh meshRegion(const Region& region) { return RegionMesher(region).run(); }
+
+}  // namespace radiosity

@@ -1,0 +1,434 @@
+// The subdivision stage: cells of a coarse complex, checked against areas known from the outline,
+// brute-force conformity and shape, never against an earlier run.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+#include <map>
+#include <set>
+
+#include "coarse_builder.h"
+
+namespace radiosity {
+namespace {
+
+using test::CoarseBuilder;
+using test::SceneBuilder;
+
+struct Made {
+  PatchMesh mesh;
+  MeshReport report;
+};
+
+Made subdivided(CoarseBuilder& input, const MeshOptions& options) {
+  Progress progress;
+  Made made;
+  made.mesh = subdivide(input.complex(), input.scene(), options, made.report, progress);
+  return made;
+}
+
+MeshOptions count(std::size_t patches) {
+  MeshOptions options;
+  options.patches = patches;
+  return options;
+}
+
+MeshOptions edge(double longest) {
+  MeshOptions options;
+  options.max_edge = longest;
+  return options;
+}
+
+std::vector<Vec2> square(double low, double high) {
+  return {{low, low}, {high, low}, {high, high}, {low, high}};
+}
+
+std::vector<Vec2> hole(std::vector<Vec2> loop) { return {loop.rbegin(), loop.rend()}; }
+
+double loopArea(const std::vector<Vec2>& loop) {
+  double twice = 0;
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    const Vec2& a = loop[k];
+    const Vec2& b = loop[(k + 1) % loop.size()];
+    twice += a.x * b.y - a.y * b.x;
+  }
+  return 0.5 * twice;
+}
+
+std::size_t bruteForceTJunctions(const PatchMesh& mesh, double tolerance) {
+  std::set<std::pair<Index, Index>> edges;
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    const auto outline = mesh.outline(i);
+    for (std::size_t k = 0; k < outline.size(); ++k) {
+      edges.insert(std::minmax({outline[k], outline[(k + 1) % outline.size()]}));
+    }
+  }
+  const std::set<Index> used(mesh.corners.begin(), mesh.corners.end());
+  std::size_t found = 0;
+  for (const auto& [from, to] : edges) {
+    const Vec3& a = mesh.vertices[from];
+    const Vec3& b = mesh.vertices[to];
+    for (const Index v : used) {
+      const Vec3& p = mesh.vertices[v];
+      const double along = glm::dot(p - a, b - a) / glm::length(b - a);
+      const double off = glm::length(p - a - along * glm::normalize(b - a));
+      if (v != from && v != to && along > tolerance && along < glm::length(b - a) - tolerance &&
+          off <= tolerance) {
+        ++found;
+      }
+    }
+  }
+  return found;
+}
+
+/// Convex, counter-clockwise about its normal, along the polygon's normal, pieces tiling it.
+void expectGoodPatches(const PatchMesh& mesh) {
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    const auto outline = mesh.outline(i);
+    const std::size_t n = outline.size();
+    ASSERT_TRUE(n == 3 || n == 4) << i;
+    ASSERT_GT(mesh.area[i], 0) << i;
+    const Vec3 facing = mesh.side[i] == 0 ? mesh.polygons.normal[mesh.polygon[i]]
+                                          : -mesh.polygons.normal[mesh.polygon[i]];
+    EXPECT_EQ(mesh.normal[i], facing) << i;
+    for (std::size_t k = 0; k < n; ++k) {
+      const Vec3& a = mesh.vertices[outline[k]];
+      const Vec3& b = mesh.vertices[outline[(k + 1) % n]];
+      const Vec3& c = mesh.vertices[outline[(k + 2) % n]];
+      EXPECT_GT(glm::dot(glm::cross(b - a, c - b), mesh.normal[i]), 0) << "patch " << i;
+    }
+    double pieces = 0;
+    for (std::size_t t = mesh.piece_offset[i]; t < mesh.piece_offset[i + 1]; ++t) {
+      const Vec3& a = mesh.vertices[mesh.pieces[t][0]];
+      pieces += 0.5 * glm::dot(glm::cross(mesh.vertices[mesh.pieces[t][1]] - a,
+                                          mesh.vertices[mesh.pieces[t][2]] - a),
+                               mesh.normal[i]);
+    }
+    // A few roundings of coordinates of size 1 in areas of size h^2 >= 1e-5.
+    EXPECT_NEAR(pieces, mesh.area[i], 1e-10 * mesh.area[i]);
+  }
+}
+
+double totalArea(const PatchMesh& mesh) {
+  long double sum = 0;
+  for (std::size_t i = 0; i < mesh.size(); ++i) sum += mesh.side[i] == 0 ? mesh.area[i] : 0.0;
+  return double(sum);
+}
+
+struct Shape {
+  std::string name;
+  std::vector<std::vector<Vec2>> loops;
+  std::vector<std::array<Vec2, 2>> inner = {};
+};
+
+std::vector<Shape> goodShapes() {
+  const double degree = glm::radians(1.0);
+  const auto ring = [](double r, std::size_t n) {
+    return SceneBuilder::regularPolygon({0.0, 0.0}, r, n);
+  };
+  return {
+      {"rectangle", {{{0, 0}, {2, 0}, {2, 1}, {0, 1}}}},
+      {"parallelogram", {{{0, 0}, {2, 0}, {2.6, 1}, {0.6, 1}}}},
+      {"trapezoid", {{{0, 0}, {2, 0}, {1.8, 1}, {0.1, 1}}}},
+      {"L", {{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}}},
+      {"triangle", {{{0, 0}, {1, 0}, {0.5, 0.8}}}},
+      {"turned hole",
+       {square(0, 1), hole(SceneBuilder::turnedRectangle({0.45, 0.45}, 0.3, 0.3, 17 * degree))}},
+      {"small hole",
+       {square(0, 1), hole(SceneBuilder::turnedRectangle({0.3, 0.4}, 0.02, 0.02, 17 * degree))}},
+      {"annulus", {ring(1.0, 48), hole(ring(0.4, 24))}},
+      {"inner edges",
+       {square(0, 1)},
+       {{Vec2(0.3, 0.3), Vec2(0.7, 0.5)}, {Vec2(0.7, 0.5), Vec2(0.6, 0.8)}}},
+      {"vertex in a side", {{{0, 0}, {0.37, 0}, {1, 0}, {1, 1}, {0, 1}}}},
+  };
+}
+
+void addShape(CoarseBuilder& input, const Shape& shape) {
+  CoarsePolygon& polygon = input.flat(input.surface("shape"), shape.loops);
+  for (const auto& [a, b] : shape.inner) input.innerEdge(polygon, Vec3(a, 0.0), Vec3(b, 0.0));
+}
+
+double areaOf(const Shape& shape) {
+  double area = 0;
+  for (const auto& loop : shape.loops) area += loopArea(loop);
+  return area;
+}
+
+TEST(Subdivide, GoodShapesStayGoodAtEverySize) {
+  for (const Shape& shape : goodShapes()) {
+    for (const std::size_t wanted : {20u, 300u, 3000u}) {
+      SCOPED_TRACE(shape.name + " " + std::to_string(wanted));
+      CoarseBuilder input;
+      addShape(input, shape);
+      const auto [mesh, report] = subdivided(input, count(wanted));
+      expectGoodPatches(mesh);
+      const double area = areaOf(shape);
+      EXPECT_NEAR(totalArea(mesh), area, 1e-12 * area);
+      EXPECT_NEAR(report.surfaces[0].kept, area, 1e-12 * area);
+      EXPECT_EQ(report.t_junctions, 0u);
+      EXPECT_EQ(bruteForceTJunctions(mesh, 1e-7), 0u);
+      EXPECT_GE(smallestAngle(mesh), 20.0);
+      EXPECT_EQ(report.smallest_angle, smallestAngle(mesh));
+      EXPECT_EQ(report.smallest_angle_surface, "shape/shape");
+      EXPECT_EQ(report.triangles + report.quads, mesh.size());
+    }
+  }
+}
+
+TEST(Subdivide, CountIsWithinFifteenPercentOfWhatWasAskedFor) {
+  for (const Shape& shape : goodShapes()) {
+    for (const std::size_t wanted : {300u, 3000u}) {
+      CoarseBuilder input;
+      addShape(input, shape);
+      const auto [mesh, report] = subdivided(input, count(wanted));
+      EXPECT_NEAR(double(mesh.size()), double(wanted), 0.15 * double(wanted)) << shape.name;
+    }
+  }
+}
+
+TEST(Subdivide, NoEdgeIsLongerThanAskedFor) {
+  for (const Shape& shape : goodShapes()) {
+    for (const double longest : {0.3, 0.05}) {
+      SCOPED_TRACE(shape.name);
+      CoarseBuilder input;
+      addShape(input, shape);
+      const auto [mesh, report] = subdivided(input, edge(longest));
+      // A length that divides evenly is met but for its rounding.
+      EXPECT_LE(report.longest_edge, longest * (1 + 1e-9));
+      EXPECT_GE(smallestAngle(mesh), 20.0);
+      EXPECT_EQ(report.t_junctions, 0u);
+      expectGoodPatches(mesh);
+      // Without any waste a square grid has area / longest^2 cells.
+      const double ideal = areaOf(shape) / (longest * longest);
+      EXPECT_LE(double(mesh.size()), 4 * ideal + 200);
+    }
+  }
+}
+
+TEST(Subdivide, RectanglesBecomeGrids) {
+  CoarseBuilder input;
+  addShape(input, goodShapes()[0]);
+  const auto [mesh, report] = subdivided(input, edge(0.25));
+  EXPECT_EQ(report.quads, 32u);
+  EXPECT_EQ(report.triangles, 0u);
+  // Products of fractions with denominators 4 and 8 are exact.
+  for (const double area : mesh.area) EXPECT_EQ(area, 0.0625);
+  EXPECT_NEAR(report.smallest_angle, 90.0, 1e-12);
+}
+
+TEST(Subdivide, SliverNeitherFailsNorExplodes) {
+  for (const std::size_t wanted : {1u, 20u, 300u}) {
+    CoarseBuilder input;
+    input.flat(input.surface("sliver"), {{{0, 0}, {1, 0}, {0.5, 1e-6}}});
+    const auto [mesh, report] = subdivided(input, count(wanted));
+    EXPECT_LE(mesh.size(), 2 * wanted);
+    EXPECT_NEAR(totalArea(mesh), 5e-7, 1e-12 * 5e-7);
+    EXPECT_EQ(report.t_junctions, 0u);
+    expectGoodPatches(mesh);
+  }
+}
+
+TEST(Subdivide, EdgesAreSharedAcrossPlanes) {
+  CoarseBuilder input;
+  const Index s = input.surface("fold");
+  // A square, an L and a triangle that meet along edges of different lengths.
+  input.polygon(s, {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}});
+  input.polygon(s, {{{1, 0, 0}, {1, 0, 1}, {1, 0.5, 1}, {1, 0.5, 2}, {1, 1, 2}, {1, 1, 0}}});
+  input.polygon(s, {{{0, 0, 0}, {0, 1, 0}, {-0.8, 0.5, 0.3}}});
+  for (const std::size_t wanted : {3u, 50u, 1000u}) {
+    const auto [mesh, report] = subdivided(input, count(wanted));
+    EXPECT_EQ(bruteForceTJunctions(mesh, 1e-7), 0u);
+    EXPECT_EQ(countTJunctions(mesh, 1e-7), 0u);
+    expectGoodPatches(mesh);
+  }
+}
+
+/// How often each directed edge occurs.
+std::map<std::pair<Index, Index>, int> directedEdges(const PatchMesh& mesh) {
+  std::map<std::pair<Index, Index>, int> edges;
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    const auto outline = mesh.outline(i);
+    for (std::size_t k = 0; k < outline.size(); ++k) {
+      ++edges[{outline[k], outline[(k + 1) % outline.size()]}];
+    }
+  }
+  return edges;
+}
+
+TEST(Subdivide, ClosedCubeStaysClosed) {
+  for (const std::size_t wanted : {1u, 100u, 777u}) {
+    CoarseBuilder input;
+    input.cube(input.surface("cube"));
+    const auto [mesh, report] = subdivided(input, count(wanted));
+    const auto edges = directedEdges(mesh);
+    for (const auto& [ends, times] : edges) {
+      EXPECT_EQ(times, 1);
+      EXPECT_TRUE(edges.count({ends.second, ends.first}));
+    }
+    // Euler: vertices - edges + faces = 2, so no vertex is left unused or double.
+    EXPECT_EQ(mesh.vertices.size() + mesh.size(), edges.size() / 2 + 2);
+    EXPECT_EQ(report.triangles, 0u);
+    Vec3 sum(0.0);
+    for (std::size_t i = 0; i < mesh.size(); ++i) sum += mesh.area[i] * mesh.normal[i];
+    EXPECT_LT(glm::length(sum), 1e-12);
+  }
+}
+
+TEST(Subdivide, TwoSidedSheetHasBacksAfterFronts) {
+  CoarseBuilder input;
+  const Index sheet = input.surface("sheet");
+  const Index table = input.surface("table");
+  input.polygon(sheet, {{{0, 0, 1}, {1, 0, 1}, {0.6, 1, 1}}}).back = true;
+  input.polygon(table, {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}});
+  const auto [mesh, report] = subdivided(input, count(100));
+  const std::size_t fronts = mesh.frontCount();
+  ASSERT_LT(fronts, mesh.size());
+  EXPECT_NEAR(double(fronts), 100, 15);
+  ASSERT_EQ(mesh.polygons.size(), 2u);
+  EXPECT_EQ(mesh.polygons.back_is_patch[0], 1);
+  EXPECT_EQ(mesh.polygons.back_is_patch[1], 0);
+  std::set<std::pair<Index, Index>> identities;
+  for (Index i = 0; i < mesh.size(); ++i) {
+    EXPECT_TRUE(identities.insert({mesh.surface[i], mesh.index_in_surface[i]}).second);
+    EXPECT_EQ(mesh.side[i], i < fronts ? 0 : 1);
+    const bool has_twin = mesh.surface[i] == sheet;
+    ASSERT_EQ(mesh.twin[i] != kNone, has_twin);
+    if (!has_twin) continue;
+    const Index j = mesh.twin[i];
+    EXPECT_EQ(mesh.twin[j], i);
+    EXPECT_NE(mesh.side[i], mesh.side[j]);
+    EXPECT_EQ(mesh.normal[i], -mesh.normal[j]);
+    EXPECT_EQ(mesh.centroid[i], mesh.centroid[j]);
+    EXPECT_EQ(mesh.area[i], mesh.area[j]);
+    EXPECT_EQ(mesh.source_face[i], mesh.source_face[j]);
+    const auto a = mesh.outline(i);
+    const auto b = mesh.outline(j);
+    EXPECT_TRUE(std::equal(a.begin(), a.end(), b.rbegin(), b.rend()));
+  }
+  expectGoodPatches(mesh);
+  EXPECT_NEAR(report.surfaces[sheet].kept, 0.5, 1e-12);
+}
+
+TEST(Subdivide, PolygonsBackToBackAreCutAlike) {
+  CoarseBuilder input;
+  const Index up = input.surface("up");
+  const Index down = input.surface("down");
+  const std::vector<Vec3> loop = {{0, 0, 0}, {1, 0, 0}, {0.9, 1, 0}, {0.5, 0.6, 0}, {0, 1, 0}};
+  input.polygon(up, {loop}).opposite = 1;
+  input.polygon(down, {{loop.rbegin(), loop.rend()}}).opposite = 0;
+  const auto [mesh, report] = subdivided(input, count(200));
+  EXPECT_EQ(report.t_junctions, 0u);
+  expectGoodPatches(mesh);
+  // Every edge of one has its reverse in the other: the two close like a bag.
+  const auto edges = directedEdges(mesh);
+  for (const auto& [ends, times] : edges) {
+    EXPECT_EQ(times, edges.at({ends.second, ends.first}));
+  }
+  EXPECT_NEAR(report.surfaces[up].kept, report.surfaces[down].kept, 1e-14);
+}
+
+TEST(Subdivide, PowersOfTwoChangeNothing) {
+  for (const Shape& shape : goodShapes()) {
+    for (const double factor : {std::ldexp(1.0, -20), std::ldexp(1.0, 20)}) {
+      CoarseBuilder input;
+      addShape(input, shape);
+      const Made plain = subdivided(input, count(150));
+      for (Vec3& vertex : input.complex().vertices) vertex *= factor;
+      for (Vec3& vertex : input.scene().vertices) vertex *= factor;
+      input.complex().coincidence *= factor;
+      const Made scaled = subdivided(input, count(150));
+      ASSERT_EQ(plain.mesh.corners, scaled.mesh.corners) << shape.name;
+      for (std::size_t v = 0; v < plain.mesh.vertices.size(); ++v) {
+        ASSERT_EQ(plain.mesh.vertices[v] * factor, scaled.mesh.vertices[v]) << shape.name;
+      }
+      for (std::size_t i = 0; i < plain.mesh.size(); ++i) {
+        ASSERT_EQ(plain.mesh.area[i] * factor * factor, scaled.mesh.area[i]) << shape.name;
+      }
+    }
+  }
+}
+
+TEST(Subdivide, FarFromTheOriginOnlyRepresentationIsLost) {
+  CoarseBuilder input;
+  addShape(input, goodShapes()[5]);
+  const Made near = subdivided(input, count(150));
+  const Vec3 away(1e6, -1e6, 1e6);
+  input.complex().origin = away;
+  for (Vec3& vertex : input.scene().vertices) vertex += away;
+  const Made far = subdivided(input, count(150));
+  ASSERT_EQ(near.mesh.corners, far.mesh.corners);
+  EXPECT_EQ(near.mesh.area, far.mesh.area);
+  EXPECT_EQ(near.mesh.normal, far.mesh.normal);
+  for (std::size_t v = 0; v < near.mesh.vertices.size(); ++v) {
+    EXPECT_EQ(near.mesh.vertices[v] + away, far.mesh.vertices[v]);
+  }
+}
+
+TEST(Subdivide, SourceFaceIsTheOneUnderTheCentroid) {
+  CoarseBuilder input;
+  const Index s = input.surface("floor");
+  CoarsePolygon& polygon = input.flat(s, {square(0, 1)});
+  // The merged square came from four quarters; the builder's own face is not among them.
+  SceneBuilder quarters;
+  quarters.surface("floor");
+  quarters.level(0, 0, 0, 0.5, 0.5, 0);
+  quarters.level(0, 0.5, 0, 1, 0.5, 0);
+  quarters.level(0, 0, 0.5, 0.5, 1, 0);
+  quarters.level(0, 0.5, 0.5, 1, 1, 0);
+  polygon.faces = {0, 1, 2, 3};
+  input.scene() = quarters.scene();
+  const auto [mesh, report] = subdivided(input, count(49));
+  ASSERT_EQ(mesh.size(), 49u);
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    const Vec3& c = mesh.centroid[i];
+    if (std::abs(c.x - 0.5) < 1e-9 || std::abs(c.y - 0.5) < 1e-9) continue;  // on a seam
+    EXPECT_EQ(mesh.source_face[i], (c.x > 0.5 ? 1u : 0u) + (c.y > 0.5 ? 2u : 0u));
+  }
+}
+
+TEST(Subdivide, HugeAndTinySizes) {
+  CoarseBuilder input;
+  input.cube(input.surface("cube"));
+  EXPECT_EQ(subdivided(input, edge(1e9)).mesh.size(), 6u);
+  EXPECT_THROW(subdivided(input, edge(1e-4)), InputError);
+  EXPECT_THROW(subdivided(input, edge(1e-300)), InputError);
+}
+
+TEST(Subdivide, NothingToDivideIsAnError) {
+  CoarseBuilder input;
+  EXPECT_THROW(subdivided(input, count(10)), InputError);
+}
+
+TEST(MeshOptions, RangesAreChecked) {
+  EXPECT_NO_THROW(MeshOptions().validate());
+  MeshOptions options;
+  options.patches = 0;
+  EXPECT_THROW(options.validate(), InputError);
+  options.patches = 30'000'000;
+  EXPECT_THROW(options.validate(), InputError);
+  EXPECT_THROW(edge(-1).validate(), InputError);
+  EXPECT_THROW(edge(std::nan("")).validate(), InputError);
+  options = {};
+  options.weld = 0.1;
+  EXPECT_THROW(options.validate(), InputError);
+}
+
+TEST(TJunctions, AreFoundByTheGridAsByBruteForce) {
+  // A square beside two that share only half of its side each, one of them far below.
+  PatchMesh mesh;
+  mesh.corner_offset = {0, 4, 8, 12};
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0},   {1, 1, 0}, {0, 1, 0},  {1, 0.3, 0},
+                   {2, 0, 0}, {2, 0.3, 0}, {2, 1, 0}, {1, 0.6, 5}};
+  mesh.corners = {0, 1, 2, 3, 1, 5, 6, 4, 4, 6, 7, 2};
+  mesh.area = {1, 0.3, 0.7};
+  EXPECT_EQ(bruteForceTJunctions(mesh, 1e-7), 1u);
+  EXPECT_EQ(countTJunctions(mesh, 1e-7), 1u);
+  mesh.vertices[4].y = 1e-9;  // coincides with the corner: no junction inside the edge
+  EXPECT_EQ(countTJunctions(mesh, 1e-7), bruteForceTJunctions(mesh, 1e-7));
+}
+
+}  // namespace
+}  // namespace radiosity
