@@ -67,11 +67,17 @@ inline std::string allNotes(const std::vector<Note>& notes) {
 #define EXPECT_CONTAINS(text, part) \
   EXPECT_NE(std::string(text).find(part), std::string::npos) << "in: " << (text)
 
-#define EXPECT_NOTE(notes, part, level)                                                \
-  do {                                                                                 \
-    const radiosity::Note* note = radiosity::test::findNote(notes, part);              \
-    ASSERT_NE(note, nullptr) << "no note says: " << (part) << "\n" << allNotes(notes); \
-    EXPECT_EQ(int(note->severity), int(level)) << note->text;                          \
+/// A note that says `part` is there, with this severity.
+inline void expectNote(const std::vector<Note>& notes, const std::string& part, Severity severity) {
+  const Note* note = findNote(notes, part);
+  ASSERT_NE(note, nullptr) << "no note says: " << part << "\n" << allNotes(notes);
+  EXPECT_EQ(int(note->severity), int(severity)) << note->text;
+}
+
+#define EXPECT_NOTE(notes, part, severity)              \
+  do {                                                  \
+    SCOPED_TRACE("");                                   \
+    radiosity::test::expectNote(notes, part, severity); \
   } while (false)
 
 }  // namespace radiosity::test

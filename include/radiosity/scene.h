@@ -125,8 +125,10 @@ struct SceneInfo {
   Vec3 upper{0.0};
   std::size_t triangles = 0;       ///< after triangulating polygons
   Vec3 emitted_power{0};           ///< W per band
-  bool closed = false;             ///< every edge is shared by two faces, oppositely (after weld)
-  std::size_t open_edges = 0;
+  /// Every edge is shared by two faces, oppositely (after weld), or one closed part that faces
+  /// inwards encloses all the rest.
+  bool closed = false;
+  std::size_t open_edges = 0;      ///< used by one face alone
   std::vector<Note> problems;      ///< flipped normals, duplicates, degenerates, overlaps, no emitter
 };
 

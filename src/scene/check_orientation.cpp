@@ -1,0 +1,126 @@
+// Which way faces face: against their neighbours, or a whole part inside out.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/checks.h"
+#include "scene/text.h"
+
+namespace radiosity {
+
+namespace {
+
+bool boxContains(const Part& outer, const Part& inner, double tolerance) {
+  const auto within = [&](int k) {
+    return outer.lower[k] - tolerance <= inner.lower[k] &&
+           inner.upper[k] <= outer.upper[k] + tolerance;
+  };
+  return within(0) && within(1) && within(2);
+}
+
+}  // namespace
+
+/// Relative to the centre of the welded faces. `on`: so close to the part's faces that neither side
+/// is certain.
+Place SceneChecks::placeOf(const Vec3& point, const Part& outer) const {
+  const double winding = std::abs(windingNumber(faces_, outer, point));
+  if (winding >= 0.75) return Place::inside;
+  return winding > 0.25 ? Place::on : Place::outside;
+}
+
+/// `on`: every face of `inner` lies on `outer` (a lamp panel on a ceiling). Faces in contact decide
+/// nothing as long as there are others (a block on a floor).
+Place SceneChecks::placeOf(const Part& inner, const Part& outer) const {
+  if (!boxContains(outer, inner, faces_.tolerance)) return Place::outside;
+  for (const Index f : inner.faces) {
+    Vec3 middle{0.0};
+    for (const Index corner : faces_.face(f)) middle += faces_.points[corner];
+    const Place place = placeOf(middle / double(faces_.face(f).size()), outer);
+    if (place != Place::on) return place;
+  }
+  return Place::on;
+}
+
+bool SceneChecks::closed() const {
+  if (topology_.closed) return true;
+  return std::any_of(topology_.parts.begin(), topology_.parts.end(), [&](const Part& room) {
+    return room.closed && room.volume < 0 &&
+           std::all_of(topology_.parts.begin(), topology_.parts.end(), [&](const Part& part) {
+             return &part == &room || placeOf(part, room) != Place::outside;
+           });
+  });
+}
+
+void SceneChecks::reportOrientation(SceneInfo& info) const {
+  reportFlippedFaces(info);
+  reportInsideOut(info);
+}
+
+void SceneChecks::reportFlippedFaces(SceneInfo& info) const {
+  std::vector<std::size_t> flipped(scene_.surfaces.size(), 0);
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    // The winding of a two-sided face decides nothing.
+    if (topology_.flipped[f] != 0 && !scene_.materialOf(f).two_sided) {
+      ++flipped[scene_.face_surface[f]];
+    }
+  }
+  for (std::size_t s = 0; s < flipped.size(); ++s) {
+    if (flipped[s] == 0) continue;
+    info.problems.push_back(
+        {Severity::warning,
+         fmt::format("{}: {} of {} faces turn their backs where their neighbours show the front: "
+                     "flip their normals, or --two-sided",
+                     scene_.surfaces[s].name, flipped[s], info.surfaces[s].faces)});
+  }
+  for (const Part& part : topology_.parts) {
+    if (part.orientable) continue;
+    info.problems.push_back(
+        {Severity::info, fmt::format("{}: has one side only, like a Moebius strip: no winding of "
+                                     "its faces agrees everywhere",
+                                     namesOf(part))});
+  }
+}
+
+void SceneChecks::reportInsideOut(SceneInfo& info) const {
+  for (const Part& part : topology_.parts) {
+    const bool one_sided = std::any_of(part.faces.begin(), part.faces.end(),
+                                       [&](Index f) { return !materialOf(f).two_sided; });
+    if (part.closed && part.volume != 0 && one_sided) reportPart(part, info);
+  }
+}
+
+/// A closed part that faces inwards is a room, and has something in it; one that faces outwards is
+/// a solid, and has nothing in it. A part that is alone may be either.
+void SceneChecks::reportPart(const Part& part, SceneInfo& info) const {
+  std::vector<std::string> contents;
+  bool has_others = false;
+  for (const Part& other : topology_.parts) {
+    if (&other == &part) continue;
+    has_others = true;
+    const bool enough = part.volume < 0 ? !contents.empty() : contents.size() > 4;
+    if (!enough && placeOf(other, part) == Place::inside) contents.push_back(namesOf(other));
+  }
+  bool camera_inside = false;
+  for (const Camera& camera : scene_.cameras) {
+    camera_inside |= placeOf(camera.eye - faces_.centre, part) == Place::inside;
+  }
+  const bool emits_inwards =
+      std::any_of(part.faces.begin(), part.faces.end(), [&](Index f) { return emits(f); });
+  if (part.volume < 0 && contents.empty() && !camera_inside && has_others) {
+    info.problems.push_back(
+        {emits_inwards ? Severity::loud : Severity::warning,
+         fmt::format("{}: closed, faces inwards and holds nothing: a solid with flipped normals?{}",
+                     namesOf(part), emits_inwards ? " Its light stays inside" : "")});
+  }
+  if (part.volume > 0 && (!contents.empty() || camera_inside)) {
+    if (camera_inside) contents.emplace_back("a camera");
+    info.problems.push_back(
+        {Severity::loud,
+         fmt::format("{}: closed, faces outwards and holds {}: a room with flipped normals? What "
+                     "lies inside a solid is dropped",
+                     namesOf(part), joinNames(contents, 4))});
+  }
+}
+
+}  // namespace radiosity

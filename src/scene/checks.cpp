@@ -1,0 +1,126 @@
+// Light, size and single faces; see check_orientation.cpp and check_overlaps.cpp for the rest.
+#include "scene/checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <map>
+
+#include "scene/text.h"
+
+namespace radiosity {
+
+SceneChecks::SceneChecks(const Scene& scene, const WeldedFaces& faces)
+    : scene_(scene), faces_(faces), doubled_(findDoubledFaces(faces)), is_double_(faces.size(), 0) {
+  for (const DoubledFace& pair : doubled_) is_double_[pair.second] = 1;
+  std::vector<std::uint8_t> two_sided(faces.size(), 0);
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    two_sided[f] = scene.materialOf(f).two_sided ? 1 : 0;
+  }
+  topology_ = analyseTopology(faces, two_sided, is_double_);
+}
+
+void SceneChecks::reportLight(SceneInfo& info) const {
+  bool any = false;
+  bool absorbs = false;
+  for (std::size_t s = 0; s < scene_.surfaces.size(); ++s) {
+    const Material& material = scene_.materials[scene_.surfaces[s].material];
+    const bool emitter = material.emission != Vec3(0.0);
+    any |= emitter && info.surfaces[s].area > 0;
+    absorbs |= material.texture != kNone || material.reflectance != Vec3(1.0);
+    if (emitter && info.surfaces[s].area == 0) {
+      info.problems.push_back(
+          {Severity::loud,
+           fmt::format("{} emits but has no area: it gives no light", scene_.surfaces[s].name)});
+    }
+  }
+  if (!any) {
+    info.problems.push_back(
+        {Severity::loud,
+         "no surface emits light: the result will be dark; set one, for example --set "
+         "NAME.emission=17,12,4"});
+  }
+  if (!absorbs && info.closed) {
+    info.problems.push_back({Severity::loud,
+                             "the scene is closed and every surface has reflectance 1: light is "
+                             "never absorbed and there is no solution"});
+  }
+}
+
+void SceneChecks::reportExtent(SceneInfo& info) const {
+  const double diagonal = glm::distance(info.lower, info.upper);
+  // A room is a few metres; what is far off is more likely drawn in another unit.
+  constexpr double kLargest = 200;
+  constexpr double kSmallest = 0.02;
+  if (diagonal > kLargest || diagonal < kSmallest) {
+    info.problems.push_back(
+        {Severity::warning,
+         fmt::format(
+             "the scene measures {:.6g} m across: if the file's unit is not {}, say so with "
+             "--unit mm|cm|m|in|ft",
+             diagonal, scene_.unit)});
+  }
+  const Vec3 size = glm::max(glm::abs(info.lower), glm::abs(info.upper));
+  const double rounding =
+      std::numeric_limits<double>::epsilon() * std::max({size.x, size.y, size.z});
+  if (faces_.tolerance > 0 && rounding > faces_.tolerance) {
+    info.problems.push_back(
+        {Severity::warning,
+         fmt::format("the scene lies {:.3g} m from the origin: its coordinates are rounded more "
+                     "coarsely than coincidence ({:.3g} m); move it closer",
+                     std::max({size.x, size.y, size.z}), faces_.tolerance)});
+  }
+}
+
+void SceneChecks::reportFaces(SceneInfo& info) const {
+  std::vector<std::size_t> degenerate(scene_.surfaces.size(), 0);
+  std::vector<std::size_t> bent(scene_.surfaces.size(), 0);
+  std::vector<double> deviation(scene_.surfaces.size(), 0);
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    const Index s = scene_.face_surface[f];
+    degenerate[s] += faces_.degenerate[f];
+    const double off = faces_.degenerate[f] != 0 ? 0 : planeDeviation(faces_, f);
+    bent[s] += off > faces_.tolerance ? 1 : 0;
+    deviation[s] = std::max(deviation[s], off);
+  }
+  std::map<std::pair<std::string, std::string>, std::size_t> doubled;
+  for (const DoubledFace& pair : doubled_)
+    ++doubled[{surfaceOf(pair.first), surfaceOf(pair.second)}];
+  for (std::size_t s = 0; s < scene_.surfaces.size(); ++s) {
+    const std::string& name = scene_.surfaces[s].name;
+    if (degenerate[s] > 0) {
+      info.problems.push_back(
+          {Severity::warning,
+           fmt::format("{}: {} of {} faces have no area (coinciding or collinear "
+                       "corners)",
+                       name, degenerate[s], info.surfaces[s].faces)});
+    }
+    if (bent[s] > 0) {
+      info.problems.push_back(
+          {Severity::info, fmt::format("{}: {} of {} faces are not planar, by up to {:.3g} m", name,
+                                       bent[s], info.surfaces[s].faces, deviation[s])});
+    }
+  }
+  for (const auto& [names, count] : doubled) {
+    info.problems.push_back(
+        {Severity::warning,
+         names.first == names.second
+             ? fmt::format("{}: faces that are there twice: {}", names.first, count)
+             : fmt::format("{}: {} faces are there a second time in {}", names.first, count,
+                           names.second)});
+  }
+}
+
+std::string SceneChecks::namesOf(const Part& part) const {
+  std::vector<std::string> names;
+  for (const Index f : part.faces) {
+    const std::string& name = surfaceOf(f);
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return joinNames(names, 4);
+}
+
+}  // namespace radiosity

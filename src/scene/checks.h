@@ -1,0 +1,56 @@
+// What looks wrong with a scene, as notes that name surfaces.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "radiosity/scene.h"
+#include "scene/overlaps.h"
+#include "scene/topology.h"
+
+namespace radiosity {
+
+/// Where something is with respect to a closed part.
+enum class Place { inside, on, outside };
+
+class SceneChecks {
+ public:
+  SceneChecks(const Scene& scene, const WeldedFaces& faces);
+
+  /// Every edge is shared by two faces, oppositely, or one closed part encloses all others.
+  bool closed() const;
+  std::size_t openEdges() const { return topology_.open_edges; }
+
+  /// No emitter, emitters without area, a closed room that absorbs nothing.
+  void reportLight(SceneInfo& info) const;
+  /// A size that speaks for another unit, a place too far from the origin.
+  void reportExtent(SceneInfo& info) const;
+  /// Degenerate, doubled and non-planar faces.
+  void reportFaces(SceneInfo& info) const;
+  /// Faces wound against their neighbours, solids and rooms that are inside out.
+  void reportOrientation(SceneInfo& info) const;
+  /// Faces of different surfaces in one plane.
+  void reportOverlaps(SceneInfo& info) const;
+
+ private:
+  const Material& materialOf(Index face) const { return scene_.materialOf(face); }
+  const std::string& surfaceOf(Index face) const {
+    return scene_.surfaces[scene_.face_surface[face]].name;
+  }
+  bool emits(Index face) const { return materialOf(face).emission != Vec3(0.0); }
+  /// "a/b, c/d" of the surfaces a part has faces of.
+  std::string namesOf(const Part& part) const;
+  Place placeOf(const Vec3& point, const Part& outer) const;
+  Place placeOf(const Part& inner, const Part& outer) const;
+  void reportFlippedFaces(SceneInfo& info) const;
+  void reportInsideOut(SceneInfo& info) const;
+  void reportPart(const Part& part, SceneInfo& info) const;
+
+  const Scene& scene_;
+  const WeldedFaces& faces_;
+  std::vector<DoubledFace> doubled_;
+  std::vector<std::uint8_t> is_double_;  ///< F
+  Topology topology_;
+};
+
+}  // namespace radiosity

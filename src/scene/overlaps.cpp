@@ -1,0 +1,274 @@
+#include "scene/overlaps.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <map>
+#include <numeric>
+
+namespace radiosity {
+
+namespace {
+
+struct Box {
+  Vec3 lower, upper;
+  bool touches(const Box& other) const {
+    return lower.x <= other.upper.x && other.lower.x <= upper.x && lower.y <= other.upper.y &&
+           other.lower.y <= upper.y && lower.z <= other.upper.z && other.lower.z <= upper.z;
+  }
+};
+
+Box boxOf(const WeldedFaces& faces, std::size_t f) {
+  Box box{faces.points[faces.face(f)[0]], faces.points[faces.face(f)[0]]};
+  for (const Index corner : faces.face(f)) {
+    box.lower = glm::min(box.lower, faces.points[corner]);
+    box.upper = glm::max(box.upper, faces.points[corner]);
+  }
+  const Vec3 margin(0.5 * faces.tolerance);
+  return {box.lower - margin, box.upper + margin};
+}
+
+/// A binary tree of boxes over faces, halved at the median of the longest side.
+class BoxTree {
+ public:
+  explicit BoxTree(std::vector<Box> boxes) : boxes_(std::move(boxes)), order_(boxes_.size()) {
+    std::iota(order_.begin(), order_.end(), std::size_t(0));
+    if (!order_.empty()) build(0, order_.size());
+  }
+
+  /// Calls visit(i) for every box that touches `box`.
+  template <class Visit>
+  void query(const Box& box, Visit&& visit) const {
+    std::vector<std::size_t> waiting;
+    if (!nodes_.empty()) waiting.push_back(0);
+    while (!waiting.empty()) {
+      const Node& node = nodes_[waiting.back()];
+      const std::size_t first_child = waiting.back() + 1;
+      waiting.pop_back();
+      if (!node.box.touches(box)) continue;
+      if (node.second_child == 0) {
+        for (std::size_t k = node.begin; k < node.end; ++k) {
+          if (boxes_[order_[k]].touches(box)) visit(order_[k]);
+        }
+      } else {
+        waiting.push_back(first_child);
+        waiting.push_back(node.second_child);
+      }
+    }
+  }
+
+ private:
+  struct Node {
+    Box box;
+    std::size_t begin, end;
+    std::size_t second_child;  ///< 0: a leaf
+  };
+
+  std::size_t build(std::size_t begin, std::size_t end) {
+    const std::size_t number = nodes_.size();
+    Box box = boxes_[order_[begin]];
+    for (std::size_t k = begin; k < end; ++k) {
+      box.lower = glm::min(box.lower, boxes_[order_[k]].lower);
+      box.upper = glm::max(box.upper, boxes_[order_[k]].upper);
+    }
+    nodes_.push_back({box, begin, end, 0});
+    constexpr std::size_t kLeaf = 8;
+    if (end - begin <= kLeaf) return number;
+    const Vec3 size = box.upper - box.lower;
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+    const std::size_t middle = begin + (end - begin) / 2;
+    std::nth_element(order_.begin() + std::ptrdiff_t(begin),
+                     order_.begin() + std::ptrdiff_t(middle), order_.begin() + std::ptrdiff_t(end),
+                     [&](std::size_t a, std::size_t b) {
+                       return boxes_[a].lower[axis] + boxes_[a].upper[axis] <
+                              boxes_[b].lower[axis] + boxes_[b].upper[axis];
+                     });
+    build(begin, middle);
+    const std::size_t second = build(middle, end);
+    nodes_[number].second_child = second;
+    return number;
+  }
+
+  std::vector<Box> boxes_;
+  std::vector<std::size_t> order_;
+  std::vector<Node> nodes_;
+};
+
+using Triangle = std::array<Vec2, 3>;
+
+double cross(const Vec2& a, const Vec2& b) { return a.x * b.y - a.y * b.x; }
+
+double signedArea(const Triangle& t) { return 0.5 * cross(t[1] - t[0], t[2] - t[0]); }
+
+/// Area common to two counter-clockwise triangles: one clipped at the edges of the other
+/// (Sutherland and Hodgman 1974).
+double commonArea(const Triangle& subject, const Triangle& clip) {
+  std::vector<Vec2> polygon(subject.begin(), subject.end());
+  std::vector<Vec2> next;
+  for (std::size_t e = 0; e < 3 && !polygon.empty(); ++e) {
+    const Vec2 from = clip[e];
+    const Vec2 along = clip[(e + 1) % 3] - from;
+    next.clear();
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+      const Vec2 a = polygon[k];
+      const Vec2 b = polygon[(k + 1) % polygon.size()];
+      const double da = cross(along, a - from);
+      const double db = cross(along, b - from);
+      if (da >= 0) next.push_back(a);
+      if ((da > 0 && db < 0) || (da < 0 && db > 0)) next.push_back(a + (b - a) * (da / (da - db)));
+    }
+    polygon.swap(next);
+  }
+  double area = 0;
+  for (std::size_t k = 2; k < polygon.size(); ++k) {
+    area += signedArea({polygon[0], polygon[k - 1], polygon[k]});
+  }
+  return area;
+}
+
+/// A plane's own coordinates.
+struct PlaneFrame {
+  Vec3 origin, u, v;
+  Vec2 operator()(const Vec3& p) const {
+    return {glm::dot(p - origin, u), glm::dot(p - origin, v)};
+  }
+};
+
+PlaneFrame frameOf(const WeldedFaces& faces, std::size_t f) {
+  const Vec3 normal = glm::normalize(faces.area_vector[f]);
+  const Vec3 size = glm::abs(normal);
+  Vec3 axis(0.0);
+  axis[size.x <= size.y && size.x <= size.z ? 0 : (size.y <= size.z ? 1 : 2)] = 1;
+  const Vec3 u = glm::normalize(glm::cross(axis, normal));
+  return {faces.points[faces.face(f)[0]], u, glm::cross(normal, u)};
+}
+
+/// Area common to two polygons of one plane, concave ones too: the indicator of a polygon is the
+/// sum of the indicators of its fan's triangles, taken with their signs.
+double commonArea(const WeldedFaces& faces, std::size_t f, std::size_t g) {
+  const PlaneFrame frame = frameOf(faces, f);
+  const auto fan = [&](std::size_t face_index) {
+    const auto face = faces.face(face_index);
+    std::vector<Triangle> triangles;
+    for (std::size_t k = 2; k < face.size(); ++k) {
+      triangles.push_back({frame(faces.points[face[0]]), frame(faces.points[face[k - 1]]),
+                           frame(faces.points[face[k]])});
+    }
+    return triangles;
+  };
+  const auto counterClockwise = [](Triangle t) {
+    if (signedArea(t) < 0) std::swap(t[1], t[2]);
+    return t;
+  };
+  const std::vector<Triangle> fan_g = fan(g);
+  double sum = 0;
+  for (const Triangle& a : fan(f)) {
+    for (const Triangle& b : fan_g) {
+      const double sign = (signedArea(a) < 0) != (signedArea(b) < 0) ? -1 : 1;
+      sum += sign * commonArea(counterClockwise(a), counterClockwise(b));
+    }
+  }
+  return std::abs(sum);
+}
+
+bool liesInPlaneOf(const WeldedFaces& faces, std::size_t f, std::size_t g) {
+  const Vec3 normal = glm::normalize(faces.area_vector[g]);
+  const Vec3 origin = faces.points[faces.face(g)[0]];
+  return std::all_of(faces.face(f).begin(), faces.face(f).end(), [&](Index corner) {
+    return std::abs(glm::dot(faces.points[corner] - origin, normal)) <= faces.tolerance;
+  });
+}
+
+double perimeter(const WeldedFaces& faces, std::size_t f) {
+  const auto face = faces.face(f);
+  double sum = 0;
+  for (std::size_t k = 0; k < face.size(); ++k) {
+    sum += glm::distance(faces.points[face[k]], faces.points[face[(k + 1) % face.size()]]);
+  }
+  return sum;
+}
+
+bool isDegenerate(const WeldedFaces& faces, std::size_t f) { return faces.degenerate[f] != 0; }
+
+}  // namespace
+
+std::vector<DoubledFace> findDoubledFaces(const WeldedFaces& faces) {
+  std::vector<DoubledFace> doubled;
+  std::map<std::vector<Index>, std::vector<Index>> faces_of;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    if (isDegenerate(faces, f)) continue;
+    std::vector<Index> corners(faces.face(f).begin(), faces.face(f).end());
+    std::sort(corners.begin(), corners.end());
+    std::vector<Index>& same = faces_of[std::move(corners)];
+    const auto first = std::find_if(same.begin(), same.end(), [&](Index g) {
+      return glm::dot(faces.area_vector[g], faces.area_vector[f]) > 0;
+    });
+    if (first != same.end()) {
+      doubled.push_back({*first, Index(f)});
+    } else {
+      same.push_back(Index(f));
+    }
+  }
+  return doubled;
+}
+
+std::vector<Overlap> findOverlaps(const WeldedFaces& faces, const std::vector<std::uint8_t>& skip) {
+  std::vector<std::size_t> included;
+  std::vector<Box> boxes;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    if (isDegenerate(faces, f) || skip[f] != 0) continue;
+    included.push_back(f);
+    boxes.push_back(boxOf(faces, f));
+  }
+  const BoxTree tree(boxes);
+  std::vector<Overlap> overlaps;
+  for (std::size_t i = 0; i < included.size(); ++i) {
+    const std::size_t f = included[i];
+    tree.query(boxes[i], [&](std::size_t j) {
+      if (j <= i) return;
+      const std::size_t g = included[j];
+      if (!liesInPlaneOf(faces, g, f) || !liesInPlaneOf(faces, f, g)) return;
+      const double area = commonArea(faces, f, g);
+      // Neighbours whose shared edge is off by less than coincidence do not overlap.
+      const double strip = faces.tolerance * std::min(perimeter(faces, f), perimeter(faces, g));
+      const double smaller =
+          std::min(glm::length(faces.area_vector[f]), glm::length(faces.area_vector[g]));
+      if (area <= strip || area <= 1e-12 * smaller) return;  // rounding of the clipping
+      const bool alike = glm::dot(faces.area_vector[f], faces.area_vector[g]) > 0;
+      overlaps.push_back({Index(f), Index(g), alike, area});
+    });
+  }
+  std::sort(overlaps.begin(), overlaps.end(), [](const Overlap& a, const Overlap& b) {
+    return std::tie(a.first, a.second) < std::tie(b.first, b.second);
+  });
+  return overlaps;
+}
+
+double planeDeviation(const WeldedFaces& faces, std::size_t f) {
+  const auto face = faces.face(f);
+  const double area = glm::length(faces.area_vector[f]);
+  if (face.size() < 4 || area == 0) return 0;
+  const auto point = [&](std::size_t k) { return faces.points[face[k % face.size()]]; };
+  double largest = 0;
+  if (face.size() == 4) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Vec3 normal = glm::cross(point(k + 1) - point(k), point(k + 2) - point(k));
+      const double length = glm::length(normal);
+      if (length > 0) {
+        largest = std::max(largest, std::abs(glm::dot(point(k + 3) - point(k), normal)) / length);
+      }
+    }
+    return largest;
+  }
+  double lowest = 0;
+  for (std::size_t k = 0; k < face.size(); ++k) {
+    const double height = glm::dot(point(k) - point(0), faces.area_vector[f]) / area;
+    lowest = std::min(lowest, height);
+    largest = std::max(largest, height);
+  }
+  return largest - lowest;
+}
+
+}  // namespace radiosity

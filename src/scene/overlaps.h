@@ -1,0 +1,31 @@
+// Faces that lie on one another.
+#pragma once
+
+#include <vector>
+
+#include "scene/welded_faces.h"
+
+namespace radiosity {
+
+/// Two faces with the same corners that face alike; `second` comes later in the file.
+struct DoubledFace {
+  Index first;
+  Index second;
+};
+std::vector<DoubledFace> findDoubledFaces(const WeldedFaces& faces);
+
+/// Two planar faces, not doubles, that share area in one plane.
+struct Overlap {
+  Index first;
+  Index second;
+  bool alike;   ///< both face the same way
+  double area;  ///< m^2
+};
+/// `skip`: F, faces to leave out.
+std::vector<Overlap> findOverlaps(const WeldedFaces& faces, const std::vector<std::uint8_t>& skip);
+
+/// How far face f is from planar, m: for a quadrilateral the largest distance of a corner from the
+/// plane of the other three, else the spread of the corners across the mean plane.
+double planeDeviation(const WeldedFaces& faces, std::size_t f);
+
+}  // namespace radiosity

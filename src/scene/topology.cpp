@@ -1,0 +1,199 @@
+#include "scene/topology.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <tuple>
+
+namespace radiosity {
+
+namespace {
+
+/// One face going along one edge.
+struct EdgeUse {
+  Index low, high;  ///< its ends
+  Index face;
+  bool forward;  ///< from low to high
+};
+
+std::vector<EdgeUse> collectEdges(const WeldedFaces& faces, const std::vector<std::uint8_t>& skip) {
+  std::vector<EdgeUse> uses;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const auto face = faces.face(f);
+    if (face.size() < 3 || skip[f] != 0) continue;
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const Index a = face[k];
+      const Index b = face[(k + 1) % face.size()];
+      uses.push_back({std::min(a, b), std::max(a, b), Index(f), a < b});
+    }
+  }
+  std::sort(uses.begin(), uses.end(), [](const EdgeUse& x, const EdgeUse& y) {
+    return std::tie(x.low, x.high, x.face) < std::tie(y.low, y.high, y.face);
+  });
+  return uses;
+}
+
+/// Calls visit(uses of one edge) for every edge.
+template <class Visit>
+void forEachEdge(std::span<const EdgeUse> uses, Visit&& visit) {
+  for (std::size_t begin = 0; begin < uses.size();) {
+    std::size_t end = begin + 1;
+    while (end < uses.size() && uses[end].low == uses[begin].low &&
+           uses[end].high == uses[begin].high) {
+      ++end;
+    }
+    visit(uses.subspan(begin, end - begin));
+    begin = end;
+  }
+}
+
+/// Neighbour over an edge that two faces share; `against`: both go along it the same way.
+struct Neighbour {
+  Index face;
+  bool against;
+};
+
+using Adjacency = std::vector<std::vector<Neighbour>>;
+
+Adjacency joinFaces(std::span<const EdgeUse> uses, std::size_t faces) {
+  Adjacency adjacency(faces);
+  forEachEdge(uses, [&](std::span<const EdgeUse> edge) {
+    if (edge.size() != 2 || edge[0].face == edge[1].face) return;
+    const bool against = edge[0].forward == edge[1].forward;
+    adjacency[edge[0].face].push_back({edge[1].face, against});
+    adjacency[edge[1].face].push_back({edge[0].face, against});
+  });
+  return adjacency;
+}
+
+/// Collects the part that hangs on `seed`; flipped[f] is relative to the seed.
+Part floodPart(Index seed, Index number, const Adjacency& adjacency, Topology& topology) {
+  Part part;
+  std::vector<Index> waiting = {seed};
+  topology.part_of[seed] = number;
+  while (!waiting.empty()) {
+    const Index f = waiting.back();
+    waiting.pop_back();
+    part.faces.push_back(f);
+    for (const Neighbour& next : adjacency[f]) {
+      const auto turned = std::uint8_t(topology.flipped[f] ^ (next.against ? 1 : 0));
+      if (topology.part_of[next.face] == kNone) {
+        topology.part_of[next.face] = number;
+        topology.flipped[next.face] = turned;
+        waiting.push_back(next.face);
+      } else if (topology.flipped[next.face] != turned) {
+        part.orientable = false;
+      }
+    }
+  }
+  return part;
+}
+
+/// The minority, by area, is what is flipped.
+void settleFlips(const WeldedFaces& faces, const Part& part, Topology& topology) {
+  double balance = 0;
+  for (const Index f : part.faces) {
+    const double area = glm::length(faces.area_vector[f]);
+    balance += topology.flipped[f] != 0 ? area : -area;
+  }
+  for (const Index f : part.faces) {
+    if (!part.orientable) topology.flipped[f] = 0;
+    if (part.orientable && balance > 0) topology.flipped[f] ^= 1;
+  }
+}
+
+void measure(const WeldedFaces& faces, const std::vector<std::uint8_t>& flipped, Part& part) {
+  part.lower = Vec3(std::numeric_limits<double>::infinity());
+  part.upper = -part.lower;
+  for (const Index f : part.faces) {
+    for (const Index corner : faces.face(f)) {
+      part.lower = glm::min(part.lower, faces.points[corner]);
+      part.upper = glm::max(part.upper, faces.points[corner]);
+    }
+  }
+  if (!part.closed) return;
+  // Divergence theorem, about a corner of the box so that little cancels.
+  for (const Index f : part.faces) {
+    const Vec3 origin = faces.points[faces.face(f)[0]] - part.lower;
+    const double sixth = glm::dot(origin, faces.area_vector[f]) / 3;
+    part.volume += flipped[f] != 0 ? -sixth : sixth;
+  }
+}
+
+/// Marks parts with an edge whose uses do not cancel, and counts edges.
+void countEdges(std::span<const EdgeUse> uses, const std::vector<std::uint8_t>& two_sided,
+                Topology& topology) {
+  for (Part& part : topology.parts) part.closed = true;
+  forEachEdge(uses, [&](std::span<const EdgeUse> edge) {
+    topology.open_edges += edge.size() == 1 ? 1 : 0;
+    topology.nonmanifold_edges += edge.size() > 2 ? 1 : 0;
+    for (const EdgeUse& use : edge) {
+      const Index part = topology.part_of[use.face];
+      int balance = 0;
+      int count = 0;
+      bool winding_matters = false;
+      for (const EdgeUse& other : edge) {
+        if (topology.part_of[other.face] != part) continue;
+        balance += other.forward ? 1 : -1;
+        ++count;
+        winding_matters |= two_sided[other.face] == 0;
+      }
+      const bool cancels = winding_matters ? balance == 0 : count % 2 == 0;
+      if (!cancels) topology.parts[part].closed = false;
+    }
+  });
+}
+
+}  // namespace
+
+Topology analyseTopology(const WeldedFaces& faces, const std::vector<std::uint8_t>& two_sided,
+                         const std::vector<std::uint8_t>& skip) {
+  Topology topology;
+  topology.part_of.assign(faces.size(), kNone);
+  topology.flipped.assign(faces.size(), 0);
+  const std::vector<EdgeUse> uses = collectEdges(faces, skip);
+  const Adjacency adjacency = joinFaces(uses, faces.size());
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const bool takes_part = faces.face(f).size() >= 3 && skip[f] == 0;
+    if (!takes_part || topology.part_of[f] != kNone) continue;
+    const auto number = Index(topology.parts.size());
+    topology.parts.push_back(floodPart(Index(f), number, adjacency, topology));
+    settleFlips(faces, topology.parts.back(), topology);
+  }
+  countEdges(uses, two_sided, topology);
+  topology.closed = !topology.parts.empty();
+  for (Part& part : topology.parts) {
+    measure(faces, topology.flipped, part);
+    // A sheet folded onto itself encloses nothing.
+    const double thinnest = faces.tolerance * glm::distance(part.lower, part.upper);
+    const bool encloses = std::abs(part.volume) > thinnest * faces.tolerance;
+    topology.closed = topology.closed && part.closed && encloses;
+  }
+  return topology;
+}
+
+double windingNumber(const WeldedFaces& faces, const Part& part, const Vec3& point) {
+  double angle = 0;
+  for (const Index f : part.faces) {
+    const auto face = faces.face(f);
+    const Vec3 a = faces.points[face[0]] - point;
+    const double la = glm::length(a);
+    for (std::size_t k = 2; k < face.size(); ++k) {
+      const Vec3 b = faces.points[face[k - 1]] - point;
+      const Vec3 c = faces.points[face[k]] - point;
+      const double lb = glm::length(b);
+      const double lc = glm::length(c);
+      const double numerator = glm::dot(a, glm::cross(b, c));
+      const double denominator =
+          la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
+      angle += 2 * std::atan2(numerator, denominator);
+    }
+  }
+  return angle / (4 * std::numbers::pi);
+}
+
+}  // namespace radiosity

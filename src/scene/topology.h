@@ -1,0 +1,40 @@
+// How faces hang together: edges, connected parts, which way they face.
+#pragma once
+
+#include <vector>
+
+#include "scene/welded_faces.h"
+
+namespace radiosity {
+
+/// Faces joined by edges that exactly two faces share.
+struct Part {
+  std::vector<Index> faces;
+  Vec3 lower{0.0};  ///< box, relative to WeldedFaces::centre
+  Vec3 upper{0.0};
+  bool closed = false;  ///< no edge of the part is left over
+  bool orientable = true;
+  double volume = 0;  ///< m^3, positive where the fronts face outwards; 0 unless closed
+};
+
+struct Topology {
+  std::size_t open_edges = 0;         ///< used by one face alone
+  std::size_t nonmanifold_edges = 0;  ///< used by more than two faces
+  bool closed = false;                ///< every part is closed and has a volume
+  std::vector<Part> parts;
+  std::vector<Index> part_of;  ///< F, kNone for a face left out
+  /// F, 1: wound against the majority (by area) of its part.
+  std::vector<std::uint8_t> flipped;
+};
+
+/// `two_sided`: F, faces whose winding does not matter. `skip`: F, faces that take no part
+/// (doubles of others); degenerate ones with fewer than three corners never do.
+Topology analyseTopology(const WeldedFaces& faces, const std::vector<std::uint8_t>& two_sided,
+                         const std::vector<std::uint8_t>& skip);
+
+/// How often a closed part winds around `point` (relative to the centre): 1 or -1 inside, 0
+/// outside, about a half on it. Sum of solid angles over 4 pi, by the formula of Van Oosterom and
+/// Strackee (1983).
+double windingNumber(const WeldedFaces& faces, const Part& part, const Vec3& point);
+
+}  // namespace radiosity

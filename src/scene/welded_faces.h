@@ -1,0 +1,36 @@
+// The faces of a scene with coincident vertices made one: what the checks look at.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "radiosity/scene.h"
+
+namespace radiosity {
+
+/// F faces as in the scene. Positions are relative to `centre`, so that a scene far from the origin
+/// is checked as well as one around it.
+struct WeldedFaces {
+  Vec3 centre{0.0};
+  double tolerance = 0;  ///< metres: closer is the same place
+  std::vector<Vec3> points;
+  std::vector<std::size_t> offset;  ///< F + 1, into corners
+  std::vector<Index> corners;       ///< into points, without repetition of the previous one
+  std::vector<Vec3> area_vector;    ///< F, normal times area, of the unwelded face
+  /// F, 1: fewer than three distinct corners, or thinner than the tolerance.
+  std::vector<std::uint8_t> degenerate;
+
+  std::size_t size() const { return area_vector.size(); }
+  std::span<const Index> face(std::size_t f) const {
+    return {corners.data() + offset[f], offset[f + 1] - offset[f]};
+  }
+};
+
+/// `lower`, `upper`: box of the scene. `weld`: coincidence as a fraction of its diagonal.
+WeldedFaces weldFaces(const Scene& scene, const Vec3& lower, const Vec3& upper, double weld);
+
+/// Normal times area of a polygon, by Newell's sum about its first corner: sum (a x b) / 2. Right
+/// for concave polygons; the projected area where it is not planar.
+Vec3 areaVector(std::span<const Vec3> points, std::span<const Index> corners);
+
+}  // namespace radiosity
