@@ -20,7 +20,7 @@ struct Image {
 };
 
 struct RenderOptions {
-  int width = 512;          ///< 1 to 16384
+  int width = 512;  ///< 1 to 16384
   int height = 512;
   int samples = 4;          ///< anti-aliasing: samples x samples a pixel, 1 to 16
   bool smooth = true;       ///< interpolate over vertices; false: constant patches
@@ -41,7 +41,8 @@ Camera parseCamera(const std::string& text);
 /// area-weighted mean of `values` over the patches that share the vertex and bend less than
 /// `crease` degrees and are reached through such neighbours on the same side. Neighbours share an
 /// edge and a surface: a lamp does not bleed into its ceiling, a red wall not into a white one. A
-/// constant field stays that constant to the bit. values: N * bands; result: mesh.corners.size() * bands, row-major.
+/// constant field stays that constant to the bit. values: N * bands; result: mesh.corners.size() *
+/// bands, row-major.
 std::vector<double> cornerValues(const PatchMesh& mesh, std::span<const double> values, int bands,
                                  double crease);
 
@@ -59,16 +60,20 @@ double autoExposure(const Image& image);
 /// Multiplies by 2^ev; colours only.
 Image exposed(const Image& image, double ev);
 
-/// A scalar field in false colour (viridis-like, perceptually ordered), with a legend: title, unit,
-/// lowest and highest value. The result is display-referred: ready for an sRGB file.
-/// values: N. Range: [low, high] or, where low >= high, that of the visible values.
+/// A scalar field in false colour (viridis, perceptually ordered). The result is display-referred:
+/// ready for an sRGB file, opaque everywhere. Misses are a mid grey, backs (with show_backs) a dark
+/// one. The legend, a strip at the bottom of the picture under the camera's view, holds title,
+/// unit, colour bar and numbers; pictures narrower than 96 pixels or too low for it have none.
+/// values: N. Range: [low, high], an end that values in view lie beyond being marked "<=" or ">=";
+/// or, where low >= high, that of the values in view.
 struct FalseColour {
   std::string title;
   std::string unit;
   double low = 0;
   double high = 0;
 };
-Image renderFalseColour(const PatchMesh& mesh, std::span<const double> values, FalseColour legend,
-                        const Camera& camera, const RenderOptions& options, Progress& progress);
+Image renderFalseColour(const PatchMesh& mesh, std::span<const double> values,
+                        const FalseColour& legend, const Camera& camera,
+                        const RenderOptions& options, Progress& progress);
 
 }  // namespace radiosity

@@ -115,29 +115,35 @@ void ItemBuffer::classify(Index piece, bool show_backs) {
 ItemBuffer::Bounds ItemBuffer::boundsOf(const std::array<Index, 3>& piece) const {
   const double w = view_.width;
   const double h = view_.height;
-  std::vector<Vec3> polygon = {pixels_[piece[0]], pixels_[piece[1]], pixels_[piece[2]]};
-  const auto all = [&](auto outside) {
-    return std::all_of(polygon.begin(), polygon.end(), outside);
-  };
+  const std::array<Vec3, 3> corners = {pixels_[piece[0]], pixels_[piece[1]], pixels_[piece[2]]};
+  const auto all = [&](auto test) { return std::all_of(corners.begin(), corners.end(), test); };
   const Bounds nothing{0, 0, 0, 0};
   if (all([](const Vec3& p) { return p.z <= 0; })) return nothing;
   if (all([](const Vec3& p) { return p.x < 0; })) return nothing;
   if (all([](const Vec3& p) { return p.y < 0; })) return nothing;
   if (all([w](const Vec3& p) { return p.x > w * p.z; })) return nothing;
   if (all([h](const Vec3& p) { return p.y > h * p.z; })) return nothing;
-  if (!all([](const Vec3& p) { return p.z > 0; })) {
-    clip(polygon, [](const Vec3& p) { return p.x; });
-    clip(polygon, [](const Vec3& p) { return p.y; });
-    clip(polygon, [w](const Vec3& p) { return w * p.z - p.x; });
-    clip(polygon, [h](const Vec3& p) { return h * p.z - p.y; });
-    if (polygon.empty()) return nothing;
-    // What is left lies in the frustum, where z = 0 only at the eye itself: it fills the picture.
-    if (!all([](const Vec3& p) { return p.z > 0; })) return {0, 0, view_.width, view_.height};
-  }
-  Vec2 low(w, h);
-  Vec2 high(0.0, 0.0);
+  if (all([](const Vec3& p) { return p.z > 0; })) return boundsInFront(corners);
+
+  std::vector<Vec3> polygon(corners.begin(), corners.end());
+  clip(polygon, [](const Vec3& p) { return p.x; });
+  clip(polygon, [](const Vec3& p) { return p.y; });
+  clip(polygon, [w](const Vec3& p) { return w * p.z - p.x; });
+  clip(polygon, [h](const Vec3& p) { return h * p.z - p.y; });
+  if (polygon.empty()) return nothing;
+  // What is left lies in the frustum, where z = 0 only at the eye itself: it fills the picture.
   for (const Vec3& p : polygon) {
-    const Vec2 seen(std::clamp(p.x / p.z, 0.0, w), std::clamp(p.y / p.z, 0.0, h));
+    if (!(p.z > 0)) return {0, 0, view_.width, view_.height};
+  }
+  return boundsInFront(polygon);
+}
+
+ItemBuffer::Bounds ItemBuffer::boundsInFront(std::span<const Vec3> corners) const {
+  const Vec2 size(view_.width, view_.height);
+  Vec2 low = size;
+  Vec2 high(0.0, 0.0);
+  for (const Vec3& p : corners) {
+    const Vec2 seen = glm::clamp(Vec2(p.x / p.z, p.y / p.z), Vec2(0.0), size);
     low = glm::min(low, seen);
     high = glm::max(high, seen);
   }

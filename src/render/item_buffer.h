@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "radiosity/patch_mesh.h"
@@ -70,6 +71,7 @@ class ItemBuffer {
 
   void transform();
   Bounds boundsOf(const std::array<Index, 3>& piece) const;
+  Bounds boundsInFront(std::span<const Vec3> corners) const;
   void classify(Index piece, bool show_backs);
   void bin();
   Triangle setUp(Index piece) const;

@@ -31,6 +31,10 @@ struct View {
     return {focal * camera.x + centre_x * camera.z, centre_y * camera.z - focal * camera.y,
             camera.z};
   }
+  /// World direction d of the ray through a pixel position, with d . forward = 1.
+  Vec3 rayThrough(double x, double y) const {
+    return forward + right * ((x - centre_x) / focal) + up * ((centre_y - y) / focal);
+  }
   /// Coefficients of a function linear in camera space, n . d, over pixels: for the ray d through
   /// pixel (x, y) with d.z = 1 the value is c.x * x + c.y * y + c.z.
   Vec3 overPixels(const Vec3& n) const {

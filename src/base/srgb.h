@@ -1,0 +1,18 @@
+// The transfer function of sRGB (IEC 61966-2-1:1999), [0, 1] -> [0, 1], one channel.
+#pragma once
+
+#include <cmath>
+
+namespace radiosity {
+
+/// What a file's sRGB-coded value means in linear light.
+inline double linearFromSrgb(double coded) {
+  return coded <= 0.04045 ? coded / 12.92 : std::pow((coded + 0.055) / 1.055, 2.4);
+}
+
+/// The sRGB-coded value of linear light.
+inline double srgbFromLinear(double linear) {
+  return linear <= 0.0031308 ? linear * 12.92 : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+}  // namespace radiosity

@@ -1,0 +1,113 @@
+// A scalar field in false colour, its legend below.
+#include <algorithm>
+#include <limits>
+
+#include "base/srgb.h"
+#include "render/colour_map.h"
+#include "render/legend.h"
+#include "render/samples.h"
+
+namespace radiosity {
+namespace {
+
+// Linear light of what has no value: greys, which the colour map has none of.
+constexpr double kMiss = 0.25;
+constexpr double kBack = 0.06;
+
+struct Extent {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+};
+
+/// Collects the values in view.
+class ExtentPixel {
+ public:
+  explicit ExtentPixel(Extent& extent) : extent_(extent) {}
+  void begin() {}
+  void sample(Seen seen, const std::array<double, 3>& value) {
+    if (seen != Seen::front) return;
+    extent_.low = std::min(extent_.low, value[0]);
+    extent_.high = std::max(extent_.high, value[0]);
+  }
+  void end(int /*x*/, int /*y*/) {}
+
+ private:
+  Extent& extent_;
+};
+
+/// Colours are averaged as light, not as numbers: where two surfaces meet in a pixel, a mean of
+/// their values would be a value that is nowhere in the scene.
+class ColourPixel {
+ public:
+  ColourPixel(Image& image, const ColourMap& map, const ColourRange& range)
+      : image_(image), map_(map), range_(range) {}
+
+  void begin() {
+    count_ = 0;
+    sum_ = Vec3(0.0);
+  }
+  void sample(Seen seen, const std::array<double, 3>& value) {
+    ++count_;
+    sum_ += seen == Seen::front  ? map_.at(range_.position(value[0]))
+            : seen == Seen::back ? Vec3(kBack)
+                                 : Vec3(kMiss);
+  }
+  void end(int x, int y) {
+    float* out = image_.rgba.data() + (std::size_t(y) * image_.width + x) * 4;
+    for (int b = 0; b < 3; ++b) out[b] = float(srgbFromLinear(sum_[b] / count_));
+    out[3] = 1;
+  }
+
+ private:
+  Image& image_;
+  const ColourMap& map_;
+  const ColourRange& range_;
+  int count_ = 0;
+  Vec3 sum_{0.0};
+};
+
+/// What the colours stand for: the range asked for, or that of the values in view.
+std::optional<ColourRange> rangeInView(const FalseColour& asked, const std::vector<Extent>& tiles) {
+  Extent seen;
+  for (const Extent& tile : tiles) {
+    seen.low = std::min(seen.low, tile.low);
+    seen.high = std::max(seen.high, tile.high);
+  }
+  if (asked.low < asked.high) {
+    return ColourRange{asked.low, asked.high, seen.low<asked.low, seen.high> asked.high};
+  }
+  if (seen.low > seen.high) return std::nullopt;
+  return ColourRange{seen.low, seen.high};
+}
+
+}  // namespace
+
+Image renderFalseColour(const PatchMesh& mesh, std::span<const double> values,
+                        const FalseColour& legend, const Camera& camera,
+                        const RenderOptions& options, Progress& progress) {
+  options.validate();
+  const Legend strip(legend, options.width, options.height);
+  const View view = makeView(camera, options.width, options.height - strip.height());
+  const PatchField field = makeField(mesh, values, 1, options);
+  const ItemBuffer items(mesh, view, options.samples, options.show_backs);
+
+  std::vector<Extent> extents(items.tileCount());
+  progress.begin("range", items.tileCount());
+  forSamples(
+      mesh, items, field, [&](std::size_t tile) { return ExtentPixel(extents[tile]); }, progress);
+  progress.end();
+  const std::optional<ColourRange> range = rangeInView(legend, extents);
+
+  const ColourMap map;
+  Image image{options.width, options.height, {}};
+  image.rgba.assign(std::size_t(image.width) * image.height * 4, 0.0f);
+  const ColourRange shown = range.value_or(ColourRange{});
+  progress.begin("picture", items.tileCount());
+  forSamples(
+      mesh, items, field, [&](std::size_t) { return ColourPixel(image, map, shown); }, progress);
+  progress.end();
+  strip.draw(image, map, range);
+  return image;
+}
+
+}  // namespace radiosity
