@@ -1,9 +1,9 @@
 // The form-factor matrix as storage and products. It knows no geometry.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -19,25 +19,31 @@ enum class Precision { single, real };  // `double` is a keyword: `real` is 64 b
 class ExchangeMatrix {
  public:
   ExchangeMatrix() = default;
-  /// All rows empty. `area`: N values >= 0, m^2.
+  /// All rows empty. `area`: N finite values >= 0, m^2, else InputError.
   ExchangeMatrix(std::vector<double> area, Precision precision);
 
   std::size_t size() const { return area_.size(); }
   Precision precision() const { return precision_; }
   std::span<const double> area() const { return area_; }
 
-  /// Stores row i; columns strictly increasing, values > 0, lengths equal. Different rows may be
-  /// set from different threads at once. Setting a row again replaces it.
+  /// Stores row i; columns strictly increasing and below N, values finite and > 0, lengths equal,
+  /// else InputError naming the row. Different rows may be set from different threads at once.
+  /// Setting a row again replaces it.
   void setRow(std::size_t i, std::span<const Index> columns, std::span<const double> values);
 
   /// Calls visit(column, value) over the stored entries of row i, columns increasing.
   template <class Visit>
   void forRow(std::size_t i, Visit&& visit) const;
 
+  /// The same for the entries with first <= column < last. O(log n + visited) in a sparse row.
+  template <class Visit>
+  void forRow(std::size_t i, std::size_t first, std::size_t last, Visit&& visit) const;
+
   /// F_ij, 0 where nothing is stored. O(log n) in a sparse row.
   double at(std::size_t i, std::size_t j) const;
 
-  /// out[b] = sum_j F_ij x[j * bands + b], in 64-bit, for one row. x: N * bands, row-major.
+  /// out[b] = sum_j F_ij x[j * bands + b], in 64-bit, for one row; the same bits whether the row is
+  /// stored dense or sparse. x: N * bands, row-major; bands >= 1.
   void rowProduct(std::size_t i, std::span<const double> x, int bands, double* out) const;
 
   /// y = F x for all rows and bands, one pass over the matrix, in parallel, same bits for any
@@ -66,10 +72,25 @@ class ExchangeMatrix {
 
 template <class Visit>
 void ExchangeMatrix::forRow(std::size_t i, Visit&& visit) const {
+  forRow(i, 0, size(), visit);
+}
+
+template <class Visit>
+void ExchangeMatrix::forRow(std::size_t i, std::size_t first, std::size_t last,
+                            Visit&& visit) const {
   const Row& row = rows_[i];
-  const std::size_t count = row.single.size() + row.real.size();
-  for (std::size_t k = 0; k < count; ++k) {
-    const double value = row.real.empty() ? double(row.single[k]) : row.real[k];
+  std::size_t begin = first;
+  std::size_t end = std::min(last, row.single.size() + row.real.size());
+  if (!row.dense) {
+    const auto lower = [&](std::size_t column) {
+      const auto found = std::lower_bound(row.columns.begin(), row.columns.end(), column);
+      return std::size_t(found - row.columns.begin());
+    };
+    begin = lower(first);
+    end = lower(last);
+  }
+  for (std::size_t k = begin; k < end; ++k) {
+    const double value = precision_ == Precision::real ? row.real[k] : double(row.single[k]);
     if (!row.dense) {
       visit(row.columns[k], value);
     } else if (value != 0) {

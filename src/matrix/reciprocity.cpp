@@ -1,0 +1,59 @@
+// A_i F_ij = A_j F_ji: how well a matrix keeps it, and how to make it keep it.
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "matrix/rows_and_columns.h"
+#include "radiosity/exchange_matrix.h"
+
+namespace radiosity {
+
+namespace {
+
+/// A_other^2 / (A_own^2 + A_other^2), safe from overflow. The one-point estimate made at a patch is
+/// biased as its area over the squared distance, so the squared error of the estimate from the
+/// other end goes as the other's area squared; weighting by inverse squared errors follows.
+double estimateWeight(double own_area, double other_area) {
+  const double ratio = own_area / other_area;
+  return 1 / (1 + ratio * ratio);
+}
+
+}  // namespace
+
+double reciprocityResidual(const ExchangeMatrix& matrix) {
+  const std::span<const double> area = matrix.area();
+  std::vector<double> difference(matrix.size());  // a row each, summed in order at the end:
+  std::vector<double> total(matrix.size());       // the same bits for any thread count
+  forRowsAndColumns(matrix, [&](std::size_t i, auto row, auto column) {
+    for (std::size_t j = 0; j < row.size(); ++j) {
+      const double g_ij = area[i] * row[j];
+      const double g_ji = area[j] * column[j];
+      difference[i] += (g_ij - g_ji) * (g_ij - g_ji);
+      total[i] += g_ij * g_ij;
+    }
+  });
+  const double scale = std::accumulate(total.begin(), total.end(), 0.0);
+  if (scale == 0) return 0;
+  return std::sqrt(std::accumulate(difference.begin(), difference.end(), 0.0) / scale);
+}
+
+ExchangeMatrix symmetrized(const ExchangeMatrix& matrix) {
+  const std::span<const double> area = matrix.area();
+  ExchangeMatrix merged({area.begin(), area.end()}, matrix.precision());
+  forRowsAndColumns(matrix, [&](std::size_t i, auto row, auto column) {
+    std::vector<Index> columns;
+    std::vector<double> values;
+    for (std::size_t j = 0; j < row.size(); ++j) {
+      if (row[j] == 0 && column[j] == 0) continue;
+      const double g = estimateWeight(area[i], area[j]) * (area[i] * row[j]) +
+                       estimateWeight(area[j], area[i]) * (area[j] * column[j]);
+      if (!(g > 0)) continue;  // an area of 0: nothing is exchanged
+      columns.push_back(Index(j));
+      values.push_back(g / area[i]);
+    }
+    merged.setRow(i, columns, values);
+  });
+  return merged;
+}
+
+}  // namespace radiosity
