@@ -18,15 +18,15 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   std::error_code ignored;
   if (!fs::is_directory(folder, ignored)) {
-    throw InputError(fmt::format("{}: the folder {} does not exist; create it first", path_,
-                                 folder.string()));
+    throw InputError(
+        fmt::format("{}: the folder {} does not exist; create it first", path_, folder.string()));
   }
   if (fs::is_directory(target, ignored)) {
     throw InputError(fmt::format("{}: is a folder; name a file in it", path_));
   }
   if (access(folder.c_str(), W_OK) != 0) {
-    throw InputError(fmt::format("{}: the folder {} cannot be written; choose another", path_,
-                                 folder.string()));
+    throw InputError(
+        fmt::format("{}: the folder {} cannot be written; choose another", path_, folder.string()));
   }
   temporary_ = (folder / fmt::format(".{}.{}.tmp{}", target.stem().string(), getpid(),
                                      target.extension().string()))

@@ -12,8 +12,8 @@ void setThreads(int threads) {
   static std::unique_ptr<tbb::global_control> control;
   control.reset();
   if (threads > 0) {
-    control = std::make_unique<tbb::global_control>(
-        tbb::global_control::max_allowed_parallelism, std::size_t(threads));
+    control = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                    std::size_t(threads));
   }
 }
 
