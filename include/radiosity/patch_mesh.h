@@ -77,7 +77,8 @@ struct SurfaceAreas {
   double kept = 0;        ///< area of the patches (front side)
   double buried = 0;      ///< dropped: in contact, or inside a closed solid
   double overlapped = 0;  ///< dropped: coplanar overlap with a surface that wins
-  double degenerate = 0;  ///< dropped: faces thinner than coincidence
+  double degenerate = 0;  ///< dropped: faces thinner than coincidence; and what welding moved off
+                          ///< (within coincidence of an edge; on to: negative)
 };
 
 /// What meshing did; every figure `radiosity mesh` prints.

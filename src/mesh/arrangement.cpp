@@ -1,0 +1,313 @@
+#include "mesh/arrangement.h"
+
+#include <CGAL/Constrained_Delaunay_triangulation_2.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_face_base_with_info_2.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <map>
+#include <unordered_map>
+
+#include "mesh/plane_image.h"
+
+namespace radiosity {
+
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<Index, Kernel>;
+/// The region a triangle belongs to: triangles with no edge of ours between them.
+using FaceBase =
+    CGAL::Triangulation_face_base_with_info_2<Index, Kernel,
+                                              CGAL::Constrained_triangulation_face_base_2<Kernel>>;
+using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<
+    Kernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
+    CGAL::No_constraint_intersection_requiring_constructions_tag>;
+using Cover = std::vector<std::pair<Index, int>>;
+
+Kernel::Point_2 toKernel(const Vec2& p) { return {p.x, p.y}; }
+
+/// One plane at work.
+class PlaneCutter {
+ public:
+  PlaneCutter(WeldedPoints& points, const Plane& plane, Index number,
+              const std::vector<Sheet>& sheets, const EdgeTable& edges,
+              const std::vector<Index>& own, Arrangement& out)
+      : points_(points),
+        frame_(plane.normal),
+        number_(number),
+        sheets_(sheets),
+        edges_(edges),
+        own_(own),
+        out_(out) {}
+
+  void run();
+
+ private:
+  bool insertEdges();
+  void reportTouches();
+  void reportCrossings();
+  void findRegions();
+  void coverRegions();
+  void makeCells();
+  void recordSides();
+  Cover stepOver(const Cover& from, Index edge, bool to_left) const;
+  Index edgeBetween(Triangulation::Face_handle face, int k) const {
+    return edges_.find(face->vertex(Triangulation::ccw(k))->info(),
+                       face->vertex(Triangulation::cw(k))->info());
+  }
+
+  WeldedPoints& points_;
+  PlaneImage frame_;
+  Index number_;
+  const std::vector<Sheet>& sheets_;
+  const EdgeTable& edges_;
+  const std::vector<Index>& own_;
+  Arrangement& out_;
+
+  Triangulation triangulation_;
+  std::unordered_map<Index, Triangulation::Vertex_handle> handle_;
+  std::vector<Cover> cover_;    ///< by region
+  std::vector<Index> cell_of_;  ///< by region
+};
+
+void PlaneCutter::run() {
+  if (!insertEdges()) return reportCrossings();
+  const std::size_t before = out_.unresolved.size();
+  reportTouches();
+  if (out_.unresolved.size() > before) return;
+  if (triangulation_.dimension() < 2) return;  // welding has left nothing wider than a line
+  findRegions();
+  coverRegions();
+  makeCells();
+  recordSides();
+}
+
+bool PlaneCutter::insertEdges() {
+  Triangulation::Face_handle near;
+  for (const Index e : own_) {
+    for (const Index v : {edges_[e].a, edges_[e].b}) {
+      if (handle_.count(v) > 0) continue;
+      const auto handle = triangulation_.insert(toKernel(frame_(points_[v])), near);
+      near = handle->face();
+      handle->info() = v;
+      handle_.emplace(v, handle);
+    }
+  }
+  try {
+    for (const Index e : own_) {
+      triangulation_.insert_constraint(handle_[edges_[e].a], handle_[edges_[e].b]);
+    }
+  } catch (const Triangulation::Intersection_of_constraints_exception&) {
+    return false;
+  }
+  return true;
+}
+
+/// An edge that passes exactly through a vertex of the image has become a path over it.
+void PlaneCutter::reportTouches() {
+  for (const Index e : own_) {
+    const auto a = handle_[edges_[e].a];
+    const auto b = handle_[edges_[e].b];
+    if (a == b || triangulation_.is_edge(a, b)) continue;
+    const Vec3 from = points_[edges_[e].a];
+    const Vec3 along = points_[edges_[e].b] - from;
+    for (const auto& [v, handle] : handle_) {
+      const double t = glm::dot(points_[v] - from, along) / glm::dot(along, along);
+      if (t > 0 && t < 1 &&
+          CGAL::orientation(a->point(), b->point(), handle->point()) == CGAL::COLLINEAR) {
+        out_.unresolved.push_back({e, v});
+      }
+    }
+  }
+}
+
+/// Rare: edges that pass each other in space at more than coincidence, but cross in the image,
+/// both being within the slab that is the plane. They are made to meet.
+void PlaneCutter::reportCrossings() {
+  std::vector<Box3> boxes;
+  for (const Index e : own_) {
+    Box3 box;
+    box.add(Vec3(frame_(points_[edges_[e].a]), 0.0));
+    box.add(Vec3(frame_(points_[edges_[e].b]), 0.0));
+    boxes.push_back(box);
+  }
+  for (const auto& [i, j] : overlappingPairs(boxes)) {
+    const Edge& f = edges_[own_[i]];
+    const Edge& g = edges_[own_[j]];
+    if (f.a == g.a || f.a == g.b || f.b == g.a || f.b == g.b) continue;
+    const Vec2 p = frame_(points_[f.a]);
+    const Vec2 q = frame_(points_[f.b]);
+    const Vec2 r = frame_(points_[g.a]);
+    const Vec2 s = frame_(points_[g.b]);
+    const auto turn = [](const Vec2& a, const Vec2& b, const Vec2& c) {
+      return CGAL::orientation(toKernel(a), toKernel(b), toKernel(c));
+    };
+    if (turn(p, q, r) == turn(p, q, s) || turn(r, s, p) == turn(r, s, q)) continue;
+    const Vec2 d1 = q - p;
+    const Vec2 d2 = s - r;
+    const double area = d1.x * d2.y - d1.y * d2.x;
+    const double t = area == 0 ? 0.5 : ((r - p).x * d2.y - (r - p).y * d2.x) / area;
+    const Index vertex = points_.insert(points_[f.a] + t * (points_[f.b] - points_[f.a]));
+    if (vertex != f.a && vertex != f.b) out_.unresolved.push_back({own_[i], vertex});
+    if (vertex != g.a && vertex != g.b) out_.unresolved.push_back({own_[j], vertex});
+  }
+}
+
+void PlaneCutter::findRegions() {
+  for (const auto face : triangulation_.all_face_handles()) face->info() = kNone;
+  std::vector<Triangulation::Face_handle> stack;
+  Index regions = 0;
+  const auto flood = [&](Triangulation::Face_handle start) {
+    start->info() = regions;
+    stack.push_back(start);
+    while (!stack.empty()) {
+      const auto face = stack.back();
+      stack.pop_back();
+      for (int k = 0; k < 3; ++k) {
+        const auto next = face->neighbor(k);
+        if (face->is_constrained(k) || next->info() != kNone) continue;
+        next->info() = regions;
+        stack.push_back(next);
+      }
+    }
+    ++regions;
+  };
+  flood(triangulation_.infinite_face());  // region 0 is the outside
+  for (const auto face : triangulation_.finite_face_handles()) {
+    if (face->info() == kNone) flood(face);
+  }
+  cover_.assign(regions, {});
+}
+
+/// The cover across an edge: a sheet lies on the left of its border, seen from its front.
+Cover PlaneCutter::stepOver(const Cover& from, Index edge, bool to_left) const {
+  std::map<Index, int> counts(from.begin(), from.end());
+  for (const EdgeUse& use : edges_[edge].uses) {
+    if (sheets_[use.sheet].plane != number_) continue;
+    // Of a sheet that faces down this counts its layers negative.
+    counts[use.sheet] += to_left ? use.count : -use.count;
+  }
+  Cover out;
+  for (const auto& [sheet, count] : counts) {
+    if (count != 0) out.emplace_back(sheet, count);
+  }
+  return out;
+}
+
+/// From the outside, where nothing is, over edges into every region. No coordinates are asked, so
+/// no rounding can make a hole or a second layer.
+void PlaneCutter::coverRegions() {
+  struct Step {
+    Index region;
+    Index edge;
+    bool to_left;
+  };
+  std::vector<std::vector<Step>> steps(cover_.size());
+  for (const auto face : triangulation_.all_face_handles()) {
+    for (int k = 0; k < 3; ++k) {
+      if (!face->is_constrained(k)) continue;
+      const Index edge = edgeBetween(face, k);
+      // From ccw(k) to cw(k) the triangle itself is on the left.
+      const bool face_is_left = face->vertex(Triangulation::ccw(k))->info() == edges_[edge].a;
+      steps[face->info()].push_back({face->neighbor(k)->info(), edge, !face_is_left});
+    }
+  }
+  std::vector<bool> known(cover_.size(), false);
+  std::vector<Index> stack{0};
+  known[0] = true;
+  while (!stack.empty()) {
+    const Index region = stack.back();
+    stack.pop_back();
+    for (const Step& step : steps[region]) {
+      if (known[step.region]) continue;
+      known[step.region] = true;
+      cover_[step.region] = stepOver(cover_[region], step.edge, step.to_left);
+      stack.push_back(step.region);
+    }
+  }
+}
+
+void PlaneCutter::makeCells() {
+  cell_of_.assign(cover_.size(), kNone);
+  for (std::size_t r = 1; r < cover_.size(); ++r) {
+    if (cover_[r].empty()) continue;
+    cell_of_[r] = Index(out_.cells.size());
+    PlaneCell cell;
+    cell.plane = number_;
+    for (const auto& [sheet, count] : cover_[r]) {
+      const int layers = count * sheets_[sheet].facing;
+      if (layers < 0) out_.inverted.push_back(sheet);
+      cell.cover.emplace_back(sheet, std::abs(layers));
+    }
+    out_.cells.push_back(std::move(cell));
+  }
+  for (const auto face : triangulation_.finite_face_handles()) {
+    if (cell_of_[face->info()] == kNone) continue;
+    PlaneCell& cell = out_.cells[cell_of_[face->info()]];
+    const Vec3& a = points_[face->vertex(0)->info()];
+    const Vec3& b = points_[face->vertex(1)->info()];
+    const Vec3& c = points_[face->vertex(2)->info()];
+    const double area = 0.5 * glm::length(glm::cross(b - a, c - a));
+    cell.area += area;
+    const double rim = glm::distance(a, b) + glm::distance(b, c) + glm::distance(c, a);
+    const double inscribed = 2.0 * area / rim;
+    if (inscribed > cell.room) {
+      cell.room = inscribed;
+      // The incentre: weights are the opposite sides.
+      cell.sample =
+          (glm::distance(b, c) * a + glm::distance(c, a) * b + glm::distance(a, b) * c) / rim;
+    }
+  }
+}
+
+void PlaneCutter::recordSides() {
+  for (const Index e : own_) {
+    Triangulation::Face_handle face;
+    int k = 0;
+    if (!triangulation_.is_edge(handle_[edges_[e].a], handle_[edges_[e].b], face, k)) continue;
+    EdgeSides sides;
+    sides.plane = number_;
+    sides.left = cell_of_[face->info()];
+    sides.right = cell_of_[face->neighbor(k)->info()];
+    if (face->vertex(Triangulation::ccw(k))->info() != edges_[e].a) {
+      std::swap(sides.left, sides.right);
+    }
+    if (sides.left != kNone || sides.right != kNone) out_.sides[e].push_back(sides);
+  }
+}
+
+}  // namespace
+
+Arrangement arrange(WeldedPoints& points, const std::vector<Plane>& planes,
+                    const std::vector<Sheet>& sheets, const EdgeTable& edges, Progress& progress) {
+  std::vector<std::vector<Index>> own(planes.size());
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const Edge& edge = edges[Index(e)];
+    const auto enter = [&](Index plane) {
+      if (own[plane].empty() || own[plane].back() != e) own[plane].push_back(Index(e));
+    };
+    for (const EdgeUse& use : edge.uses) enter(sheets[use.sheet].plane);
+    for (const Index plane : edge.contacts) enter(plane);
+  }
+  Arrangement out;
+  out.sides.resize(edges.size());
+  progress.begin("planes", planes.size());
+  for (std::size_t p = 0; p < planes.size(); ++p) {
+    progress.check();
+    // enter() may have seen another plane in between: each edge once.
+    std::sort(own[p].begin(), own[p].end());
+    own[p].erase(std::unique(own[p].begin(), own[p].end()), own[p].end());
+    if (!own[p].empty()) {
+      PlaneCutter(points, planes[p], Index(p), sheets, edges, own[p], out).run();
+    }
+    progress.advance();
+  }
+  progress.end();
+  return out;
+}
+
+}  // namespace radiosity

@@ -1,0 +1,260 @@
+#include "mesh/input_faces.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "mesh/box_pairs.h"
+#include "mesh/face_locator.h"
+#include "mesh/plane_image.h"
+
+namespace radiosity {
+
+namespace {
+
+/// A distance no tolerance can be below: what is left of a coordinate after a rotation or a
+/// translation has been rounded, with room for the few operations of a contact (2^-44 = 6e-14).
+constexpr double kRounding = 0x1p-44;
+
+Vec3 vectorAreaOf(const std::vector<Vec3>& polygon) {
+  return vectorArea(polygon.size(), [&](std::size_t k) { return polygon[k]; });
+}
+
+double area(const std::vector<Vec3>& polygon) { return glm::length(vectorAreaOf(polygon)); }
+
+bool lexicographic(const Vec3& a, const Vec3& b) {
+  return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+}
+
+/// Works through the faces of one scene.
+class Cleaner {
+ public:
+  Cleaner(const Scene& scene, MeshReport& report, InputFaces& out)
+      : scene_(scene), report_(report), out_(out) {}
+
+  void weld(double weld);
+  void addFace(Index f);
+  void dropDuplicates();
+  void writeNotes();
+
+ private:
+  std::vector<Vec3> at(const std::vector<Index>& loop) const;
+  std::vector<Index> weldedLoop(std::span<const Index> corners) const;
+  void addPlanar(const std::vector<Index>& loop, Index source, double given);
+  void addTriangles(const std::vector<Index>& loop, const Vec3& normal, Index source);
+  bool isThin(const std::vector<Vec3>& polygon) const;
+  bool isPlanar(const std::vector<Vec3>& polygon, const Vec3& normal) const;
+  const std::string& nameOf(Index source) const {
+    return scene_.surfaces[scene_.face_surface[source]].name;
+  }
+
+  const Scene& scene_;
+  MeshReport& report_;
+  InputFaces& out_;
+  std::vector<Index> welded_;  ///< scene vertex -> point
+  std::map<std::string, std::size_t> thin_;
+  std::map<std::string, std::size_t> bent_;
+  std::map<std::string, std::size_t> twice_;
+};
+
+void Cleaner::weld(double weld) {
+  std::vector<Index> used(scene_.corners);
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  Box3 box;
+  for (const Index v : used) {
+    const Vec3& p = scene_.vertices[v];
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+      throw InputError(
+          fmt::format("{}: vertex {} is not finite; give it three numbers", scene_.file, v + 1));
+    }
+    box.add(p);
+  }
+  if (used.empty()) return;
+  out_.origin = box.low + 0.5 * (box.high - box.low);
+  out_.coincidence = std::max(weld, kRounding) * glm::distance(box.low, box.high);
+  if (out_.coincidence <= 0) return;
+  out_.points = WeldedPoints(out_.coincidence);
+  // In lexicographic order, so that the points do not depend on the order in the file.
+  std::sort(used.begin(), used.end(), [&](Index a, Index b) {
+    return lexicographic(scene_.vertices[a], scene_.vertices[b]);
+  });
+  welded_.assign(scene_.vertices.size(), kNone);
+  for (const Index v : used) welded_[v] = out_.points.insert(scene_.vertices[v] - out_.origin);
+  report_.welded_vertices = used.size() - out_.points.size();
+}
+
+std::vector<Vec3> Cleaner::at(const std::vector<Index>& loop) const {
+  std::vector<Vec3> out;
+  out.reserve(loop.size());
+  for (const Index v : loop) out.push_back(out_.points[v]);
+  return out;
+}
+
+std::vector<Index> Cleaner::weldedLoop(std::span<const Index> corners) const {
+  std::vector<Index> loop;
+  for (const Index c : corners) {
+    if (loop.empty() || loop.back() != welded_[c]) loop.push_back(welded_[c]);
+  }
+  while (loop.size() > 1 && loop.front() == loop.back()) loop.pop_back();
+  return loop;
+}
+
+/// All corners closer than coincidence to the line through the two that are about farthest apart.
+bool Cleaner::isThin(const std::vector<Vec3>& polygon) const {
+  const auto farthest = [&](const Vec3& from) {
+    return *std::max_element(polygon.begin(), polygon.end(), [&](const Vec3& a, const Vec3& b) {
+      return glm::distance(a, from) < glm::distance(b, from);
+    });
+  };
+  const Vec3 a = farthest(polygon[0]);
+  const Vec3 b = farthest(a);
+  const double length = glm::distance(a, b);
+  return std::all_of(polygon.begin(), polygon.end(), [&](const Vec3& p) {
+    return glm::length(glm::cross(p - a, b - a)) < out_.coincidence * length;
+  });
+}
+
+/// Within a slab one coincidence thick.
+bool Cleaner::isPlanar(const std::vector<Vec3>& polygon, const Vec3& normal) const {
+  double low = 0;
+  double high = 0;
+  for (const Vec3& p : polygon) {
+    const double d = glm::dot(p - polygon[0], normal);
+    low = std::min(low, d);
+    high = std::max(high, d);
+  }
+  return high - low <= out_.coincidence;
+}
+
+void Cleaner::addPlanar(const std::vector<Index>& loop, Index source, double given) {
+  SurfaceAreas& areas = report_.surfaces[scene_.face_surface[source]];
+  areas.given += given;
+  if (loop.size() < 3 || isThin(at(loop))) {
+    areas.degenerate += given;
+    ++report_.degenerate_faces;
+    ++thin_[nameOf(source)];
+    return;
+  }
+  InputFace face;
+  face.loop = loop;
+  face.surface = scene_.face_surface[source];
+  face.source = source;
+  face.normal = glm::normalize(vectorAreaOf(at(face.loop)));
+  face.area = given;
+  out_.faces.push_back(std::move(face));
+}
+
+void Cleaner::addTriangles(const std::vector<Index>& loop, const Vec3& normal, Index source) {
+  ++report_.nonplanar_faces;
+  ++bent_[nameOf(source)];
+  const PlaneImage image(normal);
+  std::vector<Vec2> outline;
+  for (const Vec3& p : at(loop)) outline.push_back(image(p));
+  const auto triangles = triangulateOutline(outline);
+  // How far a corner is off the plane of the neighbouring triangle.
+  const auto deviation = [&](const std::array<Index, 3>& t, const std::array<Index, 3>& other) {
+    int shared = 0;
+    Index apex = kNone;
+    for (const Index k : other) {
+      const bool common = std::find(t.begin(), t.end(), k) != t.end();
+      shared += common ? 1 : 0;
+      if (!common) apex = k;
+    }
+    if (shared != 2) return 0.0;
+    const std::vector<Vec3> plane = at({loop[t[0]], loop[t[1]], loop[t[2]]});
+    if (isThin(plane)) return 0.0;
+    const Vec3 n = glm::normalize(vectorAreaOf(plane));
+    return std::abs(glm::dot(out_.points[loop[apex]] - plane[0], n));
+  };
+  for (const auto& t : triangles) {
+    std::vector<Index> corners{loop[t[0]], loop[t[1]], loop[t[2]]};
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    addPlanar(corners, source, area(at(corners)));
+    for (const auto& other : triangles) {
+      report_.largest_deviation = std::max(report_.largest_deviation, deviation(t, other));
+    }
+  }
+}
+
+void Cleaner::addFace(Index f) {
+  std::vector<Vec3> given;
+  for (const Index c : scene_.face(f)) given.push_back(scene_.vertices[c] - out_.origin);
+  std::vector<Index> loop = weldedLoop(scene_.face(f));
+  // So that triangles do not depend on the corner the file begins with.
+  if (!loop.empty()) {
+    std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
+  }
+  if (loop.size() < 4 || isThin(at(loop))) return addPlanar(loop, f, area(given));
+  const Vec3 normal = vectorAreaOf(at(loop));
+  const double size = glm::length(normal);
+  if (size > 0 && isPlanar(at(loop), normal / size)) return addPlanar(loop, f, area(given));
+  addTriangles(loop, size > 0 ? normal / size : Vec3(0, 0, 1), f);
+}
+
+void Cleaner::dropDuplicates() {
+  const auto order = [&](const InputFace& a, const InputFace& b) {
+    const std::string& name_a = nameOf(a.source);
+    const std::string& name_b = nameOf(b.source);
+    return std::tie(a.loop, name_a, a.source) < std::tie(b.loop, name_b, b.source);
+  };
+  std::sort(out_.faces.begin(), out_.faces.end(), order);
+  const auto same = [&](const InputFace& kept, const InputFace& next) {
+    if (kept.surface != next.surface || kept.loop != next.loop) return false;
+    report_.surfaces[next.surface].overlapped += next.area;
+    ++report_.duplicate_faces;
+    ++twice_[nameOf(next.source)];
+    return true;
+  };
+  out_.faces.erase(std::unique(out_.faces.begin(), out_.faces.end(), same), out_.faces.end());
+}
+
+void Cleaner::writeNotes() {
+  for (const auto& [name, count] : thin_) {
+    report_.notes.push_back(
+        {Severity::warning, fmt::format("{}: {} faces thinner than {:.3g} m were dropped", name,
+                                        count, out_.coincidence)});
+  }
+  for (const auto& [name, count] : bent_) {
+    report_.notes.push_back(
+        {Severity::info, fmt::format("{}: {} polygons are not planar (up to {:.3g} m off) and were "
+                                     "split into triangles",
+                                     name, count, report_.largest_deviation)});
+  }
+  for (const auto& [name, count] : twice_) {
+    report_.notes.push_back(
+        {Severity::warning,
+         fmt::format("{}: {} faces are there twice; one of each was kept", name, count)});
+  }
+}
+
+}  // namespace
+
+InputFaces cleanFaces(const Scene& scene, const MeshOptions& options, MeshReport& report) {
+  report.surfaces.clear();
+  for (const Surface& s : scene.surfaces) {
+    SurfaceAreas areas;
+    areas.name = s.name;
+    report.surfaces.push_back(areas);
+  }
+  InputFaces out;
+  Cleaner cleaner(scene, report, out);
+  cleaner.weld(options.weld);
+  if (out.coincidence > 0) {
+    for (std::size_t f = 0; f < scene.faceCount(); ++f) cleaner.addFace(Index(f));
+  }
+  if (out.faces.empty()) {
+    throw InputError(
+        fmt::format("{}: no face has any area; the scene needs at least one polygon", scene.file));
+  }
+  cleaner.dropDuplicates();
+  cleaner.writeNotes();
+  return out;
+}
+
+}  // namespace radiosity

@@ -1,0 +1,375 @@
+#include "mesh/merge_cells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <map>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include "mesh/plane_frame.h"
+#include "mesh/straighten.h"
+#include "mesh/trace_loops.h"
+#include "mesh/union_find.h"
+
+namespace radiosity {
+
+namespace {
+
+/// What two visible cells must agree in to become one polygon.
+struct Kind {
+  Index surface = kNone;
+  bool up = true;        ///< the polygon's front is above the plane
+  bool both = false;     ///< and its back is kept too
+  Index behind = kNone;  ///< surface of another polygon on the other side
+
+  bool operator==(const Kind&) const = default;
+};
+
+/// A polygon in the making.
+struct Draft {
+  Index plane = kNone;
+  Kind kind;
+  std::vector<Index> records;
+  std::vector<Index> border;  ///< edges with the polygon on one side
+  std::vector<bool> on_left;  ///< by border edge
+  std::vector<Index> inner;   ///< edges with the polygon on both sides, met by another plane's
+  std::vector<std::vector<Index>> loops;
+};
+
+class Merger {
+ public:
+  Merger(const Scene& scene, const InputFaces& input, const std::vector<Plane>& planes,
+         const std::vector<Sheet>& sheets, const EdgeTable& edges, const Arrangement& arrangement,
+         const std::vector<VisibleCell>& visible, MeshReport& report)
+      : scene_(scene),
+        input_(input),
+        planes_(planes),
+        sheets_(sheets),
+        edges_(edges),
+        arrangement_(arrangement),
+        visible_(visible),
+        report_(report) {}
+
+  CoarseComplex run();
+
+ private:
+  void indexRecords();
+  void joinRecords();
+  void sortEdges();
+  void straightenEdges();
+  void traceDrafts();
+  void countCuts();
+  void accountForStraightening();
+  CoarseComplex finish() const;
+  std::vector<Index> facesOf(const Draft& draft, const std::vector<std::size_t>& shares) const;
+  bool isCutThere(const EdgeSides& sides) const;
+  const std::vector<Index>& recordsOf(Index cell) const {
+    static const std::vector<Index> kNothing;
+    return cell == kNone ? kNothing : records_[cell];
+  }
+  Index draftOf(Index record) const { return draft_of_[record]; }
+
+  const Scene& scene_;
+  const InputFaces& input_;
+  const std::vector<Plane>& planes_;
+  const std::vector<Sheet>& sheets_;
+  const EdgeTable& edges_;
+  const Arrangement& arrangement_;
+  const std::vector<VisibleCell>& visible_;
+  MeshReport& report_;
+
+  std::vector<std::vector<Index>> records_;  ///< by cell, into visible_
+  std::vector<Kind> kind_;                   ///< by record
+  std::vector<Index> draft_of_;              ///< by record
+  std::vector<Draft> drafts_;
+  std::vector<Index> needed_;         ///< edges of some polygon
+  std::vector<Index> needed_number_;  ///< by edge: place in needed_
+  StraightEdges straight_;
+};
+
+void Merger::indexRecords() {
+  records_.resize(arrangement_.cells.size());
+  for (std::size_t r = 0; r < visible_.size(); ++r) records_[visible_[r].cell].push_back(Index(r));
+  for (const VisibleCell& v : visible_) {
+    Kind kind;
+    kind.surface = sheets_[v.sheet].surface;
+    kind.both = v.above && v.below;
+    kind.up = kind.both ? sheets_[v.sheet].facing > 0 : v.above;
+    for (const Index other : records_[v.cell]) {
+      if (&visible_[other] != &v) kind.behind = sheets_[visible_[other].sheet].surface;
+    }
+    kind_.push_back(kind);
+  }
+}
+
+void Merger::joinRecords() {
+  UnionFind joined(visible_.size());
+  for (const auto& at_edge : arrangement_.sides) {
+    for (const EdgeSides& s : at_edge) {
+      for (const Index l : recordsOf(s.left)) {
+        for (const Index r : recordsOf(s.right)) {
+          if (kind_[l] == kind_[r]) joined.unite(l, r);
+        }
+      }
+    }
+  }
+  draft_of_.assign(visible_.size(), kNone);
+  for (std::size_t r = 0; r < visible_.size(); ++r) {
+    const Index root = joined.find(Index(r));
+    if (root == r) {
+      draft_of_[r] = Index(drafts_.size());
+      drafts_.emplace_back();
+      drafts_.back().plane = arrangement_.cells[visible_[r].cell].plane;
+      drafts_.back().kind = kind_[r];
+    }
+    draft_of_[r] = draft_of_[root];
+    drafts_[draft_of_[r]].records.push_back(Index(r));
+  }
+}
+
+void Merger::sortEdges() {
+  needed_number_.assign(edges_.size(), kNone);
+  for (std::size_t e = 0; e < edges_.size(); ++e) {
+    std::size_t planes_here = 0;
+    for (const EdgeSides& s : arrangement_.sides[e]) {
+      if (!recordsOf(s.left).empty() || !recordsOf(s.right).empty()) ++planes_here;
+    }
+    bool needed = false;
+    for (const EdgeSides& s : arrangement_.sides[e]) {
+      std::vector<Index> left;
+      std::vector<Index> right;
+      for (const Index r : recordsOf(s.left)) left.push_back(draftOf(r));
+      for (const Index r : recordsOf(s.right)) right.push_back(draftOf(r));
+      const auto has = [](const std::vector<Index>& list, Index d) {
+        return std::find(list.begin(), list.end(), d) != list.end();
+      };
+      const auto border = [&](Index d, bool on_left) {
+        drafts_[d].border.push_back(Index(e));
+        drafts_[d].on_left.push_back(on_left);
+        needed = true;
+      };
+      for (const Index d : left) {
+        if (!has(right, d)) {
+          border(d, true);
+        } else if (planes_here > 1) {
+          drafts_[d].inner.push_back(Index(e));
+          needed = true;
+        }
+      }
+      for (const Index d : right) {
+        if (!has(left, d)) border(d, false);
+      }
+    }
+    if (!needed) continue;
+    needed_number_[e] = Index(needed_.size());
+    needed_.push_back(Index(e));
+  }
+}
+
+void Merger::straightenEdges() {
+  std::vector<std::array<Index, 2>> ends;
+  for (const Index e : needed_) ends.push_back({edges_[e].a, edges_[e].b});
+  straight_ = straighten(input_.points, input_.coincidence, ends);
+}
+
+void Merger::traceDrafts() {
+  for (Draft& draft : drafts_) {
+    const PlaneImage frame(planes_[draft.plane].normal);
+    std::vector<std::array<Index, 2>> directed;
+    for (std::size_t k = 0; k < draft.border.size(); ++k) {
+      const Edge& e = edges_[draft.border[k]];
+      if (draft.on_left[k]) {
+        directed.push_back({e.a, e.b});
+      } else {
+        directed.push_back({e.b, e.a});
+      }
+    }
+    std::vector<std::pair<double, std::vector<Index>>> loops;
+    for (auto& loop : traceLoops(input_.points, frame, directed)) {
+      std::erase_if(loop, [&](Index v) { return straight_.removed[v]; });
+      if (loop.size() < 3) continue;
+      const double area = imageArea(input_.points, frame, loop);
+      if (!draft.kind.up) std::reverse(loop.begin(), loop.end());
+      std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
+      loops.emplace_back(-area, std::move(loop));
+    }
+    // The outer loop is the one that counts positive, and the largest.
+    std::sort(loops.begin(), loops.end());
+    if (loops.empty() || loops[0].first >= 0) continue;
+    for (auto& [key, loop] : loops) draft.loops.push_back(std::move(loop));
+  }
+}
+
+/// A sheet goes on on both sides of the edge, and the edge is needed there: it cuts the sheet.
+bool Merger::isCutThere(const EdgeSides& s) const {
+  if (s.left == kNone || s.right == kNone) return false;
+  if (recordsOf(s.left).empty() && recordsOf(s.right).empty()) return false;
+  const auto& left = arrangement_.cells[s.left].cover;
+  const auto& right = arrangement_.cells[s.right].cover;
+  return std::any_of(left.begin(), left.end(), [&](const auto& l) {
+    return std::any_of(right.begin(), right.end(),
+                       [&](const auto& r) { return l.first == r.first; });
+  });
+}
+
+void Merger::countCuts() {
+  std::vector<bool> cut(straight_.edges.size(), false);
+  for (std::size_t k = 0; k < needed_.size(); ++k) {
+    const auto& at_edge = arrangement_.sides[needed_[k]];
+    if (std::any_of(at_edge.begin(), at_edge.end(),
+                    [&](const EdgeSides& s) { return isCutThere(s); })) {
+      cut[straight_.edge_of[k]] = true;
+    }
+  }
+  report_.cuts = std::size_t(std::count(cut.begin(), cut.end(), true));
+}
+
+void Merger::accountForStraightening() {
+  std::vector<double> moved(report_.surfaces.size(), 0.0);
+  for (const Draft& draft : drafts_) {
+    double area = 0;
+    for (const Index r : draft.records) area += arrangement_.cells[visible_[r].cell].area;
+    Vec3 kept(0.0);
+    for (const auto& loop : draft.loops) {
+      kept += vectorArea(loop.size(), [&](std::size_t k) { return input_.points[loop[k]]; });
+    }
+    moved[draft.kind.surface] += area - glm::length(kept);
+  }
+  for (std::size_t s = 0; s < moved.size(); ++s) addMovedArea(report_.surfaces[s], moved[s]);
+}
+
+/// The scene's faces under a polygon. `shares`: by sheet, how many polygons it is part of.
+std::vector<Index> Merger::facesOf(const Draft& draft,
+                                   const std::vector<std::size_t>& shares) const {
+  Box3 box;
+  for (const Index v : draft.loops[0]) box.add(input_.points[v]);
+  box = box.grown(input_.coincidence);
+  std::vector<Index> sheets;
+  for (const Index r : draft.records) sheets.push_back(visible_[r].sheet);
+  std::sort(sheets.begin(), sheets.end());
+  sheets.erase(std::unique(sheets.begin(), sheets.end()), sheets.end());
+  std::vector<Index> out;
+  for (const Index s : sheets) {
+    for (const Index f : sheets_[s].faces) {
+      Box3 face;
+      for (const Index v : input_.faces[f].loop) face.add(input_.points[v]);
+      if (shares[s] == 1 || face.meets(box)) out.push_back(input_.faces[f].source);
+    }
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+CoarseComplex Merger::finish() const {
+  CoarseComplex out;
+  out.origin = input_.origin;
+  out.coincidence = input_.coincidence;
+
+  std::vector<Index> used;
+  for (const auto& edge : straight_.edges) used.insert(used.end(), edge.begin(), edge.end());
+  std::sort(used.begin(), used.end(), [&](Index a, Index b) {
+    const Vec3& p = input_.points[a];
+    const Vec3& q = input_.points[b];
+    return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
+  });
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  std::vector<Index> number(input_.points.size(), kNone);
+  for (const Index v : used) {
+    number[v] = Index(out.vertices.size());
+    out.vertices.push_back(input_.points[v]);
+  }
+
+  std::vector<std::size_t> shares(sheets_.size(), 0);
+  for (const Draft& draft : drafts_) {
+    std::vector<Index> sheets;
+    for (const Index r : draft.records) sheets.push_back(visible_[r].sheet);
+    std::sort(sheets.begin(), sheets.end());
+    sheets.erase(std::unique(sheets.begin(), sheets.end()), sheets.end());
+    for (const Index s : sheets) ++shares[s];
+  }
+
+  std::vector<CoarsePolygon> polygons;
+  std::vector<Index> polygon_of(drafts_.size(), kNone);
+  for (std::size_t d = 0; d < drafts_.size(); ++d) {
+    const Draft& draft = drafts_[d];
+    if (draft.loops.empty()) continue;
+    CoarsePolygon p;
+    for (const auto& loop : draft.loops) {
+      p.loops.emplace_back();
+      for (const Index v : loop) p.loops.back().push_back(number[v]);
+      auto& l = p.loops.back();
+      std::rotate(l.begin(), std::min_element(l.begin(), l.end()), l.end());
+    }
+    std::sort(p.loops.begin() + 1, p.loops.end());
+    for (const Index e : draft.inner) {
+      const auto& [a, b] = straight_.edges[straight_.edge_of[needed_number_[e]]];
+      p.inner_edges.push_back({std::min(number[a], number[b]), std::max(number[a], number[b])});
+    }
+    std::sort(p.inner_edges.begin(), p.inner_edges.end());
+    p.inner_edges.erase(std::unique(p.inner_edges.begin(), p.inner_edges.end()),
+                        p.inner_edges.end());
+    p.normal = planes_[draft.plane].normal * (draft.kind.up ? 1.0 : -1.0);
+    p.surface = draft.kind.surface;
+    p.back = draft.kind.both;
+    p.faces = facesOf(draft, shares);
+    polygon_of[d] = Index(polygons.size());
+    polygons.push_back(std::move(p));
+  }
+  for (const auto& records : records_) {
+    if (records.size() != 2) continue;
+    const Index a = polygon_of[draftOf(records[0])];
+    const Index b = polygon_of[draftOf(records[1])];
+    if (a == kNone || b == kNone) continue;
+    polygons[a].opposite = b;
+    polygons[b].opposite = a;
+  }
+
+  // An order that does not depend on the order of the file's faces.
+  std::vector<Index> order(polygons.size());
+  std::iota(order.begin(), order.end(), Index(0));
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+    return std::tie(polygons[a].surface, polygons[a].loops) <
+           std::tie(polygons[b].surface, polygons[b].loops);
+  });
+  std::vector<Index> place(polygons.size());
+  for (std::size_t k = 0; k < order.size(); ++k) place[order[k]] = Index(k);
+  for (const Index p : order) {
+    out.polygons.push_back(std::move(polygons[p]));
+    Index& opposite = out.polygons.back().opposite;
+    if (opposite != kNone) opposite = place[opposite];
+  }
+  return out;
+}
+
+CoarseComplex Merger::run() {
+  indexRecords();
+  joinRecords();
+  sortEdges();
+  straightenEdges();
+  traceDrafts();
+  countCuts();
+  accountForStraightening();
+  for (const Draft& draft : drafts_) {
+    const Surface& surface = scene_.surfaces[draft.kind.surface];
+    if (scene_.materials[surface.material].two_sided && !draft.kind.both) ++report_.hidden_sides;
+  }
+  return finish();
+}
+
+}  // namespace
+
+void addMovedArea(SurfaceAreas& areas, double moved) {
+  if (std::abs(moved) > kAreaRounding * areas.given) areas.degenerate += moved;
+}
+
+CoarseComplex mergeCells(const Scene& scene, const InputFaces& input,
+                         const std::vector<Plane>& planes, const std::vector<Sheet>& sheets,
+                         const EdgeTable& edges, const Arrangement& arrangement,
+                         const std::vector<VisibleCell>& visible, MeshReport& report) {
+  return Merger(scene, input, planes, sheets, edges, arrangement, visible, report).run();
+}
+
+}  // namespace radiosity

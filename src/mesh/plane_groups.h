@@ -1,0 +1,25 @@
+// Faces that lie in one plane.
+#pragma once
+
+#include <glm/geometric.hpp>
+#include <vector>
+
+#include "mesh/input_faces.h"
+
+namespace radiosity {
+
+/// n.x = offset for points of the plane; the faces may lie either way up.
+struct Plane {
+  Vec3 normal{0.0};  ///< unit
+  double offset = 0;
+  std::vector<Index> faces;  ///< ascending, into InputFaces::faces
+
+  double distance(const Vec3& p) const { return glm::dot(normal, p) - offset; }
+};
+
+/// Puts every face into exactly one plane, together with the coplanar faces it is connected to
+/// (boxes that overlap, from face to face). Coplanar: every vertex of every face lies within half
+/// the coincidence of the plane, so a plane is a slab one coincidence thick and cannot drift.
+std::vector<Plane> groupByPlane(const InputFaces& input);
+
+}  // namespace radiosity

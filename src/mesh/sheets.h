@@ -1,0 +1,64 @@
+// Sheets: what the arrangement of a plane is made of, and the edges they share.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "mesh/box_pairs.h"
+#include "mesh/plane_groups.h"
+
+namespace radiosity {
+
+/// Coplanar faces of one surface, facing alike, that hang together by edges. The edges between
+/// them are gone; what is left is the boundary.
+struct Sheet {
+  Index plane = kNone;
+  Index surface = kNone;
+  int facing = 1;                           ///< +1: along the plane's normal, -1: against it
+  std::vector<Index> faces;                 ///< into InputFaces::faces
+  std::vector<std::array<Index, 2>> edges;  ///< boundary, the sheet on the left seen from its front
+  Box3 box;
+};
+
+std::vector<Sheet> findSheets(const InputFaces& input, const std::vector<Plane>& planes);
+
+/// A sheet along an edge: `count` > 0 runs from the smaller to the larger vertex, < 0 back; more
+/// than 1 where a sheet overlaps itself.
+struct EdgeUse {
+  Index sheet = kNone;
+  int count = 0;
+};
+
+/// An edge of the complex, between vertices a < b.
+struct Edge {
+  Index a = kNone;
+  Index b = kNone;
+  std::vector<EdgeUse> uses;  ///< ascending by sheet
+  std::vector<Index>
+      contacts;  ///< planes in which another plane's sheet touches or crosses along it
+
+  bool alive() const { return !uses.empty() || !contacts.empty(); }
+};
+
+/// All edges, each once. Edges that were split stay as dead entries.
+class EdgeTable {
+ public:
+  Index find(Index a, Index b) const;
+  /// The edge between a and b (a != b), made if need be.
+  Index obtain(Index a, Index b);
+  void addUse(Index from, Index to, Index sheet, int count);
+  void addContact(Index a, Index b, Index plane);
+  /// Replaces an edge by the path over `between` (from a to b); returns the path's edges.
+  std::vector<Index> split(Index edge, const std::vector<Index>& between);
+
+  const Edge& operator[](Index e) const { return edges_[e]; }
+  std::size_t size() const { return edges_.size(); }
+
+ private:
+  std::vector<Edge> edges_;
+  std::unordered_map<std::uint64_t, Index> index_;
+};
+
+}  // namespace radiosity

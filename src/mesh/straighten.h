@@ -1,0 +1,22 @@
+// Chains of edges without their straight vertices.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "mesh/welded_points.h"
+
+namespace radiosity {
+
+struct StraightEdges {
+  std::vector<std::array<Index, 2>> edges;  ///< what is left
+  std::vector<Index> edge_of;               ///< by given edge: the one it became a part of
+  std::vector<bool> removed;                ///< by vertex
+};
+
+/// Removes vertices at which exactly two of `edges` meet in a straight line: all that is removed
+/// between two neighbours that stay lies within coincidence of the line between them.
+StraightEdges straighten(const WeldedPoints& points, double coincidence,
+                         const std::vector<std::array<Index, 2>>& edges);
+
+}  // namespace radiosity

@@ -1,0 +1,34 @@
+// Points of which no two are closer than the weld radius.
+#pragma once
+
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "radiosity/base.h"
+
+namespace radiosity {
+
+class WeldedPoints {
+ public:
+  explicit WeldedPoints(double radius) : radius_(radius), cell_(2.0 * radius) {}
+
+  /// The nearest point closer than the radius, or kNone.
+  Index find(const Vec3& p) const;
+  /// find(), or else a new point at `p`. A point never moves: chains of close points do not creep.
+  Index insert(const Vec3& p);
+
+  const Vec3& operator[](Index i) const { return points_[i]; }
+  std::size_t size() const { return points_.size(); }
+
+ private:
+  using Cell = glm::i64vec3;
+  static std::uint64_t key(const Cell& cell);
+
+  double radius_;
+  double cell_;
+  std::vector<Vec3> points_;
+  std::unordered_multimap<std::uint64_t, Index> cells_;
+};
+
+}  // namespace radiosity
