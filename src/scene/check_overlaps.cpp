@@ -35,6 +35,7 @@ void SceneChecks::reportOverlaps(SceneInfo& info) const {
     }
   }
   std::vector<std::tuple<double, Index, Index>> largest;
+  largest.reserve(alike.size());
   for (const auto& [pair, area] : alike) largest.emplace_back(-area, pair.first, pair.second);
   std::sort(largest.begin(), largest.end());
   for (std::size_t k = 0; k < std::min(largest.size(), kNamedPairs); ++k) {

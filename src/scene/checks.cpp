@@ -109,8 +109,8 @@ void SceneChecks::reportFaces(SceneInfo& info) const {
         {Severity::warning,
          names.first == names.second
              ? fmt::format("{}: faces that are there twice: {}", names.first, count)
-             : fmt::format("{}: {} faces are there a second time in {}", names.first, count,
-                           names.second)});
+             : fmt::format("{}: faces that are there a second time in {}: {}", names.first,
+                           names.second, count)});
   }
 }
 

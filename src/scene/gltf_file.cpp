@@ -20,12 +20,6 @@ bool keepEncoded(tinygltf::Image* image, const int /*index*/, std::string* /*err
   return true;
 }
 
-std::string onOneLine(std::string_view text) {
-  std::string line(trimmed(text));
-  std::replace(line.begin(), line.end(), '\n', ' ');
-  return line;
-}
-
 template <class T>
 double loadAs(const unsigned char* bytes) {
   T value;

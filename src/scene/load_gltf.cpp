@@ -124,8 +124,9 @@ void Reader::readNode(int index, const Transform& parent) {
     for (const auto& [extension, value] : node.extensions) {
       ignored_.add(extension + " is not used, node", what.substr(5), Severity::warning);
     }
-    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
-      waiting.emplace_back(*child, transform);
+    // The last one in is the first one out: children are read in their order.
+    for (std::size_t k = node.children.size(); k-- > 0;) {
+      waiting.emplace_back(node.children[k], transform);
     }
   }
 }

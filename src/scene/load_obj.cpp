@@ -36,7 +36,7 @@ Polygons parseGeometry(const std::string& path, const ObjScan& scan) {
   // The scan has refused what the library would drop, so nothing may be missing here.
   if (!good || shapes.size() != 1 || shapes[0].mesh.num_face_vertices.size() != scan.faces.size()) {
     throw InputError(fmt::format("{}: cannot be read as Wavefront OBJ ({}); export it again", path,
-                                 trimmed(errors + warnings)));
+                                 onOneLine(errors + warnings)));
   }
   polygons.mesh = std::move(shapes[0].mesh);
   return polygons;

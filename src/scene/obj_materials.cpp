@@ -90,7 +90,7 @@ void MaterialReader::readLibrary(const fs::path& path) {
   tinyobj::LoadMtl(&by_name, &parsed, &stream, &warnings, &errors);
   if (!errors.empty() || parsed.size() != scanned.size()) {
     throw InputError(fmt::format("{}: cannot be read as MTL ({}); export the materials again", file,
-                                 trimmed(errors)));
+                                 onOneLine(errors)));
   }
   for (std::size_t m = 0; m < scanned.size(); ++m) {
     const MtlMaterial& mtl = scanned[m];

@@ -176,9 +176,8 @@ void Overrides::readMaterialsFile(const std::string& path) {
   try {
     file = Json::parse(readWholeFile(path));
   } catch (const Json::parse_error& error) {
-    std::string reason = error.what();
-    std::replace(reason.begin(), reason.end(), '\n', ' ');
-    throw InputError(fmt::format("{}: is not JSON ({}); correct it", path, reason));
+    throw InputError(
+        fmt::format("{}: is not JSON ({}); correct it", path, onOneLine(error.what())));
   }
   const Origin whole{path};
   if (!file.is_object()) {

@@ -17,6 +17,9 @@ std::string readWholeFile(const std::string& path);
 /// Without blanks at both ends.
 std::string_view trimmed(std::string_view text);
 
+/// Trimmed, line ends turned into blanks: a library's message fit for one of ours.
+std::string onOneLine(std::string_view text);
+
 /// Words between blanks (space, tab, carriage return).
 std::vector<std::string_view> splitWords(std::string_view text);
 

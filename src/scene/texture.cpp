@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/text.h"
+
 namespace radiosity {
 
 namespace {
@@ -21,12 +23,12 @@ bool startsWith(std::span<const unsigned char> bytes, std::string_view signature
                     [](char a, unsigned char b) { return static_cast<unsigned char>(a) == b; });
 }
 
-/// A file name whose extension tells OpenImageIO the format; empty where it is not one we know.
-std::string nameForFormat(std::span<const unsigned char> bytes) {
-  if (startsWith(bytes, "\x89PNG")) return "embedded.png";
-  if (startsWith(bytes, "\xff\xd8\xff")) return "embedded.jpg";
-  if (startsWith(bytes, "RIFF")) return "embedded.webp";
-  if (startsWith(bytes, "BM")) return "embedded.bmp";
+/// The name of the format, as OpenImageIO calls it; empty where it is not one we know.
+std::string formatOf(std::span<const unsigned char> bytes) {
+  if (startsWith(bytes, "\x89PNG")) return "png";
+  if (startsWith(bytes, "\xff\xd8\xff")) return "jpeg";
+  if (startsWith(bytes, "RIFF")) return "webp";
+  if (startsWith(bytes, "BM")) return "bmp";
   return {};
 }
 
@@ -47,7 +49,7 @@ TextureResult readOpened(OIIO::ImageInput& input, const std::string& name) {
   const std::size_t pixels = std::size_t(spec.width) * std::size_t(spec.height);
   std::vector<float> samples(pixels * channels);
   if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, samples.data())) {
-    result.problem = "cannot be decoded (" + input.geterror() + ")";
+    result.problem = "cannot be decoded (" + onOneLine(input.geterror()) + ")";
     return result;
   }
   Texture& texture = result.texture;
@@ -87,18 +89,24 @@ TextureResult readTexture(const std::string& path) {
   if (!std::filesystem::exists(path, ignored)) return {{}, false, "is not there"};
   const OIIO::ImageSpec hints = readingHints();
   const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &hints);
-  if (!input) return {{}, false, "cannot be read (" + OIIO::geterror() + ")"};
+  if (!input) return {{}, false, "cannot be read (" + onOneLine(OIIO::geterror()) + ")"};
   return readOpened(*input, path);
 }
 
 TextureResult decodeTexture(const std::string& name, std::span<const unsigned char> bytes) {
-  const std::string format_name = nameForFormat(bytes);
-  if (format_name.empty()) return {{}, false, "is of an unknown image format"};
+  const std::string format = formatOf(bytes);
+  if (format.empty()) return {{}, false, "is of an unknown image format"};
   OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
-  const OIIO::ImageSpec hints = readingHints();
-  const std::unique_ptr<OIIO::ImageInput> input =
-      OIIO::ImageInput::open(format_name, &hints, &memory);
-  if (!input) return {{}, false, "cannot be decoded (" + OIIO::geterror() + ")"};
+  OIIO::Filesystem::IOProxy* proxy = &memory;
+  OIIO::ImageSpec hints = readingHints();
+  hints.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, static_cast<const void*>(&proxy));
+  // By the format's name: given a file's name, OpenImageIO 2.4 looks for that file first.
+  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(format);
+  OIIO::ImageSpec spec;
+  if (!input) return {{}, false, "cannot be decoded (" + onOneLine(OIIO::geterror()) + ")"};
+  if (!input->open(name, spec, hints)) {
+    return {{}, false, "cannot be decoded (" + onOneLine(input->geterror()) + ")"};
+  }
   return readOpened(*input, name);
 }
 
