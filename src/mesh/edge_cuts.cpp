@@ -33,8 +33,7 @@ EdgeCuts::EdgeCuts(const CoarseComplex& complex) : complex_(complex) {
     }
     for (const auto& [from, to] : polygon.inner_edges) add(from, to);
   }
-  class_.resize(ends_.size());
-  for (Index e = 0; e < class_.size(); ++e) class_[e] = e;
+  classes_ = UnionFind(ends_.size());
   class_shortest_ = class_longest_ = length_;
   for (std::size_t p = 0; p < polygons; ++p) {
     const CoarsePolygon& polygon = complex.polygons[p];
@@ -59,21 +58,15 @@ DirectedEdge EdgeCuts::find(Index from, Index to) const {
   return {index_.at(edgeKey(from, to)), from > to};
 }
 
-Index EdgeCuts::classOf(Index edge) {
-  while (class_[edge] != edge) edge = class_[edge] = class_[class_[edge]];
-  return edge;
-}
-
 void EdgeCuts::join(Index a, Index b) {
-  a = classOf(a);
-  b = classOf(b);
-  if (a == b) return;
+  a = classes_.find(a);
+  b = classes_.find(b);
   const double shortest = std::min(class_shortest_[a], class_shortest_[b]);
   const double longest = std::max(class_longest_[a], class_longest_[b]);
   if (longest > kLargestRatioInClass * shortest) return;
-  class_[b] = a;
-  class_shortest_[a] = shortest;
-  class_longest_[a] = longest;
+  classes_.unite(a, b);
+  class_shortest_[classes_.find(a)] = shortest;
+  class_longest_[classes_.find(a)] = longest;
 }
 
 void EdgeCuts::joinOpposite(const FourSides& sides) {
@@ -93,7 +86,7 @@ void EdgeCuts::cut(double size, Rounding rounding) {
   double total = 0;
   for (Index e = 0; e < edges; ++e) {
     // A length that is a multiple of `size` but for rounding must not get a piece more.
-    const double ratio = class_longest_[classOf(e)] / size;
+    const double ratio = class_longest_[classes_.find(e)] / size;
     const double count = rounding == Rounding::at_most ? std::ceil(ratio * (1 - 1e-12))
                                                        : std::round(ratio * (1 + 1e-12));
     total += std::max(1.0, count);

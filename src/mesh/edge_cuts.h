@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mesh/complex.h"
+#include "mesh/union_find.h"
 
 namespace radiosity {
 
@@ -63,7 +64,6 @@ class EdgeCuts {
 
  private:
   DirectedEdge add(Index from, Index to);
-  Index classOf(Index edge);
   void join(Index a, Index b);
   void joinOpposite(const FourSides& sides);
 
@@ -73,7 +73,7 @@ class EdgeCuts {
   std::vector<double> length_;
   std::vector<std::vector<std::vector<DirectedEdge>>> loops_;  ///< polygon, loop
   std::vector<std::optional<FourSides>> four_sides_;
-  std::vector<Index> class_;            ///< union-find: edges that are cut alike
+  UnionFind classes_{0};                ///< edges that are cut alike
   std::vector<double> class_shortest_;  ///< of a class's root
   std::vector<double> class_longest_;
   std::vector<std::size_t> pieces_;

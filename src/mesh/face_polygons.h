@@ -1,0 +1,26 @@
+// Planar polygons over faces that stay as they are.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "radiosity/patch_mesh.h"
+
+namespace radiosity {
+
+/// What is known of a face.
+struct FaceShape {
+  Vec3 normal{0.0};    ///< unit; 0 for a degenerate face
+  double area = 0;     ///< 0 for a degenerate face
+  bool planar = true;  ///< within the coincidence
+};
+
+/// Merges faces that share an edge (the same two vertices, run oppositely, by these two faces
+/// alone), lie in one plane within `coincidence` and belong to one surface. A polygon keeps every
+/// vertex of its outline, so that it meets its neighbours vertex for vertex as the faces do.
+/// Degenerate faces get none, faces that are not planar one of their own. Fills mesh.polygon and
+/// mesh.polygons (but index_in_surface), polygons in the order of their first faces.
+void mergeFaces(const Scene& scene, std::span<const FaceShape> shapes, double coincidence,
+                PatchMesh& mesh);
+
+}  // namespace radiosity

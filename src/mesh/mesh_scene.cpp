@@ -1,0 +1,17 @@
+#include "mesh/complex.h"
+
+namespace radiosity {
+
+MeshResult meshScene(const Scene& scene, const MeshOptions& options, Progress& progress) {
+  options.validate();
+  MeshResult result;
+  if (options.faces_as_patches) {
+    result.mesh = facesAsPatches(scene, options, result.report);
+  } else {
+    const CoarseComplex complex = buildComplex(scene, options, result.report, progress);
+    result.mesh = subdivide(complex, scene, options, result.report, progress);
+  }
+  return result;
+}
+
+}  // namespace radiosity

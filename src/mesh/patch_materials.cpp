@@ -1,0 +1,225 @@
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "base/parallel.h"
+#include "mesh/box_pairs.h"
+#include "mesh/clip.h"
+#include "mesh/face_locator.h"
+#include "mesh/plane_frame.h"
+#include "mesh/texture_mean.h"
+#include "radiosity/patch_mesh.h"
+
+namespace radiosity {
+
+namespace {
+
+/// A triangle of a face flattened onto a patch's plane, with its texture coordinates.
+struct Mapped {
+  std::array<Vec2, 3> p;
+  std::array<Vec2, 3> uv;
+
+  Vec2 map(const Vec2& q) const {
+    const double whole = cross2(p[1] - p[0], p[2] - p[0]);
+    const double second = cross2(q - p[0], p[2] - p[0]) / whole;
+    const double third = cross2(p[1] - p[0], q - p[0]) / whole;
+    return uv[0] + second * (uv[1] - uv[0]) + third * (uv[2] - uv[0]);
+  }
+};
+
+/// A face seen along a patch's normal: its triangles, and how far from the patch's plane it is.
+struct Candidate {
+  Index face;
+  double distance;
+};
+
+// The part of a patch that must be covered by faces before farther ones are left out of account:
+// welding may leave slits of the width of the coincidence.
+constexpr double kCovered = 0.999;
+
+class PatchTexture {
+ public:
+  PatchTexture(const Scene& scene, const PatchMesh& mesh, std::span<const TextureMean> textures)
+      : scene_(scene), mesh_(mesh), textures_(textures) {}
+
+  /// The area mean of the texture over patch i. `faces`: those that may lie under it.
+  Vec3 mean(std::size_t i, std::vector<Index> faces) const {
+    const Index surface = mesh_.surface[i];
+    const TextureMean& texture =
+        textures_[scene_.materials[scene_.surfaces[surface].material].texture];
+    const PlaneFrame frame =
+        makeFrame(mesh_.centroid[i], mesh_.normal[i], axisAcross(mesh_.normal[i]));
+    Sum sum;
+    for (const Candidate& candidate : nearestFirst(i, frame, faces)) {
+      for (const Mapped& triangle : flattened(candidate.face, frame)) {
+        for (std::size_t t = mesh_.piece_offset[i]; t < mesh_.piece_offset[i + 1]; ++t) {
+          add(texture, triangle, mesh_.pieces[t], frame, sum);
+        }
+      }
+      if (sum.area >= kCovered * mesh_.area[i]) break;
+    }
+    if (sum.area > 0) return sum.colour / sum.area;
+    // Nothing lies under the patch (a face turned almost across it): one corner's texel.
+    return texture.at(scene_.texcoords[scene_.face_offset[mesh_.source_face[i]]]);
+  }
+
+ private:
+  struct Sum {
+    Vec3 colour{0.0};
+    double area = 0;
+  };
+
+  /// Faces that look the same way, the source face first, then the nearest to the patch's plane.
+  std::vector<Candidate> nearestFirst(std::size_t i, const PlaneFrame& frame,
+                                      const std::vector<Index>& faces) const {
+    std::vector<Candidate> result = {{mesh_.source_face[i], -1.0}};
+    for (const Index f : faces) {
+      if (f == mesh_.source_face[i]) continue;
+      const auto outline = scene_.face(f);
+      const auto corner = [&](std::size_t k) { return scene_.vertices[outline[k]]; };
+      const Vec3 area = vectorArea(outline.size(), corner);
+      if (glm::dot(area, frame.n) <= 0) continue;
+      // The face's plane where it meets the normal through the patch's centroid.
+      const double height = glm::dot(corner(0) - frame.origin, area) / glm::dot(area, frame.n);
+      result.push_back({f, std::abs(height)});
+    }
+    std::stable_sort(result.begin(), result.end(), [](const Candidate& a, const Candidate& b) {
+      return a.distance < b.distance;
+    });
+    return result;
+  }
+
+  std::vector<Mapped> flattened(Index face, const PlaneFrame& frame) const {
+    const auto outline = scene_.face(face);
+    std::vector<Vec2> flat;
+    for (const Index v : outline) flat.push_back(frame.flat(scene_.vertices[v]));
+    std::vector<Mapped> result;
+    const Vec2* uv = scene_.texcoords.data() + scene_.face_offset[face];
+    for (const auto& t : triangulateOutline(flat)) {
+      const Mapped triangle{{flat[t[0]], flat[t[1]], flat[t[2]]}, {uv[t[0]], uv[t[1]], uv[t[2]]}};
+      if (cross2(triangle.p[1] - triangle.p[0], triangle.p[2] - triangle.p[0]) > 0) {
+        result.push_back(triangle);
+      }
+    }
+    return result;
+  }
+
+  /// Adds the part of a piece of the patch that lies in `triangle`.
+  void add(const TextureMean& texture, const Mapped& triangle, const std::array<Index, 3>& piece,
+           const PlaneFrame& frame, Sum& sum) const {
+    std::vector<Vec2> part;
+    std::vector<Vec2> scratch;
+    for (const Index v : piece) part.push_back(frame.flat(mesh_.vertices[v]));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec2& a = triangle.p[k];
+      const Vec2 along = triangle.p[(k + 1) % 3] - a;
+      clipConvex(part, scratch, [&](const Vec2& p) { return cross2(along, p - a); });
+    }
+    const double area = polygonArea(part);
+    if (!(area > 0)) return;
+    sum.colour += area * meanOver(texture, triangle, part);
+    sum.area += area;
+  }
+
+  static Vec3 meanOver(const TextureMean& texture, const Mapped& triangle,
+                       const std::vector<Vec2>& part) {
+    std::vector<Vec2> uv;
+    Vec2 low(std::numeric_limits<double>::infinity());
+    Vec2 high = -low;
+    for (const Vec2& p : part) {
+      uv.push_back(triangle.map(p));
+      low = glm::min(low, uv.back());
+      high = glm::max(high, uv.back());
+    }
+    const Vec2 extent = high - low;
+    if (std::abs(polygonArea(uv)) > 1e-6 * glm::dot(extent, extent)) return texture.over(uv);
+    // Mapped onto a line or a point (palettes, gradients): the texels at the middles of equal
+    // parts of the polygon's fan.
+    constexpr int kParts = 32;
+    Vec3 colour(0.0);
+    double total = 0;
+    for (std::size_t k = 2; k < part.size(); ++k) {
+      const Vec2 a = (part[k - 1] - part[0]) / double(kParts);
+      const Vec2 b = (part[k] - part[0]) / double(kParts);
+      for (int r = 0; r < kParts; ++r) {
+        for (int s = 0; r + s < kParts; ++s) {
+          const Vec2 corner = part[0] + double(r) * a + double(s) * b;
+          const double area = cross2(a, b);
+          colour += area * texture.at(triangle.map(corner + (a + b) / 3.0));
+          total += area;
+          if (r + s + 1 == kParts) continue;
+          colour += area * texture.at(triangle.map(corner + (a + b) * (2.0 / 3.0)));
+          total += area;
+        }
+      }
+    }
+    return total > 0 ? colour / total : texture.at(uv[0]);
+  }
+
+  const Scene& scene_;
+  const PatchMesh& mesh_;
+  std::span<const TextureMean> textures_;
+};
+
+bool isTextured(const Scene& scene, Index surface) {
+  return !scene.texcoords.empty() &&
+         scene.materials[scene.surfaces[surface].material].texture != kNone;
+}
+
+/// For every textured front patch, the faces of its surface whose boxes meet its own.
+std::vector<std::vector<Index>> facesNear(const Scene& scene, const PatchMesh& mesh) {
+  std::vector<Index> patches;
+  std::vector<Index> first_boxes;
+  std::vector<Box3> boxes;
+  for (Index i = 0; i < mesh.size(); ++i) {
+    if (mesh.side[i] != 0 || !(mesh.area[i] > 0) || !isTextured(scene, mesh.surface[i])) continue;
+    Box3 box;
+    for (const Index v : mesh.outline(i)) box.add(mesh.vertices[v]);
+    // Patch and face may be a rounding or a weld apart: a little of the patch's own size.
+    first_boxes.push_back(Index(boxes.size()));
+    boxes.push_back(box.grown(1e-3 * glm::length(box.high - box.low)));
+    patches.push_back(i);
+  }
+  std::vector<std::vector<Index>> near(mesh.size());
+  if (patches.empty()) return near;
+  std::vector<Index> faces;
+  for (Index f = 0; f < scene.faceCount(); ++f) {
+    if (!isTextured(scene, scene.face_surface[f])) continue;
+    Box3& box = boxes.emplace_back();
+    for (const Index v : scene.face(f)) box.add(scene.vertices[v]);
+    faces.push_back(f);
+  }
+  for (const auto& [p, other] : overlappingPairs(boxes, first_boxes)) {
+    if (other < patches.size()) continue;
+    const Index f = faces[other - patches.size()];
+    if (scene.face_surface[f] == mesh.surface[patches[p]]) near[patches[p]].push_back(f);
+  }
+  return near;
+}
+
+}  // namespace
+
+PatchMaterials patchMaterials(const Scene& scene, const PatchMesh& mesh) {
+  PatchMaterials result;
+  result.reflectance.resize(mesh.size());
+  result.emission.resize(mesh.size());
+  std::vector<TextureMean> textures;
+  for (const Texture& texture : scene.textures) textures.emplace_back(texture);
+  const PatchTexture patch_texture(scene, mesh, textures);
+  const std::vector<std::vector<Index>> near = facesNear(scene, mesh);
+  parallelFor(mesh.size(), 64, [&](std::size_t i) {
+    const Material& material = scene.materials[scene.surfaces[mesh.surface[i]].material];
+    result.reflectance[i] = material.reflectance;
+    result.emission[i] = material.emission;
+    if (mesh.side[i] == 0 && mesh.area[i] > 0 && isTextured(scene, mesh.surface[i])) {
+      result.reflectance[i] *= patch_texture.mean(i, near[i]);
+    }
+  });
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    if (mesh.side[i] != 0) result.reflectance[i] = result.reflectance[mesh.twin[i]];
+  }
+  return result;
+}
+
+}  // namespace radiosity

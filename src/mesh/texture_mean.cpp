@@ -1,0 +1,131 @@
+#include "mesh/texture_mean.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+
+#include "mesh/clip.h"
+
+namespace radiosity {
+
+namespace {
+
+/// Resamples rows of `count` pixels of `stride` floats to half as many (at least one), each the
+/// area mean of what it covers: an odd row's pixels are shared between two.
+std::vector<float> halveRows(std::span<const float> pixels, long count, long rows) {
+  const long half = std::max(1L, count / 2);
+  const double ratio = double(count) / double(half);
+  std::vector<float> result;
+  result.reserve(std::size_t(rows * half * 3));
+  for (long row = 0; row < rows; ++row) {
+    for (long k = 0; k < half; ++k) {
+      const double from = double(k) * ratio;
+      const double to = double(k + 1) * ratio;
+      double sum[3] = {0, 0, 0};
+      for (long i = long(from); i < std::min(count, long(std::ceil(to))); ++i) {
+        const double share = std::min(to, double(i + 1)) - std::max(from, double(i));
+        for (long c = 0; c < 3; ++c) {
+          sum[c] += share * double(pixels[std::size_t((row * count + i) * 3 + c)]);
+        }
+      }
+      for (const double s : sum) result.push_back(float(s / ratio));
+    }
+  }
+  return result;
+}
+
+std::vector<float> transposed(std::span<const float> pixels, long width, long height) {
+  std::vector<float> result(pixels.size());
+  for (long j = 0; j < height; ++j) {
+    for (long i = 0; i < width; ++i) {
+      for (long c = 0; c < 3; ++c) {
+        result[std::size_t((i * height + j) * 3 + c)] =
+            pixels[std::size_t((j * width + i) * 3 + c)];
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+TextureMean::TextureMean(const Texture& texture) : texture_(texture) {
+  levels_.push_back({texture.width, texture.height, {}});
+  while (levels_.back().width > 1 || levels_.back().height > 1) {
+    const Level& last = levels_.back();
+    const std::vector<float>& pixels = last.halved.empty() ? texture.texels : last.halved;
+    const long width = std::max(1L, last.width / 2);
+    const long height = std::max(1L, last.height / 2);
+    const std::vector<float> narrow = halveRows(pixels, last.width, last.height);
+    const std::vector<float> turned = transposed(narrow, width, last.height);
+    std::vector<float> halved = transposed(halveRows(turned, last.height, width), height, width);
+    levels_.push_back({width, height, std::move(halved)});
+  }
+}
+
+Vec3 TextureMean::texel(const Level& level, long i, long j) const {
+  if (texture_.repeat) {
+    i = (i % level.width + level.width) % level.width;
+    j = (j % level.height + level.height) % level.height;
+  } else {
+    i = std::clamp(i, 0L, level.width - 1);
+    j = std::clamp(j, 0L, level.height - 1);
+  }
+  const std::vector<float>& pixels = level.halved.empty() ? texture_.texels : level.halved;
+  const float* p = pixels.data() + (j * level.width + i) * 3;
+  return {double(p[0]), double(p[1]), double(p[2])};
+}
+
+Vec3 TextureMean::at(const Vec2& uv) const {
+  const Level& level = levels_[0];
+  return texel(level, long(std::floor(uv.x * double(level.width))),
+               long(std::floor(uv.y * double(level.height))));
+}
+
+Vec3 TextureMean::over(std::span<const Vec2> uv) const {
+  Vec2 low = uv[0];
+  Vec2 high = uv[0];
+  for (const Vec2& p : uv) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  std::size_t l = 0;
+  const auto texels = [&] {
+    return ((high.x - low.x) * double(levels_[l].width) + 1) *
+           ((high.y - low.y) * double(levels_[l].height) + 1);
+  };
+  while (l + 1 < levels_.size() && texels() > kMostTexels) ++l;
+  const Level& level = levels_[l];
+  if (level.width == 1 && level.height == 1) return texel(level, 0, 0);
+
+  const Vec2 size(double(level.width), double(level.height));
+  std::vector<Vec2> polygon;
+  for (const Vec2& p : uv) polygon.push_back(p * size);
+  std::vector<Vec2> row;
+  std::vector<Vec2> cell;
+  std::vector<Vec2> scratch;
+  Vec3 sum(0.0);
+  double area = 0;
+  for (double j = std::floor(low.y * size.y); j < high.y * size.y; ++j) {
+    row = polygon;
+    clipConvex(row, scratch, [&](const Vec2& p) { return p.y - j; });
+    clipConvex(row, scratch, [&](const Vec2& p) { return j + 1 - p.y; });
+    double left = high.x * size.x;
+    double right = low.x * size.x;
+    for (const Vec2& p : row) {
+      left = std::min(left, p.x);
+      right = std::max(right, p.x);
+    }
+    for (double i = std::floor(left); i < right; ++i) {
+      cell = row;
+      clipConvex(cell, scratch, [&](const Vec2& p) { return p.x - i; });
+      clipConvex(cell, scratch, [&](const Vec2& p) { return i + 1 - p.x; });
+      const double share = std::abs(polygonArea(cell));
+      sum += share * texel(level, long(i), long(j));
+      area += share;
+    }
+  }
+  return area > 0 ? sum / area : at(0.5 * (low + high));  // a sliver lost in rounding
+}
+
+}  // namespace radiosity

@@ -1,0 +1,199 @@
+// Reflectance and emission of patches; textures averaged over their areas.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "coarse_builder.h"
+
+namespace radiosity {
+namespace {
+
+using test::CoarseBuilder;
+
+PatchMesh cut(CoarseBuilder& input, std::size_t patches) {
+  MeshOptions options;
+  options.patches = patches;
+  MeshReport report;
+  Progress progress;
+  return subdivide(input.complex(), input.scene(), options, report, progress);
+}
+
+/// `width` x `height` texels with values that follow no pattern, 0 to 1.
+Texture noise(int width, int height) {
+  Texture texture;
+  texture.width = width;
+  texture.height = height;
+  std::uint32_t state = 12345;
+  for (int k = 0; k < 3 * width * height; ++k) {
+    state = state * 1664525u + 1013904223u;
+    texture.texels.push_back(float(state >> 8) / float(1 << 24));
+  }
+  return texture;
+}
+
+Vec3 meanOf(const Texture& texture) {
+  Vec3 sum(0.0);
+  for (std::size_t k = 0; k < texture.texels.size(); ++k) sum[int(k % 3)] += texture.texels[k];
+  return sum / (double(texture.texels.size()) / 3);
+}
+
+void expectNear(const Vec3& a, const Vec3& b, double tolerance) {
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], tolerance) << "band " << c;
+}
+
+/// The unit square in z = 0 with the texture's top left at (0, 1), `tiles` times over each way.
+void texturedSquare(CoarseBuilder& input, const Texture& texture, double tiles = 1) {
+  const Index s = input.surface("wall");
+  input.flat(s, {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}});
+  Scene& scene = input.scene();
+  scene.textures = {texture};
+  scene.materials[0].texture = 0;
+  scene.materials[0].reflectance = Vec3(1.0);
+  scene.texcoords = {{0, tiles}, {tiles, tiles}, {tiles, 0}, {0, 0}};
+}
+
+TEST(PatchMaterials, ConstantMaterialsAreCopied) {
+  CoarseBuilder input;
+  const Index sheet = input.surface("sheet");
+  input.scene().materials[0].reflectance = {0.1, 0.2, 0.3};
+  input.scene().materials[0].emission = {4, 5, 6};
+  input.flat(sheet, {{{0, 0}, {1, 0}, {0, 1}}}).back = true;
+  const PatchMesh mesh = cut(input, 10);
+  const PatchMaterials materials = patchMaterials(input.scene(), mesh);
+  ASSERT_EQ(materials.reflectance.size(), mesh.size());
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    EXPECT_EQ(materials.reflectance[i], Vec3(0.1, 0.2, 0.3));
+    EXPECT_EQ(materials.emission[i], Vec3(4, 5, 6));
+  }
+}
+
+TEST(PatchMaterials, WholeTextureOnOnePatchGivesItsMean) {
+  // Texels are weighted by exact areas: only rounding is left. From 256 x 256 texels on halved
+  // copies in single precision are summed: a few units of their last place.
+  for (const auto& [width, height, tolerance] : {std::tuple{1, 1, 1e-12},
+                                                 {4, 4, 1e-12},
+                                                 {5, 3, 1e-12},
+                                                 {64, 17, 1e-12},
+                                                 {700, 301, 1e-6},
+                                                 {1024, 1024, 1e-6}}) {
+    CoarseBuilder input;
+    const Texture texture = noise(width, height);
+    texturedSquare(input, texture);
+    const PatchMesh mesh = cut(input, 1);
+    ASSERT_EQ(mesh.size(), 1u);
+    expectNear(patchMaterials(input.scene(), mesh).reflectance[0], meanOf(texture), tolerance);
+  }
+}
+
+TEST(PatchMaterials, RepeatsAndClamps) {
+  CoarseBuilder input;
+  Texture texture = noise(3, 2);
+  texturedSquare(input, texture, 3);
+  expectNear(patchMaterials(input.scene(), cut(input, 1)).reflectance[0], meanOf(texture), 1e-12);
+  // Clamped, all but the first tile shows the last column and the last row of texels.
+  input.scene().textures[0].repeat = false;
+  const auto texel = [&](int i, int j) {
+    const float* p = texture.texels.data() + 3 * (3 * j + i);
+    return Vec3(p[0], p[1], p[2]);
+  };
+  Vec3 expected(0.0);
+  for (int j = 0; j < 6; ++j) {
+    for (int i = 0; i < 9; ++i) expected += texel(std::min(i, 2), std::min(j, 1)) / 54.0;
+  }
+  expectNear(patchMaterials(input.scene(), cut(input, 1)).reflectance[0], expected, 1e-12);
+}
+
+TEST(PatchMaterials, EveryPatchGetsTheTexelsUnderIt) {
+  CoarseBuilder input;
+  const Texture texture = noise(4, 4);
+  texturedSquare(input, texture);
+  const PatchMesh mesh = cut(input, 16);
+  ASSERT_EQ(mesh.size(), 16u);
+  const PatchMaterials materials = patchMaterials(input.scene(), mesh);
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    const int column = int(mesh.centroid[i].x * 4);
+    const int row = int((1 - mesh.centroid[i].y) * 4);  // the first row is at the top
+    const float* p = texture.texels.data() + 3 * (4 * row + column);
+    expectNear(materials.reflectance[i], {p[0], p[1], p[2]}, 1e-12);
+  }
+}
+
+TEST(PatchMaterials, AreaWeightedSumIsTheMeanHoweverItIsCut) {
+  for (const std::size_t patches : {7u, 150u}) {
+    CoarseBuilder input;
+    const Texture texture = noise(13, 9);
+    texturedSquare(input, texture);
+    // A contact line makes triangles and odd quadrilaterals of it.
+    input.innerEdge(input.complex().polygons[0], {0.2, 0.3, 0}, {0.7, 0.6, 0});
+    const PatchMesh mesh = cut(input, patches);
+    const PatchMaterials materials = patchMaterials(input.scene(), mesh);
+    Vec3 sum(0.0);
+    for (std::size_t i = 0; i < mesh.size(); ++i) sum += mesh.area[i] * materials.reflectance[i];
+    expectNear(sum, meanOf(texture), 1e-12);
+  }
+}
+
+TEST(PatchMaterials, PatchOverSeveralFacesSeesThemAll) {
+  CoarseBuilder input;
+  Texture texture = noise(2, 1);
+  texturedSquare(input, texture);
+  // The square was merged from two halves; the left shows the left texel, the right the right one
+  // twice over; a parallel face of the same surface further down shows neither.
+  test::SceneBuilder faces;
+  faces.surface("wall");
+  faces.level(0, 0, 0, 0.25, 1, 0);
+  faces.level(0, 0.25, 0, 1, 1, 0);
+  faces.level(0, 0, 0, 1, 1, -1e-4);
+  Scene& scene = faces.scene();
+  scene.textures = {texture};
+  scene.materials[0].texture = 0;
+  scene.materials[0].reflectance = {0.5, 0.5, 0.5};
+  scene.texcoords = {{0, 1}, {0.5, 1}, {0.5, 0}, {0, 0},   {0.5, 1}, {1, 1},
+                     {1, 0}, {0.5, 0}, {0.1, 1}, {0.2, 1}, {0.2, 0}, {0.1, 0}};
+  input.complex().polygons[0].faces = {0, 1};
+  input.scene() = scene;
+  const PatchMesh mesh = cut(input, 1);
+  ASSERT_EQ(mesh.size(), 1u);
+  const float* p = texture.texels.data();
+  const Vec3 expected = 0.5 * (0.25 * Vec3(p[0], p[1], p[2]) + 0.75 * Vec3(p[3], p[4], p[5]));
+  expectNear(patchMaterials(scene, mesh).reflectance[0], expected, 1e-12);
+}
+
+TEST(PatchMaterials, FaceMappedToOnePointHasThatTexel) {
+  CoarseBuilder input;
+  const Texture texture = noise(8, 8);
+  texturedSquare(input, texture);
+  input.scene().texcoords.assign(4, Vec2(3.5 / 8, 6.5 / 8));
+  const float* p = texture.texels.data() + 3 * (8 * 6 + 3);
+  for (const std::size_t patches : {1u, 9u}) {
+    const PatchMaterials materials = patchMaterials(input.scene(), cut(input, patches));
+    for (const Vec3& rho : materials.reflectance) expectNear(rho, {p[0], p[1], p[2]}, 1e-12);
+  }
+}
+
+TEST(PatchMaterials, BacksShowTheFrontsTexture) {
+  CoarseBuilder input;
+  texturedSquare(input, noise(6, 6));
+  input.complex().polygons[0].back = true;
+  const PatchMesh mesh = cut(input, 9);
+  const PatchMaterials materials = patchMaterials(input.scene(), mesh);
+  ASSERT_EQ(mesh.size(), 18u);
+  for (std::size_t i = 0; i < 9; ++i) {
+    EXPECT_EQ(materials.reflectance[i], materials.reflectance[mesh.twin[i]]);
+  }
+}
+
+TEST(PatchMaterials, FacesAsPatchesUseTheirOwnFace) {
+  CoarseBuilder input;
+  const Texture texture = noise(5, 5);
+  texturedSquare(input, texture);
+  MeshOptions options;
+  options.faces_as_patches = true;
+  MeshReport report;
+  const PatchMesh mesh = facesAsPatches(input.scene(), options, report);
+  expectNear(patchMaterials(input.scene(), mesh).reflectance[0], meanOf(texture), 1e-12);
+}
+
+}  // namespace
+}  // namespace radiosity
