@@ -210,6 +210,16 @@ TEST(Exposure, ThePercentileOfTheHitPixelsGoesToFourFifths) {
   EXPECT_NEAR(autoExposure(image), std::log2(0.8 / 99), 1e-6);
 }
 
+TEST(Exposure, ALampThatFillsAFifthOfThePictureDoesNotBlackenTheRoom) {
+  Image image{10, 10, {}};
+  for (int k = 0; k < 100; ++k) {
+    const float value = k < 20 ? 1000.0f : k < 30 ? 0.0f : 2.0f;  // lamp, backs, room
+    image.rgba.insert(image.rgba.end(), {value, value, value, 1.0f});
+  }
+  // The median of the lit pixels, 2, goes to a tenth.
+  EXPECT_NEAR(autoExposure(image), std::log2(0.1 / 2), 1e-6);
+}
+
 TEST(Exposure, LuminanceIsRec709) {
   const Image green{1, 1, {0, 2, 0, 1}};
   EXPECT_NEAR(autoExposure(green), std::log2(0.8 / (2 * 0.7152)), 1e-6);

@@ -54,7 +54,8 @@ Image render(const PatchMesh& mesh, std::span<const double> values, const Camera
              const RenderOptions& options, Progress& progress);
 
 /// Exposure value: the picture is multiplied by 2^ev before the sRGB curve. Automatic: the 99th
-/// percentile of luminance over hit pixels maps to 0.8 (emitters clip).
+/// percentile of luminance over hit pixels maps to 0.8 (emitters clip), unless the median over the
+/// lit ones would fall below 0.1: a large lamp in view then clips too. 0 where nothing is lit.
 double autoExposure(const Image& image);
 
 /// Multiplies by 2^ev; colours only.

@@ -5,6 +5,17 @@
 #include "radiosity/render.h"
 
 namespace radiosity {
+namespace {
+
+/// Nearest rank: the smallest value that at least this share of the values does not exceed.
+double percentile(std::vector<double>& values, double share) {
+  const auto rank = std::size_t(std::ceil(share * double(values.size()))) - 1;
+  const auto at = values.begin() + std::ptrdiff_t(rank);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+}  // namespace
 
 double autoExposure(const Image& image) {
   std::vector<double> luminance;
@@ -14,10 +25,13 @@ double autoExposure(const Image& image) {
     if (p[3] > 0) luminance.push_back(0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2]);
   }
   if (luminance.empty()) return 0;
-  // Nearest rank: the smallest value that at least 99% of the pixels do not exceed.
-  const auto rank = std::size_t(std::ceil(0.99 * double(luminance.size()))) - 1;
-  std::nth_element(luminance.begin(), luminance.begin() + std::ptrdiff_t(rank), luminance.end());
-  return luminance[rank] > 0 ? std::log2(0.8 / luminance[rank]) : 0;
+  const double bright = percentile(luminance, 0.99);
+  if (!(bright > 0)) return 0;
+  // A lamp that fills more than 1% of the picture would set the exposure for itself and leave the
+  // room black: the middle of what is lit stays at a tenth of the range or above.
+  std::erase_if(luminance, [](double value) { return !(value > 0); });
+  const double middle = percentile(luminance, 0.5);
+  return std::log2(0.8 / std::min(bright, 8 * middle));
 }
 
 Image exposed(const Image& image, double ev) {
