@@ -376,6 +376,16 @@ TEST_F(SceneGltf, RefusesFilesThatAreNoGltf) {
   EXPECT_CONTAINS(errorIn("b.gltf", away.json.dump()), "lost.bin");
 }
 
+TEST_F(SceneGltf, RefusesOrReadsEveryTruncatedFile) {
+  Document d = triangle();
+  d.json["materials"] = {{{"name", "m"}, {"emissiveFactor", {1, 1, 1}}}};
+  const std::string text = d.text();
+  for (std::size_t size = 1; size < text.size(); size += 3) {
+    const std::string file = write("cut.gltf", text.substr(0, size));
+    EXPECT_CONTAINS(inputErrorOf([&] { loadScene(file); }), "cut.gltf: cannot be read");
+  }
+}
+
 TEST_F(SceneGltf, ReadsBinaryFiles) {
   Document d = triangle();
   d.text();
@@ -398,6 +408,10 @@ TEST_F(SceneGltf, ReadsBinaryFiles) {
   const Scene scene = loadScene(write("scene.GLB", glb));
   ASSERT_EQ(scene.faceCount(), 1u);
   EXPECT_EQ(corner(scene, 0, 2), Vec3(0, 1, 0));
+  for (std::size_t size = 1; size < glb.size(); size += 5) {
+    const std::string file = write("cut.glb", glb.substr(0, size));
+    EXPECT_CONTAINS(inputErrorOf([&] { loadScene(file); }), "cut.glb: ");
+  }
 }
 
 }  // namespace

@@ -284,7 +284,8 @@ TEST_F(SceneObj, ConvertsUnitsAndCameras) {
   EXPECT_EQ(scene.cameras[0].eye, 0.001 * Vec3(278, 273, -800));
   EXPECT_EQ(scene.cameras[0].target, 0.001 * Vec3(278, 273, 0));
   EXPECT_DOUBLE_EQ(scene.cameras[0].vertical_fov, std::numbers::pi / 3);
-  EXPECT_NOTE(scene.notes, "scene.obj:2: camera comment not used", Severity::warning);
+  EXPECT_NOTE(scene.notes, "scene.obj:2: not used, camera: eye=\"1,2\" has 2 numbers",
+              Severity::warning);
   EXPECT_EQ(findNote(scene.notes, "scene.obj:3"), nullptr) << "prose is no camera";
   // An inch is 25.4 mm and a foot 304.8 mm by definition.
   options.unit = "in";

@@ -258,6 +258,12 @@ TEST_F(SceneGltfTexture, ReadsImageFilesAndReportsMissingOnes) {
   EXPECT_TRUE(scene.textures[0].repeat);
 }
 
+TEST_F(SceneGltfTexture, RefusesAnImageBeyondItsBuffer) {
+  Json json = document({{"index", 0}});
+  json["bufferViews"][2]["byteLength"] = 99999999999ll;
+  EXPECT_CONTAINS(inputErrorOf([&] { load(json); }), "material desk reaches beyond the end");
+}
+
 TEST_F(SceneGltfTexture, AppliesTheTextureTransform) {
   // A quarter turn, counter-clockwise as seen with v downwards: (u, v) becomes (v, -u); the scale
   // comes before it, the offset after it.

@@ -2,50 +2,81 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <glm/geometric.hpp>
+#include <map>
 #include <numbers>
 #include <optional>
+#include <vector>
 
 #include "scene/text.h"
 
 namespace radiosity {
 
-std::string readCameraText(std::string_view text, Camera& camera) {
-  std::string spaced(text);
-  std::replace(spaced.begin(), spaced.end(), ';', ' ');
-  bool has_eye = false;
-  bool has_target = false;
-  for (const std::string_view part : splitWords(spaced)) {
+namespace {
+
+constexpr const char* kForm = "eye=x,y,z;target=x,y,z;up=x,y,z;fov=DEGREES";
+
+double number(std::string_view key, std::string_view text) {
+  const std::optional<double> value = parseNumber(trimmed(text));
+  if (!value) {
+    throw InputError(fmt::format("camera: {}: \"{}\" is not a finite number", key, trimmed(text)));
+  }
+  return *value;
+}
+
+Vec3 point(std::string_view key, std::string_view text) {
+  const std::vector<std::string_view> numbers = splitAt(text, ',');
+  if (numbers.size() != 3) {
+    throw InputError(fmt::format("camera: {}=\"{}\" has {} numbers; it needs three, x,y,z", key,
+                                 text, text.empty() ? 0 : numbers.size()));
+  }
+  return {number(key, numbers[0]), number(key, numbers[1]), number(key, numbers[2])};
+}
+
+using Parts = std::map<std::string_view, std::string_view>;
+
+Parts partsOf(std::string_view text, char separator) {
+  Parts found;
+  const auto pieces = separator == ' ' ? splitWords(text) : splitAt(text, separator);
+  for (const std::string_view piece : pieces) {
+    const std::string_view part = trimmed(piece);
+    if (part.empty()) continue;  // a closing separator
     const std::size_t equals = part.find('=');
-    if (equals == std::string_view::npos) return fmt::format("`{}` has no =", part);
-    const std::string_view key = part.substr(0, equals);
-    const std::string_view value = part.substr(equals + 1);
-    if (key == "fov") {
-      const std::optional<double> degrees = parseNumber(value);
-      if (!degrees || *degrees <= 0 || *degrees >= 180) {
-        return fmt::format("fov={} is not an angle between 0 and 180 degrees", value);
-      }
-      camera.vertical_fov = *degrees * std::numbers::pi / 180;
-      continue;
+    const std::string_view key = trimmed(part.substr(0, equals));
+    if (key != "eye" && key != "target" && key != "up" && key != "fov") {
+      throw InputError(fmt::format("camera: unknown part \"{}\"; the form is {}", key, kForm));
     }
-    const std::optional<Vec3> point = parseTriple(value);
-    if (key != "eye" && key != "target" && key != "up") {
-      return fmt::format("`{}` is none of eye, target, up, fov", key);
+    if (equals == std::string_view::npos) {
+      throw InputError(fmt::format("camera: \"{}\" has no value; the form is {}", key, kForm));
     }
-    if (!point) return fmt::format("{}={} is not three numbers x,y,z", key, value);
-    if (key == "eye") camera.eye = *point;
-    if (key == "target") camera.target = *point;
-    if (key == "up") camera.up = *point;
-    has_eye |= key == "eye";
-    has_target |= key == "target";
+    if (!found.emplace(key, trimmed(part.substr(equals + 1))).second) {
+      throw InputError(fmt::format("camera: {} is given twice", key));
+    }
   }
-  if (!has_eye || !has_target) return "eye and target are both needed";
-  if (camera.eye == camera.target) return "eye and target are the same point";
-  if (glm::cross(camera.target - camera.eye, camera.up) == Vec3(0.0)) {
-    return "up points along the view direction";
+  return found;
+}
+
+}  // namespace
+
+Camera readCamera(std::string_view text, char separator) {
+  const Parts given = partsOf(text, separator);
+  for (const char* needed : {"eye", "target"}) {
+    if (!given.contains(needed)) {
+      throw InputError(fmt::format("camera: {} is missing; the form is {}", needed, kForm));
+    }
   }
-  return {};
+  Camera camera;
+  camera.eye = point("eye", given.at("eye"));
+  camera.target = point("target", given.at("target"));
+  if (given.contains("up")) {
+    camera.up = point("up", given.at("up"));
+    if (camera.up == Vec3(0.0)) throw InputError("camera: up is 0,0,0; it must have a direction");
+  } else if (camera.eye.x == camera.target.x && camera.eye.z == camera.target.z) {
+    camera.up = {0, 0, -1};  // straight up or down, as on a map
+  }
+  if (given.contains("fov")) {
+    camera.vertical_fov = number("fov", given.at("fov")) * std::numbers::pi / 180;
+  }
+  return camera;
 }
 
 }  // namespace radiosity

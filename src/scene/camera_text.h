@@ -1,4 +1,4 @@
-// A camera written as text.
+// A camera written as text: on the command line and in an OBJ's comments.
 #pragma once
 
 #include <string>
@@ -8,9 +8,10 @@
 
 namespace radiosity {
 
-/// Reads "eye=x,y,z target=x,y,z up=x,y,z fov=DEGREES"; parts are separated by blanks or
-/// semicolons, up (0,1,0) and fov (the default of Camera) may be left out. Returns what is wrong in
-/// a few words, empty where the camera is good.
-std::string readCameraText(std::string_view text, Camera& camera);
+/// Reads "eye=x,y,z;target=x,y,z;up=x,y,z;fov=DEGREES" with parts between `separator`s: ';', or ' '
+/// for blanks. up and fov may be left out: up is then +y, or -z for a view straight up or down.
+/// Errors: InputError "camera: which part is wrong". Whether the view makes sense (eye and target
+/// apart, an angle below 180 degrees) is checked where it is used.
+Camera readCamera(std::string_view text, char separator);
 
 }  // namespace radiosity

@@ -11,11 +11,12 @@ namespace radiosity {
 
 namespace {
 
-/// Keeps an image's encoded bytes: which of them are needed is known later.
+/// Keeps the encoded bytes of an image file: which are needed is known later. Those in a buffer are
+/// not touched here, since the library has not checked that they lie within it.
 bool keepEncoded(tinygltf::Image* image, const int /*index*/, std::string* /*error*/,
                  std::string* /*warning*/, int /*width*/, int /*height*/,
                  const unsigned char* bytes, int size, void* /*user*/) {
-  image->image.assign(bytes, bytes + size);
+  if (image->bufferView < 0) image->image.assign(bytes, bytes + size);
   image->as_is = true;
   return true;
 }
@@ -135,6 +136,14 @@ const unsigned char* GltfFile::viewBytes(int view_index, std::size_t offset, std
                     (count - 1) <= (view.byteLength - offset - element) / stride;
   if (!fits) fail(what + " reaches beyond the end of its buffer; export the scene again");
   return buffer.data.data() + view.byteOffset + offset;
+}
+
+std::span<const unsigned char> GltfFile::imageBytes(const tinygltf::Image& image,
+                                                    const std::string& what) const {
+  if (image.bufferView < 0) return image.image;
+  const std::size_t size = at(model.bufferViews, image.bufferView, "buffer view", what).byteLength;
+  if (size == 0) return {};
+  return {viewBytes(image.bufferView, 0, size, size, 1, what), size};
 }
 
 std::vector<double> GltfFile::readNumbers(int accessor_index, int components,

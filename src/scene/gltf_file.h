@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,10 @@ struct GltfFile {
   /// All values of an index accessor.
   std::vector<Index> readIndices(int accessor, const std::string& what) const;
 
+  /// The encoded image (PNG, JPEG); empty where its file is missing.
+  std::span<const unsigned char> imageBytes(const tinygltf::Image& image,
+                                            const std::string& what) const;
+
  private:
   const unsigned char* viewBytes(int view, std::size_t offset, std::size_t stride,
                                  std::size_t element, std::size_t count,
@@ -46,7 +51,7 @@ struct GltfFile {
                    const std::string& what) const;
 };
 
-/// Parses and checks version and required extensions. Images are kept as their encoded bytes.
+/// Parses and checks version and required extensions. Images stay encoded.
 GltfFile parseGltf(const std::string& path, bool binary);
 
 }  // namespace radiosity

@@ -116,12 +116,13 @@ Index MaterialReader::texture(const tinygltf::TextureInfo& info, const std::stri
   const tinygltf::Image& image = file_.at(file_.model.images, gltf.source, "image", what);
   std::string name = image.name.empty() ? image.uri : image.name;
   if (name.empty()) name = fmt::format("image{}", gltf.source);
-  if (image.image.empty()) return unusable("texture " + name + " is not there");
+  const std::span<const unsigned char> bytes = file_.imageBytes(image, what);
+  if (bytes.empty()) return unusable("texture " + name + " is not there");
   const bool repeat = repeats(gltf, material);
   const auto [place, is_new] = texture_of_.try_emplace({gltf.source, repeat});
   LoadedTexture& loaded = place->second;
   if (is_new) {
-    TextureResult result = decodeTexture(name, image.image);
+    TextureResult result = decodeTexture(name, bytes);
     loaded.problem = result.problem;
     if (result.has_alpha) ignored_.add("alpha is not used, texture", name);
     if (loaded.problem.empty()) {

@@ -112,14 +112,13 @@ void Scanner::comment(std::string_view text) {
   // Prose that happens to begin with "camera" is left alone.
   constexpr std::string_view kCamera = "camera";
   if (!text.starts_with(kCamera) || text.find('=') == std::string_view::npos) return;
-  Camera camera;
-  camera.name = fmt::format("camera{}", scan_.cameras.size() + 1);
-  const std::string problem = readCameraText(text.substr(kCamera.size()), camera);
-  if (problem.empty()) {
+  try {
+    Camera camera = readCamera(text.substr(kCamera.size()), ' ');
+    camera.name = fmt::format("camera{}", scan_.cameras.size() + 1);
     scan_.cameras.push_back(camera);
-  } else {
-    scan_.notes.push_back({Severity::warning, fmt::format("{}:{}: camera comment not used: {}",
-                                                          file_, line_, problem)});
+  } catch (const InputError& error) {
+    scan_.notes.push_back(
+        {Severity::warning, fmt::format("{}:{}: not used, {}", file_, line_, error.what())});
   }
 }
 
