@@ -252,17 +252,45 @@ TEST(RenderVisibility, BacksAreBlackOrTransparent) {
 }
 
 TEST(RenderVisibility, TwoSidedPatchesShowTheValueOfTheSideSeen) {
-  QuadMesh builder;
-  builder.grid("sheet", {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, 1, true);
+  QuadMesh builder;  // oblique: the depths of both sides differ by rounding errors
+  builder.grid("sheet", {-1, -1, 0.1}, {2, 0.1, -0.3}, {0.2, 2, 0.7}, 1, 1, true);
   const PatchMesh mesh = builder.build();
   ASSERT_EQ(mesh.size(), 2u);
   for (const bool backs : {true, false}) {
-    RenderOptions options = sized(8, 8);
+    RenderOptions options = sized(48, 48);
     options.show_backs = backs;
-    const Image front = picture(mesh, labels(mesh), cameraAt({0, 0, 2}), options);
-    const Image back = picture(mesh, labels(mesh), cameraAt({0, 0, -2}, {0, 0, 1}), options);
-    EXPECT_EQ(pixel(front, 4, 4)[0], 1.0f);
-    EXPECT_EQ(pixel(back, 4, 4)[0], 2.0f);
+    const Image front = picture(mesh, labels(mesh), cameraAt({0, 0, 4}), options);
+    const Image back = picture(mesh, labels(mesh), cameraAt({0, 0, -4}, {0, 0, 1}), options);
+    EXPECT_GT(coverage(front), 200);
+    for (std::size_t k = 0; k < front.rgba.size(); k += 4) {
+      ASSERT_EQ(front.rgba[k], front.rgba[k + 3] > 0 ? 1.0f : 0.0f);
+      ASSERT_EQ(back.rgba[k], back.rgba[k + 3] > 0 ? 2.0f : 0.0f);
+    }
+  }
+}
+
+TEST(RenderVisibility, SamplesExactlyOnASharedEdgeAreCovered) {
+  // The common edge runs through pixel centres, along a diagonal or a column, and is any of the
+  // edges of either triangle.
+  for (const bool diagonal : {true, false}) {
+    const Vec3 from(diagonal ? -1 : 0, -1, -1);
+    const Vec3 to(diagonal ? 1 : 0, 1, -1);
+    const Vec3 left(-3, 1, -1);
+    const Vec3 right(3, -1, -1);
+    for (int turn = 0; turn < 9; ++turn) {
+      std::vector<Vec3> one = {from, to, left};
+      std::vector<Vec3> other = {to, from, right};
+      std::rotate(one.begin(), one.begin() + turn % 3, one.end());
+      std::rotate(other.begin(), other.begin() + turn / 3, other.end());
+      QuadMesh builder;
+      builder.patch("s", one);
+      builder.patch("s", other);
+      const PatchMesh mesh = builder.build();
+      const Image image = picture(mesh, labels(mesh), cameraAt({0, 0, 0}), sized(15, 15, 1));
+      for (int k = 0; k < 15; ++k) {
+        ASSERT_EQ(pixel(image, diagonal ? k : 7, 14 - k)[3], 1.0f) << turn << " " << k;
+      }
+    }
   }
 }
 
@@ -349,51 +377,6 @@ TEST(RenderVisibility, SamplesSetTheStepsOfAlpha) {
   EXPECT_EQ(pixel(sixteen, 9, 8)[3], 0.75f);
   EXPECT_EQ(pixel(sixteen, 8, 8)[3], 0.0f);
   EXPECT_EQ(pixel(sixteen, 10, 8)[3], 1.0f);
-}
-
-TEST(RenderVisibility, OnePixel) {
-  const PatchMesh mesh = furnishedRoom(2);
-  const std::vector<double> values(mesh.size() * 3, 0.7);
-  const Image image = picture(mesh, values, cameraAt({1, 1, 2}), sized(1, 1, 1));
-  ASSERT_EQ(image.rgba.size(), 4u);
-  EXPECT_EQ(image.rgba[1], 0.7f);
-  EXPECT_EQ(image.rgba[3], 1.0f);
-}
-
-TEST(RenderVisibility, AnEmptyMeshIsAllMisses) {
-  const PatchMesh mesh = QuadMesh().build();
-  EXPECT_EQ(coverage(picture(mesh, {}, cameraAt({0, 0, 0}), sized(20, 10))), 0);
-}
-
-TEST(RenderVisibility, CancellingThrows) {
-  const PatchMesh mesh = furnishedRoom(2);
-  const std::vector<double> values(mesh.size() * 3, 0.7);
-  Progress progress;
-  progress.cancel();
-  EXPECT_THROW(render(mesh, values, cameraAt({1, 1, 2}), sized(8, 8), progress), Cancelled);
-}
-
-TEST(RenderVisibility, BadOptionsAndValuesAreNamed) {
-  EXPECT_NO_THROW(RenderOptions().validate());
-  const auto refuses = [](auto change) {
-    RenderOptions options;
-    change(options);
-    EXPECT_THROW(options.validate(), InputError);
-  };
-  refuses([](RenderOptions& o) { o.width = 0; });
-  refuses([](RenderOptions& o) { o.width = 16385; });
-  refuses([](RenderOptions& o) { o.height = -1; });
-  refuses([](RenderOptions& o) { o.height = 16385; });
-  refuses([](RenderOptions& o) { o.samples = 0; });
-  refuses([](RenderOptions& o) { o.samples = 17; });
-  refuses([](RenderOptions& o) { o.crease = -1; });
-  refuses([](RenderOptions& o) { o.crease = NAN; });
-  const PatchMesh mesh = furnishedRoom(2);
-  std::vector<double> values(mesh.size() * 3, 1.0);
-  values[7] = NAN;
-  EXPECT_THROW(picture(mesh, values, cameraAt({1, 1, 2}), sized(8, 8)), InputError);
-  values.pop_back();
-  EXPECT_THROW(picture(mesh, values, cameraAt({1, 1, 2}), sized(8, 8)), InputError);
 }
 
 }  // namespace

@@ -76,8 +76,8 @@ class Fan {
   bool smooth(Index a, Index b) const {
     if (mesh_.surface[a] != mesh_.surface[b] || mesh_.twin[a] == b) return false;
     if (!(mesh_.area[a] > 0) || !(mesh_.area[b] > 0)) return false;
-    const bool coplanar = mesh_.polygon[a] == mesh_.polygon[b] && mesh_.side[a] == mesh_.side[b];
-    return coplanar || glm::dot(mesh_.normal[a], mesh_.normal[b]) >= cosine_;
+    return mesh_.polygon[a] == mesh_.polygon[b] ||
+           glm::dot(mesh_.normal[a], mesh_.normal[b]) >= cosine_;
   }
 
   /// Joins corners whose patches are smooth neighbours across an edge that ends at the vertex.
