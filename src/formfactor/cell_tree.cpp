@@ -1,0 +1,105 @@
+#include "formfactor/cell_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+namespace radiosity {
+namespace {
+
+/// A part cut by a line into less than this share of itself counts as lying on one side.
+constexpr double kSliver = 1e-6;
+
+struct Line {
+  double a, b, c;
+  double at(const Vec2& p) const { return a * p.x + b * p.y + c; }
+};
+
+Line lineThrough(const Vec2& p, const Vec2& q) {
+  const Vec2 along = glm::normalize(q - p);
+  return {-along.y, along.x, along.y * p.x - along.x * p.y};
+}
+
+struct Split {
+  std::vector<CellPart> inside;
+  std::vector<CellPart> outside;
+};
+
+Split splitBy(const std::vector<CellPart>& parts, const Line& line) {
+  Split split;
+  for (const CellPart& part : parts) {
+    const double least = kSliver * doubledArea(part.corners);
+    CellPart in{clipConvex(part.corners, line.a, line.b, line.c), part.item};
+    CellPart out{clipConvex(part.corners, -line.a, -line.b, -line.c), part.item};
+    const bool has_in = doubledArea(in.corners) > least;
+    const bool has_out = doubledArea(out.corners) > least;
+    if (has_in) split.inside.push_back(std::move(in));
+    if (has_out) split.outside.push_back(std::move(out));
+  }
+  return split;
+}
+
+/// Of all edges of the parts, the line that leaves the smaller larger half, or an empty split
+/// where no edge makes both halves smaller than the whole.
+std::pair<Line, Split> bestSplit(const std::vector<CellPart>& parts) {
+  std::pair<Line, Split> best;
+  std::size_t best_size = parts.size();
+  for (const CellPart& part : parts) {
+    for (std::size_t k = 0, last = part.corners.size() - 1; k < part.corners.size(); last = k++) {
+      if (part.corners[last] == part.corners[k]) continue;
+      const Line line = lineThrough(part.corners[last], part.corners[k]);
+      Split split = splitBy(parts, line);
+      const std::size_t size = std::max(split.inside.size(), split.outside.size());
+      if (size < best_size) {
+        best_size = size;
+        best = {line, std::move(split)};
+      }
+    }
+    // Long lists come from meshes much finer in one place: a fair split is good enough there.
+    if (best_size * 3 <= parts.size() * 2) break;
+  }
+  return best;
+}
+
+}  // namespace
+
+double doubledArea(const std::vector<Vec2>& polygon) {
+  double sum = 0;
+  for (std::size_t k = 2; k < polygon.size(); ++k) {
+    const Vec2 p = polygon[k - 1] - polygon[0];
+    const Vec2 q = polygon[k] - polygon[0];
+    sum += p.x * q.y - p.y * q.x;
+  }
+  return std::abs(sum);
+}
+
+std::vector<Vec2> clipConvex(const std::vector<Vec2>& polygon, double a, double b, double c) {
+  const Line line{a, b, c};
+  std::vector<Vec2> kept;
+  for (std::size_t k = 0, last = polygon.size() - 1; k < polygon.size(); last = k++) {
+    const double from = line.at(polygon[last]);
+    const double to = line.at(polygon[k]);
+    if ((from < 0) != (to < 0)) {
+      kept.push_back(polygon[last] + (polygon[k] - polygon[last]) * (from / (from - to)));
+    }
+    if (!(to < 0)) kept.push_back(polygon[k]);
+  }
+  return kept;
+}
+
+std::int32_t buildCellTree(std::vector<CellPart> parts, std::vector<CellNode>& nodes) {
+  const auto same = [&](const CellPart& part) { return part.item == parts.front().item; };
+  if (std::all_of(parts.begin(), parts.end(), same)) return parts.front().item;
+  auto [line, split] = bestSplit(parts);
+  if (split.inside.empty() || split.outside.empty()) return parts.front().item;
+  const std::size_t node = nodes.size();
+  nodes.push_back({line.a, line.b, line.c, 0, 0});
+  const std::int32_t inside = buildCellTree(std::move(split.inside), nodes);
+  const std::int32_t outside = buildCellTree(std::move(split.outside), nodes);
+  nodes[node].inside = inside;
+  nodes[node].outside = outside;
+  return ~std::int32_t(node);
+}
+
+}  // namespace radiosity

@@ -1,0 +1,323 @@
+#include "formfactor/hemicube.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "formfactor/clip.h"
+
+namespace radiosity {
+namespace {
+
+/// Below this distance (in scenes of size 1) a plane counts as passing through the eye: it is seen
+/// exactly edge-on, and inverse depths would leave the range of single precision. Far below any
+/// rounding error of the distance itself.
+constexpr double kEdgeOn = 1e-30;
+
+/// Of a band: 8 bytes each, together less than half of a first-level cache of 32 KiB or more.
+constexpr int kBandPixels = 2048;
+
+int roundUp(int x, int multiple) { return (x + multiple - 1) / multiple * multiple; }
+
+}  // namespace
+
+HemicubeCounts& HemicubeCounts::operator+=(const HemicubeCounts& other) {
+  hemicubes += other.hemicubes;
+  rasterised_polygons += other.rasterised_polygons;
+  skipped_own_plane += other.skipped_own_plane;
+  skipped_horizon += other.skipped_horizon;
+  skipped_facing_away += other.skipped_facing_away;
+  skipped_face += other.skipped_face;
+  pixels += other.pixels;
+  sky_pixels += other.sky_pixels;
+  return *this;
+}
+
+Hemicube::Hemicube(const ViewScene& scene, const DeltaFormFactors& weights,
+                   const RasterKernels& kernels)
+    : scene_(scene),
+      weights_(weights),
+      kernels_(kernels),
+      resolution_(weights.resolution()),
+      stride_(roundUp(weights.resolution(), kRowAlignment)),
+      band_rows_(std::max(1, kBandPixels / stride_)),
+      eye_vertices_(scene.vertices.size()),
+      codes_(scene.vertices.size()) {
+  view_.items.resize(scene.items);
+  bands_.resize(std::size_t((resolution_ + band_rows_ - 1) / band_rows_));
+  const std::size_t band = std::size_t(stride_) * std::size_t(band_rows_);
+  const std::size_t row = std::size_t(stride_) + kRowAlignment;
+  depth_.reserve(band);
+  buffer_.reserve(band);
+  polygon_runs_.reserve(row);
+  cells_.reserve(row);
+  cell_runs_.reserve(row);
+}
+
+std::size_t Hemicube::bytes() const {
+  return (depth_.size() + buffer_.size()) * 4 + view_.items.size() * sizeof(double) +
+         scene_.vertices.size() * (sizeof(Vec3) + sizeof(SignCode)) +
+         scene_.polygons.size() * (sizeof(Candidate) + sizeof(Drawn));
+}
+
+const HemicubeView& Hemicube::look(const EyeFrame& frame, Index own, const std::uint8_t* hidden) {
+  frame_ = frame;
+  std::fill(view_.items.begin(), view_.items.end(), 0.0);
+  view_.fronts = view_.backs = view_.sky = 0;
+  transformVertices(frame);
+  collectCandidates(frame, own, hidden);
+  for (int index = 0; index < kFaces; ++index) {
+    const FaceGeometry face(index);
+    drawFace(face, [&](int y, const std::uint32_t* row) { sumRow(face, y, row); });
+    counts_.pixels += std::size_t(rowCount(face)) * std::size_t(resolution_);
+  }
+  ++counts_.hemicubes;
+  return view_;
+}
+
+void Hemicube::transformVertices(const EyeFrame& frame) {
+  for (std::size_t v = 0; v < scene_.vertices.size(); ++v) {
+    const Vec3 p = frame.toEye(scene_.vertices[v]);
+    const bool off_plane = std::abs(p.z) > scene_.coincidence;
+    eye_vertices_[v] = p;
+    codes_[v] = SignCode(signCode(p) | (off_plane ? kOffPlane : 0u));
+  }
+}
+
+void Hemicube::collectCandidates(const EyeFrame& frame, Index own, const std::uint8_t* hidden) {
+  candidates_.clear();
+  for (Index p = 0; p < scene_.polygons.size(); ++p) {
+    const ViewPolygon& polygon = scene_.polygons[p];
+    unsigned code = 0;
+    for (std::uint32_t c = scene_.loop_offset[polygon.loop_begin];
+         c < scene_.loop_offset[polygon.loop_end]; ++c) {
+      code |= codes_[scene_.corners[c]];
+    }
+    const double distance = glm::dot(polygon.normal, polygon.origin - frame.eye);
+    if (p == own || !(code & kOffPlane) || !(std::abs(distance) > kEdgeOn)) {
+      ++counts_.skipped_own_plane;
+    } else if (!(code & kAboveHorizon)) {
+      ++counts_.skipped_horizon;
+    } else if (distance > 0 && hidden && hidden[p]) {
+      ++counts_.skipped_facing_away;
+    } else {
+      candidates_.push_back(
+          {p, SignCode(code), &polygon.side[distance > 0], polygon.normal * frame.axes, distance});
+    }
+  }
+}
+
+void Hemicube::prepareFace(const FaceGeometry& face) {
+  drawn_.clear();
+  spans_.clear();
+  for (std::vector<BandSpans>& band : bands_) band.clear();
+  for (const Candidate& candidate : candidates_) {
+    if (!face.mayCover(candidate.code)) {
+      ++counts_.skipped_face;
+    } else if (scan(candidate, face)) {
+      queueSpans(candidate, face);
+    }
+  }
+}
+
+template <class Visit>
+void Hemicube::drawFace(const FaceGeometry& face, const Visit& visit) {
+  prepareFace(face);
+  const int rows = rowCount(face);
+  for (int y = 0; y < rows; y += band_rows_) {
+    drawBand(y / band_rows_);
+    for (int k = 0; k < std::min(band_rows_, rows - y); ++k) {
+      visit(y + k, buffer_.data() + std::size_t(k) * std::size_t(stride_));
+    }
+  }
+}
+
+void Hemicube::drawBand(int band) {
+  const std::size_t pixels = std::size_t(band_rows_) * std::size_t(stride_);
+  kernels_.clear(depth_.data(), buffer_.data(), pixels);
+  const FillTarget target{depth_.data(), buffer_.data(), stride_, 0.5F * float(1 - resolution_)};
+  for (const BandSpans& part : bands_[std::size_t(band)]) {
+    kernels_.fill(target, spans_.data() + part.begin, part.end - part.begin,
+                  float(drawn_[part.drawn].inverse_depth.x), part.drawn);
+  }
+}
+
+void Hemicube::redraw() {
+  for (int face = 0; face < kFaces; ++face) {
+    drawFace(FaceGeometry(face), [](int, const std::uint32_t*) {});
+  }
+}
+
+std::vector<Index> Hemicube::picture(int face) {
+  std::vector<Index> polygons;
+  drawFace(FaceGeometry(face), [&](int, const std::uint32_t* row) {
+    for (int x = 0; x < resolution_; ++x) {
+      polygons.push_back(row[x] == kSky ? kNone : drawn_[row[x]].polygon);
+    }
+  });
+  return polygons;
+}
+
+/// Clips and scan-converts; false if no pixel centre is inside.
+bool Hemicube::scan(const Candidate& candidate, const FaceGeometry& face) {
+  const ViewPolygon& polygon = scene_.polygons[candidate.polygon];
+  const double half = 0.5 * resolution_;
+  const double bottom = face.isTop() ? half : 0.0;
+  scan_.begin(resolution_, face.isTop() ? resolution_ : resolution_ / 2);
+  for (std::uint32_t l = polygon.loop_begin; l < polygon.loop_end; ++l) {
+    loop_.clear();
+    for (std::uint32_t c = scene_.loop_offset[l]; c < scene_.loop_offset[l + 1]; ++c) {
+      loop_.push_back(face.project(eye_vertices_[scene_.corners[c]]));
+    }
+    for (const SidePlane plane : kSidePlanes) {
+      if (!(candidate.code & face.outsideBit(plane))) continue;
+      clipLoop(loop_, face, plane, clipped_);
+      loop_.swap(clipped_);
+    }
+    if (loop_.empty()) continue;
+    pixels_.clear();
+    for (const FacePoint& p : loop_) {
+      // Only the eye itself has w = 0 inside the pyramid: the polygon passes through the eye to
+      // within rounding and is seen edge-on.
+      if (!(p.w > 0)) return false;
+      pixels_.push_back({half + half * (p.x / p.w), bottom + half * (p.y / p.w)});
+    }
+    scan_.addLoop(pixels_);
+  }
+  return true;
+}
+
+Hemicube::Drawn Hemicube::prepare(const Candidate& candidate, const FaceGeometry& face) const {
+  // A pixel's ray is r = (X, Y, 1), with X and Y in units of half the face; it meets the plane at
+  // w r with w = distance / dot(normal, r). A linear function of the point, dot(a, w r) + k, is
+  // therefore (dot(a, r) + k / w) / (1 / w): a ratio of functions linear in the pixel.
+  const double pixel = 2.0 / resolution_;
+  const auto perPixel = [&](const FacePoint& p) { return Vec3(p.x * pixel, p.y * pixel, p.w); };
+  Drawn drawn{candidate.polygon, candidate.side, Vec3(0.0), Vec3(0.0), Vec3(0.0)};
+  drawn.inverse_depth = perPixel(face.project(candidate.normal)) / candidate.distance;
+  if (candidate.side->grid != kNone) {
+    const PatchGrid& grid = scene_.grids[candidate.side->grid];
+    const Vec3 eye = frame_.eye - scene_.polygons[candidate.polygon].origin;
+    const auto numerator = [&](const Vec3& axis, double offset) {
+      return perPixel(face.project(axis * frame_.axes)) +
+             (glm::dot(axis, eye) + offset) * drawn.inverse_depth;
+    };
+    drawn.u = numerator(grid.uAxis(), grid.uOffset());
+    drawn.v = numerator(grid.vAxis(), grid.vOffset());
+  }
+  return drawn;
+}
+
+/// Height of a row's pixel centres above the middle of the face, in pixels; on side faces the
+/// middle of the picture plane is the horizon.
+double Hemicube::rowHeight(const FaceGeometry& face, int y) const {
+  return face.isTop() ? y + 0.5 * (1 - resolution_) : y + 0.5;
+}
+
+/// Turns the runs just scanned into spans with depths, band by band.
+void Hemicube::queueSpans(const Candidate& candidate, const FaceGeometry& face) {
+  const std::vector<PixelRun>& runs = scan_.finish();
+  ++counts_.rasterised_polygons;
+  if (runs.empty()) return;
+  drawn_.push_back(prepare(candidate, face));
+  const auto drawn = std::uint32_t(drawn_.size() - 1);
+  const Vec3& plane = drawn_.back().inverse_depth;
+  int band = -1;
+  for (const PixelRun& run : runs) {
+    if (run.y / band_rows_ != band) {
+      band = run.y / band_rows_;
+      const auto first = std::uint32_t(spans_.size());
+      bands_[std::size_t(band)].push_back({drawn, first, first});
+    }
+    const double depth = plane.y * rowHeight(face, run.y) + plane.z;
+    spans_.push_back({run.y - band * band_rows_, run.begin, run.end, float(depth)});
+    ++bands_[std::size_t(band)].back().end;
+  }
+}
+
+void Hemicube::sumRow(const FaceGeometry& face, int y, const std::uint32_t* row) {
+  const double* weights = face.isTop() ? weights_.topRow(y) : weights_.sideRow(y);
+  const std::int32_t* runs = polygon_runs_.data();
+  const std::size_t count = kernels_.findRuns(row, resolution_, polygon_runs_.data());
+  for (std::size_t k = 0; k < count; ++k) {
+    const int begin = runs[k];
+    const int end = runs[k + 1];
+    const double weight = weights[end] - weights[begin];
+    if (row[begin] == kSky) {
+      view_.sky += weight;
+      counts_.sky_pixels += std::size_t(end - begin);
+      continue;
+    }
+    const Drawn& drawn = drawn_[row[begin]];
+    if (drawn.side->grid != kNone) {
+      view_.fronts += weight;
+      sumPatches(drawn, rowHeight(face, y), begin, end, weights);
+    } else {
+      view_.items[drawn.side->item] += weight;
+      (drawn.side->item < scene_.patches ? view_.fronts : view_.backs) += weight;
+    }
+  }
+}
+
+/// Sums a run of pixels of one polygon by patch: first by grid cell, then within cells.
+void Hemicube::sumPatches(const Drawn& drawn, double height, int begin, int end,
+                          const double* weights) {
+  const PatchGrid& grid = scene_.grids[drawn.side->grid];
+  const auto slope = [&](const Vec3& linear) { return float(linear.x); };
+  const auto base = [&](const Vec3& linear) { return float(linear.y * height + linear.z); };
+  const Vec3 u = drawn.u - 0.5 * drawn.inverse_depth;
+  const Vec3 v = drawn.v - 0.5 * drawn.inverse_depth;
+  const RowMap map{slope(u),
+                   base(u),
+                   slope(v),
+                   base(v),
+                   slope(drawn.inverse_depth),
+                   base(drawn.inverse_depth),
+                   0.5F * float(1 - resolution_),
+                   float(grid.columns() - 1),
+                   float(grid.rows() - 1),
+                   float(grid.columns())};
+  kernels_.locate(map, begin, end, cells_.data());
+  const float* cells = cells_.data() + begin;
+  // Cell numbers are non-negative whole floats: equal ones have equal bits.
+  const std::size_t count = kernels_.findRuns(reinterpret_cast<const std::uint32_t*>(cells),
+                                              end - begin, cell_runs_.data());
+  const std::int32_t* runs = cell_runs_.data();
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::int32_t entry = grid.cell(std::size_t(cells[runs[k]]));
+    const int from = begin + runs[k];
+    const int to = begin + runs[k + 1];
+    if (entry >= 0) {
+      view_.items[std::size_t(entry)] += weights[to] - weights[from];
+    } else {
+      sumCell(drawn, height, from, to, entry, weights);
+    }
+  }
+}
+
+/// Divides a run of pixels within one cell among the patches that share it. A line of the cell's
+/// tree, a u + b v + c with u = U/W and v = V/W, has the sign of a U + b V + c W, which is linear
+/// along the row: the run falls into at most two parts.
+void Hemicube::sumCell(const Drawn& drawn, double height, int begin, int end, std::int32_t entry,
+                       const double* weights) {
+  while (entry < 0) {
+    const CellNode& node = scene_.grids[drawn.side->grid].node(~entry);
+    const Vec3 line = node.a * drawn.u + node.b * drawn.v + node.c * drawn.inverse_depth;
+    const double base = line.y * height + line.z;
+    const double first_centre = 0.5 * (1 - resolution_);
+    const auto side = [&](int x) { return line.x * (x + first_centre) + base; };
+    const bool first_inside = side(begin) >= 0;
+    if (first_inside != (side(end - 1) >= 0)) {
+      // The first pixel on the other side; the quotient may be a pixel off by rounding.
+      int middle = std::clamp(int(-base / line.x - first_centre), begin, end - 1);
+      while (middle > begin && (side(middle - 1) >= 0) != first_inside) --middle;
+      while ((side(middle) >= 0) == first_inside) ++middle;
+      sumCell(drawn, height, middle, end, first_inside ? node.outside : node.inside, weights);
+      end = middle;
+    }
+    entry = first_inside ? node.inside : node.outside;
+  }
+  view_.items[std::size_t(entry)] += weights[end] - weights[begin];
+}
+
+}  // namespace radiosity

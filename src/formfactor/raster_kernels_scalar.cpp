@@ -1,0 +1,65 @@
+#include <algorithm>
+#include <limits>
+
+#include "formfactor/raster_kernels.h"
+
+namespace radiosity {
+namespace {
+
+void clear(float* depth, std::uint32_t* items, std::size_t count) {
+  std::fill_n(depth, count, -std::numeric_limits<float>::infinity());
+  std::fill_n(items, count, kSky);
+}
+
+void fill(const FillTarget& target, const Span* spans, std::size_t count, float slope,
+          std::uint32_t item) {
+  for (std::size_t k = 0; k < count; ++k) {
+    const Span& span = spans[k];
+    const std::size_t row = std::size_t(span.y) * std::size_t(target.stride);
+    for (int x = span.begin; x < span.end; ++x) {
+      const float centre = float(x) + target.first_centre;
+      const float depth = slope * centre + span.inverse_depth;
+      float& nearest = target.depth[row + std::size_t(x)];
+      if (depth > nearest) {
+        nearest = depth;
+        target.items[row + std::size_t(x)] = item;
+      }
+    }
+  }
+}
+
+std::size_t findRuns(const std::uint32_t* values, int count, std::int32_t* starts) {
+  std::size_t found = 0;
+  starts[found++] = 0;
+  for (int x = 1; x < count; ++x) {
+    if (values[x] != values[x - 1]) starts[found++] = x;
+  }
+  starts[found] = count;
+  return found;
+}
+
+float clampTo(float value, float last) {
+  const float positive = value > 0 ? value : 0;
+  return positive < last ? positive : last;
+}
+
+float roundToWhole(float value) { return (value + kRounder) - kRounder; }
+
+void locate(const RowMap& map, int begin, int end, float* cells) {
+  for (int x = begin; x < end; ++x) {
+    const float centre = float(x) + map.first_centre;
+    const float w = map.w_slope * centre + map.w;
+    const float scale = 1.0F / (w > kLeastW ? w : kLeastW);
+    const float u = (map.u_slope * centre + map.u) * scale;
+    const float v = (map.v_slope * centre + map.v) * scale;
+    const float column = roundToWhole(clampTo(u, map.last_column));
+    const float row = roundToWhole(clampTo(v, map.last_row));
+    cells[x] = row * map.columns + column;
+  }
+}
+
+}  // namespace
+
+RasterKernels scalarKernels() { return {"scalar", clear, fill, findRuns, locate}; }
+
+}  // namespace radiosity

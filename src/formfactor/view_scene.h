@@ -1,0 +1,62 @@
+// The mesh as an eye needs it: what occludes, and what each visible point counts for.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "formfactor/patch_grid.h"
+#include "radiosity/base.h"
+#include "radiosity/patch_mesh.h"
+
+namespace radiosity {
+
+/// What a side of a polygon counts for. Items are 0 to N-1: patch; N + s: the bare back of surface
+/// s (a side without patches).
+struct PolygonSide {
+  std::uint32_t item = kNone;  ///< everywhere, if `grid` is kNone
+  Index grid = kNone;          ///< into ViewScene::grids: look the patch up there
+};
+
+struct ViewPolygon {
+  Index source;              ///< polygon of the mesh
+  std::uint32_t loop_begin;  ///< loops [loop_begin, loop_end)
+  std::uint32_t loop_end;
+  Vec3 normal;                      ///< unit, of the front
+  Vec3 origin;                      ///< a point of the plane
+  std::array<PolygonSide, 2> side;  ///< front, back
+};
+
+/// Planar polygons with their vertices packed, in an order that does not depend on how patches or
+/// polygons are numbered: by surface name and index within the surface. Coordinates are the
+/// mesh's times a power of two that brings the scene to a size of about 1, so that single
+/// precision depths neither overflow nor depend on the scene's unit; it changes no bit of any
+/// mantissa.
+struct ViewScene {
+  explicit ViewScene(const PatchMesh& mesh);
+
+  std::size_t patches;  ///< N
+  std::size_t items;    ///< N + surfaces
+  double scale;         ///< power of two
+  /// A polygon none of whose corners is farther than this from the eye's plane is coplanar with
+  /// it: the mesh's default coincidence, 1e-7 of the scene's diagonal, scaled. No other use.
+  double coincidence;
+  std::vector<Vec3> vertices;
+  std::vector<std::uint32_t> loop_offset;  ///< L + 1, into corners
+  std::vector<std::uint32_t> corners;      ///< into vertices
+  std::vector<ViewPolygon> polygons;
+  std::vector<PatchGrid> grids;
+
+  std::size_t bytes() const;
+
+ private:
+  std::vector<Index> packVertices(const PatchMesh& mesh);
+  void addPolygons(const PatchMesh& mesh);
+  void addSides(const PatchMesh& mesh);
+};
+
+/// The convex pieces of a patch: its outline if that is convex, else its triangles.
+void appendPieces(const PatchMesh& mesh, std::size_t patch, double scale,
+                  std::vector<GridPiece>& pieces);
+
+}  // namespace radiosity

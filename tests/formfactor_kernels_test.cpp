@@ -1,0 +1,198 @@
+// Every instruction set of this machine against the scalar twin, bit for bit.
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+
+#include "formfactor/aligned_buffer.h"
+#include "formfactor/raster_kernels.h"
+#include "mesh_builder.h"
+#include "radiosity/form_factors.h"
+
+namespace radiosity {
+namespace {
+
+/// Runs `test(kernels)` once for every instruction set compiled in that this machine has.
+template <class Test>
+int forEveryTarget(const Test& test) {
+  int count = 0;
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(target);
+    const RasterKernels kernels = simdKernels();
+    SCOPED_TRACE(kernels.target);
+    EXPECT_EQ(kernels.target, hwy::TargetName(target));
+    test(kernels);
+    ++count;
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  return count;
+}
+
+constexpr int kWidth = 50;  // not a multiple of any vector
+constexpr int kStride = 64;
+constexpr int kRows = 20;
+constexpr std::size_t kPixels = std::size_t(kStride) * kRows;
+
+struct Picture {
+  Picture() {
+    depth.reserve(kPixels);
+    items.reserve(kPixels + kRowAlignment);
+  }
+  FillTarget target() { return {depth.data(), items.data(), kStride, 0.5F - kWidth / 2.0F}; }
+  AlignedBuffer<float> depth;
+  AlignedBuffer<std::uint32_t> items;
+};
+
+void drawRandomSpans(const RasterKernels& kernels, Picture& picture) {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<float> slope(-1, 1);
+  kernels.clear(picture.depth.data(), picture.items.data(), kPixels);
+  for (std::uint32_t item = 0; item < 40; ++item) {
+    std::vector<Span> spans;
+    for (int y = 0; y < kRows; ++y) {
+      int begin = int(random() % (kWidth + 1));
+      int end = int(random() % (kWidth + 1));
+      if (begin > end) std::swap(begin, end);
+      if (begin < end) spans.push_back({y, begin, end, 3 * slope(random)});
+    }
+    kernels.fill(picture.target(), spans.data(), spans.size(), slope(random), item);
+  }
+}
+
+TEST(Kernels, FillAndClearAgreeToTheBit) {
+  Picture expected;
+  drawRandomSpans(scalarKernels(), expected);
+  const int targets = forEveryTarget([&](const RasterKernels& kernels) {
+    Picture picture;
+    drawRandomSpans(kernels, picture);
+    EXPECT_EQ(0, std::memcmp(expected.depth.data(), picture.depth.data(), kPixels * 4));
+    EXPECT_EQ(0, std::memcmp(expected.items.data(), picture.items.data(), kPixels * 4));
+  });
+  EXPECT_GE(targets, 1);
+}
+
+TEST(Kernels, FillTouchesOnlyItsSpanAndKeepsTheFirstOfEquals) {
+  forEveryTarget([&](const RasterKernels& kernels) {
+    Picture picture;
+    kernels.clear(picture.depth.data(), picture.items.data(), kPixels);
+    const Span span{3, 5, 37, 1.0F};
+    kernels.fill(picture.target(), &span, 1, 0.0F, 1);
+    kernels.fill(picture.target(), &span, 1, 0.0F, 2);  // as deep: stays hidden
+    const Span nearer{3, 20, 21, 2.0F};
+    kernels.fill(picture.target(), &nearer, 1, 0.0F, 3);
+    const Span farther{3, 10, 15, 0.5F};
+    kernels.fill(picture.target(), &farther, 1, 0.0F, 4);
+    for (int y = 0; y < kRows; ++y) {
+      for (int x = 0; x < kStride; ++x) {
+        std::uint32_t item = kSky;
+        if (y == 3 && x >= 5 && x < 37) item = x == 20 ? 3 : 1;
+        ASSERT_EQ(picture.items.data()[y * kStride + x], item) << x << " " << y;
+      }
+    }
+  });
+}
+
+TEST(Kernels, FillTakesEveryDepthAboveMinusInfinity) {
+  // Inverse depths may round to 0 or below near the horizon; such pixels are not sky.
+  forEveryTarget([&](const RasterKernels& kernels) {
+    Picture picture;
+    kernels.clear(picture.depth.data(), picture.items.data(), kPixels);
+    const Span span{0, 0, kWidth, -1e30F};
+    kernels.fill(picture.target(), &span, 1, 0.0F, 1);
+    for (int x = 0; x < kWidth; ++x) ASSERT_EQ(picture.items.data()[x], 1u);
+  });
+}
+
+TEST(Kernels, RunsAgree) {
+  std::mt19937_64 random(5);
+  AlignedBuffer<std::uint32_t> values;
+  values.reserve(kStride);
+  std::int32_t expected[kStride + kRowAlignment];
+  std::int32_t starts[kStride + kRowAlignment];
+  for (const int changes : {1, 2, 5, 50}) {
+    for (int count = 1; count <= kWidth; ++count) {
+      for (int x = 0; x < kStride; ++x) {
+        values.data()[x] = std::uint32_t(random() % std::uint64_t(changes));
+      }
+      const std::size_t n = scalarKernels().findRuns(values.data(), count, expected);
+      forEveryTarget([&](const RasterKernels& kernels) {
+        ASSERT_EQ(n, kernels.findRuns(values.data(), count, starts));
+        ASSERT_EQ(0, std::memcmp(expected, starts, n * sizeof *starts));
+      });
+    }
+  }
+}
+
+TEST(Kernels, CellsAgreeAlsoOutsideTheGrid) {
+  std::mt19937_64 random(9);
+  std::normal_distribution<float> normal;
+  for (int k = 0; k < 400; ++k) {
+    RowMap map{normal(random),
+               10 * normal(random),
+               normal(random),
+               10 * normal(random),
+               k % 3 ? 0.0F : normal(random),
+               5 * normal(random),
+               0.5F - kWidth / 2.0F,
+               2,
+               1,
+               3};
+    if (k == 8) map.w_slope = map.w = 0;
+    if (k == 9) map.last_column = map.last_row = 0;
+    float expected[kStride + kRowAlignment];
+    float cells[kStride + kRowAlignment];
+    scalarKernels().locate(map, 3, kWidth, expected);
+    for (int x = 3; x < kWidth; ++x) {
+      ASSERT_GE(expected[x], 0);
+      ASSERT_LE(expected[x], 5);
+    }
+    forEveryTarget([&](const RasterKernels& kernels) {
+      kernels.locate(map, 3, kWidth, cells);
+      ASSERT_EQ(0, std::memcmp(expected + 3, cells + 3, (kWidth - 3) * sizeof(float))) << k;
+    });
+  }
+}
+
+TEST(Kernels, CellsAreTheOnesTheCoordinatesFallInto) {
+  // u = x + 0.5 (pixel centres), v = 1.25: column x, row 1 of a grid of 50 x 2.
+  RowMap map{1, kWidth / 2.0F - 0.5F, 0, 0.75F, 0, 1, 0.5F - kWidth / 2.0F, 49, 1, 50};
+  float cells[kStride + kRowAlignment];
+  scalarKernels().locate(map, 0, kWidth, cells);
+  for (int x = 0; x < kWidth; ++x) EXPECT_EQ(cells[x], float(50 + x));
+}
+
+TEST(Kernels, WholeRowsAgreeOnEveryInstructionSet) {
+  // Triangular patches: the trees of lines are used, too.
+  test::MeshBuilder builder;
+  builder.box("room", {0, 0, 0}, {1, 1, 1}, 3, true);
+  builder.polygon("plate", {{{0.2, 0.2, 0.5}, {0.8, 0.2, 0.5}, {0.8, 0.8, 0.5}, {0.2, 0.8, 0.5}}},
+                  {{{0.2, 0.2, 0.5}, {0.8, 0.2, 0.5}, {0.5, 0.4, 0.5}},
+                   {{0.8, 0.2, 0.5}, {0.8, 0.8, 0.5}, {0.5, 0.4, 0.5}},
+                   {{0.8, 0.8, 0.5}, {0.2, 0.8, 0.5}, {0.5, 0.4, 0.5}},
+                   {{0.2, 0.8, 0.5}, {0.2, 0.2, 0.5}, {0.5, 0.4, 0.5}}});
+  const PatchMesh mesh = builder.build();
+  FormFactorOptions options;
+  options.resolution = 50;
+  options.precision = Precision::real;
+  options.simd = false;
+  Progress silent;
+  const FormFactors expected = computeFormFactors(mesh, options, silent);
+  options.simd = true;
+  forEveryTarget([&](const RasterKernels& kernels) {
+    const FormFactors f = computeFormFactors(mesh, options, silent);
+    EXPECT_EQ(f.report.simd_target, kernels.target);
+    for (std::size_t i = 0; i < mesh.size(); ++i) {
+      for (std::size_t j = 0; j < mesh.size(); ++j) {
+        ASSERT_EQ(expected.matrix.at(i, j), f.matrix.at(i, j));
+      }
+    }
+  });
+}
+
+}  // namespace
+}  // namespace radiosity
