@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <functional>
 #include <numbers>
 #include <random>
@@ -235,6 +236,52 @@ TEST(Contact, InterpenetratingSolids) {
     expectArea(built.report.surfaces[first].buried, 3);
     expectArea(built.report.surfaces[second].buried, 3);
   });
+}
+
+/// Boxes on the grid of whole numbers, as they come: overlapping, touching, flush, one in another,
+/// sharing edges. Truth: what can be seen of solids is the surface of their union, which is a
+/// matter of counting unit cubes.
+TEST(Contact, RandomBoxesShowTheSurfaceOfTheirUnion) {
+  constexpr int kSize = 7;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    std::mt19937 random(seed);
+    SceneBuilder b;
+    std::array<std::array<std::array<bool, kSize + 2>, kSize + 2>, kSize + 2> filled{};
+    for (int k = 0; k < 8; ++k) {
+      std::array<int, 3> low{};
+      std::array<int, 3> high{};
+      for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = int(random() % (kSize - 1));
+        high[axis] = low[axis] + 1 + int(random() % 3);
+        high[axis] = std::min(high[axis], kSize);
+      }
+      b.box(b.surface("box" + std::to_string(k)), Vec3(low[0], low[1], low[2]),
+            Vec3(high[0], high[1], high[2]));
+      for (int x = low[0]; x < high[0]; ++x) {
+        for (int y = low[1]; y < high[1]; ++y) {
+          for (int z = low[2]; z < high[2]; ++z) filled[x + 1][y + 1][z + 1] = true;
+        }
+      }
+    }
+    double surface = 0;
+    for (int x = 0; x <= kSize; ++x) {
+      for (int y = 0; y <= kSize; ++y) {
+        for (int z = 0; z <= kSize; ++z) {
+          surface += filled[x][y][z] != filled[x + 1][y][z] ? 1 : 0;
+          surface += filled[x][y][z] != filled[x][y + 1][z] ? 1 : 0;
+          surface += filled[x][y][z] != filled[x][y][z + 1] ? 1 : 0;
+        }
+      }
+    }
+    bothWays(b.scene(), [&](const Built& built) {
+      double kept = 0;
+      for (const CoarsePolygon& p : built.complex.polygons) {
+        kept += glm::length(vectorArea(built.complex, p));
+      }
+      expectArea(kept, surface);
+    });
+  }
 }
 
 TEST(Contact, ASolidInsideASolidIsGoneAndSaid) {
