@@ -37,6 +37,7 @@ class PlaneCutter {
               const std::vector<Sheet>& sheets, const EdgeTable& edges,
               const std::vector<Index>& own, Arrangement& out)
       : points_(points),
+        plane_(plane),
         frame_(plane.normal),
         number_(number),
         sheets_(sheets),
@@ -47,8 +48,9 @@ class PlaneCutter {
   void run();
 
  private:
+  bool insertVertices();
   bool insertEdges();
-  void reportTouches();
+  bool reportTouches();
   void reportCrossings();
   void findRegions();
   void coverRegions();
@@ -61,6 +63,7 @@ class PlaneCutter {
   }
 
   WeldedPoints& points_;
+  const Plane& plane_;
   PlaneImage frame_;
   Index number_;
   const std::vector<Sheet>& sheets_;
@@ -75,10 +78,9 @@ class PlaneCutter {
 };
 
 void PlaneCutter::run() {
+  if (!insertVertices()) return;
   if (!insertEdges()) return reportCrossings();
-  const std::size_t before = out_.unresolved.size();
-  reportTouches();
-  if (out_.unresolved.size() > before) return;
+  if (reportTouches()) return;
   if (triangulation_.dimension() < 2) return;  // welding has left nothing wider than a line
   findRegions();
   coverRegions();
@@ -86,17 +88,29 @@ void PlaneCutter::run() {
   recordSides();
 }
 
-bool PlaneCutter::insertEdges() {
+/// False if two vertices have one image: one above the other within the slab that is the plane.
+bool PlaneCutter::insertVertices() {
+  bool distinct = true;
   Triangulation::Face_handle near;
   for (const Index e : own_) {
     for (const Index v : {edges_[e].a, edges_[e].b}) {
       if (handle_.count(v) > 0) continue;
+      const std::size_t before = triangulation_.number_of_vertices();
       const auto handle = triangulation_.insert(toKernel(frame_(points_[v])), near);
+      if (triangulation_.number_of_vertices() == before) {
+        out_.unresolved.merges.push_back({handle->info(), v});
+        distinct = false;
+      } else {
+        handle->info() = v;
+      }
       near = handle->face();
-      handle->info() = v;
       handle_.emplace(v, handle);
     }
   }
+  return distinct;
+}
+
+bool PlaneCutter::insertEdges() {
   try {
     for (const Index e : own_) {
       triangulation_.insert_constraint(handle_[edges_[e].a], handle_[edges_[e].b]);
@@ -108,21 +122,22 @@ bool PlaneCutter::insertEdges() {
 }
 
 /// An edge that passes exactly through a vertex of the image has become a path over it.
-void PlaneCutter::reportTouches() {
+bool PlaneCutter::reportTouches() {
+  bool any = false;
   for (const Index e : own_) {
     const auto a = handle_[edges_[e].a];
     const auto b = handle_[edges_[e].b];
-    if (a == b || triangulation_.is_edge(a, b)) continue;
-    const Vec3 from = points_[edges_[e].a];
-    const Vec3 along = points_[edges_[e].b] - from;
+    if (triangulation_.is_edge(a, b)) continue;
+    any = true;
     for (const auto& [v, handle] : handle_) {
-      const double t = glm::dot(points_[v] - from, along) / glm::dot(along, along);
-      if (t > 0 && t < 1 &&
-          CGAL::orientation(a->point(), b->point(), handle->point()) == CGAL::COLLINEAR) {
-        out_.unresolved.push_back({e, v});
+      if (CGAL::collinear(a->point(), handle->point(), b->point()) &&
+          CGAL::collinear_are_strictly_ordered_along_line(a->point(), handle->point(),
+                                                          b->point())) {
+        out_.unresolved.splits.push_back({e, v});
       }
     }
   }
+  return any;
 }
 
 /// Rare: edges that pass each other in space at more than coincidence, but cross in the image,
@@ -152,8 +167,8 @@ void PlaneCutter::reportCrossings() {
     const double area = d1.x * d2.y - d1.y * d2.x;
     const double t = area == 0 ? 0.5 : ((r - p).x * d2.y - (r - p).y * d2.x) / area;
     const Index vertex = points_.insert(points_[f.a] + t * (points_[f.b] - points_[f.a]));
-    if (vertex != f.a && vertex != f.b) out_.unresolved.push_back({own_[i], vertex});
-    if (vertex != g.a && vertex != g.b) out_.unresolved.push_back({own_[j], vertex});
+    if (vertex != f.a && vertex != f.b) out_.unresolved.splits.push_back({own_[i], vertex});
+    if (vertex != g.a && vertex != g.b) out_.unresolved.splits.push_back({own_[j], vertex});
   }
 }
 
@@ -251,7 +266,8 @@ void PlaneCutter::makeCells() {
     const Vec3& a = points_[face->vertex(0)->info()];
     const Vec3& b = points_[face->vertex(1)->info()];
     const Vec3& c = points_[face->vertex(2)->info()];
-    const double area = 0.5 * glm::length(glm::cross(b - a, c - a));
+    // Seen along the plane's normal, so that parts add up to the whole to the last bits.
+    const double area = 0.5 * glm::dot(glm::cross(b - a, c - a), plane_.normal);
     cell.area += area;
     const double rim = glm::distance(a, b) + glm::distance(b, c) + glm::distance(c, a);
     const double inscribed = 2.0 * area / rim;

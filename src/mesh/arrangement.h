@@ -29,8 +29,9 @@ struct EdgeSides {
 struct Arrangement {
   std::vector<PlaneCell> cells;
   std::vector<std::vector<EdgeSides>> sides;  ///< by edge
-  /// Edges that still meet where no vertex is; if there are any, the rest is not to be used.
-  std::vector<ForcedSplit> unresolved;
+  /// Where edges still meet without a vertex, and vertices that fall on each other in the image of
+  /// a plane; if there are any, the rest is not to be used.
+  Repairs unresolved;
   std::vector<Index>
       inverted;  ///< sheets with a polygon that crosses itself: a part is turned over
 };

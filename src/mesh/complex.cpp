@@ -21,9 +21,46 @@ namespace radiosity {
 
 namespace {
 
-/// Rounds of making edges meet that only cross in the image of a plane. One is the rule, two are
-/// rare; more than this means details of about the size of the coincidence.
-constexpr int kRounds = 20;
+/// Rounds of making edges meet that cross only in the image of a plane: one is the rule, more are
+/// rare. From kPatience on, a vertex that an edge is to be led through becomes one with the edge's
+/// end if that is as near as a coincidence or two. There are ever fewer vertices then, so it ends;
+/// kRounds only guards that.
+constexpr int kPatience = 4;
+constexpr int kRounds = 100;
+
+Repairs collapse(const Repairs& repairs, const WeldedPoints& points, double coincidence,
+                 const EdgeTable& edges) {
+  Repairs out;
+  out.merges = repairs.merges;
+  for (const ForcedSplit& s : repairs.splits) {
+    const Edge& edge = edges[s.edge];
+    const double to_a = glm::distance(points[s.vertex], points[edge.a]);
+    const double to_b = glm::distance(points[s.vertex], points[edge.b]);
+    if (std::min(to_a, to_b) < 2.0 * coincidence) {
+      out.merges.push_back({s.vertex, to_a <= to_b ? edge.a : edge.b});
+    } else {
+      out.splits.push_back(s);
+    }
+  }
+  return out;
+}
+
+Arrangement cutPlanes(const Scene& scene, InputFaces& input, const std::vector<Plane>& planes,
+                      const std::vector<Sheet>& sheets, EdgeTable& edges, Progress& progress) {
+  Repairs repairs;
+  for (int round = 0; round < kRounds; ++round) {
+    splitEdges(input.points, input.coincidence, edges, repairs, progress);
+    Arrangement arrangement = arrange(input.points, planes, sheets, edges, progress);
+    if (arrangement.unresolved.empty()) return arrangement;
+    repairs = round < kPatience
+                  ? arrangement.unresolved
+                  : collapse(arrangement.unresolved, input.points, input.coincidence, edges);
+  }
+  throw RunError(
+      fmt::format("{}: details about as large as the coincidence of {:.3g} m do not "
+                  "come apart; give a larger or a smaller --weld",
+                  scene.file, input.coincidence));
+}
 
 /// Edges of the scene that were split at vertices on them; `before` are the ones there were.
 std::size_t countSplits(const EdgeTable& edges, std::size_t before,
@@ -46,8 +83,8 @@ std::size_t countNonManifold(const EdgeTable& edges) {
 }
 
 /// Area of each sheet within its border as welded and split.
-std::vector<double> sheetAreas(const InputFaces& input, const std::vector<Sheet>& sheets,
-                               const EdgeTable& edges) {
+std::vector<double> sheetAreas(const InputFaces& input, const std::vector<Plane>& planes,
+                               const std::vector<Sheet>& sheets, const EdgeTable& edges) {
   std::vector<Vec3> doubled(sheets.size(), Vec3(0.0));
   for (std::size_t e = 0; e < edges.size(); ++e) {
     const Edge& edge = edges[Index(e)];
@@ -58,15 +95,18 @@ std::vector<double> sheetAreas(const InputFaces& input, const std::vector<Sheet>
     }
   }
   std::vector<double> out;
-  for (const Vec3& d : doubled) out.push_back(0.5 * glm::length(d));
+  for (std::size_t s = 0; s < sheets.size(); ++s) {
+    out.push_back(0.5 * std::abs(glm::dot(doubled[s], planes[sheets[s].plane].normal)));
+  }
   return out;
 }
 
 /// What welding and splitting moved, by surface; and polygons that cross themselves, of which a
 /// part is turned over: their area is that of all parts.
-void accountForWelding(const InputFaces& input, const std::vector<Sheet>& sheets,
-                       const EdgeTable& edges, const Arrangement& arrangement, MeshReport& report) {
-  const std::vector<double> area = sheetAreas(input, sheets, edges);
+void accountForWelding(const InputFaces& input, const std::vector<Plane>& planes,
+                       const std::vector<Sheet>& sheets, const EdgeTable& edges,
+                       const Arrangement& arrangement, MeshReport& report) {
+  const std::vector<double> area = sheetAreas(input, planes, sheets, edges);
   const std::set<Index> inverted(arrangement.inverted.begin(), arrangement.inverted.end());
   std::vector<double> moved(report.surfaces.size(), 0.0);
   for (std::size_t s = 0; s < sheets.size(); ++s) {
@@ -125,21 +165,10 @@ CoarseComplex buildComplex(const Scene& scene, const MeshOptions& options, MeshR
   for (std::size_t e = 0; e < file_edges; ++e) from_file[e] = edges[Index(e)].alive();
   addContacts(input, planes, sheets, edges, progress);
 
-  splitEdges(input.points, input.coincidence, edges, {}, progress);
-  Arrangement arrangement = arrange(input.points, planes, sheets, edges, progress);
-  for (int round = 0; !arrangement.unresolved.empty(); ++round) {
-    if (round == kRounds) {
-      throw RunError(
-          fmt::format("{}: details about as large as the coincidence of {:.3g} m do not "
-                      "come apart; give a larger or a smaller --weld",
-                      scene.file, input.coincidence));
-    }
-    splitEdges(input.points, input.coincidence, edges, arrangement.unresolved, progress);
-    arrangement = arrange(input.points, planes, sheets, edges, progress);
-  }
+  Arrangement arrangement = cutPlanes(scene, input, planes, sheets, edges, progress);
   report.split_edges = countSplits(edges, file_edges, from_file);
   report.nonmanifold_edges = countNonManifold(edges);
-  accountForWelding(input, sheets, edges, arrangement, report);
+  accountForWelding(input, planes, sheets, edges, arrangement, report);
 
   const Components components = findComponents(input, planes, sheets, edges, scene);
   const auto visible = classify(scene, arrangement, sheets, components, input, report);

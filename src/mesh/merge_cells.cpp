@@ -235,7 +235,7 @@ void Merger::accountForStraightening() {
     for (const auto& loop : draft.loops) {
       kept += vectorArea(loop.size(), [&](std::size_t k) { return input_.points[loop[k]]; });
     }
-    moved[draft.kind.surface] += area - glm::length(kept);
+    moved[draft.kind.surface] += area - std::abs(glm::dot(kept, planes_[draft.plane].normal));
   }
   for (std::size_t s = 0; s < moved.size(); ++s) addMovedArea(report_.surfaces[s], moved[s]);
 }

@@ -123,10 +123,27 @@ void EdgeTable::addContact(Index a, Index b, Index plane) {
 }
 
 std::vector<Index> EdgeTable::split(Index edge, const std::vector<Index>& between) {
-  const Edge old = std::exchange(edges_[edge], Edge{edges_[edge].a, edges_[edge].b, {}, {}});
-  std::vector<Index> path{old.a};
+  std::vector<Index> path{edges_[edge].a};
   path.insert(path.end(), between.begin(), between.end());
-  path.push_back(old.b);
+  path.push_back(edges_[edge].b);
+  return replace(edge, path);
+}
+
+std::vector<Index> EdgeTable::merge(const std::vector<Index>& target) {
+  std::vector<Index> out;
+  const std::size_t count = edges_.size();
+  for (Index e = 0; e < count; ++e) {
+    const Index a = target[edges_[e].a];
+    const Index b = target[edges_[e].b];
+    if (!edges_[e].alive() || (a == edges_[e].a && b == edges_[e].b)) continue;
+    const auto parts = replace(e, {a, b});
+    out.insert(out.end(), parts.begin(), parts.end());
+  }
+  return out;
+}
+
+std::vector<Index> EdgeTable::replace(Index edge, const std::vector<Index>& path) {
+  const Edge old = std::exchange(edges_[edge], Edge{edges_[edge].a, edges_[edge].b, {}, {}});
   std::vector<Index> out;
   for (std::size_t k = 0; k + 1 < path.size(); ++k) {
     if (path[k] == path[k + 1]) continue;

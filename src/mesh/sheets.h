@@ -52,11 +52,16 @@ class EdgeTable {
   void addContact(Index a, Index b, Index plane);
   /// Replaces an edge by the path over `between` (from a to b); returns the path's edges.
   std::vector<Index> split(Index edge, const std::vector<Index>& between);
+  /// Replaces every vertex v by target[v]; returns the edges that came of it.
+  std::vector<Index> merge(const std::vector<Index>& target);
 
   const Edge& operator[](Index e) const { return edges_[e]; }
   std::size_t size() const { return edges_.size(); }
 
  private:
+  /// Moves what an edge carries to the path from its a to its b.
+  std::vector<Index> replace(Index edge, const std::vector<Index>& path);
+
   std::vector<Edge> edges_;
   std::unordered_map<std::uint64_t, Index> index_;
 };

@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "mesh/union_find.h"
+
 namespace radiosity {
 
 namespace {
@@ -42,6 +44,7 @@ class Splitter {
   /// Looks at all pairs with an edge of `changed`; returns the edges that came of splitting.
   std::vector<Index> pass(const std::vector<Index>& changed);
   std::vector<Index> apply(const std::vector<ForcedSplit>& splits);
+  std::vector<Index> apply(const Repairs& repairs);
 
  private:
   bool isInside(Index vertex, const Edge& edge) const;
@@ -113,6 +116,29 @@ std::vector<Index> Splitter::apply(const std::vector<ForcedSplit>& splits) {
   return changed;
 }
 
+/// Merging first: a split may then be through an end of its edge, and is not needed.
+std::vector<Index> Splitter::apply(const Repairs& repairs) {
+  UnionFind together(points_.size());
+  for (const auto& [v, w] : repairs.merges) together.unite(v, w);
+  std::vector<Index> target(points_.size());
+  for (Index v = 0; v < target.size(); ++v) {
+    target[v] = together.find(v);
+    if (target[v] != v) points_.retire(v);
+  }
+  std::vector<Index> changed = edges_.merge(target);
+  std::vector<ForcedSplit> splits;
+  for (const ForcedSplit& s : repairs.splits) {
+    const Edge& edge = edges_[s.edge];
+    const Index vertex = target[s.vertex];
+    if (edge.alive() && vertex != edge.a && vertex != edge.b) splits.push_back({s.edge, vertex});
+  }
+  const std::vector<Index> split = apply(splits);
+  changed.insert(changed.end(), split.begin(), split.end());
+  std::sort(changed.begin(), changed.end());
+  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  return changed;
+}
+
 std::vector<Index> Splitter::pass(const std::vector<Index>& changed) {
   std::vector<Box3> boxes;
   std::vector<Index> edge_of;
@@ -137,14 +163,14 @@ std::vector<Index> Splitter::pass(const std::vector<Index>& changed) {
 
 }  // namespace
 
-void splitEdges(WeldedPoints& points, double coincidence, EdgeTable& edges,
-                const std::vector<ForcedSplit>& forced, Progress& progress) {
+void splitEdges(WeldedPoints& points, double coincidence, EdgeTable& edges, const Repairs& repairs,
+                Progress& progress) {
   Splitter splitter(points, coincidence, edges);
   std::vector<Index> changed;
-  if (forced.empty()) {
+  if (repairs.empty()) {
     for (std::size_t e = 0; e < edges.size(); ++e) changed.push_back(Index(e));
   } else {
-    changed = splitter.apply(forced);
+    changed = splitter.apply(repairs);
   }
   while (!changed.empty()) {
     progress.check();

@@ -41,4 +41,13 @@ Index WeldedPoints::insert(const Vec3& p) {
   return added;
 }
 
+void WeldedPoints::retire(Index i) {
+  const auto [begin, end] = cells_.equal_range(key(Cell(glm::floor(points_[i] / cell_))));
+  for (auto it = begin; it != end; ++it) {
+    if (it->second != i) continue;
+    cells_.erase(it);
+    return;
+  }
+}
+
 }  // namespace radiosity

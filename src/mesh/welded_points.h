@@ -18,6 +18,9 @@ class WeldedPoints {
   /// find(), or else a new point at `p`. A point never moves: chains of close points do not creep.
   Index insert(const Vec3& p);
 
+  /// find() and insert() no longer return point `i`; its place stays readable.
+  void retire(Index i);
+
   const Vec3& operator[](Index i) const { return points_[i]; }
   std::size_t size() const { return points_.size(); }
 
