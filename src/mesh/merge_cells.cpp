@@ -190,12 +190,14 @@ void Merger::traceDrafts() {
     for (auto& loop : traceLoops(input_.points, frame, directed)) {
       std::erase_if(loop, [&](Index v) { return straight_.removed[v]; });
       if (loop.size() < 3) continue;
-      const double area = imageArea(input_.points, frame, loop);
+      const Vec3 area =
+          vectorArea(loop.size(), [&](std::size_t k) { return input_.points[loop[k]]; });
       if (!draft.kind.up) std::reverse(loop.begin(), loop.end());
       std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
-      loops.emplace_back(-area, std::move(loop));
+      loops.emplace_back(-glm::dot(area, planes_[draft.plane].normal), std::move(loop));
     }
-    // The outer loop is the one that counts positive, and the largest.
+    // The outer loop is the one that counts positive, and the largest. If none does, welding has
+    // bent a sliver out of its plane.
     std::sort(loops.begin(), loops.end());
     if (loops.empty() || loops[0].first >= 0) continue;
     for (auto& [key, loop] : loops) draft.loops.push_back(std::move(loop));

@@ -84,16 +84,4 @@ std::vector<std::vector<Index>> traceLoops(const WeldedPoints& points, const Pla
   return Tracer(points, frame, edges).run();
 }
 
-double imageArea(const WeldedPoints& points, const PlaneImage& frame,
-                 const std::vector<Index>& loop) {
-  double sum = 0;
-  const Vec2 o = frame(points[loop[0]]);
-  for (std::size_t k = 1; k + 1 < loop.size(); ++k) {
-    const Vec2 a = frame(points[loop[k]]) - o;
-    const Vec2 b = frame(points[loop[k + 1]]) - o;
-    sum += a.x * b.y - a.y * b.x;
-  }
-  return 0.5 * sum;
-}
-
 }  // namespace radiosity

@@ -15,8 +15,4 @@ namespace radiosity {
 std::vector<std::vector<Index>> traceLoops(const WeldedPoints& points, const PlaneImage& frame,
                                            const std::vector<std::array<Index, 2>>& edges);
 
-/// Signed area of a loop's image; positive: counter-clockwise.
-double imageArea(const WeldedPoints& points, const PlaneImage& frame,
-                 const std::vector<Index>& loop);
-
 }  // namespace radiosity
