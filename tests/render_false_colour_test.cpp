@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "base/srgb.h"
@@ -127,6 +128,27 @@ TEST(FalseColour, WithoutARangeTheVisibleValuesMakeIt) {
                              silent);
   };
   EXPECT_EQ(draw(1.5).rgba, draw(1000).rgba);
+}
+
+TEST(FalseColour, ALampInViewDoesNotLeaveTheRestInOneColour) {
+  QuadMesh builder;  // a wall from 0 to 1, before it a lamp that covers 0.25% of the picture
+  builder.grid("wall", {-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 100, 1);
+  builder.grid("lamp", {0, 0, 0.1}, {0.1, 0, 0}, {0, 0.1, 0});
+  const PatchMesh mesh = builder.build();
+  std::vector<double> values(101, 500.0);
+  for (int k = 0; k < 100; ++k) values[k] = (k + 0.5) / 100;
+  Camera camera;
+  camera.eye = {0, 0, 2};
+  camera.vertical_fov = std::numbers::pi / 2;
+  RenderOptions options;
+  options.smooth = false;
+  Progress silent;
+  const auto draw = [&](double low, double high) {
+    return renderFalseColour(mesh, values, {"t", "u", low, high}, camera, options, silent).rgba;
+  };
+  // 99% of the pixels lie below the column of value 0.985 or 0.995.
+  const auto shown = draw(0, 0);
+  EXPECT_TRUE(shown == draw(0.005, 0.985) || shown == draw(0.005, 0.995));
 }
 
 TEST(FalseColour, TheLegendTellsRangesApart) {

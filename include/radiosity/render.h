@@ -65,8 +65,9 @@ Image exposed(const Image& image, double ev);
 /// ready for an sRGB file, opaque everywhere. Misses are a mid grey, backs (with show_backs) a dark
 /// one. The legend, a strip at the bottom of the picture under the camera's view, holds title,
 /// unit, colour bar and numbers; pictures narrower than 96 pixels or too low for it have none.
-/// values: N. Range: [low, high], an end that values in view lie beyond being marked "<=" or ">=";
-/// or, where low >= high, that of the values in view.
+/// values: N. Range: [low, high] or, where low >= high, that of the values in view; if the highest
+/// is then more than twice the 99th percentile (a lamp), up to that percentile. An end that values
+/// in view lie beyond is marked "<=" or ">=".
 struct FalseColour {
   std::string title;
   std::string unit;

@@ -1,22 +1,12 @@
 // From linear values to a display's range.
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "radiosity/render.h"
+#include "render/percentile.h"
 
 namespace radiosity {
-namespace {
-
-/// Nearest rank: the smallest value that at least this share of the values does not exceed.
-double percentile(std::vector<double>& values, double share) {
-  const auto rank = std::size_t(std::ceil(share * double(values.size()))) - 1;
-  const auto at = values.begin() + std::ptrdiff_t(rank);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
-}  // namespace
-
 double autoExposure(const Image& image) {
   std::vector<double> luminance;
   for (std::size_t k = 0; k + 3 < image.rgba.size(); k += 4) {

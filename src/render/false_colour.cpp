@@ -5,6 +5,7 @@
 #include "base/srgb.h"
 #include "render/colour_map.h"
 #include "render/legend.h"
+#include "render/percentile.h"
 #include "render/samples.h"
 
 namespace radiosity {
@@ -14,25 +15,29 @@ namespace {
 constexpr double kMiss = 0.25;
 constexpr double kBack = 0.06;
 
-struct Extent {
+/// The values in view: their extent over all samples, and one value a pixel.
+struct InView {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
+  std::vector<double> values;
 };
 
-/// Collects the values in view.
-class ExtentPixel {
+class InViewPixel {
  public:
-  explicit ExtentPixel(Extent& extent) : extent_(extent) {}
-  void begin() {}
+  explicit InViewPixel(InView& view) : view_(view) {}
+  void begin() { first_ = true; }
   void sample(Seen seen, const std::array<double, 3>& value) {
     if (seen != Seen::front) return;
-    extent_.low = std::min(extent_.low, value[0]);
-    extent_.high = std::max(extent_.high, value[0]);
+    view_.low = std::min(view_.low, value[0]);
+    view_.high = std::max(view_.high, value[0]);
+    if (first_) view_.values.push_back(value[0]);
+    first_ = false;
   }
   void end(int /*x*/, int /*y*/) {}
 
  private:
-  Extent& extent_;
+  InView& view_;
+  bool first_ = true;
 };
 
 /// Colours are averaged as light, not as numbers: where two surfaces meet in a pixel, a mean of
@@ -66,17 +71,22 @@ class ColourPixel {
   Vec3 sum_{0.0};
 };
 
-/// What the colours stand for: the range asked for, or that of the values in view.
-std::optional<ColourRange> rangeInView(const FalseColour& asked, const std::vector<Extent>& tiles) {
-  Extent seen;
-  for (const Extent& tile : tiles) {
+/// What the colours stand for: the range asked for, or that of the values in view. A lamp, or the
+/// patch next to the one whose form factors are shown, would leave all else in one dark colour:
+/// where the highest value is more than twice the 99th percentile of the pixels, that is the end.
+std::optional<ColourRange> rangeInView(const FalseColour& asked, const std::vector<InView>& tiles) {
+  InView seen;
+  for (const InView& tile : tiles) {
     seen.low = std::min(seen.low, tile.low);
     seen.high = std::max(seen.high, tile.high);
+    seen.values.insert(seen.values.end(), tile.values.begin(), tile.values.end());
   }
   if (asked.low < asked.high) {
     return ColourRange{asked.low, asked.high, seen.low<asked.low, seen.high> asked.high};
   }
-  if (seen.low > seen.high) return std::nullopt;
+  if (seen.values.empty()) return std::nullopt;
+  const double usual = percentile(seen.values, 0.99);
+  if (seen.high > 2 * usual && usual > seen.low) return ColourRange{seen.low, usual, false, true};
   return ColourRange{seen.low, seen.high};
 }
 
@@ -91,12 +101,12 @@ Image renderFalseColour(const PatchMesh& mesh, std::span<const double> values,
   const PatchField field = makeField(mesh, values, 1, options);
   const ItemBuffer items(mesh, view, options.samples, options.show_backs);
 
-  std::vector<Extent> extents(items.tileCount());
+  std::vector<InView> tiles(items.tileCount());
   progress.begin("range", items.tileCount());
   forSamples(
-      mesh, items, field, [&](std::size_t tile) { return ExtentPixel(extents[tile]); }, progress);
+      mesh, items, field, [&](std::size_t tile) { return InViewPixel(tiles[tile]); }, progress);
   progress.end();
-  const std::optional<ColourRange> range = rangeInView(legend, extents);
+  const std::optional<ColourRange> range = rangeInView(legend, tiles);
 
   const ColourMap map;
   Image image{options.width, options.height, {}};

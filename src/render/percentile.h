@@ -1,0 +1,19 @@
+// Order statistics.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace radiosity {
+
+/// Nearest rank: the smallest of the values that at least this share of them does not exceed.
+/// 0 < share <= 1; values: one or more, reordered.
+inline double percentile(std::vector<double>& values, double share) {
+  const auto rank = std::size_t(std::ceil(share * double(values.size()))) - 1;
+  const auto at = values.begin() + std::ptrdiff_t(rank);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+}  // namespace radiosity
