@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 
+#include "base/srgb.h"
 #include "scene/mtl_scan.h"
 #include "scene/text.h"
 #include "scene/texture.h"
@@ -115,7 +116,7 @@ Material MaterialReader::convert(const MtlMaterial& mtl, const tinyobj::material
   if (mtl.reflectance) {
     material.reflectance = *mtl.reflectance;
     if (options_.kd_is_srgb) {
-      for (int b = 0; b < 3; ++b) material.reflectance[b] = srgbToLinear(material.reflectance[b]);
+      for (int b = 0; b < 3; ++b) material.reflectance[b] = linearFromSrgb(material.reflectance[b]);
     }
   } else if (material.texture != kNone) {
     material.reflectance = Vec3(1.0);

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string_view>
 #include <vector>
 
+#include "base/srgb.h"
 #include "scene/text.h"
 
 namespace radiosity {
@@ -62,7 +62,7 @@ TextureResult readOpened(OIIO::ImageInput& input, const std::string& name) {
   for (std::size_t p = 0; p < pixels; ++p) {
     for (std::size_t band = 0; band < 3; ++band) {
       const float sample = samples[p * channels + (channels >= 3 ? band : 0)];
-      texture.texels[p * 3 + band] = encoded ? float(srgbToLinear(sample)) : sample;
+      texture.texels[p * 3 + band] = encoded ? float(linearFromSrgb(sample)) : sample;
     }
   }
   const bool usable = std::all_of(texture.texels.begin(), texture.texels.end(),
@@ -79,10 +79,6 @@ OIIO::ImageSpec readingHints() {
 }
 
 }  // namespace
-
-double srgbToLinear(double encoded) {
-  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
 
 TextureResult readTexture(const std::string& path) {
   std::error_code ignored;

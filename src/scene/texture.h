@@ -8,9 +8,6 @@
 
 namespace radiosity {
 
-/// sRGB electro-optical transfer function (IEC 61966-2-1), [0,1] -> [0,1].
-double srgbToLinear(double encoded);
-
 /// Outcome of reading an image: a texture, or `problem` says in a few words why there is none.
 struct TextureResult {
   Texture texture;
