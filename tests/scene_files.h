@@ -42,7 +42,7 @@ std::string inputErrorOf(const Action& action) {
   try {
     action();
   } catch (const InputError& error) {
-    const std::string message = error.what();
+    std::string message = error.what();
     EXPECT_EQ(message.find('\n'), std::string::npos) << "not one line: " << message;
     return message;
   }

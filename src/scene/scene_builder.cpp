@@ -19,11 +19,9 @@ void FeatureNotes::add(const std::string& feature, const std::string& name, Seve
   auto entry = std::find_if(entries_.begin(), entries_.end(),
                             [&](const Entry& e) { return e.feature == feature; });
   if (entry == entries_.end()) {
-    entry = entries_.insert(entry, {feature, severity, {}});
+    entry = entries_.insert(entry, {feature, severity, {}, {}});
   }
-  if (std::find(entry->names.begin(), entry->names.end(), name) == entry->names.end()) {
-    entry->names.push_back(name);
-  }
+  if (entry->seen.insert(name).second) entry->names.push_back(name);
 }
 
 void FeatureNotes::appendTo(std::vector<Note>& notes) const {

@@ -33,7 +33,8 @@ class FeatureNotes {
   struct Entry {
     std::string feature;
     Severity severity;
-    std::vector<std::string> names;
+    std::vector<std::string> names;  ///< in the order they came, once each
+    std::set<std::string> seen;
   };
   std::vector<Entry> entries_;
 };
