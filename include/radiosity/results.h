@@ -39,32 +39,47 @@ bool isResultsFile(const std::string& path);
 /// (named). `with_factors` false: the matrix is left out (its accounts and report are read).
 Results readResults(const std::string& path, bool with_factors = true);
 
-/// Writes every stage present. Layout: /scene, /mesh, /form_factors (data, indices, indptr, shape:
-/// scipy's csr_matrix; row_sum, backs, sky, area, normal, centroid), /solution. The matrix is
-/// written row block by row block.
+/// Writes every stage present. HDF5 1.10 or newer reads it, every byte is under a checksum; small
+/// things are attributes, arrays are datasets with their unit as an attribute. Layout:
+///   /              format, format_version, version (of the program)
+///   /scene         as Scene: vertices, corners, surfaces/, materials/, cameras/, textures/, notes/
+///   /mesh          as PatchMesh; key, geometry_hash, polygons/, report/
+///   /form_factors  csr_matrix((data, indices, indptr), shape) of scipy: data f32 or f64, indices
+///                  int32 increasing in a row, indptr int64; row_sum (of data), fronts, backs, sky,
+///                  area; normal, centroid, surface, surface_names (those of /mesh); method, key,
+///                  geometry_hash, report/
+///   /solution      radiosity, irradiance (N x bands), reflectance, emission (N x 3), summary/, key
+/// The matrix is written row by row, never copied. Errors: RunError (disk full), Cancelled; `path`
+/// then is what it was.
 void writeResults(const std::string& path, const Results& results, Progress& progress);
 
-/// Bytes writeResults() will put on disk, within a few kB.
+/// Bytes writeResults() will put on disk, within 4 kB.
 std::size_t estimateResultsBytes(const Results& results);
 
 /// MatrixMarket coordinate real general, 1-based, 17 significant digits: F as stored.
 void writeMatrixMarket(const std::string& path, const ExchangeMatrix& matrix, Progress& progress);
 
-/// The patches as they are: .obj (outlines, one group a surface) or .glb (triangles), by extension.
+/// The patches as they are, by extension: .obj (outlines, one object a surface, in mesh order: face
+/// k is front patch k) or .glb (triangles, one node a surface, flat). The back of a two-sided patch
+/// is the same sheet and is not repeated.
 void writeMesh(const std::string& path, const PatchMesh& mesh);
 
-/// Lit mesh, glTF 2.0 binary: white base colour, KHR_materials_unlit, COLOR_0 = exposed linear
-/// value in [0,1], the exposure in `extras`, true radiosity in the float attribute _RADIOSITY; one
-/// mesh primitive a surface and side. radiosity: N * 3.
+/// Lit mesh, glTF 2.0 binary: one node a surface, one primitive a side; white base colour,
+/// KHR_materials_unlit, COLOR_0 = min(1, B / pi * 2^ev), linear: the radiance that writeImage()
+/// shows at the same exposure, which stands in the scene's `extras` as exposure_ev; true B, W/m^2,
+/// in the float attribute _RADIOSITY. Values are interpolated as cornerValues() does. Coordinates
+/// are the scene's; far from the origin a node translation carries them. radiosity: N * 3.
 void writeLitGlb(const std::string& path, const PatchMesh& mesh, std::span<const double> radiosity,
                  double ev, double crease);
 
-/// EXR: linear float RGBA as given. `metadata`: name, value pairs.
-/// PNG: 8 bits; linear images get the sRGB curve, display-referred ones are stored as they are.
+/// .exr: 32-bit floats, linear, colours multiplied by alpha as the format asks (a pixel is then
+/// what reaches it; a miss is 0,0,0,0). .png: 8 bits, colours not multiplied; linear images get the
+/// sRGB curve, display-referred ones are stored as they are. `metadata`: name, value pairs.
 void writeImage(const std::string& path, const Image& image, bool display_referred,
                 std::span<const std::pair<std::string, std::string>> metadata = {});
 
-/// Reads any image OpenImageIO knows, as it stands in the file (no colour conversion).
+/// Reads any image OpenImageIO knows: numbers as they stand in the file (no curve is undone), alpha
+/// divided out where the format multiplies by it.
 Image readImage(const std::string& path);
 
 }  // namespace radiosity

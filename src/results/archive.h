@@ -1,0 +1,225 @@
+// One list of fields a struct (fields.h), three readings of it: write, read, count the bytes.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "results/h5.h"
+#include "results/h5_reader.h"
+
+namespace radiosity::h5 {
+
+/// How a type of ours is spelled in an attribute: `count` numbers.
+template <class T>
+struct Scalar {
+  using Stored = std::conditional_t<std::is_same_v<T, bool>, std::uint8_t, T>;
+  static constexpr std::size_t kCount = 1;
+};
+template <>
+struct Scalar<Vec3> {
+  using Stored = double;
+  static constexpr std::size_t kCount = 3;
+};
+
+/// Puts fields into an OutputGroup or a SizeCounter: numbers and texts as attributes, vectors as
+/// datasets.
+template <class Sink>
+class FieldWriter {
+ public:
+  static constexpr bool kReading = false;
+  explicit FieldWriter(Sink& sink) : sink_(&sink) {}
+
+  template <class T>
+  void operator()(const char* name, const T& value) {
+    using Stored = typename Scalar<T>::Stored;
+    if constexpr (std::is_same_v<T, bool>) {
+      const Stored stored = value ? 1 : 0;
+      sink_->attribute(name, numberOf<Stored>(), 1, &stored);
+    } else {
+      sink_->attribute(name, numberOf<Stored>(), Scalar<T>::kCount, &value);
+    }
+  }
+  void operator()(const char* name, const std::string& value) { sink_->text(name, value); }
+  template <class T>
+  void operator()(const char* name, const std::optional<T>& value) {
+    if (value) (*this)(name, *value);
+  }
+  template <class T>
+  void operator()(const char* name, const std::vector<T>& values, const char* unit = "") {
+    rows(name, values, Element<T>::kColumns, unit);
+  }
+  void operator()(const char* name, const std::vector<std::string>& values) {
+    sink_->strings(name, values);
+  }
+  /// A vector of numbers shown as rows of `columns`.
+  template <class T>
+  void rows(const char* name, const std::vector<T>& values, std::size_t columns,
+            const char* unit = "") {
+    using Component = typename Element<T>::Scalar;
+    const std::size_t numbers = values.size() * kNumbersIn<T>;
+    const Shape shape{numberOf<Component>(), columns == 0 ? numbers : numbers / columns, columns};
+    sink_->dataset(name, shape, values.data(), unit);
+  }
+  /// An enum, as one of `words`.
+  template <class Enum>
+  void choice(const char* name, const Enum& value, std::span<const char* const> words) {
+    sink_->text(name, words[std::size_t(value)]);
+  }
+  template <class Body>
+  void group(const char* name, const Body& body) {
+    auto inner_sink = sink_->group(name);
+    FieldWriter inner(inner_sink);
+    body(inner);
+  }
+  /// A vector of structs as one column a member.
+  template <class Record, class Body>
+  void table(const char* name, const std::vector<Record>& records, const Body& body) {
+    group(name, [&](FieldWriter& inner) {
+      Columns<Record> columns{&inner, &records};
+      body(columns);
+    });
+  }
+
+  template <class Record>
+  struct Columns {
+    FieldWriter* writer;
+    const std::vector<Record>* records;
+    template <class T>
+    void operator()(const char* name, T Record::*member, const char* unit = "") {
+      using Stored = std::conditional_t<std::is_same_v<T, bool>, std::uint8_t, T>;
+      std::vector<Stored> column;
+      column.reserve(records->size());
+      for (const Record& record : *records) column.push_back(record.*member);
+      if constexpr (std::is_same_v<T, std::string>) {
+        (*writer)(name, column);
+      } else {
+        (*writer)(name, column, unit);
+      }
+    }
+    template <class Enum>
+    void choice(const char* name, Enum Record::*member, std::span<const char* const> words) {
+      std::vector<std::string> column;
+      column.reserve(records->size());
+      for (const Record& record : *records) column.emplace_back(words[std::size_t(record.*member)]);
+      (*writer)(name, column);
+    }
+  };
+
+ private:
+  Sink* sink_;
+};
+
+/// Takes fields out of an InputGroup.
+class FieldReader {
+ public:
+  static constexpr bool kReading = true;
+  explicit FieldReader(const InputGroup& source) : source_(&source) {}
+
+  template <class T>
+  void operator()(const char* name, T& value) {
+    using Stored = typename Scalar<T>::Stored;
+    if constexpr (std::is_same_v<T, bool>) {
+      Stored stored = 0;
+      source_->attribute(name, numberOf<Stored>(), 1, &stored);
+      value = stored != 0;
+    } else {
+      source_->attribute(name, numberOf<Stored>(), Scalar<T>::kCount, &value);
+    }
+  }
+  void operator()(const char* name, std::string& value) { value = source_->text(name); }
+  template <class T>
+  void operator()(const char* name, std::optional<T>& value) {
+    value.reset();
+    if (source_->hasAttribute(name)) (*this)(name, value.emplace());
+  }
+  template <class T>
+  void operator()(const char* name, std::vector<T>& values, const char* /*unit*/ = "") {
+    rows(name, values, Element<T>::kColumns);
+  }
+  void operator()(const char* name, std::vector<std::string>& values) {
+    values = source_->strings(name);
+  }
+  template <class T>
+  void rows(const char* name, std::vector<T>& values, std::size_t columns,
+            const char* /*unit*/ = "") {
+    using Component = typename Element<T>::Scalar;
+    std::size_t count = 0;
+    const Handle dataset = source_->open(name, numberOf<Component>(), columns, count);
+    const std::size_t numbers = columns == 0 ? count : count * columns;
+    values.resize(numbers / kNumbersIn<T>);
+    if (!values.empty()) source_->readAll(name, dataset, numberOf<Component>(), values.data());
+  }
+  template <class Enum>
+  void choice(const char* name, Enum& value, std::span<const char* const> words) {
+    value = parse<Enum>(name, source_->text(name), words);
+  }
+  template <class Body>
+  void group(const char* name, const Body& body) {
+    const InputGroup inner_source = source_->group(name);
+    FieldReader inner(inner_source);
+    body(inner);
+  }
+  template <class Record, class Body>
+  void table(const char* name, std::vector<Record>& records, const Body& body) {
+    group(name, [&](FieldReader& inner) {
+      Columns<Record> columns{&inner, &records};
+      body(columns);
+    });
+  }
+
+  template <class Record>
+  struct Columns {
+    FieldReader* reader;
+    std::vector<Record>* records;
+    bool first = true;
+    template <class T>
+    void operator()(const char* name, T Record::*member, const char* /*unit*/ = "") {
+      using Stored = std::conditional_t<std::is_same_v<T, bool>, std::uint8_t, T>;
+      std::vector<Stored> column;
+      (*reader)(name, column);
+      fit(name, column.size());
+      for (std::size_t k = 0; k < column.size(); ++k) {
+        if constexpr (std::is_same_v<T, bool>) {
+          (*records)[k].*member = column[k] != 0;
+        } else {
+          (*records)[k].*member = std::move(column[k]);
+        }
+      }
+    }
+    template <class Enum>
+    void choice(const char* name, Enum Record::*member, std::span<const char* const> words) {
+      std::vector<std::string> column;
+      (*reader)(name, column);
+      fit(name, column.size());
+      for (std::size_t k = 0; k < column.size(); ++k) {
+        (*records)[k].*member = reader->template parse<Enum>(name, column[k], words);
+      }
+    }
+    /// The first column says how many records there are.
+    void fit(const char* name, std::size_t count) {
+      if (std::exchange(first, false)) records->resize(count);
+      if (records->size() != count) reader->source_->fail(name, "is not as long as its table");
+    }
+  };
+
+ private:
+  template <class Enum>
+  Enum parse(const char* name, const std::string& word, std::span<const char* const> words) const {
+    for (std::size_t k = 0; k < words.size(); ++k) {
+      if (word == words[k]) return Enum(k);
+    }
+    source_->fail(name, "holds the unknown word '" + word + "'");
+  }
+
+  const InputGroup* source_;
+};
+
+/// The type of a described struct: const unless it is read into.
+template <class Archive, class T>
+using Described = std::conditional_t<Archive::kReading, T, const T>;
+
+}  // namespace radiosity::h5

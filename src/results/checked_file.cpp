@@ -1,0 +1,40 @@
+#include "results/checked_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "radiosity/base.h"
+
+namespace radiosity {
+
+std::string lowerExtension(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  return extension;
+}
+
+CheckedFile::CheckedFile(const std::string& path)
+    : path_(path), target_(path), file_(std::fopen(target_.temporary().c_str(), "wb")) {
+  if (!file_) fail();
+}
+
+void CheckedFile::fail() const {
+  throw RunError(fmt::format("{}: cannot be written: {}", path_, std::strerror(errno)));
+}
+
+void CheckedFile::write(const void* data, std::size_t size) {
+  if (std::fwrite(data, 1, size, file_.get()) != size) fail();
+}
+
+void CheckedFile::commit() {
+  if (std::fclose(file_.release()) != 0) fail();
+  target_.commit();
+}
+
+}  // namespace radiosity

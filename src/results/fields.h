@@ -1,0 +1,205 @@
+// What the results file holds, name by name: the layout is this list. Lengths are N (patches),
+// units are the attribute `unit` of a dataset; sums and reports are attributes of their group.
+#pragma once
+
+#include "radiosity/results.h"
+#include "results/archive.h"
+
+namespace radiosity {
+
+using h5::Described;
+
+inline constexpr const char* kSeverityWords[] = {"info", "warning", "loud"};
+inline constexpr const char* kStatusWords[] = {"converged", "no_convergence", "no_light",
+                                               "singular"};
+
+template <class Archive>
+void describeNotes(Archive& a, Described<Archive, std::vector<Note>>& notes) {
+  a.table("notes", notes, [](auto& column) {
+    column.choice("severity", &Note::severity, kSeverityWords);
+    column("text", &Note::text);
+  });
+}
+
+template <class Archive>
+void describe(Archive& a, Described<Archive, Scene>& s) {
+  a("file", s.file);
+  a("unit", s.unit);
+  a("vertices", s.vertices, "m");
+  a("face_offset", s.face_offset);
+  a("corners", s.corners);
+  a("texcoords", s.texcoords);
+  a("face_surface", s.face_surface);
+  a("face_element", s.face_element);
+  a.table("surfaces", s.surfaces, [](auto& column) {
+    column("name", &Surface::name);
+    column("object", &Surface::object);
+    column("material", &Surface::material);
+  });
+  a.table("materials", s.materials, [](auto& column) {
+    column("name", &Material::name);
+    column("reflectance", &Material::reflectance);
+    column("emission", &Material::emission, "W/m^2");
+    column("two_sided", &Material::two_sided);
+    column("texture", &Material::texture);
+  });
+  a.table("cameras", s.cameras, [](auto& column) {
+    column("name", &Camera::name);
+    column("eye", &Camera::eye, "m");
+    column("target", &Camera::target, "m");
+    column("up", &Camera::up);
+    column("vertical_fov", &Camera::vertical_fov, "rad");
+    column("aspect", &Camera::aspect);
+  });
+  a.table("textures", s.textures, [](auto& column) {
+    column("name", &Texture::name);
+    column("width", &Texture::width);
+    column("height", &Texture::height);
+    column("repeat", &Texture::repeat);
+  });
+  a.group("texels", [&](auto& texels) {
+    for (std::size_t k = 0; k < s.textures.size(); ++k) {
+      texels.rows(std::to_string(k).c_str(), s.textures[k].texels, 3);
+    }
+  });
+  describeNotes(a, s.notes);
+}
+
+template <class Archive>
+void describe(Archive& a, Described<Archive, PlanarPolygons>& p) {
+  a("loop_offset", p.loop_offset);
+  a("corner_offset", p.corner_offset);
+  a("corners", p.corners);
+  a("normal", p.normal);
+  a("origin", p.origin, "m");
+  a("surface", p.surface);
+  a("index_in_surface", p.index_in_surface);
+  a("back_is_patch", p.back_is_patch);
+}
+
+template <class Archive>
+void describe(Archive& a, Described<Archive, PatchMesh>& m) {
+  a("vertices", m.vertices, "m");
+  a("corner_offset", m.corner_offset);
+  a("corners", m.corners);
+  a("piece_offset", m.piece_offset);
+  a("pieces", m.pieces);
+  a("centroid", m.centroid, "m");
+  a("normal", m.normal);
+  a("area", m.area, "m^2");
+  a("polygon", m.polygon);
+  a("surface", m.surface);
+  a("index_in_surface", m.index_in_surface);
+  a("source_face", m.source_face);
+  a("side", m.side);
+  a("twin", m.twin);
+  a("surface_names", m.surface_names);
+  a.group("polygons", [&](auto& polygons) { describe(polygons, m.polygons); });
+}
+
+template <class Archive>
+void describe(Archive& a, Described<Archive, MeshReport>& r) {
+  a("welded_vertices", r.welded_vertices);
+  a("degenerate_faces", r.degenerate_faces);
+  a("duplicate_faces", r.duplicate_faces);
+  a("nonplanar_faces", r.nonplanar_faces);
+  a("largest_deviation", r.largest_deviation);
+  a("cuts", r.cuts);
+  a("split_edges", r.split_edges);
+  a("hidden_sides", r.hidden_sides);
+  a("nonmanifold_edges", r.nonmanifold_edges);
+  a("polygons", r.polygons);
+  a("triangles", r.triangles);
+  a("quads", r.quads);
+  a("t_junctions", r.t_junctions);
+  a("crossings", r.crossings);
+  a("smallest_angle", r.smallest_angle);
+  a("smallest_angle_surface", r.smallest_angle_surface);
+  a("longest_edge", r.longest_edge);
+  a.table("surfaces", r.surfaces, [](auto& column) {
+    column("name", &SurfaceAreas::name);
+    column("given", &SurfaceAreas::given, "m^2");
+    column("kept", &SurfaceAreas::kept, "m^2");
+    column("buried", &SurfaceAreas::buried, "m^2");
+    column("overlapped", &SurfaceAreas::overlapped, "m^2");
+    column("degenerate", &SurfaceAreas::degenerate, "m^2");
+  });
+  describeNotes(a, r.notes);
+}
+
+template <class Archive>
+void describe(Archive& a, Described<Archive, ClosureReport>& r) {
+  a("iterations", r.iterations);
+  a("largest_residual_before", r.largest_residual_before);
+  a("largest_residual", r.largest_residual);
+  a("largest_move", r.largest_move);
+  a("relative_move", r.relative_move);
+}
+
+template <class Archive>
+void describe(Archive& a, Described<Archive, FormFactorReport>& r) {
+  a("hemicubes", r.hemicubes);
+  a("empty_rows", r.empty_rows);
+  a("polygons", r.polygons);
+  a("rasterised_polygons", r.rasterised_polygons);
+  a("skipped_own_plane", r.skipped_own_plane);
+  a("skipped_horizon", r.skipped_horizon);
+  a("skipped_facing_away", r.skipped_facing_away);
+  a("skipped_face", r.skipped_face);
+  a("pixels", r.pixels);
+  a("simd_target", r.simd_target);
+  a("seconds", r.seconds);
+  a("matrix_bytes", r.matrix_bytes);
+  a("estimated_bytes", r.estimated_bytes);
+  a("reciprocity_residual", r.reciprocity_residual);
+  a("largest_row_error", r.largest_row_error);
+  a("closed", r.closed);
+  a("symmetrized", r.symmetrized);
+  a.group("closure", [&](auto& closure) { describe(closure, r.closure); });
+  describeNotes(a, r.notes);
+}
+
+/// The accounts; the matrix itself is streamed (matrix_blocks.h).
+template <class Archive>
+void describe(Archive& a, Described<Archive, FormFactors>& f) {
+  a("method", f.method);
+  a("fronts", f.fronts);
+  a("backs", f.backs);
+  a("sky", f.sky);
+  a("backs_by_surface", f.backs_by_surface);
+  a.group("report", [&](auto& report) { describe(report, f.report); });
+}
+
+template <class Archive>
+void describe(Archive& a, Described<Archive, SolveSummary>& s) {
+  a.choice("status", s.status, kStatusWords);
+  a("iterations", s.iterations);
+  a("residual", s.residual);
+  a("error_bound", s.error_bound);
+  a("seconds", s.seconds);
+  a("message", s.message);
+  a("residual_history", s.residual_history);
+  a.group("energy", [&](auto& energy) {
+    energy("emitted", s.energy.emitted, "W");
+    energy("absorbed", s.energy.absorbed, "W");
+    energy("to_sky", s.energy.to_sky, "W");
+    energy("on_backs", s.energy.on_backs, "W");
+    energy("imbalance", s.energy.imbalance, "W");
+  });
+}
+
+template <class Archive>
+void describe(Archive& a, Described<Archive, Solution>& s) {
+  a("bands", s.bands);
+  a.rows("radiosity", s.radiosity, std::size_t(s.bands), "W/m^2");
+  a.rows("irradiance", s.irradiance, std::size_t(s.bands), "W/m^2");
+  a.group("summary", [&](auto& summary) { describe(summary, s.summary); });
+}
+
+template <class Archive>
+void describe(Archive& a, Described<Archive, PatchMaterials>& m) {
+  a("reflectance", m.reflectance);
+  a("emission", m.emission, "W/m^2");
+}
+
+}  // namespace radiosity

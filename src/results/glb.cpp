@@ -1,0 +1,135 @@
+#include "results/glb.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "results/checked_file.h"
+
+namespace radiosity {
+
+namespace {
+
+// Numbers of the specification (glTF 2.0, 3.6.2 and 4.4).
+constexpr int kFloat = 5126;
+constexpr int kUnsignedInt = 5125;
+constexpr int kArrayBuffer = 34962;
+constexpr int kElementArrayBuffer = 34963;
+constexpr std::uint32_t kMagic = 0x46546C67;
+constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
+constexpr std::uint32_t kBinaryChunk = 0x004E4942;
+
+constexpr std::size_t paddedTo4(std::size_t size) { return (size + 3) / 4 * 4; }
+
+}  // namespace
+
+Vec3 floatOrigin(const PatchMesh& mesh) {
+  if (mesh.vertices.empty()) return Vec3(0.0);
+  Vec3 lower = mesh.vertices[0];
+  Vec3 upper = lower;
+  for (const Vec3& v : mesh.vertices) {
+    lower = glm::min(lower, v);
+    upper = glm::max(upper, v);
+  }
+  const Vec3 centre = lower + (upper - lower) * 0.5;
+  return glm::length(centre) > glm::length(upper - lower) ? centre : Vec3(0.0);
+}
+
+GlbWriter::GlbWriter(const Vec3& origin) : origin_(origin) {
+  document_["asset"] = {{"version", "2.0"}, {"generator", "radiosity"}};
+  document_["scene"] = 0;
+  document_["scenes"] = Json::array({{{"nodes", Json::array()}}});
+  for (const char* list : {"nodes", "meshes", "materials", "accessors", "bufferViews"}) {
+    document_[list] = Json::array();
+  }
+}
+
+int GlbWriter::addMaterial(Json material) {
+  document_["materials"].push_back(std::move(material));
+  return int(document_["materials"].size()) - 1;
+}
+
+void GlbWriter::addPosition(GlbVertices& vertices, const Vec3& metres) const {
+  const Vec3 p = metres - origin_;
+  vertices.position.push_back({float(p.x), float(p.y), float(p.z)});
+}
+
+int GlbWriter::addAccessor(const void* data, std::size_t bytes, std::size_t count, const char* type,
+                           int component, int target) {
+  const std::size_t offset = binary_.size();  // a multiple of 4: all components have 4 bytes
+  const auto* first = static_cast<const char*>(data);
+  binary_.insert(binary_.end(), first, first + bytes);
+  Json& views = document_["bufferViews"];
+  views.push_back(
+      {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes}, {"target", target}});
+  Json& accessors = document_["accessors"];
+  accessors.push_back({{"bufferView", int(views.size()) - 1},
+                       {"componentType", component},
+                       {"count", count},
+                       {"type", type}});
+  return int(accessors.size()) - 1;
+}
+
+int GlbWriter::addVectors(const std::vector<std::array<float, 3>>& values) {
+  return addAccessor(values.data(), values.size() * sizeof values[0], values.size(), "VEC3", kFloat,
+                     kArrayBuffer);
+}
+
+GlbWriter::Json GlbWriter::addPrimitive(const GlbVertices& vertices,
+                                        std::span<const Index> triangles, int material) {
+  const int position = addVectors(vertices.position);
+  std::array<float, 3> lower = vertices.position[0];
+  std::array<float, 3> upper = lower;
+  for (const auto& p : vertices.position) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      lower[c] = std::min(lower[c], p[c]);
+      upper[c] = std::max(upper[c], p[c]);
+    }
+  }
+  document_["accessors"][std::size_t(position)]["min"] = lower;
+  document_["accessors"][std::size_t(position)]["max"] = upper;
+  Json attributes = {{"POSITION", position}};
+  if (!vertices.colour.empty()) attributes["COLOR_0"] = addVectors(vertices.colour);
+  if (!vertices.radiosity.empty()) attributes["_RADIOSITY"] = addVectors(vertices.radiosity);
+  const int indices = addAccessor(triangles.data(), triangles.size_bytes(), triangles.size(),
+                                  "SCALAR", kUnsignedInt, kElementArrayBuffer);
+  return {{"attributes", std::move(attributes)}, {"indices", indices}, {"material", material}};
+}
+
+void GlbWriter::addNode(const std::string& name, std::vector<Json> primitives) {
+  document_["meshes"].push_back({{"name", name}, {"primitives", std::move(primitives)}});
+  Json node = {{"name", name}, {"mesh", int(document_["meshes"].size()) - 1}};
+  if (origin_ != Vec3(0.0)) node["translation"] = {origin_.x, origin_.y, origin_.z};
+  document_["nodes"].push_back(std::move(node));
+  document_["scenes"][0]["nodes"].push_back(int(document_["nodes"].size()) - 1);
+}
+
+void GlbWriter::write(const std::string& path) const {
+  if (document_["nodes"].empty()) {
+    throw InputError(fmt::format("{}: the mesh has no triangle to write", path));
+  }
+  Json document = document_;
+  document["buffers"] = Json::array({{{"byteLength", binary_.size()}}});
+  // A name need not be valid UTF-8 in an OBJ; JSON must be.
+  std::string json = document.dump(-1, ' ', false, Json::error_handler_t::replace);
+  json.resize(paddedTo4(json.size()), ' ');
+  const std::size_t total = 12 + 8 + json.size() + 8 + binary_.size();
+  if (total > std::numeric_limits<std::uint32_t>::max()) {
+    throw RunError(fmt::format(
+        "{}: would take {} bytes, glTF binary holds 4 GiB; use fewer patches", path, total));
+  }
+  const std::array<std::uint32_t, 5> head = {kMagic, 2, std::uint32_t(total),
+                                             std::uint32_t(json.size()), kJsonChunk};
+  const std::array<std::uint32_t, 2> binary_head = {std::uint32_t(binary_.size()), kBinaryChunk};
+  CheckedFile file(path);
+  file.write(head.data(), sizeof head);
+  file.write(json);
+  file.write(binary_head.data(), sizeof binary_head);
+  file.write(binary_.data(), binary_.size());
+  file.commit();
+}
+
+}  // namespace radiosity

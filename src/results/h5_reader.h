@@ -1,0 +1,68 @@
+// A group of an HDF5 file being read: everything is checked before it is believed.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "results/h5.h"
+
+namespace radiosity::h5 {
+
+/// An HDF5 file open for reading. Errors are InputError: file, object in it, reason and cure.
+class InputFile {
+ public:
+  explicit InputFile(const std::string& path);
+  hid_t id() const { return file_.get(); }
+  const std::string& path() const { return path_; }
+  /// "FILE: OBJECT WHAT; make the file again".
+  [[noreturn]] void fail(const std::string& object, const std::string& what) const;
+  /// The same, with HDF5's own reason.
+  [[noreturn]] void failDamaged(const std::string& object) const;
+
+ private:
+  mutable Silence silence_;  // first: outlives the handle
+  std::string path_;
+  Handle file_;
+};
+
+class InputGroup {
+ public:
+  explicit InputGroup(const InputFile& file);  ///< the root
+  bool hasGroup(const std::string& name) const { return hasLink(name); }
+  bool hasDataset(const std::string& name) const { return hasLink(name); }
+  bool hasAttribute(const std::string& name) const;
+  InputGroup group(const std::string& name) const;
+  /// Exactly `count` numbers of that kind.
+  void attribute(const std::string& name, Number number, std::size_t count, void* data) const;
+  std::string text(const std::string& name) const;
+  std::vector<std::string> strings(const std::string& name) const;
+
+  /// Opens a dataset of numbers and checks kind and number of columns; sets `rows`.
+  Handle open(const std::string& name, Number number, std::size_t columns, std::size_t& rows) const;
+  /// What kind of numbers a dataset holds; nothing if none of ours.
+  std::optional<Number> numberOfDataset(const std::string& name) const;
+  void readAll(const std::string& name, const Handle& dataset, Number number, void* data) const;
+  /// Rows [first, first + count) of a dataset of one dimension.
+  void readRows(const std::string& name, const Handle& dataset, Number number, std::size_t first,
+                std::size_t count, void* data) const;
+
+  std::string pathOf(const std::string& name) const { return path_ + "/" + name; }
+  [[noreturn]] void fail(const std::string& name, const std::string& what) const {
+    file_->fail(pathOf(name), what);
+  }
+
+ private:
+  InputGroup(const InputFile& file, Handle id, std::string path);
+  bool hasLink(const std::string& name) const;
+  Handle checked(hid_t id, Handle::Close close, const std::string& name) const;
+  Handle openAny(const std::string& name, std::vector<hsize_t>& extent) const;
+  void checkStorage(const std::string& name, const Handle& dataset, std::size_t rows,
+                    std::size_t row_bytes) const;
+
+  const InputFile* file_;
+  Handle id_;
+  std::string path_;
+};
+
+}  // namespace radiosity::h5

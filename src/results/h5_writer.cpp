@@ -1,0 +1,223 @@
+#include "results/h5_writer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace radiosity::h5 {
+
+namespace {
+
+/// Fixed-length UTF-8, padded with zeros. Strings of variable length would lie in HDF5's global
+/// heap, the one place without a checksum.
+Handle stringType(std::size_t width) {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type.get(), std::max<std::size_t>(width, 1));
+  H5Tset_cset(type.get(), H5T_CSET_UTF8);
+  H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
+  return type;
+}
+
+Handle spaceOf(const Shape& shape) {
+  const hsize_t extent[2] = {shape.rows, shape.columns};
+  return {H5Screate_simple(shape.columns == 0 ? 1 : 2, extent, nullptr), H5Sclose};
+}
+
+/// Compact where small; else chunked with a checksum a chunk.
+Handle layoutOf(const Shape& shape, std::size_t bytes, std::size_t chunk_rows) {
+  Handle list(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_obj_track_times(list.get(), false);  // the same results give the same file
+  if (bytes <= kCompactBytes) {
+    H5Pset_layout(list.get(), H5D_COMPACT);
+    return list;
+  }
+  const hsize_t chunk[2] = {chunk_rows, shape.columns};
+  H5Pset_chunk(list.get(), shape.columns == 0 ? 1 : 2, chunk);
+  H5Pset_fletcher32(list.get());
+  H5Pset_fill_time(list.get(), H5D_FILL_TIME_NEVER);  // every element is written
+  return list;
+}
+
+}  // namespace
+
+OutputFile::OutputFile(const std::string& path, std::string shown) : shown_(std::move(shown)) {
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110);
+  H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
+  disk_.serve(access.get());
+  file_ = Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
+  if (!file_) fail("/");
+}
+
+void OutputFile::close() {
+  if (!file_.close()) fail("/");
+  check("/");
+}
+
+void OutputFile::fail(const std::string& object) const {
+  const std::string reason = disk_.error() != 0 ? std::strerror(disk_.error()) : lastError();
+  throw RunError(fmt::format("{}: {} cannot be written: {}", shown_, object, reason));
+}
+
+OutputGroup::OutputGroup(OutputFile& file)
+    : file_(&file), id_(H5Gopen2(file.id(), "/", H5P_DEFAULT), H5Gclose) {
+  if (!id_) file.fail("/");
+}
+
+OutputGroup::OutputGroup(OutputFile& file, Handle id, std::string path)
+    : file_(&file), id_(std::move(id)), path_(std::move(path)) {}
+
+Handle OutputGroup::checked(hid_t id, Handle::Close close, const std::string& name) const {
+  if (id < 0) file_->fail(pathOf(name));
+  return {id, close};
+}
+
+OutputGroup OutputGroup::group(const std::string& name) {
+  const Handle list(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  H5Pset_obj_track_times(list.get(), false);
+  Handle id = checked(H5Gcreate2(id_.get(), name.c_str(), H5P_DEFAULT, list.get(), H5P_DEFAULT),
+                      H5Gclose, name);
+  return {*file_, std::move(id), pathOf(name)};
+}
+
+void OutputGroup::attribute(const std::string& name, Number number, std::size_t count,
+                            const void* data) {
+  const hsize_t extent = count;
+  const Handle space(count == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &extent, nullptr),
+                     H5Sclose);
+  const Handle id = checked(
+      H5Acreate2(id_.get(), name.c_str(), typeOf(number), space.get(), H5P_DEFAULT, H5P_DEFAULT),
+      H5Aclose, name);
+  if (H5Awrite(id.get(), typeOf(number), data) < 0) file_->fail(pathOf(name));
+}
+
+void OutputGroup::text(const std::string& name, const std::string& value) {
+  writeText(id_.get(), name, value);
+}
+
+void OutputGroup::writeText(hid_t object, const std::string& name, const std::string& value) {
+  const Handle type = stringType(value.size());
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle id =
+      checked(H5Acreate2(object, name.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT),
+              H5Aclose, name);
+  if (H5Awrite(id.get(), type.get(), value.c_str()) < 0) file_->fail(pathOf(name));
+}
+
+Handle OutputGroup::create(const std::string& name, const Shape& shape, const std::string& unit) {
+  const Handle space = spaceOf(shape);
+  const Handle list = layoutOf(shape, shape.bytes(), chunkRows(shape));
+  Handle id = checked(H5Dcreate2(id_.get(), name.c_str(), typeOf(shape.number), space.get(),
+                                 H5P_DEFAULT, list.get(), H5P_DEFAULT),
+                      H5Dclose, name);
+  if (!unit.empty()) writeText(id.get(), "unit", unit);
+  return id;
+}
+
+void OutputGroup::dataset(const std::string& name, const Shape& shape, const void* data,
+                          const std::string& unit) {
+  Handle id = create(name, shape, unit);
+  if (shape.count() > 0 &&
+      H5Dwrite(id.get(), typeOf(shape.number), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) {
+    file_->fail(pathOf(name));
+  }
+  if (!id.close()) file_->fail(pathOf(name));
+  file_->check(pathOf(name));
+}
+
+void OutputGroup::writeRows(const std::string& name, const Handle& dataset, Number number,
+                            std::size_t first, std::size_t count, const void* data) {
+  const Handle space(H5Dget_space(dataset.get()), H5Sclose);
+  const hsize_t start = first;
+  const hsize_t extent = count;
+  const Handle memory(H5Screate_simple(1, &extent, nullptr), H5Sclose);
+  if (H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, &start, nullptr, &extent, nullptr) < 0 ||
+      H5Dwrite(dataset.get(), typeOf(number), memory.get(), space.get(), H5P_DEFAULT, data) < 0) {
+    file_->fail(pathOf(name));
+  }
+  file_->check(pathOf(name));
+}
+
+std::size_t columnWidth(const std::vector<std::string>& values) {
+  std::size_t width = 1;
+  for (const std::string& value : values) width = std::max(width, value.size());
+  return width;
+}
+
+void OutputGroup::strings(const std::string& name, const std::vector<std::string>& values) {
+  const std::size_t width = columnWidth(values);
+  const Handle type = stringType(width);
+  std::vector<char> padded(values.size() * width, '\0');
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    std::memcpy(padded.data() + k * width, values[k].data(), values[k].size());
+  }
+  const Shape shape{Number::u8, values.size(), 0};
+  const Handle space = spaceOf(shape);
+  const Handle list = layoutOf(shape, padded.size(), chunkRows({Number::u8, values.size(), width}));
+  Handle id = checked(H5Dcreate2(id_.get(), name.c_str(), type.get(), space.get(), H5P_DEFAULT,
+                                 list.get(), H5P_DEFAULT),
+                      H5Dclose, name);
+  if (!padded.empty() &&
+      H5Dwrite(id.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, padded.data()) < 0) {
+    file_->fail(pathOf(name));
+  }
+  if (!id.close()) file_->fail(pathOf(name));
+  file_->check(pathOf(name));
+}
+
+void OutputGroup::link(const std::string& name, const OutputGroup& target,
+                       const std::string& target_name) {
+  if (H5Lcreate_hard(target.id_.get(), target_name.c_str(), id_.get(), name.c_str(), H5P_DEFAULT,
+                     H5P_DEFAULT) < 0) {
+    file_->fail(pathOf(name));
+  }
+}
+
+// What HDF5 1.10 spends on each thing besides its bytes, measured on files of ours.
+// (Object header with its messages; link in the group that holds it.)
+namespace {
+constexpr std::size_t kGroupBytes = 150;
+constexpr std::size_t kAttributeBytes = 60;
+constexpr std::size_t kDatasetBytes = 300;
+constexpr std::size_t kChunkOverhead = 24;  // index entry and checksum
+}  // namespace
+
+SizeCounter SizeCounter::group(const std::string& name) {
+  *bytes_ += kGroupBytes + name.size();
+  return *this;
+}
+
+void SizeCounter::attribute(const std::string& name, Number number, std::size_t count,
+                            const void* /*data*/) {
+  *bytes_ += kAttributeBytes + name.size() + count * sizeOf(number);
+}
+
+void SizeCounter::text(const std::string& name, const std::string& value) {
+  *bytes_ += kAttributeBytes + name.size() + value.size();
+}
+
+void SizeCounter::raw(const std::string& name, const Shape& shape, const std::string& unit) {
+  *bytes_ += kDatasetBytes + name.size();
+  if (!unit.empty()) text("unit", unit);
+  if (shape.bytes() <= kCompactBytes) {
+    *bytes_ += shape.bytes();
+    return;
+  }
+  const std::size_t chunk = chunkRows(shape);
+  const std::size_t chunks = (shape.rows + chunk - 1) / chunk;
+  *bytes_ += chunks * (chunk * shape.perRow() * sizeOf(shape.number) + kChunkOverhead);
+}
+
+void SizeCounter::dataset(const std::string& name, const Shape& shape, const void* /*data*/,
+                          const std::string& unit) {
+  raw(name, shape, unit);
+}
+
+void SizeCounter::strings(const std::string& name, const std::vector<std::string>& values) {
+  raw(name, {Number::u8, values.size(), columnWidth(values)}, "");
+}
+
+void SizeCounter::link(const std::string& name) { *bytes_ += 20 + name.size(); }
+
+}  // namespace radiosity::h5

@@ -1,0 +1,84 @@
+// A group of an HDF5 file being written, and a counter that stands in for one.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "results/h5.h"
+#include "results/h5_disk.h"
+
+namespace radiosity::h5 {
+
+/// An HDF5 file being written. Every method throws RunError where HDF5 cannot write.
+/// The format is that of HDF5 1.10 (2016): there every piece of metadata carries a checksum.
+class OutputFile {
+ public:
+  /// `path` is what is written, `shown` what messages call it.
+  OutputFile(const std::string& path, std::string shown);
+  /// Flushes and closes. Without it the destructor closes and keeps quiet.
+  void close();
+  hid_t id() const { return file_.get(); }
+  [[noreturn]] void fail(const std::string& object) const;
+  /// Throws if the disk has refused anything so far.
+  void check(const std::string& object) const {
+    if (disk_.error() != 0) fail(object);
+  }
+
+ private:
+  Silence silence_;  // these two first: they outlive the handle
+  Disk disk_;
+  std::string shown_;
+  Handle file_;
+};
+
+/// A group to put attributes, datasets and groups into.
+class OutputGroup {
+ public:
+  explicit OutputGroup(OutputFile& file);  ///< the root
+  OutputGroup group(const std::string& name);
+  void attribute(const std::string& name, Number number, std::size_t count, const void* data);
+  void text(const std::string& name, const std::string& value);
+  /// `unit` becomes an attribute; empty: none.
+  void dataset(const std::string& name, const Shape& shape, const void* data,
+               const std::string& unit);
+  void strings(const std::string& name, const std::vector<std::string>& values);
+  /// A second name for what `target` holds; no bytes.
+  void link(const std::string& name, const OutputGroup& target, const std::string& target_name);
+  /// An empty dataset of one dimension, to be filled in order by writeRows().
+  Handle create(const std::string& name, const Shape& shape, const std::string& unit);
+  /// Writes rows [first, first + count) of a dataset of one dimension.
+  void writeRows(const std::string& name, const Handle& dataset, Number number, std::size_t first,
+                 std::size_t count, const void* data);
+
+ private:
+  OutputGroup(OutputFile& file, Handle id, std::string path);
+  std::string pathOf(const std::string& name) const { return path_ + "/" + name; }
+  Handle checked(hid_t id, Handle::Close close, const std::string& name) const;
+  void writeText(hid_t object, const std::string& name, const std::string& value);
+
+  OutputFile* file_;
+  Handle id_;
+  std::string path_;
+};
+
+/// Takes the same calls as OutputGroup and adds up the bytes they would put on disk.
+class SizeCounter {
+ public:
+  explicit SizeCounter(std::size_t& bytes) : bytes_(&bytes) {}
+  SizeCounter group(const std::string& name);
+  void attribute(const std::string& name, Number number, std::size_t count, const void* data);
+  void text(const std::string& name, const std::string& value);
+  void dataset(const std::string& name, const Shape& shape, const void* data,
+               const std::string& unit);
+  void strings(const std::string& name, const std::vector<std::string>& values);
+  void link(const std::string& name);
+
+ private:
+  void raw(const std::string& name, const Shape& shape, const std::string& unit);
+  std::size_t* bytes_;
+};
+
+/// Width of the fixed-length column that holds all of `values`; at least 1.
+std::size_t columnWidth(const std::vector<std::string>& values);
+
+}  // namespace radiosity::h5

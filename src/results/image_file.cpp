@@ -1,0 +1,151 @@
+// Pictures through OpenImageIO.
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "radiosity/results.h"
+#include "results/checked_file.h"
+
+namespace radiosity {
+
+namespace {
+
+using Metadata = std::span<const std::pair<std::string, std::string>>;
+
+/// The sRGB curve (IEC 61966-2-1), linear 0 to 1 -> encoded 0 to 1.
+double linearToSrgb(double linear) {
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+std::uint8_t toByte(double value) {
+  return std::uint8_t(std::lround(std::clamp(value, 0.0, 1.0) * 255));
+}
+
+/// OpenImageIO's reasons may have several lines; our errors have one.
+std::string reason(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  std::replace(text.begin(), text.end(), '\n', ';');
+  return text;
+}
+
+void checkImage(const std::string& path, const Image& image) {
+  const std::size_t pixels =
+      std::size_t(std::max(image.width, 0)) * std::size_t(std::max(image.height, 0));
+  if (pixels == 0 || image.rgba.size() != 4 * pixels) {
+    throw InputError(fmt::format("{}: a picture of {} x {} pixels needs {} values, not {}", path,
+                                 image.width, image.height, 4 * pixels, image.rgba.size()));
+  }
+  for (std::size_t k = 0; k < image.rgba.size(); ++k) {
+    if (!std::isnan(image.rgba[k])) continue;
+    throw RunError(fmt::format("{}: pixel ({}, {}) is not a number", path,
+                               k / 4 % std::size_t(image.width), k / 4 / std::size_t(image.width)));
+  }
+}
+
+/// OpenEXR asks for colours multiplied by alpha: a pixel is then the radiance that reaches it.
+std::vector<float> associated(const Image& image) {
+  std::vector<float> pixels = image.rgba;
+  for (std::size_t k = 0; k < pixels.size(); k += 4) {
+    for (std::size_t c = 0; c < 3; ++c) pixels[k + c] *= pixels[k + 3];
+  }
+  return pixels;
+}
+
+/// PNG wants them as they are; alpha is linear in both.
+std::vector<std::uint8_t> encoded(const Image& image, bool display_referred) {
+  std::vector<std::uint8_t> pixels(image.rgba.size());
+  for (std::size_t k = 0; k < pixels.size(); ++k) {
+    const double value = std::clamp(double(image.rgba[k]), 0.0, 1.0);
+    pixels[k] = toByte(k % 4 == 3 || display_referred ? value : linearToSrgb(value));
+  }
+  return pixels;
+}
+
+/// Encodes in memory and writes the bytes ourselves: OpenImageIO's PNG writer does not notice a
+/// full disk.
+void save(const std::string& path, OIIO::ImageSpec spec, const void* pixels, Metadata metadata) {
+  spec.channelnames = {"R", "G", "B", "A"};
+  spec.alpha_channel = 3;
+  spec.attribute("Software", "radiosity");
+  for (const auto& [name, value] : metadata) spec.attribute(name, value);
+  CheckedFile file(path);
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path, &memory);
+  if (!output) {
+    throw RunError(fmt::format("{}: cannot be encoded: {}", path, reason(OIIO::geterror())));
+  }
+  if (!output->open(path, spec) || !output->write_image(spec.format, pixels) || !output->close()) {
+    throw RunError(fmt::format("{}: cannot be encoded: {}", path, reason(output->geterror())));
+  }
+  file.write(bytes.data(), bytes.size());
+  file.commit();
+}
+
+}  // namespace
+
+void writeImage(const std::string& path, const Image& image, bool display_referred,
+                Metadata metadata) {
+  checkImage(path, image);
+  const std::string extension = lowerExtension(path);
+  if (extension == ".exr") {
+    OIIO::ImageSpec spec(image.width, image.height, 4, OIIO::TypeDesc::FLOAT);
+    spec.attribute("oiio:ColorSpace", display_referred ? "sRGB" : "Linear");
+    spec.attribute("compression", "zip");
+    save(path, spec, associated(image).data(), metadata);
+  } else if (extension == ".png") {
+    OIIO::ImageSpec spec(image.width, image.height, 4, OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    save(path, spec, encoded(image, display_referred).data(), metadata);
+  } else {
+    throw InputError(
+        fmt::format("{}: '{}' is no picture format; name a file .png or .exr", path, extension));
+  }
+}
+
+Image readImage(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) {
+    throw InputError(fmt::format("{}: no such file; check the name", path));
+  }
+  OIIO::ImageSpec hints;
+  hints.attribute("oiio:UnassociatedAlpha", 1);  // colours as they stand in the file
+  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &hints);
+  if (!input) {
+    throw InputError(
+        fmt::format("{}: cannot be read as a picture: {}", path, reason(OIIO::geterror())));
+  }
+  const OIIO::ImageSpec spec = input->spec();
+  const auto channels = std::size_t(spec.nchannels);
+  const std::size_t count = std::size_t(spec.width) * std::size_t(spec.height);
+  std::vector<float> samples(count * channels);
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, samples.data())) {
+    throw InputError(
+        fmt::format("{}: the picture is damaged: {}", path, reason(input->geterror())));
+  }
+  const bool grey = channels < 3;
+  const bool has_alpha = channels == 2 || channels >= 4;
+  // EXR (and whatever else multiplies by alpha) back to colours that stand alone.
+  const bool multiplied = has_alpha && spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
+  Image image{spec.width, spec.height, std::vector<float>(count * 4)};
+  for (std::size_t k = 0; k < count; ++k) {
+    const float* in = &samples[k * channels];
+    float* out = &image.rgba[k * 4];
+    const float alpha = has_alpha ? in[grey ? 1 : 3] : 1.f;
+    for (std::size_t c = 0; c < 3; ++c) {
+      out[c] = in[grey ? 0 : c];
+      if (multiplied && alpha != 0) out[c] /= alpha;
+    }
+    out[3] = alpha;
+  }
+  return image;
+}
+
+}  // namespace radiosity

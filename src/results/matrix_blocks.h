@@ -1,0 +1,21 @@
+// The form-factor matrix in a results file: compressed sparse rows, as scipy's
+// csr_matrix((data, indices, indptr), shape) takes them, moved block by block.
+#pragma once
+
+#include "radiosity/exchange_matrix.h"
+#include "results/h5_reader.h"
+#include "results/h5_writer.h"
+
+namespace radiosity {
+
+/// Writes area, shape (int64), indptr (int64), indices (int32, increasing in a row), data (f32 or
+/// f64 as stored) and row_sum (of what is stored). Holds one chunk of each at a time.
+void writeMatrix(h5::OutputGroup& group, const ExchangeMatrix& matrix, Progress& progress);
+
+/// What writeMatrix() adds to the file.
+void countMatrix(h5::SizeCounter& group, const ExchangeMatrix& matrix);
+
+/// The same matrix, value for value to the bit.
+ExchangeMatrix readMatrix(const h5::InputGroup& group);
+
+}  // namespace radiosity

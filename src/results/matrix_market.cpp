@@ -1,0 +1,83 @@
+// The NIST Matrix Market exchange format (Boisvert, Pozo & Remington 1996, NISTIR 5935).
+#include <fmt/format.h>
+
+#include <iterator>
+#include <vector>
+
+#include "base/parallel.h"
+#include "radiosity/results.h"
+#include "results/checked_file.h"
+
+namespace radiosity {
+
+namespace {
+
+/// Entries one task formats at a time, about 2 MB of text.
+constexpr std::size_t kTaskEntries = std::size_t(1) << 16;
+/// Tasks whose text is held before it is written; fixed, so that memory is the same for any number
+/// of threads.
+constexpr std::size_t kTasks = 16;
+
+std::size_t entriesOf(const ExchangeMatrix& matrix, std::size_t i) {
+  std::size_t entries = 0;
+  matrix.forRow(i, [&](Index, double) { ++entries; });
+  return entries;
+}
+
+void formatRow(const ExchangeMatrix& matrix, std::size_t i, fmt::memory_buffer& text) {
+  const fmt::format_int row(i + 1);
+  matrix.forRow(i, [&](Index column, double value) {
+    text.append(row.data(), row.data() + row.size());
+    text.push_back(' ');
+    const fmt::format_int number(std::size_t(column) + 1);
+    text.append(number.data(), number.data() + number.size());
+    text.push_back(' ');
+    fmt::format_to(std::back_inserter(text), "{:.17g}\n", value);
+  });
+}
+
+/// Formats rows from `first` on in up to kTasks tasks at once and writes them in order; returns the
+/// first row that is left.
+std::size_t writeBatch(CheckedFile& file, const ExchangeMatrix& matrix, std::size_t first,
+                       std::vector<fmt::memory_buffer>& texts) {
+  std::vector<std::size_t> starts = {first};
+  std::size_t row = first;
+  while (row < matrix.size() && starts.size() <= texts.size()) {
+    std::size_t entries = 0;
+    while (row < matrix.size() && entries < kTaskEntries) entries += entriesOf(matrix, row++);
+    starts.push_back(row);
+  }
+  const std::size_t tasks = starts.size() - 1;
+  parallelFor(tasks, 1, [&](std::size_t t) {
+    texts[t].clear();
+    for (std::size_t i = starts[t]; i < starts[t + 1]; ++i) formatRow(matrix, i, texts[t]);
+  });
+  for (std::size_t t = 0; t < tasks; ++t) file.write(texts[t].data(), texts[t].size());
+  return row;
+}
+
+}  // namespace
+
+void writeMatrixMarket(const std::string& path, const ExchangeMatrix& matrix, Progress& progress) {
+  CheckedFile file(path);
+  const std::size_t n = matrix.size();
+  file.write(fmt::format(
+      "%%MatrixMarket matrix coordinate real general\n"
+      "% Form factors by radiosity: row i, column j holds F[i,j], the fraction of what\n"
+      "% leaves patch i that reaches patch j; no unit. Patches are numbered from 1.\n"
+      "% The values as stored, {} bits, in 17 digits.\n"
+      "{} {} {}\n",
+      matrix.precision() == Precision::single ? 32 : 64, n, n, matrix.nonZeros()));
+  progress.begin("writing MatrixMarket", n);
+  std::vector<fmt::memory_buffer> texts(kTasks);
+  for (std::size_t row = 0; row < n;) {
+    progress.check();
+    const std::size_t next = writeBatch(file, matrix, row, texts);
+    progress.advance(next - row);
+    row = next;
+  }
+  progress.end();
+  file.commit();
+}
+
+}  // namespace radiosity

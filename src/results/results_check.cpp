@@ -1,0 +1,145 @@
+#include "results/results_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+namespace radiosity {
+
+namespace {
+
+class Checker {
+ public:
+  explicit Checker(const std::string& path) : path_(path) {}
+  void require(bool good, std::string_view object, std::string_view what) const {
+    if (good) return;
+    throw InputError(fmt::format("{}: {} {}; make the file again with the command that wrote it",
+                                 path_, object, what));
+  }
+  /// `offset` cuts [0, count) into `parts` ranges.
+  void offsets(const std::vector<std::size_t>& offset, std::size_t parts, std::size_t count,
+               std::string_view object) const {
+    require(offset.size() == parts + 1 && offset.front() == 0 && offset.back() == count &&
+                std::is_sorted(offset.begin(), offset.end()),
+            object, fmt::format("does not divide {} values into {} parts", count, parts));
+  }
+  void indices(const std::vector<Index>& index, std::size_t limit, bool none_allowed,
+               std::string_view object) const {
+    const bool good = std::all_of(index.begin(), index.end(), [&](Index i) {
+      return i < limit || (none_allowed && i == kNone);
+    });
+    require(good, object, fmt::format("points beyond the {} elements there are", limit));
+  }
+  template <class T>
+  void length(const std::vector<T>& values, std::size_t count, std::string_view object) const {
+    require(values.size() == count, object,
+            fmt::format("has {} values, not {}", values.size(), count));
+  }
+
+ private:
+  const std::string& path_;
+};
+
+void checkScene(const Checker& check, const Scene& s) {
+  check.offsets(s.face_offset, s.faceCount(), s.corners.size(), "/scene/face_offset");
+  check.indices(s.corners, s.vertices.size(), false, "/scene/corners");
+  if (!s.texcoords.empty()) check.length(s.texcoords, s.corners.size(), "/scene/texcoords");
+  check.indices(s.face_surface, s.surfaces.size(), false, "/scene/face_surface");
+  check.length(s.face_element, s.faceCount(), "/scene/face_element");
+  for (const Surface& surface : s.surfaces) {
+    check.indices({surface.material}, s.materials.size(), false, "/scene/surfaces/material");
+  }
+  for (const Material& material : s.materials) {
+    check.indices({material.texture}, s.textures.size(), true, "/scene/materials/texture");
+  }
+  for (std::size_t k = 0; k < s.textures.size(); ++k) {
+    const Texture& t = s.textures[k];
+    check.require(t.width > 0 && t.height > 0 &&
+                      t.texels.size() == 3 * std::size_t(t.width) * std::size_t(t.height),
+                  fmt::format("/scene/texels/{}", k), "is not width x height texels");
+  }
+}
+
+void checkPolygons(const Checker& check, const PatchMesh& m) {
+  const PlanarPolygons& p = m.polygons;
+  const std::size_t loops = p.corner_offset.empty() ? 0 : p.corner_offset.size() - 1;
+  // A mesh made without polygons has empty offsets.
+  if (p.size() == 0 && p.loop_offset.empty() && p.corner_offset.empty()) return;
+  check.offsets(p.loop_offset, p.size(), loops, "/mesh/polygons/loop_offset");
+  check.offsets(p.corner_offset, loops, p.corners.size(), "/mesh/polygons/corner_offset");
+  check.indices(p.corners, m.vertices.size(), false, "/mesh/polygons/corners");
+  check.length(p.origin, p.size(), "/mesh/polygons/origin");
+  check.length(p.surface, p.size(), "/mesh/polygons/surface");
+  check.indices(p.surface, m.surface_names.size(), false, "/mesh/polygons/surface");
+  check.length(p.index_in_surface, p.size(), "/mesh/polygons/index_in_surface");
+  check.length(p.back_is_patch, p.size(), "/mesh/polygons/back_is_patch");
+}
+
+void checkMesh(const Checker& check, const PatchMesh& m) {
+  const std::size_t n = m.size();
+  check.offsets(m.corner_offset, n, m.corners.size(), "/mesh/corner_offset");
+  check.indices(m.corners, m.vertices.size(), false, "/mesh/corners");
+  check.offsets(m.piece_offset, n, m.pieces.size(), "/mesh/piece_offset");
+  for (const auto& piece : m.pieces) {
+    check.indices({piece[0], piece[1], piece[2]}, m.vertices.size(), false, "/mesh/pieces");
+  }
+  check.length(m.centroid, n, "/mesh/centroid");
+  check.length(m.normal, n, "/mesh/normal");
+  check.length(m.polygon, n, "/mesh/polygon");
+  check.indices(m.polygon, m.polygons.size(), true, "/mesh/polygon");
+  check.length(m.surface, n, "/mesh/surface");
+  check.indices(m.surface, m.surface_names.size(), false, "/mesh/surface");
+  check.length(m.index_in_surface, n, "/mesh/index_in_surface");
+  check.length(m.source_face, n, "/mesh/source_face");
+  check.length(m.side, n, "/mesh/side");
+  check.length(m.twin, n, "/mesh/twin");
+  check.indices(m.twin, n, true, "/mesh/twin");
+  checkPolygons(check, m);
+}
+
+void checkSolution(const Checker& check, const Solution& s) {
+  check.require(s.bands >= 1, "/solution/bands", "is not 1 or more");
+  const bool empty = s.summary.status == SolveStatus::singular && s.radiosity.empty();
+  check.length(s.irradiance, empty ? 0 : s.radiosity.size(), "/solution/irradiance");
+}
+
+}  // namespace
+
+void checkResults(const std::string& path, const Results& results) {
+  const Checker check(path);
+  if (results.scene) checkScene(check, *results.scene);
+  if (results.mesh) checkMesh(check, results.mesh->mesh);
+  if (results.solution) checkSolution(check, *results.solution);
+
+  // All stages are about the same N patches.
+  std::optional<std::size_t> n;
+  const auto same = [&](std::size_t count, std::string_view object) {
+    if (!n) n = count;
+    check.require(count == *n, object, fmt::format("has {} patches, not {}", count, *n));
+  };
+  if (results.mesh) {
+    same(results.mesh->mesh.size(), "/mesh");
+    if (results.scene) {
+      check.indices(results.mesh->mesh.source_face, results.scene->faceCount(), false,
+                    "/mesh/source_face");
+      check.length(results.mesh->mesh.surface_names, results.scene->surfaces.size(),
+                   "/mesh/surface_names");
+    }
+  }
+  if (results.factors) {
+    same(results.factors->fronts.size(), "/form_factors/fronts");
+    same(results.factors->backs.size(), "/form_factors/backs");
+    same(results.factors->sky.size(), "/form_factors/sky");
+  }
+  if (results.materials) {
+    same(results.materials->reflectance.size(), "/solution/reflectance");
+    same(results.materials->emission.size(), "/solution/emission");
+  }
+  if (results.solution && !results.solution->radiosity.empty()) {
+    same(results.solution->radiosity.size() / std::size_t(results.solution->bands),
+         "/solution/radiosity");
+  }
+}
+
+}  // namespace radiosity

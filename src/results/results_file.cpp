@@ -1,0 +1,224 @@
+// The results file as a whole: which groups there are and in which order.
+#include <fmt/format.h>
+
+#include <array>
+#include <fstream>
+#include <new>
+
+#include "base/atomic_file.h"
+#include "radiosity/results.h"
+#include "results/fields.h"
+#include "results/h5_reader.h"
+#include "results/h5_writer.h"
+#include "results/matrix_blocks.h"
+#include "results/results_check.h"
+
+namespace radiosity {
+
+namespace {
+
+using h5::FieldReader;
+using h5::FieldWriter;
+using h5::InputGroup;
+using h5::OutputGroup;
+using h5::SizeCounter;
+
+constexpr const char* kFormat = "radiosity results";
+/// Raised whenever an older program could misread the file.
+constexpr std::int32_t kFormatVersion = 1;
+
+/// Everything but the matrix and the links, into a group or a counter.
+template <class Sink>
+class StageWriter {
+ public:
+  StageWriter(Sink& root, const Results& results) : root_(root), results_(results) {
+    if (results.mesh) geometry_hash_ = geometryHash(results.mesh->mesh);
+  }
+
+  void head() {
+    root_.text("format", kFormat);
+    root_.attribute("format_version", h5::Number::i32, 1, &kFormatVersion);
+    root_.text("version", results_.version);
+  }
+  void scene(const Scene& scene) {
+    Sink group = root_.group("scene");
+    FieldWriter<Sink> fields(group);
+    describe(fields, scene);
+  }
+  Sink mesh(const MeshResult& mesh) {
+    Sink group = root_.group("mesh");
+    group.text("key", results_.mesh_key);
+    group.text("geometry_hash", geometry_hash_);
+    FieldWriter<Sink> fields(group);
+    describe(fields, mesh.mesh);
+    fields.group("report", [&](auto& report) { describe(report, mesh.report); });
+    return group;
+  }
+  Sink factors(const FormFactors& factors) {
+    Sink group = root_.group("form_factors");
+    group.text("key", results_.factors_key);
+    group.text("geometry_hash", geometry_hash_);
+    group.text("entry", "F[i,j]: the fraction of what leaves patch i that reaches patch j");
+    FieldWriter<Sink> fields(group);
+    describe(fields, factors);
+    return group;
+  }
+  void solution() {
+    if (!results_.solution && !results_.materials) return;
+    Sink group = root_.group("solution");
+    FieldWriter<Sink> fields(group);
+    if (results_.materials) describe(fields, *results_.materials);
+    if (!results_.solution) return;
+    group.text("key", results_.solution_key);
+    describe(fields, *results_.solution);
+  }
+
+ private:
+  Sink& root_;
+  const Results& results_;
+  std::string geometry_hash_;  ///< empty without a mesh
+};
+
+/// What /form_factors shows of the mesh, so that a reader needs no other group.
+constexpr std::array<std::array<const char*, 2>, 4> kMeshLinks = {
+    {{"normal", "normal"},
+     {"centroid", "centroid"},
+     {"surface", "surface"},
+     {"surface_names", "surface_names"}}};
+
+void requireMatrix(const std::string& path, const Results& results) {
+  if (results.factors && results.factors->matrix.size() != results.factors->fronts.size()) {
+    throw RunError(
+        fmt::format("{}: the form factors came without their matrix; read them with it", path));
+  }
+}
+
+void checkHead(const h5::InputFile& file, const InputGroup& root) {
+  if (!root.hasAttribute("format") || root.text("format") != kFormat) {
+    throw InputError(fmt::format(
+        "{}: is an HDF5 file of another program; name one written by radiosity", file.path()));
+  }
+  std::int32_t version = 0;
+  root.attribute("format_version", h5::Number::i32, 1, &version);
+  if (version != kFormatVersion) {
+    throw InputError(fmt::format(
+        "{}: has format version {}, this program reads {}; make the file again with this program",
+        file.path(), version, kFormatVersion));
+  }
+}
+
+FormFactors readFactors(const InputGroup& group, bool with_matrix) {
+  FormFactors factors;
+  FieldReader fields(group);
+  describe(fields, factors);
+  if (!with_matrix) return factors;
+  factors.matrix = readMatrix(group);
+  if (factors.matrix.size() != factors.fronts.size()) {
+    group.fail("area", fmt::format("has {} patches, fronts has {}", factors.matrix.size(),
+                                   factors.fronts.size()));
+  }
+  return factors;
+}
+
+void readStages(const InputGroup& root, bool with_factors, Results& results) {
+  results.version = root.text("version");
+  if (root.hasGroup("scene")) {
+    const InputGroup group = root.group("scene");
+    FieldReader fields(group);
+    describe(fields, results.scene.emplace());
+  }
+  std::string mesh_hash;
+  if (root.hasGroup("mesh")) {
+    const InputGroup group = root.group("mesh");
+    results.mesh_key = group.text("key");
+    mesh_hash = group.text("geometry_hash");
+    FieldReader fields(group);
+    describe(fields, results.mesh.emplace().mesh);
+    fields.group("report", [&](auto& report) { describe(report, results.mesh->report); });
+  }
+  if (root.hasGroup("form_factors")) {
+    const InputGroup group = root.group("form_factors");
+    results.factors_key = group.text("key");
+    if (results.mesh && group.text("geometry_hash") != mesh_hash) {
+      group.fail("geometry_hash", "is not that of /mesh: these form factors are of another mesh");
+    }
+    results.factors = readFactors(group, with_factors);
+  }
+  if (root.hasGroup("solution")) {
+    const InputGroup group = root.group("solution");
+    FieldReader fields(group);
+    if (group.hasDataset("reflectance")) describe(fields, results.materials.emplace());
+    if (group.hasDataset("radiosity")) {
+      results.solution_key = group.text("key");
+      describe(fields, results.solution.emplace());
+    }
+  }
+}
+
+}  // namespace
+
+bool isResultsFile(const std::string& path) {
+  constexpr std::array<char, 8> kSignature = {'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
+  std::array<char, 8> start{};
+  std::ifstream file(path, std::ios::binary);
+  return file.read(start.data(), start.size()) && start == kSignature;
+}
+
+Results readResults(const std::string& path, bool with_factors) {
+  const h5::InputFile file(path);
+  const InputGroup root(file);
+  checkHead(file, root);
+  Results results;
+  try {
+    readStages(root, with_factors, results);
+  } catch (const std::bad_alloc&) {
+    throw RunError(fmt::format("{}: does not fit into memory; use a larger machine", path));
+  }
+  checkResults(path, results);
+  return results;
+}
+
+void writeResults(const std::string& path, const Results& results, Progress& progress) {
+  requireMatrix(path, results);
+  AtomicFile target(path);
+  h5::OutputFile file(target.temporary(), path);
+  {
+    OutputGroup root(file);
+    StageWriter<OutputGroup> stages(root, results);
+    stages.head();
+    if (results.scene) stages.scene(*results.scene);
+    std::optional<OutputGroup> mesh;
+    if (results.mesh) mesh = stages.mesh(*results.mesh);
+    if (results.factors) {
+      OutputGroup factors = stages.factors(*results.factors);
+      for (const auto& [name, source] : kMeshLinks) {
+        if (mesh) factors.link(name, *mesh, source);
+      }
+      writeMatrix(factors, results.factors->matrix, progress);
+    }
+    stages.solution();
+  }
+  file.close();
+  target.commit();
+}
+
+std::size_t estimateResultsBytes(const Results& results) {
+  // The superblock, the root and what is left over of the blocks HDF5 takes for metadata.
+  std::size_t bytes = 512;
+  SizeCounter root(bytes);
+  StageWriter<SizeCounter> stages(root, results);
+  stages.head();
+  if (results.scene) stages.scene(*results.scene);
+  if (results.mesh) stages.mesh(*results.mesh);
+  if (results.factors) {
+    SizeCounter factors = stages.factors(*results.factors);
+    for (const auto& link : kMeshLinks) {
+      if (results.mesh) factors.link(link[0]);
+    }
+    countMatrix(factors, results.factors->matrix);
+  }
+  stages.solution();
+  return bytes;
+}
+
+}  // namespace radiosity

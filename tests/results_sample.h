@@ -1,0 +1,324 @@
+// Results with every field filled, each differently, and the comparison of two of them.
+#pragma once
+
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <random>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "radiosity/results.h"
+
+namespace radiosity::sample {
+
+inline Scene scene() {
+  Scene s;
+  s.file = "d\xc3\xa4t\xc3\xa4/room one.obj";
+  s.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 1e-300}, {0, 1, 0.1}, {1e6, -3, 0.3}};
+  s.face_offset = {0, 4, 7};
+  s.corners = {0, 1, 2, 3, 0, 2, 4};
+  s.texcoords = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0.1, 0.2}, {0.3, 0.4}, {-7, 1. / 3}};
+  s.face_surface = {1, 0};
+  s.face_element = {17, 12345678901};
+  s.surfaces = {{"box", 1, "box/red"}, {"", 0, "/white"}};
+  s.materials.resize(2);
+  s.materials[0].name = "white";
+  s.materials[0].texture = 1;
+  s.materials[1] = {"red", {0.5, 1. / 3, 0.1}, {17, 12, 4}, true, kNone};
+  s.textures.push_back({"one.png", 2, 1, {0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 1.f}, false});
+  s.textures.push_back({"two.png", 40, 30, std::vector<float>(40 * 30 * 3, 0.25f), true});
+  s.cameras = {{"front", {1, 2, 3}, {4, 5, 6}, {0, 0, 1}, 0.6, 1.5}, {}};
+  s.unit = "mm";
+  s.notes = {{Severity::loud, "lamp: emits by inheritance"}, {Severity::info, ""}};
+  return s;
+}
+
+/// A plane of side x side unit squares in two surfaces; the first square is two-sided (its back is
+/// the last patch), the second has no area. Not the mesh of scene(): only the file cares.
+inline PatchMesh mesh(Index side) {
+  PatchMesh m;
+  for (Index y = 0; y <= side; ++y) {
+    for (Index x = 0; x <= side; ++x) m.vertices.push_back({x, y, 0.1 * x * y});
+  }
+  m.surface_names = {"box/red", "/white"};
+  m.corner_offset = {0};
+  m.piece_offset = {0};
+  const auto add = [&](std::vector<Index> corners, double area, Index surface, bool back) {
+    const auto k = Index(m.size());
+    m.pieces.push_back({corners[0], corners[1], corners[2]});
+    m.pieces.push_back({corners[0], corners[2], corners[3]});
+    if (area == 0) m.pieces.resize(m.piece_offset.back());
+    m.piece_offset.push_back(m.pieces.size());
+    m.corners.insert(m.corners.end(), corners.begin(), corners.end());
+    m.corner_offset.push_back(m.corners.size());
+    Vec3 centre(0.0);
+    for (const Index v : corners) centre += 0.25 * m.vertices[v];
+    m.centroid.push_back(centre);
+    m.normal.push_back(area > 0 ? Vec3(0, 0, back ? -1 : 1) : Vec3(0.0));
+    m.area.push_back(area);
+    m.polygon.push_back(area > 0 ? surface : kNone);
+    m.surface.push_back(surface);
+    m.index_in_surface.push_back(k);
+    m.source_face.push_back(surface);
+    m.side.push_back(back ? 1 : 0);
+    m.twin.push_back(kNone);
+  };
+  for (Index y = 0; y < side; ++y) {
+    for (Index x = 0; x < side; ++x) {
+      const Index v = y * (side + 1) + x;
+      add({v, v + 1, v + side + 2, v + side + 1}, x + y * side == 1 ? 0 : 1 + 1. / (x + 3),
+          2 * y < side ? 0 : 1, false);
+    }
+  }
+  add({side + 1, side + 2, 1, 0}, m.area[0], 0, true);
+  m.twin[0] = Index(m.size() - 1);
+  m.twin.back() = 0;
+  PlanarPolygons& p = m.polygons;
+  const Index top = side * (side + 1);
+  p.loop_offset = {0, 1, 2};
+  p.corner_offset = {0, 4, 7};
+  p.corners = {0, side, top + side, top, 0, side, top};
+  p.normal = {{0, 0, 1}, {0, 1, 0}};
+  p.origin = {{0, 0, 0}, {0.5, 0.25, 0.125}};
+  p.surface = {0, 1};
+  p.index_in_surface = {3, 4};
+  p.back_is_patch = {1, 0};
+  return m;
+}
+
+inline MeshReport meshReport() {
+  MeshReport r;
+  r.surfaces = {{"box/red", 1, 2, 3, 4, 5}, {"/white", 0.1, 0.2, 0.3, 0.4, 0.5}};
+  r.welded_vertices = 1;
+  r.degenerate_faces = 2;
+  r.duplicate_faces = 3;
+  r.nonplanar_faces = 4;
+  r.largest_deviation = 0.0032;
+  r.cuts = 5;
+  r.split_edges = 6;
+  r.hidden_sides = 7;
+  r.nonmanifold_edges = 8;
+  r.polygons = 9;
+  r.triangles = 10;
+  r.quads = 11;
+  r.t_junctions = 12;
+  r.crossings = 13;
+  r.smallest_angle = 20.5;
+  r.smallest_angle_surface = "box/red";
+  r.longest_edge = 1.25;
+  r.notes = {{Severity::warning, "left wall: not planar by 3.2 mm"}};
+  return r;
+}
+
+/// Rows of all kinds: empty (patch 1), sparse, and, from patch 2 on every fifth, full.
+inline ExchangeMatrix matrix(const PatchMesh& m, Precision precision) {
+  ExchangeMatrix f(m.area, precision);
+  const std::size_t n = m.size();
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> value(1e-9, 1.0 / double(n));
+  for (std::size_t i = 0; i < n; ++i) {
+    std::vector<Index> columns;
+    std::vector<double> values;
+    for (Index j = 0; j < n && i != 1; ++j) {
+      if (j == i || (i % 5 != 2 && random() % 16 != 0)) continue;
+      columns.push_back(j);
+      values.push_back(value(random));
+    }
+    f.setRow(i, columns, values);
+  }
+  return f;
+}
+
+inline FormFactors factors(const PatchMesh& m, Precision precision) {
+  FormFactors f;
+  f.matrix = matrix(m, precision);
+  f.fronts = f.matrix.rowSums();
+  for (std::size_t i = 0; i < m.size(); ++i) {
+    f.backs.push_back(1.0 / double(i + 3));
+    f.sky.push_back(1.0 - 1.0 / double(i + 3) - f.fronts[i]);
+  }
+  f.backs_by_surface = {0.001, 0.25};
+  f.method = "hemicube";
+  FormFactorReport& r = f.report;
+  r.hemicubes = 1;
+  r.empty_rows = 2;
+  r.polygons = 3;
+  r.rasterised_polygons = 4;
+  r.skipped_own_plane = 5;
+  r.skipped_horizon = 6;
+  r.skipped_facing_away = 7;
+  r.skipped_face = 8;
+  r.pixels = 9000000000;
+  r.simd_target = "AVX3";
+  r.seconds = 0.123;
+  r.matrix_bytes = 10;
+  r.estimated_bytes = 11;
+  r.reciprocity_residual = 0.0885;
+  r.largest_row_error = 1e-15;
+  r.closed = true;
+  r.symmetrized = true;
+  r.closure = {12, 0.1, 1e-13, 0.01, 0.02};
+  r.notes = {{Severity::loud, "door: seen from behind: flipped?"}};
+  return f;
+}
+
+inline Solution solution(std::size_t n, int bands) {
+  Solution s;
+  s.bands = bands;
+  for (std::size_t k = 0; k < n * std::size_t(bands); ++k) {
+    s.radiosity.push_back(std::sqrt(double(k)));
+    s.irradiance.push_back(std::cbrt(double(k)) * 1e-200);
+  }
+  SolveSummary& r = s.summary;
+  r.status = SolveStatus::no_convergence;
+  r.iterations = 42;
+  r.residual = 1.0 / 3;
+  r.error_bound = 2.5;
+  const auto filled = [bands](double v) { return std::vector<double>(std::size_t(bands), v); };
+  r.energy = {filled(1), filled(2), filled(3), filled(4), filled(-1e-17)};
+  r.seconds = 7.5;
+  r.residual_history = {1, 0.5, 0.25};
+  r.message = "not converged after 42 sweeps";
+  return s;
+}
+
+inline Results results(Index side, Precision precision, int bands = 3) {
+  Results r;
+  r.version = "0.1.0";
+  r.scene = scene();
+  r.mesh = {mesh(side), meshReport()};
+  r.mesh_key = "patches=100";
+  r.factors = factors(r.mesh->mesh, precision);
+  r.factors_key = "patches=100 resolution=256";
+  const std::size_t n = r.mesh->mesh.size();
+  r.materials = {std::vector<Vec3>(n, {0.1, 0.2, 0.3}), std::vector<Vec3>(n, {0, 1e-9, 17})};
+  r.solution = solution(n, bands);
+  r.solution_key = "tolerance=1e-6";
+  return r;
+}
+
+// Every struct as the tuple of its members. A structured binding must name all of them: a member
+// added to a struct stops this from compiling until file and comparison know it.
+inline auto members(const Note& s) {
+  const auto& [a, b] = s;
+  return std::tie(a, b);
+}
+inline auto members(const Texture& s) {
+  const auto& [a, b, c, d, e] = s;
+  return std::tie(a, b, c, d, e);
+}
+inline auto members(const Material& s) {
+  const auto& [a, b, c, d, e] = s;
+  return std::tie(a, b, c, d, e);
+}
+inline auto members(const Surface& s) {
+  const auto& [a, b, c] = s;
+  return std::tie(a, b, c);
+}
+inline auto members(const Camera& s) {
+  const auto& [a, b, c, d, e, f] = s;
+  return std::tie(a, b, c, d, e, f);
+}
+inline auto members(const Scene& s) {
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m);
+}
+inline auto members(const PlanarPolygons& s) {
+  const auto& [a, b, c, d, e, f, g, h] = s;
+  return std::tie(a, b, c, d, e, f, g, h);
+}
+inline auto members(const PatchMesh& s) {
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p);
+}
+inline auto members(const SurfaceAreas& s) {
+  const auto& [a, b, c, d, e, f] = s;
+  return std::tie(a, b, c, d, e, f);
+}
+inline auto members(const MeshReport& s) {
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t);
+}
+inline auto members(const MeshResult& s) {
+  const auto& [a, b] = s;
+  return std::tie(a, b);
+}
+inline auto members(const ClosureReport& s) {
+  const auto& [a, b, c, d, e] = s;
+  return std::tie(a, b, c, d, e);
+}
+inline auto members(const FormFactorReport& s) {
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t);
+}
+inline auto members(const FormFactors& s) {
+  const auto& [a, b, c, d, e, f, g] = s;
+  return std::tie(a, b, c, d, e, f, g);
+}
+inline auto members(const PatchMaterials& s) {
+  const auto& [a, b] = s;
+  return std::tie(a, b);
+}
+inline auto members(const EnergyAccount& s) {
+  const auto& [a, b, c, d, e] = s;
+  return std::tie(a, b, c, d, e);
+}
+inline auto members(const SolveSummary& s) {
+  const auto& [a, b, c, d, e, f, g, h] = s;
+  return std::tie(a, b, c, d, e, f, g, h);
+}
+inline auto members(const Solution& s) {
+  const auto& [a, b, c, d] = s;
+  return std::tie(a, b, c, d);
+}
+inline auto members(const Results& s) {
+  const auto& [a, b, c, d, e, f, g, h, i] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i);
+}
+
+template <class T>
+bool same(const T& a, const T& b);
+template <class T>
+bool same(const std::vector<T>& a, const std::vector<T>& b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    if (!same(a[k], b[k])) return false;
+  }
+  return true;
+}
+template <class T>
+bool same(const std::optional<T>& a, const std::optional<T>& b) {
+  return a.has_value() == b.has_value() && (!a || same(*a, *b));
+}
+/// Value for value to the bit, stored alike.
+inline bool same(const ExchangeMatrix& a, const ExchangeMatrix& b) {
+  if (a.size() != b.size() || a.precision() != b.precision() || a.denseRows() != b.denseRows() ||
+      a.nonZeros() != b.nonZeros() || a.bytes() != b.bytes()) {
+    return false;
+  }
+  using Entries = std::vector<std::pair<Index, double>>;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    Entries left;
+    Entries right;
+    a.forRow(i, [&](Index j, double f) { left.emplace_back(j, f); });
+    b.forRow(i, [&](Index j, double f) { right.emplace_back(j, f); });
+    if (left != right || a.area()[i] != b.area()[i]) return false;
+  }
+  return true;
+}
+template <class T>
+bool same(const T& a, const T& b) {
+  if constexpr (requires { members(a); }) {
+    const auto left = members(a);
+    const auto right = members(b);
+    return [&]<std::size_t... K>(std::index_sequence<K...>) {
+      return (same(std::get<K>(left), std::get<K>(right)) && ...);
+    }(std::make_index_sequence<std::tuple_size_v<decltype(left)>>{});
+  } else {
+    return a == b;
+  }
+}
+
+}  // namespace radiosity::sample
