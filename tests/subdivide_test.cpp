@@ -2,8 +2,8 @@
 // brute-force conformity and shape, never against an earlier run.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <functional>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 #include <map>
@@ -121,6 +121,7 @@ struct Shape {
   std::string name;
   std::vector<std::vector<Vec2>> loops;
   std::vector<std::array<Vec2, 2>> inner = {};
+  std::size_t fewest = 1;  ///< fewer cells cannot be had without small angles
 };
 
 std::vector<Shape> goodShapes() {
@@ -143,6 +144,11 @@ std::vector<Shape> goodShapes() {
        {square(0, 1)},
        {{Vec2(0.3, 0.3), Vec2(0.7, 0.5)}, {Vec2(0.7, 0.5), Vec2(0.6, 0.8)}}},
       {"vertex in a side", {{{0, 0}, {0.37, 0}, {1, 0}, {1, 1}, {0, 1}}}},
+      {"vertex near a corner", {{{0, 0}, {0.01, 0}, {1, 0}, {1, 1}, {0, 1}}}},
+      {"notch",
+       {{{0, 0}, {1, 0}, {1, 1}, {0.6, 1}, {0.6, 0.97}, {0.55, 0.97}, {0.55, 1}, {0, 1}}},
+       {},
+       100},
   };
 }
 
@@ -160,6 +166,7 @@ double areaOf(const Shape& shape) {
 TEST(Subdivide, GoodShapesStayGoodAtEverySize) {
   for (const Shape& shape : goodShapes()) {
     for (const std::size_t wanted : {20u, 300u, 3000u}) {
+      if (wanted < shape.fewest) continue;
       SCOPED_TRACE(shape.name + " " + std::to_string(wanted));
       CoarseBuilder input;
       addShape(input, shape);
@@ -386,6 +393,71 @@ TEST(Subdivide, SourceFaceIsTheOneUnderTheCentroid) {
     const Vec3& c = mesh.centroid[i];
     if (std::abs(c.x - 0.5) < 1e-9 || std::abs(c.y - 0.5) < 1e-9) continue;  // on a seam
     EXPECT_EQ(mesh.source_face[i], (c.x > 0.5 ? 1u : 0u) + (c.y > 0.5 ? 2u : 0u));
+  }
+}
+
+TEST(Subdivide, ManySmallPolygonsLeaveLargeOnesCut) {
+  // A wall of 16 m^2 above 400 loose tiles of 1 cm: 50 patches are not to be had. Shared out evenly
+  // the wall's patches would be 0.57 m wide; at most three times that is still 3 x 3 of them.
+  CoarseBuilder input;
+  const Index wall = input.surface("wall");
+  const Index tiles = input.surface("tiles");
+  input.flat(wall, {square(0, 4)});
+  for (int x = 0; x < 20; ++x) {
+    for (int y = 0; y < 20; ++y) {
+      const double u = 0.2 * x;
+      const double v = 0.2 * y;
+      input.polygon(tiles,
+                    {{{u, v, 1}, {u + 0.01, v, 1}, {u + 0.01, v + 0.01, 1}, {u, v + 0.01, 1}}});
+    }
+  }
+  const auto [mesh, report] = subdivided(input, count(50));
+  EXPECT_EQ(std::count(mesh.surface.begin(), mesh.surface.end(), tiles), 400);
+  EXPECT_GE(std::count(mesh.surface.begin(), mesh.surface.end(), wall), 4);
+  ASSERT_EQ(report.notes.size(), 1u);
+  EXPECT_NE(report.notes[0].text.find("instead of 50"), std::string::npos);
+}
+
+TEST(Subdivide, QuadrilateralsThatNarrowDoNotDragFinenessAlong) {
+  // A cone of 40 slender frustum sides: each ring is narrower than the last by a factor 1.4, so the
+  // chain of opposite edges spans 1.4^6 = 7.5. Cut alike throughout, the top would be 7 times too
+  // fine.
+  CoarseBuilder input;
+  const Index s = input.surface("cone");
+  const auto ring = [](int level, int k) {
+    const double r = 10 / std::pow(1.4, level);
+    const double a = 2 * M_PI * k / 40;
+    return Vec3(r * std::cos(a), r * std::sin(a), 12 - r);
+  };
+  for (int level = 0; level < 6; ++level) {
+    for (int k = 0; k < 40; ++k) {
+      // The flat side between two rings is an isosceles trapezoid.
+      input.polygon(s, {{ring(level, k), ring(level, (k + 1) % 40), ring(level + 1, (k + 1) % 40),
+                         ring(level + 1, k)}});
+    }
+  }
+  const auto [mesh, report] = subdivided(input, edge(0.4));
+  EXPECT_EQ(report.t_junctions, 0u);
+  EXPECT_GE(smallestAngle(mesh), 20.0);
+  expectGoodPatches(mesh);
+  double shortest = 10;
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    const auto outline = mesh.outline(i);
+    for (std::size_t k = 0; k < outline.size(); ++k) {
+      shortest = std::min(shortest, glm::length(mesh.vertices[outline[k]] -
+                                                mesh.vertices[outline[(k + 1) % outline.size()]]));
+    }
+  }
+  EXPECT_GT(shortest, 0.4 / 4);
+}
+
+TEST(Subdivide, SharpCornerKeepsItsPointsOffTheOtherEdge) {
+  // Near the tip the sides are closer than the coincidence: points there would be T-junctions.
+  for (const double height : {1e-6, 3e-6, 1e-4}) {
+    CoarseBuilder input;
+    input.flat(input.surface("needle"), {{{0, 0}, {1, 0}, {0.3, height}}});
+    const auto [mesh, report] = subdivided(input, edge(0.01));
+    EXPECT_EQ(bruteForceTJunctions(mesh, 1e-7), 0u) << height;
   }
 }
 

@@ -13,9 +13,8 @@ namespace radiosity {
 
 namespace {
 
-// Chains of quadrilaterals that widen or narrow (the rings of a sphere) are cut alike only as long
-// as the lengths stay within this factor: beyond, one end of the chain would be far too fine.
-constexpr double kLargestRatioInClass = 2.0;
+// A piece may be this much longer than the one next to it along a polygon's outline.
+constexpr double kLargestStep = 3.0;
 
 }  // namespace
 
@@ -33,14 +32,17 @@ EdgeCuts::EdgeCuts(const CoarseComplex& complex) : complex_(complex) {
     }
     for (const auto& [from, to] : polygon.inner_edges) add(from, to);
   }
-  classes_ = UnionFind(ends_.size());
-  class_shortest_ = class_longest_ = length_;
+  classes_ = EdgeClasses(length_);
   for (std::size_t p = 0; p < polygons; ++p) {
     const CoarsePolygon& polygon = complex.polygons[p];
     if (polygon.loops.size() != 1 || !polygon.inner_edges.empty()) continue;
-    four_sides_[p] = findFourSides(complex, polygon.loops[0], loops_[p][0]);
-    if (four_sides_[p]) joinOpposite(*four_sides_[p]);
+    if (const auto sides = findFourSides(complex, polygon.loops[0], loops_[p][0])) {
+      joinOpposite(*sides);
+      four_sides_[p] = sides;
+    }
   }
+  classes_.orient();
+  limitAtSharpCorners();
 }
 
 DirectedEdge EdgeCuts::add(Index from, Index to) {
@@ -58,23 +60,93 @@ DirectedEdge EdgeCuts::find(Index from, Index to) const {
   return {index_.at(edgeKey(from, to)), from > to};
 }
 
-void EdgeCuts::join(Index a, Index b) {
-  a = classes_.find(a);
-  b = classes_.find(b);
-  const double shortest = std::min(class_shortest_[a], class_shortest_[b]);
-  const double longest = std::max(class_longest_[a], class_longest_[b]);
-  if (longest > kLargestRatioInClass * shortest) return;
-  classes_.unite(a, b);
-  class_shortest_[classes_.find(a)] = shortest;
-  class_longest_[classes_.find(a)] = longest;
-}
-
 void EdgeCuts::joinOpposite(const FourSides& sides) {
   for (std::size_t k = 0; k < 2; ++k) {
     const auto& side = sides.edges[k];
     const auto& opposite = sides.edges[k + 2];
     for (std::size_t i = 0; i < side.size(); ++i) {
-      join(side[i].edge, opposite[opposite.size() - 1 - i].edge);
+      const DirectedEdge& a = side[i];
+      const DirectedEdge& b = opposite[opposite.size() - 1 - i];
+      // Around the loop opposite sides run against each other.
+      classes_.join(a.edge, b.edge, a.reversed == b.reversed);
+    }
+  }
+}
+
+/// Where two edges leave a vertex at a small angle, points on them must keep so far from it that
+/// they do not lie on the other edge.
+void EdgeCuts::limitAtSharpCorners() {
+  least_start_.assign(ends_.size(), 0.0);
+  for (std::size_t p = 0; p < loops_.size(); ++p) {
+    for (std::size_t l = 0; l < loops_[p].size(); ++l) {
+      const auto& loop = complex_.polygons[p].loops[l];
+      const std::size_t n = loop.size();
+      for (std::size_t k = 0; k < n; ++k) {
+        const Vec3& corner = complex_.vertices[loop[k]];
+        const Vec3 back = complex_.vertices[loop[(k + n - 1) % n]] - corner;
+        const Vec3 ahead = complex_.vertices[loop[(k + 1) % n]] - corner;
+        if (glm::dot(back, ahead) <= 0) continue;
+        const double sine =
+            glm::length(glm::cross(back, ahead)) / (glm::length(back) * glm::length(ahead));
+        for (const std::size_t e : {(k + n - 1) % n, k}) {
+          double& least = least_start_[classes_.of(loops_[p][l][e].edge)];
+          least = std::max(least, 2 * complex_.coincidence / sine);
+        }
+      }
+    }
+  }
+}
+
+void EdgeCuts::countPieces(Rounding rounding) {
+  double total = 0;
+  for (Index e = 0; e < ends_.size(); ++e) {
+    const Index cls = classes_.of(e);
+    const double count = pieceCount(classes_.longest(cls), wanted_[cls], rounding);
+    total += count;
+    if (!(total <= kMostPatches)) {
+      throw InputError(fmt::format(
+          "patches of size {:g} m would cut the scene's edges into more than {:g} pieces; "
+          "ask for fewer patches or a longer edge",
+          wanted_[cls].size, kMostPatches));
+    }
+    pieces_[e] = std::size_t(count);
+  }
+}
+
+bool EdgeCuts::isGrid(std::size_t polygon) const {
+  if (!four_sides_[polygon]) return false;
+  const auto count = [&](std::size_t side) {
+    std::size_t sum = 0;
+    for (const DirectedEdge& e : four_sides_[polygon]->edges[side]) sum += pieces_[e.edge];
+    return sum;
+  };
+  return count(0) == count(2) && count(1) == count(3);
+}
+
+void EdgeCuts::wantAtEnd(DirectedEdge edge, bool at_last, double size) {
+  const Index cls = classes_.of(edge.edge);
+  const double scale = classes_.longest(cls) / length_[edge.edge];
+  const double wanted = std::max(size * scale, least_start_[cls]);
+  const bool at_end = at_last != (edge.reversed != classes_.opposed(edge.edge));
+  EdgeSize& s = wanted_[cls];
+  if (at_end || classes_.twisted(cls)) s.end = std::min(s.end, wanted);
+  if (!at_end || classes_.twisted(cls)) s.start = std::min(s.start, wanted);
+}
+
+/// Edges that are not cut at all are features themselves and stay whole.
+void EdgeCuts::gradeTowardsShortPieces() {
+  const auto pieceOf = [&](DirectedEdge e) { return length_[e.edge] / double(pieces_[e.edge]); };
+  for (std::size_t p = 0; p < loops_.size(); ++p) {
+    if (isGrid(p)) continue;
+    for (const auto& loop : loops_[p]) {
+      for (std::size_t k = 0; k < loop.size(); ++k) {
+        const DirectedEdge before = loop[k];
+        const DirectedEdge after = loop[(k + 1) % loop.size()];
+        const double a = pieceOf(before);
+        const double b = pieceOf(after);
+        if (pieces_[before.edge] > 1 && a > kLargestStep * b) wantAtEnd(before, true, b);
+        if (pieces_[after.edge] > 1 && b > kLargestStep * a) wantAtEnd(after, false, a);
+      }
     }
   }
 }
@@ -83,28 +155,25 @@ void EdgeCuts::cut(double size, Rounding rounding) {
   const std::size_t edges = ends_.size();
   pieces_.resize(edges);
   first_point_.resize(edges);
-  double total = 0;
+  wanted_.assign(edges, EdgeSize{size});
   for (Index e = 0; e < edges; ++e) {
-    // A length that is a multiple of `size` but for rounding must not get a piece more.
-    const double ratio = class_longest_[classes_.find(e)] / size;
-    const double count = rounding == Rounding::at_most ? std::ceil(ratio * (1 - 1e-12))
-                                                       : std::round(ratio * (1 + 1e-12));
-    total += std::max(1.0, count);
-    if (!(total <= kMostPatches)) {
-      throw InputError(fmt::format(
-          "patches of size {:g} m would cut the scene's edges into more than {:g} pieces; "
-          "ask for fewer patches or a longer edge",
-          size, kMostPatches));
-    }
-    pieces_[e] = std::size_t(std::max(1.0, count));
+    const double least = least_start_[classes_.of(e)];
+    if (least > 0) wanted_[e].most_pieces = classes_.longest(classes_.of(e)) / least;
   }
+  countPieces(rounding);
+  gradeTowardsShortPieces();
+  countPieces(rounding);
   edge_points_.clear();
   for (Index e = 0; e < edges; ++e) {
     first_point_[e] = edge_points_.size();
-    const Vec3& a = complex_.vertices[ends_[e][0]];
-    const Vec3 along = complex_.vertices[ends_[e][1]] - a;
-    for (std::size_t k = 1; k < pieces_[e]; ++k) {
-      edge_points_.push_back(a + along * (double(k) / double(pieces_[e])));
+    const Index cls = classes_.of(e);
+    const Vec3& a = complex_.vertices[ends_[e][classes_.opposed(e) ? 1 : 0]];
+    const Vec3& b = complex_.vertices[ends_[e][classes_.opposed(e) ? 0 : 1]];
+    for (const double t : cutFractions(classes_.longest(cls), wanted_[cls], double(pieces_[e]))) {
+      edge_points_.push_back(a + (b - a) * t);
+    }
+    if (classes_.opposed(e)) {
+      std::reverse(edge_points_.begin() + std::ptrdiff_t(first_point_[e]), edge_points_.end());
     }
   }
 }

@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "mesh/complex.h"
-#include "mesh/union_find.h"
+#include "mesh/edge_classes.h"
+#include "mesh/edge_grading.h"
 
 namespace radiosity {
 
@@ -26,16 +27,17 @@ struct FourSides {
   std::array<Index, 4> corners;
 };
 
-/// Every distinct edge (of loops and inner edges) of a complex. cut() divides each into equal
-/// pieces. Opposite edges of four-sided polygons get the same number of pieces, so that these
-/// polygons can become grids.
+/// Every distinct edge (of loops and inner edges) of a complex, cut once for all polygons. Pieces
+/// are equal, except where one more than three times as long as its neighbour along the outline of
+/// a polygon that cannot be a grid would force flat triangles on it: there they grow by steps.
+/// Opposite edges of four-sided polygons are cut alike, so that these can become grids.
 class EdgeCuts {
  public:
   explicit EdgeCuts(const CoarseComplex& complex);
 
-  /// Pieces no longer than `size` (ceil) or as near to `size` as can be (round). Throws InputError
-  /// where that makes more than kMostPatches pieces.
-  enum class Rounding { at_most, nearest };
+  /// Pieces no longer than `size`, or as near to it as can be; an edge at a corner so sharp that
+  /// its first point would lie on the other edge (within the coincidence) gets fewer. Throws
+  /// InputError where that makes more than kMostPatches pieces.
   void cut(double size, Rounding rounding);
 
   /// Points of the current cut: ids below vertexCount() are the complex's vertices, the others are
@@ -53,8 +55,6 @@ class EdgeCuts {
   }
   DirectedEdge find(Index from, Index to) const;
   Index lastOf(DirectedEdge e) const { return ends_[e.edge][e.reversed ? 0 : 1]; }
-  std::size_t pieces(Index edge) const { return pieces_[edge]; }
-  double length(Index edge) const { return length_[edge]; }
 
   /// Set where the polygon is a convex quadrilateral, opposite sides nearly alike, without holes
   /// or inner edges.
@@ -64,8 +64,12 @@ class EdgeCuts {
 
  private:
   DirectedEdge add(Index from, Index to);
-  void join(Index a, Index b);
   void joinOpposite(const FourSides& sides);
+  void limitAtSharpCorners();
+  void countPieces(Rounding rounding);
+  bool isGrid(std::size_t polygon) const;
+  void gradeTowardsShortPieces();
+  void wantAtEnd(DirectedEdge edge, bool at_last, double size);
 
   const CoarseComplex& complex_;
   std::unordered_map<std::uint64_t, Index> index_;
@@ -73,9 +77,9 @@ class EdgeCuts {
   std::vector<double> length_;
   std::vector<std::vector<std::vector<DirectedEdge>>> loops_;  ///< polygon, loop
   std::vector<std::optional<FourSides>> four_sides_;
-  UnionFind classes_{0};                ///< edges that are cut alike
-  std::vector<double> class_shortest_;  ///< of a class's root
-  std::vector<double> class_longest_;
+  EdgeClasses classes_{{}};
+  std::vector<EdgeSize> wanted_;     ///< by class
+  std::vector<double> least_start_;  ///< by class: first piece at a sharp corner, metres
   std::vector<std::size_t> pieces_;
   std::vector<std::size_t> first_point_;  ///< edge -> into edge_points_
   std::vector<Vec3> edge_points_;

@@ -44,7 +44,7 @@ class PatchTexture {
       : scene_(scene), mesh_(mesh), textures_(textures) {}
 
   /// The area mean of the texture over patch i. `faces`: those that may lie under it.
-  Vec3 mean(std::size_t i, std::vector<Index> faces) const {
+  Vec3 mean(std::size_t i, const std::vector<Index>& faces) const {
     const Index surface = mesh_.surface[i];
     const TextureMean& texture =
         textures_[scene_.materials[scene_.surfaces[surface].material].texture];
@@ -93,6 +93,7 @@ class PatchTexture {
   std::vector<Mapped> flattened(Index face, const PlaneFrame& frame) const {
     const auto outline = scene_.face(face);
     std::vector<Vec2> flat;
+    flat.reserve(outline.size());
     for (const Index v : outline) flat.push_back(frame.flat(scene_.vertices[v]));
     std::vector<Mapped> result;
     const Vec2* uv = scene_.texcoords.data() + scene_.face_offset[face];
@@ -109,6 +110,7 @@ class PatchTexture {
   void add(const TextureMean& texture, const Mapped& triangle, const std::array<Index, 3>& piece,
            const PlaneFrame& frame, Sum& sum) const {
     std::vector<Vec2> part;
+    part.reserve(piece.size());
     std::vector<Vec2> scratch;
     for (const Index v : piece) part.push_back(frame.flat(mesh_.vertices[v]));
     for (std::size_t k = 0; k < 3; ++k) {
@@ -205,6 +207,7 @@ PatchMaterials patchMaterials(const Scene& scene, const PatchMesh& mesh) {
   result.reflectance.resize(mesh.size());
   result.emission.resize(mesh.size());
   std::vector<TextureMean> textures;
+  textures.reserve(scene.textures.size());
   for (const Texture& texture : scene.textures) textures.emplace_back(texture);
   const PatchTexture patch_texture(scene, mesh, textures);
   const std::vector<std::vector<Index>> near = facesNear(scene, mesh);

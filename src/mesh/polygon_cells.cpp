@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <unordered_map>
 
@@ -24,15 +25,29 @@ std::vector<double> fractions(const EdgeCuts& cuts, const std::vector<Index>& si
   const Vec3 start = cuts.point(side.front());
   const double length = glm::length(cuts.point(side.back()) - start);
   std::vector<double> result;
+  result.reserve(side.size());
   for (Index id : side) result.push_back(glm::length(cuts.point(id) - start) / length);
   return result;
 }
 
+/// Whether two opposite sides have their points in the same places.
+bool cutAlike(const CoarseComplex& complex, const EdgeCuts& cuts, const std::vector<Index>& side,
+              const std::vector<Index>& opposite) {
+  if (side.size() != opposite.size()) return false;
+  const std::vector<double> s = fractions(cuts, side);
+  const std::vector<double> t = fractions(cuts, {opposite.rbegin(), opposite.rend()});
+  const double length = glm::length(cuts.point(side.back()) - cuts.point(side.front()));
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    // Sides divided alike within the coincidence, or by the same fractions but for rounding.
+    if (std::abs(s[k] - t[k]) * length > complex.coincidence + 1e-12 * length) return false;
+  }
+  return true;
+}
+
 /// The bilinear grid over the four corners. Lines of constant s or t are straight, so that every
 /// cell of a convex quadrilateral is convex.
-PolygonCells gridCells(const EdgeCuts& cuts, const FourSides& sides) {
-  std::array<std::vector<Index>, 4> points;
-  for (std::size_t k = 0; k < 4; ++k) points[k] = sidePoints(cuts, sides.edges[k]);
+PolygonCells gridCells(const EdgeCuts& cuts, const FourSides& sides,
+                       const std::array<std::vector<Index>, 4>& points) {
   const std::size_t columns = points[0].size();
   const std::size_t rows = points[1].size();
   const std::vector<double> s = fractions(cuts, points[0]);
@@ -130,13 +145,18 @@ class RegionBuilder {
 PolygonCells cellsOf(const CoarseComplex& complex, const EdgeCuts& cuts, std::size_t polygon,
                      const CellSize& size) {
   if (const auto& sides = cuts.fourSides(polygon)) {
-    const auto pieces = [&](std::size_t k) { return sidePoints(cuts, sides->edges[k]).size(); };
-    if (pieces(0) == pieces(2) && pieces(1) == pieces(3)) return gridCells(cuts, *sides);
+    std::array<std::vector<Index>, 4> points;
+    for (std::size_t k = 0; k < 4; ++k) points[k] = sidePoints(cuts, sides->edges[k]);
+    if (cutAlike(complex, cuts, points[0], points[2]) &&
+        cutAlike(complex, cuts, points[1], points[3])) {
+      return gridCells(cuts, *sides, points);
+    }
   }
   RegionBuilder builder(complex, cuts, polygon);
   Region& region = builder.region();
   region.size = size.size;
   region.longest = size.longest;
+  region.clearance = 2 * complex.coincidence;
   RegionMesh mesh = meshRegion(region);
   PolygonCells result;
   result.cells = std::move(mesh.cells);

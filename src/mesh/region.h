@@ -18,6 +18,7 @@ struct Region {
   Vec2 along{1.0, 0.0};                     ///< unit; the background grid follows it
   double size = 0;                          ///< wanted distance of points inside
   double longest = std::numeric_limits<double>::infinity();  ///< no new edge is longer
+  double clearance = 0;  ///< new points keep farther than this from all pieces
 };
 
 /// A triangle (last entry kNone) or a convex quadrilateral, counter-clockwise.

@@ -82,6 +82,11 @@ std::vector<Vec2> candidatesFor(const Vec2 (&p)[3]) {
   return candidates;
 }
 
+/// The distance of p from the line through a and b.
+double heightOver(const Vec2& p, const Vec2& a, const Vec2& b) {
+  return std::abs(cross2(b - a, p - a)) / glm::length(b - a);
+}
+
 class RegionMesher {
  public:
   explicit RegionMesher(const Region& region) : region_(region) {
@@ -91,7 +96,7 @@ class RegionMesher {
       }
     }
     interior_ = backgroundGrid(region);
-    budget_ = 2 * (region.points.size() + interior_.size()) + 32;
+    budget_ = region.points.size() + interior_.size() + 32;
   }
 
   RegionMesh run() {
@@ -130,6 +135,8 @@ class RegionMesher {
   bool relax(Vertex v);
   double smallestAround(Vertex v);
   bool shorten(const std::vector<Cell>& cells);
+  double longestPiece() const;
+  bool isClear(const Vec2& p, Face near);
   void takePositions();
   std::vector<std::array<Index, 3>> triangles() const;
 
@@ -266,7 +273,9 @@ RegionMesher::Trial RegionMesher::tryPoint(const Cdt::Point& p, Face bad) {
     const Vec2 b = positionOf(f->vertex(Cdt::cw(side)));
     const Vec2 q(p.x(), p.y());
     after = std::min(after, smallestOf(q, a, b));
-    if (f->is_constrained(side) && glm::dot(a - q, b - q) < 0) trial.clear = false;
+    if (!f->is_constrained(side)) continue;
+    if (glm::dot(a - q, b - q) < 0) trial.clear = false;
+    if (heightOver(q, a, b) <= region_.clearance) return {};
   }
   if (after >= kAcceptedAngle && after >= before + kWorthwhile) trial.gain = after;
   return trial;
@@ -358,12 +367,40 @@ void RegionMesher::smooth() {
   }
 }
 
+double RegionMesher::longestPiece() const {
+  double longest = 0;
+  const auto measure = [&](Index a, Index b) {
+    longest = std::max(longest, glm::length(region_.points[b] - region_.points[a]));
+  };
+  for (const auto& loop : region_.loops) {
+    for (std::size_t k = 0; k < loop.size(); ++k) measure(loop[k], loop[(k + 1) % loop.size()]);
+  }
+  for (const auto& [from, to] : region_.inner) measure(from, to);
+  return longest;
+}
+
+/// Whether a point would be farther than the clearance from the pieces around it.
+bool RegionMesher::isClear(const Vec2& p, Face near) {
+  std::vector<Cdt::Edge> rim;
+  const Face where = cdt_.locate(pointOf(p), near);
+  if (cdt_.is_infinite(where) || !where->info()) return false;
+  cdt_.get_boundary_of_conflicts(pointOf(p), std::back_inserter(rim), where);
+  return std::ranges::all_of(rim, [&](const Cdt::Edge& edge) {
+    const auto& [f, i] = edge;
+    return !f->is_constrained(i) ||
+           heightOver(p, positionOf(f->vertex(Cdt::ccw(i))), positionOf(f->vertex(Cdt::cw(i)))) >
+               region_.clearance;
+  });
+}
+
 /// Cuts inside edges of cells that are too long at their middle. False: there are none.
 bool RegionMesher::shorten(const std::vector<Cell>& cells) {
   if (!std::isfinite(region_.longest)) return false;
   std::vector<Vertex> vertices(region_.points.size() + interior_.size());
   for (Vertex v : cdt_.finite_vertex_handles()) vertices[v->info()] = v;
-  const double limit = region_.longest * (1 + 1e-9);  // an edge that was meant to be as long
+  // Edges that were meant to be as long, but for rounding, and edges beside pieces that are longer
+  // (of corners too sharp to be cut), stay.
+  const double limit = std::max(region_.longest * (1 + 1e-9), longestPiece());
   bool found = false;
   for (const Cell& cell : cells) {
     const std::size_t corners = cell[3] == kNone ? 3 : 4;
@@ -374,7 +411,9 @@ bool RegionMesher::shorten(const std::vector<Cell>& cells) {
       int i = 0;
       if (glm::length(positionOf(a) - positionOf(b)) <= limit) continue;
       if (!cdt_.is_edge(a, b, f, i) || f->is_constrained(i)) continue;
-      insert(pointOf(0.5 * (positionOf(a) + positionOf(b))), f);
+      const Vec2 middle = 0.5 * (positionOf(a) + positionOf(b));
+      if (!isClear(middle, f)) continue;
+      insert(pointOf(middle), f);
       found = true;
     }
   }

@@ -5,7 +5,8 @@
 
 namespace radiosity {
 
-double sizeForCount(double start, double wanted, const std::function<double(double)>& count) {
+double sizeForCount(double start, double largest, double wanted,
+                    const std::function<double(double)>& count) {
   constexpr int kMostCalls = 8;
   constexpr double kCloseEnough = 0.02;
   double too_fine = 0;  // largest size known to give too many
@@ -30,7 +31,8 @@ double sizeForCount(double start, double wanted, const std::function<double(doub
     // Newton's step on log(count) = -2 log(size) + c, kept inside the bracket.
     double next = size * std::clamp(std::sqrt(n / wanted), 0.25, 4.0);
     if (next <= too_fine || next >= too_coarse) next = std::sqrt(too_fine * too_coarse);
-    size = next;
+    if (size == largest && next >= largest) break;
+    size = std::min(next, largest);
   }
   return best;
 }

@@ -7,9 +7,10 @@
 
 namespace radiosity {
 
-/// The size for which count(size) is nearest to `wanted`, starting at `start`; count falls about
-/// as size^-2, in steps. Stops within 2% of `wanted`, where the count no longer changes, or after 8
-/// calls. The last call of `count` is not always the returned size.
-double sizeForCount(double start, double wanted, const std::function<double(double)>& count);
+/// The size up to `largest` for which count(size) is nearest to `wanted`, starting at `start`;
+/// count falls about as size^-2, in steps. Stops within 2% of `wanted`, where the count no longer
+/// changes, or after 8 calls. The last call of `count` is not always the returned size.
+double sizeForCount(double start, double largest, double wanted,
+                    const std::function<double(double)>& count);
 
 }  // namespace radiosity

@@ -17,9 +17,10 @@ namespace radiosity {
 
 namespace {
 
-// Inside polygons, points this much closer than the longest edge allowed: the band between the
-// background grid and the boundary is up to 1.6 spacings wide.
-constexpr double kInsideShare = 1.0;
+// Where thousands of small polygons use up the patches asked for, walls are still cut: cells are at
+// most this much larger than if all area were shared out evenly.
+constexpr double kLargestSize = 3.0;
+constexpr double kMuchMore = 1.15;
 
 double areaOf(const CoarseComplex& complex) {
   double area = 0;
@@ -53,7 +54,7 @@ class Subdivision {
       : complex_(complex), scene_(scene), progress_(progress), cuts_(complex) {}
 
   /// Cells of every polygon; returns how many there are.
-  std::size_t run(const CellSize& size, EdgeCuts::Rounding rounding) {
+  std::size_t run(const CellSize& size, Rounding rounding) {
     progress_.check();
     progress_.begin("cutting into patches", complex_.polygons.size());
     cuts_.cut(std::isfinite(size.longest) ? size.longest : size.size, rounding);
@@ -70,13 +71,14 @@ class Subdivision {
       progress_.advance();
     });
     progress_.end();
-    std::size_t count = 0;
+    count_ = 0;
     for (std::size_t p = 0; p < cells_.size(); ++p) {
-      count += cells_[cellSource(complex_, p)].cells.size();
+      count_ += cells_[cellSource(complex_, p)].cells.size();
     }
-    return count;
+    return count_;
   }
 
+  double count() const { return double(count_); }
   const EdgeCuts& cuts() const { return cuts_; }
   const std::vector<PolygonCells>& cells() const { return cells_; }
 
@@ -86,6 +88,7 @@ class Subdivision {
   Progress& progress_;
   EdgeCuts cuts_;
   std::vector<PolygonCells> cells_;
+  std::size_t count_ = 0;
 };
 
 void refuseTooMany(double area, double size) {
@@ -109,22 +112,28 @@ PatchMesh subdivide(const CoarseComplex& complex, const Scene& scene, const Mesh
   }
   Subdivision subdivision(complex, scene, progress);
   if (options.max_edge > 0) {
-    const double inside = kInsideShare * options.max_edge;
-    refuseTooMany(area, inside);
-    subdivision.run({inside, options.max_edge}, EdgeCuts::Rounding::at_most);
+    refuseTooMany(area, options.max_edge);
+    subdivision.run({options.max_edge, options.max_edge}, Rounding::at_most);
   } else {
     const double none = std::numeric_limits<double>::infinity();
     double last = 0;
     const auto count = [&](double size) {
       last = size;
-      return double(subdivision.run({size, none}, EdgeCuts::Rounding::nearest));
+      return double(subdivision.run({size, none}, Rounding::nearest));
     };
     const double wanted = double(options.patches);
     // A wide polygon has area / size^2 cells, a thin one half its outline / size: as many as a
     // square at a quarter.
     const double start = std::max(std::sqrt(area / wanted), outlineOf(complex) / (4 * wanted));
-    const double size = sizeForCount(start, wanted, count);
+    const double size = sizeForCount(start, kLargestSize * start, wanted, count);
     if (size != last) count(size);
+    if (subdivision.count() > kMuchMore * wanted) {
+      report.notes.push_back(
+          {Severity::info,
+           fmt::format("{} patches instead of {}: there are {} polygons, some with narrow details; "
+                       "large ones are not cut coarser than {:.3g} m for it",
+                       subdivision.count(), options.patches, complex.polygons.size(), size)});
+    }
   }
   PatchMesh mesh =
       assemblePatches(complex, scene, subdivision.cuts(), subdivision.cells(), progress);

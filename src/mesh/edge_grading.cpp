@@ -1,0 +1,80 @@
+#include "mesh/edge_grading.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace radiosity {
+
+namespace {
+
+constexpr double kGrowth = std::numbers::ln2;
+
+/// The measure m(t) = integral of 1/s from 0 to t and its inverse. s has up to three parts: rising
+/// from `start` until t = rise, constant, falling from t = fall on to `end`.
+class Measure {
+ public:
+  Measure(double length, const EdgeSize& wanted)
+      : length_(length),
+        start_(std::min(wanted.start, wanted.size)),
+        end_(std::min(wanted.end, wanted.size)),
+        size_(wanted.size),
+        rise_((size_ - start_) / kGrowth),
+        fall_(length - (size_ - end_) / kGrowth) {
+    if (rise_ > fall_) {  // the slopes meet below `size`
+      rise_ = fall_ = std::clamp(0.5 * (length + (end_ - start_) / kGrowth), 0.0, length);
+      size_ = start_ + kGrowth * rise_;
+    }
+    rising_ = std::log1p(kGrowth * rise_ / start_) / kGrowth;
+    constant_ = (fall_ - rise_) / size_;
+    total_ = rising_ + constant_ + std::log1p(kGrowth * (length - fall_) / end_) / kGrowth;
+  }
+
+  double total() const { return total_; }
+
+  double inverse(double m) const {
+    if (m < rising_) return start_ * std::expm1(kGrowth * m) / kGrowth;
+    if (m < rising_ + constant_) return rise_ + (m - rising_) * size_;
+    return length_ - end_ * std::expm1(kGrowth * (total_ - m)) / kGrowth;
+  }
+
+ private:
+  double length_;
+  double start_;
+  double end_;
+  double size_;
+  double rise_;
+  double fall_;
+  double rising_ = 0;
+  double constant_ = 0;
+  double total_ = 0;
+};
+
+bool isGraded(const EdgeSize& wanted) {
+  return wanted.start < wanted.size || wanted.end < wanted.size;
+}
+
+}  // namespace
+
+double pieceCount(double length, const EdgeSize& wanted, Rounding rounding) {
+  const double pieces = isGraded(wanted) ? Measure(length, wanted).total() : length / wanted.size;
+  // A length that is a multiple of the size but for rounding must not get a piece more.
+  const double whole = rounding == Rounding::at_most ? std::ceil(pieces * (1 - 1e-12))
+                                                     : std::round(pieces * (1 + 1e-12));
+  return std::max(1.0, std::min(whole, std::floor(wanted.most_pieces)));
+}
+
+std::vector<double> cutFractions(double length, const EdgeSize& wanted, double count) {
+  std::vector<double> cuts;
+  if (!isGraded(wanted)) {
+    for (double k = 1; k < count; ++k) cuts.push_back(k / count);
+    return cuts;
+  }
+  const Measure measure(length, wanted);
+  for (double k = 1; k < count; ++k) {
+    cuts.push_back(measure.inverse(measure.total() * (k / count)) / length);
+  }
+  return cuts;
+}
+
+}  // namespace radiosity
