@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,10 @@ enum class Solver { jacobi, gauss_seidel };
 
 struct SolveOptions {
   Solver solver = Solver::gauss_seidel;
-  double tolerance = 1e-6;    ///< stop when max_i |r_i| <= tolerance * max_i |E_i| in every band
-  int max_iterations = 10000; ///< 1 or more
+  /// Stop when max_i |r_i| <= tolerance * max_i |E_i| in every band, r the true residual. Between 0
+  /// and 1; below about 1e-14 rounding keeps it from being reached.
+  double tolerance = 1e-6;
+  int max_iterations = 10000;  ///< 1 or more
   void validate() const;
 };
 
@@ -23,7 +26,7 @@ enum class SolveStatus {
   converged,       ///< |E + rho F B - B|_inf <= tolerance |E|_inf in every band; usable
   no_convergence,  ///< the iteration limit came first; B is the last iterate, not usable as it is
   no_light,        ///< E = 0 in every band: B = 0; usable, but dark
-  singular,        ///< rho = 1 in a closed room without an absorber; B is empty
+  singular,        ///< rho = 1 all over a closed room that is lit: no solution; B is empty
 };
 
 /// Where the light goes, W, one value a band. emitted = absorbed + to_sky + on_backs + imbalance;
@@ -38,16 +41,19 @@ struct EnergyAccount {
 
 struct SolveSummary {
   SolveStatus status = SolveStatus::no_convergence;
-  int iterations = 0;                     ///< sweeps over the matrix
-  double residual = 0;                    ///< max |E + rho F B - B| / max |E|, true, worst band
+  int iterations = 0;   ///< sweeps over the matrix; products that only check are not counted
+  double residual = 0;  ///< max |E + rho F B - B| / max |E|, true, worst band
   /// An upper bound of |B - B*|_inf, W/m^2, worst band, B* being this matrix's exact solution:
   /// w_i max_k |r_k| / ((I - rho F) w)_k for a vector w > 0 with (I - rho F) w > 0. Empty: no such
   /// vector was found, "no certificate".
   std::optional<double> error_bound;
   EnergyAccount energy;
   double seconds = 0;
-  std::vector<double> residual_history;   ///< relative, one a sweep
-  std::string message;                    ///< plain words, with numbers; says if B is usable
+  /// Relative, one a sweep. Jacobi: the true residual. Gauss-Seidel: the largest change, which is
+  /// each row's residual when its turn came; from the first change within tolerance on, and in the
+  /// last entry always, the true residual.
+  std::vector<double> residual_history;
+  std::string message;  ///< plain words, with numbers; says if B is usable
   bool usable() const {
     return status == SolveStatus::converged || status == SolveStatus::no_light;
   }
@@ -61,7 +67,8 @@ struct Solution {
 };
 
 /// `reflectance`, `emission`: N * bands, row-major; 0 <= rho <= 1, E >= 0, finite, else InputError
-/// naming the patch. Needs a matrix of N rows. Not converging is data, not an exception.
+/// naming the patch. Needs a matrix of N rows and accounts of N values. Bands without light cost
+/// nothing. Not converging is data, not an exception.
 /// `group_names[group[i]]` names patch i's surface in messages; both may be empty.
 Solution solve(const FormFactors& factors, std::span<const double> reflectance,
                std::span<const double> emission, int bands, const SolveOptions& options,

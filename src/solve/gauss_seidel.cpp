@@ -1,0 +1,58 @@
+// Gauss-Seidel: the same update row by row, each row gathering what the rows before it have just
+// become (Cohen & Greenberg 1985; Cohen & Wallace 1993, section 5.3).
+#include <algorithm>
+#include <cmath>
+
+#include "solve/iteration.h"
+
+namespace radiosity {
+
+namespace {
+
+/// B_i <- (E_i + rho_i sum_{j != i} F_ij B_j) / (1 - rho_i F_ii) for i = 0, 1, ...: rows depend on
+/// each other, so the sweep runs on one thread. Returns the largest change over max E, worst band.
+double sweep(const System& system, std::span<const double> diagonal,
+             std::vector<double>& radiosity) {
+  const auto bands = std::size_t(system.bands);
+  const Eigen::ArrayXd largest_emission =
+      asArray(system.emission, system.bands).colwise().maxCoeff();
+  std::vector<double> gathered(bands);
+  double largest_change = 0;
+  for (std::size_t i = 0; i < diagonal.size(); ++i) {
+    system.matrix.rowProduct(i, radiosity, system.bands, gathered.data());
+    for (std::size_t b = 0; b < bands; ++b) {
+      const std::size_t k = i * bands + b;
+      const double rho = system.reflectance[k];
+      const double from_others = gathered[b] - diagonal[i] * radiosity[k];
+      const double updated = (system.emission[k] + rho * from_others) / (1 - rho * diagonal[i]);
+      const double change = std::abs(updated - radiosity[k]) / largest_emission[Eigen::Index(b)];
+      largest_change = std::max(largest_change, change);
+      radiosity[k] = updated;
+    }
+  }
+  return largest_change;
+}
+
+}  // namespace
+
+// After a sweep row i's residual is rho_i sum_{j > i} F_ij (change of B_j): where rows sum to at
+// most 1 it is no larger than the largest change. So the product that measures the true residual is
+// made only once the changes are within the tolerance, and it is the true residual that decides.
+Fields gaussSeidel(const System& system, Convergence& convergence) {
+  Fields fields{system.emission, std::vector<double>(system.emission.size())};
+  std::vector<double> diagonal(system.matrix.size());
+  for (std::size_t i = 0; i < diagonal.size(); ++i) diagonal[i] = system.matrix.at(i, i);
+  for (;;) {
+    double residual = sweep(system, diagonal, fields.radiosity);
+    const bool may_end = residual <= convergence.tolerance() || convergence.lastSweep() ||
+                         Convergence::outOfBounds(residual);
+    if (may_end) {
+      system.matrix.product(fields.radiosity, system.bands, fields.irradiance);
+      residual = relativeResidual(system, fields.radiosity, fields.irradiance);
+    }
+    convergence.record(residual);
+    if (convergence.finished()) return fields;
+  }
+}
+
+}  // namespace radiosity

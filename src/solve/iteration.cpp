@@ -1,0 +1,50 @@
+#include "solve/iteration.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace radiosity {
+
+namespace {
+
+constexpr double kProgressSteps = 100;
+
+/// |r| never grows where rho_i rowsum_i <= 1; row sums a little above 1 may let it grow a little
+/// before it falls. A residual of a million times the emission is beyond both.
+constexpr double kDivergedResidual = 1e6;
+
+}  // namespace
+
+double relativeResidual(const System& system, const std::vector<double>& radiosity,
+                        const std::vector<double>& irradiance) {
+  const auto emission = asArray(system.emission, system.bands);
+  const auto residual =
+      emission + asArray(system.reflectance, system.bands) * asArray(irradiance, system.bands) -
+      asArray(radiosity, system.bands);
+  return (residual.abs().colwise().maxCoeff() / emission.colwise().maxCoeff()).maxCoeff();
+}
+
+Convergence::Convergence(double tolerance, int max_sweeps, const std::string& stage,
+                         Progress& progress)
+    : tolerance_(tolerance), max_sweeps_(max_sweeps), progress_(progress) {
+  progress_.begin(stage, std::size_t(kProgressSteps));
+}
+
+Convergence::~Convergence() { progress_.end(); }
+
+void Convergence::record(double residual) {
+  history_.push_back(residual);
+  const double way = residual > 0 ? std::log(residual) / std::log(tolerance_) : 1.0;
+  const auto steps = std::size_t(kProgressSteps * std::clamp(way, 0.0, 1.0));
+  if (steps > reported_) {
+    progress_.advance(steps - reported_);
+    reported_ = steps;
+  }
+  progress_.check();
+}
+
+bool Convergence::outOfBounds(double residual) {
+  return !(residual <= kDivergedResidual);  // true for a NaN
+}
+
+}  // namespace radiosity

@@ -1,0 +1,207 @@
+#include "radiosity/solve.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <set>
+#include <string_view>
+
+#include "solve/certificate.h"
+#include "solve/energy.h"
+#include "solve/iteration.h"
+#include "solve/singular.h"
+
+namespace radiosity {
+
+namespace {
+
+/// How messages call patches: by surface where surfaces are known.
+struct PatchNames {
+  std::span<const Index> group;
+  std::span<const std::string> names;
+
+  std::string of(std::size_t i) const {
+    if (group.empty()) return fmt::format("patch {}", i);
+    return fmt::format("patch {} of surface \"{}\"", i, names[group[i]]);
+  }
+
+  /// The surfaces of some patches (else the patches), each once, at most kListed of them.
+  std::string list(std::span<const std::size_t> patches) const {
+    constexpr std::size_t kListed = 20;
+    std::set<Index> seen;
+    std::string text;
+    for (const std::size_t i : patches) {
+      if (!seen.insert(group.empty() ? Index(i) : group[i]).second) continue;
+      if (seen.size() > kListed) continue;
+      if (!text.empty()) text += ", ";
+      text += group.empty() ? fmt::format("patch {}", i) : names[group[i]];
+    }
+    if (seen.size() > kListed) text += fmt::format(" and {} more", seen.size() - kListed);
+    return text;
+  }
+};
+
+void checkSizes(const FormFactors& factors, std::span<const double> reflectance,
+                std::span<const double> emission, int bands, const PatchNames& names) {
+  const std::size_t n = factors.matrix.size();
+  if (bands < 1) throw InputError(fmt::format("solve: {} bands; 1 or more are needed", bands));
+  const auto check = [](std::string_view what, std::size_t size, std::size_t expected) {
+    if (size == expected) return;
+    throw InputError(fmt::format("solve: {} {} values where {} are needed", size, what, expected));
+  };
+  check("reflectance", reflectance.size(), n * std::size_t(bands));
+  check("emission", emission.size(), n * std::size_t(bands));
+  check("row sum", factors.fronts.size(), n);
+  check("back", factors.backs.size(), n);
+  check("sky", factors.sky.size(), n);
+  if (names.group.empty()) return;
+  check("surface", names.group.size(), n);
+  for (const Index g : names.group) {
+    if (g >= names.names.size()) throw InputError(fmt::format("solve: surface {} has no name", g));
+  }
+}
+
+void checkMaterials(std::span<const double> reflectance, std::span<const double> emission,
+                    int bands, const PatchNames& names) {
+  for (std::size_t k = 0; k < reflectance.size(); ++k) {
+    const std::size_t i = k / std::size_t(bands);
+    if (!(reflectance[k] >= 0 && reflectance[k] <= 1)) {
+      throw InputError(fmt::format("solve: {}: reflectance {} is not within 0 and 1", names.of(i),
+                                   reflectance[k]));
+    }
+    if (!(emission[k] >= 0) || !std::isfinite(emission[k])) {
+      throw InputError(fmt::format("solve: {}: emission {} is not a finite number >= 0",
+                                   names.of(i), emission[k]));
+    }
+  }
+}
+
+/// The bands in which some patch emits. The others have B = 0 and need no work.
+std::vector<std::size_t> litBands(std::span<const double> emission, int bands) {
+  const auto width = std::size_t(bands);
+  std::vector<std::size_t> lit;
+  for (std::size_t b = 0; b < width; ++b) {
+    bool emits = false;
+    for (std::size_t k = b; k < emission.size(); k += width) emits = emits || emission[k] > 0;
+    if (emits) lit.push_back(b);
+  }
+  return lit;
+}
+
+std::vector<double> pickBands(std::span<const double> values, int bands,
+                              std::span<const std::size_t> picked) {
+  std::vector<double> out;
+  out.reserve(values.size() / std::size_t(bands) * picked.size());
+  for (std::size_t row = 0; row < values.size(); row += std::size_t(bands)) {
+    for (const std::size_t b : picked) out.push_back(values[row + b]);
+  }
+  return out;
+}
+
+/// The inverse of pickBands(): bands that were not picked are 0.
+std::vector<double> spreadBands(std::span<const double> values, int bands,
+                                std::span<const std::size_t> picked) {
+  std::vector<double> out(values.size() / picked.size() * std::size_t(bands), 0.0);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    out[k / picked.size() * std::size_t(bands) + picked[k % picked.size()]] = values[k];
+  }
+  return out;
+}
+
+std::string convergenceMessage(const SolveSummary& summary, const SolveOptions& options,
+                               bool diverged) {
+  const std::string_view solver = options.solver == Solver::jacobi ? "Jacobi" : "Gauss-Seidel";
+  const std::string numbers =
+      fmt::format("{} {} sweeps, residual {:.2e} (asked for {:.2e})", summary.iterations, solver,
+                  summary.residual, options.tolerance);
+  const std::string bound =
+      summary.error_bound
+          ? fmt::format("the error against this matrix's solution is below {:.2e} W/m^2",
+                        *summary.error_bound)
+          : std::string("no certificate: the error could not be bounded");
+  if (summary.status == SolveStatus::converged) {
+    return fmt::format("converged: {}; {}; usable", numbers, bound);
+  }
+  const std::string_view cure =
+      diverged ? "it grows: reflectance times row sum is above 1 over much of a room, so restore "
+                 "closure or use the raw rows"
+               : "reflectances near 1 in a closed room need many sweeps: allow more";
+  return fmt::format("no convergence: {}; {}; not usable as it is; {}", numbers, bound, cure);
+}
+
+/// Iterates, then bounds the error; fills in the summary except for energy and time.
+Fields iterate(const System& system, const SolveOptions& options, Progress& progress,
+               SolveSummary& summary) {
+  Fields fields;
+  bool diverged = false;
+  {
+    Convergence convergence(options.tolerance, options.max_iterations, "solving", progress);
+    fields = options.solver == Solver::jacobi ? jacobi(system, convergence)
+                                              : gaussSeidel(system, convergence);
+    diverged = convergence.diverged();
+    summary.status = convergence.converged() ? SolveStatus::converged : SolveStatus::no_convergence;
+    summary.iterations = convergence.sweeps();
+    summary.residual_history = convergence.history();
+  }
+  summary.residual = summary.residual_history.back();
+  if (!diverged) {
+    summary.error_bound = certifiedErrorBound(system, fields, options.max_iterations, progress);
+  }
+  summary.message = convergenceMessage(summary, options, diverged);
+  return fields;
+}
+
+}  // namespace
+
+void SolveOptions::validate() const {
+  if (!(tolerance > 0 && tolerance < 1)) {
+    throw InputError(fmt::format("tolerance {} is not between 0 and 1", tolerance));
+  }
+  if (max_iterations < 1) {
+    throw InputError(fmt::format("max_iterations {} is not 1 or more", max_iterations));
+  }
+}
+
+Solution solve(const FormFactors& factors, std::span<const double> reflectance,
+               std::span<const double> emission, int bands, const SolveOptions& options,
+               Progress& progress, std::span<const Index> group,
+               std::span<const std::string> group_names) {
+  const auto start = std::chrono::steady_clock::now();
+  const PatchNames names{group, group_names};
+  options.validate();
+  checkSizes(factors, reflectance, emission, bands, names);
+  checkMaterials(reflectance, emission, bands, names);
+
+  Solution solution;
+  solution.bands = bands;
+  SolveSummary& summary = solution.summary;
+  const std::vector<std::size_t> lit = litBands(emission, bands);
+  const System system{factors.matrix, int(lit.size()), pickBands(reflectance, bands, lit),
+                      pickBands(emission, bands, lit)};
+  if (lit.empty()) {
+    solution.radiosity.assign(emission.size(), 0.0);
+    solution.irradiance.assign(emission.size(), 0.0);
+    summary.status = SolveStatus::no_light;
+    summary.error_bound = 0.0;
+    summary.message = "no light: no patch emits, so everything is dark; usable, but black";
+  } else if (const WhiteRoom room = findWhiteRoom(factors, system); !room.patches.empty()) {
+    summary.status = SolveStatus::singular;
+    summary.message = fmt::format(
+        "singular: in band {} a closed room has reflectance 1 everywhere, so its light is never "
+        "absorbed and no solution exists; not usable; give one of its surfaces a reflectance below "
+        "1: {}",
+        lit[std::size_t(room.band)], names.list(room.patches));
+    return solution;
+  } else {
+    const Fields fields = iterate(system, options, progress, summary);
+    solution.radiosity = spreadBands(fields.radiosity, bands, lit);
+    solution.irradiance = spreadBands(fields.irradiance, bands, lit);
+  }
+  summary.energy =
+      energyAccount(factors, reflectance, emission, solution.radiosity, solution.irradiance, bands);
+  summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return solution;
+}
+
+}  // namespace radiosity

@@ -1,0 +1,226 @@
+// Solutions that are known: closed forms, a direct solver, and the iterations' theory.
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "solve_systems.h"
+
+namespace radiosity {
+namespace {
+
+using test::kSolvers;
+using test::Matrix;
+
+// One patch a face, rho = 1/2, the floor emits 1. The values solve the 6 x 6 system, which by
+// symmetry has three unknowns; their area mean is 1/3 as energy demands.
+TEST(Solve, CubeToTwelveDigits) {
+  const auto factors = test::factorsFrom(test::cube(), std::vector<double>(6, 1.0));
+  const std::vector<double> rho(6, 0.5);
+  const std::vector<double> emission{1, 0, 0, 0, 0, 0};
+  for (const Solver solver : kSolvers) {
+    Progress quiet;
+    const Solution s = solve(factors, rho, emission, 1, test::options(solver, 1e-14), quiet);
+    ASSERT_EQ(s.summary.status, SolveStatus::converged) << s.summary.message;
+    // The form factors above are rounded at 15 digits; 12 are claimed.
+    EXPECT_NEAR(s.radiosity[0], 1.090909098107695, 1e-12);
+    EXPECT_NEAR(s.radiosity[1], 0.1817458261077885, 1e-12);
+    double sum = s.radiosity[0] + s.radiosity[1];
+    for (std::size_t wall = 2; wall < 6; ++wall) {
+      EXPECT_NEAR(s.radiosity[wall], 0.181836268946129, 1e-12);
+      sum += s.radiosity[wall];
+    }
+    EXPECT_NEAR(sum / 6, 1.0 / 3, 1e-13);  // the residual, 1e-14 / (1 - rho)
+    EXPECT_EQ(s.summary.energy.to_sky[0] + s.summary.energy.on_backs[0], 0.0);
+    EXPECT_NEAR(s.summary.energy.absorbed[0], 1.0, 1e-13);
+  }
+}
+
+// Rows that sum to 1 and nothing else, not even reciprocity: B = E / (1 - rho).
+TEST(Solve, Furnace) {
+  test::Random random(1);
+  const std::size_t n = 80;
+  const auto f = random.rows(Eigen::Index(n), [](auto) { return 1.0; });
+  const auto factors = test::factorsFrom(f, random.vector(n, 0.1, 5.0));
+  const double rho[] = {0.1, 0.5, 0.9};
+  const double emission[] = {7.0, 1.0, 0.25};
+  std::vector<double> rhos;
+  std::vector<double> emissions;
+  for (std::size_t i = 0; i < n; ++i) {
+    rhos.insert(rhos.end(), std::begin(rho), std::end(rho));
+    emissions.insert(emissions.end(), std::begin(emission), std::end(emission));
+  }
+  for (const Solver solver : kSolvers) {
+    Progress quiet;
+    const Solution s = solve(factors, rhos, emissions, 3, test::options(solver, 1e-13), quiet);
+    for (std::size_t k = 0; k < n * 3; ++k) {
+      const double expected = emission[k % 3] / (1 - rho[k % 3]);
+      // Residual over 1 - rho = 0.1.
+      EXPECT_NEAR(s.radiosity[k], expected, 1e-12 * emission[k % 3]);
+      EXPECT_NEAR(s.irradiance[k], expected, 1e-11 * emission[k % 3]);
+    }
+  }
+}
+
+// Inside a sphere every patch sees area, itself included: F_ij = A_j / A. Half of it emits 1 and
+// rho = 0.8: B = E + rho <E> / (1 - rho) = 3 and 2. The areas differ, so a transposed F gives
+// something else.
+TEST(Solve, SphereInteriorAndItsTransposeWithUnequalAreas) {
+  const std::vector<double> area{0.5, 3.0, 1.5, 0.25, 4.0, 0.75};  // 0.5 + 3 + 1.5 = 5 = half
+  const std::vector<double> emission{1, 1, 1, 0, 0, 0};
+  const std::vector<double> rho(6, 0.8);
+  Matrix f(6, 6);
+  for (Eigen::Index j = 0; j < 6; ++j) f.col(j).setConstant(area[std::size_t(j)] / 10);
+  const auto factors = test::factorsFrom(f, area);
+  const auto transposed = test::factorsFrom(f.transpose(), area);
+  for (const Solver solver : kSolvers) {
+    Progress quiet;
+    const Solution s = solve(factors, rho, emission, 1, test::options(solver, 1e-14), quiet);
+    for (std::size_t i = 0; i < 6; ++i) {
+      EXPECT_NEAR(s.radiosity[i], i < 3 ? 3 : 2, 1e-13);  // 1e-14 / (1 - rho), and rounding
+    }
+    const Solution t = solve(transposed, rho, emission, 1, test::options(solver, 1e-6), quiet);
+    EXPECT_GT(test::largestDifference(t.radiosity, s.radiosity), 0.5);
+  }
+}
+
+TEST(Solve, JacobiGaussSeidelAndLuAgree) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    test::Random random(seed);
+    const auto n = std::size_t(random(1, 90));
+    const auto f = random.rows(Eigen::Index(n), [&](auto) { return random(0.2, 1.0); });
+    const auto factors = test::factorsFrom(f, random.vector(n, 0.01, 10.0), 0.3);
+    const auto rho = random.vector(n * 3, 0.0, 0.95);
+    const auto emission = random.vector(n * 3, 0.0, 20.0);
+    const auto expected = test::direct(f, rho, emission, 3);
+    for (const Solver solver : kSolvers) {
+      Progress quiet;
+      const Solution s = solve(factors, rho, emission, 3, test::options(solver, 1e-13), quiet);
+      ASSERT_EQ(s.summary.status, SolveStatus::converged) << seed << ": " << s.summary.message;
+      // |error| <= |r| / (1 - max rho rowsum) <= 1e-13 * 20 / 0.05.
+      EXPECT_LT(test::largestDifference(s.radiosity, expected), 4e-11) << seed;
+    }
+  }
+}
+
+/// The largest |eigenvalue|.
+double spectralRadius(const Matrix& m) {
+  return Eigen::EigenSolver<Matrix>(m, false).eigenvalues().cwiseAbs().maxCoeff();
+}
+
+// Jacobi's iteration matrix is R F, Gauss-Seidel's inv(I - L) U with R F = L + U, L strictly lower
+// (the diagonal of F is 0 here). Residuals shrink by its spectral radius a sweep in the long run,
+// and the sweeps taken are those that this predicts.
+TEST(Solve, ContractsByTheSpectralRadius) {
+  test::Random random(5);
+  const Eigen::Index n = 60;
+  Matrix f = random.rows(n, [](auto) { return 1.0; });
+  f.diagonal().setZero();
+  const auto rho = random.vector(std::size_t(n), 0.7, 0.9);
+  Matrix rf = f;
+  for (Eigen::Index i = 0; i < n; ++i) rf.row(i) *= rho[std::size_t(i)];
+  const Matrix lower = rf.triangularView<Eigen::StrictlyLower>();
+  const Matrix upper = rf.triangularView<Eigen::StrictlyUpper>();
+  const Matrix identity = Matrix::Identity(n, n);
+  const Matrix iterations[] = {rf, (identity - lower).partialPivLu().solve(upper)};
+  const auto factors = test::factorsFrom(f, std::vector<double>(std::size_t(n), 1.0));
+  std::vector<double> emission(std::size_t(n), 0.0);
+  emission[7] = 1;
+  for (const Solver solver : kSolvers) {
+    const double radius = spectralRadius(iterations[solver == Solver::jacobi ? 0 : 1]);
+    Progress quiet;
+    const auto summary =
+        solve(factors, rho, emission, 1, test::options(solver, 1e-10), quiet).summary;
+    const auto& history = summary.residual_history;
+    ASSERT_EQ(history.size(), std::size_t(summary.iterations));
+    ASSERT_GT(summary.iterations, 20);
+    // The last two entries of Gauss-Seidel's history may be of two kinds; take those before. The
+    // other eigenvalues are below a quarter of the largest: after ten sweeps they are 1e-6 of it.
+    const double measured = history[history.size() - 3] / history[history.size() - 4];
+    EXPECT_NEAR(measured, radius, 1e-3 * radius);
+    const double predicted = std::log(1e-10 / history[0]) / std::log(radius);
+    EXPECT_NEAR(summary.iterations, predicted, 0.15 * predicted + 2);  // transient of the start
+  }
+}
+
+TEST(Solve, GaussSeidelTakesAboutHalfTheSweeps) {
+  const auto factors = test::factorsFrom(test::cube(), std::vector<double>(6, 1.0));
+  const std::vector<double> rho(6, 0.9);
+  const std::vector<double> emission{1, 0, 0, 0, 0, 0};
+  Progress quiet;
+  const int jacobi = solve(factors, rho, emission, 1, test::options(Solver::jacobi, 1e-8), quiet)
+                         .summary.iterations;
+  const int seidel =
+      solve(factors, rho, emission, 1, test::options(Solver::gauss_seidel, 1e-8), quiet)
+          .summary.iterations;
+  // Asymptotically half for consistently ordered matrices (Young 1954); a cube is not quite one.
+  EXPECT_GT(seidel, 0.35 * jacobi);
+  EXPECT_LT(seidel, 0.65 * jacobi);
+}
+
+/// A symmetric exchange matrix with rows of different sums, some of it lost on backs.
+struct Reciprocal {
+  Matrix f;
+  std::vector<double> area;
+};
+
+Reciprocal reciprocal(std::size_t n, test::Random& random) {
+  Reciprocal out{Matrix(n, n), random.vector(n, 0.5, 2.0)};
+  const auto size = Eigen::Index(n);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    for (Eigen::Index j = 0; j <= i; ++j) out.f(i, j) = out.f(j, i) = random(0.0, 1.0);
+  }
+  for (Eigen::Index i = 0; i < size; ++i) {
+    out.f.row(i) /= out.area[std::size_t(i)];
+  }
+  out.f /= out.f.rowwise().sum().maxCoeff();
+  return out;
+}
+
+TEST(SolveEnergy, ClosesWhereFIsReciprocal) {
+  test::Random random(9);
+  const std::size_t n = 70;
+  const auto [f, area] = reciprocal(n, random);
+  const auto factors = test::factorsFrom(f, area, 0.25);
+  const auto rho = random.vector(n * 2, 0.1, 0.9);
+  const auto emission = random.vector(n * 2, 0.0, 3.0);
+  for (const Solver solver : kSolvers) {
+    Progress quiet;
+    const Solution s = solve(factors, rho, emission, 2, test::options(solver, 1e-14), quiet);
+    ASSERT_TRUE(s.summary.usable()) << s.summary.message;
+    const EnergyAccount& energy = s.summary.energy;
+    for (std::size_t b = 0; b < 2; ++b) {
+      double emitted = 0;
+      for (std::size_t i = 0; i < n; ++i) emitted += area[i] * emission[i * 2 + b];
+      EXPECT_NEAR(energy.emitted[b], emitted, 1e-13 * emitted);  // 70 additions
+      EXPECT_GT(energy.absorbed[b], 0.1 * emitted);
+      EXPECT_GT(energy.to_sky[b], 0.05 * emitted);
+      EXPECT_NEAR(energy.on_backs[b], energy.to_sky[b] / 3, 1e-12 * emitted);
+      EXPECT_LT(std::abs(energy.imbalance[b]), 1e-12 * emitted);  // the residual and rounding
+    }
+  }
+}
+
+// With reciprocal F the imbalance of an unconverged B is the residual's power, sum A_i r_i.
+TEST(SolveEnergy, ImbalanceIsTheResidualsPower) {
+  test::Random random(10);
+  const std::size_t n = 40;
+  const auto [f, area] = reciprocal(n, random);
+  const auto factors = test::factorsFrom(f, area);
+  const auto rho = random.vector(n, 0.1, 0.9);
+  const auto emission = random.vector(n, 0.0, 3.0);
+  for (const Solver solver : kSolvers) {
+    Progress quiet;
+    const Solution s = solve(factors, rho, emission, 1, test::options(solver, 1e-9, 2), quiet);
+    EXPECT_EQ(s.summary.status, SolveStatus::no_convergence);
+    double power = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      power += area[i] * (emission[i] + rho[i] * s.irradiance[i] - s.radiosity[i]);
+    }
+    EXPECT_GT(std::abs(power), 1e-3);
+    EXPECT_NEAR(s.summary.energy.imbalance[0], power, 1e-11);  // rounding of sums of about 1e2
+  }
+}
+
+}  // namespace
+}  // namespace radiosity
