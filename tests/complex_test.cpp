@@ -382,6 +382,60 @@ TEST(Repair, TJunctionInsideOneSurfaceIsGone) {
   });
 }
 
+TEST(Repair, ATJunctionInItsSkinDoesNotOpenASolid) {
+  SceneBuilder b;
+  const Index floor = b.surface("floor");
+  const Index block = b.surface("block");
+  const Index half = b.surface("half");
+  b.level(floor, -2, -2, 4, 4, 0);
+  SceneBuilder whole;
+  whole.surface("floor");
+  whole.surface("block");
+  whole.box(block, {0, 0, 0}, {2, 2, 2});
+  for (std::size_t f = 1; f < whole.scene().faceCount(); ++f) {  // all but the side y = 0
+    std::vector<Vec3> corners;
+    for (const Index c : whole.scene().face(f)) corners.push_back(whole.scene().vertices[c]);
+    b.face(block, corners);
+  }
+  b.face(block, {{0, 0, 0}, {1, 0, 0}, {1, 0, 2}, {0, 0, 2}});
+  b.face(half, {{1, 0, 0}, {2, 0, 0}, {2, 0, 2}, {1, 0, 2}});
+  bothWays(b.scene(), [&](const Built& built) {
+    EXPECT_EQ(built.report.split_edges, 2u);  // of the bottom and of the top
+    expectArea(built.report.surfaces[floor].buried, 4);
+    expectArea(built.report.surfaces[block].buried, 4);
+    EXPECT_EQ(polygonsOf(built, block), 5u);
+  });
+}
+
+TEST(Repair, APolygonThatCrossesItselfIsSaid) {
+  SceneBuilder b;
+  const Index bow = b.surface("bow");
+  // Crosses itself at (4/3, 4/3): triangles of 8/3 and, turned over, 2/3 m^2.
+  b.face(bow, {{0, 0, 0}, {4, 0, 0}, {0, 2, 0}, {2, 2, 0}});
+  b.face(bow, {{5, 0, 0}, {6, 0, 0}, {6, 3, 0}, {5, 3, 0}});
+  const Built built = build(b.scene());
+  checkShape(built.complex);
+  checkConforming(built.complex);
+  EXPECT_EQ(polygonsOf(built, bow), 3u);
+  EXPECT_TRUE(hasNote(built, "crosses itself"));
+  expectArea(built.report.surfaces[bow].given, 3 + 10.0 / 3);
+}
+
+TEST(Repair, NoWeldAtAllStillFindsContacts) {
+  // What is left of coincidence is the rounding of doubles.
+  SceneBuilder b;
+  const Index floor = b.surface("floor");
+  b.level(floor, 0, 0, 10, 8, 0);
+  b.prism(b.surface("block"), SceneBuilder::turnedRectangle({4, 4}, 2, 3, 17 * kDegree), 0, 2);
+  MeshOptions exact;
+  exact.weld = 0;
+  for (const Scene& scene : {b.scene(), turned(b.scene())}) {
+    const Built built = build(scene, exact);
+    EXPECT_EQ(built.report.cuts, 4u);
+    expectArea(built.report.surfaces[floor].buried, 6);
+  }
+}
+
 TEST(Repair, DuplicatesAndSliversAreCounted) {
   SceneBuilder b;
   const Index floor = b.surface("floor");
@@ -590,6 +644,35 @@ TEST(TwoSided, SheetOnFloorLosesItsLowerSide) {
     EXPECT_EQ(built.report.hidden_sides, 1u);
     EXPECT_EQ(built.report.cuts, 4u);
     expectArea(built.report.surfaces[floor].overlapped, 2);
+  });
+}
+
+TEST(TwoSided, PosterOnAWallLeavesTheWallItsOtherSide) {
+  SceneBuilder b;
+  const Index wall = b.surface("wall", 0.5, 0, true);
+  const Index poster = b.surface("poster");
+  b.level(wall, 0, 0, 4, 4, 0);
+  b.level(poster, 1, 1, 2, 3, 0);
+  bothWays(b.scene(), [&](const Built& built) {
+    // The wall: a ring with both sides, and what is behind the poster, with the other side only.
+    EXPECT_EQ(polygonsOf(built, wall), 2u);
+    EXPECT_EQ(polygonsOf(built, poster), 1u);
+    EXPECT_EQ(built.report.hidden_sides, 1u);
+    EXPECT_EQ(built.report.surfaces[wall].overlapped, 0);
+  });
+}
+
+TEST(TwoSided, RugAndPosterDoNotMakeARoomASolid) {
+  SceneBuilder b;
+  const Index room = b.surface("room", 0.5, 0, true);
+  const Index rug = b.surface("rug", 0.5, 0, true);
+  b.box(room, {0, 0, 0}, {5, 4, 3});
+  b.level(rug, 1, 1, 2, 3, 0);
+  bothWays(b.scene(), [&](const Built& built) {
+    EXPECT_EQ(polygonsOf(built, room), 6u);
+    EXPECT_EQ(onlyPolygon(built, rug).back, false);
+    EXPECT_EQ(built.report.hidden_sides, 7u);
+    expectArea(built.report.surfaces[room].overlapped, 2);
   });
 }
 

@@ -91,7 +91,7 @@ struct MeshReport {
   double largest_deviation = 0;         ///< metres, of the non-planar faces
   std::size_t cuts = 0;                 ///< contact and crossing segments that cut a polygon
   std::size_t split_edges = 0;          ///< edges of the file split at vertices on them
-  std::size_t hidden_sides = 0;         ///< sides of two-sided surfaces dropped: they see nothing
+  std::size_t hidden_sides = 0;         ///< sides of two-sided planar polygons dropped: they see nothing
   std::size_t nonmanifold_edges = 0;
   std::size_t polygons = 0;
   std::size_t triangles = 0;            ///< patches that are triangles

@@ -20,9 +20,8 @@ double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
 
 class ContactFinder {
  public:
-  ContactFinder(InputFaces& input, const std::vector<Plane>& planes,
-                const std::vector<Sheet>& sheets, EdgeTable& edges)
-      : input_(input), planes_(planes), sheets_(sheets), edges_(edges) {}
+  ContactFinder(InputFaces& input, const std::vector<Plane>& planes, EdgeTable& edges)
+      : input_(input), planes_(planes), edges_(edges) {}
 
   void pair(const Sheet& f, const Sheet& g);
 
@@ -33,7 +32,6 @@ class ContactFinder {
 
   InputFaces& input_;
   const std::vector<Plane>& planes_;
-  const std::vector<Sheet>& sheets_;
   EdgeTable& edges_;
 };
 
@@ -127,7 +125,7 @@ void addContacts(InputFaces& input, const std::vector<Plane>& planes,
   for (const Sheet& sheet : sheets) boxes.push_back(sheet.box.grown(input.coincidence));
   const auto pairs = overlappingPairs(boxes);
   progress.begin("contacts", pairs.size());
-  ContactFinder finder(input, planes, sheets, edges);
+  ContactFinder finder(input, planes, edges);
   for (const auto& [f, g] : pairs) {
     progress.check();
     if (sheets[f].plane != sheets[g].plane) finder.pair(sheets[f], sheets[g]);

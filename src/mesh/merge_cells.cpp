@@ -4,7 +4,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <map>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -62,14 +61,17 @@ class Merger {
   void traceDrafts();
   void countCuts();
   void accountForStraightening();
-  CoarseComplex finish() const;
-  std::vector<Index> facesOf(const Draft& draft, const std::vector<std::size_t>& shares) const;
+  void countHiddenSides();
+  std::vector<Index> sheetsOf(const Draft& draft) const;
+  std::vector<Index> facesOf(const Draft& draft) const;
+  std::vector<Vec3> numberVertices();
+  CoarsePolygon polygonOf(const Draft& draft) const;
+  std::vector<CoarsePolygon> polygons();
   bool isCutThere(const EdgeSides& sides) const;
   const std::vector<Index>& recordsOf(Index cell) const {
     static const std::vector<Index> kNothing;
     return cell == kNone ? kNothing : records_[cell];
   }
-  Index draftOf(Index record) const { return draft_of_[record]; }
 
   const Scene& scene_;
   const InputFaces& input_;
@@ -87,6 +89,8 @@ class Merger {
   std::vector<Index> needed_;         ///< edges of some polygon
   std::vector<Index> needed_number_;  ///< by edge: place in needed_
   StraightEdges straight_;
+  std::vector<Index> number_;                   ///< by point: vertex of the complex
+  std::vector<std::size_t> polygons_of_sheet_;  ///< how many a sheet is part of
 };
 
 void Merger::indexRecords() {
@@ -140,8 +144,8 @@ void Merger::sortEdges() {
     for (const EdgeSides& s : arrangement_.sides[e]) {
       std::vector<Index> left;
       std::vector<Index> right;
-      for (const Index r : recordsOf(s.left)) left.push_back(draftOf(r));
-      for (const Index r : recordsOf(s.right)) right.push_back(draftOf(r));
+      for (const Index r : recordsOf(s.left)) left.push_back(draft_of_[r]);
+      for (const Index r : recordsOf(s.right)) right.push_back(draft_of_[r]);
       const auto has = [](const std::vector<Index>& list, Index d) {
         return std::find(list.begin(), list.end(), d) != list.end();
       };
@@ -170,6 +174,7 @@ void Merger::sortEdges() {
 
 void Merger::straightenEdges() {
   std::vector<std::array<Index, 2>> ends;
+  ends.reserve(needed_.size());
   for (const Index e : needed_) ends.push_back({edges_[e].a, edges_[e].b});
   straight_ = straighten(input_.points, input_.coincidence, ends);
 }
@@ -178,6 +183,7 @@ void Merger::traceDrafts() {
   for (Draft& draft : drafts_) {
     const PlaneImage frame(planes_[draft.plane].normal);
     std::vector<std::array<Index, 2>> directed;
+    directed.reserve(draft.border.size());
     for (std::size_t k = 0; k < draft.border.size(); ++k) {
       const Edge& e = edges_[draft.border[k]];
       if (draft.on_left[k]) {
@@ -242,22 +248,26 @@ void Merger::accountForStraightening() {
   for (std::size_t s = 0; s < moved.size(); ++s) addMovedArea(report_.surfaces[s], moved[s]);
 }
 
-/// The scene's faces under a polygon. `shares`: by sheet, how many polygons it is part of.
-std::vector<Index> Merger::facesOf(const Draft& draft,
-                                   const std::vector<std::size_t>& shares) const {
+std::vector<Index> Merger::sheetsOf(const Draft& draft) const {
+  std::vector<Index> out;
+  out.reserve(draft.records.size());
+  for (const Index r : draft.records) out.push_back(visible_[r].sheet);
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+/// The scene's faces under a polygon.
+std::vector<Index> Merger::facesOf(const Draft& draft) const {
   Box3 box;
   for (const Index v : draft.loops[0]) box.add(input_.points[v]);
   box = box.grown(input_.coincidence);
-  std::vector<Index> sheets;
-  for (const Index r : draft.records) sheets.push_back(visible_[r].sheet);
-  std::sort(sheets.begin(), sheets.end());
-  sheets.erase(std::unique(sheets.begin(), sheets.end()), sheets.end());
   std::vector<Index> out;
-  for (const Index s : sheets) {
+  for (const Index s : sheetsOf(draft)) {
     for (const Index f : sheets_[s].faces) {
       Box3 face;
       for (const Index v : input_.faces[f].loop) face.add(input_.points[v]);
-      if (shares[s] == 1 || face.meets(box)) out.push_back(input_.faces[f].source);
+      if (polygons_of_sheet_[s] == 1 || face.meets(box)) out.push_back(input_.faces[f].source);
     }
   }
   std::sort(out.begin(), out.end());
@@ -265,11 +275,8 @@ std::vector<Index> Merger::facesOf(const Draft& draft,
   return out;
 }
 
-CoarseComplex Merger::finish() const {
-  CoarseComplex out;
-  out.origin = input_.origin;
-  out.coincidence = input_.coincidence;
-
+/// Numbers the vertices that are left by their place in space, not by how they came about.
+std::vector<Vec3> Merger::numberVertices() {
   std::vector<Index> used;
   for (const auto& edge : straight_.edges) used.insert(used.end(), edge.begin(), edge.end());
   std::sort(used.begin(), used.end(), [&](Index a, Index b) {
@@ -278,72 +285,75 @@ CoarseComplex Merger::finish() const {
     return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
   });
   used.erase(std::unique(used.begin(), used.end()), used.end());
-  std::vector<Index> number(input_.points.size(), kNone);
+  number_.assign(input_.points.size(), kNone);
+  std::vector<Vec3> out;
+  out.reserve(used.size());
   for (const Index v : used) {
-    number[v] = Index(out.vertices.size());
-    out.vertices.push_back(input_.points[v]);
+    number_[v] = Index(out.size());
+    out.push_back(input_.points[v]);
   }
+  return out;
+}
 
-  std::vector<std::size_t> shares(sheets_.size(), 0);
+CoarsePolygon Merger::polygonOf(const Draft& draft) const {
+  CoarsePolygon p;
+  for (std::vector<Index> loop : draft.loops) {
+    for (Index& v : loop) v = number_[v];
+    std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
+    p.loops.push_back(std::move(loop));
+  }
+  std::sort(p.loops.begin() + 1, p.loops.end());
+  for (const Index e : draft.inner) {
+    const auto& ends = straight_.edges[straight_.edge_of[needed_number_[e]]];
+    const auto [low, high] = std::minmax(number_[ends[0]], number_[ends[1]]);
+    p.inner_edges.push_back({low, high});
+  }
+  std::sort(p.inner_edges.begin(), p.inner_edges.end());
+  p.inner_edges.erase(std::unique(p.inner_edges.begin(), p.inner_edges.end()), p.inner_edges.end());
+  p.normal = planes_[draft.plane].normal * (draft.kind.up ? 1.0 : -1.0);
+  p.surface = draft.kind.surface;
+  p.back = draft.kind.both;
+  p.faces = facesOf(draft);
+  return p;
+}
+
+/// The polygons, in an order that does not depend on the order of the file's faces.
+std::vector<CoarsePolygon> Merger::polygons() {
+  polygons_of_sheet_.assign(sheets_.size(), 0);
   for (const Draft& draft : drafts_) {
-    std::vector<Index> sheets;
-    for (const Index r : draft.records) sheets.push_back(visible_[r].sheet);
-    std::sort(sheets.begin(), sheets.end());
-    sheets.erase(std::unique(sheets.begin(), sheets.end()), sheets.end());
-    for (const Index s : sheets) ++shares[s];
+    for (const Index s : sheetsOf(draft)) ++polygons_of_sheet_[s];
   }
-
-  std::vector<CoarsePolygon> polygons;
-  std::vector<Index> polygon_of(drafts_.size(), kNone);
+  std::vector<std::pair<CoarsePolygon, Index>> made;
   for (std::size_t d = 0; d < drafts_.size(); ++d) {
-    const Draft& draft = drafts_[d];
-    if (draft.loops.empty()) continue;
-    CoarsePolygon p;
-    for (const auto& loop : draft.loops) {
-      p.loops.emplace_back();
-      for (const Index v : loop) p.loops.back().push_back(number[v]);
-      auto& l = p.loops.back();
-      std::rotate(l.begin(), std::min_element(l.begin(), l.end()), l.end());
-    }
-    std::sort(p.loops.begin() + 1, p.loops.end());
-    for (const Index e : draft.inner) {
-      const auto& [a, b] = straight_.edges[straight_.edge_of[needed_number_[e]]];
-      p.inner_edges.push_back({std::min(number[a], number[b]), std::max(number[a], number[b])});
-    }
-    std::sort(p.inner_edges.begin(), p.inner_edges.end());
-    p.inner_edges.erase(std::unique(p.inner_edges.begin(), p.inner_edges.end()),
-                        p.inner_edges.end());
-    p.normal = planes_[draft.plane].normal * (draft.kind.up ? 1.0 : -1.0);
-    p.surface = draft.kind.surface;
-    p.back = draft.kind.both;
-    p.faces = facesOf(draft, shares);
-    polygon_of[d] = Index(polygons.size());
-    polygons.push_back(std::move(p));
+    if (!drafts_[d].loops.empty()) made.emplace_back(polygonOf(drafts_[d]), Index(d));
+  }
+  std::sort(made.begin(), made.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.first.surface, a.first.loops) < std::tie(b.first.surface, b.first.loops);
+  });
+  std::vector<Index> place(drafts_.size(), kNone);
+  std::vector<CoarsePolygon> out;
+  out.reserve(made.size());
+  for (auto& [polygon, draft] : made) {
+    place[draft] = Index(out.size());
+    out.push_back(std::move(polygon));
   }
   for (const auto& records : records_) {
     if (records.size() != 2) continue;
-    const Index a = polygon_of[draftOf(records[0])];
-    const Index b = polygon_of[draftOf(records[1])];
+    const Index a = place[draft_of_[records[0]]];
+    const Index b = place[draft_of_[records[1]]];
     if (a == kNone || b == kNone) continue;
-    polygons[a].opposite = b;
-    polygons[b].opposite = a;
-  }
-
-  // An order that does not depend on the order of the file's faces.
-  std::vector<Index> order(polygons.size());
-  std::iota(order.begin(), order.end(), Index(0));
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
-    return std::tie(polygons[a].surface, polygons[a].loops) <
-           std::tie(polygons[b].surface, polygons[b].loops);
-  });
-  std::vector<Index> place(polygons.size());
-  for (std::size_t k = 0; k < order.size(); ++k) place[order[k]] = Index(k);
-  for (const Index p : order) {
-    out.polygons.push_back(std::move(polygons[p]));
-    Index& opposite = out.polygons.back().opposite;
-    if (opposite != kNone) opposite = place[opposite];
+    out[a].opposite = b;
+    out[b].opposite = a;
   }
   return out;
+}
+
+void Merger::countHiddenSides() {
+  for (const Draft& draft : drafts_) {
+    const Surface& surface = scene_.surfaces[draft.kind.surface];
+    const bool two_sided = scene_.materials[surface.material].two_sided;
+    if (two_sided && !draft.kind.both && !draft.loops.empty()) ++report_.hidden_sides;
+  }
 }
 
 CoarseComplex Merger::run() {
@@ -353,12 +363,14 @@ CoarseComplex Merger::run() {
   straightenEdges();
   traceDrafts();
   countCuts();
+  countHiddenSides();
   accountForStraightening();
-  for (const Draft& draft : drafts_) {
-    const Surface& surface = scene_.surfaces[draft.kind.surface];
-    if (scene_.materials[surface.material].two_sided && !draft.kind.both) ++report_.hidden_sides;
-  }
-  return finish();
+  CoarseComplex out;
+  out.origin = input_.origin;
+  out.coincidence = input_.coincidence;
+  out.vertices = numberVertices();
+  out.polygons = polygons();
+  return out;
 }
 
 }  // namespace
