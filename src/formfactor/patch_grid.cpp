@@ -126,7 +126,7 @@ void PatchGrid::fillEmptyCells() {
     while (entry < 0) entry = nodes_[std::size_t(~entry)].inside;
     return entry;
   };
-  const auto count = std::int32_t(cells_.size());
+  const std::int32_t count = columns_ * rows_;
   std::vector<std::int32_t> front;
   for (std::int32_t cell = 0; cell < count; ++cell) {
     if (cells_[std::size_t(cell)] != kEmpty) front.push_back(cell);
