@@ -15,6 +15,7 @@
 #include "mesh/edge_key.h"
 #include "mesh/plane_frame.h"
 #include "mesh/region.h"
+#include "mesh/triangle_shape.h"
 
 namespace radiosity {
 
@@ -39,10 +40,6 @@ constexpr int kSweeps = 4;                         // of smoothing, a round
 
 Vec2 positionOf(Vertex v) { return {v->point().x(), v->point().y()}; }
 Cdt::Point pointOf(const Vec2& p) { return {p.x, p.y}; }
-double smallestOf(const Vec2& a, const Vec2& b, const Vec2& c) {
-  return std::min({angleAt(c, a, b), angleAt(a, b, c), angleAt(b, c, a)});
-}
-
 /// The smallest angle that points and moves inside can change: those between two constraints are
 /// given. A triangle that is turned over has angle -1.
 double smallestFreeAngle(Face f) {
@@ -56,35 +53,6 @@ double smallestFreeAngle(Face f) {
     smallest = std::min(smallest, angleAt(p[next], p[i], p[last]));
   }
   return smallest;
-}
-
-/// Where a point might mend the triangle p: its circumcentre, its centroid, and apexes of good
-/// triangles over its shortest edge (Uengoer's off-centres).
-std::vector<Vec2> candidatesFor(const Vec2 (&p)[3]) {
-  const Vec2 a = p[1] - p[0];
-  const Vec2 b = p[2] - p[0];
-  const Vec2 turned(b.y * glm::dot(a, a) - a.y * glm::dot(b, b),
-                    a.x * glm::dot(b, b) - b.x * glm::dot(a, a));
-  std::vector<Vec2> candidates = {p[0] + turned / (2 * cross2(a, b)), (p[0] + p[1] + p[2]) / 3.0};
-  int apex = 0;  // opposite the shortest edge
-  for (int i = 1; i < 3; ++i) {
-    if (glm::length(p[Cdt::ccw(i)] - p[Cdt::cw(i)]) <
-        glm::length(p[Cdt::ccw(apex)] - p[Cdt::cw(apex)])) {
-      apex = i;
-    }
-  }
-  const Vec2 middle = 0.5 * (p[Cdt::ccw(apex)] + p[Cdt::cw(apex)]);
-  const Vec2 edge = p[Cdt::cw(apex)] - p[Cdt::ccw(apex)];
-  const Vec2 normal(-edge.y, edge.x);  // towards the apex: the triangle is counter-clockwise
-  for (const double angle : {30.0, 45.0, 60.0, 80.0}) {
-    candidates.push_back(middle + normal * (0.5 / std::tan(0.5 * glm::radians(angle))));
-  }
-  return candidates;
-}
-
-/// The distance of p from the line through a and b.
-double heightOver(const Vec2& p, const Vec2& a, const Vec2& b) {
-  return std::abs(cross2(b - a, p - a)) / glm::length(b - a);
 }
 
 class RegionMesher {
