@@ -254,6 +254,20 @@ TEST(SolveEdges, BlackAndSinglePatches) {
   }
 }
 
+// A cave, one patch that sees itself alone: Gauss-Seidel solves its row for B_0, all bounces at
+// once, and needs a second sweep only to notice. Jacobi halves the residual a sweep.
+TEST(SolveEdges, GaussSeidelSolvesTheDiagonal) {
+  const auto cave = test::factorsFrom(Matrix::Ones(1, 1), {1.0});
+  const std::vector<double> rho{0.5};
+  const std::vector<double> emission{1.0};
+  Progress quiet;
+  const auto seidel = solve(cave, rho, emission, 1, {.solver = Solver::gauss_seidel}, quiet);
+  EXPECT_EQ(seidel.radiosity[0], 2.0);
+  EXPECT_EQ(seidel.summary.iterations, 2);
+  const auto jacobi = solve(cave, rho, emission, 1, {.solver = Solver::jacobi}, quiet);
+  EXPECT_EQ(jacobi.summary.iterations, 20);  // 2^-20 is the first power below 1e-6
+}
+
 /// What solve() says when it refuses.
 std::string refusal(const std::vector<double>& rho, const std::vector<double>& emission, int bands,
                     const SolveOptions& options = {}) {

@@ -19,7 +19,24 @@ double largestResidual(const ExchangeMatrix& matrix, std::span<const double> tar
   return largest;
 }
 
-/// F_ij <- d_i F_ij d_j, in storage precision; notes how far entries moved.
+/// A run of iterations in which the residual must at least halve. At a slower pace not even
+/// thousands reach a usual tolerance: the target is out of reach, as where two groups of patches
+/// that see only each other are asked for different exchanged areas.
+constexpr std::size_t kPatience = 50;
+
+void checkTarget(std::span<const double> target, std::size_t n) {
+  if (target.size() != n) {
+    throw InputError(fmt::format("closure: {} row sums for {} rows", target.size(), n));
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!(target[i] >= 0) || !std::isfinite(target[i])) {
+      throw InputError(fmt::format("closure: {} is no sum for row {}", target[i], i));
+    }
+  }
+}
+
+/// F_ij <- d_i F_ij d_j, in storage precision; notes how far entries moved. Entries that become 0
+/// (their row or column is to have the sum 0) are no longer stored.
 void scale(ExchangeMatrix& matrix, std::span<const double> d, ClosureReport& report) {
   double moved = 0;
   double total = 0;
@@ -29,9 +46,12 @@ void scale(ExchangeMatrix& matrix, std::span<const double> d, ClosureReport& rep
     columns.clear();
     values.clear();
     matrix.forRow(i, [&](Index j, double value) {
-      columns.push_back(j);
-      values.push_back(d[i] * value * d[j]);
-      const double move = values.back() - value;
+      const double scaled = d[i] * value * d[j];
+      if (scaled > 0) {
+        columns.push_back(j);
+        values.push_back(scaled);
+      }
+      const double move = scaled - value;
       report.largest_move = std::max(report.largest_move, std::abs(move));
       moved += matrix.area()[i] * move * move;
       total += matrix.area()[i] * value * value;
@@ -50,21 +70,25 @@ void scale(ExchangeMatrix& matrix, std::span<const double> d, ClosureReport& rep
 ClosureReport restoreClosure(ExchangeMatrix& matrix, std::span<const double> target_row_sums,
                              double tolerance, int max_iterations) {
   const std::size_t n = matrix.size();
-  if (target_row_sums.size() != n) {
-    throw InputError(fmt::format("closure: {} row sums for {} rows", target_row_sums.size(), n));
-  }
+  checkTarget(target_row_sums, n);
   ClosureReport report;
   std::vector<double> d(n, 1.0);
   std::vector<double> sums = matrix.rowSums();
   report.largest_residual_before = largestResidual(matrix, target_row_sums, sums);
   report.largest_residual = report.largest_residual_before;
-  while (report.largest_residual > tolerance && report.iterations < max_iterations) {
+  std::vector<double> history;
+  const auto stalls = [&] {
+    return history.size() > kPatience &&
+           history.back() > 0.5 * history[history.size() - 1 - kPatience];
+  };
+  while (report.largest_residual > tolerance && report.iterations < max_iterations && !stalls()) {
     for (std::size_t i = 0; i < n; ++i) {
       if (sums[i] > 0) d[i] *= std::sqrt(target_row_sums[i] / sums[i]);
     }
     matrix.product(d, 1, sums);
     for (std::size_t i = 0; i < n; ++i) sums[i] *= d[i];
     report.largest_residual = largestResidual(matrix, target_row_sums, sums);
+    history.push_back(report.largest_residual);
     ++report.iterations;
   }
   if (report.iterations == 0) return report;
