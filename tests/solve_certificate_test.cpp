@@ -46,6 +46,26 @@ TEST(Certificate, BoundsTheTrueError) {
   EXPECT_LT(slack[slack.size() / 2], 20.0);
 }
 
+// Iterated until rounding stops it, the computed residual is 0 or about a last digit and says less
+// than it should; the bound includes what rounding may have hidden.
+TEST(Certificate, CoversRounding) {
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    test::Random random(2000 + seed);
+    const std::size_t n = 30;
+    const auto f = random.rows(Eigen::Index(n), [](auto) { return 1.0; });
+    const auto factors = test::factorsFrom(f, std::vector<double>(n, 1.0));
+    const auto rho = random.vector(n, 0.5, 0.9);
+    const auto emission = random.vector(n, 0.0, 1.0);
+    Progress quiet;
+    const auto options = test::options(kSolvers[seed % 2], 1e-300, 500);
+    const Solution s = solve(factors, rho, emission, 1, options, quiet);
+    EXPECT_LT(s.summary.residual, 1e-14);
+    const double bound = s.summary.error_bound.value_or(0.0);
+    EXPECT_LE(test::largestDifference(s.radiosity, test::direct(f, rho, emission, 1)), bound);
+    EXPECT_LT(bound, 1e-11);  // 1e-14 of rounding over 1 - rho, on B of about 3
+  }
+}
+
 // The all-ones vector fails (row 0 sums to 1.2 and reflects all of it), the rough solve succeeds.
 TEST(Certificate, SurvivesRowsAboveOne) {
   Matrix f(3, 3);
