@@ -153,6 +153,20 @@ TEST_F(MeshFile, ObjHoldsOutlinesInOrder) {
                                              "f 1 2 5 5"}));
 }
 
+/// What --faces-as-patches needs: the same faces in the same order on surfaces of the same names.
+TEST_F(MeshFile, ObjIsReadBackAsTheSameFaces) {
+  PatchMesh mesh = sample::mesh(5);
+  mesh.surface_names = {"box/red", "house/left wall/white paint"};
+  writeMesh(path("x.obj"), mesh);
+  const Scene scene = loadScene(path("x.obj"));
+  EXPECT_EQ(scene.vertices, mesh.vertices);
+  ASSERT_EQ(scene.faceCount(), 25u);
+  for (std::size_t f = 0; f < 25; ++f) {
+    EXPECT_TRUE(std::ranges::equal(scene.face(f), mesh.outline(f))) << f;
+    EXPECT_EQ(scene.surfaces[scene.face_surface[f]].name, mesh.surface_names[mesh.surface[f]]);
+  }
+}
+
 TEST_F(MeshFile, ObjKeepsABackThatHasNoFront) {
   PatchMesh mesh = corner();
   mesh.twin = {kNone, kNone, kNone, kNone};

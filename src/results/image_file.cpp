@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "base/srgb.h"
 #include "radiosity/results.h"
 #include "results/checked_file.h"
 
@@ -17,11 +18,6 @@ namespace radiosity {
 namespace {
 
 using Metadata = std::span<const std::pair<std::string, std::string>>;
-
-/// The sRGB curve (IEC 61966-2-1), linear 0 to 1 -> encoded 0 to 1.
-double linearToSrgb(double linear) {
-  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-}
 
 std::uint8_t toByte(double value) {
   return std::uint8_t(std::lround(std::clamp(value, 0.0, 1.0) * 255));
@@ -62,7 +58,7 @@ std::vector<std::uint8_t> encoded(const Image& image, bool display_referred) {
   std::vector<std::uint8_t> pixels(image.rgba.size());
   for (std::size_t k = 0; k < pixels.size(); ++k) {
     const double value = std::clamp(double(image.rgba[k]), 0.0, 1.0);
-    pixels[k] = toByte(k % 4 == 3 || display_referred ? value : linearToSrgb(value));
+    pixels[k] = toByte(k % 4 == 3 || display_referred ? value : srgbFromLinear(value));
   }
   return pixels;
 }
