@@ -58,7 +58,8 @@ class Silence {
   bool for_good_ = false;
 };
 
-/// The innermost reason on HDF5's error stack, e.g. "No space left on device".
+/// The innermost reason on HDF5's error stack, e.g. "No space left on device". To be asked at once:
+/// the next call of HDF5, be it a close, empties the stack.
 std::string lastError();
 
 /// The numbers a file holds.

@@ -14,14 +14,6 @@ namespace {
 
 constexpr const char* kCure = "make the file again with the command that wrote it";
 
-Handle openFile(const std::string& path) {
-  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
-  // A finished results file is never written again, only replaced: no lock is needed.
-  H5Pset_file_locking(access.get(), false, true);
-  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose};
-}
-
 }  // namespace
 
 InputFile::InputFile(const std::string& path) : path_(path) {
@@ -33,7 +25,11 @@ InputFile::InputFile(const std::string& path) : path_(path) {
     throw InputError(fmt::format(
         "{}: is not a results file (not HDF5); name a .h5 file written by radiosity", path));
   }
-  file_ = openFile(path);
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
+  // A finished results file is never written again, only replaced: no lock is needed.
+  H5Pset_file_locking(access.get(), false, true);
+  file_ = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
   if (!file_) {
     throw InputError(fmt::format("{}: is truncated or damaged ({}); {}", path, lastError(), kCure));
   }
