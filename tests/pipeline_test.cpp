@@ -179,7 +179,7 @@ TEST(Pipeline, NothingLiesUnderTheBlocksAndNothingLeaks) {
     EXPECT_EQ(lit.factors.sky[i], 0.0) << "patch " << i << " sees the sky";
   }
   for (const SurfaceAreas& areas : lit.meshed.report.surfaces) {
-      // The contact area: the block's footprint, from its published corners by the shoelace rule.
+    // The contact area: the block's footprint, from its published corners by the shoelace rule.
     if (areas.name == "short_block/white") {
       EXPECT_NEAR(areas.buried, 0.027633, 1e-9);
     }
