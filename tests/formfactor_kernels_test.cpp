@@ -137,6 +137,11 @@ TEST(Kernels, RunsAgree) {
   }
 }
 
+struct CellRuns {
+  std::int32_t starts[kStride + kRowAlignment];
+  alignas(64) float cells[kStride + kRowAlignment];
+};
+
 TEST(Kernels, CellsAgreeAlsoOutsideTheGrid) {
   std::mt19937_64 random(9);
   std::normal_distribution<float> normal;
@@ -153,16 +158,43 @@ TEST(Kernels, CellsAgreeAlsoOutsideTheGrid) {
                3};
     if (k == 8) map.w_slope = map.w = 0;
     if (k == 9) map.last_column = map.last_row = 0;
-    float expected[kStride + kRowAlignment];
-    float cells[kStride + kRowAlignment];
-    scalarKernels().locate(map, 3, kWidth, expected);
-    for (int x = 3; x < kWidth; ++x) {
-      ASSERT_GE(expected[x], 0);
-      ASSERT_LE(expected[x], 5);
+    CellRuns expected;
+    CellRuns found;
+    const std::size_t n = scalarKernels().locate(map, 3, kWidth, expected.starts, expected.cells);
+    for (int x = 0; x < kWidth - 3; ++x) {
+      ASSERT_GE(expected.cells[x], 0);
+      ASSERT_LE(expected.cells[x], 5);
     }
     forEveryTarget([&](const RasterKernels& kernels) {
-      kernels.locate(map, 3, kWidth, cells);
-      expectSameBits(expected + 3, cells + 3, kWidth - 3);
+      ASSERT_EQ(n, kernels.locate(map, 3, kWidth, found.starts, found.cells)) << k;
+      expectSameBits(expected.cells, found.cells, kWidth - 3);
+      for (std::size_t r = 0; r <= n; ++r) ASSERT_EQ(expected.starts[r], found.starts[r]);
+    });
+  }
+}
+
+TEST(Kernels, EdgesCrossRowsAlike) {
+  std::mt19937_64 random(13);
+  std::uniform_real_distribution<double> unit(-10, 60);
+  for (int k = 0; k < 300; ++k) {
+    const int first = int(random() % 20);
+    const EdgeRows edge{
+        unit(random), unit(random), unit(random) / 20, first, first + int(random() % 20), kWidth};
+    std::int32_t expected[20];
+    scalarKernels().cross(edge, expected);
+    for (int y = edge.first; y < edge.end; ++y) {
+      // The definition: all centres left of the edge are left out, no other.
+      const double x = edge.low_x + ((y + 0.5) - edge.low_y) * edge.slope;
+      const int pixel = expected[y - first];
+      ASSERT_TRUE(pixel == 0 || pixel - 0.5 < x);
+      ASSERT_TRUE(pixel == kWidth || pixel + 0.5 >= x);
+    }
+    forEveryTarget([&](const RasterKernels& kernels) {
+      std::int32_t found[21];
+      found[edge.end - first] = -7;
+      kernels.cross(edge, found);
+      EXPECT_EQ(found[edge.end - first], -7);  // nothing written past the last row
+      for (int y = 0; y < edge.end - first; ++y) ASSERT_EQ(expected[y], found[y]);
     });
   }
 }
@@ -170,9 +202,12 @@ TEST(Kernels, CellsAgreeAlsoOutsideTheGrid) {
 TEST(Kernels, CellsAreTheOnesTheCoordinatesFallInto) {
   // u = x + 0.5 (pixel centres), v = 1.25: column x, row 1 of a grid of 50 x 2.
   RowMap map{1, kWidth / 2.0F - 0.5F, 0, 0.75F, 0, 1, 0.5F - kWidth / 2.0F, 49, 1, 50};
-  float cells[kStride + kRowAlignment];
-  scalarKernels().locate(map, 0, kWidth, cells);
-  for (int x = 0; x < kWidth; ++x) EXPECT_EQ(cells[x], float(50 + x));
+  CellRuns runs;
+  ASSERT_EQ(50u, scalarKernels().locate(map, 0, kWidth, runs.starts, runs.cells));
+  for (int x = 0; x < kWidth; ++x) {
+    EXPECT_EQ(runs.starts[x], x);
+    EXPECT_EQ(runs.cells[x], float(50 + x));
+  }
 }
 
 TEST(Kernels, WholeRowsAgreeOnEveryInstructionSet) {

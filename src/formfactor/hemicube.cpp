@@ -17,6 +17,14 @@ constexpr double kEdgeOn = 1e-30;
 /// Of a band: 8 bytes each, together less than half of a first-level cache of 32 KiB or more.
 constexpr int kBandPixels = 2048;
 
+/// The first whole number not less than x, within [begin, end].
+int firstFrom(double x, int begin, int end) {
+  const double above = x > begin ? x : begin;
+  const double inside = above < end ? above : end;
+  const int below = int(inside);  // std::ceil is a library call without SSE4.1
+  return below + int(below < inside);
+}
+
 int roundUp(int x, int multiple) { return (x + multiple - 1) / multiple * multiple; }
 
 }  // namespace
@@ -42,7 +50,8 @@ Hemicube::Hemicube(const ViewScene& scene, const DeltaFormFactors& weights,
       stride_(roundUp(weights.resolution(), kRowAlignment)),
       band_rows_(std::max(1, kBandPixels / stride_)),
       eye_vertices_(scene.vertices.size()),
-      codes_(scene.vertices.size()) {
+      codes_(scene.vertices.size()),
+      scan_(kernels) {
   view_.items.resize(scene.items);
   bands_.resize(std::size_t((resolution_ + band_rows_ - 1) / band_rows_));
   const std::size_t band = std::size_t(stride_) * std::size_t(band_rows_);
@@ -263,59 +272,68 @@ void Hemicube::sumRow(const FaceGeometry& face, int y, const std::uint32_t* row)
 void Hemicube::sumPatches(const Drawn& drawn, double height, int begin, int end,
                           const double* weights) {
   const PatchGrid& grid = scene_.grids[drawn.side->grid];
-  const auto slope = [&](const Vec3& linear) { return float(linear.x); };
-  const auto base = [&](const Vec3& linear) { return float(linear.y * height + linear.z); };
-  const Vec3 u = drawn.u - 0.5 * drawn.inverse_depth;
-  const Vec3 v = drawn.v - 0.5 * drawn.inverse_depth;
-  const RowMap map{slope(u),
-                   base(u),
-                   slope(v),
-                   base(v),
-                   slope(drawn.inverse_depth),
-                   base(drawn.inverse_depth),
+  const auto onRow = [&](const Vec3& linear) {
+    return RowLinear{linear.x, linear.y * height + linear.z};
+  };
+  const RowCoordinates row{onRow(drawn.u), onRow(drawn.v), onRow(drawn.inverse_depth)};
+  const RowMap map{float(row.u.slope - 0.5 * row.w.slope),
+                   float(row.u.base - 0.5 * row.w.base),
+                   float(row.v.slope - 0.5 * row.w.slope),
+                   float(row.v.base - 0.5 * row.w.base),
+                   float(row.w.slope),
+                   float(row.w.base),
                    0.5F * float(1 - resolution_),
                    float(grid.columns() - 1),
                    float(grid.rows() - 1),
                    float(grid.columns())};
-  kernels_.locate(map, begin, end, cells_.data());
-  const float* cells = cells_.data() + begin;
-  // Cell numbers are non-negative whole floats: equal ones have equal bits.
-  const std::size_t count = kernels_.findRuns(reinterpret_cast<const std::uint32_t*>(cells),
-                                              end - begin, cell_runs_.data());
+  const std::size_t count = kernels_.locate(map, begin, end, cell_runs_.data(), cells_.data());
   const std::int32_t* runs = cell_runs_.data();
+  const float* cells = cells_.data();
+  double* const items = view_.items.data();
+  const double* const own_weights = weights + begin;
+  double before = own_weights[0];
   for (std::size_t k = 0; k < count; ++k) {
-    const std::int32_t entry = grid.cell(std::size_t(cells[runs[k]]));
-    const int from = begin + runs[k];
-    const int to = begin + runs[k + 1];
+    const std::int32_t entry = grid.cell(std::size_t(std::int32_t(cells[runs[k]])));
+    const double after = own_weights[runs[k + 1]];
     if (entry >= 0) {
-      view_.items[std::size_t(entry)] += weights[to] - weights[from];
+      items[entry] += after - before;
     } else {
-      sumCell(drawn, height, from, to, entry, weights);
+      sumCell(grid, row, begin + runs[k], begin + runs[k + 1], entry, weights);
     }
+    before = after;
   }
 }
 
 /// Divides a run of pixels within one cell among the patches that share it. A line of the cell's
 /// tree, a u + b v + c with u = U/W and v = V/W, has the sign of a U + b V + c W, which is linear
 /// along the row: the run falls into at most two parts.
-void Hemicube::sumCell(const Drawn& drawn, double height, int begin, int end, std::int32_t entry,
-                       const double* weights) {
+void Hemicube::sumCell(const PatchGrid& grid, const RowCoordinates& row, int begin, int end,
+                       std::int32_t entry, const double* weights) {
+  const double first_centre = 0.5 * (1 - resolution_);
   while (entry < 0) {
-    const CellNode& node = scene_.grids[drawn.side->grid].node(~entry);
-    const Vec3 line = node.a * drawn.u + node.b * drawn.v + node.c * drawn.inverse_depth;
-    const double base = line.y * height + line.z;
-    const double first_centre = 0.5 * (1 - resolution_);
-    const auto side = [&](int x) { return line.x * (x + first_centre) + base; };
-    const bool first_inside = side(begin) >= 0;
-    if (first_inside != (side(end - 1) >= 0)) {
-      // The first pixel on the other side; the quotient may be a pixel off by rounding.
-      int middle = std::clamp(int(-base / line.x - first_centre), begin, end - 1);
-      while (middle > begin && (side(middle - 1) >= 0) != first_inside) --middle;
-      while ((side(middle) >= 0) == first_inside) ++middle;
-      sumCell(drawn, height, middle, end, first_inside ? node.outside : node.inside, weights);
-      end = middle;
+    const CellNode& node = grid.node(~entry);
+    const double slope = node.a * row.u.slope + node.b * row.v.slope + node.c * row.w.slope;
+    const double base = node.a * row.u.base + node.b * row.v.base + node.c * row.w.base;
+    if (slope == 0) {
+      entry = base >= 0 ? node.inside : node.outside;
+      continue;
     }
-    entry = first_inside ? node.inside : node.outside;
+    const std::int32_t left = slope > 0 ? node.outside : node.inside;
+    const std::int32_t right = slope > 0 ? node.inside : node.outside;
+    const int middle = firstFrom(-base / slope - first_centre, begin, end);
+    if (left >= 0 && right >= 0) {
+      // The common case, without a branch: an empty part adds 0.
+      view_.items[std::size_t(left)] += weights[middle] - weights[begin];
+      view_.items[std::size_t(right)] += weights[end] - weights[middle];
+      return;
+    }
+    if (middle == begin) {
+      entry = right;
+    } else {
+      if (middle < end) sumCell(grid, row, middle, end, right, weights);
+      end = middle;
+      entry = left;
+    }
   }
   view_.items[std::size_t(entry)] += weights[end] - weights[begin];
 }

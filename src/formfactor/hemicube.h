@@ -92,6 +92,15 @@ class Hemicube {
     std::uint32_t drawn, begin, end;
   };
 
+  /// slope * x + base, with x the pixel centre from the middle of the face.
+  struct RowLinear {
+    double slope, base;
+  };
+  /// Grid coordinates along a row of pixels: u / w and v / w.
+  struct RowCoordinates {
+    RowLinear u, v, w;
+  };
+
   void transformVertices(const EyeFrame& frame);
   void collectCandidates(const EyeFrame& frame, Index own, const std::uint8_t* hidden);
   void prepareFace(const FaceGeometry& face);
@@ -104,8 +113,8 @@ class Hemicube {
   void drawFace(const FaceGeometry& face, const Visit& visit);
   void sumRow(const FaceGeometry& face, int y, const std::uint32_t* row);
   void sumPatches(const Drawn& drawn, double height, int begin, int end, const double* weights);
-  void sumCell(const Drawn& drawn, double height, int begin, int end, std::int32_t entry,
-               const double* weights);
+  void sumCell(const PatchGrid& grid, const RowCoordinates& row, int begin, int end,
+               std::int32_t entry, const double* weights);
   double rowHeight(const FaceGeometry& face, int y) const;
   int rowCount(const FaceGeometry& face) const {
     return face.isTop() ? resolution_ : resolution_ / 2;

@@ -67,11 +67,13 @@ void PatchGrid::chooseAxes(std::span<const GridPiece> pieces, const Vec3& origin
   }
   const double count = double(pieces.size());
   const double fitting = u.extent() * v.extent();
-  if (nearInteger(u.extent()) && nearInteger(v.extent()) && fitting <= 4 * count &&
-      fitting >= count / 4) {
-    columns_ = nearestCount(u.extent());
-    rows_ = nearestCount(v.extent());
-  } else {
+  columns_ = nearestCount(u.extent());
+  rows_ = nearestCount(v.extent());
+  const double cells = double(columns_) * rows_;
+  const bool regular = nearInteger(u.extent()) && nearInteger(v.extent()) && cells <= 4 * count &&
+                       cells >= count / 4;
+  // One quadrilateral or two triangles a cell: rows and columns, if not quite parallelograms.
+  if (!regular && cells != count && 2 * cells != count) {
     const double fine = std::sqrt(2 * count / fitting);
     columns_ = nearestCount(std::ceil(u.extent() * fine));
     rows_ = nearestCount(std::ceil(2 * count / columns_));

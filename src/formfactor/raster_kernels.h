@@ -53,8 +53,18 @@ inline constexpr float kLeastW = 1e-30F;
 /// the even one).
 inline constexpr float kRounder = 8388608.0F;
 
+/// A line that crosses the centres of rows [first, end), x = low_x + (y - low_y) * slope.
+struct EdgeRows {
+  double low_x, low_y, slope;
+  std::int32_t first, end;
+  std::int32_t columns;
+};
+
 struct RasterKernels {
   std::string target;  ///< instruction set, or "scalar"
+  /// crossings[y - first]: the first pixel of row y whose centre is not left of the edge, moved
+  /// into [0, columns].
+  void (*cross)(const EdgeRows& edge, std::int32_t* crossings);
   /// Sets depth to -infinity and items to kSky in `count` pixels, a multiple of kRowAlignment.
   void (*clear)(float* depth, std::uint32_t* items, std::size_t count);
   /// Depth test and write: a pixel takes `item` where its inverse depth is larger than the stored
@@ -65,9 +75,12 @@ struct RasterKernels {
   /// ascending, then `count`; returns how many runs there are, `count` not counted. `starts` has
   /// room for count + kRowAlignment.
   std::size_t (*findRuns)(const std::uint32_t* values, int count, std::int32_t* starts);
-  /// cells[x] = row * columns + column for the pixels x of [begin, end). Coordinates outside the
-  /// grid are moved to its border: a pixel is never lost.
-  void (*locate)(const RowMap& map, int begin, int end, float* cells);
+  /// Finds the cell, row * columns + column, of every pixel x of [begin, end), a non-empty range,
+  /// and writes it to cells[x - begin]. The pixels [begin + starts[k], begin + starts[k + 1]) are
+  /// a run of one cell, and neighbouring runs differ; returns how many there are. Coordinates
+  /// outside the grid are moved to its border: a pixel is never lost. `starts` and `cells` (as
+  /// aligned as a row) have room for end - begin + kRowAlignment.
+  std::size_t (*locate)(const RowMap& map, int begin, int end, std::int32_t* starts, float* cells);
 };
 
 /// The twin in plain C++, against which every other set is tested.

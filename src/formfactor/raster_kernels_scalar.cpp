@@ -1,10 +1,20 @@
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "formfactor/raster_kernels.h"
 
 namespace radiosity {
 namespace {
+
+void cross(const EdgeRows& edge, std::int32_t* crossings) {
+  const double columns = edge.columns;
+  for (std::int32_t y = edge.first; y < edge.end; ++y) {
+    const double x = edge.low_x + ((y + 0.5) - edge.low_y) * edge.slope - 0.5;
+    const double right = x > 0 ? x : 0;
+    crossings[y - edge.first] = std::int32_t(std::ceil(right < columns ? right : columns));
+  }
+}
 
 void clear(float* depth, std::uint32_t* items, std::size_t count) {
   std::fill_n(depth, count, -std::numeric_limits<float>::infinity());
@@ -45,7 +55,8 @@ float clampTo(float value, float last) {
 
 float roundToWhole(float value) { return (value + kRounder) - kRounder; }
 
-void locate(const RowMap& map, int begin, int end, float* cells) {
+std::size_t locate(const RowMap& map, int begin, int end, std::int32_t* starts, float* cells) {
+  std::size_t found = 0;
   for (int x = begin; x < end; ++x) {
     const float centre = float(x) + map.first_centre;
     const float w = map.w_slope * centre + map.w;
@@ -54,12 +65,16 @@ void locate(const RowMap& map, int begin, int end, float* cells) {
     const float v = (map.v_slope * centre + map.v) * scale;
     const float column = roundToWhole(clampTo(u, map.last_column));
     const float row = roundToWhole(clampTo(v, map.last_row));
-    cells[x] = row * map.columns + column;
+    const float cell = row * map.columns + column;
+    cells[x - begin] = cell;
+    if (x == begin || cell != cells[x - begin - 1]) starts[found++] = x - begin;
   }
+  starts[found] = end - begin;
+  return found;
 }
 
 }  // namespace
 
-RasterKernels scalarKernels() { return {"scalar", clear, fill, findRuns, locate}; }
+RasterKernels scalarKernels() { return {"scalar", cross, clear, fill, findRuns, locate}; }
 
 }  // namespace radiosity

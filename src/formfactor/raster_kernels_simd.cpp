@@ -17,6 +17,34 @@ using Floats = hn::CappedTag<float, kRowAlignment>;
 using Ints = hn::RebindToSigned<Floats>;
 using Words = hn::RebindToUnsigned<Floats>;
 
+void cross(const EdgeRows& edge, std::int32_t* crossings) {
+  const hn::CappedTag<double, kRowAlignment> dd;
+  const hn::Rebind<std::int32_t, decltype(dd)> di;
+  const int lanes = int(hn::Lanes(dd));
+  const auto low_x = hn::Set(dd, edge.low_x);
+  const auto low_y = hn::Set(dd, edge.low_y);
+  const auto slope = hn::Set(dd, edge.slope);
+  const auto half = hn::Set(dd, 0.5);
+  const auto zero = hn::Zero(dd);
+  const auto columns = hn::Set(dd, double(edge.columns));
+  const auto step = hn::Set(dd, double(lanes));
+  const int count = edge.end - edge.first;
+  auto centre = hn::Add(hn::Iota(dd, 0.0), hn::Set(dd, edge.first + 0.5));
+  for (int k = 0; k < count; k += lanes) {
+    const auto along = hn::Mul(hn::Sub(centre, low_y), slope);
+    const auto x = hn::Sub(hn::Add(low_x, along), half);
+    const auto right = hn::IfThenElseZero(hn::Gt(x, zero), x);
+    const auto inside = hn::IfThenElse(hn::Lt(right, columns), right, columns);
+    const auto pixel = hn::DemoteTo(di, hn::Ceil(inside));
+    if (k + lanes <= count) {
+      hn::StoreU(pixel, di, crossings + k);
+    } else {
+      hn::BlendedStore(pixel, hn::FirstN(di, std::size_t(count - k)), di, crossings + k);
+    }
+    centre = hn::Add(centre, step);
+  }
+}
+
 void clear(float* depth, std::uint32_t* items, std::size_t count) {
   const Floats df;
   const Words dw;
@@ -85,11 +113,16 @@ std::size_t findRuns(const std::uint32_t* values, int count, std::int32_t* start
   const int lanes = int(hn::Lanes(dw));
   std::size_t found = 0;
   starts[found++] = 0;
+  // Counted on by hand: Iota from a variable goes through memory.
+  auto pixel = hn::Add(hn::Iota(di, 0), hn::Set(di, 1));
+  const auto step = hn::Set(di, lanes);
   int x = 1;
   for (; x + lanes <= count; x += lanes) {
     const auto differs = hn::Ne(hn::LoadU(dw, values + x), hn::LoadU(dw, values + x - 1));
-    if (hn::AllFalse(dw, differs)) continue;
-    found += hn::CompressStore(hn::Iota(di, x), hn::RebindMask(di, differs), di, starts + found);
+    // Not CompressStore: with the memory as its target it takes several times as long.
+    hn::StoreU(hn::Compress(pixel, hn::RebindMask(di, differs)), di, starts + found);
+    found += hn::CountTrue(dw, differs);
+    pixel = hn::Add(pixel, step);
   }
   for (; x < count; ++x) {
     if (values[x] != values[x - 1]) starts[found++] = x;
@@ -98,9 +131,18 @@ std::size_t findRuns(const std::uint32_t* values, int count, std::int32_t* start
   return found;
 }
 
-void locate(const RowMap& map, int begin, int end, float* cells) {
-  // Whole vectors: what is written past `end` is overwritten by the row's next polygon.
+/// The lanes moved up by one, the last one to the bottom.
+HWY_INLINE hn::Vec<Floats> rotateUp(hn::Vec<Floats> v) {
   const Floats df;
+  const Ints di;
+  const auto last = hn::Set(di, std::int32_t(hn::Lanes(df)) - 1);  // lanes: a power of two
+  return hn::TableLookupLanes(
+      v, hn::IndicesFromVec(df, hn::And(hn::Add(hn::Iota(di, 0), last), last)));
+}
+
+std::size_t locate(const RowMap& map, int begin, int end, std::int32_t* starts, float* cells) {
+  const Floats df;
+  const Ints di;
   const int lanes = int(hn::Lanes(df));
   const auto u_slope = hn::Set(df, map.u_slope);
   const auto v_slope = hn::Set(df, map.v_slope);
@@ -121,19 +163,36 @@ void locate(const RowMap& map, int begin, int end, float* cells) {
     const auto inside = hn::Min(hn::Max(value, zero), last);
     return hn::Sub(hn::Add(inside, rounder), rounder);
   };
-  auto centre = hn::Add(hn::Iota(df, float(begin)), hn::Set(df, map.first_centre));
-  for (int x = begin; x < end; x += lanes) {
+  auto pixel = hn::Iota(di, 0);
+  const auto pixel_step = hn::Set(di, lanes);
+  auto centre = hn::Add(hn::Iota(df, 0.0F), hn::Set(df, float(begin) + map.first_centre));
+  const auto bottom = hn::FirstN(df, 1);
+  auto before = hn::Set(df, -1.0F);  // no cell: the first pixel starts a run
+  std::size_t found = 0;
+  const int count = end - begin;
+  for (int x = 0; x < count; x += lanes) {
     const auto w = hn::Add(hn::Mul(w_slope, centre), w0);
     const auto scale = hn::Div(one, hn::Max(w, least_w));
     const auto u = hn::Mul(hn::Add(hn::Mul(u_slope, centre), u0), scale);
     const auto v = hn::Mul(hn::Add(hn::Mul(v_slope, centre), v0), scale);
     const auto cell = hn::Add(hn::Mul(whole(v, last_row), columns), whole(u, last_column));
-    hn::StoreU(cell, df, cells + x);
+    const auto rotated = rotateUp(cell);
+    auto differs = hn::Ne(cell, hn::IfThenElse(bottom, before, rotated));
+    if (count - x < lanes) differs = hn::And(differs, hn::FirstN(df, std::size_t(count - x)));
+    hn::Store(cell, df, cells + x);
+    hn::StoreU(hn::Compress(pixel, hn::RebindMask(di, differs)), di, starts + found);
+    found += hn::CountTrue(df, differs);
+    before = rotated;
+    pixel = hn::Add(pixel, pixel_step);
     centre = hn::Add(centre, step);
   }
+  starts[found] = count;
+  return found;
 }
 
-RasterKernels kernels() { return {hwy::TargetName(HWY_TARGET), clear, fill, findRuns, locate}; }
+RasterKernels kernels() {
+  return {hwy::TargetName(HWY_TARGET), cross, clear, fill, findRuns, locate};
+}
 
 }  // namespace
 }  // namespace radiosity::HWY_NAMESPACE

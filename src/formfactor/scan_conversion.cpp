@@ -6,9 +6,9 @@
 namespace radiosity {
 namespace {
 
-/// The first pixel whose centre is not left of (or below) x, clamped to [0, limit].
-int firstCentre(double x, int limit) {
-  const double shifted = x - 0.5;
+/// The first row whose centre is not below y, clamped to [0, limit].
+int firstRow(double y, int limit) {
+  const double shifted = y - 0.5;
   if (!(shifted > 0)) return 0;
   if (shifted >= limit) return limit;
   const int below = int(shifted);  // std::ceil is a library call without SSE4.1
@@ -20,71 +20,99 @@ int firstCentre(double x, int limit) {
 void ScanConversion::begin(int columns, int rows) {
   columns_ = columns;
   rows_ = rows;
-  first_ = end_ = 0;
-  further_.clear();
+  loops_ = 0;
+  edges_.clear();
   runs_.clear();
-  if (count_.size() < std::size_t(rows)) {
-    count_.resize(std::size_t(rows));
-    pair_.resize(2 * std::size_t(rows));
-  }
-}
-
-void ScanConversion::reserveRows(int first, int end) {
-  if (first_ == end_) {
-    first_ = first;
-    end_ = first;
-  }
-  for (; first_ > first; --first_) count_[std::size_t(first_ - 1)] = 0;
-  for (; end_ < end; ++end_) count_[std::size_t(end_)] = 0;
-}
-
-void ScanConversion::addEdge(Point a, Point b) {
-  if (b.y < a.y || (b.y == a.y && b.x < a.x)) std::swap(a, b);
-  const int first = firstCentre(a.y, rows_);
-  const int end = firstCentre(b.y, rows_);
-  if (first == end) return;
-  reserveRows(first, end);
-  const double slope = (b.x - a.x) / (b.y - a.y);
-  for (int y = first; y < end; ++y) {
-    const int x = firstCentre(a.x + (y + 0.5 - a.y) * slope, columns_);
-    const int k = count_[std::size_t(y)]++;
-    if (k < 2) {
-      pair_[2 * std::size_t(y) + std::size_t(k)] = x;
-    } else {
-      further_.push_back({y, x});
-    }
+  if (up_.size() < std::size_t(rows)) {
+    up_.resize(std::size_t(rows));
+    down_.resize(std::size_t(rows));
   }
 }
 
 void ScanConversion::addLoop(const std::vector<Point>& loop) {
-  for (std::size_t k = 0, last = loop.size() - 1; k < loop.size(); last = k++) {
-    addEdge(loop[last], loop[k]);
+  ++loops_;
+  Point from = loop.back();
+  int from_row = firstRow(from.y, rows_);
+  for (const Point& to : loop) {
+    const int to_row = firstRow(to.y, rows_);
+    if (from_row != to_row) {
+      const bool upward = from_row < to_row;
+      edges_.push_back({from, to, from_row, to_row, upward});
+      Edge& edge = edges_.back();
+      if (!upward) {
+        std::swap(edge.low, edge.high);
+        std::swap(edge.first, edge.end);
+      }
+    }
+    from = to;
+    from_row = to_row;
+  }
+}
+
+/// A single loop that goes up once and down once crosses every row exactly twice.
+bool ScanConversion::isMonotone() const {
+  if (loops_ != 1 || edges_.empty()) return false;
+  int turns = 0;
+  bool upward = edges_.back().upward;
+  for (const Edge& edge : edges_) {
+    turns += edge.upward != upward;
+    upward = edge.upward;
+  }
+  return turns == 2;
+}
+
+void ScanConversion::crossEdge(const Edge& edge, std::int32_t* crossings) const {
+  const double slope = (edge.high.x - edge.low.x) / (edge.high.y - edge.low.y);
+  cross_({edge.low.x, edge.low.y, slope, edge.first, edge.end, columns_}, crossings);
+}
+
+void ScanConversion::finishMonotone() {
+  int first = rows_;
+  int end = 0;
+  for (const Edge& edge : edges_) {
+    crossEdge(edge, (edge.upward ? up_ : down_).data() + edge.first);
+    first = std::min(first, edge.first);
+    end = std::max(end, edge.end);
+  }
+  for (int y = first; y < end; ++y) {
+    const auto [left, right] = std::minmax(up_[std::size_t(y)], down_[std::size_t(y)]);
+    addRun(y, left, right);
+  }
+}
+
+/// Crossings sorted by row (counted first, so that they can be placed at once), then along it.
+void ScanConversion::finishAny() {
+  int first = rows_;
+  int end = 0;
+  row_end_.assign(std::size_t(rows_) + 1, 0);
+  for (const Edge& edge : edges_) {
+    for (int y = edge.first; y < edge.end; ++y) ++row_end_[std::size_t(y)];
+    first = std::min(first, edge.first);
+    end = std::max(end, edge.end);
+  }
+  std::int32_t total = 0;
+  for (std::int32_t& count : row_end_) total += std::exchange(count, total);
+  crossings_.resize(std::size_t(total));
+  for (const Edge& edge : edges_) {
+    crossEdge(edge, up_.data());
+    for (int y = edge.first; y < edge.end; ++y) {
+      // Starts as the row's begin; ends as its end once all its crossings are placed.
+      crossings_[std::size_t(row_end_[std::size_t(y)]++)] = up_[std::size_t(y - edge.first)];
+    }
+  }
+  auto at = crossings_.begin();
+  for (int y = first; y < end; ++y) {
+    const auto row_end = crossings_.begin() + row_end_[std::size_t(y)];
+    std::sort(at, row_end);
+    for (; at != row_end; at += 2) addRun(y, at[0], at[1]);
   }
 }
 
 const std::vector<PixelRun>& ScanConversion::finish() {
-  std::sort(further_.begin(), further_.end(),
-            [](const Crossing& a, const Crossing& b) { return a.y < b.y; });
-  auto further = further_.begin();
-  for (int y = first_; y < end_; ++y) {
-    const std::int32_t* pair = &pair_[2 * std::size_t(y)];
-    const int count = count_[std::size_t(y)];
-    if (count == 2) {
-      const auto [begin, end] = std::minmax(pair[0], pair[1]);
-      if (begin < end) runs_.push_back({y, begin, end});
-      continue;
-    }
-    if (count == 0) continue;
-    row_crossings_.assign(pair, pair + 2);
-    for (; further != further_.end() && further->y == y; ++further) {
-      row_crossings_.push_back(further->x);
-    }
-    std::sort(row_crossings_.begin(), row_crossings_.end());
-    for (std::size_t k = 0; k + 1 < row_crossings_.size(); k += 2) {
-      if (row_crossings_[k] < row_crossings_[k + 1]) {
-        runs_.push_back({y, row_crossings_[k], row_crossings_[k + 1]});
-      }
-    }
+  if (isMonotone()) {
+    finishMonotone();
+  } else {
+    finishAny();
   }
   return runs_;
 }

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "formfactor/face_geometry.h"
+#include "formfactor/raster_kernels.h"
 
 namespace radiosity {
 
@@ -20,6 +20,8 @@ struct PixelRun {
 /// neighbours that share an edge agree to the bit on who has which pixel.
 class ScanConversion {
  public:
+  explicit ScanConversion(const RasterKernels& kernels) : cross_(kernels.cross) {}
+
   /// `columns`, `rows`: of the face, in pixels.
   void begin(int columns, int rows);
   /// Pixel coordinates; closed by its first point. Points a little outside the face are fine.
@@ -31,20 +33,29 @@ class ScanConversion {
   const std::vector<PixelRun>& finish();
 
  private:
-  void addEdge(Point a, Point b);
-  void reserveRows(int first, int end);
+  /// An edge from its lower to its upper end, crossing the centres of rows [first, end).
+  struct Edge {
+    Point low, high;
+    int first, end;
+    bool upward;  ///< as its loop runs
+  };
+  bool isMonotone() const;
+  void crossEdge(const Edge& edge, std::int32_t* crossings) const;
+  void finishMonotone();
+  void finishAny();
+  void addRun(int y, int begin, int end) {
+    if (begin < end) runs_.push_back({y, begin, end});
+  }
 
+  decltype(RasterKernels::cross) cross_;
   int columns_ = 0;
   int rows_ = 0;
-  int first_ = 0;  ///< rows in use: [first_, end_)
-  int end_ = 0;
-  struct Crossing {
-    std::int32_t y, x;
-  };
-  std::vector<std::int32_t> count_;  ///< crossings of each row
-  std::vector<std::int32_t> pair_;   ///< 2 a row: the first two crossings
-  std::vector<Crossing> further_;    ///< the third and later ones, of all rows
-  std::vector<std::int32_t> row_crossings_;
+  int loops_ = 0;
+  std::vector<Edge> edges_;
+  std::vector<std::int32_t> up_;         ///< by row, of a monotone loop: where it runs upwards
+  std::vector<std::int32_t> down_;       ///< and downwards
+  std::vector<std::int32_t> row_end_;    ///< of any polygon: where each row's crossings end
+  std::vector<std::int32_t> crossings_;  ///< row after row
   std::vector<PixelRun> runs_;
 };
 
