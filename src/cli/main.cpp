@@ -1,1 +1,83 @@
-int main() { return 0; }
+// radiosity: arguments -> one subcommand -> report -> exit code (0 done, 1 the run failed or did
+// not converge, 2 bad input or arguments).
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <optional>
+
+#include "base/atomic_file.h"
+#include "cli/commands.h"
+#include "cli/console_progress.h"
+#include "cli/words.h"
+
+namespace radiosity::cli {
+
+namespace {
+
+int dispatch(Session& session) {
+  switch (session.request.command) {
+    case Command::info:
+      return runInfo(session);
+    case Command::mesh:
+      return runMesh(session);
+    case Command::factors:
+      return runFactors(session);
+    case Command::solve:
+      return runSolve(session);
+    case Command::render:
+      break;
+  }
+  return runRender(session);
+}
+
+int run(const Request& request, ConsoleProgress& progress) {
+  // Claimed and let go: a report that cannot be written is found before the work is done.
+  if (!request.report.empty()) AtomicFile(request.report);
+  setThreads(request.threads);
+  Report report(request.quiet);
+  report.fact("version", RADIOSITY_VERSION);
+  report.fact("command", commandName(request.command));
+  report.fact("input", request.input);
+  report.fact("arguments", request.arguments);
+  Session session{request, report, progress};
+  const int code = dispatch(session);
+  report.exitCode(code);
+  if (!request.report.empty()) report.write(request.report);
+  return code;
+}
+
+int fail(const std::string& message, int code) {
+  std::fputs(fmt::format("radiosity: {}\n", oneLine(message)).c_str(), stderr);
+  return code;
+}
+
+}  // namespace
+
+}  // namespace radiosity::cli
+
+int main(int argc, char** argv) {
+  using namespace radiosity;
+  using namespace radiosity::cli;
+  try {
+    Request request;
+    if (const std::optional<int> done = parseCommandLine(argc, argv, request)) return *done;
+    ConsoleProgress progress(progressStyle(request.quiet));
+    const SignalGuard guard(progress);
+    try {
+      return run(request, progress);
+    } catch (...) {
+      progress.clear();
+      // A library that stopped half-way because of the signal may report something else.
+      if (progress.cancelled()) return fail(Cancelled().what(), 1);
+      throw;
+    }
+  } catch (const InputError& error) {
+    return fail(error.what(), 2);
+  } catch (const std::bad_alloc&) {
+    return fail("out of memory; use fewer --patches, or --memory-limit to be told before", 1);
+  } catch (const std::exception& error) {
+    return fail(error.what(), 1);
+  }
+}

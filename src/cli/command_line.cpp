@@ -1,0 +1,348 @@
+// The command line's words: options, help, and what is said when they are wrong.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+
+#include "cli/help_formatter.h"
+#include "cli/request.h"
+#include "cli/words.h"
+
+namespace radiosity::cli {
+
+namespace {
+
+constexpr std::array kCommands = {Command::info, Command::mesh, Command::factors, Command::solve,
+                                  Command::render};
+
+const char* descriptionOf(Command command) {
+  switch (command) {
+    case Command::info:
+      return "Say what a scene or results file holds and what looks wrong in it";
+    case Command::mesh:
+      return "Cut the scene into patches";
+    case Command::factors:
+      return "Compute the form factors between the patches, by hemicubes";
+    case Command::solve:
+      return "Solve B = E + rho F B for the radiosity of every patch";
+    case Command::render:
+      break;
+  }
+  return "Draw the lit scene, doing first whatever is not done yet";
+}
+
+const char* examplesOf(Command command) {
+  switch (command) {
+    case Command::info:
+      return "Examples:\n"
+             "  radiosity info data/cornell-box.obj\n"
+             "  radiosity info house.glb --set lamp.radiance=100\n"
+             "  radiosity info cornell.h5";
+    case Command::mesh:
+      return "Files (-o): .obj (outlines), .glb (triangles), .h5 (results).\n\n"
+             "Examples:\n"
+             "  radiosity mesh data/cornell-box.obj --patches 5000 -o patches.obj\n"
+             "  radiosity mesh plan.obj --unit mm --max-edge 0.25 -o patches.glb";
+    case Command::factors:
+      return "Files (-o): .h5 (results), .mtx (MatrixMarket, F as stored). A results file given "
+             "as\n"
+             "input is updated in place where no -o is given.\n\n"
+             "Examples:\n"
+             "  radiosity factors data/cornell-box.obj --resolution 512 -o cornell.h5\n"
+             "  radiosity factors cornell.h5 -o cornell.mtx";
+    case Command::solve:
+      return "Files (-o): .h5 (results), .glb (lit mesh), .mtx (MatrixMarket). A results file "
+             "given\n"
+             "as input is updated in place where no -o is given; its form factors are reused.\n\n"
+             "Examples:\n"
+             "  radiosity solve data/cornell-box.obj -o cornell.h5\n"
+             "  radiosity solve cornell.h5 --set white.reflectance=.9";
+    case Command::render:
+      break;
+  }
+  return "Files (-o): .png (exposed, sRGB), .exr (radiance, W/m^2/sr, linear), .glb (lit mesh),\n"
+         ".h5 (results), .mtx (MatrixMarket). With --show an .exr holds the quantity itself.\n\n"
+         "Examples:\n"
+         "  radiosity render data/cornell-box.obj -o cornell.png\n"
+         "  radiosity render cornell.h5 --exposure 2.5 --width 1024 --height 1024 -o cornell.exr\n"
+         "  radiosity render cornell.h5 --show form-factor:12 -o seen-from-12.png\n"
+         "  radiosity render room.glb --camera 'eye=1,1.6,3;target=0,1,0' -o room.png -o room.h5";
+}
+
+// Each helper names the value as help shows it, and gives it one argument a time, so that
+// "-o a.png scene.obj" does not take the scene for an output.
+template <class Value>
+CLI::Option* add(CLI::App& app, const char* group, const std::string& names, Value& value,
+                 const char* placeholder, const std::string& description) {
+  CLI::Option* option = app.add_option(names, value, description);
+  option->group(group)->option_text(placeholder)->allow_extra_args(false);
+  return option;
+}
+
+/// CLI11 reads "-5" into an unsigned number, and too many digits as the largest, without a word.
+const CLI::Validator& wholeNumber() {
+  constexpr std::size_t kDigits = 18;  // always fits 64 bits
+  static const CLI::Validator kValidator(
+      [](std::string& text) {
+        const bool whole = !text.empty() && text.size() <= kDigits &&
+                           text.find_first_not_of("0123456789") == std::string::npos;
+        return whole ? std::string()
+                     : fmt::format("'{}' is not a whole number from 0 to 10^18", text);
+      },
+      "");
+  return kValidator;
+}
+
+void addSceneOptions(CLI::App& app, Request& r) {
+  const SceneOptions defaults;
+  const auto reading = [&app, &r](const std::string& name, auto assign, const char* placeholder,
+                                  const std::string& description) {
+    return app
+        .add_option_function<std::string>(
+            name,
+            [&r, name, assign](const std::string& text) {
+              assign(text);
+              nameOption(name, [&r] { r.scene.validate(); });
+              r.reading_options.push_back(name);
+            },
+            description)
+        ->group("Scene")
+        ->option_text(placeholder);
+  };
+  reading(
+      "--unit", [&r](const std::string& t) { r.scene.unit = t; }, "UNIT",
+      "Unit of the scene file: mm, cm, m, in or ft (default m)")
+      ->check(CLI::IsMember({"mm", "cm", "m", "in", "ft"}));
+  reading(
+      "--kd-is", [&r](const std::string& t) { r.scene.kd_is_srgb = t == "srgb"; }, "SPACE",
+      "How Kd and base colours are written: linear or srgb (default linear)")
+      ->check(CLI::IsMember({"linear", "srgb"}));
+  reading(
+      "--default-reflectance",
+      [&r](const std::string& t) { r.scene.default_reflectance = std::stod(t); }, "RHO",
+      fmt::format("Reflectance of faces without a material, 0 to 1 (default {})",
+                  defaults.default_reflectance))
+      ->check(CLI::Number);
+  reading(
+      "--textures", [&r](const std::string& t) { r.scene.textures = t == "on"; }, "on|off",
+      "Average textures over each patch (on, default) or use the material's factor alone")
+      ->check(CLI::IsMember({"on", "off"}));
+  add(app, "Scene", "--set", r.scene.set, "NAME.PROPERTY=VALUE",
+      "Override a surface, material or object: reflectance (0 to 1), emission (exitance, W/m^2) "
+      "or radiance (W/m^2/sr); one number or three (R,G,B). May be repeated");
+  add(app, "Scene", "--materials", r.scene.materials_file, "FILE.json",
+      R"(Overrides from a file: {"NAME": {"reflectance": [R,G,B], "emission": [R,G,B]}})");
+  add(app, "Scene", "--one-sided", r.scene.one_sided, "NAME|all",
+      "Make surfaces one-sided: black from behind, but they block. May be repeated");
+  add(app, "Scene", "--two-sided", r.scene.two_sided, "NAME|all",
+      "Make surfaces two-sided (applied after --one-sided). May be repeated");
+}
+
+void addMeshOptions(CLI::App& app, Request& r) {
+  const MeshOptions defaults;
+  CLI::Option* patches = add(app, "Mesh", "--patches", r.patches, "N",
+                             fmt::format("About how many patches (default {})", defaults.patches))
+                             ->check(wholeNumber());
+  CLI::Option* max_edge = add(app, "Mesh", "--max-edge", r.max_edge, "METRES",
+                              "Longest edge of a patch (default: what --patches asks for)");
+  add(app, "Mesh", "--weld", r.weld, "FRACTION",
+      fmt::format("Points closer than this fraction of the scene's diagonal are one; 0 to 0.01 "
+                  "(default {})",
+                  defaults.weld));
+  CLI::Option* faces = app.add_flag_function(
+                              "--faces-as-patches,!--no-faces-as-patches",
+                              [&r](std::int64_t count) { r.faces_as_patches = count > 0; },
+                              "Patch k is face k of the file: nothing is welded, cut or re-ordered")
+                           ->group("Mesh");
+  patches->excludes(max_edge)->excludes(faces);
+  max_edge->excludes(faces);
+}
+
+void addFactorOptions(CLI::App& app, Request& r) {
+  const FormFactorOptions defaults;
+  app.add_option_function<std::string>(
+         "--method", [](const std::string&) {}, "hemicube (default)")
+      ->group("Form factors")
+      ->option_text("METHOD")
+      ->check(CLI::IsMember({"hemicube"}));
+  add(app, "Form factors", "--resolution", r.resolution, "PIXELS",
+      fmt::format("Edge of the hemicube's top face; even, 16 to 4096 (default {})",
+                  defaults.resolution));
+  add(app, "Form factors", "--seed", r.seed, "N",
+      fmt::format("Seed of each hemicube's random turn (default {})", defaults.seed))
+      ->check(wholeNumber());
+  app.add_flag_function(
+         "--symmetrize,!--no-symmetrize", [&r](std::int64_t count) { r.symmetrize = count > 0; },
+         "Merge both estimates of each pair (A_i F_ij = A_j F_ji), then restore the row sums")
+      ->group("Form factors");
+  add(app, "Form factors", "--precision", r.precision, "single|double",
+      "Of the stored form factors (default single); sums are always double")
+      ->check(CLI::IsMember({"single", "double"}));
+  add(app, "Form factors", "--memory-limit", r.memory_limit, "SIZE",
+      "Refuse to start what needs more memory: bytes, or 512M, 2G, ... (default: no limit)");
+}
+
+void addSolveOptions(CLI::App& app, Request& r) {
+  const SolveOptions defaults;
+  add(app, "Solve", "--solver", r.solver, "NAME", "gauss-seidel (default) or jacobi")
+      ->check(CLI::IsMember({"gauss-seidel", "jacobi"}));
+  add(app, "Solve", "--solve-tolerance", r.solve_tolerance, "RATIO",
+      fmt::format("Stop when the largest residual is at most this times the largest emission "
+                  "(default {})",
+                  defaults.tolerance));
+  add(app, "Solve", "--max-iterations", r.max_iterations, "N",
+      fmt::format("Sweeps at most; then exit code 1 (default {})", defaults.max_iterations));
+}
+
+void addRenderOptions(CLI::App& app, Request& r) {
+  const RenderOptions defaults;
+  add(app, "Picture", "--camera", r.camera, "CAMERA",
+      "Name of a camera in the scene, or eye=X,Y,Z;target=X,Y,Z[;up=X,Y,Z][;fov=DEGREES], metres "
+      "(default: the scene's first, else one that frames the scene)");
+  add(app, "Picture", "--width", r.width, "PIXELS", fmt::format("Default {}", defaults.width));
+  add(app, "Picture", "--height", r.height, "PIXELS",
+      "Default: the width, or what the camera's shape asks for");
+  add(app, "Picture", "--exposure", r.exposure, "auto|EV",
+      "The .png and .glb show radiance times 2^EV (default auto; the EV is printed)");
+  add(app, "Picture", "--samples", r.samples, "N",
+      fmt::format("N x N samples a pixel, 1 to 16 (default {})", defaults.samples));
+  app.add_flag("--flat", r.flat, "One colour a patch, not interpolated")->group("Picture");
+  add(app, "Picture", "--crease", r.crease, "DEGREES",
+      fmt::format("Interpolate across edges that bend less (default {})", defaults.crease));
+  add(app, "Picture", "--backs", r.backs, "hide|show",
+      "hide: look through the backs of one-sided surfaces (default); show: they are black")
+      ->check(CLI::IsMember({"hide", "show"}));
+  add(app, "Picture", "--show", r.show, "QUANTITY",
+      "False colour with a legend: radiosity or irradiance (W/m^2, Rec. 709 luminance weights "
+      "0.2126 R + 0.7152 G + 0.0722 B), form-factor:PATCH (F from patch number PATCH, from 0, to "
+      "each patch), row-sum (what each patch sees of the scene's fronts)");
+}
+
+void addGeneralOptions(CLI::App& app, Request& r, Command command) {
+  if (command != Command::info) {
+    add(app, "General", "-o,--output", r.outputs, "FILE",
+        "File to write, by extension (below). May be repeated");
+  }
+  add(app, "General", "--threads", r.threads, "N",
+      "Threads (default 0: all cores); results do not depend on it, to the bit")
+      ->check(wholeNumber());
+  add(app, "General", "--report", r.report, "FILE.json",
+      "Write every figure of the run, machine-readable");
+  app.add_flag("--quiet", r.quiet, "Print errors and loud warnings only")->group("General");
+}
+
+CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
+  CLI::App* sub = app.add_subcommand(commandName(command), descriptionOf(command));
+  sub->footer(examplesOf(command));
+  sub->add_option("SCENE", r.input, "Scene (.obj, .gltf, .glb) or results file (.h5)")
+      ->required()
+      ->option_text(" ");
+  addGeneralOptions(*sub, r, command);
+  addSceneOptions(*sub, r);
+  if (command == Command::info) return sub;
+  addMeshOptions(*sub, r);
+  if (command == Command::mesh) return sub;
+  addFactorOptions(*sub, r);
+  if (command == Command::factors) return sub;
+  addSolveOptions(*sub, r);
+  if (command == Command::render) addRenderOptions(*sub, r);
+  return sub;
+}
+
+/// CLI11 says "A subcommand is required" for a typo in one; say what was typed and what was meant.
+void checkCommandWord(int argc, char** argv) {
+  std::array<std::string, kCommands.size()> names;
+  std::transform(kCommands.begin(), kCommands.end(), names.begin(), commandName);
+  const std::string list = "info, mesh, factors, solve or render";
+  if (argc < 2) {
+    throw InputError(
+        fmt::format("a subcommand is missing: {}; e.g. radiosity render SCENE -o "
+                    "picture.png, or radiosity --help",
+                    list));
+  }
+  const std::string word = argv[1];
+  if (std::find(names.begin(), names.end(), word) != names.end()) return;
+  if (word == "--help" || word == "-h" || word == "--version") return;
+  if (word.starts_with('-')) {
+    throw InputError(fmt::format("{}: options go after the subcommand ({})", word, list));
+  }
+  std::error_code ignored;
+  if (std::filesystem::exists(word, ignored)) {
+    throw InputError(fmt::format("{}: say what to do with it: radiosity {} {}", word, "render",
+                                 word + " -o picture.png"));
+  }
+  throw InputError(
+      fmt::format("'{}' is not a subcommand: {}{}", word, list, suggestion(word, names)));
+}
+
+/// The one line for what CLI11 found.
+std::string explain(const CLI::ParseError& error, const CLI::App& sub) {
+  const std::string command = "radiosity " + sub.get_name();
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
+    const std::vector<std::string> extras = sub.remaining();
+    const std::string word = extras.empty() ? std::string() : extras.front();
+    if (!word.starts_with('-')) {
+      return fmt::format("unexpected argument '{}': {} takes one scene; outputs are named with -o",
+                         word, command);
+    }
+    std::vector<std::string> names;
+    for (const CLI::Option* option : sub.get_options()) {
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+    const std::string flag = word.substr(0, word.find('='));
+    return fmt::format("unknown option {}{}; see {} --help", flag, suggestion(flag, names),
+                       command);
+  }
+  if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
+    return fmt::format("{}: the scene (.obj, .gltf, .glb) or results file (.h5) is missing",
+                       command);
+  }
+  std::string message = oneLine(error.what());
+  const std::string not_converted = "Could not convert: ";
+  if (message.starts_with(not_converted)) {
+    message = message.substr(not_converted.size()) + " is not a value it takes";
+  }
+  return fmt::format("{}; see {} --help", message, command);
+}
+
+}  // namespace
+
+std::optional<int> parseCommandLine(int argc, char** argv, Request& request) {
+  checkCommandWord(argc, argv);
+  CLI::App app(
+      "radiosity: light a scene by the matrix method. Scene -> patches -> form factors\n"
+      "-> radiosity -> picture; each subcommand does what is missing up to its stage.");
+  app.name("radiosity");
+  app.set_version_flag("--version", "radiosity " RADIOSITY_VERSION);
+  app.require_subcommand(1);
+  app.formatter(std::make_shared<HelpFormatter>());
+  app.footer(
+      "Exit codes: 0 done; 1 the run failed or did not converge; 2 bad input or arguments.\n"
+      "Help on one: radiosity render --help\n\n"
+      "Example:\n"
+      "  radiosity render data/cornell-box.obj -o cornell.png");
+  std::array<CLI::App*, kCommands.size()> subs{};
+  std::transform(kCommands.begin(), kCommands.end(), subs.begin(),
+                 [&](Command command) { return addCommand(app, request, command); });
+  request.arguments.assign(argv, argv + argc);
+  const auto chosen = [&]() {
+    for (std::size_t k = 0; k < subs.size(); ++k) {
+      if (argv[1] == std::string(commandName(kCommands[k]))) return k;
+    }
+    return std::size_t(0);
+  }();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    throw InputError(explain(error, *subs[chosen]));
+  }
+  request.command = kCommands[chosen];
+  return std::nullopt;
+}
+
+}  // namespace radiosity::cli

@@ -1,0 +1,39 @@
+// The subcommands: options in, one walk through the stages, files and a report out.
+#pragma once
+
+#include "cli/outputs.h"
+#include "cli/pipeline.h"
+#include "cli/report.h"
+#include "cli/request.h"
+
+namespace radiosity::cli {
+
+struct Session {
+  const Request& request;
+  Report& report;
+  Progress& progress;
+};
+
+// Each returns the exit code: 0, or 1 where the solution is not usable.
+int runInfo(Session& session);
+int runMesh(Session& session);
+int runFactors(Session& session);
+int runSolve(Session& session);
+int runRender(Session& session);
+
+/// The files -o names; a results file that came in is updated where none is named and the
+/// subcommand is factors or solve.
+OutputSet claimOutputs(const Session& session);
+
+/// Writes the .h5 and .mtx among `files`, after saying how large they will be. A results file
+/// that would not change is left alone.
+void writeStages(Session& session, Pipeline& pipeline, OutputSet& files);
+
+/// 0 where the solution is usable, else 1. Takes a solution without values (a singular system)
+/// out of the results.
+int judgeSolution(Session& session, Pipeline& pipeline);
+
+/// Writes the .glb among `files` as a lit mesh.
+void writeLitMesh(Pipeline& pipeline, OutputSet& files, double ev, double crease);
+
+}  // namespace radiosity::cli

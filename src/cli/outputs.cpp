@@ -1,0 +1,148 @@
+#include "cli/outputs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <utility>
+
+#include "cli/words.h"
+
+namespace radiosity::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Extension {
+  const char* text;
+  Format format;
+  std::vector<Command> commands;
+};
+
+const std::vector<Extension>& extensions() {
+  using enum Command;
+  static const std::vector<Extension> kAll = {
+      {".png", Format::png, {render}},
+      {".exr", Format::exr, {render}},
+      {".glb", Format::glb, {mesh, solve, render}},
+      {".obj", Format::obj, {mesh}},
+      {".h5", Format::results, {mesh, factors, solve, render}},
+      {".mtx", Format::matrix_market, {factors, solve, render}},
+  };
+  return kAll;
+}
+
+bool contains(const std::vector<Command>& commands, Command command) {
+  return std::find(commands.begin(), commands.end(), command) != commands.end();
+}
+
+Format formatOf(const std::string& path, Command command) {
+  std::string extension = fs::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  std::string list;
+  for (const Extension& known : extensions()) {
+    if (!contains(known.commands, command)) continue;
+    if (extension == known.text) return known.format;
+    list += (list.empty() ? "" : ", ") + std::string(known.text);
+  }
+  throw InputError(fmt::format("{}: {} writes {}; end the name in one of them", path,
+                               commandName(command), list));
+}
+
+bool sameFile(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  return fs::absolute(a).lexically_normal() == fs::absolute(b).lexically_normal() ||
+         fs::equivalent(a, b, ignored);
+}
+
+}  // namespace
+
+std::vector<Output> parseOutputs(const Request& request) {
+  std::vector<Output> outputs;
+  for (const std::string& path : request.outputs) {
+    const Output output{path, formatOf(path, request.command)};
+    for (const Output& other : outputs) {
+      if (sameFile(path, other.path))
+        throw InputError(path + ": named twice with -o; once is enough");
+    }
+    if (output.format != Format::results && sameFile(path, request.input)) {
+      throw InputError(path + ": is the input itself; write to another name");
+    }
+    outputs.push_back(output);
+  }
+  if (!request.report.empty() && sameFile(request.report, request.input)) {
+    throw InputError(request.report + ": --report would replace the input; use another name");
+  }
+  return outputs;
+}
+
+OutputSet::OutputSet(std::vector<Output> outputs) {
+  for (Output& output : outputs) add(std::move(output));
+}
+
+void OutputSet::add(Output output) {
+  for (const Output& have : outputs_) {
+    if (sameFile(have.path, output.path)) return;
+  }
+  files_.push_back({std::make_unique<AtomicFile>(output.path), {}, false});
+  outputs_.push_back(std::move(output));
+}
+
+bool OutputSet::has(Format format) const { return !path(format).empty(); }
+
+std::string OutputSet::path(Format format) const {
+  for (const Output& output : outputs_) {
+    if (output.format == format) return output.path;
+  }
+  return {};
+}
+
+void OutputSet::write(Format format, const std::string& what,
+                      const std::function<void(const std::string&)>& writer) {
+  for (std::size_t k = 0; k < outputs_.size(); ++k) {
+    if (outputs_[k].format != format) continue;
+    const std::string& temporary = files_[k].file->temporary();
+    // A writer knows only the temporary name; people know the other one.
+    const auto named = [&](std::string message) {
+      const std::size_t at = message.find(temporary);
+      return at == std::string::npos ? message
+                                     : message.replace(at, temporary.size(), outputs_[k].path);
+    };
+    try {
+      writer(temporary);
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const InputError& error) {
+      throw InputError(named(error.what()));
+    } catch (const RunError& error) {
+      throw RunError(named(error.what()));
+    }
+    files_[k].what = what;
+    files_[k].written = true;
+  }
+}
+
+void OutputSet::commit(Report& report, const Progress& progress) {
+  progress.check();
+  for (std::size_t k = 0; k < outputs_.size(); ++k) {
+    if (!files_[k].written) continue;
+    files_[k].file->commit();
+    std::error_code ignored;
+    report.output(outputs_[k].path, fs::file_size(outputs_[k].path, ignored), files_[k].what);
+  }
+}
+
+void requireDiskSpace(const std::string& path, std::size_t bytes) {
+  std::error_code error;
+  const fs::space_info space = fs::space(fs::absolute(path).parent_path(), error);
+  if (!error && space.available < bytes) {
+    throw RunError(
+        fmt::format("{}: needs about {} on disk, {} are free; free some or write elsewhere", path,
+                    bytesText(bytes), bytesText(space.available)));
+  }
+}
+
+}  // namespace radiosity::cli

@@ -1,0 +1,59 @@
+// The files a run writes: named by extension, and all of them or none.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/atomic_file.h"
+#include "cli/report.h"
+#include "cli/request.h"
+#include "radiosity/base.h"
+
+namespace radiosity::cli {
+
+enum class Format { results, matrix_market, png, exr, glb, obj };
+
+struct Output {
+  std::string path;
+  Format format;
+};
+
+/// What -o names for this subcommand. InputError: an extension it cannot write (with the list of
+/// those it can), the same file twice, the scene file itself.
+std::vector<Output> parseOutputs(const Request& request);
+
+/// Writes under temporary names; commit() renames all. Without commit() nothing stays.
+class OutputSet {
+ public:
+  /// Claims every path at once, so that a folder that is missing is found before the work is done.
+  explicit OutputSet(std::vector<Output> outputs);
+
+  const std::vector<Output>& all() const { return outputs_; }
+  bool has(Format format) const;
+  /// The first path of that format; empty if there is none.
+  std::string path(Format format) const;
+  /// Claims one more, e.g. the results file that came in. No-op where it is there already.
+  void add(Output output);
+
+  /// Calls writer(temporary path) for every output of that format; `what` describes it.
+  void write(Format format, const std::string& what,
+             const std::function<void(const std::string&)>& writer);
+  /// Renames what was written and lists it in the report.
+  void commit(Report& report, const Progress& progress);
+
+ private:
+  struct File {
+    std::unique_ptr<AtomicFile> file;
+    std::string what;
+    bool written = false;
+  };
+  std::vector<Output> outputs_;
+  std::vector<File> files_;
+};
+
+/// RunError, with both numbers, where the folder's disk has less than `bytes` free.
+void requireDiskSpace(const std::string& path, std::size_t bytes);
+
+}  // namespace radiosity::cli

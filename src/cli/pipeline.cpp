@@ -1,0 +1,238 @@
+#include "cli/pipeline.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <utility>
+
+#include "cli/summaries.h"
+#include "cli/words.h"
+
+namespace radiosity::cli {
+
+namespace {
+
+/// Vec3 a patch -> row-major N x 3, as the solver takes it.
+std::vector<double> flat(const std::vector<Vec3>& values) {
+  std::vector<double> out;
+  out.reserve(3 * values.size());
+  for (const Vec3& v : values) out.insert(out.end(), {v.x, v.y, v.z});
+  return out;
+}
+
+}  // namespace
+
+Pipeline::Pipeline(const Request& request, Report& report, Progress& progress)
+    : request_(request), report_(report), progress_(progress) {
+  results_.version = RADIOSITY_VERSION;
+}
+
+void Pipeline::open(const std::string& results_output) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(request_.input, ignored)) {
+    throw InputError(request_.input + ": no such file; check the name and the folder");
+  }
+  request_.scene.validate();
+  writes_results_ = !results_output.empty();
+  from_results_ = isResultsFile(request_.input);
+  if (from_results_) {
+    openResults();
+  } else {
+    openScene(results_output);
+  }
+  chooseOptions();
+  progress_.check();
+}
+
+void Pipeline::chooseOptions() {
+  if (from_results_) {
+    mesh_options_ = meshOptionsOf(StageKey(previous_.mesh_key));
+    factor_options_ = factorOptionsOf(StageKey(previous_.factors_key));
+    solve_options_ = solveOptionsOf(StageKey(previous_.solution_key));
+  }
+  mesh_options_ = request_.apply(mesh_options_);
+  factor_options_ = request_.apply(factor_options_);
+  solve_options_ = request_.apply(solve_options_);
+}
+
+void Pipeline::openResults() {
+  if (!request_.reading_options.empty()) {
+    throw InputError(fmt::format(
+        "{}: {} says how a scene file is read, and this is a results file; give the scene file",
+        request_.input, request_.reading_options.front()));
+  }
+  previous_ = readResults(request_.input, false);
+  source_ = request_.input;
+  if (!previous_.scene) {
+    throw InputError(request_.input + ": holds no scene; make it anew from the scene file");
+  }
+  results_.scene = std::move(previous_.scene);
+  summarizeScene(report_, scene(), request_.input);
+  if (!request_.overridesScene()) return;
+  std::vector<Note>& notes = made(results_.scene).notes;
+  const std::size_t known = notes.size();
+  applyOverrides(made(results_.scene), request_.scene);
+  changed_ = true;
+  report_.notes(std::span(notes).subspan(std::min(known, notes.size())));
+}
+
+void Pipeline::openScene(const std::string& results_output) {
+  results_.scene = loadScene(request_.input, request_.scene);
+  changed_ = true;
+  summarizeScene(report_, scene(), request_.input);
+  report_.notes(scene().notes);
+  std::error_code ignored;
+  if (results_output.empty() || !std::filesystem::exists(results_output, ignored)) return;
+  try {
+    if (isResultsFile(results_output)) previous_ = readResults(results_output, false);
+    source_ = results_output;
+  } catch (const InputError& error) {
+    // It is about to be replaced anyway: no stages to reuse, and no reason to fail.
+    report_.line("note", fmt::format("nothing is reused from {}: {}", results_output,
+                                     oneLine(error.what())));
+    previous_ = Results();
+  }
+}
+
+void Pipeline::requireLight() const {
+  for (const Surface& surface : scene().surfaces) {
+    if (scene().materials[surface.material].emission != Vec3(0.0)) return;
+  }
+  throw InputError(fmt::format(
+      "{}: nothing in the scene emits light, so the picture would be black; make something a lamp, "
+      "e.g. --set '{}.radiance=10' (W/m^2/sr)",
+      request_.input, scene().surfaces.empty() ? "NAME" : scene().surfaces.front().name));
+}
+
+/// Why a stage has to be computed although the source may hold one.
+std::string Pipeline::why(const std::string& stored_key, const StageKey& key, bool present) const {
+  if (!present) return {};
+  const std::string difference = StageKey::difference(StageKey(stored_key), key);
+  return difference.empty() ? "its key is not readable" : difference;
+}
+
+void Pipeline::computed(const std::string& stage, const std::string& label,
+                        const std::string& reason) {
+  changed_ = true;
+  report_.stage(stage, label, reason.empty() ? "computed" : "recomputed", reason);
+  progress_.check();
+}
+
+void Pipeline::mesh() {
+  const StageKey key = meshKey(mesh_options_, scene());
+  const bool own = request_.command == Command::mesh;
+  if (previous_.mesh && previous_.mesh_key == key.text()) {
+    results_.mesh = std::move(previous_.mesh);
+    report_.stage("mesh", "mesh", "reused", source_);
+    summarizeMesh(report_, made(results_.mesh), own ? Detail::full : Detail::none);
+  } else {
+    const std::string reason = why(previous_.mesh_key, key, previous_.mesh.has_value());
+    results_.mesh = meshScene(scene(), mesh_options_, progress_);
+    computed("mesh", "mesh", reason);
+    summarizeMesh(report_, made(results_.mesh), own ? Detail::full : Detail::brief);
+  }
+  results_.mesh_key = key.text();
+  previous_.mesh.reset();
+}
+
+void Pipeline::announceFactors() {
+  const FormFactorOptions& options = factor_options_;
+  const std::size_t memory = estimateFormFactorBytes(patches(), options);
+  // A dense row takes no column numbers in memory; on disk every entry has one of 4 bytes.
+  const std::size_t disk = options.precision == Precision::real ? memory / 2 * 3 : memory * 2;
+  report_.line("form factors",
+               fmt::format("{} of {} pixels: memory about {}{}",
+                           plural(patches().size(), "hemicube", "hemicubes"), options.resolution,
+                           bytesText(memory),
+                           writes_results_ ? ", disk at most about " + bytesText(disk) : ""));
+}
+
+void Pipeline::factors() {
+  const StageKey key = factorsKey(factor_options_, patches());
+  const bool own = request_.command == Command::factors;
+  if (previous_.factors && previous_.factors_key == key.text()) {
+    results_.factors = std::move(previous_.factors);
+    matrix_loaded_ = false;
+    report_.stage("form_factors", "form factors", "reused", source_);
+    summarizeFactors(report_, formFactors(), patches(), own ? Detail::full : Detail::none);
+  } else {
+    const std::string reason = why(previous_.factors_key, key, previous_.factors.has_value());
+    announceFactors();
+    results_.factors = computeFormFactors(patches(), factor_options_, progress_);
+    matrix_loaded_ = true;
+    computed("form_factors", "form factors", reason);
+    summarizeFactors(report_, formFactors(), patches(), own ? Detail::full : Detail::brief);
+  }
+  results_.factors_key = key.text();
+  previous_.factors.reset();
+}
+
+void Pipeline::loadMatrix() {
+  if (matrix_loaded_ || !results_.factors) return;
+  const std::size_t bytes = results_.factors->report.matrix_bytes;
+  if (!request_.memory_limit.empty() &&
+      bytes > parseBytes("--memory-limit", request_.memory_limit)) {
+    throw RunError(fmt::format("{}: its form factors take {} of memory, --memory-limit allows {}",
+                               source_, bytesText(bytes), request_.memory_limit));
+  }
+  results_.factors = std::move(readResults(source_, true).factors);
+  matrix_loaded_ = true;
+  progress_.check();
+}
+
+const PatchMaterials& Pipeline::materials() {
+  if (!results_.materials) results_.materials = patchMaterials(scene(), patches());
+  return made(results_.materials);
+}
+
+void Pipeline::solution() {
+  const StageKey key = solutionKey(solve_options_, materials(), StageKey(results_.factors_key));
+  const bool own = request_.command == Command::solve;
+  if (previous_.solution && previous_.solution_key == key.text()) {
+    results_.solution = std::move(previous_.solution);
+    report_.stage("solution", "solution", "reused", source_);
+  } else {
+    const std::string reason = why(previous_.solution_key, key, previous_.solution.has_value());
+    loadMatrix();
+    results_.solution =
+        solve(formFactors(), flat(materials().reflectance), flat(materials().emission), 3,
+              solve_options_, progress_, patches().surface, patches().surface_names);
+    computed("solution", "solution", reason);
+  }
+  results_.solution_key = key.text();
+  previous_.solution.reset();
+  summarizeSolution(report_, solved(), formFactors(), patches(), solve_options_,
+                    own ? Detail::full : Detail::brief);
+}
+
+void Pipeline::keepLaterStages() {
+  bool dropped = false;
+  if (!results_.factors && previous_.factors) {
+    const StageKey key = factorsKey(factorOptionsOf(StageKey(previous_.factors_key)), patches());
+    if (key.text() == previous_.factors_key) {
+      results_.factors = std::move(previous_.factors);
+      results_.factors_key = previous_.factors_key;
+      report_.stage("form_factors", "form factors", "kept", "they still fit");
+    } else {
+      report_.stage("form_factors", "form factors", "dropped",
+                    why(previous_.factors_key, key, true));
+      dropped = true;
+    }
+  }
+  if (!results_.solution && previous_.solution) {
+    const StageKey key = solutionKey(solveOptionsOf(StageKey(previous_.solution_key)), materials(),
+                                     StageKey(results_.factors_key));
+    if (results_.factors && key.text() == previous_.solution_key) {
+      results_.solution = std::move(previous_.solution);
+      results_.solution_key = previous_.solution_key;
+      report_.stage("solution", "solution", "kept", "it still fits");
+    } else {
+      report_.stage("solution", "solution", "dropped", why(previous_.solution_key, key, true));
+      dropped = true;
+    }
+  }
+  if (!results_.solution) results_.materials.reset();
+  changed_ = changed_ || dropped;
+}
+
+}  // namespace radiosity::cli

@@ -1,0 +1,85 @@
+// Stage reuse: each stage is taken from a results file where its key fits, and computed otherwise.
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "cli/report.h"
+#include "cli/request.h"
+#include "cli/stage_key.h"
+#include "radiosity/results.h"
+
+namespace radiosity::cli {
+
+/// A stage that must be there by now.
+template <class Stage>
+auto& made(Stage& stage) {
+  if (!stage) throw std::logic_error("a stage was used before it was made");
+  return *stage;
+}
+
+/// Scene -> mesh -> form factors -> solution, for one run. What is reused, computed or dropped is
+/// said on a line each.
+///
+/// Where stages come from: a results file given as input, whose stages keep the options they were
+/// made with unless others are given; or, where the input is a scene file, the results file that
+/// the run will write, if there is one already (then the options are those given and the defaults,
+/// so that a command means the same whether or not its output is there).
+class Pipeline {
+ public:
+  Pipeline(const Request& request, Report& report, Progress& progress);
+
+  /// Loads the scene, applies the overrides. `results_output`: the .h5 this run writes, or empty.
+  void open(const std::string& results_output);
+  /// InputError, with the cure, where nothing in the scene emits.
+  void requireLight() const;
+  void mesh();
+  /// Where they are reused they come without the matrix, until loadMatrix().
+  void factors();
+  void solution();
+  /// Loads the matrix where the reused form factors came without it.
+  void loadMatrix();
+  /// Keeps the later stages that still fit and says which are dropped.
+  void keepLaterStages();
+
+  Results& results() { return results_; }
+  /// What the results file given as input holds beyond its scene; for `info`.
+  const Results& stored() const { return previous_; }
+  const Scene& scene() const { return made(results_.scene); }
+  const PatchMesh& patches() const { return made(results_.mesh).mesh; }
+  const FormFactors& formFactors() const { return made(results_.factors); }
+  const Solution& solved() const { return made(results_.solution); }
+  const PatchMaterials& materials();
+  bool fromResultsFile() const { return from_results_; }
+  /// True where results() differs from the file the stages came from.
+  bool changed() const { return changed_; }
+  /// The results file the stages came from; empty if none.
+  const std::string& source() const { return source_; }
+
+ private:
+  void openResults();
+  void openScene(const std::string& results_output);
+  /// What was given over what the results file has or the defaults; wrong ones are found here,
+  /// before any work.
+  void chooseOptions();
+  void announceFactors();
+  std::string why(const std::string& stored_key, const StageKey& key, bool present) const;
+  void computed(const std::string& stage, const std::string& label, const std::string& reason);
+
+  const Request& request_;
+  MeshOptions mesh_options_;
+  FormFactorOptions factor_options_;
+  SolveOptions solve_options_;
+  Report& report_;
+  Progress& progress_;
+  Results results_;   ///< the stages of this run
+  Results previous_;  ///< what the source holds and has not been taken over yet
+  std::string source_;
+  bool from_results_ = false;
+  bool matrix_loaded_ = false;
+  bool changed_ = false;
+  bool writes_results_ = false;
+};
+
+}  // namespace radiosity::cli

@@ -1,0 +1,204 @@
+#include "radiosity/render.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "cli/commands.h"
+#include "cli/picture.h"
+#include "cli/words.h"
+#include "radiosity/results.h"
+
+namespace radiosity::cli {
+
+namespace {
+
+using Metadata = std::vector<std::pair<std::string, std::string>>;
+
+/// What --show names; `none`: the lit scene itself.
+struct Show {
+  enum Quantity { none, radiosity, irradiance, form_factor, row_sum } quantity = none;
+  std::size_t patch = 0;
+
+  bool needsLight() const {
+    return quantity == none || quantity == radiosity || quantity == irradiance;
+  }
+};
+
+Show parseShow(const std::string& text) {
+  if (text.empty()) return {Show::none, 0};
+  if (text == "radiosity") return {Show::radiosity, 0};
+  if (text == "irradiance") return {Show::irradiance, 0};
+  if (text == "row-sum") return {Show::row_sum, 0};
+  const std::string prefix = "form-factor:";
+  if (text.starts_with(prefix)) {
+    std::size_t patch = 0;
+    const char* last = text.data() + text.size();
+    const auto [end, error] = std::from_chars(text.data() + prefix.size(), last, patch);
+    if (error == std::errc() && end == last) return {Show::form_factor, patch};
+    throw InputError(
+        fmt::format("--show: '{}' needs a patch number from 0, e.g. form-factor:12", text));
+  }
+  const std::string known[] = {"radiosity", "irradiance", "form-factor:PATCH", "row-sum"};
+  throw InputError(
+      fmt::format("--show: '{}' is not one of radiosity, irradiance, form-factor:PATCH, row-sum{}",
+                  text, suggestion(text, known)));
+}
+
+void requirePatch(const Show& show, const PatchMesh& mesh) {
+  if (show.quantity != Show::form_factor || show.patch < mesh.size()) return;
+  throw InputError(fmt::format("--show: there is no patch {}; the mesh has patches 0 to {}",
+                               show.patch, mesh.size() - 1));
+}
+
+/// Rec. 709 luminance of a field of three bands.
+std::vector<double> luminance(const std::vector<double>& rgb) {
+  std::vector<double> out(rgb.size() / 3);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = 0.2126 * rgb[3 * i] + 0.7152 * rgb[3 * i + 1] + 0.0722 * rgb[3 * i + 2];
+  }
+  return out;
+}
+
+std::vector<double> rowOf(Pipeline& pipeline, std::size_t patch) {
+  pipeline.loadMatrix();
+  std::vector<double> row(pipeline.patches().size(), 0.0);
+  pipeline.formFactors().matrix.forRow(patch, [&](Index j, double f) { row[j] = f; });
+  return row;
+}
+
+std::vector<double> quantityOf(const Show& show, Pipeline& pipeline, FalseColour& legend) {
+  switch (show.quantity) {
+    case Show::radiosity:
+      legend = {"radiosity B (Rec. 709 luminance)", "W/m^2"};
+      return luminance(pipeline.solved().radiosity);
+    case Show::irradiance:
+      legend = {"irradiance H (Rec. 709 luminance)", "W/m^2"};
+      return luminance(pipeline.solved().irradiance);
+    case Show::form_factor:
+      legend = {fmt::format("form factor from patch {}", show.patch), "1"};
+      return rowOf(pipeline, show.patch);
+    case Show::row_sum:
+    case Show::none:
+      break;
+  }
+  legend = {"row sum: fronts seen", "1"};
+  return pipeline.formFactors().fronts;
+}
+
+void reportPicture(Report& report, const Picture& picture) {
+  const Camera& c = picture.camera;
+  const double eye[] = {c.eye.x, c.eye.y, c.eye.z};
+  const double target[] = {c.target.x, c.target.y, c.target.z};
+  report.section("picture", "Picture");
+  report.text("camera", "camera", picture.camera_from);
+  report.bands("eye_m", "eye", eye, "m");
+  report.bands("target_m", "target", target, "m");
+  report.number("vertical_fov_deg", "vertical field of view", c.vertical_fov * 180 / M_PI, "deg");
+  report.text(
+      "size", "size",
+      fmt::format("{} x {} pixels, {} x {} samples", picture.options.width, picture.options.height,
+                  picture.options.samples, picture.options.samples));
+}
+
+Metadata metadataOf(const Picture& picture, const std::string& quantity, const std::string& unit) {
+  const Camera& c = picture.camera;
+  return {{"Software", "radiosity " RADIOSITY_VERSION},
+          {"quantity", quantity},
+          {"unit", unit},
+          {"camera", fmt::format("eye={},{},{};target={},{},{};up={},{},{};fov={}", c.eye.x,
+                                 c.eye.y, c.eye.z, c.target.x, c.target.y, c.target.z, c.up.x,
+                                 c.up.y, c.up.z, c.vertical_fov * 180 / M_PI)}};
+}
+
+void drawScene(Session& session, Pipeline& pipeline, const Picture& picture, OutputSet& files) {
+  const Image radiance = radiancePicture(picture, pipeline, session);
+  const double ev = exposureOf(session.request, radiance);
+  session.report.number("exposure_ev", "exposure", ev,
+                        session.request.exposure == "auto" ? "EV (automatic)" : "EV");
+  files.write(Format::png, fmt::format("picture, EV {:.2f}, sRGB", ev),
+              [&](const std::string& temporary) {
+                Metadata metadata = metadataOf(picture, "exposed radiance", "sRGB");
+                metadata.emplace_back("exposure_ev", fmt::format("{}", ev));
+                writeImage(temporary, exposed(radiance, ev), false, metadata);
+              });
+  files.write(Format::exr, "radiance, W/m^2/sr, linear", [&](const std::string& temporary) {
+    writeImage(temporary, radiance, false, metadataOf(picture, "radiance", "W/m^2/sr"));
+  });
+  writeLitMesh(pipeline, files, ev, picture.options.crease);
+}
+
+void drawQuantity(Session& session, Pipeline& pipeline, const Picture& picture, const Show& show,
+                  OutputSet& files) {
+  FalseColour legend;
+  const std::vector<double> values = quantityOf(show, pipeline, legend);
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  session.report.text("quantity", "shown", fmt::format("{}, {}", legend.title, legend.unit));
+  session.report.number("lowest", "lowest of all patches", *low, legend.unit);
+  session.report.number("highest", "highest of all patches", *high, legend.unit);
+  files.write(Format::png, legend.title, [&](const std::string& temporary) {
+    writeImage(temporary,
+               renderFalseColour(pipeline.patches(), values, legend, picture.camera,
+                                 picture.options, session.progress),
+               true, metadataOf(picture, legend.title, legend.unit));
+  });
+  files.write(Format::exr, legend.title + " in each channel", [&](const std::string& temporary) {
+    std::vector<double> grey;
+    grey.reserve(3 * values.size());
+    for (const double value : values) grey.insert(grey.end(), 3, value);
+    writeImage(temporary,
+               render(pipeline.patches(), grey, picture.camera, picture.options, session.progress),
+               false, metadataOf(picture, legend.title, legend.unit));
+  });
+}
+
+/// What can be refused before the work is done.
+void checkOutputs(const OutputSet& files, const Show& show) {
+  const bool lit = files.has(Format::glb);
+  if (!lit && !files.has(Format::png) && !files.has(Format::exr)) {
+    throw InputError("render: name the picture with -o, e.g. -o picture.png (or .exr, .glb)");
+  }
+  if (lit && show.quantity != Show::none) {
+    throw InputError(files.path(Format::glb) +
+                     ": a lit mesh holds the radiosity only; use .png or .exr with --show");
+  }
+}
+
+}  // namespace
+
+int runRender(Session& session) {
+  const Request& request = session.request;
+  OutputSet files = claimOutputs(session);
+  const Show show = parseShow(request.show);
+  checkOutputs(files, show);
+  Pipeline pipeline(request, session.report, session.progress);
+  pipeline.open(files.path(Format::results));
+  Picture picture = choosePicture(request, pipeline.scene());
+  if (show.needsLight()) pipeline.requireLight();
+  pipeline.mesh();
+  requirePatch(show, pipeline.patches());
+  pipeline.factors();
+  int code = 0;
+  if (show.needsLight()) {
+    pipeline.solution();
+    code = judgeSolution(session, pipeline);
+    if (!pipeline.results().solution) throw RunError("no picture: the system is singular");
+  }
+  framePicture(picture, pipeline);
+  reportPicture(session.report, picture);
+  if (show.quantity == Show::none) {
+    drawScene(session, pipeline, picture, files);
+  } else {
+    drawQuantity(session, pipeline, picture, show, files);
+  }
+  writeStages(session, pipeline, files);
+  files.commit(session.report, session.progress);
+  if (pipeline.fromResultsFile() && pipeline.changed() && !files.has(Format::results)) {
+    session.report.line("note", fmt::format("{} is left as it is; add -o {} to keep what was "
+                                            "computed",
+                                            request.input, request.input));
+  }
+  return code;
+}
+
+}  // namespace radiosity::cli

@@ -1,0 +1,230 @@
+#include "cli/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "base/atomic_file.h"
+#include "cli/words.h"
+#include "radiosity/base.h"
+
+namespace radiosity::cli {
+
+using nlohmann::json;
+
+namespace {
+
+constexpr int kLabelWidth = 24;
+constexpr int kStageWidth = 15;
+constexpr std::size_t kAlike = 3;  // notes of one shape that are printed
+
+// fputs, not fmt::print: a reader that closed the pipe is no reason to end the run.
+void put(std::FILE* stream, const std::string& text) {
+  std::fputs(text.c_str(), stream);
+  std::fflush(stream);
+}
+
+const char* severityName(Severity severity) {
+  switch (severity) {
+    case Severity::loud:
+      return "loud";
+    case Severity::warning:
+      return "warning";
+    case Severity::info:
+      break;
+  }
+  return "info";
+}
+
+/// The text without its names and numbers: notes that share it say the same of several things.
+std::string shapeOf(const std::string& text) {
+  std::string shape;
+  char quote = 0;
+  for (const char c : text) {
+    if (quote != 0) {
+      if (c == quote) quote = 0;
+    } else if (c == '\'' || c == '"') {
+      quote = c;
+    } else if (std::isdigit(static_cast<unsigned char>(c)) == 0) {
+      shape += c;
+    }
+  }
+  return shape;
+}
+
+json numberOrText(const std::string& cell) {
+  std::string plain;
+  std::copy_if(cell.begin(), cell.end(), std::back_inserter(plain),
+               [](char c) { return c != ','; });
+  double value = 0;
+  const auto [end, error] = std::from_chars(plain.data(), plain.data() + plain.size(), value);
+  if (error != std::errc() || end != plain.data() + plain.size()) return cell;
+  return value;
+}
+
+}  // namespace
+
+Report::Report(bool quiet) : quiet_(quiet), root_(std::make_unique<json>(json::object())) {
+  (*root_)["program"] = "radiosity";
+  (*root_)["stages"] = json::object();
+  (*root_)["notes"] = json::array();
+  (*root_)["outputs"] = json::array();
+}
+
+Report::~Report() = default;
+
+json& Report::here() { return section_.empty() ? *root_ : (*root_)[section_]; }
+
+void Report::section(const std::string& key, const std::string& title) {
+  section_ = key;
+  if (!root_->contains(key)) (*root_)[key] = json::object();
+  if (!muted()) put(stdout, "\n" + title + "\n");
+}
+
+void Report::figure(const std::string& label, const std::string& value) const {
+  if (!muted()) put(stdout, fmt::format("  {:<{}}{}\n", label, kLabelWidth, value));
+}
+
+void Report::count(const std::string& key, const std::string& label, std::size_t value) {
+  here()[key] = value;
+  figure(label, countText(value));
+}
+
+void Report::number(const std::string& key, const std::string& label, double value,
+                    const std::string& unit) {
+  here()[key] = value;
+  figure(label, numberText(value) + (unit.empty() ? "" : " " + unit));
+}
+
+void Report::bytes(const std::string& key, const std::string& label, std::size_t value) {
+  here()[key] = value;
+  figure(label, bytesText(value));
+}
+
+void Report::seconds(const std::string& key, const std::string& label, double value) {
+  here()[key] = value;
+  figure(label, durationText(value));
+}
+
+void Report::text(const std::string& key, const std::string& label, const std::string& value) {
+  here()[key] = value;
+  figure(label, value);
+}
+
+void Report::yesNo(const std::string& key, const std::string& label, bool value) {
+  here()[key] = value;
+  figure(label, value ? "yes" : "no");
+}
+
+void Report::bands(const std::string& key, const std::string& label, std::span<const double> values,
+                   const std::string& unit) {
+  here()[key] = std::vector<double>(values.begin(), values.end());
+  std::string text;
+  for (const double value : values) text += fmt::format("{:>13}", numberText(value));
+  figure(label, text + "  " + unit);
+}
+
+void Report::table(const std::string& key, const std::vector<Column>& columns,
+                   const std::vector<std::vector<std::string>>& rows, std::size_t most) {
+  json& list = here()[key] = json::array();
+  std::vector<std::size_t> width;
+  width.reserve(columns.size());
+  for (const Column& column : columns) width.push_back(column.title.size());
+  for (const auto& row : rows) {
+    json entry;
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      entry[columns[c].key] = columns[c].numeric ? numberOrText(row[c]) : json(row[c]);
+      width[c] = std::max(width[c], row[c].size());
+    }
+    list.push_back(std::move(entry));
+  }
+  if (muted() || rows.empty()) return;
+  const auto printRow = [&](auto&& cell) {
+    std::string line = " ";
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      line += columns[c].numeric ? fmt::format(" {:>{}} ", cell(c), width[c])
+                                 : fmt::format(" {:<{}} ", cell(c), width[c]);
+    }
+    put(stdout, line.substr(0, line.find_last_not_of(' ') + 1) + "\n");
+  };
+  printRow([&](std::size_t c) { return columns[c].title; });
+  for (std::size_t r = 0; r < std::min(most, rows.size()); ++r) {
+    printRow([&](std::size_t c) { return rows[r][c]; });
+  }
+  if (rows.size() > most) {
+    put(stdout, fmt::format("  ... and {} more (all are in --report FILE)\n",
+                            countText(rows.size() - most)));
+  }
+}
+
+void Report::stage(const std::string& key, const std::string& label, const std::string& action,
+                   const std::string& detail) {
+  (*root_)["stages"][key] = {{"action", action}, {"detail", detail}};
+  line(label, action + (detail.empty() ? "" : (action == "reused" ? " from " : ": ") + detail));
+}
+
+void Report::line(const std::string& label, const std::string& text) {
+  if (!muted()) put(stdout, fmt::format("{:<{}}{}\n", label, kStageWidth, text));
+}
+
+void Report::notes(std::span<const Note> notes) {
+  for (const Severity severity : {Severity::loud, Severity::warning, Severity::info}) {
+    const bool shown = severity == Severity::loud || !quiet_;
+    std::map<std::string, std::size_t> alike;
+    std::vector<std::pair<std::string, std::string>> last;  // shape, and the line to print
+    for (const Note& note : notes) {
+      if (note.severity != severity) continue;
+      (*root_)["notes"].push_back({{"severity", severityName(severity)}, {"text", note.text}});
+      const std::string text = oneLine(note.text);
+      const std::string shape = shapeOf(text);
+      if (++alike[shape] <= kAlike) last.emplace_back(shape, text);
+    }
+    if (!shown) continue;
+    for (std::size_t k = 0; k < last.size(); ++k) {
+      const auto& [shape, text] = last[k];
+      const bool final_of_shape = std::none_of(last.begin() + std::ptrdiff_t(k) + 1, last.end(),
+                                               [&](const auto& l) { return l.first == shape; });
+      std::string more;
+      if (final_of_shape && alike[shape] > kAlike) {
+        more = fmt::format(" (and {} more like this)", countText(alike[shape] - kAlike));
+      }
+      if (severity == Severity::info) {
+        put(stdout, fmt::format("note: {}{}\n", text, more));
+      } else {
+        put(stderr, fmt::format("radiosity: {}: {}{}\n",
+                                severity == Severity::loud ? "WARNING" : "warning", text, more));
+      }
+    }
+  }
+}
+
+void Report::output(const std::string& path, std::size_t bytes, const std::string& what) {
+  (*root_)["outputs"].push_back({{"path", path}, {"bytes", bytes}, {"what", what}});
+  line("wrote", fmt::format("{}  ({}, {})", path, what, bytesText(bytes)));
+}
+
+void Report::fact(const std::string& key, const std::string& value) { (*root_)[key] = value; }
+
+void Report::fact(const std::string& key, const std::vector<std::string>& values) {
+  (*root_)[key] = values;
+}
+
+void Report::exitCode(int code) { (*root_)["exit_code"] = code; }
+
+void Report::write(const std::string& path) const {
+  AtomicFile file(path);
+  std::ofstream stream(file.temporary());
+  stream << root_->dump(2, ' ', false, json::error_handler_t::replace) << "\n";
+  stream.close();
+  if (!stream)
+    throw RunError(fmt::format("{}: the report cannot be written; is the disk full?", path));
+  file.commit();
+}
+
+}  // namespace radiosity::cli

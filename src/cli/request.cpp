@@ -1,0 +1,82 @@
+#include "cli/request.h"
+
+#include "cli/words.h"
+
+namespace radiosity::cli {
+
+const char* commandName(Command command) {
+  switch (command) {
+    case Command::info:
+      return "info";
+    case Command::mesh:
+      return "mesh";
+    case Command::factors:
+      return "factors";
+    case Command::solve:
+      return "solve";
+    case Command::render:
+      break;
+  }
+  return "render";
+}
+
+bool Request::overridesScene() const {
+  return !scene.set.empty() || !scene.materials_file.empty() || !scene.one_sided.empty() ||
+         !scene.two_sided.empty();
+}
+
+namespace {
+
+/// Sets a field where the option was given, and says which option it was where that is refused.
+template <class Options, class Value, class Given>
+void set(Options& options, Value Options::*field, const std::optional<Given>& given,
+         const char* name) {
+  if (!given) return;
+  options.*field = Value(*given);
+  nameOption(name, [&] { options.validate(); });
+}
+
+}  // namespace
+
+MeshOptions Request::apply(MeshOptions options) const {
+  // One of the three says how fine; the one given now replaces the one given before.
+  if (patches) options.max_edge = 0;
+  if (patches || max_edge) options.faces_as_patches = false;
+  set(options, &MeshOptions::patches, patches, "--patches");
+  set(options, &MeshOptions::max_edge, max_edge, "--max-edge");
+  set(options, &MeshOptions::weld, weld, "--weld");
+  set(options, &MeshOptions::faces_as_patches, faces_as_patches, "--faces-as-patches");
+  options.validate();
+  return options;
+}
+
+FormFactorOptions Request::apply(FormFactorOptions options) const {
+  set(options, &FormFactorOptions::resolution, resolution, "--resolution");
+  set(options, &FormFactorOptions::seed, seed, "--seed");
+  set(options, &FormFactorOptions::symmetrize, symmetrize, "--symmetrize");
+  if (precision) options.precision = *precision == "double" ? Precision::real : Precision::single;
+  if (!memory_limit.empty()) options.memory_limit = parseBytes("--memory-limit", memory_limit);
+  options.validate();
+  return options;
+}
+
+SolveOptions Request::apply(SolveOptions options) const {
+  if (solver) options.solver = *solver == "jacobi" ? Solver::jacobi : Solver::gauss_seidel;
+  set(options, &SolveOptions::tolerance, solve_tolerance, "--solve-tolerance");
+  set(options, &SolveOptions::max_iterations, max_iterations, "--max-iterations");
+  options.validate();
+  return options;
+}
+
+RenderOptions Request::renderOptions() const {
+  RenderOptions options;
+  set(options, &RenderOptions::width, width, "--width");
+  set(options, &RenderOptions::height, height, "--height");
+  set(options, &RenderOptions::samples, samples, "--samples");
+  set(options, &RenderOptions::crease, crease, "--crease");
+  options.smooth = !flat;
+  options.show_backs = backs == "show";
+  return options;
+}
+
+}  // namespace radiosity::cli

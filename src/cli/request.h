@@ -1,0 +1,85 @@
+// What the command line asks for. An option that was not given is empty: then a stage that is
+// there stays as it is.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "radiosity/form_factors.h"
+#include "radiosity/patch_mesh.h"
+#include "radiosity/render.h"
+#include "radiosity/scene.h"
+#include "radiosity/solve.h"
+
+namespace radiosity::cli {
+
+enum class Command { info, mesh, factors, solve, render };
+
+struct Request {
+  Command command = Command::info;
+  std::vector<std::string> arguments;  ///< as typed, for the report
+  std::string input;
+  std::vector<std::string> outputs;
+
+  SceneOptions scene;
+  /// The options given that only apply where a scene file is read ("--unit").
+  std::vector<std::string> reading_options;
+
+  std::optional<std::size_t> patches;
+  std::optional<double> max_edge;
+  std::optional<double> weld;
+  std::optional<bool> faces_as_patches;
+
+  std::optional<int> resolution;
+  std::optional<std::uint64_t> seed;
+  std::optional<bool> symmetrize;
+  std::optional<std::string> precision;
+  std::string memory_limit;
+
+  std::optional<std::string> solver;
+  std::optional<double> solve_tolerance;
+  std::optional<int> max_iterations;
+
+  std::string camera;
+  std::optional<int> width;
+  std::optional<int> height;
+  std::string exposure = "auto";
+  std::optional<int> samples;
+  std::optional<double> crease;
+  bool flat = false;
+  std::string backs = "hide";
+  std::string show;
+
+  int threads = 0;
+  std::string report;
+  bool quiet = false;
+
+  /// Scene options that change a scene that came back from a results file.
+  bool overridesScene() const;
+  /// `options` with what was given put in; validated.
+  MeshOptions apply(MeshOptions options) const;
+  FormFactorOptions apply(FormFactorOptions options) const;
+  SolveOptions apply(SolveOptions options) const;
+  /// The picture's options as given, without a size where none was given; validated.
+  RenderOptions renderOptions() const;
+};
+
+/// Calls check(); an InputError it throws is passed on with the option's name before it.
+template <class Check>
+void nameOption(const std::string& option, const Check& check) {
+  try {
+    check();
+  } catch (const InputError& error) {
+    throw InputError(option + ": " + error.what());
+  }
+}
+
+const char* commandName(Command command);
+
+/// Parses and checks the arguments. Returns an exit code where there is nothing left to do (help,
+/// version); prints what was asked for. Errors: InputError, with the nearest word for a typo.
+std::optional<int> parseCommandLine(int argc, char** argv, Request& request);
+
+}  // namespace radiosity::cli

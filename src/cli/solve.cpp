@@ -1,0 +1,27 @@
+#include "radiosity/solve.h"
+
+#include "cli/commands.h"
+#include "cli/picture.h"
+
+namespace radiosity::cli {
+
+int runSolve(Session& session) {
+  OutputSet files = claimOutputs(session);
+  Pipeline pipeline(session.request, session.report, session.progress);
+  pipeline.open(files.path(Format::results));
+  pipeline.mesh();
+  pipeline.factors();
+  pipeline.solution();
+  const int code = judgeSolution(session, pipeline);
+  writeStages(session, pipeline, files);
+  if (files.has(Format::glb) && pipeline.results().solution) {
+    Picture picture = choosePicture(session.request, pipeline.scene());
+    framePicture(picture, pipeline);
+    const double ev = exposureOf(session.request, radiancePicture(picture, pipeline, session));
+    writeLitMesh(pipeline, files, ev, picture.options.crease);
+  }
+  files.commit(session.report, session.progress);
+  return code;
+}
+
+}  // namespace radiosity::cli

@@ -1,0 +1,161 @@
+#include "cli/stage_key.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <type_traits>
+
+#include "base/hash.h"
+
+namespace radiosity::cli {
+
+namespace {
+
+// Names whose values are identities, and how a change of one reads.
+constexpr std::pair<std::string_view, std::string_view> kIdentities[] = {
+    {"scene", "geometry changed"},
+    {"mesh", "mesh changed"},
+    {"materials", "materials changed"},
+    {"factors", "form factors changed"}};
+
+std::string onOff(bool value) { return value ? "on" : "off"; }
+
+template <class Number>
+void read(const StageKey& key, std::string_view name, Number& value) {
+  const std::optional<std::string> text = key.get(name);
+  if (!text) return;
+  if constexpr (std::is_same_v<Number, bool>) {
+    value = *text == "on";
+  } else {
+    Number parsed{};
+    const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), parsed);
+    if (error == std::errc() && end == text->data() + text->size()) value = parsed;
+  }
+}
+
+std::string sceneHash(const Scene& scene) {
+  Hash hash;
+  hash.array(scene.vertices);
+  hash.array(scene.face_offset);
+  hash.array(scene.corners);
+  hash.array(scene.face_surface);
+  for (const Surface& surface : scene.surfaces) {
+    hash.text(surface.name);
+    const Material& material = scene.materials[surface.material];
+    const bool emits = material.emission != Vec3(0.0);
+    hash.text(onOff(material.two_sided) + onOff(emits));
+  }
+  return hash.hex();
+}
+
+}  // namespace
+
+StageKey::StageKey(std::string_view text) {
+  while (!text.empty()) {
+    const std::string_view pair = text.substr(0, text.find(' '));
+    text.remove_prefix(std::min(text.size(), pair.size() + 1));
+    const std::size_t equals = pair.find('=');
+    if (equals != std::string_view::npos) {
+      add(std::string(pair.substr(0, equals)), std::string(pair.substr(equals + 1)));
+    }
+  }
+}
+
+void StageKey::add(std::string name, std::string value) {
+  pairs_.emplace_back(std::move(name), std::move(value));
+}
+
+std::optional<std::string> StageKey::get(std::string_view name) const {
+  for (const auto& [have, value] : pairs_) {
+    if (have == name) return value;
+  }
+  return std::nullopt;
+}
+
+std::string StageKey::text() const {
+  std::string text;
+  for (const auto& [name, value] : pairs_) {
+    if (!text.empty()) text += ' ';
+    text.append(name).append("=").append(value);
+  }
+  return text;
+}
+
+std::string StageKey::difference(const StageKey& before, const StageKey& after) {
+  std::string words;
+  for (const auto& [name, value] : after.pairs_) {
+    const std::optional<std::string> old = before.get(name);
+    if (old == value) continue;
+    std::string change = fmt::format("{} {} -> {}", name, old.value_or("unknown"), value);
+    for (const auto& [identity, phrase] : kIdentities) {
+      if (name == identity) change = phrase;
+    }
+    words += (words.empty() ? "" : ", ") + change;
+  }
+  return words;
+}
+
+StageKey meshKey(const MeshOptions& options, const Scene& scene) {
+  StageKey key;
+  key.add("patches", fmt::format("{}", options.patches));
+  key.add("max-edge", fmt::format("{}", options.max_edge));
+  key.add("weld", fmt::format("{}", options.weld));
+  key.add("faces-as-patches", onOff(options.faces_as_patches));
+  key.add("scene", sceneHash(scene));
+  return key;
+}
+
+StageKey factorsKey(const FormFactorOptions& options, const PatchMesh& mesh) {
+  StageKey key;
+  key.add("method", "hemicube");
+  key.add("resolution", fmt::format("{}", options.resolution));
+  key.add("seed", fmt::format("{}", options.seed));
+  key.add("symmetrize", onOff(options.symmetrize));
+  key.add("precision", options.precision == Precision::real ? "double" : "single");
+  key.add("mesh", geometryHash(mesh));
+  return key;
+}
+
+StageKey solutionKey(const SolveOptions& options, const PatchMaterials& materials,
+                     const StageKey& factors_key) {
+  Hash hash;
+  hash.array(materials.reflectance);
+  hash.array(materials.emission);
+  Hash factors;
+  factors.text(factors_key.text());
+  StageKey key;
+  key.add("solver", options.solver == Solver::jacobi ? "jacobi" : "gauss-seidel");
+  key.add("solve-tolerance", fmt::format("{}", options.tolerance));
+  key.add("max-iterations", fmt::format("{}", options.max_iterations));
+  key.add("materials", hash.hex());
+  key.add("factors", factors.hex());
+  return key;
+}
+
+MeshOptions meshOptionsOf(const StageKey& key) {
+  MeshOptions options;
+  read(key, "patches", options.patches);
+  read(key, "max-edge", options.max_edge);
+  read(key, "weld", options.weld);
+  read(key, "faces-as-patches", options.faces_as_patches);
+  return options;
+}
+
+FormFactorOptions factorOptionsOf(const StageKey& key) {
+  FormFactorOptions options;
+  read(key, "resolution", options.resolution);
+  read(key, "seed", options.seed);
+  read(key, "symmetrize", options.symmetrize);
+  if (key.get("precision") == "double") options.precision = Precision::real;
+  return options;
+}
+
+SolveOptions solveOptionsOf(const StageKey& key) {
+  SolveOptions options;
+  if (key.get("solver") == "jacobi") options.solver = Solver::jacobi;
+  read(key, "solve-tolerance", options.tolerance);
+  read(key, "max-iterations", options.max_iterations);
+  return options;
+}
+
+}  // namespace radiosity::cli

@@ -1,0 +1,339 @@
+#include "cli/summaries.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "cli/words.h"
+
+namespace radiosity::cli {
+
+namespace {
+
+// Light lost on backs that is worth a warning, as a share of what is emitted.
+constexpr double kBacksWorthWarning = 1e-3;
+
+/// Figures within its lifetime are recorded, and printed only where `detail` is full.
+class Section {
+ public:
+  Section(Report& report, Detail detail, const std::string& key, const std::string& title)
+      : report_(report) {
+    report_.mute(detail != Detail::full);
+    report_.section(key, title);
+  }
+  ~Section() { report_.mute(false); }
+  Section(const Section&) = delete;
+  Section& operator=(const Section&) = delete;
+
+ private:
+  Report& report_;
+};
+
+std::string triple(const Vec3& v) {
+  return fmt::format("{}, {}, {}", numberText(v.x), numberText(v.y), numberText(v.z));
+}
+
+void bands(Report& report, const std::string& key, const std::string& label, const Vec3& v,
+           const std::string& unit) {
+  const double values[] = {v.x, v.y, v.z};
+  report.bands(key, label, values, unit);
+}
+
+}  // namespace
+
+void summarizeScene(Report& report, const Scene& scene, const std::string& from) {
+  report.line(
+      "scene",
+      fmt::format("{}: {}, {}, {}, unit {}", from, plural(scene.faceCount(), "face", "faces"),
+                  plural(scene.surfaces.size(), "surface", "surfaces"),
+                  plural(scene.materials.size(), "material", "materials"), scene.unit));
+  const Section section(report, Detail::none, "scene", "Scene");
+  report.text("file", "file", scene.file);
+  report.text("unit", "unit of the file", scene.unit);
+  report.count("faces", "faces", scene.faceCount());
+  report.count("vertices", "vertices", scene.vertices.size());
+}
+
+namespace {
+
+void describeMaterials(Report& report, const Scene& scene) {
+  std::vector<std::vector<std::string>> rows;
+  rows.reserve(scene.materials.size());
+  for (const Material& m : scene.materials) {
+    const double pi = 3.14159265358979323846;
+    rows.push_back({m.name, triple(m.reflectance),
+                    m.texture == kNone ? "" : scene.textures[m.texture].name, triple(m.emission),
+                    triple(m.emission / pi), m.two_sided ? "two" : "one"});
+  }
+  report.table("materials",
+               {{"name", "material", false},
+                {"reflectance", "reflectance (R, G, B)", false},
+                {"texture", "texture", false},
+                {"exitance_W_per_m2", "exitance W/m^2", false},
+                {"radiance_W_per_m2_sr", "radiance W/m^2/sr", false},
+                {"sides", "sides", false}},
+               rows);
+}
+
+void describeCameras(Report& report, const Scene& scene) {
+  std::vector<std::vector<std::string>> rows;
+  rows.reserve(scene.cameras.size());
+  for (const Camera& c : scene.cameras) {
+    rows.push_back(
+        {c.name, triple(c.eye), triple(c.target), numberText(c.vertical_fov * 180 / M_PI)});
+  }
+  report.table("cameras",
+               {{"name", "camera", false},
+                {"eye_m", "eye (m)", false},
+                {"target_m", "target (m)", false},
+                {"fov_deg", "fov (deg)", true}},
+               rows);
+}
+
+}  // namespace
+
+void describeScene(Report& report, const Scene& scene) {
+  const SceneInfo info = inspectScene(scene);
+  report.section("scene", "Scene");
+  report.text("file", "file", scene.file);
+  report.text("unit", "unit of the file", scene.unit);
+  report.count("faces", "faces", scene.faceCount());
+  report.count("triangles", "triangles", info.triangles);
+  report.count("vertices", "vertices", scene.vertices.size());
+  report.count("textures", "textures", scene.textures.size());
+  bands(report, "lower_m", "lower corner", info.lower, "m");
+  bands(report, "upper_m", "upper corner", info.upper, "m");
+  bands(report, "extent_m", "extent", info.upper - info.lower, "m");
+  report.yesNo("closed", "closed", info.closed);
+  report.count("open_edges", "open edges", info.open_edges);
+  bands(report, "emitted_power_W", "emitted power (R G B)", info.emitted_power, "W");
+  std::vector<std::vector<std::string>> rows;
+  std::size_t emitters = 0;
+  for (const SurfaceInfo& s : info.surfaces) {
+    const bool emits = s.emitted_power != Vec3(0.0);
+    emitters += emits ? 1 : 0;
+    rows.push_back({s.name, s.material, countText(s.faces), numberText(s.area),
+                    emits ? triple(s.emitted_power) : ""});
+  }
+  report.count("emitters", "emitting surfaces", emitters);
+  report.section("scene", "Surfaces");
+  report.table("surfaces",
+               {{"name", "surface", false},
+                {"material", "material", false},
+                {"faces", "faces", true},
+                {"area_m2", "area m^2", true},
+                {"emitted_power_W", "emitted W (R, G, B)", false}},
+               rows);
+  report.section("scene", "Materials");
+  describeMaterials(report, scene);
+  if (!scene.cameras.empty()) {
+    report.section("scene", "Cameras");
+    describeCameras(report, scene);
+  }
+  report.section("scene", info.problems.empty() && scene.notes.empty() ? "Nothing looks wrong."
+                                                                       : "What to know:");
+  report.notes(scene.notes);
+  report.notes(info.problems);
+}
+
+namespace {
+
+void surfaceAreas(Report& report, const MeshReport& r) {
+  std::vector<std::vector<std::string>> rows;
+  bool dropped_any = false;
+  for (const SurfaceAreas& s : r.surfaces) {
+    dropped_any = dropped_any || s.buried > 0 || s.overlapped > 0 || s.degenerate > 0;
+    rows.push_back({s.name, numberText(s.given), numberText(s.kept), numberText(s.buried),
+                    numberText(s.overlapped), numberText(s.degenerate)});
+  }
+  const bool was_muted = report.muted();
+  if (!dropped_any) report.mute(true);
+  report.table("surfaces",
+               {{"name", "surface", false},
+                {"given_m2", "given m^2", true},
+                {"kept_m2", "kept m^2", true},
+                {"buried_m2", "buried m^2", true},
+                {"overlapped_m2", "overlapped m^2", true},
+                {"degenerate_m2", "degenerate m^2", true}},
+               rows);
+  report.mute(was_muted);
+  if (!dropped_any) report.text("dropped_area", "area dropped", "none");
+}
+
+}  // namespace
+
+void summarizeMesh(Report& report, const MeshResult& result, Detail detail) {
+  const MeshReport& r = result.report;
+  const PatchMesh& mesh = result.mesh;
+  const double area = std::accumulate(mesh.area.begin(), mesh.area.end(), 0.0);
+  if (detail == Detail::brief) {
+    report.line(
+        "", fmt::format("{} ({}, {}) on {}; T-junctions {}; smallest angle {} deg",
+                        plural(mesh.size(), "patch", "patches"), plural(r.quads, "quad", "quads"),
+                        plural(r.triangles, "triangle", "triangles"),
+                        plural(r.polygons, "polygon", "polygons"), r.t_junctions,
+                        numberText(r.smallest_angle, 3)));
+  }
+  {
+    const Section section(report, detail, "mesh", "Mesh");
+    report.count("patches", "patches", mesh.size());
+    report.count("fronts", "of them fronts", mesh.frontCount());
+    report.count("quads", "quads", r.quads);
+    report.count("triangles", "triangles", r.triangles);
+    report.count("polygons", "planar polygons", r.polygons);
+    report.number("area_m2", "area of all patches", area, "m^2");
+    report.number("longest_edge_m", "longest edge", r.longest_edge, "m");
+    report.number("smallest_angle_deg", "smallest angle", r.smallest_angle, "deg");
+    report.text("smallest_angle_surface", "  on surface", r.smallest_angle_surface);
+    report.count("t_junctions", "T-junctions", r.t_junctions);
+    report.count("cuts", "contact and crossing cuts", r.cuts);
+    report.count("split_edges", "edges split", r.split_edges);
+    report.count("welded_vertices", "vertices welded", r.welded_vertices);
+    report.count("degenerate_faces", "degenerate faces", r.degenerate_faces);
+    report.count("duplicate_faces", "duplicate faces", r.duplicate_faces);
+    report.count("nonplanar_faces", "non-planar faces", r.nonplanar_faces);
+    report.number("largest_deviation_m", "  largest deviation", r.largest_deviation, "m");
+    report.count("hidden_sides", "hidden sides dropped", r.hidden_sides);
+    report.count("nonmanifold_edges", "non-manifold edges", r.nonmanifold_edges);
+    report.count("crossings", "crossings not repaired", r.crossings);
+    surfaceAreas(report, r);
+  }
+  if (detail != Detail::none) report.notes(r.notes);
+}
+
+void summarizeFactors(Report& report, const FormFactors& factors, const PatchMesh& mesh,
+                      Detail detail) {
+  const FormFactorReport& r = factors.report;
+  const double per_hemicube = r.hemicubes > 0 ? r.seconds / double(r.hemicubes) : 0;
+  if (detail == Detail::brief) {
+    report.line("",
+                fmt::format("{} in {}; {}; {}; largest row error {}",
+                            plural(r.hemicubes, "hemicube", "hemicubes"), durationText(r.seconds),
+                            bytesText(r.matrix_bytes), r.closed ? "closed scene" : "open scene",
+                            numberText(r.largest_row_error, 3)));
+  }
+  {
+    const Section section(report, detail, "form_factors", "Form factors");
+    report.text("method", "method", factors.method);
+    report.count("hemicubes", "hemicubes", r.hemicubes);
+    report.count("empty_rows", "empty rows (degenerate)", r.empty_rows);
+    report.seconds("seconds", "time", r.seconds);
+    report.number("microseconds_per_hemicube", "time per hemicube", 1e6 * per_hemicube, "us");
+    report.text("simd_target", "instruction set", r.simd_target);
+    report.bytes("matrix_bytes", "matrix in memory", r.matrix_bytes);
+    report.bytes("estimated_bytes", "  estimated before", r.estimated_bytes);
+    report.count("pixels", "pixels resolved", r.pixels);
+    report.count("polygons", "planar polygons", r.polygons);
+    report.count("rasterised_polygons", "polygons rasterised", r.rasterised_polygons);
+    report.count("skipped_own_plane", "skipped: own plane", r.skipped_own_plane);
+    report.count("skipped_horizon", "skipped: below horizon", r.skipped_horizon);
+    report.count("skipped_facing_away", "skipped: facing away", r.skipped_facing_away);
+    report.count("skipped_face", "skipped: outside a face", r.skipped_face);
+    report.yesNo("closed", "closed scene", r.closed);
+    report.number("largest_row_error", "largest |row sum - 1|", r.largest_row_error);
+    report.number("reciprocity_residual", "reciprocity residual", r.reciprocity_residual);
+    report.yesNo("symmetrized", "symmetrized", r.symmetrized);
+    if (r.symmetrized) {
+      report.count("closure_iterations", "closure: iterations", std::size_t(r.closure.iterations));
+      report.number("closure_residual_before", "closure: residual before",
+                    r.closure.largest_residual_before);
+      report.number("closure_residual", "closure: residual after", r.closure.largest_residual);
+      report.number("closure_largest_move", "closure: largest move", r.closure.largest_move);
+      report.number("closure_relative_move", "closure: relative move", r.closure.relative_move);
+    }
+    std::vector<std::vector<std::string>> rows;
+    for (std::size_t s = 0; s < factors.backs_by_surface.size(); ++s) {
+      if (factors.backs_by_surface[s] <= 0) continue;
+      rows.push_back({mesh.surface_names[s], numberText(factors.backs_by_surface[s])});
+    }
+    report.table("backs_by_surface",
+                 {{"name", "seen from behind", false}, {"share", "share of the view", true}}, rows);
+  }
+  if (detail != Detail::none) report.notes(r.notes);
+}
+
+namespace {
+
+const char* statusText(SolveStatus status) {
+  switch (status) {
+    case SolveStatus::converged:
+      return "converged";
+    case SolveStatus::no_convergence:
+      return "no_convergence";
+    case SolveStatus::no_light:
+      return "no_light";
+    case SolveStatus::singular:
+      break;
+  }
+  return "singular";
+}
+
+/// Shares of the emitted power are easier to judge than watts.
+std::string shareOf(const std::vector<double>& part, const std::vector<double>& whole) {
+  const double sum = std::accumulate(whole.begin(), whole.end(), 0.0);
+  const double of = std::accumulate(part.begin(), part.end(), 0.0);
+  return sum > 0 ? fmt::format("W  ({:.3g}%)", 100 * of / sum) : "W";
+}
+
+void energyFigures(Report& report, const EnergyAccount& e) {
+  report.bands("emitted_W", "emitted (R G B)", e.emitted, "W");
+  report.bands("absorbed_W", "absorbed", e.absorbed, shareOf(e.absorbed, e.emitted));
+  report.bands("to_sky_W", "left to the sky", e.to_sky, shareOf(e.to_sky, e.emitted));
+  report.bands("on_backs_W", "lost on backs", e.on_backs, shareOf(e.on_backs, e.emitted));
+  report.bands("imbalance_W", "imbalance", e.imbalance, shareOf(e.imbalance, e.emitted));
+}
+
+/// A warning that names the surfaces whose backs take more than 0.1% of the light.
+void warnOfBacks(Report& report, const EnergyAccount& e, const FormFactors& factors,
+                 const PatchMesh& mesh) {
+  const double emitted = std::accumulate(e.emitted.begin(), e.emitted.end(), 0.0);
+  const double lost = std::accumulate(e.on_backs.begin(), e.on_backs.end(), 0.0);
+  if (!(emitted > 0) || lost <= kBacksWorthWarning * emitted) return;
+  std::vector<std::pair<double, std::string>> seen;
+  for (std::size_t s = 0; s < factors.backs_by_surface.size(); ++s) {
+    if (factors.backs_by_surface[s] > 0) {
+      seen.emplace_back(factors.backs_by_surface[s], mesh.surface_names[s]);
+    }
+  }
+  std::sort(seen.rbegin(), seen.rend());
+  std::string names;
+  for (std::size_t k = 0; k < std::min<std::size_t>(seen.size(), 5); ++k) {
+    names += (k > 0 ? ", " : "") + seen[k].second;
+  }
+  if (seen.size() > 5) names += fmt::format(" and {} more", seen.size() - 5);
+  const Note note{Severity::warning,
+                  fmt::format("{:.2g}% of the light is lost on surfaces seen from behind: flipped? "
+                              "({}); turn them round or use --two-sided NAME",
+                              100 * lost / emitted, names)};
+  report.notes({&note, 1});
+}
+
+}  // namespace
+
+void summarizeSolution(Report& report, const Solution& solution, const FormFactors& factors,
+                       const PatchMesh& mesh, const SolveOptions& options, Detail detail) {
+  const SolveSummary& s = solution.summary;
+  if (detail == Detail::brief) report.line("", oneLine(s.message));
+  {
+    const Section section(report, detail, "solution", "Solution");
+    report.text("status", "status", statusText(s.status));
+    report.text("solver", "solver", options.solver == Solver::jacobi ? "jacobi" : "gauss-seidel");
+    report.count("iterations", "iterations", std::size_t(s.iterations));
+    report.number("residual", "residual (relative)", s.residual);
+    report.number("tolerance", "  asked for", options.tolerance);
+    if (s.error_bound) {
+      report.number("error_bound_W_per_m2", "|B - B*| is at most", *s.error_bound, "W/m^2");
+    } else {
+      report.text("error_bound_W_per_m2", "|B - B*| is at most", "no certificate");
+    }
+    report.seconds("seconds", "time", s.seconds);
+    energyFigures(report, s.energy);
+    report.text("message", "in words", oneLine(s.message));
+    report.yesNo("usable", "usable", s.usable());
+  }
+  warnOfBacks(report, s.energy, factors, mesh);
+}
+
+}  // namespace radiosity::cli

@@ -1,0 +1,28 @@
+// What each stage says of itself: figures with their units, on the terminal and in the report.
+#pragma once
+
+#include "cli/report.h"
+#include "radiosity/form_factors.h"
+#include "radiosity/patch_mesh.h"
+#include "radiosity/scene.h"
+#include "radiosity/solve.h"
+
+namespace radiosity::cli {
+
+enum class Detail {
+  none,   ///< recorded in the report file only
+  brief,  ///< a line on the terminal
+  full    ///< every figure on the terminal
+};
+
+/// A line: what was read.
+void summarizeScene(Report& report, const Scene& scene, const std::string& from);
+/// All that `radiosity info` says of a scene.
+void describeScene(Report& report, const Scene& scene);
+void summarizeMesh(Report& report, const MeshResult& result, Detail detail);
+void summarizeFactors(Report& report, const FormFactors& factors, const PatchMesh& mesh,
+                      Detail detail);
+void summarizeSolution(Report& report, const Solution& solution, const FormFactors& factors,
+                       const PatchMesh& mesh, const SolveOptions& options, Detail detail);
+
+}  // namespace radiosity::cli

@@ -1,0 +1,131 @@
+#include "cli/words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <vector>
+
+#include "radiosity/base.h"
+
+namespace radiosity::cli {
+
+std::string countText(std::size_t count) {
+  const std::string digits = std::to_string(count);
+  std::string text;
+  for (std::size_t k = 0; k < digits.size(); ++k) {
+    if (k > 0 && (digits.size() - k) % 3 == 0) text += ',';
+    text += digits[k];
+  }
+  return text;
+}
+
+std::string bytesText(std::size_t bytes) {
+  constexpr const char* kUnits[] = {"B", "KiB", "MiB", "GiB", "TiB", "PiB"};
+  auto value = double(bytes);
+  std::size_t unit = 0;
+  while (value >= 1024 && unit + 1 < std::size(kUnits)) {
+    value /= 1024;
+    ++unit;
+  }
+  if (unit == 0) return fmt::format("{} B", bytes);
+  return value < 100 ? fmt::format("{:.1f} {}", value, kUnits[unit])
+                     : fmt::format("{:.0f} {}", value, kUnits[unit]);
+}
+
+std::string durationText(double seconds) {
+  if (seconds < 9.95) return fmt::format("{:.2f} s", seconds);
+  const auto whole = static_cast<long long>(std::llround(seconds));
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
+  return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
+}
+
+std::string numberText(double value, int digits) {
+  return std::isnan(value) ? "none" : fmt::format("{:.{}g}", value, digits);
+}
+
+std::string plural(std::size_t count, const std::string& one, const std::string& many) {
+  return countText(count) + " " + (count == 1 ? one : many);
+}
+
+std::size_t parseBytes(const std::string& option, const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  std::string unit(end, text.data() + text.size());
+  std::transform(unit.begin(), unit.end(), unit.begin(),
+                 [](unsigned char c) { return char(std::toupper(c)); });
+  constexpr const char* kForms[][4] = {{"", "B", "B", "B"},
+                                       {"K", "KB", "KIB", "K"},
+                                       {"M", "MB", "MIB", "M"},
+                                       {"G", "GB", "GIB", "G"},
+                                       {"T", "TB", "TIB", "T"}};
+  for (std::size_t power = 0; power < std::size(kForms); ++power) {
+    if (std::find(std::begin(kForms[power]), std::end(kForms[power]), unit) ==
+        std::end(kForms[power])) {
+      continue;
+    }
+    const double bytes = std::ldexp(value, int(10 * power));
+    if (error == std::errc() && bytes >= 1 && bytes < 0x1p63) return std::size_t(bytes);
+  }
+  throw InputError(fmt::format(
+      "{}: '{}' is not a size above 0; write bytes or a number with K, M, G or T, e.g. 512M or 2G",
+      option, text));
+}
+
+namespace {
+
+/// Optimal string alignment distance: Levenshtein's with swaps of neighbouring letters.
+std::size_t editDistance(const std::string& a, const std::string& b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, replaced});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+      }
+    }
+  }
+  return d[a.size()][b.size()];
+}
+
+}  // namespace
+
+std::optional<std::string> nearest(const std::string& word,
+                                   std::span<const std::string> candidates) {
+  std::optional<std::string> best;
+  std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
+  for (const std::string& candidate : candidates) {
+    const std::size_t distance = editDistance(word, candidate);
+    if (distance < least) {
+      least = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+std::string suggestion(const std::string& word, std::span<const std::string> candidates) {
+  const std::optional<std::string> meant = nearest(word, candidates);
+  return meant ? fmt::format("; did you mean {}?", *meant) : std::string();
+}
+
+std::string oneLine(const std::string& text) {
+  std::string line;
+  for (const char c : text) {
+    if (c == '\r') continue;
+    if (c != '\n') {
+      line += c;
+    } else if (!line.empty() && &c != &text.back()) {
+      line += "; ";
+    }
+  }
+  return line;
+}
+
+}  // namespace radiosity::cli

@@ -1,0 +1,40 @@
+// How the program writes figures and how it guesses what was meant.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace radiosity::cli {
+
+/// 1234567 -> "1,234,567".
+std::string countText(std::size_t count);
+
+/// Bytes with a binary unit: "512 B", "41.2 MiB".
+std::string bytesText(std::size_t bytes);
+
+/// "0.34 s", "12 s", "3 min 5 s", "2 h 10 min".
+std::string durationText(double seconds);
+
+/// Six significant digits, no trailing zeros; "none" for NaN.
+std::string numberText(double value, int digits = 6);
+
+/// "1 patch", "2,034 patches".
+std::string plural(std::size_t count, const std::string& one, const std::string& many);
+
+/// "512M", "2G", "1.5GiB", "1000000" (bytes) -> bytes; units are binary. InputError names `option`.
+std::size_t parseBytes(const std::string& option, const std::string& text);
+
+/// The candidate nearest to `word` by edits (insert, delete, replace, swap of neighbours), where
+/// no more than a third of the letters, and at least one, differ.
+std::optional<std::string> nearest(const std::string& word,
+                                   std::span<const std::string> candidates);
+
+/// "; did you mean X?" or nothing.
+std::string suggestion(const std::string& word, std::span<const std::string> candidates);
+
+/// The text on one line: line breaks become "; ".
+std::string oneLine(const std::string& text);
+
+}  // namespace radiosity::cli

@@ -1,0 +1,208 @@
+"""What goes wrong on the command line: messages, exit codes, and nothing half-written."""
+
+import json
+import os
+import pty
+import select
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+import h5py
+
+from cli_runner import DATA, PROGRAM, SMALL, CliTest
+
+# Minutes of work, so that a signal always finds it running.
+LONG = ["--patches", "20000", "--resolution", "2048"]
+
+
+class BadArguments(CliTest):
+    def test_typos_name_what_was_meant(self):
+        self.refuse("rendr", "box.obj", words=["rendr", "did you mean render?"])
+        self.refuse("mesh", "box.obj", "--patchs", "5", words=["--patchs", "did you mean --patches?"])
+        self.refuse("solve", "box.obj", "--solver", "jacoby", words=["--solver", "jacobi"])
+        self.refuse("render", "box.obj", "-o", "p.png", "--show", "rowsum",
+                    words=["--show", "did you mean row-sum?"])
+
+    def test_missing_and_superfluous(self):
+        self.refuse(words=["subcommand"])
+        self.refuse("info", words=["missing"])
+        self.refuse("info", "box.obj", "box.mtl", words=["box.mtl"])
+        self.refuse("render", "box.obj", words=["-o", ".png"])
+        self.refuse("box.obj", words=["radiosity render box.obj"])
+
+    def test_values_out_of_range(self):
+        for arguments, words in [
+                (["mesh", "box.obj", "--patches", "0"], ["patches"]),
+                (["mesh", "box.obj", "--patches", "-5"], ["--patches"]),
+                (["mesh", "box.obj", "--patches", "many"], ["--patches", "many"]),
+                (["mesh", "box.obj", "--weld", "0.5"], ["weld"]),
+                (["mesh", "box.obj", "--max-edge", "nan"], ["max"]),
+                (["mesh", "box.obj", "--patches", "5", "--max-edge", "1"], ["--max-edge"]),
+                (["factors", "box.obj", "--resolution", "33"], ["resolution"]),
+                (["factors", "box.obj", "--memory-limit", "2X"], ["--memory-limit", "2X"]),
+                (["solve", "box.obj", "--solve-tolerance", "-1"], ["tolerance"]),
+                (["solve", "box.obj", "--max-iterations", "0"], ["iterations"]),
+                (["render", "box.obj", "-o", "p.png", "--width", "0"], ["width"]),
+                (["render", "box.obj", "-o", "p.png", "--exposure", "bright"], ["--exposure"]),
+                (["render", "box.obj", "-o", "p.png", "--show", "form-factor:x"], ["patch number"]),
+                (["info", "box.obj", "--unit", "ell"], ["--unit", "mm"]),
+                (["info", "box.obj", "--default-reflectance", "2"], ["default-reflectance"]),
+        ]:
+            with self.subTest(arguments=arguments):
+                self.refuse(*arguments, words=words)
+
+    def test_camera(self):
+        for camera, word in [("kitchen", "kitchen"), ("eye=1,2;target=0,0,0", "eye")]:
+            self.refuse("render", "box.obj", *SMALL, "-o", "p.png", "--camera", camera, "--quiet",
+                        words=[word])
+
+    def test_a_patch_that_is_not_there(self):
+        self.refuse("render", "box.obj", *SMALL, "-o", "p.png", "--show", "form-factor:999999",
+                    words=["999999", "0 to "])
+
+    def test_outputs(self):
+        self.refuse("render", "box.obj", "-o", "p.jpg", words=["p.jpg", ".png", ".exr", ".h5"])
+        self.refuse("mesh", "box.obj", "-o", "p.png", words=["p.png", ".obj", ".glb"])
+        self.refuse("mesh", "box.obj", "-o", "box.obj", words=["box.obj"])
+        self.refuse("mesh", "box.obj", "-o", "a.obj", "-o", "./a.obj", words=["twice"])
+        self.refuse("mesh", "box.obj", "-o", "nowhere/a.obj", words=["nowhere"])
+        self.refuse("mesh", "box.obj", "--report", "nowhere/r.json", words=["nowhere"])
+        (self.folder / "folder.h5").mkdir()
+        self.refuse("solve", "box.obj", *SMALL, "-o", "folder.h5", words=["folder"])
+
+
+class BadInput(CliTest):
+    def test_no_such_file(self):
+        self.refuse("info", "absent.obj", words=["absent.obj", "no such file"])
+        self.refuse("render", "absent.h5", "-o", "p.png", words=["absent.h5"])
+
+    def test_not_a_scene(self):
+        self.write("words.txt", "hello")
+        self.refuse("info", "words.txt", words=["words.txt", ".obj"])
+
+    def test_reflectance_above_one(self):
+        self.refuse("solve", "box.obj", *SMALL, "--set", "wall.reflectance=1.5",
+                    words=["wall", "1.5"])
+        self.write("box.mtl", "newmtl lamp\nKe 1 1 1\nnewmtl wall\nKd 0.5 1.25 0.5\n")
+        self.refuse("solve", "box.obj", *SMALL, words=["wall", "1.25"])
+
+    def test_unknown_material(self):
+        self.refuse("solve", "box.obj", "--set", "wal.reflectance=.5", words=["wal", "wall", "lamp"])
+
+    def test_no_light(self):
+        self.refuse("render", "box.obj", *SMALL, "--set", "lamp.radiance=0", "-o", "p.png",
+                    words=["box.obj", "--set", "radiance="])
+        run = self.run_program("solve", "box.obj", *SMALL, "--set", "lamp.radiance=0", "-o", "s.h5")
+        self.assertIn("B = 0", run.err)
+        with h5py.File(self.folder / "s.h5") as file:
+            self.assertEqual(abs(file["solution/radiosity"][()]).max(), 0)
+
+    def test_damaged_results_file(self):
+        self.run_program("solve", "box.obj", *SMALL, "-o", "s.h5")
+        whole = (self.folder / "s.h5").read_bytes()
+        (self.folder / "cut.h5").write_bytes(whole[:len(whole) // 2])
+        self.refuse("solve", "cut.h5", words=["cut.h5"])
+        shutil.copy(self.folder / "s.h5", self.folder / "hole.h5")
+        with h5py.File(self.folder / "hole.h5", "a") as file:
+            del file["mesh/area"]
+        self.refuse("solve", "hole.h5", words=["hole.h5", "area"])
+        with h5py.File(self.folder / "foreign.h5", "w") as file:
+            file["x"] = 1
+        self.refuse("render", "foreign.h5", "-o", "p.png", words=["foreign.h5"])
+
+    def test_reading_options_and_a_results_file(self):
+        self.run_program("mesh", "box.obj", *SMALL[:2], "-o", "m.h5")
+        self.refuse("solve", "m.h5", "--unit", "mm", words=["--unit", "scene file"])
+
+    def test_report_of_a_bad_run_is_not_written(self):
+        self.refuse("info", "absent.obj", "--report", "r.json", words=["absent.obj"])
+
+
+class FailedRuns(CliTest):
+    def test_no_convergence(self):
+        run = self.run_program("solve", "box.obj", *SMALL, "--max-iterations", "1", "-o", "s.h5",
+                               "--report", "r.json", code=1)
+        self.assertRegex(run.out, r"usable +no")
+        self.assertIn("radiosity: ", run.err)
+        report = json.loads((self.folder / "r.json").read_text())
+        self.assertEqual(report["exit_code"], 1)
+        self.assertEqual(report["solution"]["status"], "no_convergence")
+        # It is in the file, marked; asking again says so again; more iterations cure it.
+        self.run_program("solve", "s.h5", code=1)
+        self.run_program("solve", "s.h5", "--max-iterations", "1000")
+
+    def test_singular(self):
+        """rho = 1 everywhere in a closed room: energy only grows. The form factors are kept."""
+        run = self.run_program("solve", "box.obj", *SMALL, "--set", "wall.reflectance=1", "--set",
+                               "lamp.reflectance=1", "-o", "s.h5", code=1)
+        self.assertIn("singular", run.out + run.err)
+        with h5py.File(self.folder / "s.h5") as file:
+            self.assertIn("form_factors", file)
+        self.run_program("solve", "s.h5", "--set", "wall.reflectance=0.5")
+
+    def test_memory_limit(self):
+        line = self.refuse("factors", "box.obj", "--patches", "3000", "--memory-limit", "1M", "-o",
+                           "f.h5", code=1)
+        self.assertRegex(line, r"need about \d+ MiB.*limit of 1 MiB")
+        self.run_program("factors", "box.obj", *SMALL, "--memory-limit", "1G")
+
+
+class Interrupted(CliTest):
+    def interrupt(self, process, number):
+        process.send_signal(number)
+        return process.communicate(timeout=120)
+
+    def test_signals_leave_nothing_behind(self):
+        before = self.files()
+        for number in [signal.SIGINT, signal.SIGTERM]:
+            process = subprocess.Popen(
+                [PROGRAM, "render", "box.obj", *LONG, "-o", "p.png", "-o", "p.h5", "--report",
+                 "r.json"],
+                cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            line = ""
+            while "hemicubes of" not in line:  # printed as the form factors begin
+                line = process.stdout.readline()
+                self.assertTrue(line, "the run ended before it was interrupted")
+            _, err = self.interrupt(process, number)
+            self.assertEqual(process.returncode, 1, err)
+            self.assertEqual(err.splitlines()[-1], "radiosity: interrupted; nothing was written")
+            self.assertEqual(self.files(), before)
+
+    def test_an_interrupted_update_leaves_the_old_results(self):
+        self.run_program("solve", "box.obj", *SMALL, "-o", "s.h5")
+        before = (self.folder / "s.h5").read_bytes()
+        process = subprocess.Popen([PROGRAM, "solve", "s.h5", *LONG], cwd=self.folder,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        while "hemicubes of" not in process.stdout.readline():
+            pass
+        self.interrupt(process, signal.SIGINT)
+        self.assertEqual(process.returncode, 1)
+        self.assertEqual((self.folder / "s.h5").read_bytes(), before)
+
+    def test_a_terminal_gets_a_bar_with_the_time_left(self):
+        leader, follower = pty.openpty()
+        process = subprocess.Popen(
+            [PROGRAM, "factors", "box.obj", *LONG], cwd=self.folder, stdout=subprocess.DEVNULL,
+            stderr=follower, env={**os.environ, "TERM": "xterm"})
+        os.close(follower)
+        text = b""
+        deadline = time.monotonic() + 120
+        while b"% " not in text or b" left" not in text:
+            ready, _, _ = select.select([leader], [], [], 1)
+            if ready:
+                text += os.read(leader, 4096)
+            self.assertIsNone(process.poll(), text)
+            self.assertLess(time.monotonic(), deadline, text)
+        process.send_signal(signal.SIGINT)
+        process.wait(timeout=120)
+        os.close(leader)
+        self.assertIn(b"\r", text)
+        self.assertEqual(process.returncode, 1)
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())

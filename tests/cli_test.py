@@ -1,0 +1,258 @@
+"""The command line end to end: subcommands, files, stage reuse."""
+
+import re
+import shutil
+import sys
+import unittest
+
+import h5py
+import numpy as np
+import scipy.io
+import scipy.sparse
+
+from cli_runner import DATA, SMALL, CliTest
+
+COMMANDS = ["info", "mesh", "factors", "solve", "render"]
+
+
+def actions(report):
+    return {stage: entry["action"] for stage, entry in report["stages"].items()}
+
+
+class Help(CliTest):
+    def test_version_and_help(self):
+        self.assertRegex(self.run_program("--version").out, r"^radiosity \d+\.\d+\.\d+\n$")
+        text = self.run_program("--help").out
+        for command in COMMANDS:
+            self.assertIn(command, text)
+
+    def test_each_subcommand_has_units_defaults_and_an_example(self):
+        for command in COMMANDS:
+            text = self.run_program(command, "--help").out
+            self.assertIn(f"  radiosity {command} ", text)
+            self.assertIn("default", text)
+            self.assertIn("W/m^2", text)
+            self.assertLessEqual(max(map(len, text.splitlines())), 100)
+
+
+class Subcommands(CliTest):
+    def test_info_names_what_was_read(self):
+        out = self.run_program("info", DATA / "cornell-box.obj").out
+        for word in ["emitted power", "closed", "upper corner", "open edges"]:
+            self.assertIn(word, out)
+        report = self.report("info", "box.obj")["scene"]
+        self.assertEqual(report["faces"], 6)
+        self.assertTrue(report["closed"])
+        # The ceiling is 1 m^2 and radiates pi times its Ke. Ke is read as written: rounding only.
+        np.testing.assert_allclose(report["emitted_power_W"], np.pi * np.array([5, 4, 3]),
+                                   rtol=1e-12)
+
+    def test_mesh_writes_patches(self):
+        report = self.report("mesh", "box.obj", "--patches", "100", "-o", "m.obj", "-o", "m.glb",
+                             "-o", "m.h5")["mesh"]
+        self.assertEqual(report["t_junctions"], 0)
+        # A unit cube: 6 m^2, whatever the patches; sums of about 100 terms round to 1e-14.
+        self.assertAlmostEqual(report["area_m2"], 6, delta=1e-12)
+        faces = [l for l in (self.folder / "m.obj").read_text().splitlines() if l.startswith("f ")]
+        self.assertEqual(len(faces), report["patches"])
+        self.assertEqual((self.folder / "m.glb").read_bytes()[:4], b"glTF")
+        with h5py.File(self.folder / "m.h5") as file:
+            self.assertEqual(len(file["mesh/area"]), report["patches"])
+            self.assertNotIn("form_factors", file)
+
+    def test_factors_are_the_same_in_every_format(self):
+        report = self.report("factors", "box.obj", *SMALL, "-o", "f.h5", "-o", "f.mtx")
+        with h5py.File(self.folder / "f.h5") as file:
+            g = file["form_factors"]
+            matrix = scipy.sparse.csr_matrix((g["data"], g["indices"], g["indptr"]),
+                                             g["shape"][()])
+        text = scipy.io.mmread(self.folder / "f.mtx").tocsr()
+        self.assertEqual(matrix.shape[0], report["mesh"]["patches"])
+        self.assertEqual(abs(matrix - text).max(), 0)
+        # In a closed scene a row sums to 1; entries are stored in single precision.
+        np.testing.assert_allclose(np.asarray(matrix.sum(axis=1)).ravel(), 1, atol=2e-6)
+
+    def test_furnace(self):
+        """Closed, rho = 0.5 and E = 1 everywhere: B = E / (1 - rho) = 2."""
+        report = self.report("solve", DATA / "furnace-cube.obj", *SMALL, "--precision", "double",
+                             "--solve-tolerance", "1e-12", "-o", "s.h5")["solution"]
+        self.assertEqual(report["status"], "converged")
+        self.assertTrue(report["usable"])
+        with h5py.File(self.folder / "s.h5") as file:
+            radiosity = file["solution/radiosity"][()]
+        # Ke in the file is 1/pi to 9 digits, so E = 1 to 1e-8 and B = 2 to 2e-8.
+        np.testing.assert_allclose(radiosity, 2, rtol=1e-8)
+
+    def test_energy_is_accounted_for(self):
+        energy = self.report("solve", "box.obj", *SMALL)["solution"]
+        emitted, absorbed = np.array(energy["emitted_W"]), np.array(energy["absorbed_W"])
+        np.testing.assert_allclose(emitted, np.pi * np.array([5, 4, 3]), rtol=1e-12)
+        rest = emitted - absorbed - energy["to_sky_W"] - energy["on_backs_W"]
+        np.testing.assert_allclose(rest, energy["imbalance_W"], atol=1e-9)
+
+    def test_render_writes_every_format_at_once(self):
+        names = ["p.png", "p.exr", "p.glb", "p.h5", "p.mtx"]
+        outputs = [word for name in names for word in ("-o", name)]
+        report = self.report("render", "box.obj", *SMALL, "--width", "40", "--samples", "1",
+                             *outputs)
+        self.assertEqual([o["path"] for o in report["outputs"]], names)
+        for output in report["outputs"]:
+            self.assertEqual((self.folder / output["path"]).stat().st_size, output["bytes"])
+        self.assertEqual((self.folder / "p.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual((self.folder / "p.exr").read_bytes()[:4], b"\x76\x2f\x31\x01")
+        self.assertEqual((self.folder / "p.glb").read_bytes()[:4], b"glTF")
+        self.assertIsInstance(report["picture"]["exposure_ev"], float)
+
+    def test_false_colour(self):
+        self.run_program("solve", "box.obj", *SMALL, "-o", "s.h5")
+        for quantity in ["radiosity", "irradiance", "row-sum", "form-factor:3"]:
+            report = self.report("render", "s.h5", "--show", quantity, "--width", "64", "--samples",
+                                 "1", "-o", "q.png", "-o", "q.exr")
+            self.assertIn("highest", report["picture"])
+        # A picture of form factors needs no light.
+        self.run_program("render", "box.obj", *SMALL, "--set", "lamp.radiance=0", "--show",
+                         "row-sum", "--width", "64", "-o", "q.png")
+
+    def test_report_has_the_figures_that_are_printed(self):
+        report = self.report("solve", "box.obj", *SMALL)
+        out = self.run_program("solve", "box.obj", *SMALL).out
+        printed = re.search(r"iterations +([\d,]+)", out).group(1)
+        self.assertEqual(report["solution"]["iterations"], int(printed.replace(",", "")))
+        self.assertEqual(report["command"], "solve")
+        self.assertEqual(report["exit_code"], 0)
+        for section, keys in {
+                "mesh": ["patches", "t_junctions", "smallest_angle_deg", "surfaces"],
+                "form_factors": ["hemicubes", "skipped_horizon", "skipped_own_plane",
+                                 "skipped_facing_away", "matrix_bytes", "reciprocity_residual"],
+                "solution": ["status", "iterations", "residual", "error_bound_W_per_m2",
+                             "emitted_W", "absorbed_W", "to_sky_W", "on_backs_W", "usable"]}.items():
+            for key in keys:
+                self.assertIn(key, report[section])
+
+    def test_a_pipe_gets_plain_text(self):
+        run = self.run_program("render", "box.obj", *SMALL, "-o", "p.png")
+        self.assertNotRegex(run.out + run.err, r"[\x00-\x09\x0b-\x1f\x7f]")
+        self.assertEqual(self.run_program("render", "box.obj", *SMALL, "-o", "p.png",
+                                          "--quiet").out, "")
+
+    def test_threads_do_not_change_a_bit(self):
+        data = []
+        for threads in ["1", "2"]:
+            self.run_program("solve", "box.obj", *SMALL, "--threads", threads, "-o", "t.h5")
+            with h5py.File(self.folder / "t.h5") as file:
+                data.append((file["form_factors/data"][()].tobytes(),
+                             file["solution/radiosity"][()].tobytes()))
+        self.assertEqual(data[0], data[1])
+
+
+class Reuse(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.run_program("solve", "box.obj", *SMALL, "-o", "s.h5")
+
+    def test_nothing_changed(self):
+        before = (self.folder / "s.h5").read_bytes()
+        report = self.report("solve", "s.h5")
+        self.assertEqual(set(actions(report).values()), {"reused"})
+        self.assertEqual((self.folder / "s.h5").read_bytes(), before)
+
+    def test_options_that_say_what_is_there_recompute_nothing(self):
+        report = self.report("solve", "s.h5", *SMALL, "--seed", "1")
+        self.assertEqual(set(actions(report).values()), {"reused"})
+
+    def test_materials_changed(self):
+        report = self.report("solve", "s.h5", "--set", "wall.reflectance=0.1")
+        self.assertEqual(actions(report), {"mesh": "reused", "form_factors": "reused",
+                                           "solution": "recomputed"})
+        self.assertIn("materials changed", report["stages"]["solution"]["detail"])
+        # The change stays in the file.
+        again = self.report("solve", "s.h5")
+        self.assertEqual(set(actions(again).values()), {"reused"})
+        self.assertEqual(again["solution"]["absorbed_W"], report["solution"]["absorbed_W"])
+
+    def test_solver_changed(self):
+        report = self.report("solve", "s.h5", "--solver", "jacobi")
+        self.assertEqual(actions(report)["form_factors"], "reused")
+        self.assertEqual(report["stages"]["solution"]["detail"], "solver gauss-seidel -> jacobi")
+
+    def test_resolution_changed(self):
+        report = self.report("solve", "s.h5", "--resolution", "64")
+        self.assertEqual(actions(report), {"mesh": "reused", "form_factors": "recomputed",
+                                           "solution": "recomputed"})
+        self.assertEqual(report["stages"]["form_factors"]["detail"], "resolution 32 -> 64")
+        out = self.run_program("solve", "s.h5", "--resolution", "32").out
+        self.assertRegex(out, r"(?m)^form factors +recomputed: resolution 64 -> 32$")
+        self.assertRegex(out, r"(?m)^mesh +reused from s.h5$")
+
+    def test_patches_changed(self):
+        report = self.report("solve", "s.h5", "--patches", "200")
+        self.assertEqual(set(actions(report).values()), {"recomputed"})
+        self.assertEqual(report["stages"]["mesh"]["detail"], "patches 60 -> 200")
+        self.assertIn("mesh changed", report["stages"]["form_factors"]["detail"])
+
+    def test_factors_drop_a_solution_that_no_longer_fits(self):
+        report = self.report("factors", "s.h5", "--resolution", "64")
+        self.assertEqual(actions(report)["solution"], "dropped")
+        with h5py.File(self.folder / "s.h5") as file:
+            self.assertNotIn("radiosity", file.get("solution", {}))
+        self.assertEqual(actions(self.report("solve", "s.h5"))["form_factors"], "reused")
+
+    def test_factors_keep_a_solution_that_fits(self):
+        self.run_program("factors", "s.h5", "-o", "copy.h5")
+        self.assertEqual(set(actions(self.report("solve", "copy.h5")).values()), {"reused"})
+
+    def test_the_scene_file_may_be_gone(self):
+        (self.folder / "box.obj").unlink()
+        (self.folder / "box.mtl").unlink()
+        self.run_program("render", "s.h5", "--width", "32", "-o", "p.png")
+        self.run_program("info", "s.h5")
+        self.run_program("solve", "s.h5", "--patches", "100")
+
+    def test_scene_file_with_an_existing_results_file(self):
+        report = self.report("solve", "box.obj", *SMALL, "-o", "s.h5")
+        self.assertEqual(set(actions(report).values()), {"reused"})
+        self.write("box.mtl", "newmtl lamp\nKe 9 9 9\nKd 0 0 0\nnewmtl wall\nKd 0.3 0.3 0.3\n")
+        report = self.report("solve", "box.obj", *SMALL, "-o", "s.h5")
+        self.assertEqual(actions(report), {"mesh": "reused", "form_factors": "reused",
+                                           "solution": "recomputed"})
+        # What a command means does not depend on what is in its output: these are the defaults.
+        report = self.report("mesh", "box.obj", "-o", "s.h5")
+        self.assertEqual(actions(report)["mesh"], "recomputed")
+
+    def test_results_are_as_if_computed_at_once(self):
+        self.run_program("mesh", "box.obj", *SMALL[:2], "-o", "steps.h5")
+        self.run_program("factors", "steps.h5", *SMALL[2:])
+        self.run_program("solve", "steps.h5")
+        with h5py.File(self.folder / "s.h5") as a, h5py.File(self.folder / "steps.h5") as b:
+            for name in ["form_factors/data", "solution/radiosity"]:
+                self.assertEqual(a[name][()].tobytes(), b[name][()].tobytes())
+
+    def test_render_leaves_its_input_alone(self):
+        before = (self.folder / "s.h5").read_bytes()
+        out = self.run_program("render", "s.h5", "--set", "wall.reflectance=0.9", "--width", "32",
+                               "-o", "p.png").out
+        self.assertIn("left as it is", out)
+        self.assertEqual((self.folder / "s.h5").read_bytes(), before)
+
+
+class Physics(CliTest):
+    def test_a_finer_mesh_leaves_the_brightness(self):
+        def means(patches):
+            self.run_program("solve", DATA / "cornell-box.obj", "--patches", patches,
+                             "--resolution", "128", "-o", "c.h5")
+            with h5py.File(self.folder / "c.h5") as file:
+                area, surface = file["mesh/area"][()], file["mesh/surface"][()]
+                radiosity = file["solution/radiosity"][()]
+            return np.array([
+                np.average(radiosity[surface == s], axis=0, weights=area[surface == s])
+                for s in np.unique(surface)])
+
+        coarse, fine = means("400"), means("1600")
+        self.assertEqual(coarse.shape, fine.shape)
+        # One eye a patch is off by the patch's size over the distance, squared, near edges: per
+        # cents at 400 patches. A surface that doubles with its patch count is off by 100%.
+        np.testing.assert_allclose(fine, coarse, rtol=0.05)
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())
