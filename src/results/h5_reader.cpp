@@ -57,7 +57,7 @@ Handle InputGroup::checked(hid_t id, Handle::Close close, const std::string& nam
   return {id, close};
 }
 
-bool InputGroup::hasLink(const std::string& name) const {
+bool InputGroup::has(const std::string& name) const {
   const htri_t found = H5Lexists(id_.get(), name.c_str(), H5P_DEFAULT);
   if (found < 0) file_->failDamaged(pathOf(name));
   return found > 0;
@@ -70,7 +70,7 @@ bool InputGroup::hasAttribute(const std::string& name) const {
 }
 
 InputGroup InputGroup::group(const std::string& name) const {
-  if (!hasLink(name)) fail(name, "is missing");
+  if (!has(name)) fail(name, "is missing");
   return {*file_, checked(H5Gopen2(id_.get(), name.c_str(), H5P_DEFAULT), H5Gclose, name),
           pathOf(name)};
 }
@@ -104,7 +104,7 @@ std::string InputGroup::text(const std::string& name) const {
 }
 
 Handle InputGroup::openAny(const std::string& name, std::vector<hsize_t>& extent) const {
-  if (!hasLink(name)) fail(name, "is missing");
+  if (!has(name)) fail(name, "is missing");
   Handle id = checked(H5Dopen2(id_.get(), name.c_str(), H5P_DEFAULT), H5Dclose, name);
   const Handle space = checked(H5Dget_space(id.get()), H5Sclose, name);
   const int rank = H5Sget_simple_extent_ndims(space.get());

@@ -29,8 +29,8 @@ class InputFile {
 class InputGroup {
  public:
   explicit InputGroup(const InputFile& file);  ///< the root
-  bool hasGroup(const std::string& name) const { return hasLink(name); }
-  bool hasDataset(const std::string& name) const { return hasLink(name); }
+  /// Whether there is a group or dataset of that name.
+  bool has(const std::string& name) const;
   bool hasAttribute(const std::string& name) const;
   InputGroup group(const std::string& name) const;
   /// Exactly `count` numbers of that kind.
@@ -54,7 +54,6 @@ class InputGroup {
 
  private:
   InputGroup(const InputFile& file, Handle id, std::string path);
-  bool hasLink(const std::string& name) const;
   Handle checked(hid_t id, Handle::Close close, const std::string& name) const;
   Handle openAny(const std::string& name, std::vector<hsize_t>& extent) const;
   void checkStorage(const std::string& name, const Handle& dataset, std::size_t rows,

@@ -122,13 +122,13 @@ FormFactors readFactors(const InputGroup& group, bool with_matrix) {
 
 void readStages(const InputGroup& root, bool with_factors, Results& results) {
   results.version = root.text("version");
-  if (root.hasGroup("scene")) {
+  if (root.has("scene")) {
     const InputGroup group = root.group("scene");
     FieldReader fields(group);
     describe(fields, results.scene.emplace());
   }
   std::string mesh_hash;
-  if (root.hasGroup("mesh")) {
+  if (root.has("mesh")) {
     const InputGroup group = root.group("mesh");
     results.mesh_key = group.text("key");
     mesh_hash = group.text("geometry_hash");
@@ -136,7 +136,7 @@ void readStages(const InputGroup& root, bool with_factors, Results& results) {
     describe(fields, results.mesh.emplace().mesh);
     fields.group("report", [&](auto& report) { describe(report, results.mesh->report); });
   }
-  if (root.hasGroup("form_factors")) {
+  if (root.has("form_factors")) {
     const InputGroup group = root.group("form_factors");
     results.factors_key = group.text("key");
     if (results.mesh && group.text("geometry_hash") != mesh_hash) {
@@ -144,11 +144,11 @@ void readStages(const InputGroup& root, bool with_factors, Results& results) {
     }
     results.factors = readFactors(group, with_factors);
   }
-  if (root.hasGroup("solution")) {
+  if (root.has("solution")) {
     const InputGroup group = root.group("solution");
     FieldReader fields(group);
-    if (group.hasDataset("reflectance")) describe(fields, results.materials.emplace());
-    if (group.hasDataset("radiosity")) {
+    if (group.has("reflectance")) describe(fields, results.materials.emplace());
+    if (group.has("radiosity")) {
       results.solution_key = group.text("key");
       describe(fields, results.solution.emplace());
     }
