@@ -12,7 +12,7 @@
 namespace radiosity {
 
 struct FormFactorOptions {
-  int resolution = 256;  ///< pixels along an edge of the hemicube's top face; even, 16 to 4096
+  int resolution = 256;    ///< pixels along an edge of the hemicube's top face; even, 16 to 4096
   std::uint64_t seed = 1;  ///< of the random turns about each normal
   bool random_turns = true;
   bool symmetrize = false;  ///< merge both estimates of each pair, then restore closure
@@ -36,13 +36,13 @@ struct FormFactorReport {
   std::string simd_target;              ///< e.g. "AVX3", "scalar"
   double seconds = 0;
   std::size_t matrix_bytes = 0;
-  std::size_t estimated_bytes = 0;      ///< what was announced before the run
-  double reciprocity_residual = 0;      ///< of the raw rows
-  double largest_row_error = 0;         ///< max |fronts + backs + sky - 1| over non-empty rows
-  bool closed = false;                  ///< no hemicube has a sky pixel
+  std::size_t estimated_bytes = 0;  ///< what was announced before the run
+  double reciprocity_residual = 0;  ///< of the raw rows
+  double largest_row_error = 0;     ///< max |fronts + backs + sky - 1| over non-empty rows
+  bool closed = false;              ///< no hemicube has a sky pixel
   bool symmetrized = false;
-  ClosureReport closure;                ///< where symmetrized
-  std::vector<Note> notes;              ///< surfaces seen from behind, ...
+  ClosureReport closure;    ///< where symmetrized
+  std::vector<Note> notes;  ///< surfaces seen from behind, ...
 };
 
 /// The matrix and each row's three accounts, which sum to 1: seen fronts (the row sum), seen

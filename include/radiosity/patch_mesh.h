@@ -23,8 +23,8 @@ struct PlanarPolygons {
   std::vector<Vec3> normal;                ///< P, unit, of the front
   std::vector<Vec3> origin;                ///< P, a point of the plane, inside or near the polygon
   std::vector<Index> surface;              ///< P
-  std::vector<Index> index_in_surface;     ///< P, with surface name: the identity ties are broken by
-  std::vector<std::uint8_t> back_is_patch; ///< P, 1: the back carries patches too (two-sided)
+  std::vector<Index> index_in_surface;  ///< P, with surface name: the identity ties are broken by
+  std::vector<std::uint8_t> back_is_patch;  ///< P, 1: the back carries patches too (two-sided)
 
   std::size_t size() const { return normal.size(); }
   std::size_t loopBegin(std::size_t p) const { return loop_offset[p]; }
@@ -37,20 +37,20 @@ struct PlanarPolygons {
 /// N patches, structure of arrays, double precision. All fronts come first, then the backs of
 /// two-sided patches; a back has its own centroid, normal (flipped) and corners (reversed).
 struct PatchMesh {
-  std::vector<Vec3> vertices;              ///< metres
-  std::vector<std::size_t> corner_offset;  ///< N + 1, into corners
-  std::vector<Index> corners;              ///< outline, counter-clockwise seen from its side
-  std::vector<std::size_t> piece_offset;   ///< N + 1, in triangles, into pieces
-  std::vector<std::array<Index, 3>> pieces;///< triangles that tile each patch, same orientation
-  std::vector<Vec3> centroid;              ///< N; area centroid, moved inside for concave patches
-  std::vector<Vec3> normal;                ///< N, unit; 0 for a degenerate patch
-  std::vector<double> area;                ///< N, m^2; 0 for a degenerate patch
-  std::vector<Index> polygon;              ///< N, into polygons; kNone for a degenerate patch
-  std::vector<Index> surface;              ///< N, into surface_names
-  std::vector<Index> index_in_surface;     ///< N; with the surface name: identity, seeds come from it
-  std::vector<Index> source_face;          ///< N, face of the Scene
-  std::vector<std::uint8_t> side;          ///< N, 0 front, 1 back
-  std::vector<Index> twin;                 ///< N, the patch on the other side, or kNone
+  std::vector<Vec3> vertices;                ///< metres
+  std::vector<std::size_t> corner_offset;    ///< N + 1, into corners
+  std::vector<Index> corners;                ///< outline, counter-clockwise seen from its side
+  std::vector<std::size_t> piece_offset;     ///< N + 1, in triangles, into pieces
+  std::vector<std::array<Index, 3>> pieces;  ///< triangles that tile each patch, same orientation
+  std::vector<Vec3> centroid;                ///< N; area centroid, moved inside for concave patches
+  std::vector<Vec3> normal;                  ///< N, unit; 0 for a degenerate patch
+  std::vector<double> area;                  ///< N, m^2; 0 for a degenerate patch
+  std::vector<Index> polygon;                ///< N, into polygons; kNone for a degenerate patch
+  std::vector<Index> surface;                ///< N, into surface_names
+  std::vector<Index> index_in_surface;  ///< N; with the surface name: identity, seeds come from it
+  std::vector<Index> source_face;       ///< N, face of the Scene
+  std::vector<std::uint8_t> side;       ///< N, 0 front, 1 back
+  std::vector<Index> twin;              ///< N, the patch on the other side, or kNone
   PlanarPolygons polygons;
   std::vector<std::string> surface_names;  ///< as Scene::surfaces, in order
 
@@ -87,21 +87,21 @@ struct MeshReport {
   std::size_t welded_vertices = 0;
   std::size_t degenerate_faces = 0;
   std::size_t duplicate_faces = 0;
-  std::size_t nonplanar_faces = 0;      ///< split into triangles
-  double largest_deviation = 0;         ///< metres, of the non-planar faces
-  std::size_t cuts = 0;                 ///< contact and crossing segments that cut a polygon
-  std::size_t split_edges = 0;          ///< edges of the file split at vertices on them
-  std::size_t hidden_sides = 0;         ///< sides of two-sided planar polygons dropped: they see nothing
+  std::size_t nonplanar_faces = 0;  ///< split into triangles
+  double largest_deviation = 0;     ///< metres, of the non-planar faces
+  std::size_t cuts = 0;             ///< contact and crossing segments that cut a polygon
+  std::size_t split_edges = 0;      ///< edges of the file split at vertices on them
+  std::size_t hidden_sides = 0;  ///< sides of two-sided planar polygons dropped: they see nothing
   std::size_t nonmanifold_edges = 0;
   std::size_t polygons = 0;
-  std::size_t triangles = 0;            ///< patches that are triangles
+  std::size_t triangles = 0;  ///< patches that are triangles
   std::size_t quads = 0;
-  std::size_t t_junctions = 0;          ///< counted by an independent checker; 0 unless faces_as_patches
-  std::size_t crossings = 0;            ///< faces_as_patches: pairs of faces that cross, not repaired
-  double smallest_angle = 0;            ///< degrees, over all patches
+  std::size_t t_junctions = 0;  ///< counted by an independent checker; 0 unless faces_as_patches
+  std::size_t crossings = 0;    ///< faces_as_patches: pairs of faces that cross, not repaired
+  double smallest_angle = 0;    ///< degrees, over all patches
   std::string smallest_angle_surface;
-  double longest_edge = 0;              ///< metres
-  std::vector<Note> notes;              ///< what was repaired, by name
+  double longest_edge = 0;  ///< metres
+  std::vector<Note> notes;  ///< what was repaired, by name
 };
 
 struct MeshResult {

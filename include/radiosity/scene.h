@@ -83,14 +83,14 @@ struct Scene {
 
 /// How a file is read. The defaults are the ones the README states.
 struct SceneOptions {
-  std::string unit;                      ///< mm|cm|m|in|ft; empty: metres
-  bool kd_is_srgb = false;               ///< Kd and base colour of an OBJ are sRGB, linearise them
-  double default_reflectance = 0.5;      ///< where a face has no material; 0 to 1
-  bool textures = true;                  ///< false: the material's factor alone
-  std::vector<std::string> set;          ///< "NAME.PROPERTY=VALUE", see applyOverrides()
-  std::string materials_file;            ///< JSON {"NAME": {"reflectance": .., "emission": ..}}
-  std::vector<std::string> one_sided;    ///< material, object or surface names, or "all"
-  std::vector<std::string> two_sided;    ///< the same; one_sided is applied first
+  std::string unit;                    ///< mm|cm|m|in|ft; empty: metres
+  bool kd_is_srgb = false;             ///< Kd and base colour of an OBJ are sRGB, linearise them
+  double default_reflectance = 0.5;    ///< where a face has no material; 0 to 1
+  bool textures = true;                ///< false: the material's factor alone
+  std::vector<std::string> set;        ///< "NAME.PROPERTY=VALUE", see applyOverrides()
+  std::string materials_file;          ///< JSON {"NAME": {"reflectance": .., "emission": ..}}
+  std::vector<std::string> one_sided;  ///< material, object or surface names, or "all"
+  std::vector<std::string> two_sided;  ///< the same; one_sided is applied first
   /// Throws InputError naming the option and its range.
   void validate() const;
 };
@@ -123,13 +123,13 @@ struct SceneInfo {
   std::vector<SurfaceInfo> surfaces;
   Vec3 lower{0.0};
   Vec3 upper{0.0};
-  std::size_t triangles = 0;       ///< after triangulating polygons
-  Vec3 emitted_power{0};           ///< W per band
+  std::size_t triangles = 0;  ///< after triangulating polygons
+  Vec3 emitted_power{0};      ///< W per band
   /// Every edge is shared by two faces, oppositely (after weld), or one closed part that faces
   /// inwards encloses all the rest.
   bool closed = false;
-  std::size_t open_edges = 0;      ///< used by one face alone
-  std::vector<Note> problems;      ///< flipped normals, duplicates, degenerates, overlaps, no emitter
+  std::size_t open_edges = 0;  ///< used by one face alone
+  std::vector<Note> problems;  ///< flipped normals, duplicates, degenerates, overlaps, no emitter
 };
 
 /// Inspects a scene (does not change it). `weld`: coincidence, as a fraction of the diagonal.
