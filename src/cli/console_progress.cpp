@@ -107,6 +107,7 @@ SignalGuard::SignalGuard(Progress& progress) {
   sigaction(SIGTERM, &action, nullptr);
   action.sa_handler = SIG_IGN;
   sigaction(SIGPIPE, &action, nullptr);
+  sigaction(SIGXFSZ, &action, nullptr);  // a file over its limit fails to write and is reported
 }
 
 SignalGuard::~SignalGuard() {

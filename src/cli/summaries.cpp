@@ -329,7 +329,7 @@ void summarizeSolution(Report& report, const Solution& solution, const FormFacto
       report.text("error_bound_W_per_m2", "|B - B*| is at most", "no certificate");
     }
     report.seconds("seconds", "time", s.seconds);
-    energyFigures(report, s.energy);
+    if (!s.energy.emitted.empty()) energyFigures(report, s.energy);  // none where singular
     report.text("message", "in words", oneLine(s.message));
     report.yesNo("usable", "usable", s.usable());
   }
