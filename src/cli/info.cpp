@@ -12,18 +12,14 @@ void describeStages(Session& session, const Results& stored) {
   Report& report = session.report;
   report.section("file", "Stages in the file");
   report.text("version", "written by", "radiosity " + stored.version);
-  if (stored.mesh) {
-    report.text("mesh_key", "mesh", stored.mesh_key);
-    summarizeMesh(report, *stored.mesh, Detail::brief);
-  }
-  report.section("file", "");
+  if (stored.mesh) report.text("mesh_key", "mesh", stored.mesh_key);
+  if (stored.factors) report.text("factors_key", "form factors", stored.factors_key);
+  if (stored.solution) report.text("solution_key", "solution", stored.solution_key);
+  if (stored.mesh) summarizeMesh(report, *stored.mesh, Detail::brief);
   if (stored.factors) {
-    report.text("factors_key", "form factors", stored.factors_key);
     summarizeFactors(report, *stored.factors, made(stored.mesh).mesh, Detail::brief);
   }
-  report.section("file", "");
   if (stored.solution) {
-    report.text("solution_key", "solution", stored.solution_key);
     summarizeSolution(report, *stored.solution, made(stored.factors), made(stored.mesh).mesh,
                       solveOptionsOf(StageKey(stored.solution_key)), Detail::brief);
   }

@@ -76,13 +76,13 @@ std::vector<double> quantityOf(const Show& show, Pipeline& pipeline, FalseColour
       legend = {"irradiance H (Rec. 709 luminance)", "W/m^2"};
       return luminance(pipeline.solved().irradiance);
     case Show::form_factor:
-      legend = {fmt::format("form factor from patch {}", show.patch), "1"};
+      legend = {fmt::format("form factor from patch {}", show.patch), ""};
       return rowOf(pipeline, show.patch);
     case Show::row_sum:
     case Show::none:
       break;
   }
-  legend = {"row sum: fronts seen", "1"};
+  legend = {"row sum: fronts seen", ""};
   return pipeline.formFactors().fronts;
 }
 
@@ -128,12 +128,22 @@ void drawScene(Session& session, Pipeline& pipeline, const Picture& picture, Out
   writeLitMesh(pipeline, files, ev, picture.options.crease);
 }
 
+/// Where the patch is whose form factors are drawn.
+void describePatch(Report& report, const PatchMesh& mesh, const Show& show) {
+  const Vec3 c = mesh.centroid[show.patch];
+  const double centroid[] = {c.x, c.y, c.z};
+  report.text("patch_surface", "patch lies on", mesh.surface_names[mesh.surface[show.patch]]);
+  report.bands("patch_centroid_m", "patch centroid", centroid, "m");
+}
+
 void drawQuantity(Session& session, Pipeline& pipeline, const Picture& picture, const Show& show,
                   OutputSet& files) {
   FalseColour legend;
   const std::vector<double> values = quantityOf(show, pipeline, legend);
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  session.report.text("quantity", "shown", fmt::format("{}, {}", legend.title, legend.unit));
+  session.report.text("quantity", "shown",
+                      legend.unit.empty() ? legend.title : legend.title + ", " + legend.unit);
+  if (show.quantity == Show::form_factor) describePatch(session.report, pipeline.patches(), show);
   session.report.number("lowest", "lowest of all patches", *low, legend.unit);
   session.report.number("highest", "highest of all patches", *high, legend.unit);
   files.write(Format::png, legend.title, [&](const std::string& temporary) {

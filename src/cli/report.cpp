@@ -20,7 +20,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr int kLabelWidth = 24;
+constexpr int kLabelWidth = 26;
 constexpr int kStageWidth = 15;
 constexpr std::size_t kAlike = 3;  // notes of one shape that are printed
 
@@ -128,6 +128,10 @@ void Report::bands(const std::string& key, const std::string& label, std::span<c
   std::string text;
   for (const double value : values) text += fmt::format("{:>13}", numberText(value));
   figure(label, text + "  " + unit);
+}
+
+void Report::series(const std::string& key, std::span<const double> values) {
+  here()[key] = std::vector<double>(values.begin(), values.end());
 }
 
 void Report::table(const std::string& key, const std::vector<Column>& columns,

@@ -35,6 +35,9 @@ class Report {
   void bands(const std::string& key, const std::string& label, std::span<const double> values,
              const std::string& unit);
 
+  /// Recorded only: too long for a line.
+  void series(const std::string& key, std::span<const double> values);
+
   struct Column {
     std::string key;
     std::string title;

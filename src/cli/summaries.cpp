@@ -232,7 +232,7 @@ void summarizeFactors(Report& report, const FormFactors& factors, const PatchMes
     report.count("skipped_facing_away", "skipped: facing away", r.skipped_facing_away);
     report.count("skipped_face", "skipped: outside a face", r.skipped_face);
     report.yesNo("closed", "closed scene", r.closed);
-    report.number("largest_row_error", "largest |row sum - 1|", r.largest_row_error);
+    report.number("largest_row_error", "|fronts+backs+sky - 1|", r.largest_row_error);
     report.number("reciprocity_residual", "reciprocity residual", r.reciprocity_residual);
     report.yesNo("symmetrized", "symmetrized", r.symmetrized);
     if (r.symmetrized) {
@@ -328,6 +328,7 @@ void summarizeSolution(Report& report, const Solution& solution, const FormFacto
     } else {
       report.text("error_bound_W_per_m2", "|B - B*| is at most", "no certificate");
     }
+    report.series("residual_history", s.residual_history);
     report.seconds("seconds", "time", s.seconds);
     if (!s.energy.emitted.empty()) energyFigures(report, s.energy);  // none where singular
     report.text("message", "in words", oneLine(s.message));
