@@ -188,7 +188,7 @@ void summarizeMesh(Report& report, const MeshResult& result, Detail detail) {
     report.number("smallest_angle_deg", "smallest angle", r.smallest_angle, "deg");
     report.text("smallest_angle_surface", "  on surface", r.smallest_angle_surface);
     report.count("t_junctions", "T-junctions", r.t_junctions);
-    report.count("cuts", "contact and crossing cuts", r.cuts);
+    report.count("cuts", "cuts where faces meet", r.cuts);
     report.count("split_edges", "edges split", r.split_edges);
     report.count("welded_vertices", "vertices welded", r.welded_vertices);
     report.count("degenerate_faces", "degenerate faces", r.degenerate_faces);
