@@ -1,5 +1,6 @@
 // The subdivision stage: cells of a coarse complex, checked against areas known from the outline,
 // brute-force conformity and shape, never against an earlier run.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -459,6 +460,68 @@ TEST(Subdivide, SharpCornerKeepsItsPointsOffTheOtherEdge) {
     const auto [mesh, report] = subdivided(input, edge(0.01));
     EXPECT_EQ(bruteForceTJunctions(mesh, 1e-7), 0u) << height;
   }
+}
+
+TEST(Subdivide, StripsWithVerticesOnOneSideGetNoFans) {
+  // 2 cm between a long edge and a row of 30 others, 5 cm long: from the only cuts of the long edge
+  // at 0.3 m, triangles to the row would have angles of 4 degrees and less.
+  CoarseBuilder input;
+  std::vector<Vec2> strip = {{0, 0}, {1.5, 0}, {1.5, 0.02}};
+  for (int k = 29; k >= 0; --k) strip.emplace_back(0.05 * k, 0.02);
+  input.flat(input.surface("strip"), {strip});
+  // A gable along the long edge shares its cuts.
+  input.polygon(input.surface("gable"),
+                {{{1.5, 0, 0}, {0, 0, 0}, {0, 0, 1}, {0.7, 0, 1.4}, {1.5, 0, 1}}});
+  const double area = 1.5 * 0.02 + 1.5 + 0.5 * 1.5 * 0.4;
+  for (const MeshOptions& options : {edge(0.3), edge(0.2), count(300), count(1000)}) {
+    SCOPED_TRACE(fmt::format("edge {}, {} patches", options.max_edge, options.patches));
+    const auto [mesh, report] = subdivided(input, options);
+    EXPECT_GE(smallestAngle(mesh), 20.0);
+    EXPECT_EQ(bruteForceTJunctions(mesh, 1e-7), 0u);
+    EXPECT_NEAR(totalArea(mesh), area, 1e-12 * area);
+    expectGoodPatches(mesh);
+    if (options.max_edge > 0) {
+      EXPECT_LE(report.longest_edge, options.max_edge * (1 + 1e-9));
+    } else {
+      EXPECT_NEAR(double(mesh.size()), double(options.patches), 0.15 * double(options.patches));
+    }
+  }
+}
+
+TEST(Subdivide, HolesBesideALongEdgeKeepTheCount) {
+  for (const int books : {1, 4}) {
+    CoarseBuilder input;
+    std::vector<std::vector<Vec2>> loops = {{{0, 0}, {1.5, 0}, {1.5, 0.3}, {0, 0.3}}};
+    const double width = 0.65 / books;
+    for (int k = 0; k < books; ++k) {
+      const double x = 0.1 + 2 * width * k;
+      loops.push_back(hole({{x, 0.1}, {x + width, 0.1}, {x + width, 0.28}, {x, 0.28}}));
+    }
+    input.flat(input.surface("shelf"), loops);
+    const double area = 1.5 * 0.3 - 0.65 * 0.18;
+    for (const std::size_t wanted : {200u, 1000u}) {
+      const auto [mesh, report] = subdivided(input, count(wanted));
+      EXPECT_EQ(bruteForceTJunctions(mesh, 1e-7), 0u);
+      EXPECT_NEAR(totalArea(mesh), area, 1e-12 * area);
+      expectGoodPatches(mesh);
+      EXPECT_NEAR(double(mesh.size()), double(wanted), 0.15 * double(wanted));
+    }
+  }
+}
+
+TEST(Subdivide, VerticesBehindOthersCutNothing) {
+  // A slit 1 cm from the long edge hides the slit behind it: of its ends nothing is to be seen.
+  CoarseBuilder input;
+  input.flat(input.surface("plate"), {{{0, 0}, {4, 0}, {4, 4}, {0, 4}},
+                                      hole({{1, 0.01}, {3, 0.01}, {3, 0.02}, {1, 0.02}}),
+                                      hole({{1.7, 0.03}, {2.2, 0.03}, {2.2, 0.04}, {1.7, 0.04}})});
+  const auto [mesh, report] = subdivided(input, edge(2));
+  std::set<double> cuts;
+  for (const Vec3& v : mesh.vertices) {
+    if (v.y == 0) cuts.insert(v.x);
+  }
+  // Opposite of the first slit's ends, and none between.
+  EXPECT_EQ(cuts, (std::set<double>{0, 1, 3, 4}));
 }
 
 TEST(Subdivide, HugeAndTinySizes) {

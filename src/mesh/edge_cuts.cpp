@@ -15,6 +15,11 @@ namespace {
 
 // A piece may be this much longer than the one next to it along a polygon's outline.
 constexpr double kLargestStep = 3.0;
+// Parts of a polygon narrower than this, in sizes, have no room for points inside that would part
+// the vertices on one side from far points on the other.
+constexpr double kNarrow = 0.25;
+// A vertex is hidden by an edge before it; one at nearly its own distance starts there.
+constexpr double kHidden = 0.8;
 
 }  // namespace
 
@@ -97,6 +102,81 @@ void EdgeCuts::limitAtSharpCorners() {
   }
 }
 
+void EdgeCuts::findOpposites(double largest) {
+  opposites_.assign(ends_.size(), {});
+  std::vector<PolygonEdge> edges;
+  std::vector<DirectedEdge> names;
+  for (std::size_t p = 0; p < loops_.size(); ++p) {
+    // The sides of a grid may be as near to each other as they like.
+    if (four_sides_[p]) continue;
+    edges.clear();
+    names.clear();
+    const auto add_edge = [&](DirectedEdge e, bool both_sides) {
+      const auto& ends = ends_[e.edge];
+      edges.push_back({{ends[e.reversed ? 1 : 0], ends[e.reversed ? 0 : 1]}, both_sides});
+      names.push_back(e);
+    };
+    const CoarsePolygon& polygon = complex_.polygons[p];
+    for (const auto& loop : loops_[p]) {
+      for (const DirectedEdge& e : loop) add_edge(e, false);
+    }
+    for (const auto& [from, to] : polygon.inner_edges) add_edge(find(from, to), true);
+    std::vector<std::vector<Gap>> gaps(edges.size());
+    forGaps(complex_.vertices, polygon.normal, edges, kNarrow * largest,
+            [&](std::size_t k, const Gap& gap) { gaps[k].push_back(gap); });
+    for (std::size_t k = 0; k < edges.size(); ++k) noteGaps(names[k], gaps[k]);
+  }
+  for (auto& list : opposites_) {
+    std::sort(list.begin(), list.end(), [](const Opposite& a, const Opposite& b) {
+      return a.gap < b.gap || (a.gap == b.gap && a.place < b.place);
+    });
+  }
+}
+
+/// Keeps the vertices at the ends of gaps that nothing else hides from the edge.
+void EdgeCuts::noteGaps(DirectedEdge edge, const std::vector<Gap>& gaps) {
+  const double length = length_[edge.edge];
+  const Index cls = classes_.of(edge.edge);
+  const bool backwards = edge.reversed != classes_.opposed(edge.edge);
+  const auto note = [&](double at, double width) {
+    if (at <= 0 || at >= length || width <= 0) return;
+    for (const Gap& g : gaps) {
+      if (at < g.from || at > g.to || g.to <= g.from) continue;
+      const double w = g.gap_from + (at - g.from) / (g.to - g.from) * (g.gap_to - g.gap_from);
+      if (w > 0 && w < kHidden * width) return;
+    }
+    const double t = backwards ? 1 - at / length : at / length;
+    opposites_[cls].push_back({t, width * (classes_.longest(cls) / length)});
+    if (classes_.twisted(cls)) opposites_[cls].push_back({1 - t, opposites_[cls].back().gap});
+  };
+  for (const Gap& gap : gaps) {
+    note(gap.from, gap.gap_from);
+    note(gap.to, gap.gap_to);
+  }
+}
+
+/// The narrowest come first: where there is no room for all, they need them most.
+std::vector<double> EdgeCuts::stopsFor(Index cls, double size, double spacing) const {
+  std::vector<double> stops;
+  // Points near a sharp corner would lie on its other edge.
+  if (opposites_.empty() || least_start_[cls] > 0) return stops;
+  const double length = classes_.longest(cls);
+  for (const Opposite& opposite : opposites_[cls]) {
+    if (opposite.gap > kNarrow * size) break;
+    const double room = std::max(spacing * opposite.gap, 4 * complex_.coincidence) / length;
+    if (opposite.place < room || opposite.place > 1 - room) continue;
+    const auto next = std::lower_bound(stops.begin(), stops.end(), opposite.place);
+    if (next != stops.end() && *next - opposite.place < room) continue;
+    if (next != stops.begin() && opposite.place - *(next - 1) < room) continue;
+    stops.insert(next, opposite.place);
+  }
+  return stops;
+}
+
+bool EdgeCuts::hasOpposites() const {
+  return std::ranges::any_of(opposites_, [](const auto& list) { return !list.empty(); });
+}
+
 void EdgeCuts::countPieces(Rounding rounding) {
   double total = 0;
   for (Index e = 0; e < ends_.size(); ++e) {
@@ -134,16 +214,22 @@ void EdgeCuts::wantAtEnd(DirectedEdge edge, bool at_last, double size) {
 }
 
 /// Edges that are not cut at all are features themselves and stay whole.
-void EdgeCuts::gradeTowardsShortPieces() {
-  const auto pieceOf = [&](DirectedEdge e) { return length_[e.edge] / double(pieces_[e.edge]); };
+void EdgeCuts::gradeTowardsShortPieces(Rounding rounding) {
+  const auto pieceAt = [&](DirectedEdge e, bool at_last) {
+    const Index cls = classes_.of(e.edge);
+    const auto ends =
+        endPieces(classes_.longest(cls), wanted_[cls], double(pieces_[e.edge]), rounding);
+    const bool at_end = at_last != (e.reversed != classes_.opposed(e.edge));
+    return ends[at_end ? 1 : 0] * (length_[e.edge] / classes_.longest(cls));
+  };
   for (std::size_t p = 0; p < loops_.size(); ++p) {
     if (isGrid(p)) continue;
     for (const auto& loop : loops_[p]) {
       for (std::size_t k = 0; k < loop.size(); ++k) {
         const DirectedEdge before = loop[k];
         const DirectedEdge after = loop[(k + 1) % loop.size()];
-        const double a = pieceOf(before);
-        const double b = pieceOf(after);
+        const double a = pieceAt(before, true);
+        const double b = pieceAt(after, false);
         if (pieces_[before.edge] > 1 && a > kLargestStep * b) wantAtEnd(before, true, b);
         if (pieces_[after.edge] > 1 && b > kLargestStep * a) wantAtEnd(after, false, a);
       }
@@ -151,7 +237,7 @@ void EdgeCuts::gradeTowardsShortPieces() {
   }
 }
 
-void EdgeCuts::cut(double size, Rounding rounding) {
+void EdgeCuts::cut(double size, Rounding rounding, double spacing) {
   const std::size_t edges = ends_.size();
   pieces_.resize(edges);
   first_point_.resize(edges);
@@ -159,9 +245,10 @@ void EdgeCuts::cut(double size, Rounding rounding) {
   for (Index e = 0; e < edges; ++e) {
     const double least = least_start_[classes_.of(e)];
     if (least > 0) wanted_[e].most_pieces = classes_.longest(classes_.of(e)) / least;
+    wanted_[e].stops = stopsFor(e, size, spacing);
   }
   countPieces(rounding);
-  gradeTowardsShortPieces();
+  gradeTowardsShortPieces(rounding);
   countPieces(rounding);
   edge_points_.clear();
   for (Index e = 0; e < edges; ++e) {
@@ -169,7 +256,8 @@ void EdgeCuts::cut(double size, Rounding rounding) {
     const Index cls = classes_.of(e);
     const Vec3& a = complex_.vertices[ends_[e][classes_.opposed(e) ? 1 : 0]];
     const Vec3& b = complex_.vertices[ends_[e][classes_.opposed(e) ? 0 : 1]];
-    for (const double t : cutFractions(classes_.longest(cls), wanted_[cls], double(pieces_[e]))) {
+    for (const double t :
+         cutFractions(classes_.longest(cls), wanted_[cls], double(pieces_[e]), rounding)) {
       edge_points_.push_back(a + (b - a) * t);
     }
     if (classes_.opposed(e)) {

@@ -10,6 +10,7 @@
 
 #include "mesh/complex.h"
 #include "mesh/edge_classes.h"
+#include "mesh/edge_gaps.h"
 #include "mesh/edge_grading.h"
 
 namespace radiosity {
@@ -28,9 +29,10 @@ struct FourSides {
 };
 
 /// Every distinct edge (of loops and inner edges) of a complex, cut once for all polygons. Pieces
-/// are equal, except where one more than three times as long as its neighbour along the outline of
-/// a polygon that cannot be a grid would force flat triangles on it: there they grow by steps.
-/// Opposite edges of four-sided polygons are cut alike, so that these can become grids.
+/// are equal, except beside narrow parts of polygons and where one more than three times as long as
+/// its neighbour along the outline of a polygon that cannot be a grid would force flat triangles on
+/// it: there they grow by steps. Opposite edges of four-sided polygons are cut alike, so that these
+/// can become grids.
 class EdgeCuts {
  public:
   explicit EdgeCuts(const CoarseComplex& complex);
@@ -38,7 +40,15 @@ class EdgeCuts {
   /// Pieces no longer than `size`, or as near to it as can be; an edge at a corner so sharp that
   /// its first point would lie on the other edge (within the coincidence) gets fewer. Throws
   /// InputError where that makes more than kMostPatches pieces.
-  void cut(double size, Rounding rounding);
+  /// Across parts of a polygon narrower than a quarter of the size, edges are also cut opposite of
+  /// the vertices there, if findOpposites() came before: patches then go straight across instead of
+  /// fanning out to far points. Such cuts keep `spacing` times the width there from each other.
+  void cut(double size, Rounding rounding, double spacing);
+
+  /// Finds the vertices that lie opposite of each edge across narrow parts of a polygon that is no
+  /// grid, for sizes up to `largest`.
+  void findOpposites(double largest);
+  bool hasOpposites() const;
 
   /// Points of the current cut: ids below vertexCount() are the complex's vertices, the others are
   /// points inside edges.
@@ -66,9 +76,11 @@ class EdgeCuts {
   DirectedEdge add(Index from, Index to);
   void joinOpposite(const FourSides& sides);
   void limitAtSharpCorners();
+  void noteGaps(DirectedEdge edge, const std::vector<Gap>& gaps);
+  std::vector<double> stopsFor(Index cls, double size, double spacing) const;
   void countPieces(Rounding rounding);
   bool isGrid(std::size_t polygon) const;
-  void gradeTowardsShortPieces();
+  void gradeTowardsShortPieces(Rounding rounding);
   void wantAtEnd(DirectedEdge edge, bool at_last, double size);
 
   const CoarseComplex& complex_;
@@ -78,7 +90,12 @@ class EdgeCuts {
   std::vector<std::vector<std::vector<DirectedEdge>>> loops_;  ///< polygon, loop
   std::vector<std::optional<FourSides>> four_sides_;
   EdgeClasses classes_{{}};
-  std::vector<EdgeSize> wanted_;     ///< by class
+  std::vector<EdgeSize> wanted_;  ///< by class
+  struct Opposite {
+    double place;  ///< part of the length, in the direction of the class
+    double gap;    ///< metres, at the longest of the class
+  };
+  std::vector<std::vector<Opposite>> opposites_;  ///< by class, narrowest first
   std::vector<double> least_start_;  ///< by class: first piece at a sharp corner, metres
   std::vector<std::size_t> pieces_;
   std::vector<std::size_t> first_point_;  ///< edge -> into edge_points_

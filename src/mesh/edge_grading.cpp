@@ -54,9 +54,31 @@ bool isGraded(const EdgeSize& wanted) {
   return wanted.start < wanted.size || wanted.end < wanted.size;
 }
 
+/// The ends of the parts between stops.
+std::vector<double> partEnds(const EdgeSize& wanted) {
+  std::vector<double> ends = {0.0};
+  ends.insert(ends.end(), wanted.stops.begin(), wanted.stops.end());
+  ends.push_back(1.0);
+  return ends;
+}
+
+double piecesOf(double length, double size, Rounding rounding) {
+  EdgeSize wanted;
+  wanted.size = size;
+  return pieceCount(length, wanted, rounding);
+}
+
 }  // namespace
 
 double pieceCount(double length, const EdgeSize& wanted, Rounding rounding) {
+  if (!wanted.stops.empty()) {
+    const auto ends = partEnds(wanted);
+    double sum = 0;
+    for (std::size_t k = 1; k < ends.size(); ++k) {
+      sum += piecesOf((ends[k] - ends[k - 1]) * length, wanted.size, rounding);
+    }
+    return sum;
+  }
   const double pieces = isGraded(wanted) ? Measure(length, wanted).total() : length / wanted.size;
   // A length that is a multiple of the size but for rounding must not get a piece more.
   const double whole = rounding == Rounding::at_most ? std::ceil(pieces * (1 - 1e-12))
@@ -64,8 +86,28 @@ double pieceCount(double length, const EdgeSize& wanted, Rounding rounding) {
   return std::max(1.0, std::min(whole, std::floor(wanted.most_pieces)));
 }
 
-std::vector<double> cutFractions(double length, const EdgeSize& wanted, double count) {
+std::array<double, 2> endPieces(double length, const EdgeSize& wanted, double count,
+                                Rounding rounding) {
+  if (wanted.stops.empty()) return {length / count, length / count};
+  const double first = wanted.stops.front() * length;
+  const double last = (1 - wanted.stops.back()) * length;
+  return {first / piecesOf(first, wanted.size, rounding),
+          last / piecesOf(last, wanted.size, rounding)};
+}
+
+std::vector<double> cutFractions(double length, const EdgeSize& wanted, double count,
+                                 Rounding rounding) {
   std::vector<double> cuts;
+  if (!wanted.stops.empty()) {
+    const auto ends = partEnds(wanted);
+    for (std::size_t k = 1; k < ends.size(); ++k) {
+      const double part = ends[k] - ends[k - 1];
+      const double pieces = piecesOf(part * length, wanted.size, rounding);
+      if (k > 1) cuts.push_back(ends[k - 1]);
+      for (double i = 1; i < pieces; ++i) cuts.push_back(ends[k - 1] + part * (i / pieces));
+    }
+    return cuts;
+  }
   if (!isGraded(wanted)) {
     for (double k = 1; k < count; ++k) cuts.push_back(k / count);
     return cuts;

@@ -21,6 +21,11 @@ namespace {
 // most this much larger than if all area were shared out evenly.
 constexpr double kLargestSize = 3.0;
 constexpr double kMuchMore = 1.15;
+// Cuts opposite of vertices across narrow strips lie at least so many widths apart: patches there
+// lean over to a far point less, from atan(1 / spacing) on. The first that can be afforded.
+constexpr double kSpacings[] = {1.0, 1.5, 2.0, 2.5, 3.0, 4.0};
+constexpr double kCoarser = 1.5;  // what they may cost: other cells at most this much larger
+constexpr double kNoOpposites = std::numeric_limits<double>::infinity();
 
 double areaOf(const CoarseComplex& complex) {
   double area = 0;
@@ -54,10 +59,10 @@ class Subdivision {
       : complex_(complex), scene_(scene), progress_(progress), cuts_(complex) {}
 
   /// Cells of every polygon; returns how many there are.
-  std::size_t run(const CellSize& size, Rounding rounding) {
+  std::size_t run(const CellSize& size, Rounding rounding, double spacing) {
     progress_.check();
     progress_.begin("cutting into patches", complex_.polygons.size());
-    cuts_.cut(std::isfinite(size.longest) ? size.longest : size.size, rounding);
+    cuts_.cut(std::isfinite(size.longest) ? size.longest : size.size, rounding, spacing);
     cells_.assign(complex_.polygons.size(), {});
     parallelFor(cells_.size(), 16, [&](std::size_t p) {
       if (cellSource(complex_, p) != p) return;
@@ -78,6 +83,8 @@ class Subdivision {
     return count_;
   }
 
+  void findOpposites(double largest) { cuts_.findOpposites(largest); }
+  bool hasOpposites() const { return cuts_.hasOpposites(); }
   double count() const { return double(count_); }
   const EdgeCuts& cuts() const { return cuts_; }
   const std::vector<PolygonCells>& cells() const { return cells_; }
@@ -90,6 +97,41 @@ class Subdivision {
   std::vector<PolygonCells> cells_;
   std::size_t count_ = 0;
 };
+
+/// Leaves the subdivision at about `wanted` cells; returns its size. Cuts opposite of vertices cost
+/// cells: they may neither cost the count that is had without them nor much coarser cells
+/// elsewhere.
+double meetCount(Subdivision& subdivision, double start, double wanted) {
+  const double largest = kLargestSize * start;
+  double spacing = kNoOpposites;
+  double last = 0;
+  const auto count = [&](double size) {
+    last = size;
+    const CellSize cells{size, std::numeric_limits<double>::infinity()};
+    return double(subdivision.run(cells, Rounding::nearest, spacing));
+  };
+  const auto search = [&](double coarsest) {
+    const double size = sizeForCount(std::min(start, coarsest), coarsest, wanted, count);
+    if (size != last) count(size);
+    return size;
+  };
+  const double plain = search(largest);
+  subdivision.findOpposites(largest);
+  if (!subdivision.hasOpposites()) return plain;
+  const double coarsest = std::min(largest, kCoarser * plain);
+  const double most = kMuchMore * std::max(wanted, subdivision.count());
+  for (const double widths : kSpacings) {
+    spacing = widths;
+    const double fewest = count(coarsest);
+    if (fewest > most) continue;
+    if (fewest >= wanted) return coarsest;
+    const double size = search(coarsest);
+    if (subdivision.count() <= most) return size;
+  }
+  spacing = kNoOpposites;
+  count(plain);
+  return plain;
+}
 
 void refuseTooMany(double area, double size) {
   const double count = area / (size * size);
@@ -113,20 +155,14 @@ PatchMesh subdivide(const CoarseComplex& complex, const Scene& scene, const Mesh
   Subdivision subdivision(complex, scene, progress);
   if (options.max_edge > 0) {
     refuseTooMany(area, options.max_edge);
-    subdivision.run({options.max_edge, options.max_edge}, Rounding::at_most);
+    subdivision.findOpposites(options.max_edge);
+    subdivision.run({options.max_edge, options.max_edge}, Rounding::at_most, kSpacings[0]);
   } else {
-    const double none = std::numeric_limits<double>::infinity();
-    double last = 0;
-    const auto count = [&](double size) {
-      last = size;
-      return double(subdivision.run({size, none}, Rounding::nearest));
-    };
     const double wanted = double(options.patches);
     // A wide polygon has area / size^2 cells, a thin one half its outline / size: as many as a
     // square at a quarter.
     const double start = std::max(std::sqrt(area / wanted), outlineOf(complex) / (4 * wanted));
-    const double size = sizeForCount(start, kLargestSize * start, wanted, count);
-    if (size != last) count(size);
+    const double size = meetCount(subdivision, start, wanted);
     if (subdivision.count() > kMuchMore * wanted) {
       report.notes.push_back(
           {Severity::info,
