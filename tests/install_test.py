@@ -54,13 +54,17 @@ class Install(unittest.TestCase):
     def test_another_project_finds_and_uses_the_package(self):
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
-            run = lambda *command: subprocess.run(command, check=True, capture_output=True,
-                                                  text=True).stdout
+
+            def run(*command):
+                done = subprocess.run(command, capture_output=True, text=True)
+                self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+                return done.stdout
+
             run("cmake", "--install", BUILD, "--prefix", str(root / "prefix"))
             (root / "other").mkdir()
             (root / "other/CMakeLists.txt").write_text(CMAKE)
             (root / "other/cube.cpp").write_text(PROGRAM)
-            run("cmake", "-S", str(root / "other"), "-B", str(root / "build"),
+            run("cmake", "-G", "Ninja", "-S", str(root / "other"), "-B", str(root / "build"),
                 f"-DCMAKE_PREFIX_PATH={root / 'prefix'}")
             run("cmake", "--build", str(root / "build"))
             floor = float(run(str(root / "build/cube")))
