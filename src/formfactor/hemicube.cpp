@@ -202,7 +202,7 @@ Hemicube::Drawn Hemicube::prepare(const Candidate& candidate, const FaceGeometry
   // therefore (dot(a, r) + k / w) / (1 / w): a ratio of functions linear in the pixel.
   const double pixel = 2.0 / resolution_;
   const auto perPixel = [&](const FacePoint& p) { return Vec3(p.x * pixel, p.y * pixel, p.w); };
-  Drawn drawn{candidate.polygon, candidate.side, Vec3(0.0), Vec3(0.0), Vec3(0.0)};
+  Drawn drawn{candidate.polygon, candidate.side, Vec3(0.0), Vec3(0.0), Vec3(0.0), {}};
   drawn.inverse_depth = perPixel(face.project(candidate.normal)) / candidate.distance;
   if (candidate.side->grid != kNone) {
     const PatchGrid& grid = scene_.grids[candidate.side->grid];
@@ -213,6 +213,13 @@ Hemicube::Drawn Hemicube::prepare(const Candidate& candidate, const FaceGeometry
     };
     drawn.u = numerator(grid.uAxis(), grid.uOffset());
     drawn.v = numerator(grid.vAxis(), grid.vOffset());
+    drawn.map.u_slope = float(drawn.u.x);
+    drawn.map.v_slope = float(drawn.v.x);
+    drawn.map.w_slope = float(drawn.inverse_depth.x);
+    drawn.map.first_centre = 0.5F * float(1 - resolution_);
+    drawn.map.last_column = float(grid.columns() - 1);
+    drawn.map.last_row = float(grid.rows() - 1);
+    drawn.map.columns = float(grid.columns());
   }
   return drawn;
 }
@@ -276,16 +283,10 @@ void Hemicube::sumPatches(const Drawn& drawn, double height, int begin, int end,
     return RowLinear{linear.x, linear.y * height + linear.z};
   };
   const RowCoordinates row{onRow(drawn.u), onRow(drawn.v), onRow(drawn.inverse_depth)};
-  const RowMap map{float(row.u.slope - 0.5 * row.w.slope),
-                   float(row.u.base - 0.5 * row.w.base),
-                   float(row.v.slope - 0.5 * row.w.slope),
-                   float(row.v.base - 0.5 * row.w.base),
-                   float(row.w.slope),
-                   float(row.w.base),
-                   0.5F * float(1 - resolution_),
-                   float(grid.columns() - 1),
-                   float(grid.rows() - 1),
-                   float(grid.columns())};
+  RowMap map = drawn.map;
+  map.u = float(row.u.base);
+  map.v = float(row.v.base);
+  map.w = float(row.w.base);
   const std::size_t count = kernels_.locate(map, begin, end, cell_runs_.data(), cells_.data());
   const std::int32_t* runs = cell_runs_.data();
   const float* cells = cells_.data();

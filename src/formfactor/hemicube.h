@@ -85,6 +85,7 @@ class Hemicube {
     const PolygonSide* side;
     Vec3 inverse_depth;  ///< coefficients of (x, y, 1), pixels from the middle of the face
     Vec3 u, v;           ///< the same for the grid coordinates' numerators
+    RowMap map;          ///< to grid cells, but for the constants of a row
   };
 
   /// Spans [begin, end) of one drawn polygon that lie in one band.

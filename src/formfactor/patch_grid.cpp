@@ -119,13 +119,21 @@ PatchGrid::PatchGrid(std::span<const GridPiece> pieces, const Vec3& origin, cons
     cells_.push_back(cell.empty() ? kEmpty : buildCellTree(std::move(cell), nodes_));
   }
   fillEmptyCells();
+  moveToCellCentres();
+}
+
+/// From cells that begin at whole coordinates to cells whose centres are whole, as look-ups round.
+void PatchGrid::moveToCellCentres() {
+  u_offset_ -= 0.5;
+  v_offset_ -= 0.5;
+  for (CellNode& node : nodes_) node.c += 0.5 * (node.a + node.b);
 }
 
 /// Cells outside the polygon take an item of the nearest cell that has one (in steps across cell
 /// edges): pixels on the polygon's rim fall there by rounding.
 void PatchGrid::fillEmptyCells() {
   const auto firstItem = [&](std::int32_t entry) {
-    while (entry < 0) entry = nodes_[std::size_t(~entry)].inside;
+    while (entry < 0) entry = node(~entry).inside;
     return entry;
   };
   const std::int32_t count = columns_ * rows_;

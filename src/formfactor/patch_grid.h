@@ -33,8 +33,8 @@ class PatchGrid {
   /// What cell row * columns + column holds: an item if >= 0, else the node ~cell of a tree.
   std::int32_t cell(std::size_t index) const { return cells_[index]; }
   const CellNode& node(std::int32_t index) const { return nodes_[std::size_t(index)]; }
-  /// Grid coordinates of a point P of the plane are (dot(uAxis, P - origin) + uOffset, and the
-  /// same for v), 0 to the counts of columns and rows.
+  /// Grid coordinates of a point P of the plane are dot(uAxis, P - origin) + uOffset, and the same
+  /// for v. Cells are centred on whole numbers: u runs from -1/2 to columns - 1/2.
   const Vec3& uAxis() const { return u_axis_; }
   const Vec3& vAxis() const { return v_axis_; }
   double uOffset() const { return u_offset_; }
@@ -46,6 +46,7 @@ class PatchGrid {
  private:
   void chooseAxes(std::span<const GridPiece> pieces, const Vec3& origin, const Vec3& normal);
   void fillEmptyCells();
+  void moveToCellCentres();
 
   Vec3 u_axis_{0.0};
   Vec3 v_axis_{0.0};

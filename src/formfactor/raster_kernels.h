@@ -36,7 +36,7 @@ struct FillTarget {
 
 /// The rational map from the pixels of one row to the cells of a grid: column U(x) / W(x), row
 /// V(x) / W(x), rounded to the nearest whole number and moved into the grid; each linear, as in
-/// U(x) = u_slope * (x + first_centre) + u. (So U / W is half a cell less than the coordinate.)
+/// U(x) = u_slope * (x + first_centre) + u.
 struct RowMap {
   float u_slope, u;
   float v_slope, v;
