@@ -221,6 +221,7 @@ TEST(Kernels, WholeRowsAgreeOnEveryInstructionSet) {
                    {{0.2, 0.8, 0.5}, {0.2, 0.2, 0.5}, {0.5, 0.4, 0.5}}});
   const PatchMesh mesh = builder.build();
   FormFactorOptions options;
+  options.method = FormFactorMethod::hemicube;
   options.resolution = 50;
   options.precision = Precision::real;
   options.simd = false;

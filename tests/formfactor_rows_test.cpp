@@ -14,13 +14,19 @@ namespace {
 
 using test::MeshBuilder;
 
-FormFactors compute(const PatchMesh& mesh, FormFactorOptions options = {}) {
+FormFactorOptions hemicubes() {
+  FormFactorOptions options;
+  options.method = FormFactorMethod::hemicube;
+  return options;
+}
+
+FormFactors compute(const PatchMesh& mesh, FormFactorOptions options = hemicubes()) {
   Progress silent;
   return computeFormFactors(mesh, options, silent);
 }
 
-FormFactorOptions exactOptions(int resolution) {
-  FormFactorOptions options;
+FormFactorOptions doublePrecision(int resolution) {
+  FormFactorOptions options = hemicubes();
   options.resolution = resolution;
   options.precision = Precision::real;
   return options;
@@ -45,7 +51,7 @@ TEST(Rows, FurnaceIsExactInAClosedRoomWithABlock) {
   // With rows that sum to 1, E = 1 and rho = 1/2 give B = 2 everywhere: one row product of the
   // constant 2 returns 2. The row's accounts are sums of at most a few thousand terms below 1.
   const PatchMesh mesh = test::roomWithBlock(3).build();
-  const FormFactors f = compute(mesh, exactOptions(64));
+  const FormFactors f = compute(mesh, doublePrecision(64));
   EXPECT_TRUE(f.report.closed);
   EXPECT_LE(f.report.largest_row_error, 1e-12);
   const std::vector<double> constant(mesh.size(), 2.0);
@@ -85,7 +91,7 @@ TEST(Rows, SymmetricEyesWithoutTurnsDoNotLeak) {
   MeshBuilder builder;
   builder.box("room", {-1, -1, -1}, {1, 1, 1}, 5, true);
   builder.box("block", {-0.25, -0.25, -0.25}, {0.25, 0.25, 0.25}, 2);
-  FormFactorOptions options = exactOptions(16);
+  FormFactorOptions options = doublePrecision(16);
   options.random_turns = false;
   const FormFactors f = compute(builder.build(), options);
   EXPECT_TRUE(f.report.closed);
@@ -99,7 +105,7 @@ TEST(Rows, AccountsOfAnOpenScene) {
   builder.grid("high", {0, 0, 1}, {0, 1, 0}, {1, 0, 0}, 2, 2);
   builder.grid("flipped", {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, 2, 2);  // faces away from the others
   const PatchMesh mesh = builder.build();
-  const FormFactors f = compute(mesh, exactOptions(128));
+  const FormFactors f = compute(mesh, doublePrecision(128));
   EXPECT_FALSE(f.report.closed);
   EXPECT_LE(f.report.largest_row_error, 1e-12);
   for (std::size_t i = 0; i < 8; ++i) {
@@ -127,7 +133,7 @@ TEST(Rows, TwoSidedPolygonsAreSeenFromBothSides) {
   builder.grid("plate", {0.25, 0.25, 0.5}, {0.5, 0, 0}, {0, 0.5, 0}, 2, 2, true);
   const PatchMesh mesh = builder.build();
   ASSERT_EQ(mesh.size(), 16u);
-  const FormFactors f = compute(mesh, exactOptions(256));
+  const FormFactors f = compute(mesh, doublePrecision(256));
   for (std::size_t i = 0; i < 4; ++i) {
     double to_fronts = 0;
     double to_backs = 0;
@@ -149,7 +155,7 @@ TEST(Rows, DegeneratePatchesHaveEmptyRows) {
   mesh.area[5] = 0;
   mesh.polygon[5] = kNone;
   mesh.normal[5] = Vec3(0.0);
-  const FormFactors f = compute(mesh, exactOptions(32));
+  const FormFactors f = compute(mesh, doublePrecision(32));
   EXPECT_EQ(f.report.empty_rows, 1u);
   EXPECT_EQ(f.report.hemicubes, 23u);
   EXPECT_EQ(f.fronts[5], 0.0);
@@ -161,24 +167,24 @@ TEST(Rows, DegeneratePatchesHaveEmptyRows) {
 
 TEST(Rows, ScalingByAPowerOfTwoChangesNoBit) {
   const PatchMesh mesh = test::roomWithBlock(2).build();
-  const FormFactors f = compute(mesh, exactOptions(64));
+  const FormFactors f = compute(mesh, doublePrecision(64));
   for (const int exponent : {-20, -1, 3, 20}) {
     PatchMesh scaled = mesh;
     for (Vec3& v : scaled.vertices) v *= std::ldexp(1.0, exponent);
     for (Vec3& v : scaled.centroid) v *= std::ldexp(1.0, exponent);
     for (Vec3& v : scaled.polygons.origin) v *= std::ldexp(1.0, exponent);
     for (double& a : scaled.area) a *= std::ldexp(1.0, 2 * exponent);
-    expectSameRows(f, compute(scaled, exactOptions(64)));
+    expectSameRows(f, compute(scaled, doublePrecision(64)));
   }
 }
 
 TEST(Rows, ThreadCountAndScalarTwinChangeNoBit) {
   const PatchMesh mesh = test::roomWithBlock(2).build();
-  const FormFactors f = compute(mesh, exactOptions(64));
+  const FormFactors f = compute(mesh, doublePrecision(64));
   setThreads(1);
-  expectSameRows(f, compute(mesh, exactOptions(64)));
+  expectSameRows(f, compute(mesh, doublePrecision(64)));
   setThreads(0);
-  FormFactorOptions scalar = exactOptions(64);
+  FormFactorOptions scalar = doublePrecision(64);
   scalar.simd = false;
   const FormFactors twin = compute(mesh, scalar);
   EXPECT_EQ(twin.report.simd_target, "scalar");
@@ -192,15 +198,15 @@ TEST(Rows, PermutationOfPatchesChangesNoBit) {
   std::vector<std::size_t> order(mesh.size());
   std::iota(order.begin(), order.end(), std::size_t(0));
   std::shuffle(order.begin(), order.end(), std::mt19937_64(3));
-  const FormFactors f = compute(mesh, exactOptions(64));
-  const FormFactors permuted = compute(builder.build(order), exactOptions(64));
+  const FormFactors f = compute(mesh, doublePrecision(64));
+  const FormFactors permuted = compute(builder.build(order), doublePrecision(64));
   expectSameRows(f, permuted, order);
   EXPECT_EQ(f.backs_by_surface, permuted.backs_by_surface);
 }
 
 TEST(Rows, SeedTurnsTheHemicubes) {
   const PatchMesh mesh = test::roomWithBlock(1).build();
-  FormFactorOptions options = exactOptions(32);
+  FormFactorOptions options = doublePrecision(32);
   const FormFactors f = compute(mesh, options);
   options.seed = 2;
   EXPECT_NE(f.matrix.at(0, 8), compute(mesh, options).matrix.at(0, 8));
@@ -208,7 +214,7 @@ TEST(Rows, SeedTurnsTheHemicubes) {
 
 TEST(Rows, MemoryLimitRefusesWithTheNumbers) {
   const PatchMesh mesh = test::roomWithBlock(2).build();
-  FormFactorOptions options = exactOptions(32);
+  FormFactorOptions options = doublePrecision(32);
   options.memory_limit = 1000;
   try {
     compute(mesh, options);
@@ -216,7 +222,7 @@ TEST(Rows, MemoryLimitRefusesWithTheNumbers) {
   } catch (const RunError& error) {
     EXPECT_NE(std::string(error.what()).find("limit"), std::string::npos) << error.what();
   }
-  options.memory_limit = estimateFormFactorBytes(mesh, options);
+  options.memory_limit = planFormFactors(mesh, options).bytes;
   EXPECT_GE(options.memory_limit, compute(mesh, options).report.matrix_bytes);
 }
 
@@ -224,6 +230,7 @@ TEST(Rows, OptionsHaveValidDefaultsAndRanges) {
   EXPECT_NO_THROW(FormFactorOptions().validate());
   for (const int bad : {0, 14, 17, 4098, -16}) {
     FormFactorOptions options;
+    options.method = FormFactorMethod::hemicube;
     options.resolution = bad;
     EXPECT_THROW(options.validate(), InputError) << bad;
   }
@@ -234,13 +241,13 @@ TEST(Rows, CancelStops) {
    public:
     void advance(std::size_t /*steps*/) override { cancel(); }
   } progress;
-  EXPECT_THROW(computeFormFactors(test::roomWithBlock(2).build(), exactOptions(32), progress),
+  EXPECT_THROW(computeFormFactors(test::roomWithBlock(2).build(), doublePrecision(32), progress),
                Cancelled);
 }
 
 TEST(Rows, SymmetrizeMergesBothEndsAndKeepsRowSums) {
   const PatchMesh mesh = test::roomWithBlock(3).build();
-  FormFactorOptions options = exactOptions(128);
+  FormFactorOptions options = doublePrecision(128);
   const FormFactors raw = compute(mesh, options);
   options.symmetrize = true;
   const FormFactors f = compute(mesh, options);

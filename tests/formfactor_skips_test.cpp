@@ -17,6 +17,7 @@ using Loop = MeshBuilder::Loop;
 
 FormFactorReport reportOf(const PatchMesh& mesh, int resolution = 32) {
   FormFactorOptions options;
+  options.method = FormFactorMethod::hemicube;
   options.resolution = resolution;
   Progress silent;
   return computeFormFactors(mesh, options, silent).report;
@@ -227,6 +228,7 @@ TEST(HiddenBacks, PlatesWithoutThicknessShowTheirFronts) {
   builder.grid("above", {0.25, 0.25, 0.4}, {0.5, 0, 0.1}, {0, 0.5, 0});
   builder.grid("below", {0.25, 0.25, 0.4}, {0, 0.5, 0}, {0.5, 0, 0.1});
   FormFactorOptions options;
+  options.method = FormFactorMethod::hemicube;
   options.resolution = 64;
   Progress silent;
   const FormFactors f = computeFormFactors(builder.build(), options, silent);

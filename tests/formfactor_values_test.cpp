@@ -143,6 +143,7 @@ TEST(PointValues, AcrossTheHorizon) {
 /// Area-to-area form factor from surface 0 to surface 1: area mean of the rows.
 double areaValue(const PatchMesh& mesh, int resolution, Index from = 0, Index to = 1) {
   FormFactorOptions options;
+  options.method = FormFactorMethod::hemicube;
   options.resolution = resolution;
   options.precision = Precision::real;
   Progress silent;
@@ -247,6 +248,7 @@ TEST(AreaValues, NothingIsSeenInTheUmbra) {
   builder.grid("blocker", {-0.2, -0.2, 0.5}, {0, 0.4, 0}, {0.4, 0, 0}, 1, 1, true);
   const PatchMesh mesh = builder.build();
   FormFactorOptions options;
+  options.method = FormFactorMethod::hemicube;
   options.resolution = 256;
   Progress silent;
   const FormFactors f = computeFormFactors(mesh, options, silent);

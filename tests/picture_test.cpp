@@ -29,6 +29,7 @@ Image picture(const std::string& name) {
   MeshOptions mesh_options;
   mesh_options.patches = 800;
   FormFactorOptions options;
+  options.method = FormFactorMethod::hemicube;
   options.resolution = 128;
   const MeshResult meshed = meshScene(scene, mesh_options, quiet);
   const FormFactors factors = computeFormFactors(meshed.mesh, options, quiet);

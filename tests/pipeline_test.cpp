@@ -39,6 +39,7 @@ Lit light(const Scene& scene, std::size_t patches, int resolution,
   MeshOptions mesh_options;
   mesh_options.patches = patches;
   FormFactorOptions options;
+  options.method = FormFactorMethod::hemicube;
   options.resolution = resolution;
   options.precision = precision;
   SolveOptions solving;

@@ -1,7 +1,9 @@
-// Form factors by hemicube (Cohen & Greenberg 1985): F_ij, the fraction of what leaves i that
-// reaches j, seen from one eye at each patch's centroid.
+// Form factors: F_ij, the fraction of what leaves patch i that reaches patch j. By hemicube (Cohen
+// & Greenberg 1985), seen from one eye at each patch's centroid; or exact, area to area, with the
+// part that is blocked taken off by clipping.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,21 +13,85 @@
 
 namespace radiosity {
 
+enum class FormFactorMethod {
+  automatic,  ///< exact unless the scene is too cluttered for it; the report says what and why
+  hemicube,
+  exact
+};
+
+enum class ClosureMode {
+  off,
+  report,  ///< say how far the rows of a closed scene are from 1, change nothing
+  enforce  ///< change what is not known in closed form until they sum to 1
+};
+
 struct FormFactorOptions {
-  int resolution = 256;    ///< pixels along an edge of the hemicube's top face; even, 16 to 4096
-  std::uint64_t seed = 1;  ///< of the random turns about each normal
+  FormFactorMethod method = FormFactorMethod::automatic;
+  /// Exact: the error aimed at for a pair that is partly hidden, relative to the mean form factor
+  /// 1/N; 1e-12 to 0.1. Closed forms hold it, or 1e-5 where it is larger, relative to each value.
+  double tolerance = 1e-3;
+  ClosureMode closure = ClosureMode::report;
+  /// Of the stored values; empty: single, double where the tolerance asks for more than 1e-6.
+  std::optional<Precision> precision;
+  int resolution = 256;    ///< hemicube: pixels along an edge of the top face; even, 16 to 4096
+  std::uint64_t seed = 1;  ///< hemicube: of the random turns about each normal
   bool random_turns = true;
-  bool symmetrize = false;  ///< merge both estimates of each pair, then restore closure
-  Precision precision = Precision::single;
+  bool symmetrize = false;  ///< hemicube: merge both estimates of each pair, then restore closure
+  bool near_exact = false;  ///< hemicube: area-to-area values for pairs nearer than two patch sizes
   std::size_t memory_limit = 0;  ///< bytes; 0: no limit
   bool simd = true;              ///< false: the scalar twin (same bits)
+
   void validate() const;
+  Precision storedPrecision() const;
+};
+
+/// What the exact method did and skipped. A pair is an unordered pair of elements (convex pieces of
+/// patches; most patches are one), counted once.
+struct ExactReport {
+  std::size_t elements = 0;
+  std::size_t bare_elements = 0;  ///< pieces of backs that are not patches: they only absorb
+  std::size_t facets = 0;         ///< planar sides that carry elements
+  std::size_t occluders = 0;
+  std::size_t solids = 0;        ///< of them convex solids, the rest is flat
+  std::size_t skipped_hull = 0;  ///< polygons that cannot block: all of the scene is on one side
+
+  std::size_t no_exchange = 0;  ///< pairs coplanar, back to back, below each other's horizon
+  std::size_t unoccluded = 0;   ///< pairs with nothing in between: no visibility code below them
+  std::size_t hidden = 0;       ///< pairs found to exchange nothing
+  std::size_t partial = 0;      ///< pairs clipped against what is in between
+
+  std::size_t facet_pairs = 0;
+  std::size_t facet_pairs_no_exchange = 0;  ///< skipped whole, by their planes alone
+  std::size_t facet_pairs_unoccluded = 0;   ///< visibility skipped whole
+  std::size_t shaft_tests = 0;
+
+  std::size_t contour = 0;  ///< values by contour integrals
+  std::size_t lambert = 0;  ///< values by point-to-polygon formula, averaged over points
+  std::size_t product = 0;  ///< values by product quadrature
+  std::size_t clipped = 0;  ///< of all: crossing the other's plane, clipped first
+
+  std::size_t points = 0;      ///< point evaluations of partial pairs
+  std::size_t subdivided = 0;  ///< partial pairs that needed more than the first rule
+  std::size_t by_pixels = 0;   ///< partial pairs with too many occluders: item buffer
+  std::size_t rechecked = 0;   ///< partial pairs evaluated again from the other end
+  /// rms of (difference of the two ends / the error both state); the error figures were multiplied
+  /// by it where it is above 1.
+  double recheck_ratio = 0;
+
+  /// Thread-seconds by stage; they add up to a little less than seconds x threads.
+  double seconds_prepare = 0;     ///< elements, occluders, estimates
+  double seconds_visibility = 0;  ///< classifying pairs
+  double seconds_unoccluded = 0;  ///< closed forms and quadrature
+  double seconds_partial = 0;     ///< clipping
+  double seconds_assembly = 0;    ///< summing and storing
+  double seconds_finish = 0;      ///< row sums, error figures, closure
 };
 
 /// What the computation did, skipped and found.
 struct FormFactorReport {
+  std::string method_reason;  ///< why this method, where it was chosen automatically
   std::size_t hemicubes = 0;
-  std::size_t empty_rows = 0;           ///< degenerate patches: no hemicube
+  std::size_t empty_rows = 0;           ///< degenerate patches: no hemicube, no elements
   std::size_t polygons = 0;             ///< planar polygons of the mesh
   std::size_t rasterised_polygons = 0;  ///< polygon-face fills, summed over hemicubes and faces
   std::size_t skipped_own_plane = 0;    ///< polygons never looked at: the eye lies in their plane
@@ -33,20 +99,29 @@ struct FormFactorReport {
   std::size_t skipped_facing_away = 0;  ///< back faces of closed solids seen from outside
   std::size_t skipped_face = 0;         ///< polygon-face pairs outside the face's pyramid
   std::size_t pixels = 0;               ///< resolved, summed over hemicubes
+  std::size_t near_pairs = 0;           ///< entries replaced by area-to-area values
+  std::size_t capped = 0;               ///< of them held at A_i F_ij <= min(A_i, A_j)
   std::string simd_target;              ///< e.g. "AVX3", "scalar"
   double seconds = 0;
   std::size_t matrix_bytes = 0;
   std::size_t estimated_bytes = 0;  ///< what was announced before the run
-  double reciprocity_residual = 0;  ///< of the raw rows
-  double largest_row_error = 0;     ///< max |fronts + backs + sky - 1| over non-empty rows
-  bool closed = false;              ///< no hemicube has a sky pixel
+  double reciprocity_residual = 0;  ///< of the raw rows; 0 by construction in the exact method
+  /// max |fronts + backs + sky - 1| over non-empty rows. Exact: raw where the scene is closed; else
+  /// how far fronts + backs exceed 1.
+  double largest_row_error = 0;
+  double error_figure = 0;  ///< exact: of the matrix, area-weighted relL2 of F; see FormFactors
+  bool closed = false;      ///< no patch sees the sky
   bool symmetrized = false;
-  ClosureReport closure;    ///< where symmetrized
+  ClosureReport closure;  ///< where symmetrized
+  ExactReport exact;
   std::vector<Note> notes;  ///< surfaces seen from behind, ...
 };
 
 /// The matrix and each row's three accounts, which sum to 1: seen fronts (the row sum), seen
-/// backs, sky. N values each, 0 in the row of a degenerate patch.
+/// backs, sky. N values each, 0 in the row of a degenerate patch. Exact: fronts and backs are what
+/// was computed; sky is 0 in a closed scene, where 1 - fronts - backs is the raw error of closure,
+/// and 1 - fronts - backs in an open one, where rounding and the tolerance may leave it a little
+/// below 0.
 struct FormFactors {
   ExchangeMatrix matrix;
   std::vector<double> fronts;
@@ -54,17 +129,25 @@ struct FormFactors {
   std::vector<double> sky;
   /// Area-weighted share of the scene's view that ends on each surface's back, by surface.
   std::vector<double> backs_by_surface;
-  std::string method = "hemicube";
+  /// Exact: N error figures; sqrt(sum_j (F_ij - true F_ij)^2) stays below error[i] in 99% of rows,
+  /// and the median of the figures is at most ten times the true one. Hemicube: empty.
+  std::vector<double> error;
+  std::string method = "hemicube";  ///< or "exact"
   FormFactorReport report;
 };
 
-/// One hemicube a patch, all cores. Raw rows, as they were seen, unless `symmetrize`.
+/// All cores; the same bits for any number of them. Hemicube: raw rows, as they were seen, unless
+/// `symmetrize`; exact: a symmetric matrix.
 /// Errors: RunError where the estimate exceeds `memory_limit` (with the numbers).
 FormFactors computeFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
                                Progress& progress);
 
-/// Bytes computeFormFactors() will hold at once for this mesh: an estimate, made from a sample of
-/// rows, printed before memory is spent.
-std::size_t estimateFormFactorBytes(const PatchMesh& mesh, const FormFactorOptions& options);
+/// What a computation will do, made from a sample of rows before time and memory are spent.
+struct FormFactorPlan {
+  FormFactorMethod method = FormFactorMethod::hemicube;  ///< never automatic
+  std::string reason;                                    ///< where it was automatic
+  std::size_t bytes = 0;                                 ///< held at once, about
+};
+FormFactorPlan planFormFactors(const PatchMesh& mesh, const FormFactorOptions& options);
 
 }  // namespace radiosity

@@ -137,9 +137,9 @@ void Pipeline::mesh() {
 
 void Pipeline::announceFactors() {
   const FormFactorOptions& options = factor_options_;
-  const std::size_t memory = estimateFormFactorBytes(patches(), options);
+  const std::size_t memory = planFormFactors(patches(), options).bytes;
   // A dense row takes no column numbers in memory; on disk every entry has one of 4 bytes.
-  const std::size_t disk = options.precision == Precision::real ? memory / 2 * 3 : memory * 2;
+  const std::size_t disk = options.storedPrecision() == Precision::real ? memory / 2 * 3 : memory * 2;
   report_.line("form factors",
                fmt::format("{} of {} pixels: memory about {}{}",
                            plural(patches().size(), "hemicube", "hemicubes"), options.resolution,

@@ -111,7 +111,7 @@ StageKey factorsKey(const FormFactorOptions& options, const PatchMesh& mesh) {
   key.add("resolution", fmt::format("{}", options.resolution));
   key.add("seed", fmt::format("{}", options.seed));
   key.add("symmetrize", onOff(options.symmetrize));
-  key.add("precision", options.precision == Precision::real ? "double" : "single");
+  key.add("precision", options.storedPrecision() == Precision::real ? "double" : "single");
   key.add("mesh", geometryHash(mesh));
   return key;
 }

@@ -58,7 +58,7 @@ std::size_t estimateBytes(const PatchMesh& mesh, const FormFactorOptions& option
     entries += row.columns.size();
   }
   const double per_row = samples == 0 ? 0.0 : double(entries) / double(samples);
-  const std::size_t matrix = ExchangeMatrix::estimateBytes(n, per_row, options.precision);
+  const std::size_t matrix = ExchangeMatrix::estimateBytes(n, per_row, options.storedPrecision());
   const std::size_t threads =
       tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   constexpr std::size_t kAccounts = 4 * sizeof(double);  // fronts, backs, sky, area

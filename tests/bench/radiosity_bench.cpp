@@ -41,6 +41,7 @@ std::size_t pixelsOf(int resolution) {
 
 FormFactorOptions optionsFor(int resolution) {
   FormFactorOptions options;
+  options.method = FormFactorMethod::hemicube;
   options.resolution = resolution;
   return options;
 }

@@ -1,0 +1,73 @@
+#include "formfactor/row_accounts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+namespace radiosity {
+namespace {
+
+constexpr double kMebibyte = 1024.0 * 1024.0;
+/// Share of the view on bare backs above which normals are suspect.
+constexpr double kSuspectBacks = 1e-3;
+
+void noteBacks(const PatchMesh& mesh, FormFactors& result) {
+  const std::vector<double>& share = result.backs_by_surface;
+  const double total = std::accumulate(share.begin(), share.end(), 0.0);
+  if (!(total > kSuspectBacks)) return;
+  std::vector<std::size_t> worst(share.size());
+  std::iota(worst.begin(), worst.end(), std::size_t(0));
+  std::stable_sort(worst.begin(), worst.end(),
+                   [&](std::size_t a, std::size_t b) { return share[a] > share[b]; });
+  std::string names;
+  for (const std::size_t s : worst) {
+    // Name what makes up the warning, not every sliver.
+    if (share[s] < 0.1 * total) break;
+    names += fmt::format("{}{} ({:.2f}%)", names.empty() ? "" : ", ", mesh.surface_names[s],
+                         100 * share[s]);
+  }
+  result.report.notes.push_back(
+      {Severity::warning,
+       fmt::format("{:.2f}% of the view ends on bare backs, seen from behind: {}; flipped? "
+                   "(turn the faces over, or make them two-sided)",
+                   100 * total, names)});
+}
+
+}  // namespace
+
+std::vector<Index> canonicalOrder(const PatchMesh& mesh) {
+  std::vector<Index> order(mesh.size());
+  std::iota(order.begin(), order.end(), Index(0));
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+    return std::tie(mesh.surface_names[mesh.surface[a]], mesh.index_in_surface[a], mesh.side[a]) <
+           std::tie(mesh.surface_names[mesh.surface[b]], mesh.index_in_surface[b], mesh.side[b]);
+  });
+  return order;
+}
+
+void accountForBacks(const PatchMesh& mesh, const std::vector<std::vector<SeenBack>>& seen_backs,
+                     FormFactors& result) {
+  result.backs_by_surface.assign(mesh.surface_names.size(), 0.0);
+  double area = 0;
+  for (const Index i : canonicalOrder(mesh)) {
+    if (result.fronts[i] + result.backs[i] + result.sky[i] > 0) area += mesh.area[i];
+    for (const SeenBack& seen : seen_backs[i]) {
+      result.backs_by_surface[seen.surface] += mesh.area[i] * seen.share;
+    }
+  }
+  if (!(area > 0)) return;
+  for (double& share : result.backs_by_surface) share /= area;
+  noteBacks(mesh, result);
+}
+
+void refuseTooLarge(std::size_t bytes, const FormFactorOptions& options, std::size_t patches) {
+  if (options.memory_limit == 0 || bytes <= options.memory_limit) return;
+  throw RunError(fmt::format(
+      "form factors of {} patches need about {:.0f} MiB, more than the limit of {:.0f} MiB; mesh "
+      "with fewer patches, use single precision or raise the limit",
+      patches, double(bytes) / kMebibyte, double(options.memory_limit) / kMebibyte));
+}
+
+}  // namespace radiosity
