@@ -32,11 +32,15 @@ class HiddenBacks {
   void fromEye(const Vec3& eye, Index own, std::vector<std::uint8_t>& hidden) const;
 
   const std::vector<ClosedSurface>& closedSurfaces() const { return surfaces_; }
+  /// Of each polygon, 1: one on the very same corners faces the other way.
+  const std::vector<std::uint8_t>& covered() const { return covered_; }
+  /// Whether a point lies on the side that the fronts of a closed surface face. On the surface:
+  /// false.
+  bool onFrontSide(const ClosedSurface& surface, const Vec3& eye) const;
 
  private:
   void findCovered();
   void findClosedSurfaces();
-  bool onFrontSide(const ClosedSurface& surface, const Vec3& eye) const;
 
   const ViewScene& scene_;
   std::vector<std::uint8_t> covered_;
