@@ -137,7 +137,41 @@ void describe(Archive& a, Described<Archive, ClosureReport>& r) {
 }
 
 template <class Archive>
+void describe(Archive& a, Described<Archive, ExactReport>& r) {
+  a("elements", r.elements);
+  a("bare_elements", r.bare_elements);
+  a("facets", r.facets);
+  a("occluders", r.occluders);
+  a("solids", r.solids);
+  a("skipped_hull", r.skipped_hull);
+  a("no_exchange", r.no_exchange);
+  a("unoccluded", r.unoccluded);
+  a("hidden", r.hidden);
+  a("partial", r.partial);
+  a("facet_pairs", r.facet_pairs);
+  a("facet_pairs_no_exchange", r.facet_pairs_no_exchange);
+  a("facet_pairs_unoccluded", r.facet_pairs_unoccluded);
+  a("shaft_tests", r.shaft_tests);
+  a("contour", r.contour);
+  a("lambert", r.lambert);
+  a("product", r.product);
+  a("clipped", r.clipped);
+  a("points", r.points);
+  a("subdivided", r.subdivided);
+  a("by_pixels", r.by_pixels);
+  a("rechecked", r.rechecked);
+  a("recheck_ratio", r.recheck_ratio);
+  a("seconds_prepare", r.seconds_prepare);
+  a("seconds_visibility", r.seconds_visibility);
+  a("seconds_unoccluded", r.seconds_unoccluded);
+  a("seconds_partial", r.seconds_partial);
+  a("seconds_assembly", r.seconds_assembly);
+  a("seconds_finish", r.seconds_finish);
+}
+
+template <class Archive>
 void describe(Archive& a, Described<Archive, FormFactorReport>& r) {
+  a("method_reason", r.method_reason);
   a("hemicubes", r.hemicubes);
   a("empty_rows", r.empty_rows);
   a("polygons", r.polygons);
@@ -147,15 +181,19 @@ void describe(Archive& a, Described<Archive, FormFactorReport>& r) {
   a("skipped_facing_away", r.skipped_facing_away);
   a("skipped_face", r.skipped_face);
   a("pixels", r.pixels);
+  a("near_pairs", r.near_pairs);
+  a("capped", r.capped);
   a("simd_target", r.simd_target);
   a("seconds", r.seconds);
   a("matrix_bytes", r.matrix_bytes);
   a("estimated_bytes", r.estimated_bytes);
   a("reciprocity_residual", r.reciprocity_residual);
   a("largest_row_error", r.largest_row_error);
+  a("error_figure", r.error_figure);
   a("closed", r.closed);
   a("symmetrized", r.symmetrized);
   a.group("closure", [&](auto& closure) { describe(closure, r.closure); });
+  a.group("exact", [&](auto& exact) { describe(exact, r.exact); });
   describeNotes(a, r.notes);
 }
 
@@ -167,6 +205,7 @@ void describe(Archive& a, Described<Archive, FormFactors>& f) {
   a("backs", f.backs);
   a("sky", f.sky);
   a("backs_by_surface", f.backs_by_surface);
+  a("error", f.error);
   a.group("report", [&](auto& report) { describe(report, f.report); });
 }
 

@@ -131,6 +131,9 @@ void checkResults(const std::string& path, const Results& results) {
     same(results.factors->fronts.size(), "/form_factors/fronts");
     same(results.factors->backs.size(), "/form_factors/backs");
     same(results.factors->sky.size(), "/form_factors/sky");
+    if (!results.factors->error.empty()) {
+      same(results.factors->error.size(), "/form_factors/error");
+    }
   }
   if (results.materials) {
     same(results.materials->reflectance.size(), "/solution/reflectance");
