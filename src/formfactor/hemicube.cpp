@@ -202,10 +202,17 @@ Hemicube::Drawn Hemicube::prepare(const Candidate& candidate, const FaceGeometry
   // therefore (dot(a, r) + k / w) / (1 / w): a ratio of functions linear in the pixel.
   const double pixel = 2.0 / resolution_;
   const auto perPixel = [&](const FacePoint& p) { return Vec3(p.x * pixel, p.y * pixel, p.w); };
-  Drawn drawn{candidate.polygon, candidate.side, Vec3(0.0), Vec3(0.0), Vec3(0.0), {}};
+  const bool uniform = candidate.side->grid == kNone;
+  Drawn drawn{uniform ? nullptr : &scene_.grids[candidate.side->grid],
+              candidate.side->item,
+              candidate.polygon,
+              {},
+              Vec3(0.0),
+              Vec3(0.0),
+              Vec3(0.0)};
   drawn.inverse_depth = perPixel(face.project(candidate.normal)) / candidate.distance;
-  if (candidate.side->grid != kNone) {
-    const PatchGrid& grid = scene_.grids[candidate.side->grid];
+  if (!uniform) {
+    const PatchGrid& grid = *drawn.grid;
     const Vec3 eye = frame_.eye - scene_.polygons[candidate.polygon].origin;
     const auto numerator = [&](const Vec3& axis, double offset) {
       return perPixel(face.project(axis * frame_.axes)) +
@@ -264,26 +271,25 @@ void Hemicube::sumRow(const FaceGeometry& face, int y, const std::uint32_t* row)
       counts_.sky_pixels += std::size_t(end - begin);
       continue;
     }
-    const Drawn& drawn = drawn_[row[begin]];
-    if (drawn.side->grid != kNone) {
+    Drawn& drawn = drawn_[row[begin]];
+    if (drawn.grid != nullptr) {
       view_.fronts += weight;
       sumPatches(drawn, rowHeight(face, y), begin, end, weights);
     } else {
-      view_.items[drawn.side->item] += weight;
-      (drawn.side->item < scene_.patches ? view_.fronts : view_.backs) += weight;
+      view_.items[drawn.item] += weight;
+      (drawn.item < scene_.patches ? view_.fronts : view_.backs) += weight;
     }
   }
 }
 
 /// Sums a run of pixels of one polygon by patch: first by grid cell, then within cells.
-void Hemicube::sumPatches(const Drawn& drawn, double height, int begin, int end,
-                          const double* weights) {
-  const PatchGrid& grid = scene_.grids[drawn.side->grid];
+void Hemicube::sumPatches(Drawn& drawn, double height, int begin, int end, const double* weights) {
+  const PatchGrid& grid = *drawn.grid;
   const auto onRow = [&](const Vec3& linear) {
     return RowLinear{linear.x, linear.y * height + linear.z};
   };
   const RowCoordinates row{onRow(drawn.u), onRow(drawn.v), onRow(drawn.inverse_depth)};
-  RowMap map = drawn.map;
+  RowMap& map = drawn.map;
   map.u = float(row.u.base);
   map.v = float(row.v.base);
   map.w = float(row.w.base);

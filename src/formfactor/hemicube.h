@@ -79,13 +79,15 @@ class Hemicube {
     Vec3 normal;      ///< in the eye's frame
     double distance;  ///< of the plane: dot(normal, p) = distance
   };
-  /// A candidate as drawn on the current face.
+  /// A candidate as drawn on the current face. Read once a run of pixels: what that needs lies
+  /// together and behind no other pointer.
   struct Drawn {
+    const PatchGrid* grid;  ///< null: one item everywhere
+    std::uint32_t item;     ///< that item
     Index polygon;
-    const PolygonSide* side;
+    RowMap map;          ///< to grid cells; u, v and w are those of the row being summed
     Vec3 inverse_depth;  ///< coefficients of (x, y, 1), pixels from the middle of the face
     Vec3 u, v;           ///< the same for the grid coordinates' numerators
-    RowMap map;          ///< to grid cells, but for the constants of a row
   };
 
   /// Spans [begin, end) of one drawn polygon that lie in one band.
@@ -113,7 +115,7 @@ class Hemicube {
   template <class Visit>
   void drawFace(const FaceGeometry& face, const Visit& visit);
   void sumRow(const FaceGeometry& face, int y, const std::uint32_t* row);
-  void sumPatches(const Drawn& drawn, double height, int begin, int end, const double* weights);
+  void sumPatches(Drawn& drawn, double height, int begin, int end, const double* weights);
   void sumCell(const PatchGrid& grid, const RowCoordinates& row, int begin, int end,
                std::int32_t entry, const double* weights);
   double rowHeight(const FaceGeometry& face, int y) const;
