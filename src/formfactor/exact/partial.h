@@ -5,7 +5,6 @@
 
 #include "formfactor/exact/elements.h"
 #include "formfactor/exact/occluders.h"
-#include "formfactor/exact/unoccluded.h"
 
 namespace radiosity {
 
@@ -13,7 +12,7 @@ struct PartialCounts {
   std::size_t pairs = 0;
   std::size_t points = 0;      ///< point-to-element evaluations
   std::size_t subdivided = 0;  ///< pairs that needed more than the first rule
-  std::size_t by_pixels = 0;   ///< too many occluders: visible fraction from an item buffer
+  std::size_t by_pixels = 0;   ///< pairs with points where too much stands between: sampled there
   std::size_t hidden = 0;      ///< found to exchange nothing
   PartialCounts& operator+=(const PartialCounts& other);
 };
@@ -26,23 +25,36 @@ struct PartialExchange {
 struct PartialPair {
   Index row, column;                             ///< elements
   std::uint32_t occluders_begin, occluders_end;  ///< into the list given along
+  double unoccluded;                             ///< G with nothing between (UnoccludedKernel)
 };
 
-/// Unoccluded minus blocked, by exact clipping from points of the element farther from what blocks.
+/// The exact unoccluded value times the visible fraction. The fraction is the quotient of two
+/// quadratures over the points of one element, the one farther from what blocks: of the visible
+/// and of the whole form factor from the point to the other element, each in closed form. So it
+/// lies in [0, 1], is exact where nothing or everything is hidden, and what the quadrature gets
+/// wrong about the elements' nearness cancels.
 class PartialKernel {
  public:
   /// `tolerance`: absolute error aimed at for F, relative to the mean form factor 1/N (see
-  /// FormFactorOptions). All are kept by reference.
-  PartialKernel(const ElementSet& elements, const OccluderSet& occluders,
-                const UnoccludedKernel& unoccluded, double tolerance, bool simd);
+  /// FormFactorOptions). Elements and occluders are kept by reference.
+  PartialKernel(const ElementSet& elements, const OccluderSet& occluders, double tolerance,
+                bool simd);
 
-  /// out[k] for pairs[k]; a batch, so that pairs past one occluder share vectors. Thread-safe.
+  /// out[k] for pairs[k]; a batch, so that pairs past one occluder share vectors: the more pairs
+  /// the better, from some thousands on. Results do not depend on how pairs are batched.
+  /// Thread-safe.
   void evaluate(std::span<const PartialPair> pairs, std::span<const Index> occluder_list,
                 std::span<PartialExchange> out, PartialCounts& counts) const;
 
   /// The same from the other end: points on the element nearer to what blocks. For spot checks.
   PartialExchange evaluateFromOtherEnd(const PartialPair& pair,
                                        std::span<const Index> occluder_list) const;
+
+ private:
+  const ElementSet& elements_;
+  const OccluderSet& occluders_;
+  double tolerance_;
+  bool simd_;
 };
 
 }  // namespace radiosity
