@@ -8,6 +8,9 @@
 
 namespace radiosity {
 
+class VisiblePart;
+enum class SampledEnd;
+
 struct PartialCounts {
   std::size_t pairs = 0;
   std::size_t points = 0;      ///< point-to-element evaluations
@@ -51,6 +54,9 @@ class PartialKernel {
                                        std::span<const Index> occluder_list) const;
 
  private:
+  PartialExchange evaluatePair(const PartialPair& pair, std::span<const Index> occluder_list,
+                               SampledEnd end, VisiblePart& eye, PartialCounts& counts) const;
+
   const ElementSet& elements_;
   const OccluderSet& occluders_;
   double tolerance_;
