@@ -201,8 +201,9 @@ TEST(HiddenBacks, LeavingThemOutChangesNoPixel) {
         glm::normalize(Vec3(unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5));
     const EyeFrame frame = eyeFrame(eye, normal, unit(random));
     backs.fromEye(eye, kNone, hidden);
-    const std::vector<double> all = without.look(frame, kNone, nullptr).items;
-    ASSERT_EQ(all, with.look(frame, kNone, hidden.data()).items) << k;
+    const std::span<const double> all = without.look(frame, kNone, nullptr).items;
+    const std::span<const double> fewer = with.look(frame, kNone, hidden.data()).items;
+    ASSERT_TRUE(std::equal(all.begin(), all.end(), fewer.begin(), fewer.end())) << k;
   }
   EXPECT_GT(with.counts().skipped_facing_away, 300u * 3);
 }

@@ -52,7 +52,8 @@ Hemicube::Hemicube(const ViewScene& scene, const DeltaFormFactors& weights,
       eye_vertices_(scene.vertices.size()),
       codes_(scene.vertices.size()),
       scan_(kernels) {
-  view_.items.resize(scene.items);
+  sums_.resize(scene.items + 1);
+  view_.items = std::span(sums_).first(scene.items);
   bands_.resize(std::size_t((resolution_ + band_rows_ - 1) / band_rows_));
   const std::size_t band = std::size_t(stride_) * std::size_t(band_rows_);
   const std::size_t row = std::size_t(stride_) + kRowAlignment;
@@ -60,18 +61,18 @@ Hemicube::Hemicube(const ViewScene& scene, const DeltaFormFactors& weights,
   buffer_.reserve(band);
   polygon_runs_.reserve(row);
   cells_.reserve(row);
-  cell_runs_.reserve(row);
+  cell_starts_.reserve(row);
 }
 
 std::size_t Hemicube::bytes() const {
-  return (depth_.size() + buffer_.size()) * 4 + view_.items.size() * sizeof(double) +
+  return (depth_.size() + buffer_.size()) * 4 + sums_.size() * sizeof(double) +
          scene_.vertices.size() * (sizeof(Vec3) + sizeof(SignCode)) +
          scene_.polygons.size() * (sizeof(Candidate) + sizeof(Drawn));
 }
 
 const HemicubeView& Hemicube::look(const EyeFrame& frame, Index own, const std::uint8_t* hidden) {
   frame_ = frame;
-  std::fill(view_.items.begin(), view_.items.end(), 0.0);
+  std::fill(sums_.begin(), sums_.end(), 0.0);
   view_.fronts = view_.backs = view_.sky = 0;
   transformVertices(frame);
   collectCandidates(frame, own, hidden);
@@ -227,6 +228,7 @@ Hemicube::Drawn Hemicube::prepare(const Candidate& candidate, const FaceGeometry
     drawn.map.last_column = float(grid.columns() - 1);
     drawn.map.last_row = float(grid.rows() - 1);
     drawn.map.columns = float(grid.columns());
+    drawn.map.first_cell = scene_.first_cell[candidate.side->grid];
   }
   return drawn;
 }
@@ -258,10 +260,16 @@ void Hemicube::queueSpans(const Candidate& candidate, const FaceGeometry& face) 
   }
 }
 
+/// Divides a row into runs of one cell, then sums them in one go.
 void Hemicube::sumRow(const FaceGeometry& face, int y, const std::uint32_t* row) {
   const double* weights = face.isTop() ? weights_.topRow(y) : weights_.sideRow(y);
   const std::int32_t* runs = polygon_runs_.data();
   const std::size_t count = kernels_.findRuns(row, resolution_, polygon_runs_.data());
+  const auto append = [&](int begin, std::int32_t cell) {
+    cell_starts_.data()[cell_count_] = begin;
+    cells_.data()[cell_count_++] = cell;
+  };
+  cell_count_ = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const int begin = runs[k];
     const int end = runs[k + 1];
@@ -269,22 +277,41 @@ void Hemicube::sumRow(const FaceGeometry& face, int y, const std::uint32_t* row)
     if (row[begin] == kSky) {
       view_.sky += weight;
       counts_.sky_pixels += std::size_t(end - begin);
+      append(begin, scene_.skyCell());
       continue;
     }
     Drawn& drawn = drawn_[row[begin]];
     if (drawn.grid != nullptr) {
       view_.fronts += weight;
-      sumPatches(drawn, rowHeight(face, y), begin, end, weights);
+      locatePatches(drawn, rowHeight(face, y), begin, end, weights);
     } else {
-      view_.items[drawn.item] += weight;
+      append(begin, std::int32_t(drawn.item));
       (drawn.item < scene_.patches ? view_.fronts : view_.backs) += weight;
     }
   }
+  sumCells(resolution_, weights);
 }
 
-/// Sums a run of pixels of one polygon by patch: first by grid cell, then within cells.
-void Hemicube::sumPatches(Drawn& drawn, double height, int begin, int end, const double* weights) {
-  const PatchGrid& grid = *drawn.grid;
+/// Adds what the row's runs of cells, the last of which ends at pixel `end`, are worth to what the
+/// cells count for. One long loop for the whole row: runs are short, and a loop for each polygon
+/// would spend its time on mispredicted ends.
+void Hemicube::sumCells(int end, const double* weights) {
+  const std::int32_t* starts = cell_starts_.data();
+  const std::int32_t* cells = cells_.data();
+  const std::int32_t* const items = scene_.cells.data();
+  cell_starts_.data()[cell_count_] = end;
+  double before = cell_count_ > 0 ? weights[starts[0]] : 0;
+  for (std::size_t k = 0; k < cell_count_; ++k) {
+    const double after = weights[starts[k + 1]];
+    sums_[std::size_t(items[cells[k]])] += after - before;
+    before = after;
+  }
+}
+
+/// Appends the cells that a run of pixels of one polygon lies in to the row's. Where cells may be
+/// shared by several patches, they are summed at once instead, together with the runs before them.
+void Hemicube::locatePatches(Drawn& drawn, double height, int begin, int end,
+                             const double* weights) {
   const auto onRow = [&](const Vec3& linear) {
     return RowLinear{linear.x, linear.y * height + linear.z};
   };
@@ -293,21 +320,23 @@ void Hemicube::sumPatches(Drawn& drawn, double height, int begin, int end, const
   map.u = float(row.u.base);
   map.v = float(row.v.base);
   map.w = float(row.w.base);
-  const std::size_t count = kernels_.locate(map, begin, end, cell_runs_.data(), cells_.data());
-  const std::int32_t* runs = cell_runs_.data();
-  const float* cells = cells_.data();
-  double* const items = view_.items.data();
-  const double* const own_weights = weights + begin;
-  double before = own_weights[0];
+  if (!drawn.grid->hasTrees()) {
+    cell_count_ += kernels_.locate(map, begin, end, cell_starts_.data() + cell_count_,
+                                   cells_.data() + cell_count_);
+    return;
+  }
+  sumCells(begin, weights);
+  cell_count_ = 0;
+  std::int32_t* starts = cell_starts_.data();
+  const std::size_t count = kernels_.locate(map, begin, end, starts, cells_.data());
+  starts[count] = end;
   for (std::size_t k = 0; k < count; ++k) {
-    const std::int32_t entry = grid.cell(std::size_t(std::int32_t(cells[runs[k]])));
-    const double after = own_weights[runs[k + 1]];
+    const std::int32_t entry = scene_.cells[std::size_t(cells_.data()[k])];
     if (entry >= 0) {
-      items[entry] += after - before;
+      sums_[std::size_t(entry)] += weights[starts[k + 1]] - weights[starts[k]];
     } else {
-      sumCell(grid, row, begin + runs[k], begin + runs[k + 1], entry, weights);
+      sumCell(*drawn.grid, row, starts[k], starts[k + 1], entry, weights);
     }
-    before = after;
   }
 }
 
@@ -330,8 +359,8 @@ void Hemicube::sumCell(const PatchGrid& grid, const RowCoordinates& row, int beg
     const int middle = firstFrom(-base / slope - first_centre, begin, end);
     if (left >= 0 && right >= 0) {
       // The common case, without a branch: an empty part adds 0.
-      view_.items[std::size_t(left)] += weights[middle] - weights[begin];
-      view_.items[std::size_t(right)] += weights[end] - weights[middle];
+      sums_[std::size_t(left)] += weights[middle] - weights[begin];
+      sums_[std::size_t(right)] += weights[end] - weights[middle];
       return;
     }
     if (middle == begin) {
@@ -342,7 +371,7 @@ void Hemicube::sumCell(const PatchGrid& grid, const RowCoordinates& row, int beg
       entry = left;
     }
   }
-  view_.items[std::size_t(entry)] += weights[end] - weights[begin];
+  sums_[std::size_t(entry)] += weights[end] - weights[begin];
 }
 
 }  // namespace radiosity

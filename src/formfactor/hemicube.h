@@ -14,6 +14,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "formfactor/aligned_buffer.h"
@@ -41,9 +42,9 @@ struct HemicubeCounts {
 
 /// What an eye saw: form factors to every item, and their sums by kind, which add up to 1.
 struct HemicubeView {
-  std::vector<double> items;  ///< ViewScene::items values: patches, then bare backs by surface
-  double fronts = 0;          ///< sum over patches
-  double backs = 0;           ///< sum over bare backs
+  std::span<const double> items;  ///< ViewScene::items values: patches, then bare backs by surface
+  double fronts = 0;              ///< sum over patches
+  double backs = 0;               ///< sum over bare backs
   double sky = 0;
 };
 
@@ -115,7 +116,8 @@ class Hemicube {
   template <class Visit>
   void drawFace(const FaceGeometry& face, const Visit& visit);
   void sumRow(const FaceGeometry& face, int y, const std::uint32_t* row);
-  void sumPatches(Drawn& drawn, double height, int begin, int end, const double* weights);
+  void locatePatches(Drawn& drawn, double height, int begin, int end, const double* weights);
+  void sumCells(int end, const double* weights);
   void sumCell(const PatchGrid& grid, const RowCoordinates& row, int begin, int end,
                std::int32_t entry, const double* weights);
   double rowHeight(const FaceGeometry& face, int y) const;
@@ -145,8 +147,11 @@ class Hemicube {
   AlignedBuffer<float> depth_;           ///< of one band
   AlignedBuffer<std::uint32_t> buffer_;  ///< of one band: positions in drawn_
   AlignedBuffer<std::int32_t> polygon_runs_;
-  AlignedBuffer<float> cells_;  ///< of one row
-  AlignedBuffer<std::int32_t> cell_runs_;
+  /// Runs of one cell in one row, `cell_count_` of them: where each starts, and in which cell.
+  AlignedBuffer<std::int32_t> cell_starts_;
+  AlignedBuffer<std::int32_t> cells_;
+  std::size_t cell_count_ = 0;
+  std::vector<double> sums_;  ///< by item, the sky last
 };
 
 }  // namespace radiosity

@@ -31,7 +31,9 @@ class PatchGrid {
   std::int32_t columns() const { return columns_; }
   std::int32_t rows() const { return rows_; }
   /// What cell row * columns + column holds: an item if >= 0, else the node ~cell of a tree.
-  std::int32_t cell(std::size_t index) const { return cells_[index]; }
+  std::span<const std::int32_t> cells() const { return cells_; }
+  /// True if some cell holds a tree.
+  bool hasTrees() const { return !nodes_.empty(); }
   const CellNode& node(std::int32_t index) const { return nodes_[std::size_t(index)]; }
   /// Grid coordinates of a point P of the plane are dot(uAxis, P - origin) + uOffset, and the same
   /// for v. Cells are centred on whole numbers: u runs from -1/2 to columns - 1/2.

@@ -42,9 +42,10 @@ struct RowMap {
   float v_slope, v;
   float w_slope, w;
   float first_centre;
-  float last_column;  ///< columns - 1
-  float last_row;     ///< rows - 1
-  float columns;      ///< columns * rows is at most 2^24: cell numbers are whole floats
+  float last_column;        ///< columns - 1
+  float last_row;           ///< rows - 1
+  float columns;            ///< columns * rows is at most 2^24: cell numbers are whole floats
+  std::int32_t first_cell;  ///< the number that the grid's first cell goes by
 };
 
 /// W(x) is at least this: it vanishes, by rounding, only at the horizon.
@@ -75,12 +76,12 @@ struct RasterKernels {
   /// ascending, then `count`; returns how many runs there are, `count` not counted. `starts` has
   /// room for count + kRowAlignment.
   std::size_t (*findRuns)(const std::uint32_t* values, int count, std::int32_t* starts);
-  /// Finds the cell, row * columns + column, of every pixel x of [begin, end), a non-empty range,
-  /// and writes it to cells[x - begin]. The pixels [begin + starts[k], begin + starts[k + 1]) are
-  /// a run of one cell, and neighbouring runs differ; returns how many there are. Coordinates
-  /// outside the grid are moved to its border: a pixel is never lost. `starts` and `cells` (as
-  /// aligned as a row) have room for end - begin + kRowAlignment.
-  std::size_t (*locate)(const RowMap& map, int begin, int end, std::int32_t* starts, float* cells);
+  /// Divides the pixels [begin, end), a non-empty range, into runs of one cell: run k starts at
+  /// pixel starts[k] and lies in cell cells[k] = first_cell + row * columns + column; neighbouring
+  /// runs differ. Returns how many there are. Coordinates outside the grid are moved to its border:
+  /// a pixel is never lost. `starts` and `cells` have room for end - begin + kRowAlignment.
+  std::size_t (*locate)(const RowMap& map, int begin, int end, std::int32_t* starts,
+                        std::int32_t* cells);
 };
 
 /// The twin in plain C++, against which every other set is tested.

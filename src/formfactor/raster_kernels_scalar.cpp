@@ -55,8 +55,10 @@ float clampTo(float value, float last) {
 
 float roundToWhole(float value) { return (value + kRounder) - kRounder; }
 
-std::size_t locate(const RowMap& map, int begin, int end, std::int32_t* starts, float* cells) {
+std::size_t locate(const RowMap& map, int begin, int end, std::int32_t* starts,
+                   std::int32_t* cells) {
   std::size_t found = 0;
+  float before = -1;  // no cell: the first pixel starts a run
   for (int x = begin; x < end; ++x) {
     const float centre = float(x) + map.first_centre;
     const float w = map.w_slope * centre + map.w;
@@ -66,10 +68,12 @@ std::size_t locate(const RowMap& map, int begin, int end, std::int32_t* starts, 
     const float column = roundToWhole(clampTo(u, map.last_column));
     const float row = roundToWhole(clampTo(v, map.last_row));
     const float cell = row * map.columns + column;
-    cells[x - begin] = cell;
-    if (x == begin || cell != cells[x - begin - 1]) starts[found++] = x - begin;
+    if (cell != before) {
+      starts[found] = x;
+      cells[found++] = map.first_cell + std::int32_t(cell);
+    }
+    before = cell;
   }
-  starts[found] = end - begin;
   return found;
 }
 

@@ -140,7 +140,8 @@ HWY_INLINE hn::Vec<Floats> rotateUp(hn::Vec<Floats> v) {
       v, hn::IndicesFromVec(df, hn::And(hn::Add(hn::Iota(di, 0), last), last)));
 }
 
-std::size_t locate(const RowMap& map, int begin, int end, std::int32_t* starts, float* cells) {
+std::size_t locate(const RowMap& map, int begin, int end, std::int32_t* starts,
+                   std::int32_t* cells) {
   const Floats df;
   const Ints di;
   const int lanes = int(hn::Lanes(df));
@@ -163,7 +164,8 @@ std::size_t locate(const RowMap& map, int begin, int end, std::int32_t* starts, 
     const auto inside = hn::Min(hn::Max(value, zero), last);
     return hn::Sub(hn::Add(inside, rounder), rounder);
   };
-  auto pixel = hn::Iota(di, 0);
+  auto pixel = hn::Add(hn::Iota(di, 0), hn::Set(di, begin));
+  const auto first_cell = hn::Set(di, map.first_cell);
   const auto pixel_step = hn::Set(di, lanes);
   auto centre = hn::Add(hn::Iota(df, 0.0F), hn::Set(df, float(begin) + map.first_centre));
   const auto bottom = hn::FirstN(df, 1);
@@ -179,14 +181,15 @@ std::size_t locate(const RowMap& map, int begin, int end, std::int32_t* starts, 
     const auto rotated = rotateUp(cell);
     auto differs = hn::Ne(cell, hn::IfThenElse(bottom, before, rotated));
     if (count - x < lanes) differs = hn::And(differs, hn::FirstN(df, std::size_t(count - x)));
-    hn::Store(cell, df, cells + x);
-    hn::StoreU(hn::Compress(pixel, hn::RebindMask(di, differs)), di, starts + found);
+    const auto changes = hn::RebindMask(di, differs);
+    hn::StoreU(hn::Compress(pixel, changes), di, starts + found);
+    const auto number = hn::Add(hn::ConvertTo(di, cell), first_cell);
+    hn::StoreU(hn::Compress(number, changes), di, cells + found);
     found += hn::CountTrue(df, differs);
     before = rotated;
     pixel = hn::Add(pixel, pixel_step);
     centre = hn::Add(centre, step);
   }
-  starts[found] = count;
   return found;
 }
 

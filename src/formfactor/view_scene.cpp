@@ -72,6 +72,7 @@ ViewScene::ViewScene(const PatchMesh& mesh)
       coincidence(MeshOptions().weld * diagonal(mesh) * scale) {
   addPolygons(mesh);
   addSides(mesh);
+  numberCells();
 }
 
 /// Collects the polygons' vertices, equal points once (files give each face its own), in an order
@@ -145,9 +146,19 @@ void ViewScene::addSides(const PatchMesh& mesh) {
   }
 }
 
+void ViewScene::numberCells() {
+  cells.resize(items + 1);
+  std::iota(cells.begin(), cells.end(), std::int32_t(0));
+  for (const PatchGrid& grid : grids) {
+    first_cell.push_back(std::int32_t(cells.size()));
+    cells.insert(cells.end(), grid.cells().begin(), grid.cells().end());
+  }
+}
+
 std::size_t ViewScene::bytes() const {
   std::size_t sum = vertices.size() * sizeof(Vec3) + polygons.size() * sizeof(ViewPolygon) +
-                    (corners.size() + loop_offset.size()) * sizeof(std::uint32_t);
+                    (corners.size() + loop_offset.size()) * sizeof(std::uint32_t) +
+                    (cells.size() + first_cell.size()) * sizeof(std::int32_t);
   for (const PatchGrid& grid : grids) sum += grid.bytes();
   return sum;
 }

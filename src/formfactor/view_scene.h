@@ -46,6 +46,11 @@ struct ViewScene {
   std::vector<std::uint32_t> corners;      ///< into vertices
   std::vector<ViewPolygon> polygons;
   std::vector<PatchGrid> grids;
+  /// What every numbered cell counts for: cell k < items is item k, the next one is the sky, which
+  /// counts as item `items`; then come the cells of all grids, as PatchGrid::cells() has them.
+  std::vector<std::int32_t> cells;
+  std::vector<std::int32_t> first_cell;  ///< of each grid
+  std::int32_t skyCell() const { return std::int32_t(items); }
 
   std::size_t bytes() const;
 
@@ -53,6 +58,7 @@ struct ViewScene {
   std::vector<Index> packVertices(const PatchMesh& mesh);
   void addPolygons(const PatchMesh& mesh);
   void addSides(const PatchMesh& mesh);
+  void numberCells();
 };
 
 /// The convex pieces of a patch: its outline if that is convex, else its triangles.
