@@ -1,6 +1,7 @@
 // Results with every field filled, each differently, and the comparison of two of them.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -163,6 +164,26 @@ inline ExactReport exactReport() {
   e.seconds_assembly = 47.5;
   e.seconds_finish = 48.5;
   return e;
+}
+
+/// The same kinds of rows, reciprocal, stored in an order of its own.
+inline ExchangeMatrix symmetricMatrix(const PatchMesh& m, Precision precision) {
+  const std::size_t n = m.size();
+  std::mt19937 random(11);
+  std::vector<Index> order(n);
+  for (std::size_t k = 0; k < n; ++k) order[k] = Index(k);
+  std::shuffle(order.begin(), order.end(), random);
+  auto f = ExchangeMatrix::symmetric(m.area, order, precision);
+  std::uniform_real_distribution<double> value(1e-9, 1.0 / double(n));
+  for (std::size_t k = 0; k < n; ++k) {
+    std::vector<double> row(n - k, 0.0);
+    for (std::size_t q = 0; q < row.size() && k != 1; ++q) {
+      if (m.area[order[k]] == 0 || m.area[order[k + q]] == 0) continue;
+      if (k % 5 == 2 || random() % 16 == 0) row[q] = value(random);
+    }
+    f.setUpperRow(k, row);
+  }
+  return f;
 }
 
 inline FormFactors factors(const PatchMesh& m, Precision precision) {
@@ -343,6 +364,7 @@ bool same(const std::optional<T>& a, const std::optional<T>& b) {
 /// Value for value to the bit, stored alike.
 inline bool same(const ExchangeMatrix& a, const ExchangeMatrix& b) {
   if (a.size() != b.size() || a.precision() != b.precision() || a.denseRows() != b.denseRows() ||
+      !std::equal(a.order().begin(), a.order().end(), b.order().begin(), b.order().end()) ||
       a.nonZeros() != b.nonZeros() || a.bytes() != b.bytes()) {
     return false;
   }

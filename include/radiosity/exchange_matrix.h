@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -13,25 +14,61 @@ namespace radiosity {
 
 enum class Precision { single, real };  // `double` is a keyword: `real` is 64 bits
 
-/// Rows F_i. of an N x N matrix of form factors; with the areas it holds, G_ij = A_i F_ij is the
-/// exchange area. A row is stored dense or as sorted (column, value) pairs, whichever is smaller;
-/// values are 32 or 64 bits, all sums are made in 64.
+/// One row of a triangle, zeros left out: runs of `skip` zeros and then `count` stored values.
+/// Longer stretches are several runs. The values are in `single` or in `real`, by precision.
+struct RunRow {
+  struct Run {
+    std::uint16_t skip = 0;
+    std::uint16_t count = 0;
+  };
+  std::vector<Run> runs;
+  std::vector<float> single;
+  std::vector<double> real;
+};
+
+/// Form factors F of N patches, N x N, and the patches' areas; G_ij = A_i F_ij is the exchange
+/// area. Stored values are 32 or 64 bits, all sums are made in 64.
+///
+/// Row form: every row F_i. for itself, dense or as sorted (column, value) pairs, whichever is
+/// smaller. The two values of a pair may be two estimates that differ.
+///
+/// Symmetric form: A_i F_ij = A_j F_ji by construction, and half the memory. Patches stand in an
+/// order given once; stored is F_ij for j after i in that order, and F_ji = A_i F_ij / A_j follows.
+/// A row leaves out its runs of zeros, so patches that do not see each other and are neighbours in
+/// the order (coplanar ones) cost nothing. Storing F and not G keeps values within 0 and 1 in a
+/// scene of any size.
 class ExchangeMatrix {
  public:
   ExchangeMatrix() = default;
-  /// All rows empty. `area`: N finite values >= 0, m^2, else InputError.
+  /// Row form, all rows empty. `area`: N finite values >= 0, m^2, else InputError.
   ExchangeMatrix(std::vector<double> area, Precision precision);
+  /// Symmetric form, all rows empty. `order`: each patch once, else InputError.
+  static ExchangeMatrix symmetric(std::vector<double> area, std::vector<Index> order,
+                                  Precision precision);
 
   std::size_t size() const { return area_.size(); }
   Precision precision() const { return precision_; }
   std::span<const double> area() const { return area_; }
+  bool isSymmetric() const { return symmetric_; }
+  /// Symmetric form: the patches in the order they are stored; else empty.
+  std::span<const Index> order() const { return order_; }
 
-  /// Stores row i; columns strictly increasing and below N, values finite and > 0, lengths equal,
-  /// else InputError naming the row. Different rows may be set from different threads at once.
-  /// Setting a row again replaces it.
+  /// Row form: stores row i; columns strictly increasing and below N, values finite and > 0,
+  /// lengths equal, else InputError naming the row. Different rows may be set from different
+  /// threads at once. Setting a row again replaces it.
   void setRow(std::size_t i, std::span<const Index> columns, std::span<const double> values);
 
-  /// Calls visit(column, value) over the stored entries of row i, columns increasing.
+  /// Symmetric form: factors[m] is F from patch order[k] to patch order[k + m], m = 0 being the
+  /// patch itself; at most N - k values, the rest are 0. Finite, >= 0, 0 where a patch has no area,
+  /// else InputError naming the patches. Different rows may be set from different threads at once.
+  /// Setting a row again replaces it.
+  void setUpperRow(std::size_t k, std::span<const double> factors);
+
+  /// The values setUpperRow() stored, as they were rounded: N - k of them.
+  void upperRow(std::size_t k, std::span<double> factors) const;
+
+  /// Calls visit(column, value) over the entries of row i that are not 0, columns increasing.
+  /// Symmetric form: O(N) and more, and memory for a row; for many rows use forPanels().
   template <class Visit>
   void forRow(std::size_t i, Visit&& visit) const;
 
@@ -39,35 +76,108 @@ class ExchangeMatrix {
   template <class Visit>
   void forRow(std::size_t i, std::size_t first, std::size_t last, Visit&& visit) const;
 
-  /// F_ij, 0 where nothing is stored. O(log n) in a sparse row.
+  /// Calls visit(panel) for consecutive ranges of rows that together are all rows, in order. A
+  /// panel of the symmetric form holds its rows spread out, at most kPanelBytes or one row.
+  template <class Visit>
+  void forPanels(Visit&& visit) const;
+
+  /// F_ij, 0 where nothing is stored. O(log n) in a sparse row, O(runs) in the symmetric form.
   double at(std::size_t i, std::size_t j) const;
 
-  /// out[b] = sum_j F_ij x[j * bands + b], in 64-bit, for one row; the same bits whether the row is
-  /// stored dense or sparse. x: N * bands, row-major; bands >= 1.
-  void rowProduct(std::size_t i, std::span<const double> x, int bands, double* out) const;
-
-  /// y = F x for all rows and bands, one pass over the matrix, in parallel, same bits for any
+  /// y = F x for all rows and bands, one pass over what is stored, in parallel, same bits for any
   /// thread count. x, y: N * bands, row-major, not aliased.
   void product(std::span<const double> x, int bands, std::span<double> y) const;
 
-  std::size_t nonZeros() const;
-  std::size_t bytes() const;      ///< of the stored values and indices
-  std::size_t denseRows() const;  ///< how many rows are stored dense
+  /// One row after the other, in the order of storage (row form: as numbered): calls
+  /// update(i, gathered) with gathered[b] = sum_j F_ij x[j * bands + b], x as the updates so far
+  /// have left it. An update may change x of patch i and of no other. One pass over what is stored,
+  /// on one thread.
+  void sweep(std::span<double> x, int bands,
+             const std::function<void(std::size_t i, const double* gathered)>& update) const;
+
+  std::vector<Index> rowEntries() const;  ///< N: how many entries of a row are not 0
+  std::size_t nonZeros() const;           ///< of the N x N matrix
+  std::size_t bytes() const;              ///< of the stored values and indices
+  std::size_t denseRows() const;          ///< row form: how many rows are stored dense
   std::vector<double> rowSums() const;
 
-  /// Bytes that N rows with `entries_per_row` entries would take, stored as they would be stored.
+  /// Bytes that N rows with `entries_per_row` entries would take, stored as they would be stored in
+  /// row form.
   static std::size_t estimateBytes(std::size_t n, double entries_per_row, Precision precision);
+  /// The most that a symmetric matrix with that many entries a row takes, however they lie.
+  static std::size_t estimateSymmetricBytes(std::size_t n, double entries_per_row,
+                                            Precision precision);
+
+  /// Most bytes of a panel's spread rows.
+  static constexpr std::size_t kPanelBytes = std::size_t(1) << 25;
 
  private:
+  friend class RowPanel;
   struct Row {
     std::vector<Index> columns;  ///< empty for a dense row
     std::vector<float> single;
     std::vector<double> real;
     bool dense = false;
   };
+  template <class Visit>  // row form
+  void forStored(std::size_t i, std::size_t first, std::size_t last, Visit&& visit) const;
+  std::size_t panelEnd(std::size_t first) const;
+  /// Row i of `out` (N values each) becomes row first + i of the matrix.
+  void spreadRows(std::size_t first, std::size_t last, std::span<double> out) const;
+  void checkFactors(std::size_t k, std::span<const double> factors) const;
+  void rowProduct(std::size_t i, std::span<const double> x, int bands, double* out) const;
+  void symmetricProduct(std::span<const double> x, int bands, std::span<double> y) const;
+  void symmetricSweep(
+      std::span<double> x, int bands,
+      const std::function<void(std::size_t i, const double* gathered)>& update) const;
+  /// Symmetric form: F between positions k <= later, as stored.
+  double storedUpper(std::size_t k, std::size_t later) const;
+
   std::vector<double> area_;
   Precision precision_ = Precision::single;
-  std::vector<Row> rows_;
+  bool symmetric_ = false;
+  std::vector<Row> rows_;            // row form
+  std::vector<Index> order_;         // symmetric form: patch by position,
+  std::vector<Index> position_;      // position by patch,
+  std::vector<RunRow> upper_;        // by position k: F to positions k + 1, ...
+  std::vector<double> diagonal_;     // by position
+  std::vector<Index> without_area_;  // positions of patches of area 0
+};
+
+/// Some consecutive rows of a matrix, for reading.
+class RowPanel {
+ public:
+  RowPanel(const ExchangeMatrix& matrix, std::size_t first, std::size_t last)
+      : matrix_(&matrix), first_(first), last_(last) {
+    if (!matrix.isSymmetric()) return;
+    spread_.resize((last - first) * matrix.size());
+    matrix.spreadRows(first, last, spread_);
+  }
+  std::size_t first() const { return first_; }
+  std::size_t last() const { return last_; }  ///< one beyond
+
+  /// As ExchangeMatrix::forRow(), first() <= i < last().
+  template <class Visit>
+  void forRow(std::size_t i, Visit&& visit) const {
+    forRow(i, 0, matrix_->size(), visit);
+  }
+  template <class Visit>
+  void forRow(std::size_t i, std::size_t first, std::size_t last, Visit&& visit) const {
+    if (!matrix_->isSymmetric()) {
+      matrix_->forStored(i, first, last, visit);
+      return;
+    }
+    const double* row = spread_.data() + (i - first_) * matrix_->size();
+    for (std::size_t j = first; j < std::min(last, matrix_->size()); ++j) {
+      if (row[j] != 0) visit(Index(j), row[j]);
+    }
+  }
+
+ private:
+  const ExchangeMatrix* matrix_;
+  std::size_t first_;
+  std::size_t last_;
+  std::vector<double> spread_;
 };
 
 template <class Visit>
@@ -78,6 +188,21 @@ void ExchangeMatrix::forRow(std::size_t i, Visit&& visit) const {
 template <class Visit>
 void ExchangeMatrix::forRow(std::size_t i, std::size_t first, std::size_t last,
                             Visit&& visit) const {
+  RowPanel(*this, i, i + 1).forRow(i, first, last, visit);
+}
+
+template <class Visit>
+void ExchangeMatrix::forPanels(Visit&& visit) const {
+  for (std::size_t first = 0; first < size();) {
+    const std::size_t last = panelEnd(first);
+    visit(RowPanel(*this, first, last));
+    first = last;
+  }
+}
+
+template <class Visit>
+void ExchangeMatrix::forStored(std::size_t i, std::size_t first, std::size_t last,
+                               Visit&& visit) const {
   const Row& row = rows_[i];
   std::size_t begin = first;
   std::size_t end = std::min(last, row.single.size() + row.real.size());

@@ -46,7 +46,9 @@ Results readResults(const std::string& path, bool with_factors = true);
 ///   /mesh          as PatchMesh; key, geometry_hash, polygons/, report/
 ///   /form_factors  csr_matrix((data, indices, indptr), shape) of scipy: data f32 or f64, indices
 ///                  int32 increasing in a row, indptr int64; row_sum (of data), fronts, backs, sky,
-///                  error (figures of the rows; exact method), area; normal, centroid, surface, surface_names (those of /mesh); method, key,
+///                  error (figures of the rows; exact method), area; order where A_i F_ij = A_j F_ji
+///                  was stored once a pair (the patches in the order of storage); normal, centroid,
+///                  surface, surface_names (those of /mesh); method, key,
 ///                  geometry_hash, report/
 ///   /solution      radiosity, irradiance (N x bands), reflectance, emission (N x 3), summary/, key
 /// The matrix is written row by row, never copied. Errors: RunError (disk full), Cancelled; `path`

@@ -35,11 +35,20 @@ void checkTarget(std::span<const double> target, std::size_t n) {
   }
 }
 
-/// F_ij <- d_i F_ij d_j, in storage precision; notes how far entries moved. Entries that become 0
-/// (their row or column is to have the sum 0) are no longer stored.
-void scale(ExchangeMatrix& matrix, std::span<const double> d, ClosureReport& report) {
+/// How far entries moved, added up.
+struct Moves {
+  double largest = 0;
   double moved = 0;
   double total = 0;
+  void add(double area, double before, double after) {
+    const double move = after - before;
+    largest = std::max(largest, std::abs(move));
+    moved += area * move * move;
+    total += area * before * before;
+  }
+};
+
+void scaleRows(ExchangeMatrix& matrix, std::span<const double> d, Moves& moves) {
   std::vector<Index> columns;
   std::vector<double> values;
   for (std::size_t i = 0; i < matrix.size(); ++i) {
@@ -51,14 +60,44 @@ void scale(ExchangeMatrix& matrix, std::span<const double> d, ClosureReport& rep
         columns.push_back(j);
         values.push_back(scaled);
       }
-      const double move = scaled - value;
-      report.largest_move = std::max(report.largest_move, std::abs(move));
-      moved += matrix.area()[i] * move * move;
-      total += matrix.area()[i] * value * value;
+      moves.add(matrix.area()[i], value, scaled);
     });
     matrix.setRow(i, columns, values);
   }
-  report.relative_move = total > 0 ? std::sqrt(moved / total) : 0;
+}
+
+void scaleTriangle(ExchangeMatrix& matrix, std::span<const double> d, Moves& moves) {
+  const std::span<const Index> order = matrix.order();
+  const std::span<const double> area = matrix.area();
+  std::vector<double> before(matrix.size());
+  std::vector<double> after(matrix.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const std::size_t count = order.size() - k;
+    matrix.upperRow(k, std::span(before).first(count));
+    for (std::size_t m = 0; m < count; ++m) {
+      const Index i = order[k];
+      const Index j = order[k + m];
+      after[m] = d[i] * before[m] * d[j];
+      if (before[m] == 0) continue;
+      moves.add(area[i], before[m], after[m]);
+      const double other_end = area[i] / area[j];
+      if (m > 0) moves.add(area[j], before[m] * other_end, after[m] * other_end);
+    }
+    matrix.setUpperRow(k, std::span(after).first(count));
+  }
+}
+
+/// F_ij <- d_i F_ij d_j, in storage precision; notes how far entries moved. Entries that become 0
+/// (their row or column is to have the sum 0) are no longer stored.
+void scale(ExchangeMatrix& matrix, std::span<const double> d, ClosureReport& report) {
+  Moves moves;
+  if (matrix.isSymmetric()) {
+    scaleTriangle(matrix, d, moves);
+  } else {
+    scaleRows(matrix, d, moves);
+  }
+  report.largest_move = moves.largest;
+  report.relative_move = moves.total > 0 ? std::sqrt(moves.moved / moves.total) : 0;
 }
 
 }  // namespace

@@ -3,75 +3,17 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numeric>
 #include <utility>
 
-#include "base/parallel.h"
+#include "matrix/run_row.h"
 
 namespace radiosity {
 
 namespace {
 
-/// Rows a thread takes at a time: enough work to hide the scheduling of sparse rows.
-constexpr std::size_t kRowGrain = 16;
-
-/// Bands summed in one walk along a row; more bands take another walk, from the cache.
-constexpr int kMaxBands = 4;
-
 std::size_t valueBytes(Precision precision) {
   return precision == Precision::single ? sizeof(float) : sizeof(double);
-}
-
-/// Values of one stored row. `columns` is null for a dense row.
-template <class Value>
-struct RowView {
-  const Value* values;
-  const Index* columns;
-  std::size_t count;
-};
-
-/// out[b] = sum over the row of value * x[column * stride + b], for `kBands` bands.
-///
-/// Four running sums a band, picked by column modulo 4, keep the additions from waiting for each
-/// other. The order of additions depends on the columns alone and adding a stored 0 changes
-/// nothing, so dense and sparse storage give the same bits.
-template <int kBands, class Value>
-void dot(const RowView<Value>& row, const double* x, std::size_t stride, double* out) {
-  constexpr std::size_t kLanes = 4;
-  double sum[kLanes][kBands] = {};
-  const auto add = [&](std::size_t lane, std::size_t column, double value) {
-    for (int b = 0; b < kBands; ++b) sum[lane][b] += value * x[column * stride + std::size_t(b)];
-  };
-  std::size_t k = 0;
-  if (row.columns == nullptr) {
-    for (; k + kLanes <= row.count; k += kLanes) {
-      for (std::size_t lane = 0; lane < kLanes; ++lane) add(lane, k + lane, row.values[k + lane]);
-    }
-    for (; k < row.count; ++k) add(k % kLanes, k, row.values[k]);
-  } else {
-    for (; k < row.count; ++k) add(row.columns[k] % kLanes, row.columns[k], row.values[k]);
-  }
-  for (int b = 0; b < kBands; ++b) out[b] = (sum[0][b] + sum[1][b]) + (sum[2][b] + sum[3][b]);
-}
-
-template <class Value>
-void dotAllBands(const RowView<Value>& row, const double* x, int bands, double* out) {
-  const auto stride = std::size_t(bands);
-  for (int b = 0; b < bands; b += kMaxBands) {
-    switch (std::min(bands - b, kMaxBands)) {
-      case 1:
-        dot<1>(row, x + b, stride, out + b);
-        break;
-      case 2:
-        dot<2>(row, x + b, stride, out + b);
-        break;
-      case 3:
-        dot<3>(row, x + b, stride, out + b);
-        break;
-      default:
-        dot<4>(row, x + b, stride, out + b);
-        break;
-    }
-  }
 }
 
 void checkRow(std::size_t i, std::size_t n, std::span<const Index> columns,
@@ -106,6 +48,7 @@ ExchangeMatrix::ExchangeMatrix(std::vector<double> area, Precision precision)
 
 void ExchangeMatrix::setRow(std::size_t i, std::span<const Index> columns,
                             std::span<const double> values) {
+  if (symmetric_) throw InputError("exchange matrix: a symmetric one is set by upper rows");
   checkRow(i, size(), columns, values);
   const std::size_t value_bytes = valueBytes(precision_);
   Row row;
@@ -127,32 +70,38 @@ void ExchangeMatrix::setRow(std::size_t i, std::span<const Index> columns,
 }
 
 double ExchangeMatrix::at(std::size_t i, std::size_t j) const {
-  double found = 0;
-  forRow(i, j, j + 1, [&](Index, double value) { found = value; });
-  return found;
-}
-
-void ExchangeMatrix::rowProduct(std::size_t i, std::span<const double> x, int bands,
-                                double* out) const {
-  const Row& row = rows_[i];
-  const Index* columns = row.dense ? nullptr : row.columns.data();
-  if (precision_ == Precision::single) {
-    dotAllBands(RowView<float>{row.single.data(), columns, row.single.size()}, x.data(), bands,
-                out);
-  } else {
-    dotAllBands(RowView<double>{row.real.data(), columns, row.real.size()}, x.data(), bands, out);
+  if (!symmetric_) {
+    double found = 0;
+    forStored(i, j, j + 1, [&](Index, double value) { found = value; });
+    return found;
   }
+  if (position_[i] <= position_[j]) return storedUpper(position_[i], position_[j]);
+  const double mirrored = storedUpper(position_[j], position_[i]);
+  return mirrored == 0 ? 0 : mirrored * area_[j] / area_[i];
 }
 
-void ExchangeMatrix::product(std::span<const double> x, int bands, std::span<double> y) const {
-  parallelFor(size(), kRowGrain,
-              [&](std::size_t i) { rowProduct(i, x, bands, &y[i * std::size_t(bands)]); });
+std::vector<Index> ExchangeMatrix::rowEntries() const {
+  std::vector<Index> entries(size(), 0);
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    forStored(i, 0, size(), [&](Index, double) { ++entries[i]; });
+  }
+  for (std::size_t k = 0; k < upper_.size(); ++k) {
+    if (diagonal_[k] != 0) ++entries[order_[k]];
+    forRuns(upper_[k], [&](std::size_t offset, const auto* values, std::size_t count) {
+      const Index* later = &order_[k + 1 + offset];
+      for (std::size_t m = 0; m < count; ++m) {
+        if (values[m] == 0) continue;
+        ++entries[order_[k]];
+        ++entries[later[m]];
+      }
+    });
+  }
+  return entries;
 }
 
 std::size_t ExchangeMatrix::nonZeros() const {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < size(); ++i) forRow(i, [&](Index, double) { ++count; });
-  return count;
+  const std::vector<Index> entries = rowEntries();
+  return std::accumulate(entries.begin(), entries.end(), std::size_t(0));
 }
 
 std::size_t ExchangeMatrix::bytes() const {
@@ -161,7 +110,8 @@ std::size_t ExchangeMatrix::bytes() const {
     total += row.columns.size() * sizeof(Index) + row.single.size() * sizeof(float) +
              row.real.size() * sizeof(double);
   }
-  return total;
+  for (const RunRow& row : upper_) total += bytesOf(row);
+  return total + diagonal_.size() * sizeof(double);
 }
 
 std::size_t ExchangeMatrix::denseRows() const {

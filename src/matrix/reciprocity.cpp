@@ -21,6 +21,7 @@ double estimateWeight(double own_area, double other_area) {
 }  // namespace
 
 double reciprocityResidual(const ExchangeMatrix& matrix) {
+  if (matrix.isSymmetric()) return 0;
   const std::span<const double> area = matrix.area();
   std::vector<double> difference(matrix.size());  // a row each, summed in order at the end:
   std::vector<double> total(matrix.size());       // the same bits for any thread count
@@ -38,6 +39,7 @@ double reciprocityResidual(const ExchangeMatrix& matrix) {
 }
 
 ExchangeMatrix symmetrized(const ExchangeMatrix& matrix) {
+  if (matrix.isSymmetric()) return matrix;
   const std::span<const double> area = matrix.area();
   ExchangeMatrix merged({area.begin(), area.end()}, matrix.precision());
   forRowsAndColumns(matrix, [&](std::size_t i, auto row, auto column) {

@@ -13,7 +13,7 @@ namespace radiosity {
 
 /// Calls visit(i, row, column) for every i, row[j] = F_ij and column[j] = F_ji, both N values with
 /// zeros where nothing is stored. Calls run in parallel. Columns are gathered a block at a time, so
-/// that memory beyond the matrix is kBlock * N values, not a transposed copy of it.
+/// that memory beyond the matrix is kBlock * N values, not a transposed copy of it. Row form only.
 template <class Visit>
 void forRowsAndColumns(const ExchangeMatrix& matrix, const Visit& visit) {
   constexpr std::size_t kBlock = 128;

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "base/parallel.h"
@@ -49,10 +51,10 @@ class ColumnWriter {
   std::vector<T> buffer_;
 };
 
-std::vector<std::int64_t> countRows(const ExchangeMatrix& matrix) {
+std::vector<std::int64_t> rowStarts(const ExchangeMatrix& matrix) {
   std::vector<std::int64_t> indptr(matrix.size() + 1, 0);
-  parallelFor(matrix.size(), kRowGrain,
-              [&](std::size_t i) { matrix.forRow(i, [&](Index, double) { ++indptr[i + 1]; }); });
+  const std::vector<Index> entries = matrix.rowEntries();
+  std::copy(entries.begin(), entries.end(), indptr.begin() + 1);
   for (std::size_t i = 0; i < matrix.size(); ++i) indptr[i + 1] += indptr[i];
   return indptr;
 }
@@ -63,14 +65,16 @@ void writeEntries(h5::OutputGroup& group, const ExchangeMatrix& matrix, std::siz
   ColumnWriter<std::int32_t> indices(group, "indices", entries);
   ColumnWriter<T> data(group, "data", entries);
   progress.begin("writing form factors", matrix.size());
-  for (std::size_t i = 0; i < matrix.size(); ++i) {
-    progress.check();
-    matrix.forRow(i, [&](Index column, double value) {
-      indices.push(std::int32_t(column));
-      data.push(T(value));
-    });
-    progress.advance();
-  }
+  matrix.forPanels([&](const RowPanel& rows) {
+    for (std::size_t i = rows.first(); i < rows.last(); ++i) {
+      progress.check();
+      rows.forRow(i, [&](Index column, double value) {
+        indices.push(std::int32_t(column));
+        data.push(T(value));
+      });
+      progress.advance();
+    }
+  });
   indices.flush();
   data.flush();
   progress.end();
@@ -102,6 +106,8 @@ class BlockReader {
     std::size_t rows = 0;
     indices_ = group.open("indices", Number::i32, 0, rows);
     data_ = group.open("data", h5::numberOf<T>(), 0, rows);
+    position_.resize(matrix.order().size());
+    for (std::size_t k = 0; k < position_.size(); ++k) position_[matrix.order()[k]] = Index(k);
   }
   void read(std::size_t first, std::size_t last) {
     const std::size_t begin = std::size_t((*indptr_)[first]);
@@ -114,23 +120,54 @@ class BlockReader {
     }
     parallelFor(last - first, kRowGrain, [&](std::size_t k) { setRow(first + k, begin); });
   }
+  /// After the last row.
+  void finish() const {
+    if (surplus_ != 0) group_->fail("indices", "is not that of a symmetric matrix");
+  }
 
  private:
+  /// The row's entries, checked.
+  std::span<const std::int32_t> columnsOf(std::size_t i, std::size_t from, std::size_t to) const {
+    const std::span columns = std::span(columns_).subspan(from, to - from);
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      // A negative column is a large one once it is unsigned.
+      if (Index(columns[k]) >= matrix_->size() || (k > 0 && columns[k] <= columns[k - 1])) {
+        group_->fail("indices", fmt::format("has a row ({}) whose columns do not increase", i));
+      }
+      const T value = values_[from + k];
+      if (!(value > 0) || !std::isfinite(value)) {
+        group_->fail("data", fmt::format("has a row ({}) with the form factor {}", i, value));
+      }
+    }
+    return columns;
+  }
+
   void setRow(std::size_t i, std::size_t block_begin) {
     const std::size_t from = std::size_t((*indptr_)[i]) - block_begin;
     const std::size_t to = std::size_t((*indptr_)[i + 1]) - block_begin;
-    const std::vector<Index> columns(columns_.begin() + from, columns_.begin() + to);
-    const std::vector<double> values(values_.begin() + from, values_.begin() + to);
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-      // A negative column is a large one once it is unsigned.
-      if (columns[k] >= matrix_->size() || (k > 0 && columns[k] <= columns[k - 1])) {
-        group_->fail("indices", fmt::format("has a row ({}) whose columns do not increase", i));
-      }
-      if (!(values[k] > 0) || !std::isfinite(values[k])) {
-        group_->fail("data", fmt::format("has a row ({}) with the form factor {}", i, values[k]));
-      }
+    const std::span<const std::int32_t> columns = columnsOf(i, from, to);
+    const std::span<const T> values = std::span<const T>(values_).subspan(from, to - from);
+    if (matrix_->isSymmetric()) {
+      setUpperRow(i, columns, values);
+    } else {
+      matrix_->setRow(i, std::vector<Index>(columns.begin(), columns.end()),
+                      std::vector<double>(values.begin(), values.end()));
     }
-    matrix_->setRow(i, columns, values);
+  }
+
+  /// Of a symmetric matrix one of each pair is kept: that of the patch which comes first.
+  void setUpperRow(std::size_t i, std::span<const std::int32_t> columns,
+                   std::span<const T> values) {
+    const Index k = position_[i];
+    std::vector<double> factors(matrix_->size() - k, 0.0);
+    std::ptrdiff_t surplus = 0;
+    for (std::size_t m = 0; m < columns.size(); ++m) {
+      const Index later = position_[std::size_t(columns[m])];
+      if (later >= k) factors[later - k] = values[m];
+      if (later != k) surplus += later > k ? 1 : -1;
+    }
+    matrix_->setUpperRow(k, factors);
+    surplus_.fetch_add(surplus, std::memory_order_relaxed);
   }
 
   const h5::InputGroup* group_;
@@ -140,6 +177,8 @@ class BlockReader {
   h5::Handle data_;
   std::vector<std::int32_t> columns_;
   std::vector<T> values_;
+  std::vector<Index> position_;              // by patch, of a symmetric matrix
+  std::atomic<std::ptrdiff_t> surplus_ = 0;  // entries to later patches minus those to earlier ones
 };
 
 template <class T>
@@ -155,6 +194,22 @@ void readEntries(const h5::InputGroup& group, const std::vector<std::int64_t>& i
     reader.read(first, last);
     first = last;
   }
+  reader.finish();
+}
+
+/// The patches in the order a symmetric matrix stores them: each once.
+std::vector<Index> readOrder(const h5::InputGroup& group, std::size_t n) {
+  std::size_t rows = 0;
+  const h5::Handle dataset = group.open("order", h5::numberOf<Index>(), 0, rows);
+  if (rows != n) group.fail("order", fmt::format("has {} values, not {}", rows, n));
+  std::vector<Index> order(n);
+  if (n > 0) group.readAll("order", dataset, h5::numberOf<Index>(), order.data());
+  std::vector<bool> named(n, false);
+  for (const Index patch : order) {
+    if (patch >= n || named[patch]) group.fail("order", "does not name every patch once");
+    named[patch] = true;
+  }
+  return order;
 }
 
 Number numberOfValues(Precision precision) {
@@ -168,7 +223,10 @@ void writeMatrix(h5::OutputGroup& group, const ExchangeMatrix& matrix, Progress&
   const std::int64_t shape[2] = {n, n};
   group.dataset("shape", {Number::i64, 2, 0}, shape, "");
   group.dataset("area", {Number::f64, matrix.size(), 0}, matrix.area().data(), "m^2");
-  const std::vector<std::int64_t> indptr = countRows(matrix);
+  if (matrix.isSymmetric()) {
+    group.dataset("order", {h5::numberOf<Index>(), matrix.size(), 0}, matrix.order().data(), "");
+  }
+  const std::vector<std::int64_t> indptr = rowStarts(matrix);
   group.dataset("indptr", {Number::i64, indptr.size(), 0}, indptr.data(), "");
   const std::vector<double> sums = matrix.rowSums();
   group.dataset("row_sum", {Number::f64, sums.size(), 0}, sums.data(), "");
@@ -185,6 +243,7 @@ void countMatrix(h5::SizeCounter& group, const ExchangeMatrix& matrix) {
   const std::size_t entries = matrix.nonZeros();
   group.dataset("shape", {Number::i64, 2, 0}, nullptr, "");
   group.dataset("area", {Number::f64, n, 0}, nullptr, "m^2");
+  if (matrix.isSymmetric()) group.dataset("order", {h5::numberOf<Index>(), n, 0}, nullptr, "");
   group.dataset("indptr", {Number::i64, n + 1, 0}, nullptr, "");
   group.dataset("row_sum", {Number::f64, n, 0}, nullptr, "");
   group.dataset("indices", {Number::i32, entries, 0}, nullptr, "");
@@ -216,8 +275,10 @@ ExchangeMatrix readMatrix(const h5::InputGroup& group) {
     group.fail("indices", fmt::format("has {} values, data has {}", index_count, entries));
   }
   const std::vector<std::int64_t> indptr = readRowStarts(group, n, entries);
-  ExchangeMatrix matrix(std::move(area),
-                        *number == Number::f32 ? Precision::single : Precision::real);
+  const Precision precision = *number == Number::f32 ? Precision::single : Precision::real;
+  ExchangeMatrix matrix = group.has("order")
+                              ? ExchangeMatrix::symmetric(area, readOrder(group, n), precision)
+                              : ExchangeMatrix(area, precision);
   if (*number == Number::f32) {
     readEntries<float>(group, indptr, matrix);
   } else {

@@ -18,15 +18,15 @@ constexpr std::size_t kTaskEntries = std::size_t(1) << 16;
 /// of threads.
 constexpr std::size_t kTasks = 16;
 
-std::size_t entriesOf(const ExchangeMatrix& matrix, std::size_t i) {
+std::size_t entriesOf(const RowPanel& rows, std::size_t i) {
   std::size_t entries = 0;
-  matrix.forRow(i, [&](Index, double) { ++entries; });
+  rows.forRow(i, [&](Index, double) { ++entries; });
   return entries;
 }
 
-void formatRow(const ExchangeMatrix& matrix, std::size_t i, fmt::memory_buffer& text) {
+void formatRow(const RowPanel& rows, std::size_t i, fmt::memory_buffer& text) {
   const fmt::format_int row(i + 1);
-  matrix.forRow(i, [&](Index column, double value) {
+  rows.forRow(i, [&](Index column, double value) {
     text.append(row.data(), row.data() + row.size());
     text.push_back(' ');
     const fmt::format_int number(std::size_t(column) + 1);
@@ -38,19 +38,19 @@ void formatRow(const ExchangeMatrix& matrix, std::size_t i, fmt::memory_buffer& 
 
 /// Formats rows from `first` on in up to kTasks tasks at once and writes them in order; returns the
 /// first row that is left.
-std::size_t writeBatch(CheckedFile& file, const ExchangeMatrix& matrix, std::size_t first,
+std::size_t writeBatch(CheckedFile& file, const RowPanel& rows, std::size_t first,
                        std::vector<fmt::memory_buffer>& texts) {
   std::vector<std::size_t> starts = {first};
   std::size_t row = first;
-  while (row < matrix.size() && starts.size() <= texts.size()) {
+  while (row < rows.last() && starts.size() <= texts.size()) {
     std::size_t entries = 0;
-    while (row < matrix.size() && entries < kTaskEntries) entries += entriesOf(matrix, row++);
+    while (row < rows.last() && entries < kTaskEntries) entries += entriesOf(rows, row++);
     starts.push_back(row);
   }
   const std::size_t tasks = starts.size() - 1;
   parallelFor(tasks, 1, [&](std::size_t t) {
     texts[t].clear();
-    for (std::size_t i = starts[t]; i < starts[t + 1]; ++i) formatRow(matrix, i, texts[t]);
+    for (std::size_t i = starts[t]; i < starts[t + 1]; ++i) formatRow(rows, i, texts[t]);
   });
   for (std::size_t t = 0; t < tasks; ++t) file.write(texts[t].data(), texts[t].size());
   return row;
@@ -70,12 +70,14 @@ void writeMatrixMarket(const std::string& path, const ExchangeMatrix& matrix, Pr
       matrix.precision() == Precision::single ? 32 : 64, n, n, matrix.nonZeros()));
   progress.begin("writing MatrixMarket", n);
   std::vector<fmt::memory_buffer> texts(kTasks);
-  for (std::size_t row = 0; row < n;) {
-    progress.check();
-    const std::size_t next = writeBatch(file, matrix, row, texts);
-    progress.advance(next - row);
-    row = next;
-  }
+  matrix.forPanels([&](const RowPanel& rows) {
+    for (std::size_t row = rows.first(); row < rows.last();) {
+      progress.check();
+      const std::size_t next = writeBatch(file, rows, row, texts);
+      progress.advance(next - row);
+      row = next;
+    }
+  });
   progress.end();
   file.commit();
 }

@@ -9,17 +9,16 @@ namespace radiosity {
 
 namespace {
 
-/// B_i <- (E_i + rho_i sum_{j != i} F_ij B_j) / (1 - rho_i F_ii) for i = 0, 1, ...: rows depend on
-/// each other, so the sweep runs on one thread. Returns the largest change over max E, worst band.
+/// B_i <- (E_i + rho_i sum_{j != i} F_ij B_j) / (1 - rho_i F_ii) for one i after another: rows
+/// depend on each other, so the sweep runs on one thread. Returns the largest change over max E,
+/// worst band.
 double sweep(const System& system, std::span<const double> diagonal,
              std::vector<double>& radiosity) {
   const auto bands = std::size_t(system.bands);
   const Eigen::ArrayXd largest_emission =
       asArray(system.emission, system.bands).colwise().maxCoeff();
-  std::vector<double> gathered(bands);
   double largest_change = 0;
-  for (std::size_t i = 0; i < diagonal.size(); ++i) {
-    system.matrix.rowProduct(i, radiosity, system.bands, gathered.data());
+  system.matrix.sweep(radiosity, system.bands, [&](std::size_t i, const double* gathered) {
     for (std::size_t b = 0; b < bands; ++b) {
       const std::size_t k = i * bands + b;
       const double rho = system.reflectance[k];
@@ -29,7 +28,7 @@ double sweep(const System& system, std::span<const double> diagonal,
       largest_change = std::max(largest_change, change);
       radiosity[k] = updated;
     }
-  }
+  });
   return largest_change;
 }
 

@@ -1,7 +1,6 @@
 #include "solve/singular.h"
 
 #include <algorithm>
-#include <cstdint>
 
 namespace radiosity {
 
@@ -10,27 +9,18 @@ namespace {
 /// 1 - rho and backs + sky below this are 0 to rounding: the accounts are sums of up to 1e5 pixels.
 constexpr double kRounding = 1e-13;
 
-using Marks = std::vector<std::uint8_t>;
+using Marks = std::vector<double>;  // 0 or 1
 
-bool seesMarked(const ExchangeMatrix& matrix, std::size_t i, const Marks& marked) {
-  bool sees = false;
-  matrix.forRow(i, [&](Index j, double) { sees = sees || marked[j] != 0; });
-  return sees;
-}
-
-/// Marks every patch that sees a marked one, and so on. Rows are walked up and down in turn, so
-/// that a chain of rooms takes few passes whichever way it is numbered.
+/// Marks every patch that sees a marked one, and so on: sum_j F_ij mark_j > 0 says that i does.
 void markAllThatReach(const ExchangeMatrix& matrix, Marks& marked) {
-  const std::size_t n = matrix.size();
   bool changed = true;
-  for (bool upwards = true; changed; upwards = !upwards) {
+  while (changed) {
     changed = false;
-    for (std::size_t k = 0; k < n; ++k) {
-      const std::size_t i = upwards ? k : n - 1 - k;
-      if (marked[i] != 0 || !seesMarked(matrix, i, marked)) continue;
+    matrix.sweep(marked, 1, [&](std::size_t i, const double* seen) {
+      if (marked[i] != 0 || !(seen[0] > 0)) return;
       marked[i] = 1;
       changed = true;
-    }
+    });
   }
 }
 
@@ -39,7 +29,7 @@ std::vector<std::size_t> litPatches(const System& system, std::size_t band, cons
   const auto bands = std::size_t(system.bands);
   Marks lit(room.size(), 0);
   for (std::size_t i = 0; i < room.size(); ++i) {
-    lit[i] = std::uint8_t(room[i] != 0 && system.emission[i * bands + band] > 0);
+    lit[i] = double(room[i] != 0 && system.emission[i * bands + band] > 0);
   }
   markAllThatReach(system.matrix, lit);
   std::vector<std::size_t> patches;
@@ -64,13 +54,13 @@ WhiteRoom findWhiteRoom(const FormFactors& factors, const System& system) {
       const bool absorbs = 1 - system.reflectance[i * bands + band] > kRounding;
       const bool leaks = factors.backs[i] + factors.sky[i] > kRounding;
       const bool sees_nothing = factors.fronts[i] <= 0;
-      escapes[i] = std::uint8_t(absorbs || leaks || sees_nothing);
+      escapes[i] = double(absorbs || leaks || sees_nothing);
     }
     if (std::all_of(escapes.begin(), escapes.end(), [](auto e) { return e != 0; })) continue;
     markAllThatReach(system.matrix, escapes);
     Marks room(n);
     std::transform(escapes.begin(), escapes.end(), room.begin(),
-                   [](auto e) { return std::uint8_t(e == 0); });
+                   [](auto e) { return double(e == 0); });
     const auto patches = litPatches(system, band, room);
     if (!patches.empty()) return {int(band), patches};
   }

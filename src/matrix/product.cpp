@@ -1,0 +1,101 @@
+// Products of the row form, and the choice between the forms.
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "radiosity/exchange_matrix.h"
+
+namespace radiosity {
+
+namespace {
+
+/// Rows a thread takes at a time: enough work to hide the scheduling of sparse rows.
+constexpr std::size_t kRowGrain = 16;
+
+/// Bands summed in one walk along a row; more bands take another walk, from the cache.
+constexpr int kMaxBands = 4;
+
+/// Values of one stored row. `columns` is null for a dense row.
+template <class Value>
+struct RowView {
+  const Value* values;
+  const Index* columns;
+  std::size_t count;
+};
+
+/// out[b] = sum over the row of value * x[column * stride + b], for `kBands` bands.
+///
+/// Four running sums a band, picked by column modulo 4, keep the additions from waiting for each
+/// other. The order of additions depends on the columns alone and adding a stored 0 changes
+/// nothing, so dense and sparse storage give the same bits.
+template <int kBands, class Value>
+void dot(const RowView<Value>& row, const double* x, std::size_t stride, double* out) {
+  constexpr std::size_t kLanes = 4;
+  double sum[kLanes][kBands] = {};
+  const auto add = [&](std::size_t lane, std::size_t column, double value) {
+    for (int b = 0; b < kBands; ++b) sum[lane][b] += value * x[column * stride + std::size_t(b)];
+  };
+  std::size_t k = 0;
+  if (row.columns == nullptr) {
+    for (; k + kLanes <= row.count; k += kLanes) {
+      for (std::size_t lane = 0; lane < kLanes; ++lane) add(lane, k + lane, row.values[k + lane]);
+    }
+    for (; k < row.count; ++k) add(k % kLanes, k, row.values[k]);
+  } else {
+    for (; k < row.count; ++k) add(row.columns[k] % kLanes, row.columns[k], row.values[k]);
+  }
+  for (int b = 0; b < kBands; ++b) out[b] = (sum[0][b] + sum[1][b]) + (sum[2][b] + sum[3][b]);
+}
+
+template <class Value>
+void dotAllBands(const RowView<Value>& row, const double* x, int bands, double* out) {
+  const auto stride = std::size_t(bands);
+  for (int b = 0; b < bands; b += kMaxBands) {
+    switch (std::min(bands - b, kMaxBands)) {
+      case 1:
+        dot<1>(row, x + b, stride, out + b);
+        break;
+      case 2:
+        dot<2>(row, x + b, stride, out + b);
+        break;
+      case 3:
+        dot<3>(row, x + b, stride, out + b);
+        break;
+      default:
+        dot<4>(row, x + b, stride, out + b);
+        break;
+    }
+  }
+}
+
+}  // namespace
+
+void ExchangeMatrix::rowProduct(std::size_t i, std::span<const double> x, int bands,
+                                double* out) const {
+  const Row& row = rows_[i];
+  const Index* columns = row.dense ? nullptr : row.columns.data();
+  if (precision_ == Precision::single) {
+    dotAllBands(RowView<float>{row.single.data(), columns, row.single.size()}, x.data(), bands,
+                out);
+  } else {
+    dotAllBands(RowView<double>{row.real.data(), columns, row.real.size()}, x.data(), bands, out);
+  }
+}
+
+void ExchangeMatrix::product(std::span<const double> x, int bands, std::span<double> y) const {
+  if (symmetric_) return symmetricProduct(x, bands, y);
+  parallelFor(size(), kRowGrain,
+              [&](std::size_t i) { rowProduct(i, x, bands, &y[i * std::size_t(bands)]); });
+}
+
+void ExchangeMatrix::sweep(
+    std::span<double> x, int bands,
+    const std::function<void(std::size_t i, const double* gathered)>& update) const {
+  if (symmetric_) return symmetricSweep(x, bands, update);
+  std::vector<double> gathered(static_cast<std::size_t>(bands));
+  for (std::size_t i = 0; i < size(); ++i) {
+    rowProduct(i, x, bands, gathered.data());
+    update(i, gathered.data());
+  }
+}
+
+}  // namespace radiosity

@@ -1,0 +1,146 @@
+// The symmetric form of the exchange matrix: what goes in and how it is read entry by entry.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/parallel.h"
+#include "matrix/run_row.h"
+#include "radiosity/exchange_matrix.h"
+
+namespace radiosity {
+
+namespace {
+
+constexpr std::size_t kRowGrain = 16;
+
+/// Largest stored value, so that a sum of N of them cannot overflow.
+constexpr double kLargest = 1e30;
+
+}  // namespace
+
+ExchangeMatrix ExchangeMatrix::symmetric(std::vector<double> area, std::vector<Index> order,
+                                         Precision precision) {
+  ExchangeMatrix matrix(std::move(area), precision);
+  const std::size_t n = matrix.size();
+  matrix.symmetric_ = true;
+  matrix.rows_ = {};
+  matrix.position_.assign(n, kNone);
+  if (order.size() != n) {
+    throw InputError(
+        fmt::format("exchange matrix: an order of {} patches for {}", order.size(), n));
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    if (order[k] >= n || matrix.position_[order[k]] != kNone) {
+      throw InputError(
+          fmt::format("exchange matrix: the order names patch {} twice or beyond {}", order[k], n));
+    }
+    matrix.position_[order[k]] = Index(k);
+    if (matrix.area_[order[k]] == 0) matrix.without_area_.push_back(Index(k));
+  }
+  matrix.order_ = std::move(order);
+  matrix.upper_.resize(n);
+  matrix.diagonal_.assign(n, 0.0);
+  return matrix;
+}
+
+void ExchangeMatrix::checkFactors(std::size_t k, std::span<const double> factors) const {
+  if (!symmetric_ || k >= size() || factors.size() > size() - k) {
+    throw InputError(
+        fmt::format("exchange matrix: {} factors for row {} of the upper triangle of {}",
+                    factors.size(), k, symmetric_ ? size() : 0));
+  }
+  const auto refuse = [&](std::size_t m) {
+    throw InputError(fmt::format("exchange matrix: {} is no form factor from patch {} to patch {}",
+                                 factors[m], order_[k], order_[k + m]));
+  };
+  const auto good = [](double value) { return value >= 0 && value <= kLargest; };
+  bool all_good = true;  // one bit and no exit: this loop runs over every entry there is
+  for (const double value : factors) all_good = all_good & good(value);
+  for (std::size_t m = 0; !all_good && m < factors.size(); ++m) {
+    if (!good(factors[m])) refuse(m);
+  }
+  for (const Index later : without_area_) {
+    if (later < k || later >= k + factors.size()) continue;
+    if (factors[later - k] != 0) refuse(later - k);
+  }
+  if (area_[order_[k]] > 0) return;
+  for (std::size_t m = 0; m < factors.size(); ++m) {
+    if (factors[m] != 0) refuse(m);
+  }
+}
+
+void ExchangeMatrix::setUpperRow(std::size_t k, std::span<const double> factors) {
+  checkFactors(k, factors);
+  if (factors.empty()) {
+    upper_[k] = {};
+    diagonal_[k] = 0;
+    return;
+  }
+  upper_[k] = packRuns(factors.subspan(1), precision_);
+  diagonal_[k] = precision_ == Precision::single ? double(float(factors[0])) : factors[0];
+}
+
+void ExchangeMatrix::upperRow(std::size_t k, std::span<double> factors) const {
+  std::fill(factors.begin(), factors.end(), 0.0);
+  factors[0] = diagonal_[k];
+  forRuns(upper_[k], [&](std::size_t offset, const auto* values, std::size_t count) {
+    std::copy(values, values + count, &factors[1 + offset]);
+  });
+}
+
+double ExchangeMatrix::storedUpper(std::size_t k, std::size_t later) const {
+  return k == later ? diagonal_[k] : valueAt(upper_[k], later - k - 1);
+}
+
+std::size_t ExchangeMatrix::panelEnd(std::size_t first) const {
+  const std::size_t rows = kPanelBytes / (sizeof(double) * size());
+  return std::min(size(), first + std::max<std::size_t>(rows, 1));
+}
+
+// Row i of F holds what row position(i) of the triangle stores, and, from every row k before it,
+// the one value at its own position. The second part touches all rows of the triangle above: all
+// rows of a panel are served while such a row is at hand, found in one walk along its runs.
+void ExchangeMatrix::spreadRows(std::size_t first, std::size_t last, std::span<double> out) const {
+  const std::size_t n = size();
+  std::vector<std::pair<Index, Index>> wanted;  // position, row of the panel
+  for (std::size_t i = first; i < last; ++i) wanted.emplace_back(position_[i], Index(i - first));
+  std::sort(wanted.begin(), wanted.end());
+  parallelFor(wanted.size(), 1, [&](std::size_t w) {
+    const auto [k, row] = wanted[w];
+    double* spread = &out[row * n];
+    spread[order_[k]] = diagonal_[k];
+    forRuns(upper_[k], [&](std::size_t offset, const auto* values, std::size_t count) {
+      const Index* patch = &order_[k + 1 + offset];
+      for (std::size_t m = 0; m < count; ++m) spread[patch[m]] = values[m];
+    });
+  });
+  parallelFor(wanted.empty() ? 0 : wanted.back().first, kRowGrain, [&](std::size_t k) {
+    const Index patch = order_[k];
+    auto next = std::upper_bound(wanted.begin(), wanted.end(), std::pair(Index(k), kNone));
+    forRuns(upper_[k], [&](std::size_t offset, const auto* values, std::size_t count) {
+      const std::size_t begin = k + 1 + offset;
+      while (next != wanted.end() && next->first < begin) ++next;
+      for (; next != wanted.end() && next->first < begin + count; ++next) {
+        const double value = values[next->first - begin];
+        if (value == 0) continue;  // stored between two that are not; the area may be 0 too
+        out[next->second * n + patch] = value * area_[patch] / area_[order_[next->first]];
+      }
+    });
+  });
+}
+
+std::size_t ExchangeMatrix::estimateSymmetricBytes(std::size_t n, double entries_per_row,
+                                                   Precision precision) {
+  // Half of the entries, each a run of its own at worst; dense rows have one run to 65,535 values.
+  const double value = precision == Precision::single ? sizeof(float) : sizeof(double);
+  const double half = std::min(entries_per_row, double(n)) / 2;
+  const double dense_runs = 1 + double(n) / std::numeric_limits<std::uint16_t>::max();
+  const double sparse = half * (value + sizeof(RunRow::Run));
+  const double dense = double(n) / 2 * value + dense_runs * sizeof(RunRow::Run);
+  return std::size_t(std::ceil(double(n) * (std::min(sparse, dense) + sizeof(RunRow))));
+}
+
+}  // namespace radiosity
