@@ -1,0 +1,181 @@
+#include "blocked_exchange.h"
+
+#include <algorithm>
+#include <queue>
+
+#include "clipped_view.h"
+#include "critical_lines.h"
+#include "gauss.h"
+
+namespace radiosity::truth {
+namespace {
+
+constexpr int kCoarse = 4;
+constexpr int kFine = 6;
+constexpr std::size_t kMostCells = 400;
+
+using Triangle = std::array<Vec3, 3>;
+
+struct Estimate {
+  Triangle triangle;
+  double blocked = 0;
+  double error = 0;
+  bool clear = true;
+  bool hidden = true;
+  bool operator<(const Estimate& other) const { return error < other.error; }
+};
+
+double areaOf(const Triangle& t) { return 0.5 * glm::length(glm::cross(t[1] - t[0], t[2] - t[0])); }
+
+/// The triangle as a square collapsed in its first corner.
+double gauss(const ClippedView& view, int order, Estimate& e) {
+  double sum = 0;
+  for (const GaussPoint& s : gaussRule(order)) {
+    for (const GaussPoint& t : gaussRule(order)) {
+      const Vec3 across = e.triangle[1] + (e.triangle[2] - e.triangle[1]) * double(t.x);
+      const Glimpse seen = view.from(e.triangle[0] + (across - e.triangle[0]) * double(s.x));
+      sum += double(2 * s.x * s.weight * t.weight) * seen.blocked;
+      e.clear = e.clear && seen.clear;
+      e.hidden = e.hidden && seen.hidden;
+    }
+  }
+  return sum * areaOf(e.triangle);
+}
+
+class Integral {
+ public:
+  explicit Integral(const ClippedView& view) : view_(view) {}
+
+  void add(const Triangle& triangle) {
+    Estimate e;
+    e.triangle = triangle;
+    const double coarse = gauss(view_, kCoarse, e);
+    points_ += kCoarse * kCoarse;
+    if (!e.clear) {
+      e.blocked = gauss(view_, kFine, e);
+      e.error = std::abs(e.blocked - coarse);
+      points_ += kFine * kFine;
+    }
+    blocked_ += e.blocked;
+    error_ += e.error;
+    clear_ = clear_ && e.clear;
+    hidden_ = hidden_ && e.hidden;
+    queue_.push(e);
+  }
+
+  /// Halves the triangle with the largest difference across its longest edge.
+  void refineWorst() {
+    const Estimate worst = queue_.top();
+    queue_.pop();
+    blocked_ -= worst.blocked;
+    error_ -= worst.error;
+    halve(worst.triangle);
+  }
+
+  /// Halves all triangles longer than `size`, whatever their differences.
+  static void subdivide(const Triangle& t, double size, std::vector<Triangle>& out) {
+    const std::size_t k = longest(t);
+    if (glm::distance(t[k], t[(k + 1) % 3]) <= size) {
+      out.push_back(t);
+      return;
+    }
+    const auto [left, right] = halves(t, k);
+    subdivide(left, size, out);
+    subdivide(right, size, out);
+  }
+
+  BlockedExchange result() const {
+    return {blocked_, std::max(error_, 0.0), points_, clear_, hidden_};
+  }
+  double error() const { return error_; }
+  std::size_t points() const { return points_; }
+  bool clear() const { return clear_; }
+  bool hidden() const { return hidden_; }
+
+ private:
+  static std::size_t longest(const Triangle& t) {
+    std::size_t best = 0;
+    for (std::size_t k = 1; k < 3; ++k) {
+      if (glm::distance(t[k], t[(k + 1) % 3]) > glm::distance(t[best], t[(best + 1) % 3])) best = k;
+    }
+    return best;
+  }
+  static std::pair<Triangle, Triangle> halves(const Triangle& t, std::size_t k) {
+    const Vec3 middle = 0.5 * (t[k] + t[(k + 1) % 3]);
+    const Vec3& apex = t[(k + 2) % 3];
+    return {Triangle{apex, t[k], middle}, Triangle{apex, middle, t[(k + 1) % 3]}};
+  }
+  void halve(const Triangle& t) {
+    const auto [left, right] = halves(t, longest(t));
+    add(left);
+    add(right);
+  }
+
+  const ClippedView& view_;
+  std::priority_queue<Estimate> queue_;
+  double blocked_ = 0;
+  double error_ = 0;
+  std::size_t points_ = 0;
+  bool clear_ = true;
+  bool hidden_ = true;
+};
+
+Loop inFront(const Loop& loop, const Sheet& of) {
+  Loop front;
+  const double slack = 1e-14 * reach(loop, of.middle);
+  split(loop, of.normal, of.offset, slack, &front, static_cast<Loop*>(nullptr));
+  return front;
+}
+
+bool manyBodies(const std::vector<const Blocker*>& blockers) {
+  return std::any_of(blockers.begin(), blockers.end(),
+                     [&](const Blocker* b) { return b->body != blockers[0]->body; });
+}
+
+}  // namespace
+
+BlockedExchange blockedExchange(const Sheet& source, const Sheet& target,
+                                const std::vector<const Blocker*>& blockers, double tolerance,
+                                std::size_t most_points) {
+  const Loop front = inFront(source.loop, target);
+  const Loop seen = inFront(target.loop, source);
+  if (front.empty() || seen.empty() || blockers.empty()) return {0, 0, 0, true, false};
+  const std::vector<Segment> segments = criticalSegments(source, seen, blockers);
+  const std::vector<Loop> cells = cutIntoCells(source, front, segments, kMostCells);
+  // Where edges of two bodies cross before the target the critical lines are curves, which no cut
+  // follows: such pairs start from cells small enough for the rules to notice.
+  const double size = manyBodies(blockers) ? 0.75 * source.radius : 4 * source.radius;
+  std::vector<Triangle> triangles;
+  for (const Loop& cell : cells) {
+    for (std::size_t k = 1; k + 1 < cell.size(); ++k) {
+      Integral::subdivide({cell[0], cell[k], cell[k + 1]}, size, triangles);
+    }
+  }
+  const ClippedView view(source, seen, blockers);
+  Integral integral(view);
+  for (const Triangle& triangle : triangles) integral.add(triangle);
+  if (integral.clear() || integral.hidden()) return integral.result();
+  while (integral.error() > tolerance && integral.points() < most_points) integral.refineWorst();
+  return integral.result();
+}
+
+bool hiddenByOne(const Sheet& a, const Sheet& b, const std::vector<const Blocker*>& blockers) {
+  const auto hides = [&](const Blocker* blocker) {
+    for (const Vec3& eye : a.loop) {
+      const double height = glm::dot(blocker->normal, eye) - blocker->offset;
+      if (height == 0) return false;
+      const double side = height > 0 ? 1 : -1;
+      for (const Vec3& p : b.loop) {
+        if (!(side * (glm::dot(blocker->normal, p) - blocker->offset) < 0)) return false;
+        for (std::size_t k = 0; k < blocker->loop.size(); ++k) {
+          const Vec3 normal = glm::cross(blocker->loop[k] - eye, blocker->loop.next(k) - eye);
+          if (!(side * glm::dot(normal, p - eye) <= 0)) return false;
+        }
+      }
+    }
+    return true;
+  };
+  return std::any_of(blockers.begin(), blockers.end(), hides);
+}
+
+}  // namespace radiosity::truth
