@@ -127,6 +127,26 @@ struct PatchMaterials {
 };
 PatchMaterials patchMaterials(const Scene& scene, const PatchMesh& mesh);
 
+/// Corners of patches that share one value where a field is smooth: at every vertex those whose
+/// patches bend less than `crease` degrees and are reached through such neighbours on the same
+/// side. Neighbours share a surface and an edge on which nothing else stands.
+struct CornerGroups {
+  std::vector<Index> of_corner;      ///< the group of every entry of PatchMesh::corners
+  std::vector<std::size_t> begin;    ///< G + 1, into corners and patches
+  std::vector<std::size_t> corners;  ///< into PatchMesh::corners, group by group, by index in
+                                     ///< surface: no sum depends on how patches are numbered
+  std::vector<Index> patches;        ///< of each corner; a patch may hold several, side by side
+
+  std::size_t size() const { return begin.size() - 1; }
+  std::span<const std::size_t> cornersOf(std::size_t group) const {
+    return {corners.data() + begin[group], begin[group + 1] - begin[group]};
+  }
+  std::span<const Index> patchesOf(std::size_t group) const {
+    return {patches.data() + begin[group], begin[group + 1] - begin[group]};
+  }
+};
+CornerGroups cornerGroups(const PatchMesh& mesh, double crease);
+
 /// Identity of the geometry a form-factor matrix belongs to: vertices, patches, sides, surface
 /// names. Not reflectance or emission. 16 hex digits.
 std::string geometryHash(const PatchMesh& mesh);

@@ -38,11 +38,9 @@ Camera framingCamera(const PatchMesh& mesh, bool closed, double aspect);
 Camera parseCamera(const std::string& text);
 
 /// Corner values for Gouraud interpolation: for every entry of mesh.corners, `bands` values, the
-/// area-weighted mean of `values` over the patches that share the vertex and bend less than
-/// `crease` degrees and are reached through such neighbours on the same side. Neighbours share an
-/// edge and a surface: a lamp does not bleed into its ceiling, a red wall not into a white one. A
-/// constant field stays that constant to the bit. values: N * bands; result: mesh.corners.size() *
-/// bands, row-major.
+/// area-weighted mean of `values` over the patches of its group (cornerGroups()): a lamp does not
+/// bleed into its ceiling, a red wall not into a white one. A constant field stays that constant to
+/// the bit. values: N * bands; result: mesh.corners.size() * bands, row-major.
 std::vector<double> cornerValues(const PatchMesh& mesh, std::span<const double> values, int bands,
                                  double crease);
 

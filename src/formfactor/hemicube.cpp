@@ -70,7 +70,35 @@ std::size_t Hemicube::bytes() const {
          scene_.polygons.size() * (sizeof(Candidate) + sizeof(Drawn));
 }
 
-const HemicubeView& Hemicube::look(const EyeFrame& frame, Index own, const std::uint8_t* hidden) {
+class Hemicube::ItemSums {
+ public:
+  explicit ItemSums(std::vector<double>& sums) : sums_(sums.data()) {}
+  void add(std::int32_t item, int /*begin*/, int /*end*/, double weight) const {
+    sums_[std::size_t(item)] += weight;
+  }
+
+ private:
+  double* sums_;
+};
+
+class Hemicube::VisitedRuns {
+ public:
+  VisitedRuns(RunVisitor& runs, const ItemRun& row) : runs_(runs), row_(row) {}
+  void add(std::int32_t item, int begin, int end, double /*weight*/) const {
+    ItemRun run = row_;
+    run.item = std::uint32_t(item);
+    run.begin = begin;
+    run.end = end;
+    runs_.visit(run);
+  }
+
+ private:
+  RunVisitor& runs_;
+  ItemRun row_;
+};
+
+const HemicubeView& Hemicube::look(const EyeFrame& frame, Index own, const std::uint8_t* hidden,
+                                   RunVisitor* runs) {
   frame_ = frame;
   std::fill(sums_.begin(), sums_.end(), 0.0);
   view_.fronts = view_.backs = view_.sky = 0;
@@ -78,7 +106,12 @@ const HemicubeView& Hemicube::look(const EyeFrame& frame, Index own, const std::
   collectCandidates(frame, own, hidden);
   for (int index = 0; index < kFaces; ++index) {
     const FaceGeometry face(index);
-    drawFace(face, [&](int y, const std::uint32_t* row) { sumRow(face, y, row); });
+    drawFace(face, [&](int y, const std::uint32_t* row) {
+      if (runs == nullptr) return sumRow(face, y, row, ItemSums(sums_));
+      const ItemRun whole{kSky, face, rowHeight(face, y), 0.5 * (1 - resolution_),
+                          0,    0,    weightsOf(face, y)};
+      sumRow(face, y, row, VisitedRuns(*runs, whole));
+    });
     counts_.pixels += std::size_t(rowCount(face)) * std::size_t(resolution_);
   }
   ++counts_.hemicubes;
@@ -261,8 +294,9 @@ void Hemicube::queueSpans(const Candidate& candidate, const FaceGeometry& face) 
 }
 
 /// Divides a row into runs of one cell, then sums them in one go.
-void Hemicube::sumRow(const FaceGeometry& face, int y, const std::uint32_t* row) {
-  const double* weights = face.isTop() ? weights_.topRow(y) : weights_.sideRow(y);
+template <class Sink>
+void Hemicube::sumRow(const FaceGeometry& face, int y, const std::uint32_t* row, const Sink& sink) {
+  const double* weights = weightsOf(face, y);
   const std::int32_t* runs = polygon_runs_.data();
   const std::size_t count = kernels_.findRuns(row, resolution_, polygon_runs_.data());
   const auto append = [&](int begin, std::int32_t cell) {
@@ -283,19 +317,20 @@ void Hemicube::sumRow(const FaceGeometry& face, int y, const std::uint32_t* row)
     Drawn& drawn = drawn_[row[begin]];
     if (drawn.grid != nullptr) {
       view_.fronts += weight;
-      locatePatches(drawn, rowHeight(face, y), begin, end, weights);
+      locatePatches(drawn, rowHeight(face, y), begin, end, weights, sink);
     } else {
       append(begin, std::int32_t(drawn.item));
       (drawn.item < scene_.patches ? view_.fronts : view_.backs) += weight;
     }
   }
-  sumCells(resolution_, weights);
+  sumCells(resolution_, weights, sink);
 }
 
 /// Adds what the row's runs of cells, the last of which ends at pixel `end`, are worth to what the
 /// cells count for. One long loop for the whole row: runs are short, and a loop for each polygon
 /// would spend its time on mispredicted ends.
-void Hemicube::sumCells(int end, const double* weights) {
+template <class Sink>
+void Hemicube::sumCells(int end, const double* weights, const Sink& sink) {
   const std::int32_t* starts = cell_starts_.data();
   const std::int32_t* cells = cells_.data();
   const std::int32_t* const items = scene_.cells.data();
@@ -303,15 +338,16 @@ void Hemicube::sumCells(int end, const double* weights) {
   double before = cell_count_ > 0 ? weights[starts[0]] : 0;
   for (std::size_t k = 0; k < cell_count_; ++k) {
     const double after = weights[starts[k + 1]];
-    sums_[std::size_t(items[cells[k]])] += after - before;
+    sink.add(items[cells[k]], starts[k], starts[k + 1], after - before);
     before = after;
   }
 }
 
 /// Appends the cells that a run of pixels of one polygon lies in to the row's. Where cells may be
 /// shared by several patches, they are summed at once instead, together with the runs before them.
-void Hemicube::locatePatches(Drawn& drawn, double height, int begin, int end,
-                             const double* weights) {
+template <class Sink>
+void Hemicube::locatePatches(Drawn& drawn, double height, int begin, int end, const double* weights,
+                             const Sink& sink) {
   const auto onRow = [&](const Vec3& linear) {
     return RowLinear{linear.x, linear.y * height + linear.z};
   };
@@ -325,7 +361,7 @@ void Hemicube::locatePatches(Drawn& drawn, double height, int begin, int end,
                                    cells_.data() + cell_count_);
     return;
   }
-  sumCells(begin, weights);
+  sumCells(begin, weights, sink);
   cell_count_ = 0;
   std::int32_t* starts = cell_starts_.data();
   const std::size_t count = kernels_.locate(map, begin, end, starts, cells_.data());
@@ -333,9 +369,9 @@ void Hemicube::locatePatches(Drawn& drawn, double height, int begin, int end,
   for (std::size_t k = 0; k < count; ++k) {
     const std::int32_t entry = scene_.cells[std::size_t(cells_.data()[k])];
     if (entry >= 0) {
-      sums_[std::size_t(entry)] += weights[starts[k + 1]] - weights[starts[k]];
+      sink.add(entry, starts[k], starts[k + 1], weights[starts[k + 1]] - weights[starts[k]]);
     } else {
-      sumCell(*drawn.grid, row, starts[k], starts[k + 1], entry, weights);
+      sumCell(*drawn.grid, row, starts[k], starts[k + 1], entry, weights, sink);
     }
   }
 }
@@ -343,8 +379,9 @@ void Hemicube::locatePatches(Drawn& drawn, double height, int begin, int end,
 /// Divides a run of pixels within one cell among the patches that share it. A line of the cell's
 /// tree, a u + b v + c with u = U/W and v = V/W, has the sign of a U + b V + c W, which is linear
 /// along the row: the run falls into at most two parts.
+template <class Sink>
 void Hemicube::sumCell(const PatchGrid& grid, const RowCoordinates& row, int begin, int end,
-                       std::int32_t entry, const double* weights) {
+                       std::int32_t entry, const double* weights, const Sink& sink) {
   const double first_centre = 0.5 * (1 - resolution_);
   while (entry < 0) {
     const CellNode& node = grid.node(~entry);
@@ -359,19 +396,19 @@ void Hemicube::sumCell(const PatchGrid& grid, const RowCoordinates& row, int beg
     const int middle = firstFrom(-base / slope - first_centre, begin, end);
     if (left >= 0 && right >= 0) {
       // The common case, without a branch: an empty part adds 0.
-      sums_[std::size_t(left)] += weights[middle] - weights[begin];
-      sums_[std::size_t(right)] += weights[end] - weights[middle];
+      sink.add(left, begin, middle, weights[middle] - weights[begin]);
+      sink.add(right, middle, end, weights[end] - weights[middle]);
       return;
     }
     if (middle == begin) {
       entry = right;
     } else {
-      if (middle < end) sumCell(grid, row, middle, end, right, weights);
+      if (middle < end) sumCell(grid, row, middle, end, right, weights, sink);
       end = middle;
       entry = left;
     }
   }
-  sums_[std::size_t(entry)] += weights[end] - weights[begin];
+  sink.add(entry, begin, end, weights[end] - weights[begin]);
 }
 
 }  // namespace radiosity

@@ -48,6 +48,26 @@ struct HemicubeView {
   double sky = 0;
 };
 
+/// Pixels [begin, end) of one row of a face that see one item. Pixel x has its centre at
+/// (x + first_centre, height) from the middle of the face, in pixels.
+struct ItemRun {
+  std::uint32_t item;  ///< patch, bare back or (ViewScene::items) the sky
+  FaceGeometry face;
+  double height;
+  double first_centre;
+  int begin;
+  int end;
+  const double* weights;  ///< running sums: pixel x is worth weights[x + 1] - weights[x]
+};
+
+/// Receives what an eye sees run by run, where a sum by item says too little.
+class RunVisitor {
+ public:
+  virtual ~RunVisitor() = default;
+  /// Runs may be empty.
+  virtual void visit(const ItemRun& run) = 0;
+};
+
 /// Draws hemicubes of one scene, one after the other. Holds its own scratch memory: one a thread.
 class Hemicube {
  public:
@@ -56,8 +76,10 @@ class Hemicube {
 
   /// Looks from `frame` (in the scene's scaled coordinates). `own`: position in scene.polygons of
   /// the polygon the eye lies in, never drawn; kNone for an eye in free space. `hidden[p]` != 0
-  /// says the bare back of polygon p cannot be seen from here; may be null.
-  const HemicubeView& look(const EyeFrame& frame, Index own, const std::uint8_t* hidden);
+  /// says the bare back of polygon p cannot be seen from here; may be null. Where `runs` is given
+  /// it receives all runs, and of the view only the sums by kind are made.
+  const HemicubeView& look(const EyeFrame& frame, Index own, const std::uint8_t* hidden,
+                           RunVisitor* runs = nullptr);
 
   const HemicubeCounts& counts() const { return counts_; }
 
@@ -115,11 +137,22 @@ class Hemicube {
   /// Draws a face band by band and calls visit(y, row of drawn polygons) for its rows, ascending.
   template <class Visit>
   void drawFace(const FaceGeometry& face, const Visit& visit);
-  void sumRow(const FaceGeometry& face, int y, const std::uint32_t* row);
-  void locatePatches(Drawn& drawn, double height, int begin, int end, const double* weights);
-  void sumCells(int end, const double* weights);
+  /// Where runs go, add(item, begin, end, weight): into a sum by item, or to a visitor.
+  class ItemSums;
+  class VisitedRuns;
+  template <class Sink>
+  void sumRow(const FaceGeometry& face, int y, const std::uint32_t* row, const Sink& sink);
+  template <class Sink>
+  void locatePatches(Drawn& drawn, double height, int begin, int end, const double* weights,
+                     const Sink& sink);
+  template <class Sink>
+  void sumCells(int end, const double* weights, const Sink& sink);
+  template <class Sink>
   void sumCell(const PatchGrid& grid, const RowCoordinates& row, int begin, int end,
-               std::int32_t entry, const double* weights);
+               std::int32_t entry, const double* weights, const Sink& sink);
+  const double* weightsOf(const FaceGeometry& face, int y) const {
+    return face.isTop() ? weights_.topRow(y) : weights_.sideRow(y);
+  }
   double rowHeight(const FaceGeometry& face, int y) const;
   int rowCount(const FaceGeometry& face) const {
     return face.isTop() ? resolution_ : resolution_ / 2;

@@ -25,10 +25,18 @@ bool RowBuilder::isEmpty(std::size_t patch) const {
 const HemicubeView& RowBuilder::look(std::size_t patch, Hemicube& hemicube,
                                      std::vector<std::uint8_t>& hidden) const {
   const double angle = random_turns_ ? turnAngle(mesh_, patch, seed_) : 0.0;
-  const Index own = polygon_place_[mesh_.polygon[patch]];
-  const Vec3 eye = mesh_.centroid[patch] * scene_.scale;
-  hidden_backs_.fromEye(eye, own, hidden);
-  return hemicube.look(eyeFrame(eye, mesh_.normal[patch], angle), own, hidden.data());
+  return lookFrom(mesh_.centroid[patch], mesh_.normal[patch], angle, mesh_.polygon[patch], hemicube,
+                  hidden);
+}
+
+const HemicubeView& RowBuilder::lookFrom(const Vec3& eye, const Vec3& normal, double angle,
+                                         Index own, Hemicube& hemicube,
+                                         std::vector<std::uint8_t>& hidden,
+                                         RunVisitor* runs) const {
+  const Index place = own == kNone ? kNone : polygon_place_[own];
+  const Vec3 scaled = eye * scene_.scale;
+  hidden_backs_.fromEye(scaled, place, hidden);
+  return hemicube.look(eyeFrame(scaled, normal, angle), place, hidden.data(), runs);
 }
 
 void PackedRow::pack(const HemicubeView& view, std::size_t patches) {

@@ -26,6 +26,12 @@ class RowBuilder {
   const HemicubeView& look(std::size_t patch, Hemicube& hemicube,
                            std::vector<std::uint8_t>& hidden) const;
 
+  /// The view from any eye (metres) that looks along the unit `normal`, its hemicube turned by
+  /// `angle`. `own`: polygon of the mesh the eye lies in, or kNone. `runs`: see Hemicube::look().
+  const HemicubeView& lookFrom(const Vec3& eye, const Vec3& normal, double angle, Index own,
+                               Hemicube& hemicube, std::vector<std::uint8_t>& hidden,
+                               RunVisitor* runs = nullptr) const;
+
   /// Bytes held by all rows and by one thread, without the matrix.
   std::size_t sharedBytes() const { return scene_.bytes() + weights_.bytes(); }
 

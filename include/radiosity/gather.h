@@ -1,0 +1,95 @@
+// Gathering: each patch or vertex looks at the scene through a hemicube and averages what it sees
+// into its irradiance H, sets B = E + rho H, and the passes repeat. No matrix is stored; each pass
+// draws all hemicubes again.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "radiosity/base.h"
+#include "radiosity/form_factors.h"
+#include "radiosity/patch_mesh.h"
+#include "radiosity/solve.h"
+
+namespace radiosity {
+
+enum class GatherAt {
+  patches,  ///< one eye a patch, at its centroid; a patch has one radiosity all over
+  vertices  ///< one eye a vertex and smooth side; radiosity is interpolated over patches
+};
+
+struct GatherOptions {
+  GatherAt at = GatherAt::vertices;
+  int passes = 100;  ///< at most, 1 to 100000; pass k adds the k-th bounce
+  /// Stop when the bound of |B* - B| is at most this times the largest emission, in every band.
+  /// Between 0 and 1. Radiosities are 32-bit floats: below about 1e-6 it is not reached.
+  double tolerance = 1e-4;
+  int resolution = 256;    ///< of the hemicube's top face, as in FormFactorOptions
+  std::uint64_t seed = 1;  ///< of the random turns about each normal
+  bool random_turns = true;
+  double crease = 30;  ///< degrees; a vertex looks once per side that bends less, 0 to 180
+  /// How far an eye on an edge moves away from it, as a share of the distance to the nearest edge
+  /// that does not touch the vertex; above 0, at most 0.5.
+  double inset = 0.02;
+  bool simd = true;  ///< false: the scalar twin (same bits)
+  void validate() const;
+};
+
+/// One pass: what was gathered from the radiosity of the pass before.
+struct GatherPass {
+  double seconds = 0;
+  double change = 0;  ///< max |B_k - B_(k-1)| / max E, worst band
+  /// An upper bound of |B* - B_k|, W/m^2, worst band, B* being what the passes converge to:
+  /// (q change + rounding) / (1 - q), q = max rho_i fronts_i. Empty where q is 1 or more.
+  std::optional<double> bound;
+  /// Of H_k and the B_(k-1) it was gathered from, each eye weighted with the area its value stands
+  /// for. emitted = absorbed + to_sky + on_backs + in_flight + imbalance.
+  EnergyAccount energy;
+  std::vector<double> in_flight;  ///< W a band, still to be reflected: sum of area (B_k - B_(k-1))
+};
+
+enum class GatherStatus {
+  converged,   ///< the bound of |B* - B| is within the tolerance; usable
+  pass_limit,  ///< `passes` came first; B has so many bounces
+  no_light     ///< E = 0 in every band: B = 0
+};
+
+struct GatherSummary {
+  GatherStatus status = GatherStatus::pass_limit;
+  std::vector<GatherPass> passes;
+  std::size_t hemicubes = 0;  ///< of one pass: L less the eyes without area
+  std::size_t pixels = 0;     ///< of one pass
+  bool closed = false;        ///< no eye sees the sky
+  std::size_t bytes = 0;      ///< held at once
+  std::string simd_target;
+  double seconds = 0;
+  std::string message;  ///< plain words, with numbers
+};
+
+/// L eyes: the N patches, or the G corner groups of the mesh. An eye that stands for no area
+/// (degenerate patches) does not look: H = 0.
+struct Gathered {
+  GatherAt at = GatherAt::patches;
+  int bands = 3;
+  std::vector<float> radiosity;   ///< L * 3, row-major, W/m^2
+  std::vector<float> irradiance;  ///< L * 3: H
+  std::vector<float> backs;       ///< L, share of the view that ends on bare backs
+  std::vector<float> sky;         ///< L
+  std::vector<double> area;       ///< L, m^2: what each value stands for; sums to the mesh's area
+  std::vector<Vec3> position;     ///< L, of the eyes
+  std::vector<Index> eye_of_corner;  ///< at vertices: of every entry of PatchMesh::corners
+  GatherSummary summary;
+};
+
+/// Errors: InputError naming the option or the patch; Cancelled.
+Gathered gather(const PatchMesh& mesh, const PatchMaterials& materials,
+                const GatherOptions& options, Progress& progress);
+
+/// Area mean of the radiosity over every patch, N * 3.
+std::vector<double> patchRadiosity(const PatchMesh& mesh, const Gathered& gathered);
+
+/// Radiosity at every entry of mesh.corners, * 3: as gathered, or each patch's own.
+std::vector<double> cornerRadiosity(const PatchMesh& mesh, const Gathered& gathered);
+
+}  // namespace radiosity

@@ -1,0 +1,289 @@
+#include "radiosity/gather.h"
+
+#include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+#include "gather/passes.h"
+
+namespace radiosity {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void checkMaterials(const PatchMesh& mesh, const PatchMaterials& materials) {
+  if (materials.reflectance.size() != mesh.size() || materials.emission.size() != mesh.size()) {
+    throw InputError(
+        fmt::format("gather: {} reflectances and {} emissions were given for {} patches",
+                    materials.reflectance.size(), materials.emission.size(), mesh.size()));
+  }
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    for (int b = 0; b < 3; ++b) {
+      const double rho = materials.reflectance[i][b];
+      const double emission = materials.emission[i][b];
+      const std::string where =
+          fmt::format("gather: patch {} of surface \"{}\"", i, mesh.surface_names[mesh.surface[i]]);
+      if (!(rho >= 0 && rho <= 1)) {
+        throw InputError(fmt::format("{}: reflectance {} is not within 0 and 1", where, rho));
+      }
+      // Radiosities are 32-bit floats, and H may exceed E by far in a white room.
+      constexpr double kLargest = 1e30;
+      if (!(emission >= 0 && emission <= kLargest)) {
+        throw InputError(
+            fmt::format("{}: emission {} is not within 0 and {:g}", where, emission, kLargest));
+      }
+    }
+  }
+}
+
+/// The passes of one run.
+class Passes {
+ public:
+  Passes(const GatherScene& scene, Gathered& result)
+      : scene_(scene),
+        result_(result),
+        fronts_(scene.size(), 0.0F),
+        workers_([&] { return Gatherer(scene_, result_.radiosity); }) {
+    result_.radiosity = scene.materials.emission;
+    result_.irradiance.assign(3 * scene.size(), 0.0F);
+    result_.backs.assign(scene.size(), 0.0F);
+    result_.sky.assign(scene.size(), 0.0F);
+    next_ = scene.materials.emission;
+  }
+
+  GatherPass run(int number, Progress& progress) {
+    const auto start = Clock::now();
+    progress.begin(fmt::format("gathering, pass {}", number), scene_.size());
+    parallelFor(scene_.size(), 1, [&](std::size_t k) {
+      if (progress.cancelled()) return;
+      if (scene_.eyes[k].looks) gatherAt(k);
+      progress.advance();
+    });
+    progress.check();
+    progress.end();
+    GatherPass pass;
+    measure(pass);
+    account(pass);
+    std::swap(result_.radiosity, next_);
+    pass.seconds = secondsSince(start);
+    return pass;
+  }
+
+  /// The bound of the last pass over the largest emission, worst band; infinite where there is
+  /// none.
+  double relativeBound() const { return relative_bound_; }
+
+  HemicubeCounts counts() const {
+    HemicubeCounts counts;
+    for (const Gatherer& worker : workers_) counts += worker.counts();
+    return counts;
+  }
+  std::size_t bytes() const {
+    std::size_t sum = scene_.bytes() + scene_.size() * (4 * 3 + 3) * sizeof(float);
+    for (const Gatherer& worker : workers_) sum += worker.bytes();
+    return sum;
+  }
+
+ private:
+  void gatherAt(std::size_t k) {
+    const Gatherer::Received received = workers_.local().look(k);
+    fronts_[k] = float(received.fronts);
+    result_.backs[k] = float(received.backs);
+    result_.sky[k] = float(received.sky);
+    for (std::size_t b = 0; b < 3; ++b) {
+      const std::size_t at = 3 * k + b;
+      result_.irradiance[at] = float(received.irradiance[b]);
+      next_[at] = float(double(scene_.materials.emission[at]) +
+                        double(scene_.materials.reflectance[at]) * received.irradiance[b]);
+    }
+  }
+
+  /// B* = E + R F B* and B_k = E + R F B_(k-1) + rounding give
+  ///     |B* - B_k| <= q |B* - B_(k-1)| + u |B_k| <= q (|B* - B_k| + change) + u |B_k|
+  /// in the largest norm, q = max rho_i fronts_i, since no eye weighs what it sees by more than its
+  /// fronts and interpolation weights are positive and sum to 1.
+  void measure(GatherPass& pass) {
+    constexpr double kRounding = std::numeric_limits<float>::epsilon();
+    double bound = 0;
+    relative_bound_ = 0;
+    for (std::size_t b = 0; b < 3; ++b) {
+      const double emission = scene_.materials.largest_emission[b];
+      if (emission == 0) continue;
+      double change = 0;
+      double largest = 0;
+      double q = 0;
+      for (std::size_t k = b; k < next_.size(); k += 3) {
+        change = std::max(change, std::abs(double(next_[k]) - double(result_.radiosity[k])));
+        largest = std::max(largest, double(next_[k]));
+        q = std::max(q, double(scene_.materials.reflectance[k]) * fronts_[k / 3]);
+      }
+      pass.change = std::max(pass.change, change / emission);
+      // fronts are floats: a closed room with rho = 1 must not be bounded by rounding.
+      const bool bounded = q < 1 - 2 * kRounding;
+      const double in_band = bounded ? (q * change + kRounding * largest) / (1 - q) : HUGE_VAL;
+      bound = std::max(bound, in_band);
+      relative_bound_ = std::max(relative_bound_, in_band / emission);
+    }
+    if (std::isfinite(bound)) pass.bound = bound;
+  }
+
+  void account(GatherPass& pass) const {
+    const std::vector<double> zeros(3, 0.0);
+    pass.energy = {zeros, zeros, zeros, zeros, zeros};
+    pass.in_flight = zeros;
+    EnergyAccount& energy = pass.energy;
+    for (std::size_t k = 0; k < next_.size(); ++k) {
+      const std::size_t b = k % 3;
+      const double area = scene_.area[k / 3];
+      const double before = result_.radiosity[k];
+      energy.emitted[b] += area * scene_.materials.emission[k];
+      energy.absorbed[b] +=
+          area * (1 - double(scene_.materials.reflectance[k])) * result_.irradiance[k];
+      energy.to_sky[b] += area * result_.sky[k / 3] * before;
+      energy.on_backs[b] += area * result_.backs[k / 3] * before;
+      if (scene_.eyes[k / 3].looks) pass.in_flight[b] += area * (double(next_[k]) - before);
+    }
+    for (std::size_t b = 0; b < 3; ++b) {
+      energy.imbalance[b] = energy.emitted[b] - energy.absorbed[b] - energy.to_sky[b] -
+                            energy.on_backs[b] - pass.in_flight[b];
+    }
+  }
+
+  const GatherScene& scene_;
+  Gathered& result_;
+  std::vector<float> next_;
+  std::vector<float> fronts_;
+  double relative_bound_ = HUGE_VAL;
+  tbb::enumerable_thread_specific<Gatherer> workers_;
+};
+
+std::string messageOf(const GatherSummary& summary, const GatherOptions& options) {
+  if (summary.status == GatherStatus::no_light) {
+    return "no light: nothing emits, so everything is dark; usable, but black";
+  }
+  const GatherPass& last = summary.passes.back();
+  const std::string bound =
+      last.bound ? fmt::format("what further passes would add is below {:.2e} W/m^2", *last.bound)
+                 : "what further passes would add is not bounded: reflectance times what is seen "
+                   "reaches 1";
+  if (summary.status == GatherStatus::converged) {
+    return fmt::format("converged: {} passes, last change {:.2e} of the largest emission; {}",
+                       summary.passes.size(), last.change, bound);
+  }
+  return fmt::format(
+      "{} passes as limited, last change {:.2e} of the largest emission (bound asked "
+      "for {:.2e}); {}",
+      summary.passes.size(), last.change, options.tolerance, bound);
+}
+
+void runPasses(const GatherScene& scene, const GatherOptions& options, Gathered& result,
+               Progress& progress) {
+  GatherSummary& summary = result.summary;
+  Passes passes(scene, result);
+  summary.status = GatherStatus::pass_limit;
+  for (int k = 1; k <= options.passes; ++k) {
+    summary.passes.push_back(passes.run(k, progress));
+    if (passes.relativeBound() <= options.tolerance) {
+      summary.status = GatherStatus::converged;
+      break;
+    }
+  }
+  const HemicubeCounts counts = passes.counts();
+  summary.hemicubes = counts.hemicubes / summary.passes.size();
+  summary.pixels = counts.pixels / summary.passes.size();
+  summary.closed = counts.hemicubes > 0 && counts.sky_pixels == 0;
+  summary.bytes = passes.bytes();
+}
+
+}  // namespace
+
+void GatherOptions::validate() const {
+  FormFactorOptions eye;
+  eye.resolution = resolution;
+  eye.validate();
+  const auto require = [](bool good, const std::string& what) {
+    if (!good) throw InputError(what);
+  };
+  require(passes >= 1 && passes <= 100000,
+          fmt::format("{} passes: give a number from 1 to 100000", passes));
+  require(tolerance > 0 && tolerance < 1,
+          fmt::format("gather tolerance {} is not between 0 and 1", tolerance));
+  require(crease >= 0 && crease <= 180,
+          fmt::format("crease {} is not within 0 and 180 degrees", crease));
+  require(inset > 0 && inset <= 0.5, fmt::format("inset {} is not above 0 and at most 0.5", inset));
+}
+
+Gathered gather(const PatchMesh& mesh, const PatchMaterials& materials,
+                const GatherOptions& options, Progress& progress) {
+  const auto start = Clock::now();
+  options.validate();
+  checkMaterials(mesh, materials);
+  const GatherScene scene(mesh, materials, options);
+  Gathered result;
+  result.at = options.at;
+  result.area = scene.area;
+  result.eye_of_corner = scene.eye_of_corner;
+  result.position.reserve(scene.size());
+  for (const Eye& eye : scene.eyes) result.position.push_back(eye.position);
+  GatherSummary& summary = result.summary;
+  summary.simd_target = scene.rows.kernels().target;
+  const auto& emission = scene.materials.largest_emission;
+  if (*std::max_element(emission.begin(), emission.end()) > 0) {
+    runPasses(scene, options, result, progress);
+  } else {
+    summary.status = GatherStatus::no_light;
+    for (auto* field : {&result.radiosity, &result.irradiance}) {
+      field->assign(3 * scene.size(), 0.0F);
+    }
+    for (auto* share : {&result.backs, &result.sky}) share->assign(scene.size(), 0.0F);
+  }
+  summary.message = messageOf(summary, options);
+  summary.seconds = secondsSince(start);
+  return result;
+}
+
+std::vector<double> cornerRadiosity(const PatchMesh& mesh, const Gathered& gathered) {
+  std::vector<double> values(3 * mesh.corners.size());
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    for (std::size_t c = mesh.corner_offset[i]; c < mesh.corner_offset[i + 1]; ++c) {
+      const std::size_t eye = gathered.at == GatherAt::patches ? i : gathered.eye_of_corner[c];
+      for (std::size_t b = 0; b < 3; ++b) values[3 * c + b] = gathered.radiosity[3 * eye + b];
+    }
+  }
+  return values;
+}
+
+std::vector<double> patchRadiosity(const PatchMesh& mesh, const Gathered& gathered) {
+  if (gathered.at == GatherAt::patches) {
+    return {gathered.radiosity.begin(), gathered.radiosity.end()};
+  }
+  const std::vector<double> weights = PatchBasis(mesh).areaWeights();
+  const std::vector<double> corners = cornerRadiosity(mesh, gathered);
+  std::vector<double> means(3 * mesh.size(), 0.0);
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    if (!(mesh.area[i] > 0)) continue;
+    const std::size_t first = mesh.corner_offset[i];
+    for (std::size_t b = 0; b < 3; ++b) {
+      const double base = corners[3 * first + b];
+      double sum = 0;
+      double area = 0;
+      for (std::size_t c = first; c < mesh.corner_offset[i + 1]; ++c) {
+        sum += weights[c] * (corners[3 * c + b] - base);
+        area += weights[c];
+      }
+      means[3 * i + b] = base + sum / area;
+    }
+  }
+  return means;
+}
+
+}  // namespace radiosity

@@ -1,0 +1,72 @@
+// What one eye gathers, and the fields the passes work on.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "formfactor/row_builder.h"
+#include "gather/eyes.h"
+#include "gather/interpolated_view.h"
+#include "gather/patch_basis.h"
+#include "radiosity/gather.h"
+
+namespace radiosity {
+
+/// Emission and reflectance of each eye, L * 3: the mean over what its value stands for.
+struct EyeMaterials {
+  std::vector<float> emission;
+  std::vector<float> reflectance;
+  std::array<double, 3> largest_emission{};
+};
+
+/// The scene as the passes need it; made once.
+class GatherScene {
+ public:
+  /// `mesh` is kept by reference.
+  GatherScene(const PatchMesh& mesh, const PatchMaterials& materials, const GatherOptions& options);
+  GatherScene(const GatherScene&) = delete;
+  GatherScene& operator=(const GatherScene&) = delete;
+
+  std::size_t size() const { return eyes.size(); }
+  std::size_t bytes() const;
+
+  const PatchMesh& mesh;
+  GatherAt at;
+  int resolution;
+  RowBuilder rows;
+  std::vector<Eye> eyes;
+  std::vector<double> area;          ///< L
+  std::vector<Index> eye_of_corner;  ///< at vertices
+  std::optional<PatchBasis> basis;   ///< at vertices
+  EyeMaterials materials;
+
+ private:
+  void standAtPatches(const PatchMaterials& of_patches, const GatherOptions& options);
+  void standAtVertices(const PatchMaterials& of_patches, const GatherOptions& options);
+};
+
+/// One thread's hemicube and what it adds up.
+class Gatherer {
+ public:
+  /// Both are kept by reference.
+  Gatherer(const GatherScene& scene, const std::vector<float>& radiosity);
+
+  struct Received {
+    std::array<double, 3> irradiance{};
+    double fronts = 0;
+    double backs = 0;
+    double sky = 0;
+  };
+  Received look(std::size_t eye);
+  const HemicubeCounts& counts() const { return hemicube_.counts(); }
+  std::size_t bytes() const { return hemicube_.bytes(); }
+
+ private:
+  const GatherScene& scene_;
+  const std::vector<float>& radiosity_;
+  Hemicube hemicube_;
+  std::vector<std::uint8_t> hidden_;
+  std::optional<InterpolatedView> view_;
+};
+
+}  // namespace radiosity
