@@ -3,13 +3,12 @@
 
 #include <span>
 
+#include "formfactor/exact/clip_kernels.h"
 #include "formfactor/exact/elements.h"
 #include "formfactor/exact/occluders.h"
+#include "formfactor/exact/partial_pair.h"
 
 namespace radiosity {
-
-class VisiblePart;
-enum class SampledEnd;
 
 struct PartialCounts {
   std::size_t pairs = 0;
@@ -38,8 +37,9 @@ struct PartialPair {
 /// wrong about the elements' nearness cancels.
 class PartialKernel {
  public:
-  /// `tolerance`: absolute error aimed at for F, relative to the mean form factor 1/N (see
-  /// FormFactorOptions). Elements and occluders are kept by reference.
+  /// `tolerance`: error aimed at for F, relative to the mean form factor 1/N: the root mean square
+  /// over the entries of a row (see FormFactorOptions). Elements and occluders are kept by
+  /// reference.
   PartialKernel(const ElementSet& elements, const OccluderSet& occluders, double tolerance,
                 bool simd);
 
@@ -54,13 +54,16 @@ class PartialKernel {
                                        std::span<const Index> occluder_list) const;
 
  private:
-  PartialExchange evaluatePair(const PartialPair& pair, std::span<const Index> occluder_list,
-                               SampledEnd end, VisiblePart& eye, PartialCounts& counts) const;
+  template <class T>
+  void integrate(const ClipKernels<T>& kernels, std::span<const PartialPair> pairs,
+                 std::span<const Index> occluder_list, SampledEnd end,
+                 std::span<PartialExchange> out, PartialCounts& counts) const;
 
   const ElementSet& elements_;
   const OccluderSet& occluders_;
+  EdgeDistances distances_;
+  ClipKernelSet kernels_;
   double tolerance_;
-  bool simd_;
 };
 
 }  // namespace radiosity

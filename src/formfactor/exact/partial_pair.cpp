@@ -3,33 +3,25 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <tuple>
+
+#include "formfactor/exact/convex_polygon.h"
+#include "formfactor/exact/partial.h"
 
 namespace radiosity {
 namespace {
 
-/// The part of an element in front of a facet's plane.
-std::vector<Vec3> inFront(const ElementSet& elements, Index element, const Facet& facet) {
-  ConvexPolygon polygon;
-  polygon.assign(elements.outline(element), Vec3(0.0));
-  ConvexPolygon front;
-  switch (split(polygon, {facet.normal, -facet.offset}, 0, &front, nullptr)) {
-    case PlaneSide::inside:
-      return polygon.corners;
-    case PlaneSide::outside:
-      return {};
-    default:
-      return front.corners;
-  }
-}
+/// Entries of EdgeDistances' table: 64 MiB.
+constexpr std::size_t kMostDistances = std::size_t(1) << 24;
 
 struct Heights {
   double least = std::numeric_limits<double>::infinity();
   double most = -least;
 };
 
-Heights heights(const Occluder& body, const Facet& facet) {
+Heights heights(std::span<const Vec3> points, const Facet& facet) {
   Heights h;
-  for (const Vec3& p : body.corners) {
+  for (const Vec3& p : points) {
     const double d = glm::dot(facet.normal, p) - facet.offset;
     h.least = std::min(h.least, d);
     h.most = std::max(h.most, d);
@@ -37,7 +29,6 @@ Heights heights(const Occluder& body, const Facet& facet) {
   return h;
 }
 
-/// Square of the distance from a point to the nearest edge of a body.
 double edgeDistance2(const Occluder& body, const Vec3& p) {
   double least = std::numeric_limits<double>::infinity();
   for (const Occluder::Edge& edge : body.edges) {
@@ -52,39 +43,109 @@ double edgeDistance2(const Occluder& body, const Vec3& p) {
 
 }  // namespace
 
-SampledPair samplePair(const ElementSet& elements, const OccluderSet& occluders, Index row,
-                       Index column, std::span<const Index> blockers, SampledEnd end) {
-  const Index from = end == SampledEnd::row ? row : column;
-  const Index to = end == SampledEnd::row ? column : row;
-  const Facet& from_facet = elements.facets[elements.facet[from]];
-  const Facet& to_facet = elements.facets[elements.facet[to]];
-  SampledPair pair;
-  pair.normal = from_facet.normal;
-  pair.sampled = inFront(elements, from, to_facet);
-  pair.target = inFront(elements, to, from_facet);
-  for (const Index id : blockers) {
-    const Occluder& body = occluders.occluders[id];
-    if (heights(body, from_facet).most <= elements.coincidence) continue;
-    const Heights above_target = heights(body, to_facet);
-    if (above_target.most <= elements.coincidence) continue;
-    pair.blockers.push_back({&body, id, above_target.least < -elements.coincidence});
+EdgeDistances::EdgeDistances(const ElementSet& elements, const OccluderSet& occluders)
+    : elements_(elements), occluders_(occluders) {
+  const std::size_t count = elements.size();
+  if (occluders.occluders.size() * count > kMostDistances) return;
+  table_.reserve(occluders.occluders.size() * count);
+  for (const Occluder& body : occluders.occluders) {
+    for (const Vec3& p : elements.centroid) table_.push_back(float(edgeDistance2(body, p)));
   }
-  return pair;
 }
 
-SampledEnd fartherEnd(const ElementSet& elements, const OccluderSet& occluders, Index row,
-                      Index column, std::span<const Index> blockers) {
-  double at_row = std::numeric_limits<double>::infinity();
-  double at_column = at_row;
-  for (const Index id : blockers) {
-    const Occluder& body = occluders.occluders[id];
-    at_row = std::min(at_row, edgeDistance2(body, elements.centroid[row]));
-    at_column = std::min(at_column, edgeDistance2(body, elements.centroid[column]));
+double EdgeDistances::squared(Index element, Index occluder) const {
+  // Rounded either way, so that what is chosen does not depend on the table's size.
+  if (!table_.empty()) return table_[occluder * elements_.size() + element];
+  return float(edgeDistance2(occluders_.occluders[occluder], elements_.centroid[element]));
+}
+
+PairPreparation::PairPreparation(const ElementSet& elements, const OccluderSet& occluders,
+                                 const EdgeDistances& distances)
+    : elements_(elements),
+      occluders_(occluders),
+      distances_(distances),
+      between_(occluders.occluders.size()) {}
+
+const PairPreparation::Between& PairPreparation::between(Index occluder, Index row_facet,
+                                                         Index column_facet) {
+  if (row_facet != row_facet_ || column_facet != column_facet_) {
+    row_facet_ = row_facet;
+    column_facet_ = column_facet;
+    ++stamp_;
   }
-  const double row_size = elements.radius[row];
-  const double column_size = elements.radius[column];
-  return at_row * column_size * column_size >= at_column * row_size * row_size ? SampledEnd::row
-                                                                               : SampledEnd::column;
+  Between& found = between_[occluder];
+  if (found.stamp != stamp_) {
+    const Occluder& body = occluders_.occluders[occluder];
+    const Heights first = heights(body.corners, elements_.facets[row_facet]);
+    const Heights second = heights(body.corners, elements_.facets[column_facet]);
+    const double touching = elements_.coincidence;
+    found = {stamp_, first.most > touching && second.most > touching, first.least < -touching,
+             second.least < -touching};
+  }
+  return found;
+}
+
+void PairPreparation::prepare(std::span<const PartialPair> batch,
+                              std::span<const Index> occluder_list, SampledEnd end) {
+  pairs.clear();
+  blockers.clear();
+  for (std::uint32_t k = 0; k < batch.size(); ++k) {
+    const PartialPair& given = batch[k];
+    const Index row_facet = elements_.facet[given.row];
+    const Index column_facet = elements_.facet[given.column];
+    const Heights row = heights(elements_.outline(given.row), elements_.facets[column_facet]);
+    const Heights column = heights(elements_.outline(given.column), elements_.facets[row_facet]);
+    const double touching = elements_.coincidence;
+    if (row.most <= touching || column.most <= touching) continue;
+    SampledPair pair;
+    pair.pair = k;
+    pair.blockers_begin = std::uint32_t(blockers.size());
+    double at_row = std::numeric_limits<double>::infinity();
+    double at_column = at_row;
+    for (std::uint32_t o = given.occluders_begin; o < given.occluders_end; ++o) {
+      const Index id = occluder_list[o];
+      if (!between(id, row_facet, column_facet).blocks) continue;
+      blockers.push_back({&occluders_.occluders[id], id, false});
+      at_row = std::min(at_row, distances_.squared(given.row, id));
+      at_column = std::min(at_column, distances_.squared(given.column, id));
+    }
+    pair.blockers_end = std::uint32_t(blockers.size());
+    const double row_size = elements_.radius[given.row];
+    const double column_size = elements_.radius[given.column];
+    const bool row_is_farther =
+        at_row * column_size * column_size >= at_column * row_size * row_size;
+    const bool at_row_end = row_is_farther == (end == SampledEnd::farther);
+    pair.sampled = at_row_end ? given.row : given.column;
+    pair.target = at_row_end ? given.column : given.row;
+    const bool row_cut = row.least < -touching;
+    const bool column_cut = column.least < -touching;
+    pair.sampled_cut = at_row_end ? row_cut : column_cut;
+    pair.target_cut = at_row_end ? column_cut : row_cut;
+    for (std::uint32_t b = pair.blockers_begin; b < pair.blockers_end; ++b) {
+      const Between& where = between(blockers[b].id, row_facet, column_facet);
+      blockers[b].cuts_target = at_row_end ? where.cuts_second : where.cuts_first;
+    }
+    pairs.push_back(pair);
+  }
+  const auto key = [&](const SampledPair& p) {
+    return std::tuple(p.sampled, p.sampled_cut ? elements_.facet[p.target] : kNone, p.target);
+  };
+  std::sort(pairs.begin(), pairs.end(),
+            [&](const SampledPair& a, const SampledPair& b) { return key(a) < key(b); });
+}
+
+std::vector<Vec3> partInFront(const ElementSet& elements, Index element, const Facet& facet) {
+  ConvexPolygon polygon;
+  polygon.assign(elements.outline(element), Vec3(0.0));
+  ConvexPolygon front;
+  switch (split(polygon, {facet.normal, -facet.offset}, 0, &front, nullptr)) {
+    case PlaneSide::inside:
+      return polygon.corners;
+    case PlaneSide::outside:
+      return {};
+    default:
+      return front.corners;
+  }
 }
 
 }  // namespace radiosity

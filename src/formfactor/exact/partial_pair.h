@@ -1,32 +1,82 @@
-// A pair of elements made ready for sampling: cut to each other's front, its end chosen.
+// Pairs of elements made ready for sampling: the end chosen, cut to each other's front, and only
+// the occluders kept that reach between their planes.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
-#include "formfactor/exact/convex_polygon.h"
 #include "formfactor/exact/elements.h"
 #include "formfactor/exact/occluders.h"
 #include "formfactor/exact/visible_part.h"
 
 namespace radiosity {
 
+struct PartialPair;
+
+/// A pair as it is sampled.
 struct SampledPair {
-  Vec3 normal{0.0};               ///< of the sampled element's facet
-  std::vector<Vec3> sampled;      ///< the part in front of the target's plane; empty: no exchange
-  std::vector<Vec3> target;       ///< the part in front of the sampled element's plane
-  std::vector<Blocker> blockers;  ///< those that reach between the planes
+  std::uint32_t pair;                          ///< in the batch
+  Index sampled;                               ///< element that carries the points
+  Index target;                                ///< element that is looked at
+  bool sampled_cut;                            ///< reaches behind the target's plane
+  bool target_cut;                             ///< reaches behind the sampled element's plane
+  std::uint32_t blockers_begin, blockers_end;  ///< into PairPreparation::blockers
 };
 
-enum class SampledEnd { row, column };
+/// Which end of pairs carries the points.
+enum class SampledEnd {
+  farther,  ///< from the nearest edge of what blocks, in units of its size: shadows change least
+  nearer,   ///< the other one
+};
 
-/// The part of the pair between the two planes, sampled at the given end.
-SampledPair samplePair(const ElementSet& elements, const OccluderSet& occluders, Index row,
-                       Index column, std::span<const Index> blockers, SampledEnd end);
+/// Distances of all elements from all occluders' edges, unless there are too many.
+class EdgeDistances {
+ public:
+  EdgeDistances(const ElementSet& elements, const OccluderSet& occluders);
+  /// Square of the distance from the element's centroid to the occluder's nearest edge.
+  double squared(Index element, Index occluder) const;
 
-/// The end that is farther from the nearest edge of what blocks, in units of its own size: from
-/// there shadows change least from point to point.
-SampledEnd fartherEnd(const ElementSet& elements, const OccluderSet& occluders, Index row,
-                      Index column, std::span<const Index> blockers);
+ private:
+  const ElementSet& elements_;
+  const OccluderSet& occluders_;
+  std::vector<float> table_;  ///< by occluder, then element; empty: computed on demand
+};
+
+/// Prepares one batch.
+class PairPreparation {
+ public:
+  PairPreparation(const ElementSet& elements, const OccluderSet& occluders,
+                  const EdgeDistances& distances);
+
+  /// Fills `pairs`, sorted so that those sampled from the same points stand together. Pairs that
+  /// have no part in front of each other are left out.
+  void prepare(std::span<const PartialPair> batch, std::span<const Index> occluder_list,
+               SampledEnd end);
+
+  std::vector<SampledPair> pairs;
+  std::vector<Blocker> blockers;
+
+ private:
+  /// Where an occluder lies between the planes of two facets.
+  struct Between {
+    std::uint32_t stamp = 0;
+    bool blocks = false;
+    bool cuts_first = false;   ///< reaches behind the first facet's plane
+    bool cuts_second = false;  ///< reaches behind the second facet's plane
+  };
+  const Between& between(Index occluder, Index row_facet, Index column_facet);
+
+  const ElementSet& elements_;
+  const OccluderSet& occluders_;
+  const EdgeDistances& distances_;
+  std::vector<Between> between_;  ///< by occluder, of the current two facets
+  std::uint32_t stamp_ = 0;
+  Index row_facet_ = kNone;
+  Index column_facet_ = kNone;
+};
+
+/// The part of an element in front of a facet's plane; empty: none.
+std::vector<Vec3> partInFront(const ElementSet& elements, Index element, const Facet& facet);
 
 }  // namespace radiosity

@@ -1,6 +1,5 @@
 #include "formfactor/exact/sample_cell.h"
 
-#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -28,47 +27,35 @@ SampleCell::Point SampleCell::point(std::size_t k) const {
           glm::length(glm::cross(along_u, along_v)) * kWeight[k % 3] * kWeight[k / 3]};
 }
 
-SampleCell SampleCell::child(int k) const {
+SampleCell SampleCell::child(std::size_t k) const {
   const auto at = [&](double u, double v) {
     return (corners[0] * (1 - u) + corners[1] * u) * (1 - v) +
            (corners[3] * (1 - u) + corners[2] * u) * v;
   };
-  const double u = 0.5 * (k % 2);
-  const double v = 0.5 * (k / 2);
-  SampleCell cell;
-  cell.corners = {at(u, v), at(u + 0.5, v), at(u + 0.5, v + 0.5), at(u, v + 0.5)};
-  return cell;
+  const double u = 0.5 * double(k % 2);
+  const double v = 0.5 * double(k / 2);
+  return {{at(u, v), at(u + 0.5, v), at(u + 0.5, v + 0.5), at(u, v + 0.5)}};
 }
 
 double SampleCell::area() const {
   return 0.5 * glm::length(glm::cross(corners[2] - corners[0], corners[3] - corners[1]));
 }
 
-double SampleCell::visible() const {
-  double sum = 0;
-  for (std::size_t k = 0; k < kPoints; ++k) sum += point(k).weight * views[k].visible;
-  return sum;
-}
-
-double SampleCell::whole() const {
-  double sum = 0;
-  for (std::size_t k = 0; k < kPoints; ++k) sum += point(k).weight * views[k].whole;
-  return sum;
-}
-
-double SampleCell::error(double fraction) const {
-  std::array<double, kPoints> residual;
+double CellValues::error(double fraction) const {
+  std::array<double, SampleCell::kPoints> residual;
   bool one_shape = true;
-  for (std::size_t k = 0; k < kPoints; ++k) {
-    residual[k] = views[k].visible - fraction * views[k].whole;
-    one_shape &= views[k].shape == views[0].shape;
+  for (std::size_t k = 0; k < residual.size(); ++k) {
+    residual[k] = visible[k] - fraction * whole[k];
+    one_shape &= shape[k] == shape[0];
   }
   double bend = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    bend += kWeight[k] * std::abs(residual[3 * k] - 2 * residual[3 * k + 1] + residual[3 * k + 2]);
-    bend += kWeight[k] * std::abs(residual[k] - 2 * residual[k + 3] + residual[k + 6]);
+    const double* row = &residual[3 * k];
+    const double* column = &residual[k];
+    bend += kWeight[k] * std::abs(row[0] - 2 * row[1] + row[2]);
+    bend += kWeight[k] * std::abs(column[0] - 2 * column[3] + column[6]);
   }
-  return area() * bend * (one_shape ? kSmooth : kKinked);
+  return bend * (one_shape ? kSmooth : kKinked);
 }
 
 }  // namespace radiosity

@@ -1,0 +1,52 @@
+// Pairs that are sampled from the same points, from their first cells to the tolerance.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "formfactor/exact/group_view.h"
+#include "formfactor/exact/partial_pair.h"
+
+namespace radiosity {
+
+/// The visible fraction of one pair.
+struct VisibleFraction {
+  double visible = 0;  ///< integral over the sampled part of the form factor to what is seen
+  double whole = 0;    ///< of the form factor to all of the target
+  double error2 = 0;   ///< sum of squares of the cells' errors, in the same unit
+  double allowed = 0;  ///< error of the fraction that is accepted
+  std::size_t points = 0;
+  bool subdivided = false;
+  bool sampled = false;  ///< some point saw too many shadows: see Coverage
+  double fraction() const { return whole > 0 ? visible / whole : 0; }
+  double error() const;
+};
+
+/// Integrates groups of pairs. Cells whose error is too large are cut in four, for the pairs that
+/// need it. Holds scratch memory: one a thread.
+template <class T>
+class PairGroups {
+ public:
+  PairGroups(const ElementSet& elements, const ClipKernels<T>& kernels)
+      : elements_(elements), view_(kernels) {}
+
+  /// `group`: pairs with one sampled element, which is cut by one plane or by none.
+  /// fractions[k], of group[k], comes with `allowed` set.
+  void integrate(std::span<const SampledPair> group, std::span<const Blocker> blockers,
+                 std::span<VisibleFraction> fractions);
+
+ private:
+  void setTargets(std::span<const SampledPair> group, std::span<const Blocker> blockers);
+  void cutCell(const SampleCell& cell, std::span<const Index> members, int level,
+               std::span<const double> fractions, std::span<VisibleFraction> out);
+
+  const ElementSet& elements_;
+  GroupView<T> view_;
+  Vec3 normal_{0.0};
+  std::vector<GroupTarget> targets_;
+};
+
+extern template class PairGroups<float>;
+extern template class PairGroups<double>;
+
+}  // namespace radiosity
