@@ -186,7 +186,9 @@ void expectAccurate(double size, double tolerance) {
     }
   }
   EXPECT_GT(cut, 100u);
-  if (size < 0.1) { EXPECT_GT(all, 100u); }
+  if (size < 0.1) {
+    EXPECT_GT(all, 100u);
+  }
 }
 
 TEST(ClipKernels, SinglePrecisionKeepsItsAccuracy) {

@@ -7,6 +7,8 @@
 
 #include "formfactor/exact/elements.h"
 #include "formfactor/exact/occluders.h"
+#include "formfactor/exact/visibility_shadow.h"
+#include "formfactor/exact/visibility_tree.h"
 
 namespace radiosity {
 
@@ -16,10 +18,10 @@ struct VisibilityCounts {
   std::size_t unoccluded = 0;
   std::size_t hidden = 0;
   std::size_t partial = 0;
-  std::size_t facet_pairs = 0;              ///< looked at
+  std::size_t facet_pairs = 0;              ///< looked at: ranges of rows and facets after theirs
   std::size_t facet_pairs_no_exchange = 0;  ///< settled by their planes alone
   std::size_t facet_pairs_unoccluded = 0;   ///< settled whole: no visibility code ran below them
-  std::size_t shaft_tests = 0;
+  std::size_t shaft_tests = 0;              ///< of an occluder against the space between two shapes
   VisibilityCounts& operator+=(const VisibilityCounts& other);
 };
 
@@ -35,15 +37,30 @@ class VisibilitySink {
   virtual void partial(Index row, Index column, std::span<const Index> occluders) = 0;
 };
 
+/// Classifies pairs of elements by descending two quadtrees at once, the list of what may stand
+/// between two clusters handed down and thinned out on the way. What a whole pair of clusters
+/// shares is settled there: nothing in between, or one convex body that hides all. Every answer
+/// but `partial` is proved; touching within the coincidence blocks nothing.
 class Visibility {
  public:
   /// Both are kept by reference.
   Visibility(const ElementSet& elements, const OccluderSet& occluders);
 
-  /// Classifies elements `rows` (of one facet, a cluster's range) against all elements of facets
-  /// that come after that facet. Pairs without exchange and hidden ones are not reported.
-  /// Thread-safe.
+  /// Classifies elements `rows` (of one facet that is not bare; best a cluster's range) against
+  /// the elements of their own facet that come after each (no exchange), and against all elements
+  /// of the facets that come after it. Pairs without exchange and hidden ones are not reported, but
+  /// counted. Thread-safe.
   void classify(ElementRange rows, VisibilitySink& sink, VisibilityCounts& counts) const;
+
+ private:
+  friend class VisibilityDescent;
+
+  const ElementSet& elements_;
+  const OccluderSet& occluders_;
+  OccluderTree tree_;
+  std::vector<ShapeCorners> shapes_;     ///< of clusters: bounds, or a leaf's element itself
+  std::vector<Index> open_facets_;       ///< not sealed, ascending
+  std::vector<std::vector<Index>> own_;  ///< of a facet: occluders that it lies on, ascending
 };
 
 }  // namespace radiosity

@@ -1,0 +1,188 @@
+#include "formfactor/exact/occluders_hull.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "mesh/plane_frame.h"
+
+namespace radiosity {
+namespace {
+
+struct FlatPoint {
+  Vec2 at;
+  Index id;
+};
+
+/// Andrew's monotone chain (1979): the strict hull, counter-clockwise.
+std::vector<FlatPoint> strictHull(std::vector<FlatPoint> points) {
+  std::sort(points.begin(), points.end(), [](const FlatPoint& a, const FlatPoint& b) {
+    return a.at.x != b.at.x ? a.at.x < b.at.x : a.at.y < b.at.y;
+  });
+  std::vector<FlatPoint> hull;
+  const auto run = [&](auto first, auto last, std::size_t base) {
+    for (auto it = first; it != last; ++it) {
+      while (hull.size() > base + 1 &&
+             cross2(hull.back().at - hull[hull.size() - 2].at, it->at - hull.back().at) <= 0) {
+        hull.pop_back();
+      }
+      hull.push_back(*it);
+    }
+  };
+  run(points.begin(), points.end(), 0);
+  const std::size_t lower = hull.size() - 1;
+  run(points.rbegin() + 1, points.rend(), lower);
+  hull.pop_back();
+  return hull;
+}
+
+/// Grows a hull face by face.
+class Wrapping {
+ public:
+  Wrapping(const std::vector<Vec3>& points, double coincidence)
+      : points_(points), coincidence_(coincidence) {}
+
+  /// False if the points on the plane span no face.
+  bool addFace(const Occluder::Plane& plane) {
+    if (plane.normal == Vec3(0.0)) return false;
+    std::vector<Index> members;
+    for (Index v = 0; v < points_.size(); ++v) {
+      if (std::abs(glm::dot(plane.normal, points_[v]) - plane.offset) <= coincidence_) {
+        members.push_back(v);
+      }
+    }
+    const std::vector<Index> loop = planarHull(points_, members, plane.normal, coincidence_);
+    if (loop.size() < 3) return false;
+    const Index face = Index(planes_.size());
+    planes_.push_back(plane);
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const auto [it, added] = face_of_.try_emplace({loop[k], loop[(k + 1) % loop.size()]}, face);
+      if (!added) return false;
+    }
+    return true;
+  }
+
+  /// Closes all edges that have a face on one side only.
+  bool close() {
+    for (bool open = true; open;) {
+      open = false;
+      for (const auto& [edge, face] : face_of_) {
+        if (face_of_.count({edge.second, edge.first}) != 0) continue;
+        const std::pair<Index, Index> missing(edge.second, edge.first);
+        if (planes_.size() > 2 * points_.size() || !addFace(wrap(missing)) ||
+            face_of_.count(missing) == 0) {
+          return false;
+        }
+        open = true;
+        break;
+      }
+    }
+    return true;
+  }
+
+  std::optional<Occluder> finish() const {
+    Occluder occluder;
+    occluder.planes = planes_;
+    std::vector<Index> place(points_.size(), kNone);
+    const auto corner = [&](Index v) {
+      if (place[v] == kNone) {
+        place[v] = Index(occluder.corners.size());
+        occluder.corners.push_back(points_[v]);
+      }
+      return place[v];
+    };
+    for (const auto& [edge, face] : face_of_) {
+      if (edge.first > edge.second) continue;
+      occluder.edges.push_back(
+          {corner(edge.first), corner(edge.second), face, face_of_.at({edge.second, edge.first})});
+    }
+    // Euler's formula: anything else is no single closed convex surface.
+    if (occluder.corners.size() + occluder.planes.size() != occluder.edges.size() + 2) return {};
+    for (Occluder::Plane& plane : occluder.planes) {
+      for (const Vec3& v : occluder.corners) {
+        const double reach = glm::dot(plane.normal, v);
+        if (reach > plane.offset + coincidence_) return {};
+      }
+    }
+    boundOccluder(occluder);
+    return occluder;
+  }
+
+ private:
+  /// The plane through an edge, the solid on its left, that leaves all points below it.
+  Occluder::Plane wrap(const std::pair<Index, Index>& edge) const {
+    const Vec3& a = points_[edge.first];
+    const Vec3 along = points_[edge.second] - a;
+    const double length = glm::length(along);
+    Vec3 best(0.0);
+    for (const Vec3& p : points_) {
+      const Vec3 normal = glm::cross(along, p - a);
+      if (glm::length(normal) <= coincidence_ * length) continue;
+      if (best == Vec3(0.0) || glm::dot(best, p - a) > 0) best = normal;
+    }
+    if (best == Vec3(0.0)) return {};
+    best = glm::normalize(best);
+    return {best, glm::dot(best, a)};
+  }
+
+  const std::vector<Vec3>& points_;
+  double coincidence_;
+  std::vector<Occluder::Plane> planes_;
+  std::map<std::pair<Index, Index>, Index> face_of_;  ///< of directed edges
+};
+
+}  // namespace
+
+std::vector<Index> planarHull(std::span<const Vec3> points, std::span<const Index> members,
+                              const Vec3& normal, double coincidence) {
+  if (members.size() < 3) return {};
+  const PlaneFrame frame = makeFrame(points[members[0]], normal, axisAcross(normal));
+  std::vector<FlatPoint> flat;
+  for (const Index v : members) flat.push_back({frame.flat(points[v]), v});
+  std::vector<FlatPoint> hull = strictHull(std::move(flat));
+  for (std::size_t k = 0; k < hull.size() && hull.size() >= 3;) {
+    const Vec2& a = hull[(k + hull.size() - 1) % hull.size()].at;
+    const Vec2& c = hull[(k + 1) % hull.size()].at;
+    if (cross2(c - a, a - hull[k].at) <= coincidence * glm::length(c - a)) {
+      hull.erase(hull.begin() + std::ptrdiff_t(k));
+      k = k > 0 ? k - 1 : 0;
+    } else {
+      ++k;
+    }
+  }
+  std::vector<Index> loop;
+  if (hull.size() >= 3) {
+    for (const FlatPoint& p : hull) loop.push_back(p.id);
+  }
+  return loop;
+}
+
+std::optional<Occluder> convexHull(const std::vector<Vec3>& points,
+                                   const std::vector<Occluder::Plane>& planes, double coincidence) {
+  Wrapping wrapping(points, coincidence);
+  for (const Occluder::Plane& plane : planes) {
+    if (!wrapping.addFace(plane)) return {};
+  }
+  if (planes.empty() || !wrapping.close()) return {};
+  return wrapping.finish();
+}
+
+void boundOccluder(Occluder& occluder) {
+  Vec3 lower = occluder.corners[0];
+  Vec3 upper = lower;
+  for (const Vec3& v : occluder.corners) {
+    lower = glm::min(lower, v);
+    upper = glm::max(upper, v);
+  }
+  occluder.centre = 0.5 * (lower + upper);
+  occluder.radius = 0;
+  for (const Vec3& v : occluder.corners) {
+    occluder.radius = std::max(occluder.radius, glm::distance(v, occluder.centre));
+  }
+}
+
+}  // namespace radiosity

@@ -1,0 +1,59 @@
+// The planar polygons of a mesh as the search for occluders needs them.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "formfactor/exact/elements.h"
+#include "radiosity/base.h"
+#include "radiosity/patch_mesh.h"
+
+namespace radiosity {
+
+struct OccluderPolygon {
+  Index source = 0;  ///< of the mesh
+  /// Into OccluderPolygons::vertices; outer loops counter-clockwise about the normal, holes
+  /// clockwise.
+  std::vector<std::vector<Index>> loops;
+  Vec3 normal{0.0};
+  double offset = 0;          ///< dot(normal, x) of its plane
+  double area = 0;            ///< scaled
+  bool planar = true;         ///< within coincidence
+  bool convex = false;        ///< one loop that turns one way
+  bool one_sided = true;      ///< its back carries no patches
+  bool bounds_scene = false;  ///< all of the scene lies on one side of its plane
+  Vec3 lower{0.0}, upper{0.0};
+};
+
+/// A directed edge between vertices.
+using OccluderEdge = std::pair<Index, Index>;
+
+/// Vertices closer than the coincidence are one (files may give each face its own). Polygons are
+/// ordered by surface name and index within the surface, so that nothing depends on numbering.
+struct OccluderPolygons {
+  OccluderPolygons(const PatchMesh& mesh, const ElementSet& elements);
+
+  std::vector<Vec3> vertices;  ///< in ElementSet's coordinates
+  std::vector<OccluderPolygon> polygons;
+  double coincidence = 0;
+
+  /// Polygons that run along each directed edge of an outline.
+  std::map<OccluderEdge, std::vector<Index>> edgeUsers() const;
+
+ private:
+  void addPolygon(const PatchMesh& mesh, const ElementSet& elements, Index p,
+                  const std::vector<Index>& place);
+  void describe(OccluderPolygon& polygon) const;
+  void findBounding();
+};
+
+/// Area of a polygon's part inside a convex body (0 where it only touches), by clipping every loop
+/// to the planes (Sutherland & Hodgman 1974) moved inward by `margin`: edges that run to and fro
+/// in a plane and holes cancel in the sum of signed areas.
+struct Occluder;
+double areaInside(const OccluderPolygons& all, const OccluderPolygon& polygon, const Occluder& body,
+                  double margin);
+
+}  // namespace radiosity

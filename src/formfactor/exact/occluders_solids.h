@@ -1,0 +1,23 @@
+// Convex solids from the polygons of a scene.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "formfactor/exact/occluders.h"
+#include "formfactor/exact/occluders_polygons.h"
+
+namespace radiosity {
+
+/// Finds sets of one-sided polygons in convex position (each lies behind all others' planes),
+/// grown over common edges, whose convex hull blocks just what the scene's polygons block:
+/// - no polygon enters the hull, so that nothing is inside to see or to be seen;
+/// - where the set does not cover a face of the hull, nothing gets in: the whole scene is behind
+///   that face (a box on the floor of a room, contact area dropped); or it is the only such face,
+///   so that whatever goes in has to come out elsewhere, and what is around it is tied to it edge
+///   by edge or covers it (a box on a table); or the polygons belong to a closed surface with the
+///   hull on the side that nobody looks into (a book between books on a board).
+/// `taken[p]` becomes 1 for the members of the solids found.
+std::vector<Occluder> convexSolids(const OccluderPolygons& all, std::vector<std::uint8_t>& taken);
+
+}  // namespace radiosity

@@ -1,0 +1,93 @@
+#include "formfactor/exact/visibility.h"
+
+#include <algorithm>
+
+#include "formfactor/exact/visibility_descent.h"
+
+namespace radiosity {
+namespace {
+
+ShapeCorners shapeOf(const std::array<Vec3, 4>& corners) {
+  ShapeCorners shape{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    shape.x[k] = corners[k].x;
+    shape.y[k] = corners[k].y;
+    shape.z[k] = corners[k].z;
+  }
+  return shape;
+}
+
+/// The largest clusters below `cluster` that lie in `rows`.
+template <class Visit>
+void forClusters(const ElementSet& elements, Index cluster, ElementRange rows, const Visit& visit) {
+  const Cluster& node = elements.clusters[cluster];
+  if (node.elements.end <= rows.first || node.elements.first >= rows.end) return;
+  if (rows.first <= node.elements.first && node.elements.end <= rows.end) {
+    visit(cluster);
+    return;
+  }
+  for (Index c = 0; c < node.child_count; ++c) {
+    forClusters(elements, node.first_child + c, rows, visit);
+  }
+}
+
+}  // namespace
+
+VisibilityCounts& VisibilityCounts::operator+=(const VisibilityCounts& other) {
+  no_exchange += other.no_exchange;
+  unoccluded += other.unoccluded;
+  hidden += other.hidden;
+  partial += other.partial;
+  facet_pairs += other.facet_pairs;
+  facet_pairs_no_exchange += other.facet_pairs_no_exchange;
+  facet_pairs_unoccluded += other.facet_pairs_unoccluded;
+  shaft_tests += other.shaft_tests;
+  return *this;
+}
+
+Visibility::Visibility(const ElementSet& elements, const OccluderSet& occluders)
+    : elements_(elements),
+      occluders_(occluders),
+      tree_(occluders.occluders),
+      own_(elements.facets.size()) {
+  for (const Cluster& cluster : elements.clusters) {
+    const bool leaf = cluster.child_count == 0;
+    shapes_.push_back(shapeOf(leaf ? elements.corners[cluster.elements.first] : cluster.bounds));
+  }
+  for (Index f = 0; f < elements.facets.size(); ++f) {
+    if (!occluders.sealed[f]) open_facets_.push_back(f);
+  }
+  for (Index o = 0; o < occluders.occluders.size(); ++o) {
+    for (const Index f : occluders.occluders[o].facets) own_[f].push_back(o);
+  }
+}
+
+void Visibility::classify(ElementRange rows, VisibilitySink& sink, VisibilityCounts& counts) const {
+  if (rows.size() == 0) return;
+  const Index facet = elements_.facet[rows.first];
+  const ElementRange own = elements_.facets[facet].elements;
+  for (Index r = rows.first; r < rows.end; ++r) counts.no_exchange += own.end - 1 - r;
+  const std::size_t columns = elements_.size() - own.end;
+  const std::size_t facets = elements_.facets.size() - 1 - facet;
+  if (occluders_.sealed[facet]) {
+    counts.no_exchange += rows.size() * columns;
+    counts.facet_pairs += facets;
+    counts.facet_pairs_no_exchange += facets;
+    return;
+  }
+  // Sealed facets are settled without a look at each.
+  std::size_t open = 0;
+  const auto first = std::upper_bound(open_facets_.begin(), open_facets_.end(), facet);
+  for (auto it = first; it != open_facets_.end(); ++it) {
+    open += elements_.facets[*it].elements.size();
+  }
+  const std::size_t closed = facets - std::size_t(open_facets_.end() - first);
+  counts.no_exchange += rows.size() * (columns - open);
+  counts.facet_pairs += closed;
+  counts.facet_pairs_no_exchange += closed;
+  VisibilityDescent descent(*this, sink, counts);
+  forClusters(elements_, elements_.facets[facet].root, rows,
+              [&](Index cluster) { descent.run(facet, cluster); });
+}
+
+}  // namespace radiosity

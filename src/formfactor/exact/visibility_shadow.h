@@ -1,0 +1,76 @@
+// Planes that tell what a convex body hides from a convex planar shape.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <vector>
+
+#include "formfactor/exact/occluders.h"
+#include "radiosity/base.h"
+
+namespace radiosity {
+
+/// Four corners of a planar convex shape (a triangle's fourth repeats its third), by coordinate.
+struct ShapeCorners {
+  std::array<double, 4> x, y, z;
+  Vec3 at(std::size_t k) const { return {x[k], y[k], z[k]}; }
+};
+
+enum class ShadowRelation : std::uint8_t {
+  kOutside,  ///< no segment between the two shapes meets the body
+  kInside,   ///< every segment between the two shapes is blocked by the body
+  kUnclear   ///< neither was proved
+};
+
+/// The shadow of a convex body from a light of convex shape, by planes.
+///
+/// Outside: the body and the hull of two shapes are apart if a plane separates them (touching
+/// within the coincidence is apart). Tried are the planes that touch both the body and the light:
+/// through an edge of the one and a corner of the other, and the body's own faces. One of them is
+/// enough for another shape on the light's side of it.
+///
+/// Inside: what a convex body hides from a point is convex (for x = p + s (o - p), s >= 1 and o in
+/// the body: a mean of two such points is one), so it is the intersection of half-spaces, below
+/// the faces that the point is in front of and within the planes through the point and the
+/// silhouette. A convex shape whose corners are hidden is hidden; and since that holds of both
+/// ends, corners of both shapes are enough (checked against random segments in
+/// exact_visibility_test).
+class ShadowPlanes {
+ public:
+  /// `coincidence` as ElementSet's: corners within it of a face count as on the face.
+  void build(const ShapeCorners& light, const Occluder& body, double coincidence);
+
+  /// Not thread-safe: remembers which plane gave the last answer.
+  ShadowRelation relation(const ShapeCorners& shape);
+
+  bool separates(const ShapeCorners& shape);
+
+ private:
+  /// dot(normal, x) - offset: a distance. A shape is `strictly` below if not all of it is on the
+  /// plane.
+  struct Plane {
+    double x, y, z, offset;
+    bool strictly;
+  };
+  static Plane makePlane(const Vec3& normal, const Vec3& point) {
+    return {normal.x, normal.y, normal.z, glm::dot(normal, point), false};
+  }
+  static std::array<double, 4> heights(const Plane& plane, const ShapeCorners& shape);
+
+  void findFaces(const Occluder& body);
+  void findSilhouettes(const Occluder& body);
+  void findTangentsAtEdges(const Occluder& body);
+  bool hides(const ShapeCorners& shape);
+
+  ShapeCorners light_{};
+  double coincidence_ = 0;
+  std::vector<Plane> outside_;  ///< the body below, the light above
+  std::vector<Plane> inside_;   ///< what is hidden from the light is below all of them
+  bool may_hide_ = false;
+  std::size_t last_outside_ = 0;
+  std::size_t last_inside_ = 0;
+  std::vector<std::uint8_t> front_;  ///< per plane: bit i, corner i in front; bit 4 + i, or on it
+};
+
+}  // namespace radiosity
