@@ -44,17 +44,25 @@ double gauss(const ClippedView& view, int order, Estimate& e) {
 
 class Integral {
  public:
-  explicit Integral(const ClippedView& view) : view_(view) {}
+  Integral(const Sheet& source, const Sheet& target, const std::vector<const Blocker*>& blockers,
+           double coincidence)
+      : source_(source), target_(target), blockers_(blockers), coincidence_(coincidence) {}
 
   void add(const Triangle& triangle) {
     Estimate e;
     e.triangle = triangle;
-    const double coarse = gauss(view_, kCoarse, e);
-    points_ += kCoarse * kCoarse;
-    if (!e.clear) {
-      e.blocked = gauss(view_, kFine, e);
-      e.error = std::abs(e.blocked - coarse);
-      points_ += kFine * kFine;
+    const std::vector<const Blocker*> near = blockersFor(triangle);
+    if (near.empty()) {
+      e.hidden = false;
+    } else {
+      const ClippedView view(source_, target_.loop, near);
+      const double coarse = gauss(view, kCoarse, e);
+      points_ += kCoarse * kCoarse;
+      if (!e.clear) {
+        e.blocked = gauss(view, kFine, e);
+        e.error = std::abs(e.blocked - coarse);
+        points_ += kFine * kFine;
+      }
     }
     blocked_ += e.blocked;
     error_ += e.error;
@@ -111,7 +119,20 @@ class Integral {
     add(right);
   }
 
-  const ClippedView& view_;
+  /// Those of the pair's blockers that may come between this triangle and the target.
+  std::vector<const Blocker*> blockersFor(const Triangle& triangle) const {
+    const Sheet cell(Loop(std::span<const Vec3>(triangle)), source_);
+    const Shaft shaft(cell, target_, coincidence_);
+    std::vector<const Blocker*> near;
+    std::copy_if(blockers_.begin(), blockers_.end(), std::back_inserter(near),
+                 [&](const Blocker* blocker) { return shaft.mayBlock(*blocker); });
+    return near;
+  }
+
+  const Sheet& source_;
+  const Sheet& target_;
+  const std::vector<const Blocker*>& blockers_;
+  double coincidence_;
   std::priority_queue<Estimate> queue_;
   double blocked_ = 0;
   double error_ = 0;
@@ -135,12 +156,13 @@ bool manyBodies(const std::vector<const Blocker*>& blockers) {
 }  // namespace
 
 BlockedExchange blockedExchange(const Sheet& source, const Sheet& target,
-                                const std::vector<const Blocker*>& blockers, double tolerance,
-                                std::size_t most_points) {
+                                const std::vector<const Blocker*>& blockers, double coincidence,
+                                double tolerance, std::size_t most_points) {
   const Loop front = inFront(source.loop, target);
-  const Loop seen = inFront(target.loop, source);
-  if (front.empty() || seen.empty() || blockers.empty()) return {0, 0, 0, true, false};
-  const std::vector<Segment> segments = criticalSegments(source, seen, blockers);
+  const Loop visible = inFront(target.loop, source);
+  if (front.empty() || visible.empty() || blockers.empty()) return {0, 0, 0, true, false};
+  const Sheet seen(visible, target);
+  const std::vector<Segment> segments = criticalSegments(source, visible, blockers);
   const std::vector<Loop> cells = cutIntoCells(source, front, segments, kMostCells);
   // Where edges of two bodies cross before the target the critical lines are curves, which no cut
   // follows: such pairs start from cells small enough for the rules to notice.
@@ -151,8 +173,7 @@ BlockedExchange blockedExchange(const Sheet& source, const Sheet& target,
       Integral::subdivide({cell[0], cell[k], cell[k + 1]}, size, triangles);
     }
   }
-  const ClippedView view(source, seen, blockers);
-  Integral integral(view);
+  Integral integral(source, seen, blockers, coincidence);
   for (const Triangle& triangle : triangles) integral.add(triangle);
   if (integral.clear() || integral.hidden()) return integral.result();
   while (integral.error() > tolerance && integral.points() < most_points) integral.refineWorst();

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "blockers.h"
+#include "shaft.h"
 
 namespace radiosity::truth {
 
@@ -19,10 +19,11 @@ struct BlockedExchange {
 /// Integral over `source` of the blocked part of the form factor to `target`, both convex. The
 /// source is cut along the critical lines; on each cell, as triangles, Gauss rules with 4 x 4 and
 /// 6 x 6 points are set against each other, and the worst triangle is halved until their
-/// differences sum to less than `tolerance` (m^2) or `most_points` were looked from.
+/// differences sum to less than `tolerance` (m^2) or `most_points` were looked from. Triangles that
+/// no blocker can touch cost nothing.
 BlockedExchange blockedExchange(const Sheet& source, const Sheet& target,
-                                const std::vector<const Blocker*>& blockers, double tolerance,
-                                std::size_t most_points);
+                                const std::vector<const Blocker*>& blockers, double coincidence,
+                                double tolerance, std::size_t most_points);
 
 /// Whether one single blocker cuts every line from `a` to `b`: it does if it cuts those between
 /// corners, as the shadow of a convex blocker is convex.

@@ -10,41 +10,48 @@ namespace {
 /// an edge then leave no sliver between them.
 constexpr double kRounding = 1e-14;
 
-/// The shadow of a blocker, seen from the origin: inside where all dot(normals[k], y) > offset[k].
+/// The shadow of a blocker, seen from the origin: inside where dot(normals[k], y) > offset of all
+/// planes. The first is the blocker's own, all others go through the origin.
 struct Shadow {
   std::array<Vec3, Loop::kRoom + 1> normals;
-  double far_offset = 0;  ///< of the last plane, the blocker's own; all others go through 0
+  double far_offset = 0;
   std::size_t planes = 0;
+  double offset(std::size_t k) const { return k == 0 ? far_offset : 0; }
 };
 
-/// False where the blocker is seen edge-on and hides nothing.
-bool castShadow(const Blocker& blocker, const Vec3& point, Shadow& shadow) {
-  const double height = glm::dot(blocker.normal, point) - blocker.offset;
-  if (height == 0) return false;
-  const double side = height > 0 ? 1 : -1;
-  shadow.planes = blocker.loop.size() + 1;
-  for (std::size_t k = 0; k < blocker.loop.size(); ++k) {
-    // Counter-clockwise about a normal towards the point: inside is where a x b points away.
-    const Vec3 normal = glm::cross(blocker.loop[k] - point, blocker.loop.next(k) - point);
-    const double length = glm::length(normal);
-    shadow.normals[k] = length > 0 ? normal * (-side / length) : Vec3(0.0);
+bool isOutside(const Loop& loop, const Vec3& normal, double offset, double slack) {
+  for (const Vec3& p : loop) {
+    if (glm::dot(normal, p) - offset > slack) return false;
   }
-  shadow.normals[shadow.planes - 1] = blocker.normal * -side;
-  shadow.far_offset = std::abs(height);
   return true;
 }
 
-double offsetOf(const Shadow& shadow, std::size_t k) {
-  return k + 1 == shadow.planes ? shadow.far_offset : 0;
+/// Makes the shadow; false where it misses the target, or where the blocker is seen edge-on.
+bool castShadow(const Blocker& blocker, const Vec3& point, const Loop& target, double slack,
+                Shadow& shadow) {
+  const double height = glm::dot(blocker.normal, point) - blocker.offset;
+  if (height == 0 || (blocker.solid && height < 0)) return false;
+  const double side = height > 0 ? 1 : -1;
+  shadow.normals[0] = blocker.normal * -side;
+  shadow.far_offset = std::abs(height);
+  if (isOutside(target, shadow.normals[0], shadow.far_offset, slack)) return false;
+  shadow.planes = blocker.loop.size() + 1;
+  Vec3 corner = blocker.loop[0] - point;
+  for (std::size_t k = 1; k < shadow.planes; ++k) {
+    // Counter-clockwise about a normal towards the point: inside is where a x b points away.
+    const Vec3 next = blocker.loop.next(k - 1) - point;
+    const Vec3 normal = glm::cross(corner, next);
+    const double length = glm::length(normal);
+    shadow.normals[k] = length > 0 ? normal * (-side / length) : Vec3(0.0);
+    if (isOutside(target, shadow.normals[k], 0, slack)) return false;
+    corner = next;
+  }
+  return true;
 }
 
 bool misses(const Shadow& shadow, const Loop& piece, double slack) {
   for (std::size_t k = 0; k < shadow.planes; ++k) {
-    bool outside = true;
-    for (const Vec3& p : piece) {
-      outside = outside && glm::dot(shadow.normals[k], p) - offsetOf(shadow, k) <= slack;
-    }
-    if (outside) return true;
+    if (isOutside(piece, shadow.normals[k], shadow.offset(k), slack)) return true;
   }
   return false;
 }
@@ -54,7 +61,7 @@ void subtract(const Shadow& shadow, Loop piece, double slack, std::vector<Loop>&
   Loop inside;
   Loop outside;
   for (std::size_t k = 0; k < shadow.planes; ++k) {
-    split(piece, shadow.normals[k], offsetOf(shadow, k), slack, &inside, &outside);
+    split(piece, shadow.normals[k], shadow.offset(k), slack, &inside, &outside);
     if (!outside.empty()) out.push_back(outside);
     if (inside.empty()) return;
     piece = inside;
@@ -91,7 +98,7 @@ Glimpse ClippedView::from(const Vec3& point) const {
   seen.clear = true;
   Shadow shadow;
   for (const Blocker* blocker : blockers_) {
-    if (!castShadow(*blocker, point, shadow) || misses(shadow, target, slack)) continue;
+    if (!castShadow(*blocker, point, target, slack, shadow)) continue;
     rest.clear();
     for (const Loop& piece : pieces) {
       if (misses(shadow, piece, slack)) {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "blockers.h"
+#include "shaft.h"
 
 namespace radiosity::truth {
 

@@ -106,7 +106,7 @@ GroundTruth::Exchange GroundTruth::exchange(const Sheet& a, const Sheet& b,
                        [&](const Vec3& p) { return glm::dot(from.normal, p) > from.offset; });
   };
   if (!facing(a, b) || !facing(b, a)) return out;
-  const std::vector<const Blocker*> blockers = blockers_.between(a, b);
+  const std::vector<const Blocker*> blockers = blockers_.inside(Shaft(a, b, coincidence_));
   if (hiddenByOne(a, b, blockers)) {
     out.hidden = true;
     return out;
@@ -114,8 +114,8 @@ GroundTruth::Exchange GroundTruth::exchange(const Sheet& a, const Sheet& b,
   out.value = unoccludedExchange(a.loop, b.loop);
   if (blockers.empty() || out.value == 0) return out;
   const bool from_a = clearance(a, blockers) >= clearance(b, blockers);
-  const BlockedExchange blocked =
-      blockedExchange(from_a ? a : b, from_a ? b : a, blockers, tolerance, options_.most_points);
+  const BlockedExchange blocked = blockedExchange(from_a ? a : b, from_a ? b : a, blockers,
+                                                  coincidence_, tolerance, options_.most_points);
   out.points = blocked.points;
   out.hidden = blocked.hidden;
   out.partial = !blocked.clear && !blocked.hidden;
