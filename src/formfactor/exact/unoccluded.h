@@ -1,7 +1,7 @@
 // Exchange areas of elements with nothing between them, in closed form or by product quadrature.
 #pragma once
 
-#include <span>
+#include <memory>
 
 #include "formfactor/exact/elements.h"
 
@@ -11,23 +11,37 @@ namespace radiosity {
 struct UnoccludedCounts {
   std::size_t contour = 0;  ///< area to area by contour integrals
   std::size_t lambert = 0;  ///< point to polygon, averaged over points
-  std::size_t product = 0;  ///< product Gauss
+  std::size_t product = 0;  ///< series or product Gauss, far away
   std::size_t clipped = 0;  ///< of all: clipped to each other's front half-space first
   UnoccludedCounts& operator+=(const UnoccludedCounts& other);
 };
 
-/// Prepares an element set for the kernels below (single precision copies, quadrature points).
+/// Exchange areas of the elements of a set. Each value is the sharpest needed of: second-order
+/// series and product Gauss (far_kernels.h), Lambert's formula over Gauss points and contour
+/// integrals (near_exchange.h). Elements that cross each other's plane by more than coincidence are
+/// clipped first; what lies within coincidence of the other's plane exchanges nothing.
+///
+/// Error: below `tolerance` relative, enforced in exact_unoccluded_test. The values do not depend
+/// on the instruction set, nor on how pairs are put into blocks.
 class UnoccludedKernel {
  public:
-  /// `tolerance`: relative, of every single value; 1e-5 down to 1e-12. `simd` false: scalar twin.
+  /// Keeps `elements` by reference. `tolerance`: relative, of every single value; 1e-12 to 1e-3;
+  /// below 3e-6 in double precision throughout. `simd` false: the scalar twin, the same bits.
   UnoccludedKernel(const ElementSet& elements, double tolerance, bool simd);
+  ~UnoccludedKernel();
 
   /// out[(r - rows.first) * stride + (c - columns.first)] = G_rc in ElementSet's scaled units, >=
   /// 0, for all pairs. Rows in one facet, columns in another. Thread-safe.
   void block(ElementRange rows, ElementRange columns, double* out, std::size_t stride,
              UnoccludedCounts& counts) const;
-  /// One pair.
+  /// One pair, elements of different facets.
   double pair(Index row, Index column) const;
+
+ private:
+  class Implementation;
+  template <class T>
+  class Typed;
+  std::unique_ptr<Implementation> implementation_;
 };
 
 }  // namespace radiosity

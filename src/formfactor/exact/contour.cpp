@@ -1,0 +1,174 @@
+#include "formfactor/exact/contour.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <utility>
+
+#include "formfactor/exact/quadrature.h"
+
+namespace radiosity {
+namespace {
+
+double xLogY(double x, double y) { return x == 0 ? 0 : x * std::log(y); }
+
+/// K''(u) = ln(u^2 + h^2) / 2.
+double parallelTerm(double u, double h) {
+  const double uu = u * u;
+  const double hh = h * h;
+  return 0.25 * xLogY(uu - hh, uu + hh) + h * u * std::atan2(u, h) - 0.75 * uu;
+}
+
+/// Both edges along one direction: from s0 to s1, and from t0 to t1 at a distance h.
+double parallelEdges(double s0, double s1, double t0, double t1, double h) {
+  // In this order differences of like terms come first.
+  return (parallelTerm(t1 - s0, h) - parallelTerm(t1 - s1, h)) -
+         (parallelTerm(t0 - s0, h) - parallelTerm(t0 - s1, h));
+}
+
+struct Segment {
+  Vec3 origin{0.0};
+  Vec3 direction{0.0};  // unit
+  double length = 0;
+};
+
+/// Integral of ln(r / unit) from a point at `offset` from the segment's origin.
+double logAlong(const Segment& segment, const Vec3& offset, double inverse_unit) {
+  const double u0 = -glm::dot(offset, segment.direction);
+  const double u1 = u0 + segment.length;
+  const double h = glm::length(glm::cross(offset, segment.direction));
+  const double hh = h * h;
+  // Of atan(u1/h) - atan(u0/h): right also at h = 0, where the point lies on the line.
+  const double angle = std::atan2(h * segment.length, hh + u0 * u1);
+  const double scale = inverse_unit * inverse_unit;
+  return 0.5 * (xLogY(u1, (u1 * u1 + hh) * scale) - xLogY(u0, (u0 * u0 + hh) * scale)) -
+         segment.length + h * angle;
+}
+
+double distanceTo(const Segment& segment, const Vec3& p) {
+  const Vec3 offset = p - segment.origin;
+  const double along = std::clamp(glm::dot(offset, segment.direction), 0.0, segment.length);
+  return glm::length(offset - along * segment.direction);
+}
+
+/// Where along `outer` its quadrature is to be split, ascending, both ends included: there the
+/// inner integral has its singularities, or the nearest points to them in the complex plane.
+struct Splits {
+  std::array<double, 5> at{};
+  std::size_t count = 0;
+};
+
+Splits findSplits(const Segment& outer, const Segment& inner) {
+  Splits splits;
+  const auto add = [&](double s) {
+    if (!(s > 0 && s < outer.length)) return;
+    std::size_t k = splits.count++;
+    for (; splits.at[k - 1] > s; --k) splits.at[k] = splits.at[k - 1];
+    splits.at[k] = s;
+  };
+  splits.at[splits.count++] = 0;
+  const Vec3 offset = inner.origin - outer.origin;
+  const double cosine = glm::dot(outer.direction, inner.direction);
+  const double s0 = glm::dot(offset, outer.direction);
+  add(s0);
+  add(s0 + inner.length * cosine);
+  // The points of both lines nearest to each other; not of lines that are all but parallel.
+  const Vec3 normal = glm::cross(outer.direction, inner.direction);
+  const double sine2 = glm::dot(normal, normal);
+  if (sine2 > 0) add(glm::dot(glm::cross(offset, inner.direction), normal) / sine2);
+  splits.at[splits.count++] = outer.length;
+  return splits;
+}
+
+/// Nodes for a piece of length `length` whose nearest singularity is at `distance`: Gauss where
+/// that is far enough for its geometric convergence, else a rule that bears singular ends.
+std::span<const Node> chooseRule(double length, double distance, double tolerance) {
+  // Legendre's rule converges like r^(-2n), r the sum of half-axes of the largest ellipse about
+  // the piece that is free of singularities.
+  const double height = 2 * distance / length;
+  const double r = height + std::sqrt(1 + height * height);
+  const double digits = -std::log(tolerance);
+  const double needed = digits / (2 * std::log(r)) + 1;
+  if (needed <= kMostGaussNodes) return gaussLegendre(std::max(2, int(std::ceil(needed))));
+  // About e^(-4 / step) for a logarithm at the end, measured.
+  int level = 1;
+  while (level < kFinestTanhSinh && 4.0 * std::ldexp(1.0, level) < digits) ++level;
+  return tanhSinh(level);
+}
+
+double skewEdges(const Segment& outer, const Segment& inner, double inverse_unit,
+                 double tolerance) {
+  const Splits splits = findSplits(outer, inner);
+  double sum = 0;
+  for (std::size_t k = 0; k + 1 < splits.count; ++k) {
+    const double low = splits.at[k];
+    const double high = splits.at[k + 1];
+    const double length = high - low;
+    if (!(length > 0)) continue;
+    const double distance = std::min(distanceTo(inner, outer.origin + low * outer.direction),
+                                     distanceTo(inner, outer.origin + high * outer.direction));
+    const Vec3 from_low = outer.origin + low * outer.direction - inner.origin;
+    const Vec3 from_high = outer.origin + high * outer.direction - inner.origin;
+    double piece = 0;
+    for (const Node& node : chooseRule(length, distance, tolerance)) {
+      // Measured from the nearer end, so that nothing is lost close to a common vertex.
+      const double gap = 0.5 * length * node.gap;
+      const Vec3 offset =
+          node.x < 0 ? from_low + gap * outer.direction : from_high - gap * outer.direction;
+      piece += node.weight * logAlong(inner, offset, inverse_unit);
+    }
+    sum += 0.5 * length * piece;
+  }
+  return sum;
+}
+
+/// Sines and cosines below this come of rounding: neglected angles of this size change an
+/// integral by as much, relative.
+constexpr double kRoundingAngle = 1e-13;
+
+}  // namespace
+
+double edgePairIntegral(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1, double unit,
+                        double tolerance) {
+  Segment a{a0, a1 - a0, glm::distance(a0, a1)};
+  Segment b{b0, b1 - b0, glm::distance(b0, b1)};
+  if (!(a.length > 0) || !(b.length > 0)) return 0;
+  a.direction /= a.length;
+  b.direction /= b.length;
+  const double cosine = glm::dot(a.direction, b.direction);
+  if (std::abs(cosine) < kRoundingAngle) return 0;
+  const double inverse_unit = 1 / unit;
+  if (glm::length(glm::cross(a.direction, b.direction)) < kRoundingAngle) {
+    const Vec3 offset = (b0 - a0) * inverse_unit;
+    const double t0 = glm::dot(offset, a.direction);
+    const double h = glm::length(glm::cross(offset, a.direction));
+    const double t1 = t0 + (cosine > 0 ? b.length : -b.length) * inverse_unit;
+    return unit * unit * parallelEdges(0, a.length * inverse_unit, t0, t1, h);
+  }
+  if (a.length > b.length) std::swap(a, b);
+  return cosine * skewEdges(a, b, inverse_unit, tolerance);
+}
+
+double contourExchange(std::span<const Vec3> a, std::span<const Vec3> b, double tolerance) {
+  // The unit of length drops out of closed loops; one of the loops' size keeps the terms small.
+  double unit = 0;
+  for (const Vec3& p : a) {
+    for (const Vec3& q : b) unit = std::max(unit, glm::distance(p, q));
+  }
+  if (!(unit > 0)) return 0;
+  // Terms of edges are larger than their sum.
+  constexpr double kCancellation = 1e-2;
+  double sum = 0;
+  for (std::size_t i = 0, before = a.size() - 1; i < a.size(); before = i++) {
+    double edge = 0;
+    for (std::size_t j = 0, last = b.size() - 1; j < b.size(); last = j++) {
+      edge += edgePairIntegral(a[before], a[i], b[last], b[j], unit, kCancellation * tolerance);
+    }
+    sum += edge;
+  }
+  return sum / (2 * std::numbers::pi);
+}
+
+}  // namespace radiosity

@@ -1,0 +1,86 @@
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "formfactor/exact/far_kernels.h"
+#include "formfactor/exact/quadrature.h"
+
+namespace radiosity {
+
+FarLimits::FarLimits(double tolerance) : tolerance_(tolerance) {
+  series = std::sqrt(tolerance / kSeriesError);
+  for (std::size_t k = 0; k < kProductRules; ++k) {
+    const auto n = double(k + kLeastProduct);
+    product[k] = std::pow(tolerance / kProductError[k], 1 / n);
+    const double skewed = std::pow(tolerance / kSkewProductError[k], 1 / (n - 0.5));
+    skew_roughness_ = std::max(skew_roughness_, product[k] / skewed);
+  }
+}
+
+FarBounds FarLimits::of(const FlatShape& shape) const {
+  const double skew = std::abs(shape.alpha) + std::abs(shape.beta);
+  FarBounds bounds{series, 1 + (skew_roughness_ - 1) * std::min(skew, 1.0)};
+  if (skew > 0) {
+    bounds.series_limit = std::min(series, std::pow(tolerance_ / (kSkewError * skew), 2.0 / 3.0));
+  }
+  return bounds;
+}
+
+template <class T>
+FarRow<T>::FarRow(const FlatShape& shape, const FacetFrame& own, const FacetFrame& columns,
+                  const FarBounds& bounds)
+    : shape_(shape) {
+  const auto turned = [&](const Vec2& d) {
+    const Vec3 in_space = d.x * own.u + d.y * own.v;
+    return Vec3(glm::dot(in_space, columns.u), glm::dot(in_space, columns.v),
+                glm::dot(in_space, columns.normal));
+  };
+  const double u = glm::dot(shape.centroid, columns.u);
+  const double v = glm::dot(shape.centroid, columns.v);
+  u_high = T(u);
+  u_low = T(u - double(u_high));
+  v_high = T(v);
+  v_low = T(v - double(v_high));
+  exact_height_ = glm::dot(shape.centroid, columns.normal) - columns.offset;
+  height = T(exact_height_);
+  slope_u = T(glm::dot(own.normal, columns.u));
+  slope_v = T(glm::dot(own.normal, columns.v));
+  const Vec3 pp = turned(shape.p);
+  const Vec3 qq = turned({0, shape.q});
+  p = {T(pp.x), T(pp.y), T(pp.z)};
+  q = {T(qq.x), T(qq.y), T(qq.z)};
+  const Vec3 cross = pp.z * pp + qq.z * qq;
+  cross_u = T(cross.x);
+  cross_v = T(cross.y);
+  moment = T(shape.moment);
+  area_over_pi = T(shape.area / std::numbers::pi);
+  series_limit = T(bounds.series_limit);
+  roughness = T(bounds.roughness);
+  map_ = {turned(shape.mean), turned(shape.u), turned(shape.v), turned(shape.w)};
+}
+
+template <class T>
+const typename FarRow<T>::Points& FarRow<T>::points(int n) {
+  if ((made_ >> n & 1U) != 0) return points_;
+  made_ |= 1U << n;
+  std::size_t k = pointsBegin(n);
+  for (const Node& s : gaussLegendre(n)) {
+    for (const Node& t : gaussLegendre(n)) {
+      const Vec3 at = map_[0] + s.x * map_[1] + t.x * (map_[2] + s.x * map_[3]);
+      const double above = std::max(exact_height_ + at.z, 0.0);
+      const double density = 0.25 * (1 + shape_.alpha * s.x + shape_.beta * t.x);
+      points_.u[k] = T(at.x);
+      points_.v[k] = T(at.y);
+      points_.height2[k] = T(above * above);
+      points_.weight[k] = T(s.weight * t.weight * density * above);
+      ++k;
+    }
+  }
+  return points_;
+}
+
+template struct FarRow<float>;
+template struct FarRow<double>;
+
+}  // namespace radiosity

@@ -1,0 +1,69 @@
+#include "formfactor/exact/near_exchange.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "formfactor/exact/contour.h"
+#include "formfactor/exact/point_to_polygon.h"
+#include "formfactor/exact/quadrature.h"
+
+namespace radiosity {
+namespace {
+
+double distanceToEdges(const Vec3& p, std::span<const Vec3> polygon) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0, last = polygon.size() - 1; k < polygon.size(); last = k++) {
+    const Vec3 edge = polygon[k] - polygon[last];
+    const Vec3 offset = p - polygon[last];
+    const double length2 = glm::dot(edge, edge);
+    const double t = length2 > 0 ? std::clamp(glm::dot(offset, edge) / length2, 0.0, 1.0) : 0;
+    least = std::min(least, glm::distance(offset, t * edge));
+  }
+  return least;
+}
+
+constexpr int kLeastPoints = 2;
+constexpr int kMostPoints = 6;
+
+/// n x n points are good for the tolerance if error(n) = (radius / distance)^(2n) is below it.
+int pointsFor(double ratio, double tolerance) {
+  if (!(ratio < 1)) return kMostPoints + 1;
+  const double needed = std::log(tolerance) / (2 * std::log(ratio));
+  return std::max(kLeastPoints, int(std::ceil(std::min(needed, kMostPoints + 1.0))));
+}
+
+}  // namespace
+
+double lambertExchange(const PlanarElement& from, const PlanarElement& to, int n) {
+  // A triangle is a quadrilateral whose last two corners meet: the map's Jacobian vanishes there.
+  const Vec3& c0 = from.outline[0];
+  const Vec3& c1 = from.outline[1];
+  const Vec3& c2 = from.outline[2];
+  const Vec3& c3 = from.outline[from.outline.size() - 1];
+  const Vec3 middle = 0.25 * (c0 + c1 + c2 + c3);
+  const Vec3 u = 0.25 * (c1 - c0 + c2 - c3);
+  const Vec3 v = 0.25 * (c3 - c0 + c2 - c1);
+  const Vec3 w = 0.25 * (c0 - c1 + c2 - c3);
+  double sum = 0;
+  for (const Node& s : gaussLegendre(n)) {
+    for (const Node& t : gaussLegendre(n)) {
+      const Vec3 point = middle + s.x * u + t.x * (v + s.x * w);
+      const double jacobian = glm::dot(from.normal, glm::cross(u + t.x * w, v + s.x * w));
+      sum += s.weight * t.weight * jacobian * pointToPolygon(point, from.normal, to.outline);
+    }
+  }
+  return sum;
+}
+
+NearValue nearExchange(const PlanarElement& a, const PlanarElement& b, double tolerance) {
+  const PlanarElement& small = a.radius <= b.radius ? a : b;
+  const PlanarElement& large = a.radius <= b.radius ? b : a;
+  const double distance = distanceToEdges(small.centroid, large.outline);
+  const int points = pointsFor(small.radius / distance, tolerance);
+  if (points <= kMostPoints) return {lambertExchange(small, large, points), false};
+  return {contourExchange(a.outline, b.outline, tolerance), true};
+}
+
+}  // namespace radiosity
