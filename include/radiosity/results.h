@@ -10,6 +10,7 @@
 
 #include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
+#include "radiosity/gather.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/render.h"
 #include "radiosity/scene.h"
@@ -30,6 +31,8 @@ struct Results {
   std::optional<PatchMaterials> materials;  ///< what the solution was made with
   std::optional<Solution> solution;
   std::string solution_key;
+  std::optional<Gathered> gathered;  ///< by the gather method; needs no form factors
+  std::string gather_key;
 };
 
 /// True for a file that starts with the HDF5 signature (whatever its name).
@@ -46,11 +49,14 @@ Results readResults(const std::string& path, bool with_factors = true);
 ///   /mesh          as PatchMesh; key, geometry_hash, polygons/, report/
 ///   /form_factors  csr_matrix((data, indices, indptr), shape) of scipy: data f32 or f64, indices
 ///                  int32 increasing in a row, indptr int64; row_sum (of data), fronts, backs, sky,
-///                  error (figures of the rows; exact method), area; order where A_i F_ij = A_j F_ji
-///                  was stored once a pair (the patches in the order of storage); normal, centroid,
-///                  surface, surface_names (those of /mesh); method, key,
-///                  geometry_hash, report/
+///                  error (figures of the rows; exact method), area; order where A_i F_ij = A_j
+///                  F_ji was stored once a pair (the patches in the order of storage); normal,
+///                  centroid, surface, surface_names (those of /mesh); method, key, geometry_hash,
+///                  report/
 ///   /solution      radiosity, irradiance (N x bands), reflectance, emission (N x 3), summary/, key
+///   /gather        radiosity, irradiance (L x 3, f32; L eyes), backs, sky, area, position;
+///                  eye_of_corner (at vertices: the eye of every entry of /mesh/corners); at, key,
+///                  summary/ with passes/ (a row a pass; bound is NaN where there is none)
 /// The matrix is written row by row, never copied. Errors: RunError (disk full), Cancelled; `path`
 /// then is what it was.
 void writeResults(const std::string& path, const Results& results, Progress& progress);

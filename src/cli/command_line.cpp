@@ -15,8 +15,8 @@ namespace radiosity::cli {
 
 namespace {
 
-constexpr std::array kCommands = {Command::info, Command::mesh, Command::factors, Command::solve,
-                                  Command::render};
+constexpr std::array kCommands = {Command::info,  Command::mesh,   Command::factors,
+                                  Command::solve, Command::gather, Command::render};
 
 const char* descriptionOf(Command command) {
   switch (command) {
@@ -28,6 +28,8 @@ const char* descriptionOf(Command command) {
       return "Compute the form factors between the patches, by hemicubes";
     case Command::solve:
       return "Solve B = E + rho F B for the radiosity of every patch";
+    case Command::gather:
+      return "Gather light through hemicubes, pass by pass, without a matrix";
     case Command::render:
       break;
   }
@@ -60,6 +62,13 @@ const char* examplesOf(Command command) {
              "Examples:\n"
              "  radiosity solve data/cornell-box.obj -o cornell.h5\n"
              "  radiosity solve cornell.h5 --set white.reflectance=.9";
+    case Command::gather:
+      return "Files (-o): .h5 (results). A results file given as input is updated in place where "
+             "no -o\n"
+             "is given; its mesh is reused. With --passes reaching them is no failure.\n\n"
+             "Examples:\n"
+             "  radiosity gather data/cornell-box.obj --passes 8 -o gathered.h5\n"
+             "  radiosity gather cornell.h5 --at patches --resolution 128";
     case Command::render:
       break;
   }
@@ -197,6 +206,28 @@ void addSolveOptions(CLI::App& app, Request& r) {
       fmt::format("Sweeps at most; then exit code 1 (default {})", defaults.max_iterations));
 }
 
+void addGatherOptions(CLI::App& app, Request& r) {
+  const GatherOptions defaults;
+  add(app, "Gather", "--at", r.gather_at, "vertices|patches",
+      "Where the eyes stand: at vertices, once per smooth side, what they see interpolated over "
+      "patches (default); or at the centres of patches, each of one radiosity")
+      ->check(CLI::IsMember({"vertices", "patches"}));
+  add(app, "Gather", "--passes", r.passes, "K",
+      fmt::format("Passes at most: pass k adds the k-th bounce (default {})", defaults.passes));
+  add(app, "Gather", "--gather-tolerance", r.gather_tolerance, "RATIO",
+      fmt::format("Stop when further passes add at most this times the largest emission (default "
+                  "{})",
+                  defaults.tolerance));
+  add(app, "Gather", "--resolution", r.resolution, "PIXELS",
+      fmt::format("Edge of the hemicube's top face; even, 16 to 4096 (default {})",
+                  defaults.resolution));
+  add(app, "Gather", "--seed", r.seed, "N",
+      fmt::format("Seed of each hemicube's random turn (default {})", defaults.seed))
+      ->check(wholeNumber());
+  add(app, "Gather", "--crease", r.crease, "DEGREES",
+      fmt::format("A vertex looks once per side that bends less (default {})", defaults.crease));
+}
+
 void addRenderOptions(CLI::App& app, Request& r) {
   const RenderOptions defaults;
   add(app, "Picture", "--camera", r.camera, "CAMERA",
@@ -245,6 +276,10 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
   if (command == Command::info) return sub;
   addMeshOptions(*sub, r);
   if (command == Command::mesh) return sub;
+  if (command == Command::gather) {
+    addGatherOptions(*sub, r);
+    return sub;
+  }
   addFactorOptions(*sub, r);
   if (command == Command::factors) return sub;
   addSolveOptions(*sub, r);
@@ -256,7 +291,7 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
 void checkCommandWord(int argc, char** argv) {
   std::array<std::string, kCommands.size()> names;
   std::transform(kCommands.begin(), kCommands.end(), names.begin(), commandName);
-  const std::string list = "info, mesh, factors, solve or render";
+  const std::string list = "info, mesh, factors, solve, gather or render";
   if (argc < 2) {
     throw InputError(
         fmt::format("a subcommand is missing: {}; e.g. radiosity render SCENE -o "

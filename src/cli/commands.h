@@ -19,10 +19,11 @@ int runInfo(Session& session);
 int runMesh(Session& session);
 int runFactors(Session& session);
 int runSolve(Session& session);
+int runGather(Session& session);
 int runRender(Session& session);
 
 /// The files -o names; a results file that came in is updated where none is named and the
-/// subcommand is factors or solve.
+/// subcommand is factors, solve or gather.
 OutputSet claimOutputs(const Session& session);
 
 /// Writes the .h5 and .mtx among `files`, after saying how large they will be. A results file

@@ -15,6 +15,7 @@ void describeStages(Session& session, const Results& stored) {
   if (stored.mesh) report.text("mesh_key", "mesh", stored.mesh_key);
   if (stored.factors) report.text("factors_key", "form factors", stored.factors_key);
   if (stored.solution) report.text("solution_key", "solution", stored.solution_key);
+  if (stored.gathered) report.text("gather_key", "gather", stored.gather_key);
   if (stored.mesh) summarizeMesh(report, *stored.mesh, Detail::brief);
   if (stored.factors) {
     summarizeFactors(report, *stored.factors, made(stored.mesh).mesh, Detail::brief);
@@ -22,6 +23,10 @@ void describeStages(Session& session, const Results& stored) {
   if (stored.solution) {
     summarizeSolution(report, *stored.solution, made(stored.factors), made(stored.mesh).mesh,
                       solveOptionsOf(StageKey(stored.solution_key)), Detail::brief);
+  }
+  if (stored.gathered) {
+    summarizeGathered(report, *stored.gathered, gatherOptionsOf(StageKey(stored.gather_key)),
+                      Detail::brief);
   }
 }
 

@@ -26,6 +26,8 @@ int dispatch(Session& session) {
       return runFactors(session);
     case Command::solve:
       return runSolve(session);
+    case Command::gather:
+      return runGather(session);
     case Command::render:
       break;
   }

@@ -28,7 +28,7 @@ const std::vector<Extension>& extensions() {
       {".exr", Format::exr, {render}},
       {".glb", Format::glb, {mesh, solve, render}},
       {".obj", Format::obj, {mesh}},
-      {".h5", Format::results, {mesh, factors, solve, render}},
+      {".h5", Format::results, {mesh, factors, solve, gather, render}},
       {".mtx", Format::matrix_market, {factors, solve, render}},
   };
   return kAll;

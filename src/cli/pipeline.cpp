@@ -49,10 +49,12 @@ void Pipeline::chooseOptions() {
     mesh_options_ = meshOptionsOf(StageKey(previous_.mesh_key));
     factor_options_ = factorOptionsOf(StageKey(previous_.factors_key));
     solve_options_ = solveOptionsOf(StageKey(previous_.solution_key));
+    gather_options_ = gatherOptionsOf(StageKey(previous_.gather_key));
   }
   mesh_options_ = request_.apply(mesh_options_);
   factor_options_ = request_.apply(factor_options_);
   solve_options_ = request_.apply(solve_options_);
+  gather_options_ = request_.apply(gather_options_);
 }
 
 void Pipeline::openResults() {
@@ -139,7 +141,8 @@ void Pipeline::announceFactors() {
   const FormFactorOptions& options = factor_options_;
   const std::size_t memory = planFormFactors(patches(), options).bytes;
   // A dense row takes no column numbers in memory; on disk every entry has one of 4 bytes.
-  const std::size_t disk = options.storedPrecision() == Precision::real ? memory / 2 * 3 : memory * 2;
+  const std::size_t disk =
+      options.storedPrecision() == Precision::real ? memory / 2 * 3 : memory * 2;
   report_.line("form factors",
                fmt::format("{} of {} pixels: memory about {}{}",
                            plural(patches().size(), "hemicube", "hemicubes"), options.resolution,
@@ -205,33 +208,69 @@ void Pipeline::solution() {
                     own ? Detail::full : Detail::brief);
 }
 
+void Pipeline::gathered() {
+  const StageKey key = gatherKey(gather_options_, materials(), patches());
+  const bool own = request_.command == Command::gather;
+  if (previous_.gathered && previous_.gather_key == key.text()) {
+    results_.gathered = std::move(previous_.gathered);
+    report_.stage("gather", "gather", "reused", source_);
+  } else {
+    const std::string reason = why(previous_.gather_key, key, previous_.gathered.has_value());
+    results_.gathered = gather(patches(), materials(), gather_options_, progress_);
+    computed("gather", "gather", reason);
+  }
+  results_.gather_key = key.text();
+  previous_.gathered.reset();
+  summarizeGathered(report_, gatheredLight(), gather_options_, own ? Detail::full : Detail::brief);
+}
+
+bool Pipeline::keepFactors() {
+  if (results_.factors || !previous_.factors) return false;
+  const StageKey key = factorsKey(factorOptionsOf(StageKey(previous_.factors_key)), patches());
+  if (key.text() != previous_.factors_key) {
+    report_.stage("form_factors", "form factors", "dropped", why(previous_.factors_key, key, true));
+    return true;
+  }
+  results_.factors = std::move(previous_.factors);
+  results_.factors_key = previous_.factors_key;
+  report_.stage("form_factors", "form factors", "kept", "they still fit");
+  return false;
+}
+
+bool Pipeline::keepSolution() {
+  if (results_.solution || !previous_.solution) return false;
+  const StageKey key = solutionKey(solveOptionsOf(StageKey(previous_.solution_key)), materials(),
+                                   StageKey(results_.factors_key));
+  if (!results_.factors || key.text() != previous_.solution_key) {
+    report_.stage("solution", "solution", "dropped", why(previous_.solution_key, key, true));
+    return true;
+  }
+  results_.solution = std::move(previous_.solution);
+  results_.solution_key = previous_.solution_key;
+  report_.stage("solution", "solution", "kept", "it still fits");
+  return false;
+}
+
+bool Pipeline::keepGathered() {
+  if (results_.gathered || !previous_.gathered) return false;
+  const StageKey key =
+      gatherKey(gatherOptionsOf(StageKey(previous_.gather_key)), materials(), patches());
+  if (key.text() != previous_.gather_key) {
+    report_.stage("gather", "gather", "dropped", why(previous_.gather_key, key, true));
+    return true;
+  }
+  results_.gathered = std::move(previous_.gathered);
+  results_.gather_key = previous_.gather_key;
+  report_.stage("gather", "gather", "kept", "it still fits");
+  return false;
+}
+
 void Pipeline::keepLaterStages() {
-  bool dropped = false;
-  if (!results_.factors && previous_.factors) {
-    const StageKey key = factorsKey(factorOptionsOf(StageKey(previous_.factors_key)), patches());
-    if (key.text() == previous_.factors_key) {
-      results_.factors = std::move(previous_.factors);
-      results_.factors_key = previous_.factors_key;
-      report_.stage("form_factors", "form factors", "kept", "they still fit");
-    } else {
-      report_.stage("form_factors", "form factors", "dropped",
-                    why(previous_.factors_key, key, true));
-      dropped = true;
-    }
-  }
-  if (!results_.solution && previous_.solution) {
-    const StageKey key = solutionKey(solveOptionsOf(StageKey(previous_.solution_key)), materials(),
-                                     StageKey(results_.factors_key));
-    if (results_.factors && key.text() == previous_.solution_key) {
-      results_.solution = std::move(previous_.solution);
-      results_.solution_key = previous_.solution_key;
-      report_.stage("solution", "solution", "kept", "it still fits");
-    } else {
-      report_.stage("solution", "solution", "dropped", why(previous_.solution_key, key, true));
-      dropped = true;
-    }
-  }
-  if (!results_.solution) results_.materials.reset();
+  // In this order: a solution stands on its form factors.
+  bool dropped = keepFactors();
+  dropped = keepSolution() || dropped;
+  dropped = keepGathered() || dropped;
+  if (!results_.solution && !results_.gathered) results_.materials.reset();
   changed_ = changed_ || dropped;
 }
 

@@ -38,6 +38,8 @@ class Pipeline {
   /// Where they are reused they come without the matrix, until loadMatrix().
   void factors();
   void solution();
+  /// By the gather method; needs the mesh only.
+  void gathered();
   /// Loads the matrix where the reused form factors came without it.
   void loadMatrix();
   /// Keeps the later stages that still fit and says which are dropped.
@@ -50,6 +52,7 @@ class Pipeline {
   const PatchMesh& patches() const { return made(results_.mesh).mesh; }
   const FormFactors& formFactors() const { return made(results_.factors); }
   const Solution& solved() const { return made(results_.solution); }
+  const Gathered& gatheredLight() const { return made(results_.gathered); }
   const PatchMaterials& materials();
   bool fromResultsFile() const { return from_results_; }
   /// True where results() differs from the file the stages came from.
@@ -64,6 +67,10 @@ class Pipeline {
   /// before any work.
   void chooseOptions();
   void announceFactors();
+  /// Each returns true where the stage is dropped.
+  bool keepFactors();
+  bool keepSolution();
+  bool keepGathered();
   std::string why(const std::string& stored_key, const StageKey& key, bool present) const;
   void computed(const std::string& stage, const std::string& label, const std::string& reason);
 
@@ -71,6 +78,7 @@ class Pipeline {
   MeshOptions mesh_options_;
   FormFactorOptions factor_options_;
   SolveOptions solve_options_;
+  GatherOptions gather_options_;
   Report& report_;
   Progress& progress_;
   Results results_;   ///< the stages of this run

@@ -14,6 +14,8 @@ const char* commandName(Command command) {
       return "factors";
     case Command::solve:
       return "solve";
+    case Command::gather:
+      return "gather";
     case Command::render:
       break;
   }
@@ -64,6 +66,17 @@ SolveOptions Request::apply(SolveOptions options) const {
   if (solver) options.solver = *solver == "jacobi" ? Solver::jacobi : Solver::gauss_seidel;
   set(options, &SolveOptions::tolerance, solve_tolerance, "--solve-tolerance");
   set(options, &SolveOptions::max_iterations, max_iterations, "--max-iterations");
+  options.validate();
+  return options;
+}
+
+GatherOptions Request::apply(GatherOptions options) const {
+  if (gather_at) options.at = *gather_at == "patches" ? GatherAt::patches : GatherAt::vertices;
+  set(options, &GatherOptions::passes, passes, "--passes");
+  set(options, &GatherOptions::tolerance, gather_tolerance, "--gather-tolerance");
+  set(options, &GatherOptions::resolution, resolution, "--resolution");
+  set(options, &GatherOptions::seed, seed, "--seed");
+  set(options, &GatherOptions::crease, crease, "--crease");
   options.validate();
   return options;
 }

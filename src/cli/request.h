@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "radiosity/form_factors.h"
+#include "radiosity/gather.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/render.h"
 #include "radiosity/scene.h"
@@ -15,7 +16,7 @@
 
 namespace radiosity::cli {
 
-enum class Command { info, mesh, factors, solve, render };
+enum class Command { info, mesh, factors, solve, gather, render };
 
 struct Request {
   Command command = Command::info;
@@ -42,6 +43,10 @@ struct Request {
   std::optional<double> solve_tolerance;
   std::optional<int> max_iterations;
 
+  std::optional<std::string> gather_at;
+  std::optional<int> passes;
+  std::optional<double> gather_tolerance;
+
   std::string camera;
   std::optional<int> width;
   std::optional<int> height;
@@ -62,6 +67,7 @@ struct Request {
   MeshOptions apply(MeshOptions options) const;
   FormFactorOptions apply(FormFactorOptions options) const;
   SolveOptions apply(SolveOptions options) const;
+  GatherOptions apply(GatherOptions options) const;
   /// The picture's options as given, without a size where none was given; validated.
   RenderOptions renderOptions() const;
 };

@@ -12,8 +12,8 @@ namespace radiosity::cli {
 OutputSet claimOutputs(const Session& session) {
   const Request& request = session.request;
   OutputSet files(parseOutputs(request));
-  const bool keeps_stages =
-      request.command == Command::factors || request.command == Command::solve;
+  const bool keeps_stages = request.command == Command::factors ||
+                            request.command == Command::solve || request.command == Command::gather;
   if (!keeps_stages || !files.all().empty()) return files;
   std::error_code ignored;
   if (std::filesystem::is_regular_file(request.input, ignored) && isResultsFile(request.input)) {
@@ -30,6 +30,7 @@ std::string contents(const Results& results) {
   std::string list = "results: scene, mesh";
   if (results.factors) list += ", form factors";
   if (results.solution) list += ", solution";
+  if (results.gathered) list += ", gathered light";
   return list;
 }
 

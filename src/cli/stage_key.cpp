@@ -33,6 +33,13 @@ void read(const StageKey& key, std::string_view name, Number& value) {
   }
 }
 
+std::string materialsHash(const PatchMaterials& materials) {
+  Hash hash;
+  hash.array(materials.reflectance);
+  hash.array(materials.emission);
+  return hash.hex();
+}
+
 std::string sceneHash(const Scene& scene) {
   Hash hash;
   hash.array(scene.vertices);
@@ -118,17 +125,28 @@ StageKey factorsKey(const FormFactorOptions& options, const PatchMesh& mesh) {
 
 StageKey solutionKey(const SolveOptions& options, const PatchMaterials& materials,
                      const StageKey& factors_key) {
-  Hash hash;
-  hash.array(materials.reflectance);
-  hash.array(materials.emission);
   Hash factors;
   factors.text(factors_key.text());
   StageKey key;
   key.add("solver", options.solver == Solver::jacobi ? "jacobi" : "gauss-seidel");
   key.add("solve-tolerance", fmt::format("{}", options.tolerance));
   key.add("max-iterations", fmt::format("{}", options.max_iterations));
-  key.add("materials", hash.hex());
+  key.add("materials", materialsHash(materials));
   key.add("factors", factors.hex());
+  return key;
+}
+
+StageKey gatherKey(const GatherOptions& options, const PatchMaterials& materials,
+                   const PatchMesh& mesh) {
+  StageKey key;
+  key.add("at", options.at == GatherAt::patches ? "patches" : "vertices");
+  key.add("passes", fmt::format("{}", options.passes));
+  key.add("gather-tolerance", fmt::format("{}", options.tolerance));
+  key.add("resolution", fmt::format("{}", options.resolution));
+  key.add("seed", fmt::format("{}", options.seed));
+  key.add("crease", fmt::format("{}", options.crease));
+  key.add("materials", materialsHash(materials));
+  key.add("mesh", geometryHash(mesh));
   return key;
 }
 
@@ -155,6 +173,17 @@ SolveOptions solveOptionsOf(const StageKey& key) {
   if (key.get("solver") == "jacobi") options.solver = Solver::jacobi;
   read(key, "solve-tolerance", options.tolerance);
   read(key, "max-iterations", options.max_iterations);
+  return options;
+}
+
+GatherOptions gatherOptionsOf(const StageKey& key) {
+  GatherOptions options;
+  if (key.get("at") == "patches") options.at = GatherAt::patches;
+  read(key, "passes", options.passes);
+  read(key, "gather-tolerance", options.tolerance);
+  read(key, "resolution", options.resolution);
+  read(key, "seed", options.seed);
+  read(key, "crease", options.crease);
   return options;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "radiosity/form_factors.h"
+#include "radiosity/gather.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/scene.h"
 #include "radiosity/solve.h"
@@ -37,9 +38,13 @@ StageKey factorsKey(const FormFactorOptions& options, const PatchMesh& mesh);
 StageKey solutionKey(const SolveOptions& options, const PatchMaterials& materials,
                      const StageKey& factors_key);
 
+StageKey gatherKey(const GatherOptions& options, const PatchMaterials& materials,
+                   const PatchMesh& mesh);
+
 /// The options in a key; defaults where it says nothing.
 MeshOptions meshOptionsOf(const StageKey& key);
 FormFactorOptions factorOptionsOf(const StageKey& key);
 SolveOptions solveOptionsOf(const StageKey& key);
+GatherOptions gatherOptionsOf(const StageKey& key);
 
 }  // namespace radiosity::cli

@@ -337,4 +337,57 @@ void summarizeSolution(Report& report, const Solution& solution, const FormFacto
   warnOfBacks(report, s.energy, factors, mesh);
 }
 
+namespace {
+
+void passTable(Report& report, const std::vector<GatherPass>& passes) {
+  const auto sum = [](const std::vector<double>& bands) {
+    return std::accumulate(bands.begin(), bands.end(), 0.0);
+  };
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t k = 0; k < passes.size(); ++k) {
+    const GatherPass& pass = passes[k];
+    const double emitted = sum(pass.energy.emitted);
+    const auto share = [&](double part) {
+      return fmt::format("{:.4g}", emitted > 0 ? 100 * part / emitted : 0.0);
+    };
+    rows.push_back({fmt::format("{}", k + 1), fmt::format("{:.3g}", pass.seconds),
+                    fmt::format("{:.3e}", pass.change),
+                    pass.bound ? fmt::format("{:.3e}", *pass.bound) : "none",
+                    share(sum(pass.energy.absorbed)),
+                    share(sum(pass.energy.to_sky) + sum(pass.energy.on_backs)),
+                    share(sum(pass.in_flight)), share(sum(pass.energy.imbalance))});
+  }
+  report.table("passes",
+               {{"pass", "pass"},
+                {"seconds", "time s"},
+                {"change", "change / max E"},
+                {"bound_W_per_m2", "left W/m^2 at most"},
+                {"absorbed_percent", "absorbed %"},
+                {"lost_percent", "to sky and backs %"},
+                {"in_flight_percent", "in flight %"},
+                {"imbalance_percent", "imbalance %"}},
+               rows);
+}
+
+}  // namespace
+
+void summarizeGathered(Report& report, const Gathered& gathered, const GatherOptions& options,
+                       Detail detail) {
+  const GatherSummary& s = gathered.summary;
+  if (detail == Detail::brief) report.line("", oneLine(s.message));
+  const Section section(report, detail, "gather", "Gather");
+  report.text("at", "at", gathered.at == GatherAt::patches ? "patches" : "vertices");
+  report.count("eyes", "eyes", gathered.area.size());
+  report.count("hemicubes_per_pass", "hemicubes a pass", s.hemicubes);
+  report.count("resolution", "pixels along an edge", std::size_t(options.resolution));
+  report.count("pass_count", "passes", s.passes.size());
+  report.seconds("seconds", "time", s.seconds);
+  report.bytes("bytes", "memory", s.bytes);
+  report.text("simd_target", "instruction set", s.simd_target);
+  report.yesNo("closed", "closed scene", s.closed);
+  if (!s.passes.empty()) energyFigures(report, s.passes.back().energy);
+  passTable(report, s.passes);
+  report.text("message", "in words", oneLine(s.message));
+}
+
 }  // namespace radiosity::cli

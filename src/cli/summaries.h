@@ -3,6 +3,7 @@
 
 #include "cli/report.h"
 #include "radiosity/form_factors.h"
+#include "radiosity/gather.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/scene.h"
 #include "radiosity/solve.h"
@@ -24,5 +25,7 @@ void summarizeFactors(Report& report, const FormFactors& factors, const PatchMes
                       Detail detail);
 void summarizeSolution(Report& report, const Solution& solution, const FormFactors& factors,
                        const PatchMesh& mesh, const SolveOptions& options, Detail detail);
+void summarizeGathered(Report& report, const Gathered& gathered, const GatherOptions& options,
+                       Detail detail);
 
 }  // namespace radiosity::cli

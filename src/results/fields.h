@@ -2,6 +2,10 @@
 // units are the attribute `unit` of a dataset; sums and reports are attributes of their group.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "radiosity/results.h"
 #include "results/archive.h"
 
@@ -239,6 +243,104 @@ template <class Archive>
 void describe(Archive& a, Described<Archive, PatchMaterials>& m) {
   a("reflectance", m.reflectance);
   a("emission", m.emission, "W/m^2");
+}
+
+inline constexpr const char* kGatherAtWords[] = {"patches", "vertices"};
+inline constexpr const char* kGatherStatusWords[] = {"converged", "pass_limit", "no_light"};
+
+/// Passes as they are stored: a row each.
+struct PassColumns {
+  std::vector<double> seconds, change, bound;                                     // P
+  std::vector<double> emitted, absorbed, to_sky, on_backs, imbalance, in_flight;  // P x 3
+
+  PassColumns() = default;
+  explicit PassColumns(const std::vector<GatherPass>& passes) {
+    const auto append = [](std::vector<double>& to, const std::vector<double>& bands) {
+      to.insert(to.end(), bands.begin(), bands.end());
+    };
+    for (const GatherPass& pass : passes) {
+      seconds.push_back(pass.seconds);
+      change.push_back(pass.change);
+      bound.push_back(pass.bound.value_or(std::numeric_limits<double>::quiet_NaN()));
+      append(emitted, pass.energy.emitted);
+      append(absorbed, pass.energy.absorbed);
+      append(to_sky, pass.energy.to_sky);
+      append(on_backs, pass.energy.on_backs);
+      append(imbalance, pass.energy.imbalance);
+      append(in_flight, pass.in_flight);
+    }
+  }
+  /// Columns of unequal length end the list: results_check.cpp says so.
+  std::vector<GatherPass> passes() const {
+    const auto bandsOf = [](const std::vector<double>& from, std::size_t pass) {
+      return std::vector<double>(from.begin() + std::ptrdiff_t(3 * pass),
+                                 from.begin() + std::ptrdiff_t(3 * pass + 3));
+    };
+    std::size_t count = std::min({seconds.size(), change.size(), bound.size()});
+    for (const auto* column : {&emitted, &absorbed, &to_sky, &on_backs, &imbalance, &in_flight}) {
+      count = std::min(count, column->size() / 3);
+    }
+    std::vector<GatherPass> result(count);
+    for (std::size_t k = 0; k < count; ++k) {
+      GatherPass& pass = result[k];
+      pass.seconds = seconds[k];
+      pass.change = change[k];
+      if (!std::isnan(bound[k])) pass.bound = bound[k];
+      pass.energy = {bandsOf(emitted, k), bandsOf(absorbed, k), bandsOf(to_sky, k),
+                     bandsOf(on_backs, k), bandsOf(imbalance, k)};
+      pass.in_flight = bandsOf(in_flight, k);
+    }
+    return result;
+  }
+};
+
+template <class Archive>
+void describe(Archive& a, Described<Archive, PassColumns>& p) {
+  a("seconds", p.seconds, "s");
+  a("change", p.change);
+  a("bound", p.bound, "W/m^2");
+  a.rows("emitted", p.emitted, 3, "W");
+  a.rows("absorbed", p.absorbed, 3, "W");
+  a.rows("to_sky", p.to_sky, 3, "W");
+  a.rows("on_backs", p.on_backs, 3, "W");
+  a.rows("imbalance", p.imbalance, 3, "W");
+  a.rows("in_flight", p.in_flight, 3, "W");
+}
+
+template <class Archive>
+void describe(Archive& a, Described<Archive, GatherSummary>& s) {
+  a.choice("status", s.status, kGatherStatusWords);
+  a("hemicubes", s.hemicubes);
+  a("pixels", s.pixels);
+  a("closed", s.closed);
+  a("bytes", s.bytes);
+  a("simd_target", s.simd_target);
+  a("seconds", s.seconds);
+  a("message", s.message);
+  a.group("passes", [&](auto& passes) {
+    if constexpr (Archive::kReading) {
+      PassColumns columns;
+      describe(passes, columns);
+      s.passes = columns.passes();
+    } else {
+      const PassColumns columns(s.passes);
+      describe(passes, columns);
+    }
+  });
+}
+
+template <class Archive>
+void describe(Archive& a, Described<Archive, Gathered>& g) {
+  a.choice("at", g.at, kGatherAtWords);
+  a("bands", g.bands);
+  a.rows("radiosity", g.radiosity, 3, "W/m^2");
+  a.rows("irradiance", g.irradiance, 3, "W/m^2");
+  a("backs", g.backs);
+  a("sky", g.sky);
+  a("area", g.area, "m^2");
+  a("position", g.position, "m");
+  a("eye_of_corner", g.eye_of_corner);
+  a.group("summary", [&](auto& summary) { describe(summary, g.summary); });
 }
 
 }  // namespace radiosity

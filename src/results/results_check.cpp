@@ -104,6 +104,23 @@ void checkSolution(const Checker& check, const Solution& s) {
   check.length(s.irradiance, empty ? 0 : s.radiosity.size(), "/solution/irradiance");
 }
 
+void checkGathered(const Checker& check, const Gathered& g, const PatchMesh& mesh) {
+  const std::size_t eyes = g.area.size();
+  check.require(g.bands == 3, "/gather/bands", "is not 3");
+  check.length(g.radiosity, 3 * eyes, "/gather/radiosity");
+  check.length(g.irradiance, 3 * eyes, "/gather/irradiance");
+  check.length(g.backs, eyes, "/gather/backs");
+  check.length(g.sky, eyes, "/gather/sky");
+  check.length(g.position, eyes, "/gather/position");
+  if (g.at == GatherAt::patches) {
+    check.length(g.area, mesh.size(), "/gather/area");
+    check.length(g.eye_of_corner, 0, "/gather/eye_of_corner");
+  } else {
+    check.length(g.eye_of_corner, mesh.corners.size(), "/gather/eye_of_corner");
+    check.indices(g.eye_of_corner, eyes, false, "/gather/eye_of_corner");
+  }
+}
+
 }  // namespace
 
 void checkResults(const std::string& path, const Results& results) {
@@ -111,6 +128,11 @@ void checkResults(const std::string& path, const Results& results) {
   if (results.scene) checkScene(check, *results.scene);
   if (results.mesh) checkMesh(check, results.mesh->mesh);
   if (results.solution) checkSolution(check, *results.solution);
+
+  if (results.gathered) {
+    check.require(results.mesh.has_value(), "/gather", "comes without /mesh");
+    checkGathered(check, *results.gathered, results.mesh->mesh);
+  }
 
   // All stages are about the same N patches.
   std::optional<std::size_t> n;

@@ -72,6 +72,13 @@ class StageWriter {
     group.text("key", results_.solution_key);
     describe(fields, *results_.solution);
   }
+  void gathered() {
+    if (!results_.gathered) return;
+    Sink group = root_.group("gather");
+    group.text("key", results_.gather_key);
+    FieldWriter<Sink> fields(group);
+    describe(fields, *results_.gathered);
+  }
 
  private:
   Sink& root_;
@@ -153,6 +160,12 @@ void readStages(const InputGroup& root, bool with_factors, Results& results) {
       describe(fields, results.solution.emplace());
     }
   }
+  if (root.has("gather")) {
+    const InputGroup group = root.group("gather");
+    results.gather_key = group.text("key");
+    FieldReader fields(group);
+    describe(fields, results.gathered.emplace());
+  }
 }
 
 }  // namespace
@@ -197,6 +210,7 @@ void writeResults(const std::string& path, const Results& results, Progress& pro
       writeMatrix(factors, results.factors->matrix, progress);
     }
     stages.solution();
+    stages.gathered();
   }
   file.close();
   target.commit();
@@ -218,6 +232,7 @@ std::size_t estimateResultsBytes(const Results& results) {
     countMatrix(factors, results.factors->matrix);
   }
   stages.solution();
+  stages.gathered();
   return bytes;
 }
 

@@ -1,0 +1,37 @@
+#include "radiosity/gather.h"
+
+#include "cli/commands.h"
+
+namespace radiosity::cli {
+
+namespace {
+
+/// 1 where a limit that nobody asked for came first; 0 otherwise.
+int judgeGathered(Session& session, const GatherSummary& summary) {
+  if (summary.status == GatherStatus::converged) return 0;
+  const bool asked = summary.passes.size() != std::size_t(GatherOptions().passes);
+  if (summary.status == GatherStatus::pass_limit && (asked || session.request.passes)) return 0;
+  const bool dark = summary.status == GatherStatus::no_light;
+  const Note note{dark ? Severity::warning : Severity::loud,
+                  dark ? "nothing emits light, so B = 0 everywhere; make something a lamp with "
+                         "--set NAME.radiance=VALUE"
+                       : summary.message + "; allow more --passes"};
+  session.report.notes({&note, 1});
+  return dark ? 0 : 1;
+}
+
+}  // namespace
+
+int runGather(Session& session) {
+  OutputSet files = claimOutputs(session);
+  Pipeline pipeline(session.request, session.report, session.progress);
+  pipeline.open(files.path(Format::results));
+  pipeline.mesh();
+  pipeline.gathered();
+  const int code = judgeGathered(session, pipeline.gatheredLight().summary);
+  writeStages(session, pipeline, files);
+  files.commit(session.report, session.progress);
+  return code;
+}
+
+}  // namespace radiosity::cli

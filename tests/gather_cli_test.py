@@ -1,0 +1,75 @@
+"""radiosity gather: files, stage reuse, exit codes; the results read by h5py."""
+
+import unittest
+
+import h5py
+import numpy as np
+
+from cli_runner import CliTest
+
+SMALL = ["--patches", "60", "--resolution", "32"]
+
+
+class Gather(CliTest):
+    def test_vertices_into_a_results_file(self):
+        report = self.report("gather", "box.obj", *SMALL, "--passes", "7", "-o", "g.h5")["gather"]
+        self.assertEqual(report["at"], "vertices")
+        self.assertEqual(len(report["passes"]), 7)
+        with h5py.File(self.folder / "g.h5") as file:
+            self.assertNotIn("form_factors", file)  # no matrix is stored
+            group = file["gather"]
+            self.assertEqual(group.attrs["at"].decode() if isinstance(group.attrs["at"], bytes)
+                             else group.attrs["at"], "vertices")
+            radiosity = group["radiosity"][:]
+            self.assertEqual(radiosity.dtype, np.float32)
+            self.assertEqual(radiosity.shape, (report["eyes"], 3))
+            eyes = group["eye_of_corner"][:]
+            self.assertEqual(len(eyes), len(file["mesh/corners"]))
+            # Areas of the eyes are those of the patches: a unit cube.
+            self.assertAlmostEqual(group["area"][:].sum(), 6, delta=1e-9)
+            # Every eye stands at its vertex, moved by less than a patch.
+            vertex = file["mesh/vertices"][:][file["mesh/corners"][:]]
+            distance = np.linalg.norm(group["position"][:][eyes] - vertex, axis=1)
+            self.assertLess(distance.max(), 0.02)
+            self.assertEqual(group["summary/passes/emitted"].shape, (7, 3))
+
+    def test_closed_box_against_the_matrix(self):
+        # Same eyes: with as many bounces both methods have the same light, to float rounding and
+        # the tolerances (1e-6 of max E each; the lamp's E is 5 pi).
+        self.run_program("solve", "box.obj", *SMALL, "--solve-tolerance", "1e-7", "-o", "r.h5")
+        report = self.report("gather", "r.h5", "--at", "patches", "--resolution", "32",
+                             "--gather-tolerance", "1e-6")
+        self.assertEqual(report["stages"]["mesh"]["action"], "reused")
+        self.assertEqual(report["stages"]["solution"]["action"], "kept")
+        with h5py.File(self.folder / "r.h5") as file:
+            matrix = file["solution/radiosity"][:]
+            gathered = file["gather/radiosity"][:]
+        self.assertLess(np.abs(matrix - gathered).max(), 3e-6 * 5 * np.pi)
+
+    def test_stage_is_reused_recomputed_and_dropped(self):
+        self.run_program("gather", "box.obj", *SMALL, "-o", "g.h5")
+        action = self.report("gather", "g.h5")["stages"]["gather"]["action"]
+        self.assertEqual(action, "reused")
+        action = self.report("gather", "g.h5", "--at", "patches")["stages"]["gather"]
+        self.assertEqual(action["action"], "recomputed")
+        self.assertIn("vertices -> patches", action["detail"])
+        stages = self.report("solve", "g.h5", "--set", "wall.reflectance=.1")["stages"]
+        self.assertEqual(stages["gather"]["action"], "dropped")
+
+    def test_exit_codes(self):
+        # White walls and a grey lamp: far from converged after 100 passes.
+        white = ["--set", "wall.reflectance=1", "--set", "lamp.reflectance=0.999"]
+        small = ["--patches", "6", "--resolution", "16"]
+        run = self.run_program("gather", "box.obj", *small, *white, "--at", "patches", code=1)
+        self.assertIn("allow more --passes", run.err)
+        self.run_program("gather", "box.obj", *small, *white, "--at", "patches", "--passes", "100")
+        run = self.run_program("gather", "box.obj", *small, "--set", "lamp.radiance=0")
+        self.assertIn("nothing emits", run.err)
+        for option, value in [("--passes", "0"), ("--gather-tolerance", "2"), ("--at", "edges"),
+                              ("--resolution", "33"), ("--crease", "200")]:
+            run = self.run_program("gather", "box.obj", option, value, code=2)
+            self.assertIn(option, run.err)
+
+
+if __name__ == "__main__":
+    unittest.main()
