@@ -16,7 +16,7 @@ import h5py
 from cli_runner import DATA, PROGRAM, SMALL, CliTest
 
 # Minutes of work, so that a signal always finds it running.
-LONG = ["--patches", "20000", "--resolution", "2048"]
+LONG = ["--patches", "20000", "--method", "hemicube", "--resolution", "2048"]
 
 
 class BadArguments(CliTest):
@@ -44,6 +44,9 @@ class BadArguments(CliTest):
                 (["mesh", "box.obj", "--patches", "5", "--max-edge", "1"], ["--max-edge"]),
                 (["factors", "box.obj", "--resolution", "33"], ["resolution"]),
                 (["factors", "box.obj", "--memory-limit", "2X"], ["--memory-limit", "2X"]),
+                (["factors", "box.obj", "--tolerance", "0.5"], ["--tolerance", "0.5", "0.1"]),
+                (["factors", "box.obj", "--tolerance", "nan"], ["--tolerance", "nan"]),
+                (["factors", "box.obj", "--method", "exakt"], ["--method", "exakt"]),
                 (["solve", "box.obj", "--solve-tolerance", "-1"], ["tolerance"]),
                 (["solve", "box.obj", "--max-iterations", "0"], ["iterations"]),
                 (["render", "box.obj", "-o", "p.png", "--width", "0"], ["width"]),

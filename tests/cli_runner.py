@@ -11,7 +11,7 @@ PROGRAM = os.environ["RADIOSITY"]
 DATA = Path(os.environ["RADIOSITY_SOURCE_DIR"]) / "data"
 
 # Small enough for a run to take a fraction of a second.
-SMALL = ["--patches", "60", "--resolution", "32"]
+SMALL = ["--patches", "60", "--method", "hemicube", "--resolution", "32"]
 
 BOX_MTL = """newmtl lamp
 Kd 0.2 0.2 0.2

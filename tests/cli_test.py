@@ -235,11 +235,58 @@ class Reuse(CliTest):
         self.assertEqual((self.folder / "s.h5").read_bytes(), before)
 
 
+class ExactFactors(CliTest):
+    def test_default_is_exact_and_says_why(self):
+        report = self.report("factors", "box.obj", "--patches", "60", "-o", "f.h5")
+        factors = report["form_factors"]
+        self.assertEqual(factors["method"], "exact")
+        self.assertIn("exact", factors["method_reason"])
+        for key in ["pairs_unoccluded", "pairs_partial", "pairs_hidden", "pairs_no_exchange",
+                    "error_figure", "row_error_median", "largest_row_error", "closed"]:
+            self.assertIn(key, factors)
+        out = self.run_program("factors", "box.obj", "--patches", "60").out
+        self.assertRegex(out, r"(?m)^  pairs unoccluded +[\d,]+$")
+        self.assertRegex(out, r"(?m)^  error of F, relL2 +[\d.e-]+$")
+        with h5py.File(self.folder / "f.h5") as file:
+            group = file["form_factors"]
+            n = group["shape"][0]
+            self.assertEqual(group.attrs["method"], b"exact")
+            self.assertEqual(group["error"].shape, (n,))
+            matrix = scipy.sparse.csr_matrix((group["data"], group["indices"], group["indptr"]),
+                                   group["shape"][()]).toarray().astype(float)
+            exchange = group["area"][()][:, None] * matrix
+            # One value a pair is stored, in single precision.
+            np.testing.assert_allclose(exchange, exchange.T, rtol=2e-7)
+            np.testing.assert_allclose(matrix.sum(axis=1), 1, atol=3e-5)
+
+    def test_options_are_part_of_the_key(self):
+        self.run_program("factors", "box.obj", "--patches", "60", "-o", "f.h5")
+        self.assertEqual(actions(self.report("factors", "f.h5"))["form_factors"], "reused")
+        report = self.report("factors", "f.h5", "--tolerance", "1e-5")
+        self.assertEqual(report["stages"]["form_factors"]["action"], "recomputed")
+        self.assertEqual(report["stages"]["form_factors"]["detail"], "tolerance 0.001 -> 1e-05")
+        report = self.report("factors", "f.h5", "--method", "hemicube")
+        self.assertIn("method auto -> hemicube", report["stages"]["form_factors"]["detail"])
+        report = self.report("factors", "f.h5", "--near", "exact")
+        self.assertIn("near off -> exact", report["stages"]["form_factors"]["detail"])
+        self.assertGreater(report["form_factors"]["near_pairs"], 0)
+
+    def test_ten_digits_with_one_patch_a_face(self):
+        report = self.report("factors", DATA / "facing-plates.obj", "--faces-as-patches",
+                             "--tolerance", "1e-11", "-o", "f.h5")
+        self.assertLess(report["form_factors"]["error_figure"], 1e-10)
+        with h5py.File(self.folder / "f.h5") as file:
+            data = file["form_factors/data"][()]
+        self.assertEqual(data.dtype, np.float64)
+        # Howell C-11: unit squares at distance 1, recomputed with 20 digits.
+        np.testing.assert_allclose(data, 0.199824895698387, rtol=1e-10)
+
+
 class Physics(CliTest):
     def test_a_finer_mesh_leaves_the_brightness(self):
         def means(patches):
-            self.run_program("solve", DATA / "cornell-box.obj", "--patches", patches,
-                             "--resolution", "128", "-o", "c.h5")
+            self.run_program("solve", DATA / "cornell-box.obj", "--patches", patches, "--method",
+                             "hemicube", "--resolution", "128", "-o", "c.h5")
             with h5py.File(self.folder / "c.h5") as file:
                 area, surface = file["mesh/area"][()], file["mesh/surface"][()]
                 radiosity = file["solution/radiosity"][()]

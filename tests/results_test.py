@@ -39,7 +39,7 @@ class ResultsTest(unittest.TestCase):
 
     def factors(self, scene, *options):
         """Form factors of a scene of data/, as results file and as MatrixMarket."""
-        run("factors", os.path.join(DATA, scene), *options, "-o", self.path("x.h5"), "-o",
+        run("factors", os.path.join(DATA, scene), "--method", "hemicube", *options, "-o", self.path("x.h5"), "-o",
             self.path("x.mtx"))
 
     def test_scipy_reads_the_matrix(self):

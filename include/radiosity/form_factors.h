@@ -100,7 +100,7 @@ struct FormFactorReport {
   std::size_t skipped_face = 0;         ///< polygon-face pairs outside the face's pyramid
   std::size_t pixels = 0;               ///< resolved, summed over hemicubes
   std::size_t near_pairs = 0;           ///< entries replaced by area-to-area values
-  std::size_t capped = 0;               ///< of them held at A_i F_ij <= min(A_i, A_j)
+  std::size_t capped = 0;               ///< rows whose near entries were held at a sum of 1
   std::string simd_target;              ///< e.g. "AVX3", "scalar"
   double seconds = 0;
   std::size_t matrix_bytes = 0;

@@ -25,7 +25,7 @@ const char* descriptionOf(Command command) {
     case Command::mesh:
       return "Cut the scene into patches";
     case Command::factors:
-      return "Compute the form factors between the patches, by hemicubes";
+      return "Compute the form factors between the patches";
     case Command::solve:
       return "Solve B = E + rho F B for the radiosity of every patch";
     case Command::gather:
@@ -53,7 +53,9 @@ const char* examplesOf(Command command) {
              "as\n"
              "input is updated in place where no -o is given.\n\n"
              "Examples:\n"
-             "  radiosity factors data/cornell-box.obj --resolution 512 -o cornell.h5\n"
+             "  radiosity factors data/cornell-box.obj -o cornell.h5\n"
+             "  radiosity factors plates.obj --faces-as-patches --tolerance 1e-11 -o plates.h5\n"
+             "  radiosity factors data/cornell-box.obj --method hemicube --resolution 512\n"
              "  radiosity factors cornell.h5 -o cornell.mtx";
     case Command::solve:
       return "Files (-o): .h5 (results), .glb (lit mesh), .mtx (MatrixMarket). A results file "
@@ -172,24 +174,39 @@ void addMeshOptions(CLI::App& app, Request& r) {
 
 void addFactorOptions(CLI::App& app, Request& r) {
   const FormFactorOptions defaults;
-  app.add_option_function<std::string>(
-         "--method", [](const std::string&) {}, "hemicube (default)")
-      ->group("Form factors")
-      ->option_text("METHOD")
-      ->check(CLI::IsMember({"hemicube"}));
+  add(app, "Form factors", "--method", r.method, "METHOD",
+      "exact (area to area, what is hidden clipped off), hemicube (seen from one point a patch), "
+      "or "
+      "auto (default): exact unless the scene is too cluttered; the report says why")
+      ->check(CLI::IsMember({"auto", "exact", "hemicube"}));
+  add(app, "Form factors", "--tolerance", r.tolerance, "FRACTION",
+      fmt::format(
+          "exact: error aimed at for a partly hidden pair, relative to the mean form factor "
+          "1/N; 1e-12 to 0.1 (default {})",
+          defaults.tolerance));
+  add(app, "Form factors", "--closure", r.closure, "off|report|enforce",
+      "exact, in a closed scene: say how far row sums are from 1 (report, default), or change what "
+      "is not known in closed form, as little as possible, until they are 1 (enforce)")
+      ->check(CLI::IsMember({"off", "report", "enforce"}));
   add(app, "Form factors", "--resolution", r.resolution, "PIXELS",
-      fmt::format("Edge of the hemicube's top face; even, 16 to 4096 (default {})",
+      fmt::format("hemicube: edge of the top face; even, 16 to 4096 (default {})",
                   defaults.resolution));
   add(app, "Form factors", "--seed", r.seed, "N",
-      fmt::format("Seed of each hemicube's random turn (default {})", defaults.seed))
+      fmt::format("hemicube: seed of the random turns (default {})", defaults.seed))
       ->check(wholeNumber());
   app.add_flag_function(
          "--symmetrize,!--no-symmetrize", [&r](std::int64_t count) { r.symmetrize = count > 0; },
-         "Merge both estimates of each pair (A_i F_ij = A_j F_ji), then restore the row sums")
+         "hemicube: merge both estimates of each pair (A_i F_ij = A_j F_ji), then restore the row "
+         "sums")
       ->group("Form factors");
-  add(app, "Form factors", "--precision", r.precision, "single|double",
-      "Of the stored form factors (default single); sums are always double")
-      ->check(CLI::IsMember({"single", "double"}));
+  add(app, "Form factors", "--near", r.near_pairs, "exact|off",
+      "hemicube: area-to-area values for pairs closer than about two patch sizes (default off)")
+      ->check(CLI::IsMember({"exact", "off"}));
+  add(app, "Form factors", "--precision", r.precision, "auto|single|double",
+      "Of the stored form factors (default auto: single unless --tolerance is below 1e-6); sums "
+      "are "
+      "always double")
+      ->check(CLI::IsMember({"auto", "single", "double"}));
   add(app, "Form factors", "--memory-limit", r.memory_limit, "SIZE",
       "Refuse to start what needs more memory: bytes, or 512M, 2G, ... (default: no limit)");
 }

@@ -139,15 +139,21 @@ void Pipeline::mesh() {
 
 void Pipeline::announceFactors() {
   const FormFactorOptions& options = factor_options_;
-  const std::size_t memory = planFormFactors(patches(), options).bytes;
-  // A dense row takes no column numbers in memory; on disk every entry has one of 4 bytes.
-  const std::size_t disk =
-      options.storedPrecision() == Precision::real ? memory / 2 * 3 : memory * 2;
+  const FormFactorPlan plan = planFormFactors(patches(), options);
+  const bool exact = plan.method == FormFactorMethod::exact;
+  // On disk every entry has a column number of 4 bytes. In memory a dense row has none, and a
+  // symmetric matrix has half of the entries.
+  const std::size_t value = options.storedPrecision() == Precision::real ? 8 : 4;
+  const std::size_t disk = plan.bytes * (exact ? 2 : 1) * (value + 4) / value;
+  const std::string what =
+      exact ? fmt::format("exact between {} to {}", plural(patches().size(), "patch", "patches"),
+                          numberText(options.tolerance))
+            : fmt::format("{} of {} pixels", plural(patches().size(), "hemicube", "hemicubes"),
+                          options.resolution);
   report_.line("form factors",
-               fmt::format("{} of {} pixels: memory about {}{}",
-                           plural(patches().size(), "hemicube", "hemicubes"), options.resolution,
-                           bytesText(memory),
+               fmt::format("{}: memory about {}{}", what, bytesText(plan.bytes),
                            writes_results_ ? ", disk at most about " + bytesText(disk) : ""));
+  if (!plan.reason.empty()) report_.line("", "method: " + plan.reason);
 }
 
 void Pipeline::factors() {

@@ -1,5 +1,6 @@
 #include "cli/request.h"
 
+#include "cli/stage_key.h"
 #include "cli/words.h"
 
 namespace radiosity::cli {
@@ -53,10 +54,14 @@ MeshOptions Request::apply(MeshOptions options) const {
 }
 
 FormFactorOptions Request::apply(FormFactorOptions options) const {
+  if (method) options.method = methodNamed(*method);
+  set(options, &FormFactorOptions::tolerance, tolerance, "--tolerance");
+  if (closure) options.closure = closureNamed(*closure);
+  if (near_pairs) options.near_exact = *near_pairs == "exact";
   set(options, &FormFactorOptions::resolution, resolution, "--resolution");
   set(options, &FormFactorOptions::seed, seed, "--seed");
   set(options, &FormFactorOptions::symmetrize, symmetrize, "--symmetrize");
-  if (precision) options.precision = *precision == "double" ? Precision::real : Precision::single;
+  if (precision) options.precision = precisionNamed(*precision);
   if (!memory_limit.empty()) options.memory_limit = parseBytes("--memory-limit", memory_limit);
   options.validate();
   return options;

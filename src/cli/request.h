@@ -33,6 +33,10 @@ struct Request {
   std::optional<double> weld;
   std::optional<bool> faces_as_patches;
 
+  std::optional<std::string> method;
+  std::optional<double> tolerance;
+  std::optional<std::string> closure;
+  std::optional<std::string> near_pairs;
   std::optional<int> resolution;
   std::optional<std::uint64_t> seed;
   std::optional<bool> symmetrize;

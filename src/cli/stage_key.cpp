@@ -40,6 +40,16 @@ std::string materialsHash(const PatchMaterials& materials) {
   return hash.hex();
 }
 
+const char* nameOf(FormFactorMethod method) {
+  if (method == FormFactorMethod::automatic) return "auto";
+  return method == FormFactorMethod::exact ? "exact" : "hemicube";
+}
+
+const char* nameOf(ClosureMode closure) {
+  if (closure == ClosureMode::report) return "report";
+  return closure == ClosureMode::enforce ? "enforce" : "off";
+}
+
 std::string sceneHash(const Scene& scene) {
   Hash hash;
   hash.array(scene.vertices);
@@ -56,6 +66,21 @@ std::string sceneHash(const Scene& scene) {
 }
 
 }  // namespace
+
+FormFactorMethod methodNamed(std::string_view word) {
+  if (word == "hemicube") return FormFactorMethod::hemicube;
+  return word == "exact" ? FormFactorMethod::exact : FormFactorMethod::automatic;
+}
+
+ClosureMode closureNamed(std::string_view word) {
+  if (word == "off") return ClosureMode::off;
+  return word == "enforce" ? ClosureMode::enforce : ClosureMode::report;
+}
+
+std::optional<Precision> precisionNamed(std::string_view word) {
+  if (word == "single") return Precision::single;
+  return word == "double" ? std::optional(Precision::real) : std::nullopt;
+}
 
 StageKey::StageKey(std::string_view text) {
   while (!text.empty()) {
@@ -112,12 +137,20 @@ StageKey meshKey(const MeshOptions& options, const Scene& scene) {
   return key;
 }
 
+// Every option the result depends on, as asked for: `auto` picks the same for the same mesh.
 StageKey factorsKey(const FormFactorOptions& options, const PatchMesh& mesh) {
   StageKey key;
-  key.add("method", "hemicube");
-  key.add("resolution", fmt::format("{}", options.resolution));
-  key.add("seed", fmt::format("{}", options.seed));
-  key.add("symmetrize", onOff(options.symmetrize));
+  key.add("method", nameOf(options.method));
+  if (options.method != FormFactorMethod::hemicube) {
+    key.add("tolerance", fmt::format("{}", options.tolerance));
+    key.add("closure", nameOf(options.closure));
+  }
+  if (options.method != FormFactorMethod::exact) {
+    key.add("resolution", fmt::format("{}", options.resolution));
+    key.add("seed", fmt::format("{}", options.seed));
+    key.add("symmetrize", onOff(options.symmetrize));
+    key.add("near", options.near_exact ? "exact" : "off");
+  }
   key.add("precision", options.storedPrecision() == Precision::real ? "double" : "single");
   key.add("mesh", geometryHash(mesh));
   return key;
@@ -161,10 +194,14 @@ MeshOptions meshOptionsOf(const StageKey& key) {
 
 FormFactorOptions factorOptionsOf(const StageKey& key) {
   FormFactorOptions options;
+  options.method = methodNamed(key.get("method").value_or(""));
+  read(key, "tolerance", options.tolerance);
+  options.closure = closureNamed(key.get("closure").value_or(""));
+  options.near_exact = key.get("near") == "exact";
   read(key, "resolution", options.resolution);
   read(key, "seed", options.seed);
   read(key, "symmetrize", options.symmetrize);
-  if (key.get("precision") == "double") options.precision = Precision::real;
+  options.precision = precisionNamed(key.get("precision").value_or(""));
   return options;
 }
 

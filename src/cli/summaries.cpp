@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "cli/section.h"
 #include "cli/words.h"
 
 namespace radiosity::cli {
@@ -14,22 +15,6 @@ namespace {
 
 // Light lost on backs that is worth a warning, as a share of what is emitted.
 constexpr double kBacksWorthWarning = 1e-3;
-
-/// Figures within its lifetime are recorded, and printed only where `detail` is full.
-class Section {
- public:
-  Section(Report& report, Detail detail, const std::string& key, const std::string& title)
-      : report_(report) {
-    report_.mute(detail != Detail::full);
-    report_.section(key, title);
-  }
-  ~Section() { report_.mute(false); }
-  Section(const Section&) = delete;
-  Section& operator=(const Section&) = delete;
-
- private:
-  Report& report_;
-};
 
 std::string triple(const Vec3& v) {
   return fmt::format("{}, {}, {}", numberText(v.x), numberText(v.y), numberText(v.z));
@@ -199,57 +184,6 @@ void summarizeMesh(Report& report, const MeshResult& result, Detail detail) {
     report.count("nonmanifold_edges", "non-manifold edges", r.nonmanifold_edges);
     report.count("crossings", "crossings not repaired", r.crossings);
     surfaceAreas(report, r);
-  }
-  if (detail != Detail::none) report.notes(r.notes);
-}
-
-void summarizeFactors(Report& report, const FormFactors& factors, const PatchMesh& mesh,
-                      Detail detail) {
-  const FormFactorReport& r = factors.report;
-  const double per_hemicube = r.hemicubes > 0 ? r.seconds / double(r.hemicubes) : 0;
-  if (detail == Detail::brief) {
-    report.line("",
-                fmt::format("{} in {}; {}; {}; largest row error {}",
-                            plural(r.hemicubes, "hemicube", "hemicubes"), durationText(r.seconds),
-                            bytesText(r.matrix_bytes), r.closed ? "closed scene" : "open scene",
-                            numberText(r.largest_row_error, 3)));
-  }
-  {
-    const Section section(report, detail, "form_factors", "Form factors");
-    report.text("method", "method", factors.method);
-    report.count("hemicubes", "hemicubes", r.hemicubes);
-    report.count("empty_rows", "empty rows (degenerate)", r.empty_rows);
-    report.seconds("seconds", "time", r.seconds);
-    report.number("microseconds_per_hemicube", "time per hemicube", 1e6 * per_hemicube, "us");
-    report.text("simd_target", "instruction set", r.simd_target);
-    report.bytes("matrix_bytes", "matrix in memory", r.matrix_bytes);
-    report.bytes("estimated_bytes", "  estimated before", r.estimated_bytes);
-    report.count("pixels", "pixels resolved", r.pixels);
-    report.count("polygons", "planar polygons", r.polygons);
-    report.count("rasterised_polygons", "polygons rasterised", r.rasterised_polygons);
-    report.count("skipped_own_plane", "skipped: own plane", r.skipped_own_plane);
-    report.count("skipped_horizon", "skipped: below horizon", r.skipped_horizon);
-    report.count("skipped_facing_away", "skipped: facing away", r.skipped_facing_away);
-    report.count("skipped_face", "skipped: outside a face", r.skipped_face);
-    report.yesNo("closed", "closed scene", r.closed);
-    report.number("largest_row_error", "|fronts+backs+sky - 1|", r.largest_row_error);
-    report.number("reciprocity_residual", "reciprocity residual", r.reciprocity_residual);
-    report.yesNo("symmetrized", "symmetrized", r.symmetrized);
-    if (r.symmetrized) {
-      report.count("closure_iterations", "closure: iterations", std::size_t(r.closure.iterations));
-      report.number("closure_residual_before", "closure: residual before",
-                    r.closure.largest_residual_before);
-      report.number("closure_residual", "closure: residual after", r.closure.largest_residual);
-      report.number("closure_largest_move", "closure: largest move", r.closure.largest_move);
-      report.number("closure_relative_move", "closure: relative move", r.closure.relative_move);
-    }
-    std::vector<std::vector<std::string>> rows;
-    for (std::size_t s = 0; s < factors.backs_by_surface.size(); ++s) {
-      if (factors.backs_by_surface[s] <= 0) continue;
-      rows.push_back({mesh.surface_names[s], numberText(factors.backs_by_surface[s])});
-    }
-    report.table("backs_by_surface",
-                 {{"name", "seen from behind", false}, {"share", "share of the view", true}}, rows);
   }
   if (detail != Detail::none) report.notes(r.notes);
 }

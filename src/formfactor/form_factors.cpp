@@ -3,10 +3,55 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <optional>
 
+#include "formfactor/exact/exact_factors.h"
 #include "formfactor/hemicube_factors.h"
 
 namespace radiosity {
+namespace {
+
+/// Hemicubes are chosen only where they save a wait, ...
+constexpr double kPatience = 60;
+/// ... and much of it: they stall at some per cent of the matrix however many pixels they have.
+constexpr double kWorthTheError = 30;
+
+/// Of one core: what a hemicube of 256 pixels took on a 2.7 GHz Xeon; with the pixels elsewhere.
+double hemicubeSeconds(const PatchMesh& mesh, const FormFactorOptions& options) {
+  const double pixels = double(options.resolution) / 256;
+  return 4e-4 * pixels * pixels * double(mesh.size());
+}
+
+std::string timeText(double seconds) {
+  return seconds < 1 ? std::string("less than 1 s") : fmt::format("about {:.0f} s", seconds);
+}
+
+FormFactorPlan planWith(const ExactEstimate& estimate, const PatchMesh& mesh,
+                        const FormFactorOptions& options) {
+  FormFactorPlan plan{FormFactorMethod::exact, "", estimate.bytes};
+  if (options.method == FormFactorMethod::exact) return plan;
+  const double hemicubes = hemicubeSeconds(mesh, options);
+  const std::string clutter =
+      estimate.partial_pairs < 1
+          ? std::string("no pair of a sample is partly hidden")
+          : fmt::format("about {:.2g} pairs are partly hidden, past {:.1f} occluders each",
+                        estimate.partial_pairs, estimate.occluders_per_partial);
+  if (estimate.seconds > kPatience && estimate.seconds > kWorthTheError * hemicubes) {
+    plan.method = FormFactorMethod::hemicube;
+    plan.reason = fmt::format("hemicube: {}; exact would take a core {}, hemicubes {}", clutter,
+                              timeText(estimate.seconds), timeText(hemicubes));
+  } else if (options.memory_limit > 0 && estimate.bytes > options.memory_limit) {
+    plan.method = FormFactorMethod::hemicube;
+    plan.reason = fmt::format("hemicube: exact would need {:.0f} MiB, more than the limit",
+                              double(estimate.bytes) / (1024.0 * 1024.0));
+  } else {
+    plan.reason = fmt::format("exact: {}; {} of a core", clutter, timeText(estimate.seconds));
+  }
+  if (plan.method == FormFactorMethod::hemicube) plan.bytes = hemicubeBytes(mesh, options);
+  return plan;
+}
+
+}  // namespace
 
 void FormFactorOptions::validate() const {
   if (resolution < 16 || resolution > 4096 || resolution % 2 != 0) {
@@ -26,17 +71,39 @@ Precision FormFactorOptions::storedPrecision() const {
 
 FormFactorPlan planFormFactors(const PatchMesh& mesh, const FormFactorOptions& options) {
   options.validate();
-  return {FormFactorMethod::hemicube, "", hemicubeBytes(mesh, options)};
+  if (options.method == FormFactorMethod::hemicube) {
+    return {FormFactorMethod::hemicube, "", hemicubeBytes(mesh, options)};
+  }
+  return planWith(estimateExact(ExactScene(mesh), options), mesh, options);
 }
 
 FormFactors computeFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
                                Progress& progress) {
   options.validate();
-  const auto start = std::chrono::steady_clock::now();
-  FormFactors result = hemicubeFactors(mesh, options, progress);
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  FormFactorPlan plan;
+  ExactEstimate estimate;
+  std::optional<ExactScene> scene;
+  if (options.method != FormFactorMethod::hemicube) {
+    scene.emplace(mesh);
+    estimate = estimateExact(*scene, options);
+    plan = planWith(estimate, mesh, options);
+  }
+  const double prepared = seconds();
+  FormFactors result;
+  if (scene && plan.method == FormFactorMethod::exact) {
+    result = exactFactors(mesh, *scene, estimate, options, progress);
+    result.report.exact.seconds_prepare += prepared;
+  } else {
+    scene.reset();
+    result = hemicubeFactors(mesh, options, progress);
+  }
   FormFactorReport& report = result.report;
+  report.method_reason = plan.reason;
   report.matrix_bytes = result.matrix.bytes();
-  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report.seconds = seconds();
   return result;
 }
 

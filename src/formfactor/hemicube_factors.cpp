@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
 
 #include "base/parallel.h"
+#include "formfactor/near_pairs.h"
 #include "formfactor/row_accounts.h"
 #include "formfactor/row_builder.h"
 
@@ -16,13 +19,38 @@ struct Worker {
   Hemicube hemicube;
   std::vector<std::uint8_t> hidden;
   PackedRow row;
+  std::size_t near_pairs = 0;
+  std::size_t capped = 0;
 };
 
-void fillRows(const RowBuilder& rows, FormFactors& result,
+/// Stores row i as it was seen, or with its near entries put right.
+void storeRow(std::size_t i, const HemicubeView& view, const NearPairs* near_pairs, Worker& worker,
+              FormFactors& result, std::vector<SeenBack>& seen_backs) {
+  const std::size_t n = result.fronts.size();
+  worker.row.pack(view, n);
+  result.fronts[i] = view.fronts;
+  double rest = 1;
+  if (near_pairs != nullptr) {
+    const NearPairs::Outcome outcome = near_pairs->correct(i, worker.row);
+    worker.near_pairs += outcome.replaced;
+    worker.capped += outcome.capped;
+    rest = outcome.rest;
+    const std::vector<double>& values = worker.row.values;
+    result.fronts[i] = std::accumulate(values.begin(), values.end(), 0.0);
+  }
+  result.matrix.setRow(i, worker.row.columns, worker.row.values);
+  result.backs[i] = rest * view.backs;
+  result.sky[i] = rest * view.sky;
+  for (std::size_t item = n; view.backs > 0 && item < view.items.size(); ++item) {
+    if (view.items[item] > 0) seen_backs.push_back({Index(item - n), rest * view.items[item]});
+  }
+}
+
+void fillRows(const RowBuilder& rows, const NearPairs* near_pairs, FormFactors& result,
               std::vector<std::vector<SeenBack>>& seen_backs, Progress& progress) {
   const std::size_t n = result.fronts.size();
   tbb::enumerable_thread_specific<Worker> workers([&] {
-    return Worker{rows.makeHemicube(), {}, {}};
+    return Worker{rows.makeHemicube(), {}, {}, 0, 0};
   });
   progress.begin("form factors", n);
   parallelFor(n, 1, [&](std::size_t i) {
@@ -30,14 +58,7 @@ void fillRows(const RowBuilder& rows, FormFactors& result,
     if (!rows.isEmpty(i)) {
       Worker& worker = workers.local();
       const HemicubeView& view = rows.look(i, worker.hemicube, worker.hidden);
-      worker.row.pack(view, n);
-      result.matrix.setRow(i, worker.row.columns, worker.row.values);
-      result.fronts[i] = view.fronts;
-      result.backs[i] = view.backs;
-      result.sky[i] = view.sky;
-      for (std::size_t item = n; view.backs > 0 && item < view.items.size(); ++item) {
-        if (view.items[item] > 0) seen_backs[i].push_back({Index(item - n), view.items[item]});
-      }
+      storeRow(i, view, near_pairs, worker, result, seen_backs[i]);
     }
     progress.advance();
   });
@@ -45,8 +66,12 @@ void fillRows(const RowBuilder& rows, FormFactors& result,
   progress.end();
 
   HemicubeCounts counts;
-  for (const Worker& worker : workers) counts += worker.hemicube.counts();
   FormFactorReport& report = result.report;
+  for (const Worker& worker : workers) {
+    counts += worker.hemicube.counts();
+    report.near_pairs += worker.near_pairs;
+    report.capped += worker.capped;
+  }
   report.hemicubes = counts.hemicubes;
   report.empty_rows = n - counts.hemicubes;
   report.rasterised_polygons = counts.rasterised_polygons;
@@ -94,7 +119,9 @@ FormFactors hemicubeFactors(const PatchMesh& mesh, const FormFactorOptions& opti
   result.backs.assign(n, 0.0);
   result.sky.assign(n, 0.0);
   std::vector<std::vector<SeenBack>> seen_backs(n);
-  fillRows(rows, result, seen_backs, progress);
+  std::optional<NearPairs> near_pairs;
+  if (options.near_exact) near_pairs.emplace(mesh, options);
+  fillRows(rows, near_pairs ? &*near_pairs : nullptr, result, seen_backs, progress);
   accountForBacks(mesh, seen_backs, result);
   checkRows(result);
   report.reciprocity_residual = reciprocityResidual(result.matrix);

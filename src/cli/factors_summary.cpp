@@ -1,0 +1,135 @@
+// What the form factors say of themselves.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cli/section.h"
+#include "cli/summaries.h"
+#include "cli/words.h"
+
+namespace radiosity::cli {
+
+namespace {
+
+std::string briefLine(const FormFactors& factors) {
+  const FormFactorReport& r = factors.report;
+  const std::string scene = r.closed ? "closed scene" : "open scene";
+  if (factors.method == "exact") {
+    const ExactReport& e = r.exact;
+    return fmt::format("{}, {} partly hidden, in {}; {}; {}; error of the matrix about {}",
+                       plural(e.unoccluded + e.partial, "pair", "pairs"), countText(e.partial),
+                       durationText(r.seconds), bytesText(r.matrix_bytes), scene,
+                       numberText(r.error_figure, 2));
+  }
+  return fmt::format("{} in {}; {}; {}; largest row error {}",
+                     plural(r.hemicubes, "hemicube", "hemicubes"), durationText(r.seconds),
+                     bytesText(r.matrix_bytes), scene, numberText(r.largest_row_error, 3));
+}
+
+void hemicubeFigures(Report& report, const FormFactorReport& r) {
+  const double per_hemicube = r.hemicubes > 0 ? r.seconds / double(r.hemicubes) : 0;
+  report.count("hemicubes", "hemicubes", r.hemicubes);
+  report.number("microseconds_per_hemicube", "time per hemicube", 1e6 * per_hemicube, "us");
+  report.count("pixels", "pixels resolved", r.pixels);
+  report.count("rasterised_polygons", "polygons rasterised", r.rasterised_polygons);
+  report.count("skipped_own_plane", "skipped: own plane", r.skipped_own_plane);
+  report.count("skipped_horizon", "skipped: below horizon", r.skipped_horizon);
+  report.count("skipped_facing_away", "skipped: facing away", r.skipped_facing_away);
+  report.count("skipped_face", "skipped: outside a face", r.skipped_face);
+  report.count("near_pairs", "near entries made exact", r.near_pairs);
+  report.count("capped", "  rows held at 1", r.capped);
+}
+
+/// Pairs of patches by what became of them, then what it took.
+void exactFigures(Report& report, const ExactReport& e) {
+  report.count("elements", "elements", e.elements);
+  report.count("bare_elements", "  and of bare backs", e.bare_elements);
+  report.count("facets", "facets", e.facets);
+  report.count("occluders", "occluders", e.occluders);
+  report.count("solids", "  of them convex solids", e.solids);
+  report.count("skipped_hull", "skipped: cannot block", e.skipped_hull);
+  report.count("pairs_no_exchange", "pairs without exchange", e.no_exchange);
+  report.count("pairs_unoccluded", "pairs unoccluded", e.unoccluded);
+  report.count("pairs_hidden", "pairs hidden", e.hidden);
+  report.count("pairs_partial", "pairs partly hidden", e.partial);
+  report.count("facet_pairs", "facet pairs", e.facet_pairs);
+  report.count("skipped_facet_pairs", "skipped: no exchange", e.facet_pairs_no_exchange);
+  report.count("skipped_visibility", "skipped: visibility", e.facet_pairs_unoccluded);
+  report.count("shaft_tests", "shaft tests", e.shaft_tests);
+  report.count("contour", "values by contour", e.contour);
+  report.count("lambert", "values by Lambert", e.lambert);
+  report.count("product", "values by quadrature", e.product);
+  report.count("clipped", "  clipped to front sides", e.clipped);
+  report.count("points", "points of partial pairs", e.points);
+  report.count("subdivided", "partial pairs refined", e.subdivided);
+  report.count("by_pixels", "partial pairs by pixels", e.by_pixels);
+  report.count("rechecked", "checked from other end", e.rechecked);
+  report.number("recheck_ratio", "  difference / stated", e.recheck_ratio);
+  report.seconds("seconds_prepare", "time: preparing", e.seconds_prepare);
+  report.seconds("seconds_visibility", "time: visibility", e.seconds_visibility);
+  report.seconds("seconds_unoccluded", "time: closed forms", e.seconds_unoccluded);
+  report.seconds("seconds_partial", "time: clipping", e.seconds_partial);
+  report.seconds("seconds_assembly", "time: storing rows", e.seconds_assembly);
+  report.seconds("seconds_finish", "time: finishing", e.seconds_finish);
+}
+
+void accuracyFigures(Report& report, const FormFactors& factors) {
+  const FormFactorReport& r = factors.report;
+  report.yesNo("closed", "closed scene", r.closed);
+  if (factors.method == "exact") {
+    report.number("error_figure", "error of F, relL2", r.error_figure);
+    std::vector<double> rows = factors.error;
+    std::sort(rows.begin(), rows.end());
+    const double median = rows.empty() ? 0.0 : rows[rows.size() / 2];
+    report.number("row_error_median", "  of a row: median", median);
+    report.number("row_error_largest", "  of a row: largest", rows.empty() ? 0.0 : rows.back());
+    report.number("largest_row_error", r.closed ? "closure |fronts+backs - 1|" : "rows above 1 by",
+                  r.largest_row_error);
+  } else {
+    report.number("largest_row_error", "|fronts+backs+sky - 1|", r.largest_row_error);
+    report.number("reciprocity_residual", "reciprocity residual", r.reciprocity_residual);
+    report.yesNo("symmetrized", "symmetrized", r.symmetrized);
+  }
+  if (r.closure.iterations == 0) return;
+  report.count("closure_iterations", "closure: iterations", std::size_t(r.closure.iterations));
+  report.number("closure_residual_before", "closure: residual before",
+                r.closure.largest_residual_before);
+  report.number("closure_residual", "closure: residual after", r.closure.largest_residual);
+  report.number("closure_largest_move", "closure: largest move", r.closure.largest_move);
+  report.number("closure_relative_move", "closure: relative move", r.closure.relative_move);
+}
+
+}  // namespace
+
+void summarizeFactors(Report& report, const FormFactors& factors, const PatchMesh& mesh,
+                      Detail detail) {
+  const FormFactorReport& r = factors.report;
+  if (detail == Detail::brief) report.line("", briefLine(factors));
+  {
+    const Section section(report, detail, "form_factors", "Form factors");
+    report.text("method", "method", factors.method);
+    if (!r.method_reason.empty()) report.text("method_reason", "  because", r.method_reason);
+    report.count("empty_rows", "empty rows (degenerate)", r.empty_rows);
+    report.seconds("seconds", "time", r.seconds);
+    report.text("simd_target", "instruction set", r.simd_target);
+    report.bytes("matrix_bytes", "matrix in memory", r.matrix_bytes);
+    report.bytes("estimated_bytes", "  estimated before", r.estimated_bytes);
+    report.count("polygons", "planar polygons", r.polygons);
+    if (factors.method == "exact") {
+      exactFigures(report, r.exact);
+    } else {
+      hemicubeFigures(report, r);
+    }
+    accuracyFigures(report, factors);
+    std::vector<std::vector<std::string>> rows;
+    for (std::size_t s = 0; s < factors.backs_by_surface.size(); ++s) {
+      if (factors.backs_by_surface[s] <= 0) continue;
+      rows.push_back({mesh.surface_names[s], numberText(factors.backs_by_surface[s])});
+    }
+    report.table("backs_by_surface",
+                 {{"name", "seen from behind", false}, {"share", "share of the view", true}}, rows);
+  }
+  if (detail != Detail::none) report.notes(r.notes);
+}
+
+}  // namespace radiosity::cli

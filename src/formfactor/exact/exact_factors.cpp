@@ -1,0 +1,148 @@
+#include "formfactor/exact/exact_factors.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "formfactor/closed_scene.h"
+#include "formfactor/raster_kernels.h"
+#include "formfactor/row_accounts.h"
+
+namespace radiosity {
+namespace {
+
+/// Closed forms are cheap: they are made at least this accurate.
+constexpr double kClosedForm = 1e-5;
+/// About this share of the clipped pairs is evaluated again from the other end, ...
+constexpr double kRecheckShare = 1.0 / 256;
+/// ... and at least so many, as far as there are.
+constexpr double kRecheckLeast = 512;
+/// A row that leaves more than this to the sky needs no eye to tell that the scene is open.
+constexpr double kCertainSky = 0.01;
+
+std::size_t recheckEvery(double partial_pairs) {
+  const double share = std::max(kRecheckShare, kRecheckLeast / std::max(partial_pairs, 1.0));
+  return std::size_t(std::max(1.0, 1 / share));
+}
+
+/// All rows, in parallel. Sums are made in a tree that depends on the tasks alone.
+RowSums fillRows(const RowContext& context, const RowTasks& tasks, Progress& progress) {
+  tbb::enumerable_thread_specific<RowAssembly> workers([&] { return RowAssembly(context); });
+  using Range = tbb::blocked_range<std::size_t>;
+  progress.begin("form factors", context.order.ranked);
+  RowSums sums = tbb::parallel_deterministic_reduce(
+      Range(0, tasks.size(), 1), RowSums(context.order.ranked),
+      [&](const Range& range, RowSums part) {
+        for (std::size_t t = range.begin(); t != range.end() && !progress.cancelled(); ++t) {
+          const auto rows = tasks[t];
+          workers.local().run(rows, part);
+          const PatchOrder& order = context.order;
+          progress.advance(order.rank[rows.back().end - 1] + 1 - order.rank[rows.front().first]);
+        }
+        return part;
+      },
+      [](RowSums a, const RowSums& b) {
+        a += b;
+        return a;
+      });
+  progress.check();
+  progress.end();
+  return sums;
+}
+
+void reportCounts(const ExactScene& scene, const RowSums& sums, ExactReport& report) {
+  const ElementSet& elements = scene.elements;
+  report.elements = elements.patch_elements;
+  report.bare_elements = elements.size() - elements.patch_elements;
+  report.facets = elements.facets.size();
+  report.occluders = scene.occluders.occluders.size();
+  report.solids = scene.occluders.solids;
+  report.skipped_hull = scene.occluders.skipped_hull;
+  report.no_exchange = sums.visibility.no_exchange;
+  report.unoccluded = sums.visibility.unoccluded;
+  report.hidden = sums.visibility.hidden + sums.partial.hidden;
+  report.partial = sums.visibility.partial - sums.partial.hidden;
+  report.facet_pairs = sums.visibility.facet_pairs;
+  report.facet_pairs_no_exchange = sums.visibility.facet_pairs_no_exchange;
+  report.facet_pairs_unoccluded = sums.visibility.facet_pairs_unoccluded;
+  report.shaft_tests = sums.visibility.shaft_tests;
+  report.contour = sums.unoccluded.contour;
+  report.lambert = sums.unoccluded.lambert;
+  report.product = sums.unoccluded.product;
+  report.clipped = sums.unoccluded.clipped;
+  report.points = sums.partial.points;
+  report.subdivided = sums.partial.subdivided;
+  report.by_pixels = sums.partial.by_pixels;
+  report.rechecked = sums.error.rechecked();
+  report.recheck_ratio = sums.error.recheckRatio();
+  report.seconds_visibility = sums.seconds_visibility;
+  report.seconds_unoccluded = sums.seconds_unoccluded;
+  report.seconds_partial = sums.seconds_partial;
+  report.seconds_assembly = sums.seconds_assembly;
+}
+
+void setErrors(const PatchOrder& order, const ErrorSums& sums, double closed_form,
+               FormFactors& result) {
+  std::vector<double> figure(order.ranked);
+  result.report.error_figure = sums.figures(order.area, closed_form, figure);
+  result.error.assign(order.patch.size(), 0.0);
+  for (std::size_t k = 0; k < order.ranked; ++k) result.error[order.patch[k]] = figure[k];
+}
+
+/// Fronts are what the matrix holds; sky is what is left of an open scene's rows.
+void setAccounts(const PatchMesh& mesh, const PatchOrder& order, FormFactors& result) {
+  result.fronts = result.matrix.rowSums();
+  double most_sky = 0;
+  for (std::size_t k = 0; k < order.ranked; ++k) {
+    const Index i = order.patch[k];
+    result.sky[i] = 1 - result.fronts[i] - result.backs[i];
+    most_sky = std::max(most_sky, result.sky[i]);
+  }
+  FormFactorReport& report = result.report;
+  report.closed =
+      order.ranked > 0 && most_sky < kCertainSky && (closedByTopology(mesh) || closedByEye(mesh));
+  for (double& sky : result.sky) {
+    const double excess = report.closed ? std::abs(sky) : -sky;
+    report.largest_row_error = std::max(report.largest_row_error, excess);
+    if (report.closed) sky = 0;
+  }
+}
+
+}  // namespace
+
+FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
+                         const ExactEstimate& estimate, const FormFactorOptions& options,
+                         Progress& progress) {
+  const std::size_t n = mesh.size();
+  FormFactors result;
+  result.method = "exact";
+  FormFactorReport& report = result.report;
+  report.polygons = mesh.polygons.size();
+  report.simd_target = (options.simd ? simdKernels() : scalarKernels()).target;
+  report.empty_rows = n - scene.order.ranked;
+  report.estimated_bytes = estimate.bytes;
+  refuseTooLarge(estimate.bytes, options, n);
+
+  const double closed_form = std::min(options.tolerance, kClosedForm);
+  const UnoccludedKernel unoccluded(scene.elements, closed_form, options.simd);
+  const PartialKernel partial(scene.elements, scene.occluders, options.tolerance, options.simd);
+  result.matrix =
+      ExchangeMatrix::symmetric(mesh.area, scene.order.patch, options.storedPrecision());
+  result.backs.assign(n, 0.0);
+  result.sky.assign(n, 0.0);
+  std::vector<std::vector<SeenBack>> seen_backs(n);
+  const RowContext context{scene.elements, scene.order,  scene.visibility,
+                           unoccluded,     partial,      recheckEvery(estimate.partial_pairs),
+                           result.matrix,  result.backs, seen_backs};
+  const RowSums sums = fillRows(context, scene.tasks, progress);
+  reportCounts(scene, sums, report.exact);
+  setErrors(scene.order, sums.error, closed_form, result);
+  setAccounts(mesh, scene.order, result);
+  accountForBacks(mesh, seen_backs, result);
+  return result;
+}
+
+}  // namespace radiosity

@@ -1,0 +1,40 @@
+// What classification says of some rows, kept until it is worked off.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "formfactor/exact/elements.h"
+#include "formfactor/exact/partial.h"
+#include "formfactor/exact/visibility.h"
+
+namespace radiosity {
+
+/// A rectangle of pairs with nothing in between.
+struct PairBlock {
+  ElementRange rows;
+  ElementRange columns;
+};
+
+class RecordedPairs final : public VisibilitySink {
+ public:
+  void unoccluded(ElementRange rows, ElementRange columns) override {
+    blocks.push_back({rows, columns});
+  }
+  void partial(Index row, Index column, std::span<const Index> occluders) override {
+    const auto begin = std::uint32_t(occluder_list.size());
+    occluder_list.insert(occluder_list.end(), occluders.begin(), occluders.end());
+    partial_pairs.push_back({row, column, begin, std::uint32_t(occluder_list.size()), 0.0});
+  }
+  void clear() {
+    blocks.clear();
+    partial_pairs.clear();
+    occluder_list.clear();
+  }
+
+  std::vector<PairBlock> blocks;
+  std::vector<PartialPair> partial_pairs;
+  std::vector<Index> occluder_list;
+};
+
+}  // namespace radiosity

@@ -1,0 +1,26 @@
+// The rows of the matrix cut into pieces of work.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "formfactor/exact/elements.h"
+
+namespace radiosity {
+
+/// Consecutive ranges of elements, each a cluster's of one facet that carries patches, grouped into
+/// tasks of similar size. All elements of a patch are in one task. Depends on the elements alone.
+class RowTasks {
+ public:
+  explicit RowTasks(const ElementSet& elements);
+  std::size_t size() const { return offset_.size() - 1; }
+  std::span<const ElementRange> operator[](std::size_t task) const {
+    return {ranges_.data() + offset_[task], offset_[task + 1] - offset_[task]};
+  }
+
+ private:
+  std::vector<ElementRange> ranges_;
+  std::vector<std::size_t> offset_;  ///< tasks + 1, into ranges_
+};
+
+}  // namespace radiosity
