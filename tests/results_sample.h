@@ -245,6 +245,38 @@ inline Solution solution(std::size_t n, int bands) {
   return s;
 }
 
+inline Gathered gathered(const PatchMesh& mesh, GatherAt at) {
+  Gathered g;
+  g.at = at;
+  const std::size_t eyes = at == GatherAt::patches ? mesh.size() : mesh.corners.size();
+  for (std::size_t k = 0; k < eyes; ++k) {
+    for (std::size_t b = 0; b < 3; ++b) {
+      g.radiosity.push_back(std::sqrt(float(3 * k + b)));
+      g.irradiance.push_back(1e-30F * float(3 * k + b));
+    }
+    g.backs.push_back(0.25F / float(k + 1));
+    g.sky.push_back(0.125F / float(k + 1));
+    g.area.push_back(1.0 / double(k + 3));
+    g.position.push_back({double(k), 0.1, -1.0 / 3});
+  }
+  if (at == GatherAt::vertices) {
+    for (std::size_t k = 0; k < eyes; ++k) g.eye_of_corner.push_back(Index(eyes - 1 - k));
+  }
+  const auto filled = [](double v) { return std::vector<double>(3, v); };
+  const EnergyAccount energy{filled(1), filled(2), filled(3), filled(4), filled(-1e-17)};
+  g.summary.status = GatherStatus::pass_limit;
+  g.summary.passes = {{0.5, 1.0 / 3, std::nullopt, energy, filled(5)},
+                      {0.25, 1.0 / 7, 2.5, energy, filled(6)}};
+  g.summary.hemicubes = eyes;
+  g.summary.pixels = 12345678901;
+  g.summary.closed = true;
+  g.summary.bytes = 4096;
+  g.summary.simd_target = "AVX2";
+  g.summary.seconds = 1.25;
+  g.summary.message = "stopped after 2 passes";
+  return g;
+}
+
 inline Results results(Index side, Precision precision, int bands = 3) {
   Results r;
   r.version = "0.1.0";
@@ -257,6 +289,10 @@ inline Results results(Index side, Precision precision, int bands = 3) {
   r.materials = {std::vector<Vec3>(n, {0.1, 0.2, 0.3}), std::vector<Vec3>(n, {0, 1e-9, 17})};
   r.solution = solution(n, bands);
   r.solution_key = "tolerance=1e-6";
+  // Of both kinds, one in each sample.
+  r.gathered = gathered(r.mesh->mesh,
+                        precision == Precision::single ? GatherAt::patches : GatherAt::vertices);
+  r.gather_key = "passes=2";
   return r;
 }
 
@@ -342,9 +378,21 @@ inline auto members(const Solution& s) {
   const auto& [a, b, c, d] = s;
   return std::tie(a, b, c, d);
 }
-inline auto members(const Results& s) {
+inline auto members(const GatherPass& s) {
+  const auto& [a, b, c, d, e] = s;
+  return std::tie(a, b, c, d, e);
+}
+inline auto members(const GatherSummary& s) {
   const auto& [a, b, c, d, e, f, g, h, i] = s;
   return std::tie(a, b, c, d, e, f, g, h, i);
+}
+inline auto members(const Gathered& s) {
+  const auto& [a, b, c, d, e, f, g, h, i, j] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j);
+}
+inline auto members(const Results& s) {
+  const auto& [a, b, c, d, e, f, g, h, i, j, k] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k);
 }
 
 template <class T>
