@@ -297,6 +297,52 @@ TEST(RowTasks, EveryElementOnceAndPatchesWhole) {
   EXPECT_GT(tasks.size(), 8u);
 }
 
+TEST(ElementSet, PiecesOfAPatchStandTogether) {
+  // Pairs of interlocking L-shaped patches, each cut into two pieces, all over a floor.
+  MeshBuilder builder;
+  const auto rectangle = [](double x0, double x1, double y0, double y1) {
+    return MeshBuilder::Loop{{x0, y0, 0}, {x1, y0, 0}, {x1, y1, 0}, {x0, y1, 0}};
+  };
+  std::vector<MeshBuilder::Loop> outlines;
+  for (int x = 0; x < 8; ++x) {
+    for (int y = 0; y < 8; ++y) outlines.push_back(rectangle(x, x + 1, y, y + 1));
+  }
+  builder.polygon("floor", {rectangle(0, 8, 0, 8)}, outlines);
+  PatchMesh mesh = builder.build();
+  // Make two far apart cells of every eight one patch: as wide an interleaving as there can be.
+  const auto patch_count = mesh.size() / 2;
+  PatchMesh merged = mesh;
+  merged.corner_offset = {0};
+  merged.piece_offset = {0};
+  merged.corners.clear();
+  merged.pieces.clear();
+  for (std::size_t i = 0; i < patch_count; ++i) {
+    for (const std::size_t cell : {i, i + patch_count}) {
+      for (const Index c : mesh.outline(cell)) merged.corners.push_back(c);
+      for (std::size_t t = mesh.piece_offset[cell]; t < mesh.piece_offset[cell + 1]; ++t) {
+        merged.pieces.push_back(mesh.pieces[t]);
+      }
+    }
+    merged.corner_offset.push_back(merged.corners.size());
+    merged.piece_offset.push_back(merged.pieces.size());
+    merged.area[i] = mesh.area[i] + mesh.area[i + patch_count];
+  }
+  merged.area.resize(patch_count);
+  for (auto* field : {&merged.polygon, &merged.surface, &merged.index_in_surface, &merged.twin}) {
+    field->resize(patch_count);
+  }
+  merged.centroid.resize(patch_count);
+  merged.normal.resize(patch_count);
+  merged.side.resize(patch_count);
+  const ElementSet elements(merged);
+  ASSERT_EQ(elements.patch_elements, 4 * patch_count);
+  std::size_t changes = 1;
+  for (std::size_t e = 1; e < elements.patch_elements; ++e) {
+    if (elements.patch[e] != elements.patch[e - 1]) ++changes;
+  }
+  EXPECT_EQ(changes, patch_count);
+}
+
 TEST(ErrorSums, FiguresOfKnownErrors) {
   // Two rows of areas 2 and 1 with G_12 = 0.5, of which an error of 0.01 is stated.
   ErrorSums sums(2);

@@ -174,7 +174,17 @@ class ElementBuilder {
         element.lower = glm::min(element.lower, frame.flat(corner));
         element.upper = glm::max(element.upper, frame.flat(corner));
       }
-      element.middle = 0.5 * (element.lower + element.upper);
+    }
+    // Pieces of one patch share a middle: so they stay next to each other.
+    for (std::size_t first = 0; first < pieces.size();) {
+      Vec2 lower = flat[first].lower;
+      Vec2 upper = flat[first].upper;
+      std::size_t end = first + 1;
+      for (; !bare && end < pieces.size() && pieces[end].patch == pieces[first].patch; ++end) {
+        lower = glm::min(lower, flat[end].lower);
+        upper = glm::max(upper, flat[end].upper);
+      }
+      for (; first < end; ++first) flat[first].middle = 0.5 * (lower + upper);
     }
     facet.root = appendClusters(flat, frame, facet.elements.first, set_.clusters);
     for (const FlatElement& element : flat) append(pieces[element.item]);
