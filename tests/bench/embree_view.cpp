@@ -1,13 +1,8 @@
 #include "embree_view.h"
 
-#include <pmmintrin.h>
-#include <xmmintrin.h>
-
 #include <array>
 #include <glm/vec3.hpp>
 #include <limits>
-
-#include "triangulate.h"
 
 namespace radiosity::bench {
 namespace {
@@ -35,55 +30,16 @@ std::array<Vec3, 3> faceAxes(int face) {
 
 }  // namespace
 
-EmbreeView::EmbreeView(const ViewScene& scene)
-    : device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_)) {
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  for (Index p = 0; p < scene.polygons.size(); ++p) {
-    for (const auto& triangle : triangulate(scene, p)) {
-      triangles.push_back(triangle);
-      polygon_of_.push_back(p);
-    }
-  }
-  const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
-                                                               RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                                                               scene.vertices.size()));
-  for (const Vec3& v : scene.vertices) {
-    *vertices++ = float(v.x);
-    *vertices++ = float(v.y);
-    *vertices++ = float(v.z);
-  }
-  auto* corners = static_cast<std::uint32_t*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                              3 * sizeof(std::uint32_t), triangles.size()));
-  for (const auto& triangle : triangles) {
-    for (const std::uint32_t corner : triangle) *corners++ = corner;
-  }
-  rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(scene_, geometry);
-  rtcReleaseGeometry(geometry);
-  rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
-  rtcCommitScene(scene_);
-}
-
-EmbreeView::~EmbreeView() {
-  rtcReleaseScene(scene_);
-  rtcReleaseDevice(device_);
-}
+EmbreeView::EmbreeView(const ViewScene& scene) : scene_(scene) {}
 
 const std::vector<std::uint32_t>& EmbreeView::trace(const EyeFrame& frame, int resolution) {
-  // Embree's documentation asks for both flags; they are put back for what runs next.
-  const unsigned old_mode = _mm_getcsr();
-  _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
-  _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+  const FlushDenormals flush;
   const std::size_t pixels = std::size_t(resolution) * std::size_t(resolution);
   seen_.resize(3 * pixels);
   traceFace(frame, 0, resolution, seen_.data());
   for (std::size_t face = 1; face < 5; ++face) {
     traceFace(frame, int(face), resolution, seen_.data() + pixels + (face - 1) * pixels / 2);
   }
-  _mm_setcsr(old_mode);
   return seen_;
 }
 
@@ -121,11 +77,11 @@ void EmbreeView::traceFace(const EyeFrame& frame, int face, int resolution, std:
         packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
         packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
       }
-      rtcIntersect16(valid, scene_, &context, &packet);
+      rtcIntersect16(valid, scene_.handle(), &context, &packet);
       for (int k = 0; k < kLanes; ++k) {
         const bool hit = packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
         out[(y0 + k / kTile) * resolution + x0 + k % kTile] =
-            hit ? polygon_of_[packet.hit.primID[k]] : kNone;
+            hit ? scene_.polygonOf()[packet.hit.primID[k]] : kNone;
       }
     }
   }

@@ -1,11 +1,10 @@
 // The same picture by ray tracing: Embree, set up as fast as it goes.
 #pragma once
 
-#include <embree3/rtcore.h>
-
 #include <cstdint>
 #include <vector>
 
+#include "embree_scene.h"
 #include "formfactor/eye_frame.h"
 #include "formfactor/view_scene.h"
 
@@ -17,22 +16,17 @@ namespace radiosity::bench {
 class EmbreeView {
  public:
   explicit EmbreeView(const ViewScene& scene);
-  ~EmbreeView();
-  EmbreeView(const EmbreeView&) = delete;
-  EmbreeView& operator=(const EmbreeView&) = delete;
 
   /// Polygon positions in scene.polygons (kNone: nothing hit), face after face, rows ascending.
   /// `resolution`: a multiple of 8.
   const std::vector<std::uint32_t>& trace(const EyeFrame& frame, int resolution);
 
-  std::size_t triangles() const { return polygon_of_.size(); }
+  std::size_t triangles() const { return scene_.triangles().size(); }
 
  private:
   void traceFace(const EyeFrame& frame, int face, int resolution, std::uint32_t* out);
 
-  RTCDevice device_;
-  RTCScene scene_;
-  std::vector<std::uint32_t> polygon_of_;  ///< of each triangle
+  EmbreeScene scene_;
   std::vector<std::uint32_t> seen_;
 };
 

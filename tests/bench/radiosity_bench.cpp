@@ -1,216 +1,113 @@
-// Verifies, then times: hemicubes by our item buffer beside Embree tracing the same pixels.
-//
-// Both see the same planar polygons (Embree triangulated) from the same eyes, one core each, in
-// turn, so that a busy machine slows both. Ours does the whole job: culling, drawing, depth test,
-// patch look-up, weighting and sums by patch. Embree's traces and notes the polygon, no more.
+// radiosity_bench [--quick] [--out DIR] [--only rates|truth|curves] [--scene NAME]: see
+// tools/bench.
 #include <fmt/format.h>
-#include <time.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdio>
-#include <glm/geometric.hpp>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <string>
 
-#include "bench_scenes.h"
-#include "embree_view.h"
-#include "formfactor/row_builder.h"
-#include "radiosity/form_factors.h"
+#include "error_curves.h"
+#include "rates.h"
+#include "report.h"
+#include "sobol.h"
+#include "summary.h"
 
 namespace radiosity::bench {
 namespace {
 
-constexpr int kRounds = 15;
-constexpr std::size_t kEyes = 24;
-
-/// Seconds this thread has had the processor: on a machine that others use, too, waiting does not
-/// count.
-double seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
-}
-
-/// The least of several timings: what other jobs take from the shared caches does not count.
-double least(const std::vector<double>& times) {
-  return *std::min_element(times.begin(), times.end());
-}
-
-std::size_t pixelsOf(int resolution) {
-  return 3 * std::size_t(resolution) * std::size_t(resolution);
-}
-
-FormFactorOptions optionsFor(int resolution) {
-  FormFactorOptions options;
-  options.method = FormFactorMethod::hemicube;
-  options.resolution = resolution;
-  return options;
-}
-
-/// Eyes spread evenly over the patches.
-std::vector<std::size_t> chooseEyes(const PatchMesh& mesh, const RowBuilder& rows) {
-  std::vector<std::size_t> eyes;
-  for (std::size_t k = 0; k < kEyes; ++k) {
-    const std::size_t patch = (2 * k + 1) * mesh.size() / (2 * kEyes);
-    if (!rows.isEmpty(patch)) eyes.push_back(patch);
-  }
-  return eyes;
-}
-
-EyeFrame frameOf(const PatchMesh& mesh, const RowBuilder& rows, std::size_t patch) {
-  return eyeFrame(mesh.centroid[patch] * rows.scene().scale, mesh.normal[patch],
-                  turnAngle(mesh, patch, 1));
-}
-
-/// Share of pixels in which both see the same polygon.
-double agreement(const PatchMesh& mesh, int resolution) {
-  const RowBuilder rows(mesh, optionsFor(resolution));
-  Hemicube hemicube = rows.makeHemicube();
-  EmbreeView embree(rows.scene());
-  std::vector<std::uint8_t> hidden;
-  std::size_t same = 0;
-  std::size_t all = 0;
-  for (const std::size_t patch : chooseEyes(mesh, rows)) {
-    rows.look(patch, hemicube, hidden);
-    auto traced = embree.trace(frameOf(mesh, rows, patch), resolution).begin();
-    for (int face = 0; face < kFaces; ++face) {
-      for (const Index polygon : hemicube.picture(face)) same += polygon == *traced++;
-    }
-    all += pixelsOf(resolution);
-  }
-  return double(same) / double(all);
-}
-
-/// The patches of `fine` nearest to those of `coarse`, on planes that face alike: two meshes of one
-/// scene are compared from the same places.
-std::vector<std::size_t> nearestPatches(const PatchMesh& coarse,
-                                        const std::vector<std::size_t>& patches,
-                                        const PatchMesh& fine) {
-  std::vector<std::size_t> nearest;
-  for (const std::size_t patch : patches) {
-    const auto distance = [&](std::size_t i) {
-      const bool alike = fine.surface[i] == coarse.surface[patch] &&
-                         glm::dot(fine.normal[i], coarse.normal[patch]) > 0.999;
-      return alike ? glm::distance(fine.centroid[i], coarse.centroid[patch]) : HUGE_VAL;
-    };
-    std::size_t best = 0;
-    for (std::size_t i = 1; i < fine.size(); ++i) {
-      if (distance(i) < distance(best)) best = i;
-    }
-    nearest.push_back(best);
-  }
-  return nearest;
-}
-
-/// Seconds a hemicube: ours, ours with a finer mesh, Embree's.
-struct Times {
-  double ours;
-  double fine;
-  double embree;
+struct Arguments {
+  bool quick = false;
+  bool rates = true;
+  bool truth = true;  ///< the curves need it; alone: rows are made and kept
+  bool curves = true;
+  std::string scene;  ///< this one alone; empty: all
+  std::string out = "out/bench";
+  std::string truth_folder = "build/bench/truth";
 };
 
-/// In turn, so that a busy machine slows all alike.
-Times timeHemicubes(const BenchScene& scene, int resolution) {
-  const RowBuilder rows(scene.mesh, optionsFor(resolution));
-  const RowBuilder fine_rows(scene.fine_mesh, optionsFor(resolution));
-  Hemicube hemicube = rows.makeHemicube();
-  Hemicube fine_hemicube = fine_rows.makeHemicube();
-  EmbreeView embree(rows.scene());
-  const std::vector<std::size_t> eyes = chooseEyes(scene.mesh, rows);
-  const std::vector<std::size_t> fine_eyes = nearestPatches(scene.mesh, eyes, scene.fine_mesh);
-  std::vector<std::uint8_t> hidden;
-  std::array<std::vector<double>, 3> times;
-  for (int round = 0; round < kRounds; ++round) {
-    double start = seconds();
-    const auto note = [&](std::vector<double>& list) {
-      const double now = seconds();
-      list.push_back((now - start) / double(eyes.size()));
-      start = now;
+[[noreturn]] void refuse(const std::string& argument) {
+  throw InputError(fmt::format(
+      "'{}': give [--quick] [--only rates|truth|curves] [--scene NAME] [--out DIR]", argument));
+}
+
+Arguments parse(int count, char** values) {
+  Arguments arguments;
+  for (int k = 1; k < count; ++k) {
+    const std::string name = values[k];
+    const auto value = [&] {
+      return k + 1 < count ? std::string(values[++k]) : (refuse(name), "");
     };
-    for (const std::size_t patch : eyes) rows.look(patch, hemicube, hidden);
-    note(times[0]);
-    for (const std::size_t patch : fine_eyes) fine_rows.look(patch, fine_hemicube, hidden);
-    note(times[1]);
-    for (const std::size_t patch : eyes) embree.trace(frameOf(scene.mesh, rows, patch), resolution);
-    note(times[2]);
-  }
-  return {least(times[0]), least(times[1]), least(times[2])};
-}
-
-/// Pixels of the finished picture a second, for drawing alone: clear, clip, scan conversion, depth
-/// test and write of depth and polygon. Pixels drawn over count once. This is what Embree's rate is
-/// to be set against: both then know the polygon in every pixel and no more.
-double fillRate(const PatchMesh& mesh, int resolution) {
-  const RowBuilder rows(mesh, optionsFor(resolution));
-  Hemicube hemicube = rows.makeHemicube();
-  std::vector<std::uint8_t> hidden;
-  constexpr int kRepeats = 10;
-  const std::vector<std::size_t> eyes = chooseEyes(mesh, rows);
-  std::vector<double> times;
-  for (int round = 0; round < kRounds; ++round) {
-    double total = 0;
-    for (const std::size_t patch : eyes) {
-      rows.look(patch, hemicube, hidden);
-      const double start = seconds();
-      for (int k = 0; k < kRepeats; ++k) hemicube.redraw();
-      total += seconds() - start;
+    if (name == "--quick") {
+      arguments.quick = true;
+    } else if (name == "--out") {
+      arguments.out = value();
+    } else if (name == "--scene") {
+      arguments.scene = value();
+    } else if (name == "--only") {
+      const std::string part = value();
+      if (part != "rates" && part != "truth" && part != "curves") refuse(part);
+      arguments.rates = part == "rates";
+      arguments.truth = part != "rates";
+      arguments.curves = part == "curves";
+    } else {
+      refuse(name);
     }
-    times.push_back(total / double(kRepeats * eyes.size()));
   }
-  return double(pixelsOf(resolution)) / least(times);
+  return arguments;
 }
 
-/// Rows a second of the whole computation on one thread: looked up, summed and stored in the
-/// matrix, the set-up and the reciprocity residual included.
-double rowRate(const PatchMesh& mesh, int resolution) {
-  Progress silent;
-  const double start = seconds();
-  const FormFactors f = computeFormFactors(mesh, optionsFor(resolution), silent);
-  return double(f.report.hemicubes) / (seconds() - start);
-}
-
-bool benchScene(const BenchScene& scene) {
-  const RowBuilder rows(scene.mesh, optionsFor(64));
-  fmt::print("\n{}: {} polygons ({} triangles for Embree), {} patches ({}), {}\n", scene.name,
-             scene.mesh.polygons.size(), EmbreeView(rows.scene()).triangles(), scene.mesh.size(),
-             scene.fine_mesh.size(), rows.kernels().target);
-  const double same = agreement(scene.mesh, 256);
-  fmt::print("  verified: the same polygon in {:.4f}% of pixels\n", 100 * same);
-  if (same < 0.999) {
-    fmt::print("  NOT VERIFIED: nothing is timed\n");
+bool benchCurves(const Arguments& arguments) {
+  fmt::print("\nError against time\n");
+  if (!sobolPointsAreStratified()) {
+    fmt::print("  the points of the ray caster are no net: NOT VERIFIED\n");
     return false;
   }
-  fmt::print("  {:>6} | {:>13} {:>13} {:>6} | {:>11} {:>9} {:>6} {:>10} | {:>8}\n", "pixels",
-             "draw Mpixel/s", "Embree Mray/s", "ratio", "us/hemicube", "Mpixel/s", "ratio",
-             "4x patches", "rows/s");
-  for (const int resolution : {64, 128, 256, 512}) {
-    const Times times = timeHemicubes(scene, resolution);
-    const double pixels = double(pixelsOf(resolution));
-    const double fill = fillRate(scene.mesh, resolution);
-    const double traced = pixels / times.embree;
-    fmt::print(
-        "  {:>6} | {:>13.0f} {:>13.1f} {:>5.1f}x | {:>11.1f} {:>9.0f} {:>5.1f}x {:>9.2f}x | "
-        "{:>8.0f}\n",
-        resolution, 1e-6 * fill, 1e-6 * traced, fill / traced, 1e6 * times.ours,
-        1e-6 * pixels / times.ours, times.embree / times.ours, times.fine / times.ours,
-        rowRate(scene.mesh, resolution));
+  std::filesystem::create_directories(arguments.out);
+  std::vector<SceneCurves> all;
+  Summary summary;
+  bool verified = true;
+  for (const CurveScene& scene : curveScenes(arguments.quick)) {
+    if (!arguments.scene.empty() && scene.name != arguments.scene) continue;
+    const BenchScene bench = benchScene(scene.name, scene.patches);
+    setThreads(0);
+    const TruthRows truth = truthRows(bench.mesh, scene.truth_accuracy, arguments.truth_folder);
+    if (!arguments.curves) continue;
+    const auto curves = errorCurves(bench, truth, scene.truth_accuracy, arguments.quick);
+    if (!curves) {
+      verified = false;
+      continue;
+    }
+    all.push_back(*curves);
+    for (const RayComparison& c : compareWithRays(*curves)) summary.comparisons.push_back(c);
+    // After every scene, so that an interrupted run leaves what it has.
+    writeCsv(arguments.out + "/error-against-time.csv", all);
+    writeComparisonsCsv(arguments.out + "/exact-against-rays.csv", summary.comparisons);
   }
-  return true;
+  if (arguments.curves && arguments.scene.empty() && verified) {
+    summary.growth = growth(all);
+    summary.two_cores =
+        measureTwoCores(benchScene("cornell-box-closed", arguments.quick ? 1000 : 5000).mesh);
+    if (!arguments.quick) summary.whole_run = measureWholeRun(arguments.out);
+  }
+  printSummary(summary);
+  return verified;
 }
 
 }  // namespace
 }  // namespace radiosity::bench
 
-int main() {
-  fmt::print(
-      "Left: the polygon in every pixel, drawn and traced. Middle: whole hemicubes, patches "
-      "looked\n"
-      "up and summed, beside Embree that stops at the polygon; and the same with 4 times as many\n"
-      "patches. Right: rows of the matrix. One thread; processor time, the least of 15 rounds of "
-      "one run.\n");
+int main(int count, char** values) try {
   using namespace radiosity::bench;
-  radiosity::setThreads(1);
+  const Arguments arguments = parse(count, values);
   bool verified = true;
-  for (const BenchScene& scene : benchScenes()) verified = benchScene(scene) && verified;
-  return verified ? 0 : 1;
+  if (arguments.rates) verified = benchRates() && verified;
+  if (arguments.truth) verified = benchCurves(arguments) && verified;
+  return verified ? EXIT_SUCCESS : EXIT_FAILURE;
+} catch (const radiosity::InputError& error) {
+  fmt::print(stderr, "radiosity_bench: {}\n", error.what());
+  return 2;
+} catch (const std::exception& error) {
+  fmt::print(stderr, "radiosity_bench: {}\n", error.what());
+  return EXIT_FAILURE;
 }

@@ -1,0 +1,54 @@
+// What time is measured with.
+#pragma once
+
+#include <sys/resource.h>
+#include <time.h>
+
+#include <algorithm>
+#include <chrono>
+#include <vector>
+
+namespace radiosity::bench {
+
+/// Seconds. On a machine that others use, too, the processor times count no waiting.
+struct Seconds {
+  double user = 0;    ///< of all threads
+  double system = 0;  ///< mostly the kernel clearing the memory that the matrix takes
+  double wall = 0;
+  double processor() const { return user + system; }
+};
+
+/// Runs from its construction on; times of the whole process.
+class Stopwatch {
+ public:
+  Stopwatch() : start_(now()) {}
+  Seconds elapsed() const {
+    const Seconds end = now();
+    return {end.user - start_.user, end.system - start_.system, end.wall - start_.wall};
+  }
+
+ private:
+  static double seconds(const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); }
+  static Seconds now() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto wall = std::chrono::steady_clock::now().time_since_epoch();
+    return {seconds(usage.ru_utime), seconds(usage.ru_stime),
+            std::chrono::duration<double>(wall).count()};
+  }
+  Seconds start_;
+};
+
+/// Seconds this thread has had the processor.
+inline double threadSeconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
+}
+
+/// The least of several timings: what other jobs take from the shared caches does not count.
+inline double least(const std::vector<double>& times) {
+  return *std::min_element(times.begin(), times.end());
+}
+
+}  // namespace radiosity::bench

@@ -1,0 +1,157 @@
+#include "error_curves.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "radiosity/solve.h"
+#include "report.h"
+#include "verify.h"
+
+namespace radiosity::bench {
+namespace {
+
+/// Of B, far below the error of any matrix here.
+constexpr double kSolveTolerance = 1e-10;
+/// Short runs are repeated until they add up to this many seconds, up to kMostRuns.
+constexpr double kEnoughSeconds = 2;
+constexpr int kMostRuns = 5;
+/// The setting whose B the others are compared with where truth is not complete.
+constexpr double kReferenceTolerance = 1e-5;
+
+class Materials {
+ public:
+  explicit Materials(const BenchScene& scene) {
+    const PatchMaterials materials = patchMaterials(scene.scene, scene.mesh);
+    for (std::size_t i = 0; i < scene.mesh.size(); ++i) {
+      for (int b = 0; b < kBands; ++b) {
+        reflectance_.push_back(materials.reflectance[i][b]);
+        emission_.push_back(materials.emission[i][b]);
+      }
+    }
+  }
+  std::vector<double> solve(const FormFactors& factors) const {
+    SolveOptions options;
+    options.tolerance = kSolveTolerance;
+    Progress silent;
+    return radiosity::solve(factors, reflectance_, emission_, kBands, options, silent).radiosity;
+  }
+
+ private:
+  static constexpr int kBands = 3;
+  std::vector<double> reflectance_;
+  std::vector<double> emission_;
+};
+
+FormFactors asFormFactors(const PatchMesh& mesh, const TruthRows& truth) {
+  FormFactors factors;
+  factors.matrix = ExchangeMatrix(mesh.area, Precision::real);
+  factors.fronts.assign(mesh.size(), 0.0);
+  factors.backs.assign(mesh.size(), 0.0);
+  factors.sky.assign(mesh.size(), 0.0);
+  for (std::size_t k = 0; k < truth.index.size(); ++k) {
+    std::vector<Index> columns;
+    std::vector<double> values;
+    for (Index j = 0; j < mesh.size(); ++j) {
+      if (!(truth.row[k][j] > 0)) continue;
+      columns.push_back(j);
+      values.push_back(truth.row[k][j]);
+      factors.fronts[truth.index[k]] += truth.row[k][j];
+    }
+    factors.matrix.setRow(truth.index[k], columns, values);
+  }
+  return factors;
+}
+
+double relativeError(const PatchMesh& mesh, const std::vector<double>& b,
+                     const std::vector<double>& reference) {
+  double wrong = 0;
+  double all = 0;
+  const std::size_t bands = reference.size() / mesh.size();
+  for (std::size_t k = 0; k < reference.size(); ++k) {
+    const double area = mesh.area[k / bands];
+    wrong += area * (b[k] - reference[k]) * (b[k] - reference[k]);
+    all += area * reference[k] * reference[k];
+  }
+  return std::sqrt(wrong / all);
+}
+
+/// Runs one method, several times if it is quick, and keeps the least of the times.
+FormFactors timed(const Method& method, const PatchMesh& mesh, Measurement& measurement) {
+  std::vector<Seconds> runs;
+  FormFactors factors;
+  double total = 0;
+  do {
+    factors = {};
+    const Stopwatch watch;
+    factors = method.compute(mesh);
+    runs.push_back(watch.elapsed());
+    total += runs.back().wall;
+  } while (total < kEnoughSeconds && int(runs.size()) < kMostRuns);
+  measurement.seconds = *std::min_element(
+      runs.begin(), runs.end(),
+      [](const Seconds& a, const Seconds& b) { return a.processor() < b.processor(); });
+  measurement.runs = int(runs.size());
+  return factors;
+}
+
+double largestRowError(const FormFactors& factors) {
+  double largest = 0;
+  for (std::size_t i = 0; i < factors.fronts.size(); ++i) {
+    const double sum = factors.fronts[i] + factors.backs[i] + factors.sky[i];
+    if (sum > 0) largest = std::max(largest, std::abs(sum - 1));
+  }
+  return largest;
+}
+
+}  // namespace
+
+std::optional<SceneCurves> errorCurves(const BenchScene& scene, const TruthRows& truth,
+                                       double truth_accuracy, bool quick) {
+  const PatchMesh& mesh = scene.mesh;
+  SceneCurves curves;
+  curves.scene = scene.name;
+  curves.patches = mesh.size();
+  curves.polygons = mesh.polygons.size();
+  fmt::print("\n{}: {} patches, {} polygons\n", scene.name, mesh.size(), mesh.polygons.size());
+  curves.truth_rows = truth.index.size();
+  curves.complete = truth.complete;
+  if (!verifyTruth(scene, truth, truth_accuracy)) return std::nullopt;
+
+  const Materials materials(scene);
+  std::vector<double> reference;
+  if (truth.complete) {
+    curves.radiosity_reference = "truth";
+    reference = materials.solve(asFormFactors(mesh, truth));
+  } else {
+    const Method finest = exact(kReferenceTolerance);
+    curves.radiosity_reference = fmt::format("exact {:.0e}", kReferenceTolerance);
+    reference = materials.solve(finest.compute(mesh));
+  }
+
+  printCurveHead(curves);
+  for (const Method& method : methods(mesh.size(), quick)) {
+    Measurement m;
+    m.method = method.name;
+    m.setting = method.setting;
+    m.value = method.value;
+    setThreads(1);
+    const FormFactors factors = timed(method, mesh, m);
+    setThreads(0);
+    m.factors = matrixError(factors.matrix, truth);
+    const bool is_reference =
+        !truth.complete && method.name == "exact" && method.value == kReferenceTolerance;
+    if (!is_reference) m.radiosity = relativeError(mesh, materials.solve(factors), reference);
+    m.bytes = factors.matrix.bytes();
+    m.largest_row_error = largestRowError(factors);
+    m.error_figure = factors.report.error_figure;
+    m.exact = factors.report.exact;
+    printMeasurement(m);
+    curves.measurements.push_back(m);
+  }
+  return curves;
+}
+
+}  // namespace radiosity::bench

@@ -1,0 +1,47 @@
+// Error against time: every method on every scene, measured in one run.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench_scenes.h"
+#include "clocks.h"
+#include "methods.h"
+#include "truth_rows.h"
+
+namespace radiosity::bench {
+
+/// One method with one setting on one scene.
+struct Measurement {
+  std::string method;
+  std::string setting;
+  double value = 0;
+  Seconds seconds;  ///< of the form-factor stage alone, one thread, no files; the least of `runs`
+  int runs = 0;
+  MatrixError factors;
+  /// Area-weighted relL2 of the solved B over all bands against the reference; empty for the
+  /// reference itself.
+  std::optional<double> radiosity;
+  std::size_t bytes = 0;         ///< of the matrix
+  double largest_row_error = 0;  ///< max |fronts + backs + sky - 1|
+  double error_figure = 0;       ///< the exact method's own estimate of relL2; 0: none
+  ExactReport exact;
+};
+
+struct SceneCurves {
+  std::string scene;
+  std::size_t patches = 0;
+  std::size_t polygons = 0;
+  std::size_t truth_rows = 0;
+  bool complete = false;            ///< truth has all rows
+  std::string radiosity_reference;  ///< what B is compared with
+  std::vector<Measurement> measurements;
+};
+
+/// Verifies truth, then runs the methods one after the other, printing a line each. Empty where
+/// verification failed: nothing was timed.
+std::optional<SceneCurves> errorCurves(const BenchScene& scene, const TruthRows& truth,
+                                       double truth_accuracy, bool quick);
+
+}  // namespace radiosity::bench

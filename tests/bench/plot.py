@@ -1,0 +1,107 @@
+#!/usr/bin/env python3
+"""Draws error against time from what the benchmark wrote: plot.py FOLDER
+
+Reads error-against-time.csv and exact-against-rays.csv, writes error-against-time.svg and .png.
+One panel a scene, both axes logarithmic: seconds of one processor for the form-factor stage, and
+the area-weighted relL2 of F. Down and to the left is better. The ray caster's own power law is
+continued as a dotted line.
+"""
+import csv
+import pathlib
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+from matplotlib.ticker import LogLocator, NullFormatter
+
+# A colour and a mark for each method, told apart without colour too (palette: Okabe and Ito 2008).
+STYLES = {
+    "hemicube": ("hemicube, 64 to 512 pixels", "#E69F00", "s"),
+    "hemicube + near": ("hemicube, near pairs exact", "#009E73", "^"),
+    "rays": ("ray casting (Embree, Sobol)", "#0072B2", "o"),
+    "exact": ("exact, tolerance 0.1 to 1e-5", "#D55E00", "D"),
+}
+TITLES = {
+    "cornell-box-closed": "Cornell box, closed",
+    "cluttered": "cluttered",
+    "curved": "curved",
+    "furnished-room": "furnished room",
+}
+COLUMNS = 4
+
+
+def read(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def seconds(row):
+    return float(row["user_s"]) + float(row["system_s"])
+
+
+def draw_scene(axes, rows, laws):
+    for method, (_, colour, mark) in STYLES.items():
+        points = sorted((seconds(r), float(r["relative_l2_F"])) for r in rows
+                        if r["method"] == method)
+        if points:
+            axes.plot(*zip(*points), color=colour, marker=mark, markersize=4.5, linewidth=1.4)
+    for law in laws[:1]:
+        start = max(seconds(r) for r in rows if r["method"] == "rays")
+        goal = min(float(r["relative_l2_F"]) for r in rows)
+        factor, slope = float(law["ray_factor"]), float(law["ray_slope"])
+        end = (goal / factor) ** (1 / slope)
+        axes.plot([start, end], [factor * start**slope, goal], color=STYLES["rays"][1],
+                  linewidth=1.2, linestyle=":")
+    axes.set_title(f"{TITLES[rows[0]['scene']]}, {int(rows[0]['patches']):,} patches",
+                   fontsize=9.5)
+
+
+def main():
+    folder = pathlib.Path(sys.argv[1])
+    measured = read(folder / "error-against-time.csv")
+    laws = read(folder / "exact-against-rays.csv")
+    scenes = list(dict.fromkeys((r["scene"], r["patches"]) for r in measured))
+
+    plt.rcParams.update({"font.size": 9, "svg.hashsalt": "radiosity", "svg.fonttype": "path"})
+    # One place more, for the legend.
+    columns = min(COLUMNS, len(scenes) + 1)
+    lines = -(-(len(scenes) + 1) // columns)
+    figure, grid = plt.subplots(lines, columns, figsize=(3 * columns, 2.7 * lines + 0.3),
+                                sharex=True, sharey=True, squeeze=False)
+    places = list(grid.flat)
+    for axes, (scene, patches) in zip(places, scenes):
+        draw_scene(axes, [r for r in measured if (r["scene"], r["patches"]) == (scene, patches)],
+                   [r for r in laws if (r["scene"], r["patches"]) == (scene, patches)])
+    for axes in places[:len(scenes)]:
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        axes.xaxis.set_major_locator(LogLocator(base=10, subs=(1,), numticks=20))
+        axes.yaxis.set_major_locator(LogLocator(base=10, subs=(1,), numticks=20))
+        axes.xaxis.set_minor_formatter(NullFormatter())
+        axes.grid(True, color="#dddddd", linewidth=0.6)
+        axes.set_axisbelow(True)
+    for place, axes in enumerate(places[:len(scenes)]):
+        # Nothing below, or the legend: the panel carries the numbers itself.
+        if place + columns >= len(scenes):
+            axes.set_xlabel("seconds, one processor")
+            axes.tick_params(labelbottom=True)
+        if place % columns == 0:
+            axes.set_ylabel("error of F (relL2)")
+    for axes in places[len(scenes):]:
+        axes.axis("off")
+    handles = [plt.Line2D([], [], color=colour, marker=mark, markersize=5, label=label)
+               for label, colour, mark in STYLES.values()]
+    handles.append(plt.Line2D([], [], color=STYLES["rays"][1], linestyle=":",
+                              label="ray casting, extrapolated\nby its own slope"))
+    places[len(scenes)].legend(handles=handles, loc="center left", frameon=False, fontsize=9)
+    figure.tight_layout()
+    for kind, options in (("svg", {"metadata": {"Date": None}}), ("png", {"dpi": 110})):
+        path = folder / f"error-against-time.{kind}"
+        figure.savefig(path, facecolor="white", **options)
+        print(f"plot: {path}")
+
+
+if __name__ == "__main__":
+    main()

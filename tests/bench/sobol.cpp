@@ -1,0 +1,123 @@
+#include "sobol.h"
+
+#include <memory>
+#include <vector>
+
+namespace radiosity::bench {
+namespace {
+
+/// Joe and Kuo's table for one dimension: degree s of the primitive polynomial, its inner
+/// coefficients a, and the first s odd numbers m.
+struct Polynomial {
+  std::uint32_t degree;
+  std::uint32_t inner;
+  std::array<std::uint32_t, 3> first;
+};
+constexpr std::array<Polynomial, kDimensions - 1> kPolynomials = {
+    {{1, 0, {1, 0, 0}}, {2, 1, {1, 3, 0}}, {3, 1, {1, 3, 1}}}};
+
+std::uint32_t reverseBits(std::uint32_t x) {
+  x = (x >> 16) | (x << 16);
+  x = ((x & 0x00ff00ffu) << 8) | ((x >> 8) & 0x00ff00ffu);
+  x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
+  x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
+  return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
+}
+
+/// A permutation in which every bit depends on lower ones alone (Laine and Karras 2011, constants
+/// of Burley 2020): on bit-reversed numbers, a nested uniform scrambling.
+std::uint32_t nestedPermutation(std::uint32_t x, std::uint32_t seed) {
+  x += seed;
+  x ^= x * 0x6c50b47cu;
+  x ^= x * 0xb82f1e52u;
+  x ^= x * 0xc7afe638u;
+  x ^= x * 0x8d22f6e6u;
+  return x;
+}
+
+/// Well-mixed bits of seed and dimension (the finaliser of SplitMix64, Steele et al. 2014).
+std::uint32_t mixed(std::uint64_t seed, std::uint64_t dimension) {
+  std::uint64_t z = seed + (dimension + 1) * 0x9e3779b97f4a7c15ull;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+  return std::uint32_t((z ^ (z >> 31)) >> 32);
+}
+
+/// Direction numbers v_k = m_k / 2^(k+1) as 32-bit fractions, by Sobol's recurrence
+/// m_k = 2 a_1 m_{k-1} ^ ... ^ 2^{s-1} a_{s-1} m_{k-s+1} ^ 2^s m_{k-s} ^ m_{k-s}.
+std::array<std::uint32_t, 32> directionNumbers(int dimension) {
+  std::array<std::uint32_t, 32> v{};
+  if (dimension == 0) {
+    for (std::uint32_t k = 0; k < 32; ++k) v[k] = 1u << (31 - k);
+    return v;
+  }
+  const Polynomial& p = kPolynomials[std::size_t(dimension) - 1];
+  for (std::uint32_t k = 0; k < 32; ++k) {
+    if (k < p.degree) {
+      v[k] = p.first[k] << (31 - k);
+      continue;
+    }
+    v[k] = v[k - p.degree] ^ (v[k - p.degree] >> p.degree);
+    for (std::uint32_t j = 1; j < p.degree; ++j) {
+      if ((p.inner >> (p.degree - 1 - j)) & 1u) v[k] ^= v[k - j];
+    }
+  }
+  return v;
+}
+
+}  // namespace
+
+SobolPoints::SobolPoints() {
+  for (int d = 0; d < kDimensions; ++d) {
+    auto& direction = direction_[std::size_t(d)];
+    direction = directionNumbers(d);
+    for (std::uint32_t& v : direction) v = reverseBits(v);
+    auto& first = first_[std::size_t(d)];
+    for (std::uint32_t k = 0; k < kBlock; ++k) {
+      first[k] = 0;
+      for (std::uint32_t bit = 0; bit < 32; ++bit) {
+        if ((k >> bit) & 1u) first[k] ^= direction[bit];
+      }
+    }
+  }
+}
+
+void SobolPoints::block(std::uint32_t block, std::size_t count, std::uint64_t seed,
+                        PointBlock& out) const {
+  for (std::size_t d = 0; d < kDimensions; ++d) {
+    // The sequence is linear over XOR: point(a + b) = point(a) ^ point(b) where no bits meet.
+    std::uint32_t base = 0;
+    const std::uint64_t start = std::uint64_t(block) * kBlock;
+    for (std::size_t bit = 0; bit < 32; ++bit) {
+      if ((start >> bit) & 1u) base ^= direction_[d][bit];
+    }
+    const std::uint32_t dimension_seed = mixed(seed, d);
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::uint32_t x = reverseBits(nestedPermutation(first_[d][k] ^ base, dimension_seed));
+      out[d][k] = float(x >> 8) * 0x1p-24F;
+    }
+  }
+}
+
+bool sobolPointsAreStratified() {
+  const auto points = std::make_unique<SobolPoints>();
+  const auto block = std::make_unique<PointBlock>();
+  for (const std::uint64_t seed : {1ull, 2ull, 12345678901234ull}) {
+    for (const std::uint32_t position : {0u, 3u}) {
+      points->block(position, kBlock, seed, *block);
+      for (const auto& coordinates : *block) {
+        for (std::size_t count = 1; count <= kBlock; count *= 2) {
+          std::vector<char> taken(count, 0);
+          for (std::size_t k = 0; k < count; ++k) {
+            char& mark = taken[std::size_t(coordinates[k] * float(count))];
+            if (mark != 0) return false;
+            mark = 1;
+          }
+        }
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace radiosity::bench
