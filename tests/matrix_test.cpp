@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "radiosity/exchange_matrix.h"
+#include "radiosity/closure.h"
 
 namespace radiosity {
 namespace {

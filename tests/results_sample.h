@@ -215,7 +215,7 @@ inline FormFactors factors(const PatchMesh& m, Precision precision) {
   r.largest_row_error = 1e-15;
   r.closed = true;
   r.symmetrized = true;
-  r.closure = {12, 0.1, 1e-13, 0.01, 0.02};
+  r.closure = {12, 0.1, 1e-13, 0.01, 0.02, true, 13, 14, 15};
   r.method_reason = "clutter";
   r.near_pairs = 12;
   r.capped = 13;
@@ -343,8 +343,8 @@ inline auto members(const MeshResult& s) {
   return std::tie(a, b);
 }
 inline auto members(const ClosureReport& s) {
-  const auto& [a, b, c, d, e] = s;
-  return std::tie(a, b, c, d, e);
+  const auto& [a, b, c, d, e, f, g, h, i] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i);
 }
 inline auto members(const ExactReport& s) {
   const auto& [v0, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13, v14, v15, v16, v17, v18,
@@ -413,7 +413,8 @@ bool same(const std::optional<T>& a, const std::optional<T>& b) {
 inline bool same(const ExchangeMatrix& a, const ExchangeMatrix& b) {
   if (a.size() != b.size() || a.precision() != b.precision() || a.denseRows() != b.denseRows() ||
       !std::equal(a.order().begin(), a.order().end(), b.order().begin(), b.order().end()) ||
-      a.nonZeros() != b.nonZeros() || a.bytes() != b.bytes()) {
+      a.isCorrected() != b.isCorrected() || a.nonZeros() != b.nonZeros() ||
+      a.bytes() != b.bytes()) {
     return false;
   }
   using Entries = std::vector<std::pair<Index, double>>;

@@ -126,6 +126,44 @@ TEST_F(ResultsSymmetric, NamesWhatIsNotSymmetric) {
   refused("/form_factors/indices is not that of a symmetric matrix");
 }
 
+// The file keeps what was computed and what closure adds apart; a solution made from what is read
+// back has the same bits.
+TEST_F(ResultsSymmetric, KeepsTheCorrectionApart) {
+  for (const Precision precision : {Precision::single, Precision::real}) {
+    Results written = results(12, precision);
+    ExchangeMatrix& matrix = written.factors->matrix;
+    const std::size_t n = matrix.size();
+    UncertainEntries uncertain(n);
+    for (std::size_t k = 0; k + 1 < n; k += 2) {
+      std::vector<Index> later;
+      for (std::size_t q = k + 1; q < n; q += 3) {
+        if (matrix.at(matrix.order()[k], matrix.order()[q]) > 0) later.push_back(Index(q));
+      }
+      uncertain.setRow(k, later, std::vector<double>(later.size(), 1e-3));
+    }
+    std::vector<double> target = matrix.rowSums();
+    for (double& sum : target) sum *= 1.01;
+    closeRows(matrix, uncertain, target, true);
+    ASSERT_TRUE(matrix.isCorrected());
+    const std::vector<double> raw = matrix.rowSums(Part::raw);
+    writeResults(file(), written, progress_);
+    const double size = double(std::filesystem::file_size(file()));
+    EXPECT_NEAR(double(estimateResultsBytes(written)), size, std::max(4096.0, 0.05 * size));
+    const ExchangeMatrix read = readResults(file()).factors->matrix;
+    EXPECT_TRUE(sample::same(matrix, read));
+    EXPECT_EQ(read.rowSums(Part::raw), raw);
+    EXPECT_EQ(read.rowSums(Part::correction), matrix.rowSums(Part::correction));
+    EXPECT_EQ(read.rowSums(), matrix.rowSums());
+    EXPECT_NE(read.rowSums(), raw);
+    EXPECT_EQ(dataset<double>("/form_factors/row_sum", H5T_NATIVE_DOUBLE), raw);
+  }
+  auto changes = dataset<double>("/form_factors/closure/data", H5T_NATIVE_DOUBLE);
+  for (double& change : changes) change = -1;
+  change("/form_factors/closure/data", H5T_NATIVE_DOUBLE, changes);
+  expectError<InputError>(file(), "/form_factors/closure/data does not fit",
+                          [&] { readResults(file()); });
+}
+
 TEST_F(ResultsSymmetric, MatrixMarketHoldsAllOfF) {
   const ExchangeMatrix matrix = sample::symmetricMatrix(sample::mesh(17), Precision::single);
   writeMatrixMarket(path("x.mtx"), matrix, progress_);

@@ -14,13 +14,18 @@ namespace radiosity {
 
 enum class Precision { single, real };  // `double` is a keyword: `real` is 64 bits
 
-/// One row of a triangle, zeros left out: runs of `skip` zeros and then `count` stored values.
-/// Longer stretches are several runs. The values are in `single` or in `real`, by precision.
+/// Which of a matrix's values: those stored first, what closure adds to them, or the sum.
+enum class Part { corrected, raw, correction };
+
+/// `skip` zeros that are left out and then `count` stored values. Longer stretches are several
+/// runs.
+struct Run {
+  std::uint16_t skip = 0;
+  std::uint16_t count = 0;
+};
+
+/// One row of a triangle as runs. The values are in `single` or in `real`, by precision.
 struct RunRow {
-  struct Run {
-    std::uint16_t skip = 0;
-    std::uint16_t count = 0;
-  };
   std::vector<Run> runs;
   std::vector<float> single;
   std::vector<double> real;
@@ -36,7 +41,8 @@ struct RunRow {
 /// order given once; stored is F_ij for j after i in that order, and F_ji = A_i F_ij / A_j follows.
 /// A row leaves out its runs of zeros, so patches that do not see each other and are neighbours in
 /// the order (coplanar ones) cost nothing. Storing F and not G keeps values within 0 and 1 in a
-/// scene of any size.
+/// scene of any size. A correction, likewise symmetric, may stand beside the stored values: all
+/// that reads the matrix then reads the sum, unless it asks for a part.
 class ExchangeMatrix {
  public:
   ExchangeMatrix() = default;
@@ -61,11 +67,20 @@ class ExchangeMatrix {
   /// Symmetric form: factors[m] is F from patch order[k] to patch order[k + m], m = 0 being the
   /// patch itself; at most N - k values, the rest are 0. Finite, >= 0, 0 where a patch has no area,
   /// else InputError naming the patches. Different rows may be set from different threads at once.
-  /// Setting a row again replaces it.
+  /// Setting a row again replaces it. Not in a corrected matrix.
   void setUpperRow(std::size_t k, std::span<const double> factors);
 
-  /// The values setUpperRow() stored, as they were rounded: N - k of them.
-  void upperRow(std::size_t k, std::span<double> factors) const;
+  /// Symmetric form: from now on row k is what setUpperRow() stored plus changes[k], whose first
+  /// value stands for position k + 1. N rows, values by the matrix's precision; a sum below 0 is an
+  /// InputError. No rows: no correction.
+  void setCorrection(std::vector<RunRow> changes);
+  /// Row k of the triangle as setUpperRow() stored it, from position k + 1 on.
+  const RunRow& upperRuns(std::size_t k) const { return upper_[k]; }
+  double diagonal(std::size_t k) const { return diagonal_[k]; }  ///< its first value
+  bool isCorrected() const { return !correction_.empty(); }
+
+  /// Symmetric form: row k's N - k values as they are stored, rounded.
+  void upperRow(std::size_t k, std::span<double> factors, Part part = Part::corrected) const;
 
   /// Calls visit(column, value) over the entries of row i that are not 0, columns increasing.
   /// Symmetric form: O(N) and more, and memory for a row; for many rows use forPanels().
@@ -79,14 +94,15 @@ class ExchangeMatrix {
   /// Calls visit(panel) for consecutive ranges of rows that together are all rows, in order. A
   /// panel of the symmetric form holds its rows spread out, at most kPanelBytes or one row.
   template <class Visit>
-  void forPanels(Visit&& visit) const;
+  void forPanels(Visit&& visit, Part part = Part::corrected) const;
 
   /// F_ij, 0 where nothing is stored. O(log n) in a sparse row, O(runs) in the symmetric form.
   double at(std::size_t i, std::size_t j) const;
 
   /// y = F x for all rows and bands, one pass over what is stored, in parallel, same bits for any
   /// thread count. x, y: N * bands, row-major, not aliased.
-  void product(std::span<const double> x, int bands, std::span<double> y) const;
+  void product(std::span<const double> x, int bands, std::span<double> y,
+               Part part = Part::corrected) const;
 
   /// One row after the other, in the order of storage (row form: as numbered): calls
   /// update(i, gathered) with gathered[b] = sum_j F_ij x[j * bands + b], x as the updates so far
@@ -95,11 +111,12 @@ class ExchangeMatrix {
   void sweep(std::span<double> x, int bands,
              const std::function<void(std::size_t i, const double* gathered)>& update) const;
 
-  std::vector<Index> rowEntries() const;  ///< N: how many entries of a row are not 0
-  std::size_t nonZeros() const;           ///< of the N x N matrix
-  std::size_t bytes() const;              ///< of the stored values and indices
-  std::size_t denseRows() const;          ///< row form: how many rows are stored dense
-  std::vector<double> rowSums() const;
+  /// N: how many entries of a row are not 0.
+  std::vector<Index> rowEntries(Part part = Part::corrected) const;
+  std::size_t nonZeros(Part part = Part::corrected) const;  ///< of the N x N matrix
+  std::vector<double> rowSums(Part part = Part::corrected) const;
+  std::size_t bytes() const;      ///< of the stored values and indices
+  std::size_t denseRows() const;  ///< row form: how many rows are stored dense
 
   /// Bytes that N rows with `entries_per_row` entries would take, stored as they would be stored in
   /// row form.
@@ -123,10 +140,10 @@ class ExchangeMatrix {
   void forStored(std::size_t i, std::size_t first, std::size_t last, Visit&& visit) const;
   std::size_t panelEnd(std::size_t first) const;
   /// Row i of `out` (N values each) becomes row first + i of the matrix.
-  void spreadRows(std::size_t first, std::size_t last, std::span<double> out) const;
+  void spreadRows(std::size_t first, std::size_t last, Part part, std::span<double> out) const;
   void checkFactors(std::size_t k, std::span<const double> factors) const;
   void rowProduct(std::size_t i, std::span<const double> x, int bands, double* out) const;
-  void symmetricProduct(std::span<const double> x, int bands, std::span<double> y) const;
+  void symmetricProduct(std::span<const double> x, int bands, std::span<double> y, Part part) const;
   void symmetricSweep(
       std::span<double> x, int bands,
       const std::function<void(std::size_t i, const double* gathered)>& update) const;
@@ -140,6 +157,7 @@ class ExchangeMatrix {
   std::vector<Index> order_;         // symmetric form: patch by position,
   std::vector<Index> position_;      // position by patch,
   std::vector<RunRow> upper_;        // by position k: F to positions k + 1, ...
+  std::vector<RunRow> correction_;   // likewise; empty without a correction
   std::vector<double> diagonal_;     // by position
   std::vector<Index> without_area_;  // positions of patches of area 0
 };
@@ -147,11 +165,11 @@ class ExchangeMatrix {
 /// Some consecutive rows of a matrix, for reading.
 class RowPanel {
  public:
-  RowPanel(const ExchangeMatrix& matrix, std::size_t first, std::size_t last)
+  RowPanel(const ExchangeMatrix& matrix, std::size_t first, std::size_t last, Part part)
       : matrix_(&matrix), first_(first), last_(last) {
     if (!matrix.isSymmetric()) return;
     spread_.resize((last - first) * matrix.size());
-    matrix.spreadRows(first, last, spread_);
+    matrix.spreadRows(first, last, part, spread_);
   }
   std::size_t first() const { return first_; }
   std::size_t last() const { return last_; }  ///< one beyond
@@ -188,14 +206,14 @@ void ExchangeMatrix::forRow(std::size_t i, Visit&& visit) const {
 template <class Visit>
 void ExchangeMatrix::forRow(std::size_t i, std::size_t first, std::size_t last,
                             Visit&& visit) const {
-  RowPanel(*this, i, i + 1).forRow(i, first, last, visit);
+  RowPanel(*this, i, i + 1, Part::corrected).forRow(i, first, last, visit);
 }
 
 template <class Visit>
-void ExchangeMatrix::forPanels(Visit&& visit) const {
+void ExchangeMatrix::forPanels(Visit&& visit, Part part) const {
   for (std::size_t first = 0; first < size();) {
     const std::size_t last = panelEnd(first);
-    visit(RowPanel(*this, first, last));
+    visit(RowPanel(*this, first, last, part));
     first = last;
   }
 }
@@ -224,30 +242,17 @@ void ExchangeMatrix::forStored(std::size_t i, std::size_t first, std::size_t las
   }
 }
 
+/// sum_ij A_i F_ij^2, m^2: what errors in the area-weighted L2 norm are relative to.
+double weightedSquares(const ExchangeMatrix& matrix, Part part = Part::corrected);
+
 /// sqrt(sum_ij (G_ij - G_ji)^2 / sum_ij G_ij^2): how far the two estimates of each pair differ.
 /// It detects errors, it does not bound them. 0 for an empty matrix.
 double reciprocityResidual(const ExchangeMatrix& matrix);
 
 /// Merges the two estimates of every pair, G_ij = w_i A_i F_ij + w_j A_j F_ji with
 /// w_i = A_j^2 / (A_i^2 + A_j^2) (the bias of the estimate made at i goes as A_i / d^2). The result
-/// has A_i F_ij = A_j F_ji and row sums that are no longer what they were: restore closure before
-/// solving in a closed scene.
+/// has A_i F_ij = A_j F_ji and row sums that are no longer what they were: restore closure
+/// (closure.h) before solving in a closed scene.
 ExchangeMatrix symmetrized(const ExchangeMatrix& matrix);
-
-/// Scales a symmetric exchange matrix to prescribed row sums by symmetric positive factors,
-/// G_ij <- d_i d_j G_ij, iterated until every row is within `tolerance` of its target (van
-/// Leersum-like, keeps zeros, non-negativity and reciprocity). Rows without entries keep sum 0.
-/// Targets: N finite values >= 0, else InputError. Not every target can be reached (two plates that
-/// see only each other exchange the same area): it stops where the residual no longer halves in 50
-/// iterations, and the report says what is left.
-struct ClosureReport {
-  int iterations = 0;
-  double largest_residual_before = 0;  ///< max |row sum - target|
-  double largest_residual = 0;         ///< after
-  double largest_move = 0;             ///< max |F' - F|
-  double relative_move = 0;            ///< area-weighted relL2 of F' - F
-};
-ClosureReport restoreClosure(ExchangeMatrix& matrix, std::span<const double> target_row_sums,
-                             double tolerance = 1e-12, int max_iterations = 1000);
 
 }  // namespace radiosity

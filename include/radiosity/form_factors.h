@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "radiosity/base.h"
+#include "radiosity/closure.h"
 #include "radiosity/exchange_matrix.h"
 #include "radiosity/patch_mesh.h"
 

@@ -80,27 +80,41 @@ double ExchangeMatrix::at(std::size_t i, std::size_t j) const {
   return mirrored == 0 ? 0 : mirrored * area_[j] / area_[i];
 }
 
-std::vector<Index> ExchangeMatrix::rowEntries() const {
+std::vector<Index> ExchangeMatrix::rowEntries(Part part) const {
   std::vector<Index> entries(size(), 0);
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     forStored(i, 0, size(), [&](Index, double) { ++entries[i]; });
   }
-  for (std::size_t k = 0; k < upper_.size(); ++k) {
-    if (diagonal_[k] != 0) ++entries[order_[k]];
-    forRuns(upper_[k], [&](std::size_t offset, const auto* values, std::size_t count) {
-      const Index* later = &order_[k + 1 + offset];
-      for (std::size_t m = 0; m < count; ++m) {
-        if (values[m] == 0) continue;
-        ++entries[order_[k]];
-        ++entries[later[m]];
-      }
-    });
+  const auto count = [&](std::size_t k, std::size_t offset, const auto* values,
+                         std::size_t length) {
+    const Index* later = &order_[k] + 1 + offset;
+    Index own = 0;
+    for (std::size_t m = 0; m < length; ++m) {
+      const Index stored = values[m] != 0 ? 1 : 0;
+      own += stored;
+      entries[later[m]] += stored;
+    }
+    entries[order_[k]] += own;
+  };
+  const bool sum = part == Part::corrected && isCorrected();
+  const std::vector<RunRow>& rows = part == Part::correction ? correction_ : upper_;
+  std::vector<double> row(sum ? size() : 0);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (part != Part::correction && diagonal_[k] != 0) ++entries[order_[k]];
+    if (sum) {
+      upperRow(k, std::span(row).first(size() - k), part);
+      count(k, 0, row.data() + 1, size() - k - 1);
+    } else {
+      forRuns(rows[k], [&](std::size_t offset, const auto* values, std::size_t length) {
+        count(k, offset, values, length);
+      });
+    }
   }
   return entries;
 }
 
-std::size_t ExchangeMatrix::nonZeros() const {
-  const std::vector<Index> entries = rowEntries();
+std::size_t ExchangeMatrix::nonZeros(Part part) const {
+  const std::vector<Index> entries = rowEntries(part);
   return std::accumulate(entries.begin(), entries.end(), std::size_t(0));
 }
 
@@ -111,6 +125,7 @@ std::size_t ExchangeMatrix::bytes() const {
              row.real.size() * sizeof(double);
   }
   for (const RunRow& row : upper_) total += bytesOf(row);
+  for (const RunRow& row : correction_) total += bytesOf(row);
   return total + diagonal_.size() * sizeof(double);
 }
 
@@ -119,10 +134,10 @@ std::size_t ExchangeMatrix::denseRows() const {
       std::count_if(rows_.begin(), rows_.end(), [](const Row& r) { return r.dense; }));
 }
 
-std::vector<double> ExchangeMatrix::rowSums() const {
+std::vector<double> ExchangeMatrix::rowSums(Part part) const {
   const std::vector<double> ones(size(), 1.0);
   std::vector<double> sums(size());
-  product(ones, 1, sums);
+  product(ones, 1, sums, part);
   return sums;
 }
 

@@ -81,8 +81,9 @@ void ExchangeMatrix::rowProduct(std::size_t i, std::span<const double> x, int ba
   }
 }
 
-void ExchangeMatrix::product(std::span<const double> x, int bands, std::span<double> y) const {
-  if (symmetric_) return symmetricProduct(x, bands, y);
+void ExchangeMatrix::product(std::span<const double> x, int bands, std::span<double> y,
+                             Part part) const {
+  if (symmetric_) return symmetricProduct(x, bands, y, part);
   parallelFor(size(), kRowGrain,
               [&](std::size_t i) { rowProduct(i, x, bands, &y[i * std::size_t(bands)]); });
 }

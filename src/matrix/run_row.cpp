@@ -8,49 +8,11 @@ namespace radiosity {
 
 namespace {
 
-using Run = RunRow::Run;
-
 constexpr std::size_t kLongest = std::numeric_limits<std::uint16_t>::max();
-
-/// The stretches of values to store, as runs: a first pass that stores nothing.
-class RunFinder {
- public:
-  explicit RunFinder(std::size_t bridge) : bridge_(bridge) {}
-
-  /// Values [first, last) are not 0, those since the last call are.
-  void add(std::size_t first, std::size_t last) {
-    if (end_ > 0 && first - end_ <= bridge_) {
-      first = end_;
-    } else {
-      skip(first - end_);
-    }
-    extend(last - first);
-    end_ = last;
-  }
-  std::vector<Run> take() { return std::move(runs_); }
-
- private:
-  void skip(std::size_t zeros) {
-    for (; zeros > kLongest; zeros -= kLongest) runs_.push_back({std::uint16_t(kLongest), 0});
-    runs_.push_back({std::uint16_t(zeros), 0});
-  }
-  void extend(std::size_t count) {
-    while (count > 0) {
-      if (runs_.back().count == kLongest) runs_.push_back({0, 0});
-      const std::size_t now = std::min(count, kLongest - runs_.back().count);
-      runs_.back().count = std::uint16_t(runs_.back().count + now);
-      count -= now;
-    }
-  }
-
-  std::size_t bridge_;
-  std::size_t end_ = 0;  // one beyond the last value that is stored
-  std::vector<Run> runs_;
-};
 
 template <class Value>
 std::vector<Run> findRuns(std::span<const double> values) {
-  RunFinder finder(sizeof(Run) / sizeof(Value));
+  RunFinder finder(sizeof(Value));
   const std::size_t n = values.size();
   // Value(v) rather than v: what rounds to 0 is 0.
   for (std::size_t first = 0;;) {
@@ -67,7 +29,6 @@ std::vector<Run> findRuns(std::span<const double> values) {
 template <class Value>
 void pack(std::span<const double> values, std::vector<Run>& runs, std::vector<Value>& stored) {
   runs = findRuns<Value>(values);
-  runs.shrink_to_fit();
   std::size_t total = 0;
   for (const Run run : runs) total += run.count;
   stored.reserve(total);
@@ -81,6 +42,35 @@ void pack(std::span<const double> values, std::vector<Run>& runs, std::vector<Va
 
 }  // namespace
 
+void RunFinder::add(std::size_t first, std::size_t last) {
+  if (end_ > 0 && first - end_ <= bridge_) {
+    first = end_;
+  } else {
+    skip(first - end_);
+  }
+  extend(last - first);
+  end_ = last;
+}
+
+std::vector<Run> RunFinder::take() {
+  runs_.shrink_to_fit();
+  return std::move(runs_);
+}
+
+void RunFinder::skip(std::size_t zeros) {
+  for (; zeros > kLongest; zeros -= kLongest) runs_.push_back({std::uint16_t(kLongest), 0});
+  runs_.push_back({std::uint16_t(zeros), 0});
+}
+
+void RunFinder::extend(std::size_t count) {
+  while (count > 0) {
+    if (runs_.back().count == kLongest) runs_.push_back({0, 0});
+    const std::size_t now = std::min(count, kLongest - runs_.back().count);
+    runs_.back().count = std::uint16_t(runs_.back().count + now);
+    count -= now;
+  }
+}
+
 RunRow packRuns(std::span<const double> values, Precision precision) {
   RunRow row;
   if (precision == Precision::single) {
@@ -89,22 +79,6 @@ RunRow packRuns(std::span<const double> values, Precision precision) {
     pack(values, row.runs, row.real);
   }
   return row;
-}
-
-double valueAt(const RunRow& row, std::size_t offset) {
-  std::size_t at = 0;
-  std::size_t stored = 0;
-  for (const Run run : row.runs) {
-    at += run.skip;
-    if (offset < at) return 0;
-    if (offset < at + run.count) {
-      const std::size_t k = stored + (offset - at);
-      return row.real.empty() ? double(row.single[k]) : row.real[k];
-    }
-    at += run.count;
-    stored += run.count;
-  }
-  return 0;
 }
 
 std::size_t bytesOf(const RunRow& row) {

@@ -12,28 +12,71 @@ namespace radiosity {
 /// shorter than a new run.
 RunRow packRuns(std::span<const double> values, Precision precision);
 
-/// Calls visit(offset, values, count) for every run with stored values, values being float or
-/// double.
-template <class Visit>
-void forRuns(const RunRow& row, Visit&& visit) {
-  const auto walk = [&](const auto* values) {
-    std::size_t offset = 0;
-    for (const RunRow::Run run : row.runs) {
-      offset += run.skip;
-      if (run.count > 0) visit(offset, values, std::size_t(run.count));
-      offset += run.count;
-      values += run.count;
-    }
-  };
-  if (row.real.empty()) {
-    walk(row.single.data());
-  } else {
-    walk(row.real.data());
+/// Collects the stretches of values to store, in order, as the shortest list of runs.
+class RunFinder {
+ public:
+  /// Zeros are stored where that takes no more bytes than a new run.
+  explicit RunFinder(std::size_t value_bytes) : bridge_(sizeof(Run) / value_bytes) {}
+  /// Values [first, last) are to be stored, those since the last call are 0.
+  void add(std::size_t first, std::size_t last);
+  std::vector<Run> take();
+
+ private:
+  void skip(std::size_t zeros);
+  void extend(std::size_t count);
+
+  std::size_t bridge_;
+  std::size_t end_ = 0;  // one beyond the last value that is stored
+  std::vector<Run> runs_;
+};
+
+/// Calls visit(offset, values, count) for every run with stored values.
+template <class Value, class Visit>
+void forRuns(const std::vector<Run>& runs, Value* values, Visit&& visit) {
+  std::size_t offset = 0;
+  for (const Run run : runs) {
+    offset += run.skip;
+    if (run.count > 0) visit(offset, values, std::size_t(run.count));
+    offset += run.count;
+    values += run.count;
   }
 }
 
-/// The value at `offset`, 0 where nothing is stored.
-double valueAt(const RunRow& row, std::size_t offset);
+/// The same for a row, `values` being float or double.
+template <class Visit>
+void forRuns(const RunRow& row, Visit&& visit) {
+  if (row.real.empty()) {
+    forRuns(row.runs, row.single.data(), visit);
+  } else {
+    forRuns(row.runs, row.real.data(), visit);
+  }
+}
+
+/// Reads a row at offsets that do not decrease, in one walk.
+class RunReader {
+ public:
+  explicit RunReader(const RunRow& row) : row_(&row) {
+    if (!row.runs.empty()) begin_ = row.runs[0].skip;
+  }
+  /// 0 where nothing is stored.
+  double at(std::size_t offset) {
+    const std::vector<Run>& runs = row_->runs;
+    while (run_ < runs.size() && offset >= begin_ + runs[run_].count) {
+      stored_ += runs[run_].count;
+      begin_ += runs[run_].count;
+      if (++run_ < runs.size()) begin_ += runs[run_].skip;
+    }
+    if (run_ == runs.size() || offset < begin_) return 0;
+    const std::size_t k = stored_ + (offset - begin_);
+    return row_->real.empty() ? double(row_->single[k]) : row_->real[k];
+  }
+
+ private:
+  const RunRow* row_;
+  std::size_t run_ = 0;
+  std::size_t begin_ = 0;   // offset of the run's first value
+  std::size_t stored_ = 0;  // values before it
+};
 
 std::size_t bytesOf(const RunRow& row);
 

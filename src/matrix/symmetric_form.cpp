@@ -16,6 +16,8 @@ namespace {
 
 constexpr std::size_t kRowGrain = 16;
 
+const RunRow kEmptyRow;
+
 /// Largest stored value, so that a sum of N of them cannot overflow.
 constexpr double kLargest = 1e30;
 
@@ -74,6 +76,7 @@ void ExchangeMatrix::checkFactors(std::size_t k, std::span<const double> factors
 
 void ExchangeMatrix::setUpperRow(std::size_t k, std::span<const double> factors) {
   checkFactors(k, factors);
+  if (isCorrected()) throw InputError("exchange matrix: a corrected one is not set row by row");
   if (factors.empty()) {
     upper_[k] = {};
     diagonal_[k] = 0;
@@ -83,16 +86,48 @@ void ExchangeMatrix::setUpperRow(std::size_t k, std::span<const double> factors)
   diagonal_[k] = precision_ == Precision::single ? double(float(factors[0])) : factors[0];
 }
 
-void ExchangeMatrix::upperRow(std::size_t k, std::span<double> factors) const {
-  std::fill(factors.begin(), factors.end(), 0.0);
-  factors[0] = diagonal_[k];
-  forRuns(upper_[k], [&](std::size_t offset, const auto* values, std::size_t count) {
-    std::copy(values, values + count, &factors[1 + offset]);
+void ExchangeMatrix::setCorrection(std::vector<RunRow> changes) {
+  if (!changes.empty() && (!symmetric_ || changes.size() != size())) {
+    throw InputError(fmt::format("exchange matrix: a correction of {} rows for a {} matrix of {}",
+                                 changes.size(), symmetric_ ? "symmetric" : "row by row", size()));
+  }
+  parallelFor(changes.size(), kRowGrain, [&](std::size_t k) {
+    std::vector<double> row(size() - k - 1, 0.0);
+    RunReader stored(upper_[k]);
+    forRuns(changes[k], [&](std::size_t offset, const auto* values, std::size_t count) {
+      for (std::size_t m = 0; m < count; ++m) {
+        const bool good = offset + m < row.size() && stored.at(offset + m) + values[m] >= 0;
+        if (!good) {
+          throw InputError(
+              fmt::format("exchange matrix: the correction of row {} leaves a value below 0", k));
+        }
+        row[offset + m] = values[m];
+      }
+    });
+    // However it came: the same changes are the same runs, and so give the same bits in products.
+    changes[k] = packRuns(row, precision_);
   });
+  correction_ = std::move(changes);
+}
+
+void ExchangeMatrix::upperRow(std::size_t k, std::span<double> factors, Part part) const {
+  std::fill(factors.begin(), factors.end(), 0.0);
+  const auto add = [&](const RunRow& row) {
+    forRuns(row, [&](std::size_t offset, const auto* values, std::size_t count) {
+      for (std::size_t m = 0; m < count; ++m) factors[1 + offset + m] += values[m];
+    });
+  };
+  if (part != Part::correction) {
+    factors[0] = diagonal_[k];
+    add(upper_[k]);
+  }
+  if (part != Part::raw && isCorrected()) add(correction_[k]);
 }
 
 double ExchangeMatrix::storedUpper(std::size_t k, std::size_t later) const {
-  return k == later ? diagonal_[k] : valueAt(upper_[k], later - k - 1);
+  if (k == later) return diagonal_[k];
+  const double raw = RunReader(upper_[k]).at(later - k - 1);
+  return isCorrected() ? raw + RunReader(correction_[k]).at(later - k - 1) : raw;
 }
 
 std::size_t ExchangeMatrix::panelEnd(std::size_t first) const {
@@ -103,32 +138,31 @@ std::size_t ExchangeMatrix::panelEnd(std::size_t first) const {
 // Row i of F holds what row position(i) of the triangle stores, and, from every row k before it,
 // the one value at its own position. The second part touches all rows of the triangle above: all
 // rows of a panel are served while such a row is at hand, found in one walk along its runs.
-void ExchangeMatrix::spreadRows(std::size_t first, std::size_t last, std::span<double> out) const {
+void ExchangeMatrix::spreadRows(std::size_t first, std::size_t last, Part part,
+                                std::span<double> out) const {
   const std::size_t n = size();
   std::vector<std::pair<Index, Index>> wanted;  // position, row of the panel
   for (std::size_t i = first; i < last; ++i) wanted.emplace_back(position_[i], Index(i - first));
   std::sort(wanted.begin(), wanted.end());
   parallelFor(wanted.size(), 1, [&](std::size_t w) {
-    const auto [k, row] = wanted[w];
-    double* spread = &out[row * n];
-    spread[order_[k]] = diagonal_[k];
-    forRuns(upper_[k], [&](std::size_t offset, const auto* values, std::size_t count) {
-      const Index* patch = &order_[k + 1 + offset];
-      for (std::size_t m = 0; m < count; ++m) spread[patch[m]] = values[m];
-    });
+    const std::size_t k = wanted[w].first;
+    std::vector<double> stored(n - k);
+    upperRow(k, stored, part);
+    double* spread = &out[wanted[w].second * n];
+    for (std::size_t m = 0; m < stored.size(); ++m) spread[order_[k + m]] = stored[m];
   });
   parallelFor(wanted.empty() ? 0 : wanted.back().first, kRowGrain, [&](std::size_t k) {
     const Index patch = order_[k];
+    RunReader raw(part != Part::correction ? upper_[k] : kEmptyRow);
+    RunReader change(part != Part::raw && isCorrected() ? correction_[k] : kEmptyRow);
     auto next = std::upper_bound(wanted.begin(), wanted.end(), std::pair(Index(k), kNone));
-    forRuns(upper_[k], [&](std::size_t offset, const auto* values, std::size_t count) {
-      const std::size_t begin = k + 1 + offset;
-      while (next != wanted.end() && next->first < begin) ++next;
-      for (; next != wanted.end() && next->first < begin + count; ++next) {
-        const double value = values[next->first - begin];
-        if (value == 0) continue;  // stored between two that are not; the area may be 0 too
-        out[next->second * n + patch] = value * area_[patch] / area_[order_[next->first]];
-      }
-    });
+    for (; next != wanted.end(); ++next) {
+      const std::size_t offset = next->first - k - 1;
+      const double value = raw.at(offset) + change.at(offset);
+      // The area of a patch that exchanges nothing may be 0.
+      out[next->second * n + patch] =
+          value == 0 ? 0 : value * area_[patch] / area_[order_[next->first]];
+    }
   });
 }
 
@@ -138,8 +172,8 @@ std::size_t ExchangeMatrix::estimateSymmetricBytes(std::size_t n, double entries
   const double value = precision == Precision::single ? sizeof(float) : sizeof(double);
   const double half = std::min(entries_per_row, double(n)) / 2;
   const double dense_runs = 1 + double(n) / std::numeric_limits<std::uint16_t>::max();
-  const double sparse = half * (value + sizeof(RunRow::Run));
-  const double dense = double(n) / 2 * value + dense_runs * sizeof(RunRow::Run);
+  const double sparse = half * (value + sizeof(Run));
+  const double dense = double(n) / 2 * value + dense_runs * sizeof(Run);
   return std::size_t(std::ceil(double(n) * (std::min(sparse, dense) + sizeof(RunRow))));
 }
 

@@ -2,39 +2,16 @@
 // gathers F_kq x_q, and hands F_kq A_k x_k on to row q, which divides by its own area at the end.
 #include <algorithm>
 
-#include "base/parallel.h"
-#include "matrix/run_row.h"
 #include "matrix/triangle_kernels.h"
+#include "matrix/two_sided_pass.h"
 #include "radiosity/exchange_matrix.h"
 
 namespace radiosity {
 
 namespace {
 
-constexpr std::size_t kPositionGrain = 256;
-/// Rows handed on by different threads meet in the same places, so that rows are dealt out in
-/// chunks, each with sums of its own. How many depends on N alone, never on the threads.
-constexpr std::size_t kRowsPerChunk = 128;
-constexpr std::size_t kMostChunks = 32;
-
-/// Starts of chunks of rows with about equally many stored values, and the end.
-std::vector<std::size_t> chunkStarts(const std::vector<RunRow>& rows) {
-  const std::size_t n = rows.size();
-  const std::size_t chunks = std::clamp<std::size_t>(n / kRowsPerChunk, 1, kMostChunks);
-  const auto work = [](const RunRow& row) {
-    return row.single.size() + row.real.size() + row.runs.size();
-  };
-  std::size_t total = 0;
-  for (const RunRow& row : rows) total += work(row);
-  std::vector<std::size_t> starts{0};
-  std::size_t done = 0;
-  for (std::size_t k = 0; k < n; ++k) {
-    done += work(rows[k]);
-    if (starts.size() < chunks && done * chunks >= starts.size() * total) starts.push_back(k + 1);
-  }
-  starts.resize(chunks, n);
-  starts.push_back(n);
-  return starts;
+std::size_t workOf(const RunRow& row) {
+  return row.single.size() + row.real.size() + row.runs.size();
 }
 
 /// Some bands of N * bands values, a plane each, by position instead of patch.
@@ -61,46 +38,44 @@ double perArea(double handed, double area) { return area > 0 ? handed / area : 0
 
 }  // namespace
 
-void ExchangeMatrix::symmetricProduct(std::span<const double> x, int bands,
-                                      std::span<double> y) const {
+void ExchangeMatrix::symmetricProduct(std::span<const double> x, int bands, std::span<double> y,
+                                      Part part) const {
   const std::size_t n = size();
   const auto width = std::size_t(bands);
-  const std::vector<std::size_t> starts = chunkStarts(upper_);
-  const std::size_t chunks = starts.size() - 1;
+  const bool raw = part != Part::correction;
+  const bool change = part != Part::raw && isCorrected();
+  const TwoSidedPass pass(n, [&](std::size_t k) { return workOf(upper_[k]); });
   for (int first = 0; first < bands; first += kMaxBands) {
     Planes in(n, first, std::min(first + kMaxBands, bands));
     in.take(x, width, order_);
     const auto planes = std::size_t(in.bands);
-    std::vector<double> gathered(n * planes);
-    std::vector<std::vector<double>> handed(chunks);  // chunk c: positions from starts[c] on
-    parallelFor(chunks, 1, [&](std::size_t c) {
-      const std::size_t stride = n - starts[c];
-      handed[c].assign(stride * planes, 0.0);
-      for (std::size_t k = starts[c]; k < starts[c + 1]; ++k) {
-        double factor[kMaxBands];
-        for (std::size_t b = 0; b < planes; ++b)
-          factor[b] = in.values[b * n + k] * area_[order_[k]];
+    std::vector<double> gathered(n * planes, 0.0);
+    const auto row = [&](std::size_t k, double* handed_on, std::size_t stride) {
+      const double area = area_[order_[k]];
+      double factor[kMaxBands];
+      for (std::size_t b = 0; b < planes; ++b) factor[b] = in.values[b * n + k] * area;
+      const RowOperands operands{.x = &in.values[k] + 1,
+                                 .x_stride = n,
+                                 .z = handed_on,
+                                 .z_stride = stride,
+                                 .bands = in.bands};
+      const auto add = [&](const RunRow& values) {
         double sums[kMaxBands];
-        const RowOperands operands{.x = &in.values[k] + 1,
-                                   .x_stride = n,
-                                   .z = &handed[c][k - starts[c]] + 1,
-                                   .z_stride = stride,
-                                   .bands = in.bands};
-        gatherAndHandOnRow(upper_[k], operands, factor, sums);
-        for (std::size_t b = 0; b < planes; ++b) gathered[b * n + k] = sums[b];
-      }
-    });
-    parallelFor(n, kPositionGrain, [&](std::size_t k) {
+        gatherAndHandOnRow(values, operands, factor, sums);
+        for (std::size_t b = 0; b < planes; ++b) gathered[b * n + k] += sums[b];
+      };
+      if (raw) add(upper_[k]);
+      if (change) add(correction_[k]);
+    };
+    const auto finish = [&](std::size_t k, const double* handed) {
+      const Index patch = order_[k];
       for (std::size_t b = 0; b < planes; ++b) {
-        double from_before = 0;
-        for (std::size_t c = 0; c < chunks && starts[c] <= k; ++c) {
-          from_before += handed[c][b * (n - starts[c]) + (k - starts[c])];
-        }
-        y[order_[k] * width + in.first_band + b] = gathered[b * n + k] +
-                                                   diagonal_[k] * in.values[b * n + k] +
-                                                   perArea(from_before, area_[order_[k]]);
+        const double own = raw ? diagonal_[k] * in.values[b * n + k] : 0;
+        y[patch * width + in.first_band + b] =
+            gathered[b * n + k] + own + perArea(handed[b], area_[patch]);
       }
-    });
+    };
+    pass.run(planes, row, finish);
   }
 }
 
@@ -125,11 +100,19 @@ void ExchangeMatrix::symmetricSweep(
                        .z_stride = n,
                        .bands = std::min(bands - first, kMaxBands)};
   };
+  const auto gather = [&](std::size_t k) {
+    for (int b = 0; b < bands; b += kMaxBands) {
+      gatherRow(upper_[k], operands(k, b), &sums[std::size_t(b)]);
+      if (!isCorrected()) continue;
+      double more[kMaxBands];
+      gatherRow(correction_[k], operands(k, b), more);
+      for (int m = 0; m < std::min(bands - b, kMaxBands); ++m) sums[std::size_t(b + m)] += more[m];
+    }
+  };
   for (std::size_t k = 0; k < n; ++k) {
     const Index patch = order_[k];
     const double area = area_[patch];
-    for (int b = 0; b < bands; b += kMaxBands)
-      gatherRow(upper_[k], operands(k, b), &sums[std::size_t(b)]);
+    gather(k);
     for (std::size_t b = 0; b < width; ++b) {
       sums[b] += diagonal_[k] * now.values[b * n + k] + perArea(handed[b * n + k], area);
     }
@@ -138,8 +121,10 @@ void ExchangeMatrix::symmetricSweep(
       now.values[b * n + k] = x[patch * width + b];
       factor[b] = now.values[b * n + k] * area;
     }
-    for (int b = 0; b < bands; b += kMaxBands)
+    for (int b = 0; b < bands; b += kMaxBands) {
       handOnRow(upper_[k], operands(k, b), &factor[std::size_t(b)]);
+      if (isCorrected()) handOnRow(correction_[k], operands(k, b), &factor[std::size_t(b)]);
+    }
   }
 }
 

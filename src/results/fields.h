@@ -138,6 +138,10 @@ void describe(Archive& a, Described<Archive, ClosureReport>& r) {
   a("largest_residual", r.largest_residual);
   a("largest_move", r.largest_move);
   a("relative_move", r.relative_move);
+  a("reached", r.reached);
+  a("adjustable", r.adjustable);
+  a("emptied", r.emptied);
+  a("fixed_rows", r.fixed_rows);
 }
 
 template <class Archive>

@@ -1,10 +1,9 @@
 // Symmetric scaling of a matrix to prescribed row sums.
-#include <fmt/format.h>
-
 #include <cmath>
 #include <vector>
 
-#include "radiosity/exchange_matrix.h"
+#include "matrix/closure_target.h"
+#include "radiosity/closure.h"
 
 namespace radiosity {
 
@@ -23,17 +22,6 @@ double largestResidual(const ExchangeMatrix& matrix, std::span<const double> tar
 /// thousands reach a usual tolerance: the target is out of reach, as where two groups of patches
 /// that see only each other are asked for different exchanged areas.
 constexpr std::size_t kPatience = 50;
-
-void checkTarget(std::span<const double> target, std::size_t n) {
-  if (target.size() != n) {
-    throw InputError(fmt::format("closure: {} row sums for {} rows", target.size(), n));
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    if (!(target[i] >= 0) || !std::isfinite(target[i])) {
-      throw InputError(fmt::format("closure: {} is no sum for row {}", target[i], i));
-    }
-  }
-}
 
 /// How far entries moved, added up.
 struct Moves {
@@ -109,7 +97,7 @@ void scale(ExchangeMatrix& matrix, std::span<const double> d, ClosureReport& rep
 ClosureReport restoreClosure(ExchangeMatrix& matrix, std::span<const double> target_row_sums,
                              double tolerance, int max_iterations) {
   const std::size_t n = matrix.size();
-  checkTarget(target_row_sums, n);
+  checkClosureTarget(target_row_sums, n);
   ClosureReport report;
   std::vector<double> d(n, 1.0);
   std::vector<double> sums = matrix.rowSums();
@@ -130,9 +118,11 @@ ClosureReport restoreClosure(ExchangeMatrix& matrix, std::span<const double> tar
     history.push_back(report.largest_residual);
     ++report.iterations;
   }
-  if (report.iterations == 0) return report;
-  scale(matrix, d, report);
-  report.largest_residual = largestResidual(matrix, target_row_sums, matrix.rowSums());
+  if (report.iterations > 0) {
+    scale(matrix, d, report);
+    report.largest_residual = largestResidual(matrix, target_row_sums, matrix.rowSums());
+  }
+  report.reached = report.largest_residual <= tolerance;
   return report;
 }
 

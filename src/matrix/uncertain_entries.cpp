@@ -1,0 +1,85 @@
+// Which entries are estimates, a byte each.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "matrix/run_row.h"
+#include "radiosity/closure.h"
+
+namespace radiosity {
+
+namespace {
+
+/// A code is 255 + 4 log2(error), rounded: 255 stands for 1 and more, 1 for 2^-63.5.
+constexpr double kStepsPerOctave = 4;
+constexpr double kLargestCode = 255;
+
+std::uint8_t codeOf(double error) {
+  if (error == 0) return 0;
+  const double code = std::round(kLargestCode + kStepsPerOctave * std::log2(error));
+  return std::uint8_t(std::clamp(code, 0.0, kLargestCode));
+}
+
+}  // namespace
+
+double UncertainEntries::errorOf(std::uint8_t code) {
+  static const std::array<double, 256> table = [] {
+    std::array<double, 256> errors{};
+    for (std::size_t c = 1; c < errors.size(); ++c) {
+      errors[c] = std::exp2((double(c) - kLargestCode) / kStepsPerOctave);
+    }
+    return errors;
+  }();
+  return table[code];
+}
+
+void UncertainEntries::setRow(std::size_t k, std::span<const Index> later,
+                              std::span<const double> errors) {
+  if (k >= size() || later.size() != errors.size()) {
+    throw InputError(fmt::format("uncertain entries: {} positions and {} errors for row {} of {}",
+                                 later.size(), errors.size(), k, size()));
+  }
+  for (std::size_t m = 0; m < later.size(); ++m) {
+    const bool in_order = later[m] > k && later[m] < size() && (m == 0 || later[m] > later[m - 1]);
+    if (in_order && errors[m] >= 0 && std::isfinite(errors[m])) continue;
+    throw InputError(fmt::format(
+        "uncertain entries, row {}: position {} is out of order or its error {} is no error", k,
+        later[m], errors[m]));
+  }
+  RunFinder finder(sizeof(std::uint8_t));
+  for (std::size_t m = 0; m < later.size(); ++m) {
+    finder.add(later[m] - k - 1, later[m] - k);
+  }
+  Row row;
+  row.runs = finder.take();
+  std::size_t stored = 0;
+  for (const Run run : row.runs) stored += run.count;
+  row.codes.assign(stored, 0);
+  std::size_t m = 0;
+  forRuns(row.runs, row.codes.data(),
+          [&](std::size_t offset, std::uint8_t* codes, std::size_t count) {
+            for (; m < later.size() && later[m] - k - 1 < offset + count; ++m) {
+              codes[later[m] - k - 1 - offset] = codeOf(errors[m]);
+            }
+          });
+  rows_[k] = std::move(row);
+}
+
+std::size_t UncertainEntries::entries() const {
+  std::size_t count = 0;
+  for (const Row& row : rows_) {
+    count += row.codes.size() -
+             std::size_t(std::count(row.codes.begin(), row.codes.end(), std::uint8_t(0)));
+  }
+  return count;
+}
+
+std::size_t UncertainEntries::bytes() const {
+  std::size_t total = 0;
+  for (const Row& row : rows_) total += row.codes.size() + row.runs.size() * sizeof(Run);
+  return total;
+}
+
+}  // namespace radiosity

@@ -1,0 +1,73 @@
+// The size of F in the norm its errors are measured in.
+#include <numeric>
+#include <vector>
+
+#include "base/parallel.h"
+#include "matrix/run_row.h"
+#include "radiosity/exchange_matrix.h"
+
+namespace radiosity {
+
+namespace {
+
+constexpr std::size_t kRowGrain = 16;
+
+/// sum_m values[m]^2 (1 + area * inverse[m]), in running sums that do not wait for each other.
+template <class Value>
+double sumOfSquares(const Value* values, double area, const double* inverse, std::size_t count) {
+  constexpr std::size_t kLanes = 8;
+  double lanes[kLanes] = {};
+  const auto add = [&](std::size_t lane, std::size_t m) {
+    const double value = values[m];
+    lanes[lane] += value * value * (1 + area * inverse[m]);
+  };
+  std::size_t m = 0;
+  for (; m + kLanes <= count; m += kLanes) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) add(lane, m + lane);
+  }
+  for (; m < count; ++m) add(m % kLanes, m);
+  return std::accumulate(lanes, lanes + kLanes, 0.0);
+}
+
+double ofRows(const ExchangeMatrix& matrix) {
+  std::vector<double> rows(matrix.size(), 0.0);
+  parallelFor(matrix.size(), kRowGrain, [&](std::size_t i) {
+    matrix.forRow(i, [&](Index, double value) { rows[i] += value * value; });
+    rows[i] *= matrix.area()[i];
+  });
+  return std::accumulate(rows.begin(), rows.end(), 0.0);
+}
+
+}  // namespace
+
+// Both ends of a pair: A_k F_kq^2 + A_q F_qk^2 = A_k F_kq^2 (1 + A_k / A_q).
+double weightedSquares(const ExchangeMatrix& matrix, Part part) {
+  if (!matrix.isSymmetric()) return ofRows(matrix);
+  const std::size_t n = matrix.size();
+  std::vector<double> area(n);
+  std::vector<double> inverse(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    area[k] = matrix.area()[matrix.order()[k]];
+    inverse[k] = area[k] > 0 ? 1 / area[k] : 0.0;
+  }
+  std::vector<double> rows(n, 0.0);
+  const bool as_stored = part == Part::raw || (part == Part::corrected && !matrix.isCorrected());
+  parallelFor(n, kRowGrain, [&](std::size_t k) {
+    if (as_stored) {
+      const double diagonal = matrix.diagonal(k);
+      rows[k] = diagonal * diagonal;
+      forRuns(matrix.upperRuns(k), [&](std::size_t offset, const auto* values, std::size_t count) {
+        rows[k] += sumOfSquares(values, area[k], &inverse[k + 1 + offset], count);
+      });
+    } else {
+      std::vector<double> values(n - k);
+      matrix.upperRow(k, values, part);
+      rows[k] = values[0] * values[0];
+      rows[k] += sumOfSquares(values.data() + 1, area[k], inverse.data() + k + 1, n - k - 1);
+    }
+    rows[k] *= area[k];
+  });
+  return std::accumulate(rows.begin(), rows.end(), 0.0);
+}
+
+}  // namespace radiosity

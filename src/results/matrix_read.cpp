@@ -1,0 +1,238 @@
+// Reading the matrix: everything is checked before it is believed.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "base/parallel.h"
+#include "matrix/run_row.h"
+#include "results/matrix_blocks.h"
+
+namespace radiosity {
+
+using h5::Number;
+
+namespace {
+
+constexpr std::size_t kRowGrain = 64;
+
+/// The patches in the order a symmetric matrix stores them: each once.
+std::vector<Index> readOrder(const h5::InputGroup& group, std::size_t n) {
+  std::size_t rows = 0;
+  const h5::Handle dataset = group.open("order", h5::numberOf<Index>(), 0, rows);
+  if (rows != n) group.fail("order", fmt::format("has {} values, not {}", rows, n));
+  std::vector<Index> order(n);
+  if (n > 0) group.readAll("order", dataset, h5::numberOf<Index>(), order.data());
+  std::vector<bool> named(n, false);
+  for (const Index patch : order) {
+    if (patch >= n || named[patch]) group.fail("order", "does not name every patch once");
+    named[patch] = true;
+  }
+  return order;
+}
+
+/// Compressed rows as they stand in a group: all but the entries themselves, checked.
+struct StoredRows {
+  Number number = Number::f32;  ///< of data
+  std::vector<std::int64_t> indptr;
+};
+
+/// Row starts: from 0 upward to the number of entries, no row longer than the matrix.
+std::vector<std::int64_t> readRowStarts(const h5::InputGroup& group, std::size_t n,
+                                        std::size_t entries) {
+  std::size_t rows = 0;
+  const h5::Handle dataset = group.open("indptr", Number::i64, 0, rows);
+  if (rows != n + 1) group.fail("indptr", fmt::format("has {} values, not {}", rows, n + 1));
+  std::vector<std::int64_t> indptr(rows);
+  group.readAll("indptr", dataset, Number::i64, indptr.data());
+  bool good = indptr.front() == 0 && indptr.back() == std::int64_t(entries);
+  for (std::size_t i = 0; i < n && good; ++i) {
+    good = indptr[i + 1] >= indptr[i] && indptr[i + 1] - indptr[i] <= std::int64_t(n);
+  }
+  if (!good) group.fail("indptr", "does not divide the entries into rows");
+  return indptr;
+}
+
+StoredRows openRows(const h5::InputGroup& group, std::size_t n) {
+  StoredRows rows;
+  const std::optional<Number> number = group.numberOfDataset("data");
+  if (number != Number::f32 && number != Number::f64) group.fail("data", "is not f32 or f64");
+  rows.number = *number;
+  std::size_t shape_rows = 0;
+  std::int64_t shape[2] = {-1, -1};
+  const h5::Handle shape_set = group.open("shape", Number::i64, 0, shape_rows);
+  if (shape_rows == 2) group.readAll("shape", shape_set, Number::i64, shape);
+  if (shape[0] != std::int64_t(n) || shape[1] != std::int64_t(n)) {
+    group.fail("shape", fmt::format("is not {0} x {0}, as area says", n));
+  }
+  std::size_t entries = 0;
+  std::size_t index_count = 0;
+  group.open("data", *number, 0, entries);
+  group.open("indices", Number::i32, 0, index_count);
+  if (index_count != entries) {
+    group.fail("indices", fmt::format("has {} values, data has {}", index_count, entries));
+  }
+  rows.indptr = readRowStarts(group, n, entries);
+  return rows;
+}
+
+/// Reads rows block by block and hands each to `store`, several at once.
+template <class T>
+class BlockReader {
+ public:
+  using Store =
+      std::function<void(std::size_t row, std::span<const std::int32_t>, std::span<const T>)>;
+
+  BlockReader(const h5::InputGroup& group, const std::vector<std::int64_t>& indptr, bool any_sign,
+              Store store)
+      : group_(&group), indptr_(&indptr), any_sign_(any_sign), store_(std::move(store)) {
+    std::size_t rows = 0;
+    indices_ = group.open("indices", Number::i32, 0, rows);
+    data_ = group.open("data", h5::numberOf<T>(), 0, rows);
+  }
+
+  void readAll() {
+    // About four chunks: wide enough for all threads, small beside any matrix worth storing.
+    const auto block = std::int64_t(4 * h5::kChunkBytes / sizeof(std::int32_t));
+    const std::size_t n = indptr_->size() - 1;
+    for (std::size_t first = 0; first < n;) {
+      std::size_t last = first + 1;
+      while (last < n && (*indptr_)[last + 1] - (*indptr_)[first] <= block) ++last;
+      read(first, last);
+      first = last;
+    }
+  }
+
+ private:
+  void read(std::size_t first, std::size_t last) {
+    const std::size_t begin = std::size_t((*indptr_)[first]);
+    const std::size_t count = std::size_t((*indptr_)[last]) - begin;
+    columns_.resize(count);
+    values_.resize(count);
+    if (count > 0) {
+      group_->readRows("indices", indices_, Number::i32, begin, count, columns_.data());
+      group_->readRows("data", data_, h5::numberOf<T>(), begin, count, values_.data());
+    }
+    parallelFor(last - first, kRowGrain, [&](std::size_t k) {
+      const std::size_t from = std::size_t((*indptr_)[first + k]) - begin;
+      const std::size_t to = std::size_t((*indptr_)[first + k + 1]) - begin;
+      const auto columns = std::span<const std::int32_t>(columns_).subspan(from, to - from);
+      const auto values = std::span<const T>(values_).subspan(from, to - from);
+      check(first + k, columns, values);
+      store_(first + k, columns, values);
+    });
+  }
+
+  void check(std::size_t i, std::span<const std::int32_t> columns,
+             std::span<const T> values) const {
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      // A negative column is a large one once it is unsigned.
+      if (Index(columns[k]) >= indptr_->size() - 1 || (k > 0 && columns[k] <= columns[k - 1])) {
+        group_->fail("indices", fmt::format("has a row ({}) whose columns do not increase", i));
+      }
+      if ((values[k] > 0 || any_sign_) && std::isfinite(values[k])) continue;
+      group_->fail("data", fmt::format("has a row ({}) with the form factor {}", i, values[k]));
+    }
+  }
+
+  const h5::InputGroup* group_;
+  const std::vector<std::int64_t>* indptr_;
+  bool any_sign_;
+  Store store_;
+  h5::Handle indices_;
+  h5::Handle data_;
+  std::vector<std::int32_t> columns_;
+  std::vector<T> values_;
+};
+
+template <class T>
+void readByRows(const h5::InputGroup& group, const StoredRows& rows, ExchangeMatrix& matrix) {
+  BlockReader<T>(group, rows.indptr, false, [&](std::size_t i, auto columns, auto values) {
+    matrix.setRow(i, std::vector<Index>(columns.begin(), columns.end()),
+                  std::vector<double>(values.begin(), values.end()));
+  }).readAll();
+}
+
+/// Of a symmetric matrix one of each pair is kept: that of the patch which comes first in the
+/// order. Calls store(k, values from position k on) for every position.
+template <class T, class StoreUpper>
+void readTriangle(const h5::InputGroup& group, const StoredRows& rows, std::span<const Index> order,
+                  bool any_sign, const StoreUpper& store) {
+  std::vector<Index> position(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) position[order[k]] = Index(k);
+  std::atomic<std::ptrdiff_t> surplus = 0;  // entries to later patches less those to earlier ones
+  const auto keepUpper = [&](std::size_t i, std::span<const std::int32_t> columns,
+                             std::span<const T> values) {
+    const Index k = position[i];
+    std::vector<double> upper(order.size() - k, 0.0);
+    std::ptrdiff_t more = 0;
+    for (std::size_t m = 0; m < columns.size(); ++m) {
+      const Index later = position[std::size_t(columns[m])];
+      if (later >= k) upper[later - k] = values[m];
+      if (later != k) more += later > k ? 1 : -1;
+    }
+    store(k, upper);
+    surplus.fetch_add(more, std::memory_order_relaxed);
+  };
+  BlockReader<T>(group, rows.indptr, any_sign, keepUpper).readAll();
+  if (surplus != 0) group.fail("indices", "is not that of a symmetric matrix");
+}
+
+/// What closure adds to the rows.
+template <class T>
+void readCorrection(const h5::InputGroup& group, ExchangeMatrix& matrix) {
+  const StoredRows rows = openRows(group, matrix.size());
+  if (rows.number != h5::numberOf<T>()) group.fail("data", "is not stored as the matrix is");
+  std::vector<RunRow> changes(matrix.size());
+  readTriangle<T>(group, rows, matrix.order(), true,
+                  [&](std::size_t k, const std::vector<double>& upper) {
+                    changes[k] = packRuns(std::span(upper).subspan(1), matrix.precision());
+                  });
+  try {
+    matrix.setCorrection(std::move(changes));
+  } catch (const InputError& error) {
+    group.fail("data", fmt::format("does not fit: {}", error.what()));
+  }
+}
+
+template <class T>
+void readSymmetric(const h5::InputGroup& group, const StoredRows& rows, ExchangeMatrix& matrix) {
+  readTriangle<T>(group, rows, matrix.order(), false,
+                  [&](std::size_t k, const std::vector<double>& upper) {
+                    try {
+                      matrix.setUpperRow(k, upper);
+                    } catch (const InputError& error) {
+                      group.fail("data", fmt::format("does not fit: {}", error.what()));
+                    }
+                  });
+  if (group.has("closure")) readCorrection<T>(group.group("closure"), matrix);
+}
+
+}  // namespace
+
+ExchangeMatrix readMatrix(const h5::InputGroup& group) {
+  std::size_t n = 0;
+  const h5::Handle area_set = group.open("area", Number::f64, 0, n);
+  std::vector<double> area(n);
+  if (n > 0) group.readAll("area", area_set, Number::f64, area.data());
+  for (const double a : area) {
+    if (!(a >= 0) || !std::isfinite(a)) group.fail("area", fmt::format("holds the area {}", a));
+  }
+  const StoredRows rows = openRows(group, n);
+  const bool single = rows.number == Number::f32;
+  const Precision precision = single ? Precision::single : Precision::real;
+  if (group.has("order")) {
+    auto matrix = ExchangeMatrix::symmetric(std::move(area), readOrder(group, n), precision);
+    single ? readSymmetric<float>(group, rows, matrix) : readSymmetric<double>(group, rows, matrix);
+    return matrix;
+  }
+  ExchangeMatrix matrix(std::move(area), precision);
+  single ? readByRows<float>(group, rows, matrix) : readByRows<double>(group, rows, matrix);
+  return matrix;
+}
+
+}  // namespace radiosity

@@ -1,0 +1,128 @@
+// Writing the matrix.
+#include <algorithm>
+#include <vector>
+
+#include "results/matrix_blocks.h"
+
+namespace radiosity {
+
+using h5::Number;
+using h5::Shape;
+
+namespace {
+
+/// Fills a dataset of one dimension in order, a chunk at a time: HDF5 makes the checksum of each
+/// chunk once and reads none back.
+template <class T>
+class ColumnWriter {
+ public:
+  ColumnWriter(h5::OutputGroup& group, const char* name, std::size_t count)
+      : group_(&group), name_(name) {
+    const Shape shape{h5::numberOf<T>(), count, 0};
+    dataset_ = group.create(name, shape, "");
+    chunk_ = h5::chunkRows(shape);
+    buffer_.reserve(std::min(chunk_, count));
+  }
+  void push(T value) {
+    buffer_.push_back(value);
+    if (buffer_.size() == chunk_) flush();
+  }
+  void flush() {
+    if (buffer_.empty()) return;
+    group_->writeRows(name_, dataset_, h5::numberOf<T>(), written_, buffer_.size(), buffer_.data());
+    written_ += buffer_.size();
+    buffer_.clear();
+  }
+
+ private:
+  h5::OutputGroup* group_;
+  const char* name_;
+  h5::Handle dataset_;
+  std::size_t chunk_ = 0;
+  std::size_t written_ = 0;
+  std::vector<T> buffer_;
+};
+
+std::vector<std::int64_t> rowStarts(const ExchangeMatrix& matrix, Part part) {
+  std::vector<std::int64_t> indptr(matrix.size() + 1, 0);
+  const std::vector<Index> entries = matrix.rowEntries(part);
+  std::copy(entries.begin(), entries.end(), indptr.begin() + 1);
+  for (std::size_t i = 0; i < matrix.size(); ++i) indptr[i + 1] += indptr[i];
+  return indptr;
+}
+
+template <class T>
+void writeEntries(h5::OutputGroup& group, const ExchangeMatrix& matrix, Part part,
+                  std::size_t entries, Progress& progress) {
+  ColumnWriter<std::int32_t> indices(group, "indices", entries);
+  ColumnWriter<T> data(group, "data", entries);
+  progress.begin("writing form factors", matrix.size());
+  matrix.forPanels(
+      [&](const RowPanel& rows) {
+        for (std::size_t i = rows.first(); i < rows.last(); ++i) {
+          progress.check();
+          rows.forRow(i, [&](Index column, double value) {
+            indices.push(std::int32_t(column));
+            data.push(T(value));
+          });
+          progress.advance();
+        }
+      },
+      part);
+  indices.flush();
+  data.flush();
+  progress.end();
+}
+
+/// shape, indptr, indices and data of a part.
+void writeRows(h5::OutputGroup& group, const ExchangeMatrix& matrix, Part part,
+               Progress& progress) {
+  const std::int64_t n = std::int64_t(matrix.size());
+  const std::int64_t shape[2] = {n, n};
+  group.dataset("shape", {Number::i64, 2, 0}, shape, "");
+  const std::vector<std::int64_t> indptr = rowStarts(matrix, part);
+  group.dataset("indptr", {Number::i64, indptr.size(), 0}, indptr.data(), "");
+  const auto entries = std::size_t(indptr.back());
+  if (matrix.precision() == Precision::single) {
+    writeEntries<float>(group, matrix, part, entries, progress);
+  } else {
+    writeEntries<double>(group, matrix, part, entries, progress);
+  }
+}
+
+void countRows(h5::SizeCounter& group, const ExchangeMatrix& matrix, Part part) {
+  const std::size_t entries = matrix.nonZeros(part);
+  const Number number = matrix.precision() == Precision::single ? Number::f32 : Number::f64;
+  group.dataset("shape", {Number::i64, 2, 0}, nullptr, "");
+  group.dataset("indptr", {Number::i64, matrix.size() + 1, 0}, nullptr, "");
+  group.dataset("indices", {Number::i32, entries, 0}, nullptr, "");
+  group.dataset("data", {number, entries, 0}, nullptr, "");
+}
+
+}  // namespace
+
+void writeMatrix(h5::OutputGroup& group, const ExchangeMatrix& matrix, Progress& progress) {
+  group.dataset("area", {Number::f64, matrix.size(), 0}, matrix.area().data(), "m^2");
+  if (matrix.isSymmetric()) {
+    group.dataset("order", {h5::numberOf<Index>(), matrix.size(), 0}, matrix.order().data(), "");
+  }
+  const std::vector<double> sums = matrix.rowSums(Part::raw);
+  group.dataset("row_sum", {Number::f64, sums.size(), 0}, sums.data(), "");
+  writeRows(group, matrix, Part::raw, progress);
+  if (!matrix.isCorrected()) return;
+  h5::OutputGroup closure = group.group("closure");
+  writeRows(closure, matrix, Part::correction, progress);
+}
+
+void countMatrix(h5::SizeCounter& group, const ExchangeMatrix& matrix) {
+  const std::size_t n = matrix.size();
+  group.dataset("area", {Number::f64, n, 0}, nullptr, "m^2");
+  if (matrix.isSymmetric()) group.dataset("order", {h5::numberOf<Index>(), n, 0}, nullptr, "");
+  group.dataset("row_sum", {Number::f64, n, 0}, nullptr, "");
+  countRows(group, matrix, Part::raw);
+  if (!matrix.isCorrected()) return;
+  h5::SizeCounter closure = group.group("closure");
+  countRows(closure, matrix, Part::correction);
+}
+
+}  // namespace radiosity
