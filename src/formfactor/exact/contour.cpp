@@ -127,29 +127,56 @@ double skewEdges(const Segment& outer, const Segment& inner, double inverse_unit
 /// Sines and cosines below this come of rounding: neglected angles of this size change an
 /// integral by as much, relative.
 constexpr double kRoundingAngle = 1e-13;
+/// No quadrature is asked for more.
+constexpr double kFinestTolerance = 1e-15;
 
-}  // namespace
+/// One term of the sum.
+struct Term {
+  double value = 0;
+  bool exact = true;  // to rounding: no quadrature
+};
 
-double edgePairIntegral(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1, double unit,
-                        double tolerance) {
+Term edgePair(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1, double unit,
+              double tolerance) {
   Segment a{a0, a1 - a0, glm::distance(a0, a1)};
   Segment b{b0, b1 - b0, glm::distance(b0, b1)};
-  if (!(a.length > 0) || !(b.length > 0)) return 0;
+  if (!(a.length > 0) || !(b.length > 0)) return {};
   a.direction /= a.length;
   b.direction /= b.length;
   const double cosine = glm::dot(a.direction, b.direction);
-  if (std::abs(cosine) < kRoundingAngle) return 0;
+  if (std::abs(cosine) < kRoundingAngle) return {};
   const double inverse_unit = 1 / unit;
   if (glm::length(glm::cross(a.direction, b.direction)) < kRoundingAngle) {
     const Vec3 offset = (b0 - a0) * inverse_unit;
     const double t0 = glm::dot(offset, a.direction);
     const double h = glm::length(glm::cross(offset, a.direction));
     const double t1 = t0 + (cosine > 0 ? b.length : -b.length) * inverse_unit;
-    return unit * unit * parallelEdges(0, a.length * inverse_unit, t0, t1, h);
+    return {unit * unit * parallelEdges(0, a.length * inverse_unit, t0, t1, h), true};
   }
   if (a.length > b.length) std::swap(a, b);
-  return cosine * skewEdges(a, b, inverse_unit, tolerance);
+  return {cosine * skewEdges(a, b, inverse_unit, tolerance), false};
 }
+
+struct Sum {
+  double value = 0;
+  double skew = 0;  // magnitudes of the terms by quadrature
+};
+
+Sum sumOfTerms(std::span<const Vec3> a, std::span<const Vec3> b, double unit, double tolerance) {
+  Sum sum;
+  for (std::size_t i = 0, before = a.size() - 1; i < a.size(); before = i++) {
+    double edge = 0;
+    for (std::size_t j = 0, last = b.size() - 1; j < b.size(); last = j++) {
+      const Term term = edgePair(a[before], a[i], b[last], b[j], unit, tolerance);
+      edge += term.value;
+      if (!term.exact) sum.skew += std::abs(term.value);
+    }
+    sum.value += edge;
+  }
+  return sum;
+}
+
+}  // namespace
 
 double contourExchange(std::span<const Vec3> a, std::span<const Vec3> b, double tolerance) {
   // The unit of length drops out of closed loops; one of the loops' size keeps the terms small.
@@ -158,17 +185,15 @@ double contourExchange(std::span<const Vec3> a, std::span<const Vec3> b, double 
     for (const Vec3& q : b) unit = std::max(unit, glm::distance(p, q));
   }
   if (!(unit > 0)) return 0;
-  // Terms of edges are larger than their sum.
-  constexpr double kCancellation = 1e-2;
-  double sum = 0;
-  for (std::size_t i = 0, before = a.size() - 1; i < a.size(); before = i++) {
-    double edge = 0;
-    for (std::size_t j = 0, last = b.size() - 1; j < b.size(); last = j++) {
-      edge += edgePairIntegral(a[before], a[i], b[last], b[j], unit, kCancellation * tolerance);
-    }
-    sum += edge;
+  // Terms are larger than their sum; where they are larger than expected, once more.
+  constexpr double kExpectedCancellation = 1e-2;
+  const double first = kExpectedCancellation * tolerance;
+  Sum sum = sumOfTerms(a, b, unit, first);
+  if (first * sum.skew > tolerance * sum.value) {
+    const double needed = tolerance * std::max(sum.value, 0.0) / sum.skew;
+    sum = sumOfTerms(a, b, unit, std::max(needed, kFinestTolerance));
   }
-  return sum / (2 * std::numbers::pi);
+  return sum.value / (2 * std::numbers::pi);
 }
 
 }  // namespace radiosity

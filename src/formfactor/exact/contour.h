@@ -22,9 +22,4 @@ namespace radiosity {
 /// `tolerance`: 1e-2 to 1e-14.
 double contourExchange(std::span<const Vec3> a, std::span<const Vec3> b, double tolerance);
 
-/// Integral over both edges of ln(r / unit) times the cosine of the angle between them: one term of
-/// the sum. Edges of no length give 0.
-double edgePairIntegral(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1, double unit,
-                        double tolerance);
-
 }  // namespace radiosity

@@ -66,7 +66,7 @@ void FarColumns<T>::set(std::size_t k, const FlatShape& shape, const FarBounds& 
   put(kMoment, shape.moment);
   put(kArea, shape.area);
   put(kSeriesLimit, bounds.series_limit);
-  put(kRoughness, bounds.roughness);
+  put(kSkew, bounds.skew);
   put(kMeanU, shape.mean.x);
   put(kMeanV, shape.mean.y);
   put(kAxisUU, shape.u.x);

@@ -36,7 +36,7 @@ struct FlatShape {
 /// What decides between formulas for an element, see far_kernels.h.
 struct FarBounds {
   double series_limit = 0;
-  double roughness = 1;  ///< factor for R where product rules are chosen
+  double skew = 0;  ///< 0 to 1
 };
 
 /// Of three or four corners, counter-clockwise.
@@ -54,7 +54,7 @@ enum FarField : std::size_t {
   kMoment,
   kArea,
   kSeriesLimit,  // these two: see far_kernels.h
-  kRoughness,
+  kSkew,
   kMeanU,
   kMeanV,
   kAxisUU,
@@ -74,8 +74,9 @@ inline constexpr std::size_t kFarPadding = 16;
 template <class T>
 class FarColumns {
  public:
-  explicit FarColumns(std::size_t count) {
-    for (auto& field : fields_) field.assign(count + kFarPadding, T(0));
+  explicit FarColumns(std::size_t count) { resize(count); }
+  void resize(std::size_t count) {
+    for (auto& field : fields_) field.resize(count + kFarPadding);
   }
   void set(std::size_t k, const FlatShape& shape, const FarBounds& bounds);
   const T* field(FarField f) const { return fields_[f].data(); }

@@ -14,15 +14,39 @@ using namespace radiosity::lanes;
 template <class T>
 inline constexpr std::size_t kMostLanes = 64 / sizeof(T);
 
-/// Mean of the kernel over n x n points on both elements, for one vector of columns.
-/// `du`, `dv`: from the row's centroid to the columns'.
+/// Sum of weight / s^2 over the column's points for one point of the row, with one division for two
+/// points. `count` is a multiple of the number of lanes.
+template <class T, class D, class V>
+RADIOSITY_FAR_INLINE V sumOverColumn(D d, const T* at_u, const T* at_v, const T* weight,
+                                     std::size_t count, V u, V v, V height2) {
+  const std::size_t lanes = Lanes(d);
+  const auto square = [&](std::size_t i) RADIOSITY_FAR_ATTR {
+    const auto x = Sub(LoadU(d, at_u + i), u);
+    const auto y = Sub(LoadU(d, at_v + i), v);
+    const auto s = Add(Add(Mul(x, x), Mul(y, y)), height2);
+    return Mul(s, s);
+  };
+  auto sum = Zero(d);
+  std::size_t i = 0;
+  for (; i + lanes < count; i += 2 * lanes) {
+    const auto a = square(i);
+    const auto b = square(i + lanes);
+    const auto both = Add(Mul(LoadU(d, weight + i), b), Mul(LoadU(d, weight + i + lanes), a));
+    sum = Add(sum, Div(both, Mul(a, b)));
+  }
+  if (i < count) sum = Add(sum, Div(LoadU(d, weight + i), square(i)));
+  return sum;
+}
+
+/// Mean of p q / s^2 over n x n points on both elements, times s^2 of the centroids, for one vector
+/// of columns. `du`, `dv`: from the row's centroid to the columns'; `inverse`: 1 / s.
 template <class T, class D, class V>
 RADIOSITY_FAR_INLINE V productMean(D d, FarRow<T>& row, const FarBatch<T>& batch, std::size_t k,
-                                   int n, V du, V dv, V height) {
+                                   int n, V du, V dv, V height, V inverse) {
   const auto load = [&](FarField field) RADIOSITY_FAR_ATTR {
     return LoadU(d, batch.columns->field(field) + batch.first + k);
   };
-  constexpr std::size_t kMostPoints = std::size_t(kMostProduct * kMostProduct);
+  constexpr std::size_t kMostPoints = std::size_t(kMostProduct) * kMostProduct;
   alignas(64) T at_u[kMostPoints * kMostLanes<T>];
   alignas(64) T at_v[kMostPoints * kMostLanes<T>];
   alignas(64) T weight[kMostPoints * kMostLanes<T>];
@@ -30,6 +54,8 @@ RADIOSITY_FAR_INLINE V productMean(D d, FarRow<T>& row, const FarBatch<T>& batch
   const auto slope_u = Set(d, row.slope_u);
   const auto slope_v = Set(d, row.slope_v);
   const auto zero = Zero(d);
+  // Lengths in units of the distance: products of squares stay within single precision's range.
+  const auto scale = Sqrt(inverse);
   std::size_t m = 0;
   for (const Node& s : gaussLegendre(n)) {
     const auto ss = Set(d, T(s.x));
@@ -45,8 +71,8 @@ RADIOSITY_FAR_INLINE V productMean(D d, FarRow<T>& row, const FarBatch<T>& batch
       const auto v = Add(base_v, Mul(tt, along_v));
       const auto above = Add(height, Add(Mul(slope_u, u), Mul(slope_v, v)));
       const auto share = Mul(Set(d, T(0.25 * s.weight * t.weight)), Add(density, Mul(tt, beta)));
-      StoreU(Add(du, u), d, at_u + m);
-      StoreU(Add(dv, v), d, at_v + m);
+      StoreU(Mul(scale, Add(du, u)), d, at_u + m);
+      StoreU(Mul(scale, Add(dv, v)), d, at_v + m);
       StoreU(Mul(share, Max(above, zero)), d, weight + m);
       m += lanes;
     }
@@ -54,17 +80,10 @@ RADIOSITY_FAR_INLINE V productMean(D d, FarRow<T>& row, const FarBatch<T>& batch
   const auto& points = row.points(n);
   auto sum = zero;
   const std::size_t begin = pointsBegin(n);
-  for (std::size_t j = begin; j < begin + std::size_t(n * n); ++j) {
-    const auto u = Set(d, points.u[j]);
-    const auto v = Set(d, points.v[j]);
-    const auto height2 = Set(d, points.height2[j]);
-    auto inner = zero;
-    for (std::size_t i = 0; i < m; i += lanes) {
-      const auto x = Sub(LoadU(d, at_u + i), u);
-      const auto y = Sub(LoadU(d, at_v + i), v);
-      const auto s = Add(Add(Mul(x, x), Mul(y, y)), height2);
-      inner = Add(inner, Div(LoadU(d, weight + i), Mul(s, s)));
-    }
+  for (std::size_t j = begin; j < begin + std::size_t(n) * n; ++j) {
+    const auto inner =
+        sumOverColumn(d, at_u, at_v, weight, m, Mul(scale, Set(d, points.u[j])),
+                      Mul(scale, Set(d, points.v[j])), Mul(inverse, Set(d, points.height2[j])));
     sum = Add(sum, Mul(Set(d, points.weight[j]), inner));
   }
   return sum;
@@ -72,8 +91,7 @@ RADIOSITY_FAR_INLINE V productMean(D d, FarRow<T>& row, const FarBatch<T>& batch
 
 /// See FarFunction.
 template <class T, class D>
-std::size_t farRow(D d, FarRow<T>& row, const FarBatch<T>& batch,
-                   const std::array<T, kProductRules>& limits) {
+std::size_t farRow(D d, FarRow<T>& row, const FarBatch<T>& batch, const ProductLimits<T>& limits) {
   const std::size_t lanes = Lanes(d);
   const auto one = Set(d, T(1));
   const auto two = Set(d, T(2));
@@ -126,25 +144,26 @@ std::size_t farRow(D d, FarRow<T>& row, const FarBatch<T>& batch,
     const auto both = Sub(Mul(four, x), Mul(twenty_four, Mul(Mul(c_row, c_column), inverse)));
     const auto corrections =
         Add(Add(Mul(pq, Sub(twelve_e, Mul(two, m))), Mul(four, Sub(p_row, q_column))), both);
-    const auto mean = Mul(Mul(inverse, inverse), Add(pq, Mul(inverse, corrections)));
     const auto magnitude = Mul(inverse, Add(Add(Mul(pq, Add(twelve_e, Mul(four, m))),
                                                 Mul(eight, Add(Abs(p_row), Abs(q_column)))),
                                             Mul(four, Abs(both))));
 
     const auto areas = Mul(Set(d, row.area_over_pi), load(kArea));
-    auto value = mean;
+    auto value = Add(pq, Mul(inverse, corrections));  // times s^2
     const auto limit = Min(Set(d, row.series_limit), load(kSeriesLimit));
     auto open = AndNot(Le(magnitude, Mul(limit, pq)),
                        FirstN(d, batch.count - k < lanes ? batch.count - k : lanes));
-    const auto rough = Mul(magnitude, Max(Set(d, row.roughness), load(kRoughness)));
+    const auto skew = Max(Set(d, row.skew), load(kSkew));
     for (int n = kLeastProduct; n <= kMostProduct && !AllFalse(d, open); ++n) {
-      const auto rule_limit = Set(d, limits[std::size_t(n - kLeastProduct)]);
-      const auto good = And(open, Le(rough, Mul(rule_limit, pq)));
+      const auto rule = std::size_t(n - kLeastProduct);
+      const auto rule_limit =
+          Add(Set(d, limits.plain[rule]), Mul(skew, Set(d, limits.skew_part[rule])));
+      const auto good = And(open, Le(magnitude, Mul(rule_limit, pq)));
       if (AllFalse(d, good)) continue;
-      value = IfThenElse(good, productMean(d, row, batch, k, n, du, dv, p), value);
+      value = IfThenElse(good, productMean(d, row, batch, k, n, du, dv, p, inverse), value);
       open = AndNot(good, open);
     }
-    value = Mul(areas, Max(value, zero));
+    value = Mul(Mul(areas, Mul(inverse, inverse)), Max(value, zero));
     if (!AllFalse(d, open)) {
       value = IfThenElse(open, Set(d, T(kNearPair)), value);
       near += CountTrue(d, open);

@@ -35,27 +35,33 @@
 namespace radiosity {
 
 /// Numbers of points a direction of the product rules.
-inline constexpr int kLeastProduct = 3;
+inline constexpr int kLeastProduct = 2;
 inline constexpr int kMostProduct = 6;
 inline constexpr std::size_t kProductRules = kMostProduct - kLeastProduct + 1;
 /// Points of all rules together.
-inline constexpr std::size_t kProductPoints = 9 + 16 + 25 + 36;
+inline constexpr std::size_t kProductPoints = 4 + 9 + 16 + 25 + 36;
 
 inline constexpr double kSeriesError = 1.7;
 inline constexpr double kSkewError = 6;
-inline constexpr std::array<double, kProductRules> kProductError = {0.07, 0.015, 0.003, 0.0005};
-inline constexpr std::array<double, kProductRules> kSkewProductError = {0.6, 0.12, 0.025, 0.008};
+inline constexpr std::array<double, kProductRules> kProductError = {0.8, 0.1, 0.012, 0.0016,
+                                                                    0.0003};
+inline constexpr std::array<double, kProductRules> kSkewProductError = {6, 2, 0.25, 0.05, 0.015};
 
-/// Up to which R each formula is good for a tolerance.
+/// Up to which R each product rule is good: plain + skew * skew_part.
+template <class T>
+struct ProductLimits {
+  std::array<T, kProductRules> plain, skew_part;
+};
+
+/// The limits of all formulas for a tolerance.
 struct FarLimits {
   explicit FarLimits(double tolerance);
-  double series = 0;  ///< of parallelograms
-  std::array<double, kProductRules> product{};
   FarBounds of(const FlatShape& shape) const;
+  template <class T>
+  ProductLimits<T> product() const;
 
  private:
   double tolerance_;
-  double skew_roughness_ = 1;
 };
 
 /// A row's element seen from the frame of the columns' facet (coordinates u, v, normal).
@@ -71,7 +77,7 @@ struct FarRow {
   T cross_u, cross_v;              ///< M_row n_column
   T moment;
   T area_over_pi;
-  T series_limit, roughness;
+  T series_limit, skew;
 
   /// Gauss points, relative to the centroid, made when first asked for.
   struct Points {
@@ -110,7 +116,7 @@ inline constexpr double kNearPair = -1;
 
 template <class T>
 using FarFunction = std::size_t (*)(FarRow<T>& row, const FarBatch<T>& batch,
-                                    const std::array<T, kProductRules>& limits);
+                                    const ProductLimits<T>& limits);
 
 /// Writes G of the row with each column, or kNearPair; returns how many are near. All elements in
 /// front of each other's planes.

@@ -7,8 +7,7 @@ namespace radiosity {
 namespace {
 
 template <class T>
-std::size_t scalarRow(FarRow<T>& row, const FarBatch<T>& batch,
-                      const std::array<T, kProductRules>& limits) {
+std::size_t scalarRow(FarRow<T>& row, const FarBatch<T>& batch, const ProductLimits<T>& limits) {
   return far_scalar::farRow<T>(lanes::OneLane<T>(), row, batch, limits);
 }
 

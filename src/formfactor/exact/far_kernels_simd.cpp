@@ -24,8 +24,7 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
 template <class T>
-std::size_t vectorRow(FarRow<T>& row, const FarBatch<T>& batch,
-                      const std::array<T, kProductRules>& limits) {
+std::size_t vectorRow(FarRow<T>& row, const FarBatch<T>& batch, const ProductLimits<T>& limits) {
   // At most the padding's width, so that whole vectors never leave an array.
   return farRow<T>(hn::CappedTag<T, kFarPadding>(), row, batch, limits);
 }

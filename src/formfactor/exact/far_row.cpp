@@ -8,24 +8,33 @@
 
 namespace radiosity {
 
-FarLimits::FarLimits(double tolerance) : tolerance_(tolerance) {
-  series = std::sqrt(tolerance / kSeriesError);
-  for (std::size_t k = 0; k < kProductRules; ++k) {
-    const auto n = double(k + kLeastProduct);
-    product[k] = std::pow(tolerance / kProductError[k], 1 / n);
-    const double skewed = std::pow(tolerance / kSkewProductError[k], 1 / (n - 0.5));
-    skew_roughness_ = std::max(skew_roughness_, product[k] / skewed);
-  }
-}
+FarLimits::FarLimits(double tolerance) : tolerance_(tolerance) {}
 
 FarBounds FarLimits::of(const FlatShape& shape) const {
   const double skew = std::abs(shape.alpha) + std::abs(shape.beta);
-  FarBounds bounds{series, 1 + (skew_roughness_ - 1) * std::min(skew, 1.0)};
+  FarBounds bounds{std::sqrt(tolerance_ / kSeriesError), std::min(skew, 1.0)};
   if (skew > 0) {
-    bounds.series_limit = std::min(series, std::pow(tolerance_ / (kSkewError * skew), 2.0 / 3.0));
+    bounds.series_limit =
+        std::min(bounds.series_limit, std::pow(tolerance_ / (kSkewError * skew), 2.0 / 3.0));
   }
   return bounds;
 }
+
+template <class T>
+ProductLimits<T> FarLimits::product() const {
+  ProductLimits<T> limits{};
+  for (std::size_t k = 0; k < kProductRules; ++k) {
+    const auto n = double(k + kLeastProduct);
+    const double plain = std::pow(tolerance_ / kProductError[k], 1 / n);
+    const double skewed = std::pow(tolerance_ / kSkewProductError[k], 1 / (n - 0.5));
+    limits.plain[k] = T(plain);
+    limits.skew_part[k] = T(std::min(skewed - plain, 0.0));
+  }
+  return limits;
+}
+
+template ProductLimits<float> FarLimits::product() const;
+template ProductLimits<double> FarLimits::product() const;
 
 template <class T>
 FarRow<T>::FarRow(const FlatShape& shape, const FacetFrame& own, const FacetFrame& columns,
@@ -56,7 +65,7 @@ FarRow<T>::FarRow(const FlatShape& shape, const FacetFrame& own, const FacetFram
   moment = T(shape.moment);
   area_over_pi = T(shape.area / std::numbers::pi);
   series_limit = T(bounds.series_limit);
-  roughness = T(bounds.roughness);
+  skew = T(bounds.skew);
   map_ = {turned(shape.mean), turned(shape.u), turned(shape.v), turned(shape.w)};
 }
 

@@ -52,6 +52,7 @@ std::size_t CountTrue(OneLane<T>, bool mask) {
   inline T Sub(T a, T b) { return a - b; }          \
   inline T Mul(T a, T b) { return a * b; }          \
   inline T Div(T a, T b) { return a / b; }          \
+  inline T Sqrt(T a) { return std::sqrt(a); }       \
   inline T Abs(T a) { return std::abs(a); }         \
   inline T Max(T a, T b) { return std::max(a, b); } \
   inline T Min(T a, T b) { return std::min(a, b); } \

@@ -27,10 +27,13 @@ double distanceToEdges(const Vec3& p, std::span<const Vec3> polygon) {
 constexpr int kLeastPoints = 2;
 constexpr int kMostPoints = 6;
 
-/// n x n points are good for the tolerance if error(n) = (radius / distance)^(2n) is below it.
+/// The least n for which n x n points are good for the tolerance: the error is below
+/// kLambertError ratio^(2n - 1), ratio = radius / distance (a triangle's Jacobian takes one
+/// degree).
 int pointsFor(double ratio, double tolerance) {
+  constexpr double kLambertError = 10;
   if (!(ratio < 1)) return kMostPoints + 1;
-  const double needed = std::log(tolerance) / (2 * std::log(ratio));
+  const double needed = 0.5 * (std::log(tolerance / kLambertError) / std::log(ratio) + 1);
   return std::max(kLeastPoints, int(std::ceil(std::min(needed, kMostPoints + 1.0))));
 }
 
