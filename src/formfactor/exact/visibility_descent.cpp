@@ -32,7 +32,7 @@ void VisibilityDescent::run(Index facet, Index cluster) {
   facet_ = facet;
   top_ = cluster;
   items_.clear();
-  candidates_.clear();
+  dropCandidates(0);
   const std::vector<Index>& open = visibility_.open_facets_;
   for (auto it = std::upper_bound(open.begin(), open.end(), facet); it != open.end(); ++it) {
     addFacet(*it);
@@ -69,6 +69,7 @@ void VisibilityDescent::addFacet(Index facet) {
   candidates_.erase(std::remove_if(first, candidates_.end(), lies_on), candidates_.end());
   std::sort(candidates_.begin() + item.first_candidate, candidates_.end());
   item.end_candidate = Index(candidates_.size());
+  open_planes_.resize(candidates_.size(), ShadowPlanes::kAllPlanes);
   if (item.first_candidate == item.end_candidate) {
     ++counts_.facet_pairs_unoccluded;
     counts_.unoccluded += pairs(top_, other.root);
@@ -110,7 +111,7 @@ void VisibilityDescent::descend(Index row, std::size_t depth, std::size_t first_
     descend(cluster.first_child + c, depth + 1, first_left, end_left);
   }
   items_.resize(first_left);
-  candidates_.resize(first_candidate);
+  dropCandidates(first_candidate);
 }
 
 /// Horizon, then candidates. Columns larger than the rows are split, others left to the row's
@@ -145,6 +146,9 @@ void VisibilityDescent::settle(Index row, std::size_t depth, Item item) {
     }
     return;
   }
+  // Each child of the row cluster has planes of its own.
+  std::fill(open_planes_.begin() + item.first_candidate, open_planes_.begin() + item.end_candidate,
+            ShadowPlanes::kAllPlanes);
   items_.push_back(item);
 }
 
@@ -166,34 +170,21 @@ bool VisibilityDescent::meets(Index row, Item& item) {
 
 bool VisibilityDescent::thinOut(Index row, std::size_t depth, Item& item) {
   const ShapeCorners& columns = visibility_.shapes_[item.cluster];
-  const bool leaves =
-      elements_.clusters[row].child_count == 0 && elements_.clusters[item.cluster].child_count == 0;
   const Index first_kept = Index(candidates_.size());
   for (Index k = item.first_candidate; k < item.end_candidate; ++k) {
     const Index o = candidates_[k];
+    ShadowPlanes::Planes open = open_planes_[k];
     ++counts_.shaft_tests;
-    const ShadowRelation relation = shadow(row, depth, o).relation(columns);
+    const ShadowRelation relation = shadow(row, depth, o).relation(columns, open);
     if (relation == ShadowRelation::kInside) {
       counts_.hidden += pairs(row, item.cluster);
-      candidates_.resize(first_kept);
+      dropCandidates(first_kept);
       return false;
     }
-    if (relation == ShadowRelation::kOutside) continue;
-    if (leaves) {
-      // An occluder close to the column is told apart from it better by planes on that end.
-      ++counts_.shaft_tests;
-      reverse_.build(columns, visibility_.occluders_.occluders[o], elements_.coincidence);
-      if (reverse_.separates(visibility_.shapes_[row])) continue;
-    }
-    candidates_.push_back(o);
+    if (relation == ShadowRelation::kUnclear) addCandidate(o, open);
   }
-  const Index kept = Index(candidates_.size()) - first_kept;
-  if (kept == item.end_candidate - item.first_candidate) {
-    candidates_.resize(first_kept);  // all of them: the item's own list will do
-  } else {
-    item.first_candidate = first_kept;
-    item.end_candidate = first_kept + kept;
-  }
+  item.first_candidate = first_kept;
+  item.end_candidate = Index(candidates_.size());
   return true;
 }
 

@@ -39,6 +39,14 @@ class VisibilityDescent {
   void addFacet(Index facet);
   void descend(Index row, std::size_t depth, std::size_t first_item, std::size_t end_item);
   void settle(Index row, std::size_t depth, Item item);
+  void addCandidate(Index occluder, ShadowPlanes::Planes open) {
+    candidates_.push_back(occluder);
+    open_planes_.push_back(open);
+  }
+  void dropCandidates(std::size_t first) {
+    candidates_.resize(first);
+    open_planes_.resize(first);
+  }
   /// False if the pair is settled; else the item's candidates are those that remain.
   bool thinOut(Index row, std::size_t depth, Item& item);
   bool meets(Index row, Item& item);
@@ -52,10 +60,10 @@ class VisibilityDescent {
   VisibilityCounts& counts_;
   Index facet_ = 0;
   Index top_ = 0;
-  std::vector<Item> items_;        ///< a stack; each depth's at the end
-  std::vector<Index> candidates_;  ///< likewise
+  std::vector<Item> items_;                        ///< a stack; each depth's at the end
+  std::vector<Index> candidates_;                  ///< likewise
+  std::vector<ShadowPlanes::Planes> open_planes_;  ///< of the row cluster's shadow, per candidate
   std::vector<Level> levels_;
-  ShadowPlanes reverse_;  ///< seen from a column
 };
 
 }  // namespace radiosity

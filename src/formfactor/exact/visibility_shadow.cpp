@@ -1,18 +1,11 @@
 #include "formfactor/exact/visibility_shadow.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 namespace radiosity {
-
-std::array<double, 4> ShadowPlanes::heights(const Plane& plane, const ShapeCorners& shape) {
-  std::array<double, 4> h;
-  for (std::size_t k = 0; k < 4; ++k) {
-    h[k] = plane.x * shape.x[k] + plane.y * shape.y[k] + plane.z * shape.z[k] - plane.offset;
-  }
-  return h;
-}
 
 void ShadowPlanes::build(const ShapeCorners& light, const Occluder& body, double coincidence) {
   light_ = light;
@@ -120,15 +113,31 @@ void ShadowPlanes::findTangentsAtEdges(const Occluder& body) {
   }
 }
 
-bool ShadowPlanes::separates(const ShapeCorners& shape) {
-  const std::size_t count = outside_.size();
-  for (std::size_t k = 0, p = last_outside_; k < count; ++k, ++p) {
-    if (p >= count) p = 0;
+bool ShadowPlanes::separates(const ShapeCorners& shape, Planes& open) {
+  constexpr std::size_t kLastBit = 63;
+  const auto above = [&](std::size_t p) {
     const std::array<double, 4> h = heights(outside_[p], shape);
-    if (std::min(std::min(h[0], h[1]), std::min(h[2], h[3])) >= -coincidence_) {
+    unsigned count = 0;
+    for (const double height : h) count += unsigned(height >= -coincidence_);
+    return count;
+  };
+  for (std::size_t tail = kLastBit; tail < outside_.size(); ++tail) {
+    if (above(tail) == 4) return true;
+  }
+  const std::size_t count = std::min(outside_.size(), kLastBit);
+  if (last_outside_ < count && (open >> last_outside_ & 1) != 0) {
+    if (above(last_outside_) == 4) return true;
+  }
+  Planes left = open & ((Planes(1) << count) - 1);
+  while (left != 0) {
+    const auto p = std::size_t(std::countr_zero(left));
+    left &= left - 1;
+    const unsigned corners = above(p);
+    if (corners == 4) {
       last_outside_ = p;
       return true;
     }
+    if (corners == 0) open &= ~(Planes(1) << p);
   }
   return false;
 }
@@ -149,8 +158,8 @@ bool ShadowPlanes::hides(const ShapeCorners& shape) {
   return true;
 }
 
-ShadowRelation ShadowPlanes::relation(const ShapeCorners& shape) {
-  if (separates(shape)) return ShadowRelation::kOutside;
+ShadowRelation ShadowPlanes::relation(const ShapeCorners& shape, Planes& open) {
+  if (separates(shape, open)) return ShadowRelation::kOutside;
   return hides(shape) ? ShadowRelation::kInside : ShadowRelation::kUnclear;
 }
 

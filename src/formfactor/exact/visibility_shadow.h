@@ -41,10 +41,15 @@ class ShadowPlanes {
   /// `coincidence` as ElementSet's: corners within it of a face count as on the face.
   void build(const ShapeCorners& light, const Occluder& body, double coincidence);
 
-  /// Not thread-safe: remembers which plane gave the last answer.
-  ShadowRelation relation(const ShapeCorners& shape);
+  /// Separating planes (a bit each, the last bit for all from the 64th on) that may still tell a
+  /// shape from the body. Those that the whole of a shape is below need no second look for its
+  /// parts.
+  using Planes = std::uint64_t;
+  static constexpr Planes kAllPlanes = ~Planes(0);
 
-  bool separates(const ShapeCorners& shape);
+  /// `open`: kAllPlanes, or what was left of it for a shape that holds this one; planes that fail
+  /// all of this shape are taken out. Not thread-safe: remembers which plane gave the last answer.
+  ShadowRelation relation(const ShapeCorners& shape, Planes& open);
 
  private:
   /// dot(normal, x) - offset: a distance. A shape is `strictly` below if not all of it is on the
@@ -56,11 +61,18 @@ class ShadowPlanes {
   static Plane makePlane(const Vec3& normal, const Vec3& point) {
     return {normal.x, normal.y, normal.z, glm::dot(normal, point), false};
   }
-  static std::array<double, 4> heights(const Plane& plane, const ShapeCorners& shape);
+  static std::array<double, 4> heights(const Plane& plane, const ShapeCorners& shape) {
+    std::array<double, 4> h;
+    for (std::size_t k = 0; k < 4; ++k) {
+      h[k] = plane.x * shape.x[k] + plane.y * shape.y[k] + plane.z * shape.z[k] - plane.offset;
+    }
+    return h;
+  }
 
   void findFaces(const Occluder& body);
   void findSilhouettes(const Occluder& body);
   void findTangentsAtEdges(const Occluder& body);
+  bool separates(const ShapeCorners& shape, Planes& open);
   bool hides(const ShapeCorners& shape);
 
   ShapeCorners light_{};
