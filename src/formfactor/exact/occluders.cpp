@@ -3,35 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <span>
 
+#include "formfactor/exact/occluders_clip.h"
+#include "formfactor/exact/occluders_cover.h"
 #include "formfactor/exact/occluders_flat.h"
 #include "formfactor/exact/occluders_polygons.h"
 #include "formfactor/exact/occluders_solids.h"
 
 namespace radiosity {
 namespace {
-
-/// The face of a solid that holds all the points, or kNone.
-Index faceThatHolds(const Occluder& solid, std::span<const Vec3> points, double coincidence) {
-  std::vector<std::uint8_t> on(solid.planes.size(), 1);
-  for (const Vec3& p : points) {
-    if (glm::distance(p, solid.centre) > solid.radius + coincidence) return kNone;
-    for (std::size_t k = 0; k < solid.planes.size(); ++k) {
-      const double height = glm::dot(solid.planes[k].normal, p) - solid.planes[k].offset;
-      if (height > coincidence) return kNone;
-      if (height < -coincidence) on[k] = 0;
-    }
-  }
-  const auto face = std::find(on.begin(), on.end(), 1);
-  return face == on.end() ? kNone : Index(face - on.begin());
-}
-
-std::vector<Vec3> cornersOf(const OccluderPolygons& all, std::span<const Index> loop) {
-  std::vector<Vec3> corners;
-  for (const Index v : loop) corners.push_back(all.vertices[v]);
-  return corners;
-}
 
 /// Sides of each polygon of the mesh.
 std::vector<std::vector<Index>> facetsOfPolygons(const ElementSet& elements, std::size_t polygons) {
@@ -60,21 +40,17 @@ OccluderSet::OccluderSet(const PatchMesh& mesh, const ElementSet& elements)
   solids = occluders.size();
   for (Index p = 0; p < all.polygons.size(); ++p) {
     const OccluderPolygon& polygon = all.polygons[p];
-    std::vector<Index> outline;
-    for (const auto& loop : polygon.loops) outline.insert(outline.end(), loop.begin(), loop.end());
-    const std::vector<Vec3> corners = cornersOf(all, outline);
-    for (std::size_t s = 0; s < solids; ++s) {
-      const Index face = faceThatHolds(occluders[s], corners, elements.coincidence);
+    for (Occluder& solid : occluders) {
+      const Index face = faceThatHolds(all, polygon, solid);
       if (face == kNone) continue;
-      taken[p] = 1;  // what it blocks the solid blocks, right behind it
-      for (const Index f : facets[polygon.source]) {
-        attach(occluders[s], face, f, elements, sealed);
-      }
+      taken[p] = 1;  // what it blocks the solid blocks
+      for (const Index f : facets[polygon.source]) attach(solid, face, f, elements, sealed);
     }
     if (!taken[p] && polygon.bounds_scene) {
       taken[p] = 1;
       ++skipped_hull;
     }
+    if (!taken[p] && isCoveredBySolids(all, polygon, occluders)) taken[p] = 1;
   }
   for (Index f = 0; f < elements.facets.size(); ++f) {
     const Facet& facet = elements.facets[f];
@@ -85,13 +61,8 @@ OccluderSet::OccluderSet(const PatchMesh& mesh, const ElementSet& elements)
     }
   }
   for (const FlatPiece& piece : flatPieces(all, taken)) {
-    const std::vector<Vec3> corners = cornersOf(all, piece.loop);
-    const bool on_solid = std::any_of(
-        occluders.begin(), occluders.begin() + std::ptrdiff_t(solids), [&](const Occluder& solid) {
-          return faceThatHolds(solid, corners, elements.coincidence) != kNone;
-        });
     Occluder occluder;
-    if (on_solid || !makeFlatOccluder(all, piece, occluder)) continue;
+    if (!makeFlatOccluder(all, piece, occluder)) continue;
     for (const Index p : piece.polygons) {
       const std::vector<Index>& sides = facets[all.polygons[p].source];
       occluder.facets.insert(occluder.facets.end(), sides.begin(), sides.end());

@@ -185,4 +185,20 @@ void boundOccluder(Occluder& occluder) {
   }
 }
 
+/// Cones over the faces, from the centre; a face is a fan of triangles over its edges.
+double volumeOf(const Occluder& occluder) {
+  double volume = 0;
+  for (const Occluder::Edge& edge : occluder.edges) {
+    const Vec3 from = occluder.corners[edge.from] - occluder.centre;
+    const Vec3 to = occluder.corners[edge.to] - occluder.centre;
+    const Vec3 twice = glm::cross(from, to);
+    const Occluder::Plane& left = occluder.planes[edge.left];
+    const Occluder::Plane& right = occluder.planes[edge.right];
+    const double to_left = left.offset - glm::dot(left.normal, occluder.centre);
+    const double to_right = right.offset - glm::dot(right.normal, occluder.centre);
+    volume += glm::dot(twice, left.normal) * to_left - glm::dot(twice, right.normal) * to_right;
+  }
+  return volume / 6;
+}
+
 }  // namespace radiosity

@@ -24,4 +24,6 @@ std::optional<Occluder> convexHull(const std::vector<Vec3>& points,
 /// Sets the bounding sphere: centre of the box, farthest corner.
 void boundOccluder(Occluder& occluder);
 
+double volumeOf(const Occluder& occluder);
+
 }  // namespace radiosity

@@ -7,7 +7,6 @@
 #include <numeric>
 #include <tuple>
 
-#include "formfactor/exact/occluders.h"
 #include "mesh/plane_frame.h"
 #include "mesh/welded_points.h"
 
@@ -22,20 +21,6 @@ std::vector<Index> withoutRepeats(const std::vector<Index>& loop) {
   }
   while (out.size() > 1 && out.front() == out.back()) out.pop_back();
   if (out.size() < 3) out.clear();
-  return out;
-}
-
-/// The part of a loop where dot(normal, x) <= offset.
-std::vector<Vec3> clippedBelow(const std::vector<Vec3>& loop, const Vec3& normal, double offset) {
-  std::vector<Vec3> out;
-  for (std::size_t k = 0; k < loop.size(); ++k) {
-    const Vec3& a = loop[k];
-    const Vec3& b = loop[(k + 1) % loop.size()];
-    const double da = glm::dot(normal, a) - offset;
-    const double db = glm::dot(normal, b) - offset;
-    if (da <= 0) out.push_back(a);
-    if ((da <= 0) != (db <= 0)) out.push_back(a + (b - a) * (da / (da - db)));
-  }
   return out;
 }
 
@@ -138,30 +123,6 @@ std::map<OccluderEdge, std::vector<Index>> OccluderPolygons::edgeUsers() const {
     }
   }
   return users;
-}
-
-double areaInside(const OccluderPolygons& all, const OccluderPolygon& polygon, const Occluder& body,
-                  double margin) {
-  for (const Occluder::Plane& plane : body.planes) {
-    bool outside = true;
-    for (const std::vector<Index>& loop : polygon.loops) {
-      outside = outside && std::all_of(loop.begin(), loop.end(), [&](Index v) {
-                  return glm::dot(plane.normal, all.vertices[v]) >= plane.offset - margin;
-                });
-    }
-    if (outside) return 0;
-  }
-  Vec3 sum(0.0);
-  for (const std::vector<Index>& loop : polygon.loops) {
-    std::vector<Vec3> part;
-    for (const Index v : loop) part.push_back(all.vertices[v]);
-    for (const Occluder::Plane& plane : body.planes) {
-      part = clippedBelow(part, plane.normal, plane.offset - margin);
-      if (part.empty()) break;
-    }
-    sum += vectorArea(part.size(), [&](std::size_t k) { return part[k]; });
-  }
-  return std::abs(glm::dot(sum, polygon.normal));
 }
 
 }  // namespace radiosity

@@ -49,11 +49,4 @@ struct OccluderPolygons {
   void findBounding();
 };
 
-/// Area of a polygon's part inside a convex body (0 where it only touches), by clipping every loop
-/// to the planes (Sutherland & Hodgman 1974) moved inward by `margin`: edges that run to and fro
-/// in a plane and holes cancel in the sum of signed areas.
-struct Occluder;
-double areaInside(const OccluderPolygons& all, const OccluderPolygon& polygon, const Occluder& body,
-                  double margin);
-
 }  // namespace radiosity

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/vector_relational.hpp>
 #include <map>
 #include <optional>
 
+#include "formfactor/exact/occluders_clip.h"
 #include "formfactor/exact/occluders_hull.h"
 #include "formfactor/exact/occluders_regions.h"
+#include "formfactor/exact/occluders_slabs.h"
 
 namespace radiosity {
 namespace {
@@ -27,24 +28,67 @@ class SolidSearch {
 
   std::vector<Occluder> run(std::vector<std::uint8_t>& taken) {
     std::vector<Occluder> solids;
-    // Concave faces are left out at first: the front of a bookcase belongs to many boards at once,
-    // each of which is a solid without it.
-    for (const bool convex_only : {true, false}) {
-      std::vector<std::uint8_t> tried = taken;
-      for (Index seed = 0; seed < all_.polygons.size(); ++seed) {
-        if (tried[seed] || !mayJoin(seed, convex_only)) continue;
-        const ConvexSet set = grow(seed, convex_only, taken);
-        for (const Index p : set.polygons) tried[p] = 1;
-        std::optional<Occluder> solid = solidOf(set);
-        if (!solid) continue;
-        for (const Index p : set.polygons) taken[p] = 1;
-        solids.push_back(std::move(*solid));
-      }
-    }
+    addPlain(taken, solids);
+    addOpaque(taken, solids);
     return solids;
   }
 
  private:
+  /// Bodies that stand for themselves, or on something.
+  void addPlain(std::vector<std::uint8_t>& taken, std::vector<Occluder>& solids) {
+    for (const bool convex_only : {true, false}) {
+      for (Index seed = 0; seed < all_.polygons.size(); ++seed) {
+        if (taken[seed] || !mayJoin(seed, convex_only)) continue;
+        std::optional<Occluder> solid = grownSolid(seed, convex_only, false, taken);
+        if (!solid) continue;
+        take(*solid, taken);
+        solids.push_back(std::move(*solid));
+      }
+    }
+  }
+
+  /// Bodies that touch others on several sides, so that their faces are cut or merged with others',
+  /// like boards and books. Of those that only the closed surface around them makes opaque, those
+  /// with much volume and most faces first.
+  void addOpaque(std::vector<std::uint8_t>& taken, std::vector<Occluder>& solids) {
+    struct Candidate {
+      double score;
+      Occluder solid;
+    };
+    std::vector<Candidate> candidates;
+    const auto score = [&](const Occluder& solid) {
+      return areaOnFaces(solid, taken) * volumeOf(solid);
+    };
+    const auto consider = [&](std::optional<Occluder> solid) {
+      if (solid) candidates.push_back({score(*solid), std::move(*solid)});
+    };
+    for (Index p = 0; p < all_.polygons.size(); ++p) {
+      if (taken[p] || !mayJoin(p, false) || !regions_.isBehindOpaque(p)) continue;
+      consider(grownSolid(p, false, true, taken));
+      if (!mayJoin(p, true)) continue;
+      consider(grownSolid(p, true, true, taken));
+      std::optional<Occluder> slab = slabBehind(all_, p);
+      // Alone on its slab the polygon blocks as well without it.
+      if (slab && areaOnFaces(*slab, taken) > all_.polygons[p].area) consider(std::move(slab));
+    }
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+    for (Candidate& candidate : candidates) {
+      // Another may have taken its faces by now.
+      if (!(score(candidate.solid) > 0.5 * candidate.score)) continue;
+      take(candidate.solid, taken);
+      solids.push_back(std::move(candidate.solid));
+    }
+  }
+
+  std::optional<Occluder> grownSolid(Index seed, bool convex_only, bool opaque,
+                                     const std::vector<std::uint8_t>& taken) {
+    std::optional<Occluder> solid = solidOf(grow(seed, convex_only, false, taken), opaque);
+    // Several bodies in convex position, perhaps: then one of them.
+    if (!solid) solid = solidOf(grow(seed, convex_only, true, taken), opaque);
+    return solid;
+  }
+
   bool mayJoin(Index p, bool convex_only) const {
     const OccluderPolygon& polygon = all_.polygons[p];
     return polygon.planar && polygon.one_sided && (polygon.convex || !convex_only);
@@ -71,11 +115,7 @@ class SolidSearch {
     for (const Occluder::Plane& plane : set.planes) {
       if (!isBehind(polygon, plane)) return false;
     }
-    bool new_plane = true;
-    for (const Occluder::Plane& plane : set.planes) {
-      new_plane = new_plane && !(glm::dot(plane.normal, polygon.normal) > 0 && on(polygon, plane));
-    }
-    if (new_plane) set.planes.push_back({polygon.normal, polygon.offset});
+    if (!liesOnFace(set, polygon)) set.planes.push_back({polygon.normal, polygon.offset});
     for (const std::vector<Index>& loop : polygon.loops) {
       set.vertices.insert(set.vertices.end(), loop.begin(), loop.end());
     }
@@ -83,11 +123,20 @@ class SolidSearch {
     return true;
   }
 
+  bool liesOnFace(const ConvexSet& set, const OccluderPolygon& polygon) const {
+    return std::any_of(set.planes.begin(), set.planes.end(), [&](const Occluder::Plane& plane) {
+      return glm::dot(plane.normal, polygon.normal) > 0 && on(polygon, plane);
+    });
+  }
+
   bool on(const OccluderPolygon& polygon, const Occluder::Plane& plane) const {
     return isBehind(polygon, plane) && isBehind(polygon, {-plane.normal, -plane.offset});
   }
 
-  ConvexSet grow(Index seed, bool convex_only, const std::vector<std::uint8_t>& taken) const {
+  /// `carefully`: no neighbours in one plane, which may belong to bodies side by side, and none
+  /// with which the hull would not stay empty.
+  ConvexSet grow(Index seed, bool convex_only, bool carefully,
+                 const std::vector<std::uint8_t>& taken) const {
     ConvexSet set;
     add(set, seed);
     std::vector<std::uint8_t> refused(all_.polygons.size(), 0);
@@ -102,53 +151,70 @@ class SolidSearch {
           for (const Index p : across->second) {
             if (taken[p] || refused[p] || !mayJoin(p, convex_only)) continue;
             refused[p] = 1;
-            add(set, p);
+            if (carefully && liesOnFace(set, all_.polygons[p])) continue;
+            ConvexSet before;
+            if (carefully) before = set;
+            if (add(set, p) && carefully && !staysEmpty(set)) set = std::move(before);
           }
         }
       }
     }
     std::sort(set.polygons.begin(), set.polygons.end());
-    std::sort(set.vertices.begin(), set.vertices.end());
-    set.vertices.erase(std::unique(set.vertices.begin(), set.vertices.end()), set.vertices.end());
     return set;
   }
 
-  std::optional<Occluder> solidOf(const ConvexSet& set) {
-    if (set.planes.size() < 2) return {};
+  std::optional<Occluder> hullOf(const ConvexSet& set) const {
+    std::vector<Index> vertices = set.vertices;
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     std::vector<Vec3> points;
-    for (const Index v : set.vertices) points.push_back(all_.vertices[v]);
-    std::optional<Occluder> hull = convexHull(points, set.planes, all_.coincidence);
+    for (const Index v : vertices) points.push_back(all_.vertices[v]);
+    return convexHull(points, set.planes, all_.coincidence);
+  }
+
+  bool staysEmpty(const ConvexSet& set) const {
+    const std::optional<Occluder> hull = hullOf(set);
+    return !hull || hull->planes.size() < 4 || isEmpty(all_, *hull, set.polygons);
+  }
+
+  std::optional<Occluder> solidOf(const ConvexSet& set, bool opaque) {
+    if (set.planes.size() < 2) return {};
+    std::optional<Occluder> hull = hullOf(set);
     // Polygons back to back make no solid: they are one flat occluder.
-    if (!hull || hull->planes.size() < 4 || !isEmpty(*hull, set) || !isSealed(*hull, set))
+    if (!hull || hull->planes.size() < 4 || !isEmpty(all_, *hull, set.polygons) ||
+        !isSealed(*hull, set, opaque)) {
       return {};
+    }
     return hull;
   }
 
-  /// True if no polygon but those of the set comes inside, farther than the coincidence.
-  bool isEmpty(const Occluder& hull, const ConvexSet& set) const {
-    const Vec3 reach(hull.radius);
+  /// Marks the polygons that lie on faces of a solid.
+  void take(const Occluder& solid, std::vector<std::uint8_t>& taken) const {
     for (Index p = 0; p < all_.polygons.size(); ++p) {
-      const OccluderPolygon& polygon = all_.polygons[p];
-      if (glm::any(glm::greaterThan(polygon.lower, hull.centre + reach)) ||
-          glm::any(glm::lessThan(polygon.upper, hull.centre - reach)) ||
-          std::binary_search(set.polygons.begin(), set.polygons.end(), p)) {
-        continue;
-      }
-      const double inside = areaInside(all_, polygon, hull, all_.coincidence);
-      if (inside > all_.coincidence * hull.radius) return false;
+      if (!taken[p] && faceThatHolds(all_, all_.polygons[p], solid) != kNone) taken[p] = 1;
     }
-    return true;
+  }
+
+  /// Of polygons not taken yet.
+  double areaOnFaces(const Occluder& solid, const std::vector<std::uint8_t>& taken) const {
+    double area = 0;
+    for (Index p = 0; p < all_.polygons.size(); ++p) {
+      if (!taken[p] && faceThatHolds(all_, all_.polygons[p], solid) != kNone) {
+        area += all_.polygons[p].area;
+      }
+    }
+    return area;
   }
 
   /// True if nothing gets in or out where the set does not cover the hull.
-  bool isSealed(const Occluder& hull, const ConvexSet& set) {
+  bool isSealed(const Occluder& hull, const ConvexSet& set, bool opaque) {
     std::vector<Index> gaps;
     for (Index k = 0; k < hull.planes.size(); ++k) {
       if (missingArea(hull, set, k) > 0 && !allBehind(hull.planes[k])) gaps.push_back(k);
     }
     if (gaps.empty()) return true;
     if (gaps.size() == 1 && isCovered(hull, set, gaps.front())) return true;
-    return regions_.isBehindOpaque(set.polygons.front());
+    return opaque && regions_.isBehindOpaque(set.polygons.front());
   }
 
   /// Area of a face of the hull that the set leaves open; 0 if it is within rounding.

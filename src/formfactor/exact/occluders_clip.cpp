@@ -1,0 +1,115 @@
+#include "formfactor/exact/occluders_clip.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
+#include <limits>
+#include <vector>
+
+#include "mesh/plane_frame.h"
+
+namespace radiosity {
+namespace {
+
+/// The part of a loop where dot(normal, x) <= offset.
+std::vector<Vec3> clippedBelow(const std::vector<Vec3>& loop, const Vec3& normal, double offset) {
+  std::vector<Vec3> out;
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    const Vec3& a = loop[k];
+    const Vec3& b = loop[(k + 1) % loop.size()];
+    const double da = glm::dot(normal, a) - offset;
+    const double db = glm::dot(normal, b) - offset;
+    if (da <= 0) out.push_back(a);
+    if ((da <= 0) != (db <= 0)) out.push_back(a + (b - a) * (da / (da - db)));
+  }
+  return out;
+}
+
+/// What clipping leaves of the loops; none if a plane shows that there is nothing.
+std::vector<std::vector<Vec3>> partsInside(const OccluderPolygons& all,
+                                           const OccluderPolygon& polygon, const Occluder& body,
+                                           double margin) {
+  std::vector<std::vector<Vec3>> parts;
+  for (const Occluder::Plane& plane : body.planes) {
+    bool outside = true;
+    for (const std::vector<Index>& loop : polygon.loops) {
+      outside = outside && std::all_of(loop.begin(), loop.end(), [&](Index v) {
+                  return glm::dot(plane.normal, all.vertices[v]) >= plane.offset - margin;
+                });
+    }
+    if (outside) return parts;
+  }
+  for (const std::vector<Index>& loop : polygon.loops) {
+    std::vector<Vec3> part;
+    for (const Index v : loop) part.push_back(all.vertices[v]);
+    for (const Occluder::Plane& plane : body.planes) {
+      part = clippedBelow(part, plane.normal, plane.offset - margin);
+    }
+    if (!part.empty()) parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+}  // namespace
+
+double areaInside(const OccluderPolygons& all, const OccluderPolygon& polygon, const Occluder& body,
+                  double margin) {
+  Vec3 sum(0.0);
+  for (const std::vector<Vec3>& part : partsInside(all, polygon, body, margin)) {
+    sum += vectorArea(part.size(), [&](std::size_t k) { return part[k]; });
+  }
+  return std::abs(glm::dot(sum, polygon.normal));
+}
+
+double highestInside(const OccluderPolygons& all, const OccluderPolygon& polygon,
+                     const Occluder& body, double margin) {
+  double highest = -std::numeric_limits<double>::infinity();
+  Vec3 sum(0.0);
+  double size = 0;
+  for (const std::vector<Vec3>& part : partsInside(all, polygon, body, margin)) {
+    sum += vectorArea(part.size(), [&](std::size_t k) { return part[k]; });
+    for (const Vec3& p : part) {
+      highest = std::max(highest, glm::dot(body.planes[0].normal, p));
+      size = std::max(size, glm::distance(p, part[0]));
+    }
+  }
+  const bool any = glm::length(sum) > margin * size;
+  return any ? highest : -std::numeric_limits<double>::infinity();
+}
+
+Index faceThatHolds(const OccluderPolygons& all, const OccluderPolygon& polygon,
+                    const Occluder& solid) {
+  std::vector<std::uint8_t> on(solid.planes.size(), 1);
+  for (const std::vector<Index>& loop : polygon.loops) {
+    for (const Index v : loop) {
+      const Vec3& p = all.vertices[v];
+      if (glm::distance(p, solid.centre) > solid.radius + all.coincidence) return kNone;
+      for (std::size_t k = 0; k < solid.planes.size(); ++k) {
+        const double height = glm::dot(solid.planes[k].normal, p) - solid.planes[k].offset;
+        if (height > all.coincidence) return kNone;
+        if (height < -all.coincidence) on[k] = 0;
+      }
+    }
+  }
+  const auto face = std::find(on.begin(), on.end(), 1);
+  return face == on.end() ? kNone : Index(face - on.begin());
+}
+
+bool isEmpty(const OccluderPolygons& all, const Occluder& body, std::span<const Index> own) {
+  const Vec3 reach(body.radius);
+  for (Index p = 0; p < all.polygons.size(); ++p) {
+    const OccluderPolygon& polygon = all.polygons[p];
+    if (glm::any(glm::greaterThan(polygon.lower, body.centre + reach)) ||
+        glm::any(glm::lessThan(polygon.upper, body.centre - reach)) ||
+        std::find(own.begin(), own.end(), p) != own.end()) {
+      continue;
+    }
+    if (areaInside(all, polygon, body, all.coincidence) > all.coincidence * body.radius) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace radiosity

@@ -1,0 +1,50 @@
+#include "formfactor/exact/occluders_slabs.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <vector>
+
+#include "formfactor/exact/occluders_clip.h"
+#include "formfactor/exact/occluders_hull.h"
+
+namespace radiosity {
+namespace {
+
+/// The distance from a convex polygon to the first one behind it.
+double depthBehind(const OccluderPolygons& all, const OccluderPolygon& polygon) {
+  Occluder shaft;
+  shaft.planes.push_back({polygon.normal, polygon.offset});
+  const std::vector<Index>& loop = polygon.loops[0];
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    const Vec3& a = all.vertices[loop[k]];
+    const Vec3 along = all.vertices[loop[(k + 1) % loop.size()]] - a;
+    const Vec3 out = glm::normalize(glm::cross(along, polygon.normal));
+    shaft.planes.push_back({out, glm::dot(out, a)});
+  }
+  double highest = -std::numeric_limits<double>::infinity();
+  for (const OccluderPolygon& other : all.polygons) {
+    highest = std::max(highest, highestInside(all, other, shaft, all.coincidence));
+  }
+  return polygon.offset - highest;
+}
+
+}  // namespace
+
+std::optional<Occluder> slabBehind(const OccluderPolygons& all, Index polygon) {
+  const OccluderPolygon& top = all.polygons[polygon];
+  const double depth = depthBehind(all, top);
+  if (!(depth > all.coincidence) || std::isinf(depth)) return {};
+  std::vector<Vec3> points;
+  for (const Index v : top.loops[0]) {
+    points.push_back(all.vertices[v]);
+    points.push_back(all.vertices[v] - depth * top.normal);
+  }
+  std::optional<Occluder> slab = convexHull(points, {{top.normal, top.offset}}, all.coincidence);
+  if (!slab || !isEmpty(all, *slab, std::array<Index, 1>{polygon})) return {};
+  return slab;
+}
+
+}  // namespace radiosity
