@@ -59,7 +59,7 @@ void mergeRow(std::size_t i, const CountedRow& cast, const CountedRow& received,
 
 }  // namespace
 
-FormFactors castFormFactors(const PatchMesh& mesh, std::uint32_t rays) {
+FormFactors castFormFactors(const PatchMesh& mesh, std::uint32_t rays, bool both_ends) {
   const std::size_t n = mesh.size();
   const double ray = 1.0 / rays;
   const CosineRays caster(mesh);
@@ -82,11 +82,17 @@ FormFactors castFormFactors(const PatchMesh& mesh, std::uint32_t rays) {
     for (std::size_t s = n; s < row.hits.size(); ++s) result.backs[i] += ray * row.hits[s];
     result.sky[i] = ray * row.sky;
   });
-  const std::vector<CountedRow> received = transposed(rows);
+  const std::vector<CountedRow> received = both_ends ? transposed(rows) : std::vector<CountedRow>();
   tbb::enumerable_thread_specific<ValuedRow> valued;
   parallelFor(n, 16, [&](std::size_t i) {
     ValuedRow& row = valued.local();
-    mergeRow(i, rows[i], received[i], mesh.area, ray, row);
+    if (both_ends) {
+      mergeRow(i, rows[i], received[i], mesh.area, ray, row);
+    } else {
+      row.columns = rows[i].columns;
+      row.values.clear();
+      for (const std::uint32_t hits : rows[i].hits) row.values.push_back(ray * hits);
+    }
     result.matrix.setRow(i, row.columns, row.values);
     for (const double value : row.values) result.fronts[i] += value;
   });

@@ -57,9 +57,9 @@ class CosineRays {
   std::vector<std::uint32_t> polygon_place_;    ///< in scene_.polygons, of each polygon of the mesh
 };
 
-/// The whole matrix, all threads. Both estimates of each pair are merged by the inverse of their
-/// variances, G = A_i A_j (F_ij + F_ji) / (A_i + A_j), which costs next to nothing and takes nearly
-/// sqrt 2 off the error; row sums are then no longer exactly 1.
-FormFactors castFormFactors(const PatchMesh& mesh, std::uint32_t rays);
+/// The whole matrix, all threads. `both_ends`: the two estimates of each pair are merged by the
+/// inverse of their variances, G = A_i A_j (F_ij + F_ji) / (A_i + A_j), which costs next to nothing
+/// and takes nearly sqrt 2 off the error; row sums are then no longer exactly 1.
+FormFactors castFormFactors(const PatchMesh& mesh, std::uint32_t rays, bool both_ends);
 
 }  // namespace radiosity::bench

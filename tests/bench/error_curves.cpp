@@ -18,8 +18,8 @@ constexpr double kSolveTolerance = 1e-10;
 /// Short runs are repeated until they add up to this many seconds, up to kMostRuns.
 constexpr double kEnoughSeconds = 2;
 constexpr int kMostRuns = 5;
-/// The setting whose B the others are compared with where truth is not complete.
-constexpr double kReferenceTolerance = 1e-5;
+/// The exact method gets no tighter once a run took longer.
+constexpr double kMostSeconds = 60;
 
 class Materials {
  public:
@@ -106,6 +106,46 @@ double largestRowError(const FormFactors& factors) {
   return largest;
 }
 
+struct Measured {
+  Measurement measurement;
+  std::vector<double> radiosity;
+};
+
+Measured measure(const Method& method, const PatchMesh& mesh, const TruthRows& truth,
+                 const Materials& materials) {
+  Measured result;
+  Measurement& m = result.measurement;
+  m.method = method.name;
+  m.setting = method.setting;
+  m.value = method.value;
+  setThreads(1);
+  const FormFactors factors = timed(method, mesh, m);
+  setThreads(0);
+  m.factors = matrixError(factors.matrix, truth);
+  m.bytes = factors.matrix.bytes();
+  m.largest_row_error = largestRowError(factors);
+  m.error_figure = factors.report.error_figure;
+  m.exact = factors.report.exact;
+  result.radiosity = materials.solve(factors);
+  return result;
+}
+
+/// From the loosest setting to the tightest; what follows one of more than kMostSeconds is left
+/// out.
+std::vector<Measured> measureExact(const BenchScene& scene, const TruthRows& truth,
+                                   const Materials& materials) {
+  std::vector<Measured> all;
+  for (const Method& method : exactMethods()) {
+    if (!all.empty() && all.back().measurement.seconds.processor() > kMostSeconds) {
+      fmt::print("  exact {:.0e} and tighter left out: {:.0e} took more than {:.0f} s\n",
+                 method.value, all.back().measurement.value, kMostSeconds);
+      break;
+    }
+    all.push_back(measure(method, scene.mesh, truth, materials));
+  }
+  return all;
+}
+
 }  // namespace
 
 std::optional<SceneCurves> errorCurves(const BenchScene& scene, const TruthRows& truth,
@@ -115,41 +155,32 @@ std::optional<SceneCurves> errorCurves(const BenchScene& scene, const TruthRows&
   curves.scene = scene.name;
   curves.patches = mesh.size();
   curves.polygons = mesh.polygons.size();
-  fmt::print("\n{}: {} patches, {} polygons\n", scene.name, mesh.size(), mesh.polygons.size());
   curves.truth_rows = truth.index.size();
-  curves.complete = truth.complete;
+  fmt::print("\n{}: {} patches, {} polygons\n", scene.name, mesh.size(), mesh.polygons.size());
   if (!verifyTruth(scene, truth, truth_accuracy)) return std::nullopt;
 
   const Materials materials(scene);
+  const std::vector<Measured> exact = measureExact(scene, truth, materials);
   std::vector<double> reference;
   if (truth.complete) {
     curves.radiosity_reference = "truth";
     reference = materials.solve(asFormFactors(mesh, truth));
   } else {
-    const Method finest = exact(kReferenceTolerance);
-    curves.radiosity_reference = fmt::format("exact {:.0e}", kReferenceTolerance);
-    reference = materials.solve(finest.compute(mesh));
+    curves.radiosity_reference = fmt::format("exact {:.0e}", exact.back().measurement.value);
+    reference = exact.back().radiosity;
   }
-
-  printCurveHead(curves);
-  for (const Method& method : methods(mesh.size(), quick)) {
-    Measurement m;
-    m.method = method.name;
-    m.setting = method.setting;
-    m.value = method.value;
-    setThreads(1);
-    const FormFactors factors = timed(method, mesh, m);
-    setThreads(0);
-    m.factors = matrixError(factors.matrix, truth);
-    const bool is_reference =
-        !truth.complete && method.name == "exact" && method.value == kReferenceTolerance;
-    if (!is_reference) m.radiosity = relativeError(mesh, materials.solve(factors), reference);
-    m.bytes = factors.matrix.bytes();
-    m.largest_row_error = largestRowError(factors);
-    m.error_figure = factors.report.error_figure;
-    m.exact = factors.report.exact;
+  const auto add = [&](const Measured& measured) {
+    Measurement m = measured.measurement;
+    if (&measured != &exact.back() || truth.complete) {
+      m.radiosity = relativeError(mesh, measured.radiosity, reference);
+    }
     printMeasurement(m);
     curves.measurements.push_back(m);
+  };
+  printCurveHead(curves);
+  for (const Measured& measured : exact) add(measured);
+  for (const Method& method : otherMethods(mesh.size(), quick)) {
+    add(measure(method, mesh, truth, materials));
   }
   return curves;
 }

@@ -34,13 +34,13 @@ struct SceneCurves {
   std::size_t patches = 0;
   std::size_t polygons = 0;
   std::size_t truth_rows = 0;
-  bool complete = false;            ///< truth has all rows
   std::string radiosity_reference;  ///< what B is compared with
   std::vector<Measurement> measurements;
 };
 
-/// Verifies truth, then runs the methods one after the other, printing a line each. Empty where
-/// verification failed: nothing was timed.
+/// Verifies truth, then runs the methods one after the other, printing a line each. B is compared
+/// with that of truth where all rows are known, else with that of the tightest exact setting. Empty
+/// where verification failed: nothing was timed.
 std::optional<SceneCurves> errorCurves(const BenchScene& scene, const TruthRows& truth,
                                        double truth_accuracy, bool quick);
 

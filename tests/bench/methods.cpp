@@ -10,8 +10,6 @@ FormFactors compute(const PatchMesh& mesh, const FormFactorOptions& options) {
   return computeFormFactors(mesh, options, silent);
 }
 
-}  // namespace
-
 Method hemicube(int resolution, bool near_exact) {
   FormFactorOptions options;
   options.method = FormFactorMethod::hemicube;
@@ -21,6 +19,13 @@ Method hemicube(int resolution, bool near_exact) {
           [options](const PatchMesh& mesh) { return compute(mesh, options); }};
 }
 
+Method rays(std::uint32_t count, bool both_ends) {
+  return {both_ends ? kRaysBothEnds : kRays, "rays a patch", double(count),
+          [=](const PatchMesh& mesh) { return castFormFactors(mesh, count, both_ends); }};
+}
+
+}  // namespace
+
 Method exact(double tolerance) {
   FormFactorOptions options;
   options.method = FormFactorMethod::exact;
@@ -29,23 +34,25 @@ Method exact(double tolerance) {
           [options](const PatchMesh& mesh) { return compute(mesh, options); }};
 }
 
-Method rays(std::uint32_t count) {
-  return {"rays", "rays a patch", double(count),
-          [count](const PatchMesh& mesh) { return castFormFactors(mesh, count); }};
+std::vector<Method> exactMethods() {
+  std::vector<Method> all;
+  for (const double tolerance : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5}) all.push_back(exact(tolerance));
+  return all;
 }
 
-std::vector<Method> methods(std::size_t patches, bool quick) {
+std::vector<Method> otherMethods(std::size_t patches, bool quick) {
   std::vector<Method> all;
   for (const bool near_exact : {false, true}) {
     for (const int resolution : {64, 128, 256, 512}) {
       if (!quick || resolution <= 256) all.push_back(hemicube(resolution, near_exact));
     }
   }
-  for (const double tolerance : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5}) all.push_back(exact(tolerance));
-  // At 10 to 20 million rays a second: about half a minute for the dearest point, or seconds.
-  const double most_rays = quick ? 4e7 : 4e8;
-  for (std::uint32_t count = 256; double(count) * double(patches) <= most_rays; count *= 4) {
-    all.push_back(rays(count));
+  // At 10 to 20 million rays a second: some ten seconds for the dearest point, or a few.
+  const double most_rays = quick ? 4e7 : 2e8;
+  for (const bool both_ends : {false, true}) {
+    for (std::uint32_t count = 256; double(count) * double(patches) <= most_rays; count *= 4) {
+      all.push_back(rays(count, both_ends));
+    }
   }
   return all;
 }

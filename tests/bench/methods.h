@@ -9,19 +9,23 @@
 
 namespace radiosity::bench {
 
+inline constexpr const char* kRays = "rays";
+inline constexpr const char* kRaysBothEnds = "rays both ends";
+
 struct Method {
-  std::string name;     ///< of the curve: "hemicube", "hemicube + near", "exact", "rays"
+  std::string name;  ///< of the curve: "exact", "hemicube", "hemicube + near", kRays, kRaysBothEnds
   std::string setting;  ///< what `value` is: "pixels", "tolerance", "rays a patch"
   double value = 0;
   std::function<FormFactors(const PatchMesh&)> compute;
 };
 
-Method hemicube(int resolution, bool near_exact);
 Method exact(double tolerance);
-Method rays(std::uint32_t count);
 
-/// All of them for a mesh of that many patches. Ray counts go up by factors of four from 256 a
+/// From the loosest setting to the tightest.
+std::vector<Method> exactMethods();
+
+/// The others, for a mesh of that many patches. Ray counts go up by factors of four from 256 a
 /// patch, as far as `quick` or full running times bear.
-std::vector<Method> methods(std::size_t patches, bool quick);
+std::vector<Method> otherMethods(std::size_t patches, bool quick);
 
 }  // namespace radiosity::bench

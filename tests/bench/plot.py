@@ -20,7 +20,8 @@ from matplotlib.ticker import LogLocator, NullFormatter
 STYLES = {
     "hemicube": ("hemicube, 64 to 512 pixels", "#E69F00", "s"),
     "hemicube + near": ("hemicube, near pairs exact", "#009E73", "^"),
-    "rays": ("ray casting (Embree, Sobol)", "#0072B2", "o"),
+    "rays": ("ray casting (Embree, Sobol points)", "#0072B2", "o"),
+    "rays both ends": ("ray casting, both ends merged", "#56B4E9", "v"),
     "exact": ("exact, tolerance 0.1 to 1e-5", "#D55E00", "D"),
 }
 TITLES = {
@@ -47,12 +48,12 @@ def draw_scene(axes, rows, laws):
                         if r["method"] == method)
         if points:
             axes.plot(*zip(*points), color=colour, marker=mark, markersize=4.5, linewidth=1.4)
-    for law in laws[:1]:
-        start = max(seconds(r) for r in rows if r["method"] == "rays")
+    for law in {law["curve"]: law for law in laws}.values():
+        start = max(seconds(r) for r in rows if r["method"] == law["curve"])
         goal = min(float(r["relative_l2_F"]) for r in rows)
         factor, slope = float(law["ray_factor"]), float(law["ray_slope"])
         end = (goal / factor) ** (1 / slope)
-        axes.plot([start, end], [factor * start**slope, goal], color=STYLES["rays"][1],
+        axes.plot([start, end], [factor * start**slope, goal], color=STYLES[law["curve"]][1],
                   linewidth=1.2, linestyle=":")
     axes.set_title(f"{TITLES[rows[0]['scene']]}, {int(rows[0]['patches']):,} patches",
                    fontsize=9.5)

@@ -44,14 +44,15 @@ void printSummary(const Summary& summary) {
         "and\n"
         "the time at which the law through the last three points of the ray-cast curve gets there\n"
         "(extra: extrapolated beyond its dearest point)\n");
-    fmt::print("  {:<20} {:>7} {:>8} | {:>9} {:>9} {:>8} | {:>12} {:>6} {:>6} | {:>9}\n", "scene",
-               "patches", "error", "exact, s", "tolerance", "reached", "rays, s", "slope", "",
-               "ratio");
+    fmt::print("  {:<20} {:>7} {:>8} | {:>9} {:>9} {:>8} | {:<15} {:>12} {:>6} {:>6} | {:>9}\n",
+               "scene", "patches", "error", "exact, s", "tolerance", "reached", "curve", "seconds",
+               "slope", "", "ratio");
     for (const RayComparison& c : summary.comparisons) {
       fmt::print(
-          "  {:<20} {:>7} {:>8.0e} | {:>9.3f} {:>9.0e} {:>8.1e} | {:>12.1f} {:>6.2f} {:>6} | "
+          "  {:<20} {:>7} {:>8.0e} | {:>9.3f} {:>9.0e} {:>8.1e} | {:<15} {:>12.1f} {:>6.2f} {:>6} "
+          "| "
           "{:>8.0f}x\n",
-          c.scene, c.patches, c.error, c.exact_seconds, c.exact_tolerance, c.exact_error,
+          c.scene, c.patches, c.error, c.exact_seconds, c.exact_tolerance, c.exact_error, c.curve,
           c.ray_seconds, c.rays.slope, c.extrapolated ? "extra" : "", c.ratio());
     }
   }
@@ -107,12 +108,12 @@ void writeCsv(const std::string& path, const std::vector<SceneCurves>& curves) {
 void writeComparisonsCsv(const std::string& path, const std::vector<RayComparison>& comparisons) {
   auto out = fmt::output_file(path);
   out.print(
-      "scene,patches,error,exact_s,exact_tolerance,exact_error,rays_s,ray_factor,ray_slope,"
+      "scene,patches,curve,error,exact_s,exact_tolerance,exact_error,rays_s,ray_factor,ray_slope,"
       "extrapolated,ratio\n");
   for (const RayComparison& c : comparisons) {
-    out.print("{},{},{:g},{:.6f},{:g},{:.6e},{:.6e},{:.6e},{:.4f},{},{:.2f}\n", c.scene, c.patches,
-              c.error, c.exact_seconds, c.exact_tolerance, c.exact_error, c.ray_seconds,
-              c.rays.factor, c.rays.slope, c.extrapolated ? 1 : 0, c.ratio());
+    out.print("{},{},{},{:g},{:.6f},{:g},{:.6e},{:.6e},{:.6e},{:.4f},{},{:.2f}\n", c.scene,
+              c.patches, c.curve, c.error, c.exact_seconds, c.exact_tolerance, c.exact_error,
+              c.ray_seconds, c.rays.factor, c.rays.slope, c.extrapolated ? 1 : 0, c.ratio());
   }
 }
 

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kDefaultTolerance = 1e-3;
 constexpr int kCoreRounds = 5;
+constexpr std::ptrdiff_t kLawPoints = 3;
 
 PowerLaw fit(const std::vector<Measurement>& points) {
   double x = 0;
@@ -58,28 +59,32 @@ const Measurement* defaultExact(const SceneCurves& curves) {
 double PowerLaw::secondsAt(double error) const { return std::pow(error / factor, 1 / slope); }
 
 std::vector<RayComparison> compareWithRays(const SceneCurves& curves) {
-  std::vector<Measurement> rays = curve(curves, "rays");
   const std::vector<Measurement> exact = curve(curves, "exact");
-  // The cheapest points pay for setting up and trace half-empty packets; the law is the others'.
-  if (rays.size() > 3) rays.erase(rays.begin(), rays.end() - 3);
   std::vector<RayComparison> comparisons;
-  if (rays.size() < 2) return comparisons;
-  for (const double error : {1e-2, 1e-3}) {
-    const auto reached = std::find_if(exact.begin(), exact.end(), [&](const Measurement& m) {
-      return m.factors.relative_l2 <= error;
-    });
-    if (reached == exact.end()) continue;
-    RayComparison c;
-    c.scene = curves.scene;
-    c.patches = curves.patches;
-    c.error = error;
-    c.exact_seconds = reached->seconds.processor();
-    c.exact_tolerance = reached->value;
-    c.exact_error = reached->factors.relative_l2;
-    c.rays = fit(rays);
-    c.ray_seconds = c.rays.secondsAt(error);
-    c.extrapolated = error < rays.back().factors.relative_l2;
-    comparisons.push_back(c);
+  for (const char* name : {kRays, kRaysBothEnds}) {
+    std::vector<Measurement> rays = curve(curves, name);
+    // The cheapest points pay for setting up and trace small, incoherent batches: the law is that
+    // of the dearest.
+    if (std::ssize(rays) > kLawPoints) rays.erase(rays.begin(), rays.end() - kLawPoints);
+    if (rays.size() < 2) continue;
+    for (const double error : {1e-2, 1e-3}) {
+      const auto reached = std::find_if(exact.begin(), exact.end(), [&](const Measurement& m) {
+        return m.factors.relative_l2 <= error;
+      });
+      if (reached == exact.end()) continue;
+      RayComparison c;
+      c.scene = curves.scene;
+      c.patches = curves.patches;
+      c.curve = name;
+      c.error = error;
+      c.exact_seconds = reached->seconds.processor();
+      c.exact_tolerance = reached->value;
+      c.exact_error = reached->factors.relative_l2;
+      c.rays = fit(rays);
+      c.ray_seconds = c.rays.secondsAt(error);
+      c.extrapolated = error < rays.back().factors.relative_l2;
+      comparisons.push_back(c);
+    }
   }
   return comparisons;
 }

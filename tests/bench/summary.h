@@ -20,6 +20,7 @@ struct PowerLaw {
 struct RayComparison {
   std::string scene;
   std::size_t patches = 0;
+  std::string curve;           ///< kRays or kRaysBothEnds
   double error = 0;            ///< relL2(F)
   double exact_seconds = 0;    ///< of the cheapest setting measured that stays below the error
   double exact_tolerance = 0;  ///< that setting
@@ -66,7 +67,7 @@ struct Summary {
   std::optional<WholeRun> whole_run;
 };
 
-/// At relL2 1e-2 and 1e-3, where the exact method gets there.
+/// At relL2 1e-2 and 1e-3, where the exact method gets there, with either curve.
 std::vector<RayComparison> compareWithRays(const SceneCurves& curves);
 
 /// Between the Cornell boxes of about 1,000 and 20,000 patches, where both were measured.
