@@ -338,7 +338,7 @@ TEST(Correction, EveryReaderSeesTheSum) {
   const RowMajor given = Eigen::Map<const RowMajor>(x.data(), 60, 5);
   for (const Part part : {Part::raw, Part::correction, Part::corrected}) {
     std::vector<double> y(x.size());
-    matrix.product(x, 5, y, part);
+    matrix.productOf(part, x, 5, y);
     const RowMajor expected = dense(part) * given;
     // 60 terms up to 0.1 in another order.
     for (std::size_t k = 0; k < y.size(); ++k) EXPECT_NEAR(y[k], expected.data()[k], 1e-14);

@@ -235,6 +235,8 @@ inline Solution solution(std::size_t n, int bands) {
   SolveSummary& r = s.summary;
   r.status = SolveStatus::no_convergence;
   r.iterations = 42;
+  r.rows = 43;
+  r.skipped = {44, 1, 2};
   r.residual = 1.0 / 3;
   r.error_bound = 2.5;
   const auto filled = [bands](double v) { return std::vector<double>(std::size_t(bands), v); };
@@ -370,9 +372,13 @@ inline auto members(const EnergyAccount& s) {
   const auto& [a, b, c, d, e] = s;
   return std::tie(a, b, c, d, e);
 }
+inline auto members(const SolveSkips& s) {
+  const auto& [a, b, c] = s;
+  return std::tie(a, b, c);
+}
 inline auto members(const SolveSummary& s) {
-  const auto& [a, b, c, d, e, f, g, h] = s;
-  return std::tie(a, b, c, d, e, f, g, h);
+  const auto& [a, b, c, d, e, f, g, h, i, j] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j);
 }
 inline auto members(const Solution& s) {
   const auto& [a, b, c, d] = s;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <utility>
@@ -13,8 +14,21 @@ namespace radiosity::test {
 
 using Matrix = Eigen::MatrixXd;
 
-/// Form factors with F = `dense`; what a row lacks of 1 goes to the sky, but for the share
-/// `on_backs` of it. Rows above 1 lose nothing.
+/// What a row lacks of 1 goes to the sky, but for the share `on_backs` of it. Rows above 1 lose
+/// nothing.
+inline void setAccounts(FormFactors& factors, double on_backs) {
+  const std::size_t n = factors.matrix.size();
+  factors.fronts = factors.matrix.rowSums();
+  factors.sky.resize(n);
+  factors.backs.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double lost = std::max(0.0, 1 - factors.fronts[i]);
+    factors.backs[i] = on_backs * lost;
+    factors.sky[i] = lost - factors.backs[i];
+  }
+}
+
+/// Form factors with F = `dense`, row by row, and those accounts.
 inline FormFactors factorsFrom(const Matrix& dense, std::vector<double> area, double on_backs = 0.0,
                                Precision precision = Precision::real) {
   const auto n = std::size_t(dense.rows());
@@ -31,14 +45,27 @@ inline FormFactors factorsFrom(const Matrix& dense, std::vector<double> area, do
     }
     factors.matrix.setRow(i, columns, values);
   }
-  factors.fronts = factors.matrix.rowSums();
-  factors.sky.resize(n);
-  factors.backs.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const double lost = std::max(0.0, 1 - factors.fronts[i]);
-    factors.backs[i] = on_backs * lost;
-    factors.sky[i] = lost - factors.backs[i];
+  setAccounts(factors, on_backs);
+  return factors;
+}
+
+/// The same in the symmetric form, stored in a random order; A_i F_ij = A_j F_ji must hold. Values
+/// are those of the half that is stored, rounded to `precision`.
+inline FormFactors symmetricFactorsFrom(const Matrix& dense, std::vector<double> area,
+                                        double on_backs = 0.0,
+                                        Precision precision = Precision::real) {
+  const std::size_t n = area.size();
+  std::vector<Index> order(n);
+  for (std::size_t k = 0; k < n; ++k) order[k] = Index(k);
+  std::shuffle(order.begin(), order.end(), std::mt19937(1));
+  FormFactors factors;
+  factors.matrix = ExchangeMatrix::symmetric(std::move(area), order, precision);
+  for (std::size_t k = 0; k < n; ++k) {
+    std::vector<double> row;
+    for (std::size_t q = k; q < n; ++q) row.push_back(dense(order[k], order[q]));
+    factors.matrix.setUpperRow(k, row);
   }
+  setAccounts(factors, on_backs);
   return factors;
 }
 
@@ -100,6 +127,25 @@ inline std::vector<double> direct(const Matrix& f, const std::vector<double>& re
     for (Eigen::Index i = 0; i < n; ++i) radiosity[std::size_t(i * bands + b)] = double(solved(i));
   }
   return radiosity;
+}
+
+/// A symmetric exchange matrix with rows of different sums, some of it lost on backs.
+struct Reciprocal {
+  Matrix f;
+  std::vector<double> area;
+};
+
+inline Reciprocal reciprocal(std::size_t n, Random& random) {
+  Reciprocal out{Matrix(n, n), random.vector(n, 0.5, 2.0)};
+  const auto size = Eigen::Index(n);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    for (Eigen::Index j = 0; j <= i; ++j) out.f(i, j) = out.f(j, i) = random(0.0, 1.0);
+  }
+  for (Eigen::Index i = 0; i < size; ++i) {
+    out.f.row(i) /= out.area[std::size_t(i)];
+  }
+  out.f /= out.f.rowwise().sum().maxCoeff();
+  return out;
 }
 
 inline double largestDifference(const std::vector<double>& a, const std::vector<double>& b) {

@@ -103,6 +103,31 @@ TEST(Solve, JacobiGaussSeidelAndLuAgree) {
   }
 }
 
+// Both ways to store a reciprocal matrix, with a patch that sees itself, against LU.
+TEST(Solve, BothStorageFormsAgreeWithLu) {
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    test::Random random(seed);
+    const auto n = std::size_t(random(2, 200));
+    const auto [f, area] = test::reciprocal(n, random);
+    const auto rho = random.vector(n * 3, 0.0, 0.95);
+    const auto emission = random.vector(n * 3, 0.0, 20.0);
+    const auto expected = test::direct(f, rho, emission, 3);
+    for (const bool symmetric : {false, true}) {
+      const auto factors =
+          symmetric ? test::symmetricFactorsFrom(f, area, 0.3) : test::factorsFrom(f, area, 0.3);
+      for (const Solver solver : kSolvers) {
+        Progress quiet;
+        const Solution s = solve(factors, rho, emission, 3, test::options(solver, 1e-13), quiet);
+        ASSERT_EQ(s.summary.status, SolveStatus::converged) << seed << ": " << s.summary.message;
+        // |error| <= |r| / (1 - max rho rowsum) <= 1e-13 * 20 / 0.05.
+        EXPECT_LT(test::largestDifference(s.radiosity, expected), 4e-11) << seed;
+        ASSERT_TRUE(s.summary.error_bound.has_value());
+        EXPECT_LT(test::largestDifference(s.radiosity, expected), *s.summary.error_bound);
+      }
+    }
+  }
+}
+
 /// The largest |eigenvalue|.
 double spectralRadius(const Matrix& m) {
   return Eigen::EigenSolver<Matrix>(m, false).eigenvalues().cwiseAbs().maxCoeff();
@@ -158,29 +183,10 @@ TEST(Solve, GaussSeidelTakesAboutHalfTheSweeps) {
   EXPECT_LT(seidel, 0.65 * jacobi);
 }
 
-/// A symmetric exchange matrix with rows of different sums, some of it lost on backs.
-struct Reciprocal {
-  Matrix f;
-  std::vector<double> area;
-};
-
-Reciprocal reciprocal(std::size_t n, test::Random& random) {
-  Reciprocal out{Matrix(n, n), random.vector(n, 0.5, 2.0)};
-  const auto size = Eigen::Index(n);
-  for (Eigen::Index i = 0; i < size; ++i) {
-    for (Eigen::Index j = 0; j <= i; ++j) out.f(i, j) = out.f(j, i) = random(0.0, 1.0);
-  }
-  for (Eigen::Index i = 0; i < size; ++i) {
-    out.f.row(i) /= out.area[std::size_t(i)];
-  }
-  out.f /= out.f.rowwise().sum().maxCoeff();
-  return out;
-}
-
 TEST(SolveEnergy, ClosesWhereFIsReciprocal) {
   test::Random random(9);
   const std::size_t n = 70;
-  const auto [f, area] = reciprocal(n, random);
+  const auto [f, area] = test::reciprocal(n, random);
   const auto factors = test::factorsFrom(f, area, 0.25);
   const auto rho = random.vector(n * 2, 0.1, 0.9);
   const auto emission = random.vector(n * 2, 0.0, 3.0);
@@ -205,7 +211,7 @@ TEST(SolveEnergy, ClosesWhereFIsReciprocal) {
 TEST(SolveEnergy, ImbalanceIsTheResidualsPower) {
   test::Random random(10);
   const std::size_t n = 40;
-  const auto [f, area] = reciprocal(n, random);
+  const auto [f, area] = test::reciprocal(n, random);
   const auto factors = test::factorsFrom(f, area);
   const auto rho = random.vector(n, 0.1, 0.9);
   const auto emission = random.vector(n, 0.0, 3.0);

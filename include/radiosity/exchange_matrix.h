@@ -99,17 +99,25 @@ class ExchangeMatrix {
   /// F_ij, 0 where nothing is stored. O(log n) in a sparse row, O(runs) in the symmetric form.
   double at(std::size_t i, std::size_t j) const;
 
-  /// y = F x for all rows and bands, one pass over what is stored, in parallel, same bits for any
-  /// thread count. x, y: N * bands, row-major, not aliased.
+  /// y = F x for all bands, one pass over what is stored, in parallel, same bits for any thread
+  /// count. x, y: N * bands, row-major, not aliased. `wanted`: N flags, of the rows to compute;
+  /// elsewhere y stays as it is. Empty: all.
   void product(std::span<const double> x, int bands, std::span<double> y,
-               Part part = Part::corrected) const;
+               std::span<const std::uint8_t> wanted = {}) const {
+    productOf(Part::corrected, x, bands, y, wanted);
+  }
+
+  /// The same with some of the values.
+  void productOf(Part part, std::span<const double> x, int bands, std::span<double> y,
+                 std::span<const std::uint8_t> wanted = {}) const;
 
   /// One row after the other, in the order of storage (row form: as numbered): calls
   /// update(i, gathered) with gathered[b] = sum_j F_ij x[j * bands + b], x as the updates so far
-  /// have left it. An update may change x of patch i and of no other. One pass over what is stored,
-  /// on one thread.
-  void sweep(std::span<double> x, int bands,
-             const std::function<void(std::size_t i, const double* gathered)>& update) const;
+  /// have left it. An update may change x of patch i and of no other. Rows that are not `wanted`
+  /// are passed over. One pass over what is stored, on one thread.
+  using Update = std::function<void(std::size_t i, const double* gathered)>;
+  void sweep(std::span<double> x, int bands, const Update& update,
+             std::span<const std::uint8_t> wanted = {}) const;
 
   /// N: how many entries of a row are not 0.
   std::vector<Index> rowEntries(Part part = Part::corrected) const;
@@ -143,10 +151,10 @@ class ExchangeMatrix {
   void spreadRows(std::size_t first, std::size_t last, Part part, std::span<double> out) const;
   void checkFactors(std::size_t k, std::span<const double> factors) const;
   void rowProduct(std::size_t i, std::span<const double> x, int bands, double* out) const;
-  void symmetricProduct(std::span<const double> x, int bands, std::span<double> y, Part part) const;
-  void symmetricSweep(
-      std::span<double> x, int bands,
-      const std::function<void(std::size_t i, const double* gathered)>& update) const;
+  void symmetricProduct(Part part, std::span<const double> x, int bands, std::span<double> y,
+                        std::span<const std::uint8_t> wanted) const;
+  void symmetricSweep(std::span<double> x, int bands, const Update& update,
+                      std::span<const std::uint8_t> wanted) const;
   /// Symmetric form: F between positions k <= later, as stored.
   double storedUpper(std::size_t k, std::size_t later) const;
 

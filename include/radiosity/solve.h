@@ -39,9 +39,18 @@ struct EnergyAccount {
   std::vector<double> imbalance;
 };
 
+/// Work the scene did not need.
+struct SolveSkips {
+  std::size_t black_patches = 0;  ///< reflectance 0 in every band solved: B = E without their rows
+  int dark_bands = 0;             ///< no patch emits: B = 0, not solved
+  int equal_bands = 0;            ///< same reflectance and emission as an earlier band: copied
+};
+
 struct SolveSummary {
   SolveStatus status = SolveStatus::no_convergence;
-  int iterations = 0;   ///< sweeps over the matrix; products that only check are not counted
+  int iterations = 0;    ///< sweeps over the matrix; products that only check are not counted
+  std::size_t rows = 0;  ///< rows of the matrix multiplied in them, each for all bands solved
+  SolveSkips skipped;
   double residual = 0;  ///< max |E + rho F B - B| / max |E|, true, worst band
   /// An upper bound of |B - B*|_inf, W/m^2, worst band, B* being this matrix's exact solution:
   /// w_i max_k |r_k| / ((I - rho F) w)_k for a vector w > 0 with (I - rho F) w > 0. Empty: no such
@@ -67,9 +76,10 @@ struct Solution {
 };
 
 /// `reflectance`, `emission`: N * bands, row-major; 0 <= rho <= 1, E >= 0, finite, else InputError
-/// naming the patch. Needs a matrix of N rows and accounts of N values. Bands without light cost
-/// nothing. Not converging is data, not an exception.
-/// `group_names[group[i]]` names patch i's surface in messages; both may be empty.
+/// naming the patch. Needs a matrix of N rows and accounts of N values. What the scene does not
+/// need is not computed, see SolveSkips: B and H have the same bits as if it were. Not converging
+/// is data, not an exception. `group_names[group[i]]` names patch i's surface in messages; both may
+/// be empty.
 Solution solve(const FormFactors& factors, std::span<const double> reflectance,
                std::span<const double> emission, int bands, const SolveOptions& options,
                Progress& progress, std::span<const Index> group = {},

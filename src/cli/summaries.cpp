@@ -255,6 +255,13 @@ void summarizeSolution(Report& report, const Solution& solution, const FormFacto
     report.text("status", "status", statusText(s.status));
     report.text("solver", "solver", options.solver == Solver::jacobi ? "jacobi" : "gauss-seidel");
     report.count("iterations", "iterations", std::size_t(s.iterations));
+    report.count("rows", "rows multiplied", s.rows);
+    report.count("skipped_black_patches", "skipped: rows of black patches",
+                 s.skipped.black_patches);
+    report.count("skipped_dark_bands", "skipped: bands without light",
+                 std::size_t(s.skipped.dark_bands));
+    report.count("skipped_equal_bands", "skipped: bands equal to another",
+                 std::size_t(s.skipped.equal_bands));
     report.number("residual", "residual (relative)", s.residual);
     report.number("tolerance", "  asked for", options.tolerance);
     if (s.error_bound) {

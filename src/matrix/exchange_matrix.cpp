@@ -137,7 +137,7 @@ std::size_t ExchangeMatrix::denseRows() const {
 std::vector<double> ExchangeMatrix::rowSums(Part part) const {
   const std::vector<double> ones(size(), 1.0);
   std::vector<double> sums(size());
-  product(ones, 1, sums, part);
+  productOf(part, ones, 1, sums);
   return sums;
 }
 

@@ -81,19 +81,20 @@ void ExchangeMatrix::rowProduct(std::size_t i, std::span<const double> x, int ba
   }
 }
 
-void ExchangeMatrix::product(std::span<const double> x, int bands, std::span<double> y,
-                             Part part) const {
-  if (symmetric_) return symmetricProduct(x, bands, y, part);
-  parallelFor(size(), kRowGrain,
-              [&](std::size_t i) { rowProduct(i, x, bands, &y[i * std::size_t(bands)]); });
+void ExchangeMatrix::productOf(Part part, std::span<const double> x, int bands, std::span<double> y,
+                               std::span<const std::uint8_t> wanted) const {
+  if (symmetric_) return symmetricProduct(part, x, bands, y, wanted);
+  parallelFor(size(), kRowGrain, [&](std::size_t i) {
+    if (wanted.empty() || wanted[i] != 0) rowProduct(i, x, bands, &y[i * std::size_t(bands)]);
+  });
 }
 
-void ExchangeMatrix::sweep(
-    std::span<double> x, int bands,
-    const std::function<void(std::size_t i, const double* gathered)>& update) const {
-  if (symmetric_) return symmetricSweep(x, bands, update);
+void ExchangeMatrix::sweep(std::span<double> x, int bands, const Update& update,
+                           std::span<const std::uint8_t> wanted) const {
+  if (symmetric_) return symmetricSweep(x, bands, update, wanted);
   std::vector<double> gathered(static_cast<std::size_t>(bands));
   for (std::size_t i = 0; i < size(); ++i) {
+    if (!wanted.empty() && wanted[i] == 0) continue;
     rowProduct(i, x, bands, gathered.data());
     update(i, gathered.data());
   }

@@ -33,13 +33,18 @@ struct Planes {
   std::vector<double> values;
 };
 
+bool isWanted(std::span<const std::uint8_t> wanted, Index patch) {
+  return wanted.empty() || wanted[patch] != 0;
+}
+
 /// What a row was handed on, divided by its area; a patch without area was handed nothing.
 double perArea(double handed, double area) { return area > 0 ? handed / area : 0.0; }
 
 }  // namespace
 
-void ExchangeMatrix::symmetricProduct(std::span<const double> x, int bands, std::span<double> y,
-                                      Part part) const {
+void ExchangeMatrix::symmetricProduct(Part part, std::span<const double> x, int bands,
+                                      std::span<double> y,
+                                      std::span<const std::uint8_t> wanted) const {
   const std::size_t n = size();
   const auto width = std::size_t(bands);
   const bool raw = part != Part::correction;
@@ -59,9 +64,17 @@ void ExchangeMatrix::symmetricProduct(std::span<const double> x, int bands, std:
                                  .z = handed_on,
                                  .z_stride = stride,
                                  .bands = in.bands};
+      const bool gathers = isWanted(wanted, order_[k]);
+      const bool hands_on = std::any_of(factor, factor + planes, [](double f) { return f != 0; });
       const auto add = [&](const RunRow& values) {
-        double sums[kMaxBands];
-        gatherAndHandOnRow(values, operands, factor, sums);
+        double sums[kMaxBands] = {};
+        if (gathers && hands_on) {
+          gatherAndHandOnRow(values, operands, factor, sums);
+        } else if (gathers) {
+          gatherRow(values, operands, sums);
+        } else if (hands_on) {
+          handOnRow(values, operands, factor);
+        }
         for (std::size_t b = 0; b < planes; ++b) gathered[b * n + k] += sums[b];
       };
       if (raw) add(upper_[k]);
@@ -69,6 +82,7 @@ void ExchangeMatrix::symmetricProduct(std::span<const double> x, int bands, std:
     };
     const auto finish = [&](std::size_t k, const double* handed) {
       const Index patch = order_[k];
+      if (!isWanted(wanted, patch)) return;
       for (std::size_t b = 0; b < planes; ++b) {
         const double own = raw ? diagonal_[k] * in.values[b * n + k] : 0;
         y[patch * width + in.first_band + b] =
@@ -82,9 +96,8 @@ void ExchangeMatrix::symmetricProduct(std::span<const double> x, int bands, std:
 // Row k's sum over earlier patches was handed on by them just after they were updated; its sum over
 // later ones is gathered from values not updated yet. So a sweep, too, passes over the triangle
 // once.
-void ExchangeMatrix::symmetricSweep(
-    std::span<double> x, int bands,
-    const std::function<void(std::size_t i, const double* gathered)>& update) const {
+void ExchangeMatrix::symmetricSweep(std::span<double> x, int bands, const Update& update,
+                                    std::span<const std::uint8_t> wanted) const {
   const std::size_t n = size();
   const auto width = std::size_t(bands);
   Planes now(n, 0, bands);
@@ -112,15 +125,16 @@ void ExchangeMatrix::symmetricSweep(
   for (std::size_t k = 0; k < n; ++k) {
     const Index patch = order_[k];
     const double area = area_[patch];
-    gather(k);
-    for (std::size_t b = 0; b < width; ++b) {
-      sums[b] += diagonal_[k] * now.values[b * n + k] + perArea(handed[b * n + k], area);
+    if (isWanted(wanted, patch)) {
+      gather(k);
+      for (std::size_t b = 0; b < width; ++b) {
+        sums[b] += diagonal_[k] * now.values[b * n + k] + perArea(handed[b * n + k], area);
+      }
+      update(patch, sums.data());
+      for (std::size_t b = 0; b < width; ++b) now.values[b * n + k] = x[patch * width + b];
     }
-    update(patch, sums.data());
-    for (std::size_t b = 0; b < width; ++b) {
-      now.values[b * n + k] = x[patch * width + b];
-      factor[b] = now.values[b * n + k] * area;
-    }
+    for (std::size_t b = 0; b < width; ++b) factor[b] = now.values[b * n + k] * area;
+    if (std::all_of(factor.begin(), factor.end(), [](double f) { return f == 0; })) continue;
     for (int b = 0; b < bands; b += kMaxBands) {
       handOnRow(upper_[k], operands(k, b), &factor[std::size_t(b)]);
       if (isCorrected()) handOnRow(correction_[k], operands(k, b), &factor[std::size_t(b)]);

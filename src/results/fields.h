@@ -221,6 +221,12 @@ template <class Archive>
 void describe(Archive& a, Described<Archive, SolveSummary>& s) {
   a.choice("status", s.status, kStatusWords);
   a("iterations", s.iterations);
+  a("rows", s.rows);
+  a.group("skipped", [&](auto& skipped) {
+    skipped("black_patches", s.skipped.black_patches);
+    skipped("dark_bands", s.skipped.dark_bands);
+    skipped("equal_bands", s.skipped.equal_bands);
+  });
   a("residual", s.residual);
   a("error_bound", s.error_bound);
   a("seconds", s.seconds);

@@ -47,10 +47,10 @@ std::optional<double> certifiedErrorBound(const System& system, const Fields& fi
                                           int max_sweeps, Progress& progress) {
   const std::vector<double> ones(fields.radiosity.size(), 1.0);
   Fields trial{ones, ones};
-  system.matrix.product(trial.radiosity, system.bands, trial.irradiance);
+  system.matrix.product(trial.radiosity, system.bands, trial.irradiance, system.reflecting);
   if (const auto bound = boundFrom(system, fields, trial)) return bound;
   Convergence convergence(kRoughTolerance, max_sweeps, "bounding the error", progress);
-  trial = gaussSeidel({system.matrix, system.bands, system.reflectance, ones}, convergence);
+  trial = gaussSeidel(System(system.matrix, system.bands, system.reflectance, ones), convergence);
   return boundFrom(system, fields, trial);
 }
 

@@ -12,13 +12,14 @@ namespace {
 /// B_i <- (E_i + rho_i sum_{j != i} F_ij B_j) / (1 - rho_i F_ii) for one i after another: rows
 /// depend on each other, so the sweep runs on one thread. Returns the largest change over max E,
 /// worst band.
-double sweep(const System& system, std::span<const double> diagonal,
-             std::vector<double>& radiosity) {
+double sweep(const System& system, std::span<const double> diagonal, std::vector<double>& radiosity,
+             Convergence& convergence) {
   const auto bands = std::size_t(system.bands);
   const Eigen::ArrayXd largest_emission =
       asArray(system.emission, system.bands).colwise().maxCoeff();
   double largest_change = 0;
-  system.matrix.sweep(radiosity, system.bands, [&](std::size_t i, const double* gathered) {
+  const auto update = [&](std::size_t i, const double* gathered) {
+    convergence.countRows(1);
     for (std::size_t b = 0; b < bands; ++b) {
       const std::size_t k = i * bands + b;
       const double rho = system.reflectance[k];
@@ -28,7 +29,8 @@ double sweep(const System& system, std::span<const double> diagonal,
       largest_change = std::max(largest_change, change);
       radiosity[k] = updated;
     }
-  });
+  };
+  system.matrix.sweep(radiosity, system.bands, update, system.reflecting);
   return largest_change;
 }
 
@@ -42,11 +44,11 @@ Fields gaussSeidel(const System& system, Convergence& convergence) {
   std::vector<double> diagonal(system.matrix.size());
   for (std::size_t i = 0; i < diagonal.size(); ++i) diagonal[i] = system.matrix.at(i, i);
   for (;;) {
-    double residual = sweep(system, diagonal, fields.radiosity);
+    double residual = sweep(system, diagonal, fields.radiosity, convergence);
     const bool may_end = residual <= convergence.tolerance() || convergence.lastSweep() ||
                          Convergence::outOfBounds(residual);
     if (may_end) {
-      system.matrix.product(fields.radiosity, system.bands, fields.irradiance);
+      system.matrix.product(fields.radiosity, system.bands, fields.irradiance, system.reflecting);
       residual = relativeResidual(system, fields.radiosity, fields.irradiance);
     }
     convergence.record(residual);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace radiosity {
 
@@ -14,6 +15,27 @@ constexpr double kProgressSteps = 100;
 constexpr double kDivergedResidual = 1e6;
 
 }  // namespace
+
+System::System(const ExchangeMatrix& f, int count, std::vector<double> rho, std::vector<double> e)
+    : matrix(f), bands(count), reflectance(std::move(rho)), emission(std::move(e)) {
+  const auto width = std::size_t(bands);
+  if (width == 0) return;
+  reflecting.resize(matrix.size());
+  for (std::size_t i = 0; i < matrix.size(); ++i) {
+    const double* own = reflectance.data() + i * width;
+    const bool reflects = std::any_of(own, own + width, [](double r) { return r > 0; });
+    reflecting[i] = reflects ? 1 : 0;
+    black += reflects ? 0 : 1;
+  }
+  if (black == 0) reflecting.clear();
+}
+
+void blackIrradiance(const System& system, Fields& fields) {
+  if (system.black == 0) return;
+  std::vector<std::uint8_t> wanted = system.reflecting;
+  for (std::uint8_t& flag : wanted) flag = flag == 0 ? 1 : 0;
+  system.matrix.product(fields.radiosity, system.bands, fields.irradiance, wanted);
+}
 
 double relativeResidual(const System& system, const std::vector<double>& radiosity,
                         const std::vector<double>& irradiance) {

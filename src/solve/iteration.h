@@ -12,10 +12,16 @@ namespace radiosity {
 
 /// B = E + rho F B for some bands at once. Only bands that carry light: max E > 0 in each.
 struct System {
+  System(const ExchangeMatrix& f, int count, std::vector<double> rho, std::vector<double> e);
+
   const ExchangeMatrix& matrix;
   int bands = 0;
   std::vector<double> reflectance;  ///< N * bands, row-major, 0 to 1
   std::vector<double> emission;     ///< N * bands, W/m^2
+  /// N flags: patches that reflect in some band. The others are black, B = E: their rows of the
+  /// matrix are not needed to find B. Empty where every patch reflects.
+  std::vector<std::uint8_t> reflecting;
+  std::size_t black = 0;  ///< how many do not
 };
 
 using BandArray = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -53,6 +59,9 @@ class Convergence {
   bool lastSweep() const { return sweeps() + 1 >= max_sweeps_; }
   bool finished() const { return converged() || diverged() || sweeps() >= max_sweeps_; }
   int sweeps() const { return int(history_.size()); }
+  /// Rows of the matrix that were multiplied in a sweep.
+  void countRows(std::size_t rows) { rows_ += rows; }
+  std::size_t rows() const { return rows_; }
   const std::vector<double>& history() const { return history_; }
 
  private:
@@ -60,10 +69,12 @@ class Convergence {
   int max_sweeps_;
   Progress& progress_;
   std::size_t reported_ = 0;
+  std::size_t rows_ = 0;
   std::vector<double> history_;
 };
 
-/// B and what falls on each patch, H = F B; both N * bands, row-major.
+/// B and what falls on each patch, H = F B; both N * bands, row-major. The solvers leave H of black
+/// patches as it is: B does not depend on it, see blackIrradiance().
 struct Fields {
   std::vector<double> radiosity;
   std::vector<double> irradiance;
@@ -72,5 +83,8 @@ struct Fields {
 /// Runs until `convergence` is finished; its last residual is the true one of the fields returned.
 Fields jacobi(const System& system, Convergence& convergence);
 Fields gaussSeidel(const System& system, Convergence& convergence);
+
+/// H of the patches whose rows the solvers passed over.
+void blackIrradiance(const System& system, Fields& fields);
 
 }  // namespace radiosity

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <set>
@@ -77,37 +78,69 @@ void checkMaterials(std::span<const double> reflectance, std::span<const double>
   }
 }
 
-/// The bands in which some patch emits. The others have B = 0 and need no work.
-std::vector<std::size_t> litBands(std::span<const double> emission, int bands) {
-  const auto width = std::size_t(bands);
-  std::vector<std::size_t> lit;
-  for (std::size_t b = 0; b < width; ++b) {
-    bool emits = false;
-    for (std::size_t k = b; k < emission.size(); k += width) emits = emits || emission[k] > 0;
-    if (emits) lit.push_back(b);
+/// Which bands are solved, and where each band's values come from.
+class BandPlan {
+ public:
+  BandPlan(std::span<const double> reflectance, std::span<const double> emission, int bands)
+      : bands_(std::size_t(bands)) {
+    for (std::size_t b = 0; b < bands_; ++b) {
+      const auto same = std::find_if(solved_.begin(), solved_.end(), [&](std::size_t earlier) {
+        return equal(reflectance, b, earlier) && equal(emission, b, earlier);
+      });
+      if (!emits(emission, b)) {
+        source_.push_back(kDark);
+        continue;
+      }
+      source_.push_back(std::size_t(same - solved_.begin()));
+      if (same == solved_.end()) solved_.push_back(b);
+    }
   }
-  return lit;
-}
+  std::span<const std::size_t> solved() const { return solved_; }
+  int dark() const { return int(std::count(source_.begin(), source_.end(), kDark)); }
+  int repeated() const { return int(bands_) - dark() - int(solved_.size()); }
 
-std::vector<double> pickBands(std::span<const double> values, int bands,
-                              std::span<const std::size_t> picked) {
-  std::vector<double> out;
-  out.reserve(values.size() / std::size_t(bands) * picked.size());
-  for (std::size_t row = 0; row < values.size(); row += std::size_t(bands)) {
-    for (const std::size_t b : picked) out.push_back(values[row + b]);
+  /// The bands to solve of N * bands values.
+  std::vector<double> pick(std::span<const double> values) const {
+    std::vector<double> out;
+    out.reserve(values.size() / bands_ * solved_.size());
+    for (std::size_t row = 0; row < values.size(); row += bands_) {
+      for (const std::size_t b : solved_) out.push_back(values[row + b]);
+    }
+    return out;
   }
-  return out;
-}
+  /// All bands from those solved; dark ones are 0.
+  std::vector<double> spread(std::span<const double> values) const {
+    const std::size_t width = solved_.size();
+    std::vector<double> out;
+    out.reserve(values.size() / width * bands_);
+    for (std::size_t row = 0; row < values.size(); row += width) {
+      for (const std::size_t from : source_) {
+        out.push_back(from == kDark ? 0.0 : values[row + from]);
+      }
+    }
+    return out;
+  }
 
-/// The inverse of pickBands(): bands that were not picked are 0.
-std::vector<double> spreadBands(std::span<const double> values, int bands,
-                                std::span<const std::size_t> picked) {
-  std::vector<double> out(values.size() / picked.size() * std::size_t(bands), 0.0);
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    out[k / picked.size() * std::size_t(bands) + picked[k % picked.size()]] = values[k];
+ private:
+  static constexpr std::size_t kDark = std::size_t(-1);
+
+  bool emits(std::span<const double> emission, std::size_t b) const {
+    bool any = false;
+    for (std::size_t k = b; k < emission.size(); k += bands_) any = any || emission[k] > 0;
+    return any;
   }
-  return out;
-}
+  bool equal(std::span<const double> values, std::size_t a, std::size_t b) const {
+    bool all = true;
+    for (std::size_t row = 0; row < values.size(); row += bands_) {
+      all = all && values[row + a] == values[row + b];
+    }
+    return all;
+  }
+
+  std::size_t bands_;
+  std::vector<std::size_t> solved_;  // bands
+  std::vector<std::size_t> source_;  // by band: an index into solved_, or kDark
+};
 
 std::string convergenceMessage(const SolveSummary& summary, const SolveOptions& options,
                                bool diverged) {
@@ -142,6 +175,7 @@ Fields iterate(const System& system, const SolveOptions& options, Progress& prog
     diverged = convergence.diverged();
     summary.status = convergence.converged() ? SolveStatus::converged : SolveStatus::no_convergence;
     summary.iterations = convergence.sweeps();
+    summary.rows = convergence.rows();
     summary.residual_history = convergence.history();
   }
   summary.residual = summary.residual_history.back();
@@ -149,6 +183,7 @@ Fields iterate(const System& system, const SolveOptions& options, Progress& prog
     summary.error_bound = certifiedErrorBound(system, fields, options.max_iterations, progress);
   }
   summary.message = convergenceMessage(summary, options, diverged);
+  blackIrradiance(system, fields);
   return fields;
 }
 
@@ -176,10 +211,12 @@ Solution solve(const FormFactors& factors, std::span<const double> reflectance,
   Solution solution;
   solution.bands = bands;
   SolveSummary& summary = solution.summary;
-  const std::vector<std::size_t> lit = litBands(emission, bands);
-  const System system{factors.matrix, int(lit.size()), pickBands(reflectance, bands, lit),
-                      pickBands(emission, bands, lit)};
-  if (lit.empty()) {
+  const BandPlan plan(reflectance, emission, bands);
+  const System system(factors.matrix, int(plan.solved().size()), plan.pick(reflectance),
+                      plan.pick(emission));
+  summary.skipped = {
+      .black_patches = system.black, .dark_bands = plan.dark(), .equal_bands = plan.repeated()};
+  if (plan.solved().empty()) {
     solution.radiosity.assign(emission.size(), 0.0);
     solution.irradiance.assign(emission.size(), 0.0);
     summary.status = SolveStatus::no_light;
@@ -191,12 +228,12 @@ Solution solve(const FormFactors& factors, std::span<const double> reflectance,
         "singular: in band {} a closed room has reflectance 1 everywhere, so its light is never "
         "absorbed and no solution exists; not usable; give one of its surfaces a reflectance below "
         "1: {}",
-        lit[std::size_t(room.band)], names.list(room.patches));
+        plan.solved()[std::size_t(room.band)], names.list(room.patches));
     return solution;
   } else {
     const Fields fields = iterate(system, options, progress, summary);
-    solution.radiosity = spreadBands(fields.radiosity, bands, lit);
-    solution.irradiance = spreadBands(fields.irradiance, bands, lit);
+    solution.radiosity = plan.spread(fields.radiosity);
+    solution.irradiance = plan.spread(fields.irradiance);
   }
   summary.energy =
       energyAccount(factors, reflectance, emission, solution.radiosity, solution.irradiance, bands);
