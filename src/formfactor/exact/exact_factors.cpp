@@ -134,9 +134,16 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   result.backs.assign(n, 0.0);
   result.sky.assign(n, 0.0);
   std::vector<std::vector<SeenBack>> seen_backs(n);
-  const RowContext context{scene.elements, scene.order,  scene.visibility,
-                           unoccluded,     partial,      recheckEvery(estimate.partial_pairs),
-                           result.matrix,  result.backs, seen_backs};
+  const RowContext context{scene.elements,
+                           scene.order,
+                           scene.chunks,
+                           scene.visibility,
+                           unoccluded,
+                           partial,
+                           recheckEvery(estimate.partial_pairs),
+                           result.matrix,
+                           result.backs,
+                           seen_backs};
   const RowSums sums = fillRows(context, scene.tasks, progress);
   reportCounts(scene, sums, report.exact);
   setErrors(scene.order, sums.error, closed_form, result);

@@ -53,7 +53,8 @@ ExactScene::ExactScene(const PatchMesh& mesh)
       occluders(mesh, elements),
       visibility(elements, occluders),
       order(mesh, elements),
-      tasks(elements) {}
+      tasks(elements),
+      chunks(elements) {}
 
 ExactEstimate estimateExact(const ExactScene& scene, const FormFactorOptions& options) {
   const Sample sample = sampleTasks(scene);
@@ -77,7 +78,7 @@ ExactEstimate estimateExact(const ExactScene& scene, const FormFactorOptions& op
       ExchangeMatrix::estimateSymmetricBytes(n, estimate.entries_per_row,
                                              options.storedPrecision()) +
       n * kAccounts + scene.elements.size() * kElementBytes +
-      threads * (RowAssembly::scratchBytes(scene.elements) + row_sums + 2 * sample.task_bytes);
+      threads * (scene.tasks.panelBytes(scene.elements) + row_sums + 2 * sample.task_bytes);
 
   // Measured on one core of a 2.7 GHz Xeon: a pair in closed form or by quadrature, and a partial
   // pair with what each of its occluders adds.

@@ -17,6 +17,7 @@ struct ExactScene {
   Visibility visibility;
   PatchOrder order;
   RowTasks tasks;
+  ColumnChunks chunks;
 };
 
 /// From the pairs of a sample of tasks.

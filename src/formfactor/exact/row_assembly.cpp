@@ -7,14 +7,6 @@
 namespace radiosity {
 namespace {
 
-/// Rows filled at once take about this much: half of a usual second-level cache, the rest is for
-/// what the kernels read.
-constexpr std::size_t kTileBytes = std::size_t(1) << 20;
-
-std::size_t tileRows(const ElementSet& elements) {
-  return std::max<std::size_t>(1, kTileBytes / (sizeof(double) * (elements.size() + 1)));
-}
-
 /// Adds the time from its making to its end to a sum.
 class Stopwatch {
  public:
@@ -72,73 +64,92 @@ RowSums& RowSums::operator+=(const RowSums& other) {
   return *this;
 }
 
-std::size_t RowAssembly::scratchBytes(const ElementSet& elements) {
-  return sizeof(double) * (elements.size() + 1) * (tileRows(elements) + 1);
-}
-
 void RowAssembly::run(std::span<const ElementRange> ranges, RowSums& sums) {
   const ElementRange rows{ranges.front().first, ranges.back().end};
-  task_first_ = rows.first;
+  first_ = rows.first;
+  width_ = context_.elements.size() - first_;
+  if (panel_.size() < rows.size() * width_) panel_.resize(rows.size() * width_);
+  marked_.assign(rows.size() * width_, 0);
+  classify(ranges, sums);
+  evaluatePartial(sums);
+  storePatches(rows, sums);
+}
+
+void RowAssembly::classify(std::span<const ElementRange> ranges, RowSums& sums) {
   pairs_.clear();
-  {
-    const Stopwatch watch(sums.seconds_visibility);
-    for (const ElementRange& range : ranges) {
+  for (const ElementRange& range : ranges) {
+    const std::size_t first_block = pairs_.blocks.size();
+    const std::size_t first_pair = pairs_.partial_pairs.size();
+    {
+      const Stopwatch watch(sums.seconds_visibility);
       context_.visibility.classify(range, pairs_, sums.visibility);
     }
+    const Stopwatch watch(sums.seconds_unoccluded);
+    evaluateUnoccluded(range, first_block, first_pair, sums);
   }
-  sortPartialByRow(rows);
-  evaluatePartial(sums);
-  const std::size_t end_rank = context_.order.rank[rows.end - 1] + 1;
-  std::size_t rank = context_.order.rank[rows.first];
-  while (rank < end_rank) rank = fillTile(rank, end_rank, sums);
 }
 
-void RowAssembly::sortPartialByRow(ElementRange rows) {
-  std::vector<PartialPair>& pairs = pairs_.partial_pairs;
-  row_end_.assign(rows.size() + 1, 0);
-  for (const PartialPair& pair : pairs) ++row_end_[pair.row - rows.first + 1];
-  std::partial_sum(row_end_.begin(), row_end_.end(), row_end_.begin());
-  sorted_.resize(pairs.size());
-  for (const PartialPair& pair : pairs) sorted_[row_end_[pair.row - rows.first]++] = pair;
-  row_end_.pop_back();
-  std::size_t begin = 0;
-  const auto by_column = [](const PartialPair& a, const PartialPair& b) {
-    return a.column < b.column;
-  };
-  for (const std::size_t end : row_end_) {
-    std::sort(sorted_.begin() + std::ptrdiff_t(begin), sorted_.begin() + std::ptrdiff_t(end),
-              by_column);
-    begin = end;
-  }
-  pairs.swap(sorted_);
-}
-
-/// What each pair would exchange with nothing in between: neighbours in a row at once.
-void RowAssembly::evaluateUnoccluded(RowSums& sums) {
-  const Stopwatch watch(sums.seconds_unoccluded);
-  std::vector<PartialPair>& pairs = pairs_.partial_pairs;
-  for (std::size_t begin = 0; begin < pairs.size();) {
-    std::size_t end = begin + 1;
-    const Index row = pairs[begin].row;
-    const Index facet = context_.elements.facet[pairs[begin].column];
-    while (end < pairs.size() && pairs[end].row == row &&
-           pairs[end].column == pairs[end - 1].column + 1 &&
-           context_.elements.facet[pairs[end].column] == facet) {
-      ++end;
+void RowAssembly::evaluateUnoccluded(ElementRange range, std::size_t first_block,
+                                     std::size_t first_pair, RowSums& sums) {
+  const ColumnChunks& chunks = context_.chunks;
+  for (std::size_t b = first_block; b < pairs_.blocks.size(); ++b) {
+    const PairBlock& block = pairs_.blocks[b];
+    const auto begin = asked_.begin() + chunks.of_element[block.columns.first];
+    const auto end = asked_.begin() + chunks.of_element[block.columns.end - 1] + 1;
+    std::fill(begin, end, std::uint8_t(1));
+    for (Index row = block.rows.first; row < block.rows.end; ++row) {
+      std::fill_n(marked_.begin() + std::ptrdiff_t(place(row, block.columns.first)),
+                  block.columns.size(), std::uint8_t(1));
     }
-    unoccluded_.resize(end - begin);
-    context_.unoccluded.block({row, row + 1}, {pairs[begin].column, pairs[end - 1].column + 1},
-                              unoccluded_.data(), unoccluded_.size(), sums.unoccluded);
-    for (std::size_t k = begin; k < end; ++k) pairs[k].unoccluded = unoccluded_[k - begin];
-    begin = end;
   }
+  for (std::size_t k = first_pair; k < pairs_.partial_pairs.size(); ++k) {
+    asked_[chunks.of_element[pairs_.partial_pairs[k].column]] = 1;
+  }
+  const std::vector<ElementRange>& ranges = chunks.ranges;
+  for (std::size_t c = chunks.of_element[range.end - 1]; c < ranges.size();) {
+    std::size_t end = c;
+    // Neighbours of one facet at once.
+    while (end < ranges.size() && asked_[end] != 0 &&
+           context_.elements.facet[ranges[end].first] == context_.elements.facet[ranges[c].first]) {
+      asked_[end++] = 0;
+    }
+    if (end > c) {
+      const ElementRange columns{ranges[c].first, ranges[end - 1].end};
+      context_.unoccluded.block(range, columns, &panel_[place(range.first, columns.first)], width_,
+                                sums.unoccluded);
+    }
+    c = std::max(end, c + 1);
+  }
+  dropPairsWithoutExchange(first_pair, sums);
+}
+
+/// Pairs that turn out to be below each other's horizon never reach the clipping.
+void RowAssembly::dropPairsWithoutExchange(std::size_t first_pair, RowSums& sums) {
+  std::vector<PartialPair>& pairs = pairs_.partial_pairs;
+  std::size_t kept = first_pair;
+  for (std::size_t k = first_pair; k < pairs.size(); ++k) {
+    pairs[k].unoccluded = panel_[place(pairs[k].row, pairs[k].column)];
+    if (pairs[k].unoccluded > 0) pairs[kept++] = pairs[k];
+  }
+  sums.visibility.partial -= pairs.size() - kept;
+  sums.visibility.no_exchange += pairs.size() - kept;
+  pairs.resize(kept);
 }
 
 void RowAssembly::evaluatePartial(RowSums& sums) {
-  evaluateUnoccluded(sums);
   const Stopwatch watch(sums.seconds_partial);
-  partial_.resize(pairs_.partial_pairs.size());
-  context_.partial.evaluate(pairs_.partial_pairs, pairs_.occluder_list, partial_, sums.partial);
+  const PatchOrder& order = context_.order;
+  const std::vector<PartialPair>& pairs = pairs_.partial_pairs;
+  partial_.resize(pairs.size());
+  context_.partial.evaluate(pairs, pairs_.occluder_list, partial_, sums.partial);
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const auto& [row, column, begin, end, unoccluded] = pairs[k];
+    panel_[place(row, column)] = partial_[k].exchange;
+    marked_[place(row, column)] = 1;
+    if (column < context_.elements.patch_elements) {
+      sums.error.addPartial(order.rank[row], order.rank[column], partial_[k].error);
+    }
+  }
   recheck(sums);
 }
 
@@ -156,78 +167,37 @@ void RowAssembly::recheck(RowSums& sums) const {
   }
 }
 
-std::size_t RowAssembly::fillTile(std::size_t first_rank, std::size_t end_rank, RowSums& sums) {
-  const PatchOrder& order = context_.order;
-  const std::size_t most = tileRows(context_.elements);
-  std::size_t last_rank = first_rank + 1;
-  while (last_rank < end_rank &&
-         order.first_element[last_rank + 1] - order.first_element[first_rank] <= most) {
-    ++last_rank;
-  }
-  const ElementRange rows{order.first_element[first_rank], order.first_element[last_rank]};
-  tile_first_ = rows.first;
-  width_ = context_.elements.size() - tile_first_;
-  {
-    const Stopwatch watch(sums.seconds_assembly);
-    tile_.assign(rows.size() * width_, 0.0);
-  }
-  fillBlocks(rows, sums);
+void RowAssembly::storePatches(ElementRange rows, RowSums& sums) {
   const Stopwatch watch(sums.seconds_assembly);
-  scatterPartial(rows, sums);
-  for (std::size_t rank = first_rank; rank < last_rank; ++rank) {
-    storePatch(rank, {order.first_element[rank], order.first_element[rank + 1]}, rows.first, sums);
-  }
-  return last_rank;
-}
-
-void RowAssembly::fillBlocks(ElementRange rows, RowSums& sums) {
-  const Stopwatch watch(sums.seconds_unoccluded);
-  for (const PairBlock& block : pairs_.blocks) {
-    const ElementRange part{std::max(rows.first, block.rows.first),
-                            std::min(rows.end, block.rows.end)};
-    if (part.first >= part.end) continue;
-    double* out = tileRow(part.first, rows.first) + (block.columns.first - tile_first_);
-    context_.unoccluded.block(part, block.columns, out, width_, sums.unoccluded);
-  }
-}
-
-void RowAssembly::scatterPartial(ElementRange rows, RowSums& sums) {
   const PatchOrder& order = context_.order;
-  for (Index row = rows.first; row < rows.end; ++row) {
-    const Index local = row - task_first_;
-    double* out = tileRow(row, rows.first);
-    const std::size_t begin = local == 0 ? 0 : row_end_[local - 1];
-    for (std::size_t k = begin; k < row_end_[local]; ++k) {
-      const Index column = pairs_.partial_pairs[k].column;
-      const PartialExchange& value = partial_[k];
-      out[column - tile_first_] = value.exchange;
-      if (column < context_.elements.patch_elements) {
-        sums.error.addPartial(order.rank[row], order.rank[column], value.error);
-      }
-    }
+  for (std::size_t k = 0; k < rows.size() * width_; ++k) panel_[k] = marked_[k] ? panel_[k] : 0.0;
+  const std::size_t end = order.rank[rows.end - 1] + 1;
+  for (std::size_t rank = order.rank[rows.first]; rank < end; ++rank) {
+    const std::span<double> exchange =
+        patchRow(rank, {order.first_element[rank], order.first_element[rank + 1]});
+    sums.error.addAndScale(rank, exchange, 1 / order.area[rank]);
+    context_.matrix.setUpperRow(rank, exchange);
   }
 }
 
-void RowAssembly::storePatch(std::size_t rank, ElementRange rows, Index first_row, RowSums& sums) {
+std::span<double> RowAssembly::patchRow(std::size_t rank, ElementRange rows) {
   const PatchOrder& order = context_.order;
-  const std::size_t patch_elements = context_.elements.patch_elements;
-  std::span<double> exchange;
+  const Index patch_elements = Index(context_.elements.patch_elements);
   for (Index row = rows.first; row < rows.end; ++row) {
-    double* values = tileRow(row, first_row);
-    storeBacks(rank, {values + (patch_elements - tile_first_), values + width_});
-    const bool one_to_one = order.ranked == patch_elements;
-    if (one_to_one) {
-      exchange = {values + (row - tile_first_), values + (patch_elements - tile_first_)};
-      break;
-    }
-    if (row == rows.first) folded_.assign(order.ranked - rank, 0.0);
-    for (std::size_t e = rows.end; e < patch_elements; ++e) {
-      folded_[order.rank[e] - rank] += values[e - tile_first_];
-    }
-    exchange = folded_;
+    const std::size_t bare = context_.elements.size() - patch_elements;
+    storeBacks(rank, {panel_.data() + (place(row, first_) + (patch_elements - first_)), bare});
   }
-  sums.error.addAndScale(rank, exchange, 1 / order.area[rank]);
-  context_.matrix.setUpperRow(rank, exchange);
+  if (order.ranked == patch_elements) {  // every patch is one element
+    return {&panel_[place(rows.first, rows.first)], patch_elements - rows.first};
+  }
+  folded_.assign(order.ranked - rank, 0.0);
+  for (Index row = rows.first; row < rows.end; ++row) {
+    const double* values = panel_.data() + place(row, first_);
+    for (Index e = rows.end; e < patch_elements; ++e) {
+      folded_[order.rank[e] - rank] += values[e - first_];
+    }
+  }
+  return folded_;
 }
 
 void RowAssembly::storeBacks(std::size_t rank, std::span<const double> bare) {

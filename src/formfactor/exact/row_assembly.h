@@ -1,6 +1,7 @@
 // From classified pairs of elements to stored rows.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "formfactor/exact/error_figure.h"
 #include "formfactor/exact/partial.h"
 #include "formfactor/exact/recorded_pairs.h"
+#include "formfactor/exact/row_tasks.h"
 #include "formfactor/exact/unoccluded.h"
 #include "formfactor/exact/visibility.h"
 #include "formfactor/row_accounts.h"
@@ -44,6 +46,7 @@ struct RowSums {
 struct RowContext {
   const ElementSet& elements;
   const PatchOrder& order;
+  const ColumnChunks& chunks;
   const Visibility& visibility;
   const UnoccludedKernel& unoccluded;
   const PartialKernel& partial;
@@ -55,44 +58,42 @@ struct RowContext {
 
 /// Makes rows, one task after the other. Holds scratch memory: one a thread.
 ///
-/// All pairs of a task are classified first, then those past occluders are evaluated as one batch,
-/// then rows are filled a few at a time: as many as stay in the second-level cache, dense, one
-/// place for every later element, whatever wrote into it.
+/// A task's rows are dense while they are made: a place for every later element, and a mark where
+/// there is an exchange. Closed forms are asked for in whole runs of columns, marked or not: around
+/// a shadow the pairs that need them lie so scattered that picking them out costs more. Pairs past
+/// occluders get their unoccluded value from there, are evaluated as one batch, and put back.
 class RowAssembly {
  public:
-  explicit RowAssembly(const RowContext& context) : context_(context) {}
+  explicit RowAssembly(const RowContext& context)
+      : context_(context), asked_(context.chunks.ranges.size(), 0) {}
   /// `ranges`: one task of RowTasks. Stores its patches' rows and backs, adds to `sums`.
   void run(std::span<const ElementRange> ranges, RowSums& sums);
 
-  /// Bytes one thread holds beside the clipped pairs of a task.
-  static std::size_t scratchBytes(const ElementSet& elements);
-
  private:
-  void sortPartialByRow(ElementRange rows);
-  void evaluateUnoccluded(RowSums& sums);
+  void classify(std::span<const ElementRange> ranges, RowSums& sums);
+  /// Closed forms of rows `range`: of the blocks and pairs recorded from the given ones on.
+  void evaluateUnoccluded(ElementRange range, std::size_t first_block, std::size_t first_pair,
+                          RowSums& sums);
+  void dropPairsWithoutExchange(std::size_t first_pair, RowSums& sums);
   void evaluatePartial(RowSums& sums);
   void recheck(RowSums& sums) const;
-  /// Rows of whole patches, from `first_rank`; returns the rank after them.
-  std::size_t fillTile(std::size_t first_rank, std::size_t end_rank, RowSums& sums);
-  void fillBlocks(ElementRange rows, RowSums& sums);
-  void scatterPartial(ElementRange rows, RowSums& sums);
-  void storePatch(std::size_t rank, ElementRange rows, Index first_row, RowSums& sums);
+  void storePatches(ElementRange rows, RowSums& sums);
+  /// A patch's exchange with itself and all later ones, and with bare backs.
+  std::span<double> patchRow(std::size_t rank, ElementRange rows);
   void storeBacks(std::size_t rank, std::span<const double> bare);
-  double* tileRow(Index row, Index first_row) {
-    return tile_.data() + std::size_t(row - first_row) * width_;
+  std::size_t place(Index row, Index column) const {
+    return std::size_t(row - first_) * width_ + (column - first_);
   }
 
   const RowContext& context_;
   RecordedPairs pairs_;
   std::vector<PartialExchange> partial_;
-  std::vector<PartialPair> sorted_;
-  std::vector<double> unoccluded_;
-  std::vector<std::size_t> row_end_;  ///< of the task's rows, into pairs_.partial_pairs
-  Index task_first_ = 0;
-  std::vector<double> tile_;    ///< rows x width_: exchange with elements from tile_first_ on
-  std::vector<double> folded_;  ///< exchange with patches, where patches have several elements
-  std::size_t width_ = 0;
-  Index tile_first_ = 0;
+  Index first_ = 0;                   ///< element of the task
+  std::size_t width_ = 0;             ///< elements from first_ on
+  std::vector<double> panel_;         ///< rows x width_
+  std::vector<std::uint8_t> marked_;  ///< rows x width_: 0 where panel_ means nothing
+  std::vector<std::uint8_t> asked_;   ///< by chunk of columns
+  std::vector<double> folded_;        ///< a row by patch, where patches have several elements
 };
 
 }  // namespace radiosity

@@ -5,10 +5,17 @@
 namespace radiosity {
 namespace {
 
-/// Rows of a task: many enough that what a cluster is asked once serves many rows, few enough that
-/// even a small scene gives every thread several.
-std::size_t rowsPerTask(std::size_t elements) {
-  return std::clamp<std::size_t>(elements / 48, 8, 64);
+/// A task's rows, dense, take about this much: they stay in a usual second-level cache beside what
+/// the kernels read.
+constexpr std::size_t kPanelBytes = std::size_t(3) << 19;
+/// Long enough to fill vectors, short enough that little is computed for nothing.
+constexpr Index kChunk = 32;
+
+/// Many enough that what a cluster is asked once serves many rows, few enough that even a small
+/// scene gives every thread several tasks.
+std::size_t rowsPerTask(const ElementSet& elements) {
+  const std::size_t cached = kPanelBytes / (sizeof(double) * (elements.size() + 1));
+  return std::clamp<std::size_t>(std::min(elements.patch_elements / 48, cached), 8, 64);
 }
 
 void appendRanges(const ElementSet& elements, Index node, std::size_t most,
@@ -26,7 +33,7 @@ void appendRanges(const ElementSet& elements, Index node, std::size_t most,
 }  // namespace
 
 RowTasks::RowTasks(const ElementSet& elements) {
-  const std::size_t most = rowsPerTask(elements.patch_elements);
+  const std::size_t most = rowsPerTask(elements);
   for (const Facet& facet : elements.facets) {
     if (!facet.bare) appendRanges(elements, facet.root, most, ranges_);
   }
@@ -42,6 +49,25 @@ RowTasks::RowTasks(const ElementSet& elements) {
     if (full && !cuts_patch) {
       offset_.push_back(r + 1);
       rows = 0;
+    }
+  }
+}
+
+std::size_t RowTasks::panelBytes(const ElementSet& elements) const {
+  std::size_t rows = 0;
+  for (std::size_t t = 0; t < size(); ++t) {
+    rows = std::max<std::size_t>(rows, (*this)[t].back().end - (*this)[t].front().first);
+  }
+  return rows * elements.size() * (sizeof(double) + 1);
+}
+
+ColumnChunks::ColumnChunks(const ElementSet& elements) : of_element(elements.size()) {
+  for (const Facet& facet : elements.facets) {
+    for (Index e = facet.elements.first; e < facet.elements.end; ++e) {
+      if ((e - facet.elements.first) % kChunk == 0) {
+        ranges.push_back({e, std::min(e + kChunk, facet.elements.end)});
+      }
+      of_element[e] = Index(ranges.size() - 1);
     }
   }
 }
