@@ -79,7 +79,7 @@ struct ExactReport {
   /// by it where it is above 1.
   double recheck_ratio = 0;
 
-  /// Thread-seconds by stage; they add up to a little less than seconds x threads.
+  /// Processor seconds by stage, summed over threads; preparing and finishing by the clock.
   double seconds_prepare = 0;     ///< elements, occluders, estimates
   double seconds_visibility = 0;  ///< classifying pairs
   double seconds_unoccluded = 0;  ///< closed forms and quadrature

@@ -5,17 +5,21 @@
 namespace radiosity {
 namespace {
 
-/// A task's rows, dense, take about this much: they stay in a usual second-level cache beside what
-/// the kernels read.
-constexpr std::size_t kPanelBytes = std::size_t(3) << 19;
+/// A task's rows, dense, take no more than this ...
+constexpr std::size_t kPanelBytes = std::size_t(1) << 24;
+/// ... and are no more than this: what a cluster is asked once serves all its rows, and clipping
+/// wants pairs by the thousand. Fewer would stay in the second-level cache, but that costs less.
+constexpr std::size_t kMostRows = 64;
 /// Long enough to fill vectors, short enough that little is computed for nothing.
 constexpr Index kChunk = 32;
 
-/// Many enough that what a cluster is asked once serves many rows, few enough that even a small
-/// scene gives every thread several tasks.
+/// Even a small scene is to give every thread several tasks.
+constexpr std::size_t kLeastTasks = 48;
+
 std::size_t rowsPerTask(const ElementSet& elements) {
-  const std::size_t cached = kPanelBytes / (sizeof(double) * (elements.size() + 1));
-  return std::clamp<std::size_t>(std::min(elements.patch_elements / 48, cached), 8, 64);
+  const std::size_t held = kPanelBytes / (sizeof(double) * (elements.size() + 1));
+  return std::clamp<std::size_t>(std::min(elements.patch_elements / kLeastTasks, held), 8,
+                                 kMostRows);
 }
 
 void appendRanges(const ElementSet& elements, Index node, std::size_t most,
