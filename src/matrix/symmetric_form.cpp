@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -58,11 +60,16 @@ void ExchangeMatrix::checkFactors(std::size_t k, std::span<const double> factors
     throw InputError(fmt::format("exchange matrix: {} is no form factor from patch {} to patch {}",
                                  factors[m], order_[k], order_[k + m]));
   };
-  const auto good = [](double value) { return value >= 0 && value <= kLargest; };
-  bool all_good = true;  // one bit and no exit: this loop runs over every entry there is
-  for (const double value : factors) all_good = all_good & good(value);
-  for (std::size_t m = 0; !all_good && m < factors.size(); ++m) {
-    if (!good(factors[m])) refuse(m);
+  // The top bit of `bad` is set by a negative value and by one above the largest, infinity and NaN
+  // included: numbers of one sign are ordered as their bits are. No exit and no comparison: this
+  // loop runs over every entry there is, and so it is made of vectors.
+  std::uint64_t bad = 0;
+  for (const double value : factors) {
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    bad |= bits | (std::bit_cast<std::uint64_t>(kLargest) - bits);
+  }
+  for (std::size_t m = 0; (bad >> 63U) != 0 && m < factors.size(); ++m) {
+    if (!(factors[m] >= 0 && factors[m] <= kLargest)) refuse(m);
   }
   for (const Index later : without_area_) {
     if (later < k || later >= k + factors.size()) continue;

@@ -1,6 +1,7 @@
 #include "formfactor/exact/row_assembly.h"
 
 #include <algorithm>
+#include <cstring>
 #include <ctime>
 #include <numeric>
 
@@ -73,8 +74,9 @@ void RowAssembly::run(std::span<const ElementRange> ranges, RowSums& sums) {
   const ElementRange rows{ranges.front().first, ranges.back().end};
   first_ = rows.first;
   width_ = context_.elements.size() - first_;
-  if (panel_.size() < rows.size() * width_) panel_.resize(rows.size() * width_);
-  marked_.assign(rows.size() * width_, 0);
+  const std::size_t places = (rows.size() * width_ + kMarks - 1) / kMarks * kMarks;
+  if (panel_.size() < places) panel_.resize(places);
+  marked_.assign(places, 0);
   classify(ranges, sums);
   evaluatePartial(sums);
   storePatches(rows, sums);
@@ -175,13 +177,24 @@ void RowAssembly::recheck(RowSums& sums) const {
 void RowAssembly::storePatches(ElementRange rows, RowSums& sums) {
   const Stopwatch watch(sums.seconds_assembly);
   const PatchOrder& order = context_.order;
-  for (std::size_t k = 0; k < rows.size() * width_; ++k) panel_[k] = marked_[k] ? panel_[k] : 0.0;
+  clearUnmarked();
   const std::size_t end = order.rank[rows.end - 1] + 1;
   for (std::size_t rank = order.rank[rows.first]; rank < end; ++rank) {
     const std::span<double> exchange =
         patchRow(rank, {order.first_element[rank], order.first_element[rank + 1]});
     sums.error.addAndScale(rank, exchange, 1 / order.area[rank]);
     context_.matrix.setUpperRow(rank, exchange);
+  }
+}
+
+/// Eight marks at a time: where things are, they are mostly all marked or none.
+void RowAssembly::clearUnmarked() {
+  constexpr std::uint64_t kAllMarked = 0x0101010101010101ULL;
+  for (std::size_t k = 0; k < marked_.size(); k += kMarks) {
+    std::uint64_t marks = 0;
+    std::memcpy(&marks, &marked_[k], kMarks);
+    if (marks == kAllMarked) continue;
+    for (std::size_t m = k; m < k + kMarks; ++m) panel_[m] = marked_[m] != 0 ? panel_[m] : 0.0;
   }
 }
 

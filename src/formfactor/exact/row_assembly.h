@@ -70,6 +70,7 @@ class RowAssembly {
   void run(std::span<const ElementRange> ranges, RowSums& sums);
 
  private:
+  static constexpr std::size_t kMarks = 8;  ///< looked at together
   void classify(std::span<const ElementRange> ranges, RowSums& sums);
   /// Closed forms of rows `range`: of the blocks and pairs recorded from the given ones on.
   void evaluateUnoccluded(ElementRange range, std::size_t first_block, std::size_t first_pair,
@@ -78,6 +79,7 @@ class RowAssembly {
   void evaluatePartial(RowSums& sums);
   void recheck(RowSums& sums) const;
   void storePatches(ElementRange rows, RowSums& sums);
+  void clearUnmarked();
   /// A patch's exchange with itself and all later ones, and with bare backs.
   std::span<double> patchRow(std::size_t rank, ElementRange rows);
   void storeBacks(std::size_t rank, std::span<const double> bare);
@@ -90,8 +92,8 @@ class RowAssembly {
   std::vector<PartialExchange> partial_;
   Index first_ = 0;                   ///< element of the task
   std::size_t width_ = 0;             ///< elements from first_ on
-  std::vector<double> panel_;         ///< rows x width_
-  std::vector<std::uint8_t> marked_;  ///< rows x width_: 0 where panel_ means nothing
+  std::vector<double> panel_;         ///< rows x width_, and up to a multiple of kMarks
+  std::vector<std::uint8_t> marked_;  ///< the same places: 0 where panel_ means nothing
   std::vector<std::uint8_t> asked_;   ///< by chunk of columns
   std::vector<double> folded_;        ///< a row by patch, where patches have several elements
 };
