@@ -64,7 +64,7 @@ double farValue(const FarKernels& kernels, const ElementPair& pair, double toler
   std::vector<T> values(1 + kFarPadding);
   FarRow<T> row(row_shape, row_frame, column_frame, limits.of(row_shape));
   const auto near = functionOf<T>(kernels)(row, {&columns, 0, 1, heights.data(), values.data()},
-                                           limits.template product<T>());
+                                           limits.template rules<T>());
   EXPECT_EQ(near, values[0] == T(kNearPair) ? 1U : 0U);
   return values[0];
 }
@@ -152,7 +152,7 @@ std::vector<T> manyValues(const FarKernels& kernels, std::size_t first, std::siz
   FarRow<T> row(shape, row_frame, column_frame, limits.of(shape));
   std::vector<T> values(count + kFarPadding);
   near = functionOf<T>(kernels)(row, {&columns, first, count, heights.data(), values.data()},
-                                limits.template product<T>());
+                                limits.template rules<T>());
   values.resize(count);
   return values;
 }

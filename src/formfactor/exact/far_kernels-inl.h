@@ -1,8 +1,8 @@
 // The kernels of far_kernels.h for any vector: included by the scalar twin, and once for every
 // instruction set. Deliberately without #pragma once: each set has its own namespace.
 #include "formfactor/exact/far_kernels.h"
+#include "formfactor/exact/far_rules.h"
 #include "formfactor/exact/lanes.h"
-#include "formfactor/exact/quadrature.h"
 
 // NOLINTBEGIN(google-build-using-namespace)
 namespace RADIOSITY_FAR_NAMESPACE {
@@ -38,60 +38,58 @@ RADIOSITY_FAR_INLINE V sumOverColumn(D d, const T* at_u, const T* at_v, const T*
   return sum;
 }
 
-/// Mean of p q / s^2 over n x n points on both elements, times s^2 of the centroids, for one vector
-/// of columns. `du`, `dv`: from the row's centroid to the columns'; `inverse`: 1 / s.
+/// Mean of p q / s^2 over both elements by a rule, times s^2 of the centroids, for one vector of
+/// columns. `du`, `dv`: from the row's centroid to the columns'; `inverse`: 1 / s.
 template <class T, class D, class V>
-RADIOSITY_FAR_INLINE V productMean(D d, FarRow<T>& row, const FarBatch<T>& batch, std::size_t k,
-                                   int n, V du, V dv, V height, V inverse) {
+RADIOSITY_FAR_INLINE V ruleMean(D d, FarRow<T>& row, const FarBatch<T>& batch, std::size_t k,
+                                const FarRule& rule, V du, V dv, V height, V inverse) {
   const auto load = [&](FarField field) RADIOSITY_FAR_ATTR {
     return LoadU(d, batch.columns->field(field) + batch.first + k);
   };
-  constexpr std::size_t kMostPoints = std::size_t(kMostProduct) * kMostProduct;
-  alignas(64) T at_u[kMostPoints * kMostLanes<T>];
-  alignas(64) T at_v[kMostPoints * kMostLanes<T>];
-  alignas(64) T weight[kMostPoints * kMostLanes<T>];
+  constexpr std::size_t kMost = FarRule::kMostPoints * kMostLanes<T>;
+  alignas(64) T at_u[kMost];
+  alignas(64) T at_v[kMost];
+  alignas(64) T weight[3][kMost];
   const std::size_t lanes = Lanes(d);
   const auto slope_u = Set(d, row.slope_u);
   const auto slope_v = Set(d, row.slope_v);
   const auto zero = Zero(d);
+  const auto one = Set(d, T(1));
+  const auto mean_u = Add(du, load(kMeanU));
+  const auto mean_v = Add(dv, load(kMeanV));
+  const auto mean_height = Add(height, Add(Mul(slope_u, load(kMeanU)), Mul(slope_v, load(kMeanV))));
   // Lengths in units of the distance: products of squares stay within single precision's range.
   const auto scale = Sqrt(inverse);
-  std::size_t m = 0;
-  for (const Node& s : gaussLegendre(n)) {
-    const auto ss = Set(d, T(s.x));
-    const auto base_u = Add(load(kMeanU), Mul(ss, load(kAxisUU)));
-    const auto base_v = Add(load(kMeanV), Mul(ss, load(kAxisUV)));
-    const auto along_u = Add(load(kAxisVU), Mul(ss, load(kTwistU)));
-    const auto along_v = Add(load(kAxisVV), Mul(ss, load(kTwistV)));
-    const auto density = Add(Set(d, T(1)), Mul(ss, load(kAlpha)));
-    const auto beta = load(kBeta);
-    for (const Node& t : gaussLegendre(n)) {
-      const auto tt = Set(d, T(t.x));
-      const auto u = Add(base_u, Mul(tt, along_u));
-      const auto v = Add(base_v, Mul(tt, along_v));
-      const auto above = Add(height, Add(Mul(slope_u, u), Mul(slope_v, v)));
-      const auto share = Mul(Set(d, T(0.25 * s.weight * t.weight)), Add(density, Mul(tt, beta)));
-      StoreU(Mul(scale, Add(du, u)), d, at_u + m);
-      StoreU(Mul(scale, Add(dv, v)), d, at_v + m);
-      StoreU(Mul(share, Max(above, zero)), d, weight + m);
-      m += lanes;
+  for (std::size_t i = 0; i < rule.count; ++i) {
+    const auto s = Set(d, T(rule.points[i].s));
+    const auto t = Set(d, T(rule.points[i].t));
+    const auto u = Add(Mul(s, load(kAxisUU)), Mul(t, Add(load(kAxisVU), Mul(s, load(kTwistU)))));
+    const auto v = Add(Mul(s, load(kAxisUV)), Mul(t, Add(load(kAxisVV), Mul(s, load(kTwistV)))));
+    const auto above = Add(mean_height, Add(Mul(slope_u, u), Mul(slope_v, v)));
+    const auto density = Add(one, Add(Mul(s, load(kAlpha)), Mul(t, load(kBeta))));
+    const auto share = Mul(density, Max(above, zero));
+    StoreU(Mul(scale, Add(mean_u, u)), d, at_u + i * lanes);
+    StoreU(Mul(scale, Add(mean_v, v)), d, at_v + i * lanes);
+    for (std::size_t set = 0; set < rule.weight_sets; ++set) {
+      StoreU(Mul(Set(d, T(rule.column_weight[set][i])), share), d, weight[set] + i * lanes);
     }
   }
-  const auto& points = row.points(n);
+  const auto& points = row.points(rule);
   auto sum = zero;
-  const std::size_t begin = pointsBegin(n);
-  for (std::size_t j = begin; j < begin + std::size_t(n) * n; ++j) {
+  for (std::size_t j = 0; j < rule.count; ++j) {
+    const std::size_t at = rule.begin + j;
     const auto inner =
-        sumOverColumn(d, at_u, at_v, weight, m, Mul(scale, Set(d, points.u[j])),
-                      Mul(scale, Set(d, points.v[j])), Mul(inverse, Set(d, points.height2[j])));
-    sum = Add(sum, Mul(Set(d, points.weight[j]), inner));
+        sumOverColumn(d, at_u, at_v, weight[rule.points[j].weights],
+                      rule.points[j].partners * lanes, Mul(scale, Set(d, points.u[at])),
+                      Mul(scale, Set(d, points.v[at])), Mul(inverse, Set(d, points.height2[at])));
+    sum = Add(sum, Mul(Set(d, points.weight[at]), inner));
   }
   return sum;
 }
 
 /// See FarFunction.
 template <class T, class D>
-std::size_t farRow(D d, FarRow<T>& row, const FarBatch<T>& batch, const ProductLimits<T>& limits) {
+std::size_t farRow(D d, FarRow<T>& row, const FarBatch<T>& batch, const RuleLimits<T>& limits) {
   const std::size_t lanes = Lanes(d);
   const auto one = Set(d, T(1));
   const auto two = Set(d, T(2));
@@ -104,6 +102,7 @@ std::size_t farRow(D d, FarRow<T>& row, const FarBatch<T>& batch, const ProductL
   const auto q2 = Set(d, row.height * row.height);
   const auto p_constant = Set(d, -row.height * row.p[2]);
   const auto q_constant = Set(d, -row.height * row.q[2]);
+  const auto rules = farRules();
   std::size_t near = 0;
   for (std::size_t k = 0; k < batch.count; k += lanes) {
     const auto load = [&](FarField field) RADIOSITY_FAR_ATTR {
@@ -154,13 +153,13 @@ std::size_t farRow(D d, FarRow<T>& row, const FarBatch<T>& batch, const ProductL
     auto open = AndNot(Le(magnitude, Mul(limit, pq)),
                        FirstN(d, batch.count - k < lanes ? batch.count - k : lanes));
     const auto skew = Max(Set(d, row.skew), load(kSkew));
-    for (int n = kLeastProduct; n <= kMostProduct && !AllFalse(d, open); ++n) {
-      const auto rule = std::size_t(n - kLeastProduct);
+    for (std::size_t k_rule = 0; k_rule < kFarRules && !AllFalse(d, open); ++k_rule) {
       const auto rule_limit =
-          Add(Set(d, limits.plain[rule]), Mul(skew, Set(d, limits.skew_part[rule])));
+          Add(Set(d, limits.plain[k_rule]), Mul(skew, Set(d, limits.skew_part[k_rule])));
       const auto good = And(open, Le(magnitude, Mul(rule_limit, pq)));
       if (AllFalse(d, good)) continue;
-      value = IfThenElse(good, productMean(d, row, batch, k, n, du, dv, p, inverse), value);
+      value =
+          IfThenElse(good, ruleMean(d, row, batch, k, rules[k_rule], du, dv, p, inverse), value);
       open = AndNot(good, open);
     }
     value = Mul(Mul(areas, Mul(inverse, inverse)), Max(value, zero));

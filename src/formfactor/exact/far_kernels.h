@@ -20,37 +20,36 @@
 // (weighted so that it bounds errors evenly) takes account of sizes, directions and grazing heights
 // alike, and decides. An element's skew is |alpha| + |beta|: 0 for a parallelogram, 1 for a
 // triangle. The series serves where its error, kSeriesError R^2 and kSkewError skew R^(3/2), is
-// below the tolerance (relative); else the first product Gauss rule, n x n points on each element,
-// with kProductError[n] R^n below it, or for triangles kSkewProductError[n] R^(n - 1/2), and
-// between the two for little skew; else nothing: the pair is near. The constants bound what was
-// found on pairs of all shapes and placements, see exact_far_kernels_test.
+// below the tolerance (relative); else the first rule (far_rules.h) with kRuleError R^order below
+// it, or for triangles kSkewRuleError R^(order - 1/2), and between the two for little skew; else
+// nothing: the pair is near. The constants bound what was found on pairs of all shapes and
+// placements; exact_far_kernels_test holds every instruction set to the tolerance.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <string>
 
 #include "formfactor/exact/far_columns.h"
+#include "formfactor/exact/far_rules.h"
 
 namespace radiosity {
 
-/// Numbers of points a direction of the product rules.
-inline constexpr int kLeastProduct = 2;
-inline constexpr int kMostProduct = 6;
-inline constexpr std::size_t kProductRules = kMostProduct - kLeastProduct + 1;
-/// Points of all rules together.
-inline constexpr std::size_t kProductPoints = 4 + 9 + 16 + 25 + 36;
-
 inline constexpr double kSeriesError = 1.7;
 inline constexpr double kSkewError = 6;
-inline constexpr std::array<double, kProductRules> kProductError = {0.8, 0.1, 0.012, 0.0016,
-                                                                    0.0003};
-inline constexpr std::array<double, kProductRules> kSkewProductError = {6, 2, 0.25, 0.05, 0.015};
+/// An element counts as a triangle from a skew of 1 / kSkewFactor on.
+inline constexpr double kSkewFactor = 2.5;
+/// A rule in which densities that are not constant count as degrees: for parallelograms only.
+inline constexpr double kNever = std::numeric_limits<double>::infinity();
+inline constexpr std::array<double, kFarRules> kRuleError = {0.8, 0.22, 0.15, 0.02, 0.0025, 0.0005};
+inline constexpr std::array<double, kFarRules> kSkewRuleError = {6, kNever, 3, 0.4, 0.06, 0.02};
 
-/// Up to which R each product rule is good: plain + skew * skew_part.
+/// Up to which R each rule is good: plain + skew * skew_part.
 template <class T>
-struct ProductLimits {
-  std::array<T, kProductRules> plain, skew_part;
+struct RuleLimits {
+  std::array<T, kFarRules> plain, skew_part;
 };
 
 /// The limits of all formulas for a tolerance.
@@ -58,7 +57,7 @@ struct FarLimits {
   explicit FarLimits(double tolerance);
   FarBounds of(const FlatShape& shape) const;
   template <class T>
-  ProductLimits<T> product() const;
+  RuleLimits<T> rules() const;
 
  private:
   double tolerance_;
@@ -79,26 +78,20 @@ struct FarRow {
   T area_over_pi;
   T series_limit, skew;
 
-  /// Gauss points, relative to the centroid, made when first asked for.
+  /// Points of the rules, relative to the centroid.
   struct Points {
-    std::array<T, kProductPoints> u, v, height2, weight;  ///< weight: times height; 0 if below
+    std::array<T, kFarRulePoints> u, v, height2, weight;  ///< weight: times height; 0 if below
   };
-  /// Those of rule n begin at pointsBegin(n).
-  const Points& points(int n);
+  /// Makes those of a rule when first asked for; they begin at rule.begin.
+  const Points& points(const FarRule& rule);
 
  private:
   FlatShape shape_;
   std::array<Vec3, 4> map_;  // mean, U, V, W in the columns' frame
   double exact_height_;
-  unsigned made_ = 0;
+  std::uint64_t made_ = 0;  // bit rule.begin: made
   Points points_;
 };
-
-constexpr std::size_t pointsBegin(int n) {
-  std::size_t begin = 0;
-  for (int k = kLeastProduct; k < n; ++k) begin += std::size_t(k * k);
-  return begin;
-}
 
 /// Columns [first, first + count), with the heights of their centroids above the row's plane.
 /// `heights` and `values` have room for count + kFarPadding.
@@ -116,7 +109,7 @@ inline constexpr double kNearPair = -1;
 
 template <class T>
 using FarFunction = std::size_t (*)(FarRow<T>& row, const FarBatch<T>& batch,
-                                    const ProductLimits<T>& limits);
+                                    const RuleLimits<T>& limits);
 
 /// Writes G of the row with each column, or kNearPair; returns how many are near. All elements in
 /// front of each other's planes.

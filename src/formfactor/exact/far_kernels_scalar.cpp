@@ -7,7 +7,7 @@ namespace radiosity {
 namespace {
 
 template <class T>
-std::size_t scalarRow(FarRow<T>& row, const FarBatch<T>& batch, const ProductLimits<T>& limits) {
+std::size_t scalarRow(FarRow<T>& row, const FarBatch<T>& batch, const RuleLimits<T>& limits) {
   return far_scalar::farRow<T>(lanes::OneLane<T>(), row, batch, limits);
 }
 

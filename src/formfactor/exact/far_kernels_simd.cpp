@@ -1,6 +1,6 @@
 #include "formfactor/exact/far_kernels.h"
+#include "formfactor/exact/far_rules.h"
 #include "formfactor/exact/lanes.h"
-#include "formfactor/exact/quadrature.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "formfactor/exact/far_kernels_simd.cpp"
@@ -24,7 +24,7 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
 template <class T>
-std::size_t vectorRow(FarRow<T>& row, const FarBatch<T>& batch, const ProductLimits<T>& limits) {
+std::size_t vectorRow(FarRow<T>& row, const FarBatch<T>& batch, const RuleLimits<T>& limits) {
   // At most the padding's width, so that whole vectors never leave an array.
   return farRow<T>(hn::CappedTag<T, kFarPadding>(), row, batch, limits);
 }

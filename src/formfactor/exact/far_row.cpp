@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "formfactor/exact/far_kernels.h"
-#include "formfactor/exact/quadrature.h"
 
 namespace radiosity {
 
@@ -12,7 +11,7 @@ FarLimits::FarLimits(double tolerance) : tolerance_(tolerance) {}
 
 FarBounds FarLimits::of(const FlatShape& shape) const {
   const double skew = std::abs(shape.alpha) + std::abs(shape.beta);
-  FarBounds bounds{std::sqrt(tolerance_ / kSeriesError), std::min(skew, 1.0)};
+  FarBounds bounds{std::sqrt(tolerance_ / kSeriesError), std::min(kSkewFactor * skew, 1.0)};
   if (skew > 0) {
     bounds.series_limit =
         std::min(bounds.series_limit, std::pow(tolerance_ / (kSkewError * skew), 2.0 / 3.0));
@@ -20,21 +19,28 @@ FarBounds FarLimits::of(const FlatShape& shape) const {
   return bounds;
 }
 
+/// Skew above its inverse rules such a rule out.
+constexpr double kRulesOutSkew = 64;
+
 template <class T>
-ProductLimits<T> FarLimits::product() const {
-  ProductLimits<T> limits{};
-  for (std::size_t k = 0; k < kProductRules; ++k) {
-    const auto n = double(k + kLeastProduct);
-    const double plain = std::pow(tolerance_ / kProductError[k], 1 / n);
-    const double skewed = std::pow(tolerance_ / kSkewProductError[k], 1 / (n - 0.5));
+RuleLimits<T> FarLimits::rules() const {
+  RuleLimits<T> limits{};
+  for (std::size_t k = 0; k < kFarRules; ++k) {
+    const double order = farRules()[k].order;
+    const double plain = std::pow(tolerance_ / kRuleError[k], 1 / order);
     limits.plain[k] = T(plain);
+    if (kSkewRuleError[k] == kNever) {
+      limits.skew_part[k] = T(-plain * kRulesOutSkew);
+      continue;
+    }
+    const double skewed = std::pow(tolerance_ / kSkewRuleError[k], 1 / (order - 0.5));
     limits.skew_part[k] = T(std::min(skewed - plain, 0.0));
   }
   return limits;
 }
 
-template ProductLimits<float> FarLimits::product() const;
-template ProductLimits<double> FarLimits::product() const;
+template RuleLimits<float> FarLimits::rules() const;
+template RuleLimits<double> FarLimits::rules() const;
 
 template <class T>
 FarRow<T>::FarRow(const FlatShape& shape, const FacetFrame& own, const FacetFrame& columns,
@@ -70,21 +76,18 @@ FarRow<T>::FarRow(const FlatShape& shape, const FacetFrame& own, const FacetFram
 }
 
 template <class T>
-const typename FarRow<T>::Points& FarRow<T>::points(int n) {
-  if ((made_ >> n & 1U) != 0) return points_;
-  made_ |= 1U << n;
-  std::size_t k = pointsBegin(n);
-  for (const Node& s : gaussLegendre(n)) {
-    for (const Node& t : gaussLegendre(n)) {
-      const Vec3 at = map_[0] + s.x * map_[1] + t.x * (map_[2] + s.x * map_[3]);
-      const double above = std::max(exact_height_ + at.z, 0.0);
-      const double density = 0.25 * (1 + shape_.alpha * s.x + shape_.beta * t.x);
-      points_.u[k] = T(at.x);
-      points_.v[k] = T(at.y);
-      points_.height2[k] = T(above * above);
-      points_.weight[k] = T(s.weight * t.weight * density * above);
-      ++k;
-    }
+const typename FarRow<T>::Points& FarRow<T>::points(const FarRule& rule) {
+  if ((made_ >> rule.begin & 1U) != 0) return points_;
+  made_ |= std::uint64_t(1) << rule.begin;
+  for (std::size_t k = 0; k < rule.count; ++k) {
+    const FarRule::Point& point = rule.points[k];
+    const Vec3 at = map_[0] + point.s * map_[1] + point.t * (map_[2] + point.s * map_[3]);
+    const double above = std::max(exact_height_ + at.z, 0.0);
+    const double density = 1 + shape_.alpha * point.s + shape_.beta * point.t;
+    points_.u[rule.begin + k] = T(at.x);
+    points_.v[rule.begin + k] = T(at.y);
+    points_.height2[rule.begin + k] = T(above * above);
+    points_.weight[rule.begin + k] = T(point.row_weight * density * above);
   }
   return points_;
 }

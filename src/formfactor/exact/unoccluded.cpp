@@ -109,7 +109,7 @@ class UnoccludedKernel::Typed : public UnoccludedKernel::Implementation {
         tolerance_(tolerance),
         far_row_(far_row),
         limits_(tolerance),
-        product_limits_(limits_.template product<T>()),
+        rule_limits_(limits_.template rules<T>()),
         columns_(elements.size()) {
     for (const Facet& facet : elements.facets) frames_.push_back(frameOf(elements, facet));
     shapes_.reserve(elements.size());
@@ -212,7 +212,7 @@ class UnoccludedKernel::Typed : public UnoccludedKernel::Implementation {
     for (const ElementRange& run : tile.runs) {
       const T* heights = tile.heights.data() + (run.first - tile.elements.first);
       const std::size_t near = far_row_(
-          far, {&columns_, run.first, run.size(), heights, tile.values.data()}, product_limits_);
+          far, {&columns_, run.first, run.size(), heights, tile.values.data()}, rule_limits_);
       work.counts.product += run.size() - near;
       if (cut) work.counts.clipped += run.size();
       if (near > 0) {
@@ -236,7 +236,7 @@ class UnoccludedKernel::Typed : public UnoccludedKernel::Implementation {
     const std::size_t count = tile.parts.size();
     const std::size_t near =
         far_row_(far, {&tile.part_columns, 0, count, tile.part_heights.data(), tile.values.data()},
-                 product_limits_);
+                 rule_limits_);
     work.counts.product += count - near;
     work.counts.clipped += count;
     for (std::size_t k = 0; k < count; ++k) {
@@ -259,7 +259,7 @@ class UnoccludedKernel::Typed : public UnoccludedKernel::Implementation {
   double tolerance_;
   FarFunction<T> far_row_;
   FarLimits limits_;
-  ProductLimits<T> product_limits_;
+  RuleLimits<T> rule_limits_;
   std::vector<FacetFrame> frames_;
   std::vector<FlatShape> shapes_;
   std::vector<FarBounds> bounds_;
