@@ -83,7 +83,7 @@ LeastSquaresClosure::LeastSquaresClosure(const ExchangeMatrix& matrix,
                                          std::span<const double> target)
     : matrix_(matrix),
       uncertain_(uncertain),
-      pass_(matrix.size(), [&](std::size_t k) { return uncertain.row(k).codes.size() + 1; }),
+      pass_(matrix.size(), 0, [&](std::size_t k) { return uncertain.row(k).codes.size() + 1; }),
       area_(matrix.size()),
       free_(matrix.size()),
       shortfall_(matrix.size()),

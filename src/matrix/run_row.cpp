@@ -1,11 +1,14 @@
 #include "matrix/run_row.h"
 
 #include <algorithm>
-#include <bit>
-#include <cstdint>
+#include <array>
+#include <cstring>
 #include <limits>
+#include <memory>
 #include <type_traits>
 #include <vector>
+
+#include "matrix/triangle_kernels.h"
 
 namespace radiosity {
 
@@ -13,67 +16,62 @@ namespace {
 
 constexpr std::size_t kLongest = std::numeric_limits<std::uint16_t>::max();
 
-/// Values looked at together: stretches of zeros and of others are long, or there would be nothing
-/// to gain from runs.
-constexpr std::size_t kBlock = 32;
+/// Values looked at together, as whole numbers: loops without an exit, which the compiler makes
+/// vectors of.
+constexpr std::size_t kBlock = 16;
 
-/// Largest number that is 0 once it is stored as Value: half of the smallest subnormal.
 template <class Value>
-constexpr double kRoundsToZero = std::is_same_v<Value, float> ? 0x1p-150 : 0.0;
-
-/// The top bit is set where a value (0 or more) is not 0 once it is stored: numbers of one sign are
-/// ordered as their bits are, and a difference of whole numbers is what compilers make vectors of.
-template <class Value>
-std::uint64_t isStored(double value) {
-  return std::bit_cast<std::uint64_t>(kRoundsToZero<Value>) - std::bit_cast<std::uint64_t>(value);
-}
-
-/// Where the stretch of zeros (`zero`) or of other values that goes on at `from` ends.
-template <class Value>
-std::size_t endOfStretch(std::span<const double> values, std::size_t from, bool zero) {
-  constexpr std::uint64_t kTop = std::uint64_t(1) << 63U;
-  const std::size_t n = values.size();
-  for (; from + kBlock <= n; from += kBlock) {
-    std::uint64_t any = 0;
-    std::uint64_t all = kTop;
-    for (std::size_t k = 0; k < kBlock; ++k) {
-      const std::uint64_t stored = isStored<Value>(values[from + k]);
-      any |= stored;
-      all &= stored;
-    }
-    if (((zero ? ~any : all) & kTop) == 0) break;
+struct Block {
+  using Bits =
+      std::conditional_t<sizeof(Value) == sizeof(std::uint32_t), std::uint32_t, std::uint64_t>;
+  explicit Block(const Value* values) { std::memcpy(bits.data(), values, sizeof bits); }
+  bool allZero() const {
+    Bits any = 0;
+    for (const Bits b : bits) any |= b;
+    return any == 0;
   }
-  while (from < n && ((isStored<Value>(values[from]) & kTop) == 0) == zero) ++from;
-  return from;
-}
+  bool noneZero() const {
+    Bits all = ~Bits(0);
+    for (const Bits b : bits) all &= b | (Bits(0) - b);  // the top bit is set unless b is 0
+    return (all >> (std::numeric_limits<Bits>::digits - 1)) != 0;
+  }
+  std::array<Bits, kBlock> bits;
+};
 
 template <class Value>
-std::vector<Run> findRuns(std::span<const double> values) {
+std::vector<Run> findRuns(const Value* values, std::size_t n) {
   RunFinder finder(sizeof(Value));
   for (std::size_t first = 0;;) {
-    first = endOfStretch<Value>(values, first, true);
-    if (first == values.size()) break;
-    const std::size_t last = endOfStretch<Value>(values, first, false);
+    while (first + kBlock <= n && Block(values + first).allZero()) first += kBlock;
+    while (first < n && values[first] == 0) ++first;
+    if (first == n) break;
+    std::size_t last = first + 1;
+    while (last + kBlock <= n && Block(values + last).noneZero()) last += kBlock;
+    while (last < n && values[last] != 0) ++last;
     finder.add(first, last);
     first = last;
   }
   return finder.take();
 }
 
+/// Rounds before it looks for zeros: what rounds to 0 is 0.
 template <class Value>
 void pack(std::span<const double> values, std::vector<Run>& runs, std::vector<Value>& stored) {
-  runs = findRuns<Value>(values);
+  const std::size_t n = values.size();
+  const auto rounded = std::make_unique_for_overwrite<Value[]>(n);
+  for (std::size_t m = 0; m < n; ++m) rounded[m] = Value(values[m]);
+  runs = findRuns(rounded.get(), n);
   std::size_t total = 0;
   for (const Run run : runs) total += run.count;
-  stored.resize(total);
-  const double* from = values.data();
-  Value* to = stored.data();
+  if (total == 0) return;
+  stored.reserve(total + kOverrun);
+  const Value* from = rounded.get();
   for (const Run run : runs) {
     from += run.skip;
-    for (std::size_t k = 0; k < run.count; ++k) to[k] = Value(from[k]);
+    stored.insert(stored.end(), from, from + run.count);
     from += run.count;
-    to += run.count;
   }
+  stored.resize(total + kOverrun, Value(0));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace radiosity {
 
 /// The smallest RunRow of `values`: zeros between two stored values are stored only where that is
-/// shorter than a new run.
+/// no longer than a new run. kOverrun zeros follow the values (triangle_kernels.h).
 RunRow packRuns(std::span<const double> values, Precision precision);
 
 /// Collects the stretches of values to store, in order, as the shortest list of runs.

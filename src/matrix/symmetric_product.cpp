@@ -19,17 +19,19 @@ struct Planes {
   Planes(std::size_t n, int first, int last)
       : first_band(std::size_t(first)),
         bands(last - first),
-        values(n * std::size_t(last - first)) {}
+        stride(n + kOverrun),
+        values(stride * std::size_t(last - first)) {}
   void take(std::span<const double> x, std::size_t width, std::span<const Index> order) {
     const std::size_t n = order.size();
     for (std::size_t b = 0; b < std::size_t(bands); ++b) {
       for (std::size_t k = 0; k < n; ++k) {
-        values[b * n + k] = x[order[k] * width + first_band + b];
+        values[b * stride + k] = x[order[k] * width + first_band + b];
       }
     }
   }
   std::size_t first_band;
   int bands;
+  std::size_t stride;
   std::vector<double> values;
 };
 
@@ -49,7 +51,8 @@ void ExchangeMatrix::symmetricProduct(Part part, std::span<const double> x, int 
   const auto width = std::size_t(bands);
   const bool raw = part != Part::correction;
   const bool change = part != Part::raw && isCorrected();
-  const TwoSidedPass pass(n, [&](std::size_t k) { return workOf(upper_[k]); });
+  const TwoSidedPass pass(n, kOverrun, [&](std::size_t k) { return workOf(upper_[k]); });
+  const TriangleKernels kernels = triangleKernels();
   for (int first = 0; first < bands; first += kMaxBands) {
     Planes in(n, first, std::min(first + kMaxBands, bands));
     in.take(x, width, order_);
@@ -58,9 +61,9 @@ void ExchangeMatrix::symmetricProduct(Part part, std::span<const double> x, int 
     const auto row = [&](std::size_t k, double* handed_on, std::size_t stride) {
       const double area = area_[order_[k]];
       double factor[kMaxBands];
-      for (std::size_t b = 0; b < planes; ++b) factor[b] = in.values[b * n + k] * area;
+      for (std::size_t b = 0; b < planes; ++b) factor[b] = in.values[b * in.stride + k] * area;
       const RowOperands operands{.x = &in.values[k] + 1,
-                                 .x_stride = n,
+                                 .x_stride = in.stride,
                                  .z = handed_on,
                                  .z_stride = stride,
                                  .bands = in.bands};
@@ -69,11 +72,11 @@ void ExchangeMatrix::symmetricProduct(Part part, std::span<const double> x, int 
       const auto add = [&](const RunRow& values) {
         double sums[kMaxBands] = {};
         if (gathers && hands_on) {
-          gatherAndHandOnRow(values, operands, factor, sums);
+          kernels.gather_and_hand_on(values, operands, factor, sums);
         } else if (gathers) {
-          gatherRow(values, operands, sums);
+          kernels.gather(values, operands, sums);
         } else if (hands_on) {
-          handOnRow(values, operands, factor);
+          kernels.hand_on(values, operands, factor);
         }
         for (std::size_t b = 0; b < planes; ++b) gathered[b * n + k] += sums[b];
       };
@@ -84,7 +87,7 @@ void ExchangeMatrix::symmetricProduct(Part part, std::span<const double> x, int 
       const Index patch = order_[k];
       if (!isWanted(wanted, patch)) return;
       for (std::size_t b = 0; b < planes; ++b) {
-        const double own = raw ? diagonal_[k] * in.values[b * n + k] : 0;
+        const double own = raw ? diagonal_[k] * in.values[b * in.stride + k] : 0;
         y[patch * width + in.first_band + b] =
             gathered[b * n + k] + own + perArea(handed[b], area_[patch]);
       }
@@ -102,23 +105,25 @@ void ExchangeMatrix::symmetricSweep(std::span<double> x, int bands, const Update
   const auto width = std::size_t(bands);
   Planes now(n, 0, bands);
   now.take(x, width, order_);
-  std::vector<double> handed(n * width, 0.0);
+  const std::size_t stride = now.stride;
+  std::vector<double> handed(stride * width, 0.0);
+  const TriangleKernels kernels = triangleKernels();
   std::vector<double> sums(width);
   std::vector<double> factor(width);
   const auto operands = [&](std::size_t k, int first) {
-    const std::size_t start = std::size_t(first) * n + k;
+    const std::size_t start = std::size_t(first) * stride + k;
     return RowOperands{.x = &now.values[start] + 1,
-                       .x_stride = n,
+                       .x_stride = stride,
                        .z = &handed[start] + 1,
-                       .z_stride = n,
+                       .z_stride = stride,
                        .bands = std::min(bands - first, kMaxBands)};
   };
   const auto gather = [&](std::size_t k) {
     for (int b = 0; b < bands; b += kMaxBands) {
-      gatherRow(upper_[k], operands(k, b), &sums[std::size_t(b)]);
+      kernels.gather(upper_[k], operands(k, b), &sums[std::size_t(b)]);
       if (!isCorrected()) continue;
       double more[kMaxBands];
-      gatherRow(correction_[k], operands(k, b), more);
+      kernels.gather(correction_[k], operands(k, b), more);
       for (int m = 0; m < std::min(bands - b, kMaxBands); ++m) sums[std::size_t(b + m)] += more[m];
     }
   };
@@ -128,16 +133,17 @@ void ExchangeMatrix::symmetricSweep(std::span<double> x, int bands, const Update
     if (isWanted(wanted, patch)) {
       gather(k);
       for (std::size_t b = 0; b < width; ++b) {
-        sums[b] += diagonal_[k] * now.values[b * n + k] + perArea(handed[b * n + k], area);
+        sums[b] +=
+            diagonal_[k] * now.values[b * stride + k] + perArea(handed[b * stride + k], area);
       }
       update(patch, sums.data());
-      for (std::size_t b = 0; b < width; ++b) now.values[b * n + k] = x[patch * width + b];
+      for (std::size_t b = 0; b < width; ++b) now.values[b * stride + k] = x[patch * width + b];
     }
-    for (std::size_t b = 0; b < width; ++b) factor[b] = now.values[b * n + k] * area;
+    for (std::size_t b = 0; b < width; ++b) factor[b] = now.values[b * stride + k] * area;
     if (std::all_of(factor.begin(), factor.end(), [](double f) { return f == 0; })) continue;
     for (int b = 0; b < bands; b += kMaxBands) {
-      handOnRow(upper_[k], operands(k, b), &factor[std::size_t(b)]);
-      if (isCorrected()) handOnRow(correction_[k], operands(k, b), &factor[std::size_t(b)]);
+      kernels.hand_on(upper_[k], operands(k, b), &factor[std::size_t(b)]);
+      if (isCorrected()) kernels.hand_on(correction_[k], operands(k, b), &factor[std::size_t(b)]);
     }
   }
 }

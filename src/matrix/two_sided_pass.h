@@ -14,9 +14,10 @@ namespace radiosity {
 /// the work alone, never on the threads: the same bits for any number of them.
 class TwoSidedPass {
  public:
-  /// `work(k)`: of row k, in any unit.
+  /// `work(k)`: of row k, in any unit. `overrun`: so many places after the last row may be touched.
   template <class Work>
-  TwoSidedPass(std::size_t rows, const Work& work) : rows_(rows) {
+  TwoSidedPass(std::size_t rows, std::size_t overrun, const Work& work)
+      : rows_(rows), overrun_(overrun) {
     std::size_t total = 0;
     for (std::size_t k = 0; k < rows; ++k) total += work(k);
     const std::size_t chunks = std::clamp<std::size_t>(rows / kRowsPerChunk, 1, kMostChunks);
@@ -38,7 +39,7 @@ class TwoSidedPass {
     const std::size_t chunks = starts_.size() - 1;
     std::vector<std::vector<double>> sums(chunks);  // of chunk c: from row starts_[c] on
     parallelFor(chunks, 1, [&](std::size_t c) {
-      const std::size_t stride = rows_ - starts_[c];
+      const std::size_t stride = strideOf(c);
       sums[c].assign(stride * planes, 0.0);
       for (std::size_t k = starts_[c]; k < starts_[c + 1]; ++k) {
         row(k, sums[c].data() + (k - starts_[c]) + 1, stride);
@@ -51,7 +52,7 @@ class TwoSidedPass {
         for (std::size_t p = 0; p < planes; ++p) {
           handed[p] = 0;
           for (std::size_t c = 0; c < chunks && starts_[c] <= k; ++c) {
-            handed[p] += sums[c][p * (rows_ - starts_[c]) + (k - starts_[c])];
+            handed[p] += sums[c][p * strideOf(c) + (k - starts_[c])];
           }
         }
         finish(k, handed.data());
@@ -64,7 +65,10 @@ class TwoSidedPass {
   static constexpr std::size_t kMostChunks = 32;
   static constexpr std::size_t kFinishBlock = 256;
 
+  std::size_t strideOf(std::size_t chunk) const { return rows_ - starts_[chunk] + overrun_; }
+
   std::size_t rows_;
+  std::size_t overrun_;
   std::vector<std::size_t> starts_{0};
 };
 
