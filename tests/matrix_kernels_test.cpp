@@ -46,7 +46,7 @@ struct Sample {
     bool inside = false;
     for (double& value : dense) {
       if (random() % 20 == 0) inside = !inside;
-      value = inside ? uniform(random) : 0.0;
+      value = inside ? (random() % 3 == 0 ? -1 : 1) * uniform(random) : 0.0;  // as corrections are
     }
     row = packRuns(dense, precision);
     for (double& value : x) value = uniform(random);
