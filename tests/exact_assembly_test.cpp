@@ -120,6 +120,35 @@ TEST(ExactFactors, FurnaceInAClosedRoomWithABlock) {
   EXPECT_LT(f.report.largest_row_error, 2e-3);
 }
 
+TEST(ExactFactors, ClosureIsReportedOrEnforced) {
+  const PatchMesh mesh = test::roomWithBlock(4).build();
+  FormFactorOptions options = exactly();
+  const FormFactors told = compute(mesh, options);
+  EXPECT_FALSE(told.report.closure_enforced);
+  // All but those whose rules agree to the bit.
+  EXPECT_LE(told.report.closure.adjustable, told.report.exact.partial);
+  EXPECT_GT(told.report.closure.adjustable, told.report.exact.partial * 9 / 10);
+  EXPECT_EQ(told.report.closure.largest_residual_before, told.report.largest_row_error);
+  options.closure = ClosureMode::off;
+  const FormFactors raw = compute(mesh, options);
+  expectSame(told, raw);  // saying changes nothing
+  EXPECT_EQ(raw.report.closure.adjustable, 0u);
+  options.closure = ClosureMode::enforce;
+  const FormFactors closed = compute(mesh, options);
+  ASSERT_TRUE(closed.report.closure_enforced);
+  // Rows with an uncertain entry sum to 1 as well as single precision holds values that add up to
+  // 1; the others are as far off as closed forms are.
+  EXPECT_LT(closed.report.closure.largest_residual, 3e-5);
+  EXPECT_EQ(closed.report.largest_row_error, raw.report.largest_row_error);
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    EXPECT_NEAR(closed.fronts[i], 1, 3e-5);
+    for (std::size_t j = 0; j < i; ++j) {
+      EXPECT_NEAR(mesh.area[i] * closed.matrix.at(i, j), mesh.area[j] * closed.matrix.at(j, i),
+                  1e-7 * mesh.area[i] * closed.matrix.at(i, j));
+    }
+  }
+}
+
 TEST(ExactFactors, AccountsOfAnOpenScene) {
   // The flipped plate is perpendicular and shares an edge with both: its back takes 0.200043776075
   // (Howell C-14) of the view of each.

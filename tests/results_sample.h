@@ -217,6 +217,7 @@ inline FormFactors factors(const PatchMesh& m, Precision precision) {
   r.symmetrized = true;
   r.closure = {12, 0.1, 1e-13, 0.01, 0.02, true, 13, 14, 15};
   r.method_reason = "clutter";
+  r.closure_enforced = true;
   r.near_pairs = 12;
   r.capped = 13;
   r.error_figure = 1.25e-4;
@@ -356,9 +357,9 @@ inline auto members(const ExactReport& s) {
 }
 inline auto members(const FormFactorReport& s) {
   const auto& [v0, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13, v14, v15, v16, v17, v18,
-               v19, v20, v21, v22, v23] = s;
+               v19, v20, v21, v22, v23, v24] = s;
   return std::tie(v0, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13, v14, v15, v16, v17,
-                  v18, v19, v20, v21, v22, v23);
+                  v18, v19, v20, v21, v22, v23, v24);
 }
 inline auto members(const FormFactors& s) {
   const auto& [a, b, c, d, e, f, g, h] = s;

@@ -113,7 +113,8 @@ struct FormFactorReport {
   double error_figure = 0;  ///< exact: of the matrix, area-weighted relL2 of F; see FormFactors
   bool closed = false;      ///< no patch sees the sky
   bool symmetrized = false;
-  ClosureReport closure;  ///< where symmetrized
+  ClosureReport closure;          ///< where symmetrized, or exact and closed
+  bool closure_enforced = false;  ///< else it is what closure would do
   ExactReport exact;
   std::vector<Note> notes;  ///< surfaces seen from behind, ...
 };

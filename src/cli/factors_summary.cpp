@@ -73,6 +73,23 @@ void exactFigures(Report& report, const ExactReport& e) {
   report.seconds("seconds_finish", "time: finishing", e.seconds_finish);
 }
 
+void closureFigures(Report& report, const FormFactorReport& r) {
+  const ClosureReport& c = r.closure;
+  const bool done = r.symmetrized || r.closure_enforced;
+  report.yesNo("closure_enforced", "closure: enforced", done);
+  report.count("closure_adjustable", "closure: pairs that may move", c.adjustable);
+  report.number("closure_residual_before", "closure: residual before", c.largest_residual_before);
+  report.number("closure_residual", done ? "closure: residual after" : "closure: would leave",
+                c.largest_residual);
+  report.number("closure_largest_move",
+                done ? "closure: largest move" : "closure: would move at most", c.largest_move);
+  report.number("closure_relative_move",
+                done ? "closure: move, relL2" : "closure: would move, relL2", c.relative_move);
+  report.count("closure_emptied", "closure: moved to 0", c.emptied);
+  report.count("closure_fixed_rows", "closure: rows out of reach", c.fixed_rows);
+  report.count("closure_iterations", "closure: iterations", std::size_t(c.iterations));
+}
+
 void accuracyFigures(Report& report, const FormFactors& factors) {
   const FormFactorReport& r = factors.report;
   report.yesNo("closed", "closed scene", r.closed);
@@ -83,20 +100,14 @@ void accuracyFigures(Report& report, const FormFactors& factors) {
     const double median = rows.empty() ? 0.0 : rows[rows.size() / 2];
     report.number("row_error_median", "  of a row: median", median);
     report.number("row_error_largest", "  of a row: largest", rows.empty() ? 0.0 : rows.back());
-    report.number("largest_row_error", r.closed ? "closure |fronts+backs - 1|" : "rows above 1 by",
+    report.number("largest_row_error", r.closed ? "raw |fronts+backs - 1|" : "rows above 1 by",
                   r.largest_row_error);
   } else {
     report.number("largest_row_error", "|fronts+backs+sky - 1|", r.largest_row_error);
     report.number("reciprocity_residual", "reciprocity residual", r.reciprocity_residual);
     report.yesNo("symmetrized", "symmetrized", r.symmetrized);
   }
-  if (r.closure.iterations == 0) return;
-  report.count("closure_iterations", "closure: iterations", std::size_t(r.closure.iterations));
-  report.number("closure_residual_before", "closure: residual before",
-                r.closure.largest_residual_before);
-  report.number("closure_residual", "closure: residual after", r.closure.largest_residual);
-  report.number("closure_largest_move", "closure: largest move", r.closure.largest_move);
-  report.number("closure_relative_move", "closure: relative move", r.closure.relative_move);
+  if (r.symmetrized || r.closure.adjustable > 0) closureFigures(report, r);
 }
 
 }  // namespace

@@ -201,6 +201,7 @@ void describe(Archive& a, Described<Archive, FormFactorReport>& r) {
   a("closed", r.closed);
   a("symmetrized", r.symmetrized);
   a.group("closure", [&](auto& closure) { describe(closure, r.closure); });
+  a("closure_enforced", r.closure_enforced);
   a.group("exact", [&](auto& exact) { describe(exact, r.exact); });
   describeNotes(a, r.notes);
 }

@@ -5,6 +5,7 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "formfactor/closed_scene.h"
@@ -111,6 +112,20 @@ void setAccounts(const PatchMesh& mesh, const PatchOrder& order, FormFactors& re
   }
 }
 
+/// What a closed scene's rows lack of 1 is put on the clipped pairs, or it is said what that would
+/// take.
+void closeRows(const PatchOrder& order, const UncertainEntries& uncertain, ClosureMode mode,
+               FormFactors& result) {
+  std::vector<double> target(order.patch.size(), 0.0);
+  for (std::size_t k = 0; k < order.ranked; ++k) {
+    target[order.patch[k]] = std::max(0.0, 1 - result.backs[order.patch[k]]);
+  }
+  const bool enforce = mode == ClosureMode::enforce;
+  result.report.closure = radiosity::closeRows(result.matrix, uncertain, target, enforce);
+  result.report.closure_enforced = enforce;
+  if (enforce) result.fronts = result.matrix.rowSums();
+}
+
 }  // namespace
 
 FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
@@ -134,6 +149,8 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   result.backs.assign(n, 0.0);
   result.sky.assign(n, 0.0);
   std::vector<std::vector<SeenBack>> seen_backs(n);
+  UncertainEntries uncertain(options.closure == ClosureMode::off ? 0 : n);
+  UncertainEntries* const wanted = options.closure == ClosureMode::off ? nullptr : &uncertain;
   const RowContext context{scene.elements,
                            scene.order,
                            scene.chunks,
@@ -142,13 +159,20 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
                            partial,
                            recheckEvery(estimate.partial_pairs),
                            result.matrix,
+                           wanted,
                            result.backs,
                            seen_backs};
   const RowSums sums = fillRows(context, scene.tasks, progress);
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point finishing = Clock::now();
   reportCounts(scene, sums, report.exact);
   setErrors(scene.order, sums.error, closed_form, result);
   setAccounts(mesh, scene.order, result);
+  if (report.closed && options.closure != ClosureMode::off) {
+    closeRows(scene.order, uncertain, options.closure, result);
+  }
   accountForBacks(mesh, seen_backs, result);
+  report.exact.seconds_finish = std::chrono::duration<double>(Clock::now() - finishing).count();
   return result;
 }
 

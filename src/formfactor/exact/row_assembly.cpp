@@ -79,6 +79,7 @@ void RowAssembly::run(std::span<const ElementRange> ranges, RowSums& sums) {
   marked_.assign(places, 0);
   classify(ranges, sums);
   evaluatePartial(sums);
+  if (context_.uncertain != nullptr) storeUncertain();
   storePatches(rows, sums);
 }
 
@@ -171,6 +172,35 @@ void RowAssembly::recheck(RowSums& sums) const {
     const double b = order.area[order.rank[pair.column]];
     sums.error.addRecheck(partial_[k].exchange - other.exchange, partial_[k].error, other.error,
                           1 / (a * a) + 1 / (b * b));
+  }
+}
+
+void RowAssembly::storeUncertain() {
+  const PatchOrder& order = context_.order;
+  uncertain_.clear();
+  for (std::size_t k = 0; k < partial_.size(); ++k) {
+    const PartialPair& pair = pairs_.partial_pairs[k];
+    if (pair.column >= context_.elements.patch_elements) continue;
+    const Index row = order.rank[pair.row];
+    uncertain_.push_back({row, order.rank[pair.column], partial_[k].error / order.area[row]});
+  }
+  std::sort(uncertain_.begin(), uncertain_.end());
+  std::vector<Index> later;
+  std::vector<double> errors;
+  for (std::size_t k = 0; k < uncertain_.size();) {
+    const Index row = uncertain_[k].row;
+    later.clear();
+    errors.clear();
+    for (; k < uncertain_.size() && uncertain_[k].row == row; ++k) {
+      const auto& [of, column, error] = uncertain_[k];
+      if (!later.empty() && later.back() == column) {
+        errors.back() += error;  // another piece of the same patches
+      } else {
+        later.push_back(column);
+        errors.push_back(error);
+      }
+    }
+    context_.uncertain->setRow(row, later, errors);
   }
 }
 

@@ -1,6 +1,7 @@
 // From classified pairs of elements to stored rows.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "formfactor/exact/unoccluded.h"
 #include "formfactor/exact/visibility.h"
 #include "formfactor/row_accounts.h"
+#include "radiosity/closure.h"
 #include "radiosity/exchange_matrix.h"
 
 namespace radiosity {
@@ -52,6 +54,7 @@ struct RowContext {
   const PartialKernel& partial;
   std::size_t recheck_every;  ///< about one clipped pair in so many is evaluated from both ends
   ExchangeMatrix& matrix;
+  UncertainEntries* uncertain;  ///< clipped pairs and their errors go there; may be null
   std::vector<double>& backs;
   std::vector<std::vector<SeenBack>>& seen_backs;
 };
@@ -78,6 +81,7 @@ class RowAssembly {
   void dropPairsWithoutExchange(std::size_t first_pair, RowSums& sums);
   void evaluatePartial(RowSums& sums);
   void recheck(RowSums& sums) const;
+  void storeUncertain();
   void storePatches(ElementRange rows, RowSums& sums);
   void clearUnmarked();
   /// A patch's exchange with itself and all later ones, and with bare backs.
@@ -90,6 +94,12 @@ class RowAssembly {
   const RowContext& context_;
   RecordedPairs pairs_;
   std::vector<PartialExchange> partial_;
+  struct Uncertain {
+    Index row, column;  ///< ranks
+    double error;
+    auto operator<=>(const Uncertain&) const = default;
+  };
+  std::vector<Uncertain> uncertain_;
   Index first_ = 0;                   ///< element of the task
   std::size_t width_ = 0;             ///< elements from first_ on
   std::vector<double> panel_;         ///< rows x width_, and up to a multiple of kMarks
