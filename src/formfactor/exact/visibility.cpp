@@ -45,10 +45,11 @@ VisibilityCounts& VisibilityCounts::operator+=(const VisibilityCounts& other) {
   return *this;
 }
 
-Visibility::Visibility(const ElementSet& elements, const OccluderSet& occluders)
+Visibility::Visibility(const ElementSet& elements, const OccluderSet& occluders, bool simd)
     : elements_(elements),
       occluders_(occluders),
       tree_(occluders.occluders),
+      kernels_(simd ? simdVisibilityKernels() : scalarVisibilityKernels()),
       own_(elements.facets.size()) {
   for (const Cluster& cluster : elements.clusters) {
     const bool leaf = cluster.child_count == 0;

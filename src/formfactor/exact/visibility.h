@@ -43,8 +43,8 @@ class VisibilitySink {
 /// but `partial` is proved; touching within the coincidence blocks nothing.
 class Visibility {
  public:
-  /// Both are kept by reference.
-  Visibility(const ElementSet& elements, const OccluderSet& occluders);
+  /// Both are kept by reference. `simd` false: scalar twin, the same answers.
+  Visibility(const ElementSet& elements, const OccluderSet& occluders, bool simd = true);
 
   /// Classifies elements `rows` (of one facet that is not bare; best a cluster's range) against
   /// the elements of their own facet that come after each (no exchange), and against all elements
@@ -58,6 +58,7 @@ class Visibility {
   const ElementSet& elements_;
   const OccluderSet& occluders_;
   OccluderTree tree_;
+  VisibilityKernels kernels_;
   std::vector<ShapeCorners> shapes_;     ///< of clusters: bounds, or a leaf's element itself
   std::vector<Index> open_facets_;       ///< not sealed, ascending
   std::vector<std::vector<Index>> own_;  ///< of a facet: occluders that it lies on, ascending

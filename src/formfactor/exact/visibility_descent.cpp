@@ -175,7 +175,8 @@ bool VisibilityDescent::thinOut(Index row, std::size_t depth, Item& item) {
     const Index o = candidates_[k];
     ShadowPlanes::Planes open = open_planes_[k];
     ++counts_.shaft_tests;
-    const ShadowRelation relation = shadow(row, depth, o).relation(columns, open);
+    const ShadowRelation relation =
+        shadow(row, depth, o).relation(visibility_.kernels_, columns, open);
     if (relation == ShadowRelation::kInside) {
       counts_.hidden += pairs(row, item.cluster);
       dropCandidates(first_kept);

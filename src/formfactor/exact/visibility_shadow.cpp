@@ -1,17 +1,33 @@
 #include "formfactor/exact/visibility_shadow.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 namespace radiosity {
+
+namespace {
+
+ShadowPlane makePlane(const Vec3& normal, const Vec3& point) {
+  return {normal.x, normal.y, normal.z, glm::dot(normal, point)};
+}
+
+std::array<double, 4> heights(const ShadowPlane& plane, const ShapeCorners& shape) {
+  std::array<double, 4> h;
+  for (std::size_t k = 0; k < 4; ++k) {
+    h[k] = plane.x * shape.x[k] + plane.y * shape.y[k] + plane.z * shape.z[k] - plane.offset;
+  }
+  return h;
+}
+
+}  // namespace
 
 void ShadowPlanes::build(const ShapeCorners& light, const Occluder& body, double coincidence) {
   light_ = light;
   coincidence_ = coincidence;
   outside_.clear();
   inside_.clear();
+  strictly_.clear();
   last_outside_ = last_inside_ = 0;
   may_hide_ = true;
   findFaces(body);
@@ -25,7 +41,7 @@ void ShadowPlanes::findFaces(const Occluder& body) {
   unsigned in_front_of_any = 0;
   for (std::size_t p = 0; p < body.planes.size(); ++p) {
     const Occluder::Plane& face = body.planes[p];
-    const Plane plane{face.normal.x, face.normal.y, face.normal.z, face.offset, false};
+    const ShadowPlane plane{face.normal.x, face.normal.y, face.normal.z, face.offset};
     const std::array<double, 4> h = heights(plane, light_);
     unsigned strict = 0;
     unsigned clear = 0;
@@ -41,8 +57,8 @@ void ShadowPlanes::findFaces(const Occluder& body) {
     if (near != 0) {
       // A shape on the face itself is in plain sight of a light above the face. Where the light
       // only touches the plane, such a shape is no different from one seen edge-on.
+      if (clear != 0 || near == 15) strictly_.push_back(Index(inside_.size()));
       inside_.push_back(plane);
-      inside_.back().strictly = clear != 0 || near == 15;
     }
   }
   if (in_front_of_any != 15) may_hide_ = false;  // a corner of the light is inside the body
@@ -69,9 +85,8 @@ void ShadowPlanes::findSilhouettes(const Occluder& body) {
       const bool defined = length > thinnest;  // else the point is on the edge's own line
       if ((turns >> i & 1u) != 0 && defined) {
         const Vec3 normal = cross * ((left >> i & 1u) != 0 ? 1 / length : -1 / length);
-        const Plane plane = makePlane(normal, point);
-        const std::array<double, 4> h = heights(plane, light_);
-        if (*std::min_element(h.begin(), h.end()) >= -coincidence_) outside_.push_back(plane);
+        const ShadowPlane plane = makePlane(normal, point);
+        if (isAbove(plane)) outside_.push_back(plane);
       }
       if ((turns >> i & 0x10u) != 0) {
         if (!defined) {
@@ -101,9 +116,8 @@ void ShadowPlanes::findTangentsAtEdges(const Occluder& body) {
       }
       const double length = glm::length(normal);
       if (!(length > coincidence_ * glm::length(along))) continue;
-      const Plane plane = makePlane(normal * (1 / length), point);
-      const std::array<double, 4> h = heights(plane, light_);
-      if (*std::min_element(h.begin(), h.end()) < -coincidence_) continue;
+      const ShadowPlane plane = makePlane(normal * (1 / length), point);
+      if (!isAbove(plane)) continue;
       // Where the edge's line meets the body, turning finds no end.
       const bool below = std::all_of(body.corners.begin(), body.corners.end(), [&](const Vec3& c) {
         return plane.x * c.x + plane.y * c.y + plane.z * c.z - plane.offset <= coincidence_;
@@ -113,54 +127,56 @@ void ShadowPlanes::findTangentsAtEdges(const Occluder& body) {
   }
 }
 
-bool ShadowPlanes::separates(const ShapeCorners& shape, Planes& open) {
-  constexpr std::size_t kLastBit = 63;
-  const auto above = [&](std::size_t p) {
-    const std::array<double, 4> h = heights(outside_[p], shape);
-    unsigned count = 0;
-    for (const double height : h) count += unsigned(height >= -coincidence_);
-    return count;
-  };
-  for (std::size_t tail = kLastBit; tail < outside_.size(); ++tail) {
-    if (above(tail) == 4) return true;
-  }
-  const std::size_t count = std::min(outside_.size(), kLastBit);
-  if (last_outside_ < count && (open >> last_outside_ & 1) != 0) {
-    if (above(last_outside_) == 4) return true;
-  }
-  Planes left = open & ((Planes(1) << count) - 1);
-  while (left != 0) {
-    const auto p = std::size_t(std::countr_zero(left));
-    left &= left - 1;
-    const unsigned corners = above(p);
-    if (corners == 4) {
-      last_outside_ = p;
+/// Whether the light is above a plane, or on it.
+bool ShadowPlanes::isAbove(const ShadowPlane& plane) const {
+  const std::array<double, 4> h = heights(plane, light_);
+  return h[0] >= -coincidence_ && h[1] >= -coincidence_ && h[2] >= -coincidence_ &&
+         h[3] >= -coincidence_;
+}
+
+bool ShadowPlanes::separates(const VisibilityKernels& kernels, const ShapeCorners& shape,
+                             Planes& open) {
+  Planes below = 0;
+  const Planes last = open & Planes(1) << last_outside_;
+  if (last != 0 && last_outside_ < outside_.size()) {
+    if (kernels.findAbove(outside_.data(), last, shape, -coincidence_, below) != kPlaneBits) {
       return true;
     }
-    if (corners == 0) open &= ~(Planes(1) << p);
+    open &= ~below;
+  }
+  for (std::size_t first = 0; first < outside_.size(); first += kPlaneBits) {
+    const std::size_t count = outside_.size() - first;
+    Planes tried = first == 0 ? open : kAllPlanes;
+    if (count < kPlaneBits) tried &= (Planes(1) << count) - 1;
+    const std::size_t p =
+        kernels.findAbove(outside_.data() + first, tried, shape, -coincidence_, below);
+    if (p != kPlaneBits) {
+      if (first == 0) last_outside_ = p;
+      return true;
+    }
+    if (first == 0) open &= ~below;
   }
   return false;
 }
 
-bool ShadowPlanes::hides(const ShapeCorners& shape) {
+bool ShadowPlanes::hides(const VisibilityKernels& kernels, const ShapeCorners& shape) {
   if (!may_hide_) return false;
-  const std::size_t count = inside_.size();
-  for (std::size_t k = 0, p = last_inside_; k < count; ++k, ++p) {
-    if (p >= count) p = 0;
-    const std::array<double, 4> h = heights(inside_[p], shape);
-    const double highest = std::max(std::max(h[0], h[1]), std::max(h[2], h[3]));
-    const double lowest = std::min(std::min(h[0], h[1]), std::min(h[2], h[3]));
-    if (highest > coincidence_ || (inside_[p].strictly && lowest >= -coincidence_)) {
-      last_inside_ = p;
-      return false;
-    }
+  const std::size_t crossed =
+      kernels.findCrossed(inside_.data(), inside_.size(), last_inside_, shape, coincidence_);
+  if (crossed != inside_.size()) {
+    last_inside_ = crossed;
+    return false;
   }
-  return true;
+  return std::all_of(strictly_.begin(), strictly_.end(), [&](Index p) {
+    const std::array<double, 4> h = heights(inside_[p], shape);
+    return *std::min_element(h.begin(), h.end()) < -coincidence_;
+  });
 }
 
-ShadowRelation ShadowPlanes::relation(const ShapeCorners& shape, Planes& open) {
-  if (separates(shape, open)) return ShadowRelation::kOutside;
-  return hides(shape) ? ShadowRelation::kInside : ShadowRelation::kUnclear;
+ShadowRelation ShadowPlanes::relation(const VisibilityKernels& kernels, const ShapeCorners& shape,
+                                      Planes& open) {
+  if (separates(kernels, shape, open)) return ShadowRelation::kOutside;
+  return hides(kernels, shape) ? ShadowRelation::kInside : ShadowRelation::kUnclear;
 }
 
 }  // namespace radiosity

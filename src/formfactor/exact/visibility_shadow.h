@@ -3,19 +3,13 @@
 
 #include <array>
 #include <cstdint>
-#include <glm/geometric.hpp>
 #include <vector>
 
 #include "formfactor/exact/occluders.h"
+#include "formfactor/exact/visibility_kernels.h"
 #include "radiosity/base.h"
 
 namespace radiosity {
-
-/// Four corners of a planar convex shape (a triangle's fourth repeats its third), by coordinate.
-struct ShapeCorners {
-  std::array<double, 4> x, y, z;
-  Vec3 at(std::size_t k) const { return {x[k], y[k], z[k]}; }
-};
 
 enum class ShadowRelation : std::uint8_t {
   kOutside,  ///< no segment between the two shapes meets the body
@@ -41,44 +35,29 @@ class ShadowPlanes {
   /// `coincidence` as ElementSet's: corners within it of a face count as on the face.
   void build(const ShapeCorners& light, const Occluder& body, double coincidence);
 
-  /// Separating planes (a bit each, the last bit for all from the 64th on) that may still tell a
-  /// shape from the body. Those that the whole of a shape is below need no second look for its
-  /// parts.
+  /// The first 64 separating planes, a bit each: those that may still tell a shape from the body.
+  /// Those that the whole of a shape is below need no second look for its parts.
   using Planes = std::uint64_t;
   static constexpr Planes kAllPlanes = ~Planes(0);
 
   /// `open`: kAllPlanes, or what was left of it for a shape that holds this one; planes that fail
   /// all of this shape are taken out. Not thread-safe: remembers which plane gave the last answer.
-  ShadowRelation relation(const ShapeCorners& shape, Planes& open);
+  ShadowRelation relation(const VisibilityKernels& kernels, const ShapeCorners& shape,
+                          Planes& open);
 
  private:
-  /// dot(normal, x) - offset: a distance. A shape is `strictly` below if not all of it is on the
-  /// plane.
-  struct Plane {
-    double x, y, z, offset;
-    bool strictly;
-  };
-  static Plane makePlane(const Vec3& normal, const Vec3& point) {
-    return {normal.x, normal.y, normal.z, glm::dot(normal, point), false};
-  }
-  static std::array<double, 4> heights(const Plane& plane, const ShapeCorners& shape) {
-    std::array<double, 4> h;
-    for (std::size_t k = 0; k < 4; ++k) {
-      h[k] = plane.x * shape.x[k] + plane.y * shape.y[k] + plane.z * shape.z[k] - plane.offset;
-    }
-    return h;
-  }
-
   void findFaces(const Occluder& body);
   void findSilhouettes(const Occluder& body);
   void findTangentsAtEdges(const Occluder& body);
-  bool separates(const ShapeCorners& shape, Planes& open);
-  bool hides(const ShapeCorners& shape);
+  bool isAbove(const ShadowPlane& plane) const;
+  bool separates(const VisibilityKernels& kernels, const ShapeCorners& shape, Planes& open);
+  bool hides(const VisibilityKernels& kernels, const ShapeCorners& shape);
 
   ShapeCorners light_{};
   double coincidence_ = 0;
-  std::vector<Plane> outside_;  ///< the body below, the light above
-  std::vector<Plane> inside_;   ///< what is hidden from the light is below all of them
+  std::vector<ShadowPlane> outside_;  ///< the body below, the light above
+  std::vector<ShadowPlane> inside_;   ///< what is hidden from the light is below all of them
+  std::vector<Index> strictly_;       ///< of inside_: not all of it may be on the plane
   bool may_hide_ = false;
   std::size_t last_outside_ = 0;
   std::size_t last_inside_ = 0;
