@@ -1,6 +1,7 @@
 #include "formfactor/exact/occluders_solids.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <map>
@@ -56,6 +57,8 @@ class SolidSearch {
       Occluder solid;
     };
     std::vector<Candidate> candidates;
+    std::array<std::vector<std::uint8_t>, 2> seen;
+    seen.fill(std::vector<std::uint8_t>(all_.polygons.size(), 0));
     const auto score = [&](const Occluder& solid) {
       return areaOnFaces(solid, taken) * volumeOf(solid);
     };
@@ -64,9 +67,13 @@ class SolidSearch {
     };
     for (Index p = 0; p < all_.polygons.size(); ++p) {
       if (taken[p] || !mayJoin(p, false) || !regions_.isBehindOpaque(p)) continue;
-      consider(grownSolid(p, false, true, taken));
+      // From one face of a body its other faces give the same once more.
+      for (const bool convex_only : {false, true}) {
+        if (mayJoin(p, convex_only) && !seen[convex_only][p]) {
+          consider(grownSolid(p, convex_only, true, taken, &seen[convex_only]));
+        }
+      }
       if (!mayJoin(p, true)) continue;
-      consider(grownSolid(p, true, true, taken));
       std::optional<Occluder> slab = slabBehind(all_, p);
       // Alone on its slab the polygon blocks as well without it.
       if (slab && areaOnFaces(*slab, taken) > all_.polygons[p].area) consider(std::move(slab));
@@ -81,12 +88,21 @@ class SolidSearch {
     }
   }
 
+  /// `members`, if given: the polygons it was made from are marked there.
   std::optional<Occluder> grownSolid(Index seed, bool convex_only, bool opaque,
-                                     const std::vector<std::uint8_t>& taken) {
-    std::optional<Occluder> solid = solidOf(grow(seed, convex_only, false, taken), opaque);
-    // Several bodies in convex position, perhaps: then one of them.
-    if (!solid) solid = solidOf(grow(seed, convex_only, true, taken), opaque);
-    return solid;
+                                     const std::vector<std::uint8_t>& taken,
+                                     std::vector<std::uint8_t>* members = nullptr) {
+    // Several bodies may be in convex position, side by side: then carefully one of them.
+    for (const bool carefully : {false, true}) {
+      const ConvexSet set = grow(seed, convex_only, carefully, taken);
+      std::optional<Occluder> solid = solidOf(set, opaque);
+      if (!solid) continue;
+      if (members != nullptr) {
+        for (const Index p : set.polygons) (*members)[p] = 1;
+      }
+      return solid;
+    }
+    return {};
   }
 
   bool mayJoin(Index p, bool convex_only) const {
