@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/vector_relational.hpp>
 #include <limits>
 #include <vector>
 
@@ -32,12 +31,9 @@ std::vector<std::vector<Vec3>> partsInside(const OccluderPolygons& all,
                                            double margin) {
   std::vector<std::vector<Vec3>> parts;
   for (const Occluder::Plane& plane : body.planes) {
-    bool outside = true;
-    for (const std::vector<Index>& loop : polygon.loops) {
-      outside = outside && std::all_of(loop.begin(), loop.end(), [&](Index v) {
-                  return glm::dot(plane.normal, all.vertices[v]) >= plane.offset - margin;
-                });
-    }
+    const bool outside = std::all_of(polygon.corners.begin(), polygon.corners.end(), [&](Index v) {
+      return glm::dot(plane.normal, all.vertices[v]) >= plane.offset - margin;
+    });
     if (outside) return parts;
   }
   for (const std::vector<Index>& loop : polygon.loops) {
@@ -81,35 +77,35 @@ double highestInside(const OccluderPolygons& all, const OccluderPolygon& polygon
 Index faceThatHolds(const OccluderPolygons& all, const OccluderPolygon& polygon,
                     const Occluder& solid) {
   std::vector<std::uint8_t> on(solid.planes.size(), 1);
-  for (const std::vector<Index>& loop : polygon.loops) {
-    for (const Index v : loop) {
-      const Vec3& p = all.vertices[v];
-      if (glm::distance(p, solid.centre) > solid.radius + all.coincidence) return kNone;
-      for (std::size_t k = 0; k < solid.planes.size(); ++k) {
-        const double height = glm::dot(solid.planes[k].normal, p) - solid.planes[k].offset;
-        if (height > all.coincidence) return kNone;
-        if (height < -all.coincidence) on[k] = 0;
-      }
+  for (const Index v : polygon.corners) {
+    const Vec3& p = all.vertices[v];
+    if (glm::distance(p, solid.centre) > solid.radius + all.coincidence) return kNone;
+    for (std::size_t k = 0; k < solid.planes.size(); ++k) {
+      const double height = glm::dot(solid.planes[k].normal, p) - solid.planes[k].offset;
+      if (height > all.coincidence) return kNone;
+      if (height < -all.coincidence) on[k] = 0;
     }
   }
   const auto face = std::find(on.begin(), on.end(), 1);
   return face == on.end() ? kNone : Index(face - on.begin());
 }
 
+Box3 boxAround(const Occluder& body, double margin) {
+  Box3 box;
+  for (const Vec3& corner : body.corners) box.add(corner);
+  return box.grown(margin);
+}
+
 bool isEmpty(const OccluderPolygons& all, const Occluder& body, std::span<const Index> own) {
-  const Vec3 reach(body.radius);
-  for (Index p = 0; p < all.polygons.size(); ++p) {
-    const OccluderPolygon& polygon = all.polygons[p];
-    if (glm::any(glm::greaterThan(polygon.lower, body.centre + reach)) ||
-        glm::any(glm::lessThan(polygon.upper, body.centre - reach)) ||
-        std::find(own.begin(), own.end(), p) != own.end()) {
-      continue;
+  bool empty = true;
+  all.tree.query(boxAround(body, 0), [&](Index p) {
+    if (std::find(own.begin(), own.end(), p) == own.end()) {
+      const double inside = areaInside(all, all.polygons[p], body, all.coincidence);
+      empty = inside <= all.coincidence * body.radius;
     }
-    if (areaInside(all, polygon, body, all.coincidence) > all.coincidence * body.radius) {
-      return false;
-    }
-  }
-  return true;
+    return empty;
+  });
+  return empty;
 }
 
 }  // namespace radiosity

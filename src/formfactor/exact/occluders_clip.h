@@ -22,6 +22,9 @@ double highestInside(const OccluderPolygons& all, const OccluderPolygon& polygon
 Index faceThatHolds(const OccluderPolygons& all, const OccluderPolygon& polygon,
                     const Occluder& solid);
 
+/// The box of a body, `margin` wider on all sides.
+Box3 boxAround(const Occluder& body, double margin);
+
 /// True if no polygon but those of `own` comes inside, farther than the coincidence.
 bool isEmpty(const OccluderPolygons& all, const Occluder& body, std::span<const Index> own);
 

@@ -68,8 +68,8 @@ bool isCoveredBySolids(const OccluderPolygons& all, const OccluderPolygon& polyg
     open.push_back({all.vertices[t[0]], all.vertices[t[1]], all.vertices[t[2]]});
   }
   if (open.empty()) return false;
-  const Vec3 middle = 0.5 * (polygon.lower + polygon.upper);
-  const double radius = 0.5 * glm::distance(polygon.lower, polygon.upper);
+  const Vec3 middle = 0.5 * (polygon.box.low + polygon.box.high);
+  const double radius = 0.5 * glm::distance(polygon.box.low, polygon.box.high);
   Piece below;
   Piece above;
   for (const Occluder& solid : solids) {

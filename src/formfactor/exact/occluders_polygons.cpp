@@ -7,6 +7,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "formfactor/exact/occluders_hull.h"
 #include "mesh/plane_frame.h"
 #include "mesh/welded_points.h"
 
@@ -49,6 +50,9 @@ OccluderPolygons::OccluderPolygons(const PatchMesh& mesh, const ElementSet& elem
   for (Index v = 0; v < welded.size(); ++v) vertices.push_back(welded[v]);
   for (const Index p : order) addPolygon(mesh, elements, p, place);
   findBounding();
+  std::vector<Box3> boxes;
+  for (const OccluderPolygon& polygon : polygons) boxes.push_back(polygon.box);
+  tree = BoxTree(std::move(boxes));
   std::vector<std::uint8_t> back_is_patch(source.size(), 0);
   for (const Facet& facet : elements.facets) {
     if (facet.back && !facet.bare) back_is_patch[facet.polygon] = 1;
@@ -75,18 +79,21 @@ void OccluderPolygons::addPolygon(const PatchMesh& mesh, const ElementSet& eleme
 }
 
 void OccluderPolygons::describe(OccluderPolygon& polygon) const {
-  polygon.lower = polygon.upper = vertices[polygon.loops[0][0]];
   Vec3 area(0.0);
   for (const std::vector<Index>& loop : polygon.loops) {
     area += vectorArea(loop.size(), [&](std::size_t k) { return vertices[loop[k]]; });
     for (const Index v : loop) {
-      polygon.lower = glm::min(polygon.lower, vertices[v]);
-      polygon.upper = glm::max(polygon.upper, vertices[v]);
+      polygon.box.add(vertices[v]);
       const double height = glm::dot(polygon.normal, vertices[v]) - polygon.offset;
       if (std::abs(height) > coincidence) polygon.planar = false;
     }
   }
   polygon.area = glm::dot(area, polygon.normal);
+  std::vector<Index> all;
+  for (const std::vector<Index>& loop : polygon.loops)
+    all.insert(all.end(), loop.begin(), loop.end());
+  polygon.corners = planarHull(vertices, all, polygon.normal, coincidence);
+  if (polygon.corners.empty()) polygon.corners = std::move(all);
   polygon.convex = polygon.loops.size() == 1;
   const std::vector<Index>& loop = polygon.loops[0];
   for (std::size_t k = 0; polygon.convex && k < loop.size(); ++k) {
@@ -110,6 +117,7 @@ void OccluderPolygons::findBounding() {
       below = below || height < -coincidence;
     }
     polygon.bounds_scene = !(above && below);
+    polygon.faces_scene = !below;
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "formfactor/exact/elements.h"
+#include "formfactor/exact/occluders_boxes.h"
 #include "radiosity/base.h"
 #include "radiosity/patch_mesh.h"
 
@@ -17,6 +18,7 @@ struct OccluderPolygon {
   /// Into OccluderPolygons::vertices; outer loops counter-clockwise about the normal, holes
   /// clockwise.
   std::vector<std::vector<Index>> loops;
+  std::vector<Index> corners;  ///< of its convex hull: all that a half-space has to be asked
   Vec3 normal{0.0};
   double offset = 0;          ///< dot(normal, x) of its plane
   double area = 0;            ///< scaled
@@ -24,7 +26,8 @@ struct OccluderPolygon {
   bool convex = false;        ///< one loop that turns one way
   bool one_sided = true;      ///< its back carries no patches
   bool bounds_scene = false;  ///< all of the scene lies on one side of its plane
-  Vec3 lower{0.0}, upper{0.0};
+  bool faces_scene = false;   ///< namely in front of it: there is nothing behind
+  Box3 box;
 };
 
 /// A directed edge between vertices.
@@ -38,6 +41,7 @@ struct OccluderPolygons {
   std::vector<Vec3> vertices;  ///< in ElementSet's coordinates
   std::vector<OccluderPolygon> polygons;
   double coincidence = 0;
+  BoxTree tree;  ///< of the polygons' boxes
 
   /// Polygons that run along each directed edge of an outline.
   std::map<OccluderEdge, std::vector<Index>> edgeUsers() const;

@@ -25,9 +25,15 @@ double depthBehind(const OccluderPolygons& all, const OccluderPolygon& polygon) 
     shaft.planes.push_back({out, glm::dot(out, a)});
   }
   double highest = -std::numeric_limits<double>::infinity();
-  for (const OccluderPolygon& other : all.polygons) {
-    highest = std::max(highest, highestInside(all, other, shaft, all.coincidence));
-  }
+  // All that is behind: no farther than the scene reaches.
+  const Vec3 reach = glm::distance(all.tree.bound().low, all.tree.bound().high) * polygon.normal;
+  Box3 behind = polygon.box;
+  behind.add(polygon.box.low - reach);
+  behind.add(polygon.box.high - reach);
+  all.tree.query(behind, [&](Index p) {
+    highest = std::max(highest, highestInside(all, all.polygons[p], shaft, all.coincidence));
+    return true;
+  });
   return polygon.offset - highest;
 }
 

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "formfactor/exact/occluders_clip.h"
 #include "formfactor/exact/occluders_hull.h"
@@ -107,18 +108,14 @@ class SolidSearch {
 
   bool mayJoin(Index p, bool convex_only) const {
     const OccluderPolygon& polygon = all_.polygons[p];
-    return polygon.planar && polygon.one_sided && (polygon.convex || !convex_only);
+    return polygon.planar && polygon.one_sided && !polygon.faces_scene &&
+           (polygon.convex || !convex_only);
   }
 
   bool isBehind(const OccluderPolygon& polygon, const Occluder::Plane& plane) const {
-    for (const std::vector<Index>& loop : polygon.loops) {
-      for (const Index v : loop) {
-        if (glm::dot(plane.normal, all_.vertices[v]) > plane.offset + all_.coincidence) {
-          return false;
-        }
-      }
-    }
-    return true;
+    return std::all_of(polygon.corners.begin(), polygon.corners.end(), [&](Index v) {
+      return glm::dot(plane.normal, all_.vertices[v]) <= plane.offset + all_.coincidence;
+    });
   }
 
   /// Adds a polygon if the set stays in convex position.
@@ -132,9 +129,7 @@ class SolidSearch {
       if (!isBehind(polygon, plane)) return false;
     }
     if (!liesOnFace(set, polygon)) set.planes.push_back({polygon.normal, polygon.offset});
-    for (const std::vector<Index>& loop : polygon.loops) {
-      set.vertices.insert(set.vertices.end(), loop.begin(), loop.end());
-    }
+    set.vertices.insert(set.vertices.end(), polygon.corners.begin(), polygon.corners.end());
     set.polygons.push_back(p);
     return true;
   }
@@ -155,8 +150,7 @@ class SolidSearch {
                  const std::vector<std::uint8_t>& taken) const {
     ConvexSet set;
     add(set, seed);
-    std::vector<std::uint8_t> refused(all_.polygons.size(), 0);
-    refused[seed] = 1;
+    std::set<Index> met{seed};
     for (std::size_t k = 0; k < set.polygons.size(); ++k) {
       // By value: add() appends to the set.
       const OccluderPolygon& polygon = all_.polygons[set.polygons[k]];
@@ -165,8 +159,7 @@ class SolidSearch {
           const auto across = users_.find({loop[(c + 1) % loop.size()], loop[c]});
           if (across == users_.end()) continue;
           for (const Index p : across->second) {
-            if (taken[p] || refused[p] || !mayJoin(p, convex_only)) continue;
-            refused[p] = 1;
+            if (taken[p] || !mayJoin(p, convex_only) || !met.insert(p).second) continue;
             if (carefully && liesOnFace(set, all_.polygons[p])) continue;
             ConvexSet before;
             if (carefully) before = set;
@@ -206,19 +199,21 @@ class SolidSearch {
 
   /// Marks the polygons that lie on faces of a solid.
   void take(const Occluder& solid, std::vector<std::uint8_t>& taken) const {
-    for (Index p = 0; p < all_.polygons.size(); ++p) {
+    all_.tree.query(boxAround(solid, all_.coincidence), [&](Index p) {
       if (!taken[p] && faceThatHolds(all_, all_.polygons[p], solid) != kNone) taken[p] = 1;
-    }
+      return true;
+    });
   }
 
   /// Of polygons not taken yet.
   double areaOnFaces(const Occluder& solid, const std::vector<std::uint8_t>& taken) const {
     double area = 0;
-    for (Index p = 0; p < all_.polygons.size(); ++p) {
+    all_.tree.query(boxAround(solid, all_.coincidence), [&](Index p) {
       if (!taken[p] && faceThatHolds(all_, all_.polygons[p], solid) != kNone) {
         area += all_.polygons[p].area;
       }
-    }
+      return true;
+    });
     return area;
   }
 

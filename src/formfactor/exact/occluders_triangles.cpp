@@ -164,7 +164,7 @@ std::vector<std::array<Index, 3>> trianglesOf(const OccluderPolygons& all,
   }
   // Triangles that overlap or leave the polygon add up to more than it has.
   const double error = std::abs(covered - whole);
-  const double length = glm::distance(polygon.lower, polygon.upper);
+  const double length = glm::distance(polygon.box.low, polygon.box.high);
   if (error > all.coincidence * length) triangles.clear();
   return triangles;
 }
