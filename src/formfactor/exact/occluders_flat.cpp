@@ -108,6 +108,7 @@ class PieceMerger {
           glm::distance(all_.vertices[edge.first], all_.vertices[edge.second]);
     }
     std::vector<std::tuple<double, Index, Index>> order;
+    order.reserve(borders.size());
     for (const auto& [pair, length] : borders) order.emplace_back(-length, pair.first, pair.second);
     std::sort(order.begin(), order.end());
     bool any = false;

@@ -177,6 +177,7 @@ class SolidSearch {
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     std::vector<Vec3> points;
+    points.reserve(vertices.size());
     for (const Index v : vertices) points.push_back(all_.vertices[v]);
     return convexHull(points, set.planes, all_.coincidence);
   }
