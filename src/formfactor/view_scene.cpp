@@ -65,13 +65,13 @@ void appendPieces(const PatchMesh& mesh, std::size_t patch, double scale,
   }
 }
 
-ViewScene::ViewScene(const PatchMesh& mesh)
+ViewScene::ViewScene(const PatchMesh& mesh, bool with_grids)
     : patches(mesh.size()),
       items(mesh.size() + mesh.surface_names.size()),
       scale(powerOfTwoBelow(diagonal(mesh))),
       coincidence(MeshOptions().weld * diagonal(mesh) * scale) {
   addPolygons(mesh);
-  addSides(mesh);
+  addSides(mesh, with_grids);
   numberCells();
 }
 
@@ -118,7 +118,7 @@ void ViewScene::addPolygons(const PatchMesh& mesh) {
   }
 }
 
-void ViewScene::addSides(const PatchMesh& mesh) {
+void ViewScene::addSides(const PatchMesh& mesh, bool with_grids) {
   std::vector<std::array<std::vector<Index>, 2>> members(mesh.polygons.size());
   for (Index i = 0; i < mesh.size(); ++i) {
     if (mesh.polygon[i] != kNone && mesh.area[i] > 0) {
@@ -134,7 +134,7 @@ void ViewScene::addSides(const PatchMesh& mesh) {
         continue;
       }
       side.item = own.front();
-      if (own.size() == 1) continue;
+      if (own.size() == 1 || !with_grids) continue;
       std::sort(own.begin(), own.end(), [&](Index a, Index b) {
         return mesh.index_in_surface[a] < mesh.index_in_surface[b];
       });

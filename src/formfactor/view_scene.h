@@ -33,7 +33,8 @@ struct ViewPolygon {
 /// precision depths neither overflow nor depend on the scene's unit; it changes no bit of any
 /// mantissa.
 struct ViewScene {
-  explicit ViewScene(const PatchMesh& mesh);
+  /// Without grids a side of many patches counts as its first: enough to tell bare sides.
+  explicit ViewScene(const PatchMesh& mesh, bool with_grids = true);
 
   std::size_t patches;  ///< N
   std::size_t items;    ///< N + surfaces
@@ -57,7 +58,7 @@ struct ViewScene {
  private:
   std::vector<Index> packVertices(const PatchMesh& mesh);
   void addPolygons(const PatchMesh& mesh);
-  void addSides(const PatchMesh& mesh);
+  void addSides(const PatchMesh& mesh, bool with_grids);
   void numberCells();
 };
 

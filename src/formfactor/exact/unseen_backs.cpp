@@ -16,7 +16,7 @@ constexpr std::size_t kMostSolidAngles = 1000000;
 class UnseenBacks {
  public:
   explicit UnseenBacks(const PatchMesh& mesh)
-      : mesh_(mesh), scene_(mesh), backs_(scene_), patches_of_(mesh.polygons.size()) {
+      : mesh_(mesh), scene_(mesh, false), backs_(scene_), patches_of_(mesh.polygons.size()) {
     for (Index i = 0; i < mesh.size(); ++i) {
       if (mesh.polygon[i] != kNone && mesh.area[i] > 0) patches_of_[mesh.polygon[i]].push_back(i);
     }
