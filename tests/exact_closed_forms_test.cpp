@@ -148,7 +148,7 @@ TEST(ClosedForms, TurnedMovedAndScaledValuesAreTheSame) {
 
 TEST(ClosedForms, NearlyFlatAndNearlyClosedEdges) {
   const Loop unit = rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
-  for (const double angle : {1e-2, 1e-4, 1e-5}) {
+  for (const double angle : {1e-2, 1e-4, 1e-6}) {
     const Loop flap = rectangle({0, 0, 0}, {0, 1, 0}, {std::cos(angle), 0, std::sin(angle)});
     // For a wedge of infinite length 1 - sin(angle / 2); the open ends take less than the gap.
     const double closed = formFactor(unit, flap, 1e-9);
@@ -160,8 +160,48 @@ TEST(ClosedForms, NearlyFlatAndNearlyClosedEdges) {
     const double open = formFactor(unit, flat, 1e-9);
     // 1 - cos(angle / 2) for infinite length: angle^2 / 8, and less for a square.
     EXPECT_GE(open, 0);
-    EXPECT_LE(open, angle * angle / 8 * (1 + 1e-6));
+    // Contours keep 1e-15 of the squares' size.
+    EXPECT_LE(open, angle * angle / 8 + 2e-15);
   }
+}
+
+TEST(ClosedForms, TouchingInsideAnEdgeIsTheSumOfTouchingAtVertices) {
+  // A triangle stands with one corner inside an edge of the square: skew edges that meet in a T.
+  const Loop triangle = {{0, 0.37, 0}, {-0.5, 0.9, 0.4}, {-0.3, 0.1, 0.8}};
+  const Vec3 normal = glm::cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
+  ASSERT_GT(glm::dot(normal, Vec3(1, 0.5, 0)), 0);
+  const auto strip = [](double from, double to) {
+    return rectangle({0, from, 0}, {1, 0, 0}, {0, to - from, 0});
+  };
+  for (const double tolerance : {1e-5, 1e-11}) {
+    const double whole = formFactor(strip(0, 1), triangle, tolerance);
+    const double parts = 0.37 * formFactor(strip(0, 0.37), triangle, tolerance) +
+                         0.63 * formFactor(strip(0.37, 1), triangle, tolerance);
+    EXPECT_NEAR(whole, parts, 2 * tolerance * whole);
+    EXPECT_GT(whole, 0.01);
+  }
+}
+
+TEST(ClosedForms, SliversOfAspectAMillion) {
+  // Strips of width w under and beside a unit square: to first order in w the strip is a line, and
+  // every crosswise position sees alike.
+  const Loop facing = rectangle({0, 0, 1}, {0, 1, 0}, {1, 0, 0});
+  const double wide = 1e-3;
+  const double thin = 1e-6;
+  const auto strip = [](double w) { return rectangle({0.5 - w / 2, 0, 0}, {w, 0, 0}, {0, 1, 0}); };
+  const double expected = formFactor(strip(wide), facing, 1e-9);
+  // The middle of the square: first-order terms vanish, what is left is of order (1e-3)^2.
+  EXPECT_NEAR(formFactor(strip(thin), facing, 1e-9), expected, 1e-6 * expected);
+  EXPECT_NEAR(formFactor(strip(thin), facing, 1e-5), expected, 1.1e-5 * expected);
+  // A strip along the foot of a wall sees half of everything, less what its ends miss.
+  const Loop wall = rectangle({0, 0, 0}, {0, 1, 0}, {0, 0, 1});
+  const Loop foot = rectangle({0, 0, 0}, {thin, 0, 0}, {0, 1, 0});
+  EXPECT_NEAR(formFactor(foot, wall, 1e-5), 0.5, 1e-5);
+  // Two strips a unit apart.
+  const Loop above = rectangle({0.5, 0, 1}, {0, 1, 0}, {thin, 0, 0});
+  // Lines of length 1 at distance 1: F / width = 2/pi integral of (1 - u)/(1 + u^2)^2 over [0, 1].
+  const double lines = 0.25;
+  EXPECT_NEAR(formFactor(strip(thin), above, 1e-7), thin * lines, 1e-6 * thin * lines);
 }
 
 TEST(PointToPolygon, PublishedValues) {

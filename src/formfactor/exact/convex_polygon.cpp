@@ -4,7 +4,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <numbers>
+
+#include "formfactor/exact/point_to_polygon.h"
 
 namespace radiosity {
 namespace {
@@ -73,16 +74,7 @@ PlaneSide split(const ConvexPolygon& in, const ClipPlane& plane, std::uint16_t e
 }
 
 double lambert(const ConvexPolygon& polygon, const Vec3& normal) {
-  const std::size_t count = polygon.corners.size();
-  double sum = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    const Vec3& a = polygon.corners[k];
-    const Vec3& b = polygon.corners[k + 1 < count ? k + 1 : 0];
-    const Vec3 c = glm::cross(a, b - a);
-    const double s = glm::length(c);
-    if (s > 0) sum += glm::dot(normal, c) / s * std::atan2(s, glm::dot(a, b));
-  }
-  return -sum / (2 * std::numbers::pi);
+  return pointToPolygon(Vec3(0.0), normal, polygon.corners);
 }
 
 }  // namespace radiosity

@@ -44,9 +44,8 @@ PlaneSide split(const ConvexPolygon& in, const ClipPlane& plane, std::uint16_t e
                 ConvexPolygon* inside, ConvexPolygon* outside);
 
 /// Form factor from the origin, on a surface of normal `normal` (unit), to a polygon above its
-/// horizon that turns counter-clockwise about its own front, which faces the origin (Lambert; Baum,
-/// Rushmeier & Winget 1989, eq. 9). Written with a x e rather than a x b, which loses its digits
-/// where the edge is short, and with the two-argument arc tangent, which loses none anywhere.
+/// horizon that turns counter-clockwise about its own front, which faces the origin: Lambert's
+/// formula as in point_to_polygon.h.
 double lambert(const ConvexPolygon& polygon, const Vec3& normal);
 
 }  // namespace radiosity

@@ -25,16 +25,19 @@ double distanceToEdges(const Vec3& p, std::span<const Vec3> polygon) {
 }
 
 constexpr int kLeastPoints = 2;
+/// More cost more than contours.
 constexpr int kMostPoints = 6;
+/// Of the square of the pair's extent: what contours lose to cancellation.
+constexpr double kContourRounding = 1e-16;
 
 /// The least n for which n x n points are good for the tolerance: the error is below
 /// kLambertError ratio^(2n - 1), ratio = radius / distance (a triangle's Jacobian takes one
 /// degree).
 int pointsFor(double ratio, double tolerance) {
   constexpr double kLambertError = 10;
-  if (!(ratio < 1)) return kMostPoints + 1;
+  if (!(ratio < 1)) return kMostGaussNodes + 1;
   const double needed = 0.5 * (std::log(tolerance / kLambertError) / std::log(ratio) + 1);
-  return std::max(kLeastPoints, int(std::ceil(std::min(needed, kMostPoints + 1.0))));
+  return std::max(kLeastPoints, int(std::ceil(std::min(needed, kMostGaussNodes + 1.0))));
 }
 
 }  // namespace
@@ -66,7 +69,12 @@ NearValue nearExchange(const PlanarElement& a, const PlanarElement& b, double to
   const double distance = distanceToEdges(small.centroid, large.outline);
   const int points = pointsFor(small.radius / distance, tolerance);
   if (points <= kMostPoints) return {lambertExchange(small, large, points), false};
-  return {contourExchange(a.outline, b.outline, tolerance), true};
+  const double exchange = contourExchange(a.outline, b.outline, tolerance);
+  // Thin elements exchange little for their length: there contours may have too few digits left.
+  const double extent = glm::distance(a.centroid, b.centroid) + a.radius + b.radius;
+  const bool exact = kContourRounding * extent * extent <= tolerance * exchange;
+  if (exact || points > kMostGaussNodes) return {exchange, true};
+  return {lambertExchange(small, large, points), false};
 }
 
 }  // namespace radiosity

@@ -22,8 +22,8 @@ struct NearValue {
 
 /// G of two elements, neither crossing the other's plane, to `tolerance` relative. Lambert's
 /// formula over n x n Gauss points on the smaller one where its radius is small against its
-/// centroid's distance from the other's edges, for there the formula is analytic; contour integrals
-/// otherwise.
+/// centroid's distance from the other's edges, for there the formula is analytic, or where contour
+/// integrals would cancel too far (thin elements); contour integrals otherwise.
 NearValue nearExchange(const PlanarElement& a, const PlanarElement& b, double tolerance);
 
 /// The same by n x n Gauss points on `from`, whatever the distance.
