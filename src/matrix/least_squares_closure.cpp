@@ -27,7 +27,6 @@ constexpr double kShortestStep = 1e-6;
 /// The largest share of each row's own weight that is added to it once entries are held at 0: a row
 /// that lost all its free entries then still finds its way back. It falls with what rows lack.
 constexpr double kDamping = 1e-3;
-constexpr std::size_t kRowGrain = 16;
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
@@ -49,8 +48,9 @@ class LeastSquaresClosure {
                       std::span<const double> target);
 
   void findMultipliers(double tolerance);
-  /// The changes they make, as the matrix would store them; fills in the report.
-  std::vector<RunRow> changes(double tolerance);
+  /// The changes they make, as the matrix would store them, if they are to be kept; fills in the
+  /// report.
+  std::vector<RunRow> changes(double tolerance, bool keep);
 
   const ClosureReport& report() const { return report_; }
 
@@ -61,7 +61,6 @@ class LeastSquaresClosure {
   void evaluate();
   double largestLack() const;
   std::vector<double> newtonStep(double tolerance);
-  void addMoves(const std::vector<RunRow>& changes);
 
   const ExchangeMatrix& matrix_;
   const UncertainEntries& uncertain_;
@@ -266,65 +265,49 @@ void LeastSquaresClosure::findMultipliers(double tolerance) {
   }
 }
 
-std::vector<RunRow> LeastSquaresClosure::changes(double tolerance) {
-  std::vector<RunRow> changes(area_.size());
-  std::vector<double> gathered(area_.size(), 0.0);
+// Rows are made one by one, and dropped again unless they are to be kept.
+std::vector<RunRow> LeastSquaresClosure::changes(double tolerance, bool keep) {
+  const std::size_t n = area_.size();
+  std::vector<RunRow> kept(keep ? n : 0);
+  std::vector<double> gathered(n, 0.0);
+  std::vector<double> largest(n, 0.0);
+  std::vector<double> moved(n, 0.0);
   const bool single = matrix_.precision() == Precision::single;
   const auto row = [&](std::size_t k, double* handed_on, std::size_t) {
-    RunRow& out = changes[k];
-    out.runs = uncertain_.row(k).runs;
-    if (single) {
-      out.single.assign(free_[k].size(), 0.0f);
-    } else {
-      out.real.assign(free_[k].size(), 0.0);
-    }
+    RunRow out{.runs = uncertain_.row(k).runs, .single = {}, .real = {}};
+    if (keep && single) out.single.assign(free_[k].size(), 0.0F);
+    if (keep && !single) out.real.assign(free_[k].size(), 0.0);
     forUncertain(k, [&](std::size_t index, std::size_t later, std::uint8_t code, double f) {
       const double wanted = area_[k] * squared_[code] * (multiplier_[k] + multiplier_[later]);
       double change = std::max(-f, wanted);
-      if (single) {
-        change = out.single[index] = float(change);
-      } else {
-        out.real[index] = change;
-      }
+      if (single) change = double(float(change));
+      if (keep && single) out.single[index] = float(change);
+      if (keep && !single) out.real[index] = change;
       gathered[k] += change;
       handed_on[later - k - 1] += area_[k] * change;
+      if (change == 0) return;
+      const double other_end = area_[k] / area_[later];
+      largest[k] = std::max(largest[k], std::abs(change) * std::max(1.0, other_end));
+      moved[k] += change * change * (1 + other_end);
     });
+    if (keep) kept[k] = std::move(out);
   };
   pass_.run(1, row, [&](std::size_t k, const double* handed) {
     shortfall_[k] -= gathered[k] + (area_[k] > 0 ? handed[0] / area_[k] : 0);
   });
   report_.largest_residual = 0;
-  for (std::size_t k = 0; k < area_.size(); ++k) {
+  double sum = 0;
+  for (std::size_t k = 0; k < n; ++k) {
     const double residual = std::abs(shortfall_[k]);
     report_.largest_residual = std::max(report_.largest_residual, residual);
     if (residual > tolerance && root_[k] == 0) ++report_.fixed_rows;
+    report_.largest_move = std::max(report_.largest_move, largest[k]);
+    sum += matrix_.area()[matrix_.order()[k]] * moved[k];
   }
   report_.reached = report_.largest_residual <= tolerance;
-  addMoves(changes);
-  return changes;
-}
-
-/// How far the entries of both triangles move.
-void LeastSquaresClosure::addMoves(const std::vector<RunRow>& changes) {
-  const std::size_t n = area_.size();
-  std::vector<double> largest(n, 0.0);
-  std::vector<double> moved(n, 0.0);
-  parallelFor(n, kRowGrain, [&](std::size_t k) {
-    const double area = matrix_.area()[matrix_.order()[k]];
-    forRuns(changes[k], [&](std::size_t offset, const auto* values, std::size_t count) {
-      for (std::size_t m = 0; m < count; ++m) {
-        const double change = values[m];
-        if (change == 0) continue;
-        const double other_end = area_[k] / area_[k + 1 + offset + m];
-        largest[k] = std::max(largest[k], std::abs(change) * std::max(1.0, other_end));
-        moved[k] += area * change * change * (1 + other_end);
-      }
-    });
-  });
-  for (const double move : largest) report_.largest_move = std::max(report_.largest_move, move);
   const double total = weightedSquares(matrix_, Part::raw);
-  const double sum = std::accumulate(moved.begin(), moved.end(), 0.0);
   report_.relative_move = total > 0 ? std::sqrt(sum / total) : 0;
+  return kept;
 }
 
 }  // namespace
@@ -340,7 +323,7 @@ ClosureReport closeRows(ExchangeMatrix& matrix, const UncertainEntries& uncertai
   LeastSquaresClosure closure(matrix, uncertain, target_row_sums);
   // Half: the other half is left for the rounding of what is stored.
   closure.findMultipliers(tolerance / 2);
-  std::vector<RunRow> changes = closure.changes(tolerance);
+  std::vector<RunRow> changes = closure.changes(tolerance, enforce);
   if (enforce) matrix.setCorrection(std::move(changes));
   return closure.report();
 }

@@ -60,6 +60,11 @@ class TwoSidedPass {
     });
   }
 
+  /// The most that run() takes.
+  static std::size_t bytes(std::size_t rows, std::size_t planes) {
+    return kMostChunks * rows * planes * sizeof(double);
+  }
+
  private:
   static constexpr std::size_t kRowsPerChunk = 128;
   static constexpr std::size_t kMostChunks = 32;

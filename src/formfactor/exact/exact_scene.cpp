@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "formfactor/exact/recorded_pairs.h"
+#include "matrix/work_bytes.h"
 
 namespace radiosity {
 namespace {
@@ -74,11 +75,12 @@ ExactEstimate estimateExact(const ExactScene& scene, const FormFactorOptions& op
   constexpr std::size_t kElementBytes = 512;  // an element, its cluster, the kernels' copies
   constexpr std::size_t kAccounts = 8 * sizeof(double);
   const std::size_t row_sums = 4 * 2 * sizeof(double) * scene.order.ranked;
-  estimate.bytes =
-      ExchangeMatrix::estimateSymmetricBytes(n, estimate.entries_per_row,
-                                             options.storedPrecision()) +
-      n * kAccounts + scene.elements.size() * kElementBytes +
+  const std::size_t filling =
       threads * (scene.tasks.panelBytes(scene.elements) + row_sums + 2 * sample.task_bytes);
+  estimate.bytes = ExchangeMatrix::estimateSymmetricBytes(n, estimate.entries_per_row,
+                                                          options.storedPrecision()) +
+                   n * kAccounts + scene.elements.size() * kElementBytes +
+                   std::max(filling, matrixWorkBytes(n, threads));  // one after the other
 
   // Measured on one core of a 2.7 GHz Xeon: a pair in closed form or by quadrature, and a partial
   // pair with what each of its occluders adds.
