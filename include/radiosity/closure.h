@@ -70,9 +70,10 @@ class UncertainEntries {
 /// "An improved method for smoothing approximate exchange areas", Int. J. Heat Mass Transfer 38,
 /// 1995), with the sign condition as part of it.
 ///
-/// `enforce` true: the change becomes the matrix's correction; false: it is only reported. A row in
-/// which nothing is uncertain stays as it is, and not every target can be reached: the report says
-/// what is left. Errors: InputError where the matrix is not symmetric or sizes differ.
+/// `enforce` true: the change becomes the matrix's correction; false: it is only reported, to two
+/// digits, which is cheaper: the tolerance is then at least 1% of the largest raw residual. A row
+/// in which nothing is uncertain stays as it is, and not every target can be reached: the report
+/// says what is left. Errors: InputError where the matrix is not symmetric or sizes differ.
 ClosureReport closeRows(ExchangeMatrix& matrix, const UncertainEntries& uncertain,
                         std::span<const double> target_row_sums, bool enforce,
                         double tolerance = 1e-9);

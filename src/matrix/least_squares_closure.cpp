@@ -17,6 +17,8 @@ namespace radiosity {
 
 namespace {
 
+/// Of the largest raw residual: as near as a closure that is only reported comes to it.
+constexpr double kReportedShare = 0.01;
 /// Newton steps; one where no entry turns negative, else a handful.
 constexpr int kMostRounds = 30;
 constexpr std::size_t kMostSteps = 2000;
@@ -321,6 +323,9 @@ ClosureReport closeRows(ExchangeMatrix& matrix, const UncertainEntries& uncertai
                                  matrix.isSymmetric() ? "symmetric" : "row by row", matrix.size()));
   }
   LeastSquaresClosure closure(matrix, uncertain, target_row_sums);
+  if (!enforce) {
+    tolerance = std::max(tolerance, kReportedShare * closure.report().largest_residual_before);
+  }
   // Half: the other half is left for the rounding of what is stored.
   closure.findMultipliers(tolerance / 2);
   std::vector<RunRow> changes = closure.changes(tolerance, enforce);
