@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "mesh_builder.h"
@@ -93,6 +94,19 @@ TEST(TruthObstructed, AnObstacleInPartsIsTheObstacle) {
       level(0.25, 0.5, 0.25, 0.5, 0.5, true), level(0.5, 0.75, 0.25, 0.5, 0.5, true),
       level(0.25, 0.5, 0.5, 0.75, 0.5, true), level(0.5, 0.75, 0.5, 0.75, 0.5, true)};
   EXPECT_NEAR(plateToPlate(blockedPlates(quarters, 1), 1, 1e-10), 0.0995062945990, 1e-10);
+}
+
+TEST(TruthObstructed, AGapOfAMillionth) {
+  // A strip a millionth wide along a wall's foot, roofed over a millionth up: what reaches the wall
+  // is what reaches its lowest millionth (Howell C-14 for w = h << l: 1 - 1/sqrt(2), less what
+  // leaves at the ends, some millionths of a logarithm).
+  constexpr double kThin = 1e-6;
+  MeshBuilder builder;
+  builder.polygon("strip", {level(0, 1, 0, kThin, 0, true)});
+  builder.polygon("roof", {level(0, 1, 0, kThin, kThin, false)});
+  builder.polygon("wall", {{{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}}});
+  const PatchMesh mesh = builder.build();
+  EXPECT_NEAR(GroundTruth(mesh).formFactor(0, 2), 1 - std::sqrt(0.5), 1e-5);
 }
 
 TEST(TruthObstructed, AWindowAndItsShutterAddUp) {

@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exact_scenes.h"
 #include "radiosity/form_factors.h"
-#include "radiosity/scene.h"
-#include "scene_builder.h"
 #include "truth/ground_truth.h"
 
 namespace radiosity {
@@ -63,30 +62,6 @@ Score score(const PatchMesh& mesh, const FormFactors& f, std::size_t rows) {
   return s;
 }
 
-PatchMesh meshOf(const Scene& scene, std::size_t patches, bool faces_as_patches = false) {
-  MeshOptions options;
-  options.patches = patches;
-  options.faces_as_patches = faces_as_patches;
-  Progress silent;
-  return meshScene(scene, options, silent).mesh;
-}
-
-Scene load(const std::string& name) {
-  return loadScene(RADIOSITY_SOURCE_DIR "/data/" + name + ".obj");
-}
-
-/// The patches of a mesh as the faces of a scene, as if another program had meshed it.
-Scene facesOf(const PatchMesh& mesh) {
-  test::SceneBuilder builder;
-  for (const std::string& name : mesh.surface_names) builder.surface(name);
-  for (std::size_t i = 0; i < mesh.frontCount(); ++i) {
-    std::vector<Vec3> corners;
-    for (const Index v : mesh.outline(i)) corners.push_back(mesh.vertices[v]);
-    builder.face(mesh.surface[i], corners);
-  }
-  return builder.scene();
-}
-
 /// A mesh in the accounts of the exact method and of the truth, computed once for all tests.
 struct Judged {
   std::string name;
@@ -103,9 +78,12 @@ const std::vector<Judged>& judged() {
       list.back().factors = exact(list.back().mesh);
       list.back().score = score(list.back().mesh, list.back().factors, rows);
     };
-    add("closed Cornell box", meshOf(load("cornell-box-closed"), 1000), 60);
-    add("two rooms", meshOf(load("two-rooms"), 600), 40);
-    add("faces as patches", meshOf(facesOf(list[0].mesh), 1, true), 20);
+    add("closed Cornell box", test::meshOf(test::dataScene("cornell-box-closed"), 1000), 60);
+    add("two rooms", test::meshOf(test::dataScene("two-rooms"), 600), 40);
+    add("faces as patches",
+        test::meshOf(test::sceneOfPatches(list[0].mesh, test::dataScene("cornell-box-closed")), 1,
+                     true),
+        20);
     return list;
   }();
   return all;
@@ -131,7 +109,7 @@ TEST(ExactAgainstTruth, DISABLED_ErrorFiguresCoverTheErrorsAndAreNotMuchLarger) 
 }
 
 TEST(ExactAgainstTruth, ATighterToleranceLowersTheError) {
-  const PatchMesh mesh = meshOf(load("cornell-box-closed"), 300);
+  const PatchMesh mesh = test::meshOf(test::dataScene("cornell-box-closed"), 300);
   double previous = 1;
   for (const double tolerance : {1e-1, 1e-3, 1e-5}) {
     const Score s = score(mesh, exact(mesh, tolerance), 20);

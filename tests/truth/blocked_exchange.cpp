@@ -4,6 +4,7 @@
 #include <queue>
 
 #include "clipped_view.h"
+#include "contour.h"
 #include "critical_lines.h"
 #include "gauss.h"
 
@@ -62,6 +63,11 @@ class Integral {
         e.blocked = gauss(view, kFine, e);
         e.error = std::abs(e.blocked - coarse);
         points_ += kFine * kFine;
+      }
+      if (e.hidden) {
+        // Everything is: no rule is needed, and none is trusted next to the target.
+        e.blocked = facingExchange(Loop(std::span<const Vec3>(triangle)), target_.loop);
+        e.error = 0;
       }
     }
     blocked_ += e.blocked;

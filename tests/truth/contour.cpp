@@ -166,17 +166,10 @@ std::vector<Edge> edgesOf(const RealLoop& loop) {
   return edges;
 }
 
-}  // namespace
-
-double unoccludedExchange(const Loop& a, const Loop& b) {
-  const RealLoop whole_a(std::span<const Vec3>(a.begin(), a.size()));
-  const RealLoop whole_b(std::span<const Vec3>(b.begin(), b.size()));
-  const RealLoop front_a = inFrontOf(whole_a, whole_b);
-  const RealLoop front_b = inFrontOf(whole_b, whole_a);
-  if (front_a.empty() || front_b.empty()) return 0;
-  const std::vector<Edge> edges_b = edgesOf(front_b);
+double contourSum(const RealLoop& a, const RealLoop& b) {
+  const std::vector<Edge> edges_b = edgesOf(b);
   Real sum = 0;
-  for (const Edge& e : edgesOf(front_a)) {
+  for (const Edge& e : edgesOf(a)) {
     for (const Edge& f : edges_b) {
       const Real cosine = glm::dot(e.direction, f.direction);
       if (std::abs(cosine) > kRounding * kRounding) sum += cosine * edgePair(e, f);
@@ -184,5 +177,22 @@ double unoccludedExchange(const Loop& a, const Loop& b) {
   }
   return double(std::max(sum, Real(0)) / (2 * std::numbers::pi_v<Real>));
 }
+
+RealLoop realLoop(const Loop& loop) {
+  return RealLoop(std::span<const Vec3>(loop.begin(), loop.size()));
+}
+
+}  // namespace
+
+double unoccludedExchange(const Loop& a, const Loop& b) {
+  const RealLoop whole_a = realLoop(a);
+  const RealLoop whole_b = realLoop(b);
+  const RealLoop front_a = inFrontOf(whole_a, whole_b);
+  const RealLoop front_b = inFrontOf(whole_b, whole_a);
+  if (front_a.empty() || front_b.empty()) return 0;
+  return contourSum(front_a, front_b);
+}
+
+double facingExchange(const Loop& a, const Loop& b) { return contourSum(realLoop(a), realLoop(b)); }
 
 }  // namespace radiosity::truth

@@ -13,4 +13,8 @@ namespace radiosity::truth {
 /// close or touch. About 1e-15 of the smaller area.
 double unoccludedExchange(const Loop& a, const Loop& b);
 
+/// The same where neither reaches behind the other's plane: nothing is cut, so that slivers whose
+/// plane is lost in rounding do.
+double facingExchange(const Loop& a, const Loop& b);
+
 }  // namespace radiosity::truth
