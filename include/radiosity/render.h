@@ -76,4 +76,9 @@ Image renderFalseColour(const PatchMesh& mesh, std::span<const double> values,
                         const FalseColour& legend, const Camera& camera,
                         const RenderOptions& options, Progress& progress);
 
+/// The same for a value a pixel (width * height, top row first; NaN: a miss); the legend goes below
+/// the picture, which grows by it.
+Image falseColourPixels(int width, int height, std::span<const double> values,
+                        const FalseColour& legend);
+
 }  // namespace radiosity

@@ -2,6 +2,7 @@
 // the same folder and renames it: a failed run leaves nothing half-written.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <span>
@@ -90,5 +91,31 @@ void writeImage(const std::string& path, const Image& image, bool display_referr
 /// Reads any image OpenImageIO knows: numbers as they stand in the file (no curve is undone), alpha
 /// divided out where the format multiplies by it.
 Image readImage(const std::string& path);
+
+/// A picture and what its file says of the numbers in it.
+struct ImageFile {
+  Image image;
+  bool bytes = false;    ///< whole numbers, mapped to [0, 1]: as a rule sRGB-coded
+  std::string quantity;  ///< as writeImage() was told ("radiance"); empty where nothing is said
+};
+ImageFile readImageFile(const std::string& path);
+
+/// A mesh with colours at its vertices, as this or another program wrote it: numbers as they stand
+/// in the file, metres and axes taken as they are.
+struct LitMesh {
+  std::string file;
+  std::vector<Vec3> vertices;
+  std::vector<std::array<Index, 3>> triangles;  ///< T; counter-clockwise seen from the front
+  std::vector<std::array<Vec3, 3>> colours;     ///< T, one a corner
+  std::vector<Index> face;                 ///< T, the face of the file; polygons are cut into fans
+  std::vector<Index> face_surface;         ///< by face, into surface_names
+  std::vector<std::string> surface_names;  ///< nodes, or objects with their materials
+  bool bytes = false;                      ///< whole numbers, mapped to [0, 1]
+  bool radiosity = false;                  ///< from _RADIOSITY of writeLitGlb(): W/m^2
+};
+
+/// .glb, .gltf (_RADIOSITY, else COLOR_0), .ply (red, green, blue; ASCII and binary) and .obj
+/// (`v x y z r g b`). Errors: InputError for a file without colours (with the cure), a damaged one.
+LitMesh readLitMesh(const std::string& path);
 
 }  // namespace radiosity

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "cli/command_texts.h"
 #include "cli/help_formatter.h"
 #include "cli/request.h"
 #include "cli/words.h"
@@ -16,72 +17,8 @@ namespace radiosity::cli {
 namespace {
 
 constexpr std::array kCommands = {Command::info,  Command::mesh,   Command::factors,
-                                  Command::solve, Command::gather, Command::render};
-
-const char* descriptionOf(Command command) {
-  switch (command) {
-    case Command::info:
-      return "Say what a scene or results file holds and what looks wrong in it";
-    case Command::mesh:
-      return "Cut the scene into patches";
-    case Command::factors:
-      return "Compute the form factors between the patches";
-    case Command::solve:
-      return "Solve B = E + rho F B for the radiosity of every patch";
-    case Command::gather:
-      return "Gather light through hemicubes, pass by pass, without a matrix";
-    case Command::render:
-      break;
-  }
-  return "Draw the lit scene, doing first whatever is not done yet";
-}
-
-const char* examplesOf(Command command) {
-  switch (command) {
-    case Command::info:
-      return "Examples:\n"
-             "  radiosity info data/cornell-box.obj\n"
-             "  radiosity info house.glb --set lamp.radiance=100\n"
-             "  radiosity info cornell.h5";
-    case Command::mesh:
-      return "Files (-o): .obj (outlines), .glb (triangles), .h5 (results).\n\n"
-             "Examples:\n"
-             "  radiosity mesh data/cornell-box.obj --patches 5000 -o patches.obj\n"
-             "  radiosity mesh plan.obj --unit mm --max-edge 0.25 -o patches.glb";
-    case Command::factors:
-      return "Files (-o): .h5 (results), .mtx (MatrixMarket, F as stored). A results file given "
-             "as\n"
-             "input is updated in place where no -o is given.\n\n"
-             "Examples:\n"
-             "  radiosity factors data/cornell-box.obj -o cornell.h5\n"
-             "  radiosity factors plates.obj --faces-as-patches --tolerance 1e-11 -o plates.h5\n"
-             "  radiosity factors data/cornell-box.obj --method hemicube --resolution 512\n"
-             "  radiosity factors cornell.h5 -o cornell.mtx";
-    case Command::solve:
-      return "Files (-o): .h5 (results), .glb (lit mesh), .mtx (MatrixMarket). A results file "
-             "given\n"
-             "as input is updated in place where no -o is given; its form factors are reused.\n\n"
-             "Examples:\n"
-             "  radiosity solve data/cornell-box.obj -o cornell.h5\n"
-             "  radiosity solve cornell.h5 --set white.reflectance=.9";
-    case Command::gather:
-      return "Files (-o): .h5 (results). A results file given as input is updated in place where "
-             "no -o\n"
-             "is given; its mesh is reused. With --passes reaching them is no failure.\n\n"
-             "Examples:\n"
-             "  radiosity gather data/cornell-box.obj --passes 8 -o gathered.h5\n"
-             "  radiosity gather cornell.h5 --at patches --resolution 128";
-    case Command::render:
-      break;
-  }
-  return "Files (-o): .png (exposed, sRGB), .exr (radiance, W/m^2/sr, linear), .glb (lit mesh),\n"
-         ".h5 (results), .mtx (MatrixMarket). With --show an .exr holds the quantity itself.\n\n"
-         "Examples:\n"
-         "  radiosity render data/cornell-box.obj -o cornell.png\n"
-         "  radiosity render cornell.h5 --exposure 2.5 --width 1024 --height 1024 -o cornell.exr\n"
-         "  radiosity render cornell.h5 --show form-factor:12 -o seen-from-12.png\n"
-         "  radiosity render room.glb --camera 'eye=1,1.6,3;target=0,1,0' -o room.png -o room.h5";
-}
+                                  Command::solve, Command::gather, Command::compare,
+                                  Command::render};
 
 // Each helper names the value as help shows it, and gives it one argument a time, so that
 // "-o a.png scene.obj" does not take the scene for an output.
@@ -179,7 +116,9 @@ void addFactorOptions(CLI::App& app, Request& r) {
       "or "
       "auto (default): exact unless the scene is too cluttered; the report says why")
       ->check(CLI::IsMember({"auto", "exact", "hemicube"}));
-  add(app, "Form factors", "--tolerance", r.tolerance, "FRACTION",
+  // Where results are compared, --tolerance is about the difference.
+  const bool compares = app.get_name() == commandName(Command::compare);
+  add(app, "Form factors", compares ? "--factor-tolerance" : "--tolerance", r.tolerance, "FRACTION",
       fmt::format(
           "exact: error aimed at for a partly hidden pair, relative to the mean form factor "
           "1/N; 1e-12 to 0.1 (default {})",
@@ -235,17 +174,49 @@ void addGatherOptions(CLI::App& app, Request& r) {
       fmt::format("Stop when further passes add at most this times the largest emission (default "
                   "{})",
                   defaults.tolerance));
+  add(app, "Gather", "--crease", r.crease, "DEGREES",
+      fmt::format("A vertex looks once per side that bends less (default {})", defaults.crease));
+}
+
+/// What the form factors have too.
+void addEyeOptions(CLI::App& app, Request& r) {
+  const GatherOptions defaults;
   add(app, "Gather", "--resolution", r.resolution, "PIXELS",
       fmt::format("Edge of the hemicube's top face; even, 16 to 4096 (default {})",
                   defaults.resolution));
   add(app, "Gather", "--seed", r.seed, "N",
       fmt::format("Seed of each hemicube's random turn (default {})", defaults.seed))
       ->check(wholeNumber());
-  add(app, "Gather", "--crease", r.crease, "DEGREES",
-      fmt::format("A vertex looks once per side that bends less (default {})", defaults.crease));
 }
 
-void addRenderOptions(CLI::App& app, Request& r) {
+void addCompareOptions(CLI::App& app, Request& r) {
+  const CompareOptions defaults;
+  app.add_option("B", r.second, "What A is compared with; none with --gather")->option_text(" ");
+  app.add_flag(
+         "--gather", r.with_gather,
+         "Compare the matrix solution of A with the gather method, doing first whatever is not "
+         "done yet")
+      ->group("Compare");
+  for (const auto& [name, value] : {std::pair("--a-is", &r.a_is), std::pair("--b-is", &r.b_is)}) {
+    add(app, "Compare", name, *value, "radiosity|radiance|srgb8",
+        "What the numbers of the file mean: W/m^2, W/m^2/sr, or coded for a screen (default: as "
+        "the file says; where it does not, this is needed)")
+        ->check(CLI::IsMember({"radiosity", "radiance", "srgb8"}));
+  }
+  app.add_flag("--fit-scale", r.fit_scale, "Multiply B by the factor that fits best, and print it")
+      ->group("Compare");
+  app.add_flag("--partial", r.partial,
+               "Compare what matches where it is less than 99% of either side's area")
+      ->group("Compare");
+  add(app, "Compare", "--match", r.match, "FRACTION",
+      fmt::format("How far apart points of one surface may be, of A's diagonal (default {})",
+                  defaults.match));
+  add(app, "Compare", "--tolerance", r.compare_tolerance, "RATIO",
+      "Exit with 1 where the relative L2 difference is above it (default: exit with 0)")
+      ->check(CLI::NonNegativeNumber);
+}
+
+void addCameraOptions(CLI::App& app, Request& r) {
   const RenderOptions defaults;
   add(app, "Picture", "--camera", r.camera, "CAMERA",
       "Name of a camera in the scene, or eye=X,Y,Z;target=X,Y,Z[;up=X,Y,Z][;fov=DEGREES], metres "
@@ -253,6 +224,10 @@ void addRenderOptions(CLI::App& app, Request& r) {
   add(app, "Picture", "--width", r.width, "PIXELS", fmt::format("Default {}", defaults.width));
   add(app, "Picture", "--height", r.height, "PIXELS",
       "Default: the width, or what the camera's shape asks for");
+}
+
+void addRenderOptions(CLI::App& app, Request& r) {
+  const RenderOptions defaults;
   add(app, "Picture", "--exposure", r.exposure, "auto|EV",
       "The .png and .glb show radiance times 2^EV (default auto; the EV is printed)");
   add(app, "Picture", "--samples", r.samples, "N",
@@ -285,9 +260,13 @@ void addGeneralOptions(CLI::App& app, Request& r, Command command) {
 CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
   CLI::App* sub = app.add_subcommand(commandName(command), descriptionOf(command));
   sub->footer(examplesOf(command));
-  sub->add_option("SCENE", r.input, "Scene (.obj, .gltf, .glb) or results file (.h5)")
+  const bool compares = command == Command::compare;
+  sub->add_option(compares ? "A" : "SCENE", r.input,
+                  compares ? "The reference: results file, lit mesh or picture"
+                           : "Scene (.obj, .gltf, .glb) or results file (.h5)")
       ->required()
       ->option_text(" ");
+  if (compares) addCompareOptions(*sub, r);
   addGeneralOptions(*sub, r, command);
   addSceneOptions(*sub, r);
   if (command == Command::info) return sub;
@@ -295,11 +274,14 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
   if (command == Command::mesh) return sub;
   if (command == Command::gather) {
     addGatherOptions(*sub, r);
+    addEyeOptions(*sub, r);
     return sub;
   }
   addFactorOptions(*sub, r);
   if (command == Command::factors) return sub;
   addSolveOptions(*sub, r);
+  if (command == Command::compare) addGatherOptions(*sub, r);
+  if (command == Command::compare || command == Command::render) addCameraOptions(*sub, r);
   if (command == Command::render) addRenderOptions(*sub, r);
   return sub;
 }
@@ -308,7 +290,7 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
 void checkCommandWord(int argc, char** argv) {
   std::array<std::string, kCommands.size()> names;
   std::transform(kCommands.begin(), kCommands.end(), names.begin(), commandName);
-  const std::string list = "info, mesh, factors, solve, gather or render";
+  const std::string list = "info, mesh, factors, solve, gather, compare or render";
   if (argc < 2) {
     throw InputError(
         fmt::format("a subcommand is missing: {}; e.g. radiosity render SCENE -o "

@@ -20,6 +20,7 @@ int runMesh(Session& session);
 int runFactors(Session& session);
 int runSolve(Session& session);
 int runGather(Session& session);
+int runCompare(Session& session);
 int runRender(Session& session);
 
 /// The files -o names; a results file that came in is updated where none is named and the

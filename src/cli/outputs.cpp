@@ -24,11 +24,11 @@ struct Extension {
 const std::vector<Extension>& extensions() {
   using enum Command;
   static const std::vector<Extension> kAll = {
-      {".png", Format::png, {render}},
+      {".png", Format::png, {compare, render}},
       {".exr", Format::exr, {render}},
       {".glb", Format::glb, {mesh, solve, render}},
       {".obj", Format::obj, {mesh}},
-      {".h5", Format::results, {mesh, factors, solve, gather, render}},
+      {".h5", Format::results, {mesh, factors, solve, gather, compare, render}},
       {".mtx", Format::matrix_market, {factors, solve, render}},
   };
   return kAll;

@@ -17,6 +17,8 @@ const char* commandName(Command command) {
       return "solve";
     case Command::gather:
       return "gather";
+    case Command::compare:
+      return "compare";
     case Command::render:
       break;
   }
@@ -82,6 +84,15 @@ GatherOptions Request::apply(GatherOptions options) const {
   set(options, &GatherOptions::resolution, resolution, "--resolution");
   set(options, &GatherOptions::seed, seed, "--seed");
   set(options, &GatherOptions::crease, crease, "--crease");
+  options.validate();
+  return options;
+}
+
+CompareOptions Request::compareOptions() const {
+  CompareOptions options;
+  options.fit_scale = fit_scale;
+  options.partial = partial;
+  set(options, &CompareOptions::match, match, "--match");
   options.validate();
   return options;
 }

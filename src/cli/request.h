@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "radiosity/compare.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
 #include "radiosity/patch_mesh.h"
@@ -16,12 +17,13 @@
 
 namespace radiosity::cli {
 
-enum class Command { info, mesh, factors, solve, gather, render };
+enum class Command { info, mesh, factors, solve, gather, compare, render };
 
 struct Request {
   Command command = Command::info;
   std::vector<std::string> arguments;  ///< as typed, for the report
   std::string input;
+  std::string second;  ///< what `compare` sets against the input
   std::vector<std::string> outputs;
 
   SceneOptions scene;
@@ -51,6 +53,14 @@ struct Request {
   std::optional<int> passes;
   std::optional<double> gather_tolerance;
 
+  std::string a_is;  ///< radiosity, radiance or srgb8; empty: as the file says
+  std::string b_is;
+  bool with_gather = false;
+  bool fit_scale = false;
+  bool partial = false;
+  std::optional<double> match;
+  std::optional<double> compare_tolerance;
+
   std::string camera;
   std::optional<int> width;
   std::optional<int> height;
@@ -72,6 +82,7 @@ struct Request {
   FormFactorOptions apply(FormFactorOptions options) const;
   SolveOptions apply(SolveOptions options) const;
   GatherOptions apply(GatherOptions options) const;
+  CompareOptions compareOptions() const;
   /// The picture's options as given, without a size where none was given; validated.
   RenderOptions renderOptions() const;
 };

@@ -1,6 +1,8 @@
 // A scalar field in false colour, its legend below.
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <optional>
 
 #include "base/srgb.h"
 #include "render/colour_map.h"
@@ -116,6 +118,38 @@ Image renderFalseColour(const PatchMesh& mesh, std::span<const double> values,
   forSamples(
       mesh, items, field, [&](std::size_t) { return ColourPixel(image, map, shown); }, progress);
   progress.end();
+  strip.draw(image, map, range);
+  return image;
+}
+
+Image falseColourPixels(int width, int height, std::span<const double> values,
+                        const FalseColour& legend) {
+  if (width < 1 || height < 1 || values.size() != std::size_t(width) * std::size_t(height)) {
+    throw InputError("falseColourPixels: as many values as pixels are needed");
+  }
+  std::vector<InView> seen(1);
+  InViewPixel range_pixel(seen[0]);
+  for (const double value : values) {
+    if (std::isnan(value)) continue;
+    range_pixel.begin();
+    range_pixel.sample(Seen::front, {value, 0, 0});
+  }
+  const std::optional<ColourRange> range = rangeInView(legend, seen);
+  // A strip may take half of a picture: of one twice as high it takes what it needs, if it fits.
+  const Legend strip(legend, width, 2 * height);
+  Image image{width, height + strip.height(), {}};
+  image.rgba.assign(std::size_t(image.width) * std::size_t(image.height) * 4, 1.0F);
+  const ColourMap map;
+  const ColourRange shown = range.value_or(ColourRange{});
+  ColourPixel pixel(image, map, shown);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const double value = values[std::size_t(y) * std::size_t(width) + std::size_t(x)];
+      pixel.begin();
+      pixel.sample(std::isnan(value) ? Seen::nothing : Seen::front, {value, 0, 0});
+      pixel.end(x, y);
+    }
+  }
   strip.draw(image, map, range);
   return image;
 }

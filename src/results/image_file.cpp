@@ -106,7 +106,7 @@ void writeImage(const std::string& path, const Image& image, bool display_referr
   }
 }
 
-Image readImage(const std::string& path) {
+ImageFile readImageFile(const std::string& path) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) {
     throw InputError(fmt::format("{}: no such file; check the name", path));
@@ -130,7 +130,11 @@ Image readImage(const std::string& path) {
   const bool has_alpha = channels == 2 || channels >= 4;
   // EXR (and whatever else multiplies by alpha) back to colours that stand alone.
   const bool multiplied = has_alpha && spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
-  Image image{spec.width, spec.height, std::vector<float>(count * 4)};
+  ImageFile file;
+  file.bytes = !spec.format.is_floating_point();
+  file.quantity = spec.get_string_attribute("quantity");
+  Image& image = file.image;
+  image = {spec.width, spec.height, std::vector<float>(count * 4)};
   for (std::size_t k = 0; k < count; ++k) {
     const float* in = &samples[k * channels];
     float* out = &image.rgba[k * 4];
@@ -141,7 +145,9 @@ Image readImage(const std::string& path) {
     }
     out[3] = alpha;
   }
-  return image;
+  return file;
 }
+
+Image readImage(const std::string& path) { return readImageFile(path).image; }
 
 }  // namespace radiosity

@@ -1,0 +1,110 @@
+// Two lightings of the same surfaces, or two pictures: how far apart, and where.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "radiosity/base.h"
+#include "radiosity/patch_mesh.h"
+#include "radiosity/results.h"
+
+namespace radiosity {
+
+/// What the numbers of a file mean.
+enum class LightUnit {
+  radiosity,  ///< B = pi L, W/m^2
+  radiance,   ///< L, W/m^2/sr
+  srgb8       ///< coded for a screen: of unknown exposure, clipped at the top
+};
+
+/// Light on surfaces: triangles with a value at each corner, in cells (patches, faces) over which
+/// values are averaged before they are compared.
+struct LightField {
+  std::string name;  ///< in messages
+  std::vector<Vec3> vertices;
+  std::vector<std::array<Index, 3>> triangles;  ///< T
+  std::vector<std::array<Vec3, 3>> values;      ///< T: radiosity, or (srgb8) linear light
+  std::vector<Index> cell;                      ///< T
+  std::vector<Index> cell_surface;              ///< by cell, into surface_names
+  std::vector<std::string> surface_names;
+  std::vector<std::uint8_t> clipped;  ///< T, 1: a corner is at the top of its range; or empty
+  bool constant = false;              ///< one value a cell
+  bool relative = false;              ///< no unit: srgb8
+};
+
+/// One value a patch: N * 3, W/m^2, row-major.
+LightField lightOf(const PatchMesh& mesh, std::span<const double> radiosity, std::string name);
+LightField lightOf(const LitMesh& mesh, LightUnit unit);
+
+struct CompareOptions {
+  bool fit_scale = false;  ///< multiply B by the one factor that brings it nearest to A
+  bool partial = false;    ///< go on where less than 99% of either side's area has a counterpart
+  /// How far apart two points of one surface may be, as a fraction of A's diagonal; 0 to 0.1.
+  double match = 1e-3;
+  void validate() const;
+};
+
+/// Sums over cells, weighted with area; [band].
+struct BandSums {
+  double area = 0;             ///< m^2, of what was compared
+  std::array<double, 3> a{};   ///< W: integral of A; pictures: sum over pixels
+  std::array<double, 3> b{};   ///< of B, scaled
+  std::array<double, 3> aa{};  ///< integral of A^2
+  std::array<double, 3> dd{};  ///< of (B - A)^2
+  void add(double weight, const Vec3& value_a, const Vec3& value_b);
+  /// sqrt(sum dd / sum aa), one band or (-1) all; 0 where both are 0, infinite where A alone is.
+  double relativeL2(int band = -1) const;
+};
+
+struct SurfaceDifference {
+  std::string name;
+  double given = 0;  ///< m^2, of the side whose cells are compared
+  BandSums sums;
+};
+
+struct LargestDifference {
+  Vec3 place{0.0};  ///< metres; of a picture x and y, pixels from the top left
+  std::string surface;
+  int band = 0;
+  double a = 0;
+  double b = 0;  ///< scaled
+};
+
+struct Comparison {
+  bool cells_of_b = false;           ///< averaged over the cells of B, else of A
+  std::size_t cells = 0;             ///< compared
+  double area_a = 0, matched_a = 0;  ///< m^2; of pictures: pixels that show something
+  double area_b = 0, matched_b = 0;
+  double clipped = 0;  ///< left out of the matched area: one side is at the top of its range
+  double scale = 1;    ///< B was multiplied by it
+  /// The factor for B that least squares would choose (times `scale`) and what it would leave.
+  double fitted_scale = 1;
+  double fitted_l2 = 0;
+  BandSums sums;
+  LargestDifference largest;
+  std::vector<SurfaceDifference> surfaces;  ///< in order of their share of the difference
+  std::vector<double> difference;           ///< |B - A|, Rec. 709 luminance, by cell or pixel; NaN:
+                                            ///< not compared
+  std::vector<Note> notes;                  ///< a factor of pi and others, by name
+
+  double relativeL2(int band = -1) const { return sums.relativeL2(band); }
+};
+
+/// Means over the cells of A (of B, where only B is constant on its cells) of both, matched by
+/// position: a point's counterpart is the nearest point of the other side that faces alike. Errors:
+/// InputError where the two cannot be compared, or too little of them matches; says what to do.
+Comparison compare(const LightField& a, const LightField& b, const CompareOptions& options);
+
+/// Pictures of the same size, pixel by pixel where both show something; values are used as they
+/// stand (srgb8 is decoded). `match` and `partial` do not apply.
+Comparison compare(const ImageFile& a, LightUnit a_is, const ImageFile& b, LightUnit b_is,
+                   const CompareOptions& options);
+
+/// The cells of the side compared as a mesh to draw `difference` on: patch k is triangle k, with
+/// the difference of its cell (0 where it was not compared).
+PatchMesh cellMesh(const LightField& side);
+std::vector<double> differenceOnTriangles(const LightField& side, const Comparison& comparison);
+
+}  // namespace radiosity

@@ -1,0 +1,85 @@
+#include "cli/command_texts.h"
+
+namespace radiosity::cli {
+
+const char* descriptionOf(Command command) {
+  switch (command) {
+    case Command::info:
+      return "Say what a scene or results file holds and what looks wrong in it";
+    case Command::mesh:
+      return "Cut the scene into patches";
+    case Command::factors:
+      return "Compute the form factors between the patches";
+    case Command::solve:
+      return "Solve B = E + rho F B for the radiosity of every patch";
+    case Command::gather:
+      return "Gather light through hemicubes, pass by pass, without a matrix";
+    case Command::compare:
+      return "Say how far apart two lightings of one scene are, and where";
+    case Command::render:
+      break;
+  }
+  return "Draw the lit scene, doing first whatever is not done yet";
+}
+
+const char* examplesOf(Command command) {
+  switch (command) {
+    case Command::info:
+      return "Examples:\n"
+             "  radiosity info data/cornell-box.obj\n"
+             "  radiosity info house.glb --set lamp.radiance=100\n"
+             "  radiosity info cornell.h5";
+    case Command::mesh:
+      return "Files (-o): .obj (outlines), .glb (triangles), .h5 (results).\n\n"
+             "Examples:\n"
+             "  radiosity mesh data/cornell-box.obj --patches 5000 -o patches.obj\n"
+             "  radiosity mesh plan.obj --unit mm --max-edge 0.25 -o patches.glb";
+    case Command::factors:
+      return "Files (-o): .h5 (results), .mtx (MatrixMarket, F as stored). A results file given "
+             "as\n"
+             "input is updated in place where no -o is given.\n\n"
+             "Examples:\n"
+             "  radiosity factors data/cornell-box.obj -o cornell.h5\n"
+             "  radiosity factors plates.obj --faces-as-patches --tolerance 1e-11 -o plates.h5\n"
+             "  radiosity factors data/cornell-box.obj --method hemicube --resolution 512\n"
+             "  radiosity factors cornell.h5 -o cornell.mtx";
+    case Command::solve:
+      return "Files (-o): .h5 (results), .glb (lit mesh), .mtx (MatrixMarket). A results file "
+             "given\n"
+             "as input is updated in place where no -o is given; its form factors are reused.\n\n"
+             "Examples:\n"
+             "  radiosity solve data/cornell-box.obj -o cornell.h5\n"
+             "  radiosity solve cornell.h5 --set white.reflectance=.9";
+    case Command::gather:
+      return "Files (-o): .h5 (results). A results file given as input is updated in place where "
+             "no -o\n"
+             "is given; its mesh is reused. With --passes reaching them is no failure.\n\n"
+             "Examples:\n"
+             "  radiosity gather data/cornell-box.obj --passes 8 -o gathered.h5\n"
+             "  radiosity gather cornell.h5 --at patches --resolution 128";
+    case Command::compare:
+      return "A and B: results files (.h5), meshes with vertex colours of any program (.glb, "
+             ".ply,\n"
+             ".obj), both; or two pictures. Meshes may differ: a point's counterpart is the "
+             "nearest\n"
+             "one of the other side that faces alike; means over A's cells are compared, W/m^2.\n"
+             "Files (-o): .png (the difference in false colour); with --gather also .h5 "
+             "(results).\n"
+             "Exit code 1: the difference is above --tolerance.\n\n"
+             "Examples:\n"
+             "  radiosity compare cornell.h5 --gather -o gap.png\n"
+             "  radiosity compare cornell.h5 data/cornell-box-cycles.ply --b-is radiance\n"
+             "  radiosity compare new.exr old.exr --tolerance 1e-3 -o difference.png";
+    case Command::render:
+      break;
+  }
+  return "Files (-o): .png (exposed, sRGB), .exr (radiance, W/m^2/sr, linear), .glb (lit mesh),\n"
+         ".h5 (results), .mtx (MatrixMarket). With --show an .exr holds the quantity itself.\n\n"
+         "Examples:\n"
+         "  radiosity render data/cornell-box.obj -o cornell.png\n"
+         "  radiosity render cornell.h5 --exposure 2.5 --width 1024 --height 1024 -o cornell.exr\n"
+         "  radiosity render cornell.h5 --show form-factor:12 -o seen-from-12.png\n"
+         "  radiosity render room.glb --camera 'eye=1,1.6,3;target=0,1,0' -o room.png -o room.h5";
+}
+
+}  // namespace radiosity::cli

@@ -1,0 +1,323 @@
+#include "radiosity/compare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <variant>
+
+#include "cli/commands.h"
+#include "cli/picture.h"
+#include "cli/words.h"
+#include "radiosity/results.h"
+
+namespace radiosity::cli {
+
+namespace {
+
+/// One side as it was read.
+struct Side {
+  std::string label;  ///< "A" or "B"
+  std::string path;
+  std::string light;  ///< in words: what is compared
+  LightUnit unit = LightUnit::radiosity;
+  std::variant<LightField, ImageFile> content;
+  bool isImage() const { return std::holds_alternative<ImageFile>(content); }
+  const LightField& field() const { return std::get<LightField>(content); }
+  const ImageFile& image() const { return std::get<ImageFile>(content); }
+};
+
+const char* unitName(LightUnit unit) {
+  switch (unit) {
+    case LightUnit::radiosity:
+      return "radiosity";
+    case LightUnit::radiance:
+      return "radiance";
+    case LightUnit::srgb8:
+      break;
+  }
+  return "srgb8";
+}
+
+std::optional<LightUnit> unitOf(const std::string& word) {
+  for (const LightUnit unit : {LightUnit::radiosity, LightUnit::radiance, LightUnit::srgb8}) {
+    if (word == unitName(unit)) return unit;
+  }
+  return std::nullopt;
+}
+
+std::string optionOf(const Side& side) { return side.label == "A" ? "--a-is" : "--b-is"; }
+
+/// What was said, else what the file says; else there is nothing to go by.
+LightUnit decideUnit(const Side& side, const std::string& said, std::optional<LightUnit> of_file,
+                     const std::string& what) {
+  const std::optional<LightUnit> word = unitOf(said);
+  if (word && of_file == LightUnit::radiosity && *word != LightUnit::radiosity) {
+    throw InputError(
+        fmt::format("{}: {} says {}, but the file holds radiosity in W/m^2; leave {} "
+                    "out",
+                    side.path, optionOf(side), said, optionOf(side)));
+  }
+  if (word) return *word;
+  if (of_file) return *of_file;
+  throw InputError(fmt::format(
+      "{}: nothing says what its {} mean; add {} radiosity (W/m^2), radiance (W/m^2/sr) or srgb8 "
+      "(coded for a screen)",
+      side.path, what, optionOf(side)));
+}
+
+void readResultsSide(Side& side, const std::string& said) {
+  const Results results = readResults(side.path, false);
+  side.unit = decideUnit(side, said, LightUnit::radiosity, "values");
+  if (results.mesh && results.solution && !results.solution->radiosity.empty()) {
+    side.light = "matrix solution";
+    side.content = lightOf(results.mesh->mesh, results.solution->radiosity, side.path);
+  } else if (results.mesh && results.gathered) {
+    side.light = "gathered light";
+    side.content = lightOf(results.mesh->mesh,
+                           patchRadiosity(results.mesh->mesh, *results.gathered), side.path);
+  } else {
+    throw InputError(side.path +
+                     ": holds no light yet; run radiosity solve or radiosity gather on it");
+  }
+}
+
+bool isPictureName(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  const std::string meshes[] = {".glb", ".gltf", ".ply", ".obj"};
+  return std::find(std::begin(meshes), std::end(meshes), extension) == std::end(meshes);
+}
+
+Side readSide(const std::string& label, const std::string& path, const std::string& said) {
+  Side side;
+  side.label = label;
+  side.path = path;
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) {
+    throw InputError(path + ": no such file; check the name and the folder");
+  }
+  if (isResultsFile(path)) {
+    readResultsSide(side, said);
+  } else if (isPictureName(path)) {
+    ImageFile file = readImageFile(path);
+    std::optional<LightUnit> of_file;
+    if (file.bytes) of_file = LightUnit::srgb8;
+    if (!file.bytes && file.quantity == "radiance") of_file = LightUnit::radiance;
+    side.unit = decideUnit(side, said, of_file, "pixels");
+    side.light = fmt::format("picture, {}", unitName(side.unit));
+    side.content = std::move(file);
+  } else {
+    const LitMesh mesh = readLitMesh(path);
+    std::optional<LightUnit> of_file;
+    if (mesh.radiosity) of_file = LightUnit::radiosity;
+    side.unit = decideUnit(side, said, of_file, "vertex colours");
+    side.light = fmt::format("vertex colours, {}", unitName(side.unit));
+    side.content = lightOf(mesh, side.unit);
+  }
+  return side;
+}
+
+std::string percent(double part, double whole) {
+  return fmt::format("{:.2f}%", whole > 0 ? 100 * part / whole : 0.0);
+}
+
+void reportSurfaces(Report& report, const Comparison& c) {
+  std::vector<std::vector<std::string>> rows;
+  for (const SurfaceDifference& s : c.surfaces) {
+    if (!(s.given > 0)) continue;
+    const BandSums& sums = s.sums;
+    const auto mean = [&](const std::array<double, 3>& of) {
+      return sums.area > 0 ? numberText((of[0] + of[1] + of[2]) / (3 * sums.area), 4) : "none";
+    };
+    std::vector<std::string> row = {s.name.empty() ? "(unnamed)" : s.name, numberText(s.given, 4),
+                                    percent(sums.area, s.given), mean(sums.a), mean(sums.b)};
+    for (int b = -1; b < 3; ++b) row.push_back(fmt::format("{:.3g}", 100 * sums.relativeL2(b)));
+    rows.push_back(std::move(row));
+  }
+  report.table("surfaces",
+               {{"name", "surface", false},
+                {"area_m2", "area m^2"},
+                {"compared", "compared", false},
+                {"mean_a", "mean A"},
+                {"mean_b", "mean B"},
+                {"l2_percent", "L2 %"},
+                {"l2_r_percent", "R %"},
+                {"l2_g_percent", "G %"},
+                {"l2_b_percent", "B %"}},
+               rows);
+}
+
+void reportComparison(Report& report, const Comparison& c, bool pictures, bool relative) {
+  constexpr const char* kBands[] = {"R", "G", "B"};
+  const std::string unit = relative ? "of full scale" : pictures ? "W/m^2/sr" : "W/m^2";
+  const std::string area = pictures ? "pixels" : "m^2";
+  report.number("area_a", pictures ? "shown by A" : "area of A", c.area_a, area);
+  report.number("area_b", pictures ? "shown by B" : "area of B", c.area_b, area);
+  report.text("matched_a", "matched of A", percent(c.matched_a, c.area_a));
+  report.text("matched_b", "matched of B", percent(c.matched_b, c.area_b));
+  if (c.clipped > 0) report.number("clipped", "left out: clipped at the top", c.clipped, area);
+  report.count("cells", pictures ? "pixels compared" : "cells compared", c.cells);
+  if (!pictures) report.text("cells_of", "means over cells of", c.cells_of_b ? "B" : "A");
+  report.number("scale", "B was multiplied by", c.scale);
+  report.number("relative_l2", "relative L2 difference", c.relativeL2());
+  const double bands[] = {c.relativeL2(0), c.relativeL2(1), c.relativeL2(2)};
+  report.bands("relative_l2_bands", "  by band (R G B)", bands, "");
+  report.number("fitted_scale", "best factor for B", c.fitted_scale);
+  report.number("fitted_l2", "  would leave", c.fitted_l2);
+  report.number("largest", "largest difference", std::abs(c.largest.b - c.largest.a), unit);
+  const double place[] = {c.largest.place.x, c.largest.place.y, c.largest.place.z};
+  report.bands("largest_at", "  at", std::span(place).first(pictures ? 2 : 3),
+               pictures ? "pixel" : "m");
+  if (!pictures) report.text("largest_on", "  on", c.largest.surface);
+  report.text("largest_band", "  band", kBands[c.largest.band]);
+  report.number("largest_a", "  A there", c.largest.a, unit);
+  report.number("largest_b", "  B there", c.largest.b, unit);
+  const std::string total = pictures || relative ? "" : "W";
+  report.bands("energy_a", pictures ? "sum of A" : "leaves A", c.sums.a, total);
+  report.bands("energy_b", pictures ? "sum of B" : "leaves B", c.sums.b, total);
+  double difference[3];
+  for (std::size_t b = 0; b < 3; ++b) difference[b] = c.sums.b[b] - c.sums.a[b];
+  report.bands("energy_difference", "  B - A", difference, total);
+  reportSurfaces(report, c);
+  report.notes(c.notes);
+}
+
+int judge(Session& session, const Comparison& c) {
+  if (!session.request.compare_tolerance) return 0;
+  const double tolerance = *session.request.compare_tolerance;
+  const bool within = c.relativeL2() <= tolerance;
+  session.report.text(
+      "verdict", "verdict",
+      fmt::format("{} the tolerance of {}", within ? "within" : "above", numberText(tolerance)));
+  return within ? 0 : 1;
+}
+
+/// False colour, the scale from 0.
+FalseColour legendOf(bool pictures, bool relative) {
+  return {"|B - A| (Rec. 709 luminance)", relative ? "" : pictures ? "W/m^2/sr" : "W/m^2"};
+}
+
+void drawField(Session& session, const LightField& side, const Comparison& c, Picture picture,
+               OutputSet& files) {
+  const PatchMesh mesh = cellMesh(side);
+  picture.options.smooth = false;
+  if (picture.camera_from.empty()) {
+    picture.camera =
+        framingCamera(mesh, false, double(picture.options.width) / double(picture.options.height));
+  }
+  files.write(Format::png, "difference, false colour", [&](const std::string& temporary) {
+    writeImage(
+        temporary,
+        renderFalseColour(mesh, differenceOnTriangles(side, c), legendOf(false, side.relative),
+                          picture.camera, picture.options, session.progress),
+        true);
+  });
+}
+
+void requirePicture(const OutputSet& files, const Request& request) {
+  if (files.has(Format::results) && !request.with_gather) {
+    throw InputError(files.path(Format::results) +
+                     ": compare writes results with --gather only; name a .png for the difference");
+  }
+}
+
+/// Between two files.
+int compareFiles(Session& session, OutputSet& files) {
+  const Request& request = session.request;
+  if (request.second.empty()) {
+    throw InputError(
+        "compare: B is missing: radiosity compare A B, or radiosity compare A --gather");
+  }
+  const CompareOptions options = request.compareOptions();
+  const Side a = readSide("A", request.input, request.a_is);
+  const Side b = readSide("B", request.second, request.b_is);
+  if (a.isImage() != b.isImage()) {
+    const Side& image = a.isImage() ? a : b;
+    throw InputError(
+        fmt::format("{}: is a picture, {} holds surfaces; render that first, from the "
+                    "same camera: radiosity render {} -o picture.exr",
+                    image.path, (a.isImage() ? b : a).path, (a.isImage() ? b : a).path));
+  }
+  session.report.line("A", fmt::format("{}: {}", a.path, a.light));
+  session.report.line("B", fmt::format("{}: {}", b.path, b.light));
+  const bool pictures = a.isImage();
+  const Comparison c = pictures ? compare(a.image(), a.unit, b.image(), b.unit, options)
+                                : compare(a.field(), b.field(), options);
+  const bool relative = a.unit == LightUnit::srgb8;
+  session.report.section("comparison", "Comparison");
+  reportComparison(session.report, c, pictures, relative);
+  const int code = judge(session, c);
+  if (pictures) {
+    files.write(Format::png, "difference, false colour", [&](const std::string& temporary) {
+      writeImage(temporary,
+                 falseColourPixels(a.image().image.width, a.image().image.height, c.difference,
+                                   legendOf(true, relative)),
+                 true);
+    });
+  } else if (files.has(Format::png)) {
+    Scene scene;
+    if (isResultsFile(request.input))
+      scene = readResults(request.input, false).scene.value_or(Scene());
+    drawField(session, c.cells_of_b ? b.field() : a.field(), c, choosePicture(request, scene),
+              files);
+  }
+  files.commit(session.report, session.progress);
+  return code;
+}
+
+/// The matrix solution and the gather method, both made where they are not there yet.
+int compareWithGather(Session& session, OutputSet& files) {
+  const Request& request = session.request;
+  if (!request.second.empty()) {
+    throw InputError(fmt::format("compare: --gather compares {} with itself, so {} is one too many",
+                                 request.input, request.second));
+  }
+  const CompareOptions options = request.compareOptions();
+  Pipeline pipeline(request, session.report, session.progress);
+  pipeline.open(files.path(Format::results));
+  pipeline.requireLight();
+  pipeline.mesh();
+  pipeline.factors();
+  pipeline.solution();
+  if (const int code = judgeSolution(session, pipeline); code != 0) return code;
+  pipeline.gathered();
+  const PatchMesh& mesh = pipeline.patches();
+  const LightField a = lightOf(mesh, pipeline.solved().radiosity, "the matrix solution");
+  const LightField b =
+      lightOf(mesh, patchRadiosity(mesh, pipeline.gatheredLight()), "the gathered light");
+  const Comparison c = compare(a, b, options);
+  session.report.section("comparison", "Comparison: A the matrix solution, B the gathered light");
+  reportComparison(session.report, c, false, false);
+  const bool at_vertices = pipeline.gatheredLight().at == GatherAt::vertices;
+  session.report.text(
+      "gap", "where the gap comes from",
+      at_vertices
+          ? "eyes see from points what form factors average over areas; radiosity is linear "
+            "between vertices, not constant on patches: both fall with smaller patches; "
+            "pixels: falls with --resolution"
+          : "none but rounding where the form factors are the same hemicubes; else eyes see "
+            "from one point what form factors average over a patch, and pixels");
+  const int code = judge(session, c);
+  if (files.has(Format::png)) {
+    Picture picture = choosePicture(request, pipeline.scene());
+    framePicture(picture, pipeline);
+    drawField(session, a, c, picture, files);
+  }
+  writeStages(session, pipeline, files);
+  files.commit(session.report, session.progress);
+  return code;
+}
+
+}  // namespace
+
+int runCompare(Session& session) {
+  OutputSet files = claimOutputs(session);
+  requirePicture(files, session.request);
+  return session.request.with_gather ? compareWithGather(session, files)
+                                     : compareFiles(session, files);
+}
+
+}  // namespace radiosity::cli

@@ -1,0 +1,284 @@
+// Meshes: matched by position, compared by means over cells.
+#include "radiosity/compare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "base/parallel.h"
+#include "compare/differences.h"
+#include "compare/surface_index.h"
+
+namespace radiosity {
+namespace {
+
+constexpr double kEnough = 0.99;  ///< share of the area that must match
+
+struct Box {
+  Vec3 lower{HUGE_VAL};
+  Vec3 upper{-HUGE_VAL};
+  double diagonal() const { return glm::distance(lower, upper); }
+  std::string text() const {
+    return fmt::format("{:.4g},{:.4g},{:.4g} to {:.4g},{:.4g},{:.4g}", lower.x, lower.y, lower.z,
+                       upper.x, upper.y, upper.z);
+  }
+};
+
+Box boxOf(const LightField& field) {
+  Box box;
+  for (const auto& triangle : field.triangles) {
+    for (const Index v : triangle) {
+      box.lower = glm::min(box.lower, field.vertices[v]);
+      box.upper = glm::max(box.upper, field.vertices[v]);
+    }
+  }
+  return box;
+}
+
+struct Triangle {
+  std::array<Vec3, 3> corner;
+  Vec3 normal{0.0};
+  double area = 0;
+};
+
+Triangle triangleOf(const LightField& field, std::size_t t) {
+  Triangle triangle;
+  for (std::size_t k = 0; k < 3; ++k) triangle.corner[k] = field.vertices[field.triangles[t][k]];
+  const Vec3 cross =
+      glm::cross(triangle.corner[1] - triangle.corner[0], triangle.corner[2] - triangle.corner[0]);
+  const double length = glm::length(cross);
+  triangle.area = 0.5 * length;
+  if (length > 0) triangle.normal = cross / length;
+  return triangle;
+}
+
+double areaOf(const LightField& field) {
+  double area = 0;
+  for (std::size_t t = 0; t < field.triangles.size(); ++t) area += triangleOf(field, t).area;
+  return area;
+}
+
+/// Calls visit(barycentric weights) for the middles of the n^2 equal triangles a triangle is cut
+/// into: their mean is exact for linear values.
+template <class Visit>
+void forSubTriangles(int n, const Visit& visit) {
+  const auto at = [&](double u, double v) { visit(Vec3(1 - (u + v) / n, u / n, v / n)); };
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; i + j < n; ++j) {
+      at(i + 1.0 / 3, j + 1.0 / 3);
+      if (i + j < n - 1) at(i + 2.0 / 3, j + 2.0 / 3);
+    }
+  }
+}
+
+Vec3 valueAt(const LightField& field, std::size_t t, const Vec3& weights) {
+  const std::array<Vec3, 3>& v = field.values[t];
+  // As differences: a constant stays itself.
+  return v[0] + weights.y * (v[1] - v[0]) + weights.z * (v[2] - v[0]);
+}
+
+bool isClipped(const LightField& field, std::size_t t) {
+  return !field.clipped.empty() && field.clipped[t] != 0;
+}
+
+/// What one triangle has found on the other side.
+struct Found {
+  double area = 0;      ///< compared
+  double clipped = 0;   ///< matched, but one side is clipped there
+  double opposite = 0;  ///< not matched, but for something that faces the other way
+  Vec3 own{0.0};        ///< integrals over the area compared
+  Vec3 other{0.0};
+  Vec3 place{0.0};
+};
+
+class Matcher {
+ public:
+  Matcher(const LightField& own, const LightField& other, const SurfaceIndex& index, double reach)
+      : own_(own), other_(other), index_(index), reach_(reach) {
+    mean_area_ = areaOf(other) / double(other.triangles.size());
+  }
+
+  std::vector<Found> run() const {
+    std::vector<Found> found(own_.triangles.size());
+    constexpr std::size_t kGrain = 32;
+    parallelFor(found.size(), kGrain, [&](std::size_t t) { found[t] = match(t); });
+    return found;
+  }
+
+ private:
+  Found match(std::size_t t) const {
+    const Triangle triangle = triangleOf(own_, t);
+    Found found;
+    if (!(triangle.area > 0)) return found;
+    // About four samples a triangle of the other side, at least four of this one's.
+    constexpr double kMost = 16;
+    const double fine = 2 * std::sqrt(triangle.area / mean_area_);
+    const int n = int(std::clamp(std::ceil(fine), 2.0, kMost));
+    const double area = triangle.area / (double(n) * n);
+    forSubTriangles(n, [&](const Vec3& w) {
+      const Vec3 point =
+          triangle.corner[0] * w.x + triangle.corner[1] * w.y + triangle.corner[2] * w.z;
+      const auto hit = index_.nearest(point, triangle.normal, reach_);
+      if (!hit) {
+        if (index_.nearest(point, -triangle.normal, reach_)) found.opposite += area;
+      } else if (isClipped(own_, t) || isClipped(other_, hit->triangle)) {
+        found.clipped += area;
+      } else {
+        found.area += area;
+        found.own += area * valueAt(own_, t, w);
+        found.other += area * valueAt(other_, hit->triangle, hit->weights);
+        found.place += area * point;
+      }
+    });
+    return found;
+  }
+
+  const LightField& own_;
+  const LightField& other_;
+  const SurfaceIndex& index_;
+  double reach_;
+  double mean_area_ = 0;
+};
+
+struct Matched {
+  double compared = 0;
+  double clipped = 0;
+  double opposite = 0;
+};
+
+Matched totalOf(const std::vector<Found>& found) {
+  Matched total;
+  for (const Found& f : found) {
+    total.compared += f.area;
+    total.clipped += f.clipped;
+    total.opposite += f.opposite;
+  }
+  return total;
+}
+
+void requireEnough(const LightField& a, const LightField& b, const Comparison& comparison,
+                   double opposite, const CompareOptions& options) {
+  const auto share = [](double part, double whole) { return whole > 0 ? part / whole : 0; };
+  const double of_a = share(comparison.matched_a, comparison.area_a);
+  const double of_b = share(comparison.matched_b, comparison.area_b);
+  if (of_a > 0 && of_b > 0 && (options.partial || std::min(of_a, of_b) >= kEnough)) return;
+  std::string cure = fmt::format(
+      "A spans {}, B {}; bring both into the same unit and axes, or allow points farther apart "
+      "with --match{}",
+      boxOf(a).text(), boxOf(b).text(),
+      of_a > 0 && of_b > 0 ? ", or compare what there is with --partial" : "");
+  if (share(opposite, comparison.area_a) > 0.01) {
+    cure = fmt::format(
+        "{:.3g}% of A has a surface of B in its place that faces the other way: "
+        "turn its faces over",
+        100 * share(opposite, comparison.area_a));
+  }
+  throw InputError(fmt::format(
+      "{} and {} are not the same surfaces: {:.2f}% of A's area and {:.2f}% of B's lie on the "
+      "other, {:g}% are asked for; {}",
+      a.name, b.name, 100 * of_a, 100 * of_b, 100 * kEnough, cure));
+}
+
+void requireUnits(const LightField& a, const LightField& b, const CompareOptions& options) {
+  if (a.relative == b.relative || options.fit_scale) return;
+  const bool first = a.relative;
+  throw InputError(fmt::format(
+      "{}: is coded for a screen (srgb8), of unknown exposure, and {} has a unit; add --fit-scale, "
+      "or export the light itself as floats",
+      first ? a.name : b.name, first ? b.name : a.name));
+}
+
+bool sameCells(const LightField& a, const LightField& b) {
+  return a.constant && b.constant && a.clipped.empty() && b.clipped.empty() &&
+         a.triangles == b.triangles && a.cell == b.cell && a.vertices == b.vertices;
+}
+
+/// One pair a cell of `own`; a and b are told apart by `own_is_a`.
+std::vector<ValuePair> pairsOf(const LightField& own, const std::vector<Found>& found,
+                               bool own_is_a) {
+  std::vector<ValuePair> pairs(own.cell_surface.size());
+  for (std::size_t t = 0; t < found.size(); ++t) {
+    ValuePair& pair = pairs[own.cell[t]];
+    pair.weight += found[t].area;
+    pair.a += own_is_a ? found[t].own : found[t].other;
+    pair.b += own_is_a ? found[t].other : found[t].own;
+    pair.place += found[t].place;
+  }
+  for (std::size_t c = 0; c < pairs.size(); ++c) {
+    pairs[c].surface = own.cell_surface[c];
+    if (!(pairs[c].weight > 0)) continue;
+    pairs[c].a /= pairs[c].weight;
+    pairs[c].b /= pairs[c].weight;
+    pairs[c].place /= pairs[c].weight;
+  }
+  return pairs;
+}
+
+/// The same cells on both sides: nothing has to be searched.
+std::vector<Found> pairUp(const LightField& a, const LightField& b) {
+  std::vector<Found> found(a.triangles.size());
+  for (std::size_t t = 0; t < found.size(); ++t) {
+    const Triangle triangle = triangleOf(a, t);
+    const Vec3 middle = (triangle.corner[0] + triangle.corner[1] + triangle.corner[2]) / 3.0;
+    found[t] = {
+        triangle.area,         0, 0, triangle.area * a.values[t][0], triangle.area * b.values[t][0],
+        triangle.area * middle};
+  }
+  return found;
+}
+
+}  // namespace
+
+void CompareOptions::validate() const {
+  if (!(match > 0 && match <= 0.1)) {
+    throw InputError(fmt::format("match {} is not above 0 and at most 0.1 of the diagonal", match));
+  }
+}
+
+Comparison compare(const LightField& a, const LightField& b, const CompareOptions& options) {
+  options.validate();
+  requireUnits(a, b, options);
+  const bool own_is_a = a.constant || !b.constant;
+  const LightField& own = own_is_a ? a : b;
+  const LightField& other = own_is_a ? b : a;
+  Comparison comparison;
+  comparison.cells_of_b = !own_is_a;
+  comparison.area_a = areaOf(a);
+  comparison.area_b = areaOf(b);
+  std::vector<Found> found;
+  double opposite = 0;
+  if (sameCells(a, b)) {
+    found = pairUp(a, b);
+    comparison.matched_a = comparison.matched_b = comparison.area_a;
+  } else {
+    const double reach = options.match * boxOf(a).diagonal();
+    const SurfaceIndex other_index(other.vertices, other.triangles);
+    found = Matcher(own, other, other_index, reach).run();
+    const SurfaceIndex own_index(own.vertices, own.triangles);
+    const Matched of_own = totalOf(found);
+    const Matched of_other = totalOf(Matcher(other, own, own_index, reach).run());
+    const Matched& of_a = own_is_a ? of_own : of_other;
+    const Matched& of_b = own_is_a ? of_other : of_own;
+    comparison.matched_a = of_a.compared + of_a.clipped;
+    comparison.matched_b = of_b.compared + of_b.clipped;
+    comparison.clipped = of_own.clipped;
+    opposite = of_a.opposite;
+  }
+  requireEnough(a, b, comparison, opposite, options);
+  std::vector<ValuePair> pairs = pairsOf(own, found, own_is_a);
+  measureDifferences(pairs, options, own.surface_names, comparison);
+  std::vector<double> given(own.surface_names.size(), 0.0);
+  for (std::size_t t = 0; t < own.triangles.size(); ++t) {
+    given[own.cell_surface[own.cell[t]]] += triangleOf(own, t).area;
+  }
+  for (SurfaceDifference& surface : comparison.surfaces) {
+    const auto at = std::find(own.surface_names.begin(), own.surface_names.end(), surface.name);
+    surface.given = given[std::size_t(at - own.surface_names.begin())];
+  }
+  return comparison;
+}
+
+}  // namespace radiosity

@@ -1,0 +1,49 @@
+// Finds the nearest point of a surface that faces a given way.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "radiosity/base.h"
+
+namespace radiosity {
+
+struct SurfacePoint {
+  std::size_t triangle = 0;
+  Vec3 weights{0.0};  ///< barycentric
+  double distance = 0;
+};
+
+/// A tree of boxes over triangles (median splits).
+class SurfaceIndex {
+ public:
+  /// Both are kept by reference.
+  SurfaceIndex(std::span<const Vec3> vertices, std::span<const std::array<Index, 3>> triangles);
+
+  /// Nearest point of a triangle whose normal is within 60 degrees of `normal`, not farther than
+  /// `reach`; of equals the first triangle's.
+  std::optional<SurfacePoint> nearest(const Vec3& point, const Vec3& normal, double reach) const;
+
+ private:
+  struct Node {
+    Vec3 lower{0.0};
+    Vec3 upper{0.0};
+    std::uint32_t begin =
+        0;  ///< leaf: into order_; inner node: its second child (the first is next)
+    std::uint32_t count = 0;  ///< 0: inner node
+  };
+
+  void build(std::size_t begin, std::size_t end);
+  double distance2(const Node& node, const Vec3& point) const;
+  std::array<Vec3, 3> cornersOf(std::size_t triangle) const;
+
+  std::span<const Vec3> vertices_;
+  std::span<const std::array<Index, 3>> triangles_;
+  std::vector<Vec3> normal_;  ///< unit; 0 for a degenerate triangle
+  std::vector<std::uint32_t> order_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace radiosity

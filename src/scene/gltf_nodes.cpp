@@ -1,0 +1,159 @@
+#include "scene/gltf_nodes.h"
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <utility>
+
+namespace radiosity {
+
+namespace {
+
+using Transform = glm::dmat4;
+
+/// Corner numbers of the triangles of a primitive, three each (glTF 2.0, 3.7.2.1). An odd triangle
+/// of a strip is wound the other way, so its first two corners change places.
+std::vector<Index> triangleCorners(const std::vector<Index>& indices, int mode) {
+  if (mode == TINYGLTF_MODE_TRIANGLES) return indices;
+  std::vector<Index> corners;
+  for (std::size_t k = 0; k + 2 < indices.size(); ++k) {
+    if (mode == TINYGLTF_MODE_TRIANGLE_FAN) {
+      corners.insert(corners.end(), {indices[k + 1], indices[k + 2], indices[0]});
+    } else {
+      const std::size_t odd = k % 2;
+      corners.insert(corners.end(), {indices[k], indices[k + 1 + odd], indices[k + 2 - odd]});
+    }
+  }
+  return corners;
+}
+
+int modeOf(const tinygltf::Primitive& primitive) {
+  return primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
+}
+
+std::vector<int> rootNodes(const GltfFile& file) {
+  const tinygltf::Model& model = file.model;
+  if (!model.scenes.empty()) {
+    return file.at(model.scenes, std::max(model.defaultScene, 0), "scene", "the file").nodes;
+  }
+  // Without scenes every node that is no child is a root.
+  std::vector<bool> is_child(model.nodes.size(), false);
+  for (const tinygltf::Node& node : model.nodes) {
+    for (const int child : node.children) {
+      file.at(model.nodes, child, "node", "node " + node.name);
+      is_child[std::size_t(child)] = true;
+    }
+  }
+  std::vector<int> roots;
+  for (std::size_t k = 0; k < is_child.size(); ++k) {
+    if (!is_child[k]) roots.push_back(int(k));
+  }
+  return roots;
+}
+
+Transform localTransform(const GltfFile& file, const tinygltf::Node& node,
+                         const std::string& what) {
+  const auto sized = [&](const std::vector<double>& values, std::size_t size, const char* name) {
+    if (values.empty()) return false;
+    if (values.size() != size) {
+      file.fail(fmt::format("{}: {} is not {} numbers; correct it", what, name, size));
+    }
+    return true;
+  };
+  Transform transform(1.0);
+  if (sized(node.matrix, 16, "matrix")) {
+    // Column-major on both sides.
+    for (int k = 0; k < 16; ++k) transform[k / 4][k % 4] = node.matrix[std::size_t(k)];
+    return transform;
+  }
+  if (sized(node.rotation, 4, "rotation")) {
+    const glm::dquat turn(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
+    const double length = glm::length(turn);
+    if (!(length > 0)) file.fail(what + ": rotation is the zero quaternion; correct it");
+    // Written with 7 digits as a rule: made unit again so that lengths are kept in double.
+    transform = glm::mat4_cast(turn / length);
+  }
+  if (sized(node.scale, 3, "scale")) {
+    for (int k = 0; k < 3; ++k) transform[k] *= node.scale[std::size_t(k)];
+  }
+  if (sized(node.translation, 3, "translation")) {
+    transform[3] = {node.translation[0], node.translation[1], node.translation[2], 1.0};
+  }
+  return transform;
+}
+
+}  // namespace
+
+void forEachGltfNode(const GltfFile& file,
+                     const std::function<void(int, const glm::dmat4&, const std::string&)>& visit) {
+  const tinygltf::Model& model = file.model;
+  std::vector<bool> visited(model.nodes.size(), false);
+  for (const int root : rootNodes(file)) {
+    // An explicit stack: a chain of nodes may be longer than the call stack is deep.
+    std::vector<std::pair<int, Transform>> waiting = {{root, Transform(1.0)}};
+    while (!waiting.empty()) {
+      const auto [current, outer] = waiting.back();
+      waiting.pop_back();
+      const tinygltf::Node& node = file.at(model.nodes, current, "node", "the node tree");
+      const std::string what =
+          fmt::format("node {}", node.name.empty() ? std::to_string(current) : node.name);
+      if (visited[std::size_t(current)]) {
+        file.fail(what + " is reached twice, nodes must form a tree; export the scene again");
+      }
+      visited[std::size_t(current)] = true;
+      const Transform transform = outer * localTransform(file, node, what);
+      visit(current, transform, what);
+      // The last one in is the first one out: children are read in their order.
+      for (std::size_t k = node.children.size(); k-- > 0;) {
+        waiting.emplace_back(node.children[k], transform);
+      }
+    }
+  }
+}
+
+bool hasTriangles(const tinygltf::Primitive& primitive) {
+  const int mode = modeOf(primitive);
+  return mode >= TINYGLTF_MODE_TRIANGLES && mode <= TINYGLTF_MODE_TRIANGLE_FAN;
+}
+
+std::vector<Index> readGltfTriangles(const GltfFile& file, const tinygltf::Primitive& primitive,
+                                     std::size_t vertices, const glm::dmat4& transform,
+                                     const std::string& what) {
+  std::vector<Index> indices;
+  if (primitive.indices >= 0) {
+    indices = file.readIndices(primitive.indices, what + ": indices");
+  } else {
+    for (std::size_t k = 0; k < vertices; ++k) indices.push_back(Index(k));
+  }
+  for (const Index index : indices) {
+    if (index < vertices) continue;
+    file.fail(fmt::format("{}: vertex {} does not exist, there are {}; export the scene again",
+                          what, index, vertices));
+  }
+  std::vector<Index> corners = triangleCorners(indices, modeOf(primitive));
+  if (corners.size() % 3 != 0 || corners.empty()) {
+    file.fail(fmt::format("{}: {} indices do not make triangles; export the scene again", what,
+                          indices.size()));
+  }
+  if (glm::determinant(glm::dmat3(transform)) < 0) {
+    for (std::size_t k = 0; k < corners.size(); k += 3) std::swap(corners[k + 1], corners[k + 2]);
+  }
+  return corners;
+}
+
+std::vector<Vec3> readGltfPositions(const GltfFile& file, const tinygltf::Primitive& primitive,
+                                    const glm::dmat4& transform, const std::string& what) {
+  const std::vector<double> numbers =
+      file.readNumbers(primitive.attributes.at("POSITION"), 3, what + ": POSITION");
+  std::vector<Vec3> positions;
+  for (std::size_t k = 0; k < numbers.size(); k += 3) {
+    positions.emplace_back(transform * glm::dvec4(numbers[k], numbers[k + 1], numbers[k + 2], 1.0));
+    if (!isFinite(positions.back())) {
+      file.fail(fmt::format("{}: vertex {} is not finite; correct the mesh or its transform", what,
+                            k / 3));
+    }
+  }
+  return positions;
+}
+
+}  // namespace radiosity

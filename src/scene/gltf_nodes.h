@@ -1,0 +1,38 @@
+// The node tree of a glTF file and the triangles of its primitives.
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <glm/mat4x4.hpp>
+#include <string>
+#include <vector>
+
+#include "scene/gltf_file.h"
+
+namespace radiosity {
+
+/// Calls visit(node number, transform to the world, "node NAME") for every node of the default
+/// scene (of all roots, where there is none), parents first, children in their order. Errors: a
+/// node that is reached twice, a malformed transform.
+void forEachGltfNode(const GltfFile& file,
+                     const std::function<void(int, const glm::dmat4&, const std::string&)>& visit);
+
+inline bool isFinite(const Vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/// True for a primitive made of triangles, in whatever mode.
+bool hasTriangles(const tinygltf::Primitive& primitive);
+
+/// Vertices of the triangles of such a primitive, three each, of `vertices` there are; wound so
+/// that fronts stay fronts under `transform`: a mirrored node winds them the other way
+/// (glTF 2.0, 3.7.4).
+std::vector<Index> readGltfTriangles(const GltfFile& file, const tinygltf::Primitive& primitive,
+                                     std::size_t vertices, const glm::dmat4& transform,
+                                     const std::string& what);
+
+/// POSITION under `transform`, all finite.
+std::vector<Vec3> readGltfPositions(const GltfFile& file, const tinygltf::Primitive& primitive,
+                                    const glm::dmat4& transform, const std::string& what);
+
+}  // namespace radiosity
