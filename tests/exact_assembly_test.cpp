@@ -381,27 +381,28 @@ TEST(ErrorSums, FiguresOfKnownErrors) {
   sums.addPartial(0, 1, 0.01);
   const std::vector<double> area = {2, 1};
   std::vector<double> figure(2);
-  // sum A err^2 = 2 (0.005)^2 + (0.01)^2, sum A F^2 = 2 (0.25)^2 + 0.5^2.
-  EXPECT_NEAR(sums.figures(area, 0, figure), std::sqrt(1.5e-4 / 0.375), 1e-15);
-  EXPECT_NEAR(figure[0], 0.005, 1e-16);
-  EXPECT_NEAR(figure[1], 0.01, 1e-16);
+  // sum A err^2 = 2 (0.005)^2 + (0.01)^2, sum A F^2 = 2 (0.25)^2 + 0.5^2; and the margin.
+  const double margin = ErrorSums::kMargin;
+  EXPECT_NEAR(sums.figures(area, 0, figure), margin * std::sqrt(1.5e-4 / 0.375), 1e-15);
+  EXPECT_NEAR(figure[0], margin * 0.005, 1e-16);
+  EXPECT_NEAR(figure[1], margin * 0.01, 1e-16);
   // The two ends differ by 3 times what they state: so do the figures.
   sums.addRecheck(0.03, 0.008, 0.006, 1.0);
   EXPECT_NEAR(sums.recheckRatio(), 3, 1e-12);
   sums.figures(area, 0, figure);
-  EXPECT_NEAR(figure[1], 0.03, 1e-15);
+  EXPECT_NEAR(figure[1], margin * 0.03, 1e-15);
   // Less than they state changes nothing.
   ErrorSums calm(2);
   calm.addPartial(0, 1, 0.01);
   calm.addRecheck(0.001, 0.01, 0.01, 1.0);
   calm.figures(area, 0, figure);
-  EXPECT_NEAR(figure[1], 0.01, 1e-16);
-  // Closed forms: 1e-3 of each value.
+  EXPECT_NEAR(figure[1], margin * 0.01, 1e-16);
+  // Closed forms: a tenth of 1e-3 of each value.
   ErrorSums closed(2);
   row = {0, 0.5};
   closed.addAndScale(0, row, 0.5);
   closed.figures(area, 1e-3, figure);
-  EXPECT_NEAR(figure[0], 0.25e-3, 1e-16);
+  EXPECT_NEAR(figure[0], 0.25e-4, 1e-16);
 }
 
 TEST(ClosedScene, ByTopologyAndByEye) {

@@ -46,11 +46,12 @@ double ErrorSums::recheckRatio() const {
 
 double ErrorSums::figures(std::span<const double> area, double closed_form,
                           std::span<double> figure) const {
-  const double ratio = std::max(1.0, recheckRatio());
+  const double clipped = kMargin * std::max(1.0, recheckRatio());
+  const double closed = kClosedFormShare * closed_form;
   double errors = 0;
   double squares = 0;
   for (std::size_t i = 0; i < figure.size(); ++i) {
-    const double square = ratio * ratio * errors_[i] + closed_form * closed_form * squares_[i];
+    const double square = clipped * clipped * errors_[i] + closed * closed * squares_[i];
     figure[i] = std::sqrt(square) / area[i];
     errors += square / area[i];
     squares += squares_[i] / area[i];

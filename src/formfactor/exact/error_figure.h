@@ -11,12 +11,15 @@ namespace radiosity {
 /// of disjoint sets of pairs add up.
 ///
 /// A row's error figure is sqrt(sum_j err_ij^2): errors of different pairs have different causes
-/// and signs, and add up in squares. For a pair clipped against occluders err is what its embedded
-/// rules say; for one in closed form it is the kernel's published relative accuracy. The figure
-/// would be worth little if the embedded rules overlooked what both of their sets of points
-/// overlook (a shadow's edge between them). So a random subset of the clipped pairs is evaluated
-/// again with points on the other element, where shadows lie differently; if the two ends differ
-/// by more than they say, rms, all figures are multiplied by that ratio.
+/// and signs, and add up in squares. For a pair in closed form err is a tenth of the kernel's
+/// published accuracy: that is a bound, which the worst pair comes near, not a row. For a pair
+/// clipped against occluders it is what its embedded rules say. That would be worth little where
+/// they overlook what both of their sets of points overlook (a shadow's edge between them). So a
+/// random subset is evaluated again with points on the other element, where shadows lie
+/// differently; if the two ends differ by more than they say, rms, the figures of all clipped pairs
+/// are multiplied by that ratio. A margin covers the rows in which such a pair is: with it 99 of
+/// 100 rows of the closed Cornell box (985 patches) and 60 of 60 of two rooms (572) are within
+/// their figures, whose median is 7 times the median error in both (truth_exact_test).
 class ErrorSums {
  public:
   ErrorSums() = default;
@@ -44,8 +47,12 @@ class ErrorSums {
   /// rms difference of the two ends over what they state; 0 where nothing was compared.
   double recheckRatio() const;
 
-  /// figures[row], absolute, of F. `area`: of the rows; `closed_form`: relative accuracy of closed
-  /// forms and of storage. Returns the matrix figure: sqrt(sum A err^2 / sum A F^2).
+  static constexpr double kMargin = 2.5;  ///< of clipped pairs
+  static constexpr double kClosedFormShare = 0.1;
+
+  /// figure[row], absolute, of F. `area`: of the rows; `closed_form`: published relative accuracy
+  /// of closed forms. Returns the matrix figure: sqrt(sum A err^2 / sum A F^2), with the same
+  /// margin.
   double figures(std::span<const double> area, double closed_form, std::span<double> figure) const;
 
  private:
