@@ -38,6 +38,7 @@ std::vector<std::vector<Vec3>> partsInside(const OccluderPolygons& all,
   }
   for (const std::vector<Index>& loop : polygon.loops) {
     std::vector<Vec3> part;
+    part.reserve(loop.size());
     for (const Index v : loop) part.push_back(all.vertices[v]);
     for (const Occluder::Plane& plane : body.planes) {
       part = clippedBelow(part, plane.normal, plane.offset - margin);

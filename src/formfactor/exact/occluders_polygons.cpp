@@ -47,6 +47,7 @@ OccluderPolygons::OccluderPolygons(const PatchMesh& mesh, const ElementSet& elem
       }
     }
   }
+  vertices.reserve(welded.size());
   for (Index v = 0; v < welded.size(); ++v) vertices.push_back(welded[v]);
   for (const Index p : order) addPolygon(mesh, elements, p, place);
   findBounding();
@@ -85,9 +86,10 @@ void OccluderPolygons::describe(OccluderPolygon& polygon) const {
     for (const Index v : loop) {
       polygon.box.add(vertices[v]);
       const double height = glm::dot(polygon.normal, vertices[v]) - polygon.offset;
-      if (std::abs(height) > coincidence) polygon.planar = false;
+      polygon.deviation = std::max(polygon.deviation, std::abs(height));
     }
   }
+  polygon.planar = polygon.deviation <= coincidence;
   polygon.area = glm::dot(area, polygon.normal);
   std::vector<Index> all;
   for (const std::vector<Index>& loop : polygon.loops)
@@ -109,12 +111,14 @@ void OccluderPolygons::describe(OccluderPolygon& polygon) const {
 
 void OccluderPolygons::findBounding() {
   for (OccluderPolygon& polygon : polygons) {
+    // A patch that is not planar stands for the plane that it is off by so much.
+    const double tolerance = std::max(coincidence, polygon.deviation);
     bool above = false;
     bool below = false;
     for (std::size_t v = 0; v < vertices.size() && !(above && below); ++v) {
       const double height = glm::dot(polygon.normal, vertices[v]) - polygon.offset;
-      above = above || height > coincidence;
-      below = below || height < -coincidence;
+      above = above || height > tolerance;
+      below = below || height < -tolerance;
     }
     polygon.bounds_scene = !(above && below);
     polygon.faces_scene = !below;

@@ -22,6 +22,7 @@ struct OccluderPolygon {
   Vec3 normal{0.0};
   double offset = 0;          ///< dot(normal, x) of its plane
   double area = 0;            ///< scaled
+  double deviation = 0;       ///< largest distance of a vertex from the plane
   bool planar = true;         ///< within coincidence
   bool convex = false;        ///< one loop that turns one way
   bool one_sided = true;      ///< its back carries no patches
