@@ -21,38 +21,6 @@ struct Made {
   OccluderSet set;
 };
 
-/// The part of a segment inside a body, as a length; of a flat one, 1 where it is crossed.
-double lengthInside(const Occluder& body, const Vec3& p, const Vec3& q, double margin) {
-  double enter = 0;
-  double leave = 1;
-  for (const Occluder::Plane& plane : body.planes) {
-    const double hp = glm::dot(plane.normal, p) - plane.offset + margin;
-    const double hq = glm::dot(plane.normal, q) - plane.offset + margin;
-    if (body.flat) continue;
-    if (hp > 0 && hq > 0) return 0;
-    if (hp > 0) enter = std::max(enter, hp / (hp - hq));
-    if (hq > 0) leave = std::min(leave, hp / (hp - hq));
-  }
-  if (!body.flat) return std::max(0.0, leave - enter) * glm::distance(p, q);
-  const double hp = glm::dot(body.planes[0].normal, p) - body.planes[0].offset;
-  const double hq = glm::dot(body.planes[0].normal, q) - body.planes[0].offset;
-  if (hp * hq >= 0 || std::min(std::abs(hp), std::abs(hq)) <= std::abs(margin)) return 0;
-  const Vec3 x = p + (q - p) * (hp / (hp - hq));
-  for (const Occluder::Edge& edge : body.edges) {
-    const Vec3& a = body.corners[edge.from];
-    const Vec3 along = glm::normalize(body.corners[edge.to] - a);
-    if (glm::dot(glm::cross(along, x - a), body.planes[edge.left].normal) < margin) return 0;
-  }
-  return 1;
-}
-
-bool blocks(const OccluderSet& set, const Vec3& p, const Vec3& q, double margin) {
-  for (const Occluder& body : set.occluders) {
-    if (lengthInside(body, p, q, margin) > std::abs(margin)) return true;
-  }
-  return false;
-}
-
 /// Bodies are convex, closed and named by what they say.
 void expectSound(const Made& made) {
   const double near = made.elements.coincidence;
@@ -113,9 +81,9 @@ void expectBlocksAlike(const PatchMesh& mesh, std::size_t lines, unsigned seed) 
     const auto seen = sight.between(p, q, margin);
     if (seen == SightLines::Sight::kBlocked) {
       ++blocked;
-      EXPECT_TRUE(blocks(made.set, p, q, -margin)) << a << " " << b;
+      EXPECT_TRUE(test::blocks(made.set.occluders, p, q, -margin)) << a << " " << b;
     } else if (seen == SightLines::Sight::kFree) {
-      EXPECT_FALSE(blocks(made.set, p, q, margin)) << a << " " << b;
+      EXPECT_FALSE(test::blocks(made.set.occluders, p, q, margin)) << a << " " << b;
     }
     if (::testing::Test::HasFailure()) return;
   }

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "formfactor/exact/elements.h"
+#include "formfactor/exact/occluders.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/scene.h"
 #include "scene_builder.h"
@@ -122,6 +124,41 @@ Vec3 randomPoint(const ElementSet& elements, std::size_t e, Random& random) {
 
 inline bool faceEachOther(const Facet& a, const Vec3& p, const Facet& b, const Vec3& q) {
   return glm::dot(a.normal, q - p) > 0 && glm::dot(b.normal, p - q) > 0;
+}
+
+/// The part of a segment inside a body, as a length; of a flat one, 1 where it is crossed.
+inline double lengthInside(const Occluder& body, const Vec3& p, const Vec3& q, double margin) {
+  double enter = 0;
+  double leave = 1;
+  for (const Occluder::Plane& plane : body.planes) {
+    const double hp = glm::dot(plane.normal, p) - plane.offset + margin;
+    const double hq = glm::dot(plane.normal, q) - plane.offset + margin;
+    if (body.flat) continue;
+    if (hp > 0 && hq > 0) return 0;
+    if (hp > 0) enter = std::max(enter, hp / (hp - hq));
+    if (hq > 0) leave = std::min(leave, hp / (hp - hq));
+  }
+  if (!body.flat) return std::max(0.0, leave - enter) * glm::distance(p, q);
+  const double hp = glm::dot(body.planes[0].normal, p) - body.planes[0].offset;
+  const double hq = glm::dot(body.planes[0].normal, q) - body.planes[0].offset;
+  if (hp * hq >= 0 || std::min(std::abs(hp), std::abs(hq)) <= std::abs(margin)) return 0;
+  const Vec3 x = p + (q - p) * (hp / (hp - hq));
+  for (const Occluder::Edge& edge : body.edges) {
+    const Vec3& a = body.corners[edge.from];
+    const Vec3 along = glm::normalize(body.corners[edge.to] - a);
+    if (glm::dot(glm::cross(along, x - a), body.planes[edge.left].normal) < margin) return 0;
+  }
+  return 1;
+}
+
+/// Whether one of the bodies blocks a line by more than `margin`; a negative one counts lines that
+/// pass it so close as blocked.
+template <class Bodies>
+bool blocks(const Bodies& bodies, const Vec3& p, const Vec3& q, double margin) {
+  for (const Occluder& body : bodies) {
+    if (lengthInside(body, p, q, margin) > std::abs(margin)) return true;
+  }
+  return false;
 }
 
 /// A room of 4 x 4 x 3 with what is hard: blocks that stand on the floor, on each other and side by

@@ -1,6 +1,7 @@
 // Which elements see each other: every proved answer against random sight lines.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -105,6 +106,13 @@ void expectTrue(const PatchMesh& mesh, std::size_t lines, unsigned seed) {
     const auto seen = sight.between(p, q, margin);
     if (seen == SightLines::Sight::kBlocked) {
       EXPECT_NE(table.at(r, c), Answer::kUnoccluded) << r << " " << c;
+      if (table.at(r, c) == Answer::kPartial) {
+        std::vector<Occluder> between;
+        for (const Index o : table.candidates.at({Index(r), Index(c)})) {
+          between.push_back(table.occluders.occluders[o]);
+        }
+        EXPECT_TRUE(test::blocks(between, p, q, -margin)) << r << " " << c;
+      }
     } else if (seen == SightLines::Sight::kFree) {
       // Lines in the faces' own planes are neither here nor there.
       if (glm::dot(fr.normal, q - p) > margin && glm::dot(fc.normal, p - q) > margin) {
@@ -155,6 +163,52 @@ TEST_P(ExactVisibility, AnswersAreTrueForFacesAsPatches) {
 /// Blocks stand on floors that are not cut along them.
 TEST(ExactVisibilityFaces, AnswersAreTrueWithoutContactCuts) {
   expectTrue(test::meshOf(test::hardRoom(), 1, true), 20000, 4);
+}
+
+/// Nothing is repaired: boxes run through each other and through the floor, one is inside another.
+TEST(ExactVisibilityFaces, AnswersAreTrueWhereBodiesCross) {
+  test::SceneBuilder b;
+  b.box(b.surface("room"), {0, 0, 0}, {4, 4, 3}, false);
+  const Index box = b.surface("box");
+  b.box(box, {1, 1, -0.2}, {2, 2, 1.5});
+  b.prism(box, test::SceneBuilder::turnedRectangle({2, 2}, 1.2, 0.6, 0.4), 0.5, 1.1);
+  b.box(box, {1.2, 1.2, 0.6}, {1.4, 1.4, 0.8});
+  b.face(b.surface("sheet", 0.5, 0.0, true),
+         {{0.5, 1.5, 0.3}, {3.5, 1.7, 0.4}, {3.5, 1.6, 2.4}, {0.5, 1.4, 2.3}});
+  const Scene scene = b.scene();
+  expectTrue(test::meshOf(scene, 1, true), 20000, 5);
+  expectTrue(test::meshOf(scene, 300), 20000, 6);
+}
+
+/// Far from the origin and tiny: coordinates relative to the middle are as good as any.
+TEST(ExactVisibilityFaces, AnswersAreTrueFarAwayAndTiny) {
+  const Scene far = test::moved(test::hardRoom(), {4e6, -3e6, 1e6});
+  expectTrue(test::meshOf(far, 200), 20000, 7);
+  expectTrue(test::meshOf(test::scaled(test::hardRoom(), 1e-6), 200), 20000, 8);
+}
+
+/// The scalar twin answers alike, pair by pair.
+TEST(ExactVisibilityCounts, ScalarTwinGivesTheSame) {
+  const PatchMesh mesh = test::meshOf(test::hardRoom(), 250);
+  const Table table(mesh);
+  const Visibility scalar(table.elements, table.occluders, false);
+  struct Compare : VisibilitySink {
+    explicit Compare(const Table& t) : table(t) {}
+    void unoccluded(ElementRange r, ElementRange c) override {
+      EXPECT_EQ(table.at(r.first, c.first), Answer::kUnoccluded);
+      EXPECT_EQ(table.at(r.end - 1, c.end - 1), Answer::kUnoccluded);
+    }
+    void partial(Index r, Index c, std::span<const Index> between) override {
+      EXPECT_TRUE(std::ranges::equal(table.candidates.at({r, c}), between));
+    }
+    const Table& table;
+  } sink(table);
+  VisibilityCounts counts;
+  for (const Facet& facet : table.elements.facets) {
+    if (!facet.bare) scalar.classify(facet.elements, sink, counts);
+  }
+  EXPECT_EQ(counts.partial, table.counts.partial);
+  EXPECT_EQ(counts.hidden, table.counts.hidden);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ExactVisibility, ::testing::ValuesIn(kCases),

@@ -11,21 +11,32 @@ namespace radiosity {
 /// The hull is the union of spheres whose centres and radii run linearly from a to b. The gap to a
 /// ball at axial place x and distance y from the axis, sqrt((x - t d)^2 + y^2) - r(t), is convex in
 /// t; with s = (r_b - r_a)/d it is least where t d - x = y s / sqrt(1 - s^2).
-bool meetsHull(const Sphere& a, const Sphere& b, const Sphere& ball) {
-  const Vec3 axis = b.centre - a.centre;
-  const Vec3 arm = ball.centre - a.centre;
-  const double square = glm::dot(axis, axis);
-  const double slope = b.radius - a.radius;
-  if (square <= slope * slope) {  // one sphere holds the other
-    const Sphere& larger = slope > 0 ? b : a;
-    return glm::distance(larger.centre, ball.centre) <= larger.radius + ball.radius;
+SphereHull::SphereHull(const Sphere& a, const Sphere& b)
+    : start_(a.centre), axis_(b.centre - a.centre), radius_(a.radius), slope_(b.radius - a.radius) {
+  const double square = glm::dot(axis_, axis_);
+  if (square > slope_ * slope_) {
+    square_ = square;
+    inverse_square_ = 1 / square;
+    tilt_ = slope_ / std::sqrt(square - slope_ * slope_);
+  } else if (slope_ > 0) {
+    start_ = b.centre;
+    radius_ = b.radius;
   }
-  const double along = glm::dot(arm, axis);
-  const double across = std::sqrt(std::max(0.0, glm::dot(arm, arm) * square - along * along));
-  const double t = (along + across * slope / std::sqrt(square - slope * slope)) / square;
+}
+
+bool SphereHull::meets(const Sphere& ball) const {
+  const Vec3 arm = ball.centre - start_;
+  const double arm_square = glm::dot(arm, arm);
+  if (square_ == 0) {
+    const double reach = radius_ + ball.radius;
+    return arm_square <= reach * reach;
+  }
+  const double along = glm::dot(arm, axis_);
+  const double across_square = std::max(0.0, arm_square * square_ - along * along);
+  const double t = (along + std::sqrt(across_square) * tilt_) * inverse_square_;
   const double at = std::clamp(t, 0.0, 1.0);
-  const Vec3 gap = arm - at * axis;
-  const double reach = a.radius + at * slope + ball.radius;
+  const Vec3 gap = arm - at * axis_;
+  const double reach = radius_ + at * slope_ + ball.radius;
   return glm::dot(gap, gap) <= reach * reach;
 }
 
@@ -81,11 +92,12 @@ void OccluderTree::query(const Sphere& a, const Sphere& b, const HalfSpace& fron
                          const HalfSpace& front_of_b, std::vector<Index>& found,
                          std::size_t& tests) const {
   if (nodes_.empty()) return;
+  const SphereHull hull(a, b);
   const auto reaches = [&](const Sphere& ball) {
     ++tests;
     return glm::dot(front_of_a.normal, ball.centre) + ball.radius > front_of_a.offset &&
            glm::dot(front_of_b.normal, ball.centre) + ball.radius > front_of_b.offset &&
-           meetsHull(a, b, ball);
+           hull.meets(ball);
   };
   const auto above = [](const Occluder& occluder, const HalfSpace& space) {
     return std::any_of(occluder.corners.begin(), occluder.corners.end(),

@@ -13,8 +13,18 @@ struct Sphere {
   double radius = 0;
 };
 
-/// True if `ball` meets the convex hull of two spheres.
-bool meetsHull(const Sphere& a, const Sphere& b, const Sphere& ball);
+/// The convex hull of two spheres.
+class SphereHull {
+ public:
+  SphereHull(const Sphere& a, const Sphere& b);
+  bool meets(const Sphere& ball) const;
+
+ private:
+  Vec3 start_, axis_;
+  double radius_, slope_;  ///< at the start, and what it grows by towards the end
+  double square_ = 0;      ///< of the axis; 0: one sphere holds the other, radius_ is the larger's
+  double inverse_square_ = 0, tilt_ = 0;
+};
 
 /// A half-space dot(normal, x) > offset.
 struct HalfSpace {
