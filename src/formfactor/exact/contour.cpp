@@ -5,7 +5,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
-#include <utility>
 
 #include "formfactor/exact/quadrature.h"
 
@@ -136,42 +135,56 @@ struct Term {
   bool exact = true;  // to rounding: no quadrature
 };
 
-Term edgePair(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1, double unit,
-              double tolerance) {
-  Segment a{a0, a1 - a0, glm::distance(a0, a1)};
-  Segment b{b0, b1 - b0, glm::distance(b0, b1)};
-  if (!(a.length > 0) || !(b.length > 0)) return {};
-  a.direction /= a.length;
-  b.direction /= b.length;
+Term edgePair(const Segment& a, const Segment& b, double inverse_unit, double tolerance) {
   const double cosine = glm::dot(a.direction, b.direction);
   if (std::abs(cosine) < kRoundingAngle) return {};
-  const double inverse_unit = 1 / unit;
-  if (glm::length(glm::cross(a.direction, b.direction)) < kRoundingAngle) {
-    const Vec3 offset = (b0 - a0) * inverse_unit;
+  const Vec3 normal = glm::cross(a.direction, b.direction);
+  if (glm::dot(normal, normal) < kRoundingAngle * kRoundingAngle) {
+    const Vec3 offset = (b.origin - a.origin) * inverse_unit;
     const double t0 = glm::dot(offset, a.direction);
     const double h = glm::length(glm::cross(offset, a.direction));
     const double t1 = t0 + (cosine > 0 ? b.length : -b.length) * inverse_unit;
-    return {unit * unit * parallelEdges(0, a.length * inverse_unit, t0, t1, h), true};
+    const double integral = parallelEdges(0, a.length * inverse_unit, t0, t1, h);
+    return {integral / (inverse_unit * inverse_unit), true};
   }
-  if (a.length > b.length) std::swap(a, b);
-  return {cosine * skewEdges(a, b, inverse_unit, tolerance), false};
+  const bool a_outer = a.length <= b.length;
+  const double integral = skewEdges(a_outer ? a : b, a_outer ? b : a, inverse_unit, tolerance);
+  return {cosine * integral, false};
 }
+
+/// The edges of a loop; those of no length are left out.
+class Edges {
+ public:
+  explicit Edges(std::span<const Vec3> loop) {
+    for (std::size_t k = 0, last = loop.size() - 1; k < loop.size(); last = k++) {
+      const Vec3 edge = loop[k] - loop[last];
+      const double length = glm::length(edge);
+      if (length > 0) edges_[count_++] = {loop[last], edge / length, length};
+    }
+  }
+  const Segment* begin() const { return edges_.data(); }
+  const Segment* end() const { return edges_.data() + count_; }
+
+ private:
+  std::array<Segment, kMostContourCorners> edges_;
+  std::size_t count_ = 0;
+};
 
 struct Sum {
   double value = 0;
   double skew = 0;  // magnitudes of the terms by quadrature
 };
 
-Sum sumOfTerms(std::span<const Vec3> a, std::span<const Vec3> b, double unit, double tolerance) {
+Sum sumOfTerms(const Edges& a, const Edges& b, double unit, double tolerance) {
   Sum sum;
-  for (std::size_t i = 0, before = a.size() - 1; i < a.size(); before = i++) {
-    double edge = 0;
-    for (std::size_t j = 0, last = b.size() - 1; j < b.size(); last = j++) {
-      const Term term = edgePair(a[before], a[i], b[last], b[j], unit, tolerance);
-      edge += term.value;
+  for (const Segment& e : a) {
+    double along = 0;
+    for (const Segment& f : b) {
+      const Term term = edgePair(e, f, 1 / unit, tolerance);
+      along += term.value;
       if (!term.exact) sum.skew += std::abs(term.value);
     }
-    sum.value += edge;
+    sum.value += along;
   }
   return sum;
 }
@@ -188,10 +201,12 @@ double contourExchange(std::span<const Vec3> a, std::span<const Vec3> b, double 
   // Terms are larger than their sum; where they are larger than expected, once more.
   constexpr double kExpectedCancellation = 1e-2;
   const double first = kExpectedCancellation * tolerance;
-  Sum sum = sumOfTerms(a, b, unit, first);
+  const Edges edges_a(a);
+  const Edges edges_b(b);
+  Sum sum = sumOfTerms(edges_a, edges_b, unit, first);
   if (first * sum.skew > tolerance * sum.value) {
     const double needed = tolerance * std::max(sum.value, 0.0) / sum.skew;
-    sum = sumOfTerms(a, b, unit, std::max(needed, kFinestTolerance));
+    sum = sumOfTerms(edges_a, edges_b, unit, std::max(needed, kFinestTolerance));
   }
   return sum.value / (2 * std::numbers::pi);
 }

@@ -7,6 +7,9 @@
 
 namespace radiosity {
 
+/// Corners a loop may have: a quadrilateral cut by one plane.
+inline constexpr std::size_t kMostContourCorners = 5;
+
 /// G = A_a F_ab of two planar loops, each counter-clockwise about its normal, nothing between them
 /// and neither crossing the other's plane (clip them first), by Stokes' theorem:
 ///

@@ -43,8 +43,8 @@ inline constexpr double kSkewError = 6;
 inline constexpr double kSkewFactor = 2.5;
 /// A rule in which densities that are not constant count as degrees: for parallelograms only.
 inline constexpr double kNever = std::numeric_limits<double>::infinity();
-inline constexpr std::array<double, kFarRules> kRuleError = {0.8, 0.22, 0.15, 0.02, 0.0025, 0.0005};
-inline constexpr std::array<double, kFarRules> kSkewRuleError = {6, kNever, 3, 0.4, 0.06, 0.02};
+inline constexpr std::array<double, kFarRules> kRuleError = {0.8, 0.22, 0.15, 0.02, 0.0025};
+inline constexpr std::array<double, kFarRules> kSkewRuleError = {6, kNever, 3, 0.4, 0.06};
 
 /// Up to which R each rule is good: plain + skew * skew_part.
 template <class T>

@@ -50,7 +50,7 @@ FarRule stroudDegreeFive() {
 
 std::array<FarRule, kFarRules> makeRules() {
   std::array<FarRule, kFarRules> rules = {productGauss(2), stroudDegreeFive(), productGauss(3),
-                                          productGauss(4), productGauss(5),    productGauss(6)};
+                                          productGauss(4), productGauss(5)};
   for (std::size_t k = 1; k < kFarRules; ++k)
     rules[k].begin = rules[k - 1].begin + rules[k - 1].count;
   return rules;

@@ -17,7 +17,7 @@ struct FarRule {
     std::size_t partners;
     std::size_t weights;
   };
-  static constexpr std::size_t kMostPoints = 36;
+  static constexpr std::size_t kMostPoints = 25;
 
   std::size_t count = 0;
   std::size_t begin = 0;  ///< points of the rules before
@@ -29,10 +29,10 @@ struct FarRule {
 
 /// In order of accuracy: product Gauss of 2 x 2 points on each element; of the 3 x 3 points the 33
 /// pairs of Stroud's degree 5 formula C_n: 5-2 (Approximate Calculation of Multiple Integrals,
-/// 1971; Hammer & Stroud 1958) for n = 4; then product Gauss of 3 x 3 to 6 x 6.
-inline constexpr std::size_t kFarRules = 6;
+/// 1971; Hammer & Stroud 1958) for n = 4; then product Gauss of 3 x 3 to 5 x 5.
+inline constexpr std::size_t kFarRules = 5;
 /// Points of all rules.
-inline constexpr std::size_t kFarRulePoints = 4 + 9 + 9 + 16 + 25 + 36;
+inline constexpr std::size_t kFarRulePoints = 4 + 9 + 9 + 16 + 25;
 
 std::span<const FarRule, kFarRules> farRules();
 

@@ -1,12 +1,12 @@
 #include "formfactor/exact/near_exchange.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 
 #include "formfactor/exact/contour.h"
-#include "formfactor/exact/point_to_polygon.h"
 #include "formfactor/exact/quadrature.h"
 
 namespace radiosity {
@@ -26,7 +26,7 @@ double distanceToEdges(const Vec3& p, std::span<const Vec3> polygon) {
 
 constexpr int kLeastPoints = 2;
 /// More cost more than contours.
-constexpr int kMostPoints = 6;
+constexpr int kMostPoints = 8;
 /// Of the square of the pair's extent: what contours lose to cancellation.
 constexpr double kContourRounding = 1e-16;
 
@@ -35,46 +35,78 @@ constexpr double kContourRounding = 1e-16;
 /// degree).
 int pointsFor(double ratio, double tolerance) {
   constexpr double kLambertError = 10;
-  if (!(ratio < 1)) return kMostGaussNodes + 1;
+  if (!(ratio < 1)) return kMostLambert + 1;
   const double needed = 0.5 * (std::log(tolerance / kLambertError) / std::log(ratio) + 1);
-  return std::max(kLeastPoints, int(std::ceil(std::min(needed, kMostGaussNodes + 1.0))));
+  return std::max(kLeastPoints, int(std::ceil(std::min(needed, kMostLambert + 1.0))));
 }
 
 }  // namespace
 
-double lambertExchange(const PlanarElement& from, const PlanarElement& to, int n) {
+double lambertExchange(const PlanarElement& from, const PlanarElement& to, int n,
+                       const ClipKernels<double>& kernels) {
+  constexpr std::size_t kMostLanes = std::size_t(kMostLambert) * kMostLambert;
+  static_assert(kMostLanes % kLaneAlignment == 0);
+  // The kernel takes one eye and many polygons; here it is one polygon moved against many points.
+  alignas(64) std::array<std::array<double, kMostLanes>, 3> middle;
+  alignas(64) std::array<std::array<double, kMostLanes>, 3 * kMostCorners> corner;
+  std::array<double, kMostLanes> weight;
+  alignas(64) std::array<double, kMostLanes> seen;
+
   // A triangle is a quadrilateral whose last two corners meet: the map's Jacobian vanishes there.
   const Vec3& c0 = from.outline[0];
   const Vec3& c1 = from.outline[1];
   const Vec3& c2 = from.outline[2];
   const Vec3& c3 = from.outline[from.outline.size() - 1];
-  const Vec3 middle = 0.25 * (c0 + c1 + c2 + c3);
+  const Vec3 mean = 0.25 * (c0 + c1 + c2 + c3);
   const Vec3 u = 0.25 * (c1 - c0 + c2 - c3);
   const Vec3 v = 0.25 * (c3 - c0 + c2 - c1);
   const Vec3 w = 0.25 * (c0 - c1 + c2 - c3);
-  double sum = 0;
+  std::size_t count = 0;
   for (const Node& s : gaussLegendre(n)) {
     for (const Node& t : gaussLegendre(n)) {
-      const Vec3 point = middle + s.x * u + t.x * (v + s.x * w);
+      const Vec3 point = mean + s.x * u + t.x * (v + s.x * w);
       const double jacobian = glm::dot(from.normal, glm::cross(u + t.x * w, v + s.x * w));
-      sum += s.weight * t.weight * jacobian * pointToPolygon(point, from.normal, to.outline);
+      weight[count] = s.weight * t.weight * jacobian;
+      for (int axis = 0; axis < 3; ++axis) {
+        middle[std::size_t(axis)][count] = to.centroid[axis] - point[axis];
+      }
+      ++count;
     }
   }
+  const std::size_t lanes = (count + kLaneAlignment - 1) / kLaneAlignment * kLaneAlignment;
+  TargetLanes<double> targets{};
+  targets.corners = to.outline.size();
+  targets.count = lanes;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::fill(middle[axis].begin() + std::ptrdiff_t(count),
+              middle[axis].begin() + std::ptrdiff_t(lanes), middle[axis][0]);
+    targets.middle[axis] = middle[axis].data();
+    for (std::size_t k = 0; k < targets.corners; ++k) {
+      auto& values = corner[3 * k + axis];
+      const auto along = glm::length_t(axis);
+      std::fill_n(values.begin(), lanes, to.outline[k][along] - to.centroid[along]);
+      targets.corner[k][axis] = values.data();
+    }
+  }
+  kernels.whole(targets, {{0, 0, 0}, {from.normal.x, from.normal.y, from.normal.z}}, seen.data());
+  double sum = 0;
+  for (std::size_t k = 0; k < count; ++k) sum += weight[k] * seen[k];
   return sum;
 }
 
-NearValue nearExchange(const PlanarElement& a, const PlanarElement& b, double tolerance) {
+NearValue nearExchange(const PlanarElement& a, const PlanarElement& b, double tolerance,
+                       const ClipKernels<double>& kernels) {
   const PlanarElement& small = a.radius <= b.radius ? a : b;
   const PlanarElement& large = a.radius <= b.radius ? b : a;
   const double distance = distanceToEdges(small.centroid, large.outline);
   const int points = pointsFor(small.radius / distance, tolerance);
-  if (points <= kMostPoints) return {lambertExchange(small, large, points), false};
+  if (points <= kMostPoints) return {lambertExchange(small, large, points, kernels), false};
   const double exchange = contourExchange(a.outline, b.outline, tolerance);
   // Thin elements exchange little for their length: there contours may have too few digits left.
   const double extent = glm::distance(a.centroid, b.centroid) + a.radius + b.radius;
   const bool exact = kContourRounding * extent * extent <= tolerance * exchange;
-  if (exact || points > kMostGaussNodes) return {exchange, true};
-  return {lambertExchange(small, large, points), false};
+  if (exact || points > kMostLambert) return {exchange, true};
+  return {lambertExchange(small, large, points, kernels), false};
 }
 
 }  // namespace radiosity

@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "formfactor/exact/clip_kernels.h"
 #include "radiosity/base.h"
 
 namespace radiosity {
@@ -24,9 +25,12 @@ struct NearValue {
 /// formula over n x n Gauss points on the smaller one where its radius is small against its
 /// centroid's distance from the other's edges, for there the formula is analytic, or where contour
 /// integrals would cancel too far (thin elements); contour integrals otherwise.
-NearValue nearExchange(const PlanarElement& a, const PlanarElement& b, double tolerance);
+NearValue nearExchange(const PlanarElement& a, const PlanarElement& b, double tolerance,
+                       const ClipKernels<double>& kernels);
 
-/// The same by n x n Gauss points on `from`, whatever the distance.
-double lambertExchange(const PlanarElement& from, const PlanarElement& to, int n);
+inline constexpr int kMostLambert = 16;
+/// The same by n x n Gauss points on `from`, whatever the distance; n up to kMostLambert.
+double lambertExchange(const PlanarElement& from, const PlanarElement& to, int n,
+                       const ClipKernels<double>& kernels);
 
 }  // namespace radiosity

@@ -104,10 +104,12 @@ class UnoccludedKernel::Implementation {
 template <class T>
 class UnoccludedKernel::Typed : public UnoccludedKernel::Implementation {
  public:
-  Typed(const ElementSet& elements, double tolerance, FarFunction<T> far_row)
+  Typed(const ElementSet& elements, double tolerance, FarFunction<T> far_row,
+        const ClipKernels<double>& lambert)
       : elements_(elements),
         tolerance_(tolerance),
         far_row_(far_row),
+        lambert_(lambert),
         limits_(tolerance),
         rule_limits_(limits_.template rules<T>()),
         columns_(elements.size()) {
@@ -249,8 +251,9 @@ class UnoccludedKernel::Typed : public UnoccludedKernel::Implementation {
   }
 
   double nearPair(const Part& row, const PlanarElement& column, const Work& work) const {
-    const NearValue value = nearExchange(
-        {row.outline(), work.row_plane.normal, row.shape.centroid, row.radius}, column, tolerance_);
+    const NearValue value =
+        nearExchange({row.outline(), work.row_plane.normal, row.shape.centroid, row.radius}, column,
+                     tolerance_, lambert_);
     ++(value.contour ? work.counts.contour : work.counts.lambert);
     return std::max(value.exchange, 0.0);
   }
@@ -258,6 +261,7 @@ class UnoccludedKernel::Typed : public UnoccludedKernel::Implementation {
   const ElementSet& elements_;
   double tolerance_;
   FarFunction<T> far_row_;
+  ClipKernels<double> lambert_;
   FarLimits limits_;
   RuleLimits<T> rule_limits_;
   std::vector<FacetFrame> frames_;
@@ -268,11 +272,13 @@ class UnoccludedKernel::Typed : public UnoccludedKernel::Implementation {
 
 UnoccludedKernel::UnoccludedKernel(const ElementSet& elements, double tolerance, bool simd) {
   const FarKernels kernels = simd ? simdFarKernels() : scalarFarKernels();
+  const ClipKernels<double> lambert = (simd ? simdClipKernels() : scalarClipKernels()).exact;
   if (tolerance < kFinestInSinglePrecision) {
     implementation_ =
-        std::make_unique<Typed<double>>(elements, tolerance, kernels.double_precision);
+        std::make_unique<Typed<double>>(elements, tolerance, kernels.double_precision, lambert);
   } else {
-    implementation_ = std::make_unique<Typed<float>>(elements, tolerance, kernels.single_precision);
+    implementation_ =
+        std::make_unique<Typed<float>>(elements, tolerance, kernels.single_precision, lambert);
   }
 }
 

@@ -25,9 +25,9 @@ struct UnoccludedCounts {
 ///
 ///     formula                     where, at 1e-5, for facing squares of half-width h
 ///     second-order series         farther than about 50 h
-///     product rules, 16 to 1296   from there to about 3 h
-///     Lambert over Gauss points   near a larger or thinner element
-///     contour integrals           the rest: what touches or nearly does
+///     product rules, 16 to 625    from there to about 4 h
+///     Lambert over Gauss points   from there to touching, or thinner elements
+///     contour integrals           what touches or nearly does
 ///
 /// exact_far_kernels_test holds every instruction set to it, exact_unoccluded_test and
 /// exact_closed_forms_test the whole. What contours lose to cancellation is about 1e-16 times the
