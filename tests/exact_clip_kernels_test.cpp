@@ -104,10 +104,13 @@ struct Lanes {
     whole.reserve(kLanes);
     hidden.reserve(kLanes);
     shape.reserve(kLanes);
+    cut_low.reserve(kLanes);
+    cut_high.reserve(kLanes);
   }
   void run(const ClipKernels<T>& kernels) {
     kernels.whole(targets, eye, whole.data());
-    kernels.hidden(targets, eye, planes.data(), planes.size(), hidden.data(), shape.data());
+    kernels.hidden(targets, eye, planes.data(), planes.size(),
+                   {hidden.data(), shape.data(), cut_low.data(), cut_high.data()});
   }
   std::array<AlignedBuffer<T>, 15> rows;
   TargetLanes<T> targets;
@@ -116,6 +119,8 @@ struct Lanes {
   AlignedBuffer<T> whole;
   AlignedBuffer<T> hidden;
   AlignedBuffer<ShapeWord<T>> shape;
+  AlignedBuffer<ShapeWord<T>> cut_low;
+  AlignedBuffer<ShapeWord<T>> cut_high;
 };
 
 template <class T>

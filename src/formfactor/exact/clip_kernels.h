@@ -18,8 +18,8 @@ namespace radiosity {
 inline constexpr std::size_t kLaneAlignment = 16;
 /// Corners a target may have: a quadrilateral cut by one plane.
 inline constexpr std::size_t kMostCorners = 5;
-/// Planes a cone may have here: more are for VisiblePart.
-inline constexpr std::size_t kMostPlanes = 24;
+/// Planes one call may have: cones with more are for VisiblePart.
+inline constexpr std::size_t kMostPlanes = 128;
 
 /// Convex polygons, one a lane, structure of arrays. A polygon's corners are given from its middle,
 /// and middles from an origin near the eye, so that rounding to T moves a polygon as a whole and
@@ -51,7 +51,29 @@ struct ConePlane {
 template <class T>
 using ShapeWord = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
 
-/// In `hidden` values: the cone holds the polygon whole.
+/// Planes of every lane's own, structure of arrays; lanes of fewer are filled up with planes that
+/// have everything inside, (0, 0, 0), 1.
+template <class T>
+struct LanePlanes {
+  static constexpr std::size_t kMost = 16;
+  const T* normal[kMost][3];
+  const T* offset[kMost];
+  std::size_t count;
+};
+
+/// What a cone leaves of each polygon. `form_factor`: to the part inside all planes, 0 where there
+/// is none, kHiddenWhole where no plane cuts the polygon. `shape`: sum of the labels of the edges
+/// that bound the part, 0 where it is nothing or all. `cut_low` and `cut_high`: a bit for each
+/// plane, of the first and the second 32, that cuts the polygon; the others do nothing to it. (Of
+/// more than 64 planes nothing is said.)
+template <class T>
+struct HiddenParts {
+  T* form_factor;
+  ShapeWord<T>* shape;
+  ShapeWord<T>* cut_low;
+  ShapeWord<T>* cut_high;
+};
+
 inline constexpr int kHiddenWhole = -1;
 
 template <class T>
@@ -60,11 +82,13 @@ struct ClipKernels {
   /// Accuracy: 2e-6 r/h in single, 1e-14 r/h in double precision, relative, for polygons of size h
   /// at distance r; tests hold every instruction set to it.
   void (*whole)(const TargetLanes<T>& targets, const EyePoint<T>& eye, T* form_factor);
-  /// Form factor to the part of each polygon inside all planes (at most kMostPlanes), 0 where there
-  /// is none; kHiddenWhole where no plane cuts the polygon. `shape`: sum of the labels of the edges
-  /// that bound the part, 0 where it is nothing or all.
+  /// What one cone of at most kMostPlanes planes hides. As accurate.
   void (*hidden)(const TargetLanes<T>& targets, const EyePoint<T>& eye, const ConePlane<T>* planes,
-                 std::size_t plane_count, T* form_factor, ShapeWord<T>* shape);
+                 std::size_t plane_count, const HiddenParts<T>& out);
+  /// Form factor to the part of each polygon inside its own planes, as seen from the eye. 0 also
+  /// where no plane cuts it.
+  void (*common)(const TargetLanes<T>& targets, const EyePoint<T>& eye, const LanePlanes<T>& planes,
+                 T* form_factor);
 };
 
 struct ClipKernelSet {

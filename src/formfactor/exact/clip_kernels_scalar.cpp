@@ -44,8 +44,9 @@ struct Ops {
 }  // namespace
 
 ClipKernelSet scalarClipKernels() {
-  return {
-      "scalar", {wholeLanes<float>, hiddenLanes<float>}, {wholeLanes<double>, hiddenLanes<double>}};
+  return {"scalar",
+          {wholeLanes<float>, hiddenLanes<float>, commonLanes<float>},
+          {wholeLanes<double>, hiddenLanes<double>, commonLanes<double>}};
 }
 
 }  // namespace radiosity

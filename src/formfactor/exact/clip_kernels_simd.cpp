@@ -58,8 +58,8 @@ struct Ops {
 
 ClipKernelSet clipKernels() {
   return {hwy::TargetName(HWY_TARGET),
-          {wholeLanes<float>, hiddenLanes<float>},
-          {wholeLanes<double>, hiddenLanes<double>}};
+          {wholeLanes<float>, hiddenLanes<float>, commonLanes<float>},
+          {wholeLanes<double>, hiddenLanes<double>, commonLanes<double>}};
 }
 
 }  // namespace

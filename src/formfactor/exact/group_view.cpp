@@ -1,17 +1,20 @@
 #include "formfactor/exact/group_view.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <tuple>
 
 namespace radiosity {
 namespace {
 
-constexpr std::size_t kPoints = SampleCell::kPoints;
-/// Shadow counts of points that need no shadows: all is hidden.
+/// Shadow counts: all is hidden; the largest number.
 constexpr std::uint8_t kHidden = 255;
 constexpr std::uint8_t kMostCounted = 254;
-constexpr std::uint64_t kAllHidden = 1;  ///< shape
+constexpr std::uint64_t kUnknownCut = ~std::uint64_t(0);
+/// Lanes of one call for common parts: enough to fill vectors, few enough to stay in the cache.
+constexpr std::size_t kCommonLanes = 128;
 
 std::uint32_t scrambled(std::uint32_t x) {
   x = (x + 1) * 0x85ebca6bU;
@@ -19,11 +22,19 @@ std::uint32_t scrambled(std::uint32_t x) {
   return x ^ (x >> 13);
 }
 
+std::size_t padded(std::size_t count) {
+  return (count + kLaneAlignment - 1) / kLaneAlignment * kLaneAlignment;
+}
+
+bool sameBlocker(const Blocker& a, const Blocker& b) {
+  return a.id == b.id && a.cuts_target == b.cuts_target;
+}
+
 }  // namespace
 
 template <class T>
 void GroupView<T>::Lanes::resize(std::size_t count, std::size_t corners) {
-  targets.count = (count + kLaneAlignment - 1) / kLaneAlignment * kLaneAlignment;
+  targets.count = padded(count);
   targets.corners = corners;
   memory.reserve(targets.count * (3 + 3 * kMostCorners));
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -43,163 +54,316 @@ void GroupView<T>::fill(const Vec3& origin) {
   std::size_t corners = 4;
   for (const GroupTarget* target : group_) corners = std::max(corners, target->corner_count);
   all_.resize(group_.size(), corners);
-  for (std::size_t lane = 0; lane < all_.targets.count; ++lane) {
+  const std::size_t stride = all_.targets.count;
+  for (std::size_t lane = 0; lane < stride; ++lane) {
     const GroupTarget& target = *group_[std::min(lane, group_.size() - 1)];
+    T* to = all_.memory.data() + lane;
     for (int axis = 0; axis < 3; ++axis) {
-      all_.row(std::size_t(axis))[lane] = T(target.middle[axis] - origin[axis]);
-      for (std::size_t k = 0; k < corners; ++k) {
-        const Vec3& corner = target.corners[std::min(k, target.corner_count - 1)];
-        all_.row(3 + 3 * k + std::size_t(axis))[lane] = T(corner[axis] - target.middle[axis]);
-      }
+      to[std::size_t(axis) * stride] = T(target.middle[axis] - origin[axis]);
+    }
+    for (std::size_t k = 0; k < corners; ++k) {
+      const Vec3 corner = target.corners[std::min(k, target.corner_count - 1)] - target.middle;
+      to += 3 * stride;
+      to[0] = T(corner.x);
+      to[stride] = T(corner.y);
+      to[2 * stride] = T(corner.z);
     }
   }
 }
 
 template <class T>
-void GroupView<T>::look(const SampleCell& cell, const Vec3& normal,
-                        std::span<const GroupTarget* const> targets, std::span<CellValues> values) {
+void GroupView<T>::look(std::span<const SamplePoint> points, const Vec3& origin, const Vec3& normal,
+                        std::span<const GroupTarget* const> targets) {
   group_ = targets;
-  origin_ = 0.25 * (cell.corners[0] + cell.corners[1] + cell.corners[2] + cell.corners[3]);
-  fill(origin_);
-  form_factor_.reserve(all_.targets.count);
-  shape_.reserve(all_.targets.count);
-  for (std::size_t q = 0; q < kPoints; ++q) {
-    points_[q] = cell.point(q);
+  points_ = points;
+  normal_ = normal;
+  fill(origin);
+  const std::size_t values = points.size() * all_.targets.count;
+  whole_.reserve(values);
+  visible_.reserve(values);
+  shape_.reserve(values);
+  shadow_count_.reserve(values);
+  form_factor_.reserve(std::max(all_.targets.count, kCommonLanes));
+  word_.reserve(all_.targets.count);
+  cut_low_.reserve(all_.targets.count);
+  cut_high_.reserve(all_.targets.count);
+  for (std::size_t q = 0; q < points.size(); ++q) {
     for (int axis = 0; axis < 3; ++axis) {
-      eyes_[q].position[axis] = T(points_[q].position[axis] - origin_[axis]);
+      eyes_[q].position[axis] = T(points[q].position[axis] - origin[axis]);
       eyes_[q].normal[axis] = T(normal[axis]);
     }
-    kernels_.whole(all_.targets, eyes_[q], form_factor_.data());
-    for (std::size_t lane = 0; lane < targets.size(); ++lane) {
-      const double whole = double(form_factor_.data()[lane]);
-      values[lane].whole[q] = whole;
-      values[lane].visible[q] = whole;
-      values[lane].shape[q] = 0;
-    }
+    T* whole = whole_.data() + q * all_.targets.count;
+    kernels_.whole(all_.targets, eyes_[q], whole);
+    std::copy_n(whole, all_.targets.count, visible_.data() + q * all_.targets.count);
   }
-  shadow_count_.assign(targets.size() * kPoints, 0);
+  std::fill_n(shape_.data(), values, ShapeWord<T>(0));
+  std::fill_n(shadow_count_.data(), values, std::uint8_t(0));
+  sampled_.assign(targets.size(), 0);
+  collectUses();
+  group_blockers_.clear();
+  planes_.clear();
+  cone_end_.clear();
   shadows_.clear();
-  uses_.clear();
-  for (std::size_t lane = 0; lane < targets.size(); ++lane) {
-    values[lane].sampled = false;
-    for (const Blocker& blocker : targets[lane]->blockers) {
-      uses_.push_back({2 * blocker.id + Index(blocker.cuts_target), std::uint32_t(lane), &blocker});
-    }
-  }
-  std::sort(uses_.begin(), uses_.end(), [](const Use& a, const Use& b) {
-    return a.blocker != b.blocker ? a.blocker < b.blocker : a.lane < b.lane;
-  });
   for (std::size_t begin = 0; begin < uses_.size();) {
     std::size_t end = begin + 1;
-    while (end < uses_.size() && uses_[end].blocker == uses_[begin].blocker) ++end;
-    drawShadows(std::span(uses_).subspan(begin, end - begin), values);
+    while (end < uses_.size() && sameBlocker(*uses_[end].what, *uses_[begin].what)) ++end;
+    drawShadows(std::span(uses_).subspan(begin, end - begin));
     begin = end;
   }
-  unite(normal, values);
+  finish();
+}
+
+/// Who uses which blocker, by blocker.
+template <class T>
+void GroupView<T>::collectUses() {
+  uses_.clear();
+  for (std::size_t lane = 0; lane < group_.size(); ++lane) {
+    for (const Blocker& blocker : group_[lane]->blockers) {
+      uses_.push_back({&blocker, std::uint32_t(lane)});
+    }
+  }
+  const auto before = [](const Use& a, const Use& b) {
+    return std::tie(a.what->id, a.what->cuts_target, a.lane) <
+           std::tie(b.what->id, b.what->cuts_target, b.lane);
+  };
+  if (!std::is_sorted(uses_.begin(), uses_.end(), before)) {
+    std::sort(uses_.begin(), uses_.end(), before);
+  }
+}
+
+/// Adds the sides of a blocker's cone to planes_; cone_.inside and cone_.planes tell of cones
+/// without sides.
+template <class T>
+void GroupView<T>::addCone(const Blocker& blocker, std::size_t point) {
+  blockingCone(*blocker.body, points_[point].position, blocker.cuts_target, cone_);
+  for (std::size_t k = 0; k < cone_.planes.size(); ++k) {
+    const ClipPlane& plane = cone_.planes[k];
+    const double scale = 1 / glm::length(plane.normal);
+    const Vec3 n = plane.normal * scale;
+    planes_.push_back({{T(n.x), T(n.y), T(n.z)},
+                       T(plane.offset * scale),
+                       scrambled(blocker.id * 1024 + cone_.labels[k])});
+  }
+  cone_end_.push_back(std::uint32_t(planes_.size()));
 }
 
 /// What one occluder hides of the targets it concerns.
 template <class T>
-void GroupView<T>::drawShadows(std::span<const Use> uses, std::span<CellValues> values) {
-  Lanes* lanes = &all_;
+void GroupView<T>::drawShadows(std::span<const Use> uses) {
   if (uses.size() < group_.size()) {
-    lanes = &some_;
     some_.resize(uses.size(), all_.targets.corners);
     for (std::size_t k = 0; k < some_.targets.count; ++k) {
       some_.copyLane(k, all_, uses[std::min(k, uses.size() - 1)].lane);
     }
   }
-  const Blocker& blocker = *uses[0].what;
-  for (std::size_t q = 0; q < kPoints; ++q) {
-    const Vec3& eye = points_[q].position;
-    if (!blockingCone(*blocker.body, eye, blocker.cuts_target, cone_)) continue;
-    if (cone_.inside) {
-      for (const Use& use : uses) hide(use.lane, q, values);
+  group_blockers_.push_back(uses[0].what);
+  for (std::size_t q = 0; q < points_.size(); ++q) drawShadow(uses, q);
+}
+
+template <class T>
+void GroupView<T>::drawShadow(std::span<const Use> uses, std::size_t point) {
+  const std::size_t first_plane = planes_.size();
+  addCone(*uses[0].what, point);
+  const std::size_t plane_count = planes_.size() - first_plane;
+  const std::size_t first = point * all_.targets.count;
+  std::uint8_t* counts = shadow_count_.data() + first;
+  const auto number = std::uint32_t(group_blockers_.size() - 1);
+  if (plane_count == 0) {
+    if (!cone_.inside) return;
+    for (const Use& use : uses) counts[use.lane] = kHidden;
+    return;
+  }
+  if (plane_count > kMostPlanes) {
+    for (const Use& use : uses) {
+      if (counts[use.lane] != kHidden) counts[use.lane] = kMostCounted;
+      shadows_.push_back({std::uint32_t(first) + use.lane, number, kUnknownCut});
+    }
+    return;
+  }
+  const bool everyone = uses.size() == group_.size();
+  kernels_.hidden(everyone ? all_.targets : some_.targets, eyes_[point],
+                  planes_.data() + first_plane, plane_count,
+                  {form_factor_.data(), word_.data(), cut_low_.data(), cut_high_.data()});
+  T* visible = visible_.data() + first;
+  ShapeWord<T>* shape = shape_.data() + first;
+  const T* hidden = form_factor_.data();
+  for (std::size_t k = 0; k < uses.size(); ++k) {
+    if (hidden[k] == 0) continue;
+    const std::uint32_t lane = uses[k].lane;
+    if (hidden[k] < 0) {
+      counts[lane] = kHidden;
       continue;
     }
-    if (cone_.planes.size() > kMostPlanes) {
-      for (const Use& use : uses) {
-        addShadow(use, q);
-        addShadow(use, q);  // twice: left to the exact clipper
-      }
-      continue;
-    }
-    planes_.clear();
-    for (std::size_t k = 0; k < cone_.planes.size(); ++k) {
-      const ClipPlane& plane = cone_.planes[k];
-      const double scale = 1 / glm::length(plane.normal);
-      const Vec3 n = plane.normal * scale;
-      planes_.push_back({{T(n.x), T(n.y), T(n.z)},
-                         T(plane.offset * scale),
-                         scrambled(blocker.id * 64 + cone_.labels[k])});
-    }
-    kernels_.hidden(lanes->targets, eyes_[q], planes_.data(), planes_.size(), form_factor_.data(),
-                    shape_.data());
-    for (std::size_t k = 0; k < uses.size(); ++k) {
-      const T hidden = form_factor_.data()[k];
-      if (hidden == 0) continue;
-      if (hidden == T(kHiddenWhole)) {
-        hide(uses[k].lane, q, values);
-        continue;
-      }
-      CellValues& value = values[uses[k].lane];
-      // Both are rounded sums: kept from passing zero by their last digits.
-      value.visible[q] = std::max(0.0, value.visible[q] - double(hidden));
-      value.shape[q] += shape_.data()[k];
-      addShadow(uses[k], q);
+    visible[lane] -= hidden[k];
+    shape[lane] += word_.data()[k];
+    if (counts[lane] < kMostCounted) ++counts[lane];
+    if (group_[lane]->blockers.size() > 1) {
+      const std::uint64_t cut = std::uint64_t(cut_high_.data()[k]) << 32 | cut_low_.data()[k];
+      shadows_.push_back(
+          {std::uint32_t(first) + lane, number, plane_count <= 64 ? cut : kUnknownCut});
     }
   }
 }
 
 template <class T>
-void GroupView<T>::hide(std::uint32_t lane, std::size_t point, std::span<CellValues> values) {
-  shadow_count_[lane * kPoints + point] = kHidden;
-  values[lane].visible[point] = 0;
-  values[lane].shape[point] = kAllHidden;
+void GroupView<T>::finish() {
+  uniteShadows();
+  const std::size_t values = points_.size() * all_.targets.count;
+  for (std::size_t at = 0; at < values; ++at) {
+    // A difference of rounded sums: kept from passing zero by its last digits.
+    visible_.data()[at] = std::max(visible_.data()[at], T(0));
+    if (shadow_count_.data()[at] != kHidden) continue;
+    visible_.data()[at] = 0;
+    shape_.data()[at] = kAllHiddenShape;
+  }
 }
 
+/// Puts right what was subtracted more than once.
 template <class T>
-void GroupView<T>::addShadow(const Use& use, std::size_t point) {
-  const auto key = std::uint32_t(use.lane * kPoints + point);
-  std::uint8_t& count = shadow_count_[key];
-  if (count < kMostCounted) ++count;
-  shadows_.push_back({key, use.what});
-}
-
-/// Points that see several shadows on one target: what the shadows have in common was subtracted
-/// more than once.
-template <class T>
-void GroupView<T>::unite(const Vec3& normal, std::span<CellValues> values) {
+void GroupView<T>::uniteShadows() {
   const auto alone = [&](const Shadow& s) {
-    return shadow_count_[s.key] == 1 || shadow_count_[s.key] == kHidden;
+    const std::uint8_t count = shadow_count_.data()[s.at];
+    return count < 2 || count == kHidden;
   };
   std::erase_if(shadows_, alone);
   std::sort(shadows_.begin(), shadows_.end(), [](const Shadow& a, const Shadow& b) {
-    return a.key != b.key ? a.key < b.key : a.what->id < b.what->id;
+    return std::tie(a.at, a.blocker) < std::tie(b.at, b.blocker);
   });
-  for (std::size_t begin = 0; begin < shadows_.size();) {
-    const std::uint32_t key = shadows_[begin].key;
-    united_.clear();
-    std::size_t end = begin;
-    for (; end < shadows_.size() && shadows_[end].key == key; ++end) {
-      const bool again = end > begin && shadows_[end].what == shadows_[end - 1].what;
-      if (!again) united_.push_back(*shadows_[end].what);
+  common_.clear();
+  for (std::uint32_t begin = 0; begin < shadows_.size();) {
+    std::uint32_t end = begin + 1;
+    while (end < shadows_.size() && shadows_[end].at == shadows_[begin].at) ++end;
+    if (!addPairs(begin, end)) {
+      uniteExactly(std::span<const Shadow>(shadows_).subspan(begin, end - begin));
     }
-    const std::size_t q = key % kPoints;
-    CellValues& value = values[key / kPoints];
-    const GroupTarget& target = *group_[key / kPoints];
-    // Shifts of a rank-one lattice (Roberts 2018): where pictures are drawn, those of a cell's
-    // points fill each other's gaps.
-    const Vec2 shift(std::fmod(0.5 + 0.75487766624669276 * double(q), 1.0),
-                     std::fmod(0.5 + 0.56984029099805327 * double(q), 1.0));
-    const PointView view =
-        exact_.look(points_[q].position, normal,
-                    std::span(target.corners).first(target.corner_count), united_, shift);
-    value.visible[q] = view.whole > 0 ? value.whole[q] * (view.visible / view.whole) : 0;
-    value.shape[q] = view.shape;
-    value.sampled |= view.sampled;
     begin = end;
   }
+  for (T sign = 1; !common_.empty(); sign = -sign) {
+    for (std::size_t k = 0; k < common_.size(); k += kCommonLanes) {
+      const std::size_t count = std::min(kCommonLanes, common_.size() - k);
+      evaluateCommon(std::span<const Common>(common_).subspan(k, count), sign);
+    }
+    joinCommon();
+  }
+}
+
+/// All pairs of one target's shadows from one point. False: too many shadows or planes.
+template <class T>
+bool GroupView<T>::addPairs(std::uint32_t begin, std::uint32_t end) {
+  if (end - begin > kMostUnited) return false;
+  std::size_t planes = 0;
+  for (std::uint32_t k = begin; k < end; ++k) {
+    planes += std::size_t(std::popcount(shadows_[k].cut));
+  }
+  if (planes > LanePlanes<T>::kMost) return false;
+  for (std::uint32_t a = begin; a < end; ++a) {
+    for (std::uint32_t b = a + 1; b < end; ++b) common_.push_back({shadows_[a].at, 2, {a, b}});
+  }
+  return true;
+}
+
+/// Makes a target seen from one point, and the planes that cut it, a lane of some_.
+template <class T>
+void GroupView<T>::setLane(const Common& common, std::size_t lane) {
+  const std::size_t point = common.at / all_.targets.count;
+  some_.copyLane(lane, all_, common.at % all_.targets.count);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    some_.row(axis)[lane] -= eyes_[point].position[axis];
+  }
+  std::size_t count = 0;
+  const auto add = [&](const T* normal, T offset) {
+    T* to = own_planes_.data() + 4 * count * kCommonLanes + lane;
+    for (std::size_t axis = 0; axis < 3; ++axis) to[axis * kCommonLanes] = normal[axis];
+    to[3 * kCommonLanes] = offset;
+    ++count;
+  };
+  for (std::uint32_t k = 0; k < common.count; ++k) {
+    const Shadow& shadow = shadows_[common.shadows[k]];
+    const std::size_t cone = shadow.blocker * points_.size() + point;
+    const ConePlane<T>* planes = planes_.data() + (cone > 0 ? cone_end_[cone - 1] : 0);
+    for (std::uint64_t left = shadow.cut; left != 0; left &= left - 1) {
+      const ConePlane<T>& plane = planes[std::countr_zero(left)];
+      add(plane.normal, plane.offset);
+    }
+  }
+  lane_planes_.count = std::max(lane_planes_.count, count);
+  const T nothing[3] = {};
+  while (count < LanePlanes<T>::kMost) add(nothing, 1);
+}
+
+/// Adds (or takes away) what is inside all of some cones, and keeps in next_common_ those where
+/// that is anything.
+template <class T>
+void GroupView<T>::evaluateCommon(std::span<const Common> some, T sign) {
+  some_.resize(some.size(), all_.targets.corners);
+  own_planes_.reserve(4 * LanePlanes<T>::kMost * kCommonLanes);
+  lane_planes_.count = 0;
+  for (std::size_t p = 0; p < LanePlanes<T>::kMost; ++p) {
+    const T* row = own_planes_.data() + 4 * p * kCommonLanes;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      lane_planes_.normal[p][axis] = row + axis * kCommonLanes;
+    }
+    lane_planes_.offset[p] = row + 3 * kCommonLanes;
+  }
+  for (std::size_t k = 0; k < some_.targets.count; ++k) {
+    setLane(some[std::min(k, some.size() - 1)], k);
+  }
+  // Lanes are given from their own eyes.
+  EyePoint<T> eye = eyes_[0];
+  for (T& coordinate : eye.position) coordinate = 0;
+  kernels_.common(some_.targets, eye, lane_planes_, form_factor_.data());
+  for (std::size_t k = 0; k < some.size(); ++k) {
+    const T common = form_factor_.data()[k];
+    if (!(common > 0)) continue;
+    visible_.data()[some[k].at] += sign * common;
+    shape_.data()[some[k].at] += scrambled(some[k].count);
+    next_common_.push_back(some[k]);
+  }
+}
+
+/// From sets of n shadows that have something in common, those of n + 1 that may have: two sets
+/// that differ in their last member only make one. Sets come in ascending order and stay so.
+template <class T>
+void GroupView<T>::joinCommon() {
+  common_.clear();
+  for (std::size_t a = 0; a < next_common_.size(); ++a) {
+    const Common& first = next_common_[a];
+    const std::uint32_t last = first.count - 1;
+    for (std::size_t b = a + 1; b < next_common_.size(); ++b) {
+      const Common& second = next_common_[b];
+      const bool same =
+          second.at == first.at &&
+          std::equal(first.shadows.begin(), first.shadows.begin() + last, second.shadows.begin());
+      if (!same) break;
+      Common joined = first;
+      joined.shadows[joined.count++] = second.shadows[last];
+      common_.push_back(joined);
+    }
+  }
+  next_common_.clear();
+}
+
+/// One target's shadows from one point, in double precision.
+template <class T>
+void GroupView<T>::uniteExactly(std::span<const Shadow> shadows) {
+  const std::size_t at = shadows[0].at;
+  const std::size_t point = at / all_.targets.count;
+  const std::size_t lane = at % all_.targets.count;
+  const GroupTarget& target = *group_[lane];
+  united_.clear();
+  for (const Shadow& shadow : shadows) united_.push_back(*group_blockers_[shadow.blocker]);
+  // Shifts of a rank-one lattice (Roberts 2018): where pictures are drawn, those of a cell's
+  // points fill each other's gaps.
+  const double q = double(point);
+  const Vec2 shift(std::fmod(0.5 + 0.75487766624669276 * q, 1.0),
+                   std::fmod(0.5 + 0.56984029099805327 * q, 1.0));
+  const PointView view =
+      exact_.look(points_[point].position, normal_,
+                  std::span(target.corners).first(target.corner_count), united_, shift);
+  const double fraction = view.whole > 0 ? view.visible / view.whole : 0;
+  visible_.data()[at] = T(fraction * double(whole_.data()[at]));
+  shape_.data()[at] = ShapeWord<T>(view.shape);
+  sampled_[lane] |= std::uint8_t(view.sampled);
 }
 
 template class GroupView<float>;

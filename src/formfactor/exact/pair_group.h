@@ -15,15 +15,17 @@ struct VisibleFraction {
   double whole = 0;    ///< of the form factor to all of the target
   double error2 = 0;   ///< sum of squares of the cells' errors, in the same unit
   double allowed = 0;  ///< error of the fraction that is accepted
+  double change = 1;   ///< see SampledPair
   std::size_t points = 0;
-  bool subdivided = false;
+  bool refined = false;  ///< by more than the first rule
   bool sampled = false;  ///< some point saw too many shadows: see Coverage
   double fraction() const { return whole > 0 ? visible / whole : 0; }
   double error() const;
 };
 
-/// Integrates groups of pairs. Cells whose error is too large are cut in four, for the pairs that
-/// need it. Holds scratch memory: one a thread.
+/// Integrates groups of pairs: by 2 x 2 points where that can be expected to do; where it cannot or
+/// does not, by 3 x 3; and where that does not, by 3 x 3 in each quarter of the cell, and so on.
+/// Holds scratch memory: one a thread.
 template <class T>
 class PairGroups {
  public:
@@ -36,14 +38,24 @@ class PairGroups {
                  std::span<VisibleFraction> fractions);
 
  private:
+  /// Some members of the group, and what the error of each is measured about: the visible fraction
+  /// that the first rule gave. Empty: not known yet.
+  struct Members {
+    std::vector<Index> index;
+    std::vector<double> fraction;
+  };
+
   void setTargets(std::span<const SampledPair> group, std::span<const Blocker> blockers);
-  void cutCell(const SampleCell& cell, std::span<const Index> members, int level,
-               std::span<const double> fractions, std::span<VisibleFraction> out);
+  Members integrateCell(const SampleCell& cell, std::size_t side, int level, const Members& members,
+                        std::span<VisibleFraction> out);
+  void cutCell(const SampleCell& cell, const Members& members, int level,
+               std::span<VisibleFraction> out);
 
   const ElementSet& elements_;
   GroupView<T> view_;
   Vec3 normal_{0.0};
   std::vector<GroupTarget> targets_;
+  std::vector<const GroupTarget*> chosen_;
 };
 
 extern template class PairGroups<float>;

@@ -14,7 +14,11 @@ constexpr double kSinglePrecision = 2.5e-4;
 
 /// What a single entry may be off by, in tolerances. The tolerance is for the root mean square over
 /// a row's entries; few entries are partial, and of those few are near what they may be.
-constexpr double kOfOnePair = 10;
+constexpr double kOfOnePair = 20;
+
+/// Estimates are root mean squares; times this they are above the error of most rows, however few
+/// pairs carry it.
+constexpr double kSafety = 2;
 
 }  // namespace
 
@@ -67,9 +71,9 @@ void PartialKernel::integrate(const ClipKernels<T>& kernels, std::span<const Par
     for (std::size_t k = 0; k < group.size(); ++k) {
       const VisibleFraction& found = fractions[k];
       const double unoccluded = pairs[group[k].pair].unoccluded;
-      out[group[k].pair] = {unoccluded * found.fraction(), unoccluded * found.error()};
+      out[group[k].pair] = {unoccluded * found.fraction(), kSafety * unoccluded * found.error()};
       counts.points += found.points;
-      counts.subdivided += found.subdivided;
+      counts.subdivided += found.refined;
       counts.by_pixels += found.sampled;
     }
     begin = last;

@@ -1,6 +1,7 @@
 #include "formfactor/exact/partial_pair.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <tuple>
@@ -112,9 +113,14 @@ void PairPreparation::prepare(std::span<const PartialPair> batch,
     pair.blockers_end = std::uint32_t(blockers.size());
     const double row_size = elements_.radius[given.row];
     const double column_size = elements_.radius[given.column];
-    const bool row_is_farther =
-        at_row * column_size * column_size >= at_column * row_size * row_size;
+    const double row_distance = at_row * column_size * column_size;
+    const double column_distance = at_column * row_size * row_size;
+    const bool row_is_farther = row_distance >= column_distance;
     const bool at_row_end = row_is_farther == (end == SampledEnd::farther);
+    // Of similar triangles with their tips on the occluder's edge.
+    const double change =
+        std::sqrt(at_row_end ? column_distance / row_distance : row_distance / column_distance);
+    pair.change = std::isfinite(change) ? float(std::min(change, 1.0)) : 1.0F;
     pair.sampled = at_row_end ? given.row : given.column;
     pair.target = at_row_end ? given.column : given.row;
     const bool row_cut = row.least < -touching;

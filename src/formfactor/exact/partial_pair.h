@@ -16,11 +16,14 @@ struct PartialPair;
 
 /// A pair as it is sampled.
 struct SampledPair {
-  std::uint32_t pair;                          ///< in the batch
-  Index sampled;                               ///< element that carries the points
-  Index target;                                ///< element that is looked at
-  bool sampled_cut;                            ///< reaches behind the target's plane
-  bool target_cut;                             ///< reaches behind the sampled element's plane
+  std::uint32_t pair;  ///< in the batch
+  Index sampled;       ///< element that carries the points
+  Index target;        ///< element that is looked at
+  bool sampled_cut;    ///< reaches behind the target's plane
+  bool target_cut;     ///< reaches behind the sampled element's plane
+  /// How far shadows move across the target, in its sizes, from end to end of the sampled element:
+  /// at most about 1, since that is the end farther from what blocks.
+  float change;
   std::uint32_t blockers_begin, blockers_end;  ///< into PairPreparation::blockers
 };
 

@@ -6,25 +6,38 @@
 namespace radiosity {
 namespace {
 
-// Gauss-Legendre on [0, 1], three points.
-constexpr double kReach = 0.38729833462074168852;  // sqrt(3/5) / 2
-constexpr std::array<double, 3> kNode = {0.5 - kReach, 0.5, 0.5 + kReach};
-constexpr std::array<double, 3> kWeight = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+// Gauss-Legendre on [0, 1], two and three points.
+constexpr double kReach2 = 0.28867513459481288225;  // 1 / sqrt(12)
+constexpr double kReach3 = 0.38729833462074168852;  // sqrt(3 / 20)
+constexpr std::array<double, 2> kNode2 = {0.5 - kReach2, 0.5 + kReach2};
+constexpr std::array<double, 3> kNode3 = {0.5 - kReach3, 0.5, 0.5 + kReach3};
+constexpr std::array<double, 3> kWeight3 = {5.0 / 18, 8.0 / 18, 5.0 / 18};
 
-/// Shares of the second differences: with shadows of one shape at all points, and else.
-constexpr double kSmooth = 0.004;
-constexpr double kKinked = 0.03;
+/// Shares of first (2 x 2) and second (3 x 3) differences, and of the change of what is not seen.
+constexpr double kSmooth4 = 0.012;
+constexpr double kKinked4 = 0.045;
+constexpr double kUnseen4 = 0.013;
+constexpr double kSmooth9 = 0.006;
+constexpr double kKinked9 = 0.03;
+constexpr double kUnseen9 = 0.008;
 
 }  // namespace
 
-SampleCell::Point SampleCell::point(std::size_t k) const {
-  const double u = kNode[k % 3];
-  const double v = kNode[k / 3];
-  const Vec3 along_u = (corners[1] - corners[0]) * (1 - v) + (corners[2] - corners[3]) * v;
-  const Vec3 along_v = (corners[3] - corners[0]) * (1 - u) + (corners[2] - corners[1]) * u;
-  const Vec3 low = corners[0] + (corners[3] - corners[0]) * v;
-  return {low + along_u * u,
-          glm::length(glm::cross(along_u, along_v)) * kWeight[k % 3] * kWeight[k / 3]};
+SamplePoints SampleCell::points(std::size_t side) const {
+  SamplePoints points;
+  for (std::size_t j = 0; j < side; ++j) {
+    for (std::size_t i = 0; i < side; ++i) {
+      const double u = side == 2 ? kNode2[i] : kNode3[i];
+      const double v = side == 2 ? kNode2[j] : kNode3[j];
+      const double weight = side == 2 ? 0.25 : kWeight3[i] * kWeight3[j];
+      const Vec3 along_u = (corners[1] - corners[0]) * (1 - v) + (corners[2] - corners[3]) * v;
+      const Vec3 along_v = (corners[3] - corners[0]) * (1 - u) + (corners[2] - corners[1]) * u;
+      const Vec3 low = corners[0] + (corners[3] - corners[0]) * v;
+      points.point[points.count++] = {low + along_u * u,
+                                      glm::length(glm::cross(along_u, along_v)) * weight};
+    }
+  }
+  return points;
 }
 
 SampleCell SampleCell::child(std::size_t k) const {
@@ -41,21 +54,28 @@ double SampleCell::area() const {
   return 0.5 * glm::length(glm::cross(corners[2] - corners[0], corners[3] - corners[1]));
 }
 
-double CellValues::error(double fraction) const {
-  std::array<double, SampleCell::kPoints> residual;
-  bool one_shape = true;
-  for (std::size_t k = 0; k < residual.size(); ++k) {
-    residual[k] = visible[k] - fraction * whole[k];
-    one_shape &= shape[k] == shape[0];
-  }
+Vec3 SampleCell::middle() const {
+  return 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+}
+
+double meanError4(const CellValues& values, double change, double whole) {
+  if (values.one_shape && values.no_edge) return kUnseen4 * change * whole;
+  const auto& r = values.residual;
+  const double along_u = std::abs(r[1] - r[0]) + std::abs(r[3] - r[2]);
+  const double along_v = std::abs(r[2] - r[0]) + std::abs(r[3] - r[1]);
+  return 0.5 * (along_u + along_v) * (values.one_shape ? kSmooth4 : kKinked4);
+}
+
+double meanError9(const CellValues& values, double change, double whole) {
+  if (values.one_shape && values.no_edge) return kUnseen9 * change * whole;
   double bend = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double* row = &residual[3 * k];
-    const double* column = &residual[k];
-    bend += kWeight[k] * std::abs(row[0] - 2 * row[1] + row[2]);
-    bend += kWeight[k] * std::abs(column[0] - 2 * column[3] + column[6]);
+    const double* row = &values.residual[3 * k];
+    const double* column = &values.residual[k];
+    bend += kWeight3[k] * std::abs(row[0] - 2 * row[1] + row[2]);
+    bend += kWeight3[k] * std::abs(column[0] - 2 * column[3] + column[6]);
   }
-  return bend * (one_shape ? kSmooth : kKinked);
+  return bend * (values.one_shape ? kSmooth9 : kKinked9);
 }
 
 }  // namespace radiosity

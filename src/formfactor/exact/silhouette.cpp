@@ -9,14 +9,14 @@ bool blockingCone(const Occluder& occluder, const Vec3& eye, bool with_faces, Bl
   cone.planes.clear();
   cone.labels.clear();
   cone.inside = false;
-  const auto seen = [&](Index face) {
-    const Occluder::Plane& plane = occluder.planes[face];
-    return glm::dot(plane.normal, eye) - plane.offset;
-  };
+  cone.heights.clear();
+  for (const Occluder::Plane& plane : occluder.planes) {
+    cone.heights.push_back(glm::dot(plane.normal, eye) - plane.offset);
+  }
   for (Index k = 0; k < occluder.edges.size(); ++k) {
     const Occluder::Edge& edge = occluder.edges[k];
-    const bool left = seen(edge.left) > 0;
-    if (left == (seen(edge.right) > 0)) continue;
+    const bool left = cone.heights[edge.left] > 0;
+    if (left == (cone.heights[edge.right] > 0)) continue;
     const Vec3 a = occluder.corners[edge.from] - eye;
     const Vec3 along = occluder.corners[edge.to] - occluder.corners[edge.from];
     // A face turns counter-clockwise seen from outside. From there the body is to the left of the
@@ -31,7 +31,7 @@ bool blockingCone(const Occluder& occluder, const Vec3& eye, bool with_faces, Bl
   }
   if (with_faces) {
     for (Index k = 0; k < occluder.planes.size(); ++k) {
-      const double distance = seen(k);
+      const double distance = cone.heights[k];
       if (distance <= 0) continue;
       cone.planes.push_back({-occluder.planes[k].normal, -distance});
       cone.labels.push_back(std::uint16_t(occluder.edges.size() + k));

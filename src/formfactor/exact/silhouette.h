@@ -16,6 +16,7 @@ namespace radiosity {
 struct BlockingCone {
   std::vector<ClipPlane> planes;      ///< inside all of them: hidden
   std::vector<std::uint16_t> labels;  ///< of the planes: the body's edges, then its faces
+  std::vector<double> heights;        ///< of the point above the body's faces
   bool inside = false;                ///< the point is inside the body: everything is hidden
 };
 
