@@ -87,7 +87,7 @@ typename PairGroups<T>::Members PairGroups<T>::integrateCell(const SampleCell& c
   // Squares of errors add up: a quarter of a cell, whose integral is a quarter, may have half the
   // error. What slips between points there is smaller, and rarer.
   const double share = std::ldexp(1.0, level);
-  const double unseen = std::ldexp(1.0, -3 * level);
+  const double unseen = std::ldexp(1.0, -2 * level);
   Members failed;
   for (std::size_t k = 0; k < members.index.size(); ++k) {
     VisibleFraction& sum = out[members.index[k]];

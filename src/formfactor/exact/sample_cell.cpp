@@ -13,13 +13,15 @@ constexpr std::array<double, 2> kNode2 = {0.5 - kReach2, 0.5 + kReach2};
 constexpr std::array<double, 3> kNode3 = {0.5 - kReach3, 0.5, 0.5 + kReach3};
 constexpr std::array<double, 3> kWeight3 = {5.0 / 18, 8.0 / 18, 5.0 / 18};
 
-/// Shares of first (2 x 2) and second (3 x 3) differences, and of the change of what is not seen.
+/// Shares of first (2 x 2) and second (3 x 3) differences, of slopes (3 x 3), and of the change of
+/// what is not seen.
 constexpr double kSmooth4 = 0.012;
 constexpr double kKinked4 = 0.045;
 constexpr double kUnseen4 = 0.013;
 constexpr double kSmooth9 = 0.006;
 constexpr double kKinked9 = 0.03;
 constexpr double kUnseen9 = 0.008;
+constexpr double kSlope9 = 0.003;
 
 }  // namespace
 
@@ -69,13 +71,16 @@ double meanError4(const CellValues& values, double change, double whole) {
 double meanError9(const CellValues& values, double change, double whole) {
   if (values.one_shape && values.no_edge) return kUnseen9 * change * whole;
   double bend = 0;
+  double slope = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const double* row = &values.residual[3 * k];
     const double* column = &values.residual[k];
     bend += kWeight3[k] * std::abs(row[0] - 2 * row[1] + row[2]);
     bend += kWeight3[k] * std::abs(column[0] - 2 * column[3] + column[6]);
+    slope += kWeight3[k] * (std::abs(row[2] - row[0]) + std::abs(column[6] - column[0]));
   }
-  return bend * (values.one_shape ? kSmooth9 : kKinked9);
+  // A kink between the outer points and the border changes the slope there, and nothing else.
+  return bend * (values.one_shape ? kSmooth9 : kKinked9) + slope * kSlope9;
 }
 
 }  // namespace radiosity
