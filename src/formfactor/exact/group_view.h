@@ -49,10 +49,6 @@ class GroupView {
   const ShapeWord<T>* shape(std::size_t point) const {
     return shape_.data() + point * all_.targets.count;
   }
-  /// Nothing of the target is hidden, or all of it.
-  bool seesNoEdge(std::size_t point, std::size_t target) const {
-    return shape(point)[target] <= kAllHiddenShape;
-  }
   /// Some point saw too many shadows on this target: see Coverage.
   bool sampled(std::size_t target) const { return sampled_[target] != 0; }
 

@@ -79,46 +79,91 @@ typename PairGroups<T>::Members PairGroups<T>::integrateCell(const SampleCell& c
                                                              const Members& members,
                                                              std::span<VisibleFraction> out) {
   if (members.index.empty()) return {};
+  sumCell(cell, side, level, members, out);
+  // Squares of errors add up: a quarter of a cell, whose integral is a quarter, may have half the
+  // error.
+  const double share = std::ldexp(1.0, level);
+  if (side == 3) lookOutside(cell, share, members, out);
+  Members failed;
+  for (std::size_t k = 0; k < members.index.size(); ++k) {
+    VisibleFraction& sum = out[members.index[k]];
+    const CellSum& found = sums_[k];
+    if (!(found.whole > 0)) continue;
+    if (found.error > share * sum.allowed * found.whole && level < kMostLevels) {
+      failed.index.push_back(members.index[k]);
+      failed.fraction.push_back(found.fraction);
+      continue;
+    }
+    sum.visible += found.visible;
+    sum.whole += found.whole;
+    sum.error2 += found.error * found.error;
+  }
+  return failed;
+}
+
+/// Fills sums_ by a rule of side x side points.
+template <class T>
+void PairGroups<T>::sumCell(const SampleCell& cell, std::size_t side, int level,
+                            const Members& members, std::span<VisibleFraction> out) {
   const SamplePoints points = cell.points(side);
   chosen_.clear();
   for (const Index m : members.index) chosen_.push_back(&targets_[m]);
   view_.look(points.all(), cell.middle(), normal_, chosen_);
   const double area = cell.area();
-  // Squares of errors add up: a quarter of a cell, whose integral is a quarter, may have half the
-  // error. What slips between points there is smaller, and rarer.
-  const double share = std::ldexp(1.0, level);
-  const double unseen = std::ldexp(1.0, -2 * level);
-  Members failed;
+  sums_.assign(members.index.size(), CellSum());
   for (std::size_t k = 0; k < members.index.size(); ++k) {
-    VisibleFraction& sum = out[members.index[k]];
-    sum.points += points.count;
-    sum.sampled |= view_.sampled(k);
-    double visible = 0;
-    double whole = 0;
+    VisibleFraction& pair = out[members.index[k]];
+    pair.points += points.count;
+    pair.sampled |= view_.sampled(k);
+    CellSum& sum = sums_[k];
     for (std::size_t q = 0; q < points.count; ++q) {
-      visible += points.point[q].weight * double(view_.visible(q)[k]);
-      whole += points.point[q].weight * double(view_.whole(q)[k]);
+      sum.visible += points.point[q].weight * double(view_.visible(q)[k]);
+      sum.whole += points.point[q].weight * double(view_.whole(q)[k]);
     }
-    if (!(whole > 0)) continue;
-    const double fraction = members.fraction.empty() ? visible / whole : members.fraction[k];
+    if (!(sum.whole > 0)) continue;
+    sum.fraction = members.fraction.empty() ? sum.visible / sum.whole : members.fraction[k];
     CellValues values;
+    values.count = points.count;
+    values.whole = sum.whole / area;
+    // What slips between the points of a small cell is small, and rare.
+    values.change = std::ldexp(pair.change, -2 * level);
     for (std::size_t q = 0; q < points.count; ++q) {
-      values.residual[q] = double(view_.visible(q)[k]) - fraction * double(view_.whole(q)[k]);
+      values.residual[q] = double(view_.visible(q)[k]) - sum.fraction * double(view_.whole(q)[k]);
       values.one_shape &= view_.shape(q)[k] == view_.shape(0)[k];
-      values.no_edge &= view_.seesNoEdge(q, k);
     }
-    const double error =
-        area * (side == 2 ? meanError4 : meanError9)(values, unseen * sum.change, whole / area);
-    if (error > share * sum.allowed * whole && level < kMostLevels) {
-      failed.index.push_back(members.index[k]);
-      failed.fraction.push_back(fraction);
-      continue;
-    }
-    sum.visible += visible;
-    sum.whole += whole;
-    sum.error2 += error * error;
+    sum.error = area * meanError(values);
+    sum.uncertain = values.one_shape || values.flat();
   }
-  return failed;
+}
+
+/// Before a cell is cut only because something may have slipped between its points, it is looked
+/// from near its corners, too.
+template <class T>
+void PairGroups<T>::lookOutside(const SampleCell& cell, double share, const Members& members,
+                                std::span<VisibleFraction> out) {
+  uncertain_.clear();
+  chosen_.clear();
+  for (Index k = 0; k < members.index.size(); ++k) {
+    const CellSum& sum = sums_[k];
+    if (!sum.uncertain || sum.error <= share * out[members.index[k]].allowed * sum.whole) continue;
+    uncertain_.push_back(k);
+    chosen_.push_back(&targets_[members.index[k]]);
+  }
+  if (uncertain_.empty()) return;
+  const SamplePoints points = cell.outerPoints();
+  view_.look(points.all(), cell.middle(), normal_, chosen_);
+  const double area = cell.area();
+  for (std::size_t u = 0; u < uncertain_.size(); ++u) {
+    CellSum& sum = sums_[uncertain_[u]];
+    out[members.index[uncertain_[u]]].points += points.count;
+    double largest = 0;
+    for (std::size_t q = 0; q < points.count; ++q) {
+      const double whole = double(view_.whole(q)[u]);
+      const double residual = double(view_.visible(q)[u]) - sum.visible / sum.whole * whole;
+      largest = std::max(largest, std::abs(residual));
+    }
+    sum.error = area * meanErrorOutside(sum.error / area, largest);
+  }
 }
 
 /// Integrates over one cell by 3 x 3 points, or over its four parts for those who need it.

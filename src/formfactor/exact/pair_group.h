@@ -1,6 +1,7 @@
 // Pairs that are sampled from the same points, from their first cells to the tolerance.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -45,9 +46,22 @@ class PairGroups {
     std::vector<double> fraction;
   };
 
+  /// What one rule says of one member in one cell.
+  struct CellSum {
+    double visible = 0;
+    double whole = 0;
+    double fraction = 0;  ///< that the error is measured about
+    double error = 0;
+    bool uncertain = false;  ///< an edge of a shadow may have slipped between the points
+  };
+
   void setTargets(std::span<const SampledPair> group, std::span<const Blocker> blockers);
   Members integrateCell(const SampleCell& cell, std::size_t side, int level, const Members& members,
                         std::span<VisibleFraction> out);
+  void sumCell(const SampleCell& cell, std::size_t side, int level, const Members& members,
+               std::span<VisibleFraction> out);
+  void lookOutside(const SampleCell& cell, double share, const Members& members,
+                   std::span<VisibleFraction> out);
   void cutCell(const SampleCell& cell, const Members& members, int level,
                std::span<VisibleFraction> out);
 
@@ -56,6 +70,8 @@ class PairGroups {
   Vec3 normal_{0.0};
   std::vector<GroupTarget> targets_;
   std::vector<const GroupTarget*> chosen_;
+  std::vector<CellSum> sums_;     ///< by member
+  std::vector<Index> uncertain_;  ///< members
 };
 
 extern template class PairGroups<float>;

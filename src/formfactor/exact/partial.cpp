@@ -18,7 +18,7 @@ constexpr double kOfOnePair = 20;
 
 /// Estimates are root mean squares; times this they are above the error of most rows, however few
 /// pairs carry it.
-constexpr double kSafety = 2.5;
+constexpr double kSafety = 3;
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 #include "formfactor/exact/sample_cell.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -13,6 +14,12 @@ constexpr std::array<double, 2> kNode2 = {0.5 - kReach2, 0.5 + kReach2};
 constexpr std::array<double, 3> kNode3 = {0.5 - kReach3, 0.5, 0.5 + kReach3};
 constexpr std::array<double, 3> kWeight3 = {5.0 / 18, 8.0 / 18, 5.0 / 18};
 
+/// Values that differ by less, in whole form factors, are flat.
+constexpr double kFlat = 0.05;
+
+/// Distance of the outer points from the border.
+constexpr double kMargin = 0.02;
+
 /// Shares of first (2 x 2) and second (3 x 3) differences, of slopes (3 x 3), and of the change of
 /// what is not seen.
 constexpr double kSmooth4 = 0.012;
@@ -22,34 +29,46 @@ constexpr double kSmooth9 = 0.006;
 constexpr double kKinked9 = 0.03;
 constexpr double kUnseen9 = 0.008;
 constexpr double kSlope9 = 0.003;
+/// Of residuals near the corners, and of an error guessed before they were seen.
+constexpr double kOutside = 0.03;
+constexpr double kReassured = 0.06;
 
 }  // namespace
+
+SamplePoint SampleCell::at(double u, double v) const {
+  const Vec3 along_u = (corners[1] - corners[0]) * (1 - v) + (corners[2] - corners[3]) * v;
+  const Vec3 along_v = (corners[3] - corners[0]) * (1 - u) + (corners[2] - corners[1]) * u;
+  const Vec3 low = corners[0] + (corners[3] - corners[0]) * v;
+  return {low + along_u * u, glm::length(glm::cross(along_u, along_v))};
+}
 
 SamplePoints SampleCell::points(std::size_t side) const {
   SamplePoints points;
   for (std::size_t j = 0; j < side; ++j) {
     for (std::size_t i = 0; i < side; ++i) {
-      const double u = side == 2 ? kNode2[i] : kNode3[i];
-      const double v = side == 2 ? kNode2[j] : kNode3[j];
-      const double weight = side == 2 ? 0.25 : kWeight3[i] * kWeight3[j];
-      const Vec3 along_u = (corners[1] - corners[0]) * (1 - v) + (corners[2] - corners[3]) * v;
-      const Vec3 along_v = (corners[3] - corners[0]) * (1 - u) + (corners[2] - corners[1]) * u;
-      const Vec3 low = corners[0] + (corners[3] - corners[0]) * v;
-      points.point[points.count++] = {low + along_u * u,
-                                      glm::length(glm::cross(along_u, along_v)) * weight};
+      SamplePoint p = side == 2 ? at(kNode2[i], kNode2[j]) : at(kNode3[i], kNode3[j]);
+      p.weight *= side == 2 ? 0.25 : kWeight3[i] * kWeight3[j];
+      points.point[points.count++] = p;
+    }
+  }
+  return points;
+}
+
+SamplePoints SampleCell::outerPoints() const {
+  SamplePoints points;
+  for (const double v : {kMargin, 1 - kMargin}) {
+    for (const double u : {kMargin, 1 - kMargin}) {
+      points.point[points.count++] = {at(u, v).position, 0};
     }
   }
   return points;
 }
 
 SampleCell SampleCell::child(std::size_t k) const {
-  const auto at = [&](double u, double v) {
-    return (corners[0] * (1 - u) + corners[1] * u) * (1 - v) +
-           (corners[3] * (1 - u) + corners[2] * u) * v;
-  };
   const double u = 0.5 * double(k % 2);
   const double v = 0.5 * double(k / 2);
-  return {{at(u, v), at(u + 0.5, v), at(u + 0.5, v + 0.5), at(u, v + 0.5)}};
+  return {{at(u, v).position, at(u + 0.5, v).position, at(u + 0.5, v + 0.5).position,
+           at(u, v + 0.5).position}};
 }
 
 double SampleCell::area() const {
@@ -60,27 +79,36 @@ Vec3 SampleCell::middle() const {
   return 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
 }
 
-double meanError4(const CellValues& values, double change, double whole) {
-  if (values.one_shape && values.no_edge) return kUnseen4 * change * whole;
-  const auto& r = values.residual;
-  const double along_u = std::abs(r[1] - r[0]) + std::abs(r[3] - r[2]);
-  const double along_v = std::abs(r[2] - r[0]) + std::abs(r[3] - r[1]);
-  return 0.5 * (along_u + along_v) * (values.one_shape ? kSmooth4 : kKinked4);
+bool CellValues::flat() const {
+  const auto [least, most] = std::minmax_element(residual.begin(), residual.begin() + count);
+  return *most - *least < kFlat * whole;
 }
 
-double meanError9(const CellValues& values, double change, double whole) {
-  if (values.one_shape && values.no_edge) return kUnseen9 * change * whole;
+double meanError(const CellValues& values) {
+  const auto& r = values.residual;
+  const bool unseen = values.flat();
+  if (values.count == 4) {
+    const double along_u = std::abs(r[1] - r[0]) + std::abs(r[3] - r[2]);
+    const double along_v = std::abs(r[2] - r[0]) + std::abs(r[3] - r[1]);
+    return 0.5 * (along_u + along_v) * (values.one_shape ? kSmooth4 : kKinked4) +
+           (unseen ? kUnseen4 * values.change * values.whole : 0);
+  }
   double bend = 0;
   double slope = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double* row = &values.residual[3 * k];
-    const double* column = &values.residual[k];
+    const double* row = &r[3 * k];
+    const double* column = &r[k];
     bend += kWeight3[k] * std::abs(row[0] - 2 * row[1] + row[2]);
     bend += kWeight3[k] * std::abs(column[0] - 2 * column[3] + column[6]);
     slope += kWeight3[k] * (std::abs(row[2] - row[0]) + std::abs(column[6] - column[0]));
   }
   // A kink between the outer points and the border changes the slope there, and nothing else.
-  return bend * (values.one_shape ? kSmooth9 : kKinked9) + slope * kSlope9;
+  return bend * (values.one_shape ? kSmooth9 : kKinked9) + slope * kSlope9 +
+         (unseen ? kUnseen9 * values.change * values.whole : 0);
+}
+
+double meanErrorOutside(double guessed, double residual) {
+  return std::max(kReassured * guessed, kOutside * residual);
 }
 
 }  // namespace radiosity

@@ -30,10 +30,17 @@ struct SampleCell {
 
   /// Product Gauss points of the unit square, 2 x 2 or 3 x 3, mapped bilinearly.
   SamplePoints points(std::size_t side) const;
+  /// Four points near the corners, without weight: they see what passes outside the others. Not at
+  /// the corners, which may touch an occluder.
+  SamplePoints outerPoints() const;
   /// One of four: halves both ways.
   SampleCell child(std::size_t k) const;
   double area() const;
   Vec3 middle() const;
+
+ private:
+  /// With the map's Jacobian as weight.
+  SamplePoint at(double u, double v) const;
 };
 
 /// What the points of a cell saw of a target.
@@ -41,18 +48,26 @@ struct CellValues {
   /// Visible minus fraction times whole form factor, by which the visible fraction's error is
   /// measured.
   std::array<double, SamplePoints::kMost> residual;
+  std::size_t count = 0;
+  double whole = 0;       ///< mean of the whole form factor
+  double change = 0;      ///< see SampledPair; for a part of the element in proportion
   bool one_shape = true;  ///< all points see shadows bounded by the same edges
-  bool no_edge = true;    ///< and see all of the target, or nothing
+
+  /// All points see nearly the same fraction: what there is to be seen of a shadow's edge may have
+  /// slipped between them.
+  bool flat() const;
 };
 
-/// Estimates of the error of a cell's mean residual, root mean squares fitted to true errors (on
-/// the closed Cornell box, a cluttered and a curved scene, to within a factor of 1.5). Gauss points
-/// see a smooth integrand far better than any tolerance; what they do not see is a kink, where an
-/// edge of a shadow passes a corner of the target. Its size goes with how much the values change
-/// from point to point (2 x 2) or how much that changes (3 x 3). A shadow that slips between the
-/// points is not seen at all: where none sees an edge, the error is guessed from how far shadows
-/// move across the target, `change`, and the mean of the whole form factor.
-double meanError4(const CellValues& values, double change, double whole);
-double meanError9(const CellValues& values, double change, double whole);
+/// Estimate of the error of a cell's mean residual, from 4 or 9 points: root mean squares fitted to
+/// true errors (on the closed Cornell box, a cluttered and a curved scene, to within a factor of
+/// 1.5). Gauss points see a smooth integrand far better than any tolerance; what they do not see is
+/// a kink, where an edge of a shadow passes a corner of the target. Its size goes with how much the
+/// values change from point to point (2 x 2) or how much that changes (3 x 3). Where the values are
+/// flat, it is guessed from how far shadows move across the target.
+double meanError(const CellValues& values);
+
+/// A better estimate than one that was `guessed`, once the points near the corners were looked
+/// from: `residual` is the largest of theirs.
+double meanErrorOutside(double guessed, double residual);
 
 }  // namespace radiosity

@@ -1,0 +1,264 @@
+// Partly visible pairs: the obstructed plates whose exchange is known, groups of targets against
+// the exact clipper, and error figures against the truth.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "formfactor/exact/group_view.h"
+#include "formfactor/exact/partial.h"
+#include "formfactor/exact/unoccluded.h"
+#include "formfactor/exact/visibility.h"
+#include "mesh_builder.h"
+#include "occluder_builder.h"
+#include "truth/ground_truth.h"
+
+namespace radiosity {
+namespace {
+
+using test::MeshBuilder;
+
+/// A mesh with everything the exact method makes of it, and its partly visible pairs.
+struct Case : VisibilitySink {
+  explicit Case(PatchMesh given)
+      : mesh(std::move(given)),
+        elements(mesh),
+        occluders(mesh, elements),
+        exact(elements, 1e-10, true) {
+    const Visibility visibility(elements, occluders);
+    VisibilityCounts counts;
+    for (const Facet& facet : elements.facets) {
+      if (!facet.bare) visibility.classify(facet.elements, *this, counts);
+    }
+  }
+  void unoccluded(ElementRange rows, ElementRange columns) override {
+    for (Index r = rows.first; r < rows.end; ++r) {
+      for (Index c = columns.first; c < columns.end; ++c) open.push_back({r, c, exact.pair(r, c)});
+    }
+  }
+  void partial(Index row, Index column, std::span<const Index> blockers) override {
+    const auto begin = std::uint32_t(list.size());
+    list.insert(list.end(), blockers.begin(), blockers.end());
+    pairs.push_back({row, column, begin, std::uint32_t(list.size()), exact.pair(row, column)});
+  }
+  std::vector<PartialExchange> evaluate(double tolerance, PartialCounts& counts,
+                                        bool simd = true) const {
+    std::vector<PartialExchange> out(pairs.size());
+    PartialKernel(elements, occluders, tolerance, simd).evaluate(pairs, list, out, counts);
+    return out;
+  }
+
+  PatchMesh mesh;
+  ElementSet elements;
+  OccluderSet occluders;
+  UnoccludedKernel exact;
+  std::vector<PartialPair> pairs;
+  std::vector<Index> list;
+  struct Open {
+    Index row, column;
+    double exchange;
+  };
+  std::vector<Open> open;  ///< with nothing in between
+};
+
+/// Unit plates at z = 0 and z = 1 that face each other, n x n patches each.
+MeshBuilder plates(int n) {
+  MeshBuilder builder;
+  builder.grid("lower", {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, n, n);
+  builder.grid("upper", {0, 0, 1}, {0, 1, 0}, {1, 0, 0}, n, n);
+  return builder;
+}
+
+/// Form factor from plate to plate past a sheet [x0, x1] x [y0, y1] at half height.
+double pastSheet(double x0, double x1, double y0, double y1, double tolerance) {
+  MeshBuilder builder = plates(8);
+  builder.grid("sheet", {x0, y0, 0.5}, {x1 - x0, 0, 0}, {0, y1 - y0, 0}, 1, 1, true);
+  const Case scene(builder.build());
+  // Pairs with the sheet, the third surface, are no part of the sum.
+  double sum = 0;
+  const auto plate = [&](Index e) { return scene.mesh.surface[scene.elements.patch[e]] < 2; };
+  for (const Case::Open& pair : scene.open) {
+    if (plate(pair.row) && plate(pair.column)) sum += pair.exchange;
+  }
+  PartialCounts counts;
+  const auto found = scene.evaluate(tolerance, counts);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    if (plate(scene.pairs[k].row) && plate(scene.pairs[k].column)) sum += found[k].exchange;
+  }
+  return sum / (scene.elements.scale * scene.elements.scale);
+}
+
+struct Sheet {
+  double x0, x1, y0, y1;
+  double form_factor;
+};
+
+TEST(Partial, PlatesPastASheet) {
+  // Closed forms: the aperture's and the obstructed form factor add up to that of the plates, and
+  // the aperture's follows from those of rectangles. Tolerance 1e-7 of 1/N, N = 129: errors of
+  // some 1500 partial pairs, each 20 times that at most and of either sign, are below 1e-6 in sum.
+  const std::vector<Sheet> sheets = {
+      {0, 0.5, 0, 0.5, 0.149868671773790},       {0, 0.5, 0, 1, 0.0999124478491937},
+      {0.45, 0.55, 0.45, 0.55, 0.1945396236482}, {0.375, 0.625, 0.375, 0.625, 0.1694742049118},
+      {0.25, 0.75, 0.25, 0.75, 0.0995062945990}, {0.125, 0.875, 0.125, 0.875, 0.0294835449148},
+      {0.05, 0.95, 0.05, 0.95, 0.0049533100175}, {0.25, 0.75, 0, 1, 0.0583268459018}};
+  for (const Sheet& sheet : sheets) {
+    EXPECT_NEAR(pastSheet(sheet.x0, sheet.x1, sheet.y0, sheet.y1, 1e-7), sheet.form_factor, 1e-6)
+        << sheet.x0 << ' ' << sheet.y0;
+  }
+}
+
+/// A room with blocks of several sizes, some of them turned: everything sees everything past
+/// several of them.
+PatchMesh clutteredRoom(int n) {
+  MeshBuilder builder;
+  builder.box("room", {0, 0, 0}, {1, 1, 1}, n, true);
+  for (int k = 0; k < 12; ++k) {
+    const double a = 2.4 * k;
+    const double size = 0.06 + 0.01 * (k % 5);
+    const Vec3 middle(0.5 + 0.32 * std::cos(a), 0.5 + 0.32 * std::sin(a), 0.15 + 0.06 * k);
+    const Vec3 u = size * Vec3(std::cos(a / 3), std::sin(a / 3), 0);
+    const Vec3 v = size * Vec3(-std::sin(a / 3), std::cos(a / 3), 0);
+    const Vec3 w = size * Vec3(0, 0, 1.5);
+    const std::string name = "block " + std::to_string(k);
+    builder.grid(name, middle + w, u, v, 1, 1);
+    builder.grid(name, middle, v, u, 1, 1);
+    builder.grid(name, middle, u, w, 1, 1);
+    builder.grid(name, middle + v, w, u, 1, 1);
+    builder.grid(name, middle, w, v, 1, 1);
+    builder.grid(name, middle + u, v, w, 1, 1);
+  }
+  return builder.build();
+}
+
+TEST(Partial, StaysBetweenNothingAndUnoccluded) {
+  const Case scene(clutteredRoom(3));
+  for (const double tolerance : {1e-3, 1e-4}) {
+    PartialCounts counts;
+    const auto found = scene.evaluate(tolerance, counts);
+    EXPECT_EQ(counts.pairs, scene.pairs.size());
+    EXPECT_GT(counts.subdivided, 0u);
+    EXPECT_EQ(counts.by_pixels, 0u);
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      ASSERT_GE(found[k].exchange, 0);
+      ASSERT_LE(found[k].exchange, scene.pairs[k].unoccluded);
+      ASSERT_GE(found[k].error, 0);
+    }
+  }
+}
+
+TEST(Partial, VectorsAndBatchesChangeNothing) {
+  const Case scene(clutteredRoom(3));
+  for (const double tolerance : {1e-3, 1e-4}) {
+    PartialCounts counts;
+    const auto vectors = scene.evaluate(tolerance, counts);
+    const auto scalar = scene.evaluate(tolerance, counts, false);
+    const PartialKernel kernel(scene.elements, scene.occluders, tolerance, true);
+    for (std::size_t k = 0; k < vectors.size(); ++k) {
+      ASSERT_EQ(vectors[k].exchange, scalar[k].exchange);
+      ASSERT_EQ(vectors[k].error, scalar[k].error);
+      if (k % 16 != 0) continue;
+      PartialExchange alone;
+      kernel.evaluate(std::span(&scene.pairs[k], 1), scene.list, std::span(&alone, 1), counts);
+      ASSERT_EQ(vectors[k].exchange, alone.exchange);
+      ASSERT_EQ(vectors[k].error, alone.error);
+    }
+  }
+}
+
+TEST(Partial, BothEndsAgree) {
+  // The same pair from the other end: other points, other clips, the same exchange.
+  const Case scene(clutteredRoom(2));
+  const double tolerance = 1e-4;
+  PartialCounts counts;
+  const auto found = scene.evaluate(tolerance, counts);
+  const PartialKernel kernel(scene.elements, scene.occluders, tolerance, true);
+  double difference2 = 0;
+  double error2 = 0;
+  for (std::size_t k = 0; k < found.size(); k += 7) {
+    const PartialExchange other = kernel.evaluateFromOtherEnd(scene.pairs[k], scene.list);
+    const double d = other.exchange - found[k].exchange;
+    difference2 += d * d;
+    error2 += other.error * other.error + found[k].error * found[k].error;
+  }
+  EXPECT_GT(difference2, 0);
+  EXPECT_LE(difference2, error2);
+}
+
+/// Every so many rows of a mesh, true.
+struct TrueRows {
+  TrueRows(const Case& scene, std::size_t every) {
+    truth::TruthOptions options;
+    options.accuracy = 1e-5;
+    const truth::GroundTruth truth(scene.mesh, options);
+    for (std::size_t row = 0; row < scene.elements.patch_elements; row += every) {
+      elements.push_back(Index(row));
+      form_factors.push_back(truth.row(scene.elements.patch[row]).form_factors);
+    }
+  }
+  std::vector<Index> elements;
+  std::vector<std::vector<double>> form_factors;
+};
+
+/// What entries are off by, and what is said of it.
+struct RowErrors {
+  double relative = 0;      ///< area-weighted, of all rows
+  std::size_t below = 0;    ///< rows whose true error is below its figure
+  double median_ratio = 0;  ///< figure over true error
+};
+
+RowErrors compareRows(const Case& scene, const TrueRows& rows, double tolerance) {
+  PartialCounts counts;
+  const auto found = scene.evaluate(tolerance, counts);
+  RowErrors errors;
+  double error2 = 0;
+  double all2 = 0;
+  std::vector<double> ratios;
+  for (std::size_t r = 0; r < rows.elements.size(); ++r) {
+    const Index row = rows.elements[r];
+    const double area = scene.elements.area[row];
+    double row2 = 0;
+    double figure2 = 0;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      const PartialPair& pair = scene.pairs[k];
+      if (pair.row != row && pair.column != row) continue;
+      const Index other = pair.row == row ? pair.column : pair.row;
+      if (other >= scene.elements.patch_elements) continue;
+      const double d = found[k].exchange / area - rows.form_factors[r][scene.elements.patch[other]];
+      row2 += d * d;
+      figure2 += found[k].error * found[k].error / (area * area);
+    }
+    for (const double f : rows.form_factors[r]) all2 += f * f * area;
+    error2 += row2 * area;
+    errors.below += row2 <= figure2;
+    if (row2 > 0) ratios.push_back(std::sqrt(figure2 / row2));
+  }
+  errors.relative = std::sqrt(error2 / all2);
+  std::nth_element(ratios.begin(), ratios.begin() + std::ptrdiff_t(ratios.size() / 2),
+                   ratios.end());
+  errors.median_ratio = ratios[ratios.size() / 2];
+  return errors;
+}
+
+TEST(Partial, RowsKeepTheToleranceAndSaySo) {
+  // One block in a room, and twelve. The tolerance is for the root mean square over a row's
+  // entries in mean form factors, which is less than theirs. It is met where a tenth of the pairs
+  // are partial; among twelve blocks nearly all are: three times it is asserted. Figures are above
+  // the error in every row of the sample, and within ten times it in half of them; twenty, where
+  // large patches past many blocks leave much to guess.
+  const Case block(test::roomWithBlock(3).build());
+  const Case clutter(clutteredRoom(3));
+  for (const Case* scene : {&block, &clutter}) {
+    const TrueRows rows(*scene, 13);
+    for (const double tolerance : {1e-3, 1e-4}) {
+      const RowErrors errors = compareRows(*scene, rows, tolerance);
+      EXPECT_LT(errors.relative, (scene == &block ? 1 : 3) * tolerance) << tolerance;
+      EXPECT_EQ(errors.below, rows.elements.size()) << tolerance;
+      EXPECT_LT(errors.median_ratio, scene == &block ? 10 : 20) << tolerance;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace radiosity
