@@ -106,6 +106,24 @@ double largestRowError(const FormFactors& factors) {
   return largest;
 }
 
+std::optional<OwnEstimate> ownEstimate(const FormFactors& factors, const TruthRows& truth,
+                                       const MatrixError& error) {
+  if (factors.error.empty()) return std::nullopt;
+  OwnEstimate own;
+  own.matrix = factors.report.error_figure;
+  std::vector<double> ratios;
+  for (std::size_t k = 0; k < truth.index.size(); ++k) {
+    const double figure = factors.error[truth.index[k]];
+    if (error.row[k] <= figure) own.rows_covered += 1.0 / double(truth.index.size());
+    if (error.row[k] > 0) ratios.push_back(figure / error.row[k]);
+  }
+  if (ratios.empty()) return own;
+  const auto middle = ratios.begin() + std::ptrdiff_t(ratios.size() / 2);
+  std::nth_element(ratios.begin(), middle, ratios.end());
+  own.median_ratio = *middle;
+  return own;
+}
+
 struct Measured {
   Measurement measurement;
   std::vector<double> radiosity;
@@ -124,7 +142,7 @@ Measured measure(const Method& method, const PatchMesh& mesh, const TruthRows& t
   m.factors = matrixError(factors.matrix, truth);
   m.bytes = factors.matrix.bytes();
   m.largest_row_error = largestRowError(factors);
-  m.error_figure = factors.report.error_figure;
+  m.own = ownEstimate(factors, truth, m.factors);
   m.exact = factors.report.exact;
   result.radiosity = materials.solve(factors);
   return result;

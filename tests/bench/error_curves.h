@@ -12,6 +12,13 @@
 
 namespace radiosity::bench {
 
+/// The error figures of a method beside the true errors.
+struct OwnEstimate {
+  double matrix = 0;        ///< its estimate of relL2(F)
+  double rows_covered = 0;  ///< share of rows whose true error is below their figure
+  double median_ratio = 0;  ///< median over rows of figure / true error
+};
+
 /// One method with one setting on one scene.
 struct Measurement {
   std::string method;
@@ -25,7 +32,8 @@ struct Measurement {
   std::optional<double> radiosity;
   std::size_t bytes = 0;         ///< of the matrix
   double largest_row_error = 0;  ///< max |fronts + backs + sky - 1|
-  double error_figure = 0;       ///< the exact method's own estimate of relL2; 0: none
+  /// What the exact method says of itself; empty for the others.
+  std::optional<OwnEstimate> own;
   ExactReport exact;
 };
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Draws error against time from what the benchmark wrote: plot.py FOLDER
 
-Reads error-against-time.csv and exact-against-rays.csv, writes error-against-time.svg and .png.
+Reads error-against-time.csv and exact-against-rays.csv, writes error-against-time.svg and .png, and
+the main figures as a Markdown table, error-against-time.md.
 One panel a scene, both axes logarithmic: seconds of one processor for the form-factor stage, and
 the area-weighted relL2 of F. Down and to the left is better. The ray caster's own power law is
 continued as a dotted line.
@@ -59,11 +60,42 @@ def draw_scene(axes, rows, laws):
                    fontsize=9.5)
 
 
+def of(rows, method, value):
+    return next((r for r in rows if r["method"] == method and float(r["value"]) == value), None)
+
+
+def short(row, name):
+    return f"{float(row[name]):.0e}".replace("e-0", "e-") if row and row[name] else "-"
+
+
+def table_line(scene, patches, rows, laws):
+    exact, hemicube = of(rows, "exact", 1e-3), of(rows, "hemicube", 256)
+    cells = [TITLES[scene], f"{int(patches):,}"]
+    for row in (exact, hemicube):
+        cells += [f"{seconds(row):.2g} s" if row else "-", short(row, "relative_l2_F"),
+                  short(row, "relative_l2_B")]
+    for error in (1e-2, 1e-3):
+        ratios = [float(law["ratio"]) for law in laws if float(law["error"]) == error]
+        cells.append(" / ".join(f"{r:,.0f}x" if r >= 10 else f"{r:.1f}x" for r in ratios) or "-")
+    return "| " + " | ".join(cells) + " |\n"
+
+
+def write_table(path, scenes, measured, laws):
+    with open(path, "w") as out:
+        out.write("| scene | patches | exact, 1e-3 | F | B | hemicube, 256 | F | B "
+                  "| rays at 1e-2 | rays at 1e-3 |\n|---|---|---|---|---|---|---|---|---|---|\n")
+        for key in scenes:
+            out.write(table_line(*key, [r for r in measured if (r["scene"], r["patches"]) == key],
+                                 [r for r in laws if (r["scene"], r["patches"]) == key]))
+
+
 def main():
     folder = pathlib.Path(sys.argv[1])
     measured = read(folder / "error-against-time.csv")
     laws = read(folder / "exact-against-rays.csv")
     scenes = list(dict.fromkeys((r["scene"], r["patches"]) for r in measured))
+
+    write_table(folder / "error-against-time.md", scenes, measured, laws)
 
     plt.rcParams.update({"font.size": 9, "svg.hashsalt": "radiosity", "svg.fonttype": "path"})
     # One place more, for the legend.

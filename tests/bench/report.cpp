@@ -17,19 +17,27 @@ std::string settingText(const Measurement& m) {
 }  // namespace
 
 void printCurveHead(const SceneCurves& curves) {
-  fmt::print("  error of F over {} rows, of B against {}; one thread, processor time\n",
-             curves.truth_rows, curves.radiosity_reference);
-  fmt::print("  {:<15} {:>9} | {:>9} {:>9} | {:>8} {:>8} {:>8} {:>8} | {:>8} | {}\n", "method",
-             "setting", "seconds", "wall", "relL2(F)", "largest", "relL2(B)", "own est.", "MiB",
-             "pairs: unoccluded, hidden, partial");
+  fmt::print(
+      "  error of F over {} rows, of B against {}; one thread, processor time\n"
+      "  own est.: error figure of the matrix; rows whose error stays below theirs; figure / "
+      "error\n",
+      curves.truth_rows, curves.radiosity_reference);
+  fmt::print("  {:<15} {:>9} | {:>9} {:>9} | {:>8} {:>8} {:>8} | {:>8} {:>6} {:>6} | {:>8} | {}\n",
+             "method", "setting", "seconds", "wall", "relL2(F)", "largest", "relL2(B)", "own est.",
+             "rows", "median", "MiB", "pairs: unoccluded, hidden, partial");
 }
 
 void printMeasurement(const Measurement& m) {
-  fmt::print("  {:<15} {:>9} | {:>9.4f} {:>9.4f} | {:>8.1e} {:>8.1e} {:>8} {:>8} | {:>8.2f} |",
-             m.method, settingText(m), m.seconds.processor(), m.seconds.wall, m.factors.relative_l2,
-             m.factors.largest, m.radiosity ? fmt::format("{:.1e}", *m.radiosity) : "-",
-             m.error_figure > 0 ? fmt::format("{:.1e}", m.error_figure) : "-",
-             double(m.bytes) / kMebibyte);
+  fmt::print("  {:<15} {:>9} | {:>9.4f} {:>9.4f} | {:>8.1e} {:>8.1e} {:>8} | ", m.method,
+             settingText(m), m.seconds.processor(), m.seconds.wall, m.factors.relative_l2,
+             m.factors.largest, m.radiosity ? fmt::format("{:.1e}", *m.radiosity) : "-");
+  if (m.own) {
+    fmt::print("{:>8.1e} {:>5.0f}% {:>6.1f} | ", m.own->matrix, 100 * m.own->rows_covered,
+               m.own->median_ratio);
+  } else {
+    fmt::print("{:>8} {:>6} {:>6} | ", "-", "-", "-");
+  }
+  fmt::print("{:>8.2f} |", double(m.bytes) / kMebibyte);
   if (m.exact.elements > 0) {
     fmt::print(" {} {} {}", m.exact.unoccluded, m.exact.hidden, m.exact.partial);
   }
@@ -85,16 +93,21 @@ void writeCsv(const std::string& path, const std::vector<SceneCurves>& curves) {
   auto out = fmt::output_file(path);
   out.print(
       "scene,patches,polygons,truth_rows,method,setting,value,user_s,system_s,wall_s,runs,"
-      "relative_l2_F,largest_F,relative_l2_B,B_reference,error_figure,largest_row_error,bytes,"
+      "relative_l2_F,largest_F,relative_l2_B,B_reference,error_figure,rows_covered,median_figure_"
+      "over_error,largest_row_error,bytes,"
       "pairs_no_exchange,pairs_unoccluded,pairs_hidden,pairs_partial\n");
   for (const SceneCurves& c : curves) {
     for (const Measurement& m : c.measurements) {
-      out.print(
-          "{},{},{},{},{},{},{:g},{:.6f},{:.6f},{:.6f},{},{:.6e},{:.6e},{},{},{:.6e},{:.3e},{},",
-          c.scene, c.patches, c.polygons, c.truth_rows, m.method, m.setting, m.value,
-          m.seconds.user, m.seconds.system, m.seconds.wall, m.runs, m.factors.relative_l2,
-          m.factors.largest, m.radiosity ? fmt::format("{:.6e}", *m.radiosity) : "",
-          c.radiosity_reference, m.error_figure, m.largest_row_error, m.bytes);
+      out.print("{},{},{},{},{},{},{:g},{:.6f},{:.6f},{:.6f},{},{:.6e},{:.6e},{},{},", c.scene,
+                c.patches, c.polygons, c.truth_rows, m.method, m.setting, m.value, m.seconds.user,
+                m.seconds.system, m.seconds.wall, m.runs, m.factors.relative_l2, m.factors.largest,
+                m.radiosity ? fmt::format("{:.6e}", *m.radiosity) : "", c.radiosity_reference);
+      if (m.own) {
+        out.print("{:.6e},{:.4f},{:.3f},", m.own->matrix, m.own->rows_covered, m.own->median_ratio);
+      } else {
+        out.print(",,,");
+      }
+      out.print("{:.3e},{},", m.largest_row_error, m.bytes);
       if (m.exact.elements > 0) {
         out.print("{},{},{},{}\n", m.exact.no_exchange, m.exact.unoccluded, m.exact.hidden,
                   m.exact.partial);

@@ -45,14 +45,16 @@ class RowCache {
     std::ifstream in(path_, std::ios::binary);
     if (!in) return;
     Index i = 0;
+    std::size_t records = 0;
     std::vector<double> row(size_);
     while (in.read(reinterpret_cast<char*>(&i), sizeof i) &&
            in.read(reinterpret_cast<char*>(row.data()), bytes())) {
       rows_[i] = row;
+      ++records;
     }
     // An interrupted run may have left part of a record.
     in.close();
-    std::filesystem::resize_file(path_, rows_.size() * (sizeof i + std::size_t(bytes())));
+    std::filesystem::resize_file(path_, records * (sizeof i + std::size_t(bytes())));
   }
   const std::vector<double>* find(Index i) const {
     const auto found = rows_.find(i);
@@ -106,12 +108,15 @@ MatrixError matrixError(const ExchangeMatrix& matrix, const TruthRows& truth) {
     const Index i = truth.index[k];
     std::fill(row.begin(), row.end(), 0.0);
     matrix.forRow(i, [&](Index j, double value) { row[j] = value; });
+    double squares = 0;
     for (std::size_t j = 0; j < row.size(); ++j) {
       const double difference = row[j] - truth.row[k][j];
-      wrong += matrix.area()[i] * difference * difference;
+      squares += difference * difference;
       all += matrix.area()[i] * truth.row[k][j] * truth.row[k][j];
       error.largest = std::max(error.largest, std::abs(difference));
     }
+    wrong += matrix.area()[i] * squares;
+    error.row.push_back(std::sqrt(squares));
   }
   error.relative_l2 = std::sqrt(wrong / all);
   return error;

@@ -24,8 +24,9 @@ TruthRows truthRows(const PatchMesh& mesh, double accuracy, const std::string& f
 
 /// How far a matrix is from the truth, over the rows that are known.
 struct MatrixError {
-  double relative_l2 = 0;  ///< sqrt(sum A_i (F - F')^2 / sum A_i F'^2)
-  double largest = 0;      ///< max |F - F'|
+  double relative_l2 = 0;   ///< sqrt(sum A_i (F - F')^2 / sum A_i F'^2)
+  double largest = 0;       ///< max |F - F'|
+  std::vector<double> row;  ///< sqrt(sum_j (F_ij - F'_ij)^2), as TruthRows::index
 };
 MatrixError matrixError(const ExchangeMatrix& matrix, const TruthRows& truth);
 
