@@ -31,7 +31,6 @@ TITLES = {
     "curved": "curved",
     "furnished-room": "furnished room",
 }
-COLUMNS = 4
 
 
 def read(path):
@@ -99,7 +98,7 @@ def main():
 
     plt.rcParams.update({"font.size": 9, "svg.hashsalt": "radiosity", "svg.fonttype": "path"})
     # One place more, for the legend.
-    columns = min(COLUMNS, len(scenes) + 1)
+    columns = min(len(scenes) + 1, 3 if len(scenes) < 6 else 4)
     lines = -(-(len(scenes) + 1) // columns)
     figure, grid = plt.subplots(lines, columns, figsize=(3 * columns, 2.7 * lines + 0.3),
                                 sharex=True, sharey=True, squeeze=False)

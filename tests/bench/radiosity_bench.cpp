@@ -84,8 +84,8 @@ bool benchCurves(const Arguments& arguments) {
     writeCsv(arguments.out + "/error-against-time.csv", all);
     writeComparisonsCsv(arguments.out + "/exact-against-rays.csv", summary.comparisons);
   }
+  summary.growth = growth(all);
   if (arguments.curves && arguments.scene.empty() && verified) {
-    summary.growth = growth(all);
     summary.two_cores =
         measureTwoCores(benchScene("cornell-box-closed", arguments.quick ? 1000 : 5000).mesh);
     if (!arguments.quick) summary.whole_run = measureWholeRun(arguments.out);
