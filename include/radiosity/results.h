@@ -66,7 +66,8 @@ void writeResults(const std::string& path, const Results& results, Progress& pro
 /// Bytes writeResults() will put on disk, within 4 kB.
 std::size_t estimateResultsBytes(const Results& results);
 
-/// MatrixMarket coordinate real general, 1-based, 17 significant digits: F as stored.
+/// MatrixMarket coordinate real general, 1-based, 17 significant digits: F as stored, with
+/// what closure adds.
 void writeMatrixMarket(const std::string& path, const ExchangeMatrix& matrix, Progress& progress);
 
 /// The patches as they are, by extension: .obj (outlines, one object a surface, in mesh order: face

@@ -124,7 +124,7 @@ void ExchangeMatrix::symmetricSweep(std::span<double> x, int bands, const Update
       if (!isCorrected()) continue;
       double more[kMaxBands];
       kernels.gather(correction_[k], operands(k, b), more);
-      for (int m = 0; m < std::min(bands - b, kMaxBands); ++m) sums[std::size_t(b + m)] += more[m];
+      for (int m = b; m < std::min(b + kMaxBands, bands); ++m) sums[std::size_t(m)] += more[m - b];
     }
   };
   for (std::size_t k = 0; k < n; ++k) {

@@ -65,7 +65,7 @@ void writeMatrixMarket(const std::string& path, const ExchangeMatrix& matrix, Pr
       "%%MatrixMarket matrix coordinate real general\n"
       "% Form factors by radiosity: row i, column j holds F[i,j], the fraction of what\n"
       "% leaves patch i that reaches patch j; no unit. Patches are numbered from 1.\n"
-      "% The values as stored, {} bits, in 17 digits.\n"
+      "% The values as stored, {} bits, in 17 digits; closure, where enforced, is in them.\n"
       "{} {} {}\n",
       matrix.precision() == Precision::single ? 32 : 64, n, n, matrix.nonZeros()));
   progress.begin("writing MatrixMarket", n);
