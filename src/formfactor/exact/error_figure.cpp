@@ -9,6 +9,7 @@ ErrorSums& ErrorSums::operator+=(const ErrorSums& other) {
   for (std::size_t i = 0; i < squares_.size(); ++i) {
     squares_[i] += other.squares_[i];
     errors_[i] += other.errors_[i];
+    clipped_[i] += other.clipped_[i];
   }
   difference_ += other.difference_;
   stated_ += other.stated_;
@@ -46,12 +47,16 @@ double ErrorSums::recheckRatio() const {
 
 double ErrorSums::figures(std::span<const double> area, double closed_form,
                           std::span<double> figure) const {
-  const double clipped = kMargin * std::max(1.0, recheckRatio());
+  // Of a pair, squared and over the product of its areas.
+  const double surplus =
+      rechecked_ > 0 ? std::max(0.0, difference_ - stated_) / (8 * double(rechecked_)) : 0.0;
+  const double margin = kMargin * kMargin;
   const double closed = kClosedFormShare * closed_form;
   double errors = 0;
   double squares = 0;
   for (std::size_t i = 0; i < figure.size(); ++i) {
-    const double square = clipped * clipped * errors_[i] + closed * closed * squares_[i];
+    const double clipped = errors_[i] + surplus * clipped_[i];
+    const double square = margin * clipped + closed * closed * squares_[i];
     figure[i] = std::sqrt(square) / area[i];
     errors += square / area[i];
     squares += squares_[i] / area[i];

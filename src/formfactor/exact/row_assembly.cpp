@@ -155,7 +155,9 @@ void RowAssembly::evaluatePartial(RowSums& sums) {
     panel_[place(row, column)] = partial_[k].exchange;
     marked_[place(row, column)] = 1;
     if (column < context_.elements.patch_elements) {
-      sums.error.addPartial(order.rank[row], order.rank[column], partial_[k].error);
+      const Index a = order.rank[row];
+      const Index b = order.rank[column];
+      sums.error.addPartial(a, b, partial_[k].error, order.area[a] * order.area[b]);
     }
   }
   recheck(sums);
@@ -168,10 +170,9 @@ void RowAssembly::recheck(RowSums& sums) const {
     if (pair.column >= context_.elements.patch_elements) continue;
     if (pairHash(pair.row, pair.column) % context_.recheck_every != 0) continue;
     const PartialExchange other = context_.partial.evaluateFromOtherEnd(pair, pairs_.occluder_list);
-    const double a = order.area[order.rank[pair.row]];
-    const double b = order.area[order.rank[pair.column]];
+    const double areas = order.area[order.rank[pair.row]] * order.area[order.rank[pair.column]];
     sums.error.addRecheck(partial_[k].exchange - other.exchange, partial_[k].error, other.error,
-                          1 / (a * a) + 1 / (b * b));
+                          areas);
   }
 }
 
