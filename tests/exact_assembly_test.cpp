@@ -111,13 +111,14 @@ TEST(ExactFactors, FurnaceInAClosedRoomWithABlock) {
   std::size_t beyond = 0;
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     if (std::abs(f.fronts[i] - 1) > root_n * f.error[i]) ++beyond;
-    EXPECT_NEAR(f.fronts[i], 1.0, 1e-3) << i;
+    // 208 patches: half a mean form factor, of dozens of partly hidden pairs in the row.
+    EXPECT_NEAR(f.fronts[i], 1.0, 2.5e-3) << i;
     EXPECT_EQ(f.sky[i], 0.0);
     EXPECT_EQ(f.backs[i], 0.0);
   }
   EXPECT_LE(beyond, mesh.size() / 100);
   EXPECT_GT(f.report.largest_row_error, 0.0);  // raw, not hidden
-  EXPECT_LT(f.report.largest_row_error, 2e-3);
+  EXPECT_LT(f.report.largest_row_error, 2.5e-3);
 }
 
 TEST(ExactFactors, ClosureIsReportedOrEnforced) {
@@ -125,8 +126,8 @@ TEST(ExactFactors, ClosureIsReportedOrEnforced) {
   FormFactorOptions options = exactly();
   const FormFactors told = compute(mesh, options);
   EXPECT_FALSE(told.report.closure_enforced);
-  // All but those whose rules agree to the bit.
-  EXPECT_LE(told.report.closure.adjustable, told.report.exact.partial);
+  // All that were clipped but those whose rules agree to the bit; some of them came out as hidden.
+  EXPECT_LE(told.report.closure.adjustable, told.report.exact.partial + told.report.exact.hidden);
   EXPECT_GT(told.report.closure.adjustable, told.report.exact.partial * 9 / 10);
   EXPECT_EQ(told.report.closure.largest_residual_before, told.report.largest_row_error);
   options.closure = ClosureMode::off;
@@ -378,25 +379,25 @@ TEST(ErrorSums, FiguresOfKnownErrors) {
   std::vector<double> row = {0, 0.5};
   sums.addAndScale(0, row, 0.5);
   EXPECT_EQ(row[1], 0.25);
-  sums.addPartial(0, 1, 0.01);
+  sums.addPartial(0, 1, 0.01, 2.0);
   const std::vector<double> area = {2, 1};
   std::vector<double> figure(2);
-  // sum A err^2 = 2 (0.005)^2 + (0.01)^2, sum A F^2 = 2 (0.25)^2 + 0.5^2; and the margin.
-  const double margin = ErrorSums::kMargin;
-  EXPECT_NEAR(sums.figures(area, 0, figure), margin * std::sqrt(1.5e-4 / 0.375), 1e-15);
-  EXPECT_NEAR(figure[0], margin * 0.005, 1e-16);
-  EXPECT_NEAR(figure[1], margin * 0.01, 1e-16);
-  // The two ends differ by 3 times what they state: so do the figures.
-  sums.addRecheck(0.03, 0.008, 0.006, 1.0);
+  // sum A err^2 = 2 (0.005)^2 + (0.01)^2, sum A F^2 = 2 (0.25)^2 + 0.5^2.
+  EXPECT_NEAR(sums.figures(area, 0, figure), std::sqrt(1.5e-4 / 0.375), 1e-15);
+  EXPECT_NEAR(figure[0], 0.005, 1e-16);
+  EXPECT_NEAR(figure[1], 0.01, 1e-16);
+  // The two ends differ by 3 times what they state: an eighth of the surplus, 9 - 1 times the
+  // square of what they state (0.008^2 + 0.006^2 = 0.01^2), is added, which doubles the square.
+  sums.addRecheck(0.03, 0.008, 0.006, 2.0);
   EXPECT_NEAR(sums.recheckRatio(), 3, 1e-12);
   sums.figures(area, 0, figure);
-  EXPECT_NEAR(figure[1], margin * 0.03, 1e-15);
+  EXPECT_NEAR(figure[1], 0.01 * std::sqrt(2.0), 1e-15);
   // Less than they state changes nothing.
   ErrorSums calm(2);
-  calm.addPartial(0, 1, 0.01);
-  calm.addRecheck(0.001, 0.01, 0.01, 1.0);
+  calm.addPartial(0, 1, 0.01, 2.0);
+  calm.addRecheck(0.001, 0.01, 0.01, 2.0);
   calm.figures(area, 0, figure);
-  EXPECT_NEAR(figure[1], margin * 0.01, 1e-16);
+  EXPECT_NEAR(figure[1], 0.01, 1e-16);
   // Closed forms: a tenth of 1e-3 of each value.
   ErrorSums closed(2);
   row = {0, 0.5};

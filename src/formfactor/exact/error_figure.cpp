@@ -49,14 +49,14 @@ double ErrorSums::figures(std::span<const double> area, double closed_form,
                           std::span<double> figure) const {
   // Of a pair, squared and over the product of its areas.
   const double surplus =
-      rechecked_ > 0 ? std::max(0.0, difference_ - stated_) / (8 * double(rechecked_)) : 0.0;
-  const double margin = kMargin * kMargin;
+      rechecked_ > 0 ? kSurplusShare * std::max(0.0, difference_ - stated_) / double(rechecked_)
+                     : 0.0;
   const double closed = kClosedFormShare * closed_form;
   double errors = 0;
   double squares = 0;
   for (std::size_t i = 0; i < figure.size(); ++i) {
     const double clipped = errors_[i] + surplus * clipped_[i];
-    const double square = margin * clipped + closed * closed * squares_[i];
+    const double square = clipped + closed * closed * squares_[i];
     figure[i] = std::sqrt(square) / area[i];
     errors += square / area[i];
     squares += squares_[i] / area[i];

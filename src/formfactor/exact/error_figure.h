@@ -16,9 +16,11 @@ namespace radiosity {
 /// clipped against occluders it is what its embedded rules say, and what they overlook. Of that (a
 /// shadow's edge between all points of both rules) they know nothing. So a random subset is
 /// evaluated again with points on the other element, where shadows lie differently. Where the two
-/// ends differ by more than both state, half of the surplus, in squares and as a mean over all that
-/// were looked at, is what every clipped pair's error may be larger. The margin is for rows that
-/// have more than their share of it: with it MARGINTEXT
+/// ends differ by more than both state, a part of the surplus, in squares and as a mean over all
+/// that were looked at, is what every clipped pair's error may be larger. In the closed Cornell box
+/// with 308 and 985 patches and in two rooms with 572, at tolerances from 1e-2 to 1e-5, at most 1
+/// of 100 rows is beyond its figure, whose median is 5 to 11 times the median error
+/// (truth_exact_test).
 class ErrorSums {
  public:
   ErrorSums() = default;
@@ -48,8 +50,10 @@ class ErrorSums {
   /// rms difference of the two ends over what they state; 0 where nothing was compared.
   double recheckRatio() const;
 
-  static constexpr double kMargin = 2.7;  ///< of clipped pairs
-  static constexpr double kClosedFormShare = 0.1;
+  static constexpr double kClosedFormShare = 0.1;  ///< see above
+  /// Of the surplus, in squares: the other end is nearer to what blocks and the worse one to look
+  /// from, so most of the difference is its own.
+  static constexpr double kSurplusShare = 0.125;
 
   /// figure[row], absolute, of F. `area`: of the rows; `closed_form`: published relative accuracy
   /// of closed forms. Returns the matrix figure: sqrt(sum A err^2 / sum A F^2), with the same
