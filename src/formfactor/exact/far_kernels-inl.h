@@ -38,11 +38,34 @@ RADIOSITY_FAR_INLINE V sumOverColumn(D d, const T* at_u, const T* at_v, const T*
   return sum;
 }
 
+/// Where a vector of columns lies of the row.
+template <class V>
+struct Separation {
+  V du, dv;   // from the row's centroid to the columns', along the columns' plane
+  V inverse;  // 1 / s
+  V height;   // p
+};
+
+template <class T, class D>
+RADIOSITY_FAR_INLINE auto separation(D d, const FarRow<T>& row, const FarBatch<T>& batch,
+                                     std::size_t k) {
+  const auto load = [&](FarField field) RADIOSITY_FAR_ATTR {
+    return LoadU(d, batch.columns->field(field) + batch.first + k);
+  };
+  const auto du =
+      Add(Sub(load(kCentreUHigh), Set(d, row.u_high)), Sub(load(kCentreULow), Set(d, row.u_low)));
+  const auto dv =
+      Add(Sub(load(kCentreVHigh), Set(d, row.v_high)), Sub(load(kCentreVLow), Set(d, row.v_low)));
+  const auto s = Add(Add(Mul(du, du), Mul(dv, dv)), Set(d, row.height * row.height));
+  using V = decltype(Zero(d));
+  return Separation<V>{du, dv, Div(Set(d, T(1)), s), LoadU(d, batch.heights + k)};
+}
+
 /// Mean of p q / s^2 over both elements by a rule, times s^2 of the centroids, for one vector of
-/// columns. `du`, `dv`: from the row's centroid to the columns'; `inverse`: 1 / s.
+/// columns.
 template <class T, class D, class V>
 RADIOSITY_FAR_INLINE V ruleMean(D d, FarRow<T>& row, const FarBatch<T>& batch, std::size_t k,
-                                const FarRule& rule, V du, V dv, V height, V inverse) {
+                                const FarRule& rule, const Separation<V>& from_row) {
   const auto load = [&](FarField field) RADIOSITY_FAR_ATTR {
     return LoadU(d, batch.columns->field(field) + batch.first + k);
   };
@@ -55,11 +78,12 @@ RADIOSITY_FAR_INLINE V ruleMean(D d, FarRow<T>& row, const FarBatch<T>& batch, s
   const auto slope_v = Set(d, row.slope_v);
   const auto zero = Zero(d);
   const auto one = Set(d, T(1));
-  const auto mean_u = Add(du, load(kMeanU));
-  const auto mean_v = Add(dv, load(kMeanV));
-  const auto mean_height = Add(height, Add(Mul(slope_u, load(kMeanU)), Mul(slope_v, load(kMeanV))));
+  const auto mean_u = Add(from_row.du, load(kMeanU));
+  const auto mean_v = Add(from_row.dv, load(kMeanV));
+  const auto mean_height =
+      Add(from_row.height, Add(Mul(slope_u, load(kMeanU)), Mul(slope_v, load(kMeanV))));
   // Lengths in units of the distance: products of squares stay within single precision's range.
-  const auto scale = Sqrt(inverse);
+  const auto scale = Sqrt(from_row.inverse);
   for (std::size_t i = 0; i < rule.count; ++i) {
     const auto s = Set(d, T(rule.points[i].s));
     const auto t = Set(d, T(rule.points[i].t));
@@ -78,91 +102,94 @@ RADIOSITY_FAR_INLINE V ruleMean(D d, FarRow<T>& row, const FarBatch<T>& batch, s
   auto sum = zero;
   for (std::size_t j = 0; j < rule.count; ++j) {
     const std::size_t at = rule.begin + j;
-    const auto inner =
-        sumOverColumn(d, at_u, at_v, weight[rule.points[j].weights],
-                      rule.points[j].partners * lanes, Mul(scale, Set(d, points.u[at])),
-                      Mul(scale, Set(d, points.v[at])), Mul(inverse, Set(d, points.height2[at])));
+    const auto inner = sumOverColumn(
+        d, at_u, at_v, weight[rule.points[j].weights], rule.points[j].partners * lanes,
+        Mul(scale, Set(d, points.u[at])), Mul(scale, Set(d, points.v[at])),
+        Mul(from_row.inverse, Set(d, points.height2[at])));
     sum = Add(sum, Mul(Set(d, points.weight[at]), inner));
   }
   return sum;
+}
+
+/// The second-order series, see far_kernels.h.
+template <class V>
+struct Series {
+  V mean;       // of p q / s^2, times s^2 of the centroids
+  V magnitude;  // R p q
+  V pq;
+};
+
+template <class T, class D, class V>
+RADIOSITY_FAR_INLINE Series<V> seriesMean(D d, const FarRow<T>& row, const FarBatch<T>& batch,
+                                          std::size_t k, const Separation<V>& from_row) {
+  const auto load = [&](FarField field) RADIOSITY_FAR_ATTR {
+    return LoadU(d, batch.columns->field(field) + batch.first + k);
+  };
+  const auto set = [&](double value) RADIOSITY_FAR_ATTR { return Set(d, T(value)); };
+  const auto [du, dv, inverse, p] = from_row;
+  const auto q = Set(d, row.height);
+  // r along the moment vectors of the column and of the row.
+  const auto column_pu = load(kMomentPU);
+  const auto column_pv = load(kMomentPV);
+  const auto column_q = load(kMomentQ);
+  const auto r_cp = Add(Mul(du, column_pu), Mul(dv, column_pv));
+  const auto r_cq = Mul(dv, column_q);
+  const auto r_rp = Add(Add(Mul(du, Set(d, row.p[0])), Mul(dv, Set(d, row.p[1]))),
+                        Set(d, -row.height * row.p[2]));
+  const auto r_rq = Add(Add(Mul(du, Set(d, row.q[0])), Mul(dv, Set(d, row.q[1]))),
+                        Set(d, -row.height * row.q[2]));
+  // The other's normal along them.
+  const auto n_cp = Add(Mul(Set(d, row.slope_u), column_pu), Mul(Set(d, row.slope_v), column_pv));
+  const auto n_cq = Mul(Set(d, row.slope_v), column_q);
+  const auto c_column = Add(Mul(n_cp, r_cp), Mul(n_cq, r_cq));
+  const auto c_row = Add(Mul(Set(d, row.p[2]), r_rp), Mul(Set(d, row.q[2]), r_rq));
+  const auto cross_u = Mul(n_cp, column_pu);
+  const auto cross_v = Add(Mul(n_cp, column_pv), Mul(n_cq, column_q));
+  const auto x = Add(Mul(Set(d, row.cross_u), cross_u), Mul(Set(d, row.cross_v), cross_v));
+
+  const auto e = Add(Add(Mul(r_cp, r_cp), Mul(r_cq, r_cq)), Add(Mul(r_rp, r_rp), Mul(r_rq, r_rq)));
+  const auto twelve_e = Mul(set(12), Mul(e, inverse));
+  const auto m = Add(Set(d, row.moment), load(kMoment));
+  const auto pq = Mul(p, q);
+  const auto p_row = Mul(p, c_row);
+  const auto q_column = Mul(q, c_column);
+  const auto both = Sub(Mul(set(4), x), Mul(set(24), Mul(Mul(c_row, c_column), inverse)));
+  const auto corrections =
+      Add(Add(Mul(pq, Sub(twelve_e, Mul(set(2), m))), Mul(set(4), Sub(p_row, q_column))), both);
+  const auto magnitude = Mul(inverse, Add(Add(Mul(pq, Add(twelve_e, Mul(set(4), m))),
+                                              Mul(set(8), Add(Abs(p_row), Abs(q_column)))),
+                                          Mul(set(4), Abs(both))));
+  return {Add(pq, Mul(inverse, corrections)), magnitude, pq};
 }
 
 /// See FarFunction.
 template <class T, class D>
 std::size_t farRow(D d, FarRow<T>& row, const FarBatch<T>& batch, const RuleLimits<T>& limits) {
   const std::size_t lanes = Lanes(d);
-  const auto one = Set(d, T(1));
-  const auto two = Set(d, T(2));
-  const auto four = Set(d, T(4));
-  const auto eight = Set(d, T(8));
-  const auto twelve = Set(d, T(12));
-  const auto twenty_four = Set(d, T(24));
-  const auto zero = Zero(d);
-  const auto q = Set(d, row.height);
-  const auto q2 = Set(d, row.height * row.height);
-  const auto p_constant = Set(d, -row.height * row.p[2]);
-  const auto q_constant = Set(d, -row.height * row.q[2]);
   const auto rules = farRules();
   std::size_t near = 0;
   for (std::size_t k = 0; k < batch.count; k += lanes) {
     const auto load = [&](FarField field) RADIOSITY_FAR_ATTR {
       return LoadU(d, batch.columns->field(field) + batch.first + k);
     };
-    const auto p = LoadU(d, batch.heights + k);
-    const auto du =
-        Add(Sub(load(kCentreUHigh), Set(d, row.u_high)), Sub(load(kCentreULow), Set(d, row.u_low)));
-    const auto dv =
-        Add(Sub(load(kCentreVHigh), Set(d, row.v_high)), Sub(load(kCentreVLow), Set(d, row.v_low)));
-    const auto s = Add(Add(Mul(du, du), Mul(dv, dv)), q2);
-    const auto inverse = Div(one, s);
-
-    // r along the moment vectors of the column and of the row.
-    const auto column_pu = load(kMomentPU);
-    const auto column_pv = load(kMomentPV);
-    const auto column_q = load(kMomentQ);
-    const auto r_cp = Add(Mul(du, column_pu), Mul(dv, column_pv));
-    const auto r_cq = Mul(dv, column_q);
-    const auto r_rp = Add(Add(Mul(du, Set(d, row.p[0])), Mul(dv, Set(d, row.p[1]))), p_constant);
-    const auto r_rq = Add(Add(Mul(du, Set(d, row.q[0])), Mul(dv, Set(d, row.q[1]))), q_constant);
-    // The other's normal along them.
-    const auto n_cp = Add(Mul(Set(d, row.slope_u), column_pu), Mul(Set(d, row.slope_v), column_pv));
-    const auto n_cq = Mul(Set(d, row.slope_v), column_q);
-    const auto c_column = Add(Mul(n_cp, r_cp), Mul(n_cq, r_cq));
-    const auto c_row = Add(Mul(Set(d, row.p[2]), r_rp), Mul(Set(d, row.q[2]), r_rq));
-    const auto cross_u = Mul(n_cp, column_pu);
-    const auto cross_v = Add(Mul(n_cp, column_pv), Mul(n_cq, column_q));
-    const auto x = Add(Mul(Set(d, row.cross_u), cross_u), Mul(Set(d, row.cross_v), cross_v));
-
-    const auto e =
-        Add(Add(Mul(r_cp, r_cp), Mul(r_cq, r_cq)), Add(Mul(r_rp, r_rp), Mul(r_rq, r_rq)));
-    const auto twelve_e = Mul(twelve, Mul(e, inverse));
-    const auto m = Add(Set(d, row.moment), load(kMoment));
-    const auto pq = Mul(p, q);
-    const auto p_row = Mul(p, c_row);
-    const auto q_column = Mul(q, c_column);
-    const auto both = Sub(Mul(four, x), Mul(twenty_four, Mul(Mul(c_row, c_column), inverse)));
-    const auto corrections =
-        Add(Add(Mul(pq, Sub(twelve_e, Mul(two, m))), Mul(four, Sub(p_row, q_column))), both);
-    const auto magnitude = Mul(inverse, Add(Add(Mul(pq, Add(twelve_e, Mul(four, m))),
-                                                Mul(eight, Add(Abs(p_row), Abs(q_column)))),
-                                            Mul(four, Abs(both))));
-
-    const auto areas = Mul(Set(d, row.area_over_pi), load(kArea));
-    auto value = Add(pq, Mul(inverse, corrections));  // times s^2
+    const auto from_row = separation(d, row, batch, k);
+    const auto series = seriesMean(d, row, batch, k, from_row);
+    auto mean = series.mean;
     const auto limit = Min(Set(d, row.series_limit), load(kSeriesLimit));
-    auto open = AndNot(Le(magnitude, Mul(limit, pq)),
-                       FirstN(d, batch.count - k < lanes ? batch.count - k : lanes));
+    const std::size_t left = batch.count - k;
+    auto open =
+        AndNot(Le(series.magnitude, Mul(limit, series.pq)), FirstN(d, left < lanes ? left : lanes));
     const auto skew = Max(Set(d, row.skew), load(kSkew));
-    for (std::size_t k_rule = 0; k_rule < kFarRules && !AllFalse(d, open); ++k_rule) {
-      const auto rule_limit =
-          Add(Set(d, limits.plain[k_rule]), Mul(skew, Set(d, limits.skew_part[k_rule])));
-      const auto good = And(open, Le(magnitude, Mul(rule_limit, pq)));
+    for (std::size_t r = 0; r < kFarRules && !AllFalse(d, open); ++r) {
+      const auto rule_limit = Add(Set(d, limits.plain[r]), Mul(skew, Set(d, limits.skew_part[r])));
+      const auto good = And(open, Le(series.magnitude, Mul(rule_limit, series.pq)));
       if (AllFalse(d, good)) continue;
-      value =
-          IfThenElse(good, ruleMean(d, row, batch, k, rules[k_rule], du, dv, p, inverse), value);
+      mean = IfThenElse(good, ruleMean(d, row, batch, k, rules[r], from_row), mean);
       open = AndNot(good, open);
     }
-    value = Mul(Mul(areas, Mul(inverse, inverse)), Max(value, zero));
+    const auto areas = Mul(Set(d, row.area_over_pi), load(kArea));
+    const auto inverse2 = Mul(from_row.inverse, from_row.inverse);
+    auto value = Mul(Mul(areas, inverse2), Max(mean, Zero(d)));
     if (!AllFalse(d, open)) {
       value = IfThenElse(open, Set(d, T(kNearPair)), value);
       near += CountTrue(d, open);

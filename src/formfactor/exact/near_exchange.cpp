@@ -40,57 +40,70 @@ int pointsFor(double ratio, double tolerance) {
   return std::max(kLeastPoints, int(std::ceil(std::min(needed, kMostLambert + 1.0))));
 }
 
+/// The kernel takes one eye and many polygons; here it is one polygon, moved, and many points.
+struct PointLanes {
+  static constexpr std::size_t kMost = std::size_t(kMostLambert) * kMostLambert;
+  static_assert(kMost % kLaneAlignment == 0);
+  using Lanes = std::array<double, kMost>;
+
+  /// n x n Gauss points of an element, as seen from them `centre` of the polygon.
+  void addPoints(const PlanarElement& from, const Vec3& centre, int n) {
+    // A triangle is a quadrilateral whose last two corners meet: its map's Jacobian vanishes there.
+    const Vec3& c0 = from.outline[0];
+    const Vec3& c1 = from.outline[1];
+    const Vec3& c2 = from.outline[2];
+    const Vec3& c3 = from.outline[from.outline.size() - 1];
+    const Vec3 mean = 0.25 * (c0 + c1 + c2 + c3);
+    const Vec3 u = 0.25 * (c1 - c0 + c2 - c3);
+    const Vec3 v = 0.25 * (c3 - c0 + c2 - c1);
+    const Vec3 w = 0.25 * (c0 - c1 + c2 - c3);
+    for (const Node& s : gaussLegendre(n)) {
+      for (const Node& t : gaussLegendre(n)) {
+        const Vec3 to_centre = centre - (mean + s.x * u + t.x * (v + s.x * w));
+        const double jacobian = glm::dot(from.normal, glm::cross(u + t.x * w, v + s.x * w));
+        weight[count] = s.weight * t.weight * jacobian;
+        middle[0][count] = to_centre.x;
+        middle[1][count] = to_centre.y;
+        middle[2][count] = to_centre.z;
+        ++count;
+      }
+    }
+  }
+
+  TargetLanes<double> targets(const PlanarElement& to) {
+    const std::size_t lanes = (count + kLaneAlignment - 1) / kLaneAlignment * kLaneAlignment;
+    TargetLanes<double> targets{};
+    targets.corners = to.outline.size();
+    targets.count = lanes;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t k = count; k < lanes; ++k) middle[axis][k] = middle[axis][0];
+      targets.middle[axis] = middle[axis].data();
+      for (std::size_t k = 0; k < targets.corners; ++k) {
+        const auto along = glm::length_t(axis);
+        std::fill_n(corner[k][axis].begin(), lanes, to.outline[k][along] - to.centroid[along]);
+        targets.corner[k][axis] = corner[k][axis].data();
+      }
+    }
+    return targets;
+  }
+
+  std::size_t count = 0;
+  Lanes weight;
+  alignas(64) std::array<Lanes, 3> middle;
+  alignas(64) std::array<std::array<Lanes, 3>, kMostCorners> corner;
+  alignas(64) Lanes seen;
+};
+
 }  // namespace
 
 double lambertExchange(const PlanarElement& from, const PlanarElement& to, int n,
                        const ClipKernels<double>& kernels) {
-  constexpr std::size_t kMostLanes = std::size_t(kMostLambert) * kMostLambert;
-  static_assert(kMostLanes % kLaneAlignment == 0);
-  // The kernel takes one eye and many polygons; here it is one polygon moved against many points.
-  alignas(64) std::array<std::array<double, kMostLanes>, 3> middle;
-  alignas(64) std::array<std::array<double, kMostLanes>, 3 * kMostCorners> corner;
-  std::array<double, kMostLanes> weight;
-  alignas(64) std::array<double, kMostLanes> seen;
-
-  // A triangle is a quadrilateral whose last two corners meet: the map's Jacobian vanishes there.
-  const Vec3& c0 = from.outline[0];
-  const Vec3& c1 = from.outline[1];
-  const Vec3& c2 = from.outline[2];
-  const Vec3& c3 = from.outline[from.outline.size() - 1];
-  const Vec3 mean = 0.25 * (c0 + c1 + c2 + c3);
-  const Vec3 u = 0.25 * (c1 - c0 + c2 - c3);
-  const Vec3 v = 0.25 * (c3 - c0 + c2 - c1);
-  const Vec3 w = 0.25 * (c0 - c1 + c2 - c3);
-  std::size_t count = 0;
-  for (const Node& s : gaussLegendre(n)) {
-    for (const Node& t : gaussLegendre(n)) {
-      const Vec3 point = mean + s.x * u + t.x * (v + s.x * w);
-      const double jacobian = glm::dot(from.normal, glm::cross(u + t.x * w, v + s.x * w));
-      weight[count] = s.weight * t.weight * jacobian;
-      for (int axis = 0; axis < 3; ++axis) {
-        middle[std::size_t(axis)][count] = to.centroid[axis] - point[axis];
-      }
-      ++count;
-    }
-  }
-  const std::size_t lanes = (count + kLaneAlignment - 1) / kLaneAlignment * kLaneAlignment;
-  TargetLanes<double> targets{};
-  targets.corners = to.outline.size();
-  targets.count = lanes;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    std::fill(middle[axis].begin() + std::ptrdiff_t(count),
-              middle[axis].begin() + std::ptrdiff_t(lanes), middle[axis][0]);
-    targets.middle[axis] = middle[axis].data();
-    for (std::size_t k = 0; k < targets.corners; ++k) {
-      auto& values = corner[3 * k + axis];
-      const auto along = glm::length_t(axis);
-      std::fill_n(values.begin(), lanes, to.outline[k][along] - to.centroid[along]);
-      targets.corner[k][axis] = values.data();
-    }
-  }
-  kernels.whole(targets, {{0, 0, 0}, {from.normal.x, from.normal.y, from.normal.z}}, seen.data());
+  PointLanes lanes;
+  lanes.addPoints(from, to.centroid, n);
+  const Vec3& normal = from.normal;
+  kernels.whole(lanes.targets(to), {{0, 0, 0}, {normal.x, normal.y, normal.z}}, lanes.seen.data());
   double sum = 0;
-  for (std::size_t k = 0; k < count; ++k) sum += weight[k] * seen[k];
+  for (std::size_t k = 0; k < lanes.count; ++k) sum += lanes.weight[k] * lanes.seen[k];
   return sum;
 }
 
