@@ -208,7 +208,7 @@ TEST(Stress, SheetsOfAllKinds) {
   expectTrue(test::meshOf(flipped.scene(), 120), "flipped normals");
 }
 
-TEST(Stress, DISABLED_ABoxWithoutThickness) {
+TEST(Stress, ABoxWithoutThickness) {
   SceneBuilder flat_box;
   addRoom(flat_box);
   flat_box.level(flat_box.surface("up"), 0.2, 0.3, 0.8, 0.7, 0.5, true);

@@ -13,10 +13,14 @@
 namespace radiosity {
 namespace {
 
-/// The distance from a convex polygon to the first one behind it.
-double depthBehind(const OccluderPolygons& all, const OccluderPolygon& polygon) {
+/// The distance from a convex polygon to the first one behind it; one that lies back to back with
+/// it is behind it, too.
+double depthBehind(const OccluderPolygons& all, Index front) {
+  const OccluderPolygon& polygon = all.polygons[front];
   Occluder shaft;
-  shaft.planes.push_back({polygon.normal, polygon.offset});
+  // Lifted off the plane, so that what coincides with the polygon is inside by more than the
+  // margin.
+  shaft.planes.push_back({polygon.normal, polygon.offset + 3 * all.coincidence});
   const std::vector<Index>& loop = polygon.loops[0];
   for (std::size_t k = 0; k < loop.size(); ++k) {
     const Vec3& a = all.vertices[loop[k]];
@@ -31,7 +35,9 @@ double depthBehind(const OccluderPolygons& all, const OccluderPolygon& polygon) 
   behind.add(polygon.box.low - reach);
   behind.add(polygon.box.high - reach);
   all.tree.query(behind, [&](Index p) {
-    highest = std::max(highest, highestInside(all, all.polygons[p], shaft, all.coincidence));
+    if (p != front) {
+      highest = std::max(highest, highestInside(all, all.polygons[p], shaft, all.coincidence));
+    }
     return true;
   });
   return polygon.offset - highest;
@@ -41,7 +47,7 @@ double depthBehind(const OccluderPolygons& all, const OccluderPolygon& polygon) 
 
 std::optional<Occluder> slabBehind(const OccluderPolygons& all, Index polygon) {
   const OccluderPolygon& top = all.polygons[polygon];
-  const double depth = depthBehind(all, top);
+  const double depth = depthBehind(all, polygon);
   if (!(depth > all.coincidence) || std::isinf(depth)) return {};
   std::vector<Vec3> points;
   for (const Index v : top.loops[0]) {
