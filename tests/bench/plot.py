@@ -109,10 +109,12 @@ def main():
     for axes in places[:len(scenes)]:
         axes.set_xscale("log")
         axes.set_yscale("log")
-        axes.xaxis.set_major_locator(LogLocator(base=10, subs=(1,), numticks=20))
+        axes.xaxis.set_major_locator(LogLocator(base=100, numticks=20))
+        axes.xaxis.set_minor_locator(LogLocator(base=10, numticks=20))
         axes.yaxis.set_major_locator(LogLocator(base=10, subs=(1,), numticks=20))
         axes.xaxis.set_minor_formatter(NullFormatter())
-        axes.grid(True, color="#dddddd", linewidth=0.6)
+        axes.grid(True, which="major", color="#dddddd", linewidth=0.6)
+        axes.grid(True, which="minor", axis="x", color="#dddddd", linewidth=0.6)
         axes.set_axisbelow(True)
     for place, axes in enumerate(places[:len(scenes)]):
         # Nothing below, or the legend: the panel carries the numbers itself.
