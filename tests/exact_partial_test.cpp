@@ -6,7 +6,6 @@
 #include <cmath>
 #include <random>
 
-#include "formfactor/exact/group_view.h"
 #include "formfactor/exact/partial.h"
 #include "formfactor/exact/unoccluded.h"
 #include "formfactor/exact/visibility.h"

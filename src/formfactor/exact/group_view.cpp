@@ -288,7 +288,7 @@ void GroupView<T>::setLane(const Common& common, std::size_t lane) {
   }
   lane_planes_.count = std::max(lane_planes_.count, count);
   const T nothing[3] = {};
-  while (count < LanePlanes<T>::kMost) add(nothing, 1);
+  for (std::size_t p = count; p < LanePlanes<T>::kMost; ++p) add(nothing, 1);
 }
 
 /// Adds (or takes away) what is inside all of some cones, and keeps in next_common_ those where

@@ -16,8 +16,8 @@ constexpr double kSinglePrecision = 2.5e-4;
 /// a row's entries; few entries are partial, and of those few are near what they may be.
 constexpr double kOfOnePair = 20;
 
-/// Estimates are root mean squares; times this they are above the error of most rows, however few
-/// pairs carry it.
+/// Estimates are fitted to root mean squares over all pairs of a scene; times this they are above
+/// the error of most rows, however few pairs carry it.
 constexpr double kSafety = 3;
 
 }  // namespace

@@ -21,8 +21,8 @@ struct SampledPair {
   Index target;        ///< element that is looked at
   bool sampled_cut;    ///< reaches behind the target's plane
   bool target_cut;     ///< reaches behind the sampled element's plane
-  /// How far shadows move across the target, in its sizes, from end to end of the sampled element:
-  /// at most about 1, since that is the end farther from what blocks.
+  /// How far shadows move across the target, in its sizes, from end to end of the sampled element;
+  /// at most 1: beyond that they are seen or missed alike.
   float change;
   std::uint32_t blockers_begin, blockers_end;  ///< into PairPreparation::blockers
 };
@@ -68,11 +68,18 @@ class PairPreparation {
     bool cuts_first = false;   ///< reaches behind the first facet's plane
     bool cuts_second = false;  ///< reaches behind the second facet's plane
   };
+  /// Where a pair stands in the order of `pairs`.
+  struct Place {
+    std::uint64_t key;
+    std::uint32_t pair;
+  };
   const Between& between(Index occluder, Index row_facet, Index column_facet);
 
   const ElementSet& elements_;
   const OccluderSet& occluders_;
   const EdgeDistances& distances_;
+  std::vector<Place> order_;
+  std::vector<SampledPair> sorted_;
   std::vector<Between> between_;  ///< by occluder, of the current two facets
   std::uint32_t stamp_ = 0;
   Index row_facet_ = kNone;

@@ -65,8 +65,8 @@ SamplePoints SampleCell::outerPoints() const {
 }
 
 SampleCell SampleCell::child(std::size_t k) const {
-  const double u = 0.5 * double(k % 2);
-  const double v = 0.5 * double(k / 2);
+  const double u = k % 2 == 0 ? 0.0 : 0.5;
+  const double v = k < 2 ? 0.0 : 0.5;
   return {{at(u, v).position, at(u + 0.5, v).position, at(u + 0.5, v + 0.5).position,
            at(u, v + 0.5).position}};
 }

@@ -52,9 +52,8 @@ void VisiblePart::subtract(const BlockingCone& cone) {
     // What each plane cuts off is visible and convex; what is left at the end is hidden. Copies
     // are kept in case a later plane shows that nothing is hidden: then the piece stays whole.
     whole_ = clipped_[0];
-    for (std::size_t k = 0; k < cone.planes.size(); ++k) {
-      const PlaneSide side =
-          split(clipped_[0], cone.planes[k], std::uint16_t(0), &clipped_[1], &outside_);
+    for (const ClipPlane& plane : cone.planes) {
+      const PlaneSide side = split(clipped_[0], plane, std::uint16_t(0), &clipped_[1], &outside_);
       if (side == PlaneSide::inside) continue;
       if (side == PlaneSide::outside) {
         hidden = false;
