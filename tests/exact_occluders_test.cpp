@@ -245,6 +245,7 @@ TEST(ExactPieces, AreFew) {
     Index k = 0;
     for (const std::vector<Vec2>& face : faces) {
       std::vector<Vec3> corners;
+      corners.reserve(face.size());
       for (const Vec2& p : face) corners.emplace_back(p.x + 1, p.y + 1, 1.5);
       b.face(b.surface("plate" + std::to_string(k++), 0.5, 0.0, true), corners);
     }

@@ -52,6 +52,7 @@ OccluderPolygons::OccluderPolygons(const PatchMesh& mesh, const ElementSet& elem
   for (const Index p : order) addPolygon(mesh, elements, p, place);
   findBounding();
   std::vector<Box3> boxes;
+  boxes.reserve(polygons.size());
   for (const OccluderPolygon& polygon : polygons) boxes.push_back(polygon.box);
   tree = BoxTree(std::move(boxes));
   std::vector<std::uint8_t> back_is_patch(source.size(), 0);

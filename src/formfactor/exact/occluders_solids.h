@@ -17,6 +17,8 @@ namespace radiosity {
 ///   so that whatever goes in has to come out elsewhere, and what is around it is tied to it edge
 ///   by edge or covers it (a box on a table); or the polygons belong to a closed surface with the
 ///   hull on the side that nobody looks into (a book between books on a board).
+/// Where faces were cut at contacts or merged with others', so that such sets are small, slabs
+/// behind single polygons stand in (occluders_slabs.h), the more telling one of each first.
 /// `taken[p]` becomes 1 for the members of the solids found.
 std::vector<Occluder> convexSolids(const OccluderPolygons& all, std::vector<std::uint8_t>& taken);
 

@@ -1,7 +1,6 @@
 // Which elements see each other wholly, not at all, or past what.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 
