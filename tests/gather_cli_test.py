@@ -30,13 +30,14 @@ class Gather(CliTest):
             # Every eye stands at its vertex, moved by less than a patch.
             vertex = file["mesh/vertices"][:][file["mesh/corners"][:]]
             distance = np.linalg.norm(group["position"][:][eyes] - vertex, axis=1)
-            self.assertLess(distance.max(), 0.02)
+            self.assertLess(distance.max(), 0.1)
             self.assertEqual(group["summary/passes/emitted"].shape, (7, 3))
 
     def test_closed_box_against_the_matrix(self):
         # Same eyes: with as many bounces both methods have the same light, to float rounding and
         # the tolerances (1e-6 of max E each; the lamp's E is 5 pi).
-        self.run_program("solve", "box.obj", *SMALL, "--solve-tolerance", "1e-7", "-o", "r.h5")
+        self.run_program("solve", "box.obj", *SMALL, "--method", "hemicube", "--solve-tolerance",
+                         "1e-7", "-o", "r.h5")
         report = self.report("gather", "r.h5", "--at", "patches", "--resolution", "32",
                              "--gather-tolerance", "1e-6")
         self.assertEqual(report["stages"]["mesh"]["action"], "reused")

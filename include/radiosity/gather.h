@@ -30,8 +30,10 @@ struct GatherOptions {
   bool random_turns = true;
   double crease = 30;  ///< degrees; a vertex looks once per side that bends less, 0 to 180
   /// How far an eye on an edge moves away from it, as a share of the distance to the nearest edge
-  /// that does not touch the vertex; above 0, at most 0.5.
-  double inset = 0.02;
+  /// that does not touch the vertex; above 0, at most 0.5. Along an edge of a room light goes as
+  /// x ln x, whose mean over a patch the straight line from its value at the edge misses by a
+  /// quarter of the patch; from a tenth of the patch it does not.
+  double inset = 0.1;
   bool simd = true;  ///< false: the scalar twin (same bits)
   void validate() const;
 };
