@@ -57,7 +57,9 @@ void PairGroups<T>::integrate(std::span<const SampledPair> group, std::span<cons
   Members fine;
   for (Index k = 0; k < group.size(); ++k) {
     fractions[k].change = double(group[k].change);
-    fractions[k].refined = kExpected4 * fractions[k].change > fractions[k].allowed;
+    fractions[k].may_cross = group[k].may_cross;
+    fractions[k].refined =
+        group[k].may_cross || kExpected4 * fractions[k].change > fractions[k].allowed;
     (fractions[k].refined ? fine : coarse).index.push_back(k);
   }
   // Of a quadrilateral cut by a plane there may be five corners: a quadrilateral and a triangle.
@@ -125,6 +127,7 @@ void PairGroups<T>::sumCell(const SampleCell& cell, std::size_t side, int level,
     CellValues values;
     values.count = points.count;
     values.whole = sum.whole / area;
+    values.may_cross = pair.may_cross;
     // What slips between the points of a small cell is small, and rare.
     values.change = std::ldexp(pair.change, -2 * level);
     for (std::size_t q = 0; q < points.count; ++q) {

@@ -12,11 +12,12 @@ namespace radiosity {
 
 /// The visible fraction of one pair.
 struct VisibleFraction {
-  double visible = 0;  ///< integral over the sampled part of the form factor to what is seen
-  double whole = 0;    ///< of the form factor to all of the target
-  double error2 = 0;   ///< sum of squares of the cells' errors, in the same unit
-  double allowed = 0;  ///< error of the fraction that is accepted
-  double change = 1;   ///< see SampledPair
+  double visible = 0;      ///< integral over the sampled part of the form factor to what is seen
+  double whole = 0;        ///< of the form factor to all of the target
+  double error2 = 0;       ///< sum of squares of the cells' errors, in the same unit
+  double allowed = 0;      ///< error of the fraction that is accepted
+  double change = 1;       ///< see SampledPair
+  bool may_cross = false;  ///< see SampledPair
   std::size_t points = 0;
   bool refined = false;  ///< by more than the first rule
   bool sampled = false;  ///< some point saw too many shadows: see Coverage

@@ -14,7 +14,7 @@ constexpr double kSinglePrecision = 2.5e-4;
 
 /// What a single entry may be off by, in tolerances. The tolerance is for the root mean square over
 /// a row's entries; few entries are partial, and of those few are near what they may be.
-constexpr double kOfOnePair = 20;
+constexpr double kOfOnePair = 12;
 
 /// Estimates are fitted to root mean squares over all pairs of a scene; times this they are above
 /// the error of most rows, however few pairs carry it.

@@ -85,6 +85,21 @@ const PairPreparation::Between& PairPreparation::between(Index occluder, Index r
   return found;
 }
 
+/// Of similar triangles with their tips on the occluders' edges. Of an edge that touches the target
+/// no shadow moves, but others of the same occluder may be a target's size away.
+float PairPreparation::shadowChange(double sampled_size, double target_size,
+                                    bool row_sampled) const {
+  double most = 0;
+  for (const Near& blocker : near_) {
+    const double sampled = row_sampled ? blocker.row : blocker.column;
+    const double target = row_sampled ? blocker.column : blocker.row;
+    const double change2 = std::max(target / (target_size * target_size), 1.0) / sampled;
+    if (!(change2 <= most)) most = change2;
+  }
+  const double change = sampled_size * std::sqrt(most);
+  return change < 1 ? float(change) : 1.0F;
+}
+
 void PairPreparation::prepare(std::span<const PartialPair> batch,
                               std::span<const Index> occluder_list, SampledEnd end) {
   pairs.clear();
@@ -102,12 +117,14 @@ void PairPreparation::prepare(std::span<const PartialPair> batch,
     pair.blockers_begin = std::uint32_t(blockers.size());
     double at_row = std::numeric_limits<double>::infinity();
     double at_column = at_row;
+    near_.clear();
     for (std::uint32_t o = given.occluders_begin; o < given.occluders_end; ++o) {
       const Index id = occluder_list[o];
       if (!between(id, row_facet, column_facet).blocks) continue;
       blockers.push_back({&occluders_.occluders[id], id, false});
-      at_row = std::min(at_row, distances_.squared(given.row, id));
-      at_column = std::min(at_column, distances_.squared(given.column, id));
+      near_.push_back({distances_.squared(given.row, id), distances_.squared(given.column, id)});
+      at_row = std::min(at_row, near_.back().row);
+      at_column = std::min(at_column, near_.back().column);
     }
     pair.blockers_end = std::uint32_t(blockers.size());
     const double row_size = elements_.radius[given.row];
@@ -116,10 +133,10 @@ void PairPreparation::prepare(std::span<const PartialPair> batch,
     const double column_distance = at_column * row_size * row_size;
     const bool row_is_farther = row_distance >= column_distance;
     const bool at_row_end = row_is_farther == (end == SampledEnd::farther);
-    // Of similar triangles with their tips on the occluder's edge.
-    const double change =
-        std::sqrt(at_row_end ? column_distance / row_distance : row_distance / column_distance);
-    pair.change = std::isfinite(change) ? float(std::min(change, 1.0)) : 1.0F;
+    pair.change = at_row_end ? shadowChange(row_size, column_size, true)
+                             : shadowChange(column_size, row_size, false);
+    const double reach = at_row_end ? row_size : column_size;
+    pair.may_cross = (at_row_end ? at_row : at_column) <= reach * reach;
     pair.sampled = at_row_end ? given.row : given.column;
     pair.target = at_row_end ? given.column : given.row;
     const bool row_cut = row.least < -touching;

@@ -24,6 +24,7 @@ struct SampledPair {
   /// How far shadows move across the target, in its sizes, from end to end of the sampled element;
   /// at most 1: beyond that they are seen or missed alike.
   float change;
+  bool may_cross;  ///< an occluder's edge comes within the sampled element's radius of its centroid
   std::uint32_t blockers_begin, blockers_end;  ///< into PairPreparation::blockers
 };
 
@@ -73,13 +74,19 @@ class PairPreparation {
     std::uint64_t key;
     std::uint32_t pair;
   };
+  /// Squares of the distances from both ends of a pair to the nearest edge of one occluder.
+  struct Near {
+    double row, column;
+  };
   const Between& between(Index occluder, Index row_facet, Index column_facet);
+  float shadowChange(double sampled_size, double target_size, bool row_sampled) const;
 
   const ElementSet& elements_;
   const OccluderSet& occluders_;
   const EdgeDistances& distances_;
   std::vector<Place> order_;
   std::vector<SampledPair> sorted_;
+  std::vector<Near> near_;        ///< of the current pair, by occluder
   std::vector<Between> between_;  ///< by occluder, of the current two facets
   std::uint32_t stamp_ = 0;
   Index row_facet_ = kNone;

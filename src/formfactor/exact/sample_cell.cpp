@@ -31,7 +31,7 @@ constexpr double kUnseen9 = 0.008;
 constexpr double kSlope9 = 0.003;
 /// Of residuals near the corners, and of an error guessed before they were seen.
 constexpr double kOutside = 0.03;
-constexpr double kReassured = 0.06;
+constexpr double kReassured = 0.2;
 
 }  // namespace
 
@@ -103,7 +103,9 @@ double meanError(const CellValues& values) {
     slope += kWeight3[k] * (std::abs(row[2] - row[0]) + std::abs(column[6] - column[0]));
   }
   // A kink between the outer points and the border changes the slope there, and nothing else.
-  return bend * (values.one_shape ? kSmooth9 : kKinked9) + slope * kSlope9 +
+  // A step in the middle does not bend: the points lie evenly about it.
+  const double of_slope = values.may_cross && !values.one_shape ? kKinked9 : kSlope9;
+  return bend * (values.one_shape ? kSmooth9 : kKinked9) + slope * of_slope +
          (unseen ? kUnseen9 * values.change * values.whole : 0);
 }
 

@@ -49,9 +49,10 @@ struct CellValues {
   /// measured.
   std::array<double, SamplePoints::kMost> residual;
   std::size_t count = 0;
-  double whole = 0;       ///< mean of the whole form factor
-  double change = 0;      ///< see SampledPair; for a part of the element in proportion
-  bool one_shape = true;  ///< all points see shadows bounded by the same edges
+  double whole = 0;        ///< mean of the whole form factor
+  double change = 0;       ///< see SampledPair; for a part of the element in proportion
+  bool may_cross = false;  ///< see SampledPair: shadows may end in a step
+  bool one_shape = true;   ///< all points see shadows bounded by the same edges
 
   /// All points see nearly the same fraction: what there is to be seen of a shadow's edge may have
   /// slipped between them.
