@@ -55,6 +55,7 @@ std::vector<double> jacobiStep(const Room& room, const ExchangeMatrix& matrix,
 FormFactors matrixOf(const Room& room, int resolution) {
   Progress quiet;
   FormFactorOptions options;
+  options.method = FormFactorMethod::hemicube;
   options.resolution = resolution;
   options.precision = Precision::real;
   return computeFormFactors(room.mesh, options, quiet);
