@@ -51,7 +51,8 @@ struct Facet {
 /// A patch that is a triangle or a convex quadrilateral is one element; any other patch is one
 /// element a piece. Facets are ordered by surface name, polygon index within the surface and side,
 /// bare ones after all others; elements within a facet follow a quadtree in the facet's plane
-/// (ties: index within the surface), those of one patch next to each other. So nothing depends on how patches are numbered.
+/// (ties: index within the surface), those of one patch next to each other. So nothing depends on
+/// how patches are numbered.
 struct ElementSet {
   explicit ElementSet(const PatchMesh& mesh);
 
