@@ -49,9 +49,7 @@ void UncertainEntries::setRow(std::size_t k, std::span<const Index> later,
         later[m], errors[m]));
   }
   RunFinder finder(sizeof(std::uint8_t));
-  for (std::size_t m = 0; m < later.size(); ++m) {
-    finder.add(later[m] - k - 1, later[m] - k);
-  }
+  for (const auto position : later) finder.add(position - k - 1, position - k);
   Row row;
   row.runs = finder.take();
   std::size_t stored = 0;
