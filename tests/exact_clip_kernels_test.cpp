@@ -1,7 +1,6 @@
 // The vector kernels of partial visibility: every instruction set against the scalar twin, bit for
 // bit, and the twin against the exact clipper, which shares nothing with it but the formula.
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <bit>
 #include <cmath>
@@ -11,26 +10,14 @@
 #include "formfactor/exact/clip_kernels.h"
 #include "formfactor/exact/visible_part.h"
 #include "occluder_builder.h"
+#include "simd_targets.h"
 
 namespace radiosity {
 namespace {
 
-/// Runs `test(kernels)` once for every instruction set compiled in that this machine has.
-template <class Test>
-int forEveryTarget(const Test& test) {
-  int count = 0;
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(target);
-    const ClipKernelSet kernels = simdClipKernels();
-    SCOPED_TRACE(kernels.target);
-    EXPECT_EQ(kernels.target, hwy::TargetName(target));
-    test(kernels);
-    ++count;
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  return count;
+template <class Check>
+int forEveryTarget(const Check& check) {
+  return test::onEveryTarget(simdClipKernels, check);
 }
 
 constexpr std::size_t kLanes = 256;

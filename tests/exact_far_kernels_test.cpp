@@ -1,7 +1,6 @@
 // The vector kernels of distant pairs: every instruction set against the scalar twin, bit for bit,
 // and the published accuracy against contour integrals in long double.
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <array>
 #include <bit>
@@ -11,6 +10,7 @@
 #include "contour_reference.h"
 #include "element_pairs.h"
 #include "formfactor/exact/far_kernels.h"
+#include "simd_targets.h"
 
 namespace radiosity {
 namespace {
@@ -19,20 +19,11 @@ using test::ElementPair;
 using test::ElementPairs;
 using test::Shape;
 
-/// Runs `test(kernels)` for the scalar twin and for every instruction set this machine has.
-template <class Test>
-void forEveryTarget(const Test& test) {
-  test(scalarFarKernels());
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(target);
-    const FarKernels kernels = simdFarKernels();
-    SCOPED_TRACE(kernels.target);
-    EXPECT_EQ(kernels.target, hwy::TargetName(target));
-    test(kernels);
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+/// Runs `check(kernels)` for the scalar twin and for every instruction set this machine has.
+template <class Check>
+void forEveryTarget(const Check& check) {
+  check(scalarFarKernels());
+  test::onEveryTarget(simdFarKernels, check);
 }
 
 template <class T>

@@ -1,29 +1,19 @@
 // Every instruction set gives the scalar twin's bits.
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <cstdint>
 #include <random>
 #include <vector>
 
 #include "formfactor/exact/visibility_kernels.h"
+#include "simd_targets.h"
 
 namespace radiosity {
 namespace {
 
-/// Runs `check` with the kernels of every instruction set compiled in that this machine has.
 template <class Check>
-void forEveryTarget(const Check& check) {
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(target);
-    const VisibilityKernels kernels = simdVisibilityKernels();
-    SCOPED_TRACE(kernels.target);
-    EXPECT_EQ(kernels.target, hwy::TargetName(target));
-    check(kernels);
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+int forEveryTarget(const Check& check) {
+  return test::onEveryTarget(simdVisibilityKernels, check);
 }
 
 TEST(ExactVisibilityKernels, TargetsAgreeWithTheScalarTwin) {

@@ -1,6 +1,5 @@
 // Every instruction set of this machine against the scalar twin, bit for bit.
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <bit>
 #include <cmath>
@@ -12,26 +11,14 @@
 #include "formfactor/raster_kernels.h"
 #include "mesh_builder.h"
 #include "radiosity/form_factors.h"
+#include "simd_targets.h"
 
 namespace radiosity {
 namespace {
 
-/// Runs `test(kernels)` once for every instruction set compiled in that this machine has.
-template <class Test>
-int forEveryTarget(const Test& test) {
-  int count = 0;
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(target);
-    const RasterKernels kernels = simdKernels();
-    SCOPED_TRACE(kernels.target);
-    EXPECT_EQ(kernels.target, hwy::TargetName(target));
-    test(kernels);
-    ++count;
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  return count;
+template <class Check>
+int forEveryTarget(const Check& check) {
+  return test::onEveryTarget(simdKernels, check);
 }
 
 void expectSameBits(const float* a, const float* b, std::size_t count) {

@@ -1,6 +1,5 @@
 // The kernels over rows of the triangle on every instruction set, against their definition.
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <cmath>
 #include <random>
@@ -8,26 +7,14 @@
 
 #include "matrix/run_row.h"
 #include "matrix/triangle_kernels.h"
+#include "simd_targets.h"
 
 namespace radiosity {
 namespace {
 
-/// Runs `test(kernels)` once for every instruction set compiled in that this machine has.
-template <class Test>
-int forEveryTarget(const Test& test) {
-  int count = 0;
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(target);
-    const TriangleKernels kernels = triangleKernels();
-    SCOPED_TRACE(kernels.target);
-    EXPECT_STREQ(kernels.target, hwy::TargetName(target));
-    test(kernels);
-    ++count;
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  return count;
+template <class Check>
+int forEveryTarget(const Check& check) {
+  return test::onEveryTarget(triangleKernels, check);
 }
 
 struct Sample {
