@@ -168,9 +168,12 @@ TEST(VisiblePart, OverlappingSheetsCountOnce) {
 TEST(VisiblePart, PavementOfSheetsHidesEverything) {
   // 5 x 5 sheets edge to edge: no cracks between them, and nothing twice.
   std::vector<Occluder> sheets;
-  for (int k = 0; k < 25; ++k) {
-    sheets.push_back(
-        flatRectangle({-0.5 + 0.2 * (k % 5), -0.5 + 0.2 * (k / 5), 0.3}, {0.2, 0, 0}, {0, 0.2, 0}));
+  sheets.reserve(25);
+  for (int row = 0; row < 5; ++row) {
+    for (int column = 0; column < 5; ++column) {
+      const Vec3 origin(-0.5 + 0.2 * column, -0.5 + 0.2 * row, 0.3);
+      sheets.push_back(flatRectangle(origin, {0.2, 0, 0}, {0, 0.2, 0}));
+    }
   }
   const PointView view = look({0.03, 0.02, 0}, kUp, above(-0.5, 0.5, -0.5, 0.5, 1), sheets);
   EXPECT_GT(view.whole, 0.2);

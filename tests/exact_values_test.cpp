@@ -114,6 +114,7 @@ void disc(MeshBuilder& builder, const std::string& surface, double radius, doubl
     rim.emplace_back(radius * std::cos(a), radius * std::sin(a), z);
   }
   std::vector<Corners> wedges;
+  wedges.reserve(std::size_t(sides));
   for (int k = 0; k < sides; ++k) {
     wedges.push_back({Vec3(0, 0, z), rim[std::size_t(k)], rim[std::size_t((k + 1) % sides)]});
   }

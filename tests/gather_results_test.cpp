@@ -70,6 +70,7 @@ TEST_F(GatherResults, OfAnotherMeshAreRefused) {
   Progress quiet;
   for (const GatherAt at : {GatherAt::patches, GatherAt::vertices}) {
     Results out = sampleOf(at);
+    ASSERT_TRUE(out.gathered);
     if (at == GatherAt::patches) {
       out.gathered->area.pop_back();
     } else {

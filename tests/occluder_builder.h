@@ -42,6 +42,7 @@ inline Occluder convexSolid(std::vector<Vec3> corners,
 /// origin + [0,1] u + [0,1] v + [0,1] w, u x v along w.
 inline Occluder boxOccluder(const Vec3& origin, const Vec3& u, const Vec3& v, const Vec3& w) {
   std::vector<Vec3> corners;
+  corners.reserve(8);
   for (int k = 0; k < 8; ++k) {
     corners.push_back(origin + double(k & 1) * u + double(k >> 1 & 1) * v + double(k >> 2) * w);
   }

@@ -149,7 +149,7 @@ TEST_F(ResultsSymmetric, KeepsTheCorrectionApart) {
     writeResults(file(), written, progress_);
     const double size = double(std::filesystem::file_size(file()));
     EXPECT_NEAR(double(estimateResultsBytes(written)), size, std::max(4096.0, 0.05 * size));
-    const ExchangeMatrix read = readResults(file()).factors->matrix;
+    const ExchangeMatrix read = readResults(file()).factors.value().matrix;
     EXPECT_TRUE(sample::same(matrix, read));
     EXPECT_EQ(read.rowSums(Part::raw), raw);
     EXPECT_EQ(read.rowSums(Part::correction), matrix.rowSums(Part::correction));

@@ -146,6 +146,7 @@ std::vector<Loop> convexPieces(const PlanarPolygons& polygons, std::size_t p,
     pieces = joinedAll(triangles(loops, normal), normal);
   }
   std::vector<Loop> out;
+  out.reserve(pieces.size());
   for (const Corners& piece : pieces) out.emplace_back(std::span<const Vec3>(piece));
   return out;
 }

@@ -20,6 +20,7 @@ std::vector<Vec3> aboutTheMiddle(const std::vector<Vec3>& vertices) {
     high = glm::max(high, v);
   }
   std::vector<Vec3> moved;
+  moved.reserve(vertices.size());
   for (const Vec3& v : vertices) moved.push_back(v - 0.5 * (low + high));
   return moved;
 }
