@@ -207,7 +207,8 @@ double irradianceOf(const PatchMesh& mesh, const Vec3& eye, int resolution,
   options.resolution = resolution;
   const RowBuilder rows(mesh, options);
   const PatchBasis basis(mesh);
-  InterpolatedView view(mesh, basis, rows.scene().scale, resolution, eye_of_corner, radiosity);
+  InterpolatedView view(mesh, basis, rows.scene().scale, resolution, true, eye_of_corner,
+                        radiosity);
   Hemicube hemicube = rows.makeHemicube();
   std::vector<std::uint8_t> hidden;
   const Vec3 up(0, 0, 1);

@@ -1,6 +1,6 @@
 // Gathering: each patch or vertex looks at the scene through a hemicube and averages what it sees
-// into its irradiance H, sets B = E + rho H, and the passes repeat. No matrix is stored; each pass
-// draws all hemicubes again.
+// into its irradiance H, sets B = E + rho H, and the passes repeat. No matrix is stored: each pass
+// draws all hemicubes again, since what an eye saw, kept for the next pass, would be its row.
 #pragma once
 
 #include <optional>

@@ -6,39 +6,24 @@
 namespace radiosity {
 namespace {
 
-/// Adds weight * (corner weights at each pixel of [begin, end)) to `sum`. A pixel whose centre
-/// lies outside by rounding is moved onto the outline.
-template <int kCorners, class Edges>
-void sumWeights(const Edges& edges, const std::array<double, 4>& area, const double* weights,
-                double first_centre, int begin, int end, std::array<double, 4>& sum) {
-  for (int x = begin; x < end; ++x) {
-    const double centre = x + first_centre;
-    std::array<double, kCorners> a;
-    for (std::size_t k = 0; k < kCorners; ++k) {
-      a[k] = std::max(edges.slope[k] * centre + edges.base[k], 0.0);
-    }
-    std::array<double, kCorners> w;
-    double total = 0;
-    for (std::size_t k = 0; k < kCorners; ++k) {
-      w[k] = a[(k + 1) % kCorners];
-      if constexpr (kCorners == 4) w[k] *= area[k] * a[(k + 2) % kCorners];
-      total += w[k];
-    }
-    if (!(total > 0)) continue;  // seen as a point: corner 0's value stands
-    const double share = (weights[x + 1] - weights[x]) / total;
-    for (std::size_t k = 1; k < kCorners; ++k) sum[k] += share * w[k];
-  }
+/// In a fixed order.
+double total(const std::array<double, kLanes>& lanes) {
+  double sum = 0;
+  for (const double lane : lanes) sum += lane;
+  return sum;
 }
 
 }  // namespace
 
 InterpolatedView::InterpolatedView(const PatchMesh& mesh, const PatchBasis& basis, double scale,
-                                   int resolution, const std::vector<Index>& eye_of_corner,
+                                   int resolution, bool simd,
+                                   const std::vector<Index>& eye_of_corner,
                                    const std::vector<float>& radiosity)
     : mesh_(mesh),
       basis_(basis),
+      kernels_(simd ? simdInterpolation() : scalarInterpolation()),
       scale_(scale),
-      pixel_(2.0 / resolution),
+      resolution_(resolution),
       eye_of_corner_(eye_of_corner),
       radiosity_(radiosity),
       prepared_(mesh.size(), 0),
@@ -47,8 +32,20 @@ InterpolatedView::InterpolatedView(const PatchMesh& mesh, const PatchBasis& basi
 
 void InterpolatedView::begin(const EyeFrame& frame) {
   frame_ = frame;
-  irradiance_ = {};
+  level_ = {};
+  above_ = {};
   ++view_;
+}
+
+std::array<double, 3> InterpolatedView::irradiance() const {
+  std::array<double, 3> sum{};
+  for (std::size_t b = 0; b < 3; ++b) sum[b] = level_[b] + total(above_.sum[b]);
+  return sum;
+}
+
+std::size_t InterpolatedView::bytes() const {
+  return prepared_.size() * sizeof(std::uint32_t) + constant_.size() +
+         facets_.size() * sizeof(SeenFacet);
 }
 
 std::array<double, 3> InterpolatedView::cornerMean(std::size_t patch) const {
@@ -71,105 +68,100 @@ std::array<double, 3> InterpolatedView::valueAt(std::size_t patch, std::size_t c
 
 void InterpolatedView::prepare(std::size_t patch) {
   prepared_[patch] = view_;
-  bool constant = true;
-  std::size_t number = basis_.facetBegin(patch);
-  for (const Facet& facet : basis_.facets(patch)) {
-    SeenFacet& seen = facets_[number++];
-    seen.count = facet.count;
-    seen.area = facet.area;
-    const auto count = std::size_t(facet.count);
-    std::array<Vec3, 4> corner{};
-    for (std::size_t k = 0; k < count; ++k) {
-      corner[k] = frame_.toEye(mesh_.vertices[facet.vertex[k]] * scale_);
-      seen.value[k] = valueAt(patch, facet.corner[k]);
-    }
-    for (std::size_t k = 0; k < count; ++k) {
-      // det(b, a, r), from the edge itself: b x a = (b - a) x a. Of a front it is positive inside.
-      const Vec3& next = corner[(k + 1) % count];
-      seen.edge[k] = glm::cross(next - corner[k], corner[k]);
-    }
-    for (std::size_t k = 1; k < count; ++k) {
-      for (std::size_t b = 0; b < 3; ++b) {
-        seen.value[k][b] -= seen.value[0][b];
-        constant = constant && seen.value[k][b] == 0;
-      }
-    }
-  }
   const std::span<const Facet> all = basis_.facets(patch);
   const std::size_t first = basis_.facetBegin(patch);
-  for (std::size_t f = 1; f < all.size(); ++f) {
-    constant = constant && facets_[first + f].value[0] == facets_[first].value[0];
+  bool constant = true;
+  for (std::size_t f = 0; f < all.size(); ++f) {
+    SeenFacet& seen = facets_[first + f];
+    place(all[f], seen);
+    constant = setValues(patch, all[f], seen) && constant;
+    constant = constant && seen.level == facets_[first].level;
   }
   constant_[patch] = constant;
 }
 
-InterpolatedView::RowEdges InterpolatedView::alongRow(const SeenFacet& facet,
-                                                      const ItemRun& run) const {
-  RowEdges edges;
-  for (std::size_t k = 0; k < std::size_t(facet.count); ++k) {
-    const FacePoint p = run.face.project(facet.edge[k]);
-    edges.slope[k] = p.x * pixel_;
-    edges.base[k] = p.y * pixel_ * run.height + p.w;
+void InterpolatedView::place(const Facet& facet, SeenFacet& seen) const {
+  seen.count = std::size_t(facet.count);
+  seen.row.area = facet.area;
+  std::array<Vec3, 4> corner{};
+  for (std::size_t k = 0; k < seen.count; ++k) {
+    corner[k] = frame_.toEye(mesh_.vertices[facet.vertex[k]] * scale_);
   }
-  return edges;
+  for (std::size_t k = 0; k < seen.count; ++k) {
+    // det(b, a, r), from the edge itself: b x a = (b - a) x a. Of a front it is positive inside.
+    const Vec3& next = corner[(k + 1) % seen.count];
+    seen.edge[k] = glm::cross(next - corner[k], corner[k]);
+  }
+}
+
+/// Differences to corner 0: a constant field stays that constant. True if it is one.
+bool InterpolatedView::setValues(std::size_t patch, const Facet& facet, SeenFacet& seen) const {
+  seen.level = valueAt(patch, facet.corner[0]);
+  bool constant = true;
+  for (std::size_t k = 1; k < seen.count; ++k) {
+    const std::array<double, 3> value = valueAt(patch, facet.corner[k]);
+    const double factor = seen.count == 4 ? facet.area[k] : 1;
+    for (std::size_t b = 0; b < 3; ++b) {
+      constant = constant && value[b] == seen.level[b];
+      seen.row.rise[b][k] = factor * (value[b] - seen.level[b]);
+    }
+  }
+  return constant;
+}
+
+/// Edges as linear functions along the row of the run.
+void InterpolatedView::alongRow(SeenFacet& facet, const ItemRun& run) const {
+  const double pixel = 2.0 / resolution_;  // in units of half a face
+  for (std::size_t k = 0; k < facet.count; ++k) {
+    const FacePoint p = run.face.project(facet.edge[k]);
+    facet.row.slope[k] = p.x * pixel;
+    facet.row.base[k] = p.y * pixel * run.height + p.w;
+  }
 }
 
 void InterpolatedView::visit(const ItemRun& run) {
   if (run.begin >= run.end || run.item >= mesh_.size()) return;  // bare backs are black
   const std::size_t patch = run.item;
   if (prepared_[patch] != view_) prepare(patch);
-  const SeenFacet& first = facets_[basis_.facetBegin(patch)];
-  if (constant_[patch] != 0) {
-    const double weight = run.weights[run.end] - run.weights[run.begin];
-    for (std::size_t b = 0; b < 3; ++b) irradiance_[b] += weight * first.value[0][b];
-  } else if (basis_.facets(patch).size() == 1) {
-    addRun(first, run, run.begin, run.end);
-  } else {
-    addManyFacets(patch, run);
-  }
+  if (constant_[patch] == 0 && basis_.facets(patch).size() > 1) return addManyFacets(patch, run);
+  SeenFacet& facet = facets_[basis_.facetBegin(patch)];
+  if (constant_[patch] == 0) alongRow(facet, run);
+  addRun(facet, run, run.begin, run.end, constant_[patch] != 0);
 }
 
-void InterpolatedView::addRun(const SeenFacet& facet, const ItemRun& run, int begin, int end) {
-  const RowEdges edges = alongRow(facet, run);
-  std::array<double, 4> share{};
-  if (facet.count == 4) {
-    sumWeights<4>(edges, facet.area, run.weights, run.first_centre, begin, end, share);
-  } else {
-    sumWeights<3>(edges, facet.area, run.weights, run.first_centre, begin, end, share);
-  }
-  // Differences to corner 0: a constant field stays that constant.
+void InterpolatedView::addRun(const SeenFacet& facet, const ItemRun& run, int begin, int end,
+                              bool constant) {
   const double weight = run.weights[end] - run.weights[begin];
-  for (std::size_t b = 0; b < 3; ++b) {
-    double sum = weight * facet.value[0][b];
-    for (std::size_t k = 1; k < 4; ++k) sum += share[k] * facet.value[k][b];
-    irradiance_[b] += sum;
-  }
+  for (std::size_t b = 0; b < 3; ++b) level_[b] += weight * facet.level[b];
+  if (constant) return;
+  const PixelRow pixels{run.weights + begin, begin + run.first_centre, end - begin,
+                        resolution_ - begin};
+  (facet.count == 4 ? kernels_.addQuad : kernels_.addTriangle)(facet.row, pixels, above_);
 }
 
 /// Each pixel belongs to the facet it lies deepest in: edges' values measured against their sum.
 void InterpolatedView::addManyFacets(std::size_t patch, const ItemRun& run) {
-  const std::size_t begin = basis_.facetBegin(patch);
-  const std::size_t count = basis_.facets(patch).size();
+  const std::span facets(facets_.data() + basis_.facetBegin(patch), basis_.facets(patch).size());
+  for (SeenFacet& facet : facets) alongRow(facet, run);
   for (int x = run.begin; x < run.end; ++x) {
     const double centre = x + run.first_centre;
-    std::size_t best = begin;
+    const SeenFacet* best = facets.data();
     double deepest = -HUGE_VAL;
-    for (std::size_t f = begin; f < begin + count; ++f) {
-      const RowEdges edges = alongRow(facets_[f], run);
+    for (const SeenFacet& facet : facets) {
       double least = HUGE_VAL;
-      double total = 0;
-      for (std::size_t k = 0; k < std::size_t(facets_[f].count); ++k) {
-        const double a = edges.slope[k] * centre + edges.base[k];
+      double sum = 0;
+      for (std::size_t k = 0; k < facet.count; ++k) {
+        const double a = facet.row.slope[k] * centre + facet.row.base[k];
         least = std::min(least, a);
-        total += a;
+        sum += a;
       }
-      const double depth = total > 0 ? least / total : -HUGE_VAL;
+      const double depth = sum > 0 ? least / sum : -HUGE_VAL;
       if (depth > deepest) {
         deepest = depth;
-        best = f;
+        best = &facet;
       }
     }
-    addRun(facets_[best], run, x, x + 1);
+    addRun(*best, run, x, x + 1, false);
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "formfactor/eye_frame.h"
 #include "formfactor/hemicube.h"
+#include "gather/interpolation_kernels.h"
 #include "gather/patch_basis.h"
 #include "radiosity/gather.h"
 
@@ -24,41 +25,43 @@ class InterpolatedView : public RunVisitor {
   /// All are kept by reference. `scale`: of the view scene the eye's frame is given in. `radiosity`
   /// (eyes * 3) may change between views.
   InterpolatedView(const PatchMesh& mesh, const PatchBasis& basis, double scale, int resolution,
-                   const std::vector<Index>& eye_of_corner, const std::vector<float>& radiosity);
+                   bool simd, const std::vector<Index>& eye_of_corner,
+                   const std::vector<float>& radiosity);
 
   void begin(const EyeFrame& frame);
   void visit(const ItemRun& run) override;
   /// W/m^2, of all runs since begin().
-  const std::array<double, 3>& irradiance() const { return irradiance_; }
+  std::array<double, 3> irradiance() const;
+  /// Bytes of scratch memory.
+  std::size_t bytes() const;
 
  private:
   struct SeenFacet {
-    int count = 3;
-    std::array<Vec3, 4> edge{};                    ///< in the eye's frame; dot(edge k, r) is A_k
-    std::array<double, 4> area{};                  ///< C_k
-    std::array<std::array<double, 3>, 4> value{};  ///< corner 0's; of the others, the rise from it
-  };
-  /// Linear functions along a row of pixels.
-  struct RowEdges {
-    std::array<double, 4> slope{};
-    std::array<double, 4> base{};
+    std::size_t count = 3;
+    std::array<Vec3, 4> edge{};     ///< in the eye's frame; dot(edge k, r) is A_k
+    std::array<double, 3> level{};  ///< value of corner 0
+    FacetRow row;                   ///< slopes and bases are those of the row seen last
   };
 
   void prepare(std::size_t patch);
+  void place(const Facet& facet, SeenFacet& seen) const;
+  bool setValues(std::size_t patch, const Facet& facet, SeenFacet& seen) const;
   std::array<double, 3> cornerMean(std::size_t patch) const;
   std::array<double, 3> valueAt(std::size_t patch, std::size_t corner) const;
-  RowEdges alongRow(const SeenFacet& facet, const ItemRun& run) const;
-  void addRun(const SeenFacet& facet, const ItemRun& run, int begin, int end);
+  void alongRow(SeenFacet& facet, const ItemRun& run) const;
+  void addRun(const SeenFacet& facet, const ItemRun& run, int begin, int end, bool constant);
   void addManyFacets(std::size_t patch, const ItemRun& run);
 
   const PatchMesh& mesh_;
   const PatchBasis& basis_;
+  InterpolationKernels kernels_;
   double scale_;
-  double pixel_;  ///< in units of half a face
+  int resolution_;
   const std::vector<Index>& eye_of_corner_;
   const std::vector<float>& radiosity_;
   EyeFrame frame_;
-  std::array<double, 3> irradiance_{};
+  std::array<double, 3> level_{};  ///< from corner 0's values
+  LaneSums above_;                 ///< what the others add
   std::uint32_t view_ = 0;
   std::vector<std::uint32_t> prepared_;  ///< N, the view a patch was prepared for
   std::vector<std::uint8_t> constant_;   ///< N, of that view: the same value at all corners

@@ -26,6 +26,7 @@ GatherScene::GatherScene(const PatchMesh& patch_mesh, const PatchMaterials& of_p
     : mesh(patch_mesh),
       at(options.at),
       resolution(options.resolution),
+      simd(options.simd),
       rows(patch_mesh, eyeOptions(options)) {
   if (at == GatherAt::patches) {
     standAtPatches(of_patches, options);
@@ -88,7 +89,7 @@ std::size_t GatherScene::bytes() const {
 Gatherer::Gatherer(const GatherScene& scene, const std::vector<float>& radiosity)
     : scene_(scene), radiosity_(radiosity), hemicube_(scene.rows.makeHemicube()) {
   if (scene.basis) {
-    view_.emplace(scene.mesh, *scene.basis, scene.rows.scene().scale, scene.resolution,
+    view_.emplace(scene.mesh, *scene.basis, scene.rows.scene().scale, scene.resolution, scene.simd,
                   scene.eye_of_corner, radiosity);
   }
 }

@@ -33,6 +33,7 @@ class GatherScene {
   const PatchMesh& mesh;
   GatherAt at;
   int resolution;
+  bool simd;
   RowBuilder rows;
   std::vector<Eye> eyes;
   std::vector<double> area;          ///< L
@@ -59,7 +60,7 @@ class Gatherer {
   };
   Received look(std::size_t eye);
   const HemicubeCounts& counts() const { return hemicube_.counts(); }
-  std::size_t bytes() const { return hemicube_.bytes(); }
+  std::size_t bytes() const { return hemicube_.bytes() + (view_ ? view_->bytes() : 0); }
 
  private:
   const GatherScene& scene_;

@@ -1,0 +1,115 @@
+#include "gather/interpolation_kernels.h"
+
+// Vectors without a fixed size cannot stand in arrays.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "gather/interpolation_kernels_simd.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, which compiles this file once per instruction set.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace radiosity::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Doubles = hn::CappedTag<double, kLanes>;
+using Vector = hn::Vec<Doubles>;
+
+constexpr int kWidth = int(hn::MaxLanes(Doubles()));
+constexpr std::size_t kVectors = kLanes / std::size_t(kWidth);
+
+/// What the pixels from `first` on are worth, up to a vector of them; 0 beyond the run.
+HWY_INLINE Vector worth(const PixelRow& pixels, int first) {
+  const Doubles d;
+  const double* at = pixels.weights + first;
+  if (first + kWidth > pixels.readable) {
+    double alone[kWidth] = {};
+    for (int m = 0; first + m < pixels.count; ++m) alone[m] = at[m + 1] - at[m];
+    return hn::LoadU(d, alone);
+  }
+  const Vector all = hn::Sub(hn::LoadU(d, at + 1), hn::LoadU(d, at));
+  const int left = pixels.count - first;
+  return left >= kWidth ? all : hn::IfThenElseZero(hn::FirstN(d, std::size_t(left)), all);
+}
+
+template <std::size_t kCorners>
+struct Broadcast {
+  Vector slope[kCorners];
+  Vector base[kCorners];
+  Vector area[kCorners];
+  Vector rise[3][kCorners];
+
+  HWY_INLINE explicit Broadcast(const FacetRow& facet) {
+    const Doubles d;
+    for (std::size_t k = 0; k < kCorners; ++k) {
+      slope[k] = hn::Set(d, facet.slope[k]);
+      base[k] = hn::Set(d, facet.base[k]);
+      area[k] = hn::Set(d, facet.area[k]);
+      for (std::size_t b = 0; b < 3; ++b) rise[b][k] = hn::Set(d, facet.rise[b][k]);
+    }
+  }
+
+  /// Corners' weights without their C_k, and returns the sum of them with it.
+  HWY_INLINE Vector weigh(Vector centre, Vector* w) const {
+    Vector a[kCorners];
+    for (std::size_t k = 0; k < kCorners; ++k) {
+      const Vector inside = hn::Add(hn::Mul(slope[k], centre), base[k]);
+      a[k] = hn::Max(inside, hn::Zero(Doubles()));
+    }
+    Vector total = hn::Zero(Doubles());
+    for (std::size_t k = 0; k < kCorners; ++k) {
+      if constexpr (kCorners == 4) {
+        w[k] = hn::Mul(a[(k + 1) % 4], a[(k + 2) % 4]);
+        total = hn::Add(total, hn::Mul(area[k], w[k]));
+      } else {
+        w[k] = a[(k + 1) % 3];
+        total = hn::Add(total, w[k]);
+      }
+    }
+    return total;
+  }
+};
+
+template <std::size_t kCorners>
+void add(const FacetRow& facet, const PixelRow& pixels, LaneSums& sums) {
+  const Doubles d;
+  const Broadcast<kCorners> all(facet);
+  const Vector zero = hn::Zero(d);
+  Vector centre = hn::Add(hn::Set(d, pixels.first_centre), hn::Iota(d, 0));
+  const Vector step = hn::Set(d, double(kWidth));
+  std::size_t v = 0;
+  for (int first = 0; first < pixels.count; first += kWidth) {
+    Vector w[kCorners];
+    const Vector total = all.weigh(centre, w);
+    const Vector share =
+        hn::IfThenElseZero(hn::Gt(total, zero), hn::Div(worth(pixels, first), total));
+    for (std::size_t b = 0; b < 3; ++b) {
+      Vector above = hn::Mul(all.rise[b][1], w[1]);
+      for (std::size_t k = 2; k < kCorners; ++k) {
+        above = hn::Add(above, hn::Mul(all.rise[b][k], w[k]));
+      }
+      double* sum = sums.sum[b].data() + v * std::size_t(kWidth);
+      hn::Store(hn::Add(hn::Load(d, sum), hn::Mul(share, above)), d, sum);
+    }
+    centre = hn::Add(centre, step);
+    v = (v + 1) % kVectors;
+  }
+}
+
+InterpolationKernels kernels() { return {hwy::TargetName(HWY_TARGET), add<3>, add<4>}; }
+
+}  // namespace
+}  // namespace radiosity::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace radiosity {
+
+HWY_EXPORT(kernels);
+
+InterpolationKernels simdInterpolation() { return HWY_DYNAMIC_DISPATCH(kernels)(); }
+
+}  // namespace radiosity
+#endif
