@@ -39,6 +39,27 @@ class Stopwatch {
   Seconds start_;
 };
 
+struct Timing {
+  Seconds seconds;  ///< of the run that took the least processor time
+  int runs = 0;
+};
+
+/// run() makes one run and returns its time. Short ones are repeated until they add up to two
+/// seconds, at most five times.
+template <class Run>
+Timing leastOfRuns(const Run& run) {
+  constexpr double kEnoughSeconds = 2;
+  constexpr int kMostRuns = 5;
+  Timing timing{run(), 1};
+  for (double total = timing.seconds.wall; total < kEnoughSeconds && timing.runs < kMostRuns;
+       ++timing.runs) {
+    const Seconds again = run();
+    total += again.wall;
+    if (again.processor() < timing.seconds.processor()) timing.seconds = again;
+  }
+  return timing;
+}
+
 /// Seconds this thread has had the processor.
 inline double threadSeconds() {
   timespec time{};

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "radiosity/solve.h"
+#include "lighting.h"
 #include "report.h"
 #include "verify.h"
 
@@ -15,35 +15,8 @@ namespace {
 
 /// Of B, far below the error of any matrix here.
 constexpr double kSolveTolerance = 1e-8;
-/// Short runs are repeated until they add up to this many seconds, up to kMostRuns.
-constexpr double kEnoughSeconds = 2;
-constexpr int kMostRuns = 5;
 /// The exact method gets no tighter once a run took longer.
 constexpr double kMostSeconds = 60;
-
-class Materials {
- public:
-  explicit Materials(const BenchScene& scene) {
-    const PatchMaterials materials = patchMaterials(scene.scene, scene.mesh);
-    for (std::size_t i = 0; i < scene.mesh.size(); ++i) {
-      for (int b = 0; b < kBands; ++b) {
-        reflectance_.push_back(materials.reflectance[i][b]);
-        emission_.push_back(materials.emission[i][b]);
-      }
-    }
-  }
-  std::vector<double> solve(const FormFactors& factors) const {
-    SolveOptions options;
-    options.tolerance = kSolveTolerance;
-    Progress silent;
-    return radiosity::solve(factors, reflectance_, emission_, kBands, options, silent).radiosity;
-  }
-
- private:
-  static constexpr int kBands = 3;
-  std::vector<double> reflectance_;
-  std::vector<double> emission_;
-};
 
 FormFactors asFormFactors(const PatchMesh& mesh, const TruthRows& truth) {
   FormFactors factors;
@@ -65,35 +38,17 @@ FormFactors asFormFactors(const PatchMesh& mesh, const TruthRows& truth) {
   return factors;
 }
 
-double relativeError(const PatchMesh& mesh, const std::vector<double>& b,
-                     const std::vector<double>& reference) {
-  double wrong = 0;
-  double all = 0;
-  const std::size_t bands = reference.size() / mesh.size();
-  for (std::size_t k = 0; k < reference.size(); ++k) {
-    const double area = mesh.area[k / bands];
-    wrong += area * (b[k] - reference[k]) * (b[k] - reference[k]);
-    all += area * reference[k] * reference[k];
-  }
-  return std::sqrt(wrong / all);
-}
-
-/// Runs one method, several times if it is quick, and keeps the least of the times.
+/// Runs one method, several times if it is quick.
 FormFactors timed(const Method& method, const PatchMesh& mesh, Measurement& measurement) {
-  std::vector<Seconds> runs;
   FormFactors factors;
-  double total = 0;
-  do {
+  const Timing timing = leastOfRuns([&] {
     factors = {};
     const Stopwatch watch;
     factors = method.compute(mesh);
-    runs.push_back(watch.elapsed());
-    total += runs.back().wall;
-  } while (total < kEnoughSeconds && int(runs.size()) < kMostRuns);
-  measurement.seconds = *std::min_element(
-      runs.begin(), runs.end(),
-      [](const Seconds& a, const Seconds& b) { return a.processor() < b.processor(); });
-  measurement.runs = int(runs.size());
+    return watch.elapsed();
+  });
+  measurement.seconds = timing.seconds;
+  measurement.runs = timing.runs;
   return factors;
 }
 
@@ -130,7 +85,7 @@ struct Measured {
 };
 
 Measured measure(const Method& method, const PatchMesh& mesh, const TruthRows& truth,
-                 const Materials& materials) {
+                 const Lighting& lighting) {
   Measured result;
   Measurement& m = result.measurement;
   m.method = method.name;
@@ -144,14 +99,14 @@ Measured measure(const Method& method, const PatchMesh& mesh, const TruthRows& t
   m.largest_row_error = largestRowError(factors);
   m.own = ownEstimate(factors, truth, m.factors);
   m.exact = factors.report.exact;
-  result.radiosity = materials.solve(factors);
+  result.radiosity = lighting.solve(factors, kSolveTolerance);
   return result;
 }
 
 /// From the loosest setting to the tightest; what follows one of more than kMostSeconds is left
 /// out.
 std::vector<Measured> measureExact(const BenchScene& scene, const TruthRows& truth,
-                                   const Materials& materials) {
+                                   const Lighting& lighting) {
   std::vector<Measured> all;
   for (const Method& method : exactMethods()) {
     if (!all.empty() && all.back().measurement.seconds.processor() > kMostSeconds) {
@@ -159,7 +114,7 @@ std::vector<Measured> measureExact(const BenchScene& scene, const TruthRows& tru
                  method.value, all.back().measurement.value, kMostSeconds);
       break;
     }
-    all.push_back(measure(method, scene.mesh, truth, materials));
+    all.push_back(measure(method, scene.mesh, truth, lighting));
   }
   return all;
 }
@@ -177,12 +132,12 @@ std::optional<SceneCurves> errorCurves(const BenchScene& scene, const TruthRows&
   fmt::print("\n{}: {} patches, {} polygons\n", scene.name, mesh.size(), mesh.polygons.size());
   if (!verifyTruth(scene, truth, truth_accuracy)) return std::nullopt;
 
-  const Materials materials(scene);
-  const std::vector<Measured> exact = measureExact(scene, truth, materials);
+  const Lighting lighting(scene);
+  const std::vector<Measured> exact = measureExact(scene, truth, lighting);
   std::vector<double> reference;
   if (truth.complete) {
     curves.radiosity_reference = "truth";
-    reference = materials.solve(asFormFactors(mesh, truth));
+    reference = lighting.solve(asFormFactors(mesh, truth), kSolveTolerance);
   } else {
     curves.radiosity_reference = fmt::format("exact {:.0e}", exact.back().measurement.value);
     reference = exact.back().radiosity;
@@ -198,7 +153,7 @@ std::optional<SceneCurves> errorCurves(const BenchScene& scene, const TruthRows&
   printCurveHead(curves);
   for (const Measured& measured : exact) add(measured);
   for (const Method& method : otherMethods(mesh.size(), quick)) {
-    add(measure(method, mesh, truth, materials));
+    add(measure(method, mesh, truth, lighting));
   }
   return curves;
 }

@@ -10,15 +10,6 @@ FormFactors compute(const PatchMesh& mesh, const FormFactorOptions& options) {
   return computeFormFactors(mesh, options, silent);
 }
 
-Method hemicube(int resolution, bool near_exact) {
-  FormFactorOptions options;
-  options.method = FormFactorMethod::hemicube;
-  options.resolution = resolution;
-  options.near_exact = near_exact;
-  return {near_exact ? "hemicube + near" : "hemicube", "pixels", double(resolution),
-          [options](const PatchMesh& mesh) { return compute(mesh, options); }};
-}
-
 Method rays(std::uint32_t count, bool both_ends) {
   return {both_ends ? kRaysBothEnds : kRays, "rays a patch", double(count),
           [=](const PatchMesh& mesh) { return castFormFactors(mesh, count, both_ends); }};
@@ -31,6 +22,15 @@ Method exact(double tolerance) {
   options.method = FormFactorMethod::exact;
   options.tolerance = tolerance;
   return {"exact", "tolerance", tolerance,
+          [options](const PatchMesh& mesh) { return compute(mesh, options); }};
+}
+
+Method hemicube(int resolution, bool near_exact) {
+  FormFactorOptions options;
+  options.method = FormFactorMethod::hemicube;
+  options.resolution = resolution;
+  options.near_exact = near_exact;
+  return {near_exact ? "hemicube + near" : "hemicube", "pixels", double(resolution),
           [options](const PatchMesh& mesh) { return compute(mesh, options); }};
 }
 

@@ -20,6 +20,7 @@ struct Method {
 };
 
 Method exact(double tolerance);
+Method hemicube(int resolution, bool near_exact);
 
 /// From the loosest setting to the tightest.
 std::vector<Method> exactMethods();

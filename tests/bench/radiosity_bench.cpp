@@ -1,5 +1,5 @@
-// radiosity_bench [--quick] [--out DIR] [--only rates|truth|curves] [--scene NAME]: see
-// tools/bench.
+// radiosity_bench [--quick] [--out DIR] [--only rates|truth|curves|gather]
+// [--scene NAME]: see tools/bench.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -8,6 +8,7 @@
 #include <string>
 
 #include "error_curves.h"
+#include "gather_costs.h"
 #include "rates.h"
 #include "report.h"
 #include "sobol.h"
@@ -21,6 +22,7 @@ struct Arguments {
   bool rates = true;
   bool truth = true;  ///< the curves need it; alone: rows are made and kept
   bool curves = true;
+  bool gather = true;
   std::string scene;  ///< this one alone; empty: all
   std::string out = "out/bench";
   std::string truth_folder = "build/bench/truth";
@@ -28,7 +30,8 @@ struct Arguments {
 
 [[noreturn]] void refuse(const std::string& argument) {
   throw InputError(fmt::format(
-      "'{}': give [--quick] [--only rates|truth|curves] [--scene NAME] [--out DIR]", argument));
+      "'{}': give [--quick] [--only rates|truth|curves|gather] [--scene NAME] [--out DIR]",
+      argument));
 }
 
 Arguments parse(int count, char** values) {
@@ -46,10 +49,11 @@ Arguments parse(int count, char** values) {
       arguments.scene = value();
     } else if (name == "--only") {
       const std::string part = value();
-      if (part != "rates" && part != "truth" && part != "curves") refuse(part);
+      if (part != "rates" && part != "truth" && part != "curves" && part != "gather") refuse(part);
       arguments.rates = part == "rates";
-      arguments.truth = part != "rates";
+      arguments.truth = part == "truth" || part == "curves";
       arguments.curves = part == "curves";
+      arguments.gather = part == "gather";
     } else {
       refuse(name);
     }
@@ -63,7 +67,6 @@ bool benchCurves(const Arguments& arguments) {
     fmt::print("  the points of the ray caster are no net: NOT VERIFIED\n");
     return false;
   }
-  std::filesystem::create_directories(arguments.out);
   std::vector<SceneCurves> all;
   Summary summary;
   bool verified = true;
@@ -100,9 +103,11 @@ bool benchCurves(const Arguments& arguments) {
 int main(int count, char** values) try {
   using namespace radiosity::bench;
   const Arguments arguments = parse(count, values);
+  std::filesystem::create_directories(arguments.out);
   bool verified = true;
   if (arguments.rates) verified = benchRates() && verified;
   if (arguments.truth) verified = benchCurves(arguments) && verified;
+  if (arguments.gather) verified = benchGather(arguments.quick, arguments.out) && verified;
   return verified ? EXIT_SUCCESS : EXIT_FAILURE;
 } catch (const radiosity::InputError& error) {
   fmt::print(stderr, "radiosity_bench: {}\n", error.what());
