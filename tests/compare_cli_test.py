@@ -100,11 +100,32 @@ class Compare(CliTest):
         self.refuse("r.h5", "box.obj", "--b-is", "radiance", words=["box.obj", "bake"])
         self.refuse("r.h5", "r.h5", "-o", "x.h5", words=["x.h5", "--gather"])
         self.refuse("r.h5", "r.h5", "--match", "2", words=["--match"])
+        self.refuse("r.h5", "r.h5", "--tolerance", "-1", words=["--tolerance: '-1'", "from 0"])
+        self.refuse(words=["A and B are missing", "--gather"])
         self.run_program("mesh", "box.obj", "--patches", "60", "-o", "m.h5")
         self.refuse("m.h5", "r.h5", words=["m.h5", "no light"])
         shutil.copy(DATA / "cornell-box-cycles.ply", self.folder / "other.ply")
         self.refuse("r.h5", "other.ply", "--b-is", "radiance", words=["not the same surfaces"])
         self.assertNotIn("d.png", self.files())
+
+    def test_options_that_would_do_nothing(self):
+        # Two files are compared as they are: what makes a mesh or its light is for --gather.
+        self.solved()
+        for option in [("--patches", "60"), ("--set", "wall.reflectance=.1"), ("--unit", "mm"),
+                       ("--resolution", "32"), ("--solver", "jacobi"), ("--passes", "3"),
+                       ("--symmetrize",)]:
+            self.refuse("r.h5", "r.h5", *option, words=[option[0], "--gather"])
+        self.refuse("box.obj", "--gather", "--b-is", "radiance", words=["--b-is", "--gather"])
+        self.run_program("render", "r.h5", "--width", "32", "-o", "a.exr")
+        for option in [("--camera", "x"), ("--width", "9"), ("--match", "0.01"), ("--partial",)]:
+            self.refuse("a.exr", "a.exr", *option, words=[option[0], "pictures"])
+
+    def test_the_gap_names_what_outweighs_the_rest(self):
+        few = self.report("compare", "box.obj", "--gather", *SMALL, "--passes", "1")["comparison"]
+        self.assertIn("after pass 1", few["gap"])
+        self.assertGreater(few["relative_l2"], 0.05)
+        all_of_it = self.report("compare", "box.obj", "--gather", *SMALL)["comparison"]
+        self.assertNotIn("after pass", all_of_it["gap"])
 
 
 if __name__ == "__main__":

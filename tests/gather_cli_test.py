@@ -57,6 +57,45 @@ class Gather(CliTest):
         stages = self.report("solve", "g.h5", "--set", "wall.reflectance=.1")["stages"]
         self.assertEqual(stages["gather"]["action"], "dropped")
 
+    def test_pictures_and_lit_mesh(self):
+        # The gathered light through the renderer and the mesh writer of the matrix method: the same
+        # room, as far as 60 patches and 32 pixels go (some per cent).
+        view = ["--width", "48", "--samples", "2"]
+        self.run_program("gather", "box.obj", *SMALL, *view, "-o", "g.png", "-o", "g.exr", "-o",
+                         "g.glb", "-o", "g.h5")
+        self.assertEqual((self.folder / "g.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        self.run_program("render", "box.obj", *SMALL, *view, "-o", "m.exr", "-o", "m.glb")
+        pictures = self.report("compare", "g.exr", "m.exr")["comparison"]
+        self.assertLess(pictures["relative_l2"], 0.1)
+        self.assertGreater(pictures["relative_l2"], 1e-6)
+        # Lit mesh and results file hold the same light: corners that are shared by patches with one
+        # value each are floats in both, triangles are linear where quadrilaterals are bilinear.
+        meshes = self.report("compare", "g.h5", "g.glb")["comparison"]
+        self.assertEqual(meshes["matched_a"], "100.00%")
+        self.assertLess(meshes["relative_l2"], 0.01)
+
+    def test_pictures_of_light_gathered_before(self):
+        self.run_program("gather", "box.obj", *SMALL, "-o", "g.h5")
+        before = (self.folder / "g.h5").read_bytes()
+        report = self.report("gather", "g.h5", "--width", "32", "-o", "p.exr")
+        self.assertEqual(report["stages"]["gather"]["action"], "reused")
+        self.assertEqual(report["picture"]["size"].split()[0], "32")
+        # What is computed for the picture alone is not lost without a word.
+        run = self.run_program("gather", "g.h5", "--at", "patches", "--width", "32", "-o", "q.exr")
+        self.assertIn("g.h5 is left as it is", run.out)
+        self.assertEqual((self.folder / "g.h5").read_bytes(), before)
+        flat = self.run_program("gather", "g.h5", "--width", "32", "--flat", "-o", "f.exr")
+        self.assertNotIn("left as it is", flat.out)
+        self.assertGreater(self.report("compare", "p.exr", "f.exr")["comparison"]["relative_l2"], 0)
+
+    def test_what_cannot_be_drawn_is_found_first(self):
+        self.refuse("gather", "box.obj", *SMALL, "-o", "g.png", "--camera", "attic",
+                    words=["--camera", "attic"])
+        self.refuse("gather", "box.obj", *SMALL, "-o", "g.png", "--exposure", "bright",
+                    words=["--exposure", "bright"])
+        self.refuse("gather", "box.obj", *SMALL, "-o", "g.mtx",
+                    words=["g.mtx", ".png, .exr, .glb, .h5"])
+
     def test_exit_codes(self):
         # White walls and a grey lamp: far from converged after 100 passes.
         white = ["--set", "wall.reflectance=1", "--set", "lamp.reflectance=0.999"]
@@ -70,6 +109,7 @@ class Gather(CliTest):
                               ("--resolution", "33"), ("--crease", "200")]:
             run = self.run_program("gather", "box.obj", option, value, code=2)
             self.assertIn(option, run.err)
+        self.refuse("gather", "box.obj", "--tolerance", "1", words=["did you mean --gather-tol"])
 
 
 if __name__ == "__main__":

@@ -51,6 +51,12 @@ std::vector<double> cornerValues(const PatchMesh& mesh, std::span<const double> 
 Image render(const PatchMesh& mesh, std::span<const double> values, const Camera& camera,
              const RenderOptions& options, Progress& progress);
 
+/// The same from values at the corners (mesh.corners.size() * 3, like cornerValues()), where they
+/// are known better than from the patches around them. Constant patches (not `smooth`) show
+/// `values`.
+Image render(const PatchMesh& mesh, std::span<const double> values, std::span<const double> corners,
+             const Camera& camera, const RenderOptions& options, Progress& progress);
+
 /// Exposure value: the picture is multiplied by 2^ev before the sRGB curve. Automatic: the 99th
 /// percentile of luminance over hit pixels maps to 0.8 (emitters clip), unless the median over the
 /// lit ones would fall below 0.1: a large lamp in view then clips too. 0 where nothing is lit.

@@ -82,6 +82,9 @@ void writeMesh(const std::string& path, const PatchMesh& mesh);
 /// are the scene's; far from the origin a node translation carries them. radiosity: N * 3.
 void writeLitGlb(const std::string& path, const PatchMesh& mesh, std::span<const double> radiosity,
                  double ev, double crease);
+/// The same from radiosities at the corners (mesh.corners.size() * 3).
+void writeLitGlb(const std::string& path, const PatchMesh& mesh, std::span<const double> radiosity,
+                 std::span<const double> corners, double ev);
 
 /// .exr: 32-bit floats, linear, colours multiplied by alpha as the format asks (a pixel is then
 /// what reaches it; a miss is 0,0,0,0). .png: 8 bits, colours not multiplied; linear images get the

@@ -10,6 +10,7 @@
 #include "cli/command_texts.h"
 #include "cli/help_formatter.h"
 #include "cli/request.h"
+#include "cli/validators.h"
 #include "cli/words.h"
 
 namespace radiosity::cli {
@@ -28,20 +29,6 @@ CLI::Option* add(CLI::App& app, const char* group, const std::string& names, Val
   CLI::Option* option = app.add_option(names, value, description);
   option->group(group)->option_text(placeholder)->allow_extra_args(false);
   return option;
-}
-
-/// CLI11 reads "-5" into an unsigned number, and too many digits as the largest, without a word.
-const CLI::Validator& wholeNumber() {
-  constexpr std::size_t kDigits = 18;  // always fits 64 bits
-  static const CLI::Validator kValidator(
-      [](std::string& text) {
-        const bool whole = !text.empty() && text.size() <= kDigits &&
-                           text.find_first_not_of("0123456789") == std::string::npos;
-        return whole ? std::string()
-                     : fmt::format("'{}' is not a whole number from 0 to 10^18", text);
-      },
-      "");
-  return kValidator;
 }
 
 void addSceneOptions(CLI::App& app, Request& r) {
@@ -213,7 +200,18 @@ void addCompareOptions(CLI::App& app, Request& r) {
                   defaults.match));
   add(app, "Compare", "--tolerance", r.compare_tolerance, "RATIO",
       "Exit with 1 where the relative L2 difference is above it (default: exit with 0)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(nonNegative());
+}
+
+/// Two files are compared as they are; with --gather both sides are made here.
+void bindToGather(CLI::App& app) {
+  CLI::Option* gather = app.get_option("--gather");
+  for (const char* name : {"--a-is", "--b-is"}) app.get_option(name)->excludes(gather);
+  for (CLI::Option* option : app.get_options()) {
+    const std::string& group = option->get_group();
+    if (group != "General" && group != "Compare" && group != "Picture" && !option->get_positional())
+      option->needs(gather);
+  }
 }
 
 void addCameraOptions(CLI::App& app, Request& r) {
@@ -233,11 +231,16 @@ void addRenderOptions(CLI::App& app, Request& r) {
   add(app, "Picture", "--samples", r.samples, "N",
       fmt::format("N x N samples a pixel, 1 to 16 (default {})", defaults.samples));
   app.add_flag("--flat", r.flat, "One colour a patch, not interpolated")->group("Picture");
-  add(app, "Picture", "--crease", r.crease, "DEGREES",
-      fmt::format("Interpolate across edges that bend less (default {})", defaults.crease));
   add(app, "Picture", "--backs", r.backs, "hide|show",
       "hide: look through the backs of one-sided surfaces (default); show: they are black")
       ->check(CLI::IsMember({"hide", "show"}));
+}
+
+/// What is drawn of the matrix's stages, and how.
+void addShowOptions(CLI::App& app, Request& r) {
+  const RenderOptions defaults;
+  add(app, "Picture", "--crease", r.crease, "DEGREES",
+      fmt::format("Interpolate across edges that bend less (default {})", defaults.crease));
   add(app, "Picture", "--show", r.show, "QUANTITY",
       "False colour with a legend: radiosity or irradiance (W/m^2, Rec. 709 luminance weights "
       "0.2126 R + 0.7152 G + 0.0722 B), form-factor:PATCH (F from patch number PATCH, from 0, to "
@@ -275,14 +278,22 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
   if (command == Command::gather) {
     addGatherOptions(*sub, r);
     addEyeOptions(*sub, r);
+    addCameraOptions(*sub, r);
+    addRenderOptions(*sub, r);
     return sub;
   }
   addFactorOptions(*sub, r);
   if (command == Command::factors) return sub;
   addSolveOptions(*sub, r);
-  if (command == Command::compare) addGatherOptions(*sub, r);
-  if (command == Command::compare || command == Command::render) addCameraOptions(*sub, r);
-  if (command == Command::render) addRenderOptions(*sub, r);
+  if (compares) {
+    addGatherOptions(*sub, r);
+    bindToGather(*sub);
+  }
+  if (compares || command == Command::render) addCameraOptions(*sub, r);
+  if (command == Command::render) {
+    addRenderOptions(*sub, r);
+    addShowOptions(*sub, r);
+  }
   return sub;
 }
 
@@ -327,10 +338,17 @@ std::string explain(const CLI::ParseError& error, const CLI::App& sub) {
       for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
     }
     const std::string flag = word.substr(0, word.find('='));
-    return fmt::format("unknown option {}{}; see {} --help", flag, suggestion(flag, names),
-                       command);
+    std::string meant = suggestion(flag, names);
+    for (const std::string& name : names) {
+      // "--tolerance" where it is called "--gather-tolerance".
+      if (meant.empty() && name.ends_with(flag.substr(1))) meant = "; did you mean " + name + "?";
+    }
+    return fmt::format("unknown option {}{}; see {} --help", flag, meant, command);
   }
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
+    if (sub.get_name() == commandName(Command::compare)) {
+      return "compare: A and B are missing: radiosity compare A B, or radiosity compare A --gather";
+    }
     return fmt::format("{}: the scene (.obj, .gltf, .glb) or results file (.h5) is missing",
                        command);
   }

@@ -51,11 +51,14 @@ const char* examplesOf(Command command) {
              "  radiosity solve data/cornell-box.obj -o cornell.h5\n"
              "  radiosity solve cornell.h5 --set white.reflectance=.9";
     case Command::gather:
-      return "Files (-o): .h5 (results). A results file given as input is updated in place where "
-             "no -o\n"
-             "is given; its mesh is reused. With --passes reaching them is no failure.\n\n"
+      return "Files (-o): .h5 (results), .png (exposed, sRGB), .exr (radiance, W/m^2/sr, linear),\n"
+             ".glb (lit mesh). A results file given as input is updated in place where no -o is "
+             "given;\n"
+             "its mesh is reused, and so is the light gathered in it before. With --passes "
+             "reaching them\n"
+             "is no failure.\n\n"
              "Examples:\n"
-             "  radiosity gather data/cornell-box.obj --passes 8 -o gathered.h5\n"
+             "  radiosity gather data/cornell-box.obj --passes 8 -o gathered.h5 -o gathered.png\n"
              "  radiosity gather cornell.h5 --at patches --resolution 128";
     case Command::compare:
       return "A and B: results files (.h5), meshes with vertex colours of any program (.glb, "
@@ -63,6 +66,7 @@ const char* examplesOf(Command command) {
              ".obj), both; or two pictures. Meshes may differ: a point's counterpart is the "
              "nearest\n"
              "one of the other side that faces alike; means over A's cells are compared, W/m^2.\n"
+             "Options of scene, mesh, form factors, solution and gathering go with --gather.\n"
              "Files (-o): .png (the difference in false colour); with --gather also .h5 "
              "(results).\n"
              "Exit code 1: the difference is above --tolerance.\n\n"

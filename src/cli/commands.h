@@ -35,7 +35,8 @@ void writeStages(Session& session, Pipeline& pipeline, OutputSet& files);
 /// out of the results.
 int judgeSolution(Session& session, Pipeline& pipeline);
 
-/// Writes the .glb among `files` as a lit mesh.
-void writeLitMesh(Pipeline& pipeline, OutputSet& files, double ev, double crease);
+/// Says so where a results file was the input, more was computed than it holds, and nothing is
+/// written to it.
+void noteUnsaved(Session& session, const Pipeline& pipeline, const OutputSet& files);
 
 }  // namespace radiosity::cli

@@ -91,6 +91,16 @@ bool isPictureName(const std::string& path) {
   return std::find(std::begin(meshes), std::end(meshes), extension) == std::end(meshes);
 }
 
+ImageFile readPicture(const std::string& path) {
+  try {
+    return readImageFile(path);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format(
+        "{}; what can be compared: results (.h5), lit meshes (.glb, .gltf, .ply, .obj), pictures",
+        error.what()));
+  }
+}
+
 Side readSide(const std::string& label, const std::string& path, const std::string& said) {
   Side side;
   side.label = label;
@@ -102,7 +112,7 @@ Side readSide(const std::string& label, const std::string& path, const std::stri
   if (isResultsFile(path)) {
     readResultsSide(side, said);
   } else if (isPictureName(path)) {
-    ImageFile file = readImageFile(path);
+    ImageFile file = readPicture(path);
     std::optional<LightUnit> of_file;
     if (file.bytes) of_file = LightUnit::srgb8;
     if (!file.bytes && file.quantity == "radiance") of_file = LightUnit::radiance;
@@ -217,6 +227,21 @@ void drawField(Session& session, const LightField& side, const Comparison& c, Pi
   });
 }
 
+/// Pictures are compared pixel by pixel, as they are.
+void requirePixelOptions(const Request& request) {
+  const std::pair<const char*, bool> of_surfaces[] = {{"--camera", !request.camera.empty()},
+                                                      {"--width", request.width.has_value()},
+                                                      {"--height", request.height.has_value()},
+                                                      {"--match", request.match.has_value()},
+                                                      {"--partial", request.partial}};
+  for (const auto& [name, given] : of_surfaces) {
+    if (!given) continue;
+    throw InputError(fmt::format(
+        "{}: is about surfaces, and A and B are pictures, compared pixel by pixel; leave it out",
+        name));
+  }
+}
+
 void requirePicture(const OutputSet& files, const Request& request) {
   if (files.has(Format::results) && !request.with_gather) {
     throw InputError(files.path(Format::results) +
@@ -244,6 +269,7 @@ int compareFiles(Session& session, OutputSet& files) {
   session.report.line("A", fmt::format("{}: {}", a.path, a.light));
   session.report.line("B", fmt::format("{}: {}", b.path, b.light));
   const bool pictures = a.isImage();
+  if (pictures) requirePixelOptions(request);
   const Comparison c = pictures ? compare(a.image(), a.unit, b.image(), b.unit, options)
                                 : compare(a.field(), b.field(), options);
   const bool relative = a.unit == LightUnit::srgb8;
@@ -266,6 +292,25 @@ int compareFiles(Session& session, OutputSet& files) {
   }
   files.commit(session.report, session.progress);
   return code;
+}
+
+/// In words; first what outweighs the rest.
+std::string gapCause(const Gathered& gathered) {
+  std::string cause;
+  if (gathered.summary.status == GatherStatus::pass_limit) {
+    cause =
+        fmt::format("light is missing that goes on after pass {}: allow more --passes; beside it, ",
+                    gathered.summary.passes.size());
+  }
+  if (gathered.at == GatherAt::vertices) {
+    return cause +
+           "eyes see from points what form factors average over areas; radiosity is linear between "
+           "vertices, not constant on patches: both fall with smaller patches; pixels: falls with "
+           "--resolution";
+  }
+  return cause +
+         "none but rounding where the form factors are the same hemicubes; else eyes see from one "
+         "point what form factors average over a patch, and pixels";
 }
 
 /// The matrix solution and the gather method, both made where they are not there yet.
@@ -291,19 +336,11 @@ int compareWithGather(Session& session, OutputSet& files) {
   const Comparison c = compare(a, b, options);
   session.report.section("comparison", "Comparison: A the matrix solution, B the gathered light");
   reportComparison(session.report, c, false, false);
-  const bool at_vertices = pipeline.gatheredLight().at == GatherAt::vertices;
-  session.report.text(
-      "gap", "where the gap comes from",
-      at_vertices
-          ? "eyes see from points what form factors average over areas; radiosity is linear "
-            "between vertices, not constant on patches: both fall with smaller patches; "
-            "pixels: falls with --resolution"
-          : "none but rounding where the form factors are the same hemicubes; else eyes see "
-            "from one point what form factors average over a patch, and pixels");
+  session.report.text("gap", "where the gap comes from", gapCause(pipeline.gatheredLight()));
   const int code = judge(session, c);
   if (files.has(Format::png)) {
     Picture picture = choosePicture(request, pipeline.scene());
-    framePicture(picture, pipeline);
+    framePicture(picture, pipeline.patches(), pipeline.formFactors().report.closed);
     drawField(session, a, c, picture, files);
   }
   writeStages(session, pipeline, files);

@@ -1,6 +1,7 @@
 #include "radiosity/gather.h"
 
 #include "cli/commands.h"
+#include "cli/picture.h"
 
 namespace radiosity::cli {
 
@@ -26,11 +27,19 @@ int runGather(Session& session) {
   OutputSet files = claimOutputs(session);
   Pipeline pipeline(session.request, session.report, session.progress);
   pipeline.open(files.path(Format::results));
+  Picture picture = choosePicture(session.request, pipeline.scene());
   pipeline.mesh();
   pipeline.gathered();
-  const int code = judgeGathered(session, pipeline.gatheredLight().summary);
+  const GatherSummary& summary = pipeline.gatheredLight().summary;
+  const int code = judgeGathered(session, summary);
+  if (files.has(Format::png) || files.has(Format::exr) || files.has(Format::glb)) {
+    framePicture(picture, pipeline.patches(), summary.closed);
+    reportPicture(session.report, picture);
+    drawLight(session, pipeline.patches(), gatheredLight(pipeline), picture, files);
+  }
   writeStages(session, pipeline, files);
   files.commit(session.report, session.progress);
+  noteUnsaved(session, pipeline, files);
   return code;
 }
 

@@ -24,9 +24,9 @@ struct Extension {
 const std::vector<Extension>& extensions() {
   using enum Command;
   static const std::vector<Extension> kAll = {
-      {".png", Format::png, {compare, render}},
-      {".exr", Format::exr, {render}},
-      {".glb", Format::glb, {mesh, solve, render}},
+      {".png", Format::png, {gather, compare, render}},
+      {".exr", Format::exr, {gather, render}},
+      {".glb", Format::glb, {mesh, solve, gather, render}},
       {".obj", Format::obj, {mesh}},
       {".h5", Format::results, {mesh, factors, solve, gather, compare, render}},
       {".mtx", Format::matrix_market, {factors, solve, render}},

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "cli/words.h"
+#include "radiosity/results.h"
 
 namespace radiosity::cli {
 
@@ -71,19 +72,89 @@ Picture choosePicture(const Request& request, const Scene& scene) {
   return picture;
 }
 
-void framePicture(Picture& picture, Pipeline& pipeline) {
+void framePicture(Picture& picture, const PatchMesh& mesh, bool closed) {
   if (!picture.camera_from.empty()) return;
-  const bool closed = pipeline.formFactors().report.closed;
-  picture.camera = framingCamera(pipeline.patches(), closed,
-                                 double(picture.options.width) / double(picture.options.height));
+  picture.camera =
+      framingCamera(mesh, closed, double(picture.options.width) / double(picture.options.height));
   picture.camera_from =
       closed ? "framed from inside the closed scene" : "framed from outside the open scene";
 }
 
-Image radiancePicture(const Picture& picture, Pipeline& pipeline, Session& session) {
-  std::vector<double> radiance = pipeline.solved().radiosity;
-  for (double& value : radiance) value *= std::numbers::inv_pi;
-  return render(pipeline.patches(), radiance, picture.camera, picture.options, session.progress);
+Light solvedLight(const Pipeline& pipeline) { return {pipeline.solved().radiosity, {}}; }
+
+Light gatheredLight(const Pipeline& pipeline) {
+  const PatchMesh& mesh = pipeline.patches();
+  const Gathered& gathered = pipeline.gatheredLight();
+  Light light{patchRadiosity(mesh, gathered), {}};
+  if (gathered.at == GatherAt::vertices) light.corners = cornerRadiosity(mesh, gathered);
+  return light;
+}
+
+Image radiancePicture(const Picture& picture, const PatchMesh& mesh, const Light& light,
+                      Progress& progress) {
+  Light radiance = light;
+  for (double& value : radiance.patches) value *= std::numbers::inv_pi;
+  for (double& value : radiance.corners) value *= std::numbers::inv_pi;
+  if (radiance.corners.empty()) {
+    return render(mesh, radiance.patches, picture.camera, picture.options, progress);
+  }
+  return render(mesh, radiance.patches, radiance.corners, picture.camera, picture.options,
+                progress);
+}
+
+void reportPicture(Report& report, const Picture& picture) {
+  const Camera& c = picture.camera;
+  const double eye[] = {c.eye.x, c.eye.y, c.eye.z};
+  const double target[] = {c.target.x, c.target.y, c.target.z};
+  report.section("picture", "Picture");
+  report.text("camera", "camera", picture.camera_from);
+  report.bands("eye_m", "eye", eye, "m");
+  report.bands("target_m", "target", target, "m");
+  report.number("vertical_fov_deg", "vertical field of view", c.vertical_fov * 180 / M_PI, "deg");
+  report.text(
+      "size", "size",
+      fmt::format("{} x {} pixels, {} x {} samples", picture.options.width, picture.options.height,
+                  picture.options.samples, picture.options.samples));
+}
+
+Metadata metadataOf(const Picture& picture, const std::string& quantity, const std::string& unit) {
+  const Camera& c = picture.camera;
+  return {{"Software", "radiosity " RADIOSITY_VERSION},
+          {"quantity", quantity},
+          {"unit", unit},
+          {"camera", fmt::format("eye={},{},{};target={},{},{};up={},{},{};fov={}", c.eye.x,
+                                 c.eye.y, c.eye.z, c.target.x, c.target.y, c.target.z, c.up.x,
+                                 c.up.y, c.up.z, c.vertical_fov * 180 / M_PI)}};
+}
+
+void writeLitMesh(const PatchMesh& mesh, const Light& light, OutputSet& files, double ev,
+                  double crease) {
+  files.write(Format::glb, fmt::format("lit mesh, EV {:.2f}", ev),
+              [&](const std::string& temporary) {
+                if (light.corners.empty()) {
+                  writeLitGlb(temporary, mesh, light.patches, ev, crease);
+                } else {
+                  writeLitGlb(temporary, mesh, light.patches, light.corners, ev);
+                }
+              });
+}
+
+void drawLight(Session& session, const PatchMesh& mesh, const Light& light, const Picture& picture,
+               OutputSet& files) {
+  const Image radiance = radiancePicture(picture, mesh, light, session.progress);
+  const double ev = exposureOf(session.request, radiance);
+  session.report.number("exposure_ev", "exposure", ev,
+                        session.request.exposure == "auto" ? "EV (automatic)" : "EV");
+  files.write(Format::png, fmt::format("picture, EV {:.2f}, sRGB", ev),
+              [&](const std::string& temporary) {
+                Metadata metadata = metadataOf(picture, "exposed radiance", "sRGB");
+                metadata.emplace_back("exposure_ev", fmt::format("{}", ev));
+                writeImage(temporary, exposed(radiance, ev), false, metadata);
+              });
+  files.write(Format::exr, "radiance, W/m^2/sr, linear", [&](const std::string& temporary) {
+    writeImage(temporary, radiance, false, metadataOf(picture, "radiance", "W/m^2/sr"));
+  });
+  writeLitMesh(mesh, light, files, ev, picture.options.crease);
 }
 
 double exposureOf(const Request& request, const Image& radiance) {

@@ -20,12 +20,35 @@ struct Picture {
 /// --exposure or an option of the picture is wrong: found before the work is done.
 Picture choosePicture(const Request& request, const Scene& scene);
 
-/// Where no camera was chosen, one that frames the scene, from inside a closed one. Needs the mesh
-/// and the accounts of the form factors.
-void framePicture(Picture& picture, Pipeline& pipeline);
+/// Where no camera was chosen, one that frames the scene, from inside a closed one.
+void framePicture(Picture& picture, const PatchMesh& mesh, bool closed);
+
+/// What is drawn: radiosity, W/m^2.
+struct Light {
+  std::vector<double> patches;  ///< N * 3
+  std::vector<double> corners;  ///< mesh.corners.size() * 3; empty: from the patches around them
+};
+Light solvedLight(const Pipeline& pipeline);
+Light gatheredLight(const Pipeline& pipeline);
 
 /// Radiance B / pi, W/m^2/sr, linear.
-Image radiancePicture(const Picture& picture, Pipeline& pipeline, Session& session);
+Image radiancePicture(const Picture& picture, const PatchMesh& mesh, const Light& light,
+                      Progress& progress);
+
+/// The picture's part of the report: camera and size.
+void reportPicture(Report& report, const Picture& picture);
+
+/// What an image file says of itself.
+using Metadata = std::vector<std::pair<std::string, std::string>>;
+Metadata metadataOf(const Picture& picture, const std::string& quantity, const std::string& unit);
+
+/// Draws the .png and .exr among `files`, writes the .glb, and reports the exposure.
+void drawLight(Session& session, const PatchMesh& mesh, const Light& light, const Picture& picture,
+               OutputSet& files);
+
+/// Writes the .glb among `files` as a lit mesh.
+void writeLitMesh(const PatchMesh& mesh, const Light& light, OutputSet& files, double ev,
+                  double crease);
 
 /// The EV of --exposure: the number, or what suits the picture.
 double exposureOf(const Request& request, const Image& radiance);

@@ -13,8 +13,6 @@ namespace radiosity::cli {
 
 namespace {
 
-using Metadata = std::vector<std::pair<std::string, std::string>>;
-
 /// What --show names; `none`: the lit scene itself.
 struct Show {
   enum Quantity { none, radiosity, irradiance, form_factor, row_sum } quantity = none;
@@ -86,48 +84,6 @@ std::vector<double> quantityOf(const Show& show, Pipeline& pipeline, FalseColour
   return pipeline.formFactors().fronts;
 }
 
-void reportPicture(Report& report, const Picture& picture) {
-  const Camera& c = picture.camera;
-  const double eye[] = {c.eye.x, c.eye.y, c.eye.z};
-  const double target[] = {c.target.x, c.target.y, c.target.z};
-  report.section("picture", "Picture");
-  report.text("camera", "camera", picture.camera_from);
-  report.bands("eye_m", "eye", eye, "m");
-  report.bands("target_m", "target", target, "m");
-  report.number("vertical_fov_deg", "vertical field of view", c.vertical_fov * 180 / M_PI, "deg");
-  report.text(
-      "size", "size",
-      fmt::format("{} x {} pixels, {} x {} samples", picture.options.width, picture.options.height,
-                  picture.options.samples, picture.options.samples));
-}
-
-Metadata metadataOf(const Picture& picture, const std::string& quantity, const std::string& unit) {
-  const Camera& c = picture.camera;
-  return {{"Software", "radiosity " RADIOSITY_VERSION},
-          {"quantity", quantity},
-          {"unit", unit},
-          {"camera", fmt::format("eye={},{},{};target={},{},{};up={},{},{};fov={}", c.eye.x,
-                                 c.eye.y, c.eye.z, c.target.x, c.target.y, c.target.z, c.up.x,
-                                 c.up.y, c.up.z, c.vertical_fov * 180 / M_PI)}};
-}
-
-void drawScene(Session& session, Pipeline& pipeline, const Picture& picture, OutputSet& files) {
-  const Image radiance = radiancePicture(picture, pipeline, session);
-  const double ev = exposureOf(session.request, radiance);
-  session.report.number("exposure_ev", "exposure", ev,
-                        session.request.exposure == "auto" ? "EV (automatic)" : "EV");
-  files.write(Format::png, fmt::format("picture, EV {:.2f}, sRGB", ev),
-              [&](const std::string& temporary) {
-                Metadata metadata = metadataOf(picture, "exposed radiance", "sRGB");
-                metadata.emplace_back("exposure_ev", fmt::format("{}", ev));
-                writeImage(temporary, exposed(radiance, ev), false, metadata);
-              });
-  files.write(Format::exr, "radiance, W/m^2/sr, linear", [&](const std::string& temporary) {
-    writeImage(temporary, radiance, false, metadataOf(picture, "radiance", "W/m^2/sr"));
-  });
-  writeLitMesh(pipeline, files, ev, picture.options.crease);
-}
-
 /// Where the patch is whose form factors are drawn.
 void describePatch(Report& report, const PatchMesh& mesh, const Show& show) {
   const Vec3 c = mesh.centroid[show.patch];
@@ -194,20 +150,16 @@ int runRender(Session& session) {
     code = judgeSolution(session, pipeline);
     if (!pipeline.results().solution) throw RunError("no picture: the system is singular");
   }
-  framePicture(picture, pipeline);
+  framePicture(picture, pipeline.patches(), pipeline.formFactors().report.closed);
   reportPicture(session.report, picture);
   if (show.quantity == Show::none) {
-    drawScene(session, pipeline, picture, files);
+    drawLight(session, pipeline.patches(), solvedLight(pipeline), picture, files);
   } else {
     drawQuantity(session, pipeline, picture, show, files);
   }
   writeStages(session, pipeline, files);
   files.commit(session.report, session.progress);
-  if (pipeline.fromResultsFile() && pipeline.changed() && !files.has(Format::results)) {
-    session.report.line("note", fmt::format("{} is left as it is; add -o {} to keep what was "
-                                            "computed",
-                                            request.input, request.input));
-  }
+  noteUnsaved(session, pipeline, files);
   return code;
 }
 

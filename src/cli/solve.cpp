@@ -16,9 +16,11 @@ int runSolve(Session& session) {
   writeStages(session, pipeline, files);
   if (files.has(Format::glb) && pipeline.results().solution) {
     Picture picture = choosePicture(session.request, pipeline.scene());
-    framePicture(picture, pipeline);
-    const double ev = exposureOf(session.request, radiancePicture(picture, pipeline, session));
-    writeLitMesh(pipeline, files, ev, picture.options.crease);
+    framePicture(picture, pipeline.patches(), pipeline.formFactors().report.closed);
+    const Light light = solvedLight(pipeline);
+    const Image radiance = radiancePicture(picture, pipeline.patches(), light, session.progress);
+    const double ev = exposureOf(session.request, radiance);
+    writeLitMesh(pipeline.patches(), light, files, ev, picture.options.crease);
   }
   files.commit(session.report, session.progress);
   return code;

@@ -89,11 +89,13 @@ int judgeSolution(Session& session, Pipeline& pipeline) {
   return 1;
 }
 
-void writeLitMesh(Pipeline& pipeline, OutputSet& files, double ev, double crease) {
-  files.write(Format::glb, fmt::format("lit mesh, EV {:.2f}", ev),
-              [&](const std::string& temporary) {
-                writeLitGlb(temporary, pipeline.patches(), pipeline.solved().radiosity, ev, crease);
-              });
+void noteUnsaved(Session& session, const Pipeline& pipeline, const OutputSet& files) {
+  const std::string& input = session.request.input;
+  if (pipeline.fromResultsFile() && pipeline.changed() && !files.has(Format::results)) {
+    session.report.line("note", fmt::format("{} is left as it is; add -o {} to keep what was "
+                                            "computed",
+                                            input, input));
+  }
 }
 
 }  // namespace radiosity::cli

@@ -36,13 +36,15 @@ void fit(const std::vector<ValuePair>& pairs, Comparison& comparison) {
 void nameFactor(const CompareOptions& options, Comparison& comparison) {
   const double before = comparison.relativeL2();
   const double scale = comparison.fitted_scale;
-  // Half of a difference worth naming goes with the factor: it is no accident of the scene.
+  // Most of a difference worth naming goes with the factor: it is no accident of the scene. Of a
+  // factor that means something, half is enough.
   constexpr double kWorthNaming = 0.05;
-  if (options.fit_scale || before < kWorthNaming || comparison.fitted_l2 > 0.5 * before) return;
+  const auto near = [&](double factor) { return std::abs(scale / factor - 1) < 0.05; };
+  const double left = near(std::numbers::pi) || near(std::numbers::inv_pi) ? 0.5 : 0.2;
+  if (options.fit_scale || before < kWorthNaming || comparison.fitted_l2 > left * before) return;
   const std::string what =
       fmt::format("B times {:.4g} is within {:.3g}% of A, as it stands it is {:.3g}% off", scale,
                   100 * comparison.fitted_l2, 100 * before);
-  const auto near = [&](double factor) { return std::abs(scale / factor - 1) < 0.05; };
   std::string cause =
       "the two differ by one factor: another exposure or unit; --fit-scale takes it out";
   if (near(std::numbers::pi)) {

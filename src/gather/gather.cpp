@@ -171,18 +171,20 @@ std::string messageOf(const GatherSummary& summary, const GatherOptions& options
     return "no light: nothing emits, so everything is dark; usable, but black";
   }
   const GatherPass& last = summary.passes.back();
+  const std::size_t count = summary.passes.size();
+  const std::string passes = fmt::format("{} {}", count, count == 1 ? "pass" : "passes");
   const std::string bound =
       last.bound ? fmt::format("what further passes would add is below {:.2e} W/m^2", *last.bound)
                  : "what further passes would add is not bounded: reflectance times what is seen "
                    "reaches 1";
   if (summary.status == GatherStatus::converged) {
-    return fmt::format("converged: {} passes, last change {:.2e} of the largest emission; {}",
-                       summary.passes.size(), last.change, bound);
+    return fmt::format("converged: {}, last change {:.2e} of the largest emission; {}", passes,
+                       last.change, bound);
   }
   return fmt::format(
-      "{} passes as limited, last change {:.2e} of the largest emission (bound asked "
+      "{} as limited, last change {:.2e} of the largest emission (bound asked "
       "for {:.2e}); {}",
-      summary.passes.size(), last.change, options.tolerance, bound);
+      passes, last.change, options.tolerance, bound);
 }
 
 void runPasses(const GatherScene& scene, const GatherOptions& options, Gathered& result,

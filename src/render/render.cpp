@@ -42,6 +42,31 @@ class RgbPixel {
   std::array<double, 3> sum_{};
 };
 
+Image draw(const PatchMesh& mesh, const PatchField& field, const Camera& camera,
+           const RenderOptions& options, Progress& progress) {
+  const View view = makeView(camera, options.width, options.height);
+  const ItemBuffer items(mesh, view, options.samples, options.show_backs);
+  Image image{options.width, options.height, {}};
+  image.rgba.assign(std::size_t(image.width) * image.height * 4, 0.0f);
+  progress.begin("picture", items.tileCount());
+  forSamples(
+      mesh, items, field, [&](std::size_t) { return RgbPixel(image); }, progress);
+  progress.end();
+  return image;
+}
+
+void checkCorners(const PatchMesh& mesh, std::span<const double> corners) {
+  if (corners.size() != 3 * mesh.corners.size()) {
+    throw InputError(fmt::format("render: {} values at corners are needed, {} were given",
+                                 3 * mesh.corners.size(), corners.size()));
+  }
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    if (std::isfinite(corners[k])) continue;
+    throw InputError(fmt::format("render: the value at vertex {} is {}, not a finite number",
+                                 mesh.corners[k / 3], corners[k]));
+  }
+}
+
 template <class Number>
 void checkRange(const char* option, Number value, Number low, Number high, const char* unit = "") {
   if (value >= low && value <= high) return;
@@ -80,16 +105,18 @@ PatchField makeField(const PatchMesh& mesh, std::span<const double> values, int 
 Image render(const PatchMesh& mesh, std::span<const double> values, const Camera& camera,
              const RenderOptions& options, Progress& progress) {
   options.validate();
-  const View view = makeView(camera, options.width, options.height);
-  const PatchField field = makeField(mesh, values, 3, options);
-  const ItemBuffer items(mesh, view, options.samples, options.show_backs);
-  Image image{options.width, options.height, {}};
-  image.rgba.assign(std::size_t(image.width) * image.height * 4, 0.0f);
-  progress.begin("picture", items.tileCount());
-  forSamples(
-      mesh, items, field, [&](std::size_t) { return RgbPixel(image); }, progress);
-  progress.end();
-  return image;
+  return draw(mesh, makeField(mesh, values, 3, options), camera, options, progress);
+}
+
+Image render(const PatchMesh& mesh, std::span<const double> values, std::span<const double> corners,
+             const Camera& camera, const RenderOptions& options, Progress& progress) {
+  options.validate();
+  checkCorners(mesh, corners);
+  RenderOptions constant = options;
+  constant.smooth = false;
+  PatchField field = makeField(mesh, values, 3, constant);
+  if (options.smooth) field.corners.assign(corners.begin(), corners.end());
+  return draw(mesh, field, camera, options, progress);
 }
 
 }  // namespace radiosity

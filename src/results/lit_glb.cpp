@@ -90,11 +90,31 @@ void checkArguments(const std::string& path, const PatchMesh& mesh,
   }
 }
 
+void checkCorners(const std::string& path, const PatchMesh& mesh, std::span<const double> corners) {
+  if (corners.size() != 3 * mesh.corners.size()) {
+    throw InputError(fmt::format("{}: a lit mesh of {} corners needs {} values at them, not {}",
+                                 path, mesh.corners.size(), 3 * mesh.corners.size(),
+                                 corners.size()));
+  }
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    if (std::isfinite(corners[k])) continue;
+    throw RunError(fmt::format("{}: the radiosity at vertex {} is {}; gather again", path,
+                               mesh.corners[k / 3], corners[k]));
+  }
+}
+
 }  // namespace
 
 void writeLitGlb(const std::string& path, const PatchMesh& mesh, std::span<const double> radiosity,
                  double ev, double crease) {
   checkArguments(path, mesh, radiosity, ev);
+  writeLitGlb(path, mesh, radiosity, cornerValues(mesh, radiosity, 3, crease), ev);
+}
+
+void writeLitGlb(const std::string& path, const PatchMesh& mesh, std::span<const double> radiosity,
+                 std::span<const double> corners, double ev) {
+  checkArguments(path, mesh, radiosity, ev);
+  checkCorners(path, mesh, corners);
   GlbWriter glb(floatOrigin(mesh));
   glb.useExtension("KHR_materials_unlit");
   glb.setExtras({{"exposure_ev", ev},
@@ -110,7 +130,6 @@ void writeLitGlb(const std::string& path, const PatchMesh& mesh, std::span<const
                        {"extensions", {{"KHR_materials_unlit", GlbWriter::Json::object()}}}});
   // The picture shows radiance L = B / pi; the same exposure makes both look the same.
   const double scale = std::exp2(ev) / std::numbers::pi;
-  const std::vector<double> corners = cornerValues(mesh, radiosity, 3, crease);
   std::array<std::vector<std::vector<Index>>, 2> by_side;
   for (int side = 0; side < 2; ++side) {
     by_side[std::size_t(side)] =

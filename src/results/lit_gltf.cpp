@@ -51,7 +51,8 @@ class LitGltfReader {
     if (!primitive.attributes.contains(attribute_)) {
       file_.fail(what +
                  " has no vertex colours (COLOR_0), so there is no light to compare; bake the "
-                 "light into vertex colours and export those");
+                 "light into vertex colours and export those; a scene is solved first, and its "
+                 "results file compared");
     }
     const int accessor = primitive.attributes.at(attribute_);
     const auto& stored = file_.at(file_.model.accessors, accessor, "accessor", what);

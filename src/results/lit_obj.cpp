@@ -42,7 +42,8 @@ class LitObjReader {
     if (words.size() == 4 || words.size() == 5) {
       fail(
           "a vertex without colour (v x y z r g b), so there is no light to compare; bake the "
-          "light into vertex colours and export those");
+          "light into vertex colours and export those; a scene is solved first, and its results "
+          "file compared");
     }
     if (words.size() != 7) fail("a vertex with colour has 6 numbers: v x y z r g b");
     std::array<double, 6> numbers{};
