@@ -2,12 +2,15 @@
 // bit, and the twin against the exact clipper, which shares nothing with it but the formula.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <random>
 
 #include "formfactor/aligned_buffer.h"
 #include "formfactor/exact/clip_kernels.h"
+#include "formfactor/exact/target_rows.h"
 #include "formfactor/exact/visible_part.h"
 #include "occluder_builder.h"
 #include "simd_targets.h"
@@ -58,53 +61,91 @@ Arena randomSetup(std::uint64_t seed, double size, bool with_faces) {
   return setup;
 }
 
-/// The arrays of a Arena.
+GroupTarget groupTarget(const std::vector<Vec3>& outline) {
+  const Vec3 middle = 0.25 * (outline[0] + outline[1] + outline[2] + outline[3]);
+  const auto corner = [&](std::size_t k) { return outline[k]; };
+  GroupTarget target;
+  target.setOutline(outline, middle, glm::normalize(vectorArea(outline.size(), corner)));
+  return target;
+}
+
+/// The arrays of an Arena, and what kernels make of them.
 template <class T>
 struct Lanes {
   explicit Lanes(const Arena& setup) {
-    for (AlignedBuffer<T>& row : rows) row.reserve(kLanes);
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const std::vector<Vec3>& outline = setup.targets[lane];
-      const Vec3 middle = 0.25 * (outline[0] + outline[1] + outline[2] + outline[3]);
-      for (int axis = 0; axis < 3; ++axis) {
-        rows[std::size_t(axis)].data()[lane] = T(middle[axis]);
-        for (std::size_t k = 0; k < 4; ++k) {
-          rows[3 + 3 * k + std::size_t(axis)].data()[lane] = T(outline[k][axis] - middle[axis]);
-        }
-      }
-    }
+    std::vector<GroupTarget> targets;
+    targets.reserve(setup.targets.size());
+    for (const std::vector<Vec3>& outline : setup.targets) targets.push_back(groupTarget(outline));
+    std::vector<const GroupTarget*> pointers;
+    pointers.reserve(targets.size());
+    for (const GroupTarget& one : targets) pointers.push_back(&one);
+    rows.fill(pointers, Vec3(0.0));
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      targets.middle[axis] = rows[axis].data();
-      for (std::size_t k = 0; k < 4; ++k) targets.corner[k][axis] = rows[3 + 3 * k + axis].data();
       eye.position[axis] = T(setup.eye[int(axis)]);
       eye.normal[axis] = T(setup.normal[int(axis)]);
     }
-    targets.corners = 4;
-    targets.count = kLanes;
+    addPlane({Vec3(0.0), 1}, 0);
+    addPlane({Vec3(0.0), -1}, 0);
     for (std::size_t k = 0; k < setup.cone.planes.size(); ++k) {
-      const ClipPlane& plane = setup.cone.planes[k];
-      const double length = glm::length(plane.normal);
-      const Vec3 n = plane.normal / length;
-      planes.push_back(
-          {{T(n.x), T(n.y), T(n.z)}, T(plane.offset / length), std::uint32_t(12345 + 7919 * k)});
+      const ClipPlane& side = setup.cone.planes[k];
+      const double length = glm::length(side.normal);
+      addPlane({side.normal / length, side.offset / length}, std::uint32_t(12345 + 7919 * k));
+    }
+    label.resize(label.size() + kMostPlanes);
+    for (AlignedBuffer<LaneIndex<T>>* buffer : {&target, &eyes, &first, &count}) {
+      buffer->reserve(kLanes);
+    }
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      // Any order will do.
+      target.data()[lane] = LaneIndex<T>(kLanes - 1 - lane);
+      eyes.data()[lane] = 0;
+      first.data()[lane] = 2;
+      count.data()[lane] = LaneIndex<T>(setup.cone.planes.size());
     }
     whole.reserve(kLanes);
     hidden.reserve(kLanes);
+    common.reserve(kLanes);
     shape.reserve(kLanes);
     cut_low.reserve(kLanes);
     cut_high.reserve(kLanes);
   }
-  void run(const ClipKernels<T>& kernels) {
-    kernels.whole(targets, eye, whole.data());
-    kernels.hidden(targets, eye, planes.data(), planes.size(),
-                   {hidden.data(), shape.data(), cut_low.data(), cut_high.data()});
+  void addPlane(const ClipPlane& p, std::uint32_t name) {
+    plane[0].push_back(T(p.normal.x));
+    plane[1].push_back(T(p.normal.y));
+    plane[2].push_back(T(p.normal.z));
+    plane[3].push_back(T(p.offset));
+    label.push_back(name);
   }
-  std::array<AlignedBuffer<T>, 15> rows;
-  TargetLanes<T> targets;
+  void run(const ClipFunctions<T>& clip) {
+    clip.whole(rows.lanes(), eye, whole.data());
+    const EyePoints<T> points = {{eye.position, eye.position + 1, eye.position + 2},
+                                 {eye.normal[0], eye.normal[1], eye.normal[2]}};
+    const ConePlanes<T> planes = {
+        {plane[0].data(), plane[1].data(), plane[2].data()}, plane[3].data(), label.data()};
+    const ClipItems<T> items = {kLanes, target.data(), eyes.data()};
+    clip.hidden(rows.lanes(), points, planes, items, first.data(), count.data(),
+                {hidden.data(), shape.data(), cut_low.data(), cut_high.data()});
+    // The same planes, named one by one.
+    std::vector<AlignedBuffer<LaneIndex<T>>> own(plane[0].size() - 2);
+    std::vector<const LaneIndex<T>*> names;
+    for (std::size_t p = 0; p < own.size(); ++p) {
+      own[p].reserve(kLanes);
+      std::fill_n(own[p].data(), kLanes, LaneIndex<T>(p + 2));
+      names.push_back(own[p].data());
+    }
+    clip.common(rows.lanes(), points, planes, items, names.data(), names.size(), common.data());
+  }
+  /// The item of a target.
+  static std::size_t item(std::size_t lane) { return kLanes - 1 - lane; }
+
+  TargetRows<T> rows;
   EyePoint<T> eye;
-  std::vector<ConePlane<T>> planes;
+  std::array<std::vector<T>, 4> plane;
+  std::vector<ShapeWord<T>> label;
+  AlignedBuffer<LaneIndex<T>> target, eyes, first, count;
   AlignedBuffer<T> whole;
   AlignedBuffer<T> hidden;
+  AlignedBuffer<T> common;
   AlignedBuffer<ShapeWord<T>> shape;
   AlignedBuffer<ShapeWord<T>> cut_low;
   AlignedBuffer<ShapeWord<T>> cut_high;
@@ -120,34 +161,47 @@ const ClipKernels<T>& of(const ClipKernelSet& set) {
 }
 
 template <class T>
-void expectSameBits(const Arena& setup, const ClipKernelSet& kernels) {
+void expectSameBits(const ClipFunctions<T>& scalar, const ClipFunctions<T>& vectors,
+                    const Arena& setup) {
   Lanes<T> expected(setup);
-  expected.run(of<T>(scalarClipKernels()));
+  expected.run(scalar);
   Lanes<T> found(setup);
-  found.run(of<T>(kernels));
+  found.run(vectors);
+  const auto bits = [](const AlignedBuffer<T>& values, std::size_t lane) {
+    return std::bit_cast<ShapeWord<T>>(values.data()[lane]);
+  };
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    ASSERT_EQ(std::bit_cast<ShapeWord<T>>(expected.whole.data()[lane]),
-              std::bit_cast<ShapeWord<T>>(found.whole.data()[lane]));
-    ASSERT_EQ(std::bit_cast<ShapeWord<T>>(expected.hidden.data()[lane]),
-              std::bit_cast<ShapeWord<T>>(found.hidden.data()[lane]));
+    ASSERT_EQ(bits(expected.whole, lane), bits(found.whole, lane));
+    ASSERT_EQ(bits(expected.hidden, lane), bits(found.hidden, lane));
+    ASSERT_EQ(bits(expected.common, lane), bits(found.common, lane));
     ASSERT_EQ(expected.shape.data()[lane], found.shape.data()[lane]);
+    ASSERT_EQ(expected.cut_low.data()[lane], found.cut_low.data()[lane]);
+    ASSERT_EQ(expected.cut_high.data()[lane], found.cut_high.data()[lane]);
   }
+}
+
+template <class T>
+void expectSameBits(const ClipKernelSet& kernels, const Arena& setup) {
+  const ClipKernelSet scalar = scalarClipKernels();
+  expectSameBits<T>(of<T>(scalar).near, of<T>(kernels).near, setup);
+  expectSameBits<T>(of<T>(scalar).far, of<T>(kernels).far, setup);
 }
 
 TEST(ClipKernels, EveryTargetAgreesToTheBit) {
   const int targets = forEveryTarget([](const ClipKernelSet& kernels) {
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
       const Arena setup = randomSetup(seed, seed % 4 == 0 ? 0.5 : 0.03, seed % 5 == 0);
-      expectSameBits<float>(setup, kernels);
-      expectSameBits<double>(setup, kernels);
+      expectSameBits<float>(kernels, setup);
+      expectSameBits<double>(kernels, setup);
     }
   });
   EXPECT_GE(targets, 1);
 }
 
-/// Against VisiblePart, lane by lane: errors relative to the whole polygon's form factor.
+/// Against VisiblePart, lane by lane: errors relative to the whole polygon's form factor, of which
+/// `tolerance` is allowed.
 template <class T>
-void expectAccurate(double size, double tolerance) {
+void expectAccurate(const ClipFunctions<T>& clip, double size, double tolerance) {
   std::size_t cut = 0;
   std::size_t all = 0;
   VisiblePart exact;
@@ -155,25 +209,29 @@ void expectAccurate(double size, double tolerance) {
     const bool with_faces = seed % 5 == 0;
     const Arena setup = randomSetup(seed, size, with_faces);
     Lanes<T> lanes(setup);
-    lanes.run(of<T>(scalarClipKernels()));
+    lanes.run(clip);
     const std::vector<Blocker> blocker = {{&setup.body, 0, with_faces}};
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       std::vector<Vec3> outline = setup.targets[lane];
       if (outline[2] == outline[3]) outline.pop_back();
       const PointView view = exact.look(setup.eye, setup.normal, outline, blocker, Vec2(0.5));
+      const std::size_t item = lanes.item(lane);
       const double whole = double(lanes.whole.data()[lane]);
-      const double hidden = double(lanes.hidden.data()[lane]);
+      const double hidden = double(lanes.hidden.data()[item]);
       ASSERT_NEAR(whole, view.whole, tolerance * view.whole) << seed << ' ' << lane;
       const double visible = hidden == kHiddenWhole ? 0 : whole - hidden;
       ASSERT_NEAR(visible, view.visible, tolerance * view.whole) << seed << ' ' << lane;
+      if (hidden != kHiddenWhole) {
+        ASSERT_NEAR(double(lanes.common.data()[item]), hidden, tolerance * whole);
+      }
       all += hidden == kHiddenWhole;
       cut += view.visible > 0.01 * view.whole && view.visible < 0.99 * view.whole;
       // A shape is given where the cone's edge is seen before the polygon, and only there.
       if (visible > 1e-3 * whole && visible < 0.999 * whole) {
-        ASSERT_NE(lanes.shape.data()[lane], 0u);
+        ASSERT_NE(lanes.shape.data()[item], 0u);
       }
       if (hidden == kHiddenWhole || hidden == 0) {
-        ASSERT_EQ(lanes.shape.data()[lane], 0u);
+        ASSERT_EQ(lanes.shape.data()[item], 0u);
       }
     }
   }
@@ -185,15 +243,28 @@ void expectAccurate(double size, double tolerance) {
 
 TEST(ClipKernels, SinglePrecisionKeepsItsAccuracy) {
   // The header's 2e-6 r/h, at r about 1.5.
-  expectAccurate<float>(0.5, 6e-6);
-  expectAccurate<float>(0.1, 3e-5);
-  expectAccurate<float>(0.01, 3e-4);
+  const ClipFunctions<float> clip = scalarClipKernels().single.near;
+  expectAccurate<float>(clip, 0.5, 6e-6);
+  expectAccurate<float>(clip, 0.1, 3e-5);
+  expectAccurate<float>(clip, 0.01, 3e-4);
 }
 
 TEST(ClipKernels, DoublePrecisionKeepsItsAccuracy) {
-  expectAccurate<double>(0.5, 3e-14);
-  expectAccurate<double>(0.1, 1.5e-13);
-  expectAccurate<double>(0.01, 1.5e-12);
+  const ClipFunctions<double> clip = scalarClipKernels().exact.near;
+  expectAccurate<double>(clip, 0.5, 3e-14);
+  expectAccurate<double>(clip, 0.1, 1.5e-13);
+  expectAccurate<double>(clip, 0.01, 1.5e-12);
+}
+
+TEST(ClipKernels, FarKernelsKeepTheirAccuracy) {
+  // The header's kFarError (h/r)^3, h half a diagonal of the quadrilaterals, at r 0.9 and more.
+  for (const double size : {0.1, 0.05, 0.02, 0.01}) {
+    const double h_over_r = 0.75 * size / 0.9;
+    const double tolerance = kFarError * std::pow(h_over_r, 3);
+    expectAccurate<double>(scalarClipKernels().exact.far, size, tolerance);
+    // In single precision what rounding a plane may move a shadow's edge by comes on top.
+    expectAccurate<float>(scalarClipKernels().single.far, size, tolerance + 2e-6 / h_over_r);
+  }
 }
 
 }  // namespace

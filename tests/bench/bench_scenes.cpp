@@ -30,8 +30,8 @@ std::vector<CurveScene> curveScenes(bool quick) {
   if (quick) return scenes;
   scenes.push_back({"cornell-box-closed", 5000, 1e-7});
   scenes.push_back({"cornell-box-closed", 20000, 1e-7});
-  scenes.push_back({"cluttered", 1000, 1e-5});
-  scenes.push_back({"curved", 1000, 1e-5});
+  scenes.push_back({"cluttered", 1000, 1e-4});
+  scenes.push_back({"curved", 1000, 1e-4});
   scenes.push_back({"furnished-room", 1000, 1e-4});
   return scenes;
 }

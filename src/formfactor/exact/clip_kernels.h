@@ -18,16 +18,17 @@ namespace radiosity {
 inline constexpr std::size_t kLaneAlignment = 16;
 /// Corners a target may have: a quadrilateral cut by one plane.
 inline constexpr std::size_t kMostCorners = 5;
-/// Planes one call may have: cones with more are for VisiblePart.
+/// Planes a cone may have: those with more are for VisiblePart.
 inline constexpr std::size_t kMostPlanes = 128;
 
-/// Convex polygons, one a lane, structure of arrays. A polygon's corners are given from its middle,
-/// and middles from an origin near the eye, so that rounding to T moves a polygon as a whole and
-/// leaves its shape: what a sum of arcs needs, which is far smaller than the arcs.
+/// Convex polygons, one a lane, structure of arrays. A polygon's corners are given in its own plane
+/// from its middle, and middles from an origin near the eye, so that rounding to T moves a polygon
+/// as a whole and leaves its shape: what a sum of arcs needs, which is far smaller than the arcs.
 template <class T>
 struct TargetLanes {
   const T* middle[3];
-  const T* corner[kMostCorners][3];
+  const T* axis[2][3];  ///< unit, at right angles, in the plane; first x second: out of the front
+  const T* corner[kMostCorners][2];  ///< along the axes, counter-clockwise seen from the front
   std::size_t corners;  ///< 3 to kMostCorners, of every lane; polygons of fewer repeat their last
   std::size_t count;    ///< a multiple of kLaneAlignment
 };
@@ -39,29 +40,41 @@ struct EyePoint {
   T normal[3];
 };
 
-/// One side of a BlockingCone: dot(normal, p) + offset >= 0 inside, p from the eye.
+/// Several points of one surface.
 template <class T>
-struct ConePlane {
-  T normal[3];  ///< unit
-  T offset;
-  std::uint32_t label;  ///< scrambled: what it adds to a shape it bounds
+struct EyePoints {
+  const T* position[3];
+  T normal[3];
 };
 
 /// Wide enough for a lane to add labels in.
 template <class T>
 using ShapeWord = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
 
-/// Planes of every lane's own, structure of arrays; lanes of fewer are filled up with planes that
-/// have everything inside, (0, 0, 0), 1.
+/// Names an element of an array; a vector of them, a vector's elements.
 template <class T>
-struct LanePlanes {
-  static constexpr std::size_t kMost = 16;
-  const T* normal[kMost][3];
-  const T* offset[kMost];
-  std::size_t count;
+using LaneIndex = std::conditional_t<sizeof(T) == 4, std::int32_t, std::int64_t>;
+
+/// The sides of BlockingCones, one after the other: dot(normal, p) + offset >= 0 inside, p from the
+/// eye. The first two belong to no cone: all is inside the one, nothing inside the other.
+template <class T>
+struct ConePlanes {
+  static constexpr LaneIndex<T> kAllInside = 0;
+  static constexpr LaneIndex<T> kNothingInside = 1;
+  const T* normal[3];  ///< unit
+  const T* offset;
+  const ShapeWord<T>* label;  ///< scrambled: what it adds to a shape it bounds
 };
 
-/// What a cone leaves of each polygon. `form_factor`: to the part inside all planes, 0 where there
+/// What is to be clipped, one a lane: targets, each seen from one of the eyes.
+template <class T>
+struct ClipItems {
+  std::size_t count;  ///< a multiple of kLaneAlignment
+  const LaneIndex<T>* target;
+  const LaneIndex<T>* eye;
+};
+
+/// What a cone leaves of each item. `form_factor`: to the part inside all planes, 0 where there
 /// is none, kHiddenWhole where no plane cuts the polygon. `shape`: sum of the labels of the edges
 /// that bound the part, 0 where it is nothing or all. `cut_low` and `cut_high`: a bit for each
 /// plane, of the first and the second 32, that cuts the polygon; the others do nothing to it. (Of
@@ -77,19 +90,34 @@ struct HiddenParts {
 inline constexpr int kHiddenWhole = -1;
 
 template <class T>
-struct ClipKernels {
-  /// Form factor to each polygon (all of it above the eye's horizon, its front to the eye).
-  /// Accuracy: 2e-6 r/h in single, 1e-14 r/h in double precision, relative, for polygons of size h
-  /// at distance r; tests hold every instruction set to it.
+struct ClipFunctions {
+  /// Form factor from one eye to each polygon (all of it above the eye's horizon, its front to the
+  /// eye).
   void (*whole)(const TargetLanes<T>& targets, const EyePoint<T>& eye, T* form_factor);
-  /// What one cone of at most kMostPlanes planes hides. As accurate.
-  void (*hidden)(const TargetLanes<T>& targets, const EyePoint<T>& eye, const ConePlane<T>* planes,
-                 std::size_t plane_count, const HiddenParts<T>& out);
-  /// Form factor to the part of each polygon inside its own planes, as seen from the eye. 0 also
-  /// where no plane cuts it.
-  void (*common)(const TargetLanes<T>& targets, const EyePoint<T>& eye, const LanePlanes<T>& planes,
-                 T* form_factor);
+  /// What one cone hides of each item: planes [first_plane, first_plane + plane_count), 1 to
+  /// kMostPlanes of them.
+  void (*hidden)(const TargetLanes<T>& targets, const EyePoints<T>& eyes,
+                 const ConePlanes<T>& planes, const ClipItems<T>& items,
+                 const LaneIndex<T>* first_plane, const LaneIndex<T>* plane_count,
+                 const HiddenParts<T>& out);
+  /// Form factor to the part of each item inside its own planes: own_planes[k][lane] names the
+  /// lane's k-th of `plane_count`, 1 to kMostPlanes. 0 also where no plane cuts it.
+  void (*common)(const TargetLanes<T>& targets, const EyePoints<T>& eyes,
+                 const ConePlanes<T>& planes, const ClipItems<T>& items,
+                 const LaneIndex<T>* const* own_planes, std::size_t plane_count, T* form_factor);
 };
+
+template <class T>
+struct ClipKernels {
+  /// By Lambert's formula. Accuracy: 2e-6 r/h in single, 1e-14 r/h in double precision, relative to
+  /// the whole, for polygons of size h at distance r; tests hold every instruction set to it.
+  ClipFunctions<T> near;
+  /// By the kernel cos cos / (pi r^2) to second order about the polygon's middle. Accuracy,
+  /// besides: kFarError (h/r)^3, h the distance of the farthest corner from the middle.
+  ClipFunctions<T> far;
+};
+
+inline constexpr double kFarError = 1;
 
 struct ClipKernelSet {
   std::string target;  ///< instruction set, or "scalar"

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -14,6 +16,7 @@ struct Ops {
   using V = T;
   using M = bool;
   using U = ShapeWord<T>;
+  using I = LaneIndex<T>;
   static std::size_t lanes() { return 1; }
   static V load(const T* p) { return *p; }
   static void store(V v, T* p) { *p = v; }
@@ -28,6 +31,8 @@ struct Ops {
   static V max(V a, V b) { return a > b ? a : b; }
   static M greater(V a, V b) { return a > b; }
   static M greaterEqual(V a, V b) { return a >= b; }
+  static M equal(V a, V b) { return a == b; }
+  static M notEqual(V a, V b) { return a != b; }
   static M both(M a, M b) { return a && b; }
   static M either(M a, M b) { return a || b; }
   static M without(M a, M b) { return !a && b; }
@@ -35,8 +40,17 @@ struct Ops {
   static bool none(M m) { return !m; }
   static V choose(M m, V yes, V no) { return m ? yes : no; }
   static U noLabel() { return 0; }
-  static U addLabel(U word, M m, std::uint32_t label) { return m ? word + label : word; }
-  static void storeLabels(U word, U* p) { *p = word; }
+  static U setWord(std::uint32_t word) { return word; }
+  static U addWord(U word, M m, U other) { return m ? word + other : word; }
+  static void storeWord(U word, U* p) { *p = word; }
+  static I loadIndex(const LaneIndex<T>* p) { return *p; }
+  static V gather(const T* from, I index) { return from[index]; }
+  static U gatherWord(const U* from, I index) { return from[index]; }
+  static I after(I first, std::size_t k) { return first + I(k); }
+  /// The k-th plane of a cone, or one that does nothing.
+  static I planeOf(I first, I count, std::size_t k) {
+    return I(k) < count ? first + I(k) : ConePlanes<T>::kAllInside;
+  }
 };
 
 #include "formfactor/exact/clip_kernels.inc"
@@ -44,9 +58,7 @@ struct Ops {
 }  // namespace
 
 ClipKernelSet scalarClipKernels() {
-  return {"scalar",
-          {wholeLanes<float>, hiddenLanes<float>, commonLanes<float>},
-          {wholeLanes<double>, hiddenLanes<double>, commonLanes<double>}};
+  return {"scalar", clipKernelsOf<float>(), clipKernelsOf<double>()};
 }
 
 }  // namespace radiosity

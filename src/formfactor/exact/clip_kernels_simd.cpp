@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <limits>
 
 #include "formfactor/exact/clip_kernels.h"
@@ -22,9 +24,11 @@ struct Ops {
   // Not more lanes than arrays are filled up to, and the same number for both precisions' words.
   using D = hn::CappedTag<T, kLaneAlignment>;
   using Words = hn::RebindToUnsigned<D>;
+  using Indices = hn::RebindToSigned<D>;
   using V = hn::Vec<D>;
   using M = hn::Mask<D>;
   using U = hn::Vec<Words>;
+  using I = hn::Vec<Indices>;
   static HWY_INLINE std::size_t lanes() { return hn::Lanes(D()); }
   static HWY_INLINE V load(const T* p) { return hn::Load(D(), p); }
   static HWY_INLINE void store(V v, T* p) { hn::Store(v, D(), p); }
@@ -39,6 +43,8 @@ struct Ops {
   static HWY_INLINE V max(V a, V b) { return hn::Max(a, b); }
   static HWY_INLINE M greater(V a, V b) { return hn::Gt(a, b); }
   static HWY_INLINE M greaterEqual(V a, V b) { return hn::Ge(a, b); }
+  static HWY_INLINE M equal(V a, V b) { return hn::Eq(a, b); }
+  static HWY_INLINE M notEqual(V a, V b) { return hn::Ne(a, b); }
   static HWY_INLINE M both(M a, M b) { return hn::And(a, b); }
   static HWY_INLINE M either(M a, M b) { return hn::Or(a, b); }
   /// b, but where a.
@@ -47,19 +53,31 @@ struct Ops {
   static HWY_INLINE bool none(M m) { return hn::AllFalse(D(), m); }
   static HWY_INLINE V choose(M m, V yes, V no) { return hn::IfThenElse(m, yes, no); }
   static HWY_INLINE U noLabel() { return hn::Zero(Words()); }
-  static HWY_INLINE U addLabel(U word, M m, std::uint32_t label) {
-    const auto value = hn::Set(Words(), label);
-    return hn::Add(word, hn::IfThenElseZero(hn::RebindMask(Words(), m), value));
+  static HWY_INLINE U setWord(std::uint32_t word) { return hn::Set(Words(), word); }
+  static HWY_INLINE U addWord(U word, M m, U other) {
+    return hn::Add(word, hn::IfThenElseZero(hn::RebindMask(Words(), m), other));
   }
-  static HWY_INLINE void storeLabels(U word, ShapeWord<T>* p) { hn::Store(word, Words(), p); }
+  static HWY_INLINE void storeWord(U word, ShapeWord<T>* p) { hn::Store(word, Words(), p); }
+  static HWY_INLINE I loadIndex(const LaneIndex<T>* p) { return hn::Load(Indices(), p); }
+  static HWY_INLINE V gather(const T* from, I index) { return hn::GatherIndex(D(), from, index); }
+  static HWY_INLINE U gatherWord(const ShapeWord<T>* from, I index) {
+    return hn::GatherIndex(Words(), from, index);
+  }
+  static HWY_INLINE I after(I first, std::size_t k) {
+    return hn::Add(first, hn::Set(Indices(), LaneIndex<T>(k)));
+  }
+  /// The k-th plane of a cone, or one that does nothing.
+  static HWY_INLINE I planeOf(I first, I count, std::size_t k) {
+    const I number = hn::Set(Indices(), LaneIndex<T>(k));
+    static_assert(ConePlanes<T>::kAllInside == 0);
+    return hn::IfThenElseZero(hn::Lt(number, count), hn::Add(first, number));
+  }
 };
 
 #include "formfactor/exact/clip_kernels.inc"
 
 ClipKernelSet clipKernels() {
-  return {hwy::TargetName(HWY_TARGET),
-          {wholeLanes<float>, hiddenLanes<float>, commonLanes<float>},
-          {wholeLanes<double>, hiddenLanes<double>, commonLanes<double>}};
+  return {hwy::TargetName(HWY_TARGET), clipKernelsOf<float>(), clipKernelsOf<double>()};
 }
 
 }  // namespace

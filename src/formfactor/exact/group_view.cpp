@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <tuple>
 
 namespace radiosity {
 namespace {
@@ -15,6 +14,8 @@ constexpr std::uint8_t kMostCounted = 254;
 constexpr std::uint64_t kUnknownCut = ~std::uint64_t(0);
 /// Lanes of one call for common parts: enough to fill vectors, few enough to stay in the cache.
 constexpr std::size_t kCommonLanes = 128;
+/// Planes that may bound what shadows have in common.
+constexpr std::size_t kMostOwnPlanes = 16;
 
 std::uint32_t scrambled(std::uint32_t x) {
   x = (x + 1) * 0x85ebca6bU;
@@ -22,185 +23,183 @@ std::uint32_t scrambled(std::uint32_t x) {
   return x ^ (x >> 13);
 }
 
-std::size_t padded(std::size_t count) {
-  return (count + kLaneAlignment - 1) / kLaneAlignment * kLaneAlignment;
-}
-
-bool sameBlocker(const Blocker& a, const Blocker& b) {
-  return a.id == b.id && a.cuts_target == b.cuts_target;
-}
-
 }  // namespace
 
-template <class T>
-void GroupView<T>::Lanes::resize(std::size_t count, std::size_t corners) {
-  targets.count = padded(count);
-  targets.corners = corners;
-  memory.reserve(targets.count * (3 + 3 * kMostCorners));
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    targets.middle[axis] = row(axis);
-    for (std::size_t k = 0; k < kMostCorners; ++k) targets.corner[k][axis] = row(3 + 3 * k + axis);
-  }
-}
-
-template <class T>
-void GroupView<T>::Lanes::copyLane(std::size_t to, Lanes& from, std::size_t lane) {
-  for (std::size_t k = 0; k < 3 + 3 * targets.corners; ++k) row(k)[to] = from.row(k)[lane];
-}
-
-/// The group's targets as lanes; what is left of the last vector repeats the last target.
-template <class T>
-void GroupView<T>::fill(const Vec3& origin) {
-  std::size_t corners = 4;
-  for (const GroupTarget* target : group_) corners = std::max(corners, target->corner_count);
-  all_.resize(group_.size(), corners);
-  const std::size_t stride = all_.targets.count;
-  for (std::size_t lane = 0; lane < stride; ++lane) {
-    const GroupTarget& target = *group_[std::min(lane, group_.size() - 1)];
-    T* to = all_.memory.data() + lane;
-    for (int axis = 0; axis < 3; ++axis) {
-      to[std::size_t(axis) * stride] = T(target.middle[axis] - origin[axis]);
-    }
-    for (std::size_t k = 0; k < corners; ++k) {
-      const Vec3 corner = target.corners[std::min(k, target.corner_count - 1)] - target.middle;
-      to += 3 * stride;
-      to[0] = T(corner.x);
-      to[stride] = T(corner.y);
-      to[2 * stride] = T(corner.z);
-    }
-  }
+std::uint32_t BlockerNumbers::of(const Blocker& blocker, std::uint32_t next) {
+  const std::size_t at = 2 * std::size_t(blocker.id) + (blocker.cuts_target ? 1 : 0);
+  if (at >= entries_.size()) entries_.resize(at + 1);
+  Entry& entry = entries_[at];
+  if (entry.stamp != stamp_) entry = {stamp_, next};
+  return entry.number;
 }
 
 template <class T>
 void GroupView<T>::look(std::span<const SamplePoint> points, const Vec3& origin, const Vec3& normal,
-                        std::span<const GroupTarget* const> targets) {
+                        std::span<const GroupTarget* const> targets, bool far) {
+  clip_ = far ? kernels_.far : kernels_.near;
   group_ = targets;
   points_ = points;
   normal_ = normal;
-  fill(origin);
-  const std::size_t values = points.size() * all_.targets.count;
+  targets_.fill(targets, origin);
+  const std::size_t stride = targets_.lanes().count;
+  const std::size_t values = points.size() * stride;
   whole_.reserve(values);
   visible_.reserve(values);
   shape_.reserve(values);
   shadow_count_.reserve(values);
-  form_factor_.reserve(std::max(all_.targets.count, kCommonLanes));
-  word_.reserve(all_.targets.count);
-  cut_low_.reserve(all_.targets.count);
-  cut_high_.reserve(all_.targets.count);
+  EyePoint<T> eye;
+  for (int axis = 0; axis < 3; ++axis) eye.normal[axis] = T(normal[axis]);
   for (std::size_t q = 0; q < points.size(); ++q) {
-    for (int axis = 0; axis < 3; ++axis) {
-      eyes_[q].position[axis] = T(points[q].position[axis] - origin[axis]);
-      eyes_[q].normal[axis] = T(normal[axis]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto a = glm::length_t(axis);
+      eye.position[axis] = eye_[axis][q] = T(points[q].position[a] - origin[a]);
     }
-    T* whole = whole_.data() + q * all_.targets.count;
-    kernels_.whole(all_.targets, eyes_[q], whole);
-    std::copy_n(whole, all_.targets.count, visible_.data() + q * all_.targets.count);
+    clip_.whole(targets_.lanes(), eye, whole_.data() + q * stride);
   }
+  std::copy_n(whole_.data(), values, visible_.data());
   std::fill_n(shape_.data(), values, ShapeWord<T>(0));
   std::fill_n(shadow_count_.data(), values, std::uint8_t(0));
   sampled_.assign(targets.size(), 0);
   collectUses();
-  group_blockers_.clear();
-  planes_.clear();
-  cone_end_.clear();
-  shadows_.clear();
-  for (std::size_t begin = 0; begin < uses_.size();) {
-    std::size_t end = begin + 1;
-    while (end < uses_.size() && sameBlocker(*uses_[end].what, *uses_[begin].what)) ++end;
-    drawShadows(std::span(uses_).subspan(begin, end - begin));
-    begin = end;
-  }
+  buildCones();
+  hide();
+  subtractHidden();
   finish();
 }
 
-/// Who uses which blocker, by blocker.
+/// Who uses which blocker, by target.
 template <class T>
 void GroupView<T>::collectUses() {
   uses_.clear();
+  group_blockers_.clear();
+  numbers_.clear();
   for (std::size_t lane = 0; lane < group_.size(); ++lane) {
     for (const Blocker& blocker : group_[lane]->blockers) {
-      uses_.push_back({&blocker, std::uint32_t(lane)});
+      const auto next = std::uint32_t(group_blockers_.size());
+      const std::uint32_t number = numbers_.of(blocker, next);
+      if (number == next) group_blockers_.push_back(&blocker);
+      uses_.push_back({&blocker, std::uint32_t(lane), number});
     }
   }
-  const auto before = [](const Use& a, const Use& b) {
-    return std::tie(a.what->id, a.what->cuts_target, a.lane) <
-           std::tie(b.what->id, b.what->cuts_target, b.lane);
+}
+
+template <class T>
+void GroupView<T>::addPlane(const ClipPlane& plane, std::uint32_t label) {
+  const double scale = 1 / glm::length(plane.normal);
+  const Vec3 n = plane.normal * scale;
+  plane_[0].push_back(T(n.x));
+  plane_[1].push_back(T(n.y));
+  plane_[2].push_back(T(n.z));
+  plane_[3].push_back(T(plane.offset * scale));
+  plane_label_.push_back(label);
+}
+
+template <class T>
+void GroupView<T>::buildCones() {
+  cones_.clear();
+  for (std::size_t k = 0; k < 3; ++k) plane_[k].assign(2, T(0));
+  plane_[3] = {T(1), T(-1)};
+  plane_label_.assign(2, 0);
+  for (const SamplePoint& point : points_) {
+    for (const Blocker* blocker : group_blockers_) {
+      blockingCone(*blocker->body, point.position, blocker->cuts_target, cone_);
+      const std::size_t count = cone_.planes.size();
+      if (count == 0 || count > kMostPlanes) {
+        const bool all = count == 0 && cone_.inside;
+        const auto which = all ? ConePlanes<T>::kAllInside : ConePlanes<T>::kNothingInside;
+        cones_.push_back({which, 1, count > 0});
+        continue;
+      }
+      cones_.push_back({LaneIndex<T>(plane_label_.size()), LaneIndex<T>(count), false});
+      for (std::size_t k = 0; k < count; ++k) {
+        addPlane(cone_.planes[k], scrambled(blocker->id * 1024 + cone_.labels[k]));
+      }
+    }
+  }
+  // Kernels may read the labels of planes that the last cone would have if it had as many as any.
+  plane_label_.resize(plane_label_.size() + kMostPlanes);
+}
+
+template <class T>
+EyePoints<T> GroupView<T>::eyes() const {
+  return {{eye_[0].data(), eye_[1].data(), eye_[2].data()},
+          {T(normal_.x), T(normal_.y), T(normal_.z)}};
+}
+
+template <class T>
+ConePlanes<T> GroupView<T>::planes() const {
+  return {{plane_[0].data(), plane_[1].data(), plane_[2].data()},
+          plane_[3].data(),
+          plane_label_.data()};
+}
+
+template <class T>
+ClipItems<T> GroupView<T>::items(std::size_t count) const {
+  return {count, item_target_.data(), item_eye_.data()};
+}
+
+/// What each occluder hides of each target it concerns, from each point: into form_factor_.
+template <class T>
+void GroupView<T>::hide() {
+  const std::size_t count = points_.size() * uses_.size();
+  if (count == 0) return;
+  const std::size_t lanes = paddedLanes(count);
+  item_target_.reserve(lanes);
+  item_eye_.reserve(lanes);
+  item_planes_.reserve(2 * lanes);
+  form_factor_.reserve(lanes);
+  word_.reserve(lanes);
+  cut_.reserve(2 * lanes);
+  LaneIndex<T>* first = item_planes_.data();
+  LaneIndex<T>* plane_count = first + lanes;
+  std::size_t at = 0;
+  const auto add = [&](const Use& use, std::size_t point) {
+    const Cone& cone = cones_[point * group_blockers_.size() + use.number];
+    item_target_.data()[at] = LaneIndex<T>(use.lane);
+    item_eye_.data()[at] = LaneIndex<T>(point);
+    first[at] = cone.first;
+    plane_count[at++] = cone.count;
   };
-  if (!std::is_sorted(uses_.begin(), uses_.end(), before)) {
-    std::sort(uses_.begin(), uses_.end(), before);
+  for (std::size_t q = 0; q < points_.size(); ++q) {
+    for (const Use& use : uses_) add(use, q);
   }
+  for (std::size_t left = lanes - count; left > 0; --left) add(uses_.back(), points_.size() - 1);
+  clip_.hidden(targets_.lanes(), eyes(), planes(), items(lanes), first, plane_count,
+               {form_factor_.data(), word_.data(), cut_.data(), cut_.data() + lanes});
 }
 
-/// Adds the sides of a blocker's cone to planes_; cone_.inside and cone_.planes tell of cones
-/// without sides.
+/// Takes away what is hidden, as if no two shadows overlapped.
 template <class T>
-void GroupView<T>::addCone(const Blocker& blocker, std::size_t point) {
-  blockingCone(*blocker.body, points_[point].position, blocker.cuts_target, cone_);
-  for (std::size_t k = 0; k < cone_.planes.size(); ++k) {
-    const ClipPlane& plane = cone_.planes[k];
-    const double scale = 1 / glm::length(plane.normal);
-    const Vec3 n = plane.normal * scale;
-    planes_.push_back({{T(n.x), T(n.y), T(n.z)},
-                       T(plane.offset * scale),
-                       scrambled(blocker.id * 1024 + cone_.labels[k])});
-  }
-  cone_end_.push_back(std::uint32_t(planes_.size()));
-}
-
-/// What one occluder hides of the targets it concerns.
-template <class T>
-void GroupView<T>::drawShadows(std::span<const Use> uses) {
-  if (uses.size() < group_.size()) {
-    some_.resize(uses.size(), all_.targets.corners);
-    for (std::size_t k = 0; k < some_.targets.count; ++k) {
-      some_.copyLane(k, all_, uses[std::min(k, uses.size() - 1)].lane);
-    }
-  }
-  group_blockers_.push_back(uses[0].what);
-  for (std::size_t q = 0; q < points_.size(); ++q) drawShadow(uses, q);
-}
-
-template <class T>
-void GroupView<T>::drawShadow(std::span<const Use> uses, std::size_t point) {
-  const std::size_t first_plane = planes_.size();
-  addCone(*uses[0].what, point);
-  const std::size_t plane_count = planes_.size() - first_plane;
-  const std::size_t first = point * all_.targets.count;
-  std::uint8_t* counts = shadow_count_.data() + first;
-  const auto number = std::uint32_t(group_blockers_.size() - 1);
-  if (plane_count == 0) {
-    if (!cone_.inside) return;
-    for (const Use& use : uses) counts[use.lane] = kHidden;
-    return;
-  }
-  if (plane_count > kMostPlanes) {
-    for (const Use& use : uses) {
-      if (counts[use.lane] != kHidden) counts[use.lane] = kMostCounted;
-      shadows_.push_back({std::uint32_t(first) + use.lane, number, kUnknownCut});
-    }
-    return;
-  }
-  const bool everyone = uses.size() == group_.size();
-  kernels_.hidden(everyone ? all_.targets : some_.targets, eyes_[point],
-                  planes_.data() + first_plane, plane_count,
-                  {form_factor_.data(), word_.data(), cut_low_.data(), cut_high_.data()});
-  T* visible = visible_.data() + first;
-  ShapeWord<T>* shape = shape_.data() + first;
-  const T* hidden = form_factor_.data();
-  for (std::size_t k = 0; k < uses.size(); ++k) {
-    if (hidden[k] == 0) continue;
-    const std::uint32_t lane = uses[k].lane;
-    if (hidden[k] < 0) {
-      counts[lane] = kHidden;
-      continue;
-    }
-    visible[lane] -= hidden[k];
-    shape[lane] += word_.data()[k];
-    if (counts[lane] < kMostCounted) ++counts[lane];
-    if (group_[lane]->blockers.size() > 1) {
-      const std::uint64_t cut = std::uint64_t(cut_high_.data()[k]) << 32 | cut_low_.data()[k];
-      shadows_.push_back(
-          {std::uint32_t(first) + lane, number, plane_count <= 64 ? cut : kUnknownCut});
+void GroupView<T>::subtractHidden() {
+  shadows_.clear();
+  const std::size_t lanes = paddedLanes(points_.size() * uses_.size());
+  std::size_t item = 0;
+  for (std::size_t q = 0; q < points_.size(); ++q) {
+    const std::size_t row = q * targets_.lanes().count;
+    const Cone* cones = cones_.data() + q * group_blockers_.size();
+    for (std::uint32_t u = 0; u < uses_.size(); ++u, ++item) {
+      const T hidden = form_factor_.data()[item];
+      const Cone& cone = cones[uses_[u].number];
+      if (hidden == 0 && !cone.too_many) continue;
+      const std::size_t at = row + uses_[u].lane;
+      std::uint8_t& count = shadow_count_.data()[at];
+      if (hidden < 0) count = kHidden;
+      if (count == kHidden) continue;
+      if (cone.too_many) {
+        count = kMostCounted;
+        shadows_.push_back({std::uint32_t(at), u, cone.first, kUnknownCut});
+        continue;
+      }
+      visible_.data()[at] -= hidden;
+      shape_.data()[at] += word_.data()[item];
+      if (count < kMostCounted) ++count;
+      if (group_[uses_[u].lane]->blockers.size() > 1) {
+        const std::uint64_t low = cut_.data()[item];
+        const std::uint64_t high = cut_.data()[lanes + item];
+        const bool known = cone.count <= 64;
+        shadows_.push_back(
+            {std::uint32_t(at), u, cone.first, known ? high << 32 | low : kUnknownCut});
+      }
     }
   }
 }
@@ -208,7 +207,7 @@ void GroupView<T>::drawShadow(std::span<const Use> uses, std::size_t point) {
 template <class T>
 void GroupView<T>::finish() {
   uniteShadows();
-  const std::size_t values = points_.size() * all_.targets.count;
+  const std::size_t values = points_.size() * targets_.lanes().count;
   for (std::size_t at = 0; at < values; ++at) {
     // A difference of rounded sums: kept from passing zero by its last digits.
     visible_.data()[at] = std::max(visible_.data()[at], T(0));
@@ -226,9 +225,6 @@ void GroupView<T>::uniteShadows() {
     return count < 2 || count == kHidden;
   };
   std::erase_if(shadows_, alone);
-  std::sort(shadows_.begin(), shadows_.end(), [](const Shadow& a, const Shadow& b) {
-    return std::tie(a.at, a.blocker) < std::tie(b.at, b.blocker);
-  });
   common_.clear();
   for (std::uint32_t begin = 0; begin < shadows_.size();) {
     std::uint32_t end = begin + 1;
@@ -238,6 +234,10 @@ void GroupView<T>::uniteShadows() {
     }
     begin = end;
   }
+  item_target_.reserve(kCommonLanes);
+  item_eye_.reserve(kCommonLanes);
+  item_planes_.reserve(kMostOwnPlanes * kCommonLanes);
+  form_factor_.reserve(kCommonLanes);
   for (T sign = 1; !common_.empty(); sign = -sign) {
     for (std::size_t k = 0; k < common_.size(); k += kCommonLanes) {
       const std::size_t count = std::min(kCommonLanes, common_.size() - k);
@@ -255,63 +255,50 @@ bool GroupView<T>::addPairs(std::uint32_t begin, std::uint32_t end) {
   for (std::uint32_t k = begin; k < end; ++k) {
     planes += std::size_t(std::popcount(shadows_[k].cut));
   }
-  if (planes > LanePlanes<T>::kMost) return false;
+  if (planes > kMostOwnPlanes) return false;
   for (std::uint32_t a = begin; a < end; ++a) {
     for (std::uint32_t b = a + 1; b < end; ++b) common_.push_back({shadows_[a].at, 2, {a, b}});
   }
   return true;
 }
 
-/// Makes a target seen from one point, and the planes that cut it, a lane of some_.
+/// Names the planes that cut a target seen from one point; returns how many.
 template <class T>
-void GroupView<T>::setLane(const Common& common, std::size_t lane) {
-  const std::size_t point = common.at / all_.targets.count;
-  some_.copyLane(lane, all_, common.at % all_.targets.count);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    some_.row(axis)[lane] -= eyes_[point].position[axis];
-  }
+std::size_t GroupView<T>::setOwnPlanes(const Common& common, std::size_t lane) {
   std::size_t count = 0;
-  const auto add = [&](const T* normal, T offset) {
-    T* to = own_planes_.data() + 4 * count * kCommonLanes + lane;
-    for (std::size_t axis = 0; axis < 3; ++axis) to[axis * kCommonLanes] = normal[axis];
-    to[3 * kCommonLanes] = offset;
-    ++count;
+  const auto add = [&](LaneIndex<T> plane) {
+    item_planes_.data()[count++ * kCommonLanes + lane] = plane;
   };
   for (std::uint32_t k = 0; k < common.count; ++k) {
     const Shadow& shadow = shadows_[common.shadows[k]];
-    const std::size_t cone = shadow.blocker * points_.size() + point;
-    const ConePlane<T>* planes = planes_.data() + (cone > 0 ? cone_end_[cone - 1] : 0);
     for (std::uint64_t left = shadow.cut; left != 0; left &= left - 1) {
-      const ConePlane<T>& plane = planes[std::countr_zero(left)];
-      add(plane.normal, plane.offset);
+      add(shadow.first + std::countr_zero(left));
     }
   }
-  lane_planes_.count = std::max(lane_planes_.count, count);
-  const T nothing[3] = {};
-  for (std::size_t p = count; p < LanePlanes<T>::kMost; ++p) add(nothing, 1);
+  const std::size_t planes = count;
+  while (count < kMostOwnPlanes) add(ConePlanes<T>::kAllInside);
+  return planes;
 }
 
 /// Adds (or takes away) what is inside all of some cones, and keeps in next_common_ those where
 /// that is anything.
 template <class T>
 void GroupView<T>::evaluateCommon(std::span<const Common> some, T sign) {
-  some_.resize(some.size(), all_.targets.corners);
-  own_planes_.reserve(4 * LanePlanes<T>::kMost * kCommonLanes);
-  lane_planes_.count = 0;
-  for (std::size_t p = 0; p < LanePlanes<T>::kMost; ++p) {
-    const T* row = own_planes_.data() + 4 * p * kCommonLanes;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      lane_planes_.normal[p][axis] = row + axis * kCommonLanes;
-    }
-    lane_planes_.offset[p] = row + 3 * kCommonLanes;
+  const std::size_t stride = targets_.lanes().count;
+  std::array<const LaneIndex<T>*, kMostOwnPlanes> own_planes;
+  for (std::size_t p = 0; p < kMostOwnPlanes; ++p) {
+    own_planes[p] = item_planes_.data() + p * kCommonLanes;
   }
-  for (std::size_t k = 0; k < some_.targets.count; ++k) {
-    setLane(some[std::min(k, some.size() - 1)], k);
+  const std::size_t lanes = paddedLanes(some.size());
+  std::size_t plane_count = 0;
+  for (std::size_t k = 0; k < lanes; ++k) {
+    const Common& common = some[std::min(k, some.size() - 1)];
+    item_target_.data()[k] = LaneIndex<T>(common.at % stride);
+    item_eye_.data()[k] = LaneIndex<T>(common.at / stride);
+    plane_count = std::max(plane_count, setOwnPlanes(common, k));
   }
-  // Lanes are given from their own eyes.
-  EyePoint<T> eye = eyes_[0];
-  for (T& coordinate : eye.position) coordinate = 0;
-  kernels_.common(some_.targets, eye, lane_planes_, form_factor_.data());
+  clip_.common(targets_.lanes(), eyes(), planes(), items(lanes), own_planes.data(), plane_count,
+               form_factor_.data());
   for (std::size_t k = 0; k < some.size(); ++k) {
     const T common = form_factor_.data()[k];
     if (!(common > 0)) continue;
@@ -347,11 +334,11 @@ void GroupView<T>::joinCommon() {
 template <class T>
 void GroupView<T>::uniteExactly(std::span<const Shadow> shadows) {
   const std::size_t at = shadows[0].at;
-  const std::size_t point = at / all_.targets.count;
-  const std::size_t lane = at % all_.targets.count;
+  const std::size_t point = at / targets_.lanes().count;
+  const std::size_t lane = at % targets_.lanes().count;
   const GroupTarget& target = *group_[lane];
   united_.clear();
-  for (const Shadow& shadow : shadows) united_.push_back(*group_blockers_[shadow.blocker]);
+  for (const Shadow& shadow : shadows) united_.push_back(*uses_[shadow.use].what);
   // Shifts of a rank-one lattice (Roberts 2018): where pictures are drawn, those of a cell's
   // points fill each other's gaps.
   const double q = double(point);

@@ -9,24 +9,34 @@
 #include "formfactor/aligned_buffer.h"
 #include "formfactor/exact/clip_kernels.h"
 #include "formfactor/exact/sample_cell.h"
+#include "formfactor/exact/target_rows.h"
 #include "formfactor/exact/visible_part.h"
 
 namespace radiosity {
 
-/// One element as seen from a group's points.
-struct GroupTarget {
-  std::array<Vec3, kMostCorners> corners;  ///< of the part above the points' horizon
-  std::size_t corner_count = 0;
-  Vec3 middle{0.0};
-  std::span<const Blocker> blockers;
+/// Numbers from 0 for the blockers of one group, in the order they come.
+class BlockerNumbers {
+ public:
+  void clear() { ++stamp_; }
+  /// The blocker's number; `next` if it comes for the first time.
+  std::uint32_t of(const Blocker& blocker, std::uint32_t next);
+
+ private:
+  struct Entry {
+    std::uint32_t stamp = 0;
+    std::uint32_t number = 0;
+  };
+  std::vector<Entry> entries_;  ///< by occluder and whether it cuts the target's plane
+  std::uint32_t stamp_ = 0;
 };
 
-/// Evaluates all points of a cell against all targets of a group: every target is a lane of the
-/// vector kernels, every occluder's cone is built once a point. Where the shadows of several
-/// occluders fall on one target, what they have in common was subtracted more than once; that is
-/// put right by inclusion and exclusion: the part inside several cones is the part inside those of
-/// their planes that cut the target. Shadows that share nothing end the expansion early. Where
-/// there are too many, VisiblePart unites them. Holds scratch memory: one a thread.
+/// Evaluates all points of a cell against all targets of a group. Every occluder's cone is built
+/// once a point; every target, seen from a point past an occluder, is a lane of the vector kernels.
+/// Where the shadows of several occluders fall on one target, what they have in common was
+/// subtracted more than once; that is put right by inclusion and exclusion: the part inside several
+/// cones is the part inside those of their planes that cut the target. Shadows that share nothing
+/// end the expansion early. Where there are too many, VisiblePart unites them. Holds scratch
+/// memory: one a thread.
 template <class T>
 class GroupView {
  public:
@@ -37,40 +47,42 @@ class GroupView {
 
   explicit GroupView(const ClipKernels<T>& kernels) : kernels_(kernels) {}
 
-  /// Looks from `points`, near `origin` on a surface of normal `normal`, at `targets`. The answers
-  /// stay until the next call.
+  /// Looks from `points`, near `origin` on a surface of normal `normal`, at `targets`. `far`: they
+  /// all are far enough for the kernels for such. The answers stay until the next call.
   void look(std::span<const SamplePoint> points, const Vec3& origin, const Vec3& normal,
-            std::span<const GroupTarget* const> targets);
+            std::span<const GroupTarget* const> targets, bool far);
 
   /// From a point, of all targets: form factors, visible from 0 to whole.
-  const T* whole(std::size_t point) const { return whole_.data() + point * all_.targets.count; }
-  const T* visible(std::size_t point) const { return visible_.data() + point * all_.targets.count; }
+  const T* whole(std::size_t point) const { return whole_.data() + point * targets_.lanes().count; }
+  const T* visible(std::size_t point) const {
+    return visible_.data() + point * targets_.lanes().count;
+  }
   /// See PointView.
   const ShapeWord<T>* shape(std::size_t point) const {
-    return shape_.data() + point * all_.targets.count;
+    return shape_.data() + point * targets_.lanes().count;
   }
   /// Some point saw too many shadows on this target: see Coverage.
   bool sampled(std::size_t target) const { return sampled_[target] != 0; }
 
  private:
-  /// The arrays of TargetLanes.
-  struct Lanes {
-    AlignedBuffer<T> memory;
-    TargetLanes<T> targets;
-    void resize(std::size_t count, std::size_t corners);
-    T* row(std::size_t k) { return memory.data() + k * targets.count; }
-    void copyLane(std::size_t to, Lanes& from, std::size_t lane);
-  };
-  /// Target `lane` has a blocker.
+  /// A target has a blocker.
   struct Use {
     const Blocker* what;
     std::uint32_t lane;
+    std::uint32_t number;  ///< into group_blockers_
+  };
+  /// The cone of a blocker from a point, as planes_ has it.
+  struct Cone {
+    LaneIndex<T> first;
+    LaneIndex<T> count;
+    bool too_many;  ///< planes: left to VisiblePart
   };
   /// A blocker's shadow falls on part of a target that has other blockers, too.
   struct Shadow {
-    std::uint32_t at;       ///< index of the value: point * lanes + lane
-    std::uint32_t blocker;  ///< into group_blockers_
-    std::uint64_t cut;      ///< which planes of its cone cut the target
+    std::uint32_t at;  ///< index of the value: point * lanes + lane
+    std::uint32_t use;
+    LaneIndex<T> first;  ///< plane of its cone
+    std::uint64_t cut;   ///< which planes of its cone cut the target
   };
   /// What several shadows on one target may have in common.
   struct Common {
@@ -81,42 +93,49 @@ class GroupView {
 
   void fill(const Vec3& origin);
   void collectUses();
-  void drawShadows(std::span<const Use> uses);
-  void drawShadow(std::span<const Use> uses, std::size_t point);
-  void addCone(const Blocker& blocker, std::size_t point);
+  void buildCones();
+  void addPlane(const ClipPlane& plane, std::uint32_t label);
+  void hide();
+  void subtractHidden();
   void finish();
   void uniteShadows();
   bool addPairs(std::uint32_t begin, std::uint32_t end);
   void evaluateCommon(std::span<const Common> some, T sign);
-  void setLane(const Common& common, std::size_t lane);
+  std::size_t setOwnPlanes(const Common& common, std::size_t lane);
   void joinCommon();
   void uniteExactly(std::span<const Shadow> shadows);
+  EyePoints<T> eyes() const;
+  ConePlanes<T> planes() const;
+  ClipItems<T> items(std::size_t count) const;
 
   ClipKernels<T> kernels_;
+  ClipFunctions<T> clip_{};  ///< of kernels_, for this look
   std::span<const GroupTarget* const> group_;
   std::span<const SamplePoint> points_;
   Vec3 normal_{0.0};
-  std::array<EyePoint<T>, SamplePoints::kMost> eyes_;
-  Lanes all_;
-  Lanes some_;
+  std::array<std::array<T, SamplePoints::kMost>, 3> eye_;
+  TargetRows<T> targets_;
   AlignedBuffer<T> whole_;    ///< by point, then target
   AlignedBuffer<T> visible_;  ///< while shadows are drawn: less than 0 where they overlap
   AlignedBuffer<ShapeWord<T>> shape_;
   AlignedBuffer<std::uint8_t> shadow_count_;
-  AlignedBuffer<T> form_factor_;  ///< of one kernel call
-  AlignedBuffer<ShapeWord<T>> word_;
-  AlignedBuffer<ShapeWord<T>> cut_low_;
-  AlignedBuffer<ShapeWord<T>> cut_high_;
   std::vector<std::uint8_t> sampled_;
   std::vector<Use> uses_;
   std::vector<const Blocker*> group_blockers_;
-  std::vector<ConePlane<T>> planes_;     ///< of all cones
-  std::vector<std::uint32_t> cone_end_;  ///< by blocker, then point: into planes_
+  BlockerNumbers numbers_;
+  std::vector<Cone> cones_;  ///< by point, then group_blockers_
+  std::array<std::vector<T>, 4> plane_;
+  std::vector<ShapeWord<T>> plane_label_;
+  // Items: by point, then use. Then those of common parts.
+  AlignedBuffer<LaneIndex<T>> item_target_;
+  AlignedBuffer<LaneIndex<T>> item_eye_;
+  AlignedBuffer<LaneIndex<T>> item_planes_;  ///< first plane and count; a common part's own planes
+  AlignedBuffer<T> form_factor_;
+  AlignedBuffer<ShapeWord<T>> word_;
+  AlignedBuffer<ShapeWord<T>> cut_;  ///< low and high
   std::vector<Shadow> shadows_;
   std::vector<Common> common_;
   std::vector<Common> next_common_;
-  AlignedBuffer<T> own_planes_;
-  LanePlanes<T> lane_planes_;
   BlockingCone cone_;
   std::vector<Blocker> united_;
   VisiblePart exact_;

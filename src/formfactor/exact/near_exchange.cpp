@@ -8,6 +8,7 @@
 
 #include "formfactor/exact/contour.h"
 #include "formfactor/exact/quadrature.h"
+#include "mesh/plane_frame.h"
 
 namespace radiosity {
 namespace {
@@ -75,13 +76,22 @@ struct PointLanes {
     TargetLanes<double> targets{};
     targets.corners = to.outline.size();
     targets.count = lanes;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      for (std::size_t k = count; k < lanes; ++k) middle[axis][k] = middle[axis][0];
-      targets.middle[axis] = middle[axis].data();
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::fill(middle[k].begin() + std::ptrdiff_t(count),
+                middle[k].begin() + std::ptrdiff_t(lanes), middle[k][0]);
+      targets.middle[k] = middle[k].data();
+    }
+    const PlaneFrame frame = makeFrame(to.centroid, to.normal, axisAcross(to.normal));
+    const std::array<Vec3, 2> axes = {frame.u, frame.v};
+    for (std::size_t a = 0; a < 2; ++a) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        std::fill_n(axis[a][k].begin(), lanes, axes[a][glm::length_t(k)]);
+        targets.axis[a][k] = axis[a][k].data();
+      }
       for (std::size_t k = 0; k < targets.corners; ++k) {
-        const auto along = glm::length_t(axis);
-        std::fill_n(corner[k][axis].begin(), lanes, to.outline[k][along] - to.centroid[along]);
-        targets.corner[k][axis] = corner[k][axis].data();
+        const Vec2 flat = frame.flat(to.outline[k]);
+        std::fill_n(corner[k][a].begin(), lanes, flat[glm::length_t(a)]);
+        targets.corner[k][a] = corner[k][a].data();
       }
     }
     return targets;
@@ -90,7 +100,8 @@ struct PointLanes {
   std::size_t count = 0;
   Lanes weight;
   alignas(64) std::array<Lanes, 3> middle;
-  alignas(64) std::array<std::array<Lanes, 3>, kMostCorners> corner;
+  alignas(64) std::array<std::array<Lanes, 3>, 2> axis;
+  alignas(64) std::array<std::array<Lanes, 2>, kMostCorners> corner;
   alignas(64) Lanes seen;
 };
 
@@ -101,7 +112,8 @@ double lambertExchange(const PlanarElement& from, const PlanarElement& to, int n
   PointLanes lanes;
   lanes.addPoints(from, to.centroid, n);
   const Vec3& normal = from.normal;
-  kernels.whole(lanes.targets(to), {{0, 0, 0}, {normal.x, normal.y, normal.z}}, lanes.seen.data());
+  kernels.near.whole(lanes.targets(to), {{0, 0, 0}, {normal.x, normal.y, normal.z}},
+                     lanes.seen.data());
   double sum = 0;
   for (std::size_t k = 0; k < lanes.count; ++k) sum += lanes.weight[k] * lanes.seen[k];
   return sum;

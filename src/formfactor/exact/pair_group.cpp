@@ -27,18 +27,16 @@ void PairGroups<T>::setTargets(std::span<const SampledPair> group,
     GroupTarget& target = targets_[k];
     target.blockers =
         blockers.subspan(pair.blockers_begin, pair.blockers_end - pair.blockers_begin);
+    const Vec3& target_normal = elements_.facets[elements_.facet[pair.target]].normal;
     if (!pair.target_cut) {
-      const auto outline = elements_.outline(pair.target);
-      std::copy(outline.begin(), outline.end(), target.corners.begin());
-      target.corner_count = outline.size();
-      target.middle = elements_.centroid[pair.target];
+      target.setOutline(elements_.outline(pair.target), elements_.centroid[pair.target],
+                        target_normal);
       continue;
     }
     const Facet& horizon = elements_.facets[elements_.facet[pair.sampled]];
     const std::vector<Vec3> part = partInFront(elements_, pair.target, horizon);
-    std::copy(part.begin(), part.end(), target.corners.begin());
-    target.corner_count = part.size();
-    target.middle = std::accumulate(part.begin(), part.end(), Vec3(0.0)) / double(part.size());
+    const Vec3 sum = std::accumulate(part.begin(), part.end(), Vec3(0.0));
+    target.setOutline(part, sum / double(part.size()), target_normal);
   }
 }
 
@@ -53,24 +51,39 @@ void PairGroups<T>::integrate(std::span<const SampledPair> group, std::span<cons
   if (any.sampled_cut) {
     c = partInFront(elements_, any.sampled, elements_.facets[elements_.facet[any.target]]);
   }
-  Members coarse;
-  Members fine;
-  for (Index k = 0; k < group.size(); ++k) {
-    fractions[k].change = double(group[k].change);
-    fractions[k].may_cross = group[k].may_cross;
-    fractions[k].refined =
-        group[k].may_cross || kExpected4 * fractions[k].change > fractions[k].allowed;
-    (fractions[k].refined ? fine : coarse).index.push_back(k);
+  for (const bool far : {false, true}) {
+    far_ = far;
+    Members coarse;
+    Members fine;
+    for (Index k = 0; k < group.size(); ++k) {
+      if (isFar(group[k]) != far) continue;
+      fractions[k].change = double(group[k].change);
+      fractions[k].may_cross = group[k].may_cross;
+      fractions[k].refined =
+          group[k].may_cross || kExpected4 * fractions[k].change > fractions[k].allowed;
+      (fractions[k].refined ? fine : coarse).index.push_back(k);
+    }
+    // Of a quadrilateral cut by a plane there may be five corners: a quadrilateral and a triangle.
+    for (std::size_t first = 0; first + 2 < c.size(); first += 2) {
+      const SampleCell cell = {
+          {c[0], c[first + 1], c[first + 2], c[std::min(first + 3, c.size() - 1)]}};
+      const Members again = integrateCell(cell, 2, 0, coarse, fractions);
+      Members others = fine;
+      others.index.insert(others.index.end(), again.index.begin(), again.index.end());
+      cutCell(cell, others, 0, fractions);
+    }
   }
-  // Of a quadrilateral cut by a plane there may be five corners: a quadrilateral and a triangle.
-  for (std::size_t first = 0; first + 2 < c.size(); first += 2) {
-    const SampleCell cell = {
-        {c[0], c[first + 1], c[first + 2], c[std::min(first + 3, c.size() - 1)]}};
-    const Members again = integrateCell(cell, 2, 0, coarse, fractions);
-    Members others = fine;
-    others.index.insert(others.index.end(), again.index.begin(), again.index.end());
-    cutCell(cell, others, 0, fractions);
-  }
+}
+
+/// The target is small enough, seen from all of the sampled element, for the kernels that expand
+/// about its middle.
+template <class T>
+bool PairGroups<T>::isFar(const SampledPair& pair) const {
+  if (pair.target_cut) return false;
+  const double distance =
+      glm::distance(elements_.centroid[pair.sampled], elements_.centroid[pair.target]) -
+      elements_.radius[pair.sampled];
+  return distance >= far_reach_ * elements_.radius[pair.target];
 }
 
 /// Integrates over one cell. Returns the members whose error is too large; to them nothing is
@@ -110,7 +123,7 @@ void PairGroups<T>::sumCell(const SampleCell& cell, std::size_t side, int level,
   const SamplePoints points = cell.points(side);
   chosen_.clear();
   for (const Index m : members.index) chosen_.push_back(&targets_[m]);
-  view_.look(points.all(), cell.middle(), normal_, chosen_);
+  view_.look(points.all(), cell.middle(), normal_, chosen_, far_);
   const double area = cell.area();
   sums_.assign(members.index.size(), CellSum());
   for (std::size_t k = 0; k < members.index.size(); ++k) {
@@ -154,7 +167,7 @@ void PairGroups<T>::lookOutside(const SampleCell& cell, double share, const Memb
   }
   if (uncertain_.empty()) return;
   const SamplePoints points = cell.outerPoints();
-  view_.look(points.all(), cell.middle(), normal_, chosen_);
+  view_.look(points.all(), cell.middle(), normal_, chosen_, far_);
   const double area = cell.area();
   for (std::size_t u = 0; u < uncertain_.size(); ++u) {
     CellSum& sum = sums_[uncertain_[u]];

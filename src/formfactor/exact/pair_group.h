@@ -31,8 +31,9 @@ struct VisibleFraction {
 template <class T>
 class PairGroups {
  public:
-  PairGroups(const ElementSet& elements, const ClipKernels<T>& kernels)
-      : elements_(elements), view_(kernels) {}
+  /// `far_reach`: targets this many radii away, or more, are far.
+  PairGroups(const ElementSet& elements, const ClipKernels<T>& kernels, double far_reach)
+      : elements_(elements), far_reach_(far_reach), view_(kernels) {}
 
   /// `group`: pairs with one sampled element, which is cut by one plane or by none.
   /// fractions[k], of group[k], comes with `allowed` set.
@@ -66,9 +67,13 @@ class PairGroups {
   void cutCell(const SampleCell& cell, const Members& members, int level,
                std::span<VisibleFraction> out);
 
+  bool isFar(const SampledPair& pair) const;
+
   const ElementSet& elements_;
+  double far_reach_;
   GroupView<T> view_;
   Vec3 normal_{0.0};
+  bool far_ = false;  ///< the members at work are
   std::vector<GroupTarget> targets_;
   std::vector<const GroupTarget*> chosen_;
   std::vector<CellSum> sums_;     ///< by member
