@@ -6,6 +6,7 @@ import tempfile
 import unittest
 
 BUILD = os.environ["RADIOSITY_BUILD_DIR"]
+DATA = os.environ["RADIOSITY_SOURCE_DIR"] + "/data"
 
 CMAKE = """cmake_minimum_required(VERSION 3.25)
 project(other LANGUAGES CXX)
@@ -72,6 +73,10 @@ class Install(unittest.TestCase):
             self.assertAlmostEqual(floor, 1.090909098107695, delta=1e-11)
             version = run(str(root / "prefix/bin/radiosity"), "--version")
             self.assertIn("0.1.0", version)
+            # Pictures take a library that the program opens only now.
+            picture = f"{DATA}/cornell-box.png"
+            same = run(str(root / "prefix/bin/radiosity"), "compare", picture, picture)
+            self.assertRegex(same, r"relative L2 difference +0\n")
 
 
 if __name__ == "__main__":

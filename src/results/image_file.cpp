@@ -1,14 +1,12 @@
-// Pictures through OpenImageIO.
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
+// Pictures out and in.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <memory>
 
+#include "base/image_codec.h"
 #include "base/srgb.h"
 #include "radiosity/results.h"
 #include "results/checked_file.h"
@@ -65,22 +63,13 @@ std::vector<std::uint8_t> encoded(const Image& image, bool display_referred) {
 
 /// Encodes in memory and writes the bytes ourselves: OpenImageIO's PNG writer does not notice a
 /// full disk.
-void save(const std::string& path, OIIO::ImageSpec spec, const void* pixels, Metadata metadata) {
-  spec.channelnames = {"R", "G", "B", "A"};
-  spec.alpha_channel = 3;
-  spec.attribute("Software", "radiosity");
-  for (const auto& [name, value] : metadata) spec.attribute(name, value);
+void save(const std::string& path, const ImageToEncode& image) {
   CheckedFile file(path);
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput memory(bytes);
-  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path, &memory);
-  if (!output) {
-    throw RunError(fmt::format("{}: cannot be encoded: {}", path, reason(OIIO::geterror())));
+  const EncodedImage written = imageCodec().encode(path, image);
+  if (!written.problem.empty()) {
+    throw RunError(fmt::format("{}: cannot be encoded: {}", path, reason(written.problem)));
   }
-  if (!output->open(path, spec) || !output->write_image(spec.format, pixels) || !output->close()) {
-    throw RunError(fmt::format("{}: cannot be encoded: {}", path, reason(output->geterror())));
-  }
-  file.write(bytes.data(), bytes.size());
+  file.write(written.bytes.data(), written.bytes.size());
   file.commit();
 }
 
@@ -90,16 +79,22 @@ void writeImage(const std::string& path, const Image& image, bool display_referr
                 Metadata metadata) {
   checkImage(path, image);
   const std::string extension = lowerExtension(path);
+  ImageToEncode file;
+  file.width = image.width;
+  file.height = image.height;
+  file.metadata = metadata;
   if (extension == ".exr") {
-    OIIO::ImageSpec spec(image.width, image.height, 4, OIIO::TypeDesc::FLOAT);
-    spec.attribute("oiio:ColorSpace", display_referred ? "sRGB" : "Linear");
-    spec.attribute("compression", "zip");
-    save(path, spec, associated(image).data(), metadata);
+    const std::vector<float> pixels = associated(image);
+    file.floating = true;
+    file.multiplied = true;
+    file.colour_space = display_referred ? "sRGB" : "Linear";
+    file.pixels = pixels.data();
+    save(path, file);
   } else if (extension == ".png") {
-    OIIO::ImageSpec spec(image.width, image.height, 4, OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    spec.attribute("oiio:UnassociatedAlpha", 1);
-    save(path, spec, encoded(image, display_referred).data(), metadata);
+    const std::vector<std::uint8_t> pixels = encoded(image, display_referred);
+    file.colour_space = "sRGB";
+    file.pixels = pixels.data();
+    save(path, file);
   } else {
     throw InputError(
         fmt::format("{}: '{}' is no picture format; name a file .png or .exr", path, extension));
@@ -111,32 +106,27 @@ ImageFile readImageFile(const std::string& path) {
   if (!std::filesystem::exists(path, ignored)) {
     throw InputError(fmt::format("{}: no such file; check the name", path));
   }
-  OIIO::ImageSpec hints;
-  hints.attribute("oiio:UnassociatedAlpha", 1);  // colours as they stand in the file
-  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &hints);
-  if (!input) {
+  const DecodedImage decoded = imageCodec().read(path);
+  if (!decoded.opened) {
     throw InputError(
-        fmt::format("{}: cannot be read as a picture: {}", path, reason(OIIO::geterror())));
+        fmt::format("{}: cannot be read as a picture: {}", path, reason(decoded.problem)));
   }
-  const OIIO::ImageSpec spec = input->spec();
-  const auto channels = std::size_t(spec.nchannels);
-  const std::size_t count = std::size_t(spec.width) * std::size_t(spec.height);
-  std::vector<float> samples(count * channels);
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, samples.data())) {
-    throw InputError(
-        fmt::format("{}: the picture is damaged: {}", path, reason(input->geterror())));
+  if (!decoded.problem.empty()) {
+    throw InputError(fmt::format("{}: the picture is damaged: {}", path, reason(decoded.problem)));
   }
+  const auto channels = std::size_t(decoded.channels);
+  const std::size_t count = std::size_t(decoded.width) * std::size_t(decoded.height);
   const bool grey = channels < 3;
   const bool has_alpha = channels == 2 || channels >= 4;
   // EXR (and whatever else multiplies by alpha) back to colours that stand alone.
-  const bool multiplied = has_alpha && spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
+  const bool multiplied = has_alpha && decoded.multiplied;
   ImageFile file;
-  file.bytes = !spec.format.is_floating_point();
-  file.quantity = spec.get_string_attribute("quantity");
+  file.bytes = !decoded.floating;
+  file.quantity = decoded.quantity;
   Image& image = file.image;
-  image = {spec.width, spec.height, std::vector<float>(count * 4)};
+  image = {decoded.width, decoded.height, std::vector<float>(count * 4)};
   for (std::size_t k = 0; k < count; ++k) {
-    const float* in = &samples[k * channels];
+    const float* in = &decoded.samples[k * channels];
     float* out = &image.rgba[k * 4];
     const float alpha = has_alpha ? in[grey ? 1 : 3] : 1.f;
     for (std::size_t c = 0; c < 3; ++c) {

@@ -1,15 +1,11 @@
 #include "scene/texture.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <memory>
 #include <string_view>
-#include <vector>
 
+#include "base/image_codec.h"
 #include "base/srgb.h"
 #include "scene/text.h"
 
@@ -32,36 +28,29 @@ std::string formatOf(std::span<const unsigned char> bytes) {
   return {};
 }
 
-/// Samples that are meant to be looked at carry the sRGB curve.
-bool isEncoded(const OIIO::ImageSpec& spec) {
-  if (spec.format.is_floating_point()) return false;
-  return !OIIO::Strutil::iequals(spec.get_string_attribute("oiio:ColorSpace"), "linear");
-}
-
-TextureResult readOpened(OIIO::ImageInput& input, const std::string& name) {
+TextureResult textureFrom(const DecodedImage& image, const std::string& name) {
   TextureResult result;
-  const OIIO::ImageSpec spec = input.spec();
-  const auto channels = std::size_t(spec.nchannels);
-  if (spec.width < 1 || spec.height < 1 || channels < 1) {
+  if (image.width < 1 || image.height < 1 || image.channels < 1) {
     result.problem = "holds no pixels";
     return result;
   }
-  const std::size_t pixels = std::size_t(spec.width) * std::size_t(spec.height);
-  std::vector<float> samples(pixels * channels);
-  if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, samples.data())) {
-    result.problem = "cannot be decoded (" + onOneLine(input.geterror()) + ")";
+  if (!image.problem.empty()) {
+    result.problem = "cannot be decoded (" + onOneLine(image.problem) + ")";
     return result;
   }
+  const auto channels = std::size_t(image.channels);
+  const std::size_t pixels = std::size_t(image.width) * std::size_t(image.height);
   Texture& texture = result.texture;
   texture.name = name;
-  texture.width = spec.width;
-  texture.height = spec.height;
+  texture.width = image.width;
+  texture.height = image.height;
   texture.texels.resize(pixels * 3);
   result.has_alpha = channels == 2 || channels == 4;
-  const bool encoded = isEncoded(spec);
+  // Samples that are meant to be looked at carry the sRGB curve.
+  const bool encoded = !image.floating && !image.linear;
   for (std::size_t p = 0; p < pixels; ++p) {
     for (std::size_t band = 0; band < 3; ++band) {
-      const float sample = samples[p * channels + (channels >= 3 ? band : 0)];
+      const float sample = image.samples[p * channels + (channels >= 3 ? band : 0)];
       texture.texels[p * 3 + band] = encoded ? float(linearFromSrgb(sample)) : sample;
     }
   }
@@ -71,39 +60,22 @@ TextureResult readOpened(OIIO::ImageInput& input, const std::string& name) {
   return result;
 }
 
-OIIO::ImageSpec readingHints() {
-  // Colours as they are stored: not multiplied by an alpha that has no meaning here.
-  OIIO::ImageSpec hints;
-  hints.attribute("oiio:UnassociatedAlpha", 1);
-  return hints;
-}
-
 }  // namespace
 
 TextureResult readTexture(const std::string& path) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return {{}, false, "is not there"};
-  const OIIO::ImageSpec hints = readingHints();
-  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &hints);
-  if (!input) return {{}, false, "cannot be read (" + onOneLine(OIIO::geterror()) + ")"};
-  return readOpened(*input, path);
+  const DecodedImage image = imageCodec().read(path);
+  if (!image.opened) return {{}, false, "cannot be read (" + onOneLine(image.problem) + ")"};
+  return textureFrom(image, path);
 }
 
 TextureResult decodeTexture(const std::string& name, std::span<const unsigned char> bytes) {
   const std::string format = formatOf(bytes);
   if (format.empty()) return {{}, false, "is of an unknown image format"};
-  OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
-  OIIO::Filesystem::IOProxy* proxy = &memory;
-  OIIO::ImageSpec hints = readingHints();
-  hints.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, static_cast<const void*>(&proxy));
-  // By the format's name: given a file's name, OpenImageIO 2.4 looks for that file first.
-  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(format);
-  OIIO::ImageSpec spec;
-  if (!input) return {{}, false, "cannot be decoded (" + onOneLine(OIIO::geterror()) + ")"};
-  if (!input->open(name, spec, hints)) {
-    return {{}, false, "cannot be decoded (" + onOneLine(input->geterror()) + ")"};
-  }
-  return readOpened(*input, name);
+  const DecodedImage image = imageCodec().decode(name, format, bytes);
+  if (!image.opened) return {{}, false, "cannot be decoded (" + onOneLine(image.problem) + ")"};
+  return textureFrom(image, name);
 }
 
 }  // namespace radiosity

@@ -1,0 +1,32 @@
+#include "base/image_codec.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include "radiosity/base.h"
+
+namespace radiosity {
+
+namespace {
+
+const ImageCodec& openCodec() {
+  // Found beside this library, which carries $ORIGIN as its search path. Never closed.
+  void* library = dlopen("libradiosity_images.so", RTLD_LAZY | RTLD_LOCAL);
+  void* entry = library == nullptr ? nullptr : dlsym(library, "radiosityImageCodec");
+  if (entry == nullptr) {
+    throw RunError(
+        fmt::format("libradiosity_images.so cannot be used ({}); install it again beside "
+                    "libradiosity.so",
+                    dlerror()));
+  }
+  return *reinterpret_cast<const ImageCodec* (*)()>(entry)();
+}
+
+}  // namespace
+
+const ImageCodec& imageCodec() {
+  static const ImageCodec& codec = openCodec();
+  return codec;
+}
+
+}  // namespace radiosity

@@ -1,0 +1,59 @@
+// Image files as numbers. OpenImageIO reads and writes them and brings 250 shared libraries of its
+// own, a fifth of a second to load: they stand in a library apart (src/images), which is opened
+// when the first image is read or written.
+#pragma once
+
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace radiosity {
+
+/// Samples of a file as they stand in it, row by row from the top, the channels of a pixel
+/// together. Whole numbers are mapped to [0, 1]; no curve is undone.
+struct DecodedImage {
+  int width = 0;
+  int height = 0;
+  int channels = 0;
+  bool floating = false;    ///< stored as floating-point numbers
+  bool linear = false;      ///< the file says that its numbers are linear
+  bool multiplied = false;  ///< the format multiplies colours by alpha, and this one's are
+  std::string quantity;     ///< the attribute of that name; empty where there is none
+  std::vector<float> samples;
+  bool opened = false;  ///< false: no file of a known format
+  std::string problem;  ///< why there are no samples, in OpenImageIO's words; else empty
+};
+
+/// Four channels, R G B A, 32-bit floats or bytes, as the format of the file's name wants them.
+struct ImageToEncode {
+  int width = 0;
+  int height = 0;
+  bool floating = false;  ///< `pixels` are floats, else bytes
+  const void* pixels = nullptr;
+  bool multiplied = false;   ///< colours are multiplied by alpha
+  std::string colour_space;  ///< "Linear" or "sRGB"
+  std::span<const std::pair<std::string, std::string>> metadata;
+};
+
+/// The bytes of a file, or `problem` says why there are none.
+struct EncodedImage {
+  std::vector<unsigned char> bytes;
+  std::string problem;
+};
+
+class ImageCodec {
+ public:
+  virtual ~ImageCodec() = default;
+  virtual DecodedImage read(const std::string& path) const = 0;
+  /// `format`: OpenImageIO's name of it, "png".
+  virtual DecodedImage decode(const std::string& name, const std::string& format,
+                              std::span<const unsigned char> bytes) const = 0;
+  /// The format is that of the extension of `path`; nothing is written there.
+  virtual EncodedImage encode(const std::string& path, const ImageToEncode& image) const = 0;
+};
+
+/// Opens the library at the first call. RunError where it is not beside this one or not whole.
+const ImageCodec& imageCodec();
+
+}  // namespace radiosity
