@@ -18,7 +18,7 @@
 namespace radiosity::test {
 
 inline Scene dataScene(const std::string& name) {
-  return loadScene(std::string(RADIOSITY_SOURCE_DIR) + "/data/" + name + ".obj");
+  return loadScene(RADIOSITY_SOURCE_DIR "/data/" + name + ".obj");
 }
 
 inline PatchMesh meshOf(const Scene& scene, std::size_t patches, bool faces_as_patches = false) {

@@ -11,9 +11,7 @@
 namespace radiosity {
 namespace {
 
-std::string dataFile(const std::string& name) {
-  return std::string(RADIOSITY_SOURCE_DIR) + "/data/" + name;
-}
+std::string dataFile(const std::string& name) { return RADIOSITY_SOURCE_DIR "/data/" + name; }
 
 MeshResult mesh(const Scene& scene, const MeshOptions& options = {}) {
   Progress progress;
