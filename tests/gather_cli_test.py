@@ -88,6 +88,40 @@ class Gather(CliTest):
         self.assertNotIn("left as it is", flat.out)
         self.assertGreater(self.report("compare", "p.exr", "f.exr")["comparison"]["relative_l2"], 0)
 
+    def test_light_that_is_lost_is_named(self):
+        # The ceiling turned over: it is dark, and its back is seen.
+        text = (self.folder / "box.obj").read_text()
+        self.write("lamp.obj", text.replace("f 1 2 3 4", "f 4 3 2 1"))
+        run = self.run_program("gather", "lamp.obj", *SMALL)
+        self.assertIn("lost on surfaces seen from behind: flipped? (room/wall)", run.err)
+        self.assertNotIn("flipped", self.run_program("gather", "box.obj", *SMALL).err)
+
+    def test_patches_too_large_for_points(self):
+        # A lamp a hundredth above the floor: no corner of the floor is in its light.
+        self.write("low.obj", """mtllib box.mtl
+v 0 0 0
+v 0 0 1
+v 1 0 1
+v 1 0 0
+v .4 .01 .4
+v .6 .01 .4
+v .6 .01 .6
+v .4 .01 .6
+o floor
+usemtl wall
+f 1 2 3 4
+o lamp
+usemtl lamp
+f 5 6 7 8
+""")
+        large = ["--faces-as-patches", "--resolution", "32"]
+        run = self.run_program("gather", "low.obj", *large)
+        self.assertIn("falls between the eyes and is lost", run.err)
+        self.assertIn("--patches", run.err)
+        fine = self.run_program("gather", "low.obj", "--max-edge", "0.02", "--resolution", "32",
+                                "--passes", "2")
+        self.assertNotIn("between the eyes", fine.err)
+
     def test_what_cannot_be_drawn_is_found_first(self):
         self.refuse("gather", "box.obj", *SMALL, "-o", "g.png", "--camera", "attic",
                     words=["--camera", "attic"])

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "gather_scenes.h"
+#include "mesh_builder.h"
 #include "radiosity/form_factors.h"
 
 namespace radiosity {
@@ -127,6 +128,37 @@ TEST(GatherAtPatches, EnergyOfEveryPassIsAccountedFor) {
         room.mesh.area[i] * (double(once.radiosity[3 * i]) - float(room.materials.emission[i].x));
   }
   EXPECT_NEAR(once.summary.passes[0].in_flight[0], reflected, 1e-12 * reflected);
+}
+
+TEST(GatherAtPatches, BacksAreAccountedForBySurface) {
+  // A cube whose floor is turned over: the five others see its back. By the same hemicubes the
+  // matrix says how much; at vertices it is the area value, 1/6 of a sixth five times over.
+  test::MeshBuilder builder;
+  builder.box("room", Vec3(0), Vec3(1), 6, true, false);
+  builder.grid("floor", Vec3(0), {0, 1, 0}, {1, 0, 0}, 6, 6);
+  Room room{builder.build(), {}};
+  test::makeUniform(room, 0.5, 1.0);
+  const FormFactors factors = matrixOf(room, 64);
+  const Gathered gathered = run(room, atPatches(2));
+  ASSERT_EQ(gathered.backs_by_surface.size(), 2U);
+  EXPECT_EQ(gathered.backs_by_surface[0], 0);
+  // Five sixths of the area see a fifth of the view each.
+  EXPECT_NEAR(gathered.backs_by_surface[1], 5.0 / 6 * 0.2, 2e-3);
+  EXPECT_NEAR(gathered.backs_by_surface[1], factors.backs_by_surface[1], 1e-12);  // rounding
+  GatherOptions at_vertices = atPatches(1);
+  at_vertices.at = GatherAt::vertices;
+  const Gathered from_vertices = run(room, at_vertices);
+  EXPECT_EQ(from_vertices.backs_by_surface[0], 0);
+  // Points on a grid of six for the area: some per cent.
+  EXPECT_NEAR(from_vertices.backs_by_surface[1], 5.0 / 6 * 0.2, 1e-2);
+  // What is told by surface is what was told by eye.
+  double sum = 0;
+  double area = 0;
+  for (std::size_t k = 0; k < from_vertices.area.size(); ++k) {
+    sum += from_vertices.area[k] * from_vertices.backs[k];
+    area += from_vertices.area[k];
+  }
+  EXPECT_NEAR(from_vertices.backs_by_surface[1], sum / area, 1e-7);  // backs by eye are floats
 }
 
 TEST(GatherAtPatches, TheBoundHoldsAndIsNotIdle) {

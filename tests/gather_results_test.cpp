@@ -48,6 +48,8 @@ TEST_F(GatherResults, ComeBackToTheBit) {
     EXPECT_EQ(a.irradiance, b.irradiance);
     EXPECT_EQ(a.backs, b.backs);
     EXPECT_EQ(a.sky, b.sky);
+    EXPECT_EQ(a.backs_by_surface, b.backs_by_surface);
+    EXPECT_EQ(b.backs_by_surface.size(), in.mesh->mesh.surface_names.size());
     EXPECT_EQ(a.area, b.area);
     EXPECT_EQ(a.position, b.position);
     EXPECT_EQ(a.eye_of_corner, b.eye_of_corner);

@@ -262,6 +262,9 @@ inline Gathered gathered(const PatchMesh& mesh, GatherAt at) {
     g.area.push_back(1.0 / double(k + 3));
     g.position.push_back({double(k), 0.1, -1.0 / 3});
   }
+  for (std::size_t k = 0; k < mesh.surface_names.size(); ++k) {
+    g.backs_by_surface.push_back(0.3 / double(k + 1));
+  }
   if (at == GatherAt::vertices) {
     for (std::size_t k = 0; k < eyes; ++k) g.eye_of_corner.push_back(Index(eyes - 1 - k));
   }
@@ -394,8 +397,8 @@ inline auto members(const GatherSummary& s) {
   return std::tie(a, b, c, d, e, f, g, h, i);
 }
 inline auto members(const Gathered& s) {
-  const auto& [a, b, c, d, e, f, g, h, i, j] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j);
+  const auto& [a, b, c, d, e, f, g, h, i, j, k] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k);
 }
 inline auto members(const Results& s) {
   const auto& [a, b, c, d, e, f, g, h, i, j, k] = s;

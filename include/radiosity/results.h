@@ -57,6 +57,7 @@ Results readResults(const std::string& path, bool with_factors = true);
 ///                  key, geometry_hash, report/
 ///   /solution      radiosity, irradiance (N x bands), reflectance, emission (N x 3), summary/, key
 ///   /gather        radiosity, irradiance (L x 3, f32; L eyes), backs, sky, area, position;
+///                  backs_by_surface;
 ///                  eye_of_corner (at vertices: the eye of every entry of /mesh/corners); at, key,
 ///                  summary/ with passes/ (a row a pass; bound is NaN where there is none)
 /// The matrix is written row by row, never copied. Errors: RunError (disk full), Cancelled; `path`

@@ -25,8 +25,8 @@ void describeStages(Session& session, const Results& stored) {
                       solveOptionsOf(StageKey(stored.solution_key)), Detail::brief);
   }
   if (stored.gathered) {
-    summarizeGathered(report, *stored.gathered, gatherOptionsOf(StageKey(stored.gather_key)),
-                      Detail::brief);
+    summarizeGathered(report, *stored.gathered, made(stored.mesh).mesh,
+                      gatherOptionsOf(StageKey(stored.gather_key)), Detail::brief);
   }
 }
 

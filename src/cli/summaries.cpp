@@ -15,6 +15,8 @@ namespace {
 
 // Light lost on backs that is worth a warning, as a share of what is emitted.
 constexpr double kBacksWorthWarning = 1e-3;
+/// Of what is emitted, missing from the account of gathered light or too much in it.
+constexpr double kImbalanceWorthWarning = 0.05;
 
 std::string triple(const Vec3& v) {
   return fmt::format("{}, {}, {}", numberText(v.x), numberText(v.y), numberText(v.z));
@@ -220,15 +222,15 @@ void energyFigures(Report& report, const EnergyAccount& e) {
 }
 
 /// A warning that names the surfaces whose backs take more than 0.1% of the light.
-void warnOfBacks(Report& report, const EnergyAccount& e, const FormFactors& factors,
-                 const PatchMesh& mesh) {
+void warnOfBacks(Report& report, const EnergyAccount& e,
+                 const std::vector<double>& backs_by_surface, const PatchMesh& mesh) {
   const double emitted = std::accumulate(e.emitted.begin(), e.emitted.end(), 0.0);
   const double lost = std::accumulate(e.on_backs.begin(), e.on_backs.end(), 0.0);
   if (!(emitted > 0) || lost <= kBacksWorthWarning * emitted) return;
   std::vector<std::pair<double, std::string>> seen;
-  for (std::size_t s = 0; s < factors.backs_by_surface.size(); ++s) {
-    if (factors.backs_by_surface[s] > 0) {
-      seen.emplace_back(factors.backs_by_surface[s], mesh.surface_names[s]);
+  for (std::size_t s = 0; s < backs_by_surface.size(); ++s) {
+    if (backs_by_surface[s] > 0) {
+      seen.emplace_back(backs_by_surface[s], mesh.surface_names[s]);
     }
   }
   std::sort(seen.rbegin(), seen.rend());
@@ -275,7 +277,7 @@ void summarizeSolution(Report& report, const Solution& solution, const FormFacto
     report.text("message", "in words", oneLine(s.message));
     report.yesNo("usable", "usable", s.usable());
   }
-  warnOfBacks(report, s.energy, factors, mesh);
+  warnOfBacks(report, s.energy, factors.backs_by_surface, mesh);
 }
 
 namespace {
@@ -310,12 +312,9 @@ void passTable(Report& report, const std::vector<GatherPass>& passes) {
                rows);
 }
 
-}  // namespace
-
-void summarizeGathered(Report& report, const Gathered& gathered, const GatherOptions& options,
-                       Detail detail) {
+void gatherFigures(Report& report, const Gathered& gathered, const GatherOptions& options,
+                   Detail detail) {
   const GatherSummary& s = gathered.summary;
-  if (detail == Detail::brief) report.line("", oneLine(s.message));
   const Section section(report, detail, "gather", "Gather");
   report.text("at", "at", gathered.at == GatherAt::patches ? "patches" : "vertices");
   report.count("eyes", "eyes", gathered.area.size());
@@ -329,6 +328,34 @@ void summarizeGathered(Report& report, const Gathered& gathered, const GatherOpt
   if (!s.passes.empty()) energyFigures(report, s.passes.back().energy);
   passTable(report, s.passes);
   report.text("message", "in words", oneLine(s.message));
+}
+
+/// What points see stands for areas: where the patches are large, light is lost or made between.
+void warnOfImbalance(Report& report, const EnergyAccount& e) {
+  const double emitted = std::accumulate(e.emitted.begin(), e.emitted.end(), 0.0);
+  const double imbalance = std::accumulate(e.imbalance.begin(), e.imbalance.end(), 0.0);
+  if (!(std::abs(imbalance) > kImbalanceWorthWarning * emitted)) return;
+  const std::string what = imbalance > 0 ? "of the light falls between the eyes and is lost"
+                                         : "more light is received than leaves";
+  const Note note{
+      Severity::warning,
+      fmt::format("{:.2g}% {}: the patches are too large for single points to stand for "
+                  "them; give more --patches, or solve by the matrix (radiosity solve)",
+                  100 * std::abs(imbalance) / emitted, what)};
+  report.notes({&note, 1});
+}
+
+}  // namespace
+
+void summarizeGathered(Report& report, const Gathered& gathered, const PatchMesh& mesh,
+                       const GatherOptions& options, Detail detail) {
+  const GatherSummary& s = gathered.summary;
+  if (detail == Detail::brief) report.line("", oneLine(s.message));
+  gatherFigures(report, gathered, options, detail);
+  if (s.passes.empty()) return;
+  const EnergyAccount& energy = s.passes.back().energy;
+  warnOfBacks(report, energy, gathered.backs_by_surface, mesh);
+  warnOfImbalance(report, energy);
 }
 
 }  // namespace radiosity::cli

@@ -25,7 +25,7 @@ void summarizeFactors(Report& report, const FormFactors& factors, const PatchMes
                       Detail detail);
 void summarizeSolution(Report& report, const Solution& solution, const FormFactors& factors,
                        const PatchMesh& mesh, const SolveOptions& options, Detail detail);
-void summarizeGathered(Report& report, const Gathered& gathered, const GatherOptions& options,
-                       Detail detail);
+void summarizeGathered(Report& report, const Gathered& gathered, const PatchMesh& mesh,
+                       const GatherOptions& options, Detail detail);
 
 }  // namespace radiosity::cli

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "formfactor/row_accounts.h"
 #include "gather/passes.h"
 
 namespace radiosity {
@@ -52,6 +53,7 @@ class Passes {
       : scene_(scene),
         result_(result),
         fronts_(scene.size(), 0.0F),
+        seen_backs_(scene.size()),
         workers_([&] { return Gatherer(scene_, result_.radiosity); }) {
     result_.radiosity = scene.materials.emission;
     result_.irradiance.assign(3 * scene.size(), 0.0F);
@@ -65,11 +67,12 @@ class Passes {
     progress.begin(fmt::format("gathering, pass {}", number), scene_.size());
     parallelFor(scene_.size(), 1, [&](std::size_t k) {
       if (progress.cancelled()) return;
-      if (scene_.eyes[k].looks) gatherAt(k);
+      if (scene_.eyes[k].looks) gatherAt(k, number == 1);
       progress.advance();
     });
     progress.check();
     progress.end();
+    if (number == 1) accountForBacks();
     GatherPass pass;
     measure(pass);
     account(pass);
@@ -94,8 +97,15 @@ class Passes {
   }
 
  private:
-  void gatherAt(std::size_t k) {
-    const Gatherer::Received received = workers_.local().look(k);
+  void gatherAt(std::size_t k, bool first) {
+    Gatherer& worker = workers_.local();
+    const Gatherer::Received received = worker.look(k);
+    if (first && received.backs > 0) {
+      const std::span<const double> backs = worker.backsBySurface();
+      for (std::size_t s = 0; s < backs.size(); ++s) {
+        if (backs[s] > 0) seen_backs_[k].push_back({Index(s), backs[s]});
+      }
+    }
     fronts_[k] = float(received.fronts);
     result_.backs[k] = float(received.backs);
     result_.sky[k] = float(received.sky);
@@ -105,6 +115,20 @@ class Passes {
       next_[at] = float(double(scene_.materials.emission[at]) +
                         double(scene_.materials.reflectance[at]) * received.irradiance[b]);
     }
+  }
+
+  /// All passes see the same.
+  void accountForBacks() {
+    std::vector<double>& share = result_.backs_by_surface;
+    double area = 0;
+    for (std::size_t k = 0; k < scene_.size(); ++k) {
+      if (scene_.eyes[k].looks) area += scene_.area[k];
+      for (const SeenBack& seen : seen_backs_[k]) {
+        share[seen.surface] += scene_.area[k] * seen.share;
+      }
+    }
+    for (double& value : share) value = area > 0 ? value / area : 0;
+    seen_backs_ = {};
   }
 
   /// B* = E + R F B* and B_k = E + R F B_(k-1) + rounding give
@@ -162,6 +186,7 @@ class Passes {
   Gathered& result_;
   std::vector<float> next_;
   std::vector<float> fronts_;
+  std::vector<std::vector<SeenBack>> seen_backs_;  ///< L, during the first pass
   double relative_bound_ = HUGE_VAL;
   tbb::enumerable_thread_specific<Gatherer> workers_;
 };
@@ -231,6 +256,7 @@ Gathered gather(const PatchMesh& mesh, const PatchMaterials& materials,
   checkMaterials(mesh, materials);
   const GatherScene scene(mesh, materials, options);
   Gathered result;
+  result.backs_by_surface.assign(mesh.surface_names.size(), 0.0);
   result.at = options.at;
   result.area = scene.area;
   result.eye_of_corner = scene.eye_of_corner;

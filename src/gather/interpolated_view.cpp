@@ -26,6 +26,7 @@ InterpolatedView::InterpolatedView(const PatchMesh& mesh, const PatchBasis& basi
       resolution_(resolution),
       eye_of_corner_(eye_of_corner),
       radiosity_(radiosity),
+      backs_(mesh.surface_names.size(), 0.0),
       prepared_(mesh.size(), 0),
       constant_(mesh.size(), 0),
       facets_(basis.facetCount()) {}
@@ -33,6 +34,7 @@ InterpolatedView::InterpolatedView(const PatchMesh& mesh, const PatchBasis& basi
 void InterpolatedView::begin(const EyeFrame& frame) {
   frame_ = frame;
   level_ = {};
+  std::fill(backs_.begin(), backs_.end(), 0.0);
   above_ = {};
   ++view_;
 }
@@ -120,8 +122,13 @@ void InterpolatedView::alongRow(SeenFacet& facet, const ItemRun& run) const {
 }
 
 void InterpolatedView::visit(const ItemRun& run) {
-  if (run.begin >= run.end || run.item >= mesh_.size()) return;  // bare backs are black
+  if (run.begin >= run.end) return;
   const std::size_t patch = run.item;
+  if (patch >= mesh_.size()) {  // bare backs are black; what comes after them is the sky
+    const std::size_t surface = patch - mesh_.size();
+    if (surface < backs_.size()) backs_[surface] += run.weights[run.end] - run.weights[run.begin];
+    return;
+  }
   if (prepared_[patch] != view_) prepare(patch);
   if (constant_[patch] == 0 && basis_.facets(patch).size() > 1) return addManyFacets(patch, run);
   SeenFacet& facet = facets_[basis_.facetBegin(patch)];

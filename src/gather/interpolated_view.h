@@ -32,6 +32,8 @@ class InterpolatedView : public RunVisitor {
   void visit(const ItemRun& run) override;
   /// W/m^2, of all runs since begin().
   std::array<double, 3> irradiance() const;
+  /// Weight of the runs since begin() that show each surface's back.
+  std::span<const double> backsBySurface() const { return backs_; }
   /// Bytes of scratch memory.
   std::size_t bytes() const;
 
@@ -61,6 +63,7 @@ class InterpolatedView : public RunVisitor {
   const std::vector<float>& radiosity_;
   EyeFrame frame_;
   std::array<double, 3> level_{};  ///< from corner 0's values
+  std::vector<double> backs_;      ///< by surface
   LaneSums above_;                 ///< what the others add
   std::uint32_t view_ = 0;
   std::vector<std::uint32_t> prepared_;  ///< N, the view a patch was prepared for

@@ -98,8 +98,9 @@ Gatherer::Received Gatherer::look(std::size_t k) {
   const Eye& eye = scene_.eyes[k];
   if (view_)
     view_->begin(eyeFrame(eye.position * scene_.rows.scene().scale, eye.normal, eye.angle));
-  const HemicubeView& view = scene_.rows.lookFrom(eye.position, eye.normal, eye.angle, eye.own,
-                                                  hemicube_, hidden_, view_ ? &*view_ : nullptr);
+  const HemicubeView& view =
+      *(seen_ = &scene_.rows.lookFrom(eye.position, eye.normal, eye.angle, eye.own, hemicube_,
+                                      hidden_, view_ ? &*view_ : nullptr));
   Received received{{}, view.fronts, view.backs, view.sky};
   if (view_) {
     received.irradiance = view_->irradiance();
@@ -111,6 +112,10 @@ Gatherer::Received Gatherer::look(std::size_t k) {
     for (std::size_t b = 0; b < 3; ++b) received.irradiance[b] += weight * radiosity_[3 * j + b];
   }
   return received;
+}
+
+std::span<const double> Gatherer::backsBySurface() const {
+  return view_ ? view_->backsBySurface() : seen_->items.subspan(scene_.mesh.size());
 }
 
 }  // namespace radiosity

@@ -59,6 +59,8 @@ class Gatherer {
     double sky = 0;
   };
   Received look(std::size_t eye);
+  /// Of the last look, the share of the view on each surface's back, by surface.
+  std::span<const double> backsBySurface() const;
   const HemicubeCounts& counts() const { return hemicube_.counts(); }
   std::size_t bytes() const { return hemicube_.bytes() + (view_ ? view_->bytes() : 0); }
 
@@ -66,6 +68,7 @@ class Gatherer {
   const GatherScene& scene_;
   const std::vector<float>& radiosity_;
   Hemicube hemicube_;
+  const HemicubeView* seen_ = nullptr;  ///< the last look's
   std::vector<std::uint8_t> hidden_;
   std::optional<InterpolatedView> view_;
 };

@@ -348,6 +348,7 @@ void describe(Archive& a, Described<Archive, Gathered>& g) {
   a.rows("irradiance", g.irradiance, 3, "W/m^2");
   a("backs", g.backs);
   a("sky", g.sky);
+  a("backs_by_surface", g.backs_by_surface);
   a("area", g.area, "m^2");
   a("position", g.position, "m");
   a("eye_of_corner", g.eye_of_corner);

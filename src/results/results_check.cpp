@@ -111,6 +111,7 @@ void checkGathered(const Checker& check, const Gathered& g, const PatchMesh& mes
   check.length(g.irradiance, 3 * eyes, "/gather/irradiance");
   check.length(g.backs, eyes, "/gather/backs");
   check.length(g.sky, eyes, "/gather/sky");
+  check.length(g.backs_by_surface, mesh.surface_names.size(), "/gather/backs_by_surface");
   check.length(g.position, eyes, "/gather/position");
   if (g.at == GatherAt::patches) {
     check.length(g.area, mesh.size(), "/gather/area");
