@@ -133,7 +133,7 @@ struct Lanes {
       std::fill_n(own[p].data(), kLanes, LaneIndex<T>(p + 2));
       names.push_back(own[p].data());
     }
-    clip.common(rows.lanes(), points, planes, items, names.data(), names.size(), common.data());
+    clip.common(rows.lanes(), points, planes, items, names.data(), count.data(), common.data());
   }
   /// The item of a target.
   static std::size_t item(std::size_t lane) { return kLanes - 1 - lane; }
@@ -265,6 +265,103 @@ TEST(ClipKernels, FarKernelsKeepTheirAccuracy) {
     // In single precision what rounding a plane may move a shadow's edge by comes on top.
     expectAccurate<float>(scalarClipKernels().single.far, size, tolerance + 2e-6 / h_over_r);
   }
+}
+
+/// One body's cones.
+template <class T>
+struct Sides {
+  Sides(const Occluder& body, std::span<const Vec3> eyes, const ClipKernels<T>& kernels) {
+    ConePoints points;
+    points.count = eyes.size();
+    for (std::size_t q = 0; q < kLaneAlignment; ++q) {
+      const Vec3& eye = eyes[std::min(q, eyes.size() - 1)];
+      for (int axis = 0; axis < 3; ++axis) points.position[axis][q] = eye[axis];
+    }
+    AlignedBuffer<double> heights;
+    heights.reserve(body.planes.size() * kLaneAlignment);
+    std::vector<std::uint32_t> above(body.planes.size());
+    all.resize(body.edges.size() + body.planes.size());
+    all.resize(kernels.cones(body, points, true, {heights.data(), above.data()}, all.data()));
+  }
+  std::vector<ConeSide<T>> all;
+};
+
+/// A box and a rectangle, and eyes: within the box, too, and in the rectangle's plane.
+template <class Check>
+void forEveryBody(const Check& check) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const Vec3 origin(-0.3, -0.2, -0.4);
+  const Occluder box = test::boxOccluder(origin, {0.8, 0.1, 0}, {-0.1, 0.5, 0}, {0, 0.1, 0.5});
+  const Occluder flat = test::flatRectangle(origin, {0.8, 0, 0}, {-0.1, 0.5, 0});
+  for (std::size_t k = 0; k < 100; ++k) {
+    std::vector<Vec3> eyes(1 + k % kLaneAlignment);
+    for (Vec3& eye : eyes) eye = Vec3(uniform(random), uniform(random), uniform(random));
+    check(box, eyes);
+    for (std::size_t q = 0; q < eyes.size(); q += 3) eyes[q].z = origin.z;
+    check(flat, eyes);
+  }
+}
+
+/// All sides of blockingCone() in their order, and no others.
+template <class T>
+void expectCones(const Occluder& body, std::span<const Vec3> eyes, double tolerance) {
+  const Sides<T> found(body, eyes, of<T>(scalarClipKernels()));
+  for (std::size_t q = 0; q < eyes.size(); ++q) {
+    BlockingCone expected;
+    blockingCone(body, eyes[q], true, expected);
+    std::size_t next = 0;
+    for (const ConeSide<T>& side : found.all) {
+      if ((side.points >> q & 1) == 0) continue;
+      ASSERT_LT(next, expected.planes.size());
+      EXPECT_EQ(side.label, expected.labels[next]);
+      const ClipPlane& plane = expected.planes[next++];
+      const double length = glm::length(plane.normal);
+      const Vec3 normal(side.normal[0][q], side.normal[1][q], side.normal[2][q]);
+      EXPECT_LE(glm::distance(normal, plane.normal / length), tolerance);
+      EXPECT_NEAR(double(side.offset[q]), plane.offset / length, tolerance);
+    }
+    EXPECT_EQ(next, expected.planes.size());
+  }
+}
+
+TEST(ClipKernels, ConesAreThoseOfOnePointAfterTheOther) {
+  forEveryBody([](const Occluder& body, std::span<const Vec3> eyes) {
+    // Unit normals and offsets below 2: a rounding or two to T each.
+    expectCones<float>(body, eyes, 2e-7);
+    expectCones<double>(body, eyes, 4e-16);
+  });
+}
+
+template <class T>
+void expectSameCones(const Occluder& body, std::span<const Vec3> eyes,
+                     const ClipKernelSet& kernels) {
+  const Sides<T> expected(body, eyes, of<T>(scalarClipKernels()));
+  const Sides<T> found(body, eyes, of<T>(kernels));
+  ASSERT_EQ(expected.all.size(), found.all.size());
+  for (std::size_t k = 0; k < found.all.size(); ++k) {
+    const ConeSide<T>& a = expected.all[k];
+    const ConeSide<T>& b = found.all[k];
+    ASSERT_EQ(a.label, b.label);
+    ASSERT_EQ(a.points, b.points);
+    for (std::size_t q = 0; q < eyes.size(); ++q) {
+      if ((a.points >> q & 1) == 0) continue;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        ASSERT_EQ(std::bit_cast<ShapeWord<T>>(a.normal[axis][q]),
+                  std::bit_cast<ShapeWord<T>>(b.normal[axis][q]));
+      }
+      ASSERT_EQ(std::bit_cast<ShapeWord<T>>(a.offset[q]), std::bit_cast<ShapeWord<T>>(b.offset[q]));
+    }
+  }
+}
+
+TEST(ClipKernels, ConesAgreeToTheBit) {
+  forEveryTarget([](const ClipKernelSet& kernels) {
+    forEveryBody([&](const Occluder& body, std::span<const Vec3> eyes) {
+      expectSameCones<float>(body, eyes, kernels);
+      expectSameCones<double>(body, eyes, kernels);
+    });
+  });
 }
 
 }  // namespace

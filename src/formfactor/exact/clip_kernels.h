@@ -10,6 +10,7 @@
 #include <string>
 #include <type_traits>
 
+#include "formfactor/exact/occluders.h"
 #include "radiosity/base.h"
 
 namespace radiosity {
@@ -101,10 +102,34 @@ struct ClipFunctions {
                  const LaneIndex<T>* first_plane, const LaneIndex<T>* plane_count,
                  const HiddenParts<T>& out);
   /// Form factor to the part of each item inside its own planes: own_planes[k][lane] names the
-  /// lane's k-th of `plane_count`, 1 to kMostPlanes. 0 also where no plane cuts it.
+  /// lane's k-th of plane_count[lane], up to kMostPlanes. Of lanes that share a vector of
+  /// kLaneAlignment all have as many names as the one that has most. 0 also where no plane cuts it.
   void (*common)(const TargetLanes<T>& targets, const EyePoints<T>& eyes,
                  const ConePlanes<T>& planes, const ClipItems<T>& items,
-                 const LaneIndex<T>* const* own_planes, std::size_t plane_count, T* form_factor);
+                 const LaneIndex<T>* const* own_planes, const LaneIndex<T>* plane_count,
+                 T* form_factor);
+};
+
+/// Up to kLaneAlignment points, in the coordinates of an Occluder. The rest repeats one of them.
+struct ConePoints {
+  alignas(64) double position[3][kLaneAlignment];
+  std::size_t count;
+};
+
+/// A side of a body's cones, one plane a point; see ConePlanes. Nothing is said of points that it
+/// is no side for.
+template <class T>
+struct ConeSide {
+  alignas(64) T normal[3][kLaneAlignment];
+  alignas(64) T offset[kLaneAlignment];
+  std::uint32_t points;  ///< a bit for each that it is a side for
+  std::uint32_t label;   ///< the body's edge, or the number of edges plus the face
+};
+
+/// Memory that finding cones needs.
+struct ConeScratch {
+  double* heights;       ///< aligned; kLaneAlignment for each face of the body
+  std::uint32_t* above;  ///< one for each face
 };
 
 template <class T>
@@ -115,6 +140,10 @@ struct ClipKernels {
   /// By the kernel cos cos / (pi r^2) to second order about the polygon's middle. Accuracy,
   /// besides: kFarError (h/r)^3, h the distance of the farthest corner from the middle.
   ClipFunctions<T> far;
+  /// The sides of BlockingCone that a body has from any of the points: its edges, then, if
+  /// `with_faces`, its faces. Found in double precision. Returns their number.
+  std::size_t (*cones)(const Occluder& body, const ConePoints& points, bool with_faces,
+                       const ConeScratch& scratch, ConeSide<T>* sides);
 };
 
 inline constexpr double kFarError = 1;

@@ -20,6 +20,10 @@ struct Ops {
   static std::size_t lanes() { return 1; }
   static V load(const T* p) { return *p; }
   static void store(V v, T* p) { *p = v; }
+  template <class To>
+  static void storeAs(V v, To* p) {
+    *p = To(v);
+  }
   static V set(T v) { return v; }
   static V add(V a, V b) { return a + b; }
   static V sub(V a, V b) { return a - b; }
@@ -38,6 +42,7 @@ struct Ops {
   static M without(M a, M b) { return !a && b; }
   static bool all(M m) { return m; }
   static bool none(M m) { return !m; }
+  static std::uint32_t bits(M m) { return m ? 1 : 0; }
   static V choose(M m, V yes, V no) { return m ? yes : no; }
   static U noLabel() { return 0; }
   static U setWord(std::uint32_t word) { return word; }

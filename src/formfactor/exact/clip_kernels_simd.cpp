@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <type_traits>
 
 #include "formfactor/exact/clip_kernels.h"
 
@@ -32,6 +33,14 @@ struct Ops {
   static HWY_INLINE std::size_t lanes() { return hn::Lanes(D()); }
   static HWY_INLINE V load(const T* p) { return hn::Load(D(), p); }
   static HWY_INLINE void store(V v, T* p) { hn::Store(v, D(), p); }
+  /// Rounded.
+  static HWY_INLINE void storeAs(V v, T* p) { hn::Store(v, D(), p); }
+  static HWY_INLINE void storeAs(V v, float* p)
+    requires std::is_same_v<T, double>
+  {
+    const hn::Rebind<float, D> narrow;
+    hn::Store(hn::DemoteTo(narrow, v), narrow, p);
+  }
   static HWY_INLINE V set(T v) { return hn::Set(D(), v); }
   static HWY_INLINE V add(V a, V b) { return hn::Add(a, b); }
   static HWY_INLINE V sub(V a, V b) { return hn::Sub(a, b); }
@@ -51,6 +60,12 @@ struct Ops {
   static HWY_INLINE M without(M a, M b) { return hn::AndNot(a, b); }
   static HWY_INLINE bool all(M m) { return hn::AllTrue(D(), m); }
   static HWY_INLINE bool none(M m) { return hn::AllFalse(D(), m); }
+  /// Lane k's as bit k.
+  static HWY_INLINE std::uint32_t bits(M m) {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(D(), m, bytes);
+    return bytes[0] | std::uint32_t(bytes[1]) << 8;
+  }
   static HWY_INLINE V choose(M m, V yes, V no) { return hn::IfThenElse(m, yes, no); }
   static HWY_INLINE U noLabel() { return hn::Zero(Words()); }
   static HWY_INLINE U setWord(std::uint32_t word) { return hn::Set(Words(), word); }

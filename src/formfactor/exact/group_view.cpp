@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <glm/geometric.hpp>
+#include <numeric>
 
 namespace radiosity {
 namespace {
@@ -12,16 +12,8 @@ namespace {
 constexpr std::uint8_t kHidden = 255;
 constexpr std::uint8_t kMostCounted = 254;
 constexpr std::uint64_t kUnknownCut = ~std::uint64_t(0);
-/// Lanes of one call for common parts: enough to fill vectors, few enough to stay in the cache.
-constexpr std::size_t kCommonLanes = 128;
 /// Planes that may bound what shadows have in common.
 constexpr std::size_t kMostOwnPlanes = 16;
-
-std::uint32_t scrambled(std::uint32_t x) {
-  x = (x + 1) * 0x85ebca6bU;
-  x = (x ^ (x >> 15)) * 0xc2b2ae35U;
-  return x ^ (x >> 13);
-}
 
 }  // namespace
 
@@ -61,7 +53,7 @@ void GroupView<T>::look(std::span<const SamplePoint> points, const Vec3& origin,
   std::fill_n(shadow_count_.data(), values, std::uint8_t(0));
   sampled_.assign(targets.size(), 0);
   collectUses();
-  buildCones();
+  cones_.build(points_, group_blockers_);
   hide();
   subtractHidden();
   finish();
@@ -84,53 +76,9 @@ void GroupView<T>::collectUses() {
 }
 
 template <class T>
-void GroupView<T>::addPlane(const ClipPlane& plane, std::uint32_t label) {
-  const double scale = 1 / glm::length(plane.normal);
-  const Vec3 n = plane.normal * scale;
-  plane_[0].push_back(T(n.x));
-  plane_[1].push_back(T(n.y));
-  plane_[2].push_back(T(n.z));
-  plane_[3].push_back(T(plane.offset * scale));
-  plane_label_.push_back(label);
-}
-
-template <class T>
-void GroupView<T>::buildCones() {
-  cones_.clear();
-  for (std::size_t k = 0; k < 3; ++k) plane_[k].assign(2, T(0));
-  plane_[3] = {T(1), T(-1)};
-  plane_label_.assign(2, 0);
-  for (const SamplePoint& point : points_) {
-    for (const Blocker* blocker : group_blockers_) {
-      blockingCone(*blocker->body, point.position, blocker->cuts_target, cone_);
-      const std::size_t count = cone_.planes.size();
-      if (count == 0 || count > kMostPlanes) {
-        const bool all = count == 0 && cone_.inside;
-        const auto which = all ? ConePlanes<T>::kAllInside : ConePlanes<T>::kNothingInside;
-        cones_.push_back({which, 1, count > 0});
-        continue;
-      }
-      cones_.push_back({LaneIndex<T>(plane_label_.size()), LaneIndex<T>(count), false});
-      for (std::size_t k = 0; k < count; ++k) {
-        addPlane(cone_.planes[k], scrambled(blocker->id * 1024 + cone_.labels[k]));
-      }
-    }
-  }
-  // Kernels may read the labels of planes that the last cone would have if it had as many as any.
-  plane_label_.resize(plane_label_.size() + kMostPlanes);
-}
-
-template <class T>
 EyePoints<T> GroupView<T>::eyes() const {
   return {{eye_[0].data(), eye_[1].data(), eye_[2].data()},
           {T(normal_.x), T(normal_.y), T(normal_.z)}};
-}
-
-template <class T>
-ConePlanes<T> GroupView<T>::planes() const {
-  return {{plane_[0].data(), plane_[1].data(), plane_[2].data()},
-          plane_[3].data(),
-          plane_label_.data()};
 }
 
 template <class T>
@@ -154,7 +102,7 @@ void GroupView<T>::hide() {
   LaneIndex<T>* plane_count = first + lanes;
   std::size_t at = 0;
   const auto add = [&](const Use& use, std::size_t point) {
-    const Cone& cone = cones_[point * group_blockers_.size() + use.number];
+    const Cone<T>& cone = cones_.cone(use.number, point);
     item_target_.data()[at] = LaneIndex<T>(use.lane);
     item_eye_.data()[at] = LaneIndex<T>(point);
     first[at] = cone.first;
@@ -164,7 +112,7 @@ void GroupView<T>::hide() {
     for (const Use& use : uses_) add(use, q);
   }
   for (std::size_t left = lanes - count; left > 0; --left) add(uses_.back(), points_.size() - 1);
-  clip_.hidden(targets_.lanes(), eyes(), planes(), items(lanes), first, plane_count,
+  clip_.hidden(targets_.lanes(), eyes(), cones_.planes(), items(lanes), first, plane_count,
                {form_factor_.data(), word_.data(), cut_.data(), cut_.data() + lanes});
 }
 
@@ -176,10 +124,9 @@ void GroupView<T>::subtractHidden() {
   std::size_t item = 0;
   for (std::size_t q = 0; q < points_.size(); ++q) {
     const std::size_t row = q * targets_.lanes().count;
-    const Cone* cones = cones_.data() + q * group_blockers_.size();
     for (std::uint32_t u = 0; u < uses_.size(); ++u, ++item) {
       const T hidden = form_factor_.data()[item];
-      const Cone& cone = cones[uses_[u].number];
+      const Cone<T>& cone = cones_.cone(uses_[u].number, q);
       if (hidden == 0 && !cone.too_many) continue;
       const std::size_t at = row + uses_[u].lane;
       std::uint8_t& count = shadow_count_.data()[at];
@@ -187,7 +134,7 @@ void GroupView<T>::subtractHidden() {
       if (count == kHidden) continue;
       if (cone.too_many) {
         count = kMostCounted;
-        shadows_.push_back({std::uint32_t(at), u, cone.first, kUnknownCut});
+        shadows_.push_back({std::uint32_t(at), u, cone.first, 64, kUnknownCut});
         continue;
       }
       visible_.data()[at] -= hidden;
@@ -196,9 +143,9 @@ void GroupView<T>::subtractHidden() {
       if (group_[uses_[u].lane]->blockers.size() > 1) {
         const std::uint64_t low = cut_.data()[item];
         const std::uint64_t high = cut_.data()[lanes + item];
-        const bool known = cone.count <= 64;
+        const std::uint64_t cut = cone.count <= 64 ? high << 32 | low : kUnknownCut;
         shadows_.push_back(
-            {std::uint32_t(at), u, cone.first, known ? high << 32 | low : kUnknownCut});
+            {std::uint32_t(at), u, cone.first, std::uint32_t(std::popcount(cut)), cut});
       }
     }
   }
@@ -234,15 +181,9 @@ void GroupView<T>::uniteShadows() {
     }
     begin = end;
   }
-  item_target_.reserve(kCommonLanes);
-  item_eye_.reserve(kCommonLanes);
-  item_planes_.reserve(kMostOwnPlanes * kCommonLanes);
-  form_factor_.reserve(kCommonLanes);
   for (T sign = 1; !common_.empty(); sign = -sign) {
-    for (std::size_t k = 0; k < common_.size(); k += kCommonLanes) {
-      const std::size_t count = std::min(kCommonLanes, common_.size() - k);
-      evaluateCommon(std::span<const Common>(common_).subspan(k, count), sign);
-    }
+    evaluateCommon();
+    addCommon(sign);
     joinCommon();
   }
 }
@@ -252,22 +193,36 @@ template <class T>
 bool GroupView<T>::addPairs(std::uint32_t begin, std::uint32_t end) {
   if (end - begin > kMostUnited) return false;
   std::size_t planes = 0;
-  for (std::uint32_t k = begin; k < end; ++k) {
-    planes += std::size_t(std::popcount(shadows_[k].cut));
-  }
+  for (std::uint32_t k = begin; k < end; ++k) planes += shadows_[k].planes;
   if (planes > kMostOwnPlanes) return false;
   for (std::uint32_t a = begin; a < end; ++a) {
-    for (std::uint32_t b = a + 1; b < end; ++b) common_.push_back({shadows_[a].at, 2, {a, b}});
+    for (std::uint32_t b = a + 1; b < end; ++b) {
+      common_.push_back({shadows_[a].at, 2, shadows_[a].planes + shadows_[b].planes, {a, b}});
+    }
   }
   return true;
 }
 
-/// Names the planes that cut a target seen from one point; returns how many.
+/// A lane for each of common_, by the number of planes, so that vectors are alike.
 template <class T>
-std::size_t GroupView<T>::setOwnPlanes(const Common& common, std::size_t lane) {
-  std::size_t count = 0;
+void GroupView<T>::placeCommon() {
+  std::array<std::uint32_t, kMostOwnPlanes + 2> begin = {};
+  for (const Common& common : common_) ++begin[common.planes + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  common_lane_.clear();
+  for (const Common& common : common_) common_lane_.push_back(begin[common.planes]++);
+}
+
+/// Makes a set of shadows a lane; `planes`: how many it has to name.
+template <class T>
+void GroupView<T>::setLane(const Common& common, std::size_t lane, std::size_t planes) {
+  const std::size_t stride = targets_.lanes().count;
+  item_target_.data()[lane] = LaneIndex<T>(common.at % stride);
+  item_eye_.data()[lane] = LaneIndex<T>(common.at / stride);
+  LaneIndex<T>* to = item_planes_.data() + lane;
   const auto add = [&](LaneIndex<T> plane) {
-    item_planes_.data()[count++ * kCommonLanes + lane] = plane;
+    *to = plane;
+    to += item_lanes_;
   };
   for (std::uint32_t k = 0; k < common.count; ++k) {
     const Shadow& shadow = shadows_[common.shadows[k]];
@@ -275,36 +230,52 @@ std::size_t GroupView<T>::setOwnPlanes(const Common& common, std::size_t lane) {
       add(shadow.first + std::countr_zero(left));
     }
   }
-  const std::size_t planes = count;
-  while (count < kMostOwnPlanes) add(ConePlanes<T>::kAllInside);
-  return planes;
+  for (std::size_t p = common.planes; p < planes; ++p) add(ConePlanes<T>::kAllInside);
 }
 
-/// Adds (or takes away) what is inside all of some cones, and keeps in next_common_ those where
-/// that is anything.
+/// What is inside all of some cones, for all of common_: into form_factor_, by lane.
 template <class T>
-void GroupView<T>::evaluateCommon(std::span<const Common> some, T sign) {
-  const std::size_t stride = targets_.lanes().count;
+void GroupView<T>::evaluateCommon() {
+  placeCommon();
+  item_lanes_ = paddedLanes(common_.size());
+  item_target_.reserve(item_lanes_);
+  item_eye_.reserve(item_lanes_);
+  item_planes_.reserve((kMostOwnPlanes + 1) * item_lanes_);
+  form_factor_.reserve(item_lanes_);
+  LaneIndex<T>* const plane_count = item_planes_.data() + kMostOwnPlanes * item_lanes_;
+  for (std::size_t k = 0; k < common_.size(); ++k) {
+    plane_count[common_lane_[k]] = LaneIndex<T>(common_[k].planes);
+  }
+  // The rest of the last vector repeats a lane of most planes.
+  std::fill(plane_count + common_.size(), plane_count + item_lanes_,
+            plane_count[common_.size() - 1]);
+  for (std::size_t k = 0; k < common_.size(); ++k) {
+    const std::size_t lane = common_lane_[k];
+    const auto planes = std::size_t(plane_count[lane | (kLaneAlignment - 1)]);
+    setLane(common_[k], lane, planes);
+    if (lane + 1 < common_.size()) continue;
+    for (std::size_t more = lane + 1; more < item_lanes_; ++more) {
+      setLane(common_[k], more, planes);
+    }
+  }
   std::array<const LaneIndex<T>*, kMostOwnPlanes> own_planes;
   for (std::size_t p = 0; p < kMostOwnPlanes; ++p) {
-    own_planes[p] = item_planes_.data() + p * kCommonLanes;
+    own_planes[p] = item_planes_.data() + p * item_lanes_;
   }
-  const std::size_t lanes = paddedLanes(some.size());
-  std::size_t plane_count = 0;
-  for (std::size_t k = 0; k < lanes; ++k) {
-    const Common& common = some[std::min(k, some.size() - 1)];
-    item_target_.data()[k] = LaneIndex<T>(common.at % stride);
-    item_eye_.data()[k] = LaneIndex<T>(common.at / stride);
-    plane_count = std::max(plane_count, setOwnPlanes(common, k));
-  }
-  clip_.common(targets_.lanes(), eyes(), planes(), items(lanes), own_planes.data(), plane_count,
-               form_factor_.data());
-  for (std::size_t k = 0; k < some.size(); ++k) {
-    const T common = form_factor_.data()[k];
+  clip_.common(targets_.lanes(), eyes(), cones_.planes(), items(item_lanes_), own_planes.data(),
+               plane_count, form_factor_.data());
+}
+
+/// Adds (or takes away) what was evaluated, and keeps in next_common_ the sets where that is
+/// anything.
+template <class T>
+void GroupView<T>::addCommon(T sign) {
+  for (std::size_t k = 0; k < common_.size(); ++k) {
+    const T common = form_factor_.data()[common_lane_[k]];
     if (!(common > 0)) continue;
-    visible_.data()[some[k].at] += sign * common;
-    shape_.data()[some[k].at] += scrambled(some[k].count);
-    next_common_.push_back(some[k]);
+    visible_.data()[common_[k].at] += sign * common;
+    shape_.data()[common_[k].at] += scrambled(common_[k].count);
+    next_common_.push_back(common_[k]);
   }
 }
 
@@ -324,6 +295,7 @@ void GroupView<T>::joinCommon() {
       if (!same) break;
       Common joined = first;
       joined.shadows[joined.count++] = second.shadows[last];
+      joined.planes += shadows_[second.shadows[last]].planes;
       common_.push_back(joined);
     }
   }

@@ -8,6 +8,7 @@
 
 #include "formfactor/aligned_buffer.h"
 #include "formfactor/exact/clip_kernels.h"
+#include "formfactor/exact/group_cones.h"
 #include "formfactor/exact/sample_cell.h"
 #include "formfactor/exact/target_rows.h"
 #include "formfactor/exact/visible_part.h"
@@ -45,7 +46,7 @@ class GroupView {
   /// The shape where nothing is visible; where all is, it is 0.
   static constexpr std::uint32_t kAllHiddenShape = 1;
 
-  explicit GroupView(const ClipKernels<T>& kernels) : kernels_(kernels) {}
+  explicit GroupView(const ClipKernels<T>& kernels) : kernels_(kernels), cones_(kernels) {}
 
   /// Looks from `points`, near `origin` on a surface of normal `normal`, at `targets`. `far`: they
   /// all are far enough for the kernels for such. The answers stay until the next call.
@@ -71,41 +72,35 @@ class GroupView {
     std::uint32_t lane;
     std::uint32_t number;  ///< into group_blockers_
   };
-  /// The cone of a blocker from a point, as planes_ has it.
-  struct Cone {
-    LaneIndex<T> first;
-    LaneIndex<T> count;
-    bool too_many;  ///< planes: left to VisiblePart
-  };
   /// A blocker's shadow falls on part of a target that has other blockers, too.
   struct Shadow {
     std::uint32_t at;  ///< index of the value: point * lanes + lane
     std::uint32_t use;
-    LaneIndex<T> first;  ///< plane of its cone
-    std::uint64_t cut;   ///< which planes of its cone cut the target
+    LaneIndex<T> first;    ///< plane of its cone
+    std::uint32_t planes;  ///< that cut the target
+    std::uint64_t cut;     ///< which planes of its cone cut the target
   };
   /// What several shadows on one target may have in common.
   struct Common {
     std::uint32_t at;
     std::uint32_t count;
+    std::uint32_t planes;                            ///< of all
     std::array<std::uint32_t, kMostUnited> shadows;  ///< into shadows_, ascending; first `count`
   };
 
-  void fill(const Vec3& origin);
   void collectUses();
-  void buildCones();
-  void addPlane(const ClipPlane& plane, std::uint32_t label);
   void hide();
   void subtractHidden();
   void finish();
   void uniteShadows();
   bool addPairs(std::uint32_t begin, std::uint32_t end);
-  void evaluateCommon(std::span<const Common> some, T sign);
-  std::size_t setOwnPlanes(const Common& common, std::size_t lane);
+  void placeCommon();
+  void setLane(const Common& common, std::size_t lane, std::size_t planes);
+  void evaluateCommon();
+  void addCommon(T sign);
   void joinCommon();
   void uniteExactly(std::span<const Shadow> shadows);
   EyePoints<T> eyes() const;
-  ConePlanes<T> planes() const;
   ClipItems<T> items(std::size_t count) const;
 
   ClipKernels<T> kernels_;
@@ -123,10 +118,9 @@ class GroupView {
   std::vector<Use> uses_;
   std::vector<const Blocker*> group_blockers_;
   BlockerNumbers numbers_;
-  std::vector<Cone> cones_;  ///< by point, then group_blockers_
-  std::array<std::vector<T>, 4> plane_;
-  std::vector<ShapeWord<T>> plane_label_;
+  GroupCones<T> cones_;
   // Items: by point, then use. Then those of common parts.
+  std::size_t item_lanes_ = 0;  ///< of common parts
   AlignedBuffer<LaneIndex<T>> item_target_;
   AlignedBuffer<LaneIndex<T>> item_eye_;
   AlignedBuffer<LaneIndex<T>> item_planes_;  ///< first plane and count; a common part's own planes
@@ -136,7 +130,7 @@ class GroupView {
   std::vector<Shadow> shadows_;
   std::vector<Common> common_;
   std::vector<Common> next_common_;
-  BlockingCone cone_;
+  std::vector<std::uint32_t> common_lane_;  ///< of common_
   std::vector<Blocker> united_;
   VisiblePart exact_;
 };
