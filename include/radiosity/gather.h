@@ -81,8 +81,8 @@ struct Gathered {
   /// Share of all eyes' view that ends on each surface's back, eyes weighted with their areas; by
   /// surface.
   std::vector<double> backs_by_surface;
-  std::vector<double> area;       ///< L, m^2: what each value stands for; sums to the mesh's area
-  std::vector<Vec3> position;     ///< L, of the eyes
+  std::vector<double> area;    ///< L, m^2: what each value stands for; sums to the mesh's area
+  std::vector<Vec3> position;  ///< L, of the eyes
   std::vector<Index> eye_of_corner;  ///< at vertices: of every entry of PatchMesh::corners
   GatherSummary summary;
 };

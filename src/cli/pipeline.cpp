@@ -227,7 +227,8 @@ void Pipeline::gathered() {
   }
   results_.gather_key = key.text();
   previous_.gathered.reset();
-  summarizeGathered(report_, gatheredLight(), patches(), gather_options_, own ? Detail::full : Detail::brief);
+  summarizeGathered(report_, gatheredLight(), patches(), gather_options_,
+                    own ? Detail::full : Detail::brief);
 }
 
 bool Pipeline::keepFactors() {
