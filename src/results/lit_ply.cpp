@@ -83,34 +83,50 @@ class PlyReader {
     return found;
   }
 
+  using Words = std::vector<std::string_view>;
+
+  [[noreturn]] void failAt(const Words& words) const {
+    fail(fmt::format("'{}' in its header is not understood", fmt::join(words, " ")));
+  }
+
   void readHeader() {
     if (line() != "ply") fail("is not a PLY file; export it again");
     for (std::string_view text = line(); text != "end_header"; text = line()) {
-      const std::vector<std::string_view> words = splitWords(text);
+      const Words words = splitWords(text);
       if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
-      const auto bad = [&] { fail(fmt::format("'{}' in its header is not understood", text)); };
       if (words[0] == "format" && words.size() == 3) {
         ascii_ = words[1] == "ascii";
         swapped_ = words[1] == "binary_big_endian";
-        if (!ascii_ && !swapped_ && words[1] != "binary_little_endian") bad();
+        if (!ascii_ && !swapped_ && words[1] != "binary_little_endian") failAt(words);
       } else if (words[0] == "element" && words.size() == 3) {
-        const std::optional<long long> count = parseInteger(words[2]);
-        if (!count || *count < 0) bad();
-        elements_.push_back({std::string(words[1]), std::size_t(*count), {}});
+        addElement(words);
       } else if (words[0] == "property" && !elements_.empty()) {
-        const bool list = words.size() == 5 && words[1] == "list";
-        if (!list && words.size() != 3) bad();
-        Property property;
-        property.name = words.back();
-        const std::optional<Number> type = numberOf(words[words.size() - 2]);
-        if (list) property.list_count = numberOf(words[2]);
-        if (!type || (list && !property.list_count)) bad();
-        property.type = *type;
-        elements_.back().properties.push_back(property);
+        addProperty(words);
       } else {
-        bad();
+        failAt(words);
       }
     }
+  }
+
+  /// "element vertex 8"
+  void addElement(const Words& words) {
+    const std::optional<long long> count = parseInteger(words[2]);
+    if (!count || *count < 0) failAt(words);
+    elements_.push_back({std::string(words[1]), std::size_t(*count), {}});
+  }
+
+  /// "property float x", "property list uchar int vertex_indices"
+  void addProperty(const Words& words) {
+    const bool list = words.size() == 5 && words[1] == "list";
+    if (!list && words.size() != 3) failAt(words);
+    const std::optional<Number> type = numberOf(words[words.size() - 2]);
+    if (!type) failAt(words);
+    Property property;
+    property.name = words.back();
+    property.type = *type;
+    if (list) property.list_count = numberOf(words[2]);
+    if (list && !property.list_count) failAt(words);
+    elements_.back().properties.push_back(property);
   }
 
   template <class T>
