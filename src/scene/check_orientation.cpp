@@ -11,7 +11,7 @@ namespace radiosity {
 
 namespace {
 
-bool boxContains(const Part& outer, const Part& inner, double tolerance) {
+bool boxContains(const ConnectedPart& outer, const ConnectedPart& inner, double tolerance) {
   const auto within = [&](int k) {
     return outer.lower[k] - tolerance <= inner.lower[k] &&
            inner.upper[k] <= outer.upper[k] + tolerance;
@@ -23,7 +23,7 @@ bool boxContains(const Part& outer, const Part& inner, double tolerance) {
 
 /// Relative to the centre of the welded faces. `on`: so close to the part's faces that neither side
 /// is certain.
-Place SceneChecks::placeOf(const Vec3& point, const Part& outer) const {
+Place SceneChecks::placeOf(const Vec3& point, const ConnectedPart& outer) const {
   const double winding = std::abs(windingNumber(faces_, outer, point));
   if (winding >= 0.75) return Place::inside;
   return winding > 0.25 ? Place::on : Place::outside;
@@ -31,7 +31,7 @@ Place SceneChecks::placeOf(const Vec3& point, const Part& outer) const {
 
 /// `on`: every face of `inner` lies on `outer` (a lamp panel on a ceiling). Faces in contact decide
 /// nothing as long as there are others (a block on a floor).
-Place SceneChecks::placeOf(const Part& inner, const Part& outer) const {
+Place SceneChecks::placeOf(const ConnectedPart& inner, const ConnectedPart& outer) const {
   if (!boxContains(outer, inner, faces_.tolerance)) return Place::outside;
   for (const Index f : inner.faces) {
     Vec3 middle{0.0};
@@ -44,12 +44,14 @@ Place SceneChecks::placeOf(const Part& inner, const Part& outer) const {
 
 bool SceneChecks::closed() const {
   if (topology_.closed) return true;
-  return std::any_of(topology_.parts.begin(), topology_.parts.end(), [&](const Part& room) {
-    return room.closed && room.volume < 0 &&
-           std::all_of(topology_.parts.begin(), topology_.parts.end(), [&](const Part& part) {
-             return &part == &room || placeOf(part, room) != Place::outside;
-           });
-  });
+  return std::any_of(
+      topology_.parts.begin(), topology_.parts.end(), [&](const ConnectedPart& room) {
+        return room.closed && room.volume < 0 &&
+               std::all_of(topology_.parts.begin(), topology_.parts.end(),
+                           [&](const ConnectedPart& part) {
+                             return &part == &room || placeOf(part, room) != Place::outside;
+                           });
+      });
 }
 
 void SceneChecks::reportOrientation(SceneInfo& info) const {
@@ -73,7 +75,7 @@ void SceneChecks::reportFlippedFaces(SceneInfo& info) const {
                      "flip their normals, or --two-sided",
                      scene_.surfaces[s].name, flipped[s], info.surfaces[s].faces)});
   }
-  for (const Part& part : topology_.parts) {
+  for (const ConnectedPart& part : topology_.parts) {
     if (part.orientable) continue;
     info.problems.push_back(
         {Severity::info, fmt::format("{}: has one side only, like a Moebius strip: no winding of "
@@ -83,7 +85,7 @@ void SceneChecks::reportFlippedFaces(SceneInfo& info) const {
 }
 
 void SceneChecks::reportInsideOut(SceneInfo& info) const {
-  for (const Part& part : topology_.parts) {
+  for (const ConnectedPart& part : topology_.parts) {
     const bool one_sided = std::any_of(part.faces.begin(), part.faces.end(),
                                        [&](Index f) { return !materialOf(f).two_sided; });
     if (part.closed && part.volume != 0 && one_sided) reportPart(part, info);
@@ -92,10 +94,10 @@ void SceneChecks::reportInsideOut(SceneInfo& info) const {
 
 /// A closed part that faces inwards is a room, and has something in it; one that faces outwards is
 /// a solid, and has nothing in it. A part that is alone may be either.
-void SceneChecks::reportPart(const Part& part, SceneInfo& info) const {
+void SceneChecks::reportPart(const ConnectedPart& part, SceneInfo& info) const {
   std::vector<std::string> contents;
   bool has_others = false;
-  for (const Part& other : topology_.parts) {
+  for (const ConnectedPart& other : topology_.parts) {
     if (&other == &part) continue;
     has_others = true;
     const bool enough = part.volume < 0 ? !contents.empty() : contents.size() > 4;

@@ -114,7 +114,7 @@ void SceneChecks::reportFaces(SceneInfo& info) const {
   }
 }
 
-std::string SceneChecks::namesOf(const Part& part) const {
+std::string SceneChecks::namesOf(const ConnectedPart& part) const {
   std::vector<std::string> names;
   for (const Index f : part.faces) {
     const std::string& name = surfaceOf(f);

@@ -39,12 +39,12 @@ class SceneChecks {
   }
   bool emits(Index face) const { return materialOf(face).emission != Vec3(0.0); }
   /// "a/b, c/d" of the surfaces a part has faces of.
-  std::string namesOf(const Part& part) const;
-  Place placeOf(const Vec3& point, const Part& outer) const;
-  Place placeOf(const Part& inner, const Part& outer) const;
+  std::string namesOf(const ConnectedPart& part) const;
+  Place placeOf(const Vec3& point, const ConnectedPart& outer) const;
+  Place placeOf(const ConnectedPart& inner, const ConnectedPart& outer) const;
   void reportFlippedFaces(SceneInfo& info) const;
   void reportInsideOut(SceneInfo& info) const;
-  void reportPart(const Part& part, SceneInfo& info) const;
+  void reportPart(const ConnectedPart& part, SceneInfo& info) const;
 
   const Scene& scene_;
   const WeldedFaces& faces_;

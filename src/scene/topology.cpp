@@ -71,8 +71,8 @@ Adjacency joinFaces(std::span<const EdgeUse> uses, std::size_t faces) {
 }
 
 /// Collects the part that hangs on `seed`; flipped[f] is relative to the seed.
-Part floodPart(Index seed, Index number, const Adjacency& adjacency, Topology& topology) {
-  Part part;
+ConnectedPart floodPart(Index seed, Index number, const Adjacency& adjacency, Topology& topology) {
+  ConnectedPart part;
   std::vector<Index> waiting = {seed};
   topology.part_of[seed] = number;
   while (!waiting.empty()) {
@@ -94,7 +94,7 @@ Part floodPart(Index seed, Index number, const Adjacency& adjacency, Topology& t
 }
 
 /// The minority, by area, is what is flipped.
-void settleFlips(const WeldedFaces& faces, const Part& part, Topology& topology) {
+void settleFlips(const WeldedFaces& faces, const ConnectedPart& part, Topology& topology) {
   double balance = 0;
   for (const Index f : part.faces) {
     const double area = glm::length(faces.area_vector[f]);
@@ -106,7 +106,8 @@ void settleFlips(const WeldedFaces& faces, const Part& part, Topology& topology)
   }
 }
 
-void measure(const WeldedFaces& faces, const std::vector<std::uint8_t>& flipped, Part& part) {
+void measure(const WeldedFaces& faces, const std::vector<std::uint8_t>& flipped,
+             ConnectedPart& part) {
   part.lower = Vec3(std::numeric_limits<double>::infinity());
   part.upper = -part.lower;
   for (const Index f : part.faces) {
@@ -127,7 +128,7 @@ void measure(const WeldedFaces& faces, const std::vector<std::uint8_t>& flipped,
 /// Marks parts with an edge whose uses do not cancel, and counts edges.
 void countEdges(std::span<const EdgeUse> uses, const std::vector<std::uint8_t>& two_sided,
                 Topology& topology) {
-  for (Part& part : topology.parts) part.closed = true;
+  for (ConnectedPart& part : topology.parts) part.closed = true;
   forEachEdge(uses, [&](std::span<const EdgeUse> edge) {
     topology.open_edges += edge.size() == 1 ? 1 : 0;
     topology.nonmanifold_edges += edge.size() > 2 ? 1 : 0;
@@ -166,7 +167,7 @@ Topology analyseTopology(const WeldedFaces& faces, const std::vector<std::uint8_
   }
   countEdges(uses, two_sided, topology);
   topology.closed = !topology.parts.empty();
-  for (Part& part : topology.parts) {
+  for (ConnectedPart& part : topology.parts) {
     measure(faces, topology.flipped, part);
     // A sheet folded onto itself encloses nothing.
     const double thinnest = faces.tolerance * glm::distance(part.lower, part.upper);
@@ -176,7 +177,7 @@ Topology analyseTopology(const WeldedFaces& faces, const std::vector<std::uint8_
   return topology;
 }
 
-double windingNumber(const WeldedFaces& faces, const Part& part, const Vec3& point) {
+double windingNumber(const WeldedFaces& faces, const ConnectedPart& part, const Vec3& point) {
   double angle = 0;
   for (const Index f : part.faces) {
     const auto face = faces.face(f);

@@ -8,7 +8,7 @@
 namespace radiosity {
 
 /// Faces joined by edges that exactly two faces share.
-struct Part {
+struct ConnectedPart {
   std::vector<Index> faces;
   Vec3 lower{0.0};  ///< box, relative to WeldedFaces::centre
   Vec3 upper{0.0};
@@ -21,7 +21,7 @@ struct Topology {
   std::size_t open_edges = 0;         ///< used by one face alone
   std::size_t nonmanifold_edges = 0;  ///< used by more than two faces
   bool closed = false;                ///< every part is closed and has a volume
-  std::vector<Part> parts;
+  std::vector<ConnectedPart> parts;
   std::vector<Index> part_of;  ///< F, kNone for a face left out
   /// F, 1: wound against the majority (by area) of its part.
   std::vector<std::uint8_t> flipped;
@@ -35,6 +35,6 @@ Topology analyseTopology(const WeldedFaces& faces, const std::vector<std::uint8_
 /// How often a closed part winds around `point` (relative to the centre): 1 or -1 inside, 0
 /// outside, about a half on it. Sum of solid angles over 4 pi, by the formula of Van Oosterom and
 /// Strackee (1983).
-double windingNumber(const WeldedFaces& faces, const Part& part, const Vec3& point);
+double windingNumber(const WeldedFaces& faces, const ConnectedPart& part, const Vec3& point);
 
 }  // namespace radiosity
