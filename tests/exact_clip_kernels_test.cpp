@@ -65,7 +65,8 @@ GroupTarget groupTarget(const std::vector<Vec3>& outline) {
   const Vec3 middle = 0.25 * (outline[0] + outline[1] + outline[2] + outline[3]);
   const auto corner = [&](std::size_t k) { return outline[k]; };
   GroupTarget target;
-  target.setOutline(outline, middle, glm::normalize(vectorArea(outline.size(), corner)));
+  const Vec3 normal = glm::normalize(vectorArea(outline.size(), corner));
+  target.setOutline(outline, makeFrame(middle, normal, axisAcross(normal)));
   return target;
 }
 

@@ -79,7 +79,8 @@ Scene randomScene(std::uint64_t seed) {
   }
   for (std::size_t k = 0; k < scene.outlines.size(); ++k) {
     GroupTarget target;
-    target.setOutline(scene.outlines[k], 0.5 * (scene.outlines[k][0] + scene.outlines[k][2]), -kUp);
+    const Vec3 middle = 0.5 * (scene.outlines[k][0] + scene.outlines[k][2]);
+    target.setOutline(scene.outlines[k], makeFrame(middle, -kUp, axisAcross(kUp)));
     target.blockers = scene.blockers[k];
     scene.targets.push_back(target);
   }

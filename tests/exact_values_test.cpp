@@ -13,6 +13,7 @@
 namespace radiosity {
 namespace {
 
+using test::cubeOfTriangles;
 using test::MeshBuilder;
 using truth::Corners;
 
@@ -59,16 +60,7 @@ TEST(ExactValues, PlanarClosedFormsToTenDigits) {
 }
 
 TEST(ExactValues, CubeOfTriangles) {
-  // Each square face cut along a diagonal: adjacent triangles meet in four ways.
-  MeshBuilder builder;
-  for (int axis = 0; axis < 3; ++axis) {
-    Vec3 u(0.0), v(0.0), w(0.0);
-    u[(axis + 1) % 3] = v[(axis + 2) % 3] = w[axis] = 1;
-    builder.polygon("room", {{w, w + v, w + u + v, w + u}},
-                    {{w, w + v, w + u + v}, {w, w + u + v, w + u}});
-    builder.polygon("room", {{Vec3(0), u, u + v, v}}, {{Vec3(0), u, v}, {u, u + v, v}});
-  }
-  const PatchMesh mesh = builder.build();
+  const PatchMesh mesh = cubeOfTriangles();
   const FormFactors f = exact(mesh, 1e-11);
   const double known[] = {0.211324865405187, 0.184424034121610, 0.0563375489264, 0.0760875888927,
                           0.0999124478491937};  // the last: half a face's, where diagonals cross

@@ -148,4 +148,17 @@ inline MeshBuilder roomWithBlock(int n) {
   return builder;
 }
 
+/// The inside of a cube, each face cut along a diagonal: adjacent triangles meet in four ways.
+inline PatchMesh cubeOfTriangles() {
+  MeshBuilder builder;
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3 u(0.0), v(0.0), w(0.0);
+    u[(axis + 1) % 3] = v[(axis + 2) % 3] = w[axis] = 1;
+    builder.polygon("room", {{w, w + v, w + u + v, w + u}},
+                    {{w, w + v, w + u + v}, {w, w + u + v, w + u}});
+    builder.polygon("room", {{Vec3(0), u, u + v, v}}, {{Vec3(0), u, v}, {u, u + v, v}});
+  }
+  return builder.build();
+}
+
 }  // namespace radiosity::test

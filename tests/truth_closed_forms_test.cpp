@@ -14,6 +14,7 @@
 namespace radiosity::truth {
 namespace {
 
+using test::cubeOfTriangles;
 using test::MeshBuilder;
 
 double formFactor(const Corners& from, const Corners& to) {
@@ -34,15 +35,7 @@ TEST(TruthUnoccluded, ClosedForms) {
 
 TEST(TruthUnoccluded, ClosureOfTheCubeOfTriangles) {
   // Twelve triangles: rows sum to 1 whatever the values are.
-  MeshBuilder builder;
-  for (int axis = 0; axis < 3; ++axis) {
-    Vec3 u(0.0), v(0.0), w(0.0);
-    u[(axis + 1) % 3] = v[(axis + 2) % 3] = w[axis] = 1;
-    builder.polygon("room", {{w, w + v, w + u + v, w + u}},
-                    {{w, w + v, w + u + v}, {w, w + u + v, w + u}});
-    builder.polygon("room", {{Vec3(0), u, u + v, v}}, {{Vec3(0), u, v}, {u, u + v, v}});
-  }
-  const PatchMesh mesh = builder.build();
+  const PatchMesh mesh = cubeOfTriangles();
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     double sum = 0;
     for (const double f : truthRow(mesh, i)) sum += f;

@@ -22,21 +22,28 @@ template <class T>
 void PairGroups<T>::setTargets(std::span<const SampledPair> group,
                                std::span<const Blocker> blockers) {
   targets_.resize(group.size());
+  // Targets of one facet stand together, and their frames differ in the origin only.
+  PlaneFrame frame;
+  Index facet = kNone;
   for (std::size_t k = 0; k < group.size(); ++k) {
     const SampledPair& pair = group[k];
     GroupTarget& target = targets_[k];
     target.blockers =
         blockers.subspan(pair.blockers_begin, pair.blockers_end - pair.blockers_begin);
-    const Vec3& target_normal = elements_.facets[elements_.facet[pair.target]].normal;
+    if (elements_.facet[pair.target] != facet) {
+      facet = elements_.facet[pair.target];
+      const Vec3& normal = elements_.facets[facet].normal;
+      frame = makeFrame(Vec3(0.0), normal, axisAcross(normal));
+    }
     if (!pair.target_cut) {
-      target.setOutline(elements_.outline(pair.target), elements_.centroid[pair.target],
-                        target_normal);
+      frame.origin = elements_.centroid[pair.target];
+      target.setOutline(elements_.outline(pair.target), frame);
       continue;
     }
     const Facet& horizon = elements_.facets[elements_.facet[pair.sampled]];
     const std::vector<Vec3> part = partInFront(elements_, pair.target, horizon);
-    const Vec3 sum = std::accumulate(part.begin(), part.end(), Vec3(0.0));
-    target.setOutline(part, sum / double(part.size()), target_normal);
+    frame.origin = std::accumulate(part.begin(), part.end(), Vec3(0.0)) / double(part.size());
+    target.setOutline(part, frame);
   }
 }
 

@@ -9,11 +9,10 @@ constexpr std::size_t kCornerRow = 9;
 
 }  // namespace
 
-void GroupTarget::setOutline(std::span<const Vec3> outline, const Vec3& middle,
-                             const Vec3& normal) {
+void GroupTarget::setOutline(std::span<const Vec3> outline, const PlaneFrame& plane) {
   std::copy(outline.begin(), outline.end(), corners.begin());
   corner_count = outline.size();
-  frame = makeFrame(middle, normal, axisAcross(normal));
+  frame = plane;
   for (std::size_t k = 0; k < corner_count; ++k) flat[k] = frame.flat(corners[k]);
 }
 

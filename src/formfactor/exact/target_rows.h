@@ -13,8 +13,8 @@ namespace radiosity {
 
 /// One element as seen from a group's points.
 struct GroupTarget {
-  /// `outline`: counter-clockwise about `normal`.
-  void setOutline(std::span<const Vec3> outline, const Vec3& middle, const Vec3& normal);
+  /// `outline`: counter-clockwise about the normal of `plane`, a frame in its middle.
+  void setOutline(std::span<const Vec3> outline, const PlaneFrame& plane);
 
   std::array<Vec3, kMostCorners> corners;  ///< of the part above the points' horizon
   std::size_t corner_count = 0;
