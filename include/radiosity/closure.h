@@ -78,4 +78,15 @@ ClosureReport closeRows(ExchangeMatrix& matrix, const UncertainEntries& uncertai
                         std::span<const double> target_row_sums, bool enforce,
                         double tolerance = 1e-9);
 
+/// What is known of a matrix without its correction: each saves a pass over it.
+struct RawTotals {
+  std::span<const double> row_sums;  ///< N: as ExchangeMatrix::rowSums(Part::raw)
+  double weighted_squares = 0;       ///< as weightedSquares(matrix, Part::raw); 1e-3 will do
+};
+
+/// The same, for those who know these.
+ClosureReport closeRows(ExchangeMatrix& matrix, const RawTotals& raw,
+                        const UncertainEntries& uncertain, std::span<const double> target_row_sums,
+                        bool enforce, double tolerance = 1e-9);
+
 }  // namespace radiosity

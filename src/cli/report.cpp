@@ -20,7 +20,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr int kLabelWidth = 26;
+constexpr int kLabelWidth = 33;  // the longest label, and room after it
 constexpr int kStageWidth = 15;
 constexpr std::size_t kAlike = 3;  // notes of one shape that are printed
 

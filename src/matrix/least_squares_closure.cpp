@@ -47,7 +47,7 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
 class LeastSquaresClosure {
  public:
   LeastSquaresClosure(const ExchangeMatrix& matrix, const UncertainEntries& uncertain,
-                      std::span<const double> target);
+                      std::span<const double> target, const RawTotals& raw);
 
   void findMultipliers(double tolerance);
   /// The changes they make, as the matrix would store them, if they are to be kept; fills in the
@@ -66,6 +66,7 @@ class LeastSquaresClosure {
 
   const ExchangeMatrix& matrix_;
   const UncertainEntries& uncertain_;
+  double raw_squares_;
   TwoSidedPass pass_;
   std::array<double, 256> squared_{};            // e^2 by code
   std::vector<double> area_;                     // in a unit that keeps its squares in range
@@ -81,9 +82,10 @@ class LeastSquaresClosure {
 
 LeastSquaresClosure::LeastSquaresClosure(const ExchangeMatrix& matrix,
                                          const UncertainEntries& uncertain,
-                                         std::span<const double> target)
+                                         std::span<const double> target, const RawTotals& raw)
     : matrix_(matrix),
       uncertain_(uncertain),
+      raw_squares_(raw.weighted_squares),
       pass_(matrix.size(), 0, [&](std::size_t k) { return uncertain.row(k).codes.size() + 1; }),
       area_(matrix.size()),
       free_(matrix.size()),
@@ -97,19 +99,21 @@ LeastSquaresClosure::LeastSquaresClosure(const ExchangeMatrix& matrix,
   double largest = 0;
   for (const double a : area) largest = std::max(largest, a);
   const int exponent = largest > 0 ? std::ilogb(largest) : 0;
-  const std::vector<double> sums = matrix.rowSums(Part::raw);
   for (std::size_t k = 0; k < matrix.size(); ++k) {
     const Index patch = matrix.order()[k];
     free_[k] = uncertain.row(k).codes;
     area_[k] = std::ldexp(area[patch], -exponent);
     // A row that sums to 0 sees nothing or has no area: nothing is asked of it.
-    shortfall_[k] = sums[patch] > 0 ? target[patch] - sums[patch] : 0.0;
+    const double sum = raw.row_sums[patch];
+    shortfall_[k] = sum > 0 ? target[patch] - sum : 0.0;
     report_.largest_residual_before =
         std::max(report_.largest_residual_before, std::abs(shortfall_[k]));
   }
   report_.adjustable = uncertain.entries();
   root_ = timesWeights(std::vector<double>(matrix.size(), 1.0));
   for (double& d : root_) d = std::sqrt(d);
+  // What evaluate() would find while nothing is moved.
+  lacking_ = shortfall_;
 }
 
 /// Calls visit(index into the row's codes, position, code, F) for the uncertain entries of row k.
@@ -184,9 +188,12 @@ void LeastSquaresClosure::evaluate() {
 std::vector<double> LeastSquaresClosure::newtonStep(double tolerance) {
   const std::size_t n = area_.size();
   const double damping = report_.emptied > 0 ? std::min(kDamping, largestLack()) : 0;
-  std::vector<double> own = timesWeights(std::vector<double>(n, 1.0));
-  for (std::size_t k = 0; k < n; ++k) {
-    own[k] = root_[k] > 0 ? own[k] / (root_[k] * root_[k]) + damping : 0;
+  std::vector<double> own(n, 1.0);  // D, scaled: 1 while all are free
+  if (report_.emptied > 0) {
+    own = timesWeights(own);
+    for (std::size_t k = 0; k < n; ++k) {
+      own[k] = root_[k] > 0 ? own[k] / (root_[k] * root_[k]) + damping : 0;
+    }
   }
   const auto multiply = [&](const std::vector<double>& x) {
     std::vector<double> scaled(n);
@@ -247,7 +254,6 @@ double LeastSquaresClosure::largestLack() const {
 }
 
 void LeastSquaresClosure::findMultipliers(double tolerance) {
-  evaluate();
   for (int round = 0; round < kMostRounds && largestLack() > tolerance; ++round) {
     const std::vector<double> step = newtonStep(tolerance);
     const std::vector<double> start = multiplier_;
@@ -307,8 +313,7 @@ std::vector<RunRow> LeastSquaresClosure::changes(double tolerance, bool keep) {
     sum += matrix_.area()[matrix_.order()[k]] * moved[k];
   }
   report_.reached = report_.largest_residual <= tolerance;
-  const double total = weightedSquares(matrix_, Part::raw);
-  report_.relative_move = total > 0 ? std::sqrt(sum / total) : 0;
+  report_.relative_move = raw_squares_ > 0 ? std::sqrt(sum / raw_squares_) : 0;
   return kept;
 }
 
@@ -316,13 +321,21 @@ std::vector<RunRow> LeastSquaresClosure::changes(double tolerance, bool keep) {
 
 ClosureReport closeRows(ExchangeMatrix& matrix, const UncertainEntries& uncertain,
                         std::span<const double> target_row_sums, bool enforce, double tolerance) {
+  const std::vector<double> sums = matrix.rowSums(Part::raw);
+  return closeRows(matrix, {sums, weightedSquares(matrix, Part::raw)}, uncertain, target_row_sums,
+                   enforce, tolerance);
+}
+
+ClosureReport closeRows(ExchangeMatrix& matrix, const RawTotals& raw,
+                        const UncertainEntries& uncertain, std::span<const double> target_row_sums,
+                        bool enforce, double tolerance) {
   checkClosureTarget(target_row_sums, matrix.size());
   if (!matrix.isSymmetric() || uncertain.size() != matrix.size()) {
     throw InputError(fmt::format("closure: uncertain entries of {} rows for a {} matrix of {}",
                                  uncertain.size(),
                                  matrix.isSymmetric() ? "symmetric" : "row by row", matrix.size()));
   }
-  LeastSquaresClosure closure(matrix, uncertain, target_row_sums);
+  LeastSquaresClosure closure(matrix, uncertain, target_row_sums, raw);
   if (!enforce) {
     tolerance = std::max(tolerance, kReportedShare * closure.report().largest_residual_before);
   }

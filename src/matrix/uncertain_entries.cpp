@@ -13,13 +13,20 @@ namespace radiosity {
 namespace {
 
 /// A code is 255 + 4 log2(error), rounded: 255 stands for 1 and more, 1 for 2^-63.5.
-constexpr double kStepsPerOctave = 4;
-constexpr double kLargestCode = 255;
+constexpr int kStepsPerOctave = 4;
+constexpr int kLargestCode = 255;
+/// 2^(-7/8), 2^(-5/8), 2^(-3/8) and 2^(-1/8): from these on the logarithm rounds to the next step.
+constexpr std::array<double, 4> kRoundedUp = {0.5452538663326288, 0.6484197773255048,
+                                              0.7711054127039704, 0.9170040432046712};
 
 std::uint8_t codeOf(double error) {
   if (error == 0) return 0;
-  const double code = std::round(kLargestCode + kStepsPerOctave * std::log2(error));
-  return std::uint8_t(std::clamp(code, 0.0, kLargestCode));
+  // A logarithm to a quarter of an octave needs no more than the exponent and three comparisons.
+  int exponent = 0;
+  const double fraction = std::frexp(error, &exponent);  // 1/2 to 1
+  int step = 0;
+  for (const double bound : kRoundedUp) step += fraction >= bound ? 1 : 0;
+  return std::uint8_t(std::clamp(kLargestCode + kStepsPerOctave * (exponent - 1) + step, 0, 255));
 }
 
 }  // namespace
@@ -28,7 +35,7 @@ double UncertainEntries::errorOf(std::uint8_t code) {
   static const std::array<double, 256> table = [] {
     std::array<double, 256> errors{};
     for (std::size_t c = 1; c < errors.size(); ++c) {
-      errors[c] = std::exp2((double(c) - kLargestCode) / kStepsPerOctave);
+      errors[c] = std::exp2((double(c) - kLargestCode) / double(kStepsPerOctave));
     }
     return errors;
   }();

@@ -41,6 +41,12 @@ void ErrorSums::addAndScale(std::size_t row, std::span<double> exchange, double 
   squares[0] += (lane[0] + lane[1]) + (lane[2] + lane[3]);
 }
 
+double ErrorSums::weightedSquares(std::span<const double> area) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < area.size(); ++i) sum += squares_[i] / area[i];
+  return sum;
+}
+
 double ErrorSums::recheckRatio() const {
   return stated_ > 0 ? std::sqrt(difference_ / stated_) : 0.0;
 }
@@ -53,14 +59,13 @@ double ErrorSums::figures(std::span<const double> area, double closed_form,
                      : 0.0;
   const double closed = kClosedFormShare * closed_form;
   double errors = 0;
-  double squares = 0;
   for (std::size_t i = 0; i < figure.size(); ++i) {
     const double clipped = errors_[i] + surplus * clipped_[i];
     const double square = clipped + closed * closed * squares_[i];
     figure[i] = std::sqrt(square) / area[i];
     errors += square / area[i];
-    squares += squares_[i] / area[i];
   }
+  const double squares = weightedSquares(area);
   return squares > 0 ? std::sqrt(errors / squares) : 0.0;
 }
 

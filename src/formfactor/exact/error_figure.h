@@ -46,6 +46,8 @@ class ErrorSums {
     ++rechecked_;
   }
 
+  /// sum A F^2 over all pairs, both ways. `area`: of the rows.
+  double weightedSquares(std::span<const double> area) const;
   std::size_t rechecked() const { return rechecked_; }
   /// rms difference of the two ends over what they state; 0 where nothing was compared.
   double recheckRatio() const;

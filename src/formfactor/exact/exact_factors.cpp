@@ -15,14 +15,25 @@
 namespace radiosity {
 namespace {
 
-/// Closed forms are cheap: they are made at least this accurate.
+/// Closed forms hold this at the default tolerance, and what is asked below it. ...
 constexpr double kClosedForm = 1e-5;
+constexpr double kDefaultTolerance = 1e-3;
+/// ... Where less is asked than that, a share of it: theirs, mostly a tenth of what they are held
+/// to, is then not seen beside the error of what is clipped. ...
+constexpr double kClosedFormShare = 0.03;
+/// ... The kernels are published for no more than this.
+constexpr double kLoosest = 1e-3;
 /// About this share of the clipped pairs is evaluated again from the other end, ...
 constexpr double kRecheckShare = 1.0 / 256;
 /// ... and at least so many, as far as there are.
 constexpr double kRecheckLeast = 512;
 /// A row that leaves more than this to the sky needs no eye to tell that the scene is open.
 constexpr double kCertainSky = 0.01;
+
+double closedFormTolerance(double tolerance) {
+  if (tolerance <= kDefaultTolerance) return std::min(tolerance, kClosedForm);
+  return std::min(kClosedFormShare * tolerance, kLoosest);
+}
 
 std::size_t recheckEvery(double partial_pairs) {
   const double share = std::max(kRecheckShare, kRecheckLeast / std::max(partial_pairs, 1.0));
@@ -114,14 +125,15 @@ void setAccounts(const PatchMesh& mesh, const PatchOrder& order, FormFactors& re
 
 /// What a closed scene's rows lack of 1 is put on the clipped pairs, or it is said what that would
 /// take.
-void closeRows(const PatchOrder& order, const UncertainEntries& uncertain, ClosureMode mode,
-               FormFactors& result) {
+void closeRows(const PatchOrder& order, const UncertainEntries& uncertain, double weighted_squares,
+               ClosureMode mode, FormFactors& result) {
   std::vector<double> target(order.patch.size(), 0.0);
   for (std::size_t k = 0; k < order.ranked; ++k) {
     target[order.patch[k]] = std::max(0.0, 1 - result.backs[order.patch[k]]);
   }
   const bool enforce = mode == ClosureMode::enforce;
-  result.report.closure = radiosity::closeRows(result.matrix, uncertain, target, enforce);
+  const RawTotals raw{result.fronts, weighted_squares};
+  result.report.closure = radiosity::closeRows(result.matrix, raw, uncertain, target, enforce);
   result.report.closure_enforced = enforce;
   if (enforce) result.fronts = result.matrix.rowSums();
 }
@@ -141,7 +153,7 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   report.estimated_bytes = estimate.bytes;
   refuseTooLarge(estimate.bytes, options, n);
 
-  const double closed_form = std::min(options.tolerance, kClosedForm);
+  const double closed_form = closedFormTolerance(options.tolerance);
   const UnoccludedKernel unoccluded(scene.elements, closed_form, options.simd);
   const PartialKernel partial(scene.elements, scene.occluders, options.tolerance, options.simd);
   result.matrix =
@@ -169,7 +181,9 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   setErrors(scene.order, sums.error, closed_form, result);
   setAccounts(mesh, scene.order, result);
   if (report.closed && options.closure != ClosureMode::off) {
-    closeRows(scene.order, uncertain, options.closure, result);
+    const double square = scene.elements.scale * scene.elements.scale;  // of an area
+    closeRows(scene.order, uncertain, sums.error.weightedSquares(scene.order.area) / square,
+              options.closure, result);
   }
   accountForBacks(mesh, seen_backs, result);
   report.exact.seconds_finish = std::chrono::duration<double>(Clock::now() - finishing).count();

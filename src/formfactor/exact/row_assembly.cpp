@@ -79,7 +79,7 @@ void RowAssembly::run(std::span<const ElementRange> ranges, RowSums& sums) {
   marked_.assign(places, 0);
   classify(ranges, sums);
   evaluatePartial(sums);
-  if (context_.uncertain != nullptr) storeUncertain();
+  if (context_.uncertain != nullptr) storeUncertain(rows);
   storePatches(rows, sums);
 }
 
@@ -176,33 +176,47 @@ void RowAssembly::recheck(RowSums& sums) const {
   }
 }
 
-void RowAssembly::storeUncertain() {
+void RowAssembly::storeUncertain(ElementRange rows) {
   const PatchOrder& order = context_.order;
-  uncertain_.clear();
+  const auto isCounted = [&](std::size_t k) {
+    return pairs_.partial_pairs[k].column < context_.elements.patch_elements;
+  };
+  // Dealt out by rows: within a row they mostly stand in order already.
+  const Index first = order.rank[rows.first];
+  const Index count = order.rank[rows.end - 1] + 1 - first;
+  row_begin_.assign(count + 2, 0);
   for (std::size_t k = 0; k < partial_.size(); ++k) {
+    if (isCounted(k)) ++row_begin_[order.rank[pairs_.partial_pairs[k].row] - first + 2];
+  }
+  std::partial_sum(row_begin_.begin(), row_begin_.end(), row_begin_.begin());
+  uncertain_.resize(row_begin_.back());
+  for (std::size_t k = 0; k < partial_.size(); ++k) {
+    if (!isCounted(k)) continue;
     const PartialPair& pair = pairs_.partial_pairs[k];
-    if (pair.column >= context_.elements.patch_elements) continue;
     const Index row = order.rank[pair.row];
-    uncertain_.push_back({row, order.rank[pair.column], partial_[k].error / order.area[row]});
+    uncertain_[row_begin_[row - first + 1]++] = {order.rank[pair.column],
+                                                 partial_[k].error / order.area[row]};
   }
-  std::sort(uncertain_.begin(), uncertain_.end());
-  std::vector<Index> later;
-  std::vector<double> errors;
-  for (std::size_t k = 0; k < uncertain_.size();) {
-    const Index row = uncertain_[k].row;
-    later.clear();
-    errors.clear();
-    for (; k < uncertain_.size() && uncertain_[k].row == row; ++k) {
-      const auto& [of, column, error] = uncertain_[k];
-      if (!later.empty() && later.back() == column) {
-        errors.back() += error;  // another piece of the same patches
-      } else {
-        later.push_back(column);
-        errors.push_back(error);
-      }
+  for (std::size_t r = 0; r < count; ++r) {
+    storeUncertainRow(
+        first + r, std::span(uncertain_).subspan(row_begin_[r], row_begin_[r + 1] - row_begin_[r]));
+  }
+}
+
+void RowAssembly::storeUncertainRow(std::size_t rank, std::span<Uncertain> entries) {
+  if (entries.empty()) return;
+  if (!std::is_sorted(entries.begin(), entries.end())) std::sort(entries.begin(), entries.end());
+  later_.clear();
+  errors_.clear();
+  for (const auto& [column, error] : entries) {
+    if (!later_.empty() && later_.back() == column) {
+      errors_.back() += error;  // another piece of the same patches
+    } else {
+      later_.push_back(column);
+      errors_.push_back(error);
     }
-    context_.uncertain->setRow(row, later, errors);
   }
+  context_.uncertain->setRow(rank, later_, errors_);
 }
 
 void RowAssembly::storePatches(ElementRange rows, RowSums& sums) {

@@ -74,6 +74,12 @@ class RowAssembly {
 
  private:
   static constexpr std::size_t kMarks = 8;  ///< looked at together
+  /// A clipped pair of a row.
+  struct Uncertain {
+    Index column;  ///< rank
+    double error;  ///< of F
+    auto operator<=>(const Uncertain&) const = default;
+  };
   void classify(std::span<const ElementRange> ranges, RowSums& sums);
   /// Closed forms of rows `range`: of the blocks and pairs recorded from the given ones on.
   void evaluateUnoccluded(ElementRange range, std::size_t first_block, std::size_t first_pair,
@@ -81,7 +87,8 @@ class RowAssembly {
   void dropPairsWithoutExchange(std::size_t first_pair, RowSums& sums);
   void evaluatePartial(RowSums& sums);
   void recheck(RowSums& sums) const;
-  void storeUncertain();
+  void storeUncertain(ElementRange rows);
+  void storeUncertainRow(std::size_t rank, std::span<Uncertain> entries);
   void storePatches(ElementRange rows, RowSums& sums);
   void clearUnmarked();
   /// A patch's exchange with itself and all later ones, and with bare backs.
@@ -94,12 +101,10 @@ class RowAssembly {
   const RowContext& context_;
   RecordedPairs pairs_;
   std::vector<PartialExchange> partial_;
-  struct Uncertain {
-    Index row, column;  ///< ranks
-    double error;
-    auto operator<=>(const Uncertain&) const = default;
-  };
-  std::vector<Uncertain> uncertain_;
+  std::vector<Uncertain> uncertain_;    ///< by row
+  std::vector<std::size_t> row_begin_;  ///< into uncertain_, by rank from the task's first on
+  std::vector<Index> later_;            ///< of one row
+  std::vector<double> errors_;
   Index first_ = 0;                   ///< element of the task
   std::size_t width_ = 0;             ///< elements from first_ on
   std::vector<double> panel_;         ///< rows x width_, and up to a multiple of kMarks
