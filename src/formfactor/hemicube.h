@@ -153,7 +153,11 @@ class Hemicube {
   const double* weightsOf(const FaceGeometry& face, int y) const {
     return face.isTop() ? weights_.topRow(y) : weights_.sideRow(y);
   }
-  double rowHeight(const FaceGeometry& face, int y) const;
+  /// Height of a row's pixel centres above the middle of the face, in pixels; on side faces the
+  /// middle of the picture plane is the horizon.
+  double rowHeight(const FaceGeometry& face, int y) const {
+    return face.isTop() ? y + 0.5 * (1 - resolution_) : y + 0.5;
+  }
   int rowCount(const FaceGeometry& face) const {
     return face.isTop() ? resolution_ : resolution_ / 2;
   }
