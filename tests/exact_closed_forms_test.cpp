@@ -123,6 +123,28 @@ TEST(ClosedForms, PublishedValuesToTenDigits) {
   }
 }
 
+TEST(ClosedForms, RowsOfAFrustumSumToOne) {
+  // Edges of neighbours meet at corners, others at the tip, that is cut off. Not quite square, for
+  // edges that meet nowhere.
+  const Vec3 tip(0.3, 0.1, 3);
+  const Loop base = {{-1, -1, 0}, {1, -1, 0}, {1, 1.5, 0}, {-1, 1, 0}};
+  Loop top;
+  for (const Vec3& p : base) top.push_back(p + 0.4 * (tip - p));
+  std::vector<Loop> faces = {base, {top[3], top[2], top[1], top[0]}};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::size_t next = (k + 1) % 4;
+    faces.push_back({base[next], base[k], top[k], top[next]});
+  }
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    double sum = 0;
+    for (std::size_t j = 0; j < faces.size(); ++j) {
+      if (j != i) sum += contourExchange(faces[i], faces[j], 1e-12);
+    }
+    // Five values, each to 1e-12.
+    EXPECT_NEAR(sum / glm::length(newell(faces[i])), 1, 5e-12) << i;
+  }
+}
+
 TEST(ClosedForms, EveryToleranceIsKept) {
   for (const Case& c : cases()) {
     for (const double tolerance : {1e-3, 1e-5, 1e-7, 1e-9}) {
