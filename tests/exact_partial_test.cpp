@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "formfactor/exact/error_figure.h"
 #include "formfactor/exact/partial.h"
 #include "formfactor/exact/unoccluded.h"
 #include "formfactor/exact/visibility.h"
@@ -210,6 +211,13 @@ struct RowErrors {
 RowErrors compareRows(const Case& scene, const TrueRows& rows, double tolerance) {
   PartialCounts counts;
   const auto found = scene.evaluate(tolerance, counts);
+  std::vector<double> figure(scene.elements.patch_elements);
+  ErrorSums sums(figure.size());
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const PartialPair& pair = scene.pairs[k];
+    if (pair.column < figure.size()) sums.addPartial(pair.row, pair.column, found[k].error, 0);
+  }
+  sums.figures(std::span(scene.elements.area).first(figure.size()), 0, figure);
   RowErrors errors;
   double error2 = 0;
   double all2 = 0;
@@ -218,7 +226,6 @@ RowErrors compareRows(const Case& scene, const TrueRows& rows, double tolerance)
     const Index row = rows.elements[r];
     const double area = scene.elements.area[row];
     double row2 = 0;
-    double figure2 = 0;
     for (std::size_t k = 0; k < found.size(); ++k) {
       const PartialPair& pair = scene.pairs[k];
       if (pair.row != row && pair.column != row) continue;
@@ -226,12 +233,11 @@ RowErrors compareRows(const Case& scene, const TrueRows& rows, double tolerance)
       if (other >= scene.elements.patch_elements) continue;
       const double d = found[k].exchange / area - rows.form_factors[r][scene.elements.patch[other]];
       row2 += d * d;
-      figure2 += found[k].error * found[k].error / (area * area);
     }
     for (const double f : rows.form_factors[r]) all2 += f * f * area;
     error2 += row2 * area;
-    errors.below += row2 <= figure2;
-    if (row2 > 0) ratios.push_back(std::sqrt(figure2 / row2));
+    errors.below += std::sqrt(row2) <= figure[row];
+    if (row2 > 0) ratios.push_back(figure[row] / std::sqrt(row2));
   }
   errors.relative = std::sqrt(error2 / all2);
   std::nth_element(ratios.begin(), ratios.begin() + std::ptrdiff_t(ratios.size() / 2),

@@ -8,8 +8,9 @@ namespace radiosity {
 ErrorSums& ErrorSums::operator+=(const ErrorSums& other) {
   for (std::size_t i = 0; i < squares_.size(); ++i) {
     squares_[i] += other.squares_[i];
-    errors_[i] += other.errors_[i];
-    clipped_[i] += other.clipped_[i];
+    clipped_[i].squares += other.clipped_[i].squares;
+    clipped_[i].fourths += other.clipped_[i].fourths;
+    clipped_[i].areas += other.clipped_[i].areas;
   }
   difference_ += other.difference_;
   stated_ += other.stated_;
@@ -60,7 +61,8 @@ double ErrorSums::figures(std::span<const double> area, double closed_form,
   const double closed = kClosedFormShare * closed_form;
   double errors = 0;
   for (std::size_t i = 0; i < figure.size(); ++i) {
-    const double clipped = errors_[i] + surplus * clipped_[i];
+    const Clipped& sums = clipped_[i];
+    const double clipped = sums.squares + std::sqrt(sums.fourths) + surplus * sums.areas;
     const double square = clipped + closed * closed * squares_[i];
     figure[i] = std::sqrt(square) / area[i];
     errors += square / area[i];

@@ -17,6 +17,7 @@ struct VisibleFraction {
   double error2 = 0;       ///< sum of squares of the cells' errors, in the same unit
   double allowed = 0;      ///< error of the fraction that is accepted
   double change = 1;       ///< see SampledPair
+  double far_error = 0;    ///< of a half visible target's fraction: what its kernel leaves out
   bool may_cross = false;  ///< see SampledPair
   std::size_t points = 0;
   bool refined = false;  ///< by more than the first rule
@@ -67,7 +68,7 @@ class PairGroups {
   void cutCell(const SampleCell& cell, const Members& members, int level,
                std::span<VisibleFraction> out);
 
-  bool isFar(const SampledPair& pair) const;
+  double distanceInRadii(const SampledPair& pair) const;
 
   const ElementSet& elements_;
   double far_reach_;

@@ -31,10 +31,10 @@ struct PartialPair {
 };
 
 /// The exact unoccluded value times the visible fraction. The fraction is the quotient of two
-/// quadratures over the points of one element, the one farther from what blocks: of the visible
-/// and of the whole form factor from the point to the other element, each in closed form. So it
-/// lies in [0, 1], is exact where nothing or everything is hidden, and what the quadrature gets
-/// wrong about the elements' nearness cancels.
+/// quadratures over the points of one element, the one along which shadows move less across the
+/// other: of the visible and of the whole form factor from the point to the other element, each in
+/// closed form. So it lies in [0, 1], is exact where nothing or everything is hidden, and what the
+/// quadrature gets wrong about the elements' nearness cancels.
 class PartialKernel {
  public:
   /// `tolerance`: error aimed at for F, relative to the mean form factor 1/N: the root mean square
@@ -49,7 +49,7 @@ class PartialKernel {
   void evaluate(std::span<const PartialPair> pairs, std::span<const Index> occluder_list,
                 std::span<PartialExchange> out, PartialCounts& counts) const;
 
-  /// The same from the other end: points on the element nearer to what blocks. For spot checks.
+  /// The same from the other end: points along which shadows move more. For spot checks.
   PartialExchange evaluateFromOtherEnd(const PartialPair& pair,
                                        std::span<const Index> occluder_list) const;
 

@@ -14,6 +14,10 @@ namespace {
 /// Entries of EdgeDistances' table: 64 MiB.
 constexpr std::size_t kMostDistances = std::size_t(1) << 24;
 
+/// Squares of changes that differ by less are alike: in symmetric scenes many are equal, and which
+/// end is sampled must not depend on how distances, in single precision, are rounded.
+constexpr double kAlike = 1 + 1e-5;
+
 struct Heights {
   double least = std::numeric_limits<double>::infinity();
   double most = -least;
@@ -87,17 +91,19 @@ const PairPreparation::Between& PairPreparation::between(Index occluder, Index r
 
 /// Of similar triangles with their tips on the occluders' edges. Of an edge that touches the target
 /// no shadow moves, but others of the same occluder may be a target's size away.
-float PairPreparation::shadowChange(double sampled_size, double target_size,
-                                    bool row_sampled) const {
-  double most = 0;
+PairPreparation::Near PairPreparation::shadowChanges(double row_size, double column_size) const {
+  const double row_size2 = row_size * row_size;
+  const double column_size2 = column_size * column_size;
+  // Apart, or beside the target: squares, in sizes of the sampled element.
+  const double by_row = row_size2 / column_size2;
+  const double by_column = column_size2 / row_size2;
+  Near most{0, 0};
   for (const Near& blocker : near_) {
-    const double sampled = row_sampled ? blocker.row : blocker.column;
-    const double target = row_sampled ? blocker.column : blocker.row;
-    const double change2 = std::max(target / (target_size * target_size), 1.0) / sampled;
-    if (!(change2 <= most)) most = change2;
+    most.row = std::max(most.row, std::max(blocker.column * by_row, row_size2) / blocker.row);
+    most.column =
+        std::max(most.column, std::max(blocker.row * by_column, column_size2) / blocker.column);
   }
-  const double change = sampled_size * std::sqrt(most);
-  return change < 1 ? float(change) : 1.0F;
+  return most;
 }
 
 void PairPreparation::prepare(std::span<const PartialPair> batch,
@@ -129,12 +135,10 @@ void PairPreparation::prepare(std::span<const PartialPair> batch,
     pair.blockers_end = std::uint32_t(blockers.size());
     const double row_size = elements_.radius[given.row];
     const double column_size = elements_.radius[given.column];
-    const double row_distance = at_row * column_size * column_size;
-    const double column_distance = at_column * row_size * row_size;
-    const bool row_is_farther = row_distance >= column_distance;
-    const bool at_row_end = row_is_farther == (end == SampledEnd::farther);
-    pair.change = at_row_end ? shadowChange(row_size, column_size, true)
-                             : shadowChange(column_size, row_size, false);
+    const Near change2 = shadowChanges(row_size, column_size);
+    const bool row_is_calmer = change2.row <= kAlike * change2.column;
+    const bool at_row_end = row_is_calmer == (end == SampledEnd::calmer);
+    pair.change = float(std::sqrt(at_row_end ? change2.row : change2.column));
     const double reach = at_row_end ? row_size : column_size;
     pair.may_cross = (at_row_end ? at_row : at_column) <= reach * reach;
     pair.sampled = at_row_end ? given.row : given.column;

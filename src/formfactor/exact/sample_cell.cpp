@@ -20,17 +20,22 @@ constexpr double kFlat = 0.05;
 /// Distance of the outer points from the border.
 constexpr double kMargin = 0.02;
 
-/// Shares of first (2 x 2) and second (3 x 3) differences, of slopes (3 x 3), and of the change of
-/// what is not seen.
-constexpr double kSmooth4 = 0.012;
-constexpr double kKinked4 = 0.045;
-constexpr double kUnseen4 = 0.013;
-constexpr double kSmooth9 = 0.006;
-constexpr double kKinked9 = 0.03;
-constexpr double kUnseen9 = 0.008;
-constexpr double kSlope9 = 0.003;
+/// Shares of first differences (2 x 2), and of second differences and slopes (3 x 3).
+constexpr double kSmooth4 = 0.010;
+constexpr double kKinked4 = 0.038;
+constexpr double kSmooth9 = 0.003;
+constexpr double kKinked9 = 0.022;
+constexpr double kSlope9 = 0.002;
+/// Shares of the change, of what no difference shows: where values are flat; where there is a kink,
+/// so that differences may be small by chance; and where there seems to be none.
+constexpr double kUnseenFlat4 = 0.011;
+constexpr double kUnseenKinked4 = 0.011;
+constexpr double kUnseenSmooth4 = 0.004;
+constexpr double kUnseenFlat9 = 0.0055;
+constexpr double kUnseenKinked9 = 0.002;
+constexpr double kUnseenSmooth9 = 0.0006;
 /// Of residuals near the corners, and of an error guessed before they were seen.
-constexpr double kOutside = 0.03;
+constexpr double kOutside = 0.0135;
 constexpr double kReassured = 0.2;
 
 }  // namespace
@@ -84,14 +89,25 @@ bool CellValues::flat() const {
   return *most - *least < kFlat * whole;
 }
 
-double meanError(const CellValues& values) {
-  const auto& r = values.residual;
-  const bool unseen = values.flat();
-  if (values.count == 4) {
+double changeIn(int level, double change) {
+  const double side = std::ldexp(1.0, -level);
+  return std::min(change * side, kMostChange) * std::sqrt(side);
+}
+
+double CellValues::unseen() const {
+  const bool four = count == 4;
+  double share = four ? kUnseenSmooth4 : kUnseenSmooth9;
+  if (!one_shape) share = four ? kUnseenKinked4 : kUnseenKinked9;
+  if (flat()) share = four ? kUnseenFlat4 : kUnseenFlat9;
+  return share * change * whole;
+}
+
+double CellValues::seen() const {
+  const auto& r = residual;
+  if (count == 4) {
     const double along_u = std::abs(r[1] - r[0]) + std::abs(r[3] - r[2]);
     const double along_v = std::abs(r[2] - r[0]) + std::abs(r[3] - r[1]);
-    return 0.5 * (along_u + along_v) * (values.one_shape ? kSmooth4 : kKinked4) +
-           (unseen ? kUnseen4 * values.change * values.whole : 0);
+    return 0.5 * (along_u + along_v) * (one_shape ? kSmooth4 : kKinked4);
   }
   double bend = 0;
   double slope = 0;
@@ -104,9 +120,14 @@ double meanError(const CellValues& values) {
   }
   // A kink between the outer points and the border changes the slope there, and nothing else.
   // A step in the middle does not bend: the points lie evenly about it.
-  const double of_slope = values.may_cross && !values.one_shape ? kKinked9 : kSlope9;
-  return bend * (values.one_shape ? kSmooth9 : kKinked9) + slope * of_slope +
-         (unseen ? kUnseen9 * values.change * values.whole : 0);
+  const double of_slope = may_cross && !one_shape ? kKinked9 : kSlope9;
+  return bend * (one_shape ? kSmooth9 : kKinked9) + slope * of_slope;
+}
+
+double meanError(const CellValues& values) {
+  const double seen = values.seen();
+  const double unseen = values.unseen();
+  return std::sqrt(seen * seen + unseen * unseen);
 }
 
 double meanErrorOutside(double guessed, double residual) {
