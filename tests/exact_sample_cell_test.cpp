@@ -1,0 +1,113 @@
+// What the points of a cell say of their error, on shadows made up at random.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <utility>
+
+#include "formfactor/exact/sample_cell.h"
+
+namespace radiosity {
+namespace {
+
+const SampleCell kUnitSquare = {{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}};
+
+/// A shadow with a straight edge that crosses a target with parallel sides: the visible fraction
+/// is 0, rises linearly over a strip of the cell, and is 1 from there on.
+struct Ramp {
+  double nx, ny, start, width;
+
+  double at(const Vec3& p) const {
+    return std::clamp((nx * p.x + ny * p.y - start) / width, 0.0, 1.0);
+  }
+  /// Which of the three parts a point is in.
+  int part(const Vec3& p) const {
+    const double t = nx * p.x + ny * p.y - start;
+    return (t > 0 ? 1 : 0) + (t > width ? 1 : 0);
+  }
+  /// Mean over a square: midpoints of 64 x 64 parts, a hundred times nearer than nine points.
+  double mean(const SampleCell& square) const {
+    constexpr int kSide = 64;
+    const Vec3 u = (square.corners[1] - square.corners[0]) / double(kSide);
+    const Vec3 v = (square.corners[3] - square.corners[0]) / double(kSide);
+    double sum = 0;
+    for (int j = 0; j < kSide; ++j) {
+      for (int i = 0; i < kSide; ++i) sum += at(square.corners[0] + (i + 0.5) * u + (j + 0.5) * v);
+    }
+    return sum / (kSide * kSide);
+  }
+};
+
+/// Of any direction, so that some of the strip lies in the unit square.
+Ramp randomRamp(double change, std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(0, 1);
+  const double angle = 2 * std::numbers::pi * unit(random);
+  Ramp ramp{std::cos(angle), std::sin(angle), 0, 1 / change};
+  const double low = std::min(0.0, ramp.nx) + std::min(0.0, ramp.ny) - ramp.width;
+  const double high = std::max(0.0, ramp.nx) + std::max(0.0, ramp.ny);
+  ramp.start = low + (high - low) * unit(random);
+  return ramp;
+}
+
+/// Root mean squares over many shadows.
+struct Errors {
+  double stated = 0;
+  double found = 0;
+};
+
+/// In cells `level` halvings below the unit square.
+Errors errorsOfRamps(double change, std::size_t side, int level) {
+  std::mt19937 random(7);
+  Errors errors;
+  constexpr int kTimes = 4000;
+  for (int k = 0; k < kTimes; ++k) {
+    const Ramp ramp = randomRamp(change, random);
+    SampleCell cell = kUnitSquare;
+    for (int l = 0; l < level; ++l) cell = cell.child(random() % 4);
+    const SamplePoints points = cell.points(side);
+    CellValues values;
+    values.count = points.count;
+    values.whole = 1;
+    values.change = changeIn(level, change);
+    double mean = 0;
+    for (std::size_t q = 0; q < points.count; ++q) {
+      const Vec3& p = points.point[q].position;
+      values.residual[q] = ramp.at(p);
+      values.one_shape &= ramp.part(p) == ramp.part(points.point[0].position);
+      mean += points.point[q].weight / cell.area() * ramp.at(p);
+    }
+    const double found = mean - ramp.mean(cell);
+    const double stated = meanError(values);
+    errors.found += found * found / kTimes;
+    errors.stated += stated * stated / kTimes;
+  }
+  return {std::sqrt(errors.stated), std::sqrt(errors.found)};
+}
+
+TEST(SampleCell, ErrorsOfShadowsThatComeAndGo) {
+  // From shadows that cross the target once while the element is crossed to steps, seen or missed.
+  // Constants were fitted to scenes, which these shadows know nothing of: between half and two and
+  // a half times what is found, over all cells, is what was measured; 3 either way is asserted.
+  for (const auto& [side, levels] : {std::pair(2, 1), std::pair(3, 5)}) {
+    for (int level = 0; level < levels; ++level) {
+      for (const double change : {1.0, 4.0, 10.0, 100.0}) {
+        const Errors errors = errorsOfRamps(change, std::size_t(side), level);
+        EXPECT_GT(errors.stated, errors.found / 3) << side << ' ' << level << ' ' << change;
+        EXPECT_LT(errors.stated, errors.found * 3) << side << ' ' << level << ' ' << change;
+      }
+    }
+  }
+}
+
+TEST(SampleCell, NothingMovesNothingIsStated) {
+  CellValues values;
+  values.count = 9;
+  values.whole = 1;
+  values.residual.fill(0.0);
+  EXPECT_EQ(meanError(values), 0);
+}
+
+}  // namespace
+}  // namespace radiosity
