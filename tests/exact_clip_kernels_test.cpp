@@ -135,6 +135,37 @@ struct Lanes {
       names.push_back(own[p].data());
     }
     clip.common(rows.lanes(), points, planes, items, names.data(), count.data(), common.data());
+    for (std::size_t lane = 0; lane < kLanes; ++lane) parts.push_back(quarters(clip, lane));
+  }
+  /// A target's form factor from its triangles about the middle: its own edges, and those that
+  /// cancel out.
+  T quarters(const ClipFunctions<T>& clip, std::size_t lane) {
+    const TargetLanes<T>& all = rows.lanes();
+    std::array<AlignedBuffer<T>, 4> edges;
+    for (AlignedBuffer<T>& row : edges) {
+      row.reserve(kLaneAlignment);
+      std::fill_n(row.data(), kLaneAlignment, T(0));
+    }
+    std::size_t next = 0;
+    const auto add = [&](T u0, T v0, T u1, T v1) {
+      edges[0].data()[next] = u0;
+      edges[1].data()[next] = v0;
+      edges[2].data()[next] = u1;
+      edges[3].data()[next++] = v1;
+    };
+    for (std::size_t k = 0; k < all.corners; ++k) {
+      const std::size_t m = (k + 1) % all.corners;
+      const T u0 = all.corner[k][0][lane];
+      const T v0 = all.corner[k][1][lane];
+      const T u1 = all.corner[m][0][lane];
+      const T v1 = all.corner[m][1][lane];
+      add(u0, v0, u1, v1);
+      add(u1, v1, 0, 0);
+      add(0, 0, u0, v0);
+    }
+    return clip.parts(
+        all, lane, eye,
+        {kLaneAlignment, {edges[0].data(), edges[1].data()}, {edges[2].data(), edges[3].data()}});
   }
   /// The item of a target.
   static std::size_t item(std::size_t lane) { return kLanes - 1 - lane; }
@@ -147,6 +178,7 @@ struct Lanes {
   AlignedBuffer<T> whole;
   AlignedBuffer<T> hidden;
   AlignedBuffer<T> common;
+  std::vector<T> parts;  ///< by target
   AlignedBuffer<ShapeWord<T>> shape;
   AlignedBuffer<ShapeWord<T>> cut_low;
   AlignedBuffer<ShapeWord<T>> cut_high;
@@ -175,6 +207,8 @@ void expectSameBits(const ClipFunctions<T>& scalar, const ClipFunctions<T>& vect
     ASSERT_EQ(bits(expected.whole, lane), bits(found.whole, lane));
     ASSERT_EQ(bits(expected.hidden, lane), bits(found.hidden, lane));
     ASSERT_EQ(bits(expected.common, lane), bits(found.common, lane));
+    ASSERT_EQ(std::bit_cast<ShapeWord<T>>(expected.parts[lane]),
+              std::bit_cast<ShapeWord<T>>(found.parts[lane]));
     ASSERT_EQ(expected.shape.data()[lane], found.shape.data()[lane]);
     ASSERT_EQ(expected.cut_low.data()[lane], found.cut_low.data()[lane]);
     ASSERT_EQ(expected.cut_high.data()[lane], found.cut_high.data()[lane]);
@@ -215,11 +249,13 @@ void expectAccurate(const ClipFunctions<T>& clip, double size, double tolerance)
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       std::vector<Vec3> outline = setup.targets[lane];
       if (outline[2] == outline[3]) outline.pop_back();
-      const PointView view = exact.look(setup.eye, setup.normal, outline, blocker, Vec2(0.5));
+      const PointView view = exact.look(setup.eye, setup.normal, outline, blocker);
       const std::size_t item = lanes.item(lane);
       const double whole = double(lanes.whole.data()[lane]);
       const double hidden = double(lanes.hidden.data()[item]);
       ASSERT_NEAR(whole, view.whole, tolerance * view.whole) << seed << ' ' << lane;
+      // Three times the edges, each rounded.
+      ASSERT_NEAR(double(lanes.parts[lane]), view.whole, 3 * tolerance * view.whole);
       const double visible = hidden == kHiddenWhole ? 0 : whole - hidden;
       ASSERT_NEAR(visible, view.visible, tolerance * view.whole) << seed << ' ' << lane;
       if (hidden != kHiddenWhole) {
@@ -268,21 +304,32 @@ TEST(ClipKernels, FarKernelsKeepTheirAccuracy) {
   }
 }
 
+ConePoints conePoints(std::span<const Vec3> eyes) {
+  ConePoints points;
+  points.count = eyes.size();
+  for (std::size_t q = 0; q < kLaneAlignment; ++q) {
+    const Vec3& eye = eyes[std::min(q, eyes.size() - 1)];
+    for (int axis = 0; axis < 3; ++axis) points.position[axis][q] = eye[axis];
+  }
+  return points;
+}
+
+struct ConeMemory {
+  explicit ConeMemory(const Occluder& body) : above(body.planes.size()) {
+    heights.reserve(body.planes.size() * kLaneAlignment);
+  }
+  ConeScratch scratch() { return {heights.data(), above.data()}; }
+  AlignedBuffer<double> heights;
+  std::vector<std::uint32_t> above;
+};
+
 /// One body's cones.
 template <class T>
 struct Sides {
   Sides(const Occluder& body, std::span<const Vec3> eyes, const ClipKernels<T>& kernels) {
-    ConePoints points;
-    points.count = eyes.size();
-    for (std::size_t q = 0; q < kLaneAlignment; ++q) {
-      const Vec3& eye = eyes[std::min(q, eyes.size() - 1)];
-      for (int axis = 0; axis < 3; ++axis) points.position[axis][q] = eye[axis];
-    }
-    AlignedBuffer<double> heights;
-    heights.reserve(body.planes.size() * kLaneAlignment);
-    std::vector<std::uint32_t> above(body.planes.size());
+    ConeMemory memory(body);
     all.resize(body.edges.size() + body.planes.size());
-    all.resize(kernels.cones(body, points, true, {heights.data(), above.data()}, all.data()));
+    all.resize(kernels.cones(body, conePoints(eyes), true, memory.scratch(), all.data()));
   }
   std::vector<ConeSide<T>> all;
 };
@@ -361,6 +408,71 @@ TEST(ClipKernels, ConesAgreeToTheBit) {
     forEveryBody([&](const Occluder& body, std::span<const Vec3> eyes) {
       expectSameCones<float>(body, eyes, kernels);
       expectSameCones<double>(body, eyes, kernels);
+    });
+  });
+}
+
+/// A triangle, a quadrilateral or a pentagon in some plane.
+std::vector<Vec3> randomPolygon(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const auto vector = [&] { return Vec3(uniform(random), uniform(random), uniform(random)); };
+  const Vec3 centre = vector();
+  const Vec3 u = 0.2 * vector();
+  const Vec3 v = 0.2 * vector();
+  const std::size_t corners = 3 + random() % 3;
+  std::vector<Vec3> outline;
+  for (std::size_t k = 0; k < corners; ++k) {
+    const double angle = 2 * M_PI * double(k) / double(corners);
+    outline.push_back(centre + std::cos(angle) * u + std::sin(angle) * v);
+  }
+  return outline;
+}
+
+TEST(ClipKernels, MissedByConesIsWhatASideKeepsOut) {
+  const ClipKernels<double> kernels = scalarClipKernels().exact;
+  std::mt19937_64 random(11);
+  std::size_t missed_by = 0;
+  std::size_t not_missed_by = 0;
+  forEveryBody([&](const Occluder& body, std::span<const Vec3> eyes) {
+    ConeMemory memory(body);
+    const std::vector<Vec3> outline = randomPolygon(random);
+    std::size_t edge = random() % body.edges.size();
+    const std::uint32_t missed = kernels.missed(body, conePoints(eyes), outline.data(),
+                                                outline.size(), memory.scratch(), edge);
+    ASSERT_LT(edge, body.edges.size());
+    for (std::size_t q = 0; q < eyes.size(); ++q) {
+      BlockingCone cone;
+      blockingCone(body, eyes[q], false, cone);
+      // No polygon here touches a side: its distance from zero is well above rounding.
+      const bool expected =
+          std::any_of(cone.planes.begin(), cone.planes.end(), [&](const ClipPlane& plane) {
+            return std::all_of(outline.begin(), outline.end(),
+                               [&](const Vec3& p) { return plane.distance(p - eyes[q]) <= 0; });
+          });
+      ASSERT_EQ((missed >> q & 1) != 0, expected);
+      (expected ? missed_by : not_missed_by) += 1;
+    }
+  });
+  EXPECT_GT(missed_by, 100u);
+  EXPECT_GT(not_missed_by, 100u);
+}
+
+TEST(ClipKernels, MissedByConesIsTheSameOnEveryTargetAndFromEveryEdge) {
+  forEveryTarget([](const ClipKernelSet& kernels) {
+    std::mt19937_64 random(12);
+    forEveryBody([&](const Occluder& body, std::span<const Vec3> eyes) {
+      ConeMemory memory(body);
+      const ConePoints points = conePoints(eyes);
+      const std::vector<Vec3> outline = randomPolygon(random);
+      std::size_t edge = 0;
+      const std::uint32_t expected = scalarClipKernels().single.missed(
+          body, points, outline.data(), outline.size(), memory.scratch(), edge);
+      for (std::size_t first = 0; first < body.edges.size(); ++first) {
+        edge = first;
+        ASSERT_EQ(kernels.single.missed(body, points, outline.data(), outline.size(),
+                                        memory.scratch(), edge),
+                  expected);
+      }
     });
   });
 }

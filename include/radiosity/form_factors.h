@@ -74,7 +74,6 @@ struct ExactReport {
 
   std::size_t points = 0;      ///< point evaluations of partial pairs
   std::size_t subdivided = 0;  ///< partial pairs that needed more than the first rule
-  std::size_t by_pixels = 0;   ///< partial pairs with too many occluders: item buffer
   std::size_t rechecked = 0;   ///< partial pairs evaluated again from the other end
   /// rms of (difference of the two ends / the error both state); the error figures were multiplied
   /// by it where it is above 1.

@@ -166,7 +166,6 @@ void describe(Archive& a, Described<Archive, ExactReport>& r) {
   a("clipped", r.clipped);
   a("points", r.points);
   a("subdivided", r.subdivided);
-  a("by_pixels", r.by_pixels);
   a("rechecked", r.rechecked);
   a("recheck_ratio", r.recheck_ratio);
   a("seconds_prepare", r.seconds_prepare);

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <type_traits>
 
@@ -90,6 +91,20 @@ struct HiddenParts {
 
 inline constexpr int kHiddenWhole = -1;
 
+/// A distance from a plane is a sum of products of vectors rounded to T: by so much, times the
+/// distance from the eye, it may be off. What passes a plane by no more is not cut by it.
+template <class T>
+inline constexpr T kPlaneNoise = 4 * std::numeric_limits<T>::epsilon();
+
+/// Directed edges in one target's plane, in its coordinates: of polygons that turn as it does, in
+/// any order. Those that polygons side by side share cancel out.
+template <class T>
+struct FlatEdges {
+  std::size_t count;  ///< a multiple of kLaneAlignment; filled up with edges of no length
+  const T* from[2];
+  const T* to[2];
+};
+
 template <class T>
 struct ClipFunctions {
   /// Form factor from one eye to each polygon (all of it above the eye's horizon, its front to the
@@ -108,6 +123,10 @@ struct ClipFunctions {
                  const ConePlanes<T>& planes, const ClipItems<T>& items,
                  const LaneIndex<T>* const* own_planes, const LaneIndex<T>* plane_count,
                  T* form_factor);
+  /// Form factor from one eye to the polygons bounded by `edges`, parts of one of the targets.
+  T (*parts)
+  (const TargetLanes<T>& targets, std::size_t target, const EyePoint<T>& eye,
+   const FlatEdges<T>& edges);
 };
 
 /// Up to kLaneAlignment points, in the coordinates of an Occluder. The rest repeats one of them.
@@ -144,6 +163,11 @@ struct ClipKernels {
   /// `with_faces`, its faces. Found in double precision. Returns their number.
   std::size_t (*cones)(const Occluder& body, const ConePoints& points, bool with_faces,
                        const ConeScratch& scratch, ConeSide<T>* sides);
+  /// A bit for each point whose cone has a side, through an edge of the body, that all of a polygon
+  /// is outside of: 3 to kMostCorners corners in the body's coordinates. Edges are tried from
+  /// number `edge` on, going round, until all points have one; `edge` gets the last that told.
+  std::uint32_t (*missed)(const Occluder& body, const ConePoints& points, const Vec3* outline,
+                          std::size_t corners, const ConeScratch& scratch, std::size_t& edge);
 };
 
 inline constexpr double kFarError = 1;

@@ -87,7 +87,6 @@ void reportCounts(const ExactScene& scene, const RowSums& sums, ExactReport& rep
   report.clipped = sums.unoccluded.clipped;
   report.points = sums.partial.points;
   report.subdivided = sums.partial.subdivided;
-  report.by_pixels = sums.partial.by_pixels;
   report.rechecked = sums.error.rechecked();
   report.recheck_ratio = sums.error.recheckRatio();
   report.seconds_visibility = sums.seconds_visibility;

@@ -13,14 +13,33 @@ std::uint32_t scrambled(std::uint32_t x) {
 }
 
 template <class T>
-void GroupCones<T>::build(std::span<const SamplePoint> points,
-                          std::span<const Blocker* const> blockers) {
+void GroupCones<T>::setPoints(std::span<const SamplePoint> points) {
   static_assert(SamplePoints::kMost <= kLaneAlignment);
   points_.count = points.size();
   for (std::size_t q = 0; q < kLaneAlignment; ++q) {
     const Vec3& p = points[std::min(q, points.size() - 1)].position;
     for (int axis = 0; axis < 3; ++axis) points_.position[axis][q] = p[axis];
   }
+}
+
+template <class T>
+ConeScratch GroupCones<T>::scratchFor(const Occluder& body) {
+  if (above_.size() < body.planes.size()) above_.resize(body.planes.size());
+  heights_.reserve(body.planes.size() * kLaneAlignment);
+  return {heights_.data(), above_.data()};
+}
+
+template <class T>
+bool GroupCones<T>::misses(const Blocker& blocker, std::span<const Vec3> outline) {
+  if (telling_edge_.size() <= blocker.id) telling_edge_.resize(blocker.id + 1, 0);
+  const std::uint32_t missed =
+      kernels_.missed(*blocker.body, points_, outline.data(), outline.size(),
+                      scratchFor(*blocker.body), telling_edge_[blocker.id]);
+  return missed == (1U << points_.count) - 1;
+}
+
+template <class T>
+void GroupCones<T>::build(std::span<const Blocker* const> blockers) {
   cones_.clear();
   for (std::size_t k = 0; k < 3; ++k) plane_[k].assign(2, T(0));
   plane_[3] = {T(1), T(-1)};
@@ -41,10 +60,8 @@ void GroupCones<T>::add(const Blocker& blocker) {
   const Occluder& body = *blocker.body;
   const std::size_t most = body.edges.size() + body.planes.size();
   if (sides_.size() < most) sides_.resize(most);
-  if (above_.size() < body.planes.size()) above_.resize(body.planes.size());
-  heights_.reserve(body.planes.size() * kLaneAlignment);
-  const std::size_t side_count = kernels_.cones(body, points_, blocker.cuts_target,
-                                                {heights_.data(), above_.data()}, sides_.data());
+  const std::size_t side_count =
+      kernels_.cones(body, points_, blocker.cuts_target, scratchFor(body), sides_.data());
   const auto sides = std::span<const ConeSide<T>>(sides_).first(side_count);
 
   std::array<std::size_t, kLaneAlignment> count = {};

@@ -30,7 +30,11 @@ class GroupCones {
  public:
   explicit GroupCones(const ClipKernels<T>& kernels) : kernels_(kernels) {}
 
-  void build(std::span<const SamplePoint> points, std::span<const Blocker* const> blockers);
+  /// The points of all that follows.
+  void setPoints(std::span<const SamplePoint> points);
+  /// True only if the body hides nothing of a convex polygon from any of the points.
+  bool misses(const Blocker& blocker, std::span<const Vec3> outline);
+  void build(std::span<const Blocker* const> blockers);
   const Cone<T>& cone(std::size_t blocker, std::size_t point) const {
     return cones_[blocker * points_.count + point];
   }
@@ -38,6 +42,7 @@ class GroupCones {
 
  private:
   void add(const Blocker& blocker);
+  ConeScratch scratchFor(const Occluder& body);
   void resize(std::size_t planes);
 
   ClipKernels<T> kernels_;
@@ -48,6 +53,7 @@ class GroupCones {
   std::vector<ConeSide<T>> sides_;  ///< of one body
   AlignedBuffer<double> heights_;
   std::vector<std::uint32_t> above_;
+  std::vector<std::size_t> telling_edge_;  ///< by occluder: where to look first
 };
 
 extern template class GroupCones<float>;

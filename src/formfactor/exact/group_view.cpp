@@ -12,8 +12,14 @@ namespace {
 constexpr std::uint8_t kHidden = 255;
 constexpr std::uint8_t kMostCounted = 254;
 constexpr std::uint64_t kUnknownCut = ~std::uint64_t(0);
-/// Planes that may bound what shadows have in common.
+/// What shadows that overlap add to the shape.
+constexpr std::uint32_t kOverlap = 0x9e3779b9U;
+/// Planes that may bound what two shadows have in common.
 constexpr std::size_t kMostOwnPlanes = 16;
+
+/// Up to so many targets, cones are not built before it is known that they meet one: of a small
+/// part of an element most occluders of the whole miss the target. More targets share the cones.
+constexpr std::size_t kFewTargets = 4;
 
 }  // namespace
 
@@ -51,9 +57,9 @@ void GroupView<T>::look(std::span<const SamplePoint> points, const Vec3& origin,
   std::copy_n(whole_.data(), values, visible_.data());
   std::fill_n(shape_.data(), values, ShapeWord<T>(0));
   std::fill_n(shadow_count_.data(), values, std::uint8_t(0));
-  sampled_.assign(targets.size(), 0);
+  cones_.setPoints(points_);
   collectUses();
-  cones_.build(points_, group_blockers_);
+  cones_.build(group_blockers_);
   hide();
   subtractHidden();
   finish();
@@ -66,7 +72,13 @@ void GroupView<T>::collectUses() {
   group_blockers_.clear();
   numbers_.clear();
   for (std::size_t lane = 0; lane < group_.size(); ++lane) {
-    for (const Blocker& blocker : group_[lane]->blockers) {
+    const GroupTarget& target = *group_[lane];
+    const auto outline = std::span(target.corners).first(target.corner_count);
+    for (const Blocker& blocker : target.blockers) {
+      const std::size_t most_planes = blocker.body->edges.size() + blocker.body->planes.size();
+      // What kernels cannot clip is dear in any group.
+      const bool look_first = group_.size() <= kFewTargets || most_planes > kMostPlanes;
+      if (look_first && cones_.misses(blocker, outline)) continue;
       const auto next = std::uint32_t(group_blockers_.size());
       const std::uint32_t number = numbers_.of(blocker, next);
       if (number == next) group_blockers_.push_back(&blocker);
@@ -134,7 +146,7 @@ void GroupView<T>::subtractHidden() {
       if (count == kHidden) continue;
       if (cone.too_many) {
         count = kMostCounted;
-        shadows_.push_back({std::uint32_t(at), u, cone.first, 64, kUnknownCut});
+        shadows_.push_back({std::uint32_t(at), u, cone.first, 64, kUnknownCut, hidden, 0});
         continue;
       }
       visible_.data()[at] -= hidden;
@@ -144,8 +156,8 @@ void GroupView<T>::subtractHidden() {
         const std::uint64_t low = cut_.data()[item];
         const std::uint64_t high = cut_.data()[lanes + item];
         const std::uint64_t cut = cone.count <= 64 ? high << 32 | low : kUnknownCut;
-        shadows_.push_back(
-            {std::uint32_t(at), u, cone.first, std::uint32_t(std::popcount(cut)), cut});
+        shadows_.push_back({std::uint32_t(at), u, cone.first, std::uint32_t(std::popcount(cut)),
+                            cut, hidden, word_.data()[item]});
       }
     }
   }
@@ -176,31 +188,17 @@ void GroupView<T>::uniteShadows() {
   for (std::uint32_t begin = 0; begin < shadows_.size();) {
     std::uint32_t end = begin + 1;
     while (end < shadows_.size() && shadows_[end].at == shadows_[begin].at) ++end;
-    if (!addPairs(begin, end)) {
-      uniteExactly(std::span<const Shadow>(shadows_).subspan(begin, end - begin));
+    const std::uint32_t planes = shadows_[begin].planes + shadows_[end - 1].planes;
+    if (end - begin == 2 && planes <= kMostOwnPlanes) {
+      common_.push_back({begin, begin + 1, planes});
+    } else {
+      unite(std::span<Shadow>(shadows_).subspan(begin, end - begin));
     }
     begin = end;
   }
-  for (T sign = 1; !common_.empty(); sign = -sign) {
-    evaluateCommon();
-    addCommon(sign);
-    joinCommon();
-  }
-}
-
-/// All pairs of one target's shadows from one point. False: too many shadows or planes.
-template <class T>
-bool GroupView<T>::addPairs(std::uint32_t begin, std::uint32_t end) {
-  if (end - begin > kMostUnited) return false;
-  std::size_t planes = 0;
-  for (std::uint32_t k = begin; k < end; ++k) planes += shadows_[k].planes;
-  if (planes > kMostOwnPlanes) return false;
-  for (std::uint32_t a = begin; a < end; ++a) {
-    for (std::uint32_t b = a + 1; b < end; ++b) {
-      common_.push_back({shadows_[a].at, 2, shadows_[a].planes + shadows_[b].planes, {a, b}});
-    }
-  }
-  return true;
+  if (common_.empty()) return;
+  evaluateCommon();
+  addCommon();
 }
 
 /// A lane for each of common_, by the number of planes, so that vectors are alike.
@@ -213,19 +211,20 @@ void GroupView<T>::placeCommon() {
   for (const Common& common : common_) common_lane_.push_back(begin[common.planes]++);
 }
 
-/// Makes a set of shadows a lane; `planes`: how many it has to name.
+/// Makes two shadows a lane; `planes`: how many it has to name.
 template <class T>
 void GroupView<T>::setLane(const Common& common, std::size_t lane, std::size_t planes) {
   const std::size_t stride = targets_.lanes().count;
-  item_target_.data()[lane] = LaneIndex<T>(common.at % stride);
-  item_eye_.data()[lane] = LaneIndex<T>(common.at / stride);
+  const std::uint32_t at = shadows_[common.first].at;
+  item_target_.data()[lane] = LaneIndex<T>(at % stride);
+  item_eye_.data()[lane] = LaneIndex<T>(at / stride);
   LaneIndex<T>* to = item_planes_.data() + lane;
   const auto add = [&](LaneIndex<T> plane) {
     *to = plane;
     to += item_lanes_;
   };
-  for (std::uint32_t k = 0; k < common.count; ++k) {
-    const Shadow& shadow = shadows_[common.shadows[k]];
+  for (const std::uint32_t k : {common.first, common.second}) {
+    const Shadow& shadow = shadows_[k];
     for (std::uint64_t left = shadow.cut; left != 0; left &= left - 1) {
       add(shadow.first + std::countr_zero(left));
     }
@@ -233,7 +232,7 @@ void GroupView<T>::setLane(const Common& common, std::size_t lane, std::size_t p
   for (std::size_t p = common.planes; p < planes; ++p) add(ConePlanes<T>::kAllInside);
 }
 
-/// What is inside all of some cones, for all of common_: into form_factor_, by lane.
+/// What is inside two cones, for all of common_: into form_factor_, by lane.
 template <class T>
 void GroupView<T>::evaluateCommon() {
   placeCommon();
@@ -266,40 +265,102 @@ void GroupView<T>::evaluateCommon() {
                plane_count, form_factor_.data());
 }
 
-/// Adds (or takes away) what was evaluated, and keeps in next_common_ the sets where that is
-/// anything.
+/// Gives back what was subtracted twice.
 template <class T>
-void GroupView<T>::addCommon(T sign) {
+void GroupView<T>::addCommon() {
   for (std::size_t k = 0; k < common_.size(); ++k) {
     const T common = form_factor_.data()[common_lane_[k]];
     if (!(common > 0)) continue;
-    visible_.data()[common_[k].at] += sign * common;
-    shape_.data()[common_[k].at] += scrambled(common_[k].count);
-    next_common_.push_back(common_[k]);
+    const std::uint32_t at = shadows_[common_[k].first].at;
+    visible_.data()[at] += common;
+    shape_.data()[at] += kOverlap;
   }
 }
 
-/// From sets of n shadows that have something in common, those of n + 1 that may have: two sets
-/// that differ in their last member only make one. Sets come in ascending order and stay so.
+/// The lines in a target's plane that bound a shadow on it, as the kernels find them: into sides_.
 template <class T>
-void GroupView<T>::joinCommon() {
-  common_.clear();
-  for (std::size_t a = 0; a < next_common_.size(); ++a) {
-    const Common& first = next_common_[a];
-    const std::uint32_t last = first.count - 1;
-    for (std::size_t b = a + 1; b < next_common_.size(); ++b) {
-      const Common& second = next_common_[b];
-      const bool same =
-          second.at == first.at &&
-          std::equal(first.shadows.begin(), first.shadows.begin() + last, second.shadows.begin());
-      if (!same) break;
-      Common joined = first;
-      joined.shadows[joined.count++] = second.shadows[last];
-      joined.planes += shadows_[second.shadows[last]].planes;
-      common_.push_back(joined);
+void GroupView<T>::addSides(const Shadow& shadow, std::size_t point, std::size_t lane) {
+  const TargetLanes<T>& target = targets_.lanes();
+  const ConePlanes<T> cones = cones_.planes();
+  sides_.clear();
+  const auto add = [&](LaneIndex<T> plane) {
+    ShadowSide side{0, 0, double(cones.offset[plane])};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto n = double(cones.normal[axis][plane]);
+      side.a += n * double(target.axis[0][axis][lane]);
+      side.b += n * double(target.axis[1][axis][lane]);
+      side.c += n * (double(target.middle[axis][lane]) - double(eye_[axis][point]));
     }
+    sides_.push_back(side);
+  };
+  if (shadow.cut != kUnknownCut) {
+    for (std::uint64_t left = shadow.cut; left != 0; left &= left - 1) {
+      add(shadow.first + std::countr_zero(left));
+    }
+    return;
   }
-  next_common_.clear();
+  const Cone<T>& cone = cones_.cone(uses_[shadow.use].number, point);
+  for (LaneIndex<T> k = 0; k < cone.count; ++k) add(cone.first + k);
+}
+
+/// One target's shadows from one point, the largest cut out first.
+template <class T>
+void GroupView<T>::unite(std::span<Shadow> shadows) {
+  const std::size_t at = shadows[0].at;
+  const std::size_t point = at / targets_.lanes().count;
+  const std::size_t lane = at % targets_.lanes().count;
+  const auto too_many = [&](const Shadow& s) {
+    return cones_.cone(uses_[s.use].number, point).too_many;
+  };
+  if (std::any_of(shadows.begin(), shadows.end(), too_many)) {
+    uniteExactly(shadows);
+    return;
+  }
+  std::sort(shadows.begin(), shadows.end(), [&](const Shadow& a, const Shadow& b) {
+    if (a.hidden != b.hidden) return a.hidden > b.hidden;
+    return uses_[a.use].what->id < uses_[b.use].what->id;
+  });
+  const GroupTarget& target = *group_[lane];
+  const double noise = kPlaneNoise<T> * glm::distance(points_[point].position, target.frame.origin);
+  pieces_.begin(std::span(target.flat).first(target.corner_count));
+  // Edges of shadows that fall on others bound nothing.
+  ShapeWord<T> shape = 0;
+  for (const Shadow& shadow : shadows) {
+    addSides(shadow, point, lane);
+    if (!pieces_.subtract(sides_, noise)) continue;
+    shape += shadow.shape;
+    if (!pieces_.empty()) continue;
+    shadow_count_.data()[at] = kHidden;
+    return;
+  }
+  shape_.data()[at] = shape;
+  visible_.data()[at] = std::min(formFactorOfPieces(point, lane), whole_.data()[at]);
+}
+
+/// Form factor from a point to what pieces_ hold of a target.
+template <class T>
+T GroupView<T>::formFactorOfPieces(std::size_t point, std::size_t lane) {
+  std::size_t count = 0;
+  pieces_.forEdges([&](const Vec2&, const Vec2&) { ++count; });
+  const std::size_t stride = paddedLanes(count);
+  edges_.reserve(4 * stride);
+  T* const rows = edges_.data();
+  std::fill_n(rows, 4 * stride, T(0));
+  T* to = rows;
+  pieces_.forEdges([&](const Vec2& from, const Vec2& end) {
+    to[0] = T(from.x);
+    to[stride] = T(from.y);
+    to[2 * stride] = T(end.x);
+    to[3 * stride] = T(end.y);
+    ++to;
+  });
+  EyePoint<T> eye;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    eye.position[axis] = eye_[axis][point];
+    eye.normal[axis] = T(normal_[glm::length_t(axis)]);
+  }
+  return clip_.parts(targets_.lanes(), lane, eye,
+                     {stride, {rows, rows + stride}, {rows + 2 * stride, rows + 3 * stride}});
 }
 
 /// One target's shadows from one point, in double precision.
@@ -311,18 +372,11 @@ void GroupView<T>::uniteExactly(std::span<const Shadow> shadows) {
   const GroupTarget& target = *group_[lane];
   united_.clear();
   for (const Shadow& shadow : shadows) united_.push_back(*uses_[shadow.use].what);
-  // Shifts of a rank-one lattice (Roberts 2018): where pictures are drawn, those of a cell's
-  // points fill each other's gaps.
-  const double q = double(point);
-  const Vec2 shift(std::fmod(0.5 + 0.75487766624669276 * q, 1.0),
-                   std::fmod(0.5 + 0.56984029099805327 * q, 1.0));
-  const PointView view =
-      exact_.look(points_[point].position, normal_,
-                  std::span(target.corners).first(target.corner_count), united_, shift);
+  const PointView view = exact_.look(points_[point].position, normal_,
+                                     std::span(target.corners).first(target.corner_count), united_);
   const double fraction = view.whole > 0 ? view.visible / view.whole : 0;
   visible_.data()[at] = T(fraction * double(whole_.data()[at]));
   shape_.data()[at] = ShapeWord<T>(view.shape);
-  sampled_[lane] |= std::uint8_t(view.sampled);
 }
 
 template class GroupView<float>;

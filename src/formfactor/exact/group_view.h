@@ -12,6 +12,7 @@
 #include "formfactor/exact/sample_cell.h"
 #include "formfactor/exact/target_rows.h"
 #include "formfactor/exact/visible_part.h"
+#include "formfactor/exact/visible_pieces.h"
 
 namespace radiosity {
 
@@ -33,16 +34,13 @@ class BlockerNumbers {
 
 /// Evaluates all points of a cell against all targets of a group. Every occluder's cone is built
 /// once a point; every target, seen from a point past an occluder, is a lane of the vector kernels.
-/// Where the shadows of several occluders fall on one target, what they have in common was
-/// subtracted more than once; that is put right by inclusion and exclusion: the part inside several
-/// cones is the part inside those of their planes that cut the target. Shadows that share nothing
-/// end the expansion early. Where there are too many, VisiblePart unites them. Holds scratch
-/// memory: one a thread.
+/// Where the shadows of two occluders fall on one target, what they have in common was subtracted
+/// twice; that is put right by another lane: the part inside two cones is the part inside those of
+/// their planes that cut the target. Where more fall on it, they are cut out one after the other
+/// (VisiblePieces). Holds scratch memory: one a thread.
 template <class T>
 class GroupView {
  public:
-  /// Shadows on one target that are united by inclusion and exclusion.
-  static constexpr std::size_t kMostUnited = 6;
   /// The shape where nothing is visible; where all is, it is 0.
   static constexpr std::uint32_t kAllHiddenShape = 1;
 
@@ -62,8 +60,6 @@ class GroupView {
   const ShapeWord<T>* shape(std::size_t point) const {
     return shape_.data() + point * targets_.lanes().count;
   }
-  /// Some point saw too many shadows on this target: see Coverage.
-  bool sampled(std::size_t target) const { return sampled_[target] != 0; }
 
  private:
   /// A target has a blocker.
@@ -79,13 +75,13 @@ class GroupView {
     LaneIndex<T> first;    ///< plane of its cone
     std::uint32_t planes;  ///< that cut the target
     std::uint64_t cut;     ///< which planes of its cone cut the target
+    T hidden;              ///< form factor to what it hides
+    ShapeWord<T> shape;    ///< of that alone
   };
-  /// What several shadows on one target may have in common.
+  /// What two shadows on one target may have in common.
   struct Common {
-    std::uint32_t at;
-    std::uint32_t count;
-    std::uint32_t planes;                            ///< of all
-    std::array<std::uint32_t, kMostUnited> shadows;  ///< into shadows_, ascending; first `count`
+    std::uint32_t first, second;  ///< into shadows_
+    std::uint32_t planes;         ///< of both
   };
 
   void collectUses();
@@ -93,12 +89,13 @@ class GroupView {
   void subtractHidden();
   void finish();
   void uniteShadows();
-  bool addPairs(std::uint32_t begin, std::uint32_t end);
   void placeCommon();
   void setLane(const Common& common, std::size_t lane, std::size_t planes);
   void evaluateCommon();
-  void addCommon(T sign);
-  void joinCommon();
+  void addCommon();
+  void unite(std::span<Shadow> shadows);
+  void addSides(const Shadow& shadow, std::size_t point, std::size_t lane);
+  T formFactorOfPieces(std::size_t point, std::size_t lane);
   void uniteExactly(std::span<const Shadow> shadows);
   EyePoints<T> eyes() const;
   ClipItems<T> items(std::size_t count) const;
@@ -114,7 +111,6 @@ class GroupView {
   AlignedBuffer<T> visible_;  ///< while shadows are drawn: less than 0 where they overlap
   AlignedBuffer<ShapeWord<T>> shape_;
   AlignedBuffer<std::uint8_t> shadow_count_;
-  std::vector<std::uint8_t> sampled_;
   std::vector<Use> uses_;
   std::vector<const Blocker*> group_blockers_;
   BlockerNumbers numbers_;
@@ -129,8 +125,10 @@ class GroupView {
   AlignedBuffer<ShapeWord<T>> cut_;  ///< low and high
   std::vector<Shadow> shadows_;
   std::vector<Common> common_;
-  std::vector<Common> next_common_;
   std::vector<std::uint32_t> common_lane_;  ///< of common_
+  VisiblePieces pieces_;
+  std::vector<ShadowSide> sides_;  ///< of one shadow
+  AlignedBuffer<T> edges_;         ///< of pieces: four rows
   std::vector<Blocker> united_;
   VisiblePart exact_;
 };

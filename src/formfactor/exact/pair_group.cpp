@@ -148,7 +148,6 @@ void PairGroups<T>::sumCell(const SampleCell& cell, std::size_t side, int level,
   for (std::size_t k = 0; k < members.index.size(); ++k) {
     VisibleFraction& pair = out[members.index[k]];
     pair.points += points.count;
-    pair.sampled |= view_.sampled(k);
     CellSum& sum = sums_[k];
     for (std::size_t q = 0; q < points.count; ++q) {
       sum.visible += points.point[q].weight * double(view_.visible(q)[k]);

@@ -21,7 +21,6 @@ struct VisibleFraction {
   bool may_cross = false;  ///< see SampledPair
   std::size_t points = 0;
   bool refined = false;  ///< by more than the first rule
-  bool sampled = false;  ///< some point saw too many shadows: see Coverage
   double fraction() const { return whole > 0 ? visible / whole : 0; }
   double error() const;
 };

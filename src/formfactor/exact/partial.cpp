@@ -35,7 +35,6 @@ PartialCounts& PartialCounts::operator+=(const PartialCounts& other) {
   pairs += other.pairs;
   points += other.points;
   subdivided += other.subdivided;
-  by_pixels += other.by_pixels;
   hidden += other.hidden;
   return *this;
 }
@@ -83,7 +82,6 @@ void PartialKernel::integrate(const ClipKernels<T>& kernels, std::span<const Par
       out[group[k].pair] = {unoccluded * found.fraction(), kSafety * unoccluded * found.error()};
       counts.points += found.points;
       counts.subdivided += found.refined;
-      counts.by_pixels += found.sampled;
     }
     begin = last;
   }

@@ -14,7 +14,6 @@ struct PartialCounts {
   std::size_t pairs = 0;
   std::size_t points = 0;      ///< point-to-element evaluations
   std::size_t subdivided = 0;  ///< pairs that needed more than the first rule
-  std::size_t by_pixels = 0;   ///< pairs with points where too much stands between: sampled there
   std::size_t hidden = 0;      ///< found to exchange nothing
   PartialCounts& operator+=(const PartialCounts& other);
 };

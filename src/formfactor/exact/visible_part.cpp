@@ -88,7 +88,7 @@ double VisiblePart::subtractAll(const Vec3& normal) {
 }
 
 PointView VisiblePart::look(const Vec3& eye, const Vec3& normal, std::span<const Vec3> target,
-                            std::span<const Blocker> blockers, const Vec2& shift) {
+                            std::span<const Blocker> blockers) {
   PointView view;
   target_.assign(target, eye);
   view.whole = std::max(0.0, lambert(target_, normal));
@@ -112,14 +112,8 @@ PointView VisiblePart::look(const Vec3& eye, const Vec3& normal, std::span<const
     view.visible = view.whole;
   } else if (shadow_count_ == 1) {
     view.visible = std::max(0.0, view.whole - shadows_[0].form_factor);
-  } else if (shadow_count_ <= kMostShadows) {
-    view.visible = std::min(view.whole, subtractAll(normal));
   } else {
-    view.sampled = true;
-    coverage_.begin(target_, normal, shift);
-    for (std::size_t k = 0; k < shadow_count_ && coverage_.draw(shadows_[k].cone); ++k) {
-    }
-    view.visible = view.whole * coverage_.visibleFraction();
+    view.visible = std::min(view.whole, subtractAll(normal));
   }
   return view;
 }

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "formfactor/exact/convex_polygon.h"
-#include "formfactor/exact/coverage.h"
 #include "formfactor/exact/occluders.h"
 #include "formfactor/exact/silhouette.h"
 
@@ -26,20 +25,15 @@ struct PointView {
   /// Which edges bound what is hidden. Where it differs between neighbouring points the form
   /// factor has a kink between them.
   std::uint64_t shape = 0;
-  bool sampled = false;  ///< too many occluders: the visible fraction is that of a picture
 };
 
 /// Exact in double precision. Holds scratch memory: one a thread.
 class VisiblePart {
  public:
-  /// Of the occluders whose shadows fall on the target in part, more than this are not cut out
-  /// one from the other but drawn (Coverage).
-  static constexpr std::size_t kMostShadows = 32;
-
   /// From `eye`, on a surface of normal `normal`, to `target`: convex, wholly above the eye's
-  /// horizon, its front to the eye. `shift`: see Coverage.
+  /// horizon, its front to the eye.
   PointView look(const Vec3& eye, const Vec3& normal, std::span<const Vec3> target,
-                 std::span<const Blocker> blockers, const Vec2& shift);
+                 std::span<const Blocker> blockers);
 
  private:
   struct Shadow {
@@ -61,7 +55,6 @@ class VisiblePart {
   std::vector<ConvexPolygon> pieces_;  ///< of what is visible; the first piece_count_ are in use
   std::size_t piece_count_ = 0;
   std::vector<ConvexPolygon> next_;
-  Coverage coverage_;
 };
 
 }  // namespace radiosity
