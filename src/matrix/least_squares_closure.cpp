@@ -22,6 +22,9 @@ constexpr double kReportedShare = 0.01;
 /// Newton steps; one where no entry turns negative, else a handful.
 constexpr int kMostRounds = 30;
 constexpr std::size_t kMostSteps = 2000;
+/// Of what rows lack: how well a step is solved. Entries that turn negative spoil a better one
+/// (inexact Newton: Dembo, Eisenstat & Steihaug, SIAM J. Numer. Anal. 19, 1982).
+constexpr double kForcing = 0.1;
 /// Steps within which the residual must at least halve; else the target is out of reach.
 constexpr std::size_t kPatience = 50;
 /// Shortest part of a Newton step that is tried.
@@ -255,7 +258,7 @@ double LeastSquaresClosure::largestLack() const {
 
 void LeastSquaresClosure::findMultipliers(double tolerance) {
   for (int round = 0; round < kMostRounds && largestLack() > tolerance; ++round) {
-    const std::vector<double> step = newtonStep(tolerance);
+    const std::vector<double> step = newtonStep(std::max(tolerance, kForcing * largestLack()));
     const std::vector<double> start = multiplier_;
     const double dual = dual_;
     const double lack = largestLack();
