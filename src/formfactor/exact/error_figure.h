@@ -38,9 +38,9 @@ namespace radiosity {
 ///     cluttered, 762                 95        100%                  4.6 to 9.5
 ///     furnished room, 9,530          27      92.6 to 96.3%           2.4 to 4.8
 ///
-/// One thing missed in the furnished room are slivers as targets: SampledPair::change takes sizes as
-/// radii, and across a strip shadows move farther than that says. (Sizes from areas cover one row
-/// more there at 1e-1 and 1e-3, but the curved scene's median rises to 12 at 1e-4.)
+/// One thing missed in the furnished room are slivers as targets: SampledPair::change takes sizes
+/// as radii, and across a strip shadows move farther than that says. (Sizes from areas cover one
+/// row more there at 1e-1 and 1e-3, but the curved scene's median rises to 12 at 1e-4.)
 /// (truth_exact_test holds three meshes to it, against truth that shares no code.)
 class ErrorSums {
  public:
