@@ -124,7 +124,7 @@ struct ClipFunctions {
                  const LaneIndex<T>* const* own_planes, const LaneIndex<T>* plane_count,
                  T* form_factor);
   /// Form factor from one eye to the polygons bounded by `edges`, parts of one of the targets.
-  T (*parts)
+  T(*parts)
   (const TargetLanes<T>& targets, std::size_t target, const EyePoint<T>& eye,
    const FlatEdges<T>& edges);
 };
