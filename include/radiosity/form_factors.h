@@ -30,7 +30,7 @@ struct FormFactorOptions {
   FormFactorMethod method = FormFactorMethod::automatic;
   /// Exact: the error aimed at for a pair that is partly hidden, relative to the mean form factor
   /// 1/N; 1e-12 to 0.1. Closed forms hold it, or 1e-5 where it is larger, relative to each value;
-  /// above the default, 3% of it.
+  /// above the default, a tenth of it.
   double tolerance = 1e-3;
   ClosureMode closure = ClosureMode::report;
   /// Of the stored values; empty: single, double where the tolerance asks for more than 1e-6.

@@ -20,7 +20,7 @@ constexpr double kClosedForm = 1e-5;
 constexpr double kDefaultTolerance = 1e-3;
 /// ... Where less is asked than that, a share of it: theirs, mostly a tenth of what they are held
 /// to, is then not seen beside the error of what is clipped. ...
-constexpr double kClosedFormShare = 0.03;
+constexpr double kClosedFormShare = 0.1;
 /// ... The kernels are published for no more than this.
 constexpr double kLoosest = 1e-3;
 /// About this share of the clipped pairs is evaluated again from the other end, ...
