@@ -423,6 +423,10 @@ TEST(UncertainEntries, RefusesWhatIsNoError) {
                InputError);
   EXPECT_THROW(closeRows(matrix, UncertainEntries(2), std::vector<double>(3, 1.0), true),
                InputError);
+  const std::vector<double> one_sum(1, 1.0);
+  EXPECT_THROW(
+      closeRows(matrix, {one_sum, 1.0}, UncertainEntries(2), std::vector<double>(2, 1.0), true),
+      InputError);
 }
 
 }  // namespace

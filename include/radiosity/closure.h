@@ -84,7 +84,7 @@ struct RawTotals {
   double weighted_squares = 0;       ///< as weightedSquares(matrix, Part::raw); 1e-3 will do
 };
 
-/// The same, for those who know these.
+/// The same, for those who know these. Errors: as above; InputError where there are not N row sums.
 ClosureReport closeRows(ExchangeMatrix& matrix, const RawTotals& raw,
                         const UncertainEntries& uncertain, std::span<const double> target_row_sums,
                         bool enforce, double tolerance = 1e-9);

@@ -338,6 +338,10 @@ ClosureReport closeRows(ExchangeMatrix& matrix, const RawTotals& raw,
                                  uncertain.size(),
                                  matrix.isSymmetric() ? "symmetric" : "row by row", matrix.size()));
   }
+  if (raw.row_sums.size() != matrix.size()) {
+    throw InputError(fmt::format("closure: {} raw row sums for a matrix of {}", raw.row_sums.size(),
+                                 matrix.size()));
+  }
   LeastSquaresClosure closure(matrix, uncertain, target_row_sums, raw);
   if (!enforce) {
     tolerance = std::max(tolerance, kReportedShare * closure.report().largest_residual_before);

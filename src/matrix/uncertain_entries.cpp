@@ -21,7 +21,7 @@ constexpr std::array<double, 4> kRoundedUp = {0.5452538663326288, 0.648419777325
 
 std::uint8_t codeOf(double error) {
   if (error == 0) return 0;
-  // A logarithm to a quarter of an octave needs no more than the exponent and three comparisons.
+  // A logarithm to a quarter of an octave needs no more than the exponent and four comparisons.
   int exponent = 0;
   const double fraction = std::frexp(error, &exponent);  // 1/2 to 1
   int step = 0;

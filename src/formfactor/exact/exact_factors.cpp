@@ -17,7 +17,6 @@ namespace {
 
 /// Closed forms hold this at the default tolerance, and what is asked below it. ...
 constexpr double kClosedForm = 1e-5;
-constexpr double kDefaultTolerance = 1e-3;
 /// ... Where less is asked than that, a share of it: theirs, mostly a tenth of what they are held
 /// to, is then not seen beside the error of what is clipped. ...
 constexpr double kClosedFormShare = 0.1;
@@ -31,7 +30,7 @@ constexpr double kRecheckLeast = 512;
 constexpr double kCertainSky = 0.01;
 
 double closedFormTolerance(double tolerance) {
-  if (tolerance <= kDefaultTolerance) return std::min(tolerance, kClosedForm);
+  if (tolerance <= FormFactorOptions().tolerance) return std::min(tolerance, kClosedForm);
   return std::min(kClosedFormShare * tolerance, kLoosest);
 }
 
