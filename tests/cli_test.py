@@ -184,6 +184,19 @@ class Reuse(CliTest):
         self.assertRegex(out, r"(?m)^form factors +recomputed: resolution 64 -> 32$")
         self.assertRegex(out, r"(?m)^mesh +reused from s.h5$")
 
+    def test_what_the_method_that_was_picked_does_not_look_at(self):
+        self.run_program("solve", "box.obj", "--patches", "60", "--method", "auto", "-o", "a.h5")
+        for given in [["--resolution", "64"], ["--seed", "2"], ["--method", "exact"]]:
+            report = self.report("solve", "a.h5", *given)
+            self.assertEqual(set(actions(report).values()), {"reused"}, given)
+        report = self.report("solve", "a.h5", "--tolerance", "0.01")
+        self.assertEqual(actions(report)["form_factors"], "recomputed")
+        self.assertEqual(actions(report)["solution"], "recomputed")
+        # Hemicubes that a person asked for are not what auto picks here.
+        report = self.report("factors", "s.h5", "--method", "auto")
+        self.assertEqual(actions(report)["form_factors"], "recomputed")
+        self.assertEqual(report["form_factors"]["method"], "exact")
+
     def test_patches_changed(self):
         report = self.report("solve", "s.h5", "--patches", "200")
         self.assertEqual(set(actions(report).values()), {"recomputed"})

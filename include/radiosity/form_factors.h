@@ -3,6 +3,7 @@
 // part that is blocked taken off by clipping.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -138,18 +139,26 @@ struct FormFactors {
   FormFactorReport report;
 };
 
+/// What a computation will do, found out from a sample of rows before time and memory are spent.
+struct FormFactorPlan {
+  FormFactorMethod method = FormFactorMethod::hemicube;  ///< never automatic
+  std::string reason;                                    ///< where it was automatic
+  std::size_t bytes = 0;                                 ///< held at once, about
+  /// What was made ready on the way, with the mesh by reference and the options: what the
+  /// computation starts from.
+  struct Prepared;
+  std::shared_ptr<const Prepared> prepared;
+};
+FormFactorPlan planFormFactors(const PatchMesh& mesh, const FormFactorOptions& options);
+
 /// All cores; the same bits for any number of them. Hemicube: raw rows, as they were seen, unless
 /// `symmetrize`; exact: a symmetric matrix.
 /// Errors: RunError where the estimate exceeds `memory_limit` (with the numbers).
 FormFactors computeFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
                                Progress& progress);
 
-/// What a computation will do, made from a sample of rows before time and memory are spent.
-struct FormFactorPlan {
-  FormFactorMethod method = FormFactorMethod::hemicube;  ///< never automatic
-  std::string reason;                                    ///< where it was automatic
-  std::size_t bytes = 0;                                 ///< held at once, about
-};
-FormFactorPlan planFormFactors(const PatchMesh& mesh, const FormFactorOptions& options);
+/// The same of a plan, which comes from planFormFactors(), as often as you like; its mesh must be
+/// there still, as it was.
+FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress);
 
 }  // namespace radiosity

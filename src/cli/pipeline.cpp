@@ -137,9 +137,8 @@ void Pipeline::mesh() {
   previous_.mesh.reset();
 }
 
-void Pipeline::announceFactors() {
+void Pipeline::announceFactors(const FormFactorPlan& plan) {
   const FormFactorOptions& options = factor_options_;
-  const FormFactorPlan plan = planFormFactors(patches(), options);
   const bool exact = plan.method == FormFactorMethod::exact;
   // On disk every entry has a column number of 4 bytes. In memory a dense row has none, and a
   // symmetric matrix has half of the entries.
@@ -156,24 +155,48 @@ void Pipeline::announceFactors() {
   if (!plan.reason.empty()) report_.line("", "method: " + plan.reason);
 }
 
+bool Pipeline::factorsFit(const StageKey& key, std::optional<FormFactorPlan>& plan) const {
+  if (!previous_.factors) return false;
+  if (previous_.factors_key == key.text()) return true;
+  const std::string& method = previous_.factors->method;
+  const StageKey stored = usedKey(StageKey(previous_.factors_key), method);
+  if (stored.text() != usedKey(key, method).text()) return false;
+  const FormFactorMethod made_by = methodNamed(method);
+  if (factor_options_.method != FormFactorMethod::automatic) {
+    return factor_options_.method == made_by;
+  }
+  // Once they are there, exact ones are better whatever would be picked.
+  if (made_by == FormFactorMethod::exact) return true;
+  plan = planFormFactors(patches(), factor_options_);
+  return plan->method == made_by;
+}
+
 void Pipeline::factors() {
   const StageKey key = factorsKey(factor_options_, patches());
   const bool own = request_.command == Command::factors;
-  if (previous_.factors && previous_.factors_key == key.text()) {
+  std::optional<FormFactorPlan> plan;
+  if (factorsFit(key, plan)) {
     results_.factors = std::move(previous_.factors);
+    results_.factors_key = previous_.factors_key;
     matrix_loaded_ = false;
     report_.stage("form_factors", "form factors", "reused", source_);
     summarizeFactors(report_, formFactors(), patches(), own ? Detail::full : Detail::none);
   } else {
     const std::string reason = why(previous_.factors_key, key, previous_.factors.has_value());
-    announceFactors();
-    results_.factors = computeFormFactors(patches(), factor_options_, progress_);
+    if (!plan) plan = planFormFactors(patches(), factor_options_);
+    announceFactors(*plan);
+    results_.factors = computeFormFactors(*plan, progress_);
+    results_.factors_key = key.text();
     matrix_loaded_ = true;
     computed("form_factors", "form factors", reason);
     summarizeFactors(report_, formFactors(), patches(), own ? Detail::full : Detail::brief);
   }
-  results_.factors_key = key.text();
   previous_.factors.reset();
+}
+
+StageKey Pipeline::usedFactorsKey() const {
+  if (!results_.factors) return {};
+  return usedKey(StageKey(results_.factors_key), results_.factors->method);
 }
 
 void Pipeline::loadMatrix() {
@@ -195,7 +218,7 @@ const PatchMaterials& Pipeline::materials() {
 }
 
 void Pipeline::solution() {
-  const StageKey key = solutionKey(solve_options_, materials(), StageKey(results_.factors_key));
+  const StageKey key = solutionKey(solve_options_, materials(), usedFactorsKey());
   const bool own = request_.command == Command::solve;
   if (previous_.solution && previous_.solution_key == key.text()) {
     results_.solution = std::move(previous_.solution);
@@ -246,8 +269,8 @@ bool Pipeline::keepFactors() {
 
 bool Pipeline::keepSolution() {
   if (results_.solution || !previous_.solution) return false;
-  const StageKey key = solutionKey(solveOptionsOf(StageKey(previous_.solution_key)), materials(),
-                                   StageKey(results_.factors_key));
+  const StageKey key =
+      solutionKey(solveOptionsOf(StageKey(previous_.solution_key)), materials(), usedFactorsKey());
   if (!results_.factors || key.text() != previous_.solution_key) {
     report_.stage("solution", "solution", "dropped", why(previous_.solution_key, key, true));
     return true;

@@ -66,7 +66,11 @@ class Pipeline {
   /// What was given over what the results file has or the defaults; wrong ones are found here,
   /// before any work.
   void chooseOptions();
-  void announceFactors();
+  /// Whether the source's form factors are what was asked for: other options than those that made
+  /// them may differ. `plan` is set where it had to be made to tell.
+  bool factorsFit(const StageKey& key, std::optional<FormFactorPlan>& plan) const;
+  void announceFactors(const FormFactorPlan& plan);
+  StageKey usedFactorsKey() const;
   /// Each returns true where the stage is dropped.
   bool keepFactors();
   bool keepSolution();

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <charconv>
+#include <span>
 #include <type_traits>
 
 #include "base/hash.h"
@@ -137,7 +139,8 @@ StageKey meshKey(const MeshOptions& options, const Scene& scene) {
   return key;
 }
 
-// Every option the result depends on, as asked for: `auto` picks the same for the same mesh.
+// Every option the result may depend on, as asked for: another mesh may make `auto` pick the other
+// method.
 StageKey factorsKey(const FormFactorOptions& options, const PatchMesh& mesh) {
   StageKey key;
   key.add("method", nameOf(options.method));
@@ -154,6 +157,25 @@ StageKey factorsKey(const FormFactorOptions& options, const PatchMesh& mesh) {
   key.add("precision", options.storedPrecision() == Precision::real ? "double" : "single");
   key.add("mesh", geometryHash(mesh));
   return key;
+}
+
+StageKey usedKey(const StageKey& factors_key, std::string_view method) {
+  constexpr std::array<std::string_view, 4> kExact = {"tolerance", "closure", "precision", "mesh"};
+  constexpr std::array<std::string_view, 6> kHemicube = {"resolution", "seed",      "symmetrize",
+                                                         "near",       "precision", "mesh"};
+  StageKey used;
+  used.add("method", std::string(method));
+  const auto keep = [&](std::span<const std::string_view> names) {
+    for (const std::string_view name : names) {
+      if (const auto value = factors_key.get(name)) used.add(std::string(name), *value);
+    }
+  };
+  if (methodNamed(method) == FormFactorMethod::exact) {
+    keep(kExact);
+  } else {
+    keep(kHemicube);
+  }
+  return used;
 }
 
 StageKey solutionKey(const SolveOptions& options, const PatchMaterials& materials,

@@ -35,6 +35,10 @@ class StageKey {
 /// which surfaces emit (an emitter wins a coplanar overlap).
 StageKey meshKey(const MeshOptions& options, const Scene& scene);
 StageKey factorsKey(const FormFactorOptions& options, const PatchMesh& mesh);
+/// What of a key of form factors made them, where the method used, "exact" or "hemicube", is known:
+/// `auto` was asked for with the options of both.
+StageKey usedKey(const StageKey& factors_key, std::string_view method);
+/// `factors_key`: as used.
 StageKey solutionKey(const SolveOptions& options, const PatchMaterials& materials,
                      const StageKey& factors_key);
 

@@ -2,14 +2,33 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
+#include <stdexcept>
+#include <utility>
 
 #include "formfactor/exact/exact_factors.h"
 #include "formfactor/hemicube_factors.h"
 
 namespace radiosity {
+
+struct FormFactorPlan::Prepared {
+  Prepared(const PatchMesh& of, const FormFactorOptions& with) : mesh(of), options(with) {}
+  const PatchMesh& mesh;
+  FormFactorOptions options;
+  std::optional<ExactScene> scene;  ///< where the method is exact
+  ExactEstimate estimate;           ///< of it
+  double seconds = 0;               ///< that this took
+};
+
 namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 /// Hemicubes are chosen only where they save a wait, ...
 constexpr double kPatience = 60;
@@ -28,15 +47,18 @@ std::string timeText(double seconds) {
 
 FormFactorPlan planWith(const ExactEstimate& estimate, const PatchMesh& mesh,
                         const FormFactorOptions& options) {
-  FormFactorPlan plan{FormFactorMethod::exact, "", estimate.bytes};
+  FormFactorPlan plan{FormFactorMethod::exact, "", estimate.bytes, nullptr};
   if (options.method == FormFactorMethod::exact) return plan;
   const double hemicubes = hemicubeSeconds(mesh, options);
+  // Who asks for more than the default does not ask for hemicubes: what that adds does not count.
+  const double beyond = std::max(0.0, 1 - options.tolerance / FormFactorOptions().tolerance);
+  const double wait = estimate.seconds - beyond * estimate.refining;
   const std::string clutter =
       estimate.partial_pairs < 1
           ? std::string("no pair of a sample is partly hidden")
           : fmt::format("about {:.2g} pairs are partly hidden, past {:.1f} occluders each",
                         estimate.partial_pairs, estimate.occluders_per_partial);
-  if (estimate.seconds > kPatience && estimate.seconds > kWorthTheError * hemicubes) {
+  if (wait > kPatience && wait > kWorthTheError * hemicubes) {
     plan.method = FormFactorMethod::hemicube;
     plan.reason = fmt::format("hemicube: {}; exact would take a core {}, hemicubes {}", clutter,
                               timeText(estimate.seconds), timeText(hemicubes));
@@ -47,7 +69,22 @@ FormFactorPlan planWith(const ExactEstimate& estimate, const PatchMesh& mesh,
   } else {
     plan.reason = fmt::format("exact: {}; {} of a core", clutter, timeText(estimate.seconds));
   }
-  if (plan.method == FormFactorMethod::hemicube) plan.bytes = hemicubeBytes(mesh, options);
+  return plan;
+}
+
+/// A plan, but for the bytes of hemicubes.
+FormFactorPlan prepare(const PatchMesh& mesh, const FormFactorOptions& options) {
+  options.validate();
+  const Clock::time_point start = Clock::now();
+  auto prepared = std::make_shared<FormFactorPlan::Prepared>(mesh, options);
+  FormFactorPlan plan;
+  if (options.method != FormFactorMethod::hemicube) {
+    prepared->estimate = estimateExact(prepared->scene.emplace(mesh), options);
+    plan = planWith(prepared->estimate, mesh, options);
+    if (plan.method == FormFactorMethod::hemicube) prepared->scene.reset();
+  }
+  prepared->seconds = secondsSince(start);
+  plan.prepared = std::move(prepared);
   return plan;
 }
 
@@ -70,41 +107,34 @@ Precision FormFactorOptions::storedPrecision() const {
 }
 
 FormFactorPlan planFormFactors(const PatchMesh& mesh, const FormFactorOptions& options) {
-  options.validate();
-  if (options.method == FormFactorMethod::hemicube) {
-    return {FormFactorMethod::hemicube, "", hemicubeBytes(mesh, options)};
-  }
-  return planWith(estimateExact(ExactScene(mesh), options), mesh, options);
+  FormFactorPlan plan = prepare(mesh, options);
+  if (plan.method == FormFactorMethod::hemicube) plan.bytes = hemicubeBytes(mesh, options);
+  return plan;
 }
 
-FormFactors computeFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
-                               Progress& progress) {
-  options.validate();
-  using Clock = std::chrono::steady_clock;
+FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress) {
   const Clock::time_point start = Clock::now();
-  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
-  FormFactorPlan plan;
-  ExactEstimate estimate;
-  std::optional<ExactScene> scene;
-  if (options.method != FormFactorMethod::hemicube) {
-    scene.emplace(mesh);
-    estimate = estimateExact(*scene, options);
-    plan = planWith(estimate, mesh, options);
-  }
-  const double prepared = seconds();
+  if (!plan.prepared) throw std::logic_error("this plan is not from planFormFactors()");
+  const FormFactorPlan::Prepared& prepared = *plan.prepared;
   FormFactors result;
-  if (scene && plan.method == FormFactorMethod::exact) {
-    result = exactFactors(mesh, *scene, estimate, options, progress);
-    result.report.exact.seconds_prepare += prepared;
+  if (prepared.scene) {
+    result =
+        exactFactors(prepared.mesh, *prepared.scene, prepared.estimate, prepared.options, progress);
+    result.report.exact.seconds_prepare += prepared.seconds;
   } else {
-    scene.reset();
-    result = hemicubeFactors(mesh, options, progress);
+    result = hemicubeFactors(prepared.mesh, prepared.options, progress);
   }
   FormFactorReport& report = result.report;
   report.method_reason = plan.reason;
   report.matrix_bytes = result.matrix.bytes();
-  report.seconds = seconds();
+  report.seconds = prepared.seconds + secondsSince(start);
   return result;
+}
+
+FormFactors computeFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
+                               Progress& progress) {
+  // Hemicubes estimate their bytes themselves.
+  return computeFormFactors(prepare(mesh, options), progress);
 }
 
 }  // namespace radiosity

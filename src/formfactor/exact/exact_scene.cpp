@@ -5,33 +5,48 @@
 #include <algorithm>
 #include <vector>
 
+#include "formfactor/exact/partial_cost.h"
 #include "formfactor/exact/recorded_pairs.h"
 #include "matrix/work_bytes.h"
 
 namespace radiosity {
 namespace {
 
-constexpr std::size_t kSamples = 12;  // tasks
+constexpr std::size_t kSamples = 12;       // tasks
+constexpr std::size_t kSampledPairs = 96;  // of a task
 
 struct Sample {
   double pairs = 0;       ///< of all, in the sampled rows
   double unoccluded = 0;  ///< of them, or below the horizon
   double partial = 0;
-  double occluders = 0;        ///< candidates, summed over partial pairs
-  double edges = 0;            ///< of the candidates
+  double occluders = 0;  ///< candidates, summed over partial pairs
+  PartialCost cost;      ///< of the partial pairs
+  VisibilityCounts counts;
   std::size_t task_bytes = 0;  ///< most that the clipped pairs of a task take
 };
 
-Sample sampleTasks(const ExactScene& scene) {
+/// From some of them, evenly.
+PartialCost costOfPairs(const ExactScene& scene, const RecordedPairs& recorded, double tolerance) {
+  const std::size_t pairs = recorded.partial_pairs.size();
+  const std::size_t samples = std::min(pairs, kSampledPairs);
+  std::vector<PartialPair> some;
+  for (std::size_t k = 0; k < samples; ++k) {
+    some.push_back(recorded.partial_pairs[(2 * k + 1) * pairs / (2 * samples)]);
+  }
+  if (samples == 0) return {};
+  return partialCost(scene.elements, scene.occluders, some, recorded.occluder_list, tolerance) *
+         (double(pairs) / double(samples));
+}
+
+Sample sampleTasks(const ExactScene& scene, double tolerance) {
   Sample sample;
   RecordedPairs recorded;
-  VisibilityCounts counts;
   const std::size_t tasks = scene.tasks.size();
   const std::size_t samples = std::min(tasks, kSamples);
   for (std::size_t k = 0; k < samples; ++k) {
     recorded.clear();
     for (const ElementRange& range : scene.tasks[(2 * k + 1) * tasks / (2 * samples)]) {
-      scene.visibility.classify(range, recorded, counts);
+      scene.visibility.classify(range, recorded, sample.counts);
       sample.pairs += double(range.size()) * double(scene.elements.size() - range.end);
     }
     for (const PairBlock& block : recorded.blocks) {
@@ -39,9 +54,7 @@ Sample sampleTasks(const ExactScene& scene) {
     }
     sample.partial += double(recorded.partial_pairs.size());
     sample.occluders += double(recorded.occluder_list.size());
-    for (const Index o : recorded.occluder_list) {
-      sample.edges += double(scene.occluders.occluders[o].edges.size());
-    }
+    sample.cost += costOfPairs(scene, recorded, tolerance);
     sample.task_bytes = std::max(
         sample.task_bytes, recorded.partial_pairs.size() *
                                    (sizeof(PartialPair) + sizeof(PartialExchange) + sizeof(Index)) +
@@ -62,7 +75,7 @@ ExactScene::ExactScene(const PatchMesh& mesh)
       chunks(elements) {}
 
 ExactEstimate estimateExact(const ExactScene& scene, const FormFactorOptions& options) {
-  const Sample sample = sampleTasks(scene);
+  const Sample sample = sampleTasks(scene, options.tolerance);
   const auto elements = double(scene.elements.size());
   const auto patches = double(scene.elements.patch_elements);
   const double all_pairs = 0.5 * elements * elements;
@@ -86,13 +99,14 @@ ExactEstimate estimateExact(const ExactScene& scene, const FormFactorOptions& op
                    n * kAccounts + scene.elements.size() * kElementBytes +
                    std::max(filling, matrixWorkBytes(n, threads));  // one after the other
 
-  // Measured on one core of a 2.7 GHz Xeon: a pair in closed form or by quadrature, and a partly
-  // hidden one with what each edge of what may be in between adds. Twice off either way.
-  constexpr double kUnoccluded = 6e-9;
-  constexpr double kPartial = 5e-7;
-  constexpr double kEdge = 1.5e-7;
-  estimate.seconds = kUnoccluded * share * sample.unoccluded + kPartial * estimate.partial_pairs +
-                     kEdge * share * sample.edges;
+  // Measured on one core of a 2.7 GHz Xeon: a pair in closed form or by quadrature, with what is
+  // asked for beside it, and a test whether something stands between.
+  constexpr double kUnoccluded = 5e-8;
+  constexpr double kShaftTest = 9e-8;
+  const double visibility = kShaftTest * double(sample.counts.shaft_tests);
+  estimate.seconds = share * (kUnoccluded * sample.unoccluded + visibility + sample.cost.seconds);
+  estimate.refining = share * sample.cost.refining;
+  estimate.points = share * sample.cost.points;
   return estimate;
 }
 

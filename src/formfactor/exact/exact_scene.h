@@ -26,7 +26,9 @@ struct ExactEstimate {
   double entries_per_row = 0;  ///< at most
   double partial_pairs = 0;
   double occluders_per_partial = 0;
-  double seconds = 0;  ///< of one core, at the rates of a usual machine
+  double points = 0;    ///< ExactReport::points; about, like the seconds
+  double seconds = 0;   ///< of one core, at the rates of a usual machine
+  double refining = 0;  ///< of the seconds, those that go with 1 / tolerance
 };
 ExactEstimate estimateExact(const ExactScene& scene, const FormFactorOptions& options);
 

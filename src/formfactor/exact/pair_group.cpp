@@ -20,6 +20,8 @@ constexpr double kFarShare = 0.2;
 
 }  // namespace
 
+double expectedError(double change) { return kExpected4 * changeIn(0, change); }
+
 double VisibleFraction::error() const {
   if (!(whole > 0)) return 0;
   // What is left out is the same share of the visible part and of the whole where they are one.
@@ -77,8 +79,8 @@ void PairGroups<T>::integrate(std::span<const SampledPair> group, std::span<cons
       fractions[k].change = double(group[k].change);
       if (far) fractions[k].far_error = kFarShare * kFarError / (distance * distance * distance);
       fractions[k].may_cross = group[k].may_cross;
-      fractions[k].refined = group[k].may_cross ||
-                             kExpected4 * changeIn(0, fractions[k].change) > fractions[k].allowed;
+      fractions[k].refined =
+          group[k].may_cross || expectedError(fractions[k].change) > fractions[k].allowed;
       (fractions[k].refined ? fine : coarse).index.push_back(k);
     }
     // Of a quadrilateral cut by a plane there may be five corners: a quadrilateral and a triangle.

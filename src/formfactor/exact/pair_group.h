@@ -25,6 +25,9 @@ struct VisibleFraction {
   double error() const;
 };
 
+/// Root mean square of the error of a visible fraction by 2 x 2 points; `change`: SampledPair's.
+double expectedError(double change);
+
 /// Integrates groups of pairs: by 2 x 2 points where that can be expected to do; where it cannot or
 /// does not, by 3 x 3; and where that does not, by 3 x 3 in each quarter of the cell, and so on.
 /// Holds scratch memory: one a thread.

@@ -31,6 +31,11 @@ constexpr double kSafety = 2.5;
 
 }  // namespace
 
+double allowedError(const ElementSet& elements, const PartialPair& pair, double tolerance) {
+  const double area = std::min(elements.area[pair.row], elements.area[pair.column]);
+  return kOfOnePair * tolerance * area / (double(elements.patch_elements) * pair.unoccluded);
+}
+
 PartialCounts& PartialCounts::operator+=(const PartialCounts& other) {
   pairs += other.pairs;
   points += other.points;
@@ -70,10 +75,7 @@ void PartialKernel::integrate(const ClipKernels<T>& kernels, std::span<const Par
     const auto group = std::span<const SampledPair>(ready.pairs).subspan(begin, last - begin);
     fractions.assign(group.size(), VisibleFraction());
     for (std::size_t k = 0; k < group.size(); ++k) {
-      const PartialPair& pair = pairs[group[k].pair];
-      const double area = std::min(elements_.area[pair.row], elements_.area[pair.column]);
-      fractions[k].allowed =
-          kOfOnePair * tolerance_ * area / (double(elements_.patch_elements) * pair.unoccluded);
+      fractions[k].allowed = allowedError(elements_, pairs[group[k].pair], tolerance_);
     }
     groups.integrate(group, ready.blockers, fractions);
     for (std::size_t k = 0; k < group.size(); ++k) {

@@ -29,6 +29,9 @@ struct PartialPair {
   double unoccluded;                             ///< G with nothing between (UnoccludedKernel)
 };
 
+/// Error of the pair's visible fraction that is accepted at a tolerance.
+double allowedError(const ElementSet& elements, const PartialPair& pair, double tolerance);
+
 /// The exact unoccluded value times the visible fraction. The fraction is the quotient of two
 /// quadratures over the points of one element, the one along which shadows move less across the
 /// other: of the visible and of the whole form factor from the point to the other element, each in

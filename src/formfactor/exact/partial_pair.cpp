@@ -47,10 +47,10 @@ double edgeDistance2(const Occluder& body, const Vec3& p) {
 
 }  // namespace
 
-EdgeDistances::EdgeDistances(const ElementSet& elements, const OccluderSet& occluders)
+EdgeDistances::EdgeDistances(const ElementSet& elements, const OccluderSet& occluders, bool few)
     : elements_(elements), occluders_(occluders) {
   const std::size_t count = elements.size();
-  if (occluders.occluders.size() * count > kMostDistances) return;
+  if (few || occluders.occluders.size() * count > kMostDistances) return;
   table_.reserve(occluders.occluders.size() * count);
   for (const Occluder& body : occluders.occluders) {
     for (const Vec3& p : elements.centroid) table_.push_back(float(edgeDistance2(body, p)));

@@ -40,7 +40,8 @@ enum class SampledEnd {
 /// Distances of all elements from all occluders' edges, unless there are too many.
 class EdgeDistances {
  public:
-  EdgeDistances(const ElementSet& elements, const OccluderSet& occluders);
+  /// `few`: of some pairs only, for which no table is worth making.
+  EdgeDistances(const ElementSet& elements, const OccluderSet& occluders, bool few = false);
   /// Square of the distance from the element's centroid to the occluder's nearest edge.
   double squared(Index element, Index occluder) const;
 
