@@ -15,8 +15,6 @@ namespace {
 
 /// Of B, far below the error of any matrix here.
 constexpr double kSolveTolerance = 1e-8;
-/// The exact method gets no tighter once a run took longer.
-constexpr double kMostSeconds = 60;
 
 FormFactors asFormFactors(const PatchMesh& mesh, const TruthRows& truth) {
   FormFactors factors;
@@ -103,18 +101,17 @@ Measured measure(const Method& method, const PatchMesh& mesh, const TruthRows& t
   return result;
 }
 
-/// From the loosest setting to the tightest; what follows one of more than kMostSeconds is left
-/// out.
+/// From the loosest setting to the tightest; those that follow one of more than kMostSeconds go to
+/// `left_out`.
 std::vector<Measured> measureExact(const BenchScene& scene, const TruthRows& truth,
-                                   const Lighting& lighting) {
+                                   const Lighting& lighting, std::vector<double>& left_out) {
   std::vector<Measured> all;
   for (const Method& method : exactMethods()) {
     if (!all.empty() && all.back().measurement.seconds.processor() > kMostSeconds) {
-      fmt::print("  exact {:.0e} and tighter left out: {:.0e} took more than {:.0f} s\n",
-                 method.value, all.back().measurement.value, kMostSeconds);
-      break;
+      left_out.push_back(method.value);
+    } else {
+      all.push_back(measure(method, scene.mesh, truth, lighting));
     }
-    all.push_back(measure(method, scene.mesh, truth, lighting));
   }
   return all;
 }
@@ -133,7 +130,7 @@ std::optional<SceneCurves> errorCurves(const BenchScene& scene, const TruthRows&
   if (!verifyTruth(scene, truth, truth_accuracy)) return std::nullopt;
 
   const Lighting lighting(scene);
-  const std::vector<Measured> exact = measureExact(scene, truth, lighting);
+  const std::vector<Measured> exact = measureExact(scene, truth, lighting, curves.left_out);
   std::vector<double> reference;
   if (truth.complete) {
     curves.radiosity_reference = "truth";
@@ -152,6 +149,7 @@ std::optional<SceneCurves> errorCurves(const BenchScene& scene, const TruthRows&
   };
   printCurveHead(curves);
   for (const Measured& measured : exact) add(measured);
+  printLeftOut(curves);
   for (const Method& method : otherMethods(mesh.size(), quick)) {
     add(measure(method, mesh, truth, lighting));
   }

@@ -44,7 +44,12 @@ struct SceneCurves {
   std::size_t truth_rows = 0;
   std::string radiosity_reference;  ///< what B is compared with
   std::vector<Measurement> measurements;
+  /// Tolerances that the exact method was not run at: a looser one took more than kMostSeconds.
+  std::vector<double> left_out;
 };
+
+/// The exact method gets no tighter once a run took longer, in processor time.
+inline constexpr double kMostSeconds = 60;
 
 /// Verifies truth, then runs the methods one after the other, printing a line each. B is compared
 /// with that of truth where all rows are known, else with that of the tightest exact setting. Empty

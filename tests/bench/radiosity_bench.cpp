@@ -1,10 +1,10 @@
-// radiosity_bench [--quick] [--out DIR] [--only rates|truth|curves|gather]
-// [--scene NAME]: see tools/bench.
+// radiosity_bench [arguments]: see tools/bench.
 #include <fmt/format.h>
 
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "error_curves.h"
@@ -28,20 +28,24 @@ struct Arguments {
   std::string truth_folder = "build/bench/truth";
 };
 
+constexpr const char* kUsage =
+    "[--quick] [--only rates|truth|curves|gather] [--scene NAME] [--out DIR] [--help]";
+
 [[noreturn]] void refuse(const std::string& argument) {
-  throw InputError(fmt::format(
-      "'{}': give [--quick] [--only rates|truth|curves|gather] [--scene NAME] [--out DIR]",
-      argument));
+  throw InputError(fmt::format("'{}': give {}", argument, kUsage));
 }
 
-Arguments parse(int count, char** values) {
+/// Empty: help was asked for.
+std::optional<Arguments> parse(int count, char** values) {
   Arguments arguments;
   for (int k = 1; k < count; ++k) {
     const std::string name = values[k];
     const auto value = [&] {
       return k + 1 < count ? std::string(values[++k]) : (refuse(name), "");
     };
-    if (name == "--quick") {
+    if (name == "--help" || name == "-h") {
+      return std::nullopt;
+    } else if (name == "--quick") {
       arguments.quick = true;
     } else if (name == "--out") {
       arguments.out = value();
@@ -102,7 +106,12 @@ bool benchCurves(const Arguments& arguments) {
 
 int main(int count, char** values) try {
   using namespace radiosity::bench;
-  const Arguments arguments = parse(count, values);
+  const std::optional<Arguments> given = parse(count, values);
+  if (!given) {
+    fmt::print("radiosity_bench {}\n", kUsage);
+    return EXIT_SUCCESS;
+  }
+  const Arguments& arguments = *given;
   std::filesystem::create_directories(arguments.out);
   bool verified = true;
   if (arguments.rates) verified = benchRates() && verified;

@@ -14,6 +14,15 @@ std::string settingText(const Measurement& m) {
   return m.value < 1 ? fmt::format("{:.0e}", m.value) : fmt::format("{:.0f}", m.value);
 }
 
+/// "1e-03 1e-04"
+std::string settingsText(const std::vector<double>& tolerances) {
+  std::string text;
+  for (const double tolerance : tolerances) {
+    text += fmt::format("{}{:.0e}", text.empty() ? "" : " ", tolerance);
+  }
+  return text;
+}
+
 }  // namespace
 
 void printCurveHead(const SceneCurves& curves) {
@@ -42,6 +51,13 @@ void printMeasurement(const Measurement& m) {
     fmt::print(" {} {} {}", m.exact.unoccluded, m.exact.hidden, m.exact.partial);
   }
   fmt::print("\n");
+  std::fflush(stdout);
+}
+
+void printLeftOut(const SceneCurves& curves) {
+  if (curves.left_out.empty()) return;
+  fmt::print("  {:<15} {} left out: the run before took more than {:.0f} s\n", "exact",
+             settingsText(curves.left_out), kMostSeconds);
   std::fflush(stdout);
 }
 
@@ -95,7 +111,7 @@ void writeCsv(const std::string& path, const std::vector<SceneCurves>& curves) {
       "scene,patches,polygons,truth_rows,method,setting,value,user_s,system_s,wall_s,runs,"
       "relative_l2_F,largest_F,relative_l2_B,B_reference,error_figure,rows_covered,median_figure_"
       "over_error,largest_row_error,bytes,"
-      "pairs_no_exchange,pairs_unoccluded,pairs_hidden,pairs_partial\n");
+      "pairs_no_exchange,pairs_unoccluded,pairs_hidden,pairs_partial,exact_left_out\n");
   for (const SceneCurves& c : curves) {
     for (const Measurement& m : c.measurements) {
       out.print("{},{},{},{},{},{},{:g},{:.6f},{:.6f},{:.6f},{},{:.6e},{:.6e},{},{},", c.scene,
@@ -109,11 +125,12 @@ void writeCsv(const std::string& path, const std::vector<SceneCurves>& curves) {
       }
       out.print("{:.3e},{},", m.largest_row_error, m.bytes);
       if (m.exact.elements > 0) {
-        out.print("{},{},{},{}\n", m.exact.no_exchange, m.exact.unoccluded, m.exact.hidden,
+        out.print("{},{},{},{},", m.exact.no_exchange, m.exact.unoccluded, m.exact.hidden,
                   m.exact.partial);
       } else {
-        out.print(",,,\n");
+        out.print(",,,,");
       }
+      out.print("{}\n", settingsText(c.left_out));
     }
   }
 }

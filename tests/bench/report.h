@@ -12,6 +12,8 @@ namespace radiosity::bench {
 /// The table of one scene, as it is measured.
 void printCurveHead(const SceneCurves& curves);
 void printMeasurement(const Measurement& measurement);
+/// A line that names the exact settings that were not run; none where all were.
+void printLeftOut(const SceneCurves& curves);
 
 /// What the curves come to.
 void printSummary(const Summary& summary);
