@@ -35,7 +35,7 @@ TEST(ExactEstimate, PointsAreForeseenWithinAFactorOfTwo) {
   // off by more, and the sample is small.
   constexpr double kFactor = 2;
   Progress silent;
-  for (const Case& c : {Case{"cornell-box-closed", 500, {1e-1, 1e-3, 1e-4}},
+  for (const Case& c : {Case{"cornell-box-closed", 500, {1e-1, 1e-3, 1e-4, 1e-6}},
                         Case{"two-rooms", 500, {1e-2, 1e-3, 1e-4}}, Case{"cluttered", 300, {1e-2}},
                         Case{"curved", 300, {1e-1}}}) {
     const PatchMesh mesh = meshNamed(c.scene, c.patches);
@@ -53,8 +53,8 @@ TEST(ExactEstimate, PointsAreForeseenWithinAFactorOfTwo) {
 TEST(ExactEstimate, TighterTolerancesTakeLonger) {
   const PatchMesh mesh = meshNamed("two-rooms", 300);
   const ExactScene scene(mesh);
-  const ExactEstimate loose = estimateExact(scene, exactly(1e-3));
-  const ExactEstimate tight = estimateExact(scene, exactly(1e-4));
+  const ExactEstimate loose = estimateExact(scene, exactly(1e-2));
+  const ExactEstimate tight = estimateExact(scene, exactly(1e-3));
   EXPECT_GT(loose.refining, 0);
   EXPECT_LT(loose.refining, loose.seconds);
   // What goes with 1 / tolerance; sums of some thousand numbers, rounded differently.
@@ -83,9 +83,9 @@ TEST(Auto, ClutterAndToleranceDecide) {
 }
 
 TEST(Auto, WhoAsksForMoreIsNotGivenHemicubes) {
-  const PatchMesh mesh = meshNamed("cornell-box-closed", 1000);
+  const PatchMesh mesh = meshNamed("curved", 300);
   FormFactorOptions options;
-  options.tolerance = 1e-8;
+  options.tolerance = 1e-6;
   // Far longer than a minute, and than hemicubes.
   EXPECT_GT(estimateExact(ExactScene(mesh), options).seconds, 1000);
   EXPECT_EQ(planFormFactors(mesh, options).method, FormFactorMethod::exact);

@@ -8,8 +8,7 @@
 namespace radiosity {
 namespace {
 
-/// Shadow counts: all is hidden; the largest number.
-constexpr std::uint8_t kHidden = 255;
+/// The largest number of shadows on a target that is told from more.
 constexpr std::uint8_t kMostCounted = 254;
 constexpr std::uint64_t kUnknownCut = ~std::uint64_t(0);
 /// What shadows that overlap add to the shape.
@@ -20,6 +19,9 @@ constexpr std::size_t kMostOwnPlanes = 16;
 /// Up to so many targets, cones are not built before it is known that they meet one: of a small
 /// part of an element most occluders of the whole miss the target. More targets share the cones.
 constexpr std::size_t kFewTargets = 4;
+
+/// Up to so many leave most of a vector empty.
+constexpr std::size_t kFewLanes = 8;
 
 }  // namespace
 
@@ -45,15 +47,13 @@ void GroupView<T>::look(std::span<const SamplePoint> points, const Vec3& origin,
   visible_.reserve(values);
   shape_.reserve(values);
   shadow_count_.reserve(values);
-  EyePoint<T> eye;
-  for (int axis = 0; axis < 3; ++axis) eye.normal[axis] = T(normal[axis]);
   for (std::size_t q = 0; q < points.size(); ++q) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto a = glm::length_t(axis);
-      eye.position[axis] = eye_[axis][q] = T(points[q].position[a] - origin[a]);
+      eye_[axis][q] = T(points[q].position[a] - origin[a]);
     }
-    clip_.whole(targets_.lanes(), eye, whole_.data() + q * stride);
   }
+  lookAtWhole();
   std::copy_n(whole_.data(), values, visible_.data());
   std::fill_n(shape_.data(), values, ShapeWord<T>(0));
   std::fill_n(shadow_count_.data(), values, std::uint8_t(0));
@@ -63,6 +63,35 @@ void GroupView<T>::look(std::span<const SamplePoint> points, const Vec3& origin,
   hide();
   subtractHidden();
   finish();
+}
+
+/// Form factors with nothing in between. Few targets share vectors from all points, with the same
+/// bits as any: what kernels see of an eye and a target is their difference.
+template <class T>
+void GroupView<T>::lookAtWhole() {
+  const std::size_t stride = targets_.lanes().count;
+  EyePoint<T> eye{};
+  for (int axis = 0; axis < 3; ++axis) eye.normal[axis] = T(normal_[axis]);
+  std::array<std::array<T, 3>, SamplePoints::kMost> eyes;
+  for (std::size_t q = 0; q < points_.size(); ++q) {
+    eyes[q] = {eye_[0][q], eye_[1][q], eye_[2][q]};
+  }
+  if (group_.size() > kFewLanes) {
+    for (std::size_t q = 0; q < points_.size(); ++q) {
+      std::copy(eyes[q].begin(), eyes[q].end(), std::begin(eye.position));
+      clip_.whole(targets_.lanes(), eye, whole_.data() + q * stride);
+    }
+    return;
+  }
+  from_eyes_.fillFromEyes(targets_.lanes(), group_.size(), std::span(eyes).first(points_.size()));
+  form_factor_.reserve(from_eyes_.lanes().count);
+  clip_.whole(from_eyes_.lanes(), eye, form_factor_.data());
+  for (std::size_t q = 0; q < points_.size(); ++q) {
+    const T* const found = form_factor_.data() + q * group_.size();
+    std::copy_n(found, group_.size(), whole_.data() + q * stride);
+    std::fill(whole_.data() + q * stride + group_.size(), whole_.data() + (q + 1) * stride,
+              found[group_.size() - 1]);
+  }
 }
 
 /// Who uses which blocker, by target.

@@ -56,12 +56,20 @@ class GroupView {
   const T* visible(std::size_t point) const {
     return visible_.data() + point * targets_.lanes().count;
   }
+  /// True if two shadows or more may fall on the target.
+  bool overlapping(std::size_t point, std::size_t target) const {
+    const std::uint8_t count = shadow_count_.data()[point * targets_.lanes().count + target];
+    return count > 1 && count != kHidden;
+  }
   /// See PointView.
   const ShapeWord<T>* shape(std::size_t point) const {
     return shape_.data() + point * targets_.lanes().count;
   }
 
  private:
+  /// Shadow counts: all is hidden.
+  static constexpr std::uint8_t kHidden = 255;
+
   /// A target has a blocker.
   struct Use {
     const Blocker* what;
@@ -84,6 +92,7 @@ class GroupView {
     std::uint32_t planes;         ///< of both
   };
 
+  void lookAtWhole();
   void collectUses();
   void hide();
   void subtractHidden();
@@ -107,6 +116,7 @@ class GroupView {
   Vec3 normal_{0.0};
   std::array<std::array<T, SamplePoints::kMost>, 3> eye_;
   TargetRows<T> targets_;
+  TargetRows<T> from_eyes_;
   AlignedBuffer<T> whole_;    ///< by point, then target
   AlignedBuffer<T> visible_;  ///< while shadows are drawn: less than 0 where they overlap
   AlignedBuffer<ShapeWord<T>> shape_;

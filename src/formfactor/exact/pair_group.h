@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <vector>
 
+#include "formfactor/exact/between_lines.h"
 #include "formfactor/exact/group_view.h"
 #include "formfactor/exact/partial_pair.h"
 
@@ -29,8 +31,9 @@ struct VisibleFraction {
 double expectedError(double change);
 
 /// Integrates groups of pairs: by 2 x 2 points where that can be expected to do; where it cannot or
-/// does not, by 3 x 3; and where that does not, by 3 x 3 in each quarter of the cell, and so on.
-/// Holds scratch memory: one a thread.
+/// does not, by 3 x 3; and where that does not, by 3 x 3 in each quarter of the cell, and so on;
+/// or, where many points can be expected, between critical lines. Holds scratch memory: one a
+/// thread.
 template <class T>
 class PairGroups {
  public:
@@ -70,11 +73,18 @@ class PairGroups {
   void cutCell(const SampleCell& cell, const Members& members, int level,
                std::span<VisibleFraction> out);
 
+  void cutAtLines(std::span<const Vec3> polygon, Members& members, std::span<VisibleFraction> out);
+
   double distanceInRadii(const SampledPair& pair) const;
 
   const ElementSet& elements_;
   double far_reach_;
   GroupView<T> view_;
+  /// See cutAtLines().
+  struct Unused {
+    explicit Unused(const GroupView<T>& /*view*/) {}
+  };
+  std::conditional_t<std::is_same_v<T, double>, BetweenLines, Unused> between_lines_{view_};
   Vec3 normal_{0.0};
   bool far_ = false;  ///< the members at work are
   std::vector<GroupTarget> targets_;

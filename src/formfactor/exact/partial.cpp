@@ -9,10 +9,6 @@
 namespace radiosity {
 namespace {
 
-/// Below this tolerance single precision is not enough: it knows the form factor to a target of
-/// size h at distance r to 1e-6 r/h, and meshes of 20,000 patches have r/h near 100.
-constexpr double kSinglePrecision = 2.5e-4;
-
 /// What a single entry may be off by, in tolerances. The tolerance is for the root mean square over
 /// a row's entries; few entries are partial, and of those few are near what they may be.
 constexpr double kOfOnePair = 12;

@@ -29,6 +29,10 @@ struct PartialPair {
   double unoccluded;                             ///< G with nothing between (UnoccludedKernel)
 };
 
+/// Below this tolerance single precision is not enough: it knows the form factor to a target of
+/// size h at distance r to 1e-6 r/h, and meshes of 20,000 patches have r/h near 100.
+inline constexpr double kSinglePrecision = 2.5e-4;
+
 /// Error of the pair's visible fraction that is accepted at a tolerance.
 double allowedError(const ElementSet& elements, const PartialPair& pair, double tolerance);
 

@@ -17,7 +17,7 @@ struct SamplePoint {
 
 /// The points of a cell by one rule; their weights add up to its area.
 struct SamplePoints {
-  static constexpr std::size_t kMost = 9;
+  static constexpr std::size_t kMost = 13;
 
   std::array<SamplePoint, kMost> point;
   std::size_t count = 0;

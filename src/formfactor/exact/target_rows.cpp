@@ -17,12 +17,9 @@ void GroupTarget::setOutline(std::span<const Vec3> outline, const PlaneFrame& pl
 }
 
 template <class T>
-void TargetRows<T>::fill(std::span<const GroupTarget* const> targets, const Vec3& origin) {
-  lanes_.corners = 4;
-  for (const GroupTarget* target : targets) {
-    lanes_.corners = std::max(lanes_.corners, target->corner_count);
-  }
-  const std::size_t stride = paddedLanes(targets.size());
+void TargetRows<T>::layOut(std::size_t targets, std::size_t corners) {
+  const std::size_t stride = paddedLanes(targets);
+  lanes_.corners = corners;
   lanes_.count = stride;
   memory_.reserve(stride * (kCornerRow + 2 * kMostCorners));
   T* const rows = memory_.data();
@@ -35,6 +32,15 @@ void TargetRows<T>::fill(std::span<const GroupTarget* const> targets, const Vec3
     lanes_.corner[k][0] = rows + (kCornerRow + 2 * k) * stride;
     lanes_.corner[k][1] = rows + (kCornerRow + 2 * k + 1) * stride;
   }
+}
+
+template <class T>
+void TargetRows<T>::fill(std::span<const GroupTarget* const> targets, const Vec3& origin) {
+  std::size_t corners = 4;
+  for (const GroupTarget* target : targets) corners = std::max(corners, target->corner_count);
+  layOut(targets.size(), corners);
+  const std::size_t stride = lanes_.count;
+  T* const rows = memory_.data();
   for (std::size_t lane = 0; lane < stride; ++lane) {
     const GroupTarget& target = *targets[std::min(lane, targets.size() - 1)];
     T* to = rows + lane;
@@ -50,6 +56,24 @@ void TargetRows<T>::fill(std::span<const GroupTarget* const> targets, const Vec3
       set(corner.x);
       set(corner.y);
     }
+  }
+}
+
+template <class T>
+void TargetRows<T>::fillFromEyes(const TargetLanes<T>& targets, std::size_t count,
+                                 std::span<const std::array<T, 3>> eyes) {
+  layOut(eyes.size() * count, targets.corners);
+  const std::size_t rows = kCornerRow + 2 * targets.corners;
+  // Rows of both stand as memory_ has them: a stride apart.
+  const T* const from = targets.middle[0];
+  for (std::size_t row = 0; row < rows; ++row) {
+    T* const to = memory_.data() + row * lanes_.count;
+    std::size_t lane = 0;
+    for (const std::array<T, 3>& eye : eyes) {
+      const T origin = row < 3 ? eye[row] : T(0);
+      for (std::size_t t = 0; t < count; ++t) to[lane++] = from[row * targets.count + t] - origin;
+    }
+    std::fill(to + lane, to + lanes_.count, to[lane - 1]);
   }
 }
 

@@ -30,9 +30,15 @@ class TargetRows {
   /// One lane a target, middles from `origin`; what is left of the last vector repeats the last
   /// target.
   void fill(std::span<const GroupTarget* const> targets, const Vec3& origin);
+  /// The first `count` of other lanes once for each of `eyes`, as seen with that eye as the origin:
+  /// lane eye * count + target.
+  void fillFromEyes(const TargetLanes<T>& targets, std::size_t count,
+                    std::span<const std::array<T, 3>> eyes);
   const TargetLanes<T>& lanes() const { return lanes_; }
 
  private:
+  void layOut(std::size_t targets, std::size_t corners);
+
   AlignedBuffer<T> memory_;
   TargetLanes<T> lanes_{};
 };
