@@ -40,12 +40,15 @@ struct FormFactorOptions {
   std::uint64_t seed = 1;  ///< hemicube: of the random turns about each normal
   bool random_turns = true;
   bool symmetrize = false;  ///< hemicube: merge both estimates of each pair, then restore closure
-  bool near_exact = false;  ///< hemicube: area-to-area values for pairs nearer than two patch sizes
+  /// Hemicube: pairs nearer than two patch sizes get the area-to-area value times the visible
+  /// fraction that the item buffer tells. Empty: where `automatic` picked hemicubes, yes; else no.
+  std::optional<bool> near_exact;
   std::size_t memory_limit = 0;  ///< bytes; 0: no limit
   bool simd = true;              ///< false: the scalar twin (same bits)
 
   void validate() const;
   Precision storedPrecision() const;
+  bool nearExact() const { return near_exact.value_or(method == FormFactorMethod::automatic); }
 };
 
 /// What the exact method did and skipped. A pair is an unordered pair of elements (convex pieces of

@@ -126,7 +126,8 @@ void addFactorOptions(CLI::App& app, Request& r) {
          "sums")
       ->group("Form factors");
   add(app, "Form factors", "--near", r.near_pairs, "exact|off",
-      "hemicube: area-to-area values for pairs closer than about two patch sizes (default off)")
+      "hemicube: area-to-area values times the visible fraction for pairs closer than about two "
+      "patch sizes (default: exact where --method auto picked hemicubes, else off)")
       ->check(CLI::IsMember({"exact", "off"}));
   add(app, "Form factors", "--precision", r.precision, "auto|single|double",
       "Of the stored form factors (default auto: single unless --tolerance is below 1e-6); sums "

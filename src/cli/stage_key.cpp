@@ -152,7 +152,7 @@ StageKey factorsKey(const FormFactorOptions& options, const PatchMesh& mesh) {
     key.add("resolution", fmt::format("{}", options.resolution));
     key.add("seed", fmt::format("{}", options.seed));
     key.add("symmetrize", onOff(options.symmetrize));
-    key.add("near", options.near_exact ? "exact" : "off");
+    key.add("near", options.nearExact() ? "exact" : "off");
   }
   key.add("precision", options.storedPrecision() == Precision::real ? "double" : "single");
   key.add("mesh", geometryHash(mesh));
@@ -219,7 +219,9 @@ FormFactorOptions factorOptionsOf(const StageKey& key) {
   options.method = methodNamed(key.get("method").value_or(""));
   read(key, "tolerance", options.tolerance);
   options.closure = closureNamed(key.get("closure").value_or(""));
-  options.near_exact = key.get("near") == "exact";
+  // What `automatic` does by itself does not bind another method that is asked for later.
+  const bool near_exact = key.get("near") == "exact";
+  if (near_exact != options.nearExact()) options.near_exact = near_exact;
   read(key, "resolution", options.resolution);
   read(key, "seed", options.seed);
   read(key, "symmetrize", options.symmetrize);

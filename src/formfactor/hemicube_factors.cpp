@@ -120,7 +120,7 @@ FormFactors hemicubeFactors(const PatchMesh& mesh, const FormFactorOptions& opti
   result.sky.assign(n, 0.0);
   std::vector<std::vector<SeenBack>> seen_backs(n);
   std::optional<NearPairs> near_pairs;
-  if (options.near_exact) near_pairs.emplace(mesh, options);
+  if (options.nearExact()) near_pairs.emplace(mesh, options);
   fillRows(rows, near_pairs ? &*near_pairs : nullptr, result, seen_backs, progress);
   accountForBacks(mesh, seen_backs, result);
   checkRows(result);
