@@ -387,10 +387,11 @@ TEST(ErrorSums, FiguresOfKnownErrors) {
   EXPECT_NEAR(sums.figures(area, 0, figure), std::sqrt(3e-4 / 0.375), 1e-15);
   EXPECT_NEAR(figure[0], 0.005 * std::sqrt(2.0), 1e-16);
   EXPECT_NEAR(figure[1], 0.01 * std::sqrt(2.0), 1e-16);
-  // The two ends differ by 3 times what they state: an eighth of the surplus, 9 - 1 times the
-  // square of what they state (0.008^2 + 0.006^2 = 0.01^2), is added: once more the square.
-  sums.addRecheck(0.03, 0.008, 0.006, 2.0);
-  EXPECT_NEAR(sums.recheckRatio(), 3, 1e-12);
+  // The two ends differ by 0.6 times what they state and, in squares, 8 times that: an eighth of
+  // the surplus, 8 times the square of what they state (0.008^2 + 0.006^2 = 0.01^2), is added: once
+  // more the square.
+  sums.addRecheck(0.01 * std::sqrt(8.36), 0.008, 0.006, 2.0);
+  EXPECT_NEAR(sums.recheckRatio(), std::sqrt(8.36), 1e-12);
   sums.figures(area, 0, figure);
   EXPECT_NEAR(figure[1], 0.01 * std::sqrt(3.0), 1e-15);
   // Of four equal pairs, 4 err^2, the sum scatters by half of itself.
@@ -398,10 +399,10 @@ TEST(ErrorSums, FiguresOfKnownErrors) {
   for (int k = 0; k < 4; ++k) many.addPartial(0, 1, 0.01, 0.5);
   many.figures(area, 0, figure);
   EXPECT_NEAR(figure[1], 0.01 * std::sqrt(6.0), 1e-15);
-  // Less than they state changes nothing.
+  // Less than 0.6 times what they state changes nothing.
   ErrorSums calm(2);
   calm.addPartial(0, 1, 0.01, 2.0);
-  calm.addRecheck(0.001, 0.01, 0.01, 2.0);
+  calm.addRecheck(0.0059, 0.008, 0.006, 2.0);
   calm.figures(area, 0, figure);
   EXPECT_NEAR(figure[1], 0.01 * std::sqrt(2.0), 1e-16);
   // Closed forms: a tenth of 1e-3 of each value.

@@ -56,8 +56,9 @@ double ErrorSums::figures(std::span<const double> area, double closed_form,
                           std::span<double> figure) const {
   // Of a pair, squared and over the product of its areas.
   const double surplus =
-      rechecked_ > 0 ? kSurplusShare * std::max(0.0, difference_ - stated_) / double(rechecked_)
-                     : 0.0;
+      rechecked_ > 0
+          ? kSurplusShare * std::max(0.0, difference_ - kUsual * stated_) / double(rechecked_)
+          : 0.0;
   const double closed = kClosedFormShare * closed_form;
   double errors = 0;
   for (std::size_t i = 0; i < figure.size(); ++i) {

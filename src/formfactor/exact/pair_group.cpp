@@ -86,6 +86,7 @@ void PairGroups<T>::integrate(std::span<const SampledPair> group, std::span<cons
       fractions[k].change = double(group[k].change);
       if (far) fractions[k].far_error = kFarShare * kFarError / (distance * distance * distance);
       fractions[k].may_cross = group[k].may_cross;
+      fractions[k].one_occluder = group[k].blockers_end - group[k].blockers_begin == 1;
       fractions[k].refined =
           group[k].may_cross || expectedError(fractions[k].change) > fractions[k].allowed;
       (fractions[k].refined ? fine : coarse).index.push_back(k);
@@ -150,14 +151,14 @@ typename PairGroups<T>::Members PairGroups<T>::integrateCell(const SampleCell& c
     VisibleFraction& sum = out[members.index[k]];
     const CellSum& found = sums_[k];
     if (!(found.whole > 0)) continue;
-    if (found.error > share * sum.allowed * found.whole && level < kMostLevels) {
+    if (found.error.cautious > share * sum.allowed * found.whole && level < kMostLevels) {
       failed.index.push_back(members.index[k]);
       failed.fraction.push_back(found.fraction);
       continue;
     }
     sum.visible += found.visible;
     sum.whole += found.whole;
-    sum.error2 += found.error * found.error;
+    sum.error2 += found.error.stated * found.error.stated;
   }
   return failed;
 }
@@ -185,13 +186,17 @@ void PairGroups<T>::sumCell(const SampleCell& cell, std::size_t side, int level,
     CellValues values;
     values.count = points.count;
     values.whole = sum.whole / area;
+    values.fraction = sum.visible / sum.whole;
     values.may_cross = pair.may_cross;
+    values.one_occluder = pair.one_occluder;
+    values.side = std::ldexp(1.0, -level);
     values.change = changeIn(level, pair.change);
     for (std::size_t q = 0; q < points.count; ++q) {
       values.residual[q] = double(view_.visible(q)[k]) - sum.fraction * double(view_.whole(q)[k]);
       values.one_shape &= view_.shape(q)[k] == view_.shape(0)[k];
     }
-    sum.error = area * meanError(values);
+    const CellError mean = meanError(values);
+    sum.error = {area * mean.cautious, area * mean.stated};
     sum.uncertain = values.one_shape || values.flat();
   }
 }
@@ -205,7 +210,8 @@ void PairGroups<T>::lookOutside(const SampleCell& cell, double share, const Memb
   chosen_.clear();
   for (Index k = 0; k < members.index.size(); ++k) {
     const CellSum& sum = sums_[k];
-    if (!sum.uncertain || sum.error <= share * out[members.index[k]].allowed * sum.whole) continue;
+    const double allowed = share * out[members.index[k]].allowed * sum.whole;
+    if (!sum.uncertain || sum.error.cautious <= allowed) continue;
     uncertain_.push_back(k);
     chosen_.push_back(&targets_[members.index[k]]);
   }
@@ -222,7 +228,7 @@ void PairGroups<T>::lookOutside(const SampleCell& cell, double share, const Memb
       const double residual = double(view_.visible(q)[u]) - sum.visible / sum.whole * whole;
       largest = std::max(largest, std::abs(residual));
     }
-    sum.error = area * meanErrorOutside(sum.error / area, largest);
+    sum.error = meanErrorOutside(sum.error, area * largest);
   }
 }
 

@@ -14,13 +14,14 @@ namespace radiosity {
 
 /// The visible fraction of one pair.
 struct VisibleFraction {
-  double visible = 0;      ///< integral over the sampled part of the form factor to what is seen
-  double whole = 0;        ///< of the form factor to all of the target
-  double error2 = 0;       ///< sum of squares of the cells' errors, in the same unit
-  double allowed = 0;      ///< error of the fraction that is accepted
-  double change = 1;       ///< see SampledPair
-  double far_error = 0;    ///< of a half visible target's fraction: what its kernel leaves out
-  bool may_cross = false;  ///< see SampledPair
+  double visible = 0;         ///< integral over the sampled part of the form factor to what is seen
+  double whole = 0;           ///< of the form factor to all of the target
+  double error2 = 0;          ///< sum of squares of the cells' stated errors, in the same unit
+  double allowed = 0;         ///< error of the fraction that is accepted
+  double change = 1;          ///< see SampledPair
+  double far_error = 0;       ///< of a half visible target's fraction: what its kernel leaves out
+  bool may_cross = false;     ///< see SampledPair
+  bool one_occluder = false;  ///< one alone comes between
   std::size_t points = 0;
   bool refined = false;  ///< by more than the first rule
   double fraction() const { return whole > 0 ? visible / whole : 0; }
@@ -58,8 +59,8 @@ class PairGroups {
   struct CellSum {
     double visible = 0;
     double whole = 0;
-    double fraction = 0;  ///< that the error is measured about
-    double error = 0;
+    double fraction = 0;     ///< that the error is measured about
+    CellError error;         ///< times the cell's area
     bool uncertain = false;  ///< an edge of a shadow may have slipped between the points
   };
 

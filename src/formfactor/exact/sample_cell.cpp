@@ -34,9 +34,34 @@ constexpr double kUnseenSmooth4 = 0.004;
 constexpr double kUnseenFlat9 = 0.0055;
 constexpr double kUnseenKinked9 = 0.002;
 constexpr double kUnseenSmooth9 = 0.0006;
+/// Of the seen part of the cautious estimate, in whole form factors and sides of the cell: where it
+/// is as much, kinks are as strong as it says; and where they grow no stronger.
+constexpr double kStrong4 = 0.0163;
+constexpr double kStrong9 = 0.0067;
+constexpr double kStrongest = 6;
+/// Of the unseen part, in flat cells: where the shadow's edge is well inside the target, and where
+/// it is at its border or not seen at all (3 x 3: where shapes differ, and a kink is known to be).
+constexpr double kInside4 = 0.36;
+constexpr double kInside9 = 0.22;
+constexpr double kBorder4 = 1.25;
+constexpr double kBorder9 = 0.75;
 /// Of residuals near the corners, and of an error guessed before they were seen.
 constexpr double kOutside = 0.0135;
 constexpr double kReassured = 0.2;
+
+/// Of what is unseen in a flat cell, what is stated.
+double flatShare(const CellValues& values) {
+  const bool four = values.count == 4;
+  // Shadows of one shape have their edges where they are; others come and go at the border.
+  const double border = values.one_shape ? 0 : kFlat;
+  if (border < values.fraction && values.fraction < 1 - border) {
+    if (!values.one_occluder) return 1;  // one shadow's edge says nothing of another's
+    return four ? kInside4 : kInside9;
+  }
+  if (four) return kBorder4;
+  // changeIn reckons with the chance that a kink is in the cell.
+  return values.one_shape ? 1 : kBorder9 / std::sqrt(values.side);
+}
 
 }  // namespace
 
@@ -124,14 +149,23 @@ double CellValues::seen() const {
   return bend * (one_shape ? kSmooth9 : kKinked9) + slope * of_slope;
 }
 
-double meanError(const CellValues& values) {
+CellError meanError(const CellValues& values) {
   const double seen = values.seen();
   const double unseen = values.unseen();
-  return std::sqrt(seen * seen + unseen * unseen);
+  double stated_seen = seen;
+  if (!values.one_shape && !values.may_cross) {
+    const double strong = (values.count == 4 ? kStrong4 : kStrong9) * values.side * values.whole;
+    stated_seen *= std::sqrt(std::min(seen / strong, kStrongest));
+  }
+  const double stated_unseen = values.flat() ? unseen * flatShare(values) : unseen;
+  return {std::sqrt(seen * seen + unseen * unseen),
+          std::sqrt(stated_seen * stated_seen + stated_unseen * stated_unseen)};
 }
 
-double meanErrorOutside(double guessed, double residual) {
-  return std::max(kReassured * guessed, kOutside * residual);
+CellError meanErrorOutside(const CellError& guessed, double residual) {
+  if (!(guessed.cautious > 0)) return guessed;
+  const double cautious = std::max(kReassured * guessed.cautious, kOutside * residual);
+  return {cautious, guessed.stated * (cautious / guessed.cautious)};
 }
 
 }  // namespace radiosity
