@@ -20,11 +20,15 @@ constexpr double kOrder = 0.3;
 /// ... and at least: differences are small by chance, too; ...
 constexpr double kLeast = 0.02;
 /// ... where shapes differ, mostly because an edge of a shadow touches a corner of the target all
-/// along, and is here or there by rounding; ...
-constexpr double kOddShapes = 0.1;
+/// along, and is here or there by rounding; or where the target is so near that the form factor
+/// itself changes much along the part, and two rules may agree and both be wrong; ...
+constexpr double kLeastDoubtful = 0.1;
 /// ... and where shadows overlap: edges of two may cross on an edge of the target, along a curve,
 /// and of a kink rules of few points miss as much as they see.
 constexpr double kOverlap = 1;
+
+/// Of what decides about halving, what is stated: parts that pass are mostly better.
+constexpr double kStated = 0.6;
 
 }  // namespace
 
@@ -41,7 +45,7 @@ double BetweenLines::Part::coarseIntegral(const std::array<double, kPoints>& val
 }
 
 /// Of the integral of visible minus `fraction` times whole form factor.
-double BetweenLines::Part::error(double fraction) const {
+double BetweenLines::Part::error(double fraction, bool near) const {
   std::array<double, kPoints> residual;
   double largest = 0;
   for (std::size_t q = 0; q < kPoints; ++q) {
@@ -52,7 +56,7 @@ double BetweenLines::Part::error(double fraction) const {
   const double difference = std::abs(integral(residual) - coarseIntegral(residual));
   if (overlap) return kOverlap * difference;
   const double share = kOrder * std::sqrt(difference / (largest * area));
-  return difference * std::clamp(share, one_shape ? kLeast : kOddShapes, 1.0);
+  return difference * std::clamp(share, one_shape && !near ? kLeast : kLeastDoubtful, 1.0);
 }
 
 void BetweenLines::add(const SampleCell& cell, int halvings) {
@@ -105,7 +109,7 @@ bool BetweenLines::integrate(std::span<const Vec3> polygon, const Vec3& normal,
     const Part part = parts_.back();
     parts_.pop_back();
     const double part_whole = part.integral(part.whole);
-    const double error = part.error(fraction);
+    const double error = part.error(fraction, out.near);
     // Squares of errors add up: each part may have its share of the square.
     if (error > out.allowed * std::sqrt(whole * part_whole) && part.halvings < kMostHalvings) {
       const std::size_t before = parts_.size();
@@ -115,7 +119,7 @@ bool BetweenLines::integrate(std::span<const Vec3> polygon, const Vec3& normal,
     }
     out.visible += part.integral(part.visible);
     out.whole += part_whole;
-    out.error2 += error * error;
+    out.error2 += kStated * kStated * error * error;
   }
   return true;
 }

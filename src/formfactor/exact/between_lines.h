@@ -45,7 +45,7 @@ class BetweenLines {
 
     double integral(const std::array<double, kPoints>& values) const;
     double coarseIntegral(const std::array<double, kPoints>& values) const;
-    double error(double fraction) const;
+    double error(double fraction, bool near) const;
   };
   void add(const SampleCell& cell, int halvings);
 

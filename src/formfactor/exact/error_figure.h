@@ -11,11 +11,11 @@ namespace radiosity {
 /// of disjoint sets of pairs add up.
 ///
 /// Errors of a row's pairs have different causes and signs, and add up in squares. For a pair in
-/// closed form err is a tenth of the kernel's published accuracy: that is a bound, which the worst
-/// pair comes near, not a row. For a pair clipped against occluders it is what its embedded rules
-/// say, with their margin. The square of its true error scatters about that: by how much the sum
-/// over a row's clipped pairs does goes with sqrt(sum_j err_ij^4), much where a few pairs carry the
-/// row and little where many do. A row's error figure is
+/// closed form err is 0.06 of the kernel's published accuracy: that is a bound, which the worst pair
+/// comes near, not a row (the box at 1e-5 leaves no more). For a pair clipped against occluders it
+/// is what its embedded rules say, with their margin. The square of its true error scatters about
+/// that: by how much the sum over a row's clipped pairs does goes with sqrt(sum_j err_ij^4), much
+/// where a few pairs carry the row and little where many do. A row's error figure is
 ///
 ///     sqrt(sum_j err_ij^2 + sqrt(sum_clipped j err_ij^4)).
 ///
@@ -30,9 +30,9 @@ namespace radiosity {
 /// this method's own values at 1e-6 and 3e-6:
 ///
 ///     scene                        rows   below their figure   median of figure / error
-///     closed Cornell box, 258       258      99.2 to 100%            4.3 to 6.6
-///     closed Cornell box, 985       985      98.3 to 99.9%           5.1 to 8.6
-///     closed Cornell box, 5,096     100       99 to 100%             5.4 to 9.4
+///     closed Cornell box, 258       258      99.2 to 100%            4.3 to 8.7
+///     closed Cornell box, 985       985      99.4 to 99.9%           4.9 to 8.6
+///     closed Cornell box, 5,096     100       98 to 100%             5.1 to 6.9
 ///     closed Cornell box, 20,234    100        100%                  5.1 to 8.1
 ///     curved, 2,186                 100        100%                  5.4 to 9.8
 ///     curved, 2,186                 219      99.1 to 100%            5.2 to 7.3
@@ -40,8 +40,7 @@ namespace radiosity {
 ///     cluttered, 1,040              100       99 to 100%             3.7 to 5.1
 ///     furnished room, 9,530          71      94.4 to 100%            2.9 to 5.4
 ///
-/// (The 98.3% are the box at 1e-5, 17 rows, and 99.8% at 1e-4: where pairs are cut along critical
-/// lines, rows are left whose error is that of one pair which was halved.)
+/// (The 98% are the two rows of 100 at 1e-4; of all 1,343 in the box at 1e-4 eight are above.)
 ///
 /// In the curved scene, at 1e-3 and 1e-4, a quarter of the rows are off by less than 1/28 of their
 /// figure: a few pairs carry a row, and whose kinks lie beside a cell is not seen. What figures
@@ -80,7 +79,7 @@ class ErrorSums {
   /// rms difference of the two ends over what they state; 0 where nothing was compared.
   double recheckRatio() const;
 
-  static constexpr double kClosedFormShare = 0.1;  ///< see above
+  static constexpr double kClosedFormShare = 0.06;  ///< see above
   /// Of what both ends state, in squares: they differ by no more where estimates are right, margin
   /// and all (by 0.2 to 0.6 of it in the scenes above but the last, where it is up to 1.7).
   static constexpr double kUsual = 0.36;

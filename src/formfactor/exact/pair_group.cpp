@@ -17,9 +17,11 @@ constexpr double kExpected4 = 0.016;
 
 /// A part between critical lines takes 13 points of which no other pair has a share. It is worth
 /// them where the first rule is expected to miss by so many times what is accepted: halving then
-/// takes five times as many points. (Of fewer, the pairs left to it would be the worse ones, and
-/// what they state too high for what is left of the error.)
-constexpr double kPerPart = 10;
+/// takes about as many, and leaves ten times the error.
+constexpr double kPerPart = 1.5;
+
+/// Targets nearer than so many of their radii are near: VisibleFraction::near.
+constexpr double kNear = 4;
 
 /// Root mean square, in a half visible target's fraction, of what the kernels for far targets leave
 /// out, in their accuracy (curved scene, targets 2 to 4 radii away: 0.15 to 0.21).
@@ -85,6 +87,7 @@ void PairGroups<T>::integrate(std::span<const SampledPair> group, std::span<cons
       if ((distance >= far_reach_) != far) continue;
       fractions[k].change = double(group[k].change);
       if (far) fractions[k].far_error = kFarShare * kFarError / (distance * distance * distance);
+      fractions[k].near = distance < kNear;
       fractions[k].may_cross = group[k].may_cross;
       fractions[k].one_occluder = group[k].blockers_end - group[k].blockers_begin == 1;
       fractions[k].refined =

@@ -20,6 +20,7 @@ struct VisibleFraction {
   double allowed = 0;         ///< error of the fraction that is accepted
   double change = 1;          ///< see SampledPair
   double far_error = 0;       ///< of a half visible target's fraction: what its kernel leaves out
+  bool near = false;          ///< the target is: rules may agree and all be wrong
   bool may_cross = false;     ///< see SampledPair
   bool one_occluder = false;  ///< one alone comes between
   std::size_t points = 0;
