@@ -11,11 +11,12 @@ namespace radiosity {
 /// of disjoint sets of pairs add up.
 ///
 /// Errors of a row's pairs have different causes and signs, and add up in squares. For a pair in
-/// closed form err is 0.06 of the kernel's published accuracy: that is a bound, which the worst pair
-/// comes near, not a row (the box at 1e-5 leaves no more). For a pair clipped against occluders it
-/// is what its embedded rules say, with their margin. The square of its true error scatters about
-/// that: by how much the sum over a row's clipped pairs does goes with sqrt(sum_j err_ij^4), much
-/// where a few pairs carry the row and little where many do. A row's error figure is
+/// closed form err is 0.06 of the kernel's published accuracy: that is a bound, which the worst
+/// pair comes near, not a row (the box at 1e-5 leaves no more). For a pair clipped against
+/// occluders it is what its embedded rules say, with their margin. The square of its true error
+/// scatters about that: by how much the sum over a row's clipped pairs does goes with sqrt(sum_j
+/// err_ij^4), much where a few pairs carry the row and little where many do. A row's error figure
+/// is
 ///
 ///     sqrt(sum_j err_ij^2 + sqrt(sum_clipped j err_ij^4)).
 ///
