@@ -25,23 +25,23 @@ namespace radiosity {
 /// ends differ by more than is usual, a part of the surplus, in squares and as a mean over all that
 /// were looked at, is what every clipped pair's error may be larger.
 ///
-/// Measured at tolerances of 1e-1, 1e-2, 1e-3 and, but for the last two scenes, 1e-4 and 1e-5
-/// (curved scene: 1e-4), against rows of the benchmark's ground truth, good to 1e-7 of the mean
-/// form factor in the box and 1e-4 elsewhere; two rooms and 219 rows of the curved scene: against
-/// this method's own values at 1e-6 and 3e-6:
+/// Measured at tolerances from 1e-1 to 1e-5 (curved and cluttered scene: to 1e-4, furnished room:
+/// 1e-1 and 1e-2), against rows of the benchmark's ground truth, good to 1e-7 of the mean form
+/// factor in the box and 1e-4 elsewhere; two rooms and 219 rows of the curved scene: against this
+/// method's own values at 1e-6 and 3e-6:
 ///
 ///     scene                        rows   below their figure   median of figure / error
 ///     closed Cornell box, 258       258      99.2 to 100%            4.3 to 8.7
 ///     closed Cornell box, 985       985      99.4 to 99.9%           4.9 to 8.6
-///     closed Cornell box, 5,096     100       98 to 100%             5.1 to 6.9
-///     closed Cornell box, 20,234    100        100%                  5.1 to 8.1
+///     closed Cornell box, 5,096     100       98 to 100%             5.2 to 7.0
+///     closed Cornell box, 20,234    100       99 to 100%             4.4 to 6.4
 ///     curved, 2,186                 100        100%                  5.4 to 9.8
 ///     curved, 2,186                 219      99.1 to 100%            5.2 to 7.3
 ///     two rooms, 954                477        100%                  6.3 to 8.0
 ///     cluttered, 1,040              100       99 to 100%             3.7 to 5.1
-///     furnished room, 9,530          71      94.4 to 100%            2.9 to 5.4
+///     furnished room, 9,530         100       95 and 99%             4.0 and 5.0
 ///
-/// (The 98% are the two rows of 100 at 1e-4; of all 1,343 in the box at 1e-4 eight are above.)
+/// (The 98% are at 1e-4; of all 1,443 rows of the box at 1e-4, nine are above.)
 ///
 /// In the curved scene, at 1e-3 and 1e-4, a quarter of the rows are off by less than 1/28 of their
 /// figure: a few pairs carry a row, and whose kinks lie beside a cell is not seen. What figures
