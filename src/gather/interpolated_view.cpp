@@ -63,14 +63,14 @@ std::array<double, 3> InterpolatedView::cornerMean(std::size_t patch) const {
 }
 
 std::array<double, 3> InterpolatedView::valueAt(std::size_t patch, std::size_t corner) const {
-  if (corner == Facet::kInside) return cornerMean(patch);
+  if (corner == BasisFacet::kInside) return cornerMean(patch);
   const float* value = &radiosity_[3 * std::size_t(eye_of_corner_[corner])];
   return {value[0], value[1], value[2]};
 }
 
 void InterpolatedView::prepare(std::size_t patch) {
   prepared_[patch] = view_;
-  const std::span<const Facet> all = basis_.facets(patch);
+  const std::span<const BasisFacet> all = basis_.facets(patch);
   const std::size_t first = basis_.facetBegin(patch);
   bool constant = true;
   for (std::size_t f = 0; f < all.size(); ++f) {
@@ -82,7 +82,7 @@ void InterpolatedView::prepare(std::size_t patch) {
   constant_[patch] = constant;
 }
 
-void InterpolatedView::place(const Facet& facet, SeenFacet& seen) const {
+void InterpolatedView::place(const BasisFacet& facet, SeenFacet& seen) const {
   seen.count = std::size_t(facet.count);
   seen.row.area = facet.area;
   std::array<Vec3, 4> corner{};
@@ -97,7 +97,8 @@ void InterpolatedView::place(const Facet& facet, SeenFacet& seen) const {
 }
 
 /// Differences to corner 0: a constant field stays that constant. True if it is one.
-bool InterpolatedView::setValues(std::size_t patch, const Facet& facet, SeenFacet& seen) const {
+bool InterpolatedView::setValues(std::size_t patch, const BasisFacet& facet,
+                                 SeenFacet& seen) const {
   seen.level = valueAt(patch, facet.corner[0]);
   bool constant = true;
   for (std::size_t k = 1; k < seen.count; ++k) {

@@ -46,8 +46,8 @@ class InterpolatedView : public RunVisitor {
   };
 
   void prepare(std::size_t patch);
-  void place(const Facet& facet, SeenFacet& seen) const;
-  bool setValues(std::size_t patch, const Facet& facet, SeenFacet& seen) const;
+  void place(const BasisFacet& facet, SeenFacet& seen) const;
+  bool setValues(std::size_t patch, const BasisFacet& facet, SeenFacet& seen) const;
   std::array<double, 3> cornerMean(std::size_t patch) const;
   std::array<double, 3> valueAt(std::size_t patch, std::size_t corner) const;
   void alongRow(SeenFacet& facet, const ItemRun& run) const;

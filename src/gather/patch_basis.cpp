@@ -31,7 +31,7 @@ PatchBasis::PatchBasis(const PatchMesh& mesh) : mesh_(mesh) {
 bool PatchBasis::addQuad(std::size_t patch) {
   const std::span<const Index> outline = mesh_.outline(patch);
   if (outline.size() != 4) return false;
-  Facet facet;
+  BasisFacet facet;
   facet.count = 4;
   for (std::size_t k = 0; k < 4; ++k) {
     const Vec3& corner = mesh_.vertices[outline[k]];
@@ -49,13 +49,13 @@ bool PatchBasis::addQuad(std::size_t patch) {
 void PatchBasis::addTriangles(std::size_t patch) {
   const std::span<const Index> outline = mesh_.outline(patch);
   for (std::size_t t = mesh_.piece_offset[patch]; t < mesh_.piece_offset[patch + 1]; ++t) {
-    Facet facet;
+    BasisFacet facet;
     for (std::size_t k = 0; k < 3; ++k) {
       const Index v = mesh_.pieces[t][k];
       const auto found = std::find(outline.begin(), outline.end(), v);
       facet.vertex[k] = v;
       facet.corner[k] = found == outline.end()
-                            ? Facet::kInside
+                            ? BasisFacet::kInside
                             : mesh_.corner_offset[patch] + std::size_t(found - outline.begin());
     }
     facets_.push_back(facet);
@@ -64,7 +64,7 @@ void PatchBasis::addTriangles(std::size_t patch) {
 
 /// Integrals of the facet's weights. Of a triangle, a third of its area each. A quadrilateral is
 /// mapped from the unit square bilinearly, whose Jacobian is bilinear too.
-std::array<double, 4> PatchBasis::integrals(const Facet& facet) const {
+std::array<double, 4> PatchBasis::integrals(const BasisFacet& facet) const {
   std::array<Vec3, 4> p{};
   for (std::size_t k = 0; k < 4; ++k) p[k] = mesh_.vertices[facet.vertex[k]];
   std::array<double, 4> sum{};
@@ -98,10 +98,10 @@ std::vector<double> PatchBasis::areaWeights() const {
   std::vector<double> weights(mesh_.corners.size(), 0.0);
   for (std::size_t i = 0; i < mesh_.size(); ++i) {
     double inside = 0;  // goes to all corners alike
-    for (const Facet& facet : facets(i)) {
+    for (const BasisFacet& facet : facets(i)) {
       const std::array<double, 4> part = integrals(facet);
       for (std::size_t k = 0; k < std::size_t(facet.count); ++k) {
-        (facet.corner[k] == Facet::kInside ? inside : weights[facet.corner[k]]) += part[k];
+        (facet.corner[k] == BasisFacet::kInside ? inside : weights[facet.corner[k]]) += part[k];
       }
     }
     const std::size_t first = mesh_.corner_offset[i];

@@ -14,7 +14,7 @@ namespace radiosity {
 /// of the triangle of corner k and its neighbours, A_k that of edge k (from corner k to k + 1) and
 /// the point. A triangle has barycentric ones: corner k weighs A_(k+1). Linear fields come out
 /// exactly and neighbours agree along their common edge. Pictures interpolate likewise.
-struct Facet {
+struct BasisFacet {
   int count = 3;                  ///< 3 or 4
   std::array<Index, 4> vertex{};  ///< of the mesh
   /// Into PatchMesh::corners; kInside: a vertex within the patch, where the mean of the patch's
@@ -30,7 +30,7 @@ class PatchBasis {
   explicit PatchBasis(const PatchMesh& mesh);
 
   /// None for a degenerate patch.
-  std::span<const Facet> facets(std::size_t patch) const {
+  std::span<const BasisFacet> facets(std::size_t patch) const {
     return {facets_.data() + begin_[patch], begin_[patch + 1] - begin_[patch]};
   }
   std::size_t facetBegin(std::size_t patch) const { return begin_[patch]; }
@@ -41,17 +41,17 @@ class PatchBasis {
   std::vector<double> areaWeights() const;
 
   std::size_t bytes() const {
-    return facets_.size() * sizeof(Facet) + begin_.size() * sizeof(std::size_t);
+    return facets_.size() * sizeof(BasisFacet) + begin_.size() * sizeof(std::size_t);
   }
 
  private:
   bool addQuad(std::size_t patch);
   void addTriangles(std::size_t patch);
-  std::array<double, 4> integrals(const Facet& facet) const;
+  std::array<double, 4> integrals(const BasisFacet& facet) const;
 
   const PatchMesh& mesh_;
   std::vector<std::size_t> begin_;
-  std::vector<Facet> facets_;
+  std::vector<BasisFacet> facets_;
 };
 
 }  // namespace radiosity
