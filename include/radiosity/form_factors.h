@@ -79,8 +79,8 @@ struct ExactReport {
   std::size_t points = 0;      ///< point evaluations of partial pairs
   std::size_t subdivided = 0;  ///< partial pairs that needed more than the first rule
   std::size_t rechecked = 0;   ///< partial pairs evaluated again from the other end
-  /// rms of (difference of the two ends / the error both state); where it is above 1, a share of
-  /// the surplus is part of the error figures.
+  /// rms of (difference of the two ends / the error both state); where it is above 0.6, a share
+  /// of the surplus is part of the error figures.
   double recheck_ratio = 0;
 
   /// Processor seconds by stage, summed over threads; preparing and finishing by the clock.

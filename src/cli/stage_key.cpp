@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <charconv>
-#include <span>
 #include <type_traits>
 
 #include "base/hash.h"
@@ -139,9 +137,11 @@ StageKey meshKey(const MeshOptions& options, const Scene& scene) {
   return key;
 }
 
+namespace {
+
 // Every option the result may depend on, as asked for: another mesh may make `auto` pick the other
 // method.
-StageKey factorsKey(const FormFactorOptions& options, const PatchMesh& mesh) {
+StageKey factorsKeyOf(const FormFactorOptions& options, const std::string& mesh_hash) {
   StageKey key;
   key.add("method", nameOf(options.method));
   if (options.method != FormFactorMethod::hemicube) {
@@ -155,27 +155,21 @@ StageKey factorsKey(const FormFactorOptions& options, const PatchMesh& mesh) {
     key.add("near", options.nearExact() ? "exact" : "off");
   }
   key.add("precision", options.storedPrecision() == Precision::real ? "double" : "single");
-  key.add("mesh", geometryHash(mesh));
+  key.add("mesh", mesh_hash);
   return key;
 }
 
+}  // namespace
+
+StageKey factorsKey(const FormFactorOptions& options, const PatchMesh& mesh) {
+  return factorsKeyOf(options, geometryHash(mesh));
+}
+
 StageKey usedKey(const StageKey& factors_key, std::string_view method) {
-  constexpr std::array<std::string_view, 4> kExact = {"tolerance", "closure", "precision", "mesh"};
-  constexpr std::array<std::string_view, 6> kHemicube = {"resolution", "seed",      "symmetrize",
-                                                         "near",       "precision", "mesh"};
-  StageKey used;
-  used.add("method", std::string(method));
-  const auto keep = [&](std::span<const std::string_view> names) {
-    for (const std::string_view name : names) {
-      if (const auto value = factors_key.get(name)) used.add(std::string(name), *value);
-    }
-  };
-  if (methodNamed(method) == FormFactorMethod::exact) {
-    keep(kExact);
-  } else {
-    keep(kHemicube);
-  }
-  return used;
+  FormFactorOptions options = factorOptionsOf(factors_key);
+  options.near_exact = options.nearExact();  // as `auto` had it, where that was asked for
+  options.method = methodNamed(method);
+  return factorsKeyOf(options, factors_key.get("mesh").value_or(""));
 }
 
 StageKey solutionKey(const SolveOptions& options, const PatchMaterials& materials,

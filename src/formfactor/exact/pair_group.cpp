@@ -15,11 +15,6 @@ constexpr int kMostLevels = 10;
 /// closed Cornell box, 1,000 to 5,000 patches, where it is proportional to the change).
 constexpr double kExpected4 = 0.016;
 
-/// A part between critical lines takes 13 points of which no other pair has a share. It is worth
-/// them where the first rule is expected to miss by so many times what is accepted: halving then
-/// takes about as many, and leaves ten times the error.
-constexpr double kPerPart = 1.5;
-
 /// Targets nearer than so many of their radii are near: VisibleFraction::near.
 constexpr double kNear = 4;
 

@@ -22,9 +22,10 @@ constexpr double kFirst = 4;
 constexpr double kMore = 5;
 
 /// Where double precision is asked for and bodies have few edges, elements are cut along critical
-/// lines instead, once that takes fewer points: into about five parts of 13 points, twice as dear.
-constexpr double kCutFrom = 50;
-constexpr double kPartPoints = 65;
+/// lines instead, where it is worth that: into about five parts of 13 points, twice as dear.
+constexpr double kParts = 5;
+constexpr double kCutFrom = kParts * kPerPart;
+constexpr double kPartPoints = kParts * 13;
 constexpr double kDearer = 2;
 
 /// Seconds of one core of a 2.7 GHz Xeon that a point takes: for each occluder whose shadow falls
