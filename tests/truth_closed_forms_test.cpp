@@ -7,6 +7,7 @@
 #include <span>
 
 #include "mesh_builder.h"
+#include "truth/blocked_exchange.h"
 #include "truth/closed_forms.h"
 #include "truth/contour.h"
 #include "truth/ground_truth.h"
@@ -114,6 +115,37 @@ TEST(TruthObstructed, AWindowAndItsShutterAddUp) {
                   {level(0, 1, 0, 0.25, 0.5, true), level(0, 1, 0.75, 1, 0.5, true),
                    level(0, 0.25, 0.25, 0.75, 0.5, true), level(0.75, 1, 0.25, 0.75, 0.5, true)});
   EXPECT_NEAR(plateToPlate(builder.build(), 1, 1e-10), 0.199824895698387 - 0.0995062945990, 1e-10);
+}
+
+TEST(TruthObstructed, AStripBetweenLooksIsFound) {
+  // A thin stick and so many specks that their critical lines are not all cut along: from the large
+  // end most cells look clear from every point of a rule. Both ends must tell the same, within
+  // their figures.
+  const auto sheet = [](const Corners& corners) {
+    return Sheet(Loop{std::span<const Vec3>(corners)});
+  };
+  const Sheet large = sheet(level(-1, 1, -1, 1, 1, false));
+  const Sheet small = sheet(level(-0.005, 0.005, -0.005, 0.005, 0, true));
+  std::vector<Corners> obstacles = {level(0.1, 0.4, 0.2, 0.21, 0.5, true)};
+  for (int k = 0; k < 64; ++k) {
+    const double x = -0.04 + 0.004 * (k % 8);
+    const double y = -0.04 + 0.004 * (k / 8);
+    obstacles.push_back(level(x, x + 0.001, y, y + 0.001, 0.05, true));
+  }
+  std::vector<Blocker> blockers;
+  for (const Corners& corners : obstacles) {
+    blockers.emplace_back(Loop{std::span<const Vec3>(corners)});
+    blockers.back().body = Index(blockers.size());
+  }
+  std::vector<const Blocker*> all;
+  for (const Blocker& blocker : blockers) all.push_back(&blocker);
+  const double whole = unoccludedExchange(large.loop, small.loop);
+  const BlockedExchange down = blockedExchange(large, small, all, 1e-7, 1e-4 * whole, 400000);
+  const BlockedExchange up = blockedExchange(small, large, all, 1e-7, 1e-4 * whole, 400000);
+  EXPECT_GT(up.blocked, 0.001 * whole);
+  EXPECT_LE(up.error, 1e-4 * whole);
+  EXPECT_LE(down.error, 1e-4 * whole);
+  EXPECT_NEAR(down.blocked, up.blocked, down.error + up.error);
 }
 
 }  // namespace

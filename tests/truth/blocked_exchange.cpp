@@ -1,6 +1,7 @@
 #include "blocked_exchange.h"
 
 #include <algorithm>
+#include <cmath>
 #include <queue>
 
 #include "clipped_view.h"
@@ -14,6 +15,9 @@ namespace {
 constexpr int kCoarse = 4;
 constexpr int kFine = 6;
 constexpr std::size_t kMostCells = 400;
+/// What 4 x 4 looks alike may have missed, as a part of the whole: a strip between two of them.
+/// Each halving that changes nothing takes as much off again.
+constexpr double kDoubt = 1.0 / 16;
 
 using Triangle = std::array<Vec3, 3>;
 
@@ -23,6 +27,7 @@ struct Estimate {
   double error = 0;
   bool clear = true;
   bool hidden = true;
+  int doubts = 0;  ///< halvings in a row that looked clear, or hidden, without proof
   bool operator<(const Estimate& other) const { return error < other.error; }
 };
 
@@ -49,25 +54,32 @@ class Integral {
            double coincidence)
       : source_(source), target_(target), blockers_(blockers), coincidence_(coincidence) {}
 
-  void add(const Triangle& triangle) {
+  /// `doubts`: of the triangle that this one is a half of.
+  void add(const Triangle& triangle, int doubts = 0) {
     Estimate e;
     e.triangle = triangle;
-    const std::vector<const Blocker*> near = blockersFor(triangle);
+    const Sheet cell(Loop(std::span<const Vec3>(triangle)), source_);
+    const Shaft shaft(cell, target_, coincidence_);
+    const std::vector<const Blocker*> near = blockersIn(shaft);
     if (near.empty()) {
       e.hidden = false;
     } else {
       const ClippedView view(source_, target_.loop, near);
       const double coarse = gauss(view, kCoarse, e);
       points_ += kCoarse * kCoarse;
-      if (!e.clear) {
+      if (!e.clear && !e.hidden) {
         e.blocked = gauss(view, kFine, e);
         e.error = std::abs(e.blocked - coarse);
         points_ += kFine * kFine;
       }
-      if (e.hidden) {
-        // Everything is: no rule is needed, and none is trusted next to the target.
-        e.blocked = facingExchange(Loop(std::span<const Vec3>(triangle)), target_.loop);
-        e.error = 0;
+      if (e.clear || e.hidden) {
+        const double whole = facingExchange(cell.loop, target_.loop);
+        // Where everything is hidden no rule is needed, and none is trusted next to the target.
+        if (e.hidden) e.blocked = whole;
+        if (!isProven(e, cell, shaft, near)) {
+          e.doubts = doubts + 1;
+          e.error = whole * std::pow(kDoubt, e.doubts);
+        }
       }
     }
     blocked_ += e.blocked;
@@ -83,7 +95,7 @@ class Integral {
     queue_.pop();
     blocked_ -= worst.blocked;
     error_ -= worst.error;
-    halve(worst.triangle);
+    halve(worst);
   }
 
   /// Halves all triangles longer than `size`, whatever their differences.
@@ -119,16 +131,22 @@ class Integral {
     const Vec3& apex = t[(k + 2) % 3];
     return {Triangle{apex, t[k], middle}, Triangle{apex, middle, t[(k + 1) % 3]}};
   }
-  void halve(const Triangle& t) {
-    const auto [left, right] = halves(t, longest(t));
-    add(left);
-    add(right);
+  void halve(const Estimate& e) {
+    const auto [left, right] = halves(e.triangle, longest(e.triangle));
+    add(left, e.doubts);
+    add(right, e.doubts);
   }
 
-  /// Those of the pair's blockers that may come between this triangle and the target.
-  std::vector<const Blocker*> blockersFor(const Triangle& triangle) const {
-    const Sheet cell(Loop(std::span<const Vec3>(triangle)), source_);
-    const Shaft shaft(cell, target_, coincidence_);
+  /// Whether looks that all were clear, or all hidden, are so from the whole triangle.
+  bool isProven(const Estimate& e, const Sheet& cell, const Shaft& shaft,
+                const std::vector<const Blocker*>& near) const {
+    if (e.hidden) return hiddenByOne(cell, target_, near);
+    return std::none_of(near.begin(), near.end(),
+                        [&](const Blocker* blocker) { return shaft.blocks(*blocker); });
+  }
+
+  /// Those of the pair's blockers that may come between a triangle and the target.
+  std::vector<const Blocker*> blockersIn(const Shaft& shaft) const {
     std::vector<const Blocker*> near;
     std::copy_if(blockers_.begin(), blockers_.end(), std::back_inserter(near),
                  [&](const Blocker* blocker) { return shaft.mayBlock(*blocker); });
@@ -181,7 +199,6 @@ BlockedExchange blockedExchange(const Sheet& source, const Sheet& target,
   }
   Integral integral(source, seen, blockers, coincidence);
   for (const Triangle& triangle : triangles) integral.add(triangle);
-  if (integral.clear() || integral.hidden()) return integral.result();
   while (integral.error() > tolerance && integral.points() < most_points) integral.refineWorst();
   return integral.result();
 }

@@ -9,8 +9,10 @@
 namespace radiosity::truth {
 
 struct BlockedExchange {
-  double blocked = 0;      ///< m^2; 0 <= blocked <= the unoccluded exchange area
-  double error = 0;        ///< what two embedded rules differ by, m^2: well above the true error
+  double blocked = 0;  ///< m^2; 0 <= blocked <= the unoccluded exchange area
+  /// What two embedded rules differ by, well above the true error, and what triangles that looked
+  /// clear or hidden without proof may have missed; m^2.
+  double error = 0;
   std::size_t points = 0;  ///< points looked from
   bool clear = false;      ///< no blocker seen to touch the exchange
   bool hidden = false;     ///< nothing of the target seen from any point
@@ -18,9 +20,9 @@ struct BlockedExchange {
 
 /// Integral over `source` of the blocked part of the form factor to `target`, both convex. The
 /// source is cut along the critical lines; on each cell, as triangles, Gauss rules with 4 x 4 and
-/// 6 x 6 points are set against each other, and the worst triangle is halved until their
-/// differences sum to less than `tolerance` (m^2) or `most_points` were looked from. Triangles that
-/// no blocker can touch cost nothing.
+/// 6 x 6 points are set against each other, and the worst triangle is halved until the errors sum
+/// to less than `tolerance` (m^2) or `most_points` were looked from. Triangles that no blocker can
+/// touch cost nothing.
 BlockedExchange blockedExchange(const Sheet& source, const Sheet& target,
                                 const std::vector<const Blocker*>& blockers, double coincidence,
                                 double tolerance, std::size_t most_points);

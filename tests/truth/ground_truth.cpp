@@ -120,11 +120,11 @@ GroundTruth::Exchange GroundTruth::exchange(const Sheet& a, const Sheet& b,
   out.points = blocked.points;
   out.hidden = blocked.hidden;
   out.partial = !blocked.clear && !blocked.hidden;
-  out.unfinished = out.partial && blocked.error > tolerance;
+  out.error = blocked.error;
+  out.unfinished = blocked.error > tolerance;
   if (blocked.hidden) {
     out.value = 0;
   } else {
-    out.error = blocked.error;
     out.value -= blocked.blocked;
     if (out.value < -10 * std::max(tolerance, blocked.error)) {
       throw std::logic_error("ground truth: more blocked than there is, by " +

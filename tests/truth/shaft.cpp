@@ -1,7 +1,14 @@
 #include "shaft.h"
 
+#include <initializer_list>
+#include <limits>
+#include <utility>
+
 namespace radiosity::truth {
 namespace {
+
+/// Of the coincidence: rounding of coordinates of the scene's size.
+constexpr double kRounding = 1e-6;
 
 bool allBelow(const Loop& loop, const Vec3& normal, double offset, double slack) {
   return std::all_of(loop.begin(), loop.end(),
@@ -26,7 +33,7 @@ Shaft::Shaft(const Sheet& a, const Sheet& b, double coincidence)
       b_(b),
       coincidence_(coincidence),
       planes_{{a.normal, a.offset + coincidence}, {b.normal, b.offset + coincidence}} {
-  const double slack = 1e-6 * coincidence;  // rounding of coordinates of the scene's size
+  const double slack = kRounding * coincidence;
   addSupports(a.loop, b.loop, slack);
   addSupports(b.loop, a.loop, slack);
 }
@@ -61,6 +68,44 @@ bool Shaft::mayBlock(const Blocker& blocker) const {
            allBelow(b_.loop, normal, offset, coincidence_);
   };
   return !below(blocker.normal, blocker.offset) && !below(-blocker.normal, -blocker.offset);
+}
+
+bool Shaft::blocks(const Blocker& blocker) const {
+  if (!mayBlock(blocker)) return false;
+  std::vector<Vec3> edges;
+  for (const Loop* loop : {&a_.loop, &b_.loop}) {
+    for (std::size_t k = 0; k < loop->size(); ++k) edges.push_back(loop->next(k) - (*loop)[k]);
+  }
+  for (const Vec3& p : a_.loop) {
+    for (const Vec3& q : b_.loop) edges.push_back(q - p);
+  }
+  for (std::size_t k = 0; k < blocker.loop.size(); ++k) {
+    const Vec3 along = blocker.loop.next(k) - blocker.loop[k];
+    for (const Vec3& edge : edges) {
+      if (separates(glm::cross(edge, along), blocker.loop)) return false;
+    }
+  }
+  return true;
+}
+
+bool Shaft::separates(const Vec3& axis, const Loop& loop) const {
+  const double length = glm::length(axis);
+  if (!(length > 0)) return false;
+  const auto range = [&](std::initializer_list<const Loop*> loops) {
+    double low = std::numeric_limits<double>::max();
+    double high = -low;
+    for (const Loop* one : loops) {
+      for (const Vec3& p : *one) {
+        low = std::min(low, glm::dot(axis, p));
+        high = std::max(high, glm::dot(axis, p));
+      }
+    }
+    return std::pair(low, high);
+  };
+  const auto [low, high] = range({&loop});
+  const auto [from, to] = range({&a_.loop, &b_.loop});
+  const double slack = kRounding * coincidence_ * length;
+  return high <= from + slack || low >= to - slack;
 }
 
 bool Shaft::mayBlock(const Vec3& low, const Vec3& high) const {

@@ -38,6 +38,10 @@ class Shaft {
   /// False: it cuts no line from a to b. True: it may.
   bool mayBlock(const Blocker& blocker) const;
 
+  /// The same, true only if it does: the hull of the sheets and the blocker have no plane between
+  /// them (separating axes: faces of either, and an edge of one by an edge of the other).
+  bool blocks(const Blocker& blocker) const;
+
   /// The same for everything inside a box.
   bool mayBlock(const Vec3& low, const Vec3& high) const;
 
@@ -46,6 +50,7 @@ class Shaft {
     Vec3 normal;
     double offset;  ///< dot(normal, x) > offset where something may block
   };
+  bool separates(const Vec3& axis, const Loop& loop) const;
   void addSupports(const Loop& edges, const Loop& points, double slack);
 
   const Sheet& a_;
