@@ -21,7 +21,7 @@ constexpr double kClosedForm = 1e-5;
 /// to, is then not seen beside the error of what is clipped. ...
 constexpr double kClosedFormShare = 0.1;
 /// ... The kernels are published for no more than this.
-constexpr double kLoosest = 1e-3;
+constexpr double kLoosest = 1e-2;
 /// About this share of the clipped pairs is evaluated again from the other end, ...
 constexpr double kRecheckShare = 1.0 / 256;
 /// ... and at least so many, as far as there are.
