@@ -208,8 +208,9 @@ void PairGroups<T>::lookOutside(const SampleCell& cell, double share, const Memb
   chosen_.clear();
   for (Index k = 0; k < members.index.size(); ++k) {
     const CellSum& sum = sums_[k];
-    const double allowed = share * out[members.index[k]].allowed * sum.whole;
-    if (!sum.uncertain || sum.error.cautious <= allowed) continue;
+    const VisibleFraction& pair = out[members.index[k]];
+    const double allowed = share * pair.allowed * sum.whole;
+    if (!sum.uncertain || (sum.error.cautious <= allowed && !pair.may_cross)) continue;
     uncertain_.push_back(k);
     chosen_.push_back(&targets_[members.index[k]]);
   }

@@ -110,6 +110,7 @@ Vec3 SampleCell::middle() const {
 }
 
 bool CellValues::flat() const {
+  if (!(fraction > 0 && fraction < 1)) return true;
   const auto [least, most] = std::minmax_element(residual.begin(), residual.begin() + count);
   return *most - *least < kFlat * whole;
 }

@@ -57,8 +57,9 @@ struct CellValues {
   bool one_shape = true;      ///< all points see shadows bounded by the same edges
   bool one_occluder = false;  ///< one alone comes between
 
-  /// All points see nearly the same fraction: what there is to be seen of a shadow's edge may have
-  /// slipped between them.
+  /// All points see nearly the same fraction, or all see everything or nothing, however much the
+  /// whole form factor changes next to the target: what there is to be seen of a shadow's edge may
+  /// have slipped between them.
   bool flat() const;
   /// What the values' differences say of the error of their mean, ...
   double seen() const;
