@@ -212,11 +212,13 @@ void PairGroups<T>::lookOutside(const SampleCell& cell, double share, const Memb
                                 std::span<VisibleFraction> out) {
   uncertain_.clear();
   chosen_.clear();
-  for (Index k = 0; k < members.index.size(); ++k) {
+  const auto exceeds = [&](Index k, double part) {
     const CellSum& sum = sums_[k];
-    const VisibleFraction& pair = out[members.index[k]];
-    const double allowed = share * pair.allowed * sum.whole;
-    if (!sum.uncertain || (sum.error.cautious <= kDoubtful * allowed && !pair.may_cross)) continue;
+    return sum.error.cautious > part * share * out[members.index[k]].allowed * sum.whole;
+  };
+  for (Index k = 0; k < members.index.size(); ++k) {
+    const bool may_step = out[members.index[k]].may_cross;
+    if (!sums_[k].uncertain || !(may_step || exceeds(k, kDoubtful))) continue;
     uncertain_.push_back(k);
     chosen_.push_back(&targets_[members.index[k]]);
   }
@@ -235,8 +237,7 @@ void PairGroups<T>::lookOutside(const SampleCell& cell, double share, const Memb
     }
     const CellError seen = meanErrorOutside(sum.error, area * largest);
     // What was small enough is not believed to be smaller, only larger.
-    const double allowed = share * out[members.index[uncertain_[u]]].allowed * sum.whole;
-    if (sum.error.cautious > allowed || seen.cautious > sum.error.cautious) sum.error = seen;
+    if (exceeds(uncertain_[u], 1) || seen.cautious > sum.error.cautious) sum.error = seen;
   }
 }
 
