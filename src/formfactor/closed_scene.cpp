@@ -13,7 +13,7 @@
 namespace radiosity {
 
 bool closedByTopology(const PatchMesh& mesh) {
-  const ViewScene scene(mesh);
+  const ViewScene scene(mesh, false);
   const HiddenBacks backs(scene);
   std::vector<const ClosedSurface*> rooms;
   std::vector<std::uint8_t> on_room(mesh.polygons.size(), 0);

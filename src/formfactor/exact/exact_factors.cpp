@@ -25,7 +25,7 @@ constexpr double kLoosest = 1e-2;
 /// About this share of the clipped pairs is evaluated again from the other end, ...
 constexpr double kRecheckShare = 1.0 / 256;
 /// ... and at least so many, as far as there are.
-constexpr double kRecheckLeast = 512;
+constexpr double kRecheckLeast = 256;
 /// A row that leaves more than this to the sky needs no eye to tell that the scene is open.
 constexpr double kCertainSky = 0.01;
 
