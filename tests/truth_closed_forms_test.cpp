@@ -127,18 +127,21 @@ TEST(TruthObstructed, AStripBetweenLooksIsFound) {
   const Sheet large = sheet(level(-1, 1, -1, 1, 1, false));
   const Sheet small = sheet(level(-0.005, 0.005, -0.005, 0.005, 0, true));
   std::vector<Corners> obstacles = {level(0.1, 0.4, 0.2, 0.21, 0.5, true)};
-  for (int k = 0; k < 64; ++k) {
-    const double x = -0.04 + 0.004 * (k % 8);
-    const double y = -0.04 + 0.004 * (k / 8);
-    obstacles.push_back(level(x, x + 0.001, y, y + 0.001, 0.05, true));
+  for (int i = 0; i < 8; ++i) {
+    for (int j = 0; j < 8; ++j) {
+      const double x = -0.04 + 0.004 * i;
+      const double y = -0.04 + 0.004 * j;
+      obstacles.push_back(level(x, x + 0.001, y, y + 0.001, 0.05, true));
+    }
   }
   std::vector<Blocker> blockers;
-  for (const Corners& corners : obstacles) {
-    blockers.emplace_back(Loop{std::span<const Vec3>(corners)});
-    blockers.back().body = Index(blockers.size());
+  std::vector<const Blocker*> all(obstacles.size());
+  blockers.reserve(obstacles.size());
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    blockers.emplace_back(Loop{std::span<const Vec3>(obstacles[k])});
+    blockers[k].body = Index(k);
+    all[k] = &blockers[k];
   }
-  std::vector<const Blocker*> all;
-  for (const Blocker& blocker : blockers) all.push_back(&blocker);
   const double whole = unoccludedExchange(large.loop, small.loop);
   const BlockedExchange down = blockedExchange(large, small, all, 1e-7, 1e-4 * whole, 400000);
   const BlockedExchange up = blockedExchange(small, large, all, 1e-7, 1e-4 * whole, 400000);

@@ -30,7 +30,7 @@ struct RayCheck {
   std::size_t entries = 0;
 };
 
-RayCheck checkAgainstRays(const PatchMesh& mesh, const TruthRows& truth) {
+RayCheck checkAgainstRays(const PatchMesh& mesh, const TruthRows& truth, double accuracy) {
   const CosineRays caster(mesh);
   CosineRays::Row cast;
   RayCheck check;
@@ -50,9 +50,12 @@ RayCheck checkAgainstRays(const PatchMesh& mesh, const TruthRows& truth) {
       squares += deviation * deviation;
       ++check.entries;
     }
-    const double sum = std::accumulate(truth.row[k].begin(), truth.row[k].end(), 0.0);
-    const double allowed =
-        kMostDeviations * std::sqrt(std::max(0.0, sum * (1 - sum)) / kRays) + kRounding;
+    const std::vector<double>& row = truth.row[k];
+    const double sum = std::accumulate(row.begin(), row.end(), 0.0);
+    const auto seen = std::count_if(row.begin(), row.end(), [](double f) { return f > 0; });
+    // The accuracy is that of each entry.
+    const double allowed = kMostDeviations * std::sqrt(std::max(0.0, sum * (1 - sum)) / kRays) +
+                           kRounding + accuracy * double(seen) / double(mesh.size());
     check.largest_front = std::max(check.largest_front, std::abs(fronts / kRays - sum) / allowed);
   }
   check.rms_deviation = std::sqrt(squares / double(std::max<std::size_t>(check.entries, 1)));
@@ -76,7 +79,7 @@ double largestAsymmetry(const PatchMesh& mesh, const TruthRows& truth) {
 }  // namespace
 
 bool verifyTruth(const BenchScene& scene, const TruthRows& truth, double accuracy) {
-  const RayCheck rays = checkAgainstRays(scene.mesh, truth);
+  const RayCheck rays = checkAgainstRays(scene.mesh, truth, accuracy);
   const double asymmetry = largestAsymmetry(scene.mesh, truth);
   const bool good = rays.entries > 0 && rays.largest_deviation < kMostDeviations &&
                     rays.largest_front < 1 && asymmetry < kAsymmetry * accuracy;

@@ -27,28 +27,24 @@ namespace radiosity {
 ///
 /// Measured at tolerances from 1e-1 to 1e-5 (curved and cluttered scene: to 1e-4, furnished room:
 /// 1e-1 and 1e-2), against rows of the benchmark's ground truth, good to 1e-7 of the mean form
-/// factor in the box and 1e-4 elsewhere; two rooms and 219 rows of the curved scene: against this
-/// method's own values at 1e-6 and 3e-6:
+/// factor in the box and 1e-4 elsewhere:
 ///
 ///     scene                        rows   below their figure   median of figure / error
-///     closed Cornell box, 258       258      99.2 to 100%            4.3 to 8.7
-///     closed Cornell box, 985       985      99.4 to 99.9%           4.9 to 8.6
-///     closed Cornell box, 5,096     100       98 to 100%             5.2 to 7.0
-///     closed Cornell box, 20,234    100       99 to 100%             4.4 to 6.4
-///     curved, 2,186                 100        100%                  5.4 to 9.8
-///     curved, 2,186                 219      99.1 to 100%            5.2 to 7.3
-///     two rooms, 954                477        100%                  6.3 to 8.0
-///     cluttered, 1,040              100       99 to 100%             3.7 to 5.1
-///     furnished room, 9,530         100       95 and 99%             4.0 and 5.0
+///     closed Cornell box, 258       258      99.2 to 100%            4.6 to 9.1
+///     closed Cornell box, 985       985      99.4 to 100%            5.1 to 9.0
+///     closed Cornell box, 5,096     100       98 to 100%             5.2 to 7.2
+///     closed Cornell box, 20,234    100       99 to 100%             4.5 to 8.2
+///     curved, 2,186                 100        100%                  5.8 to 9.7
+///     cluttered, 1,040              100        100%                  3.8 to 5.4
+///     furnished room, 9,530         100        100%                  4.4 and 5.6
 ///
-/// (The 98% are at 1e-4; of all 1,443 rows of the box at 1e-4, nine are above.)
+/// (The 98% are at 1e-4, EXTRA.)
 ///
-/// In the curved scene, at 1e-3 and 1e-4, a quarter of the rows are off by less than 1/28 of their
-/// figure: a few pairs carry a row, and whose kinks lie beside a cell is not seen. What figures
-/// miss in the furnished room are single pairs off by ten to a thousand times what is stated, where
-/// a shadow that covers little lies wholly between the points: mostly one of a dozen occluders', or
-/// on or from slivers, which shadows cross faster than SampledPair::change says, for it takes sizes
-/// as radii. (truth_exact_test holds three meshes to it, against truth that shares no code.)
+/// In the curved scene, at 1e-3 and 1e-4, a quarter of the rows are off by far less than their
+/// figure: a few pairs carry a row, and whose kinks lie beside a cell is not seen. What figures miss
+/// are mostly neighbouring targets of one element past which the same edge of a shadow slips unseen,
+/// where another edge of that occluder is nearer and SampledPair::change goes by that.
+/// (truth_exact_test holds three meshes to it, against truth that shares no code.)
 class ErrorSums {
  public:
   ErrorSums() = default;
