@@ -23,7 +23,7 @@ constexpr double kOfFarKernels = 2;
 /// own: their points and the shadows' edges that pass them are common to many of their pairs. Times
 /// this, and with what ErrorSums adds where few pairs carry a row, they are above the error of 99
 /// of 100 rows.
-constexpr double kSafety = 2.5;
+constexpr double kSafety = 2.55;
 
 }  // namespace
 
