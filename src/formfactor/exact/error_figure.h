@@ -79,7 +79,7 @@ class ErrorSums {
 
   static constexpr double kClosedFormShare = 0.06;  ///< see above
   /// Of what both ends state, in squares: they differ by no more where estimates are right, margin
-  /// and all (by 0.2 to 0.6 of it in the scenes above but the last, where it is up to 1.7).
+  /// and all (the root: 0.2 to 0.6 in the scenes above but the last, 0.64 there at 1e-2).
   static constexpr double kUsual = 0.36;
   /// Of the surplus, in squares: the other end is nearer to what blocks and the worse one to look
   /// from, so most of the difference is its own.
