@@ -30,7 +30,7 @@ namespace radiosity {
 /// factor in the box and 1e-4 elsewhere:
 ///
 ///     scene                        rows   below their figure   median of figure / error
-///     closed Cornell box, 258       258      99.2 to 100%            4.7 to 8.4
+///     closed Cornell box, 258       258      99.2 to 100%            4.7 to 8.6
 ///     closed Cornell box, 985       985      99.4 to 100%            5.2 to 8.2
 ///     closed Cornell box, 5,096     100       98 to 100%             5.2 to 7.3
 ///     closed Cornell box, 20,234    100       99 to 100%             4.5 to 8

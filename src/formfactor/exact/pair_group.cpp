@@ -22,7 +22,7 @@ constexpr double kNear = 4;
 /// too, if a shadow's edge may have slipped between their points. (A block in a room, 162 patches,
 /// 1e-3: 7 rows were above their figure where only cells that would be cut were looked at so, all
 /// for cells in which every point saw everything. It takes 0 to 2% more points.)
-constexpr double kDoubtful = 0.4;
+constexpr double kDoubtful = 0.7;
 
 /// Root mean square, in a half visible target's fraction, of what the kernels for far targets leave
 /// out, in their accuracy (curved scene, targets 2 to 4 radii away: 0.15 to 0.21).
