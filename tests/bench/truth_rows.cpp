@@ -20,7 +20,7 @@ constexpr std::size_t kCompleteUpTo = 1000;
 constexpr std::size_t kSampledRows = 100;
 constexpr std::uint64_t kSeed = 20;
 /// Looks that a pair may cost. Of the thousands of pairs in a row of the furnished room half a
-/// dozen run out of them, and stay good to 1e-3 of the mean form factor.
+/// dozen or so run out of them, with figures of up to some 1e-3 of the mean form factor.
 constexpr std::size_t kMostPoints = 100000;
 
 std::vector<Index> chooseRows(const PatchMesh& mesh) {
