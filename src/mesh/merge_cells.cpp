@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "mesh/edge_crossings.h"
 #include "mesh/plane_frame.h"
 #include "mesh/straighten.h"
 #include "mesh/trace_loops.h"
@@ -57,8 +58,13 @@ class Merger {
   void indexRecords();
   void joinRecords();
   void sortEdges();
+  std::vector<Index> usesOfNeeded() const;
   void straightenEdges();
-  void traceDrafts();
+  void traceDraft(Draft& draft) const;
+  std::vector<std::array<Index, 2>> edgesOf(const Draft& draft) const;
+  bool isSound(const Draft& draft) const;
+  void keepCorners(const Draft& draft, std::vector<bool>& keep, std::vector<Index>& kept) const;
+  std::vector<bool> draftsAt(const std::vector<Index>& vertices) const;
   void countCuts();
   void accountForStraightening();
   void countHiddenSides();
@@ -172,42 +178,122 @@ void Merger::sortEdges() {
   }
 }
 
+/// By needed edge a number that says which polygons it borders and which it runs through.
+std::vector<Index> Merger::usesOfNeeded() const {
+  std::vector<std::vector<Index>> uses(needed_.size());
+  for (std::size_t d = 0; d < drafts_.size(); ++d) {
+    for (const Index e : drafts_[d].border) uses[needed_number_[e]].push_back(Index(2 * d));
+    for (const Index e : drafts_[d].inner) uses[needed_number_[e]].push_back(Index(2 * d + 1));
+  }
+  std::map<std::vector<Index>, Index> numbers;
+  std::vector<Index> out;
+  out.reserve(uses.size());
+  for (auto& use : uses) {
+    out.push_back(numbers.emplace(std::move(use), Index(numbers.size())).first->second);
+  }
+  return out;
+}
+
+/// Straightening moves edges by up to a coincidence, and other edges of a polygon may be hardly
+/// farther away: where a polygon's edges then cross, its vertices are kept. With all of them kept
+/// the edges are those of the arrangement, which cross nowhere.
 void Merger::straightenEdges() {
   std::vector<std::array<Index, 2>> ends;
   ends.reserve(needed_.size());
   for (const Index e : needed_) ends.push_back({edges_[e].a, edges_[e].b});
-  straight_ = straighten(input_.points, input_.coincidence, ends);
+  const std::vector<Index> uses = usesOfNeeded();
+  std::vector<bool> keep(input_.points.size(), false);
+  std::vector<bool> stale(drafts_.size(), true);
+  while (std::find(stale.begin(), stale.end(), true) != stale.end()) {
+    straight_ = straighten(input_.points, input_.coincidence, ends, uses, keep);
+    std::vector<Index> kept;
+    for (std::size_t d = 0; d < drafts_.size(); ++d) {
+      if (!stale[d]) continue;
+      traceDraft(drafts_[d]);
+      if (!isSound(drafts_[d])) keepCorners(drafts_[d], keep, kept);
+    }
+    stale = draftsAt(kept);
+  }
 }
 
-void Merger::traceDrafts() {
-  for (Draft& draft : drafts_) {
-    const PlaneImage frame(planes_[draft.plane].normal);
-    std::vector<std::array<Index, 2>> directed;
-    directed.reserve(draft.border.size());
-    for (std::size_t k = 0; k < draft.border.size(); ++k) {
-      const Edge& e = edges_[draft.border[k]];
-      if (draft.on_left[k]) {
-        directed.push_back({e.a, e.b});
-      } else {
-        directed.push_back({e.b, e.a});
+/// Marks the drafts with one of `vertices`.
+std::vector<bool> Merger::draftsAt(const std::vector<Index>& vertices) const {
+  std::vector<bool> out(drafts_.size(), false);
+  if (vertices.empty()) return out;
+  std::vector<bool> there(input_.points.size(), false);
+  for (const Index v : vertices) there[v] = true;
+  const auto touches = [&](Index e) { return there[edges_[e].a] || there[edges_[e].b]; };
+  for (std::size_t d = 0; d < drafts_.size(); ++d) {
+    out[d] = std::any_of(drafts_[d].border.begin(), drafts_[d].border.end(), touches) ||
+             std::any_of(drafts_[d].inner.begin(), drafts_[d].inner.end(), touches);
+  }
+  return out;
+}
+
+/// The edges of a draft after straightening, inner ones included.
+std::vector<std::array<Index, 2>> Merger::edgesOf(const Draft& draft) const {
+  std::vector<std::array<Index, 2>> out;
+  for (const auto& loop : draft.loops) {
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      out.push_back({loop[k], loop[(k + 1) % loop.size()]});
+    }
+  }
+  std::vector<Index> inner;
+  inner.reserve(draft.inner.size());
+  for (const Index e : draft.inner) inner.push_back(straight_.edge_of[needed_number_[e]]);
+  std::sort(inner.begin(), inner.end());
+  inner.erase(std::unique(inner.begin(), inner.end()), inner.end());
+  for (const Index e : inner) out.push_back(straight_.edges[e]);
+  return out;
+}
+
+bool Merger::isSound(const Draft& draft) const {
+  const bool triangle = draft.loops.size() == 1 && draft.loops[0].size() == 3;
+  if (draft.inner.empty() && (triangle || draft.loops.empty())) return true;
+  return !anyCross(input_.points, PlaneImage(planes_[draft.plane].normal), edgesOf(draft));
+}
+
+/// Keeps all vertices of a draft; appends those that had gone.
+void Merger::keepCorners(const Draft& draft, std::vector<bool>& keep,
+                         std::vector<Index>& kept) const {
+  for (const auto* list : {&draft.border, &draft.inner}) {
+    for (const Index e : *list) {
+      for (const Index v : {edges_[e].a, edges_[e].b}) {
+        if (straight_.removed[v] && !keep[v]) kept.push_back(v);
+        keep[v] = true;
       }
     }
-    std::vector<std::pair<double, std::vector<Index>>> loops;
-    for (auto& loop : traceLoops(input_.points, frame, directed)) {
-      std::erase_if(loop, [&](Index v) { return straight_.removed[v]; });
-      if (loop.size() < 3) continue;
-      const Vec3 area =
-          vectorArea(loop.size(), [&](std::size_t k) { return input_.points[loop[k]]; });
-      if (!draft.kind.up) std::reverse(loop.begin(), loop.end());
-      std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
-      loops.emplace_back(-glm::dot(area, planes_[draft.plane].normal), std::move(loop));
-    }
-    // The outer loop is the one that counts positive, and the largest. If none does, welding has
-    // bent a sliver out of its plane.
-    std::sort(loops.begin(), loops.end());
-    if (loops.empty() || loops[0].first >= 0) continue;
-    for (auto& [key, loop] : loops) draft.loops.push_back(std::move(loop));
   }
+}
+
+void Merger::traceDraft(Draft& draft) const {
+  draft.loops.clear();
+  const PlaneImage frame(planes_[draft.plane].normal);
+  std::vector<std::array<Index, 2>> directed;
+  directed.reserve(draft.border.size());
+  for (std::size_t k = 0; k < draft.border.size(); ++k) {
+    const Edge& e = edges_[draft.border[k]];
+    if (draft.on_left[k]) {
+      directed.push_back({e.a, e.b});
+    } else {
+      directed.push_back({e.b, e.a});
+    }
+  }
+  std::vector<std::pair<double, std::vector<Index>>> loops;
+  for (auto& loop : traceLoops(input_.points, frame, directed)) {
+    std::erase_if(loop, [&](Index v) { return straight_.removed[v]; });
+    if (loop.size() < 3) continue;
+    const Vec3 area =
+        vectorArea(loop.size(), [&](std::size_t k) { return input_.points[loop[k]]; });
+    if (!draft.kind.up) std::reverse(loop.begin(), loop.end());
+    std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
+    loops.emplace_back(-glm::dot(area, planes_[draft.plane].normal), std::move(loop));
+  }
+  // The outer loop is the one that counts positive, and the largest. If none does, welding has
+  // bent a sliver out of its plane.
+  std::sort(loops.begin(), loops.end());
+  if (loops.empty() || loops[0].first >= 0) return;
+  for (auto& [key, loop] : loops) draft.loops.push_back(std::move(loop));
 }
 
 /// A sheet goes on on both sides of the edge, and the edge is needed there: it cuts the sheet.
@@ -361,7 +447,6 @@ CoarseComplex Merger::run() {
   joinRecords();
   sortEdges();
   straightenEdges();
-  traceDrafts();
   countCuts();
   countHiddenSides();
   accountForStraightening();

@@ -11,10 +11,13 @@ namespace {
 class Straightener {
  public:
   Straightener(const WeldedPoints& points, double coincidence,
-               const std::vector<std::array<Index, 2>>& edges)
+               const std::vector<std::array<Index, 2>>& edges, const std::vector<Index>& use,
+               const std::vector<bool>& keep)
       : points_(points),
         coincidence_(coincidence),
         edges_(edges),
+        use_(use),
+        keep_(keep),
         at_(points.size()),
         done_(edges.size(), false) {
     for (std::size_t e = 0; e < edges.size(); ++e) {
@@ -27,7 +30,7 @@ class Straightener {
   StraightEdges run() {
     // Chains between vertices where something else meets, then what is left: rings.
     for (std::size_t v = 0; v < at_.size(); ++v) {
-      if (at_[v].size() == 2 || at_[v].empty()) continue;
+      if (at_[v].empty() || !endsChain(Index(v))) continue;
       for (const Index e : at_[v]) {
         if (!done_[e]) shorten(chain(Index(v), e));
       }
@@ -44,6 +47,11 @@ class Straightener {
     std::vector<Index> edges;
   };
 
+  /// Nothing but the chain meets at a vertex inside it, and the chain is the same on both sides.
+  bool endsChain(Index v) const {
+    return at_[v].size() != 2 || keep_[v] || use_[at_[v][0]] != use_[at_[v][1]];
+  }
+
   Chain chain(Index start, Index edge) {
     Chain out{{start}, {}};
     for (;;) {
@@ -52,7 +60,7 @@ class Straightener {
       const Index to = edges_[edge][0] == from ? edges_[edge][1] : edges_[edge][0];
       out.vertices.push_back(to);
       out.edges.push_back(edge);
-      if (to == start || at_[to].size() != 2) return out;
+      if (to == start || endsChain(to)) return out;
       edge = at_[to][0] == edge ? at_[to][1] : at_[to][0];
     }
   }
@@ -110,6 +118,8 @@ class Straightener {
   const WeldedPoints& points_;
   double coincidence_;
   const std::vector<std::array<Index, 2>>& edges_;
+  const std::vector<Index>& use_;
+  const std::vector<bool>& keep_;
   std::vector<std::vector<Index>> at_;
   std::vector<bool> done_;
   StraightEdges out_;
@@ -118,8 +128,9 @@ class Straightener {
 }  // namespace
 
 StraightEdges straighten(const WeldedPoints& points, double coincidence,
-                         const std::vector<std::array<Index, 2>>& edges) {
-  return Straightener(points, coincidence, edges).run();
+                         const std::vector<std::array<Index, 2>>& edges,
+                         const std::vector<Index>& use, const std::vector<bool>& keep) {
+  return Straightener(points, coincidence, edges, use, keep).run();
 }
 
 }  // namespace radiosity

@@ -15,8 +15,11 @@ struct StraightEdges {
 };
 
 /// Removes vertices at which exactly two of `edges` meet in a straight line: all that is removed
-/// between two neighbours that stay lies within coincidence of the line between them.
+/// between two neighbours that stay lies within coincidence of the line between them. Two edges
+/// become one only where `use` holds the same number for both: what borders or cuts a polygon along
+/// the one does so along the other. Vertices marked in `keep` stay.
 StraightEdges straighten(const WeldedPoints& points, double coincidence,
-                         const std::vector<std::array<Index, 2>>& edges);
+                         const std::vector<std::array<Index, 2>>& edges,
+                         const std::vector<Index>& use, const std::vector<bool>& keep);
 
 }  // namespace radiosity
