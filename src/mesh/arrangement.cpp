@@ -33,9 +33,9 @@ Kernel::Point_2 toKernel(const Vec2& p) { return {p.x, p.y}; }
 /// One plane at work.
 class PlaneCutter {
  public:
-  PlaneCutter(WeldedPoints& points, const Plane& plane, Index number,
+  PlaneCutter(const WeldedPoints& points, const Plane& plane, Index number,
               const std::vector<Sheet>& sheets, const EdgeTable& edges,
-              const std::vector<Index>& own, Arrangement& out)
+              const std::vector<Index>& own, PlaneCut& out)
       : points_(points),
         plane_(plane),
         frame_(plane.normal),
@@ -62,14 +62,14 @@ class PlaneCutter {
                        face->vertex(Triangulation::cw(k))->info());
   }
 
-  WeldedPoints& points_;
+  const WeldedPoints& points_;
   const Plane& plane_;
   PlaneImage frame_;
   Index number_;
   const std::vector<Sheet>& sheets_;
   const EdgeTable& edges_;
   const std::vector<Index>& own_;
-  Arrangement& out_;
+  PlaneCut& out_;
 
   Triangulation triangulation_;
   std::unordered_map<Index, Triangulation::Vertex_handle> handle_;
@@ -81,6 +81,7 @@ void PlaneCutter::run() {
   if (!insertVertices()) return;
   if (!insertEdges()) return reportCrossings();
   if (reportTouches()) return;
+  out_.done = true;
   if (triangulation_.dimension() < 2) return;  // welding has left nothing wider than a line
   findRegions();
   coverRegions();
@@ -166,9 +167,7 @@ void PlaneCutter::reportCrossings() {
     const Vec2 d2 = s - r;
     const double area = d1.x * d2.y - d1.y * d2.x;
     const double t = area == 0 ? 0.5 : ((r - p).x * d2.y - (r - p).y * d2.x) / area;
-    const Index vertex = points_.insert(points_[f.a] + t * (points_[f.b] - points_[f.a]));
-    if (vertex != f.a && vertex != f.b) out_.unresolved.splits.push_back({own_[i], vertex});
-    if (vertex != g.a && vertex != g.b) out_.unresolved.splits.push_back({own_[j], vertex});
+    out_.crossings.push_back({own_[i], own_[j], points_[f.a] + t * (points_[f.b] - points_[f.a])});
   }
 }
 
@@ -292,37 +291,17 @@ void PlaneCutter::recordSides() {
     if (face->vertex(Triangulation::ccw(k))->info() != edges_[e].a) {
       std::swap(sides.left, sides.right);
     }
-    if (sides.left != kNone || sides.right != kNone) out_.sides[e].push_back(sides);
+    if (sides.left != kNone || sides.right != kNone) out_.sides.emplace_back(e, sides);
   }
 }
 
 }  // namespace
 
-Arrangement arrange(WeldedPoints& points, const std::vector<Plane>& planes,
-                    const std::vector<Sheet>& sheets, const EdgeTable& edges, Progress& progress) {
-  std::vector<std::vector<Index>> own(planes.size());
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    const Edge& edge = edges[Index(e)];
-    const auto enter = [&](Index plane) {
-      if (own[plane].empty() || own[plane].back() != e) own[plane].push_back(Index(e));
-    };
-    for (const EdgeUse& use : edge.uses) enter(sheets[use.sheet].plane);
-    for (const Index plane : edge.contacts) enter(plane);
-  }
-  Arrangement out;
-  out.sides.resize(edges.size());
-  progress.begin("planes", planes.size());
-  for (std::size_t p = 0; p < planes.size(); ++p) {
-    progress.check();
-    // enter() may have seen another plane in between: each edge once.
-    std::sort(own[p].begin(), own[p].end());
-    own[p].erase(std::unique(own[p].begin(), own[p].end()), own[p].end());
-    if (!own[p].empty()) {
-      PlaneCutter(points, planes[p], Index(p), sheets, edges, own[p], out).run();
-    }
-    progress.advance();
-  }
-  progress.end();
+PlaneCut cutPlane(const WeldedPoints& points, const std::vector<Plane>& planes, Index number,
+                  const std::vector<Sheet>& sheets, const EdgeTable& edges,
+                  const std::vector<Index>& own) {
+  PlaneCut out;
+  PlaneCutter(points, planes[number], number, sheets, edges, own, out).run();
   return out;
 }
 

@@ -27,18 +27,34 @@ struct EdgeSides {
 };
 
 struct Arrangement {
-  std::vector<PlaneCell> cells;
+  std::vector<PlaneCell> cells;               ///< plane by plane
   std::vector<std::vector<EdgeSides>> sides;  ///< by edge
-  /// Where edges still meet without a vertex, and vertices that fall on each other in the image of
-  /// a plane; if there are any, the rest is not to be used.
-  Repairs unresolved;
-  std::vector<Index>
-      inverted;  ///< sheets with a polygon that crosses itself: a part is turned over
+  /// Sheets with a polygon that crosses itself: a part is turned over.
+  std::vector<Index> inverted;
 };
 
-/// Cuts every plane along the edges in it. Needs edges that meet only at vertices; `points` gains
-/// the crossings of edges that do not.
-Arrangement arrange(WeldedPoints& points, const std::vector<Plane>& planes,
-                    const std::vector<Sheet>& sheets, const EdgeTable& edges, Progress& progress);
+/// Two edges that cross in the image of a plane, and where on the first of them.
+struct ImageCrossing {
+  Index first = kNone;
+  Index second = kNone;
+  Vec3 at{0.0};
+};
+
+/// What the edges in one plane cut it into.
+struct PlaneCut {
+  bool done = false;  ///< if not, only `unresolved` and `crossings` say something
+  std::vector<PlaneCell> cells;
+  /// Edges and what lies beside them, cells counted from the first of this plane.
+  std::vector<std::pair<Index, EdgeSides>> sides;
+  std::vector<Index> inverted;
+  /// Vertices that fall on each other or on an edge in the image of the plane.
+  Repairs unresolved;
+  std::vector<ImageCrossing> crossings;
+};
+
+/// Cuts plane `number` along `own`, its edges. Needs edges that meet only at vertices.
+PlaneCut cutPlane(const WeldedPoints& points, const std::vector<Plane>& planes, Index number,
+                  const std::vector<Sheet>& sheets, const EdgeTable& edges,
+                  const std::vector<Index>& own);
 
 }  // namespace radiosity

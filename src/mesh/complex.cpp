@@ -11,56 +11,22 @@
 #include "mesh/classify.h"
 #include "mesh/components.h"
 #include "mesh/contacts.h"
+#include "mesh/cut_planes.h"
 #include "mesh/input_faces.h"
 #include "mesh/merge_cells.h"
 #include "mesh/plane_groups.h"
 #include "mesh/sheets.h"
 #include "mesh/split_edges.h"
+#include "mesh/uncut_faces.h"
 
 namespace radiosity {
 
 namespace {
 
-/// Rounds of making edges meet that cross only in the image of a plane: one is the rule, more are
-/// rare. From kPatience on, a vertex that an edge is to be led through becomes one with the edge's
-/// end if that is as near as a coincidence or two. There are ever fewer vertices then, so it ends;
-/// kRounds only guards that.
-constexpr int kPatience = 4;
-constexpr int kRounds = 100;
-
-Repairs collapse(const Repairs& repairs, const WeldedPoints& points, double coincidence,
-                 const EdgeTable& edges) {
-  Repairs out;
-  out.merges = repairs.merges;
-  for (const ForcedSplit& s : repairs.splits) {
-    const Edge& edge = edges[s.edge];
-    const double to_a = glm::distance(points[s.vertex], points[edge.a]);
-    const double to_b = glm::distance(points[s.vertex], points[edge.b]);
-    if (std::min(to_a, to_b) < 2.0 * coincidence) {
-      out.merges.push_back({s.vertex, to_a <= to_b ? edge.a : edge.b});
-    } else {
-      out.splits.push_back(s);
-    }
-  }
-  return out;
-}
-
-Arrangement cutPlanes(const Scene& scene, InputFaces& input, const std::vector<Plane>& planes,
-                      const std::vector<Sheet>& sheets, EdgeTable& edges, Progress& progress) {
-  Repairs repairs;
-  for (int round = 0; round < kRounds; ++round) {
-    splitEdges(input.points, input.coincidence, edges, repairs, progress);
-    Arrangement arrangement = arrange(input.points, planes, sheets, edges, progress);
-    if (arrangement.unresolved.empty()) return arrangement;
-    repairs = round < kPatience
-                  ? arrangement.unresolved
-                  : collapse(arrangement.unresolved, input.points, input.coincidence, edges);
-  }
-  throw RunError(
-      fmt::format("{}: details about as large as the coincidence of {:.3g} m do not "
-                  "come apart; give a larger or a smaller --weld",
-                  scene.file, input.coincidence));
-}
+// After so many attempts faces that are in the way are taken as they are at once, and after so
+// many, which nothing is known to need, all faces.
+constexpr int kAttemptsAlone = 3;
+constexpr int kAttempts = 8;
 
 /// Edges of the scene that were split at vertices on them; `before` are the ones there were.
 std::size_t countSplits(const EdgeTable& edges, std::size_t before,
@@ -148,34 +114,89 @@ void noteBuriedSurfaces(const CoarseComplex& complex, MeshReport& report) {
   }
 }
 
+/// One attempt at the complex of a scene.
+class Attempt {
+ public:
+  Attempt(const Scene& scene, const MeshOptions& options, const std::vector<Handling>& handling,
+          MeshReport report, Progress& progress)
+      : scene_(scene),
+        report_(std::move(report)),
+        progress_(progress),
+        input_(cleanFaces(scene, options, handling, report_)) {}
+
+  /// Fills `complex` and returns an empty list, or returns the faces of the scene that are in the
+  /// way: in planes that cannot be cut, or under polygons that came out broken.
+  std::vector<Index> run(CoarseComplex& complex);
+  const MeshReport& report() const { return report_; }
+
+ private:
+  std::vector<Index> cut();
+
+  const Scene& scene_;
+  MeshReport report_;
+  Progress& progress_;
+  InputFaces input_;
+  std::vector<Plane> planes_;
+  std::vector<Sheet> sheets_;
+  EdgeTable edges_;
+  Arrangement arrangement_;
+};
+
+/// Returns the faces in planes that cannot be cut.
+std::vector<Index> Attempt::cut() {
+  progress_.check();
+  planes_ = groupByPlane(input_);
+  sheets_ = findSheets(input_, planes_);
+  for (std::size_t s = 0; s < sheets_.size(); ++s) {
+    for (const auto& [from, to] : sheets_[s].edges) edges_.addUse(from, to, Index(s), 1);
+  }
+  const std::size_t file_edges = edges_.size();
+  std::vector<bool> from_file(file_edges);
+  for (std::size_t e = 0; e < file_edges; ++e) from_file[e] = edges_[Index(e)].alive();
+  addContacts(input_, planes_, sheets_, edges_, progress_);
+  std::vector<Index> faces;
+  for (const Index p : cutPlanes(input_, planes_, sheets_, edges_, arrangement_, progress_)) {
+    for (const Index f : planes_[p].faces) faces.push_back(input_.faces[f].source);
+  }
+  report_.split_edges = countSplits(edges_, file_edges, from_file);
+  return faces;
+}
+
+std::vector<Index> Attempt::run(CoarseComplex& complex) {
+  std::vector<Index> stuck = cut();
+  if (!stuck.empty()) return stuck;
+  report_.nonmanifold_edges = countNonManifold(edges_);
+  accountForWelding(input_, planes_, sheets_, edges_, arrangement_, report_);
+  const Components components = findComponents(input_, planes_, sheets_, edges_, scene_);
+  const auto visible = classify(scene_, arrangement_, sheets_, components, input_, report_);
+  complex =
+      mergeCells(scene_, input_, planes_, sheets_, edges_, arrangement_, visible, report_, stuck);
+  addUncut(scene_, input_, complex, report_);
+  noteHandling(input_, report_);
+  noteBuriedSurfaces(complex, report_);
+  return stuck;
+}
+
 }  // namespace
 
 CoarseComplex buildComplex(const Scene& scene, const MeshOptions& options, MeshReport& report,
                            Progress& progress) {
-  InputFaces input = cleanFaces(scene, options, report);
-  progress.check();
-  const std::vector<Plane> planes = groupByPlane(input);
-  const std::vector<Sheet> sheets = findSheets(input, planes);
-  EdgeTable edges;
-  for (std::size_t s = 0; s < sheets.size(); ++s) {
-    for (const auto& [from, to] : sheets[s].edges) edges.addUse(from, to, Index(s), 1);
+  std::vector<Handling> handling(scene.faceCount(), Handling::merged);
+  for (int attempts = 1;; ++attempts) {
+    Attempt attempt(scene, options, handling, report, progress);
+    CoarseComplex complex;
+    const std::vector<Index> stuck = attempt.run(complex);
+    if (stuck.empty()) {
+      report = attempt.report();
+      return complex;
+    }
+    const std::vector<Handling> before = handling;
+    for (const Index f : stuck) {
+      const bool alone = before[f] == Handling::merged && attempts < kAttemptsAlone;
+      handling[f] = alone ? Handling::alone : Handling::as_it_is;
+    }
+    if (attempts == kAttempts) handling.assign(handling.size(), Handling::as_it_is);
   }
-  const std::size_t file_edges = edges.size();
-  std::vector<bool> from_file(file_edges);
-  for (std::size_t e = 0; e < file_edges; ++e) from_file[e] = edges[Index(e)].alive();
-  addContacts(input, planes, sheets, edges, progress);
-
-  Arrangement arrangement = cutPlanes(scene, input, planes, sheets, edges, progress);
-  report.split_edges = countSplits(edges, file_edges, from_file);
-  report.nonmanifold_edges = countNonManifold(edges);
-  accountForWelding(input, planes, sheets, edges, arrangement, report);
-
-  const Components components = findComponents(input, planes, sheets, edges, scene);
-  const auto visible = classify(scene, arrangement, sheets, components, input, report);
-  CoarseComplex complex =
-      mergeCells(scene, input, planes, sheets, edges, arrangement, visible, report);
-  noteBuriedSurfaces(complex, report);
-  return complex;
 }
 
 }  // namespace radiosity

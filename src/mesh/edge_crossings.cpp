@@ -41,8 +41,9 @@ bool anyCross(const WeldedPoints& points, const PlaneImage& image,
     for (const Index v : edges[k]) boxes[k].add(Vec3(image(points[v]), 0.0));
   }
   const auto pairs = overlappingPairs(boxes);
-  return std::any_of(pairs.begin(), pairs.end(),
-                     [&](const auto& pair) { return cross(edges[pair.first], edges[pair.second]); });
+  return std::any_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
+    return cross(edges[pair.first], edges[pair.second]);
+  });
 }
 
 }  // namespace radiosity

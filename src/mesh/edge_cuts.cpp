@@ -8,6 +8,7 @@
 
 #include "mesh/edge_key.h"
 #include "mesh/four_sides.h"
+#include "mesh/sharp_corners.h"
 
 namespace radiosity {
 
@@ -37,6 +38,7 @@ EdgeCuts::EdgeCuts(const CoarseComplex& complex) : complex_(complex) {
     }
     for (const auto& [from, to] : polygon.inner_edges) add(from, to);
   }
+  whole_.assign(ends_.size(), 0);
   classes_ = EdgeClasses(length_);
   for (std::size_t p = 0; p < polygons; ++p) {
     const CoarsePolygon& polygon = complex.polygons[p];
@@ -79,26 +81,15 @@ void EdgeCuts::joinOpposite(const FourSides& sides) {
 }
 
 /// Where two edges leave a vertex at a small angle, points on them must keep so far from it that
-/// they do not lie on the other edge.
+/// they do not lie on the other edge, whatever polygons the two belong to.
 void EdgeCuts::limitAtSharpCorners() {
   least_start_.assign(ends_.size(), 0.0);
-  for (std::size_t p = 0; p < loops_.size(); ++p) {
-    for (std::size_t l = 0; l < loops_[p].size(); ++l) {
-      const auto& loop = complex_.polygons[p].loops[l];
-      const std::size_t n = loop.size();
-      for (std::size_t k = 0; k < n; ++k) {
-        const Vec3& corner = complex_.vertices[loop[k]];
-        const Vec3 back = complex_.vertices[loop[(k + n - 1) % n]] - corner;
-        const Vec3 ahead = complex_.vertices[loop[(k + 1) % n]] - corner;
-        if (glm::dot(back, ahead) <= 0) continue;
-        const double sine =
-            glm::length(glm::cross(back, ahead)) / (glm::length(back) * glm::length(ahead));
-        for (const std::size_t e : {(k + n - 1) % n, k}) {
-          double& least = least_start_[classes_.of(loops_[p][l][e].edge)];
-          least = std::max(least, 2 * complex_.coincidence / sine);
-        }
-      }
-    }
+  const std::vector<double> sines = sharpestSines(complex_.vertices, ends_);
+  for (Index e = 0; e < ends_.size(); ++e) {
+    if (sines[e] >= 1) continue;
+    const Index cls = classes_.of(e);
+    const double scale = classes_.longest(cls) / length_[e];
+    least_start_[cls] = std::max(least_start_[cls], 2 * complex_.coincidence / sines[e] * scale);
   }
 }
 
@@ -158,19 +149,30 @@ void EdgeCuts::noteGaps(DirectedEdge edge, const std::vector<Gap>& gaps) {
 /// The narrowest come first: where there is no room for all, they need them most.
 std::vector<double> EdgeCuts::stopsFor(Index cls, double size, double spacing) const {
   std::vector<double> stops;
-  // Points near a sharp corner would lie on its other edge.
-  if (opposites_.empty() || least_start_[cls] > 0) return stops;
+  if (opposites_.empty()) return stops;
   const double length = classes_.longest(cls);
+  // Points near a sharp corner would lie on its other edge.
+  const double corner = least_start_[cls] / length;
   for (const Opposite& opposite : opposites_[cls]) {
     if (opposite.gap > kNarrow * size) break;
     const double room = std::max(spacing * opposite.gap, 4 * complex_.coincidence) / length;
-    if (opposite.place < room || opposite.place > 1 - room) continue;
+    const double margin = std::max(room, corner);
+    if (opposite.place < margin || opposite.place > 1 - margin) continue;
     const auto next = std::lower_bound(stops.begin(), stops.end(), opposite.place);
     if (next != stops.end() && *next - opposite.place < room) continue;
     if (next != stops.begin() && opposite.place - *(next - 1) < room) continue;
     stops.insert(next, opposite.place);
   }
   return stops;
+}
+
+void EdgeCuts::keepWhole(std::size_t polygon) {
+  for (const auto& loop : loops_[polygon]) {
+    for (const DirectedEdge& e : loop) whole_[e.edge] = 1;
+  }
+  for (const auto& [from, to] : complex_.polygons[polygon].inner_edges) {
+    whole_[find(from, to).edge] = 1;
+  }
 }
 
 bool EdgeCuts::hasOpposites() const {
@@ -181,7 +183,8 @@ void EdgeCuts::countPieces(Rounding rounding) {
   double total = 0;
   for (Index e = 0; e < ends_.size(); ++e) {
     const Index cls = classes_.of(e);
-    const double count = pieceCount(classes_.longest(cls), wanted_[cls], rounding);
+    const double count =
+        whole_[e] ? 1.0 : pieceCount(classes_.longest(cls), wanted_[cls], rounding);
     total += count;
     if (!(total <= kMostPatches)) {
       throw InputError(fmt::format(
@@ -216,6 +219,7 @@ void EdgeCuts::wantAtEnd(DirectedEdge edge, bool at_last, double size) {
 /// Edges that are not cut at all are features themselves and stay whole.
 void EdgeCuts::gradeTowardsShortPieces(Rounding rounding) {
   const auto pieceAt = [&](DirectedEdge e, bool at_last) {
+    if (whole_[e.edge]) return length_[e.edge];
     const Index cls = classes_.of(e.edge);
     const auto ends =
         endPieces(classes_.longest(cls), wanted_[cls], double(pieces_[e.edge]), rounding);
@@ -253,6 +257,7 @@ void EdgeCuts::cut(double size, Rounding rounding, double spacing) {
   edge_points_.clear();
   for (Index e = 0; e < edges; ++e) {
     first_point_[e] = edge_points_.size();
+    if (whole_[e]) continue;
     const Index cls = classes_.of(e);
     const Vec3& a = complex_.vertices[ends_[e][classes_.opposed(e) ? 1 : 0]];
     const Vec3& b = complex_.vertices[ends_[e][classes_.opposed(e) ? 0 : 1]];

@@ -50,6 +50,9 @@ class EdgeCuts {
   void findOpposites(double largest);
   bool hasOpposites() const;
 
+  /// Later cuts leave the edges of a polygon uncut.
+  void keepWhole(std::size_t polygon);
+
   /// Points of the current cut: ids below vertexCount() are the complex's vertices, the others are
   /// points inside edges.
   Vec3 point(Index id) const;
@@ -97,6 +100,7 @@ class EdgeCuts {
   };
   std::vector<std::vector<Opposite>> opposites_;  ///< by class, narrowest first
   std::vector<double> least_start_;  ///< by class: first piece at a sharp corner, metres
+  std::vector<char> whole_;          ///< by edge: never cut
   std::vector<std::size_t> pieces_;
   std::vector<std::size_t> first_point_;  ///< edge -> into edge_points_
   std::vector<Vec3> edge_points_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <iterator>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -235,7 +236,8 @@ void Cleaner::writeNotes() {
 
 }  // namespace
 
-InputFaces cleanFaces(const Scene& scene, const MeshOptions& options, MeshReport& report) {
+InputFaces cleanFaces(const Scene& scene, const MeshOptions& options,
+                      const std::vector<Handling>& handling, MeshReport& report) {
   report.surfaces.clear();
   for (const Surface& s : scene.surfaces) {
     SurfaceAreas areas;
@@ -254,6 +256,12 @@ InputFaces cleanFaces(const Scene& scene, const MeshOptions& options, MeshReport
   }
   cleaner.dropDuplicates();
   cleaner.writeNotes();
+  for (InputFace& face : out.faces) face.handling = handling[face.source];
+  const auto uncut = std::stable_partition(
+      out.faces.begin(), out.faces.end(),
+      [](const InputFace& face) { return face.handling != Handling::as_it_is; });
+  out.uncut.assign(std::make_move_iterator(uncut), std::make_move_iterator(out.faces.end()));
+  out.faces.erase(uncut, out.faces.end());
   return out;
 }
 

@@ -52,7 +52,7 @@ class Merger {
         visible_(visible),
         report_(report) {}
 
-  CoarseComplex run();
+  CoarseComplex run(std::vector<Index>& broken);
 
  private:
   void indexRecords();
@@ -66,6 +66,8 @@ class Merger {
   void keepCorners(const Draft& draft, std::vector<bool>& keep, std::vector<Index>& kept) const;
   std::vector<bool> draftsAt(const std::vector<Index>& vertices) const;
   void countCuts();
+  double movedArea(const Draft& draft) const;
+  double areaInReach(const Draft& draft) const;
   void accountForStraightening();
   void countHiddenSides();
   std::vector<Index> sheetsOf(const Draft& draft) const;
@@ -320,17 +322,30 @@ void Merger::countCuts() {
   report_.cuts = std::size_t(std::count(cut.begin(), cut.end(), true));
 }
 
+/// What the loops of a draft have less than its cells.
+double Merger::movedArea(const Draft& draft) const {
+  double area = 0;
+  for (const Index r : draft.records) area += arrangement_.cells[visible_[r].cell].area;
+  Vec3 kept(0.0);
+  for (const auto& loop : draft.loops) {
+    kept += vectorArea(loop.size(), [&](std::size_t k) { return input_.points[loop[k]]; });
+  }
+  return area - std::abs(glm::dot(kept, planes_[draft.plane].normal));
+}
+
+/// The most that straightening can move: a strip of two coincidences along the border. Twice that,
+/// for what is rounded.
+double Merger::areaInReach(const Draft& draft) const {
+  double length = 0;
+  for (const Index e : draft.border) {
+    length += glm::distance(input_.points[edges_[e].a], input_.points[edges_[e].b]);
+  }
+  return 4.0 * input_.coincidence * length;
+}
+
 void Merger::accountForStraightening() {
   std::vector<double> moved(report_.surfaces.size(), 0.0);
-  for (const Draft& draft : drafts_) {
-    double area = 0;
-    for (const Index r : draft.records) area += arrangement_.cells[visible_[r].cell].area;
-    Vec3 kept(0.0);
-    for (const auto& loop : draft.loops) {
-      kept += vectorArea(loop.size(), [&](std::size_t k) { return input_.points[loop[k]]; });
-    }
-    moved[draft.kind.surface] += area - std::abs(glm::dot(kept, planes_[draft.plane].normal));
-  }
+  for (const Draft& draft : drafts_) moved[draft.kind.surface] += movedArea(draft);
   for (std::size_t s = 0; s < moved.size(); ++s) addMovedArea(report_.surfaces[s], moved[s]);
 }
 
@@ -442,11 +457,18 @@ void Merger::countHiddenSides() {
   }
 }
 
-CoarseComplex Merger::run() {
+CoarseComplex Merger::run(std::vector<Index>& broken) {
   indexRecords();
   joinRecords();
   sortEdges();
   straightenEdges();
+  for (const Draft& draft : drafts_) {
+    if (isSound(draft) && std::abs(movedArea(draft)) <= areaInReach(draft)) continue;
+    for (const Index s : sheetsOf(draft)) {
+      for (const Index f : sheets_[s].faces) broken.push_back(input_.faces[f].source);
+    }
+  }
+  if (!broken.empty()) return {};
   countCuts();
   countHiddenSides();
   accountForStraightening();
@@ -467,8 +489,9 @@ void addMovedArea(SurfaceAreas& areas, double moved) {
 CoarseComplex mergeCells(const Scene& scene, const InputFaces& input,
                          const std::vector<Plane>& planes, const std::vector<Sheet>& sheets,
                          const EdgeTable& edges, const Arrangement& arrangement,
-                         const std::vector<VisibleCell>& visible, MeshReport& report) {
-  return Merger(scene, input, planes, sheets, edges, arrangement, visible, report).run();
+                         const std::vector<VisibleCell>& visible, MeshReport& report,
+                         std::vector<Index>& broken) {
+  return Merger(scene, input, planes, sheets, edges, arrangement, visible, report).run(broken);
 }
 
 }  // namespace radiosity

@@ -74,6 +74,8 @@ class Grower {
     return 0.5 * (low + high);
   }
 
+  bool isAlone(Index f) const { return input_.faces[f].handling == Handling::alone; }
+
   bool within(const Plane& plane, Index f) const {
     const auto& loop = input_.faces[f].loop;
     return std::all_of(loop.begin(), loop.end(), [&](Index v) {
@@ -89,9 +91,10 @@ class Grower {
     ++round_;
     std::vector<Index> found{seed};
     visit_[seed] = round_;
+    if (isAlone(seed)) return found;
     for (std::size_t k = 0; k < found.size(); ++k) {
       for (const Index next : near_[found[k]]) {
-        if (taken_[next] || visit_[next] == round_) continue;
+        if (taken_[next] || visit_[next] == round_ || isAlone(next)) continue;
         visit_[next] = round_;
         if (within(plane, next)) found.push_back(next);
       }

@@ -19,7 +19,8 @@ struct Plane {
 
 /// Puts every face into exactly one plane, together with the coplanar faces it is connected to
 /// (boxes that overlap, from face to face). Coplanar: every vertex of every face lies within half
-/// the coincidence of the plane, so a plane is a slab one coincidence thick and cannot drift.
+/// the coincidence of the plane, so a plane is a slab one coincidence thick and cannot drift. Faces
+/// to be handled alone have a plane each.
 std::vector<Plane> groupByPlane(const InputFaces& input);
 
 }  // namespace radiosity

@@ -25,6 +25,18 @@ class PlaneImage {
   }
   Vec2 operator()(const Vec3& p) const { return {p[first_], p[second_]}; }
 
+  /// The point of the plane through `origin` with `normal`, the image's, that has the image `q`.
+  Vec3 lift(const Vec2& q, const Vec3& origin, const Vec3& normal) const {
+    const int dropped = 3 - first_ - second_;
+    Vec3 p = origin;
+    p[first_] = q.x;
+    p[second_] = q.y;
+    p[dropped] -=
+        (normal[first_] * (q.x - origin[first_]) + normal[second_] * (q.y - origin[second_])) /
+        normal[dropped];
+    return p;
+  }
+
  private:
   int first_ = 0;
   int second_ = 1;

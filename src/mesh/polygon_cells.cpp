@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "mesh/plane_frame.h"
+#include "mesh/plane_image.h"
 
 namespace radiosity {
 
@@ -85,13 +86,33 @@ PolygonCells gridCells(const EdgeCuts& cuts, const FourSides& sides,
   return result;
 }
 
-/// Gathers the boundary of a polygon, each point once, in the plane's coordinates.
+/// The plane of a polygon made flat: by a frame, in which lengths and angles are true, or by the
+/// image in which the polygon is known not to cross itself.
+class Flattening {
+ public:
+  Flattening(const PlaneFrame& frame, bool exact) : frame_(frame), image_(frame.n), exact_(exact) {}
+
+  Vec2 flat(const Vec3& p) const { return exact_ ? image_(p) : frame_.flat(p); }
+  Vec3 lift(const Vec2& p) const {
+    return exact_ ? image_.lift(p, frame_.origin, frame_.n) : frame_.lift(p);
+  }
+  Vec2 along() const {
+    return exact_ ? image_(frame_.u) / glm::length(image_(frame_.u)) : Vec2(1.0, 0.0);
+  }
+
+ private:
+  PlaneFrame frame_;
+  PlaneImage image_;
+  bool exact_;
+};
+
+/// Gathers the boundary of a polygon, each point once, in flat coordinates.
 class RegionBuilder {
  public:
-  RegionBuilder(const CoarseComplex& complex, const EdgeCuts& cuts, std::size_t polygon)
-      : cuts_(cuts) {
+  RegionBuilder(const CoarseComplex& complex, const EdgeCuts& cuts, std::size_t polygon, bool exact)
+      : cuts_(cuts), flattening_(frameOf(complex, complex.polygons[polygon]), exact) {
     const CoarsePolygon& coarse = complex.polygons[polygon];
-    frame_ = makeFrame(cuts.point(coarse.loops[0][0]), coarse.normal, longestEdge(complex, coarse));
+    region_.along = flattening_.along();
     for (std::size_t l = 0; l < coarse.loops.size(); ++l) {
       std::vector<Index> ids;
       for (const DirectedEdge& edge : cuts.loop(polygon, l)) cuts.append(edge, ids);
@@ -109,11 +130,12 @@ class RegionBuilder {
   }
 
   Region& region() { return region_; }
-  const PlaneFrame& frame() const { return frame_; }
+  const Flattening& flattening() const { return flattening_; }
   std::vector<Index>& boundary() { return boundary_; }
 
  private:
-  static Vec3 longestEdge(const CoarseComplex& complex, const CoarsePolygon& polygon) {
+  /// Along the longest edge.
+  static PlaneFrame frameOf(const CoarseComplex& complex, const CoarsePolygon& polygon) {
     Vec3 longest(0.0);
     for (const auto& loop : polygon.loops) {
       for (std::size_t k = 0; k < loop.size(); ++k) {
@@ -121,29 +143,46 @@ class RegionBuilder {
         if (glm::dot(edge, edge) > glm::dot(longest, longest)) longest = edge;
       }
     }
-    return longest;
+    return makeFrame(complex.vertices[polygon.loops[0][0]], polygon.normal, longest);
   }
 
   Index local(Index id) {
     const auto [place, is_new] = local_.try_emplace(id, Index(boundary_.size()));
     if (is_new) {
       boundary_.push_back(id);
-      region_.points.push_back(frame_.flat(cuts_.point(id)));
+      region_.points.push_back(flattening_.flat(cuts_.point(id)));
     }
     return place->second;
   }
 
   const EdgeCuts& cuts_;
-  PlaneFrame frame_;
+  Flattening flattening_;
   Region region_;
   std::vector<Index> boundary_;
   std::unordered_map<Index, Index> local_;
 };
 
+/// Empty where the pieces of the polygon's boundary cross.
+std::optional<PolygonCells> regionCells(const CoarseComplex& complex, const EdgeCuts& cuts,
+                                        std::size_t polygon, const CellSize& size, bool exact) {
+  RegionBuilder builder(complex, cuts, polygon, exact);
+  Region& region = builder.region();
+  region.size = size.size;
+  region.longest = size.longest;
+  region.clearance = 2 * complex.coincidence;
+  auto mesh = meshRegion(region);
+  if (!mesh) return std::nullopt;
+  PolygonCells result;
+  result.cells = std::move(mesh->cells);
+  result.boundary = std::move(builder.boundary());
+  for (const Vec2& p : mesh->interior) result.interior.push_back(builder.flattening().lift(p));
+  return result;
+}
+
 }  // namespace
 
-PolygonCells cellsOf(const CoarseComplex& complex, const EdgeCuts& cuts, std::size_t polygon,
-                     const CellSize& size) {
+std::optional<PolygonCells> cellsOf(const CoarseComplex& complex, const EdgeCuts& cuts,
+                                    std::size_t polygon, const CellSize& size) {
   if (const auto& sides = cuts.fourSides(polygon)) {
     std::array<std::vector<Index>, 4> points;
     for (std::size_t k = 0; k < 4; ++k) points[k] = sidePoints(cuts, sides->edges[k]);
@@ -152,17 +191,8 @@ PolygonCells cellsOf(const CoarseComplex& complex, const EdgeCuts& cuts, std::si
       return gridCells(cuts, *sides, points);
     }
   }
-  RegionBuilder builder(complex, cuts, polygon);
-  Region& region = builder.region();
-  region.size = size.size;
-  region.longest = size.longest;
-  region.clearance = 2 * complex.coincidence;
-  RegionMesh mesh = meshRegion(region);
-  PolygonCells result;
-  result.cells = std::move(mesh.cells);
-  result.boundary = std::move(builder.boundary());
-  for (const Vec2& p : mesh.interior) result.interior.push_back(builder.frame().lift(p));
-  return result;
+  auto cells = regionCells(complex, cuts, polygon, size, false);
+  return cells ? cells : regionCells(complex, cuts, polygon, size, true);
 }
 
 }  // namespace radiosity

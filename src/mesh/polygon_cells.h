@@ -23,8 +23,10 @@ struct CellSize {
 };
 
 /// A grid of convex quadrilaterals where the polygon has four sides cut alike, triangles and
-/// quadrilaterals over a background grid elsewhere. The boundary is taken as `cuts` has it.
-PolygonCells cellsOf(const CoarseComplex& complex, const EdgeCuts& cuts, std::size_t polygon,
-                     const CellSize& size);
+/// quadrilaterals over a background grid elsewhere. The boundary is taken as `cuts` has it. Empty
+/// where its pieces cross: edges nearer to each other than rounding moves the points on them. Edges
+/// that are kept whole never cross.
+std::optional<PolygonCells> cellsOf(const CoarseComplex& complex, const EdgeCuts& cuts,
+                                    std::size_t polygon, const CellSize& size);
 
 }  // namespace radiosity

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "radiosity/base.h"
@@ -36,9 +37,8 @@ std::vector<Vec2> backgroundGrid(const Region& region);
 
 /// Constrained Delaunay triangulation of the region's pieces and a background grid, improved by
 /// points and moves inside until all angles are at least 25 degrees, or those that the boundary
-/// allows; then pairs of triangles are joined. Pieces are never split. Throws RunError where pieces
-/// cross.
-RegionMesh meshRegion(const Region& region);
+/// allows; then pairs of triangles are joined. Pieces are never split. Empty where pieces cross.
+std::optional<RegionMesh> meshRegion(const Region& region);
 
 /// Joins pairs of triangles into convex quadrilaterals with angles within 45 degrees of a right
 /// angle, the squarest first; never across a piece of the region. Remaining triangles stay.

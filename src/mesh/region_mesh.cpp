@@ -67,23 +67,24 @@ class RegionMesher {
     budget_ = region.points.size() + interior_.size() + 32;
   }
 
-  RegionMesh run() {
-    triangulate();
+  std::optional<RegionMesh> run() {
+    if (!triangulate()) return std::nullopt;
     for (int round = 0; round < kRounds && smallestAngle() < kWantedAngle; ++round) {
       refine();
       smooth();
       takePositions();
       triangulate();
     }
+    flipFlat();
     std::vector<Cell> cells = pairTriangles(region_, interior_, triangles());
     while (shorten(cells)) cells = pairTriangles(region_, interior_, triangles());
-    return {std::move(interior_), std::move(cells)};
+    return RegionMesh{std::move(interior_), std::move(cells)};
   }
 
  private:
-  void triangulate();
+  bool triangulate();
+  bool insertPieces(const std::vector<Vertex>& vertices);
   void markInside();
-  void constrain(Vertex a, Vertex b);
   bool isOutline(Face f, int i) const {
     return f->is_constrained(i) && outline_.count(edgeKey(f->vertex(Cdt::cw(i))->info(),
                                                           f->vertex(Cdt::ccw(i))->info())) > 0;
@@ -102,6 +103,8 @@ class RegionMesher {
   void smooth();
   bool relax(Vertex v);
   double smallestAround(Vertex v);
+  void flipFlat();
+  bool isFlippable(Face f, int i) const;
   bool shorten(const std::vector<Cell>& cells);
   double longestPiece() const;
   bool isClear(const Vec2& p, Face near);
@@ -116,15 +119,25 @@ class RegionMesher {
   std::size_t budget_ = 0;
 };
 
-void RegionMesher::constrain(Vertex a, Vertex b) {
+/// False if two pieces cross.
+bool RegionMesher::insertPieces(const std::vector<Vertex>& vertices) {
   try {
-    cdt_.insert_constraint(a, b);
+    for (const auto& loop : region_.loops) {
+      for (std::size_t k = 0; k < loop.size(); ++k) {
+        cdt_.insert_constraint(vertices[loop[k]], vertices[loop[(k + 1) % loop.size()]]);
+      }
+    }
+    for (const auto& [from, to] : region_.inner) {
+      cdt_.insert_constraint(vertices[from], vertices[to]);
+    }
   } catch (const Cdt::Intersection_of_constraints_exception&) {
-    throw RunError("two edges of a polygon cross");
+    return false;
   }
+  return true;
 }
 
-void RegionMesher::triangulate() {
+/// False if pieces cross; no points inside can change that.
+bool RegionMesher::triangulate() {
   cdt_.clear();
   const auto add = [&](const Vec2& p, std::size_t id, Face hint) {
     const Vertex v = cdt_.insert(pointOf(p), hint);
@@ -141,17 +154,13 @@ void RegionMesher::triangulate() {
       vertices[k] = add(region_.points[k], k, vertices[k - stride]->face());
     }
   }
-  for (const auto& loop : region_.loops) {
-    for (std::size_t k = 0; k < loop.size(); ++k) {
-      constrain(vertices[loop[k]], vertices[loop[(k + 1) % loop.size()]]);
-    }
-  }
-  for (const auto& [from, to] : region_.inner) constrain(vertices[from], vertices[to]);
+  if (!insertPieces(vertices)) return false;
   Face hint;
   for (std::size_t k = 0; k < interior_.size(); ++k) {
     hint = add(interior_[k], count + k, hint)->face();
   }
   markInside();
+  return true;
 }
 
 /// Faces reached from the left of the loops' pieces without crossing any of them.
@@ -335,6 +344,46 @@ void RegionMesher::smooth() {
   }
 }
 
+/// Whether the two triangles at the edge opposite of corner i make a convex quadrilateral.
+bool RegionMesher::isFlippable(Face f, int i) const {
+  const auto& apex = f->vertex(i)->point();
+  const auto& from = f->vertex(Cdt::ccw(i))->point();
+  const auto& to = f->vertex(Cdt::cw(i))->point();
+  const auto& other = cdt_.mirror_vertex(f, i)->point();
+  return CGAL::orientation(apex, from, other) == CGAL::LEFT_TURN &&
+         CGAL::orientation(apex, other, to) == CGAL::LEFT_TURN;
+}
+
+/// Where the boundary bends by hardly more than nothing, the Delaunay triangulation puts triangles
+/// over the bend that are flatter than a coincidence: their corner lies on their longest edge. That
+/// edge is turned to lead from the corner.
+void RegionMesher::flipFlat() {
+  std::vector<Face> stack;
+  for (Face f : cdt_.finite_face_handles()) {
+    if (f->info()) stack.push_back(f);
+  }
+  // Every flip takes a flat triangle away; where four points are nearly in line it may come back.
+  for (std::size_t left = 2 * stack.size(); !stack.empty() && left > 0;) {
+    Face f = stack.back();
+    stack.pop_back();
+    for (int i = 0; i < 3; ++i) {
+      const Vec2 a = positionOf(f->vertex(Cdt::ccw(i)));
+      const Vec2 b = positionOf(f->vertex(Cdt::cw(i)));
+      if (f->is_constrained(i) ||
+          heightOver(positionOf(f->vertex(i)), a, b) > 0.5 * region_.clearance ||
+          !isFlippable(f, i)) {
+        continue;
+      }
+      const Face other = f->neighbor(i);
+      cdt_.flip(f, i);
+      --left;
+      stack.push_back(f);
+      stack.push_back(other);
+      break;
+    }
+  }
+}
+
 double RegionMesher::longestPiece() const {
   double longest = 0;
   const auto measure = [&](Index a, Index b) {
@@ -406,6 +455,6 @@ std::vector<std::array<Index, 3>> RegionMesher::triangles() const {
 
 }  // namespace
 
-RegionMesh meshRegion(const Region& region) { return RegionMesher(region).run(); }
+std::optional<RegionMesh> meshRegion(const Region& region) { return RegionMesher(region).run(); }
 
 }  // namespace radiosity

@@ -143,7 +143,7 @@ std::vector<Index> EdgeTable::merge(const std::vector<Index>& target) {
 }
 
 std::vector<Index> EdgeTable::replace(Index edge, const std::vector<Index>& path) {
-  const Edge old = std::exchange(edges_[edge], Edge{edges_[edge].a, edges_[edge].b, {}, {}});
+  Edge old = std::exchange(edges_[edge], Edge{edges_[edge].a, edges_[edge].b, {}, {}});
   std::vector<Index> out;
   for (std::size_t k = 0; k + 1 < path.size(); ++k) {
     if (path[k] == path[k + 1]) continue;
@@ -151,6 +151,7 @@ std::vector<Index> EdgeTable::replace(Index edge, const std::vector<Index>& path
     for (const Index plane : old.contacts) addContact(path[k], path[k + 1], plane);
     out.push_back(obtain(path[k], path[k + 1]));
   }
+  replaced_.push_back(std::move(old));
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "mesh/box_pairs.h"
@@ -54,6 +55,8 @@ class EdgeTable {
   std::vector<Index> split(Index edge, const std::vector<Index>& between);
   /// Replaces every vertex v by target[v]; returns the edges that came of it.
   std::vector<Index> merge(const std::vector<Index>& target);
+  /// Edges that have been replaced since the last call, as they were, in no order.
+  std::vector<Edge> takeReplaced() { return std::exchange(replaced_, {}); }
 
   const Edge& operator[](Index e) const { return edges_[e]; }
   std::size_t size() const { return edges_.size(); }
@@ -63,6 +66,7 @@ class EdgeTable {
   std::vector<Index> replace(Index edge, const std::vector<Index>& path);
 
   std::vector<Edge> edges_;
+  std::vector<Edge> replaced_;
   std::unordered_map<std::uint64_t, Index> index_;
 };
 

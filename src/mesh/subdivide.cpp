@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <set>
 
 #include "base/parallel.h"
 #include "mesh/complex.h"
@@ -55,27 +56,21 @@ double outlineOf(const CoarseComplex& complex) {
 
 class Subdivision {
  public:
-  Subdivision(const CoarseComplex& complex, const Scene& scene, Progress& progress)
-      : complex_(complex), scene_(scene), progress_(progress), cuts_(complex) {}
+  Subdivision(const CoarseComplex& complex, Progress& progress)
+      : complex_(complex), progress_(progress), cuts_(complex) {}
 
   /// Cells of every polygon; returns how many there are.
   std::size_t run(const CellSize& size, Rounding rounding, double spacing) {
-    progress_.check();
-    progress_.begin("cutting into patches", complex_.polygons.size());
-    cuts_.cut(std::isfinite(size.longest) ? size.longest : size.size, rounding, spacing);
-    cells_.assign(complex_.polygons.size(), {});
-    parallelFor(cells_.size(), 16, [&](std::size_t p) {
-      if (cellSource(complex_, p) != p) return;
-      try {
-        cells_[p] = cellsOf(complex_, cuts_, p, size);
-      } catch (const RunError& error) {
-        throw RunError(fmt::format("surface {}: polygon {}: {}",
-                                   scene_.surfaces[complex_.polygons[p].surface].name, p,
-                                   error.what()));
+    for (;;) {
+      cuts_.cut(std::isfinite(size.longest) ? size.longest : size.size, rounding, spacing);
+      const std::vector<Index> crossed = cutPolygons(size);
+      if (crossed.empty()) break;
+      for (const Index p : crossed) {
+        if (whole_.count(p) > 0) throw RunError(fmt::format("polygon {} crosses itself", p));
+        cuts_.keepWhole(p);
       }
-      progress_.advance();
-    });
-    progress_.end();
+      whole_.insert(crossed.begin(), crossed.end());
+    }
     count_ = 0;
     for (std::size_t p = 0; p < cells_.size(); ++p) {
       count_ += cells_[cellSource(complex_, p)].cells.size();
@@ -83,6 +78,8 @@ class Subdivision {
     return count_;
   }
 
+  /// Polygons whose edges are not cut, for they lie too near to each other.
+  const std::set<Index>& whole() const { return whole_; }
   void findOpposites(double largest) { cuts_.findOpposites(largest); }
   bool hasOpposites() const { return cuts_.hasOpposites(); }
   double count() const { return double(count_); }
@@ -90,10 +87,34 @@ class Subdivision {
   const std::vector<PolygonCells>& cells() const { return cells_; }
 
  private:
+  /// Fills cells_; returns the polygons, ascending, that have none, since their edges cross as cut.
+  std::vector<Index> cutPolygons(const CellSize& size) {
+    progress_.check();
+    progress_.begin("cutting into patches", complex_.polygons.size());
+    cells_.assign(complex_.polygons.size(), {});
+    std::vector<char> crossed(cells_.size(), 0);
+    parallelFor(cells_.size(), 16, [&](std::size_t p) {
+      if (progress_.cancelled() || cellSource(complex_, p) != p) return;
+      if (auto cells = cellsOf(complex_, cuts_, p, size)) {
+        cells_[p] = std::move(*cells);
+      } else {
+        crossed[p] = 1;
+      }
+      progress_.advance();
+    });
+    progress_.check();
+    progress_.end();
+    std::vector<Index> out;
+    for (Index p = 0; p < crossed.size(); ++p) {
+      if (crossed[p]) out.push_back(p);
+    }
+    return out;
+  }
+
   const CoarseComplex& complex_;
-  const Scene& scene_;
   Progress& progress_;
   EdgeCuts cuts_;
+  std::set<Index> whole_;
   std::vector<PolygonCells> cells_;
   std::size_t count_ = 0;
 };
@@ -152,7 +173,7 @@ PatchMesh subdivide(const CoarseComplex& complex, const Scene& scene, const Mesh
   if (complex.polygons.empty() || !(area > 0)) {
     throw InputError(fmt::format("{}: no face has an area", scene.file));
   }
-  Subdivision subdivision(complex, scene, progress);
+  Subdivision subdivision(complex, progress);
   if (options.max_edge > 0) {
     refuseTooMany(area, options.max_edge);
     subdivision.findOpposites(options.max_edge);

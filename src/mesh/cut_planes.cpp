@@ -1,0 +1,168 @@
+#include "mesh/cut_planes.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+#include "base/parallel.h"
+
+namespace radiosity {
+
+namespace {
+
+/// Rounds of making edges meet that cross only in the image of a plane: one is the rule, more are
+/// rare. From kPatience on, a vertex that an edge is to be led through becomes one with the edge's
+/// end if that is as near as a coincidence or two: there are ever fewer vertices then. What has not
+/// ended after kRounds is given up.
+constexpr int kPatience = 4;
+constexpr int kRounds = 40;
+
+class PlaneCuts {
+ public:
+  PlaneCuts(InputFaces& input, const std::vector<Plane>& planes, const std::vector<Sheet>& sheets,
+            EdgeTable& edges, Progress& progress)
+      : input_(input),
+        planes_(planes),
+        sheets_(sheets),
+        edges_(edges),
+        progress_(progress),
+        cuts_(planes.size()),
+        stale_(planes.size(), true) {}
+
+  std::vector<Index> run();
+  Arrangement arrangement();
+
+ private:
+  void markStale();
+  void cutStale();
+  Repairs repairs();
+  Repairs collapse(const Repairs& repairs) const;
+  std::vector<std::vector<Index>> edgesByPlane() const;
+
+  InputFaces& input_;
+  const std::vector<Plane>& planes_;
+  const std::vector<Sheet>& sheets_;
+  EdgeTable& edges_;
+  Progress& progress_;
+  std::vector<PlaneCut> cuts_;
+  std::vector<bool> stale_;
+};
+
+std::vector<Index> PlaneCuts::run() {
+  Repairs wanted;
+  for (int round = 0; round < kRounds; ++round) {
+    splitEdges(input_.points, input_.coincidence, edges_, wanted, progress_);
+    markStale();
+    cutStale();
+    wanted = repairs();
+    if (round >= kPatience) wanted = collapse(wanted);
+    if (wanted.empty()) break;
+  }
+  std::vector<Index> stuck;
+  for (Index p = 0; p < cuts_.size(); ++p) {
+    if (!cuts_[p].done) stuck.push_back(p);
+  }
+  return stuck;
+}
+
+/// Marks the planes with an edge that was replaced.
+void PlaneCuts::markStale() {
+  for (const Edge& edge : edges_.takeReplaced()) {
+    for (const EdgeUse& use : edge.uses) stale_[sheets_[use.sheet].plane] = true;
+    for (const Index plane : edge.contacts) stale_[plane] = true;
+  }
+}
+
+/// The edges in each stale plane, ascending.
+std::vector<std::vector<Index>> PlaneCuts::edgesByPlane() const {
+  std::vector<std::vector<Index>> own(planes_.size());
+  for (Index e = 0; e < edges_.size(); ++e) {
+    const auto enter = [&](Index plane) {
+      if (!stale_[plane] || (!own[plane].empty() && own[plane].back() == e)) return;
+      own[plane].push_back(e);
+    };
+    for (const EdgeUse& use : edges_[e].uses) enter(sheets_[use.sheet].plane);
+    for (const Index plane : edges_[e].contacts) enter(plane);
+  }
+  return own;
+}
+
+void PlaneCuts::cutStale() {
+  const auto own = edgesByPlane();
+  std::vector<Index> which;
+  for (Index p = 0; p < planes_.size(); ++p) {
+    if (stale_[p]) which.push_back(p);
+  }
+  progress_.begin("planes", which.size());
+  parallelFor(which.size(), 16, [&](std::size_t k) {
+    if (progress_.cancelled()) return;
+    const Index p = which[k];
+    cuts_[p] = cutPlane(input_.points, planes_, p, sheets_, edges_, own[p]);
+    progress_.advance();
+  });
+  progress_.check();
+  progress_.end();
+  stale_.assign(planes_.size(), false);
+}
+
+/// What the planes ask for, in their order.
+Repairs PlaneCuts::repairs() {
+  Repairs out;
+  for (PlaneCut& cut : cuts_) {
+    if (cut.done) continue;
+    const auto& more = cut.unresolved;
+    out.splits.insert(out.splits.end(), more.splits.begin(), more.splits.end());
+    out.merges.insert(out.merges.end(), more.merges.begin(), more.merges.end());
+    for (const ImageCrossing& crossing : cut.crossings) {
+      const Index vertex = input_.points.insert(crossing.at);
+      for (const Index e : {crossing.first, crossing.second}) {
+        if (vertex != edges_[e].a && vertex != edges_[e].b) out.splits.push_back({e, vertex});
+      }
+    }
+  }
+  return out;
+}
+
+Repairs PlaneCuts::collapse(const Repairs& repairs) const {
+  const WeldedPoints& points = input_.points;
+  Repairs out;
+  out.merges = repairs.merges;
+  for (const ForcedSplit& s : repairs.splits) {
+    const Edge& edge = edges_[s.edge];
+    const double to_a = glm::distance(points[s.vertex], points[edge.a]);
+    const double to_b = glm::distance(points[s.vertex], points[edge.b]);
+    if (std::min(to_a, to_b) < 2.0 * input_.coincidence) {
+      out.merges.push_back({s.vertex, to_a <= to_b ? edge.a : edge.b});
+    } else {
+      out.splits.push_back(s);
+    }
+  }
+  return out;
+}
+
+Arrangement PlaneCuts::arrangement() {
+  Arrangement out;
+  out.sides.resize(edges_.size());
+  for (PlaneCut& cut : cuts_) {
+    const Index first = Index(out.cells.size());
+    const auto shifted = [&](Index cell) { return cell == kNone ? kNone : first + cell; };
+    for (PlaneCell& cell : cut.cells) out.cells.push_back(std::move(cell));
+    for (const auto& [edge, sides] : cut.sides) {
+      out.sides[edge].push_back({sides.plane, shifted(sides.left), shifted(sides.right)});
+    }
+    out.inverted.insert(out.inverted.end(), cut.inverted.begin(), cut.inverted.end());
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<Index> cutPlanes(InputFaces& input, const std::vector<Plane>& planes,
+                             const std::vector<Sheet>& sheets, EdgeTable& edges, Arrangement& out,
+                             Progress& progress) {
+  PlaneCuts cuts(input, planes, sheets, edges, progress);
+  const std::vector<Index> stuck = cuts.run();
+  if (stuck.empty()) out = cuts.arrangement();
+  return stuck;
+}
+
+}  // namespace radiosity
