@@ -2,8 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <numeric>
+#include <span>
+#include <unordered_map>
 
+#include "mesh/edge_rows.h"
 #include "mesh/plane_image.h"
 
 namespace radiosity {
@@ -18,41 +23,113 @@ double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
   return glm::distance(p, a + t * d);
 }
 
+// Sheets with more edges than this are looked at by rows.
+constexpr std::size_t kManyEdges = 64;
+
+/// Where the points of a sheet lie to a plane.
+struct Sides {
+  bool above = false;
+  bool below = false;
+  bool on = false;
+
+  void add(double distance, double eps) {
+    above = above || distance > eps;
+    below = below || distance < -eps;
+    on = on || std::abs(distance) <= eps;
+  }
+  /// Not all on one side, and not all along the plane.
+  bool meets() const { return (above && below) || (on && (above || below)); }
+};
+
 class ContactFinder {
  public:
-  ContactFinder(InputFaces& input, const std::vector<Plane>& planes, EdgeTable& edges)
-      : input_(input), planes_(planes), edges_(edges) {}
+  ContactFinder(InputFaces& input, const std::vector<Plane>& planes,
+                const std::vector<Sheet>& sheets, EdgeTable& edges);
 
-  void pair(const Sheet& f, const Sheet& g);
+  void pair(Index f, Index g);
 
  private:
-  bool addTraces(const Sheet& sheet, const Plane& plane, std::vector<Vec3>& points) const;
-  Place place(const Vec3& p, const Sheet& sheet) const;
+  std::span<const Index> edgesBeside(Index sheet, const Box3& box);
+  Sides sidesOf(Index sheet, const Plane& plane) const;
+  bool addTraces(Index sheet, Index other, std::vector<Vec3>& points);
+  Place place(const Vec3& p, Index sheet) const;
+  std::span<const Index> edgesAt(Index sheet, const Vec2& q) const;
   void add(const Vec3& from, const Vec3& to, Index plane);
 
   InputFaces& input_;
   const std::vector<Plane>& planes_;
+  const std::vector<Sheet>& sheets_;
   EdgeTable& edges_;
+  std::unordered_map<Index, EdgeRows> rows_;  ///< of sheets with many edges
+  std::vector<Index> all_;                    ///< 0, 1, 2, ...: all edges of any other sheet
+  std::vector<Index> beside_;
 };
 
-/// The points where the border of `sheet` meets `plane`: vertices within coincidence of it, and
-/// crossings of edges. False if there are none, or if the whole sheet lies along the plane.
-bool ContactFinder::addTraces(const Sheet& sheet, const Plane& plane,
-                              std::vector<Vec3>& points) const {
-  const double eps = input_.coincidence;
-  bool above = false;
-  bool below = false;
-  bool on = false;
-  for (const auto& [from, to] : sheet.edges) {
-    const double d = plane.distance(input_.points[from]);
-    above = above || d > eps;
-    below = below || d < -eps;
-    on = on || std::abs(d) <= eps;
+ContactFinder::ContactFinder(InputFaces& input, const std::vector<Plane>& planes,
+                             const std::vector<Sheet>& sheets, EdgeTable& edges)
+    : input_(input), planes_(planes), sheets_(sheets), edges_(edges), all_(kManyEdges) {
+  std::iota(all_.begin(), all_.end(), Index(0));
+  for (Index s = 0; s < sheets.size(); ++s) {
+    if (sheets[s].edges.size() <= kManyEdges) continue;
+    rows_.try_emplace(s, input.points, PlaneImage(planes[sheets[s].plane].normal), sheets[s].edges,
+                      2.0 * input.coincidence);
   }
-  if (!(above && below) && !(on && (above || below))) return false;
-  for (const auto& [from, to] : sheet.edges) {
-    const Vec3& a = input_.points[from];
-    const Vec3& b = input_.points[to];
+}
+
+/// The edges of a sheet that may meet a box.
+std::span<const Index> ContactFinder::edgesBeside(Index sheet, const Box3& box) {
+  const auto rows = rows_.find(sheet);
+  if (rows == rows_.end()) return std::span(all_).first(sheets_[sheet].edges.size());
+  const PlaneImage image(planes_[sheets_[sheet].plane].normal);
+  const auto [low, high] = std::minmax(image(box.low).y, image(box.high).y);
+  beside_ = rows->second.between(low - input_.coincidence, high + input_.coincidence);
+  return beside_;
+}
+
+/// The edges of a sheet that may be near a point of its image, or to the right of it.
+std::span<const Index> ContactFinder::edgesAt(Index sheet, const Vec2& q) const {
+  const auto rows = rows_.find(sheet);
+  if (rows == rows_.end()) return std::span(all_).first(sheets_[sheet].edges.size());
+  return rows->second.at(q.y);
+}
+
+/// Of a sheet with many edges the four corners of its box, as they lie in its plane, tell enough,
+/// unless it is nearly along the other plane: the box reaches a few times as far as the sheet.
+Sides ContactFinder::sidesOf(Index number, const Plane& plane) const {
+  const double eps = input_.coincidence;
+  const Sheet& sheet = sheets_[number];
+  Sides out;
+  if (rows_.count(number) > 0) {
+    const PlaneImage image(planes_[sheet.plane].normal);
+    const Vec3& inside = input_.points[sheet.edges[0][0]];
+    const Vec2 low = image(sheet.box.low);
+    const Vec2 high = image(sheet.box.high);
+    Sides far;
+    for (const Vec2& q : {low, Vec2(low.x, high.y), Vec2(high.x, low.y), high}) {
+      const double d = plane.distance(image.lift(q, inside, planes_[sheet.plane].normal));
+      out.add(d, eps);
+      far.add(d, 4.0 * eps);
+    }
+    if (far.above || far.below) return out;
+    out = {};
+  }
+  for (const auto& [from, to] : sheet.edges) out.add(plane.distance(input_.points[from]), eps);
+  return out;
+}
+
+/// The points where the border of a sheet meets the plane of another one, as far as it is beside
+/// that: vertices within coincidence of it, and crossings of edges. False if the sheet does not
+/// reach the plane, or if all of it lies along the plane.
+bool ContactFinder::addTraces(Index number, Index other, std::vector<Vec3>& points) {
+  const double eps = input_.coincidence;
+  const Sheet& sheet = sheets_[number];
+  const Plane& plane = planes_[sheets_[other].plane];
+  if (!sidesOf(number, plane).meets()) return false;
+  const Box3 beside = sheets_[other].box.grown(2.0 * eps);
+  for (const Index k : edgesBeside(number, sheets_[other].box)) {
+    const Vec3& a = input_.points[sheet.edges[k][0]];
+    const Vec3& b = input_.points[sheet.edges[k][1]];
+    if (!beside.meets(Box3{glm::min(a, b), glm::max(a, b)})) continue;
     const double da = plane.distance(a);
     const double db = plane.distance(b);
     if (std::abs(da) <= eps) points.push_back(a);
@@ -65,14 +142,15 @@ bool ContactFinder::addTraces(const Sheet& sheet, const Plane& plane,
 }
 
 /// Even-odd in the plane's image; the border is everything closer than coincidence to an edge.
-Place ContactFinder::place(const Vec3& p, const Sheet& sheet) const {
+Place ContactFinder::place(const Vec3& p, Index number) const {
+  const Sheet& sheet = sheets_[number];
   if (!sheet.box.grown(input_.coincidence).contains(p)) return Place::outside;
   const PlaneImage frame(planes_[sheet.plane].normal);
   const Vec2 q = frame(p);
   bool inside = false;
-  for (const auto& [from, to] : sheet.edges) {
-    const Vec3& a3 = input_.points[from];
-    const Vec3& b3 = input_.points[to];
+  for (const Index k : edgesAt(number, q)) {
+    const Vec3& a3 = input_.points[sheet.edges[k][0]];
+    const Vec3& b3 = input_.points[sheet.edges[k][1]];
     if (distanceToSegment(p, a3, b3) <= input_.coincidence) return Place::border;
     const Vec2 a = frame(a3);
     const Vec2 b = frame(b3);
@@ -91,9 +169,9 @@ void ContactFinder::add(const Vec3& from, const Vec3& to, Index plane) {
 
 /// Both sheets' traces lie on one line, where the planes meet. Between neighbouring traces
 /// neither sheet begins or ends, so one look in the middle tells what is there.
-void ContactFinder::pair(const Sheet& f, const Sheet& g) {
+void ContactFinder::pair(Index f, Index g) {
   std::vector<Vec3> points;
-  if (!addTraces(f, planes_[g.plane], points) || !addTraces(g, planes_[f.plane], points)) return;
+  if (!addTraces(f, g, points) || !addTraces(g, f, points) || points.empty()) return;
   const auto farther = [](const Vec3& from) {
     return [from](const Vec3& a, const Vec3& b) {
       return glm::distance(a, from) < glm::distance(b, from);
@@ -111,8 +189,8 @@ void ContactFinder::pair(const Sheet& f, const Sheet& g) {
     const Place in_f = place(middle, f);
     const Place in_g = in_f == Place::outside ? Place::outside : place(middle, g);
     if (in_g == Place::outside) continue;
-    if (in_f == Place::inside) add(points[k], points[k + 1], f.plane);
-    if (in_g == Place::inside) add(points[k], points[k + 1], g.plane);
+    if (in_f == Place::inside) add(points[k], points[k + 1], sheets_[f].plane);
+    if (in_g == Place::inside) add(points[k], points[k + 1], sheets_[g].plane);
   }
 }
 
@@ -125,10 +203,10 @@ void addContacts(InputFaces& input, const std::vector<Plane>& planes,
   for (const Sheet& sheet : sheets) boxes.push_back(sheet.box.grown(input.coincidence));
   const auto pairs = overlappingPairs(boxes);
   progress.begin("contacts", pairs.size());
-  ContactFinder finder(input, planes, edges);
+  ContactFinder finder(input, planes, sheets, edges);
   for (const auto& [f, g] : pairs) {
     progress.check();
-    if (sheets[f].plane != sheets[g].plane) finder.pair(sheets[f], sheets[g]);
+    if (sheets[f].plane != sheets[g].plane) finder.pair(f, g);
     progress.advance();
   }
   progress.end();

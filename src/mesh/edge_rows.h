@@ -1,0 +1,35 @@
+// The edges of one sheet by rows of its plane's image, so that a look at a place costs the edges in
+// its row and not all of them.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "mesh/plane_image.h"
+#include "mesh/welded_points.h"
+
+namespace radiosity {
+
+class EdgeRows {
+ public:
+  /// `margin`, metres: an edge belongs to all rows it is that near to. Rows are narrow enough to
+  /// hold few edges each, as long as all together hold each edge a few times.
+  EdgeRows(const WeldedPoints& points, const PlaneImage& image,
+           const std::vector<std::array<Index, 2>>& edges, double margin);
+
+  /// Numbers of the edges near a row's part of the image, ascending.
+  std::span<const Index> at(double y) const;
+  /// Numbers of all edges in the rows from `low` to `high`, ascending, each once.
+  std::vector<Index> between(double low, double high) const;
+
+ private:
+  std::size_t row(double y) const;
+
+  double low_ = 0;
+  double rows_per_metre_ = 0;
+  std::vector<std::size_t> begin_;  ///< rows + 1, into edges_
+  std::vector<Index> edges_;
+};
+
+}  // namespace radiosity
