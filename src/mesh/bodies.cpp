@@ -1,12 +1,19 @@
 #include "mesh/bodies.h"
 
-#include <algorithm>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/convex_hull_3.h>
+
+#include <array>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <map>
 
 namespace radiosity {
 
 namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 /// How the cells of another component lie to a closed one.
 struct Relation {
@@ -37,15 +44,31 @@ std::map<std::pair<Index, Index>, Relation> relations(const Arrangement& arrange
   return out;
 }
 
+/// A closed surface is convex if it encloses what its convex hull does, but for a shell one
+/// coincidence thick: n log n.
 bool isConvex(const Component& component, double coincidence) {
-  return std::all_of(component.triangles.begin(), component.triangles.end(), [&](const auto& t) {
-    const Vec3 n = glm::cross(t[1] - t[0], t[2] - t[0]);
-    const double limit = coincidence * glm::length(n);
-    return std::all_of(component.triangles.begin(), component.triangles.end(), [&](const auto& o) {
-      return std::all_of(o.begin(), o.end(),
-                         [&](const Vec3& p) { return glm::dot(p - t[0], n) <= limit; });
-    });
-  });
+  std::vector<Kernel::Point_3> points;
+  const Vec3& base = component.triangles.front()[0];
+  double volume = 0;
+  for (const auto& t : component.triangles) {
+    for (const Vec3& p : t) points.emplace_back(p.x - base.x, p.y - base.y, p.z - base.z);
+    volume += glm::dot(t[0] - base, glm::cross(t[1] - base, t[2] - base)) / 6.0;
+  }
+  CGAL::Surface_mesh<Kernel::Point_3> hull;
+  CGAL::convex_hull_3(points.begin(), points.end(), hull);
+  double hull_volume = 0;
+  double hull_area = 0;
+  for (const auto f : hull.faces()) {
+    std::array<Vec3, 3> t;
+    std::size_t k = 0;
+    for (const auto v : hull.vertices_around_face(hull.halfedge(f))) {
+      const auto& p = hull.point(v);
+      if (k < 3) t[k++] = Vec3(p.x(), p.y(), p.z());
+    }
+    hull_volume += glm::dot(t[0], glm::cross(t[1], t[2])) / 6.0;
+    hull_area += 0.5 * glm::length(glm::cross(t[1] - t[0], t[2] - t[0]));
+  }
+  return std::abs(hull_volume - volume) <= coincidence * hull_area;
 }
 
 double diagonal(const Component& c) { return glm::distance(c.box.low, c.box.high); }

@@ -11,8 +11,9 @@
 namespace radiosity {
 
 /// Triangles that tile a simple polygon in the plane (counter-clockwise or clockwise; they turn
-/// the same way), by ear clipping: n - 2 of them. Collinear and repeated corners are allowed and
-/// may give triangles without area. O(n^2).
+/// the same way): n - 2 of them. Collinear and repeated corners are allowed and may give triangles
+/// without area. Few corners are clipped as ears, many triangulated in n log n unless the outline
+/// touches or crosses itself.
 std::vector<std::array<Index, 3>> triangulateOutline(std::span<const Vec2> outline);
 
 /// Some faces of a scene, flattened onto one plane.

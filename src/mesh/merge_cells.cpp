@@ -71,9 +71,11 @@ class Merger {
   void accountForStraightening();
   void countHiddenSides();
   std::vector<Index> sheetsOf(const Draft& draft) const;
-  std::vector<Index> facesOf(const Draft& draft) const;
+  std::vector<std::vector<Index>> facesByDraft() const;
+  std::vector<std::pair<Index, Index>> facesBeside(const std::vector<Index>& faces,
+                                                   const std::vector<Index>& drafts) const;
   std::vector<Vec3> numberVertices();
-  CoarsePolygon polygonOf(const Draft& draft) const;
+  CoarsePolygon polygonOf(const Draft& draft, std::vector<Index> faces) const;
   std::vector<CoarsePolygon> polygons();
   bool isCutThere(const EdgeSides& sides) const;
   const std::vector<Index>& recordsOf(Index cell) const {
@@ -97,8 +99,7 @@ class Merger {
   std::vector<Index> needed_;         ///< edges of some polygon
   std::vector<Index> needed_number_;  ///< by edge: place in needed_
   StraightEdges straight_;
-  std::vector<Index> number_;                   ///< by point: vertex of the complex
-  std::vector<std::size_t> polygons_of_sheet_;  ///< how many a sheet is part of
+  std::vector<Index> number_;  ///< by point: vertex of the complex
 };
 
 void Merger::indexRecords() {
@@ -358,21 +359,53 @@ std::vector<Index> Merger::sheetsOf(const Draft& draft) const {
   return out;
 }
 
-/// The scene's faces under a polygon.
-std::vector<Index> Merger::facesOf(const Draft& draft) const {
-  Box3 box;
-  for (const Index v : draft.loops[0]) box.add(input_.points[v]);
-  box = box.grown(input_.coincidence);
-  std::vector<Index> out;
-  for (const Index s : sheetsOf(draft)) {
-    for (const Index f : sheets_[s].faces) {
-      Box3 face;
-      for (const Index v : input_.faces[f].loop) face.add(input_.points[v]);
-      if (polygons_of_sheet_[s] == 1 || face.meets(box)) out.push_back(input_.faces[f].source);
+/// By draft the scene's faces under it: of a sheet that several drafts share, those beside it.
+std::vector<std::vector<Index>> Merger::facesByDraft() const {
+  std::vector<std::vector<Index>> drafts_of(sheets_.size());
+  for (std::size_t d = 0; d < drafts_.size(); ++d) {
+    if (drafts_[d].loops.empty()) continue;
+    for (const Index s : sheetsOf(drafts_[d])) drafts_of[s].push_back(Index(d));
+  }
+  std::vector<std::vector<Index>> out(drafts_.size());
+  for (std::size_t s = 0; s < sheets_.size(); ++s) {
+    const std::vector<Index>& drafts = drafts_of[s];
+    const std::vector<Index>& faces = sheets_[s].faces;
+    if (drafts.size() == 1) {
+      for (const Index f : faces) out[drafts[0]].push_back(input_.faces[f].source);
+    } else if (drafts.size() > 1) {
+      for (const auto& [face, draft] : facesBeside(faces, drafts)) {
+        out[draft].push_back(input_.faces[face].source);
+      }
     }
   }
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
+  for (auto& faces : out) {
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  }
+  return out;
+}
+
+/// Pairs of a face and a draft whose boxes meet.
+std::vector<std::pair<Index, Index>> Merger::facesBeside(const std::vector<Index>& faces,
+                                                         const std::vector<Index>& drafts) const {
+  std::vector<Box3> boxes;
+  const auto add = [&](const std::vector<Index>& loop, double margin) {
+    Box3 box;
+    for (const Index v : loop) box.add(input_.points[v]);
+    boxes.push_back(box.grown(margin));
+  };
+  for (const Index f : faces) add(input_.faces[f].loop, 0.0);
+  std::vector<Index> some;
+  for (const Index d : drafts) {
+    some.push_back(Index(boxes.size()));
+    add(drafts_[d].loops[0], input_.coincidence);
+  }
+  std::vector<std::pair<Index, Index>> out;
+  for (const auto& [face, draft] : overlappingPairs(boxes, some)) {
+    if (face < faces.size() && draft >= faces.size()) {
+      out.emplace_back(faces[face], drafts[draft - faces.size()]);
+    }
+  }
   return out;
 }
 
@@ -396,7 +429,7 @@ std::vector<Vec3> Merger::numberVertices() {
   return out;
 }
 
-CoarsePolygon Merger::polygonOf(const Draft& draft) const {
+CoarsePolygon Merger::polygonOf(const Draft& draft, std::vector<Index> faces) const {
   CoarsePolygon p;
   for (std::vector<Index> loop : draft.loops) {
     for (Index& v : loop) v = number_[v];
@@ -414,19 +447,17 @@ CoarsePolygon Merger::polygonOf(const Draft& draft) const {
   p.normal = planes_[draft.plane].normal * (draft.kind.up ? 1.0 : -1.0);
   p.surface = draft.kind.surface;
   p.back = draft.kind.both;
-  p.faces = facesOf(draft);
+  p.faces = std::move(faces);
   return p;
 }
 
 /// The polygons, in an order that does not depend on the order of the file's faces.
 std::vector<CoarsePolygon> Merger::polygons() {
-  polygons_of_sheet_.assign(sheets_.size(), 0);
-  for (const Draft& draft : drafts_) {
-    for (const Index s : sheetsOf(draft)) ++polygons_of_sheet_[s];
-  }
+  auto faces = facesByDraft();
   std::vector<std::pair<CoarsePolygon, Index>> made;
   for (std::size_t d = 0; d < drafts_.size(); ++d) {
-    if (!drafts_[d].loops.empty()) made.emplace_back(polygonOf(drafts_[d]), Index(d));
+    if (!drafts_[d].loops.empty())
+      made.emplace_back(polygonOf(drafts_[d], std::move(faces[d])), Index(d));
   }
   std::sort(made.begin(), made.end(), [](const auto& a, const auto& b) {
     return std::tie(a.first.surface, a.first.loops) < std::tie(b.first.surface, b.first.loops);

@@ -1,26 +1,13 @@
 #include "mesh/winding.h"
 
-#include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
-#include <numbers>
+#include <numeric>
 
+#include "mesh/box_pairs.h"
 #include "mesh/union_find.h"
+#include "mesh/winding_tree.h"
 
 namespace radiosity {
-
-double solidAngle(const Vec3& from, const std::array<Vec3, 3>& triangle) {
-  const Vec3 a = triangle[0] - from;
-  const Vec3 b = triangle[1] - from;
-  const Vec3 c = triangle[2] - from;
-  const double la = glm::length(a);
-  const double lb = glm::length(b);
-  const double lc = glm::length(c);
-  const double numerator = glm::dot(a, glm::cross(b, c));
-  const double denominator =
-      la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
-  return 2.0 * std::atan2(numerator, denominator);
-}
 
 namespace {
 
@@ -63,24 +50,11 @@ double ownPlane(const PlaneCell& cell, Side side, Index component, const std::ve
   return sum;
 }
 
-double farPlanes(const PlaneCell& cell, const Component& component) {
-  double sum = 0;
-  for (std::size_t t = 0; t < component.triangles.size(); ++t) {
-    if (component.triangle_plane[t] == cell.plane) continue;
-    sum += solidAngle(cell.sample, component.triangles[t]);
-  }
-  return sum / (4.0 * std::numbers::pi);
-}
-
 }  // namespace
 
 Winding::Winding(const Arrangement& arrangement, const std::vector<Sheet>& sheets,
                  const Components& components, double coincidence) {
   const auto& cells = arrangement.cells;
-  std::vector<Index> closed;
-  for (std::size_t c = 0; c < components.list.size(); ++c) {
-    if (components.list[c].closed) closed.push_back(Index(c));
-  }
   UnionFind joined = joinSpaces(arrangement);
   // Each space is looked at from the roomiest of its cells.
   std::vector<Index> best(2 * cells.size(), kNone);
@@ -89,23 +63,47 @@ Winding::Winding(const Arrangement& arrangement, const std::vector<Sheet>& sheet
     if (b == kNone || cells[k / 2].room > cells[b / 2].room) b = k;
   }
   space_.resize(2 * cells.size());
+  std::vector<Index> eyes;  // by space: 2 cell + side
   std::vector<Index> number(2 * cells.size(), kNone);
   for (Index k = 0; k < 2 * cells.size(); ++k) {
     const Index root = joined.find(k);
     if (number[root] == kNone) {
-      number[root] = Index(spaces_.size());
-      spaces_.emplace_back();
-      const PlaneCell& cell = cells[best[root] / 2];
-      const Side side = best[root] % 2 == 0 ? kAbove : kBelow;
-      for (const Index c : closed) {
-        const Component& component = components.list[c];
-        if (!component.box.grown(coincidence).contains(cell.sample)) continue;
-        const double w = farPlanes(cell, component) + ownPlane(cell, side, c, sheets, components);
-        const int whole = int(std::lround(w));
-        if (whole != 0) spaces_.back().push_back({c, whole});
-      }
+      number[root] = Index(eyes.size());
+      eyes.push_back(best[root]);
     }
     space_[k] = number[root];
+  }
+  spaces_.resize(eyes.size());
+  lookAround(eyes, arrangement, sheets, components, coincidence);
+}
+
+/// Fills spaces_ by what is seen from each space's eye.
+void Winding::lookAround(const std::vector<Index>& eyes, const Arrangement& arrangement,
+                         const std::vector<Sheet>& sheets, const Components& components,
+                         double coincidence) {
+  std::vector<Box3> boxes(eyes.size());
+  std::vector<Index> closed;
+  std::vector<WindingTree> trees;
+  for (std::size_t s = 0; s < eyes.size(); ++s) boxes[s].add(arrangement.cells[eyes[s] / 2].sample);
+  for (Index c = 0; c < components.list.size(); ++c) {
+    const Component& component = components.list[c];
+    if (!component.closed) continue;
+    closed.push_back(c);
+    trees.emplace_back(component.triangles, component.triangle_plane);
+    boxes.push_back(component.box.grown(coincidence));
+  }
+  std::vector<Index> bodies(closed.size());
+  std::iota(bodies.begin(), bodies.end(), Index(eyes.size()));
+  // Pairs come by eye first, then by component: entries ascend.
+  for (const auto& [eye, box] : overlappingPairs(boxes, bodies)) {
+    if (eye >= eyes.size() || box < eyes.size()) continue;
+    const std::size_t k = box - eyes.size();
+    const PlaneCell& cell = arrangement.cells[eyes[eye] / 2];
+    const Side side = eyes[eye] % 2 == 0 ? kAbove : kBelow;
+    const double w = trees[k].around(cell.sample, cell.plane) +
+                     ownPlane(cell, side, closed[k], sheets, components);
+    const int whole = int(std::lround(w));
+    if (whole != 0) spaces_[eye].push_back({closed[k], whole});
   }
 }
 

@@ -30,13 +30,12 @@ class Winding {
   }
 
  private:
+  void lookAround(const std::vector<Index>& eyes, const Arrangement& arrangement,
+                  const std::vector<Sheet>& sheets, const Components& components,
+                  double coincidence);
+
   std::vector<Index> space_;                ///< by 2 cell + side
   std::vector<std::vector<Entry>> spaces_;  ///< ascending by component
 };
-
-/// The winding number of closed outward triangles as seen from a point off their planes: the sum
-/// of signed solid angles over 4 pi. The triangle's solid angle: A. van Oosterom, J. Strackee,
-/// "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30 (1983), eq. 8.
-double solidAngle(const Vec3& from, const std::array<Vec3, 3>& triangle);
 
 }  // namespace radiosity
