@@ -32,16 +32,20 @@ std::vector<NumberedBox> numbered(const std::vector<Box3>& boxes, const std::vec
 
 }  // namespace
 
-std::vector<std::pair<Index, Index>> overlappingPairs(const std::vector<Box3>& boxes) {
+std::vector<std::pair<Index, Index>> overlappingPairs(const std::vector<Box3>& boxes,
+                                                      const Progress* progress) {
   std::vector<Index> all(boxes.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = Index(i);
-  return overlappingPairs(boxes, all);
+  return overlappingPairs(boxes, all, progress);
 }
 
 std::vector<std::pair<Index, Index>> overlappingPairs(const std::vector<Box3>& boxes,
-                                                      const std::vector<Index>& some) {
+                                                      const std::vector<Index>& some,
+                                                      const Progress* progress) {
   std::vector<std::pair<Index, Index>> pairs;
+  std::size_t asked = 0;
   const auto found = [&](const NumberedBox& a, const NumberedBox& b) {
+    if (progress != nullptr && ++asked % 65536 == 0) progress->check();
     if (a.id() != b.id()) {
       pairs.emplace_back(Index(std::min(a.id(), b.id())), Index(std::max(a.id(), b.id())));
     }

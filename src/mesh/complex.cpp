@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <map>
 #include <set>
 
 #include "mesh/arrangement.h"
@@ -90,11 +91,15 @@ void accountForWelding(const InputFaces& input, const std::vector<Plane>& planes
       report.surfaces[sheets[sheet].surface].given += layers * cell.area;
     }
   }
-  for (const Index s : inverted) {
+  std::map<Index, std::size_t> crossed;
+  for (const Index s : inverted) ++crossed[sheets[s].surface];
+  for (const auto& [surface, count] : crossed) {
     report.notes.push_back(
-        {Severity::warning, fmt::format("{}: a polygon crosses itself; the part that is turned "
-                                        "over faces the same way as the rest",
-                                        report.surfaces[sheets[s].surface].name)});
+        {Severity::warning,
+         fmt::format("{}: {}; the part that is turned over faces the same way as the rest",
+                     report.surfaces[surface].name,
+                     count == 1 ? "a polygon crosses itself"
+                                : fmt::format("{} polygons cross themselves", count))});
   }
   for (std::size_t s = 0; s < moved.size(); ++s) addMovedArea(report.surfaces[s], moved[s]);
 }
@@ -124,13 +129,15 @@ class Attempt {
         progress_(progress),
         input_(cleanFaces(scene, options, handling, report_)) {}
 
-  /// Fills `complex` and returns an empty list, or returns the faces of the scene that are in the
-  /// way: in planes that cannot be cut, or under polygons that came out broken.
-  std::vector<Index> run(CoarseComplex& complex);
+  /// Fills `complex` and returns true, or gives the faces of the scene that are in the way, in
+  /// planes that cannot be cut or under polygons that came out broken, their next handling: alone
+  /// if they were merged with others and `some_alone`, else as they are.
+  bool run(CoarseComplex& complex, bool some_alone, std::vector<Handling>& handling);
   const MeshReport& report() const { return report_; }
 
  private:
   std::vector<Index> cut();
+  std::vector<Index> merge(CoarseComplex& complex);
 
   const Scene& scene_;
   MeshReport report_;
@@ -142,7 +149,7 @@ class Attempt {
   Arrangement arrangement_;
 };
 
-/// Returns the faces in planes that cannot be cut.
+/// Returns the planes that cannot be cut.
 std::vector<Index> Attempt::cut() {
   progress_.check();
   planes_ = groupByPlane(input_);
@@ -154,27 +161,36 @@ std::vector<Index> Attempt::cut() {
   std::vector<bool> from_file(file_edges);
   for (std::size_t e = 0; e < file_edges; ++e) from_file[e] = edges_[Index(e)].alive();
   addContacts(input_, planes_, sheets_, edges_, progress_);
-  std::vector<Index> faces;
-  for (const Index p : cutPlanes(input_, planes_, sheets_, edges_, arrangement_, progress_)) {
-    for (const Index f : planes_[p].faces) faces.push_back(input_.faces[f].source);
-  }
+  auto stuck = cutPlanes(input_, planes_, sheets_, edges_, arrangement_, progress_);
   report_.split_edges = countSplits(edges_, file_edges, from_file);
-  return faces;
+  return stuck;
 }
 
-std::vector<Index> Attempt::run(CoarseComplex& complex) {
-  std::vector<Index> stuck = cut();
-  if (!stuck.empty()) return stuck;
+/// Returns the planes with polygons that came out broken.
+std::vector<Index> Attempt::merge(CoarseComplex& complex) {
   report_.nonmanifold_edges = countNonManifold(edges_);
   accountForWelding(input_, planes_, sheets_, edges_, arrangement_, report_);
   const Components components = findComponents(input_, planes_, sheets_, edges_, scene_);
   const auto visible = classify(scene_, arrangement_, sheets_, components, input_, report_);
+  std::vector<Index> broken;
   complex =
-      mergeCells(scene_, input_, planes_, sheets_, edges_, arrangement_, visible, report_, stuck);
+      mergeCells(scene_, input_, planes_, sheets_, edges_, arrangement_, visible, report_, broken);
   addUncut(scene_, input_, complex, report_);
   noteHandling(input_, report_);
   noteBuriedSurfaces(complex, report_);
-  return stuck;
+  return broken;
+}
+
+bool Attempt::run(CoarseComplex& complex, bool some_alone, std::vector<Handling>& handling) {
+  std::vector<Index> stuck = cut();
+  if (stuck.empty()) stuck = merge(complex);
+  for (const Index p : stuck) {
+    const bool alone = some_alone && planes_[p].faces.size() > 1;
+    for (const Index f : planes_[p].faces) {
+      handling[input_.faces[f].source] = alone ? Handling::alone : Handling::as_it_is;
+    }
+  }
+  return stuck.empty();
 }
 
 }  // namespace
@@ -185,15 +201,9 @@ CoarseComplex buildComplex(const Scene& scene, const MeshOptions& options, MeshR
   for (int attempts = 1;; ++attempts) {
     Attempt attempt(scene, options, handling, report, progress);
     CoarseComplex complex;
-    const std::vector<Index> stuck = attempt.run(complex);
-    if (stuck.empty()) {
+    if (attempt.run(complex, attempts < kAttemptsAlone, handling)) {
       report = attempt.report();
       return complex;
-    }
-    const std::vector<Handling> before = handling;
-    for (const Index f : stuck) {
-      const bool alone = before[f] == Handling::merged && attempts < kAttemptsAlone;
-      handling[f] = alone ? Handling::alone : Handling::as_it_is;
     }
     if (attempts == kAttempts) handling.assign(handling.size(), Handling::as_it_is);
   }

@@ -81,7 +81,7 @@ std::span<const Index> ContactFinder::edgesBeside(Index sheet, const Box3& box) 
   const auto rows = rows_.find(sheet);
   if (rows == rows_.end()) return std::span(all_).first(sheets_[sheet].edges.size());
   const PlaneImage image(planes_[sheets_[sheet].plane].normal);
-  const auto [low, high] = std::minmax(image(box.low).y, image(box.high).y);
+  const auto [low, high] = std::minmax({image(box.low).y, image(box.high).y});
   beside_ = rows->second.between(low - input_.coincidence, high + input_.coincidence);
   return beside_;
 }
@@ -201,7 +201,7 @@ void addContacts(InputFaces& input, const std::vector<Plane>& planes,
   std::vector<Box3> boxes;
   boxes.reserve(sheets.size());
   for (const Sheet& sheet : sheets) boxes.push_back(sheet.box.grown(input.coincidence));
-  const auto pairs = overlappingPairs(boxes);
+  const auto pairs = overlappingPairs(boxes, &progress);
   progress.begin("contacts", pairs.size());
   ContactFinder finder(input, planes, sheets, edges);
   for (const auto& [f, g] : pairs) {

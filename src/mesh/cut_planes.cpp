@@ -12,9 +12,11 @@ namespace {
 /// Rounds of making edges meet that cross only in the image of a plane: one is the rule, more are
 /// rare. From kPatience on, a vertex that an edge is to be led through becomes one with the edge's
 /// end if that is as near as a coincidence or two: there are ever fewer vertices then. What has not
-/// ended after kRounds is given up.
+/// ended after kRounds is given up, and so is what grows: where many edges are about as long as the
+/// coincidence, each one made to meet another crosses two more.
 constexpr int kPatience = 4;
 constexpr int kRounds = 40;
+constexpr double kGrowth = 2.0;
 
 class PlaneCuts {
  public:
@@ -49,13 +51,16 @@ class PlaneCuts {
 
 std::vector<Index> PlaneCuts::run() {
   Repairs wanted;
+  std::size_t before = 0;
   for (int round = 0; round < kRounds; ++round) {
     splitEdges(input_.points, input_.coincidence, edges_, wanted, progress_);
     markStale();
     cutStale();
     wanted = repairs();
     if (round >= kPatience) wanted = collapse(wanted);
-    if (wanted.empty()) break;
+    const std::size_t count = wanted.splits.size() + wanted.merges.size();
+    if (count == 0 || (round > 0 && double(count) > kGrowth * double(before))) break;
+    before = count;
   }
   std::vector<Index> stuck;
   for (Index p = 0; p < cuts_.size(); ++p) {

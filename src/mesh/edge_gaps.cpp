@@ -16,6 +16,8 @@ struct Segment {
   Vec3 end;
 };
 
+double lengthOf(const Segment& s) { return glm::length(s.end - s.start); }
+
 /// A segment seen from another one: along it and to its left.
 class View {
  public:
@@ -64,11 +66,15 @@ void forGaps(const std::vector<Vec3>& vertices, const Vec3& normal,
   const auto segmentOf = [&](std::size_t k) {
     return Segment{vertices[edges[k].ends[0]], vertices[edges[k].ends[1]]};
   };
-  std::vector<Box3> boxes(edges.size());
+  // The edges' boxes, and once more, grown by how far each one looks.
+  std::vector<Box3> boxes(2 * edges.size());
+  std::vector<Index> looking(edges.size());
   for (std::size_t k = 0; k < edges.size(); ++k) {
-    boxes[k].add(segmentOf(k).start);
-    boxes[k].add(segmentOf(k).end);
-    boxes[k] = boxes[k].grown(0.5 * reach);
+    const Segment segment = segmentOf(k);
+    boxes[k].add(segment.start);
+    boxes[k].add(segment.end);
+    boxes[edges.size() + k] = boxes[k].grown(std::min(reach, 0.5 * lengthOf(segment)));
+    looking[k] = Index(edges.size() + k);
   }
   /// Whether some of b lies where the inside of the polygon at a is.
   const auto faces = [&](std::size_t a, std::size_t b) {
@@ -81,15 +87,17 @@ void forGaps(const std::vector<Vec3>& vertices, const Vec3& normal,
     const View view(segmentOf(a), normal);
     for (const double side : {1.0, -1.0}) {
       if (side < 0 && !edges[a].both_sides) continue;
-      if (const auto gap = gapTo(view, segmentOf(b), side, reach)) found(a, *gap);
+      const double look = std::min(reach, 0.5 * view.length());
+      if (const auto gap = gapTo(view, segmentOf(b), side, look)) found(a, *gap);
     }
   };
-  for (const auto& [a, b] : overlappingPairs(boxes)) {
+  for (const auto& [b, a_grown] : overlappingPairs(boxes, looking)) {
+    if (b >= edges.size()) continue;
+    const std::size_t a = a_grown - edges.size();
     const auto& x = edges[a].ends;
     const auto& y = edges[b].ends;
     if (x[0] == y[0] || x[0] == y[1] || x[1] == y[0] || x[1] == y[1]) continue;
     measure(a, b);
-    measure(b, a);
   }
 }
 

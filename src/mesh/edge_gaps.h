@@ -25,8 +25,8 @@ struct PolygonEdge {
 };
 
 /// Calls found(k, gap) for every part of every edge k that an edge without an end in common faces
-/// from less than `reach` away. A third edge may lie between the two; it then has a smaller gap.
-/// Neighbours are found by a sweep over boxes, not by trying all pairs.
+/// from less than `reach` and half its own length away. A third edge may lie between the two; it
+/// then has a smaller gap. Neighbours are found by a sweep over boxes, not by trying all pairs.
 void forGaps(const std::vector<Vec3>& vertices, const Vec3& normal,
              const std::vector<PolygonEdge>& edges, double reach,
              const std::function<void(std::size_t, const Gap&)>& found);

@@ -24,7 +24,7 @@ EdgeRows::EdgeRows(const WeldedPoints& points, const PlaneImage& image,
   double high = -std::numeric_limits<double>::infinity();
   low_ = -high;
   for (const auto& [a, b] : edges) {
-    const auto [from, to] = std::minmax(image(points[a]).y, image(points[b]).y);
+    const auto [from, to] = std::minmax({image(points[a]).y, image(points[b]).y});
     ranges.push_back({from - margin, to + margin});
     low_ = std::min(low_, ranges.back().low);
     high = std::max(high, ranges.back().high);

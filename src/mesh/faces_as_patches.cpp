@@ -80,7 +80,8 @@ class FacePatches {
     }
     appendBacks(mesh_, two_sided);
     numberWithinSurfaces(mesh_);
-    fillFigures(mesh_, coincidence_, report_);
+    fillFigures(mesh_, report_);
+    report_.t_junctions = countTJunctions(mesh_, coincidence_);
     findings();
     return std::move(mesh_);
   }

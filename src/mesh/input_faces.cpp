@@ -8,9 +8,11 @@
 #include <iterator>
 #include <map>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 
 #include "mesh/box_pairs.h"
+#include "mesh/edge_key.h"
 #include "mesh/face_locator.h"
 #include "mesh/plane_image.h"
 
@@ -48,6 +50,8 @@ class Cleaner {
   std::vector<Index> weldedLoop(std::span<const Index> corners) const;
   void addPlanar(const std::vector<Index>& loop, Index source, double given);
   void addTriangles(const std::vector<Index>& loop, const Vec3& normal, Index source);
+  void noteDeviation(const std::vector<Index>& loop,
+                     const std::vector<std::array<Index, 3>>& triangles);
   bool isThin(const std::vector<Vec3>& polygon) const;
   bool isPlanar(const std::vector<Vec3>& polygon, const Vec3& normal) const;
   const std::string& nameOf(Index source) const {
@@ -158,27 +162,37 @@ void Cleaner::addTriangles(const std::vector<Index>& loop, const Vec3& normal, I
   std::vector<Vec2> outline;
   for (const Vec3& p : at(loop)) outline.push_back(image(p));
   const auto triangles = triangulateOutline(outline);
-  // How far a corner is off the plane of the neighbouring triangle.
-  const auto deviation = [&](const std::array<Index, 3>& t, const std::array<Index, 3>& other) {
-    int shared = 0;
-    Index apex = kNone;
-    for (const Index k : other) {
-      const bool common = std::find(t.begin(), t.end(), k) != t.end();
-      shared += common ? 1 : 0;
-      if (!common) apex = k;
-    }
-    if (shared != 2) return 0.0;
-    const std::vector<Vec3> plane = at({loop[t[0]], loop[t[1]], loop[t[2]]});
-    if (isThin(plane)) return 0.0;
-    const Vec3 n = glm::normalize(vectorAreaOf(plane));
-    return std::abs(glm::dot(out_.points[loop[apex]] - plane[0], n));
-  };
   for (const auto& t : triangles) {
     std::vector<Index> corners{loop[t[0]], loop[t[1]], loop[t[2]]};
     std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
     addPlanar(corners, source, area(at(corners)));
-    for (const auto& other : triangles) {
-      report_.largest_deviation = std::max(report_.largest_deviation, deviation(t, other));
+  }
+  noteDeviation(loop, triangles);
+}
+
+/// How far corners are off the planes of the triangles beside theirs.
+void Cleaner::noteDeviation(const std::vector<Index>& loop,
+                            const std::vector<std::array<Index, 3>>& triangles) {
+  const auto note = [&](const std::array<Index, 3>& t, Index apex) {
+    const std::vector<Vec3> plane = at({loop[t[0]], loop[t[1]], loop[t[2]]});
+    if (isThin(plane)) return;
+    const Vec3 n = glm::normalize(vectorAreaOf(plane));
+    const double off = std::abs(glm::dot(out_.points[loop[apex]] - plane[0], n));
+    report_.largest_deviation = std::max(report_.largest_deviation, off);
+  };
+  struct Side {
+    std::size_t triangle = 0;
+    Index apex = kNone;
+  };
+  std::unordered_map<std::uint64_t, Side> open;
+  for (std::size_t k = 0; k < triangles.size(); ++k) {
+    const auto& t = triangles[k];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [other, first] =
+          open.try_emplace(edgeKey(t[(i + 1) % 3], t[(i + 2) % 3]), Side{k, t[i]});
+      if (first) continue;
+      note(t, other->second.apex);
+      note(triangles[other->second.triangle], t[i]);
     }
   }
 }

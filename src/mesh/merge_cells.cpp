@@ -495,9 +495,7 @@ CoarseComplex Merger::run(std::vector<Index>& broken) {
   straightenEdges();
   for (const Draft& draft : drafts_) {
     if (isSound(draft) && std::abs(movedArea(draft)) <= areaInReach(draft)) continue;
-    for (const Index s : sheetsOf(draft)) {
-      for (const Index f : sheets_[s].faces) broken.push_back(input_.faces[f].source);
-    }
+    broken.push_back(draft.plane);
   }
   if (!broken.empty()) return {};
   countCuts();

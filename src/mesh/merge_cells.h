@@ -20,8 +20,8 @@ void addMovedArea(SurfaceAreas& areas, double moved);
 /// and so do vertices at which just two edges meet in a straight line.
 /// Adds the report's `cuts` and `hidden_sides`; area that straightening moves (only ever within
 /// coincidence) goes to the surfaces' `degenerate`.
-/// Where rounding leaves a polygon without sound loops, `broken` gets the faces of the scene under
-/// it, and the complex is not to be used.
+/// Where rounding leaves a polygon without sound loops, `broken` gets its plane, and the complex is
+/// not to be used.
 CoarseComplex mergeCells(const Scene& scene, const InputFaces& input,
                          const std::vector<Plane>& planes, const std::vector<Sheet>& sheets,
                          const EdgeTable& edges, const Arrangement& arrangement,

@@ -1,9 +1,13 @@
 #include "mesh/mesh_figures.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
+#include <map>
+#include <string>
 #include <utility>
 
 namespace radiosity {
@@ -41,7 +45,7 @@ double smallestAngle(const PatchMesh& mesh) {
   return patch == kNone ? 0.0 : angle;
 }
 
-void fillFigures(const PatchMesh& mesh, double coincidence, MeshReport& report) {
+void fillFigures(const PatchMesh& mesh, MeshReport& report) {
   report.polygons = mesh.polygons.size();
   report.triangles = report.quads = 0;
   report.longest_edge = 0;
@@ -66,7 +70,20 @@ void fillFigures(const PatchMesh& mesh, double coincidence, MeshReport& report) 
   report.smallest_angle = patch == kNone ? 0.0 : angle;
   report.smallest_angle_surface =
       patch == kNone ? std::string() : mesh.surface_names[mesh.surface[patch]];
-  report.t_junctions = countTJunctions(mesh, coincidence);
+}
+
+void noteTJunctions(const PatchMesh& mesh, double coincidence, MeshReport& report) {
+  const std::vector<Index> patches = patchesAtTJunctions(mesh, coincidence);
+  report.t_junctions = patches.size();
+  std::map<std::string, std::size_t> by_surface;
+  for (const Index i : patches) ++by_surface[mesh.surface_names[mesh.surface[i]]];
+  for (const auto& [name, count] : by_surface) {
+    report.notes.push_back(
+        {Severity::info,
+         fmt::format("{}: {} vertices lie on edges of patches without being their ends (nearer "
+                     "than the coincidence of {:.3g} m): details there are about that small",
+                     name, count, coincidence)});
+  }
 }
 
 }  // namespace radiosity

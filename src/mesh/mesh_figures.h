@@ -5,8 +5,16 @@
 
 namespace radiosity {
 
-/// Fills polygons, triangles, quads, t_junctions, smallest angle and its surface, longest edge and
-/// each surface's `kept` (surfaces without an entry get one). `coincidence` in metres.
-void fillFigures(const PatchMesh& mesh, double coincidence, MeshReport& report);
+/// Fills polygons, triangles, quads, smallest angle and its surface, longest edge and each
+/// surface's `kept` (surfaces without an entry get one).
+void fillFigures(const PatchMesh& mesh, MeshReport& report);
+
+/// Counts the T-junctions of a mesh that should have none and notes what surfaces they are on.
+/// `coincidence` in metres.
+void noteTJunctions(const PatchMesh& mesh, double coincidence, MeshReport& report);
+
+/// A patch for every T-junction (see countTJunctions()): one with the edge the vertex lies inside
+/// of.
+std::vector<Index> patchesAtTJunctions(const PatchMesh& mesh, double tolerance);
 
 }  // namespace radiosity

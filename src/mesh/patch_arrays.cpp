@@ -11,6 +11,10 @@ namespace radiosity {
 
 namespace {
 
+// A triangle whose height over a side is a smaller part of that side lies on it but for rounding:
+// its area, and with it its centroid, may come out as anything.
+constexpr double kNoArea = 0x1p-44;
+
 /// Gives the points of the cut complex their places in the mesh: only those in use, vertices of
 /// the complex first, then edge points, then the points inside polygons.
 class VertexNumbers {
@@ -65,8 +69,8 @@ void appendPolygon(PlanarPolygons& polygons, const CoarsePolygon& coarse,
 }
 
 /// Appends one patch with corners `corner` (3 or 4, counter-clockwise about `normal`); positions
-/// are `points`, still near the origin.
-void appendCell(PatchMesh& mesh, std::span<const Index> corner, const Vec3& normal,
+/// are `points`, still near the origin. False, and nothing appended, if rounding leaves it no area.
+bool appendCell(PatchMesh& mesh, std::span<const Index> corner, const Vec3& normal,
                 std::span<const Vec3> points) {
   double total = 0;
   Vec3 moment(0.0);
@@ -75,8 +79,11 @@ void appendCell(PatchMesh& mesh, std::span<const Index> corner, const Vec3& norm
     const Vec3 a = points[corner[k - 1]] - base;
     const Vec3 b = points[corner[k]] - base;
     const double area = 0.5 * glm::dot(glm::cross(a, b), normal);
+    if (!(area > kNoArea * glm::length(a) * glm::length(b))) return false;
     total += area;
     moment += area * (a + b) / 3.0;
+  }
+  for (std::size_t k = 2; k < corner.size(); ++k) {
     mesh.pieces.push_back({corner[0], corner[k - 1], corner[k]});
   }
   mesh.corners.insert(mesh.corners.end(), corner.begin(), corner.end());
@@ -85,6 +92,7 @@ void appendCell(PatchMesh& mesh, std::span<const Index> corner, const Vec3& norm
   mesh.area.push_back(total);
   mesh.centroid.push_back(base + moment / total);
   mesh.normal.push_back(normal);
+  return true;
 }
 
 void locateSources(PatchMesh& mesh, const CoarseComplex& complex, const Scene& scene,
@@ -131,8 +139,11 @@ PatchMesh assemblePatches(const CoarseComplex& complex, const Scene& scene, cons
       for (std::size_t k = 0; k < count; ++k) {
         corner[flip ? count - 1 - k : k] = numbers.ofCorner(cells[source], source, cell[k]);
       }
-      if (coarse.back) two_sided.push_back(Index(mesh.size()));
-      appendCell(mesh, {corner.data(), count}, mesh.polygons.normal.back(), numbers.points());
+      if (!appendCell(mesh, {corner.data(), count}, mesh.polygons.normal.back(),
+                      numbers.points())) {
+        continue;
+      }
+      if (coarse.back) two_sided.push_back(Index(mesh.size() - 1));
       mesh.polygon.push_back(Index(p));
       mesh.surface.push_back(coarse.surface);
     }

@@ -37,7 +37,8 @@ std::vector<Vec2> backgroundGrid(const Region& region);
 
 /// Constrained Delaunay triangulation of the region's pieces and a background grid, improved by
 /// points and moves inside until all angles are at least 25 degrees, or those that the boundary
-/// allows; then pairs of triangles are joined. Pieces are never split. Empty where pieces cross.
+/// allows; then pairs of triangles are joined. Pieces are never split. Empty where pieces cross or
+/// loops touch.
 std::optional<RegionMesh> meshRegion(const Region& region);
 
 /// Joins pairs of triangles into convex quadrilaterals with angles within 45 degrees of a right

@@ -68,7 +68,7 @@ class RegionMesher {
   }
 
   std::optional<RegionMesh> run() {
-    if (!triangulate()) return std::nullopt;
+    if (!triangulate() || !tiles()) return std::nullopt;
     for (int round = 0; round < kRounds && smallestAngle() < kWantedAngle; ++round) {
       refine();
       smooth();
@@ -85,6 +85,7 @@ class RegionMesher {
   bool triangulate();
   bool insertPieces(const std::vector<Vertex>& vertices);
   void markInside();
+  bool tiles() const;
   bool isOutline(Face f, int i) const {
     return f->is_constrained(i) && outline_.count(edgeKey(f->vertex(Cdt::cw(i))->info(),
                                                           f->vertex(Cdt::ccw(i))->info())) > 0;
@@ -192,6 +193,31 @@ void RegionMesher::markInside() {
       if (!isOutline(f, i)) visit(f->neighbor(i));
     }
   }
+}
+
+/// Whether the triangles inside have the area of the loops: not where the loops touch, or where
+/// rounding has turned one over.
+bool RegionMesher::tiles() const {
+  double area = 0;
+  double terms = 0;
+  const Vec2 base = region_.points[0];
+  const auto add = [&](const Vec2& a, const Vec2& b, double sign) {
+    area += sign * 0.5 * cross2(a, b);
+    terms += std::abs(a.x * b.y) + std::abs(a.y * b.x);
+  };
+  for (const auto& loop : region_.loops) {
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const Vec2& next = region_.points[loop[(k + 1) % loop.size()]];
+      add(region_.points[loop[k]] - base, next - base, 1.0);
+    }
+  }
+  for (Face f : cdt_.finite_face_handles()) {
+    if (!f->info()) continue;
+    const Vec2 a = positionOf(f->vertex(0));
+    add(positionOf(f->vertex(1)) - a, positionOf(f->vertex(2)) - a, -1.0);
+  }
+  // Each product is rounded once, and so is what it is made of.
+  return std::abs(area) <= 0x1p-50 * terms;
 }
 
 double RegionMesher::smallestAngle() const {

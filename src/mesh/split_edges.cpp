@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "mesh/box_filter.h"
 #include "mesh/union_find.h"
 
 namespace radiosity {
@@ -42,17 +43,19 @@ class Splitter {
       : points_(points), coincidence_(coincidence), edges_(edges) {}
 
   /// Looks at all pairs with an edge of `changed`; returns the edges that came of splitting.
-  std::vector<Index> pass(const std::vector<Index>& changed);
+  std::vector<Index> pass(const std::vector<Index>& changed, Progress& progress);
   std::vector<Index> apply(const std::vector<ForcedSplit>& splits);
   std::vector<Index> apply(const Repairs& repairs);
 
  private:
+  std::vector<Index> edgesBeside(const std::vector<Index>& changed) const;
   bool isInside(Index vertex, const Edge& edge) const;
   void pair(Index first, Index second);
 
   WeldedPoints& points_;
   double coincidence_;
   EdgeTable& edges_;
+  std::vector<Box3> boxes_;  ///< by edge
   std::vector<ForcedSplit> splits_;
 };
 
@@ -139,26 +142,44 @@ std::vector<Index> Splitter::apply(const Repairs& repairs) {
   return changed;
 }
 
-std::vector<Index> Splitter::pass(const std::vector<Index>& changed) {
-  std::vector<Box3> boxes;
-  std::vector<Index> edge_of;
-  std::vector<Index> position(edges_.size(), kNone);
-  for (std::size_t e = 0; e < edges_.size(); ++e) {
-    if (!edges_[Index(e)].alive()) continue;
+std::vector<Index> Splitter::pass(const std::vector<Index>& changed, Progress& progress) {
+  for (Index e = Index(boxes_.size()); e < edges_.size(); ++e) {
     Box3 box;
-    box.add(points_[edges_[Index(e)].a]);
-    box.add(points_[edges_[Index(e)].b]);
+    box.add(points_[edges_[e].a]);
+    box.add(points_[edges_[e].b]);
+    boxes_.push_back(box.grown(0.5 * coincidence_));
+  }
+  const std::vector<Index> edge_of = edgesBeside(changed);
+  std::vector<Box3> boxes;
+  std::vector<Index> position(edges_.size(), kNone);
+  for (const Index e : edge_of) {
     position[e] = Index(boxes.size());
-    boxes.push_back(box.grown(0.5 * coincidence_));
-    edge_of.push_back(Index(e));
+    boxes.push_back(boxes_[e]);
   }
   std::vector<Index> some;
   for (const Index e : changed) {
     if (position[e] != kNone) some.push_back(position[e]);
   }
   splits_.clear();
-  for (const auto& [i, j] : overlappingPairs(boxes, some)) pair(edge_of[i], edge_of[j]);
+  std::size_t looked = 0;
+  for (const auto& [i, j] : overlappingPairs(boxes, some, &progress)) {
+    if (++looked % 4096 == 0) progress.check();
+    pair(edge_of[i], edge_of[j]);
+  }
   return apply(splits_);
+}
+
+/// The living edges, ascending, that may meet one of `changed`; those that are far from all of them
+/// are left out where that takes little.
+std::vector<Index> Splitter::edgesBeside(const std::vector<Index>& changed) const {
+  std::vector<Box3> near;
+  for (const Index e : changed) near.push_back(boxes_[e]);
+  const BoxFilter filter(near);
+  std::vector<Index> out;
+  for (Index e = 0; e < edges_.size(); ++e) {
+    if (edges_[e].alive() && filter.mayMeet(boxes_[e])) out.push_back(e);
+  }
+  return out;
 }
 
 }  // namespace
@@ -174,7 +195,9 @@ void splitEdges(WeldedPoints& points, double coincidence, EdgeTable& edges, cons
   }
   while (!changed.empty()) {
     progress.check();
-    changed = splitter.pass(changed);
+    progress.begin("edges", changed.size());
+    changed = splitter.pass(changed, progress);
+    progress.end();
   }
 }
 

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "base/parallel.h"
 #include "mesh/complex.h"
+#include "mesh/merge_cells.h"
 #include "mesh/mesh_figures.h"
 #include "mesh/patch_arrays.h"
 #include "mesh/plane_frame.h"
@@ -28,15 +30,17 @@ constexpr double kSpacings[] = {1.0, 1.5, 2.0, 2.5, 3.0, 4.0};
 constexpr double kCoarser = 1.5;  // what they may cost: other cells at most this much larger
 constexpr double kNoOpposites = std::numeric_limits<double>::infinity();
 
+double areaOf(const CoarseComplex& complex, const CoarsePolygon& polygon) {
+  Vec3 sum(0.0);
+  for (const auto& loop : polygon.loops) {
+    sum += vectorArea(loop.size(), [&](std::size_t k) { return complex.vertices[loop[k]]; });
+  }
+  return glm::dot(sum, polygon.normal);
+}
+
 double areaOf(const CoarseComplex& complex) {
   double area = 0;
-  for (const CoarsePolygon& polygon : complex.polygons) {
-    Vec3 sum(0.0);
-    for (const auto& loop : polygon.loops) {
-      sum += vectorArea(loop.size(), [&](std::size_t k) { return complex.vertices[loop[k]]; });
-    }
-    area += glm::dot(sum, polygon.normal);
-  }
+  for (const CoarsePolygon& polygon : complex.polygons) area += areaOf(complex, polygon);
   return area;
 }
 
@@ -63,13 +67,13 @@ class Subdivision {
   std::size_t run(const CellSize& size, Rounding rounding, double spacing) {
     for (;;) {
       cuts_.cut(std::isfinite(size.longest) ? size.longest : size.size, rounding, spacing);
-      const std::vector<Index> crossed = cutPolygons(size);
-      if (crossed.empty()) break;
-      for (const Index p : crossed) {
-        if (whole_.count(p) > 0) throw RunError(fmt::format("polygon {} crosses itself", p));
+      bool again = false;
+      for (const Index p : cutPolygons(size)) {
+        if (!whole_.insert(p).second) continue;
         cuts_.keepWhole(p);
+        again = true;
       }
-      whole_.insert(crossed.begin(), crossed.end());
+      if (!again) break;
     }
     count_ = 0;
     for (std::size_t p = 0; p < cells_.size(); ++p) {
@@ -154,6 +158,31 @@ double meetCount(Subdivision& subdivision, double start, double wanted) {
   return plain;
 }
 
+/// Enters what the patches have less than their polygons: cells without area in details as small as
+/// rounding, and polygons that could not be cut at all.
+void accountForCells(const CoarseComplex& complex, const PatchMesh& mesh, MeshReport& report) {
+  std::vector<double> missing(complex.polygons.size());
+  for (std::size_t p = 0; p < missing.size(); ++p)
+    missing[p] = areaOf(complex, complex.polygons[p]);
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    if (mesh.side[i] == 0) missing[mesh.polygon[i]] -= mesh.area[i];
+  }
+  std::vector<double> moved(report.surfaces.size(), 0.0);
+  for (std::size_t p = 0; p < missing.size(); ++p) moved[complex.polygons[p].surface] += missing[p];
+  for (std::size_t s = 0; s < moved.size(); ++s) addMovedArea(report.surfaces[s], moved[s]);
+}
+
+void noteWhole(const std::set<Index>& polygons, const CoarseComplex& complex, MeshReport& report) {
+  std::map<Index, std::size_t> by_surface;
+  for (const Index p : polygons) ++by_surface[complex.polygons[p].surface];
+  for (const auto& [surface, count] : by_surface) {
+    report.notes.push_back(
+        {Severity::info, fmt::format("{}: the edges of {} polygons are not cut, for they lie too "
+                                     "near to each other",
+                                     report.surfaces[surface].name, count)});
+  }
+}
+
 void refuseTooMany(double area, double size) {
   const double count = area / (size * size);
   if (!(count <= kMostPatches)) {
@@ -194,7 +223,10 @@ PatchMesh subdivide(const CoarseComplex& complex, const Scene& scene, const Mesh
   }
   PatchMesh mesh =
       assemblePatches(complex, scene, subdivision.cuts(), subdivision.cells(), progress);
-  fillFigures(mesh, complex.coincidence, report);
+  fillFigures(mesh, report);
+  noteTJunctions(mesh, complex.coincidence, report);
+  accountForCells(complex, mesh, report);
+  noteWhole(subdivision.whole(), complex, report);
   return mesh;
 }
 

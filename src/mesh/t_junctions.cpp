@@ -7,6 +7,7 @@
 #include <unordered_set>
 
 #include "mesh/edge_key.h"
+#include "mesh/mesh_figures.h"
 #include "radiosity/patch_mesh.h"
 
 namespace radiosity {
@@ -61,6 +62,7 @@ class PointGrid {
 
 struct Edges {
   std::vector<std::array<Index, 2>> ends;
+  std::vector<Index> patch;  ///< one that has the edge
   double mean_length = 0;
 };
 
@@ -74,6 +76,7 @@ Edges distinctEdges(const PatchMesh& mesh) {
       const Index b = outline[(k + 1) % outline.size()];
       if (!seen.insert(edgeKey(a, b)).second) continue;
       edges.ends.push_back({a, b});
+      edges.patch.push_back(Index(i));
       edges.mean_length += glm::length(mesh.vertices[b] - mesh.vertices[a]);
     }
   }
@@ -83,9 +86,10 @@ Edges distinctEdges(const PatchMesh& mesh) {
 
 }  // namespace
 
-std::size_t countTJunctions(const PatchMesh& mesh, double tolerance) {
+std::vector<Index> patchesAtTJunctions(const PatchMesh& mesh, double tolerance) {
   const Edges edges = distinctEdges(mesh);
-  if (!(edges.mean_length > 0)) return 0;
+  std::vector<Index> out;
+  if (!(edges.mean_length > 0)) return out;
   Vec3 lower = mesh.vertices[edges.ends[0][0]];
   for (const Vec3& vertex : mesh.vertices) lower = glm::min(lower, vertex);
   const double cell = std::max(edges.mean_length, 4 * tolerance);
@@ -96,8 +100,8 @@ std::size_t countTJunctions(const PatchMesh& mesh, double tolerance) {
     used[vertex] = true;
   }
 
-  std::size_t count = 0;
-  for (const auto& [from, to] : edges.ends) {
+  for (std::size_t e = 0; e < edges.ends.size(); ++e) {
+    const auto [from, to] = edges.ends[e];
     const Vec3& a = mesh.vertices[from];
     const Vec3 along = mesh.vertices[to] - a;
     const double length = glm::length(along);
@@ -113,11 +117,15 @@ std::size_t countTJunctions(const PatchMesh& mesh, double tolerance) {
         const double t = glm::dot(away, along) / (length * length);
         if (std::floor(t * steps) != step) return;
         if (t * length <= tolerance || (1 - t) * length <= tolerance) return;
-        if (glm::length(away - t * along) <= tolerance) ++count;
+        if (glm::length(away - t * along) <= tolerance) out.push_back(edges.patch[e]);
       });
     }
   }
-  return count;
+  return out;
+}
+
+std::size_t countTJunctions(const PatchMesh& mesh, double tolerance) {
+  return patchesAtTJunctions(mesh, tolerance).size();
 }
 
 }  // namespace radiosity

@@ -1,0 +1,213 @@
+// The tools of meshing that answer in n log n, each against the answer of trying everything.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <random>
+
+#include "mesh/box_filter.h"
+#include "mesh/edge_rows.h"
+#include "mesh/face_locator.h"
+#include "mesh/sharp_corners.h"
+#include "mesh/winding_tree.h"
+
+namespace radiosity::test {
+namespace {
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  double uniform() { return double(engine_()) / 4294967296.0; }
+  Vec3 point() {
+    const double x = uniform();
+    const double y = uniform();
+    return {x, y, uniform()};
+  }
+  Index below(std::size_t n) { return Index(engine_() % n); }
+
+ private:
+  std::mt19937 engine_;
+};
+
+TEST(SharpCorners, AreThoseOfAllPairsOfEdges) {
+  Random random(3);
+  std::vector<Vec3> vertices;
+  for (int k = 0; k < 60; ++k) vertices.push_back(random.point() * Vec3(1, 1, 1e-4));
+  std::vector<std::array<Index, 2>> edges;
+  // A hub with many edges, of which some leave in nearly one direction.
+  for (Index k = 1; k < 60; ++k) edges.push_back({0, k});
+  for (int k = 0; k < 200; ++k) {
+    const Index a = random.below(60);
+    const Index b = random.below(60);
+    if (a != b) edges.push_back({a, b});
+  }
+  const auto found = sharpestSines(vertices, edges);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    double smallest = 1;
+    for (std::size_t j = 0; j < edges.size(); ++j) {
+      for (const Index v : edges[i]) {
+        if (i == j || (v != edges[j][0] && v != edges[j][1])) continue;
+        const auto leave = [&](const std::array<Index, 2>& e) {
+          return glm::normalize(vertices[e[0] == v ? e[1] : e[0]] - vertices[v]);
+        };
+        if (glm::dot(leave(edges[i]), leave(edges[j])) <= 0) continue;
+        smallest = std::min(smallest, glm::length(glm::cross(leave(edges[i]), leave(edges[j]))));
+      }
+    }
+    // The same sines, from directions of the other sign: equal but for the last bits.
+    EXPECT_NEAR(found[i], smallest, 1e-15) << i;
+  }
+}
+
+TEST(EdgeRows, HoldEveryEdgeNearAPlace) {
+  Random random(5);
+  WeldedPoints points(1e-9);
+  std::vector<std::array<Index, 2>> edges;
+  for (int k = 0; k < 400; ++k) {
+    const Vec3 p = random.point();
+    // Short ones, and one in twenty across everything.
+    const Vec3 q = k % 20 == 0 ? random.point() : p + 0.01 * (random.point() - 0.5);
+    edges.push_back({points.insert(p), points.insert(q)});
+  }
+  const PlaneImage image(Vec3(0, 0, 1));
+  const double margin = 1e-3;
+  const EdgeRows rows(points, image, edges, margin);
+  std::size_t seen = 0;
+  for (int k = 0; k < 300; ++k) {
+    const double low = 1.2 * random.uniform() - 0.1;
+    const double high = low + 0.05 * random.uniform();
+    const auto at = rows.at(low);
+    const auto between = rows.between(low, high);
+    seen += at.size();
+    EXPECT_TRUE(std::is_sorted(between.begin(), between.end()));
+    for (Index e = 0; e < edges.size(); ++e) {
+      const auto [from, to] = std::minmax({points[edges[e][0]].y, points[edges[e][1]].y});
+      if (low >= from - margin && low <= to + margin) {
+        EXPECT_TRUE(std::find(at.begin(), at.end(), e) != at.end());
+      }
+      if (high >= from - margin && low <= to + margin) {
+        EXPECT_TRUE(std::binary_search(between.begin(), between.end(), e));
+      }
+    }
+  }
+  EXPECT_LT(seen, 300 * edges.size() / 4) << "a row holds too many edges to be of use";
+}
+
+TEST(BoxFilter, LetsPassWhateverMeetsABox) {
+  Random random(7);
+  const auto box = [&](double size) {
+    const Vec3 low = random.point();
+    return Box3{low, low + size * random.point()};
+  };
+  std::vector<Box3> boxes;
+  for (int k = 0; k < 20; ++k) boxes.push_back(box(0.01));
+  const BoxFilter filter(boxes);
+  int kept = 0;
+  for (int k = 0; k < 5000; ++k) {
+    const Box3 asked = box(k % 10 == 0 ? 0.5 : 0.02);
+    const bool meets =
+        std::any_of(boxes.begin(), boxes.end(), [&](const Box3& b) { return b.meets(asked); });
+    if (meets) {
+      EXPECT_TRUE(filter.mayMeet(asked));
+    }
+    kept += filter.mayMeet(asked) ? 1 : 0;
+  }
+  EXPECT_LT(kept, 2500) << "it filters nothing";
+}
+
+/// A closed torus of 2 n n triangles, outward.
+std::vector<std::array<Vec3, 3>> torus(int n) {
+  const auto at = [n](int i, int j) {
+    const double u = 2 * std::numbers::pi * i / n;
+    const double v = 2 * std::numbers::pi * j / n;
+    return Vec3((1 + 0.3 * std::cos(v)) * std::cos(u), (1 + 0.3 * std::cos(v)) * std::sin(u),
+                0.3 * std::sin(v));
+  };
+  std::vector<std::array<Vec3, 3>> out;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      out.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      out.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  return out;
+}
+
+TEST(WindingTree, TellsInsideFromOutside) {
+  const auto triangles = torus(48);
+  std::vector<Index> plane(triangles.size());
+  for (Index k = 0; k < plane.size(); ++k) plane[k] = k;
+  const WindingTree tree(triangles, plane);
+  Random random(9);
+  for (int k = 0; k < 2000; ++k) {
+    const Vec3 p = (random.point() - 0.5) * Vec3(3, 3, 1);
+    const double ring = std::sqrt(p.x * p.x + p.y * p.y) - 1;
+    const double depth = 0.3 - std::sqrt(ring * ring + p.z * p.z);
+    if (std::abs(depth) < 0.01) continue;  // between the torus and its facets
+    // Dipoles farther than three radii: hundredths, far from the half that would mislead.
+    EXPECT_NEAR(tree.around(p, kNone), depth > 0 ? 1.0 : 0.0, 0.05);
+  }
+}
+
+TEST(WindingTree, ATrianglesOwnPlaneCountsAsNothing) {
+  const auto triangles = torus(48);
+  std::vector<Index> plane(triangles.size());
+  for (Index k = 0; k < plane.size(); ++k) plane[k] = k;
+  const WindingTree tree(triangles, plane);
+  for (Index k = 0; k < triangles.size(); k += 37) {
+    const Vec3 middle = (triangles[k][0] + triangles[k][1] + triangles[k][2]) / 3.0;
+    EXPECT_NEAR(tree.around(middle, k), 0.5, 0.05) << k;
+  }
+}
+
+double areaOf(const std::vector<Vec2>& p, const std::array<Index, 3>& t) {
+  return 0.5 * cross2(p[t[1]] - p[t[0]], p[t[2]] - p[t[0]]);
+}
+
+TEST(TriangulateOutline, ManyCornersAsFewAreTiledByAllTheirTriangles) {
+  for (const int n : {40, 3000}) {
+    for (const bool clockwise : {false, true}) {
+      std::vector<Vec2> outline;
+      for (int k = 0; k < n; ++k) {
+        const double a = (clockwise ? -2 : 2) * std::numbers::pi * k / n;
+        const double r = k % 2 == 0 ? 1.0 : 0.6;
+        outline.emplace_back(r * std::cos(a), r * std::sin(a));
+      }
+      const auto triangles = triangulateOutline(outline);
+      ASSERT_EQ(triangles.size(), std::size_t(n - 2));
+      double sum = 0;
+      for (const auto& t : triangles) {
+        EXPECT_GE((clockwise ? -1 : 1) * areaOf(outline, t), 0);
+        sum += areaOf(outline, t);
+      }
+      // Of n corners in pairs: n / 2 kites; sums of n products.
+      const double expected = 0.5 * n * 0.6 * std::sin(2 * std::numbers::pi / n);
+      EXPECT_NEAR(std::abs(sum), expected, 1e-12);
+    }
+  }
+}
+
+TEST(TriangulateOutline, ManyCornersThatTouchThemselvesStillGiveAllTriangles) {
+  // A ring cut open: the cut is passed twice, its corners are there twice.
+  std::vector<Vec2> outline;
+  const int n = 100;
+  for (int k = 0; k <= n; ++k) {
+    const double a = 2 * std::numbers::pi * (k % n) / n;
+    outline.emplace_back(2 * std::cos(a), 2 * std::sin(a));
+  }
+  for (int k = n; k >= 0; --k) {
+    const double a = 2 * std::numbers::pi * (k % n) / n;
+    outline.emplace_back(std::cos(a), std::sin(a));
+  }
+  const auto triangles = triangulateOutline(outline);
+  EXPECT_EQ(triangles.size(), outline.size() - 2);
+  double sum = 0;
+  for (const auto& t : triangles) sum += areaOf(outline, t);
+  EXPECT_NEAR(sum, 0.5 * n * std::sin(2 * std::numbers::pi / n) * 3, 1e-12);
+}
+
+}  // namespace
+}  // namespace radiosity::test
