@@ -37,7 +37,7 @@ def everything_is_finite(file):
 
 
 class EverydayScenes(CliTest):
-    def check(self, maker, faces):
+    def check(self, maker, faces, welded=0.0):
         scene = maker(faces)
         path = scene.write(self.folder / maker.__name__).name
         self.run_program("info", path)
@@ -46,7 +46,7 @@ class EverydayScenes(CliTest):
         self.run_program("factors", path, "--patches", "200", "-o", "f.h5")
         with h5py.File(self.folder / "f.h5") as file:
             self.assertEqual(everything_is_finite(file), [])
-            self.check_rows(file)
+            self.check_rows(file, welded)
 
     def check_areas(self, scene, surfaces):
         """Each square metre of the file is in a patch or in the account of what was dropped."""
@@ -60,14 +60,15 @@ class EverydayScenes(CliTest):
         self.assertGreater(kept + sum(dropped), least - rounding)
         self.assertLess(kept + sum(dropped), most + rounding)
 
-    def check_rows(self, file):
+    def check_rows(self, file, welded):
         """Fronts, backs and sky of every row: 1. Errors of a row's N entries whose squares sum up
-        to at most its error figure's square sum up to at most the root of N times it."""
+        to at most its error figure's square sum up to at most the root of N times it. `welded`:
+        share of a row that may go with what was welded."""
         group = file["form_factors"]
         accounts = [group[name][:] for name in ("fronts", "backs", "sky")]
         area = file["mesh/area"][:]
         figure = group["error"][:] if "error" in group else np.zeros(len(area))
-        allowed = ROUNDING + np.sqrt(len(area)) * figure
+        allowed = ROUNDING + welded + np.sqrt(len(area)) * figure
         missing = np.abs(sum(accounts) - 1)[area > 0]
         self.assertLess((missing / allowed[area > 0]).max(), 1)
         for account in accounts:
@@ -86,16 +87,16 @@ class EverydayScenes(CliTest):
         self.check(generators.city, 200)
 
     def test_linked_duplicates(self):
-        self.check(generators.linked_duplicates, 500)
+        self.check(generators.linked_duplicates, 220)
 
     def test_text_geometry(self):
         self.check(generators.text_geometry, 300)
 
     def test_leaf_cards(self):
-        self.check(generators.leaf_cards, 150)
+        self.check(generators.leaf_cards, 80)
 
     def test_terrain(self):
-        self.check(generators.terrain, 400)
+        self.check(generators.terrain, 200)
 
     def test_sphere(self):
         self.check(generators.sphere, 300)
@@ -104,7 +105,9 @@ class EverydayScenes(CliTest):
         self.check(generators.million_units_away, 100)
 
     def test_two_million_units_apart(self):
-        self.check(generators.two_million_units_apart, 100)
+        # Lengths below 0.2 are coincident here: slabs up to 3e-3 high may lie in the floor of a room
+        # that is 3 high, or not, patch by patch.
+        self.check(generators.two_million_units_apart, 100, welded=1e-3)
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "error_curves.h"
+#include "figures.h"
 #include "gather_costs.h"
 #include "rates.h"
 #include "report.h"
@@ -22,6 +23,7 @@ struct Arguments {
   bool rates = true;
   bool truth = true;  ///< the curves need it; alone: rows are made and kept
   bool curves = true;
+  bool figures = true;
   bool gather = true;
   std::string scene;  ///< this one alone; empty: all
   std::string out = "out/bench";
@@ -29,7 +31,7 @@ struct Arguments {
 };
 
 constexpr const char* kUsage =
-    "[--quick] [--only rates|truth|curves|gather] [--scene NAME] [--out DIR] [--help]";
+    "[--quick] [--only rates|truth|curves|figures|gather] [--scene NAME] [--out DIR] [--help]";
 
 [[noreturn]] void refuse(const std::string& argument) {
   throw InputError(fmt::format("'{}': give {}", argument, kUsage));
@@ -53,10 +55,14 @@ std::optional<Arguments> parse(int count, char** values) {
       arguments.scene = value();
     } else if (name == "--only") {
       const std::string part = value();
-      if (part != "rates" && part != "truth" && part != "curves" && part != "gather") refuse(part);
+      if (part != "rates" && part != "truth" && part != "curves" && part != "figures" &&
+          part != "gather") {
+        refuse(part);
+      }
       arguments.rates = part == "rates";
       arguments.truth = part == "truth" || part == "curves";
       arguments.curves = part == "curves";
+      arguments.figures = part == "figures";
       arguments.gather = part == "gather";
     } else {
       refuse(name);
@@ -116,6 +122,9 @@ int main(int count, char** values) try {
   bool verified = true;
   if (arguments.rates) verified = benchRates() && verified;
   if (arguments.truth) verified = benchCurves(arguments) && verified;
+  if (arguments.figures && !arguments.quick) {
+    benchFigures(arguments.scene, arguments.truth_folder);
+  }
   if (arguments.gather) verified = benchGather(arguments.quick, arguments.out) && verified;
   return verified ? EXIT_SUCCESS : EXIT_FAILURE;
 } catch (const radiosity::InputError& error) {

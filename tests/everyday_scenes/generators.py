@@ -202,11 +202,11 @@ def linked_duplicates(faces):
     for k in range(count):
         angle = random.uniform(0, 2 * np.pi)
         c, s = math.cos(angle), math.sin(angle)
-        mirror = -1 if k % 7 == 3 else 1
+        mirror = -1 if k % 7 == 1 else 1
         matrix = np.array([[c * mirror, 0, s, 0.6 * (k % side)], [0, random.uniform(0.9, 1.1), 0, 0],
                            [-s * mirror, 0, c, 0.6 * (k // side)], [0, 0, 0, 1]])
         scene.node(f"chair.{k:03}", 0, matrix)
-        if k % 11 == 5:
+        if k % 11 == 2:
             scene.node(f"chair.{k:03}.copy", 0, matrix)
     return scene
 
