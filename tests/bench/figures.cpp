@@ -14,7 +14,8 @@
 namespace radiosity::bench {
 namespace {
 
-/// Error of each value of truth aimed at, in mean form factors: a tenth of the least that is scored.
+/// Error of each value of truth aimed at, in mean form factors: a tenth of the least that is
+/// scored.
 constexpr double kTruthAccuracy = 1e-6;
 
 struct FigureScore {
@@ -53,8 +54,8 @@ FigureScore scoreFigures(const FormFactors& factors, const TruthRows& truth,
 void benchFigures(const std::string& scene, const std::string& truth_folder) {
   fmt::print("\nError figures on scenes that took no part in their making\n");
   fmt::print("  {:<20} {:>7} {:>5} {:>8} | {:>8} {:>8} | {:>5} {:>7} {:>7} {:>7} | {:>9} | {}\n",
-             "scene", "patches", "rows", "setting", "seconds", "relL2(F)", "above", "below", "median",
-             "worst", "row sums", "points");
+             "scene", "patches", "rows", "setting", "seconds", "relL2(F)", "above", "below",
+             "median", "worst", "row sums", "points");
   for (const FigureScene& of : figureScenes()) {
     if (!of.name.starts_with(scene)) continue;
     Progress silent;
