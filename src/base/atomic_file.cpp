@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -12,6 +13,22 @@
 namespace radiosity {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// Of this process.
+struct Files {
+  std::mutex mutex;
+  std::set<std::string> temporaries;
+  std::size_t committed = 0;
+};
+
+Files& files() {
+  static Files all;
+  return all;
+}
+
+}  // namespace
 
 AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
   const fs::path target(path_);
@@ -31,18 +48,39 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
   temporary_ = (folder / fmt::format(".{}.{}.tmp{}", target.stem().string(), getpid(),
                                      target.extension().string()))
                    .string();
+  const std::lock_guard lock(files().mutex);
+  files().temporaries.insert(temporary_);
 }
 
 AtomicFile::~AtomicFile() {
+  if (temporary_.empty()) return;
+  const std::lock_guard lock(files().mutex);
   std::error_code ignored;
-  if (!temporary_.empty()) fs::remove(temporary_, ignored);
+  fs::remove(temporary_, ignored);
+  files().temporaries.erase(temporary_);
 }
 
 void AtomicFile::commit() {
+  const std::lock_guard lock(files().mutex);
   std::error_code error;
   fs::rename(temporary_, path_, error);
   if (error) throw RunError(fmt::format("{}: cannot be written: {}", path_, error.message()));
+  files().temporaries.erase(temporary_);
+  ++files().committed;
   temporary_.clear();
+}
+
+std::size_t committedFiles() {
+  const std::lock_guard lock(files().mutex);
+  return files().committed;
+}
+
+std::unique_lock<std::mutex> discardTemporaries() {
+  std::unique_lock lock(files().mutex);
+  std::error_code ignored;
+  for (const std::string& name : files().temporaries) fs::remove(name, ignored);
+  files().temporaries.clear();
+  return lock;
 }
 
 }  // namespace radiosity

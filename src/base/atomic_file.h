@@ -1,6 +1,8 @@
 // Outputs appear whole or not at all.
 #pragma once
 
+#include <cstddef>
+#include <mutex>
 #include <string>
 
 namespace radiosity {
@@ -21,5 +23,12 @@ class AtomicFile {
   std::string path_;
   std::string temporary_;
 };
+
+/// How many files were committed in this process.
+std::size_t committedFiles();
+
+/// Removes the temporaries of all that are not committed, for a process that is about to end as it
+/// is. While what is returned lives nothing is committed, made or removed.
+std::unique_lock<std::mutex> discardTemporaries();
 
 }  // namespace radiosity

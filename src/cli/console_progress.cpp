@@ -1,7 +1,6 @@
 #include "cli/console_progress.h"
 
 #include <fmt/format.h>
-#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,7 +14,8 @@ namespace radiosity::cli {
 namespace {
 
 constexpr double kBarInterval = 0.1;    // seconds between two pictures of the bar
-constexpr double kLineInterval = 10.0;  // and between two lines in a pipe
+constexpr double kFirstLine = 2.0;      // before the first line of a stage in a pipe
+constexpr double kLineInterval = 10.0;  // and between two of them
 constexpr double kShortStage = 0.5;     // a stage shorter than this leaves no line in a pipe
 constexpr std::size_t kBarWidth = 24;
 
@@ -29,7 +29,7 @@ ProgressStyle progressStyle(bool quiet) {
 }
 
 double ConsoleProgress::elapsed() const {
-  return std::chrono::duration<double>(Clock::now() - start_).count();
+  return std::chrono::duration<double>(Clock::now() - start_.load()).count();
 }
 
 void ConsoleProgress::begin(const std::string& stage, std::size_t total) {
@@ -38,15 +38,20 @@ void ConsoleProgress::begin(const std::string& stage, std::size_t total) {
   total_ = total;
   done_ = 0;
   start_ = Clock::now();
-  next_draw_ = style_ == ProgressStyle::bar ? kBarInterval : kLineInterval;
+  next_draw_ = style_ == ProgressStyle::bar ? kBarInterval : kFirstLine;
+  running_ = true;
 }
 
 void ConsoleProgress::advance(std::size_t steps) {
   done_ += steps;
+  tick();
+}
+
+void ConsoleProgress::tick() {
   if (style_ == ProgressStyle::silent || elapsed() < next_draw_) return;
   // Whoever comes while another thread draws goes on with its work.
   const std::unique_lock lock(drawing_, std::try_to_lock);
-  if (lock.owns_lock() && elapsed() >= next_draw_) draw();
+  if (lock.owns_lock() && running_ && elapsed() >= next_draw_) draw();
 }
 
 void ConsoleProgress::draw() {
@@ -78,45 +83,11 @@ void ConsoleProgress::end() {
 
 void ConsoleProgress::clear() {
   const std::lock_guard lock(drawing_);
+  running_ = false;
   if (!drawn_) return;
   std::fputs("\r\033[K", stderr);
   std::fflush(stderr);
   drawn_ = false;
-}
-
-namespace {
-
-// What the handler may touch: lock-free atomics only.
-std::atomic<Progress*> running{nullptr};
-std::atomic<int> signals{0};
-
-void onSignal(int /*signal*/) {
-  if (Progress* progress = running.load()) progress->cancel();
-  if (++signals >= 3) _exit(1);
-}
-
-}  // namespace
-
-SignalGuard::SignalGuard(Progress& progress) {
-  running = &progress;
-  struct sigaction action {};
-  action.sa_handler = onSignal;
-  sigemptyset(&action.sa_mask);
-  action.sa_flags = SA_RESTART;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-  action.sa_handler = SIG_IGN;
-  sigaction(SIGPIPE, &action, nullptr);
-  sigaction(SIGXFSZ, &action, nullptr);  // a file over its limit fails to write and is reported
-}
-
-SignalGuard::~SignalGuard() {
-  running = nullptr;
-  struct sigaction action {};
-  action.sa_handler = SIG_DFL;
-  sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
 }
 
 }  // namespace radiosity::cli

@@ -25,7 +25,10 @@ class ConsoleProgress : public Progress {
   void begin(const std::string& stage, std::size_t total) override;
   void advance(std::size_t steps = 1) override;
   void end() override;
-  /// Takes the bar off the terminal, so that something else can be written there.
+  /// Draws anew where that is due, also where a step takes long: from a thread of its own.
+  void tick();
+  /// Takes the bar off the terminal, so that something else can be written there. The stage is
+  /// over.
   void clear();
 
  private:
@@ -35,23 +38,13 @@ class ConsoleProgress : public Progress {
 
   ProgressStyle style_;
   std::string stage_;
+  bool running_ = false;  ///< a stage is
   std::size_t total_ = 0;
   std::atomic<std::size_t> done_{0};
-  Clock::time_point start_;
+  std::atomic<Clock::time_point> start_{};
   std::atomic<double> next_draw_{0};  ///< seconds after start_
   std::mutex drawing_;
   bool drawn_ = false;
-};
-
-/// While it lives, SIGINT and SIGTERM cancel `progress`: the run ends at the next step, cleanly.
-/// A third signal ends the process at once. SIGPIPE is ignored: a closed pipe loses lines, not the
-/// run.
-class SignalGuard {
- public:
-  explicit SignalGuard(Progress& progress);
-  ~SignalGuard();
-  SignalGuard(const SignalGuard&) = delete;
-  SignalGuard& operator=(const SignalGuard&) = delete;
 };
 
 }  // namespace radiosity::cli

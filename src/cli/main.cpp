@@ -10,6 +10,7 @@
 #include "base/atomic_file.h"
 #include "cli/commands.h"
 #include "cli/console_progress.h"
+#include "cli/signal_guard.h"
 #include "cli/words.h"
 
 namespace radiosity::cli {
@@ -74,7 +75,7 @@ int main(int argc, char** argv) {
     } catch (...) {
       progress.clear();
       // A library that stopped half-way because of the signal may report something else.
-      if (progress.cancelled()) return fail(Cancelled().what(), 1);
+      if (progress.cancelled()) return fail(interruptedText(), 1);
       throw;
     }
   } catch (const InputError& error) {

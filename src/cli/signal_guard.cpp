@@ -1,0 +1,105 @@
+#include "cli/signal_guard.h"
+
+#include <fmt/format.h>
+#include <semaphore.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <optional>
+
+#include "base/atomic_file.h"
+
+namespace radiosity::cli {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr long kTick = 100'000'000;  // nanoseconds between two looks
+/// What a run may take from the signal to its end by itself; with a tick, below half a second.
+constexpr std::chrono::milliseconds kGrace{250};
+
+// What the handler may touch: lock-free atomics, and a semaphore to post.
+std::atomic<Progress*> running{nullptr};
+std::atomic<int> signals{0};
+sem_t wake;
+
+void onSignal(int /*signal*/) {
+  if (Progress* progress = running.load()) {
+    progress->cancel();
+    sem_post(&wake);
+  }
+  if (++signals >= 3) _exit(1);
+}
+
+void waitForATick() {
+  timespec until{};
+  clock_gettime(CLOCK_REALTIME, &until);
+  until.tv_nsec += kTick;
+  if (until.tv_nsec >= 1'000'000'000) {
+    until.tv_nsec -= 1'000'000'000;
+    ++until.tv_sec;
+  }
+  sem_timedwait(&wake, &until);
+}
+
+/// For a run that does not come to its end.
+[[noreturn]] void endProcess(ConsoleProgress& progress) {
+  progress.clear();
+  const std::string text = interruptedText();
+  const auto lock = discardTemporaries();
+  std::fputs(fmt::format("radiosity: {}\n", text).c_str(), stderr);
+  std::fflush(stderr);
+  _exit(1);
+}
+
+}  // namespace
+
+std::string interruptedText() {
+  return committedFiles() == 0 ? Cancelled().what() : "interrupted; what was written is whole";
+}
+
+SignalGuard::SignalGuard(ConsoleProgress& progress) : progress_(progress) {
+  sem_init(&wake, 0, 0);
+  running = &progress;
+  watcher_ = std::thread([this] { watch(); });
+  struct sigaction action {};
+  action.sa_handler = onSignal;
+  sigemptyset(&action.sa_mask);
+  action.sa_flags = SA_RESTART;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  action.sa_handler = SIG_IGN;
+  sigaction(SIGPIPE, &action, nullptr);
+  sigaction(SIGXFSZ, &action, nullptr);  // a file over its limit fails to write and is reported
+}
+
+SignalGuard::~SignalGuard() {
+  struct sigaction action {};
+  action.sa_handler = SIG_DFL;
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  running = nullptr;
+  over_ = true;
+  sem_post(&wake);
+  watcher_.join();
+}
+
+void SignalGuard::watch() {
+  std::optional<Clock::time_point> interrupted;
+  while (!over_) {
+    waitForATick();
+    if (!progress_.cancelled()) {
+      progress_.tick();
+      continue;
+    }
+    if (!interrupted) interrupted = Clock::now();
+    if (!over_ && Clock::now() - *interrupted >= kGrace) endProcess(progress_);
+  }
+}
+
+}  // namespace radiosity::cli

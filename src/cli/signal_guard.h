@@ -1,0 +1,35 @@
+// Ctrl-C.
+#pragma once
+
+#include <atomic>
+#include <string>
+#include <thread>
+
+#include "cli/console_progress.h"
+
+namespace radiosity::cli {
+
+/// While it lives, SIGINT and SIGTERM cancel `progress`: the run ends at its next step, cleanly.
+/// Where no step ends in time, a thread of its own removes what is half-written, says so, and ends
+/// the process: someone who waits is answered within half a second, whatever is being done. A third
+/// signal ends the process at once. The same thread keeps the progress drawn. SIGPIPE is ignored: a
+/// closed pipe loses lines, not the run.
+class SignalGuard {
+ public:
+  explicit SignalGuard(ConsoleProgress& progress);
+  ~SignalGuard();
+  SignalGuard(const SignalGuard&) = delete;
+  SignalGuard& operator=(const SignalGuard&) = delete;
+
+ private:
+  void watch();
+
+  ConsoleProgress& progress_;
+  std::atomic<bool> over_{false};
+  std::thread watcher_;
+};
+
+/// What a run says that was interrupted.
+std::string interruptedText();
+
+}  // namespace radiosity::cli
