@@ -267,7 +267,8 @@ TEST(ExactFactors, NumberingChangesNoBit) {
 TEST(ExactFactors, MemoryIsEstimatedAndRefused) {
   const PatchMesh mesh = test::roomWithBlock(4).build();
   FormFactorOptions options = exactly();
-  const FormFactorPlan plan = planFormFactors(mesh, options);
+  Progress silent;
+  const FormFactorPlan plan = planFormFactors(mesh, options, silent);
   EXPECT_EQ(plan.method, FormFactorMethod::exact);
   EXPECT_GE(plan.bytes, compute(mesh, options).report.matrix_bytes);
   options.memory_limit = 1000;
@@ -288,7 +289,7 @@ TEST(ExactFactors, AutoSaysWhatAndWhy) {
   EXPECT_NE(f.report.method_reason.find("partly hidden"), std::string::npos);
   FormFactorOptions small;
   small.memory_limit = 1;
-  EXPECT_EQ(planFormFactors(mesh, small).method, FormFactorMethod::hemicube);
+  EXPECT_EQ(planFormFactors(mesh, small, silent).method, FormFactorMethod::hemicube);
 }
 
 TEST(ExactFactors, DegeneratePatchesHaveEmptyRows) {

@@ -75,8 +75,8 @@ TEST(NearPairs, OnWhereAutoPicksHemicubes) {
   FormFactorOptions options;
   options.resolution = 32;
   // What the exact method would need is too much: hemicubes it is.
-  options.memory_limit = planFormFactors(mesh, options).bytes - 1;
   Progress silent;
+  options.memory_limit = planFormFactors(mesh, options, silent).bytes - 1;
   const FormFactors picked = computeFormFactors(mesh, options, silent);
   ASSERT_EQ(picked.method, "hemicube");
   EXPECT_GT(picked.report.near_pairs, mesh.size());

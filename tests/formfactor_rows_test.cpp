@@ -222,7 +222,8 @@ TEST(Rows, MemoryLimitRefusesWithTheNumbers) {
   } catch (const RunError& error) {
     EXPECT_NE(std::string(error.what()).find("limit"), std::string::npos) << error.what();
   }
-  options.memory_limit = planFormFactors(mesh, options).bytes;
+  Progress silent;
+  options.memory_limit = planFormFactors(mesh, options, silent).bytes;
   EXPECT_GE(options.memory_limit, compute(mesh, options).report.matrix_bytes);
 }
 

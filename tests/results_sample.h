@@ -210,6 +210,8 @@ inline FormFactors factors(const PatchMesh& m, Precision precision) {
   r.seconds = 0.123;
   r.matrix_bytes = 10;
   r.estimated_bytes = 11;
+  r.seconds_plan = 0.75;
+  r.estimated_seconds = 12.5;
   r.reciprocity_residual = 0.0885;
   r.largest_row_error = 1e-15;
   r.closed = true;

@@ -44,6 +44,7 @@ struct FormFactorOptions {
   /// fraction that the item buffer tells. Empty: where `automatic` picked hemicubes, yes; else no.
   std::optional<bool> near_exact;
   std::size_t memory_limit = 0;  ///< bytes; 0: no limit
+  std::size_t memory_held = 0;   ///< bytes that others hold: they count towards limit and estimate
   bool simd = true;              ///< false: the scalar twin (same bits)
 
   void validate() const;
@@ -107,7 +108,9 @@ struct FormFactorReport {
   std::size_t near_pairs = 0;           ///< entries replaced by area-to-area values
   std::size_t capped = 0;               ///< rows whose near entries were held at a sum of 1
   std::string simd_target;              ///< e.g. "AVX3", "scalar"
-  double seconds = 0;
+  double seconds = 0;                   ///< all in all
+  double seconds_plan = 0;       ///< of these, finding out what it will take; preparing included
+  double estimated_seconds = 0;  ///< the others, as they were announced before the run
   std::size_t matrix_bytes = 0;
   std::size_t estimated_bytes = 0;  ///< what was announced before the run
   double reciprocity_residual = 0;  ///< of the raw rows; 0 by construction in the exact method
@@ -143,16 +146,26 @@ struct FormFactors {
 };
 
 /// What a computation will do, found out from a sample of rows before time and memory are spent.
+/// The method and its reason rest on counts alone, with rates of a usual machine: they come out the
+/// same in every run. Seconds are by the clock, on the threads allowed, at the rates that the
+/// sample had here and now, and from now on: what the plan itself took is not in them. They are
+/// about; on scenes nothing was fitted to mostly within a factor of 2.
 struct FormFactorPlan {
   FormFactorMethod method = FormFactorMethod::hemicube;  ///< never automatic
   std::string reason;                                    ///< where it was automatic
-  std::size_t bytes = 0;                                 ///< held at once, about
+  std::size_t bytes = 0;         ///< held at once, about; options.memory_held included
+  std::size_t matrix_bytes = 0;  ///< of these, the matrix
+  double seconds = 0;
+  double refining = 0;  ///< share of the seconds that goes with 1 / tolerance
+  /// Seconds of hemicubes instead, where the exact method was picked and takes over a minute.
+  double hemicube_seconds = 0;
   /// What was made ready on the way, with the mesh by reference and the options: what the
   /// computation starts from.
   struct Prepared;
   std::shared_ptr<const Prepared> prepared;
 };
-FormFactorPlan planFormFactors(const PatchMesh& mesh, const FormFactorOptions& options);
+FormFactorPlan planFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
+                               Progress& progress);
 
 /// All cores; the same bits for any number of them. Hemicube: raw rows, as they were seen, unless
 /// `symmetrize`; exact: a symmetric matrix.

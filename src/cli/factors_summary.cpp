@@ -121,6 +121,8 @@ void summarizeFactors(Report& report, const FormFactors& factors, const PatchMes
     if (!r.method_reason.empty()) report.text("method_reason", "  because", r.method_reason);
     report.count("empty_rows", "empty rows (degenerate)", r.empty_rows);
     report.seconds("seconds", "time", r.seconds);
+    report.seconds("seconds_plan", "  of that, planning", r.seconds_plan);
+    report.seconds("estimated_seconds", "  the rest estimated before", r.estimated_seconds);
     report.text("simd_target", "instruction set", r.simd_target);
     report.bytes("matrix_bytes", "matrix in memory", r.matrix_bytes);
     report.bytes("estimated_bytes", "  estimated before", r.estimated_bytes);

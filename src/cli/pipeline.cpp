@@ -2,15 +2,47 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <utility>
 
+#include "cli/process_memory.h"
 #include "cli/summaries.h"
 #include "cli/words.h"
 
 namespace radiosity::cli {
 
 namespace {
+
+/// Who waits longer is told what would shorten it.
+constexpr double kLongWait = 60;
+
+class Stopwatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// What shortens a wait, and to what, as far as that is known.
+std::string cures(const FormFactorPlan& plan, const FormFactorOptions& options) {
+  constexpr double kLoosest = 0.1;
+  if (plan.method == FormFactorMethod::hemicube) {
+    return "for less: fewer --patches, a lower --resolution";
+  }
+  std::string text = "for less:";
+  const double looser = std::min(kLoosest, 10 * options.tolerance);
+  if (looser > options.tolerance) {
+    const double left = plan.seconds * (1 - plan.refining * (1 - options.tolerance / looser));
+    text += fmt::format(" --tolerance {} (about {}),", numberText(looser), durationText(left));
+  }
+  return text + fmt::format(" fewer --patches, --method hemicube (about {}; less accurate)",
+                            durationText(plan.hemicube_seconds));
+}
 
 /// Vec3 a patch -> row-major N x 3, as the solver takes it.
 std::vector<double> flat(const std::vector<Vec3>& values) {
@@ -79,7 +111,9 @@ void Pipeline::openResults() {
 }
 
 void Pipeline::openScene(const std::string& results_output) {
+  progress_.begin("reading", 1);
   results_.scene = loadScene(request_.input, request_.scene);
+  progress_.end();
   changed_ = true;
   summarizeScene(report_, scene(), request_.input);
   report_.notes(scene().notes);
@@ -114,9 +148,9 @@ std::string Pipeline::why(const std::string& stored_key, const StageKey& key, bo
 }
 
 void Pipeline::computed(const std::string& stage, const std::string& label,
-                        const std::string& reason) {
+                        const std::string& reason, double seconds) {
   changed_ = true;
-  report_.stage(stage, label, reason.empty() ? "computed" : "recomputed", reason);
+  report_.stage(stage, label, reason.empty() ? "computed" : "recomputed", reason, seconds);
   progress_.check();
 }
 
@@ -129,8 +163,9 @@ void Pipeline::mesh() {
     summarizeMesh(report_, made(results_.mesh), own ? Detail::full : Detail::none);
   } else {
     const std::string reason = why(previous_.mesh_key, key, previous_.mesh.has_value());
+    const Stopwatch watch;
     results_.mesh = meshScene(scene(), mesh_options_, progress_);
-    computed("mesh", "mesh", reason);
+    computed("mesh", "mesh", reason, watch.seconds());
     summarizeMesh(report_, made(results_.mesh), own ? Detail::full : Detail::brief);
   }
   results_.mesh_key = key.text();
@@ -143,16 +178,18 @@ void Pipeline::announceFactors(const FormFactorPlan& plan) {
   // On disk every entry has a column number of 4 bytes. In memory a dense row has none, and a
   // symmetric matrix has half of the entries.
   const std::size_t value = options.storedPrecision() == Precision::real ? 8 : 4;
-  const std::size_t disk = plan.bytes * (exact ? 2 : 1) * (value + 4) / value;
+  const std::size_t disk = plan.matrix_bytes * (exact ? 2 : 1) * (value + 4) / value;
   const std::string what =
       exact ? fmt::format("exact between {} to {}", plural(patches().size(), "patch", "patches"),
                           numberText(options.tolerance))
             : fmt::format("{} of {} pixels", plural(patches().size(), "hemicube", "hemicubes"),
                           options.resolution);
   report_.line("form factors",
-               fmt::format("{}: memory about {}{}", what, bytesText(plan.bytes),
+               fmt::format("{}: about {}, memory about {}{}", what, durationText(plan.seconds),
+                           bytesText(plan.bytes),
                            writes_results_ ? ", disk at most about " + bytesText(disk) : ""));
   if (!plan.reason.empty()) report_.line("", "method: " + plan.reason);
+  if (plan.seconds > kLongWait) report_.line("", cures(plan, options));
 }
 
 bool Pipeline::factorsFit(const StageKey& key, std::optional<FormFactorPlan>& plan) const {
@@ -167,8 +204,14 @@ bool Pipeline::factorsFit(const StageKey& key, std::optional<FormFactorPlan>& pl
   }
   // Once they are there, exact ones are better whatever would be picked.
   if (made_by == FormFactorMethod::exact) return true;
-  plan = planFormFactors(patches(), factor_options_);
+  plan = planFactors();
   return plan->method == made_by;
+}
+
+FormFactorPlan Pipeline::planFactors() const {
+  FormFactorOptions options = factor_options_;
+  options.memory_held = residentBytes();
+  return planFormFactors(patches(), options, progress_);
 }
 
 void Pipeline::factors() {
@@ -183,12 +226,13 @@ void Pipeline::factors() {
     summarizeFactors(report_, formFactors(), patches(), own ? Detail::full : Detail::none);
   } else {
     const std::string reason = why(previous_.factors_key, key, previous_.factors.has_value());
-    if (!plan) plan = planFormFactors(patches(), factor_options_);
+    const Stopwatch watch;
+    if (!plan) plan = planFactors();
     announceFactors(*plan);
     results_.factors = computeFormFactors(*plan, progress_);
     results_.factors_key = key.text();
     matrix_loaded_ = true;
-    computed("form_factors", "form factors", reason);
+    computed("form_factors", "form factors", reason, watch.seconds());
     summarizeFactors(report_, formFactors(), patches(), own ? Detail::full : Detail::brief);
   }
   previous_.factors.reset();
@@ -226,10 +270,11 @@ void Pipeline::solution() {
   } else {
     const std::string reason = why(previous_.solution_key, key, previous_.solution.has_value());
     loadMatrix();
+    const Stopwatch watch;
     results_.solution =
         solve(formFactors(), flat(materials().reflectance), flat(materials().emission), 3,
               solve_options_, progress_, patches().surface, patches().surface_names);
-    computed("solution", "solution", reason);
+    computed("solution", "solution", reason, watch.seconds());
   }
   results_.solution_key = key.text();
   previous_.solution.reset();
@@ -245,8 +290,9 @@ void Pipeline::gathered() {
     report_.stage("gather", "gather", "reused", source_);
   } else {
     const std::string reason = why(previous_.gather_key, key, previous_.gathered.has_value());
+    const Stopwatch watch;
     results_.gathered = gather(patches(), materials(), gather_options_, progress_);
-    computed("gather", "gather", reason);
+    computed("gather", "gather", reason, watch.seconds());
   }
   results_.gather_key = key.text();
   previous_.gathered.reset();

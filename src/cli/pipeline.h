@@ -69,6 +69,7 @@ class Pipeline {
   /// Whether the source's form factors are what was asked for: other options than those that made
   /// them may differ. `plan` is set where it had to be made to tell.
   bool factorsFit(const StageKey& key, std::optional<FormFactorPlan>& plan) const;
+  FormFactorPlan planFactors() const;
   void announceFactors(const FormFactorPlan& plan);
   StageKey usedFactorsKey() const;
   /// Each returns true where the stage is dropped.
@@ -76,7 +77,8 @@ class Pipeline {
   bool keepSolution();
   bool keepGathered();
   std::string why(const std::string& stored_key, const StageKey& key, bool present) const;
-  void computed(const std::string& stage, const std::string& label, const std::string& reason);
+  void computed(const std::string& stage, const std::string& label, const std::string& reason,
+                double seconds);
 
   const Request& request_;
   MeshOptions mesh_options_;

@@ -168,8 +168,9 @@ void Report::table(const std::string& key, const std::vector<Column>& columns,
 }
 
 void Report::stage(const std::string& key, const std::string& label, const std::string& action,
-                   const std::string& detail) {
+                   const std::string& detail, double seconds) {
   (*root_)["stages"][key] = {{"action", action}, {"detail", detail}};
+  if (seconds >= 0) (*root_)["stages"][key]["seconds"] = seconds;
   line(label, action + (detail.empty() ? "" : (action == "reused" ? " from " : ": ") + detail));
 }
 

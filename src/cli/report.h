@@ -49,9 +49,9 @@ class Report {
              const std::vector<std::vector<std::string>>& rows, std::size_t most = 40);
 
   /// A stage line: "form factors   reused from x.h5". `action`: reused, computed, recomputed,
-  /// dropped, kept.
+  /// dropped, kept. `seconds`: by the clock, for the file only; below 0: none.
   void stage(const std::string& key, const std::string& label, const std::string& action,
-             const std::string& detail);
+             const std::string& detail, double seconds = -1);
   /// A line of its own, printed only.
   void line(const std::string& label, const std::string& text);
   /// Loud ones and warnings go to standard error, worst first; many alike are grouped.

@@ -17,9 +17,14 @@ struct FormFactorPlan::Prepared {
   Prepared(const PatchMesh& of, const FormFactorOptions& with) : mesh(of), options(with) {}
   const PatchMesh& mesh;
   FormFactorOptions options;
-  std::optional<ExactScene> scene;  ///< where the method is exact
-  ExactEstimate estimate;           ///< of it
-  double seconds = 0;               ///< that this took
+  // Where the method is exact:
+  std::optional<ExactScene> scene;
+  std::optional<ExactKernels> kernels;  ///< of the scene
+  ExactEstimate estimate;
+  // Where it is not:
+  std::optional<HemicubeScene> hemicubes;
+  HemicubeEstimate hemicube_estimate;
+  double seconds = 0;  ///< that this took
 };
 
 namespace {
@@ -35,57 +40,71 @@ constexpr double kPatience = 60;
 /// ... and much of it: they stall at some per cent of the matrix however many pixels they have.
 constexpr double kWorthTheError = 30;
 
-/// Of one core: what a hemicube of 256 pixels took on a 2.7 GHz Xeon; with the pixels elsewhere.
-double hemicubeSeconds(const PatchMesh& mesh, const FormFactorOptions& options) {
+/// Of one core, in a scene of few polygons: what a hemicube of 256 pixels took on a 2.7 GHz Xeon;
+/// with the pixels elsewhere. The choice of a method rests on it, which is to be the same wherever
+/// and whenever it is made; in cluttered scenes they take longer.
+double simpleHemicubeSeconds(const PatchMesh& mesh, const FormFactorOptions& options) {
   const double pixels = double(options.resolution) / 256;
   return 4e-4 * pixels * pixels * double(mesh.size());
 }
 
-std::string timeText(double seconds) {
-  return seconds < 1 ? std::string("less than 1 s") : fmt::format("about {:.0f} s", seconds);
+std::string clutterText(const ExactEstimate& estimate) {
+  if (estimate.partial_pairs < 1) return "no pair of a sample is partly hidden";
+  return fmt::format("about {:.2g} pairs are partly hidden, past {:.1f} occluders each",
+                     estimate.partial_pairs, estimate.occluders_per_partial);
 }
 
-FormFactorPlan planWith(const ExactEstimate& estimate, const PatchMesh& mesh,
-                        const FormFactorOptions& options) {
-  FormFactorPlan plan{FormFactorMethod::exact, "", estimate.bytes, nullptr};
-  if (options.method == FormFactorMethod::exact) return plan;
-  const double hemicubes = hemicubeSeconds(mesh, options);
+/// The method, and why.
+void choose(const ExactEstimate& estimate, const PatchMesh& mesh, const FormFactorOptions& options,
+            FormFactorPlan& plan) {
+  plan.method = FormFactorMethod::exact;
+  if (options.method == FormFactorMethod::exact) return;
   // Who asks for more than the default does not ask for hemicubes: what that adds does not count.
   const double beyond = std::max(0.0, 1 - options.tolerance / FormFactorOptions().tolerance);
   const double wait = estimate.seconds - beyond * estimate.refining;
-  const std::string clutter =
-      estimate.partial_pairs < 1
-          ? std::string("no pair of a sample is partly hidden")
-          : fmt::format("about {:.2g} pairs are partly hidden, past {:.1f} occluders each",
-                        estimate.partial_pairs, estimate.occluders_per_partial);
-  if (wait > kPatience && wait > kWorthTheError * hemicubes) {
+  const double times = wait / simpleHemicubeSeconds(mesh, options);
+  if (wait > kPatience && times > kWorthTheError) {
     plan.method = FormFactorMethod::hemicube;
-    plan.reason = fmt::format("hemicube: {}; exact would take a core {}, hemicubes {}", clutter,
-                              timeText(estimate.seconds), timeText(hemicubes));
+    plan.reason = fmt::format(
+        "hemicube: {}; exact would be {:.0f} times the work of as many "
+        "hemicubes in a simple scene",
+        clutterText(estimate), times);
   } else if (options.memory_limit > 0 && estimate.bytes > options.memory_limit) {
     plan.method = FormFactorMethod::hemicube;
     plan.reason = fmt::format("hemicube: exact would need {:.0f} MiB, more than the limit",
                               double(estimate.bytes) / (1024.0 * 1024.0));
   } else {
-    plan.reason = fmt::format("exact: {}; {} of a core", clutter, timeText(estimate.seconds));
+    plan.reason = "exact: " + clutterText(estimate);
   }
-  return plan;
 }
 
-/// A plan, but for the bytes of hemicubes.
-FormFactorPlan prepare(const PatchMesh& mesh, const FormFactorOptions& options) {
-  options.validate();
-  const Clock::time_point start = Clock::now();
-  auto prepared = std::make_shared<FormFactorPlan::Prepared>(mesh, options);
-  FormFactorPlan plan;
-  if (options.method != FormFactorMethod::hemicube) {
-    prepared->estimate = estimateExact(prepared->scene.emplace(mesh), options);
-    plan = planWith(prepared->estimate, mesh, options);
-    if (plan.method == FormFactorMethod::hemicube) prepared->scene.reset();
-  }
-  prepared->seconds = secondsSince(start);
-  plan.prepared = std::move(prepared);
-  return plan;
+void planExact(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {
+  progress.begin("preparing", ExactScene::kSteps);
+  const ExactScene& scene = prepared.scene.emplace(prepared.mesh, progress);
+  const ExactKernels& kernels = prepared.kernels.emplace(scene, prepared.options);
+  progress.end();
+  prepared.estimate = estimateExact(scene, kernels, prepared.options, progress);
+  choose(prepared.estimate, prepared.mesh, prepared.options, plan);
+  plan.bytes = prepared.estimate.bytes;
+  plan.matrix_bytes = prepared.estimate.matrix_bytes;
+  plan.seconds = prepared.estimate.measured;
+  plan.refining =
+      prepared.estimate.seconds > 0 ? prepared.estimate.refining / prepared.estimate.seconds : 0.0;
+  if (plan.method == FormFactorMethod::exact) return;
+  prepared.kernels.reset();
+  prepared.scene.reset();
+}
+
+void planHemicubes(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {
+  progress.begin("preparing", 1);
+  const HemicubeScene& scene = prepared.hemicubes.emplace(prepared.mesh, prepared.options);
+  progress.end();
+  progress.check();
+  prepared.hemicube_estimate = estimateHemicubes(prepared.mesh, scene, prepared.options, progress);
+  plan.bytes = prepared.hemicube_estimate.bytes;
+  plan.matrix_bytes = prepared.hemicube_estimate.matrix_bytes;
+  plan.seconds = prepared.hemicube_estimate.measured;
+  plan.refining = 0;
 }
 
 }  // namespace
@@ -106,9 +125,21 @@ Precision FormFactorOptions::storedPrecision() const {
   return precision.value_or(tolerance < 1e-6 ? Precision::real : Precision::single);
 }
 
-FormFactorPlan planFormFactors(const PatchMesh& mesh, const FormFactorOptions& options) {
-  FormFactorPlan plan = prepare(mesh, options);
-  if (plan.method == FormFactorMethod::hemicube) plan.bytes = hemicubeBytes(mesh, options);
+FormFactorPlan planFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
+                               Progress& progress) {
+  options.validate();
+  const Clock::time_point start = Clock::now();
+  auto prepared = std::make_shared<FormFactorPlan::Prepared>(mesh, options);
+  FormFactorPlan plan;
+  if (options.method != FormFactorMethod::hemicube) planExact(*prepared, plan, progress);
+  if (plan.method == FormFactorMethod::hemicube) {
+    planHemicubes(*prepared, plan, progress);
+  } else if (plan.seconds > kPatience) {
+    const HemicubeScene scene(mesh, options);
+    plan.hemicube_seconds = estimateHemicubes(mesh, scene, options, progress).measured;
+  }
+  prepared->seconds = secondsSince(start);
+  plan.prepared = std::move(prepared);
   return plan;
 }
 
@@ -118,14 +149,17 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress) {
   const FormFactorPlan::Prepared& prepared = *plan.prepared;
   FormFactors result;
   if (prepared.scene) {
-    result =
-        exactFactors(prepared.mesh, *prepared.scene, prepared.estimate, prepared.options, progress);
+    result = exactFactors(prepared.mesh, *prepared.scene, *prepared.kernels, prepared.estimate,
+                          prepared.options, progress);
     result.report.exact.seconds_prepare += prepared.seconds;
   } else {
-    result = hemicubeFactors(prepared.mesh, prepared.options, progress);
+    result = hemicubeFactors(prepared.mesh, *prepared.hemicubes, prepared.hemicube_estimate,
+                             prepared.options, progress);
   }
   FormFactorReport& report = result.report;
   report.method_reason = plan.reason;
+  report.seconds_plan = prepared.seconds;
+  report.estimated_seconds = plan.seconds;
   report.matrix_bytes = result.matrix.bytes();
   report.seconds = prepared.seconds + secondsSince(start);
   return result;
@@ -133,8 +167,7 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress) {
 
 FormFactors computeFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
                                Progress& progress) {
-  // Hemicubes estimate their bytes themselves.
-  return computeFormFactors(prepare(mesh, options), progress);
+  return computeFormFactors(planFormFactors(mesh, options, progress), progress);
 }
 
 }  // namespace radiosity

@@ -5,12 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 
 #include "base/parallel.h"
-#include "formfactor/near_pairs.h"
 #include "formfactor/row_accounts.h"
-#include "formfactor/row_builder.h"
 
 namespace radiosity {
 namespace {
@@ -46,8 +43,10 @@ void storeRow(std::size_t i, const HemicubeView& view, const NearPairs* near_pai
   }
 }
 
-void fillRows(const RowBuilder& rows, const NearPairs* near_pairs, FormFactors& result,
+void fillRows(const HemicubeScene& scene, FormFactors& result,
               std::vector<std::vector<SeenBack>>& seen_backs, Progress& progress) {
+  const RowBuilder& rows = scene.rows;
+  const NearPairs* const near_pairs = scene.near_pairs ? &*scene.near_pairs : nullptr;
   const std::size_t n = result.fronts.size();
   tbb::enumerable_thread_specific<Worker> workers([&] {
     return Worker{rows.makeHemicube(), {}, {}, 0, 0};
@@ -102,16 +101,21 @@ void checkRows(FormFactors& result) {
 
 }  // namespace
 
-FormFactors hemicubeFactors(const PatchMesh& mesh, const FormFactorOptions& options,
+HemicubeScene::HemicubeScene(const PatchMesh& mesh, const FormFactorOptions& options)
+    : rows(mesh, options) {
+  if (options.nearExact()) near_pairs.emplace(mesh, options);
+}
+
+FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
+                            const HemicubeEstimate& estimate, const FormFactorOptions& options,
                             Progress& progress) {
   const std::size_t n = mesh.size();
-  const RowBuilder rows(mesh, options);
   FormFactors result;
   result.method = "hemicube";
   FormFactorReport& report = result.report;
   report.polygons = mesh.polygons.size();
-  report.simd_target = rows.kernels().target;
-  report.estimated_bytes = estimateBytes(mesh, options, rows);
+  report.simd_target = scene.rows.kernels().target;
+  report.estimated_bytes = estimate.bytes;
   refuseTooLarge(report.estimated_bytes, options, n);
 
   result.matrix = ExchangeMatrix(mesh.area, options.storedPrecision());
@@ -119,18 +123,22 @@ FormFactors hemicubeFactors(const PatchMesh& mesh, const FormFactorOptions& opti
   result.backs.assign(n, 0.0);
   result.sky.assign(n, 0.0);
   std::vector<std::vector<SeenBack>> seen_backs(n);
-  std::optional<NearPairs> near_pairs;
-  if (options.nearExact()) near_pairs.emplace(mesh, options);
-  fillRows(rows, near_pairs ? &*near_pairs : nullptr, result, seen_backs, progress);
+  fillRows(scene, result, seen_backs, progress);
+  constexpr std::size_t kSteps = 3;
+  progress.begin("finishing", kSteps);
+  const auto step = [&] {
+    progress.advance();
+    progress.check();
+  };
   accountForBacks(mesh, seen_backs, result);
   checkRows(result);
+  step();
   report.reciprocity_residual = reciprocityResidual(result.matrix);
+  step();
   if (options.symmetrize) symmetrize(result);
+  step();
+  progress.end();
   return result;
-}
-
-std::size_t hemicubeBytes(const PatchMesh& mesh, const FormFactorOptions& options) {
-  return estimateBytes(mesh, options, RowBuilder(mesh, options));
 }
 
 }  // namespace radiosity

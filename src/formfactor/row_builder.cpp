@@ -1,9 +1,5 @@
 #include "formfactor/row_builder.h"
 
-#include <tbb/global_control.h>
-
-#include <algorithm>
-
 namespace radiosity {
 
 RowBuilder::RowBuilder(const PatchMesh& mesh, const FormFactorOptions& options)
@@ -48,31 +44,6 @@ void PackedRow::pack(const HemicubeView& view, std::size_t patches) {
       values.push_back(view.items[j]);
     }
   }
-}
-
-std::size_t estimateBytes(const PatchMesh& mesh, const FormFactorOptions& options,
-                          const RowBuilder& rows) {
-  constexpr std::size_t kSamples = 32;
-  const std::size_t n = mesh.size();
-  Hemicube hemicube = rows.makeHemicube();
-  std::vector<std::uint8_t> hidden;
-  PackedRow row;
-  std::size_t entries = 0;
-  const std::size_t samples = std::min(n, kSamples);
-  for (std::size_t k = 0; k < samples; ++k) {
-    const std::size_t patch = (2 * k + 1) * n / (2 * samples);
-    if (rows.isEmpty(patch)) continue;
-    row.pack(rows.look(patch, hemicube, hidden), n);
-    entries += row.columns.size();
-  }
-  const double per_row = samples == 0 ? 0.0 : double(entries) / double(samples);
-  const std::size_t matrix = ExchangeMatrix::estimateBytes(n, per_row, options.storedPrecision());
-  const std::size_t threads =
-      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  constexpr std::size_t kAccounts = 4 * sizeof(double);  // fronts, backs, sky, area
-  // Merging both estimates makes a second matrix beside the first.
-  return (options.symmetrize ? 2 : 1) * matrix + n * kAccounts + rows.sharedBytes() +
-         threads * hemicube.bytes();
 }
 
 }  // namespace radiosity

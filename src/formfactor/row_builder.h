@@ -53,8 +53,4 @@ struct PackedRow {
   void pack(const HemicubeView& view, std::size_t patches);
 };
 
-/// Bytes a computation will hold at once, from a sample of up to 32 rows.
-std::size_t estimateBytes(const PatchMesh& mesh, const FormFactorOptions& options,
-                          const RowBuilder& rows);
-
 }  // namespace radiosity

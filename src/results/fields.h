@@ -194,6 +194,8 @@ void describe(Archive& a, Described<Archive, FormFactorReport>& r) {
   a("seconds", r.seconds);
   a("matrix_bytes", r.matrix_bytes);
   a("estimated_bytes", r.estimated_bytes);
+  a("seconds_plan", r.seconds_plan);
+  a("estimated_seconds", r.estimated_seconds);
   a("reciprocity_residual", r.reciprocity_residual);
   a("largest_row_error", r.largest_row_error);
   a("error_figure", r.error_figure);

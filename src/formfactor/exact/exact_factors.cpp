@@ -15,24 +15,12 @@
 namespace radiosity {
 namespace {
 
-/// Closed forms hold this at the default tolerance, and what is asked below it. ...
-constexpr double kClosedForm = 1e-5;
-/// ... Where less is asked than that, a share of it: theirs, mostly a tenth of what they are held
-/// to, is then not seen beside the error of what is clipped. ...
-constexpr double kClosedFormShare = 0.1;
-/// ... The kernels are published for no more than this.
-constexpr double kLoosest = 1e-2;
 /// About this share of the clipped pairs is evaluated again from the other end, ...
 constexpr double kRecheckShare = 1.0 / 256;
 /// ... and at least so many, as far as there are.
 constexpr double kRecheckLeast = 256;
 /// A row that leaves more than this to the sky needs no eye to tell that the scene is open.
 constexpr double kCertainSky = 0.01;
-
-double closedFormTolerance(double tolerance) {
-  if (tolerance <= FormFactorOptions().tolerance) return std::min(tolerance, kClosedForm);
-  return std::min(kClosedFormShare * tolerance, kLoosest);
-}
 
 std::size_t recheckEvery(double partial_pairs) {
   const double share = std::max(kRecheckShare, kRecheckLeast / std::max(partial_pairs, 1.0));
@@ -139,8 +127,8 @@ void closeRows(const PatchOrder& order, const UncertainEntries& uncertain, doubl
 }  // namespace
 
 FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
-                         const ExactEstimate& estimate, const FormFactorOptions& options,
-                         Progress& progress) {
+                         const ExactKernels& kernels, const ExactEstimate& estimate,
+                         const FormFactorOptions& options, Progress& progress) {
   const std::size_t n = mesh.size();
   FormFactors result;
   result.method = "exact";
@@ -151,9 +139,6 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   report.estimated_bytes = estimate.bytes;
   refuseTooLarge(estimate.bytes, options, n);
 
-  const double closed_form = closedFormTolerance(options.tolerance);
-  const UnoccludedKernel unoccluded(scene.elements, closed_form, options.simd);
-  const PartialKernel partial(scene.elements, scene.occluders, options.tolerance, options.simd);
   result.matrix =
       ExchangeMatrix::symmetric(mesh.area, scene.order.patch, options.storedPrecision());
   result.backs.assign(n, 0.0);
@@ -165,8 +150,8 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
                            scene.order,
                            scene.chunks,
                            scene.visibility,
-                           unoccluded,
-                           partial,
+                           kernels.unoccluded,
+                           kernels.partial,
                            recheckEvery(estimate.partial_pairs),
                            result.matrix,
                            wanted,
@@ -175,15 +160,25 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   const RowSums sums = fillRows(context, scene.tasks, progress);
   using Clock = std::chrono::steady_clock;
   const Clock::time_point finishing = Clock::now();
+  constexpr std::size_t kSteps = 3;
+  progress.begin("finishing", kSteps);
+  const auto step = [&] {
+    progress.advance();
+    progress.check();
+  };
   reportCounts(scene, sums, report.exact);
-  setErrors(scene.order, sums.error, closed_form, result);
+  setErrors(scene.order, sums.error, kernels.closed_form, result);
   setAccounts(mesh, scene.order, result);
+  step();
   if (report.closed && options.closure != ClosureMode::off) {
     const double square = scene.elements.scale * scene.elements.scale;  // of an area
     closeRows(scene.order, uncertain, sums.error.weightedSquares(scene.order.area) / square,
               options.closure, result);
   }
+  step();
   accountForBacks(mesh, seen_backs, result);
+  step();
+  progress.end();
   report.exact.seconds_finish = std::chrono::duration<double>(Clock::now() - finishing).count();
   return result;
 }

@@ -6,9 +6,9 @@
 
 namespace radiosity {
 
-/// See computeFormFactors(). `scene` is the mesh's, `estimate` the scene's.
+/// See computeFormFactors(). `scene` is the mesh's, `kernels` and `estimate` the scene's.
 FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
-                         const ExactEstimate& estimate, const FormFactorOptions& options,
-                         Progress& progress);
+                         const ExactKernels& kernels, const ExactEstimate& estimate,
+                         const FormFactorOptions& options, Progress& progress);
 
 }  // namespace radiosity

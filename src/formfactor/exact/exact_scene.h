@@ -3,15 +3,19 @@
 
 #include "formfactor/exact/elements.h"
 #include "formfactor/exact/occluders.h"
+#include "formfactor/exact/partial.h"
 #include "formfactor/exact/row_assembly.h"
 #include "formfactor/exact/row_tasks.h"
+#include "formfactor/exact/unoccluded.h"
 #include "formfactor/exact/visibility.h"
 #include "radiosity/form_factors.h"
 
 namespace radiosity {
 
 struct ExactScene {
-  explicit ExactScene(const PatchMesh& mesh);
+  /// Steps `progress` by kSteps; calls its check().
+  static constexpr std::size_t kSteps = 3;
+  ExactScene(const PatchMesh& mesh, Progress& progress);
   ElementSet elements;
   OccluderSet occluders;
   Visibility visibility;
@@ -20,16 +24,30 @@ struct ExactScene {
   ColumnChunks chunks;
 };
 
-/// From the pairs of a sample of tasks.
+/// What computes values, in closed form and by clipping, to the options' tolerance.
+struct ExactKernels {
+  /// Keeps `scene` by reference.
+  ExactKernels(const ExactScene& scene, const FormFactorOptions& options);
+  double closed_form;  ///< relative error that closed forms hold
+  UnoccludedKernel unoccluded;
+  PartialKernel partial;
+};
+
+/// From the pairs of a sample of tasks. All but `measured` depends on the scene and the options
+/// alone, never on the machine or on what else it does.
 struct ExactEstimate {
-  std::size_t bytes = 0;       ///< held at once
-  double entries_per_row = 0;  ///< at most
+  std::size_t bytes = 0;         ///< held at once, FormFactorOptions::memory_held included
+  std::size_t matrix_bytes = 0;  ///< of these, the matrix
+  double entries_per_row = 0;    ///< at most
   double partial_pairs = 0;
   double occluders_per_partial = 0;
   double points = 0;    ///< ExactReport::points; about, like the seconds
   double seconds = 0;   ///< of one core, at the rates of a usual machine
   double refining = 0;  ///< of the seconds, those that go with 1 / tolerance
+  /// Seconds by the clock on the threads allowed, at the rates that the sample had here and now.
+  double measured = 0;
 };
-ExactEstimate estimateExact(const ExactScene& scene, const FormFactorOptions& options);
+ExactEstimate estimateExact(const ExactScene& scene, const ExactKernels& kernels,
+                            const FormFactorOptions& options, Progress& progress);
 
 }  // namespace radiosity

@@ -2,27 +2,22 @@
 
 #include <algorithm>
 #include <cstring>
-#include <ctime>
 #include <numeric>
+
+#include "base/processor_clock.h"
 
 namespace radiosity {
 namespace {
 
-/// Adds the processor time of this thread from its making to its end to a sum: what other work on
-/// the machine takes is not counted.
+/// Adds the processor time of this thread from its making to its end to a sum.
 class Stopwatch {
  public:
-  explicit Stopwatch(double& sum) : sum_(sum), start_(now()) {}
-  ~Stopwatch() { sum_ += now() - start_; }
+  explicit Stopwatch(double& sum) : sum_(sum), start_(processorSeconds()) {}
+  ~Stopwatch() { sum_ += processorSeconds() - start_; }
   Stopwatch(const Stopwatch&) = delete;
   Stopwatch& operator=(const Stopwatch&) = delete;
 
  private:
-  static double now() {
-    timespec time{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
-  }
   double& sum_;
   double start_;
 };

@@ -61,6 +61,10 @@ Visibility::Visibility(const ElementSet& elements, const OccluderSet& occluders,
   for (Index o = 0; o < occluders.occluders.size(); ++o) {
     for (const Index f : occluders.occluders[o].facets) own_[f].push_back(o);
   }
+  open_after_.resize(open_facets_.size() + 1, 0);
+  for (std::size_t k = open_facets_.size(); k > 0; --k) {
+    open_after_[k - 1] = open_after_[k] + elements.facets[open_facets_[k - 1]].elements.size();
+  }
 }
 
 void Visibility::classify(ElementRange rows, VisibilitySink& sink, VisibilityCounts& counts) const {
@@ -77,18 +81,33 @@ void Visibility::classify(ElementRange rows, VisibilitySink& sink, VisibilityCou
     return;
   }
   // Sealed facets are settled without a look at each.
-  std::size_t open = 0;
-  const auto first = std::upper_bound(open_facets_.begin(), open_facets_.end(), facet);
-  for (auto it = first; it != open_facets_.end(); ++it) {
-    open += elements_.facets[*it].elements.size();
-  }
-  const std::size_t closed = facets - std::size_t(open_facets_.end() - first);
-  counts.no_exchange += rows.size() * (columns - open);
+  const std::size_t closed = facets - openFacetsAfter(rows);
+  counts.no_exchange += rows.size() * columns - openPairs(rows);
   counts.facet_pairs += closed;
   counts.facet_pairs_no_exchange += closed;
   VisibilityDescent descent(*this, sink, counts);
   forClusters(elements_, elements_.facets[facet].root, rows,
               [&](Index cluster) { descent.run(facet, cluster); });
+}
+
+void Visibility::classifySome(ElementRange rows, const VisibilitySample& sample,
+                              VisibilitySink& sink, VisibilityCounts& counts) const {
+  if (openFacetsAfter(rows) == 0) return;
+  const Index facet = elements_.facet[rows.first];
+  VisibilityDescent descent(*this, sink, counts, sample);
+  forClusters(elements_, elements_.facets[facet].root, rows,
+              [&](Index cluster) { descent.run(facet, cluster); });
+}
+
+std::size_t Visibility::openFacetsAfter(ElementRange rows) const {
+  const Index facet = elements_.facet[rows.first];
+  if (occluders_.sealed[facet]) return 0;
+  return std::size_t(open_facets_.end() -
+                     std::upper_bound(open_facets_.begin(), open_facets_.end(), facet));
+}
+
+std::size_t Visibility::openPairs(ElementRange rows) const {
+  return rows.size() * open_after_[open_facets_.size() - openFacetsAfter(rows)];
 }
 
 }  // namespace radiosity

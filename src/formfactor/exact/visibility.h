@@ -1,6 +1,7 @@
 // Which elements see each other wholly, not at all, or past what.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,13 @@ struct VisibilityCounts {
   std::size_t facet_pairs_unoccluded = 0;   ///< settled whole: no visibility code ran below them
   std::size_t shaft_tests = 0;              ///< of an occluder against the space between two shapes
   VisibilityCounts& operator+=(const VisibilityCounts& other);
+};
+
+/// Which pairs of some rows a sample looks at, and how long.
+struct VisibilitySample {
+  std::size_t facet_stride = 1;  ///< every so many-th of the open facets after theirs,
+  std::size_t first_facet = 0;   ///< from this one of them on
+  std::size_t most_tests = std::numeric_limits<std::size_t>::max();  ///< then it stops as it is
 };
 
 /// Receives the answers. `rows` are always inside the range asked for; `columns` come from one
@@ -51,6 +59,15 @@ class Visibility {
   /// counted. Thread-safe.
   void classify(ElementRange rows, VisibilitySink& sink, VisibilityCounts& counts) const;
 
+  /// Classifies the same rows against some of the facets after theirs that are not sealed, to find
+  /// out what that takes; counts only pairs that it settles. Nothing of rows that are sealed.
+  void classifySome(ElementRange rows, const VisibilitySample& sample, VisibilitySink& sink,
+                    VisibilityCounts& counts) const;
+  /// How many facets after that of `rows` classifySome() chooses from; 0 where the rows are sealed.
+  std::size_t openFacetsAfter(ElementRange rows) const;
+  /// Pairs of `rows` with the elements of these.
+  std::size_t openPairs(ElementRange rows) const;
+
  private:
   friend class VisibilityDescent;
 
@@ -60,6 +77,7 @@ class Visibility {
   VisibilityKernels kernels_;
   std::vector<ShapeCorners> shapes_;     ///< of clusters: bounds, or a leaf's element itself
   std::vector<Index> open_facets_;       ///< not sealed, ascending
+  std::vector<std::size_t> open_after_;  ///< elements of open facets from one of them on
   std::vector<std::vector<Index>> own_;  ///< of a facet: occluders that it lies on, ascending
 };
 

@@ -6,8 +6,12 @@
 namespace radiosity {
 
 VisibilityDescent::VisibilityDescent(const Visibility& visibility, VisibilitySink& sink,
-                                     VisibilityCounts& counts)
-    : visibility_(visibility), elements_(visibility.elements_), sink_(sink), counts_(counts) {}
+                                     VisibilityCounts& counts, const VisibilitySample& sample)
+    : visibility_(visibility),
+      elements_(visibility.elements_),
+      sink_(sink),
+      counts_(counts),
+      sample_(sample) {}
 
 std::size_t VisibilityDescent::pairs(Index row, Index column) const {
   return std::size_t(elements_.clusters[row].elements.size()) *
@@ -34,8 +38,10 @@ void VisibilityDescent::run(Index facet, Index cluster) {
   items_.clear();
   dropCandidates(0);
   const std::vector<Index>& open = visibility_.open_facets_;
-  for (auto it = std::upper_bound(open.begin(), open.end(), facet); it != open.end(); ++it) {
-    addFacet(*it);
+  const auto after = std::upper_bound(open.begin(), open.end(), facet) - open.begin();
+  for (std::size_t k = std::size_t(after) + sample_.first_facet; k < open.size() && !enough();
+       k += sample_.facet_stride) {
+    addFacet(open[k]);
   }
   descend(cluster, 0, 0, items_.size());
 }
@@ -117,6 +123,7 @@ void VisibilityDescent::descend(Index row, std::size_t depth, std::size_t first_
 /// Horizon, then candidates. Columns larger than the rows are split, others left to the row's
 /// children.
 void VisibilityDescent::settle(Index row, std::size_t depth, Item item) {
+  if (enough()) return;
   const Cluster& rows = elements_.clusters[row];
   const Cluster& columns = elements_.clusters[item.cluster];
   if (!meets(row, item)) {

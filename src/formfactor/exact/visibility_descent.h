@@ -13,10 +13,11 @@ namespace radiosity {
 /// planes of each occluder's shadow are found once a row cluster.
 class VisibilityDescent {
  public:
-  VisibilityDescent(const Visibility& visibility, VisibilitySink& sink, VisibilityCounts& counts);
+  VisibilityDescent(const Visibility& visibility, VisibilitySink& sink, VisibilityCounts& counts,
+                    const VisibilitySample& sample = {});
 
   /// All pairs of the clusters' elements with elements of open facets after `facet`, which the
-  /// cluster belongs to.
+  /// cluster belongs to; of a sample, some of them.
   void run(Index facet, Index cluster);
 
  private:
@@ -36,6 +37,7 @@ class VisibilityDescent {
     std::vector<ShadowPlanes> shadows;
   };
 
+  bool enough() const { return counts_.shaft_tests >= sample_.most_tests; }
   void addFacet(Index facet);
   void descend(Index row, std::size_t depth, std::size_t first_item, std::size_t end_item);
   void settle(Index row, std::size_t depth, Item item);
@@ -58,6 +60,7 @@ class VisibilityDescent {
   const ElementSet& elements_;
   VisibilitySink& sink_;
   VisibilityCounts& counts_;
+  VisibilitySample sample_;  ///< most_tests: of counts_, what was in them included
   Index facet_ = 0;
   Index top_ = 0;
   std::vector<Item> items_;                        ///< a stack; each depth's at the end

@@ -1,0 +1,44 @@
+// The time that a thread really had a processor, and the time that passed.
+#pragma once
+
+#include <chrono>
+#include <ctime>
+
+namespace radiosity {
+
+/// Processor seconds of this thread: what other work on the machine takes is not counted.
+inline double processorSeconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
+}
+
+/// Seconds from some moment on, by the clock.
+inline double clockSeconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// What some work took, both ways: their ratio says how busy the machine is with other things.
+struct BothClocks {
+  double processor = 0;
+  double clock = 0;
+  BothClocks& operator+=(const BothClocks& other) {
+    processor += other.processor;
+    clock += other.clock;
+    return *this;
+  }
+  /// 1 at least: clocks tick differently.
+  double ratio() const { return clock > processor && processor > 0 ? clock / processor : 1.0; }
+};
+
+/// From its making on, on this thread.
+class BothWatches {
+ public:
+  BothClocks elapsed() const { return {processorSeconds() - processor_, clockSeconds() - clock_}; }
+
+ private:
+  double processor_ = processorSeconds();
+  double clock_ = clockSeconds();
+};
+
+}  // namespace radiosity

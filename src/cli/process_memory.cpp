@@ -1,0 +1,17 @@
+#include "cli/process_memory.h"
+
+#include <unistd.h>
+
+#include <fstream>
+
+namespace radiosity::cli {
+
+std::size_t residentBytes() {
+  std::ifstream file("/proc/self/statm");
+  std::size_t all = 0;
+  std::size_t resident = 0;
+  if (!(file >> all >> resident)) return 0;
+  return resident * std::size_t(sysconf(_SC_PAGESIZE));
+}
+
+}  // namespace radiosity::cli
