@@ -64,6 +64,8 @@ def interrupt(program, command, scene, moment):
         left = [p.name for p in pathlib.Path(folder).iterdir()]
         if process.returncode == 0:
             return None, "", ""  # it was done before the signal came
+        if process.returncode == -signal.SIGINT:
+            return seconds, "starting", "left " + ", ".join(left) if left else ""  # before main()
         if not wrong and process.returncode != 1:
             wrong = f"exit code {process.returncode}"
         elif not wrong and not err.rstrip().endswith("interrupted; nothing was written"):
