@@ -3,19 +3,13 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/vector_relational.hpp>
 #include <span>
 
+#include "formfactor/exact/occluders_boxes.h"
 #include "formfactor/hidden_backs.h"
 
 namespace radiosity {
 namespace {
-
-struct Box {
-  Index polygon;
-  Vec3 lower;
-  Vec3 upper;
-};
 
 std::span<const std::uint32_t> cornersOf(const ViewScene& scene, Index p) {
   const ViewPolygon& polygon = scene.polygons[p];
@@ -23,19 +17,10 @@ std::span<const std::uint32_t> cornersOf(const ViewScene& scene, Index p) {
   return {scene.corners.data() + begin, scene.loop_offset[polygon.loop_end] - begin};
 }
 
-Box boxOf(const ViewScene& scene, Index p) {
-  Box box{p, Vec3(HUGE_VAL), Vec3(-HUGE_VAL)};
-  for (const std::uint32_t v : cornersOf(scene, p)) {
-    box.lower = glm::min(box.lower, scene.vertices[v]);
-    box.upper = glm::max(box.upper, scene.vertices[v]);
-  }
-  box.lower -= Vec3(scene.coincidence);
-  box.upper += Vec3(scene.coincidence);
-  return box;
-}
-
-bool overlap(const Box& a, const Box& b) {
-  return !glm::any(glm::lessThan(a.upper, b.lower)) && !glm::any(glm::lessThan(b.upper, a.lower));
+Box3 boxOf(const ViewScene& scene, Index p) {
+  Box3 box;
+  for (const std::uint32_t v : cornersOf(scene, p)) box.add(scene.vertices[v]);
+  return box.grown(scene.coincidence);
 }
 
 double distanceToSegment(const Vec2& p, const Vec2& a, const Vec2& b) {
@@ -109,20 +94,19 @@ bool meets(const ViewScene& scene, Index p, Index q) {
 }  // namespace
 
 bool isEmbedded(const ViewScene& scene, const std::vector<Index>& polygons) {
-  std::vector<Box> boxes;
+  std::vector<Box3> boxes;
   boxes.reserve(polygons.size());
   for (const Index p : polygons) boxes.push_back(boxOf(scene, p));
-  std::sort(boxes.begin(), boxes.end(),
-            [](const Box& a, const Box& b) { return a.lower.x < b.lower.x; });
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    for (std::size_t j = i + 1; j < boxes.size() && boxes[j].lower.x <= boxes[i].upper.x; ++j) {
-      if (!overlap(boxes[i], boxes[j])) continue;
-      const Index p = boxes[i].polygon;
-      const Index q = boxes[j].polygon;
-      if (meets(scene, p, q) || meets(scene, q, p)) return false;
-    }
+  const BoxTree tree(boxes);
+  bool apart = true;
+  for (Index i = 0; i < polygons.size() && apart; ++i) {
+    tree.query(boxes[i], [&](Index j) {
+      apart = j <= i ||
+              (!meets(scene, polygons[i], polygons[j]) && !meets(scene, polygons[j], polygons[i]));
+      return apart;
+    });
   }
-  return true;
+  return apart;
 }
 
 }  // namespace radiosity

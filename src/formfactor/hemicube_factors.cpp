@@ -8,6 +8,8 @@
 
 #include "base/parallel.h"
 #include "formfactor/row_accounts.h"
+#include "formfactor/row_builder.h"
+#include "matrix/closure_progress.h"
 
 namespace radiosity {
 namespace {
@@ -82,10 +84,10 @@ void fillRows(const HemicubeScene& scene, FormFactors& result,
   report.closed = counts.hemicubes > 0 && counts.sky_pixels == 0;
 }
 
-void symmetrize(FormFactors& result) {
+void symmetrize(FormFactors& result, Progress& progress) {
   // The row sums to restore are the raw ones: 1 in a closed scene, what was seen in an open one.
   result.matrix = symmetrized(result.matrix);
-  result.report.closure = restoreClosure(result.matrix, result.fronts);
+  result.report.closure = restoreClosure(result.matrix, result.fronts, progress);
   result.report.symmetrized = true;
 }
 
@@ -124,7 +126,7 @@ FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
   result.sky.assign(n, 0.0);
   std::vector<std::vector<SeenBack>> seen_backs(n);
   fillRows(scene, result, seen_backs, progress);
-  constexpr std::size_t kSteps = 3;
+  constexpr std::size_t kSteps = 2;
   progress.begin("finishing", kSteps);
   const auto step = [&] {
     progress.advance();
@@ -135,9 +137,8 @@ FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
   step();
   report.reciprocity_residual = reciprocityResidual(result.matrix);
   step();
-  if (options.symmetrize) symmetrize(result);
-  step();
   progress.end();
+  if (options.symmetrize) symmetrize(result, progress);
   return result;
 }
 

@@ -8,7 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "matrix/closure_progress.h"
 #include "matrix/closure_target.h"
+#include "matrix/residual_progress.h"
 #include "matrix/run_row.h"
 #include "matrix/two_sided_pass.h"
 #include "radiosity/closure.h"
@@ -50,7 +52,7 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
 class LeastSquaresClosure {
  public:
   LeastSquaresClosure(const ExchangeMatrix& matrix, const UncertainEntries& uncertain,
-                      std::span<const double> target, const RawTotals& raw);
+                      std::span<const double> target, const RawTotals& raw, Progress& progress);
 
   void findMultipliers(double tolerance);
   /// The changes they make, as the matrix would store them, if they are to be kept; fills in the
@@ -69,6 +71,7 @@ class LeastSquaresClosure {
 
   const ExchangeMatrix& matrix_;
   const UncertainEntries& uncertain_;
+  Progress& progress_;
   double raw_squares_;
   TwoSidedPass pass_;
   std::array<double, 256> squared_{};            // e^2 by code
@@ -85,9 +88,11 @@ class LeastSquaresClosure {
 
 LeastSquaresClosure::LeastSquaresClosure(const ExchangeMatrix& matrix,
                                          const UncertainEntries& uncertain,
-                                         std::span<const double> target, const RawTotals& raw)
+                                         std::span<const double> target, const RawTotals& raw,
+                                         Progress& progress)
     : matrix_(matrix),
       uncertain_(uncertain),
+      progress_(progress),
       raw_squares_(raw.weighted_squares),
       pass_(matrix.size(), 0, [&](std::size_t k) { return uncertain.row(k).codes.size() + 1; }),
       area_(matrix.size()),
@@ -234,6 +239,7 @@ std::vector<double> LeastSquaresClosure::newtonStep(double tolerance) {
       x[k] += step * direction[k];
       residual[k] -= step * of_direction[k];
     }
+    progress_.check();
     of_residual = multiply(residual);
     const double last = std::exchange(weight, dot(residual, of_residual));
     for (std::size_t k = 0; k < n; ++k) {
@@ -257,7 +263,9 @@ double LeastSquaresClosure::largestLack() const {
 }
 
 void LeastSquaresClosure::findMultipliers(double tolerance) {
+  ResidualProgress shown(progress_, "closure", largestLack(), tolerance);
   for (int round = 0; round < kMostRounds && largestLack() > tolerance; ++round) {
+    shown.at(largestLack());
     const std::vector<double> step = newtonStep(std::max(tolerance, kForcing * largestLack()));
     const std::vector<double> start = multiplier_;
     const double dual = dual_;
@@ -265,6 +273,7 @@ void LeastSquaresClosure::findMultipliers(double tolerance) {
     // Near the end f changes by less than its rounding; there the rows themselves tell.
     const auto better = [&] { return dual_ < dual || largestLack() < lack / 2; };
     for (double part = 1; part >= kShortestStep; part /= 2) {
+      progress_.check();
       for (std::size_t k = 0; k < step.size(); ++k) multiplier_[k] = start[k] + part * step[k];
       evaluate();
       if (better()) break;
@@ -272,8 +281,9 @@ void LeastSquaresClosure::findMultipliers(double tolerance) {
     if (better()) continue;
     multiplier_ = start;
     evaluate();
-    return;
+    break;
   }
+  shown.end();
 }
 
 // Rows are made one by one, and dropped again unless they are to be kept.
@@ -331,7 +341,7 @@ ClosureReport closeRows(ExchangeMatrix& matrix, const UncertainEntries& uncertai
 
 ClosureReport closeRows(ExchangeMatrix& matrix, const RawTotals& raw,
                         const UncertainEntries& uncertain, std::span<const double> target_row_sums,
-                        bool enforce, double tolerance) {
+                        bool enforce, Progress& progress, double tolerance) {
   checkClosureTarget(target_row_sums, matrix.size());
   if (!matrix.isSymmetric() || uncertain.size() != matrix.size()) {
     throw InputError(fmt::format("closure: uncertain entries of {} rows for a {} matrix of {}",
@@ -342,7 +352,7 @@ ClosureReport closeRows(ExchangeMatrix& matrix, const RawTotals& raw,
     throw InputError(fmt::format("closure: {} raw row sums for a matrix of {}", raw.row_sums.size(),
                                  matrix.size()));
   }
-  LeastSquaresClosure closure(matrix, uncertain, target_row_sums, raw);
+  LeastSquaresClosure closure(matrix, uncertain, target_row_sums, raw, progress);
   if (!enforce) {
     tolerance = std::max(tolerance, kReportedShare * closure.report().largest_residual_before);
   }
@@ -351,6 +361,13 @@ ClosureReport closeRows(ExchangeMatrix& matrix, const RawTotals& raw,
   std::vector<RunRow> changes = closure.changes(tolerance, enforce);
   if (enforce) matrix.setCorrection(std::move(changes));
   return closure.report();
+}
+
+ClosureReport closeRows(ExchangeMatrix& matrix, const RawTotals& raw,
+                        const UncertainEntries& uncertain, std::span<const double> target_row_sums,
+                        bool enforce, double tolerance) {
+  Progress silent;
+  return closeRows(matrix, raw, uncertain, target_row_sums, enforce, silent, tolerance);
 }
 
 }  // namespace radiosity

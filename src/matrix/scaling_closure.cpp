@@ -2,7 +2,9 @@
 #include <cmath>
 #include <vector>
 
+#include "matrix/closure_progress.h"
 #include "matrix/closure_target.h"
+#include "matrix/residual_progress.h"
 #include "radiosity/closure.h"
 
 namespace radiosity {
@@ -95,7 +97,7 @@ void scale(ExchangeMatrix& matrix, std::span<const double> d, ClosureReport& rep
 // for matrix scaling" (SIAM J. Matrix Anal. 2014); the square root is what keeps the two ends of a
 // pair from each correcting the whole error and oscillating for ever.
 ClosureReport restoreClosure(ExchangeMatrix& matrix, std::span<const double> target_row_sums,
-                             double tolerance, int max_iterations) {
+                             Progress& progress, double tolerance, int max_iterations) {
   const std::size_t n = matrix.size();
   checkClosureTarget(target_row_sums, n);
   ClosureReport report;
@@ -103,6 +105,7 @@ ClosureReport restoreClosure(ExchangeMatrix& matrix, std::span<const double> tar
   std::vector<double> sums = matrix.rowSums();
   report.largest_residual_before = largestResidual(matrix, target_row_sums, sums);
   report.largest_residual = report.largest_residual_before;
+  ResidualProgress shown(progress, "closure", report.largest_residual_before, tolerance);
   std::vector<double> history;
   const auto stalls = [&] {
     return history.size() > kPatience &&
@@ -116,6 +119,7 @@ ClosureReport restoreClosure(ExchangeMatrix& matrix, std::span<const double> tar
     for (std::size_t i = 0; i < n; ++i) sums[i] *= d[i];
     report.largest_residual = largestResidual(matrix, target_row_sums, sums);
     history.push_back(report.largest_residual);
+    shown.at(report.largest_residual);
     ++report.iterations;
   }
   if (report.iterations > 0) {
@@ -123,7 +127,14 @@ ClosureReport restoreClosure(ExchangeMatrix& matrix, std::span<const double> tar
     report.largest_residual = largestResidual(matrix, target_row_sums, matrix.rowSums());
   }
   report.reached = report.largest_residual <= tolerance;
+  shown.end();
   return report;
+}
+
+ClosureReport restoreClosure(ExchangeMatrix& matrix, std::span<const double> target_row_sums,
+                             double tolerance, int max_iterations) {
+  Progress silent;
+  return restoreClosure(matrix, target_row_sums, silent, tolerance, max_iterations);
 }
 
 }  // namespace radiosity

@@ -105,13 +105,17 @@ bool BetweenLines::integrate(std::span<const Vec3> polygon, const Vec3& normal,
     whole += part.integral(part.whole);
   }
   const double fraction = whole > 0 ? visible / whole : 0;
+  const std::size_t most_points = kMostLooks / std::max<std::size_t>(target.blockers.size(), 1);
   while (!parts_.empty()) {
     const Part part = parts_.back();
     parts_.pop_back();
     const double part_whole = part.integral(part.whole);
     const double error = part.error(fraction, out.near);
     // Squares of errors add up: each part may have its share of the square.
-    if (error > out.allowed * std::sqrt(whole * part_whole) && part.halvings < kMostHalvings) {
+    const bool too_large = error > out.allowed * std::sqrt(std::max(whole * part_whole, 0.0));
+    const bool spent = part.halvings >= kMostHalvings || out.points > most_points;
+    out.cut_short = out.cut_short || (too_large && spent);
+    if (too_large && !spent) {
       const std::size_t before = parts_.size();
       for (std::size_t c = 0; c < 4; ++c) add(part.cell.child(c), part.halvings + 1);
       out.points += kPoints * (parts_.size() - before);

@@ -137,12 +137,16 @@ std::vector<std::vector<Vec2>> convexPieces(const std::vector<std::vector<Vec2>>
   const std::vector<double> levels = levelsOf(loops, coincidence);
   if (levels.size() < 2) return {};
   const std::vector<Climb> climbs = climbsOf(loops, levels);
+  std::vector<std::vector<std::size_t>> from_level(levels.size());
+  for (std::size_t k = 0; k < climbs.size(); ++k) from_level[climbs[k].low_level].push_back(k);
+  std::vector<std::size_t> active;
   Trapezoids trapezoids(climbs, levels);
   for (std::size_t level = 0; level + 1 < levels.size(); ++level) {
     const double middle = 0.5 * (levels[level] + levels[level + 1]);
     std::vector<std::pair<double, std::size_t>> crossing;
-    for (std::size_t k = 0; k < climbs.size(); ++k) {
-      if (climbs[k].low_level > level || climbs[k].high_level <= level) continue;
+    std::erase_if(active, [&](std::size_t k) { return climbs[k].high_level <= level; });
+    active.insert(active.end(), from_level[level].begin(), from_level[level].end());
+    for (const std::size_t k : active) {
       crossing.emplace_back(at(climbs[k], levels.size(), middle).x, k);
     }
     std::sort(crossing.begin(), crossing.end());

@@ -1,5 +1,6 @@
 #include "formfactor/exact/exact_factors.h"
 
+#include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_reduce.h>
@@ -11,6 +12,7 @@
 #include "formfactor/closed_scene.h"
 #include "formfactor/raster_kernels.h"
 #include "formfactor/row_accounts.h"
+#include "matrix/closure_progress.h"
 
 namespace radiosity {
 namespace {
@@ -35,7 +37,7 @@ RowSums fillRows(const RowContext& context, const RowTasks& tasks, Progress& pro
   RowSums sums = tbb::parallel_deterministic_reduce(
       Range(0, tasks.size(), 1), RowSums(context.order.ranked),
       [&](const Range& range, RowSums part) {
-        for (std::size_t t = range.begin(); t != range.end() && !progress.cancelled(); ++t) {
+        for (std::size_t t = range.begin(); t != range.end(); ++t) {
           const auto rows = tasks[t];
           workers.local().run(rows, part);
           const PatchOrder& order = context.order;
@@ -82,6 +84,19 @@ void reportCounts(const ExactScene& scene, const RowSums& sums, ExactReport& rep
   report.seconds_assembly = sums.seconds_assembly;
 }
 
+/// What a stage could not do for some pairs, so that a simpler one did.
+void noteFallbacks(const PartialCounts& counts, FormFactorReport& report) {
+  const auto add = [&](std::size_t pairs, const char* what) {
+    if (pairs == 0) return;
+    report.notes.push_back(
+        {Severity::info, fmt::format("{} partly hidden {} {}; their errors are "
+                                     "part of the error figures",
+                                     pairs, pairs == 1 ? "pair" : "pairs", what)});
+  };
+  add(counts.cut_short, "kept a larger error than asked for: shadows on them are too intricate");
+  add(counts.by_segments, "could not be clipped and were sampled by segments");
+}
+
 void setErrors(const PatchOrder& order, const ErrorSums& sums, double closed_form,
                FormFactors& result) {
   std::vector<double> figure(order.ranked);
@@ -91,7 +106,8 @@ void setErrors(const PatchOrder& order, const ErrorSums& sums, double closed_for
 }
 
 /// Fronts are what the matrix holds; sky is what is left of an open scene's rows.
-void setAccounts(const PatchMesh& mesh, const PatchOrder& order, FormFactors& result) {
+void setAccounts(const PatchMesh& mesh, const PatchOrder& order, FormFactors& result,
+                 Progress& progress) {
   result.fronts = result.matrix.rowSums();
   double most_sky = 0;
   for (std::size_t k = 0; k < order.ranked; ++k) {
@@ -100,8 +116,8 @@ void setAccounts(const PatchMesh& mesh, const PatchOrder& order, FormFactors& re
     most_sky = std::max(most_sky, result.sky[i]);
   }
   FormFactorReport& report = result.report;
-  report.closed =
-      order.ranked > 0 && most_sky < kCertainSky && (closedByTopology(mesh) || closedByEye(mesh));
+  report.closed = order.ranked > 0 && most_sky < kCertainSky &&
+                  (closedByTopology(mesh, progress) || closedByEye(mesh, progress));
   for (double& sky : result.sky) {
     const double excess = report.closed ? std::abs(sky) : -sky;
     report.largest_row_error = std::max(report.largest_row_error, excess);
@@ -112,14 +128,15 @@ void setAccounts(const PatchMesh& mesh, const PatchOrder& order, FormFactors& re
 /// What a closed scene's rows lack of 1 is put on the clipped pairs, or it is said what that would
 /// take.
 void closeRows(const PatchOrder& order, const UncertainEntries& uncertain, double weighted_squares,
-               ClosureMode mode, FormFactors& result) {
+               ClosureMode mode, FormFactors& result, Progress& progress) {
   std::vector<double> target(order.patch.size(), 0.0);
   for (std::size_t k = 0; k < order.ranked; ++k) {
     target[order.patch[k]] = std::max(0.0, 1 - result.backs[order.patch[k]]);
   }
   const bool enforce = mode == ClosureMode::enforce;
   const RawTotals raw{result.fronts, weighted_squares};
-  result.report.closure = radiosity::closeRows(result.matrix, raw, uncertain, target, enforce);
+  result.report.closure =
+      radiosity::closeRows(result.matrix, raw, uncertain, target, enforce, progress);
   result.report.closure_enforced = enforce;
   if (enforce) result.fronts = result.matrix.rowSums();
 }
@@ -152,6 +169,7 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
                            scene.visibility,
                            kernels.unoccluded,
                            kernels.partial,
+                           progress,
                            recheckEvery(estimate.partial_pairs),
                            result.matrix,
                            wanted,
@@ -160,25 +178,19 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   const RowSums sums = fillRows(context, scene.tasks, progress);
   using Clock = std::chrono::steady_clock;
   const Clock::time_point finishing = Clock::now();
-  constexpr std::size_t kSteps = 3;
-  progress.begin("finishing", kSteps);
-  const auto step = [&] {
-    progress.advance();
-    progress.check();
-  };
   reportCounts(scene, sums, report.exact);
+  noteFallbacks(sums.partial, report);
   setErrors(scene.order, sums.error, kernels.closed_form, result);
-  setAccounts(mesh, scene.order, result);
-  step();
+  setAccounts(mesh, scene.order, result, progress);
   if (report.closed && options.closure != ClosureMode::off) {
     const double square = scene.elements.scale * scene.elements.scale;  // of an area
     closeRows(scene.order, uncertain, sums.error.weightedSquares(scene.order.area) / square,
-              options.closure, result);
+              options.closure, result, progress);
   }
-  step();
+  progress.begin("finishing", 1);
   accountForBacks(mesh, seen_backs, result);
-  step();
   progress.end();
+  progress.check();
   report.exact.seconds_finish = std::chrono::duration<double>(Clock::now() - finishing).count();
   return result;
 }

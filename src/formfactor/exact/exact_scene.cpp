@@ -36,7 +36,7 @@ auto part(Progress& progress, const Make& make) {
 
 ExactScene::ExactScene(const PatchMesh& mesh, Progress& progress)
     : elements(part(progress, [&] { return ElementSet(mesh); })),
-      occluders(part(progress, [&] { return OccluderSet(mesh, elements); })),
+      occluders(part(progress, [&] { return OccluderSet(mesh, elements, progress); })),
       visibility(elements, occluders),
       order(mesh, elements),
       tasks(elements),

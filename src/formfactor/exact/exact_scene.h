@@ -13,7 +13,7 @@
 namespace radiosity {
 
 struct ExactScene {
-  /// Steps `progress` by kSteps; calls its check().
+  /// Steps `progress` by kSteps. Throws Cancelled.
   static constexpr std::size_t kSteps = 3;
   ExactScene(const PatchMesh& mesh, Progress& progress);
   ElementSet elements;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "formfactor/exact/occluders_boxes.h"
 #include "formfactor/exact/occluders_clip.h"
 #include "formfactor/exact/occluders_cover.h"
 #include "formfactor/exact/occluders_flat.h"
@@ -29,38 +30,49 @@ void attach(Occluder& solid, Index face, Index facet, const ElementSet& elements
   if (glm::dot(elements.facets[facet].normal, solid.planes[face].normal) < 0) sealed[facet] = 1;
 }
 
+/// Which solids may be where a polygon is.
+BoxTree placesOf(const std::vector<Occluder>& solids, double margin) {
+  std::vector<Box3> boxes;
+  boxes.reserve(solids.size());
+  for (const Occluder& solid : solids) boxes.push_back(boxAround(solid, margin));
+  return BoxTree(std::move(boxes));
+}
+
 }  // namespace
 
-OccluderSet::OccluderSet(const PatchMesh& mesh, const ElementSet& elements)
+OccluderSet::OccluderSet(const PatchMesh& mesh, const ElementSet& elements) {
+  Progress silent;
+  *this = OccluderSet(mesh, elements, silent);
+}
+
+OccluderSet::OccluderSet(const PatchMesh& mesh, const ElementSet& elements, Progress& progress)
     : sealed(elements.facets.size(), 0) {
   OccluderPolygons all(mesh, elements);
   const auto facets = facetsOfPolygons(elements, mesh.polygons.size());
   std::vector<std::uint8_t> taken(all.polygons.size(), 0);
-  occluders = convexSolids(all, taken);
-  solids = occluders.size();
-  for (Index p = 0; p < all.polygons.size(); ++p) {
-    const OccluderPolygon& polygon = all.polygons[p];
-    for (Occluder& solid : occluders) {
-      const Index face = faceThatHolds(all, polygon, solid);
-      if (face == kNone) continue;
-      taken[p] = 1;  // what it blocks the solid blocks
-      for (const Index f : facets[polygon.source]) attach(solid, face, f, elements, sealed);
+  for (ConvexSolid& solid : convexSolids(all, taken, progress)) {
+    for (const ConvexSolid::OnFace& on : solid.on_faces) {
+      const Index source = all.polygons[on.polygon].source;
+      for (const Index f : facets[source]) attach(solid.body, on.face, f, elements, sealed);
     }
+    occluders.push_back(std::move(solid.body));
+  }
+  solids = occluders.size();
+  const BoxTree places = placesOf(occluders, all.coincidence);
+  for (Index p = 0; p < all.polygons.size(); ++p) {
+    progress.check();
+    const OccluderPolygon& polygon = all.polygons[p];
     if (!taken[p] && polygon.bounds_scene) {
       taken[p] = 1;
       ++skipped_hull;
     }
-    if (!taken[p] && isCoveredBySolids(all, polygon, occluders)) taken[p] = 1;
+    if (!taken[p] && isCoveredBySolids(all, polygon, occluders, places)) taken[p] = 1;
   }
   for (Index f = 0; f < elements.facets.size(); ++f) {
     const Facet& facet = elements.facets[f];
-    if (std::none_of(all.vertices.begin(), all.vertices.end(), [&](const Vec3& v) {
-          return glm::dot(facet.normal, v) > facet.offset + elements.coincidence;
-        })) {
-      sealed[f] = 1;
-    }
+    if (all.allBehind(facet.normal, facet.offset, elements.coincidence)) sealed[f] = 1;
   }
-  for (const FlatPiece& piece : flatPieces(all, taken)) {
+  for (const FlatPiece& piece : flatPieces(all, taken, progress)) {
     Occluder occluder;
     if (!makeFlatOccluder(all, piece, occluder)) continue;
     for (const Index p : piece.polygons) {

@@ -39,6 +39,8 @@ struct Occluder {
 /// several, its convex pieces; coplanar neighbours are merged where that gives fewer pieces.
 /// A polygon that cannot block anything (all of the scene lies on one side of its plane) has none.
 struct OccluderSet {
+  /// Takes n log n time. Throws Cancelled.
+  OccluderSet(const PatchMesh& mesh, const ElementSet& elements, Progress& progress);
   OccluderSet(const PatchMesh& mesh, const ElementSet& elements);
   std::vector<Occluder> occluders;
   std::size_t solids = 0;        ///< occluders that are solids; they come first

@@ -17,19 +17,26 @@ class BoxTree {
   /// Calls visit(index) for every box that meets `box`, until it returns false.
   template <class Visit>
   void query(const Box3& box, const Visit& visit) const {
+    search([&](const Box3& other) { return other.meets(box); }, visit);
+  }
+
+  /// Calls visit(index) for every box that `meets` is true of, until it returns false. What `meets`
+  /// is false of, it must be false of all parts of.
+  template <class Meets, class Visit>
+  void search(const Meets& meets, const Visit& visit) const {
     if (nodes_.empty()) return;
     std::vector<Index> stack{0};
     while (!stack.empty()) {
       const Node& node = nodes_[stack.back()];
       stack.pop_back();
-      if (!node.bound.meets(box)) continue;
+      if (!meets(node.bound)) continue;
       if (node.count == 0) {
         stack.push_back(node.first + 1);
         stack.push_back(node.first);
         continue;
       }
       for (Index k = node.first; k < node.first + node.count; ++k) {
-        if (boxes_[order_[k]].meets(box) && !visit(order_[k])) return;
+        if (meets(boxes_[order_[k]]) && !visit(order_[k])) return;
       }
     }
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <vector>
@@ -75,6 +76,15 @@ double highestInside(const OccluderPolygons& all, const OccluderPolygon& polygon
   return any ? highest : -std::numeric_limits<double>::infinity();
 }
 
+Occluder::Plane planeOf(const OccluderPolygon& polygon) { return {polygon.normal, polygon.offset}; }
+
+bool isBehind(const OccluderPolygons& all, const OccluderPolygon& polygon,
+              const Occluder::Plane& plane) {
+  return std::all_of(polygon.corners.begin(), polygon.corners.end(), [&](Index v) {
+    return glm::dot(plane.normal, all.vertices[v]) <= plane.offset + all.coincidence;
+  });
+}
+
 Index faceThatHolds(const OccluderPolygons& all, const OccluderPolygon& polygon,
                     const Occluder& solid) {
   std::vector<std::uint8_t> on(solid.planes.size(), 1);
@@ -99,8 +109,11 @@ Box3 boxAround(const Occluder& body, double margin) {
 
 bool isEmpty(const OccluderPolygons& all, const Occluder& body, std::span<const Index> own) {
   bool empty = true;
+  const auto apart = [&](const Box3& box) {
+    return glm::distance(glm::clamp(body.centre, box.low, box.high), body.centre) > body.radius;
+  };
   all.tree.query(boxAround(body, 0), [&](Index p) {
-    if (std::find(own.begin(), own.end(), p) == own.end()) {
+    if (!std::binary_search(own.begin(), own.end(), p) && !apart(all.polygons[p].box)) {
       const double inside = areaInside(all, all.polygons[p], body, all.coincidence);
       empty = inside <= all.coincidence * body.radius;
     }

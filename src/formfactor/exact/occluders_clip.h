@@ -18,6 +18,12 @@ double areaInside(const OccluderPolygons& all, const OccluderPolygon& polygon, c
 double highestInside(const OccluderPolygons& all, const OccluderPolygon& polygon,
                      const Occluder& body, double margin);
 
+Occluder::Plane planeOf(const OccluderPolygon& polygon);
+
+/// True if no corner of a polygon is in front of a plane, farther than the coincidence.
+bool isBehind(const OccluderPolygons& all, const OccluderPolygon& polygon,
+              const Occluder::Plane& plane);
+
 /// The face of a solid that holds a polygon, or kNone.
 Index faceThatHolds(const OccluderPolygons& all, const OccluderPolygon& polygon,
                     const Occluder& solid);
@@ -25,7 +31,7 @@ Index faceThatHolds(const OccluderPolygons& all, const OccluderPolygon& polygon,
 /// The box of a body, `margin` wider on all sides.
 Box3 boxAround(const Occluder& body, double margin);
 
-/// True if no polygon but those of `own` comes inside, farther than the coincidence.
+/// True if no polygon but those of `own`, ascending, comes inside, farther than the coincidence.
 bool isEmpty(const OccluderPolygons& all, const Occluder& body, std::span<const Index> own);
 
 }  // namespace radiosity

@@ -62,7 +62,14 @@ Index coplanarFace(const OccluderPolygon& polygon, const std::vector<Piece>& pie
 }  // namespace
 
 bool isCoveredBySolids(const OccluderPolygons& all, const OccluderPolygon& polygon,
-                       std::span<const Occluder> solids) {
+                       std::span<const Occluder> solids, const BoxTree& places) {
+  std::vector<Index> near;
+  places.query(polygon.box, [&](Index s) {
+    near.push_back(s);
+    return true;
+  });
+  if (near.empty()) return false;
+  std::sort(near.begin(), near.end());
   std::vector<Piece> open;
   for (const auto& t : trianglesOf(all, polygon)) {
     open.push_back({all.vertices[t[0]], all.vertices[t[1]], all.vertices[t[2]]});
@@ -72,7 +79,8 @@ bool isCoveredBySolids(const OccluderPolygons& all, const OccluderPolygon& polyg
   const double radius = 0.5 * glm::distance(polygon.box.low, polygon.box.high);
   Piece below;
   Piece above;
-  for (const Occluder& solid : solids) {
+  for (const Index s : near) {
+    const Occluder& solid = solids[s];
     if (glm::distance(middle, solid.centre) > radius + solid.radius) continue;
     const Index face = coplanarFace(polygon, open, solid, all.coincidence);
     if (face == kNone) continue;

@@ -4,14 +4,15 @@
 #include <span>
 
 #include "formfactor/exact/occluders.h"
+#include "formfactor/exact/occluders_boxes.h"
 #include "formfactor/exact/occluders_polygons.h"
 
 namespace radiosity {
 
 /// True if faces of the solids, together, cover the polygon: what it blocks they block, right
 /// behind or in front of it. What each face leaves is cut off in convex pieces and handed to the
-/// next.
+/// next. `places`: of the solids' boxes.
 bool isCoveredBySolids(const OccluderPolygons& all, const OccluderPolygon& polygon,
-                       std::span<const Occluder> solids);
+                       std::span<const Occluder> solids, const BoxTree& places);
 
 }  // namespace radiosity

@@ -193,12 +193,14 @@ std::vector<std::vector<Index>> convexParts(OccluderPolygons& all, const Occlude
 
 }  // namespace
 
-std::vector<FlatPiece> flatPieces(OccluderPolygons& all, const std::vector<std::uint8_t>& taken) {
+std::vector<FlatPiece> flatPieces(OccluderPolygons& all, const std::vector<std::uint8_t>& taken,
+                                  Progress& progress) {
   const Edges edges = all.edgeUsers();
   std::vector<std::uint8_t> done = taken;
   std::vector<FlatPiece> out;
   for (Index seed = 0; seed < all.polygons.size(); ++seed) {
     if (done[seed]) continue;
+    progress.check();
     const Vec3 normal = all.polygons[seed].normal;
     PieceMerger merger(all, normal);
     for (const Index p : coplanarGroup(all, edges, seed, done)) {

@@ -23,7 +23,8 @@ struct FlatPiece {
 /// fewest).
 /// A polygon whose loops cross, so that it has no triangulation, is cut into trapezoids, whose
 /// corners become vertices of `all`.
-std::vector<FlatPiece> flatPieces(OccluderPolygons& all, const std::vector<std::uint8_t>& taken);
+std::vector<FlatPiece> flatPieces(OccluderPolygons& all, const std::vector<std::uint8_t>& taken,
+                                  Progress& progress);
 
 /// A piece as a solid without thickness. None if it is thinner than the coincidence.
 bool makeFlatOccluder(const OccluderPolygons& all, const FlatPiece& piece, Occluder& occluder);

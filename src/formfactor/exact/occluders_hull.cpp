@@ -6,8 +6,10 @@
 #include <glm/geometric.hpp>
 #include <map>
 #include <numeric>
+#include <set>
 #include <utility>
 
+#include "formfactor/exact/point_tree.h"
 #include "mesh/plane_frame.h"
 
 namespace radiosity {
@@ -40,45 +42,41 @@ std::vector<FlatPoint> strictHull(std::vector<FlatPoint> points) {
   return hull;
 }
 
+/// Of fewer points a loop over all of them finds sooner which are near a plane.
+constexpr std::size_t kManyPoints = 64;
+
 /// Grows a hull face by face.
 class Wrapping {
  public:
   Wrapping(const std::vector<Vec3>& points, double coincidence)
-      : points_(points), coincidence_(coincidence) {}
+      : points_(points), coincidence_(coincidence) {
+    if (points.size() > kManyPoints) tree_ = PointTree(points);
+  }
 
   /// False if the points on the plane span no face.
   bool addFace(const Occluder::Plane& plane) {
     if (plane.normal == Vec3(0.0)) return false;
-    std::vector<Index> members;
-    for (Index v = 0; v < points_.size(); ++v) {
-      if (std::abs(glm::dot(plane.normal, points_[v]) - plane.offset) <= coincidence_) {
-        members.push_back(v);
-      }
-    }
-    const std::vector<Index> loop = planarHull(points_, members, plane.normal, coincidence_);
+    const std::vector<Index> loop =
+        planarHull(points_, pointsOn(plane), plane.normal, coincidence_);
     if (loop.size() < 3) return false;
     const Index face = Index(planes_.size());
     planes_.push_back(plane);
     for (std::size_t k = 0; k < loop.size(); ++k) {
-      const auto [it, added] = face_of_.try_emplace({loop[k], loop[(k + 1) % loop.size()]}, face);
-      if (!added) return false;
+      const std::pair<Index, Index> edge(loop[k], loop[(k + 1) % loop.size()]);
+      if (!face_of_.try_emplace(edge, face).second) return false;
+      if (open_.erase({edge.second, edge.first}) == 0) open_.insert(edge);
     }
     return true;
   }
 
   /// Closes all edges that have a face on one side only.
   bool close() {
-    for (bool open = true; open;) {
-      open = false;
-      for (const auto& [edge, face] : face_of_) {
-        if (face_of_.count({edge.second, edge.first}) != 0) continue;
-        const std::pair<Index, Index> missing(edge.second, edge.first);
-        if (planes_.size() > 2 * points_.size() || !addFace(wrap(missing)) ||
-            face_of_.count(missing) == 0) {
-          return false;
-        }
-        open = true;
-        break;
+    while (!open_.empty()) {
+      const std::pair<Index, Index> edge = *open_.begin();
+      const std::pair<Index, Index> missing(edge.second, edge.first);
+      if (planes_.size() > 2 * points_.size() || !addFace(wrap(missing)) ||
+          face_of_.count(missing) == 0) {
+        return false;
       }
     }
     return true;
@@ -102,17 +100,37 @@ class Wrapping {
     }
     // Euler's formula: anything else is no single closed convex surface.
     if (occluder.corners.size() + occluder.planes.size() != occluder.edges.size() + 2) return {};
-    for (Occluder::Plane& plane : occluder.planes) {
-      for (const Vec3& v : occluder.corners) {
-        const double reach = glm::dot(plane.normal, v);
-        if (reach > plane.offset + coincidence_) return {};
-      }
-    }
+    if (!holdsCorners(occluder)) return {};
     boundOccluder(occluder);
     return occluder;
   }
 
  private:
+  std::vector<Index> pointsOn(const Occluder::Plane& plane) const {
+    if (points_.size() > kManyPoints) return tree_.near(plane.normal, plane.offset, coincidence_);
+    std::vector<Index> members;
+    for (Index v = 0; v < points_.size(); ++v) {
+      if (std::abs(glm::dot(plane.normal, points_[v]) - plane.offset) <= coincidence_) {
+        members.push_back(v);
+      }
+    }
+    return members;
+  }
+
+  /// True if no corner is in front of a plane.
+  bool holdsCorners(const Occluder& occluder) const {
+    const std::vector<Vec3>& corners = occluder.corners;
+    const bool many = corners.size() > kManyPoints;
+    const PointTree tree = many ? PointTree(corners) : PointTree();
+    return std::none_of(
+        occluder.planes.begin(), occluder.planes.end(), [&](const Occluder::Plane& plane) {
+          const double most = plane.offset + coincidence_;
+          if (many) return tree.anyAbove(plane.normal, most);
+          return std::any_of(corners.begin(), corners.end(),
+                             [&](const Vec3& v) { return glm::dot(plane.normal, v) > most; });
+        });
+  }
+
   /// The plane through an edge, the solid on its left, that leaves all points below it.
   Occluder::Plane wrap(const std::pair<Index, Index>& edge) const {
     const Vec3& a = points_[edge.first];
@@ -133,6 +151,8 @@ class Wrapping {
   double coincidence_;
   std::vector<Occluder::Plane> planes_;
   std::map<std::pair<Index, Index>, Index> face_of_;  ///< of directed edges
+  std::set<std::pair<Index, Index>> open_;            ///< of them: no face on the other side
+  PointTree tree_;                                    ///< of many points
 };
 
 }  // namespace

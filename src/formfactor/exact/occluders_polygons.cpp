@@ -50,6 +50,7 @@ OccluderPolygons::OccluderPolygons(const PatchMesh& mesh, const ElementSet& elem
   vertices.reserve(welded.size());
   for (Index v = 0; v < welded.size(); ++v) vertices.push_back(welded[v]);
   for (const Index p : order) addPolygon(mesh, elements, p, place);
+  vertex_tree = PointTree(vertices);
   findBounding();
   std::vector<Box3> boxes;
   boxes.reserve(polygons.size());
@@ -114,13 +115,8 @@ void OccluderPolygons::findBounding() {
   for (OccluderPolygon& polygon : polygons) {
     // A patch that is not planar stands for the plane that it is off by so much.
     const double tolerance = std::max(coincidence, polygon.deviation);
-    bool above = false;
-    bool below = false;
-    for (std::size_t v = 0; v < vertices.size() && !(above && below); ++v) {
-      const double height = glm::dot(polygon.normal, vertices[v]) - polygon.offset;
-      above = above || height > tolerance;
-      below = below || height < -tolerance;
-    }
+    const bool above = !allBehind(polygon.normal, polygon.offset, tolerance);
+    const bool below = !allBehind(-polygon.normal, -polygon.offset, tolerance);
     polygon.bounds_scene = !(above && below);
     polygon.faces_scene = !below;
   }

@@ -8,6 +8,7 @@
 
 #include "formfactor/exact/elements.h"
 #include "formfactor/exact/occluders_boxes.h"
+#include "formfactor/exact/point_tree.h"
 #include "radiosity/base.h"
 #include "radiosity/patch_mesh.h"
 
@@ -42,7 +43,13 @@ struct OccluderPolygons {
   std::vector<Vec3> vertices;  ///< in ElementSet's coordinates
   std::vector<OccluderPolygon> polygons;
   double coincidence = 0;
-  BoxTree tree;  ///< of the polygons' boxes
+  BoxTree tree;           ///< of the polygons' boxes
+  PointTree vertex_tree;  ///< of the scene's vertices
+
+  /// Whether no vertex of the scene lies in front of a plane, farther than `margin`.
+  bool allBehind(const Vec3& normal, double offset, double margin) const {
+    return !vertex_tree.anyAbove(normal, offset + margin);
+  }
 
   /// Polygons that run along each directed edge of an outline.
   std::map<OccluderEdge, std::vector<Index>> edgeUsers() const;

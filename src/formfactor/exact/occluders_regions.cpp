@@ -81,9 +81,21 @@ OccluderRegions::OccluderRegions(const OccluderPolygons& all,
   }
   looked_into_.assign(members_.size(), 0);
   occupied_.resize(members_.size());
+  std::vector<Box3> firsts;
+  for (const std::vector<Index>& members : members_) {
+    firsts.push_back(all.polygons[members.front()].box);
+    Box3& bound = bounds_.emplace_back();
+    for (const Index p : members) {
+      bound.add(all.polygons[p].box.low);
+      bound.add(all.polygons[p].box.high);
+    }
+  }
+  first_members_ = BoxTree(std::move(firsts));
 }
 
-std::optional<int> OccluderRegions::doubledWinding(Index component, Index polygon) const {
+std::optional<int> OccluderRegions::doubledWinding(Index component, Index polygon) {
+  solid_angles_ += members_[component].size();
+  if (solid_angles_ > kMostSolidAngles) return {};
   const std::optional<Vec3> eye = innerPoint(all_, all_.polygons[polygon]);
   if (!eye) return {};
   double angle = 0;
@@ -98,27 +110,36 @@ std::optional<int> OccluderRegions::doubledWinding(Index component, Index polygo
 
 void OccluderRegions::lookInto(Index component) {
   looked_into_[component] = 1;
-  std::set<int>& occupied = occupied_[component];
+  if (!lookFromMembers(component) || !lookFromOthers(component)) closed_[component] = 0;
+}
+
+/// False if that cannot be told.
+bool OccluderRegions::lookFromMembers(Index component) {
   for (const Index p : members_[component]) {
     if (front_winding_.count(side_class_[p]) != 0) continue;
     const std::optional<int> doubled = doubledWinding(component, p);
     // On a polygon the surface winds half a time more than in front of it.
-    if (!doubled || *doubled % 2 == 0) {
-      closed_[component] = 0;
-      return;
-    }
+    if (!doubled || *doubled % 2 == 0) return false;
     front_winding_[side_class_[p]] = (*doubled - 1) / 2;
-    occupied.insert((*doubled - 1) / 2);
+    occupied_[component].insert((*doubled - 1) / 2);
   }
-  for (Index other = 0; other < members_.size(); ++other) {
-    if (other == component) continue;
+  return true;
+}
+
+bool OccluderRegions::lookFromOthers(Index component) {
+  std::size_t near = 0;
+  bool known = true;
+  first_members_.query(bounds_[component].grown(all_.coincidence), [&](Index other) {
+    ++near;
+    if (other == component) return true;
     const std::optional<int> doubled = doubledWinding(component, members_[other].front());
-    if (!doubled || *doubled % 2 != 0) {
-      closed_[component] = 0;
-      return;
-    }
-    occupied.insert(*doubled / 2);
-  }
+    known = doubled && *doubled % 2 == 0;
+    if (known) occupied_[component].insert(*doubled / 2);
+    return known;
+  });
+  // About what is out of its box the surface does not wind.
+  if (near < members_.size()) occupied_[component].insert(0);
+  return known;
 }
 
 bool OccluderRegions::isBehindOpaque(Index polygon) {

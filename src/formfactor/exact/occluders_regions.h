@@ -7,6 +7,7 @@
 #include <set>
 #include <vector>
 
+#include "formfactor/exact/occluders_boxes.h"
 #include "formfactor/exact/occluders_polygons.h"
 
 namespace radiosity {
@@ -21,15 +22,21 @@ class OccluderRegions {
 
   /// True if `polygon` belongs to a closed set of polygons and none of the scene's polygons looks
   /// into a region that this set winds about as often as about the points behind `polygon`. Then
-  /// every way from what looks at such a point crosses the surface.
+  /// every way from what looks at such a point crosses the surface. Proofs of one scene may take
+  /// kMostSolidAngles; what needs more is not proved.
   bool isBehindOpaque(Index polygon);
 
  private:
+  /// A second or less.
+  static constexpr std::size_t kMostSolidAngles = 10000000;
+
   /// Twice the number of windings about an inner point of a polygon, its own part left out;
   /// nothing where that is no whole number: it lies on another polygon.
-  std::optional<int> doubledWinding(Index component, Index polygon) const;
+  std::optional<int> doubledWinding(Index component, Index polygon);
   /// Windings about the points in front of every member, and about all other components.
   void lookInto(Index component);
+  bool lookFromMembers(Index component);
+  bool lookFromOthers(Index component);
 
   const OccluderPolygons& all_;
   std::vector<Index> component_;
@@ -39,6 +46,9 @@ class OccluderRegions {
   std::vector<std::uint8_t> looked_into_;
   std::vector<std::set<int>> occupied_;  ///< of a component: windings of regions looked into
   std::map<Index, int> front_winding_;   ///< of a side class
+  std::vector<Box3> bounds_;             ///< of components
+  BoxTree first_members_;                ///< boxes of the components' first members
+  std::size_t solid_angles_ = 0;
 };
 
 }  // namespace radiosity

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <vector>
@@ -29,12 +30,18 @@ double depthBehind(const OccluderPolygons& all, Index front) {
     shaft.planes.push_back({out, glm::dot(out, a)});
   }
   double highest = -std::numeric_limits<double>::infinity();
-  // All that is behind: no farther than the scene reaches.
-  const Vec3 reach = glm::distance(all.tree.bound().low, all.tree.bound().high) * polygon.normal;
-  Box3 behind = polygon.box;
-  behind.add(polygon.box.low - reach);
-  behind.add(polygon.box.high - reach);
-  all.tree.query(behind, [&](Index p) {
+  // What is wholly outside a plane of the shaft is not in it, and what is not above the highest
+  // found is none the higher.
+  const auto meets = [&](const Box3& box) {
+    const Vec3 middle = 0.5 * (box.low + box.high);
+    const Vec3 half = 0.5 * (box.high - box.low) + Vec3(all.coincidence);
+    const auto reach = [&](const Vec3& n) { return glm::dot(half, glm::abs(n)); };
+    if (glm::dot(polygon.normal, middle) + reach(polygon.normal) < highest) return false;
+    return std::all_of(shaft.planes.begin(), shaft.planes.end(), [&](const Occluder::Plane& plane) {
+      return glm::dot(plane.normal, middle) - reach(plane.normal) <= plane.offset;
+    });
+  };
+  all.tree.search(meets, [&](Index p) {
     if (p != front) {
       highest = std::max(highest, highestInside(all, all.polygons[p], shaft, all.coincidence));
     }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "formfactor/exact/convex_groups.h"
 #include "formfactor/exact/occluders_clip.h"
 #include "formfactor/exact/occluders_hull.h"
 #include "formfactor/exact/occluders_regions.h"
@@ -18,30 +19,56 @@ namespace {
 
 /// Polygons in convex position.
 struct ConvexSet {
-  std::vector<Index> polygons;
+  /// A polygon and the plane that it lies on, into `planes`.
+  using Member = ConvexSolid::OnFace;
+  std::vector<Member> members;
   std::vector<Index> vertices;
   std::vector<Occluder::Plane> planes;
+  /// Of Growth::known: planes by ConvexGroups::levelWith().
+  std::map<Index, std::vector<Index>> faces_of_level;
+
+  std::vector<Index> polygons() const {
+    std::vector<Index> out;
+    out.reserve(members.size());
+    for (const Member& m : members) out.push_back(m.polygon);
+    return out;
+  }
+};
+
+/// How a set is grown.
+enum class Growth {
+  greedy,
+  careful,  ///< no neighbours in one plane, which may belong to bodies side by side, and none
+            ///< with which the hull would not stay empty
+  known,    ///< all that come into question are known to be in convex position
 };
 
 class SolidSearch {
  public:
-  explicit SolidSearch(const OccluderPolygons& all)
-      : all_(all), users_(all.edgeUsers()), regions_(all, users_) {}
+  SolidSearch(const OccluderPolygons& all, Progress& progress)
+      : all_(all),
+        progress_(progress),
+        users_(all.edgeUsers()),
+        regions_(all, users_),
+        groups_(all, users_, candidates()) {}
 
-  std::vector<Occluder> run(std::vector<std::uint8_t>& taken) {
-    std::vector<Occluder> solids;
+  std::vector<ConvexSolid> run(std::vector<std::uint8_t>& taken) {
+    std::vector<ConvexSolid> solids;
     addPlain(taken, solids);
+    failed_.clear();  // some of them may be solids where surfaces around them are opaque
+    tried_.clear();
     addOpaque(taken, solids);
     return solids;
   }
 
  private:
   /// Bodies that stand for themselves, or on something.
-  void addPlain(std::vector<std::uint8_t>& taken, std::vector<Occluder>& solids) {
+  void addPlain(std::vector<std::uint8_t>& taken, std::vector<ConvexSolid>& solids) {
     for (const bool convex_only : {true, false}) {
       for (Index seed = 0; seed < all_.polygons.size(); ++seed) {
+        progress_.check();
         if (taken[seed] || !mayJoin(seed, convex_only)) continue;
-        std::optional<Occluder> solid = grownSolid(seed, convex_only, false, taken);
+        std::optional<ConvexSolid> solid = grownSolid(seed, convex_only, false, taken);
         if (!solid) continue;
         take(*solid, taken);
         solids.push_back(std::move(*solid));
@@ -52,30 +79,31 @@ class SolidSearch {
   /// Bodies that touch others on several sides, so that their faces are cut or merged with others',
   /// like boards and books. Of those that only the closed surface around them makes opaque, those
   /// with much volume and most faces first.
-  void addOpaque(std::vector<std::uint8_t>& taken, std::vector<Occluder>& solids) {
+  void addOpaque(std::vector<std::uint8_t>& taken, std::vector<ConvexSolid>& solids) {
     struct Candidate {
       double score;
-      Occluder solid;
+      ConvexSolid solid;
     };
     std::vector<Candidate> candidates;
     std::array<std::vector<std::uint8_t>, 2> seen;
     seen.fill(std::vector<std::uint8_t>(all_.polygons.size(), 0));
-    const auto score = [&](const Occluder& solid) {
-      return areaOnFaces(solid, taken) * volumeOf(solid);
+    const auto score = [&](const ConvexSolid& solid) {
+      return areaOnFaces(solid, taken) * volumeOf(solid.body);
     };
-    const auto consider = [&](std::optional<Occluder> solid) {
+    const auto consider = [&](std::optional<ConvexSolid> solid) {
       if (solid) candidates.push_back({score(*solid), std::move(*solid)});
     };
     for (Index p = 0; p < all_.polygons.size(); ++p) {
-      if (taken[p] || !mayJoin(p, false) || !regions_.isBehindOpaque(p)) continue;
+      progress_.check();
+      if (taken[p] || !mayJoin(p, false) || isCurved(p) || !regions_.isBehindOpaque(p)) continue;
       // From one face of a body its other faces give the same once more.
       for (const bool convex_only : {false, true}) {
         if (mayJoin(p, convex_only) && !seen[convex_only][p]) {
           consider(grownSolid(p, convex_only, true, taken, &seen[convex_only]));
         }
       }
-      if (!mayJoin(p, true)) continue;
-      std::optional<Occluder> slab = slabBehind(all_, p);
+      if (!mayJoin(p, true) || groups_.isLarge(p)) continue;
+      std::optional<ConvexSolid> slab = slabSolid(p);
       // Alone on its slab the polygon blocks as well without it.
       if (slab && areaOnFaces(*slab, taken) > all_.polygons[p].area) consider(std::move(slab));
     }
@@ -89,17 +117,39 @@ class SolidSearch {
     }
   }
 
+  /// Part of a curved surface that is no convex body as a whole.
+  bool isCurved(Index p) const { return groups_.isLarge(p) && !groups_.isConvex(p); }
+
+  std::optional<ConvexSolid> slabSolid(Index p) const {
+    std::optional<Occluder> body = slabBehind(all_, p);
+    if (!body) return {};
+    ConvexSolid slab{std::move(*body), {}};
+    findOnFaces(slab, {});
+    return slab;
+  }
+
   /// `members`, if given: the polygons it was made from are marked there.
-  std::optional<Occluder> grownSolid(Index seed, bool convex_only, bool opaque,
-                                     const std::vector<std::uint8_t>& taken,
-                                     std::vector<std::uint8_t>* members = nullptr) {
+  std::optional<ConvexSolid> grownSolid(Index seed, bool convex_only, bool opaque,
+                                        const std::vector<std::uint8_t>& taken,
+                                        std::vector<std::uint8_t>* members = nullptr) {
+    if (isCurved(seed)) return {};
+    const bool large = groups_.isLarge(seed);
+    // From one polygon of a curved body its others give the same once more.
+    if (large && !tried_.insert({groups_.of(seed), convex_only}).second) return {};
     // Several bodies may be in convex position, side by side: then carefully one of them.
-    for (const bool carefully : {false, true}) {
-      const ConvexSet set = grow(seed, convex_only, carefully, taken);
-      std::optional<Occluder> solid = solidOf(set, opaque);
-      if (!solid) continue;
+    const std::vector<Growth> ways = large ? std::vector<Growth>{Growth::known}
+                                           : std::vector<Growth>{Growth::greedy, Growth::careful};
+    for (const Growth way : ways) {
+      const ConvexSet set = grow(seed, convex_only, way, taken);
+      std::vector<Index> key = set.polygons();
+      if (!large && failed_.count(key) != 0) continue;
+      std::optional<ConvexSolid> solid = solidOf(set, opaque);
+      if (!solid) {
+        if (!large) failed_.insert(std::move(key));
+        continue;
+      }
       if (members != nullptr) {
-        for (const Index p : set.polygons) (*members)[p] = 1;
+        for (const ConvexSet::Member& m : set.members) (*members)[m.polygon] = 1;
       }
       return solid;
     }
@@ -112,10 +162,10 @@ class SolidSearch {
            (polygon.convex || !convex_only);
   }
 
-  bool isBehind(const OccluderPolygon& polygon, const Occluder::Plane& plane) const {
-    return std::all_of(polygon.corners.begin(), polygon.corners.end(), [&](Index v) {
-      return glm::dot(plane.normal, all_.vertices[v]) <= plane.offset + all_.coincidence;
-    });
+  std::vector<std::uint8_t> candidates() const {
+    std::vector<std::uint8_t> out(all_.polygons.size());
+    for (Index p = 0; p < out.size(); ++p) out[p] = mayJoin(p, false) ? 1 : 0;
+    return out;
   }
 
   /// Adds a polygon if the set stays in convex position.
@@ -126,50 +176,83 @@ class SolidSearch {
       if (height > all_.coincidence) return false;
     }
     for (const Occluder::Plane& plane : set.planes) {
-      if (!isBehind(polygon, plane)) return false;
+      if (!isBehind(all_, polygon, plane)) return false;
     }
-    if (!liesOnFace(set, polygon)) set.planes.push_back({polygon.normal, polygon.offset});
-    set.vertices.insert(set.vertices.end(), polygon.corners.begin(), polygon.corners.end());
-    set.polygons.push_back(p);
+    append(set, p, faceOf(set, polygon));
     return true;
   }
 
-  bool liesOnFace(const ConvexSet& set, const OccluderPolygon& polygon) const {
-    return std::any_of(set.planes.begin(), set.planes.end(), [&](const Occluder::Plane& plane) {
-      return glm::dot(plane.normal, polygon.normal) > 0 && on(polygon, plane);
-    });
+  /// `face`: kNone for one of its own.
+  void append(ConvexSet& set, Index p, Index face) const {
+    const OccluderPolygon& polygon = all_.polygons[p];
+    if (face == kNone) {
+      face = Index(set.planes.size());
+      set.planes.push_back(planeOf(polygon));
+    }
+    set.vertices.insert(set.vertices.end(), polygon.corners.begin(), polygon.corners.end());
+    set.members.push_back({p, face});
+  }
+
+  /// The first face of the set that a polygon lies on, or kNone.
+  Index faceOf(const ConvexSet& set, const OccluderPolygon& polygon) const {
+    const auto face =
+        std::find_if(set.planes.begin(), set.planes.end(), [&](const Occluder::Plane& plane) {
+          return glm::dot(plane.normal, polygon.normal) > 0 && on(polygon, plane);
+        });
+    return face == set.planes.end() ? kNone : Index(face - set.planes.begin());
   }
 
   bool on(const OccluderPolygon& polygon, const Occluder::Plane& plane) const {
-    return isBehind(polygon, plane) && isBehind(polygon, {-plane.normal, -plane.offset});
+    return isBehind(all_, polygon, plane) &&
+           isBehind(all_, polygon, {-plane.normal, -plane.offset});
   }
 
-  /// `carefully`: no neighbours in one plane, which may belong to bodies side by side, and none
-  /// with which the hull would not stay empty.
-  ConvexSet grow(Index seed, bool convex_only, bool carefully,
+  ConvexSet grow(Index seed, bool convex_only, Growth way,
                  const std::vector<std::uint8_t>& taken) const {
     ConvexSet set;
-    add(set, seed);
+    join(set, seed, way == Growth::known ? way : Growth::greedy);
     std::set<Index> met{seed};
-    for (std::size_t k = 0; k < set.polygons.size(); ++k) {
-      // By value: add() appends to the set.
-      const OccluderPolygon& polygon = all_.polygons[set.polygons[k]];
-      for (const std::vector<Index>& loop : polygon.loops) {
+    for (std::size_t k = 0; k < set.members.size(); ++k) {
+      for (const std::vector<Index>& loop : all_.polygons[set.members[k].polygon].loops) {
         for (std::size_t c = 0; c < loop.size(); ++c) {
           const auto across = users_.find({loop[(c + 1) % loop.size()], loop[c]});
           if (across == users_.end()) continue;
           for (const Index p : across->second) {
-            if (taken[p] || !mayJoin(p, convex_only) || !met.insert(p).second) continue;
-            if (carefully && liesOnFace(set, all_.polygons[p])) continue;
-            ConvexSet before;
-            if (carefully) before = set;
-            if (add(set, p) && carefully && !staysEmpty(set)) set = std::move(before);
+            if (taken[p] || !mayJoin(p, convex_only) || met.count(p) != 0) continue;
+            if (way == Growth::known && groups_.of(p) != groups_.of(seed)) continue;
+            met.insert(p);
+            join(set, p, way);
           }
         }
       }
     }
-    std::sort(set.polygons.begin(), set.polygons.end());
+    std::sort(set.members.begin(), set.members.end(),
+              [](const auto& a, const auto& b) { return a.polygon < b.polygon; });
     return set;
+  }
+
+  /// Adds a polygon, if it may be.
+  void join(ConvexSet& set, Index p, Growth way) const {
+    const OccluderPolygon& polygon = all_.polygons[p];
+    if (way == Growth::known) {
+      std::vector<Index>& faces = set.faces_of_level[groups_.levelWith(p)];
+      const auto face = std::find_if(faces.begin(), faces.end(),
+                                     [&](Index k) { return on(polygon, set.planes[k]); });
+      if (face != faces.end()) {
+        append(set, p, *face);
+      } else {
+        faces.push_back(Index(set.planes.size()));
+        append(set, p, kNone);
+      }
+      return;
+    }
+    if (way == Growth::greedy) {
+      add(set, p);
+      return;
+    }
+    if (faceOf(set, polygon) != kNone) return;
+    ConvexSet before = set;
+    if (add(set, p) && !staysEmpty(set)) set = std::move(before);
   }
 
   std::optional<Occluder> hullOf(const ConvexSet& set) const {
@@ -184,88 +267,107 @@ class SolidSearch {
 
   bool staysEmpty(const ConvexSet& set) const {
     const std::optional<Occluder> hull = hullOf(set);
-    return !hull || hull->planes.size() < 4 || isEmpty(all_, *hull, set.polygons);
+    return !hull || hull->planes.size() < 4 || isEmpty(all_, *hull, ascending(set));
   }
 
-  std::optional<Occluder> solidOf(const ConvexSet& set, bool opaque) {
+  static std::vector<Index> ascending(const ConvexSet& set) {
+    std::vector<Index> polygons = set.polygons();
+    std::sort(polygons.begin(), polygons.end());
+    return polygons;
+  }
+
+  std::optional<ConvexSolid> solidOf(const ConvexSet& set, bool opaque) {
     if (set.planes.size() < 2) return {};
     std::optional<Occluder> hull = hullOf(set);
     // Polygons back to back make no solid: they are one flat occluder.
-    if (!hull || hull->planes.size() < 4 || !isEmpty(all_, *hull, set.polygons) ||
+    if (!hull || hull->planes.size() < 4 || !isEmpty(all_, *hull, ascending(set)) ||
         !isSealed(*hull, set, opaque)) {
       return {};
     }
-    return hull;
+    ConvexSolid solid{std::move(*hull), {}};
+    findOnFaces(solid, set.members);
+    return solid;
+  }
+
+  /// `members`: ascending; of them it is known.
+  void findOnFaces(ConvexSolid& solid, const std::vector<ConvexSet::Member>& members) const {
+    all_.tree.query(boxAround(solid.body, all_.coincidence), [&](Index p) {
+      const auto known =
+          std::lower_bound(members.begin(), members.end(), p,
+                           [](const ConvexSet::Member& m, Index q) { return m.polygon < q; });
+      const bool is_known = known != members.end() && known->polygon == p;
+      const Index face = is_known ? known->face : faceThatHolds(all_, all_.polygons[p], solid.body);
+      if (face != kNone) solid.on_faces.push_back({p, face});
+      return true;
+    });
+    std::sort(solid.on_faces.begin(), solid.on_faces.end(),
+              [](const auto& a, const auto& b) { return a.polygon < b.polygon; });
   }
 
   /// Marks the polygons that lie on faces of a solid.
-  void take(const Occluder& solid, std::vector<std::uint8_t>& taken) const {
-    all_.tree.query(boxAround(solid, all_.coincidence), [&](Index p) {
-      if (!taken[p] && faceThatHolds(all_, all_.polygons[p], solid) != kNone) taken[p] = 1;
-      return true;
-    });
+  static void take(const ConvexSolid& solid, std::vector<std::uint8_t>& taken) {
+    for (const ConvexSolid::OnFace& on : solid.on_faces) taken[on.polygon] = 1;
   }
 
   /// Of polygons not taken yet.
-  double areaOnFaces(const Occluder& solid, const std::vector<std::uint8_t>& taken) const {
+  double areaOnFaces(const ConvexSolid& solid, const std::vector<std::uint8_t>& taken) const {
     double area = 0;
-    all_.tree.query(boxAround(solid, all_.coincidence), [&](Index p) {
-      if (!taken[p] && faceThatHolds(all_, all_.polygons[p], solid) != kNone) {
-        area += all_.polygons[p].area;
-      }
-      return true;
-    });
+    for (const ConvexSolid::OnFace& on : solid.on_faces) {
+      if (!taken[on.polygon]) area += all_.polygons[on.polygon].area;
+    }
     return area;
   }
 
   /// True if nothing gets in or out where the set does not cover the hull.
   bool isSealed(const Occluder& hull, const ConvexSet& set, bool opaque) {
+    const std::vector<double> missing = missingAreas(hull, set);
     std::vector<Index> gaps;
-    for (Index k = 0; k < hull.planes.size(); ++k) {
-      if (missingArea(hull, set, k) > 0 && !allBehind(hull.planes[k])) gaps.push_back(k);
+    for (Index k = 0; k < hull.planes.size() && gaps.size() < 2; ++k) {
+      const Occluder::Plane& plane = hull.planes[k];
+      if (missing[k] > 0 && !all_.allBehind(plane.normal, plane.offset, all_.coincidence)) {
+        gaps.push_back(k);
+      }
     }
     if (gaps.empty()) return true;
-    if (gaps.size() == 1 && isCovered(hull, set, gaps.front())) return true;
-    return opaque && regions_.isBehindOpaque(set.polygons.front());
+    if (gaps.size() == 1 && isCovered(hull, set, gaps.front(), missing[gaps.front()])) return true;
+    return opaque && regions_.isBehindOpaque(set.members.front().polygon);
   }
 
-  /// Area of a face of the hull that the set leaves open; 0 if it is within rounding.
-  double missingArea(const Occluder& hull, const ConvexSet& set, Index face) const {
-    const Occluder::Plane& plane = hull.planes[face];
-    Vec3 twice(0.0);
-    double perimeter = 0;
+  /// Areas of the hull's faces that the set leaves open; 0 if within rounding.
+  std::vector<double> missingAreas(const Occluder& hull, const ConvexSet& set) const {
+    std::vector<Vec3> twice(hull.planes.size(), Vec3(0.0));
+    std::vector<double> perimeter(hull.planes.size(), 0.0);
     for (const Occluder::Edge& edge : hull.edges) {
-      if (edge.left != face && edge.right != face) continue;
       const Vec3 from = hull.corners[edge.from] - hull.centre;
       const Vec3 to = hull.corners[edge.to] - hull.centre;
-      twice += edge.left == face ? glm::cross(from, to) : glm::cross(to, from);
-      perimeter += glm::distance(from, to);
+      twice[edge.left] += glm::cross(from, to);
+      twice[edge.right] += glm::cross(to, from);
+      perimeter[edge.left] += glm::distance(from, to);
+      perimeter[edge.right] += glm::distance(from, to);
     }
-    double open = 0.5 * glm::dot(twice, plane.normal);
-    for (const Index p : set.polygons) {
-      const OccluderPolygon& polygon = all_.polygons[p];
-      if (glm::dot(polygon.normal, plane.normal) > 0 && on(polygon, plane)) open -= polygon.area;
+    std::vector<double> open(hull.planes.size());
+    for (Index k = 0; k < open.size(); ++k) {
+      open[k] = 0.5 * glm::dot(twice[k], hull.planes[k].normal);
     }
-    return open > all_.coincidence * perimeter ? open : 0;
-  }
-
-  bool allBehind(const Occluder::Plane& plane) const {
-    return std::all_of(all_.vertices.begin(), all_.vertices.end(), [&](const Vec3& v) {
-      return glm::dot(plane.normal, v) <= plane.offset + all_.coincidence;
-    });
+    for (const ConvexSet::Member& m : set.members) open[m.face] -= all_.polygons[m.polygon].area;
+    for (Index k = 0; k < open.size(); ++k) {
+      if (!(open[k] > all_.coincidence * perimeter[k])) open[k] = 0;
+    }
+    return open;
   }
 
   /// True if the open face is tied to its surroundings: each edge of the set on it has a neighbour,
   /// or polygons that face the solid cover it.
-  bool isCovered(const Occluder& hull, const ConvexSet& set, Index face) const {
+  bool isCovered(const Occluder& hull, const ConvexSet& set, Index face, double missing) const {
     const Occluder::Plane& plane = hull.planes[face];
     const auto touches = [&](Index v) {
       return glm::dot(plane.normal, all_.vertices[v]) >= plane.offset - all_.coincidence;
     };
     bool tied = true;
-    for (const Index p : set.polygons) {
-      if (on(all_.polygons[p], plane)) continue;
-      for (const std::vector<Index>& loop : all_.polygons[p].loops) {
+    for (const ConvexSet::Member& m : set.members) {
+      const OccluderPolygon& polygon = all_.polygons[m.polygon];
+      if (on(polygon, plane)) continue;
+      for (const std::vector<Index>& loop : polygon.loops) {
         for (std::size_t c = 0; c < loop.size(); ++c) {
           const Index a = loop[c];
           const Index b = loop[(c + 1) % loop.size()];
@@ -277,23 +379,30 @@ class SolidSearch {
     Occluder prism = hull;
     prism.planes.erase(prism.planes.begin() + face);
     double covered = 0;
-    for (const OccluderPolygon& polygon : all_.polygons) {
+    all_.tree.query(boxAround(hull, all_.coincidence), [&](Index p) {
+      const OccluderPolygon& polygon = all_.polygons[p];
       if (glm::dot(polygon.normal, plane.normal) < 0 && on(polygon, plane)) {
         covered += areaInside(all_, polygon, prism, 0);
       }
-    }
-    return missingArea(hull, set, face) - covered <= all_.coincidence * hull.radius;
+      return true;
+    });
+    return missing - covered <= all_.coincidence * hull.radius;
   }
 
   const OccluderPolygons& all_;
+  Progress& progress_;
   std::map<OccluderEdge, std::vector<Index>> users_;
   OccluderRegions regions_;
+  ConvexGroups groups_;
+  std::set<std::vector<Index>> failed_;     ///< sets that make no solid
+  std::set<std::pair<Index, bool>> tried_;  ///< large groups, and whether of convex polygons alone
 };
 
 }  // namespace
 
-std::vector<Occluder> convexSolids(const OccluderPolygons& all, std::vector<std::uint8_t>& taken) {
-  return SolidSearch(all).run(taken);
+std::vector<ConvexSolid> convexSolids(const OccluderPolygons& all, std::vector<std::uint8_t>& taken,
+                                      Progress& progress) {
+  return SolidSearch(all, progress).run(taken);
 }
 
 }  // namespace radiosity

@@ -131,6 +131,9 @@ bool isHoleOf(const Loop& hole, const Loop& outer) {
 
 std::vector<std::array<Index, 3>> trianglesOf(const OccluderPolygons& all,
                                               const OccluderPolygon& polygon) {
+  std::size_t corners = 0;
+  for (const std::vector<Index>& loop : polygon.loops) corners += loop.size();
+  if (corners > kMostBridged) return {};
   const PlaneFrame frame =
       makeFrame(all.vertices[polygon.loops[0][0]], polygon.normal, axisAcross(polygon.normal));
   std::vector<Loop> outer;

@@ -145,6 +145,7 @@ typename PairGroups<T>::Members PairGroups<T>::integrateCell(const SampleCell& c
                                                              const Members& members,
                                                              std::span<VisibleFraction> out) {
   if (members.index.empty()) return {};
+  if (progress_ != nullptr) progress_->check();
   sumCell(cell, side, level, members, out);
   // Squares of errors add up: a quarter of a cell, whose integral is a quarter, may have half the
   // error.
@@ -155,16 +156,25 @@ typename PairGroups<T>::Members PairGroups<T>::integrateCell(const SampleCell& c
     VisibleFraction& sum = out[members.index[k]];
     const CellSum& found = sums_[k];
     if (!(found.whole > 0)) continue;
-    if (found.error.cautious > share * sum.allowed * found.whole && level < kMostLevels) {
-      failed.index.push_back(members.index[k]);
-      failed.fraction.push_back(found.fraction);
-      continue;
+    if (found.error.cautious > share * sum.allowed * found.whole) {
+      if (level < kMostLevels && !isSpent(members.index[k], sum)) {
+        failed.index.push_back(members.index[k]);
+        failed.fraction.push_back(found.fraction);
+        continue;
+      }
+      sum.cut_short = true;
     }
     sum.visible += found.visible;
     sum.whole += found.whole;
     sum.error2 += found.error.stated * found.error.stated;
   }
   return failed;
+}
+
+template <class T>
+bool PairGroups<T>::isSpent(Index member, const VisibleFraction& so_far) const {
+  const std::size_t occluders = std::max<std::size_t>(targets_[member].blockers.size(), 1);
+  return so_far.points > kMostLooks / occluders;
 }
 
 /// Fills sums_ by a rule of side x side points.
@@ -185,6 +195,7 @@ void PairGroups<T>::sumCell(const SampleCell& cell, std::size_t side, int level,
       sum.visible += points.point[q].weight * double(view_.visible(q)[k]);
       sum.whole += points.point[q].weight * double(view_.whole(q)[k]);
     }
+    if (!(area > 0)) sum.whole = 0;  // it stands for nothing
     if (!(sum.whole > 0)) continue;
     sum.fraction = members.fraction.empty() ? sum.visible / sum.whole : members.fraction[k];
     CellValues values;

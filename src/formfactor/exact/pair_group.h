@@ -24,7 +24,8 @@ struct VisibleFraction {
   bool may_cross = false;     ///< see SampledPair
   bool one_occluder = false;  ///< one alone comes between
   std::size_t points = 0;
-  bool refined = false;  ///< by more than the first rule
+  bool refined = false;    ///< by more than the first rule
+  bool cut_short = false;  ///< kept with a larger error than accepted: it took too much
   double fraction() const { return whole > 0 ? visible / whole : 0; }
   double error() const;
 };
@@ -34,6 +35,10 @@ struct VisibleFraction {
 /// box, 985 patches, 1e-5: 3.1 million points and an error of 3.3e-7; 5.1 million and 1.5e-6 where
 /// pairs that miss by less than ten times are halved.)
 inline constexpr double kPerPart = 1.5;
+
+/// What a pair may take: points times the occluders looked past from each, some hundredths of a
+/// second. Steps of shadows that no halving resolves would take hundreds of times that.
+inline constexpr std::size_t kMostLooks = std::size_t(1) << 20;
 
 /// Root mean square of the error of a visible fraction by 2 x 2 points; `change`: SampledPair's.
 double expectedError(double change);
@@ -46,8 +51,10 @@ template <class T>
 class PairGroups {
  public:
   /// `far_reach`: targets this many radii away, or more, are far.
-  PairGroups(const ElementSet& elements, const ClipKernels<T>& kernels, double far_reach)
-      : elements_(elements), far_reach_(far_reach), view_(kernels) {}
+  /// `progress`, if given: integrate() throws Cancelled where it is cancelled.
+  PairGroups(const ElementSet& elements, const ClipKernels<T>& kernels, double far_reach,
+             const Progress* progress = nullptr)
+      : elements_(elements), far_reach_(far_reach), progress_(progress), view_(kernels) {}
 
   /// `group`: pairs with one sampled element, which is cut by one plane or by none.
   /// fractions[k], of group[k], comes with `allowed` set.
@@ -84,9 +91,11 @@ class PairGroups {
   void cutAtLines(std::span<const Vec3> polygon, Members& members, std::span<VisibleFraction> out);
 
   double distanceInRadii(const SampledPair& pair) const;
+  bool isSpent(Index member, const VisibleFraction& so_far) const;
 
   const ElementSet& elements_;
   double far_reach_;
+  const Progress* progress_;
   GroupView<T> view_;
   /// See cutAtLines().
   struct Unused {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "formfactor/exact/pair_group.h"
+#include "formfactor/exact/segment_fraction.h"
 
 namespace radiosity {
 namespace {
@@ -37,6 +38,8 @@ PartialCounts& PartialCounts::operator+=(const PartialCounts& other) {
   points += other.points;
   subdivided += other.subdivided;
   hidden += other.hidden;
+  cut_short += other.cut_short;
+  by_segments += other.by_segments;
   return *this;
 }
 
@@ -51,12 +54,14 @@ PartialKernel::PartialKernel(const ElementSet& elements, const OccluderSet& occl
 template <class T>
 void PartialKernel::integrate(const ClipKernels<T>& kernels, std::span<const PartialPair> pairs,
                               std::span<const Index> occluder_list, SampledEnd end,
-                              std::span<PartialExchange> out, PartialCounts& counts) const {
+                              std::span<PartialExchange> out, PartialCounts& counts,
+                              const Progress* progress) const {
   std::fill(out.begin(), out.end(), PartialExchange());
   counts.pairs += pairs.size();
   PairPreparation ready(elements_, occluders_, distances_);
   ready.prepare(pairs, occluder_list, end);
-  PairGroups<T> groups(elements_, kernels, std::cbrt(kFarError / (kOfFarKernels * tolerance_)));
+  PairGroups<T> groups(elements_, kernels, std::cbrt(kFarError / (kOfFarKernels * tolerance_)),
+                       progress);
   std::vector<VisibleFraction> fractions;
   const auto clipFacet = [&](const SampledPair& p) {
     return p.sampled_cut ? elements_.facet[p.target] : kNone;
@@ -76,8 +81,14 @@ void PartialKernel::integrate(const ClipKernels<T>& kernels, std::span<const Par
     groups.integrate(group, ready.blockers, fractions);
     for (std::size_t k = 0; k < group.size(); ++k) {
       const VisibleFraction& found = fractions[k];
-      const double unoccluded = pairs[group[k].pair].unoccluded;
-      out[group[k].pair] = {unoccluded * found.fraction(), kSafety * unoccluded * found.error()};
+      const PartialPair& pair = pairs[group[k].pair];
+      PartialExchange& exchange = out[group[k].pair];
+      exchange = {pair.unoccluded * found.fraction(), kSafety * pair.unoccluded * found.error()};
+      if (!std::isfinite(exchange.exchange) || !std::isfinite(exchange.error)) {
+        exchange = exchangeBySegments(elements_, occluders_, pair, occluder_list);
+        ++counts.by_segments;
+      }
+      counts.cut_short += found.cut_short;
       counts.points += found.points;
       counts.subdivided += found.refined;
     }
@@ -88,11 +99,11 @@ void PartialKernel::integrate(const ClipKernels<T>& kernels, std::span<const Par
 
 void PartialKernel::evaluate(std::span<const PartialPair> pairs,
                              std::span<const Index> occluder_list, std::span<PartialExchange> out,
-                             PartialCounts& counts) const {
+                             PartialCounts& counts, const Progress* progress) const {
   if (tolerance_ >= kSinglePrecision) {
-    integrate(kernels_.single, pairs, occluder_list, SampledEnd::calmer, out, counts);
+    integrate(kernels_.single, pairs, occluder_list, SampledEnd::calmer, out, counts, progress);
   } else {
-    integrate(kernels_.exact, pairs, occluder_list, SampledEnd::calmer, out, counts);
+    integrate(kernels_.exact, pairs, occluder_list, SampledEnd::calmer, out, counts, progress);
   }
 }
 
@@ -101,7 +112,7 @@ PartialExchange PartialKernel::evaluateFromOtherEnd(const PartialPair& pair,
   PartialExchange out;
   PartialCounts counts;
   integrate(kernels_.exact, std::span(&pair, 1), occluder_list, SampledEnd::restless,
-            std::span(&out, 1), counts);
+            std::span(&out, 1), counts, nullptr);
   return out;
 }
 

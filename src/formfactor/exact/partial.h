@@ -12,9 +12,11 @@ namespace radiosity {
 
 struct PartialCounts {
   std::size_t pairs = 0;
-  std::size_t points = 0;      ///< point-to-element evaluations
-  std::size_t subdivided = 0;  ///< pairs that needed more than the first rule
-  std::size_t hidden = 0;      ///< found to exchange nothing
+  std::size_t points = 0;       ///< point-to-element evaluations
+  std::size_t subdivided = 0;   ///< pairs that needed more than the first rule
+  std::size_t hidden = 0;       ///< found to exchange nothing
+  std::size_t cut_short = 0;    ///< kept with a larger error than accepted (kMostLooks)
+  std::size_t by_segments = 0;  ///< clipping gave no number: segmentFraction() did
   PartialCounts& operator+=(const PartialCounts& other);
 };
 
@@ -51,9 +53,11 @@ class PartialKernel {
 
   /// out[k] for pairs[k]; a batch, so that pairs past one occluder share vectors: the more pairs
   /// the better, from some thousands on. Results do not depend on how pairs are batched.
-  /// Thread-safe.
+  /// Thread-safe. Throws Cancelled where `progress`, if given, is cancelled. Values are finite
+  /// whatever the geometry.
   void evaluate(std::span<const PartialPair> pairs, std::span<const Index> occluder_list,
-                std::span<PartialExchange> out, PartialCounts& counts) const;
+                std::span<PartialExchange> out, PartialCounts& counts,
+                const Progress* progress = nullptr) const;
 
   /// The same from the other end: points along which shadows move more. For spot checks.
   PartialExchange evaluateFromOtherEnd(const PartialPair& pair,
@@ -63,7 +67,8 @@ class PartialKernel {
   template <class T>
   void integrate(const ClipKernels<T>& kernels, std::span<const PartialPair> pairs,
                  std::span<const Index> occluder_list, SampledEnd end,
-                 std::span<PartialExchange> out, PartialCounts& counts) const;
+                 std::span<PartialExchange> out, PartialCounts& counts,
+                 const Progress* progress) const;
 
   const ElementSet& elements_;
   const OccluderSet& occluders_;

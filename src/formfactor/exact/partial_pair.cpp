@@ -5,7 +5,6 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "formfactor/exact/convex_polygon.h"
 #include "formfactor/exact/partial.h"
 
 namespace radiosity {
@@ -169,17 +168,23 @@ void PairPreparation::prepare(std::span<const PartialPair> batch,
 }
 
 std::vector<Vec3> partInFront(const ElementSet& elements, Index element, const Facet& facet) {
-  ConvexPolygon polygon;
-  polygon.assign(elements.outline(element), Vec3(0.0));
-  ConvexPolygon front;
-  switch (split(polygon, {facet.normal, -facet.offset}, 0, &front, nullptr)) {
-    case PlaneSide::inside:
-      return polygon.corners;
-    case PlaneSide::outside:
-      return {};
-    default:
-      return front.corners;
+  const std::span<const Vec3> outline = elements.outline(element);
+  // A corner that touches the plane is on it: cut off beside it, a sliver as wide as rounding would
+  // be left, of which no rule makes a mean.
+  const auto height = [&](const Vec3& p) {
+    const double d = glm::dot(facet.normal, p) - facet.offset;
+    return std::abs(d) <= elements.coincidence ? 0.0 : d;
+  };
+  std::vector<Vec3> part;
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const Vec3& p = outline[k];
+    const Vec3& q = outline[(k + 1) % outline.size()];
+    const double at_p = height(p);
+    const double at_q = height(q);
+    if (at_p >= 0) part.push_back(p);
+    if (at_p * at_q < 0) part.push_back(p + (q - p) * (at_p / (at_p - at_q)));
   }
+  return part;
 }
 
 }  // namespace radiosity

@@ -98,7 +98,8 @@ class PairPreparation {
   Index column_facet_ = kNone;
 };
 
-/// The part of an element in front of a facet's plane; empty: none.
+/// The part of an element in front of a facet's plane; corners within the coincidence of the plane
+/// are on it. Three corners or more where one is in front.
 std::vector<Vec3> partInFront(const ElementSet& elements, Index element, const Facet& facet);
 
 }  // namespace radiosity

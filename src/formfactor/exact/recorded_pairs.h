@@ -18,6 +18,13 @@ struct PairBlock {
 
 class RecordedPairs final : public VisibilitySink {
  public:
+  RecordedPairs() = default;
+  /// Throws Cancelled where `progress`, kept by reference, is cancelled.
+  explicit RecordedPairs(const Progress* progress) : progress_(progress) {}
+
+  void poll() const override {
+    if (progress_ != nullptr) progress_->check();
+  }
   void unoccluded(ElementRange rows, ElementRange columns) override {
     blocks.push_back({rows, columns});
   }
@@ -35,6 +42,9 @@ class RecordedPairs final : public VisibilitySink {
   std::vector<PairBlock> blocks;
   std::vector<PartialPair> partial_pairs;
   std::vector<Index> occluder_list;
+
+ private:
+  const Progress* progress_ = nullptr;
 };
 
 }  // namespace radiosity

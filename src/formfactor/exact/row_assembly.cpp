@@ -1,6 +1,7 @@
 #include "formfactor/exact/row_assembly.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstring>
 #include <numeric>
 
@@ -144,7 +145,8 @@ void RowAssembly::evaluatePartial(RowSums& sums) {
   const PatchOrder& order = context_.order;
   const std::vector<PartialPair>& pairs = pairs_.partial_pairs;
   partial_.resize(pairs.size());
-  context_.partial.evaluate(pairs, pairs_.occluder_list, partial_, sums.partial);
+  context_.partial.evaluate(pairs, pairs_.occluder_list, partial_, sums.partial,
+                            &context_.progress);
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const auto& [row, column, begin, end, unoccluded] = pairs[k];
     panel_[place(row, column)] = partial_[k].exchange;
@@ -164,6 +166,7 @@ void RowAssembly::recheck(RowSums& sums) const {
     const PartialPair& pair = pairs_.partial_pairs[k];
     if (pair.column >= context_.elements.patch_elements) continue;
     if (pairHash(pair.row, pair.column) % context_.recheck_every != 0) continue;
+    context_.progress.check();
     const PartialExchange other = context_.partial.evaluateFromOtherEnd(pair, pairs_.occluder_list);
     const double areas = order.area[order.rank[pair.row]] * order.area[order.rank[pair.column]];
     sums.error.addRecheck(partial_[k].exchange - other.exchange, partial_[k].error, other.error,
@@ -222,6 +225,7 @@ void RowAssembly::storePatches(ElementRange rows, RowSums& sums) {
   for (std::size_t rank = order.rank[rows.first]; rank < end; ++rank) {
     const std::span<double> exchange =
         patchRow(rank, {order.first_element[rank], order.first_element[rank + 1]});
+    assert(std::all_of(exchange.begin(), exchange.end(), [](double g) { return g >= 0; }));
     sums.error.addAndScale(rank, exchange, 1 / order.area[rank]);
     context_.matrix.setUpperRow(rank, exchange);
   }

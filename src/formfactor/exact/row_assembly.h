@@ -52,6 +52,7 @@ struct RowContext {
   const Visibility& visibility;
   const UnoccludedKernel& unoccluded;
   const PartialKernel& partial;
+  const Progress& progress;
   std::size_t recheck_every;  ///< about one clipped pair in so many is evaluated from both ends
   ExchangeMatrix& matrix;
   UncertainEntries* uncertain;  ///< clipped pairs and their errors go there; may be null
@@ -68,8 +69,9 @@ struct RowContext {
 class RowAssembly {
  public:
   explicit RowAssembly(const RowContext& context)
-      : context_(context), asked_(context.chunks.ranges.size(), 0) {}
-  /// `ranges`: one task of RowTasks. Stores its patches' rows and backs, adds to `sums`.
+      : context_(context), pairs_(&context.progress), asked_(context.chunks.ranges.size(), 0) {}
+  /// `ranges`: one task of RowTasks. Stores its patches' rows and backs, adds to `sums`. Throws
+  /// Cancelled.
   void run(std::span<const ElementRange> ranges, RowSums& sums);
 
  private:

@@ -4,6 +4,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 
+#include "formfactor/exact/occluders_boxes.h"
+#include "formfactor/exact/point_tree.h"
 #include "formfactor/hidden_backs.h"
 
 namespace radiosity {
@@ -16,7 +18,18 @@ constexpr std::size_t kMostSolidAngles = 1000000;
 class UnseenBacks {
  public:
   explicit UnseenBacks(const PatchMesh& mesh)
-      : mesh_(mesh), scene_(mesh, false), backs_(scene_), patches_of_(mesh.polygons.size()) {
+      : mesh_(mesh),
+        scene_(mesh, false),
+        backs_(scene_),
+        vertices_(scene_.vertices),
+        patches_of_(mesh.polygons.size()),
+        own_vertex_(scene_.vertices.size(), 0),
+        own_polygon_(scene_.polygons.size(), 0) {
+    std::vector<Box3> boxes(scene_.polygons.size());
+    for (Index p = 0; p < boxes.size(); ++p) {
+      forCorners(scene_.polygons[p], [&](std::uint32_t v) { boxes[p].add(scene_.vertices[v]); });
+    }
+    places_ = BoxTree(std::move(boxes));
     for (Index i = 0; i < mesh.size(); ++i) {
       if (mesh.polygon[i] != kNone && mesh.area[i] > 0) patches_of_[mesh.polygon[i]].push_back(i);
     }
@@ -39,9 +52,8 @@ class UnseenBacks {
 
  private:
   bool allInFront(const ViewPolygon& polygon) const {
-    return std::all_of(scene_.vertices.begin(), scene_.vertices.end(), [&](const Vec3& v) {
-      return glm::dot(polygon.normal, v - polygon.origin) >= -scene_.coincidence;
-    });
+    const double offset = glm::dot(polygon.normal, polygon.origin);
+    return !vertices_.anyAbove(-polygon.normal, scene_.coincidence - offset);
   }
 
   template <class Visit>
@@ -54,24 +66,34 @@ class UnseenBacks {
   /// Whether every patch that is not the surface's own lies on the side its fronts face: its
   /// middle, and its polygon's corners unless they are corners of the surface too.
   bool allOnFrontSide(const ClosedSurface& surface) {
-    std::vector<std::uint8_t> own_vertex(scene_.vertices.size(), 0);
-    std::vector<std::uint8_t> own_polygon(scene_.polygons.size(), 0);
+    ++stamp_;
     for (const Index p : surface.polygons) {
-      own_polygon[p] = 1;
-      forCorners(scene_.polygons[p], [&](std::uint32_t v) { own_vertex[v] = 1; });
+      own_polygon_[p] = stamp_;
+      forCorners(scene_.polygons[p], [&](std::uint32_t v) { own_vertex_[v] = stamp_; });
     }
     bool proved = true;
-    for (Index p = 0; p < scene_.polygons.size() && proved; ++p) {
-      if (own_polygon[p]) continue;
-      const ViewPolygon& polygon = scene_.polygons[p];
-      forCorners(polygon, [&](std::uint32_t v) {
-        proved = proved && (own_vertex[v] || onFrontSide(surface, scene_.vertices[v]));
-      });
-      for (const Index i : patches_of_[polygon.source]) {
-        proved = proved && onFrontSide(surface, mesh_.centroid[i] * scene_.scale);
+    const auto look = [&](Index p) {
+      proved = own_polygon_[p] == stamp_ || isOnFrontSide(surface, scene_.polygons[p]);
+      return proved;
+    };
+    if (surface.outward) {  // all that is out of its box is on its front side
+      places_.query({surface.lower, surface.upper}, look);
+    } else {
+      for (Index p = 0; p < scene_.polygons.size() && look(p); ++p) {
       }
     }
     return proved;
+  }
+
+  bool isOnFrontSide(const ClosedSurface& surface, const ViewPolygon& polygon) {
+    bool proved = true;
+    forCorners(polygon, [&](std::uint32_t v) {
+      proved = proved && (own_vertex_[v] == stamp_ || onFrontSide(surface, scene_.vertices[v]));
+    });
+    const std::vector<Index>& patches = patches_of_[polygon.source];
+    return proved && std::all_of(patches.begin(), patches.end(), [&](Index i) {
+             return onFrontSide(surface, mesh_.centroid[i] * scene_.scale);
+           });
   }
 
   bool onFrontSide(const ClosedSurface& surface, const Vec3& point) {
@@ -88,7 +110,12 @@ class UnseenBacks {
   const PatchMesh& mesh_;
   const ViewScene scene_;
   const HiddenBacks backs_;
+  const PointTree vertices_;
+  BoxTree places_;                              // boxes of polygons
   std::vector<std::vector<Index>> patches_of_;  // of the mesh's polygons
+  std::vector<std::uint32_t> own_vertex_;       // stamps: of the surface in question
+  std::vector<std::uint32_t> own_polygon_;
+  std::uint32_t stamp_ = 0;
   std::size_t solid_angles_ = 0;
 };
 

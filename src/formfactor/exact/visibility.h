@@ -37,6 +37,8 @@ struct VisibilitySample {
 class VisibilitySink {
  public:
   virtual ~VisibilitySink() = default;
+  /// Called again and again while pairs are settled; may throw to end that.
+  virtual void poll() const {}
   /// Nothing stands between any element of `rows` and any of `columns`. Some may still be below
   /// another's horizon, or cross its plane.
   virtual void unoccluded(ElementRange rows, ElementRange columns) = 0;

@@ -48,6 +48,7 @@ void VisibilityDescent::run(Index facet, Index cluster) {
 
 /// Settles a facet by the planes, or by there being nothing in between; else it becomes an item.
 void VisibilityDescent::addFacet(Index facet) {
+  sink_.poll();
   ++counts_.facet_pairs;
   const Facet& own = elements_.facets[facet_];
   const Facet& other = elements_.facets[facet];
@@ -124,6 +125,7 @@ void VisibilityDescent::descend(Index row, std::size_t depth, std::size_t first_
 /// children.
 void VisibilityDescent::settle(Index row, std::size_t depth, Item item) {
   if (enough()) return;
+  sink_.poll();
   const Cluster& rows = elements_.clusters[row];
   const Cluster& columns = elements_.clusters[item.cluster];
   if (!meets(row, item)) {

@@ -1,0 +1,41 @@
+// Progress of an iteration whose residual falls towards a goal.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "radiosity/base.h"
+
+namespace radiosity {
+
+/// Each power of ten that the residual has to fall takes about as long as another, so the share
+/// that is done is one of logarithms.
+class ResidualProgress {
+ public:
+  ResidualProgress(Progress& progress, const std::string& stage, double start, double goal)
+      : progress_(progress), start_(start), powers_(std::log(start / goal)) {
+    progress_.begin(stage, kSteps);
+  }
+
+  /// Throws Cancelled.
+  void at(double residual) {
+    progress_.check();
+    if (!(powers_ > 0 && residual > 0)) return;
+    const double share = std::clamp(std::log(start_ / residual) / powers_, 0.0, 1.0);
+    const auto steps = std::size_t(share * double(kSteps));
+    if (steps > done_) progress_.advance(steps - done_);
+    done_ = std::max(done_, steps);
+  }
+  void end() { progress_.end(); }
+
+ private:
+  static constexpr std::size_t kSteps = 1000;
+
+  Progress& progress_;
+  double start_;
+  double powers_;
+  std::size_t done_ = 0;
+};
+
+}  // namespace radiosity
