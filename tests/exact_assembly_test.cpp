@@ -283,6 +283,7 @@ TEST(ExactFactors, CancelEndsTheRun) {
 }
 
 TEST(ExactFactors, AutoSaysWhatAndWhy) {
+  Progress silent;
   const PatchMesh mesh = test::roomWithBlock(3).build();
   const FormFactors f = compute(mesh, FormFactorOptions());
   EXPECT_EQ(f.method, "exact");

@@ -210,6 +210,8 @@ inline FormFactors factors(const PatchMesh& m, Precision precision) {
   r.seconds = 0.123;
   r.matrix_bytes = 10;
   r.estimated_bytes = 11;
+  r.seconds_plan = 0.25;
+  r.estimated_seconds = 1.75;
   r.seconds_plan = 0.75;
   r.estimated_seconds = 12.5;
   r.reciprocity_residual = 0.0885;
@@ -361,9 +363,9 @@ inline auto members(const ExactReport& s) {
 }
 inline auto members(const FormFactorReport& s) {
   const auto& [v0, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13, v14, v15, v16, v17, v18,
-               v19, v20, v21, v22, v23, v24] = s;
+               v19, v20, v21, v22, v23, v24, v25, v26] = s;
   return std::tie(v0, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13, v14, v15, v16, v17,
-                  v18, v19, v20, v21, v22, v23, v24);
+                  v18, v19, v20, v21, v22, v23, v24, v25, v26);
 }
 inline auto members(const FormFactors& s) {
   const auto& [a, b, c, d, e, f, g, h] = s;
