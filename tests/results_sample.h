@@ -210,8 +210,6 @@ inline FormFactors factors(const PatchMesh& m, Precision precision) {
   r.seconds = 0.123;
   r.matrix_bytes = 10;
   r.estimated_bytes = 11;
-  r.seconds_plan = 0.25;
-  r.estimated_seconds = 1.75;
   r.seconds_plan = 0.75;
   r.estimated_seconds = 12.5;
   r.reciprocity_residual = 0.0885;

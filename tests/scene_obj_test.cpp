@@ -50,25 +50,25 @@ TEST_F(SceneObj, ReadsCoordinatesCorrectlyRounded) {
 }
 
 TEST_F(SceneObj, KeepsPolygonsInFileOrder) {
-  // A concave pentagon, a triangle and a 255-gon, with names in between.
+  // A concave pentagon, a triangle and a 3000-gon, with names in between.
   std::string text = kSquare + "v .5 .5 0\n";
-  for (int k = 0; k < 255; ++k) {
-    const double angle = 2 * std::numbers::pi * k / 255;
+  for (int k = 0; k < 3000; ++k) {
+    const double angle = 2 * std::numbers::pi * k / 3000;
     text += fmt::format("v {} {} 1\n", std::cos(angle), std::sin(angle));
   }
   text += "o a\nf 1 2 3 5 4\no b\nf 1 2 3\no a\nf";
-  for (int k = 0; k < 255; ++k) text += fmt::format(" {}", 6 + k);
+  for (int k = 0; k < 3000; ++k) text += fmt::format(" {}", 6 + k);
   const Scene scene = load(text + "\n");
   ASSERT_EQ(scene.faceCount(), 3u);
   EXPECT_EQ(scene.face(0).size(), 5u);
   EXPECT_EQ(scene.face(1).size(), 3u);
-  EXPECT_EQ(scene.face(2).size(), 255u);
+  EXPECT_EQ(scene.face(2).size(), 3000u);
   EXPECT_EQ(scene.face(0)[3], 4u);
-  EXPECT_EQ(scene.face(2)[254], 259u);
+  EXPECT_EQ(scene.face(2)[2999], 3004u);
   // `a` is one surface although it was opened twice.
   ASSERT_EQ(scene.surfaces.size(), 2u);
   EXPECT_EQ(scene.face_surface[0], scene.face_surface[2]);
-  EXPECT_EQ(scene.face_element[1], 264u) << "the line of the second face";
+  EXPECT_EQ(scene.face_element[1], 3009u) << "the line of the second face";
   EXPECT_TRUE(scene.texcoords.empty());
 }
 
@@ -140,10 +140,7 @@ TEST_F(SceneObj, RefusesIndicesThatPointNowhere) {
   EXPECT_EQ(load("f 1 2 3\n" + kSquare).faceCount(), 1u);
 }
 
-TEST_F(SceneObj, RefusesFacesOfTooManyOrTooFewCorners) {
-  std::string text = kSquare + "f";
-  for (int k = 0; k < 300; ++k) text += fmt::format(" {}", 1 + k % 4);
-  EXPECT_CONTAINS(errorOf(text + "\n"), "scene.obj:5: a face of 300 corners");
+TEST_F(SceneObj, RefusesFacesOfTooFewCorners) {
   EXPECT_CONTAINS(errorOf(kSquare + "f 1 2\n"), "scene.obj:5: a face needs 3 corners");
 }
 
@@ -233,12 +230,17 @@ TEST_F(SceneObj, ReportsInheritedMaterials) {
       load("mtllib m.mtl\n" + kSquare + "o panel\nusemtl lamp\n" + kFace + "o cube\n" + kFace +
            "o room\nusemtl wall\n" + kFace + "o door\n" + kFace);
   EXPECT_EQ(scene.surfaces[1].name, "cube/lamp");
-  EXPECT_NOTE(scene.notes, "object cube has no usemtl of its own", Severity::loud);
-  EXPECT_NOTE(scene.notes, "object door has no usemtl of its own", Severity::warning);
-  EXPECT_EQ(findNote(scene.notes, "object room has"), nullptr);
+  EXPECT_NOTE(scene.notes,
+              "no usemtl of their own, so they go on with material lamp of the object before, "
+              "which EMITS LIGHT: cube",
+              Severity::loud);
+  EXPECT_NOTE(scene.notes,
+              "no usemtl of their own, so they go on with material wall of the object before: door",
+              Severity::warning);
+  EXPECT_EQ(findNote(scene.notes, "room"), nullptr);
   // A material chosen just before the object was meant for it.
   const Scene meant = load("mtllib m.mtl\n" + kSquare + "usemtl lamp\no panel\n" + kFace);
-  EXPECT_EQ(findNote(meant.notes, "no usemtl of its own"), nullptr) << allNotes(meant.notes);
+  EXPECT_EQ(findNote(meant.notes, "no usemtl of their own"), nullptr) << allNotes(meant.notes);
 }
 
 TEST_F(SceneObj, NamesWhatADiffuseMaterialLeavesOut) {

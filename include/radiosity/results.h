@@ -93,8 +93,8 @@ void writeLitGlb(const std::string& path, const PatchMesh& mesh, std::span<const
 void writeImage(const std::string& path, const Image& image, bool display_referred,
                 std::span<const std::pair<std::string, std::string>> metadata = {});
 
-/// Reads any image OpenImageIO knows: numbers as they stand in the file (no curve is undone), alpha
-/// divided out where the format multiplies by it.
+/// Reads an image: numbers as they stand in the file (no curve is undone), alpha divided out where
+/// the format multiplies by it.
 Image readImage(const std::string& path);
 
 /// A picture and what its file says of the numbers in it.
@@ -103,7 +103,9 @@ struct ImageFile {
   bool bytes = false;    ///< whole numbers, mapped to [0, 1]: as a rule sRGB-coded
   std::string quantity;  ///< as writeImage() was told ("radiance"); empty where nothing is said
 };
-ImageFile readImageFile(const std::string& path);
+/// `max_image`: in millions of pixels; a larger image is not unpacked. Errors: InputError for what
+/// is no image or too large, RunError where it does not fit into memory.
+ImageFile readImageFile(const std::string& path, double max_image = 100);
 
 /// A mesh with colours at its vertices, as this or another program wrote it: numbers as they stand
 /// in the file, metres and axes taken as they are.

@@ -41,7 +41,8 @@ struct Material {
 struct Surface {
   std::string object;  ///< object, group or node name
   Index material = kNone;
-  std::string name;  ///< "object/material", unique in the scene; results are keyed by it
+  /// "object/material", or the one name that both have; unique in the scene, results are keyed by it
+  std::string name;
 };
 
 /// A pinhole camera. `up` need not be perpendicular to the view direction.
@@ -64,7 +65,8 @@ struct Scene {
   std::vector<Vec2> texcoords;            ///< one per corner, or empty; (0,0) is the top left of
                                           ///< the first texel, v grows downwards (as in glTF)
   std::vector<Index> face_surface;        ///< F
-  std::vector<std::size_t> face_element;  ///< F: line in an OBJ; running primitive face in a glTF
+  std::vector<std::size_t> face_element;  ///< F: line in an OBJ or ASCII STL; running face of the
+                                          ///< primitive in a glTF, of the file in a binary STL
   std::vector<Surface> surfaces;
   std::vector<Material> materials;
   std::vector<Texture> textures;
@@ -87,6 +89,7 @@ struct SceneOptions {
   bool kd_is_srgb = false;             ///< Kd and base colour of an OBJ are sRGB, linearise them
   double default_reflectance = 0.5;    ///< where a face has no material; 0 to 1
   bool textures = true;                ///< false: the material's factor alone
+  double max_image = 100;              ///< largest texture, in millions of pixels; above 0
   std::vector<std::string> set;        ///< "NAME.PROPERTY=VALUE", see applyOverrides()
   std::string materials_file;          ///< JSON {"NAME": {"reflectance": .., "emission": ..}}
   std::vector<std::string> one_sided;  ///< material, object or surface names, or "all"
@@ -95,16 +98,17 @@ struct SceneOptions {
   void validate() const;
 };
 
-/// Reads .obj (+ .mtl), .gltf or .glb (by extension) and applies the overrides. Face f of the
+/// Reads .obj (+ .mtl), .gltf, .glb or .stl (by extension) and applies the overrides. Face f of the
 /// scene is face f of the file. An OBJ has no cameras of its own; a comment line
 /// `# camera eye=x,y,z target=x,y,z up=x,y,z fov=DEGREES` (file units, vertical field of view) is
 /// read as one.
-/// Errors: InputError, one line with file, element and cure.
+/// Errors: InputError, one line with file, element and cure; RunError where the scene does not fit
+/// into memory.
 Scene loadScene(const std::string& path, const SceneOptions& options = {});
 
 /// Applies `set`, `materials_file`, `one_sided`, `two_sided` to a scene already in memory (one
 /// that came back from a results file). NAME is a surface, material or object, tried in that
-/// order; PROPERTY is reflectance, emission (exitance, W/m^2) or radiance (W/m^2/sr); VALUE is one
+/// order, but the material where a surface has its name only because its object has it too; PROPERTY is reflectance, emission (exitance, W/m^2) or radiance (W/m^2/sr); VALUE is one
 /// number or three with commas. A surface that shares its material gets a copy of its own.
 /// Unknown names are an InputError that lists the names there are.
 void applyOverrides(Scene& scene, const SceneOptions& options);

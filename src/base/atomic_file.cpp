@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <random>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -41,12 +42,18 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
   if (fs::is_directory(target, ignored)) {
     throw InputError(fmt::format("{}: is a folder; name a file in it", path_));
   }
+  if (fs::exists(target, ignored) && !fs::is_regular_file(target, ignored)) {
+    throw InputError(fmt::format(
+        "{}: is a pipe or a device, which the output would replace; name a file", path_));
+  }
   if (access(folder.c_str(), W_OK) != 0) {
     throw InputError(
         fmt::format("{}: the folder {} cannot be written; choose another", path_, folder.string()));
   }
-  temporary_ = (folder / fmt::format(".{}.{}.tmp{}", target.stem().string(), getpid(),
-                                     target.extension().string()))
+  // The number tells apart what runs in several threads, or as the same process in several
+  // containers that share a folder.
+  temporary_ = (folder / fmt::format(".{}.{}-{:08x}.tmp{}", target.stem().string(), getpid(),
+                                     std::random_device()(), target.extension().string()))
                    .string();
   const std::lock_guard lock(files().mutex);
   files().temporaries.insert(temporary_);

@@ -21,8 +21,9 @@ struct DecodedImage {
   bool multiplied = false;  ///< the format multiplies colours by alpha, and this one's are
   std::string quantity;     ///< the attribute of that name; empty where there is none
   std::vector<float> samples;
-  bool opened = false;  ///< false: no file of a known format
-  std::string problem;  ///< why there are no samples, in OpenImageIO's words; else empty
+  bool opened = false;    ///< false: no file of a known format
+  std::string problem;    ///< why there are no samples, in OpenImageIO's words; else empty
+  std::string too_large;  ///< "has W x H pixels, ...; cure" where the size alone is the reason
 };
 
 /// Four channels, R G B A, 32-bit floats or bytes, as the format of the file's name wants them.
@@ -45,10 +46,12 @@ struct EncodedImage {
 class ImageCodec {
  public:
   virtual ~ImageCodec() = default;
-  virtual DecodedImage read(const std::string& path) const = 0;
-  /// `format`: OpenImageIO's name of it, "png".
-  virtual DecodedImage decode(const std::string& name, const std::string& format,
-                              std::span<const unsigned char> bytes) const = 0;
+  /// The first four channels of the regular file `path`, its format told by its first bytes. One
+  /// of more than `most_pixels` is not unpacked.
+  virtual DecodedImage read(const std::string& path, double most_pixels) const = 0;
+  /// The same from memory; `name` is for messages.
+  virtual DecodedImage decode(const std::string& name, std::span<const unsigned char> bytes,
+                              double most_pixels) const = 0;
   /// The format is that of the extension of `path`; nothing is written there.
   virtual EncodedImage encode(const std::string& path, const ImageToEncode& image) const = 0;
 };

@@ -256,6 +256,10 @@ void addGeneralOptions(CLI::App& app, Request& r, Command command) {
   add(app, "General", "--threads", r.threads, "N",
       "Threads (default 0: all cores); results do not depend on it, to the bit")
       ->check(wholeNumber());
+  add(app, "General", "--max-image", r.scene.max_image, "MEGAPIXELS",
+      fmt::format("Largest image that is read, in millions of pixels (default {:g}: 8K textures; 1 "
+                  "takes up to 30 MB while it is read)",
+                  SceneOptions().max_image));
   add(app, "General", "--report", r.report, "FILE.json",
       "Write every figure of the run, machine-readable");
   app.add_flag("--quiet", r.quiet, "Print errors and loud warnings only")->group("General");
@@ -267,7 +271,7 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
   const bool compares = command == Command::compare;
   sub->add_option(compares ? "A" : "SCENE", r.input,
                   compares ? "The reference: results file, lit mesh or picture"
-                           : "Scene (.obj, .gltf, .glb) or results file (.h5)")
+                           : "Scene (.obj, .gltf, .glb, .stl) or results file (.h5)")
       ->required()
       ->option_text(" ");
   if (compares) addCompareOptions(*sub, r);
@@ -350,7 +354,7 @@ std::string explain(const CLI::ParseError& error, const CLI::App& sub) {
     if (sub.get_name() == commandName(Command::compare)) {
       return "compare: A and B are missing: radiosity compare A B, or radiosity compare A --gather";
     }
-    return fmt::format("{}: the scene (.obj, .gltf, .glb) or results file (.h5) is missing",
+    return fmt::format("{}: the scene (.obj, .gltf, .glb, .stl) or results file (.h5) is missing",
                        command);
   }
   std::string message = oneLine(error.what());

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <variant>
 
+#include "base/input_file.h"
 #include "cli/commands.h"
 #include "cli/picture.h"
 #include "cli/words.h"
@@ -91,9 +92,9 @@ bool isPictureName(const std::string& path) {
   return std::find(std::begin(meshes), std::end(meshes), extension) == std::end(meshes);
 }
 
-ImageFile readPicture(const std::string& path) {
+ImageFile readPicture(const std::string& path, double max_image) {
   try {
-    return readImageFile(path);
+    return readImageFile(path, max_image);
   } catch (const InputError& error) {
     throw InputError(fmt::format(
         "{}; what can be compared: results (.h5), lit meshes (.glb, .gltf, .ply, .obj), pictures",
@@ -101,18 +102,16 @@ ImageFile readPicture(const std::string& path) {
   }
 }
 
-Side readSide(const std::string& label, const std::string& path, const std::string& said) {
+Side readSide(const std::string& label, const std::string& path, const std::string& said,
+              double max_image) {
+  requireFile(path);
   Side side;
   side.label = label;
   side.path = path;
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) {
-    throw InputError(path + ": no such file; check the name and the folder");
-  }
   if (isResultsFile(path)) {
     readResultsSide(side, said);
   } else if (isPictureName(path)) {
-    ImageFile file = readPicture(path);
+    ImageFile file = readPicture(path, max_image);
     std::optional<LightUnit> of_file;
     if (file.bytes) of_file = LightUnit::srgb8;
     if (!file.bytes && file.quantity == "radiance") of_file = LightUnit::radiance;
@@ -257,8 +256,8 @@ int compareFiles(Session& session, OutputSet& files) {
         "compare: B is missing: radiosity compare A B, or radiosity compare A --gather");
   }
   const CompareOptions options = request.compareOptions();
-  const Side a = readSide("A", request.input, request.a_is);
-  const Side b = readSide("B", request.second, request.b_is);
+  const Side a = readSide("A", request.input, request.a_is, request.scene.max_image);
+  const Side b = readSide("B", request.second, request.b_is, request.scene.max_image);
   if (a.isImage() != b.isImage()) {
     const Side& image = a.isImage() ? a : b;
     throw InputError(

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "base/input_file.h"
 #include "cli/process_memory.h"
 #include "cli/summaries.h"
 #include "cli/words.h"
@@ -52,6 +53,16 @@ std::vector<double> flat(const std::vector<Vec3>& values) {
   return out;
 }
 
+/// Once input and options have been checked, what a stage cannot do is the run's failure.
+template <class Work>
+auto ownFault(const Work& work) {
+  try {
+    return work();
+  } catch (const InputError& error) {
+    throw RunError(error.what());
+  }
+}
+
 }  // namespace
 
 Pipeline::Pipeline(const Request& request, Report& report, Progress& progress)
@@ -60,10 +71,7 @@ Pipeline::Pipeline(const Request& request, Report& report, Progress& progress)
 }
 
 void Pipeline::open(const std::string& results_output) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(request_.input, ignored)) {
-    throw InputError(request_.input + ": no such file; check the name and the folder");
-  }
+  requireFile(request_.input);
   request_.scene.validate();
   writes_results_ = !results_output.empty();
   from_results_ = isResultsFile(request_.input);
@@ -89,14 +97,19 @@ void Pipeline::chooseOptions() {
   gather_options_ = request_.apply(gather_options_);
 }
 
+void Pipeline::openSource(const std::string& path) {
+  source_ = path;
+  source_state_ = fileState(path);
+  previous_ = readResults(path, false);
+}
+
 void Pipeline::openResults() {
   if (!request_.reading_options.empty()) {
     throw InputError(fmt::format(
         "{}: {} says how a scene file is read, and this is a results file; give the scene file",
         request_.input, request_.reading_options.front()));
   }
-  previous_ = readResults(request_.input, false);
-  source_ = request_.input;
+  openSource(request_.input);
   if (!previous_.scene) {
     throw InputError(request_.input + ": holds no scene; make it anew from the scene file");
   }
@@ -120,8 +133,7 @@ void Pipeline::openScene(const std::string& results_output) {
   std::error_code ignored;
   if (results_output.empty() || !std::filesystem::exists(results_output, ignored)) return;
   try {
-    if (isResultsFile(results_output)) previous_ = readResults(results_output, false);
-    source_ = results_output;
+    if (isResultsFile(results_output)) openSource(results_output);
   } catch (const InputError& error) {
     // It is about to be replaced anyway: no stages to reuse, and no reason to fail.
     report_.line("note", fmt::format("nothing is reused from {}: {}", results_output,
@@ -229,7 +241,7 @@ void Pipeline::factors() {
     const Stopwatch watch;
     if (!plan) plan = planFactors();
     announceFactors(*plan);
-    results_.factors = computeFormFactors(*plan, progress_);
+    results_.factors = ownFault([&] { return computeFormFactors(*plan, progress_); });
     results_.factors_key = key.text();
     matrix_loaded_ = true;
     computed("form_factors", "form factors", reason, watch.seconds());
@@ -251,7 +263,12 @@ void Pipeline::loadMatrix() {
     throw RunError(fmt::format("{}: its form factors take {} of memory, --memory-limit allows {}",
                                source_, bytesText(bytes), request_.memory_limit));
   }
-  results_.factors = std::move(readResults(source_, true).factors);
+  std::optional<FormFactors> factors = std::move(readResults(source_, true).factors);
+  // Another run may have replaced the file since: its matrix belongs to another mesh.
+  if (!factors || fileState(source_) != source_state_) {
+    throw RunError(source_ + ": was replaced by another run meanwhile; run this one again");
+  }
+  results_.factors = std::move(factors);
   matrix_loaded_ = true;
   progress_.check();
 }
@@ -271,9 +288,10 @@ void Pipeline::solution() {
     const std::string reason = why(previous_.solution_key, key, previous_.solution.has_value());
     loadMatrix();
     const Stopwatch watch;
-    results_.solution =
-        solve(formFactors(), flat(materials().reflectance), flat(materials().emission), 3,
-              solve_options_, progress_, patches().surface, patches().surface_names);
+    results_.solution = ownFault([&] {
+      return solve(formFactors(), flat(materials().reflectance), flat(materials().emission), 3,
+                   solve_options_, progress_, patches().surface, patches().surface_names);
+    });
     computed("solution", "solution", reason, watch.seconds());
   }
   results_.solution_key = key.text();
@@ -291,7 +309,8 @@ void Pipeline::gathered() {
   } else {
     const std::string reason = why(previous_.gather_key, key, previous_.gathered.has_value());
     const Stopwatch watch;
-    results_.gathered = gather(patches(), materials(), gather_options_, progress_);
+    results_.gathered =
+        ownFault([&] { return gather(patches(), materials(), gather_options_, progress_); });
     computed("gather", "gather", reason, watch.seconds());
   }
   results_.gather_key = key.text();

@@ -40,7 +40,8 @@ class Pipeline {
   void solution();
   /// By the gather method; needs the mesh only.
   void gathered();
-  /// Loads the matrix where the reused form factors came without it.
+  /// Loads the matrix where the reused form factors came without it. RunError where another run
+  /// has replaced the file meanwhile.
   void loadMatrix();
   /// Keeps the later stages that still fit and says which are dropped.
   void keepLaterStages();
@@ -62,6 +63,8 @@ class Pipeline {
 
  private:
   void openResults();
+  /// Reads the stages of `path`, all but the matrix, and remembers in which state it was.
+  void openSource(const std::string& path);
   void openScene(const std::string& results_output);
   /// What was given over what the results file has or the defaults; wrong ones are found here,
   /// before any work.
@@ -90,6 +93,7 @@ class Pipeline {
   Results results_;   ///< the stages of this run
   Results previous_;  ///< what the source holds and has not been taken over yet
   std::string source_;
+  std::string source_state_;
   bool from_results_ = false;
   bool matrix_loaded_ = false;
   bool changed_ = false;

@@ -22,7 +22,8 @@ namespace {
 
 constexpr int kLabelWidth = 33;  // the longest label, and room after it
 constexpr int kStageWidth = 15;
-constexpr std::size_t kAlike = 3;  // notes of one shape that are printed
+constexpr std::size_t kAlike = 3;       // notes of one shape that are printed
+constexpr std::size_t kMostNotes = 30;  // of one severity, beyond which they are only counted
 
 // fputs, not fmt::print: a reader that closed the pipe is no reason to end the run.
 void put(std::FILE* stream, const std::string& text) {
@@ -40,6 +41,15 @@ const char* severityName(Severity severity) {
       break;
   }
   return "info";
+}
+
+void printNote(Severity severity, const std::string& text) {
+  if (severity == Severity::info) {
+    put(stdout, fmt::format("note: {}\n", text));
+  } else {
+    put(stderr, fmt::format("radiosity: {}: {}\n",
+                            severity == Severity::loud ? "WARNING" : "warning", text));
+  }
 }
 
 /// The text without its names and numbers: notes that share it say the same of several things.
@@ -88,7 +98,7 @@ void Report::section(const std::string& key, const std::string& title) {
 }
 
 void Report::figure(const std::string& label, const std::string& value) const {
-  if (!muted()) put(stdout, fmt::format("  {:<{}}{}\n", label, kLabelWidth, value));
+  if (!muted()) put(stdout, fmt::format("  {:<{}}{}\n", label, kLabelWidth, oneLine(value)));
 }
 
 void Report::count(const std::string& key, const std::string& label, std::size_t value) {
@@ -144,11 +154,16 @@ void Report::table(const std::string& key, const std::vector<Column>& columns,
     json entry;
     for (std::size_t c = 0; c < columns.size(); ++c) {
       entry[columns[c].key] = columns[c].numeric ? numberOrText(row[c]) : json(row[c]);
-      width[c] = std::max(width[c], row[c].size());
     }
     list.push_back(std::move(entry));
   }
   if (muted() || rows.empty()) return;
+  const std::size_t shown = std::min(most, rows.size());
+  for (std::size_t r = 0; r < shown; ++r) {
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      width[c] = std::max(width[c], oneLine(rows[r][c]).size());
+    }
+  }
   const auto printRow = [&](auto&& cell) {
     std::string line = " ";
     for (std::size_t c = 0; c < columns.size(); ++c) {
@@ -158,12 +173,12 @@ void Report::table(const std::string& key, const std::vector<Column>& columns,
     put(stdout, line.substr(0, line.find_last_not_of(' ') + 1) + "\n");
   };
   printRow([&](std::size_t c) { return columns[c].title; });
-  for (std::size_t r = 0; r < std::min(most, rows.size()); ++r) {
-    printRow([&](std::size_t c) { return rows[r][c]; });
+  for (std::size_t r = 0; r < shown; ++r) {
+    printRow([&](std::size_t c) { return oneLine(rows[r][c]); });
   }
-  if (rows.size() > most) {
+  if (rows.size() > shown) {
     put(stdout, fmt::format("  ... and {} more (all are in --report FILE)\n",
-                            countText(rows.size() - most)));
+                            countText(rows.size() - shown)));
   }
 }
 
@@ -175,35 +190,38 @@ void Report::stage(const std::string& key, const std::string& label, const std::
 }
 
 void Report::line(const std::string& label, const std::string& text) {
-  if (!muted()) put(stdout, fmt::format("{:<{}}{}\n", label, kStageWidth, text));
+  if (!muted()) put(stdout, fmt::format("{:<{}}{}\n", label, kStageWidth, oneLine(text)));
 }
 
 void Report::notes(std::span<const Note> notes) {
   for (const Severity severity : {Severity::loud, Severity::warning, Severity::info}) {
-    const bool shown = severity == Severity::loud || !quiet_;
-    std::map<std::string, std::size_t> alike;
-    std::vector<std::pair<std::string, std::string>> last;  // shape, and the line to print
+    std::map<std::string, std::vector<std::string>> alike;  // by shape, the first few
+    std::map<std::string, std::size_t> count;
+    std::vector<std::string> shapes;  // in the order they came
     for (const Note& note : notes) {
       if (note.severity != severity) continue;
       (*root_)["notes"].push_back({{"severity", severityName(severity)}, {"text", note.text}});
       const std::string text = oneLine(note.text);
       const std::string shape = shapeOf(text);
-      if (++alike[shape] <= kAlike) last.emplace_back(shape, text);
+      if (++count[shape] == 1) shapes.push_back(shape);
+      if (alike[shape].size() < kAlike) alike[shape].push_back(text);
     }
-    if (!shown) continue;
-    for (std::size_t k = 0; k < last.size(); ++k) {
-      const auto& [shape, text] = last[k];
-      const bool final_of_shape = std::none_of(last.begin() + std::ptrdiff_t(k) + 1, last.end(),
-                                               [&](const auto& l) { return l.first == shape; });
-      std::string more;
-      if (final_of_shape && alike[shape] > kAlike) {
-        more = fmt::format(" (and {} more like this)", countText(alike[shape] - kAlike));
+    if (quiet_ && severity != Severity::loud) continue;
+    std::size_t printed = 0;
+    for (std::size_t k = 0; k < shapes.size(); ++k) {
+      if (severity != Severity::loud && printed >= kMostNotes) {
+        printNote(severity, fmt::format("{} more kinds of notes (all are in --report FILE)",
+                                        countText(shapes.size() - k)));
+        break;
       }
-      if (severity == Severity::info) {
-        put(stdout, fmt::format("note: {}{}\n", text, more));
-      } else {
-        put(stderr, fmt::format("radiosity: {}: {}{}\n",
-                                severity == Severity::loud ? "WARNING" : "warning", text, more));
+      const std::string& shape = shapes[k];
+      const std::vector<std::string>& lines = alike[shape];
+      printed += lines.size();
+      for (std::size_t n = 0; n < lines.size(); ++n) {
+        const std::size_t left = n + 1 == lines.size() ? count[shape] - lines.size() : 0;
+        printNote(
+            severity,
+            lines[n] + (left == 0 ? "" : fmt::format(" (and {} more like this)", countText(left))));
       }
     }
   }

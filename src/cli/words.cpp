@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/printable.h"
 #include "radiosity/base.h"
 
 namespace radiosity::cli {
@@ -115,17 +116,36 @@ std::string suggestion(const std::string& word, std::span<const std::string> can
   return meant ? fmt::format("; did you mean {}?", *meant) : std::string();
 }
 
+namespace {
+
+/// A file may hold a word of megabytes: its beginning and its end tell which one it is.
+constexpr std::size_t kLongestLine = 2000;
+
+std::string shortened(const std::string& text) {
+  if (text.size() <= kLongestLine) return text;
+  const auto boundary = [&](std::size_t k) {
+    while (k > 0 && (static_cast<unsigned char>(text[k]) & 0xc0u) == 0x80u) --k;
+    return k;
+  };
+  const std::size_t head = boundary(kLongestLine / 2);
+  const std::size_t tail = boundary(text.size() - kLongestLine / 2);
+  return fmt::format("{} [{} left out] {}", text.substr(0, head), bytesText(tail - head),
+                     text.substr(tail));
+}
+
+}  // namespace
+
 std::string oneLine(const std::string& text) {
   std::string line;
-  for (const char c : text) {
-    if (c == '\r') continue;
-    if (c != '\n') {
-      line += c;
-    } else if (!line.empty() && &c != &text.back()) {
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    if (text[k] == '\r' && k + 1 < text.size() && text[k + 1] == '\n') continue;
+    if (text[k] != '\n') {
+      line += text[k];
+    } else if (!line.empty() && k + 1 < text.size()) {
       line += "; ";
     }
   }
-  return line;
+  return printable(shortened(line));
 }
 
 }  // namespace radiosity::cli

@@ -2,9 +2,13 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
+#include <array>
+#include <fstream>
 #include <memory>
 
 #include "base/image_codec.h"
+#include "images/image_format.h"
 
 namespace radiosity {
 
@@ -17,28 +21,8 @@ OIIO::ImageSpec readingHints() {
   return hints;
 }
 
-DecodedImage samplesOf(OIIO::ImageInput& input) {
-  const OIIO::ImageSpec& spec = input.spec();
-  DecodedImage image;
-  image.opened = true;
-  image.width = spec.width;
-  image.height = spec.height;
-  image.channels = spec.nchannels;
-  image.floating = spec.format.is_floating_point();
-  image.linear = OIIO::Strutil::iequals(spec.get_string_attribute("oiio:ColorSpace"), "linear");
-  image.multiplied = spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
-  image.quantity = spec.get_string_attribute("quantity");
-  if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) {
-    image.problem = "it holds no pixels";
-    return image;
-  }
-  image.samples.resize(std::size_t(spec.width) * std::size_t(spec.height) *
-                       std::size_t(spec.nchannels));
-  if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.samples.data())) {
-    image.problem = input.geterror();
-  }
-  return image;
-}
+/// The channels of a pixel that are read: red, green, blue and alpha.
+constexpr int kMostChannels = 4;
 
 DecodedImage unopened(std::string problem) {
   DecodedImage image;
@@ -46,25 +30,79 @@ DecodedImage unopened(std::string problem) {
   return image;
 }
 
+/// Why an image of this size is not read; empty where it is. More than four channels count as so
+/// many pixels more: a reader holds them all for a moment.
+std::string tooLarge(double width, double height, double channels, double most) {
+  if (width * height * std::max(channels / kMostChannels, 1.0) <= most) return {};
+  return OIIO::Strutil::fmt::format(
+      "has {:.0f} x {:.0f} pixels, --max-image allows {:g} million; make it smaller or allow more",
+      width, height, most / 1e6);
+}
+
+DecodedImage samplesOf(OIIO::ImageInput& input, double most_pixels) {
+  const OIIO::ImageSpec& spec = input.spec();
+  DecodedImage image;
+  image.opened = true;
+  image.width = spec.width;
+  image.height = spec.height;
+  image.channels = std::min(spec.nchannels, kMostChannels);
+  image.floating = spec.format.is_floating_point();
+  image.linear = OIIO::Strutil::iequals(spec.get_string_attribute("oiio:ColorSpace"), "linear");
+  image.multiplied = spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
+  image.quantity = spec.get_string_attribute("quantity");
+  if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 || spec.depth > 1) {
+    image.problem = "it holds no picture";
+    return image;
+  }
+  image.too_large = tooLarge(spec.width, spec.height, spec.nchannels, most_pixels);
+  if (!image.too_large.empty()) return image;
+  image.samples.resize(std::size_t(image.width) * std::size_t(image.height) *
+                       std::size_t(image.channels));
+  if (!input.read_image(0, 0, 0, image.channels, OIIO::TypeDesc::FLOAT, image.samples.data())) {
+    image.problem = input.geterror();
+  }
+  return image;
+}
+
+using Bytes = std::span<const unsigned char>;
+
+/// Opens the image named `name` with `hints`, once its format and size are known to be fine.
+DecodedImage decodeChecked(const std::string& name, Bytes start, double most_pixels,
+                           const OIIO::ImageSpec& hints) {
+  const std::string format = imageFormatOf(start, name);
+  if (format.empty()) return unopened("of an unknown image format");
+  if (const auto size = imageSizeOf(start, format)) {
+    DecodedImage image;
+    image.opened = true;
+    image.too_large = tooLarge(double(size->first), double(size->second), 1, most_pixels);
+    if (!image.too_large.empty()) return image;
+  }
+  // By the format's name: given a file's name, OpenImageIO 2.4 tries all formats it has, some of
+  // which unpack everything at once.
+  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(format);
+  if (!input) return unopened(OIIO::geterror());
+  OIIO::ImageSpec spec;
+  return input->open(name, spec, hints) ? samplesOf(*input, most_pixels)
+                                        : unopened(input->geterror());
+}
+
 class OpenImageIoCodec final : public ImageCodec {
  public:
-  DecodedImage read(const std::string& path) const override {
-    const OIIO::ImageSpec hints = readingHints();
-    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &hints);
-    return input ? samplesOf(*input) : unopened(OIIO::geterror());
+  DecodedImage read(const std::string& path, double most_pixels) const override {
+    std::array<unsigned char, kImageHeaderBytes> start{};
+    std::ifstream file(path, std::ios::binary);
+    file.read(reinterpret_cast<char*>(start.data()), start.size());
+    return decodeChecked(path, Bytes(start).first(std::size_t(file.gcount())), most_pixels,
+                         readingHints());
   }
 
-  DecodedImage decode(const std::string& name, const std::string& format,
-                      std::span<const unsigned char> bytes) const override {
+  DecodedImage decode(const std::string& name, Bytes bytes, double most_pixels) const override {
     OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
     OIIO::Filesystem::IOProxy* proxy = &memory;
     OIIO::ImageSpec hints = readingHints();
     hints.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, static_cast<const void*>(&proxy));
-    // By the format's name: given a file's name, OpenImageIO 2.4 looks for that file first.
-    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(format);
-    if (!input) return unopened(OIIO::geterror());
-    OIIO::ImageSpec spec;
-    return input->open(name, spec, hints) ? samplesOf(*input) : unopened(input->geterror());
+    return decodeChecked(name, bytes.first(std::min(bytes.size(), kImageHeaderBytes)), most_pixels,
+                         hints);
   }
 
   EncodedImage encode(const std::string& path, const ImageToEncode& image) const override {

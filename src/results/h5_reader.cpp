@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cstring>
-#include <filesystem>
 
+#include "base/input_file.h"
 #include "radiosity/results.h"
 
 namespace radiosity::h5 {
@@ -17,10 +17,7 @@ constexpr const char* kCure = "make the file again with the command that wrote i
 }  // namespace
 
 InputFile::InputFile(const std::string& path) : path_(path) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) {
-    throw InputError(fmt::format("{}: no such file; check the name", path));
-  }
+  requireFile(path);
   if (!isResultsFile(path)) {
     throw InputError(fmt::format(
         "{}: is not a results file (not HDF5); name a .h5 file written by radiosity", path));
@@ -120,7 +117,8 @@ void InputGroup::checkStorage(const std::string& name, const Handle& dataset, st
   // deflate, HDF5's strongest common filter, packs at most 1032 to 1 (a file repacked by h5repack)
   constexpr std::size_t kStrongestPacking = 1032;
   const std::size_t stored = H5Dget_storage_size(dataset.get());
-  if (row_bytes > 0 && rows / kStrongestPacking > stored / row_bytes) {
+  // In doubles: a forged product overflows integers.
+  if (double(rows) * double(row_bytes) > double(kStrongestPacking) * double(stored)) {
     fail(name, fmt::format("claims {} rows in {} bytes", rows, stored));
   }
 }

@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
+#include <new>
 
 #include "base/image_codec.h"
+#include "base/input_file.h"
 #include "base/srgb.h"
 #include "radiosity/results.h"
 #include "results/checked_file.h"
@@ -73,6 +74,14 @@ void save(const std::string& path, const ImageToEncode& image) {
   file.commit();
 }
 
+DecodedImage readSamples(const std::string& path, double max_image) {
+  try {
+    return imageCodec().read(path, max_image * 1e6);
+  } catch (const std::bad_alloc&) {
+    throw RunError(fmt::format("{}: the picture does not fit into memory; make it smaller", path));
+  }
+}
+
 }  // namespace
 
 void writeImage(const std::string& path, const Image& image, bool display_referred,
@@ -101,12 +110,12 @@ void writeImage(const std::string& path, const Image& image, bool display_referr
   }
 }
 
-ImageFile readImageFile(const std::string& path) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) {
-    throw InputError(fmt::format("{}: no such file; check the name", path));
+ImageFile readImageFile(const std::string& path, double max_image) {
+  requireFile(path);
+  const DecodedImage decoded = readSamples(path, max_image);
+  if (!decoded.too_large.empty()) {
+    throw InputError(fmt::format("{}: {}", path, decoded.too_large));
   }
-  const DecodedImage decoded = imageCodec().read(path);
   if (!decoded.opened) {
     throw InputError(
         fmt::format("{}: cannot be read as a picture: {}", path, reason(decoded.problem)));

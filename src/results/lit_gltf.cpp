@@ -82,8 +82,8 @@ class LitGltfReader {
 
 }  // namespace
 
-LitMesh readLitGltf(const std::string& path, bool binary) {
-  const GltfFile file = parseGltf(path, binary);
+LitMesh readLitGltf(const std::string& path) {
+  const GltfFile file = parseGltf(path);
   LitMesh mesh;
   mesh.file = path;
   LitGltfReader(file, mesh).read();

@@ -36,7 +36,7 @@ LitMesh readLitMesh(const std::string& path) {
   const std::string extension = lowerExtension(path);
   LitMesh mesh;
   if (extension == ".glb" || extension == ".gltf") {
-    mesh = readLitGltf(path, extension == ".glb");
+    mesh = readLitGltf(path);
   } else if (extension == ".ply") {
     mesh = readLitPly(path);
   } else if (extension == ".obj") {

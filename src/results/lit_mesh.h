@@ -7,7 +7,7 @@
 
 namespace radiosity {
 
-LitMesh readLitGltf(const std::string& path, bool binary);
+LitMesh readLitGltf(const std::string& path);
 LitMesh readLitPly(const std::string& path);
 LitMesh readLitObj(const std::string& path);
 

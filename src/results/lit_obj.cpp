@@ -2,8 +2,9 @@
 // them: `v x y z r g b`.
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <map>
 
+#include "base/input_file.h"
 #include "results/lit_mesh.h"
 #include "scene/obj_scan.h"
 #include "scene/text.h"
@@ -76,11 +77,11 @@ class LitObjReader {
   }
 
   Index surfaceNow() {
-    const std::string name = material_.empty() ? object_ : object_ + "/" + material_;
-    const auto found = std::find(mesh_.surface_names.begin(), mesh_.surface_names.end(), name);
-    if (found == mesh_.surface_names.end()) mesh_.surface_names.push_back(name);
-    return Index(std::find(mesh_.surface_names.begin(), mesh_.surface_names.end(), name) -
-                 mesh_.surface_names.begin());
+    const bool one_name = material_.empty() || material_ == object_;
+    const std::string name = one_name ? object_ : object_ + "/" + material_;
+    const auto [place, is_new] = surface_of_.try_emplace(name, Index(mesh_.surface_names.size()));
+    if (is_new) mesh_.surface_names.push_back(name);
+    return place->second;
   }
 
   LitMesh& mesh_;
@@ -89,6 +90,7 @@ class LitObjReader {
   std::string object_ = "unnamed";
   std::string material_;
   Index surface_ = kNone;
+  std::map<std::string, Index> surface_of_;  ///< by name
 };
 
 }  // namespace

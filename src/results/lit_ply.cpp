@@ -7,6 +7,7 @@
 #include <cstring>
 #include <optional>
 
+#include "base/input_file.h"
 #include "results/lit_mesh.h"
 #include "scene/text.h"
 
@@ -52,6 +53,21 @@ std::optional<Number> numberOf(std::string_view word) {
   return std::nullopt;
 }
 
+std::size_t sizeOf(Number type) {
+  switch (type) {
+    case Number::i8:
+    case Number::u8:
+      return 1;
+    case Number::i16:
+    case Number::u16:
+      return 2;
+    case Number::f64:
+      return 8;
+    default:
+      return 4;
+  }
+}
+
 class PlyReader {
  public:
   PlyReader(const std::string& path, std::string_view text) : path_(path), text_(text) {}
@@ -61,6 +77,7 @@ class PlyReader {
     mesh_.file = path_;
     mesh_.surface_names = {""};
     for (const Element& element : elements_) {
+      requireRoom(element);
       if (element.name == "vertex") {
         readVertices(element);
       } else if (element.name == "face") {
@@ -86,7 +103,25 @@ class PlyReader {
   using Words = std::vector<std::string_view>;
 
   [[noreturn]] void failAt(const Words& words) const {
-    fail(fmt::format("'{}' in its header is not understood", fmt::join(words, " ")));
+    fail(fmt::format("'{}' in its header is not understood; export it again",
+                     fmt::join(words, " ")));
+  }
+
+  /// A count is believed where the rest of the file may hold that many: a digit and a blank a
+  /// number in text (an empty list is the length 0), else the bytes of the numbers.
+  void requireRoom(const Element& element) const {
+    if (element.count == 0) return;
+    if (element.properties.empty()) {
+      fail(fmt::format("its `{}` elements have no properties; export it again", element.name));
+    }
+    std::size_t least = 0;
+    for (const Property& property : element.properties) {
+      least += ascii_ ? 2 : sizeOf(property.list_count.value_or(property.type));
+    }
+    // The last number of a text needs no blank after it.
+    if (element.count <= (text_.size() - at_ + 1) / least) return;
+    fail(fmt::format("claims {} `{}` elements and ends before; export it again", element.count,
+                     element.name));
   }
 
   void readHeader() {

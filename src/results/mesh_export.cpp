@@ -22,14 +22,13 @@ std::string oneLine(std::string name) {
   return name.empty() ? "_" : name;
 }
 
-/// "object/material" as the statements that make that surface again when the file is read.
+/// "object/material" as the statements that make that surface again when the file is read. Without
+/// a slash object and material have one name.
 void appendSurface(const std::string& name, fmt::memory_buffer& text) {
   const std::size_t slash = name.rfind('/');
-  const std::string object = name.substr(0, slash);
-  fmt::format_to(std::back_inserter(text), "o {}\n", oneLine(object));
-  if (slash != std::string::npos) {
-    fmt::format_to(std::back_inserter(text), "usemtl {}\n", oneLine(name.substr(slash + 1)));
-  }
+  const std::string material = slash == std::string::npos ? name : name.substr(slash + 1);
+  fmt::format_to(std::back_inserter(text), "o {}\nusemtl {}\n", oneLine(name.substr(0, slash)),
+                 oneLine(material));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <new>
 
 #include "base/atomic_file.h"
+#include "base/input_file.h"
 #include "radiosity/results.h"
 #include "results/fields.h"
 #include "results/h5_reader.h"
@@ -171,6 +172,7 @@ void readStages(const InputGroup& root, bool with_factors, Results& results) {
 }  // namespace
 
 bool isResultsFile(const std::string& path) {
+  if (!whyNotAFile(path).empty()) return false;
   constexpr std::array<char, 8> kSignature = {'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
   std::array<char, 8> start{};
   std::ifstream file(path, std::ios::binary);

@@ -24,7 +24,8 @@ bool boxContains(const ConnectedPart& outer, const ConnectedPart& inner, double 
 /// Relative to the centre of the welded faces. `on`: so close to the part's faces that neither side
 /// is certain.
 Place SceneChecks::placeOf(const Vec3& point, const ConnectedPart& outer) const {
-  const double winding = std::abs(windingNumber(faces_, outer, point));
+  const WindingNumber& number = winding_.try_emplace(&outer, faces_, outer).first->second;
+  const double winding = std::abs(number.at(point));
   if (winding >= 0.75) return Place::inside;
   return winding > 0.25 ? Place::on : Place::outside;
 }
@@ -92,17 +93,25 @@ void SceneChecks::reportInsideOut(SceneInfo& info) const {
   }
 }
 
+std::vector<std::string> SceneChecks::contentsOf(const ConnectedPart& outer,
+                                                 std::size_t most) const {
+  std::vector<std::size_t> near;
+  part_boxes_.query({outer.lower, outer.upper}, [&](std::size_t k) { near.push_back(k); });
+  std::sort(near.begin(), near.end());
+  std::vector<std::string> contents;
+  for (const std::size_t k : near) {
+    const ConnectedPart& part = topology_.parts[k];
+    if (contents.size() == most) break;
+    if (&part != &outer && placeOf(part, outer) == Place::inside) contents.push_back(namesOf(part));
+  }
+  return contents;
+}
+
 /// A closed part that faces inwards is a room, and has something in it; one that faces outwards is
 /// a solid, and has nothing in it. A part that is alone may be either.
 void SceneChecks::reportPart(const ConnectedPart& part, SceneInfo& info) const {
-  std::vector<std::string> contents;
-  bool has_others = false;
-  for (const ConnectedPart& other : topology_.parts) {
-    if (&other == &part) continue;
-    has_others = true;
-    const bool enough = part.volume < 0 ? !contents.empty() : contents.size() > 4;
-    if (!enough && placeOf(other, part) == Place::inside) contents.push_back(namesOf(other));
-  }
+  const bool has_others = topology_.parts.size() > 1;
+  std::vector<std::string> contents = contentsOf(part, part.volume < 0 ? 1 : 5);
   bool camera_inside = false;
   for (const Camera& camera : scene_.cameras) {
     camera_inside |= placeOf(camera.eye - faces_.centre, part) == Place::inside;

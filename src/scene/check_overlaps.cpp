@@ -20,7 +20,13 @@ constexpr std::size_t kNamedPairs = 10;
 void SceneChecks::reportOverlaps(SceneInfo& info) const {
   std::map<std::pair<Index, Index>, double> alike;  // surfaces, m^2
   std::map<Index, double> covered;                  // one-sided emitters face to face with others
-  for (const Overlap& overlap : findOverlaps(faces_, is_double_)) {
+  const OverlapSearch search = findOverlaps(faces_, is_double_);
+  if (!search.complete) {
+    info.problems.push_back({Severity::warning,
+                             "faces crowd so much that not all of them were checked for overlaps "
+                             "in one plane; overlaps may be missing here (not in the mesh)"});
+  }
+  for (const Overlap& overlap : search.overlaps) {
     const Index first = scene_.face_surface[overlap.first];
     const Index second = scene_.face_surface[overlap.second];
     if (overlap.alike) {

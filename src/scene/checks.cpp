@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <map>
+#include <set>
 
 #include "scene/text.h"
 
@@ -21,6 +22,9 @@ SceneChecks::SceneChecks(const Scene& scene, const WeldedFaces& faces)
     two_sided[f] = scene.materialOf(f).two_sided ? 1 : 0;
   }
   topology_ = analyseTopology(faces, two_sided, is_double_);
+  std::vector<Box> boxes;
+  for (const ConnectedPart& part : topology_.parts) boxes.push_back({part.lower, part.upper});
+  part_boxes_ = BoxTree(std::move(boxes));
 }
 
 void SceneChecks::reportLight(SceneInfo& info) const {
@@ -116,9 +120,9 @@ void SceneChecks::reportFaces(SceneInfo& info) const {
 
 std::string SceneChecks::namesOf(const ConnectedPart& part) const {
   std::vector<std::string> names;
+  std::set<Index> seen;
   for (const Index f : part.faces) {
-    const std::string& name = surfaceOf(f);
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    if (seen.insert(scene_.face_surface[f]).second) names.push_back(surfaceOf(f));
   }
   return joinNames(names, 4);
 }

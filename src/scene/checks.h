@@ -1,12 +1,15 @@
 // What looks wrong with a scene, as notes that name surfaces.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
 #include "radiosity/scene.h"
+#include "scene/box_tree.h"
 #include "scene/overlaps.h"
 #include "scene/topology.h"
+#include "scene/winding_number.h"
 
 namespace radiosity {
 
@@ -42,6 +45,8 @@ class SceneChecks {
   std::string namesOf(const ConnectedPart& part) const;
   Place placeOf(const Vec3& point, const ConnectedPart& outer) const;
   Place placeOf(const ConnectedPart& inner, const ConnectedPart& outer) const;
+  /// Names of parts that lie within `outer`, in their order, `most` at most.
+  std::vector<std::string> contentsOf(const ConnectedPart& outer, std::size_t most) const;
   void reportFlippedFaces(SceneInfo& info) const;
   void reportInsideOut(SceneInfo& info) const;
   void reportPart(const ConnectedPart& part, SceneInfo& info) const;
@@ -51,6 +56,8 @@ class SceneChecks {
   std::vector<DoubledFace> doubled_;
   std::vector<std::uint8_t> is_double_;  ///< F
   Topology topology_;
+  BoxTree part_boxes_;                                             ///< by part
+  mutable std::map<const ConnectedPart*, WindingNumber> winding_;  ///< of the parts asked about
 };
 
 }  // namespace radiosity

@@ -4,7 +4,11 @@
 #include <array>
 #include <cstring>
 #include <filesystem>
+#include <limits>
+#include <new>
 
+#include "base/input_file.h"
+#include "scene/gltf_preflight.h"
 #include "scene/text.h"
 
 namespace radiosity {
@@ -75,52 +79,92 @@ bool isIndexType(int type) {
          type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
 }
 
-void checkExtensions(const GltfFile& file) {
-  std::vector<std::string> unknown;
-  for (const std::string& name : file.model.extensionsRequired) {
-    if (!isSupportedGltfExtension(name)) unknown.push_back(name);
+// How the library gets at files beside the scene: regular ones only, names as they stand (its own
+// way expands them as a shell would).
+bool isFile(const std::string& path, void* /*user*/) { return whyNotAFile(path).empty(); }
+
+std::string asItStands(const std::string& path, void* /*user*/) { return path; }
+
+bool readBytes(std::vector<unsigned char>* out, std::string* error, const std::string& path,
+               void* /*user*/) {
+  try {
+    const std::string content = readWholeFile(path);
+    out->assign(content.begin(), content.end());
+    return true;
+  } catch (const std::exception& failure) {
+    *error = failure.what();
+    return false;
   }
-  if (unknown.empty()) return;
-  file.fail(fmt::format(
-      "requires what this program does not read: {}; export without it (no compression)",
-      joinNames(unknown)));
+}
+
+bool writeNothing(std::string* /*error*/, const std::string& /*path*/,
+                  const std::vector<unsigned char>& /*content*/, void* /*user*/) {
+  return false;
+}
+
+/// The library's reason in our words where it is about a file of a buffer.
+std::string reasonFor(const std::string& error, const std::string& folder) {
+  const std::string line = onOneLine(error.substr(0, error.find('\n')));
+  constexpr std::string_view kNotFound = "File not found : ";
+  if (line.starts_with(kNotFound)) {
+    const std::string name = line.substr(kNotFound.size());
+    return fmt::format("its buffer file {}: {}", name,
+                       whyNotAFile((std::filesystem::path(folder) / name).string()));
+  }
+  constexpr std::string_view kMismatch = "File size mismatch : ";
+  if (line.starts_with(kMismatch)) {
+    return fmt::format("its buffer file {}; export the scene again with it",
+                       line.substr(kMismatch.size()));
+  }
+  return fmt::format("cannot be read as glTF 2.0 ({}); export the scene again",
+                     line.empty() ? "no reason given" : line);
+}
+
+void parse(const std::string& content, GltfFile& file) {
+  tinygltf::TinyGLTF parser;
+  parser.SetImageLoader(keepEncoded, nullptr);
+  parser.SetFsCallbacks({isFile, asItStands, readBytes, writeNothing, nullptr});
+  const std::string folder = std::filesystem::path(file.path).parent_path().string();
+  const auto size = static_cast<unsigned int>(content.size());
+  std::string error;
+  std::string warning;
+  bool good = false;
+  try {
+    good = isGlb(content)
+               ? parser.LoadBinaryFromMemory(&file.model, &error, &warning,
+                                             reinterpret_cast<const unsigned char*>(content.data()),
+                                             size, folder)
+               : parser.LoadASCIIFromString(&file.model, &error, &warning, content.data(), size,
+                                            folder);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception&) {
+    // Of the standard library as a rule (an index out of range): its words help nobody.
+    file.fail(
+        "cannot be read as glTF 2.0 (a size or a number in it is impossible); export the "
+        "scene again");
+  }
+  if (!good) file.fail(reasonFor(error, folder));
 }
 
 }  // namespace
 
 bool isSupportedGltfExtension(const std::string& name) {
-  constexpr std::array<std::string_view, 3> kSupported = {
-      "KHR_materials_emissive_strength", "KHR_texture_transform", "KHR_mesh_quantization"};
+  constexpr std::array<std::string_view, 4> kSupported = {
+      "KHR_materials_emissive_strength", "KHR_texture_transform", "KHR_mesh_quantization",
+      "EXT_texture_webp"};
   return std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end();
 }
 
-GltfFile parseGltf(const std::string& path, bool binary) {
+GltfFile parseGltf(const std::string& path) {
   const std::string content = readWholeFile(path);
   if (content.size() > std::size_t(std::numeric_limits<unsigned int>::max())) {
     throw InputError(path + ": is larger than 4 GiB; split the scene");
   }
+  checkGltf(path, content);
   GltfFile file;
   file.path = path;
-  tinygltf::TinyGLTF parser;
-  parser.SetImageLoader(keepEncoded, nullptr);
-  const std::string folder = std::filesystem::path(path).parent_path().string();
-  const auto size = static_cast<unsigned int>(content.size());
-  std::string error;
-  std::string warning;
-  const bool good =
-      binary
-          ? parser.LoadBinaryFromMemory(&file.model, &error, &warning,
-                                        reinterpret_cast<const unsigned char*>(content.data()),
-                                        size, folder)
-          : parser.LoadASCIIFromString(&file.model, &error, &warning, content.data(), size, folder);
-  if (!good) {
-    file.fail(fmt::format("cannot be read as glTF 2.0 ({}); export the scene again",
-                          error.empty() ? "no reason given" : onOneLine(error)));
-  }
-  if (!file.model.asset.version.starts_with("2.")) {
-    file.fail(fmt::format("is glTF {}; export it as glTF 2.0", file.model.asset.version));
-  }
-  checkExtensions(file);
+  parse(content, file);
   return file;
 }
 
@@ -171,8 +215,7 @@ std::vector<double> GltfFile::readNumbers(int accessor_index, int components,
       }
     }
   } else {
-    // Nothing but sparse values bounds the claimed size: 2^28 elements are far beyond any scene.
-    if (accessor.count > (std::size_t(1) << 28)) fail(what + " claims too many elements");
+    requireData(accessor, what);
     values.assign(accessor.count * width, 0.0);
   }
   if (accessor.sparse.isSparse) applySparse(accessor, components, values, what);
@@ -180,6 +223,21 @@ std::vector<double> GltfFile::readNumbers(int accessor_index, int components,
     for (double& value : values) value = std::max(value / normalisation(type), -1.0);
   }
   return values;
+}
+
+/// An accessor without a buffer view is zeros but for its sparse values: all zeros are no data, and
+/// more elements than the buffers have bytes are no mesh.
+void GltfFile::requireData(const tinygltf::Accessor& accessor, const std::string& what) const {
+  if (!accessor.sparse.isSparse) {
+    fail(what + " has no data (no buffer view); export the scene again, without compression");
+  }
+  std::size_t bytes = 0;
+  for (const tinygltf::Buffer& buffer : model.buffers) bytes += buffer.data.size();
+  if (accessor.count <= bytes) return;
+  fail(
+      fmt::format("{} claims {} elements, more than the {} bytes of all buffers; export the scene "
+                  "again",
+                  what, accessor.count, bytes));
 }
 
 void GltfFile::applySparse(const tinygltf::Accessor& accessor, int components,

@@ -47,11 +47,13 @@ struct GltfFile {
   const unsigned char* viewBytes(int view, std::size_t offset, std::size_t stride,
                                  std::size_t element, std::size_t count,
                                  const std::string& what) const;
+  void requireData(const tinygltf::Accessor& accessor, const std::string& what) const;
   void applySparse(const tinygltf::Accessor& accessor, int components, std::vector<double>& values,
                    const std::string& what) const;
 };
 
-/// Parses and checks version and required extensions. Images stay encoded.
-GltfFile parseGltf(const std::string& path, bool binary);
+/// Parses and checks version and required extensions. Images stay encoded. Binary or JSON is told
+/// by the content.
+GltfFile parseGltf(const std::string& path);
 
 }  // namespace radiosity

@@ -17,6 +17,14 @@ Vec2 pairOf(const tinygltf::Value& value, const Vec2& otherwise) {
   return {value.Get(0).GetNumberAsDouble(), value.Get(1).GetNumberAsDouble()};
 }
 
+/// The image of a texture: a WebP (EXT_texture_webp) where there is no PNG or JPEG. -1: neither, as
+/// where KHR_texture_basisu holds the only one.
+int imageOf(const tinygltf::Texture& texture) {
+  const auto webp = texture.extensions.find("EXT_texture_webp");
+  if (texture.source >= 0 || webp == texture.extensions.end()) return texture.source;
+  return webp->second.Has("source") ? webp->second.Get("source").GetNumberAsInt() : -1;
+}
+
 class MaterialReader {
  public:
   MaterialReader(const GltfFile& file, const SceneOptions& options, Scene& scene,
@@ -111,18 +119,18 @@ Index MaterialReader::texture(const tinygltf::TextureInfo& info, const std::stri
     ignored_.add(problem + "; the factor alone counts, material", material, Severity::warning);
     return kNone;
   };
-  // An extension such as KHR_texture_basisu may hold the only source.
-  if (gltf.source < 0) return unusable("texture has no image in PNG or JPEG");
-  const tinygltf::Image& image = file_.at(file_.model.images, gltf.source, "image", what);
+  const int source = imageOf(gltf);
+  if (source < 0) return unusable("texture has no image in PNG, JPEG or WebP");
+  const tinygltf::Image& image = file_.at(file_.model.images, source, "image", what);
   std::string name = image.name.empty() ? image.uri : image.name;
-  if (name.empty()) name = fmt::format("image{}", gltf.source);
+  if (name.empty()) name = fmt::format("image{}", source);
   const std::span<const unsigned char> bytes = file_.imageBytes(image, what);
   if (bytes.empty()) return unusable("texture " + name + " is not there");
   const bool repeat = repeats(gltf, material);
-  const auto [place, is_new] = texture_of_.try_emplace({gltf.source, repeat});
+  const auto [place, is_new] = texture_of_.try_emplace({source, repeat});
   LoadedTexture& loaded = place->second;
   if (is_new) {
-    TextureResult result = decodeTexture(name, bytes);
+    TextureResult result = decodeTexture(name, bytes, options_.max_image);
     loaded.problem = result.problem;
     if (result.has_alpha) ignored_.add("alpha is not used, texture", name);
     if (loaded.problem.empty()) {

@@ -141,7 +141,14 @@ Index Reader::materialOf(const tinygltf::Primitive& primitive, const std::string
 std::vector<Index> Reader::readPositions(const tinygltf::Primitive& primitive,
                                          const std::string& what, const Transform& transform) {
   std::vector<Index> vertex_of;
+  constexpr std::size_t kMostVertices = std::size_t(1) << 28;
   for (const Vec3& position : readGltfPositions(file_, primitive, transform, what)) {
+    if (scene_.vertices.size() >= kMostVertices) {
+      file_.fail(
+          fmt::format("has more than {} vertices, each instance with its own; split the "
+                      "scene",
+                      kMostVertices));
+    }
     vertex_of.push_back(Index(scene_.vertices.size()));
     scene_.vertices.push_back(position);
   }
@@ -225,8 +232,8 @@ void Reader::noteUnused() {
 
 }  // namespace
 
-Scene loadGltf(const std::string& path, bool binary, const SceneOptions& options) {
-  const GltfFile file = parseGltf(path, binary);
+Scene loadGltf(const std::string& path, const SceneOptions& options) {
+  const GltfFile file = parseGltf(path);
   Scene scene;
   scene.file = path;
   if (options.kd_is_srgb) {

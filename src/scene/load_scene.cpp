@@ -6,7 +6,11 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <glm/common.hpp>
+#include <new>
+#include <stdexcept>
 
+#include "base/input_file.h"
 #include "scene/readers.h"
 
 namespace radiosity {
@@ -21,21 +25,16 @@ std::string lowerExtension(const std::string& path) {
 }
 
 Scene readByExtension(const std::string& path, const SceneOptions& options) {
+  requireFile(path);
   const std::string extension = lowerExtension(path);
+  if (extension == ".stl") return loadStl(path, options);
   if (extension == ".obj") return loadObj(path, options);
   if (extension == ".gltf" || extension == ".glb") {
-    return loadGltf(path, extension == ".glb", options);
-  }
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) {
-    throw InputError(fmt::format("{}: no such file; check the name and the folder", path));
-  }
-  if (std::filesystem::is_directory(path, ignored)) {
-    throw InputError(fmt::format("{}: is a folder; name a scene file in it", path));
+    return loadGltf(path, options);
   }
   throw InputError(fmt::format(
-      "{}: {} is not a scene format this program reads; export it as .obj, .gltf or .glb", path,
-      extension.empty() ? "a file without an extension" : extension));
+      "{}: {} is not a scene format this program reads; export it as .obj, .gltf, .glb or .stl",
+      path, extension.empty() ? "a file without an extension" : extension));
 }
 
 void convertToMetres(Scene& scene, const std::string& unit) {
@@ -56,12 +55,38 @@ void noteTextures(Scene& scene) {
                                    scene.textures.size(), scene.textures.size() == 1 ? "" : "s")});
 }
 
+/// Beyond it squares and cubes of lengths overflow, and nobody meant it.
+constexpr double kFarthest = 1e30;
+
+void requireExtent(const Scene& scene) {
+  for (std::size_t f = 0; f < scene.faceCount(); ++f) {
+    for (const Index corner : scene.face(f)) {
+      const Vec3 size = glm::abs(scene.vertices[corner]);
+      if (std::max({size.x, size.y, size.z}) <= kFarthest) continue;
+      throw InputError(
+          fmt::format("{}: a corner of the face at {} lies {:.3g} m away; the file is damaged or "
+                      "its unit is wrong",
+                      scene.file, scene.face_element[f], std::max({size.x, size.y, size.z})));
+    }
+  }
+}
+
+Scene readScene(const std::string& path, const SceneOptions& options) {
+  try {
+    return readByExtension(path, options);
+  } catch (const std::bad_alloc&) {
+  } catch (const std::length_error&) {
+  }
+  throw RunError(path + ": the scene does not fit into memory; split it, or use a larger machine");
+}
+
 }  // namespace
 
 Scene loadScene(const std::string& path, const SceneOptions& options) {
   options.validate();
-  Scene scene = readByExtension(path, options);
+  Scene scene = readScene(path, options);
   convertToMetres(scene, options.unit);
+  requireExtent(scene);
   noteTextures(scene);
   applyOverrides(scene, options);
   return scene;

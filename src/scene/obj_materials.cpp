@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 
+#include "base/input_file.h"
 #include "base/srgb.h"
 #include "scene/mtl_scan.h"
 #include "scene/text.h"
@@ -59,7 +60,11 @@ void MaterialReader::readLibraries(const ObjScan& scan) {
     if (!fs::is_regular_file(folder / text, error)) names = splitWords(text);
     for (const std::string_view name : names) {
       const fs::path path = folder / name;
-      if (!fs::is_regular_file(path, error)) {
+      if (fs::exists(path, error) && !fs::is_regular_file(path, error)) {
+        library_missing_ = true;
+        note(Severity::warning, fmt::format("{}:{}: material file {}: {}", scene_.file, line,
+                                            path.string(), whyNotAFile(path.string())));
+      } else if (!fs::exists(path, error)) {
         library_missing_ = true;
         note(Severity::warning,
              fmt::format("{}:{}: material file {} is not there; give materials by --set or a JSON "
@@ -150,7 +155,7 @@ Index MaterialReader::texture(const MtlMaterial& mtl, const tinyobj::material_t&
   const auto [place, is_new] = texture_of_.try_emplace({path, !option.clamp});
   LoadedTexture& loaded = place->second;
   if (is_new) {
-    TextureResult result = readTexture(path);
+    TextureResult result = readTexture(path, options_.max_image);
     loaded.problem = result.problem;
     if (result.has_alpha) ignored_.add("alpha is not used, texture", path);
     if (loaded.problem.empty()) {

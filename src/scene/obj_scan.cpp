@@ -15,9 +15,6 @@ namespace radiosity {
 
 namespace {
 
-/// The library counts the corners of a face in a byte.
-constexpr std::size_t kMostCorners = 255;
-
 /// Statements without a bearing on geometry or material: smoothing and display attributes.
 constexpr std::array<std::string_view, 14> kDisplayStatements = {
     "s",      "bevel",  "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj",
@@ -56,11 +53,10 @@ class Scanner {
   void numbers(Referenced& list, std::size_t least, std::size_t most, std::string_view meaning);
   void face();
   void corner(std::string_view word);
-  void index(std::string_view word, std::string_view corner, Referenced& list);
+  Index index(std::string_view word, std::string_view corner, Referenced& list);
   void object(std::string name);
   void material(std::string_view name);
   void other(std::string_view keyword);
-  void emit();
   Index currentObject();
 
   const std::string& file_;
@@ -137,9 +133,9 @@ void Scanner::numbers(Referenced& list, std::size_t least, std::size_t most,
     }
     if (k < 3) value[int(k)] = *number;
   }
-  ++list.count;
+  if (++list.count >= kNone) fail(fmt::format("more than {} of one kind; split the scene", kNone));
   if (&list == &vertices_) scan_.vertices.push_back(value);
-  emit();
+  if (&list == &texcoords_) scan_.texcoords.emplace_back(value);
 }
 
 void Scanner::face() {
@@ -148,30 +144,26 @@ void Scanner::face() {
     fail(fmt::format("a face needs 3 corners or more, this one has {}; correct or remove it",
                      corners));
   }
-  if (corners > kMostCorners) {
-    fail(fmt::format("a face of {} corners is more than the {} that can be read; split it", corners,
-                     kMostCorners));
-  }
   for (std::size_t k = 1; k <= corners; ++k) corner(words_[k]);
   scan_.faces.push_back({line_, currentObject(), material_});
+  scan_.face_offset.push_back(scan_.corners.size());
   if (inheriting_ && material_ != kNone && inherited_.emplace(object_, material_).second) {
     scan_.inherited.emplace_back(object_, material_);
   }
   material_used_ = true;
-  emit();
 }
 
 void Scanner::corner(std::string_view word) {
   const std::vector<std::string_view> parts = splitAt(word, '/');
   if (parts.size() > 3) fail(fmt::format("`{}` is not a corner v, v/vt or v/vt/vn", word));
-  index(parts[0], word, vertices_);
-  if (parts.size() > 1 && !(parts[1].empty() && parts.size() == 3)) {
-    index(parts[1], word, texcoords_);
-  }
+  scan_.corners.push_back(index(parts[0], word, vertices_));
+  const bool textured = parts.size() > 1 && !(parts[1].empty() && parts.size() == 3);
+  scan_.corner_texcoord.push_back(textured ? index(parts[1], word, texcoords_) : kNone);
   if (parts.size() > 2) index(parts[2], word, normals_);
 }
 
-void Scanner::index(std::string_view word, std::string_view corner, Referenced& list) {
+/// From 0, checked against the end of the file only by finish().
+Index Scanner::index(std::string_view word, std::string_view corner, Referenced& list) {
   const std::optional<long long> value = parseInteger(word);
   if (!value) {
     fail(fmt::format("`{}` is not a corner v, v/vt or v/vt/vn of whole numbers; correct it",
@@ -186,6 +178,7 @@ void Scanner::index(std::string_view word, std::string_view corner, Referenced& 
     list.largest = *value;
     list.largest_line = line_;
   }
+  return Index(*value > 0 ? *value - 1 : static_cast<long long>(list.count) + *value);
 }
 
 void Scanner::object(std::string name) {
@@ -217,14 +210,6 @@ void Scanner::other(std::string_view keyword) {
     ignored_.add("unknown OBJ statements are left out",
                  fmt::format("`{}` in line {}", keyword, line_), Severity::warning);
   }
-}
-
-void Scanner::emit() {
-  for (const std::string_view word : words_) {
-    scan_.geometry += word;
-    scan_.geometry += ' ';
-  }
-  scan_.geometry.back() = '\n';
 }
 
 Index Scanner::currentObject() {

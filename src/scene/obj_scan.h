@@ -1,5 +1,5 @@
-// Reads an OBJ file token by token before the library does: what the library would guess in
-// silence is an error with its line here, and names, lines and cameras are kept.
+// Reads an OBJ file token by token: what other readers guess in silence is an error with its line
+// here, and names, lines and cameras are kept.
 #pragma once
 
 #include <functional>
@@ -24,13 +24,14 @@ struct ObjFace {
 };
 
 struct ObjScan {
-  /// Only the v, vt, vn and f statements, one a line: what the library gets to see.
-  std::string geometry;
-  /// File units. Correctly rounded, which the library's own numbers are not.
-  std::vector<Vec3> vertices;
-  std::vector<ObjFace> faces;          ///< in file order
-  std::vector<std::string> objects;    ///< names, from `o` and `g`
-  std::vector<std::string> materials;  ///< names, from `usemtl`
+  std::vector<Vec3> vertices;                  ///< file units, correctly rounded
+  std::vector<Vec2> texcoords;                 ///< as written: v grows upwards
+  std::vector<ObjFace> faces;                  ///< F, in file order
+  std::vector<std::size_t> face_offset = {0};  ///< F + 1, into the two below
+  std::vector<Index> corners;                  ///< into vertices
+  std::vector<Index> corner_texcoord;          ///< into texcoords, or kNone
+  std::vector<std::string> objects;            ///< names, from `o` and `g`
+  std::vector<std::string> materials;          ///< names, from `usemtl`
   /// Line and text of every mtllib statement.
   std::vector<std::pair<std::size_t, std::string>> libraries;
   /// (object, material): the object names no material and goes on with the last one.

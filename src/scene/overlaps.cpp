@@ -6,19 +6,13 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <map>
-#include <numeric>
+#include <tuple>
+
+#include "scene/box_tree.h"
 
 namespace radiosity {
 
 namespace {
-
-struct Box {
-  Vec3 lower, upper;
-  bool touches(const Box& other) const {
-    return lower.x <= other.upper.x && other.lower.x <= upper.x && lower.y <= other.upper.y &&
-           other.lower.y <= upper.y && lower.z <= other.upper.z && other.lower.z <= upper.z;
-  }
-};
 
 Box boxOf(const WeldedFaces& faces, std::size_t f) {
   Box box{faces.points[faces.face(f)[0]], faces.points[faces.face(f)[0]]};
@@ -30,100 +24,53 @@ Box boxOf(const WeldedFaces& faces, std::size_t f) {
   return {box.lower - margin, box.upper + margin};
 }
 
-/// A binary tree of boxes over faces, halved at the median of the longest side.
-class BoxTree {
- public:
-  explicit BoxTree(std::vector<Box> boxes) : boxes_(std::move(boxes)), order_(boxes_.size()) {
-    std::iota(order_.begin(), order_.end(), std::size_t(0));
-    if (!order_.empty()) build(0, order_.size());
-  }
-
-  /// Calls visit(i) for every box that touches `box`.
-  template <class Visit>
-  void query(const Box& box, Visit&& visit) const {
-    std::vector<std::size_t> waiting;
-    if (!nodes_.empty()) waiting.push_back(0);
-    while (!waiting.empty()) {
-      const Node& node = nodes_[waiting.back()];
-      const std::size_t first_child = waiting.back() + 1;
-      waiting.pop_back();
-      if (!node.box.touches(box)) continue;
-      if (node.second_child == 0) {
-        for (std::size_t k = node.begin; k < node.end; ++k) {
-          if (boxes_[order_[k]].touches(box)) visit(order_[k]);
-        }
-      } else {
-        waiting.push_back(first_child);
-        waiting.push_back(node.second_child);
-      }
-    }
-  }
-
- private:
-  struct Node {
-    Box box;
-    std::size_t begin, end;
-    std::size_t second_child;  ///< 0: a leaf
-  };
-
-  std::size_t build(std::size_t begin, std::size_t end) {
-    const std::size_t number = nodes_.size();
-    Box box = boxes_[order_[begin]];
-    for (std::size_t k = begin; k < end; ++k) {
-      box.lower = glm::min(box.lower, boxes_[order_[k]].lower);
-      box.upper = glm::max(box.upper, boxes_[order_[k]].upper);
-    }
-    nodes_.push_back({box, begin, end, 0});
-    constexpr std::size_t kLeaf = 8;
-    if (end - begin <= kLeaf) return number;
-    const Vec3 size = box.upper - box.lower;
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
-    const std::size_t middle = begin + (end - begin) / 2;
-    std::nth_element(order_.begin() + std::ptrdiff_t(begin),
-                     order_.begin() + std::ptrdiff_t(middle), order_.begin() + std::ptrdiff_t(end),
-                     [&](std::size_t a, std::size_t b) {
-                       return boxes_[a].lower[axis] + boxes_[a].upper[axis] <
-                              boxes_[b].lower[axis] + boxes_[b].upper[axis];
-                     });
-    build(begin, middle);
-    const std::size_t second = build(middle, end);
-    nodes_[number].second_child = second;
-    return number;
-  }
-
-  std::vector<Box> boxes_;
-  std::vector<std::size_t> order_;
-  std::vector<Node> nodes_;
-};
-
 using Triangle = std::array<Vec2, 3>;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x * b.y - a.y * b.x; }
 
 double signedArea(const Triangle& t) { return 0.5 * cross(t[1] - t[0], t[2] - t[0]); }
 
+/// A convex polygon of few corners, on the stack.
+struct SmallPolygon {
+  std::array<Vec2, 12> corner;  // a triangle clipped by three half-planes has 6, rounding apart
+  std::size_t size = 0;
+  void add(const Vec2& p) {
+    if (size < corner.size()) corner[size++] = p;
+  }
+};
+
+bool apart(const Triangle& a, const Triangle& b) {
+  for (int k = 0; k < 2; ++k) {
+    const auto [low_a, high_a] = std::minmax({a[0][k], a[1][k], a[2][k]});
+    const auto [low_b, high_b] = std::minmax({b[0][k], b[1][k], b[2][k]});
+    if (high_a <= low_b || high_b <= low_a) return true;
+  }
+  return false;
+}
+
 /// Area common to two counter-clockwise triangles: one clipped at the edges of the other
 /// (Sutherland and Hodgman 1974).
 double commonArea(const Triangle& subject, const Triangle& clip) {
-  std::vector<Vec2> polygon(subject.begin(), subject.end());
-  std::vector<Vec2> next;
-  for (std::size_t e = 0; e < 3 && !polygon.empty(); ++e) {
+  if (apart(subject, clip)) return 0;
+  SmallPolygon polygon;
+  for (const Vec2& p : subject) polygon.add(p);
+  for (std::size_t e = 0; e < 3 && polygon.size > 0; ++e) {
     const Vec2 from = clip[e];
     const Vec2 along = clip[(e + 1) % 3] - from;
-    next.clear();
-    for (std::size_t k = 0; k < polygon.size(); ++k) {
-      const Vec2 a = polygon[k];
-      const Vec2 b = polygon[(k + 1) % polygon.size()];
+    SmallPolygon next;
+    for (std::size_t k = 0; k < polygon.size; ++k) {
+      const Vec2 a = polygon.corner[k];
+      const Vec2 b = polygon.corner[(k + 1) % polygon.size];
       const double da = cross(along, a - from);
       const double db = cross(along, b - from);
-      if (da >= 0) next.push_back(a);
-      if ((da > 0 && db < 0) || (da < 0 && db > 0)) next.push_back(a + (b - a) * (da / (da - db)));
+      if (da >= 0) next.add(a);
+      if ((da > 0 && db < 0) || (da < 0 && db > 0)) next.add(a + (b - a) * (da / (da - db)));
     }
-    polygon.swap(next);
+    polygon = next;
   }
   double area = 0;
-  for (std::size_t k = 2; k < polygon.size(); ++k) {
-    area += signedArea({polygon[0], polygon[k - 1], polygon[k]});
+  for (std::size_t k = 2; k < polygon.size; ++k) {
+    area += signedArea({polygon.corner[0], polygon.corner[k - 1], polygon.corner[k]});
   }
   return area;
 }
@@ -192,6 +139,12 @@ double perimeter(const WeldedFaces& faces, std::size_t f) {
 
 bool isDegenerate(const WeldedFaces& faces, std::size_t f) { return faces.degenerate[f] != 0; }
 
+/// Pairs of faces whose boxes touch, and pairs of triangles of those in one plane: as a rule a few
+/// dozen a face. Some seconds of work; a fan of 20,000 faces around one vertex would be minutes.
+constexpr double kMostEffort = 2e8;
+/// Bounds what is remembered to two million overlaps.
+constexpr double kOverlapEffort = 100;
+
 }  // namespace
 
 std::vector<DoubledFace> findDoubledFaces(const WeldedFaces& faces) {
@@ -214,7 +167,7 @@ std::vector<DoubledFace> findDoubledFaces(const WeldedFaces& faces) {
   return doubled;
 }
 
-std::vector<Overlap> findOverlaps(const WeldedFaces& faces, const std::vector<std::uint8_t>& skip) {
+OverlapSearch findOverlaps(const WeldedFaces& faces, const std::vector<std::uint8_t>& skip) {
   std::vector<std::size_t> included;
   std::vector<Box> boxes;
   for (std::size_t f = 0; f < faces.size(); ++f) {
@@ -223,13 +176,17 @@ std::vector<Overlap> findOverlaps(const WeldedFaces& faces, const std::vector<st
     boxes.push_back(boxOf(faces, f));
   }
   const BoxTree tree(boxes);
-  std::vector<Overlap> overlaps;
-  for (std::size_t i = 0; i < included.size(); ++i) {
+  OverlapSearch search;
+  std::vector<Overlap>& overlaps = search.overlaps;
+  double effort = 0;
+  for (std::size_t i = 0; i < included.size() && effort <= kMostEffort; ++i) {
     const std::size_t f = included[i];
     tree.query(boxes[i], [&](std::size_t j) {
-      if (j <= i) return;
+      if (j <= i || effort > kMostEffort) return;
       const std::size_t g = included[j];
+      effort += 1;
       if (!liesInPlaneOf(faces, g, f) || !liesInPlaneOf(faces, f, g)) return;
+      effort += double(faces.face(f).size()) * double(faces.face(g).size());
       const double area = commonArea(faces, f, g);
       // Neighbours whose shared edge is off by less than coincidence do not overlap.
       const double strip = faces.tolerance * std::min(perimeter(faces, f), perimeter(faces, g));
@@ -238,12 +195,14 @@ std::vector<Overlap> findOverlaps(const WeldedFaces& faces, const std::vector<st
       if (area <= strip || area <= 1e-12 * smaller) return;  // rounding of the clipping
       const bool alike = glm::dot(faces.area_vector[f], faces.area_vector[g]) > 0;
       overlaps.push_back({Index(f), Index(g), alike, area});
+      effort += kOverlapEffort;
     });
   }
+  search.complete = effort <= kMostEffort;
   std::sort(overlaps.begin(), overlaps.end(), [](const Overlap& a, const Overlap& b) {
     return std::tie(a.first, a.second) < std::tie(b.first, b.second);
   });
-  return overlaps;
+  return search;
 }
 
 double planeDeviation(const WeldedFaces& faces, std::size_t f) {

@@ -21,8 +21,13 @@ struct Overlap {
   bool alike;   ///< both face the same way
   double area;  ///< m^2
 };
+struct OverlapSearch {
+  std::vector<Overlap> overlaps;  ///< ascending by first, second
+  /// False where so many faces crowd in one place that the search was given up: there may be more.
+  bool complete = true;
+};
 /// `skip`: F, faces to leave out.
-std::vector<Overlap> findOverlaps(const WeldedFaces& faces, const std::vector<std::uint8_t>& skip);
+OverlapSearch findOverlaps(const WeldedFaces& faces, const std::vector<std::uint8_t>& skip);
 
 /// How far face f is from planar, m: for a quadrilateral the largest distance of a corner from the
 /// plane of the other three, else the spread of the corners across the mean plane.

@@ -2,19 +2,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
+#include <span>
+#include <unordered_map>
 
+#include "base/input_file.h"
+#include "scene/json_scan.h"
 #include "scene/scene_builder.h"
 #include "scene/text.h"
 
 namespace radiosity {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Where an override came from and what it is called there: "--set lamp.emission=17".
 struct Origin {
@@ -38,7 +38,7 @@ std::vector<std::string> knownNames(const Scene& scene) {
 
 class Overrides {
  public:
-  explicit Overrides(Scene& scene) : scene_(scene) {}
+  explicit Overrides(Scene& scene);
 
   /// Materials that `name` stands for, each used by nothing else: a surface that shares its
   /// material has been given its own copy.
@@ -49,57 +49,74 @@ class Overrides {
   void readMaterialsFile(const std::string& path);
 
  private:
-  Index ownMaterial(Index surface, const std::vector<bool>& chosen);
+  using ByName = std::unordered_map<std::string, std::vector<Index>>;
+  static const std::vector<Index>& found(const ByName& index, const std::string& name) {
+    static const std::vector<Index> kNothing;
+    const auto place = index.find(name);
+    return place == index.end() ? kNothing : place->second;
+  }
+  Index ownMaterial(Index surface, std::span<const Index> chosen);
   void note(std::string text) { scene_.notes.push_back({Severity::info, std::move(text)}); }
   void noteUnused(const std::string& name, Index material);
 
   Scene& scene_;
+  ByName surfaces_called_;
+  ByName surfaces_of_object_;
+  ByName materials_called_;
+  std::vector<std::vector<Index>> surfaces_with_;  ///< by material
 };
 
+Overrides::Overrides(Scene& scene) : scene_(scene), surfaces_with_(scene.materials.size()) {
+  for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
+    const Surface& surface = scene.surfaces[s];
+    surfaces_called_[surface.name].push_back(Index(s));
+    surfaces_of_object_[surface.object].push_back(Index(s));
+    surfaces_with_[surface.material].push_back(Index(s));
+  }
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    materials_called_[scene.materials[m].name].push_back(Index(m));
+  }
+}
+
 std::vector<Index> Overrides::materialsOf(const std::string& name, const Origin& origin) {
-  const auto surfacesWhere = [&](const std::function<bool(const Surface&)>& test) {
-    std::vector<bool> chosen(scene_.surfaces.size());
-    for (std::size_t s = 0; s < chosen.size(); ++s) chosen[s] = test(scene_.surfaces[s]);
-    return chosen;
-  };
-  const auto isSurface = [&](const Surface& surface) { return surface.name == name; };
-  const auto isObject = [&](const Surface& surface) { return surface.object == name; };
-  std::vector<Index> materials;
-  std::vector<bool> chosen = surfacesWhere(isSurface);
-  const bool any_surface = std::find(chosen.begin(), chosen.end(), true) != chosen.end();
-  if (!any_surface) {
-    for (std::size_t m = 0; m < scene_.materials.size(); ++m) {
-      if (scene_.materials[m].name == name) materials.push_back(Index(m));
-    }
-    if (!materials.empty()) return materials;
-    chosen = surfacesWhere(isObject);
-  }
-  for (std::size_t s = 0; s < chosen.size(); ++s) {
-    if (!chosen[s]) continue;
-    const Index material = ownMaterial(Index(s), chosen);
-    if (std::find(materials.begin(), materials.end(), material) == materials.end()) {
-      materials.push_back(material);
-    }
-  }
-  if (materials.empty()) {
+  const std::vector<Index>& called = found(materials_called_, name);
+  std::vector<Index> chosen = found(surfaces_called_, name);
+  // A surface has its material's name where the object has it too: then the material is meant,
+  // wherever it is used.
+  const bool is_material =
+      chosen.empty() || std::any_of(chosen.begin(), chosen.end(), [&](Index s) {
+        return scene_.materials[scene_.surfaces[s].material].name == name;
+      });
+  if (is_material && !called.empty()) return called;
+  if (chosen.empty()) chosen = found(surfaces_of_object_, name);
+  if (chosen.empty()) {
     origin.fail(fmt::format("no surface, material or object is called {}; there are: {}", name,
                             joinNames(knownNames(scene_), 40)));
+  }
+  std::vector<Index> materials;
+  std::set<Index> seen;
+  for (const Index s : chosen) {
+    const Index material = ownMaterial(s, chosen);
+    if (seen.insert(material).second) materials.push_back(material);
   }
   return materials;
 }
 
-Index Overrides::ownMaterial(Index surface, const std::vector<bool>& chosen) {
+/// The material of `surface`, which the `chosen` ones, ascending, share with no other.
+Index Overrides::ownMaterial(Index surface, std::span<const Index> chosen) {
   const Index material = scene_.surfaces[surface].material;
-  bool shared = false;
-  for (std::size_t s = 0; s < chosen.size(); ++s) {
-    shared |= !chosen[s] && scene_.surfaces[s].material == material;
+  std::vector<Index> ours;
+  std::vector<Index> others;
+  for (const Index s : surfaces_with_[material]) {
+    (std::binary_search(chosen.begin(), chosen.end(), s) ? ours : others).push_back(s);
   }
-  if (!shared) return material;
+  if (others.empty()) return material;
   const auto copy = Index(scene_.materials.size());
   scene_.materials.push_back(Material(scene_.materials[material]));
-  for (std::size_t s = 0; s < chosen.size(); ++s) {
-    if (chosen[s] && scene_.surfaces[s].material == material) scene_.surfaces[s].material = copy;
-  }
+  materials_called_[scene_.materials[copy].name].push_back(copy);
+  for (const Index s : ours) scene_.surfaces[s].material = copy;
+  surfaces_with_[material] = std::move(others);
+  surfaces_with_.push_back(std::move(ours));
   return copy;
 }
 
@@ -133,15 +150,10 @@ void Overrides::setProperty(const std::string& name, const std::string& property
 }
 
 void Overrides::noteUnused(const std::string& name, Index material) {
-  const bool used =
-      std::any_of(scene_.surfaces.begin(), scene_.surfaces.end(),
-                  [&](const Surface& surface) { return surface.material == material; });
+  const std::vector<Index>& same_name = found(materials_called_, scene_.materials[material].name);
+  const bool used = std::any_of(same_name.begin(), same_name.end(),
+                                [&](Index m) { return !surfaces_with_[m].empty(); });
   if (used) return;
-  const bool same_name_used =
-      std::any_of(scene_.surfaces.begin(), scene_.surfaces.end(), [&](const Surface& surface) {
-        return scene_.materials[surface.material].name == scene_.materials[material].name;
-      });
-  if (same_name_used) return;
   scene_.notes.push_back(
       {Severity::warning,
        fmt::format("{}: no face has this material; the change shows nowhere", name)});
@@ -162,36 +174,52 @@ void Overrides::setSides(const std::string& name, bool two_sided, const Origin& 
                    changed == 0 ? ", as it was" : ""));
 }
 
-Vec3 bandsOf(const Json& value, const Origin& origin) {
-  if (value.is_number()) return Vec3(value.get<double>());
-  const bool triple =
-      value.is_array() && value.size() == 3 &&
-      std::all_of(value.begin(), value.end(), [](const Json& band) { return band.is_number(); });
-  if (!triple) origin.fail("give one number or three in brackets: [0.6, 0.1, 0.1]");
-  return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
+/// One "NAME": {"PROPERTY": VALUE} of a materials file.
+struct FileEntry {
+  std::string name;
+  std::string property;
+  std::vector<double> bands;
+};
+
+/// The entries in the order of the file: a later one counts where two are about one material.
+std::vector<FileEntry> readEntries(const std::string& path) {
+  std::vector<FileEntry> entries;
+  const auto entryAt = [&](std::span<const JsonStep> at) {
+    return Origin{fmt::format("{}: {}.{}", path, at[0].key, at[1].key)};
+  };
+  constexpr const char* kBands = "give one number or three in brackets: [0.6, 0.1, 0.1]";
+  const auto visit = [&](std::span<const JsonStep> at, const JsonValue& value) {
+    const bool object = value.kind == JsonKind::object;
+    const bool ends = value.kind == JsonKind::end;
+    if (at.empty()) {
+      if (object || ends) return;
+      Origin{path}.fail("is not a JSON object; write {\"NAME\": {\"reflectance\": 0.5}}");
+    }
+    if (at.size() == 1) {
+      if (object || ends) return;
+      Origin{path}.fail(
+          fmt::format("{0} is not an object; write \"{0}\": {{\"reflectance\": 0.5}}", at[0].key));
+    }
+    const bool number = value.kind == JsonKind::number;
+    if (at.size() == 2 && !ends) {
+      if (!number && value.kind != JsonKind::array) entryAt(at).fail(kBands);
+      entries.push_back({at[0].key, at[1].key, {}});
+      if (number) entries.back().bands.assign(3, value.number);
+    } else if (at.size() == 2) {
+      if (entries.back().bands.size() != 3) entryAt(at).fail(kBands);
+    } else {
+      if (!number || entries.back().bands.size() == 3) entryAt(at).fail(kBands);
+      entries.back().bands.push_back(value.number);
+    }
+  };
+  scanJson(path, readWholeFile(path), visit);
+  return entries;
 }
 
 void Overrides::readMaterialsFile(const std::string& path) {
-  Json file;
-  try {
-    file = Json::parse(readWholeFile(path));
-  } catch (const Json::parse_error& error) {
-    throw InputError(
-        fmt::format("{}: is not JSON ({}); correct it", path, onOneLine(error.what())));
-  }
-  const Origin whole{path};
-  if (!file.is_object()) {
-    whole.fail("is not a JSON object; write {\"NAME\": {\"reflectance\": 0.5}}");
-  }
-  for (const auto& [name, properties] : file.items()) {
-    if (!properties.is_object()) {
-      whole.fail(
-          fmt::format("{} is not an object; write \"{}\": {{\"reflectance\": 0.5}}", name, name));
-    }
-    for (const auto& [property, value] : properties.items()) {
-      const Origin origin{fmt::format("{}: {}.{}", path, name, property)};
-      setProperty(name, property, bandsOf(value, origin), origin);
-    }
+  for (const FileEntry& entry : readEntries(path)) {
+    setProperty(entry.name, entry.property, {entry.bands[0], entry.bands[1], entry.bands[2]},
+                {fmt::format("{}: {}.{}", path, entry.name, entry.property)});
   }
 }
 

@@ -10,18 +10,19 @@
 namespace radiosity {
 
 std::string UniqueNames::make(const std::string& wanted) {
-  std::string name = wanted;
-  for (int k = 2; !taken_.insert(name).second; ++k) name = fmt::format("{}#{}", wanted, k);
-  return name;
+  if (taken_.insert(wanted).second) return wanted;
+  std::size_t& number = last_number_.try_emplace(wanted, 1).first->second;
+  for (;;) {
+    const std::string name = fmt::format("{}#{}", wanted, ++number);
+    if (taken_.insert(name).second) return name;
+  }
 }
 
 void FeatureNotes::add(const std::string& feature, const std::string& name, Severity severity) {
-  auto entry = std::find_if(entries_.begin(), entries_.end(),
-                            [&](const Entry& e) { return e.feature == feature; });
-  if (entry == entries_.end()) {
-    entry = entries_.insert(entry, {feature, severity, {}, {}});
-  }
-  if (entry->seen.insert(name).second) entry->names.push_back(name);
+  const auto [place, is_new] = entry_of_.try_emplace(feature, entries_.size());
+  if (is_new) entries_.push_back({feature, severity, {}, {}});
+  Entry& entry = entries_[place->second];
+  if (entry.seen.insert(name).second) entry.names.push_back(name);
 }
 
 void FeatureNotes::appendTo(std::vector<Note>& notes) const {
@@ -44,6 +45,11 @@ Index SceneBuilder::surface(const std::string& object, Index material) {
 
 void SceneBuilder::addFace(std::span<const Index> corners, std::span<const Vec2> texcoords,
                            Index surface, std::size_t element) {
+  constexpr std::size_t kMostCorners = std::size_t(1) << 28;
+  if (scene_.corners.size() + corners.size() > kMostCorners) {
+    throw InputError(fmt::format("{}: its faces have more than {} corners; split the scene",
+                                 scene_.file, kMostCorners));
+  }
   scene_.corners.insert(scene_.corners.end(), corners.begin(), corners.end());
   scene_.face_offset.push_back(scene_.corners.size());
   scene_.face_surface.push_back(surface);
@@ -60,7 +66,10 @@ void SceneBuilder::finish() {
   dropUnusableTextures();
   UniqueNames names;
   for (Surface& surface : scene_.surfaces) {
-    surface.name = names.make(surface.object + "/" + scene_.materials[surface.material].name);
+    const std::string& material = scene_.materials[surface.material].name;
+    // Exporters often give an object and its material one name.
+    const bool one_name = surface.object == material;
+    surface.name = names.make(one_name ? material : surface.object + "/" + material);
   }
 }
 

@@ -20,6 +20,7 @@ class UniqueNames {
 
  private:
   std::set<std::string> taken_;
+  std::map<std::string, std::size_t> last_number_;  ///< by wanted name
 };
 
 /// Collects "this feature of that element is not used" and turns it into one note a feature.
@@ -37,6 +38,7 @@ class FeatureNotes {
     std::set<std::string> seen;
   };
   std::vector<Entry> entries_;
+  std::map<std::string, std::size_t> entry_of_;  ///< by feature
 };
 
 /// Adds faces to a scene whose materials are there already.
@@ -47,7 +49,8 @@ class SceneBuilder {
   /// The surface of (object, material), made when first asked for.
   Index surface(const std::string& object, Index material);
 
-  /// `texcoords`: one per corner, or empty where the face has none.
+  /// `texcoords`: one per corner, or empty where the face has none. InputError where there are more
+  /// than 2^28 corners: instances of instances multiply, and nothing could be done with so many.
   void addFace(std::span<const Index> corners, std::span<const Vec2> texcoords, Index surface,
                std::size_t element);
 

@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 
 namespace radiosity {
 
@@ -16,27 +13,6 @@ namespace {
 constexpr std::string_view kBlanks = " \t\r\n\v\f";
 
 }  // namespace
-
-std::string readWholeFile(const std::string& path) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) {
-    throw InputError(fmt::format("{}: no such file; check the name and the folder", path));
-  }
-  if (std::filesystem::is_directory(path, ignored)) {
-    throw InputError(fmt::format("{}: is a folder; name a file in it", path));
-  }
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream content;
-  if (stream) content << stream.rdbuf();
-  if (!stream) {
-    throw InputError(fmt::format("{}: cannot be read; check its permissions", path));
-  }
-  std::string text = std::move(content).str();
-  if (text.empty()) {
-    throw InputError(fmt::format("{}: the file is empty; export the scene again", path));
-  }
-  return text;
-}
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(kBlanks);

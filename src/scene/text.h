@@ -1,4 +1,4 @@
-// Reading text strictly: a number is a number or it is nothing, and a file is there or it is not.
+// Reading text strictly: a number is a number or it is nothing.
 #pragma once
 
 #include <optional>
@@ -10,9 +10,6 @@
 #include "radiosity/base.h"
 
 namespace radiosity {
-
-/// The whole file as bytes. InputError: no such file, a folder, unreadable, empty.
-std::string readWholeFile(const std::string& path);
 
 /// Without blanks at both ends.
 std::string_view trimmed(std::string_view text);

@@ -1,11 +1,13 @@
 #include "scene/texture.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <filesystem>
-#include <string_view>
+#include <new>
 
 #include "base/image_codec.h"
+#include "base/input_file.h"
 #include "base/srgb.h"
 #include "scene/text.h"
 
@@ -13,23 +15,12 @@ namespace radiosity {
 
 namespace {
 
-bool startsWith(std::span<const unsigned char> bytes, std::string_view signature) {
-  return bytes.size() >= signature.size() &&
-         std::equal(signature.begin(), signature.end(), bytes.begin(),
-                    [](char a, unsigned char b) { return static_cast<unsigned char>(a) == b; });
-}
-
-/// The name of the format, as OpenImageIO calls it; empty where it is not one we know.
-std::string formatOf(std::span<const unsigned char> bytes) {
-  if (startsWith(bytes, "\x89PNG")) return "png";
-  if (startsWith(bytes, "\xff\xd8\xff")) return "jpeg";
-  if (startsWith(bytes, "RIFF")) return "webp";
-  if (startsWith(bytes, "BM")) return "bmp";
-  return {};
-}
-
 TextureResult textureFrom(const DecodedImage& image, const std::string& name) {
   TextureResult result;
+  if (!image.too_large.empty()) {
+    result.problem = image.too_large;
+    return result;
+  }
   if (image.width < 1 || image.height < 1 || image.channels < 1) {
     result.problem = "holds no pixels";
     return result;
@@ -60,22 +51,33 @@ TextureResult textureFrom(const DecodedImage& image, const std::string& name) {
   return result;
 }
 
-}  // namespace
-
-TextureResult readTexture(const std::string& path) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) return {{}, false, "is not there"};
-  const DecodedImage image = imageCodec().read(path);
-  if (!image.opened) return {{}, false, "cannot be read (" + onOneLine(image.problem) + ")"};
-  return textureFrom(image, path);
+/// What read() gives, with what libraries throw made an outcome.
+template <class Read>
+TextureResult decoded(const std::string& name, const Read& read) {
+  try {
+    const DecodedImage image = read();
+    if (!image.opened) {
+      return {{}, false, "cannot be decoded (" + onOneLine(image.problem) + ")"};
+    }
+    return textureFrom(image, name);
+  } catch (const std::bad_alloc&) {
+    throw RunError(fmt::format("{}: the image does not fit into memory; make it smaller", name));
+  }
 }
 
-TextureResult decodeTexture(const std::string& name, std::span<const unsigned char> bytes) {
-  const std::string format = formatOf(bytes);
-  if (format.empty()) return {{}, false, "is of an unknown image format"};
-  const DecodedImage image = imageCodec().decode(name, format, bytes);
-  if (!image.opened) return {{}, false, "cannot be decoded (" + onOneLine(image.problem) + ")"};
-  return textureFrom(image, name);
+}  // namespace
+
+TextureResult readTexture(const std::string& path, double max_image) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) return {{}, false, "is not there"};
+  const std::string why = whyNotAFile(path);
+  if (!why.empty()) return {{}, false, why};
+  return decoded(path, [&] { return imageCodec().read(path, max_image * 1e6); });
+}
+
+TextureResult decodeTexture(const std::string& name, std::span<const unsigned char> bytes,
+                            double max_image) {
+  return decoded(name, [&] { return imageCodec().decode(name, bytes, max_image * 1e6); });
 }
 
 }  // namespace radiosity

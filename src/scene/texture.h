@@ -17,9 +17,12 @@ struct TextureResult {
 
 /// Reads an image file. Integer samples are sRGB-encoded unless the file says that they are
 /// linear; float samples are linear. Grey is repeated in all bands, alpha is left out.
-TextureResult readTexture(const std::string& path);
+/// `max_image`: SceneOptions::max_image; a larger one is not unpacked. Errors: RunError where it
+/// does not fit into memory.
+TextureResult readTexture(const std::string& path, double max_image);
 
 /// The same for an image that is already in memory; the format is told by its first bytes.
-TextureResult decodeTexture(const std::string& name, std::span<const unsigned char> bytes);
+TextureResult decodeTexture(const std::string& name, std::span<const unsigned char> bytes,
+                            double max_image);
 
 }  // namespace radiosity

@@ -5,9 +5,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <numbers>
-#include <numeric>
 #include <tuple>
+#include <utility>
 
 namespace radiosity {
 
@@ -125,26 +124,35 @@ void measure(const WeldedFaces& faces, const std::vector<std::uint8_t>& flipped,
   }
 }
 
+/// The uses of one edge by the faces of one part.
+struct Tally {
+  int balance = 0;
+  std::size_t count = 0;
+  bool winding_matters = false;
+  bool cancels() const { return winding_matters ? balance == 0 : count % 2 == 0; }
+};
+
 /// Marks parts with an edge whose uses do not cancel, and counts edges.
 void countEdges(std::span<const EdgeUse> uses, const std::vector<std::uint8_t>& two_sided,
                 Topology& topology) {
   for (ConnectedPart& part : topology.parts) part.closed = true;
+  std::vector<std::pair<Index, const EdgeUse*>> by_part;
   forEachEdge(uses, [&](std::span<const EdgeUse> edge) {
     topology.open_edges += edge.size() == 1 ? 1 : 0;
     topology.nonmanifold_edges += edge.size() > 2 ? 1 : 0;
-    for (const EdgeUse& use : edge) {
-      const Index part = topology.part_of[use.face];
-      int balance = 0;
-      int count = 0;
-      bool winding_matters = false;
-      for (const EdgeUse& other : edge) {
-        if (topology.part_of[other.face] != part) continue;
-        balance += other.forward ? 1 : -1;
-        ++count;
-        winding_matters |= two_sided[other.face] == 0;
+    by_part.clear();
+    for (const EdgeUse& use : edge) by_part.emplace_back(topology.part_of[use.face], &use);
+    std::sort(by_part.begin(), by_part.end());
+    for (std::size_t begin = 0; begin < by_part.size();) {
+      const Index part = by_part[begin].first;
+      Tally tally;
+      for (; begin < by_part.size() && by_part[begin].first == part; ++begin) {
+        const EdgeUse& use = *by_part[begin].second;
+        tally.balance += use.forward ? 1 : -1;
+        ++tally.count;
+        tally.winding_matters |= two_sided[use.face] == 0;
       }
-      const bool cancels = winding_matters ? balance == 0 : count % 2 == 0;
-      if (!cancels) topology.parts[part].closed = false;
+      if (!tally.cancels()) topology.parts[part].closed = false;
     }
   });
 }
@@ -175,26 +183,6 @@ Topology analyseTopology(const WeldedFaces& faces, const std::vector<std::uint8_
     topology.closed = topology.closed && part.closed && encloses;
   }
   return topology;
-}
-
-double windingNumber(const WeldedFaces& faces, const ConnectedPart& part, const Vec3& point) {
-  double angle = 0;
-  for (const Index f : part.faces) {
-    const auto face = faces.face(f);
-    const Vec3 a = faces.points[face[0]] - point;
-    const double la = glm::length(a);
-    for (std::size_t k = 2; k < face.size(); ++k) {
-      const Vec3 b = faces.points[face[k - 1]] - point;
-      const Vec3 c = faces.points[face[k]] - point;
-      const double lb = glm::length(b);
-      const double lc = glm::length(c);
-      const double numerator = glm::dot(a, glm::cross(b, c));
-      const double denominator =
-          la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
-      angle += 2 * std::atan2(numerator, denominator);
-    }
-  }
-  return angle / (4 * std::numbers::pi);
 }
 
 }  // namespace radiosity

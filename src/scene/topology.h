@@ -32,9 +32,4 @@ struct Topology {
 Topology analyseTopology(const WeldedFaces& faces, const std::vector<std::uint8_t>& two_sided,
                          const std::vector<std::uint8_t>& skip);
 
-/// How often a closed part winds around `point` (relative to the centre): 1 or -1 inside, 0
-/// outside, about a half on it. Sum of solid angles over 4 pi, by the formula of Van Oosterom and
-/// Strackee (1983).
-double windingNumber(const WeldedFaces& faces, const ConnectedPart& part, const Vec3& point);
-
 }  // namespace radiosity

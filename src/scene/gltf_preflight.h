@@ -1,0 +1,16 @@
+// What is asked of a glTF file before the library sees it, which trusts sizes and nesting.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace radiosity {
+
+/// True for a binary file, whatever its name ends in.
+bool isGlb(std::string_view content);
+
+/// Checks the chunks of a .glb (glTF 2.0, 4.4), the nesting of the JSON, the version and the
+/// required extensions. Errors: InputError "PATH: what is wrong; cure".
+void checkGltf(const std::string& path, std::string_view content);
+
+}  // namespace radiosity

@@ -1,0 +1,117 @@
+#include "scene/winding_number.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+
+namespace radiosity {
+
+namespace {
+
+/// A node stands for its triangles from this many radii on. The next term of the expansion is then
+/// at most some 1/16 of the node's own, and terms of opposite sides of a part cancel: what is left
+/// is far from the quarter that would change an answer.
+constexpr double kFar = 4;
+
+/// Solid angle of a triangle, relative to the point it is seen from (A. van Oosterom, J. Strackee,
+/// 1983, eq. 8).
+double solidAngle(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double la = glm::length(a);
+  const double lb = glm::length(b);
+  const double lc = glm::length(c);
+  const double numerator = glm::dot(a, glm::cross(b, c));
+  const double denominator =
+      la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
+  return 2 * std::atan2(numerator, denominator);
+}
+
+}  // namespace
+
+WindingNumber::WindingNumber(const WeldedFaces& faces, const ConnectedPart& part) {
+  for (const Index f : part.faces) {
+    const auto face = faces.face(f);
+    for (std::size_t k = 2; k < face.size(); ++k) {
+      triangles_.push_back(
+          {faces.points[face[0]], faces.points[face[k - 1]], faces.points[face[k]]});
+    }
+  }
+  if (!triangles_.empty()) build(0, triangles_.size());
+}
+
+std::size_t WindingNumber::build(std::size_t begin, std::size_t end) {
+  constexpr std::size_t kLeaf = 8;
+  const std::size_t number = nodes_.size();
+  Node node;
+  node.begin = begin;
+  node.end = end;
+  measure(node);
+  nodes_.push_back(node);
+  if (end - begin <= kLeaf) return number;
+  Vec3 lower(std::numeric_limits<double>::infinity());
+  Vec3 upper = -lower;
+  for (std::size_t k = begin; k < end; ++k) {
+    lower = glm::min(lower, triangles_[k].a);
+    upper = glm::max(upper, triangles_[k].a);
+  }
+  const Vec3 size = upper - lower;
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+  const std::size_t middle = begin + (end - begin) / 2;
+  const auto place = triangles_.begin();
+  std::nth_element(place + std::ptrdiff_t(begin), place + std::ptrdiff_t(middle),
+                   place + std::ptrdiff_t(end),
+                   [axis](const Triangle& a, const Triangle& b) { return a.a[axis] < b.a[axis]; });
+  build(begin, middle);
+  const std::size_t second = build(middle, end);
+  nodes_[number].second = second;
+  return number;
+}
+
+void WindingNumber::measure(Node& node) const {
+  Vec3 weighted{0.0};
+  double total = 0;
+  for (std::size_t k = node.begin; k < node.end; ++k) {
+    const Triangle& t = triangles_[k];
+    const Vec3 area = 0.5 * glm::cross(t.b - t.a, t.c - t.a);
+    const double size = glm::length(area);
+    node.area += area;
+    weighted += size / 3 * (t.a + t.b + t.c);
+    total += size;
+  }
+  node.middle = total > 0 ? weighted / total : triangles_[node.begin].a;
+  for (std::size_t k = node.begin; k < node.end; ++k) {
+    const Triangle& t = triangles_[k];
+    for (const Vec3& corner : {t.a, t.b, t.c}) {
+      node.radius = std::max(node.radius, glm::distance(corner, node.middle));
+    }
+  }
+}
+
+double WindingNumber::at(const Vec3& point) const {
+  double angle = 0;
+  std::vector<std::size_t> waiting;
+  if (!nodes_.empty()) waiting.push_back(0);
+  while (!waiting.empty()) {
+    const std::size_t number = waiting.back();
+    const Node& node = nodes_[number];
+    waiting.pop_back();
+    const Vec3 towards = node.middle - point;
+    const double distance = glm::length(towards);
+    if (distance > kFar * node.radius) {
+      angle += glm::dot(towards, node.area) / (distance * distance * distance);
+    } else if (node.second == 0) {
+      for (std::size_t k = node.begin; k < node.end; ++k) {
+        const Triangle& t = triangles_[k];
+        angle += solidAngle(t.a - point, t.b - point, t.c - point);
+      }
+    } else {
+      waiting.push_back(number + 1);
+      waiting.push_back(node.second);
+    }
+  }
+  return angle / (4 * std::numbers::pi);
+}
+
+}  // namespace radiosity
