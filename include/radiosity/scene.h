@@ -41,7 +41,8 @@ struct Material {
 struct Surface {
   std::string object;  ///< object, group or node name
   Index material = kNone;
-  /// "object/material", or the one name that both have; unique in the scene, results are keyed by it
+  /// "object/material", or the one name that both have; unique in the scene, results are keyed by
+  /// it
   std::string name;
 };
 
@@ -108,9 +109,10 @@ Scene loadScene(const std::string& path, const SceneOptions& options = {});
 
 /// Applies `set`, `materials_file`, `one_sided`, `two_sided` to a scene already in memory (one
 /// that came back from a results file). NAME is a surface, material or object, tried in that
-/// order, but the material where a surface has its name only because its object has it too; PROPERTY is reflectance, emission (exitance, W/m^2) or radiance (W/m^2/sr); VALUE is one
-/// number or three with commas. A surface that shares its material gets a copy of its own.
-/// Unknown names are an InputError that lists the names there are.
+/// order, but the material where a surface has its name only because its object has it too;
+/// PROPERTY is reflectance, emission (exitance, W/m^2) or radiance (W/m^2/sr); VALUE is one number
+/// or three with commas. A surface that shares its material gets a copy of its own. Unknown names
+/// are an InputError that lists the names there are.
 void applyOverrides(Scene& scene, const SceneOptions& options);
 
 /// What `radiosity info` prints about one surface.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -179,10 +180,16 @@ void Classifier::run(Index number, std::vector<VisibleCell>& out) {
 }
 
 void Classifier::writeNotes() {
+  std::set<std::string> emitters;
+  for (const Surface& surface : scene_.surfaces) {
+    if (scene_.materials[surface.material].emission != Vec3(0.0)) emitters.insert(surface.name);
+  }
   for (const auto& [names, area] : outdone_) {
     const auto& [loser, winner] = names;
+    // A lamp panel on an uncut ceiling is the usual way to draw one, and nothing to warn of.
+    const bool lamp = emitters.contains(winner) && !emitters.contains(loser);
     report_.notes.push_back(
-        {Severity::warning,
+        {lamp ? Severity::info : Severity::warning,
          loser == winner
              ? fmt::format("{}: overlaps itself on {:.6g} m^2; one layer was kept", loser, area)
              : fmt::format("{}: {:.6g} m^2 lie in the same place as {} and face alike; {} was kept",

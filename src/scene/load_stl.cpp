@@ -33,6 +33,12 @@ std::size_t claimedTriangles(std::string_view content) {
   return count;
 }
 
+std::string lowerCase(std::string_view word) {
+  std::string lower(word);
+  for (char& c : lower) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return lower;
+}
+
 /// Exporters begin binary files with "solid", too: what has exactly the size that a binary header
 /// claims is binary, and so is what holds a zero byte.
 bool isBinary(std::string_view content) {
@@ -40,7 +46,8 @@ bool isBinary(std::string_view content) {
       content.size() == kHeader + kRecord * claimedTriangles(content)) {
     return true;
   }
-  return content.find('\0') != std::string_view::npos || !trimmed(content).starts_with("solid");
+  return content.find('\0') != std::string_view::npos ||
+         lowerCase(trimmed(content.substr(0, 200)).substr(0, 5)) != "solid";
 }
 
 /// Triangles into a scene; corners at equal places become one vertex.
@@ -118,8 +125,7 @@ class AsciiReader {
   void statement(std::string_view text) {
     const std::vector<std::string_view> words = splitWords(text);
     if (words.empty()) return;
-    std::string keyword(words[0]);
-    for (char& c : keyword) c = char(std::tolower(static_cast<unsigned char>(c)));
+    const std::string keyword = lowerCase(words[0]);
     if (keyword == "solid") {
       outside(words[0]);
       const std::string_view name = trimmed(text.substr(words[0].size()));
