@@ -248,6 +248,12 @@ class Images(FileTest):
                       self.passes("info", self.put_image(b"not an image")))
         self.assertIn("texture picture cannot be decoded",
                       self.passes("info", self.put_image(input_files.png(40, 40)[:60])))
+        # libpng speaks for itself before it is told not to: no line of its own.
+        image = bytearray(input_files.png(40, 40))
+        image[29] ^= 1  # of the header's check sum
+        run = self.run_limited("info", self.put_image(bytes(image)))
+        for line in run.stderr.decode().splitlines():
+            self.assertTrue(line.startswith("radiosity: "), line)
 
 
 class LargeFiles(FileTest):

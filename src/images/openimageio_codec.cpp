@@ -1,9 +1,12 @@
 // The one place that knows OpenImageIO.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <fstream>
 #include <memory>
 
@@ -64,6 +67,30 @@ DecodedImage samplesOf(OIIO::ImageInput& input, double most_pixels) {
   return image;
 }
 
+/// While it lives nothing reaches standard error: libpng writes there, before OpenImageIO has told
+/// it not to, what comes back as the reason anyway.
+class QuietErrors {
+ public:
+  QuietErrors() : saved_(dup(STDERR_FILENO)) {
+    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+    if (nowhere < 0) return;
+    std::fflush(stderr);
+    dup2(nowhere, STDERR_FILENO);
+    ::close(nowhere);
+  }
+  ~QuietErrors() {
+    if (saved_ < 0) return;
+    std::fflush(stderr);
+    dup2(saved_, STDERR_FILENO);
+    ::close(saved_);
+  }
+  QuietErrors(const QuietErrors&) = delete;
+  QuietErrors& operator=(const QuietErrors&) = delete;
+
+ private:
+  int saved_;
+};
+
 using Bytes = std::span<const unsigned char>;
 
 /// Opens the image named `name` with `hints`, once its format and size are known to be fine.
@@ -79,6 +106,7 @@ DecodedImage decodeChecked(const std::string& name, Bytes start, double most_pix
   }
   // By the format's name: given a file's name, OpenImageIO 2.4 tries all formats it has, some of
   // which unpack everything at once.
+  const QuietErrors quiet;
   const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(format);
   if (!input) return unopened(OIIO::geterror());
   OIIO::ImageSpec spec;
