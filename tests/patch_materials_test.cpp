@@ -86,6 +86,28 @@ TEST(PatchMaterials, WholeTextureOnOnePatchGivesItsMean) {
   }
 }
 
+TEST(PatchMaterials, EmissionIsAveragedAsReflectanceIs) {
+  CoarseBuilder input;
+  const Texture texture = noise(8, 8);
+  texturedSquare(input, texture);
+  Scene& scene = input.scene();
+  scene.materials[0].emission_texture = 0;
+  scene.materials[0].emission = {7, 0, 2};
+  const PatchMesh mesh = cut(input, 25);
+  const PatchMaterials both = patchMaterials(scene, mesh);
+  scene.materials[0].texture = kNone;
+  const PatchMaterials alone = patchMaterials(scene, mesh);
+  Vec3 power(0.0);
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    expectNear(both.emission[i], both.reflectance[i] * Vec3(7, 0, 2), 1e-12);
+    EXPECT_EQ(alone.emission[i], both.emission[i]);
+    EXPECT_EQ(alone.reflectance[i], Vec3(1.0)) << "its factor";
+    power += mesh.area[i] * both.emission[i];
+  }
+  // Patches or not, the same light leaves: the mean over the square, of area 1.
+  expectNear(power, meanOf(texture) * Vec3(7, 0, 2), 1e-12);
+}
+
 TEST(PatchMaterials, RepeatsAndClamps) {
   CoarseBuilder input;
   Texture texture = noise(3, 2);

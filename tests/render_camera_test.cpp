@@ -141,6 +141,7 @@ TEST(FramingCamera, AnOpenBoxIsSeenThroughItsOpening) {
   builder.grid("far", {0, 0, 2}, {0, 2, 0}, {2, 0, 0}, 6, 6);
   const PatchMesh mesh = builder.build();
   const Camera camera = framingCamera(mesh, false, 1);
+  EXPECT_EQ(camera.name, "framed from outside");
   EXPECT_LT(camera.eye.x, 0);
   const Vec3 view = glm::normalize(camera.target - camera.eye);
   EXPECT_GT(view.x, 0.99);
@@ -180,16 +181,77 @@ TEST(FramingCamera, APlateIsSeenFromItsFront) {
 }
 
 TEST(FramingCamera, DoesNotDependOnThreadsOrScale) {
-  PatchMesh mesh = room({8, 2.5, 4}, true);
+  const PatchMesh mesh = room({8, 2.5, 4}, true);
   const Camera reference = framingCamera(mesh, true, 1);
   setThreads(1);
   const Camera one = framingCamera(mesh, true, 1);
   setThreads(0);
   EXPECT_EQ(one.eye, reference.eye);
   EXPECT_EQ(one.target, reference.target);
-  for (Vec3& v : mesh.vertices) v *= 1024;
-  for (double& a : mesh.area) a *= 1024.0 * 1024.0;
-  EXPECT_EQ(framingCamera(mesh, true, 1).eye, reference.eye * 1024.0);
+  // A person's height counts in scenes as high as a room or a hall, shares of it in all others.
+  const auto scaled = [&](double factor) {
+    PatchMesh other = mesh;
+    for (Vec3& v : other.vertices) v *= factor;
+    for (double& a : other.area) a *= factor * factor;
+    return framingCamera(other, true, 1).eye / factor;
+  };
+  EXPECT_EQ(scaled(1024.0), scaled(1.0 / 1024));
+}
+
+TEST(FramingCamera, StandsAtEyeHeight) {
+  for (const Vec3& size : {Vec3(8, 2.5, 4), Vec3(20, 9, 30)}) {
+    EXPECT_NEAR(framingCamera(room(size, false), true, 1).eye.y, 1.6, 1e-12) << size.y;
+  }
+}
+
+/// A room with a window in its long wall: 3% of its surface is open.
+PatchMesh roomWithWindow() {
+  QuadMesh builder;
+  builder.grid("floor", {0, 0, 0}, {0, 0, 4}, {8, 0, 0}, 8, 8);
+  builder.grid("ceiling", {0, 2.5, 0}, {8, 0, 0}, {0, 0, 4}, 8, 8);
+  builder.grid("left", {0, 0, 0}, {0, 2.5, 0}, {0, 0, 4}, 4, 4);
+  builder.grid("right", {8, 0, 0}, {0, 0, 4}, {0, 2.5, 0}, 4, 4);
+  builder.grid("front", {0, 0, 4}, {0, 2.5, 0}, {8, 0, 0}, 4, 4);
+  // The back wall, facing +z, around a window from (3, 0.8) to (5.5, 2).
+  builder.grid("back", {0, 0, 0}, {3, 0, 0}, {0, 2.5, 0}, 4, 4);
+  builder.grid("back", {5.5, 0, 0}, {2.5, 0, 0}, {0, 2.5, 0}, 4, 4);
+  builder.grid("back", {3, 0, 0}, {2.5, 0, 0}, {0, 0.8, 0}, 4, 2);
+  builder.grid("back", {3, 2, 0}, {2.5, 0, 0}, {0, 0.5, 0}, 4, 2);
+  return builder.build();
+}
+
+TEST(FramingCamera, ARoomWithAWindowIsSeenFromInside) {
+  const PatchMesh mesh = roomWithWindow();
+  const Camera camera = framingCamera(mesh, false, 1.5);
+  EXPECT_EQ(camera.name, "framed from inside");
+  EXPECT_NEAR(camera.eye.y, 1.6, 1e-12);
+  EXPECT_GT(camera.eye.x, 0);
+  EXPECT_LT(camera.eye.x, 8);
+  EXPECT_GT(camera.eye.z, 0);
+  EXPECT_LT(camera.eye.z, 4);
+  EXPECT_GT(fronts(mesh, camera), 0.9);
+}
+
+TEST(FramingCamera, LooksTowardsWhatIsLit) {
+  // Two rooms side by side, the wall between them closed: light in one of them.
+  for (const bool first_lit : {true, false}) {
+    QuadMesh builder;
+    builder.box("one", {0, 0, 0}, {5, 2.5, 4}, 6, true);
+    builder.box("two", {5, 0, 0}, {10, 2.5, 4}, 6, true);
+    const PatchMesh mesh = builder.build();
+    std::vector<double> light;
+    for (const Index s : mesh.surface) light.push_back((s == 0) == first_lit ? 3.0 : 1e-9);
+    const Camera camera = framingCamera(mesh, true, 1, light);
+    EXPECT_EQ(camera.eye.x < 5, first_lit);
+    EXPECT_GT(fronts(mesh, camera), 0.9);
+  }
+}
+
+TEST(FramingCamera, NeedsALightAPatch) {
+  const PatchMesh mesh = room({1, 1, 1}, false);
+  EXPECT_THROW(framingCamera(mesh, true, 1, std::vector<double>(3, 1.0)), InputError);
+  EXPECT_EQ(typicalLight(mesh, std::vector<double>(mesh.size(), 0.0)), 0);
+  EXPECT_NEAR(typicalLight(mesh, std::vector<double>(mesh.size(), 5.0)), 5, 1e-12);
 }
 
 TEST(FramingCamera, NeedsAPositiveAspectAndTakesAnEmptyMesh) {

@@ -64,6 +64,7 @@ TEST_F(ResultsFile, KeepsTheUnusual) {
   scene.texcoords.clear();
   scene.textures.clear();
   scene.materials[0].texture = kNone;
+  scene.materials[1].emission_texture = kNone;
   scene.notes.clear();
   odd.scene = scene;
   MeshResult mesh = {sample::mesh(3), sample::meshReport()};
@@ -203,6 +204,9 @@ TEST_F(ResultsFile, NamesWhatAnotherProgramChanged) {
               "/mesh/piece_offset does not divide");
   expectAfter([](Edit& e) { e.element("/scene/materials/texture", H5T_NATIVE_UINT, 0, 2u); },
               "/scene/materials/texture points beyond");
+  expectAfter(
+      [](Edit& e) { e.element("/scene/materials/emission_texture", H5T_NATIVE_UINT, 0, 2u); },
+      "/scene/materials/emission_texture points beyond");
   expectAfter([](Edit& e) { e.attribute("/solution", "bands", H5T_NATIVE_INT, 0); },
               "/solution/radiosity is not");
   expectAfter(

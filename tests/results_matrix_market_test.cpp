@@ -42,6 +42,31 @@ TEST_F(MatrixMarket, HoldsEveryEntryToTheBit) {
   }
 }
 
+// The far side of a pair of a symmetric matrix is computed from the near one: what is written is
+// what a results file holds, rounded likewise.
+TEST_F(MatrixMarket, RoundsAsTheResultsFileDoes) {
+  ExchangeMatrix matrix = ExchangeMatrix::symmetric({1, 3, 0.7}, {0, 1, 2}, Precision::single);
+  const std::vector<double> first = {0, 0.3, 0.1};
+  const std::vector<double> second = {0, 0.05};
+  matrix.setUpperRow(0, first);
+  matrix.setUpperRow(1, second);
+  writeMatrixMarket(path("x.mtx"), matrix, progress_);
+  std::ifstream file(path("x.mtx"));
+  std::string line;
+  while (std::getline(file, line) && line[0] == '%') {
+  }
+  std::size_t i = 0;
+  std::size_t j = 0;
+  double value = 0;
+  std::size_t entries = 0;
+  for (; file >> i >> j >> value; ++entries) {
+    EXPECT_EQ(value, double(float(value))) << i << ' ' << j;
+    EXPECT_EQ(value, double(float(matrix.at(i - 1, j - 1)))) << i << ' ' << j;
+  }
+  EXPECT_EQ(entries, 6u);
+  EXPECT_NE(matrix.at(1, 0), double(float(matrix.at(1, 0)))) << "0.1 as a double is no float";
+}
+
 TEST_F(MatrixMarket, EmptyMatrix) {
   writeMatrixMarket(path("x.mtx"), ExchangeMatrix({1, 2}, Precision::single), progress_);
   std::ifstream file(path("x.mtx"));

@@ -27,10 +27,11 @@ inline Scene scene() {
   s.materials.resize(2);
   s.materials[0].name = "white";
   s.materials[0].texture = 1;
-  s.materials[1] = {"red", {0.5, 1. / 3, 0.1}, {17, 12, 4}, true, kNone};
+  s.materials[1] = {"red", {0.5, 1. / 3, 0.1}, {17, 12, 4}, true, kNone, 0};
   s.textures.push_back({"one.png", 2, 1, {0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 1.f}, false});
   s.textures.push_back({"two.png", 40, 30, std::vector<float>(40 * 30 * 3, 0.25f), true});
   s.cameras = {{"front", {1, 2, 3}, {4, 5, 6}, {0, 0, 1}, 0.6, 1.5}, {}};
+  s.sky = {0.1, 1, 1e9};
   s.unit = "mm";
   s.notes = {{Severity::loud, "lamp: emits by inheritance"}, {Severity::info, ""}};
   return s;
@@ -242,7 +243,7 @@ inline Solution solution(std::size_t n, int bands) {
   r.residual = 1.0 / 3;
   r.error_bound = 2.5;
   const auto filled = [bands](double v) { return std::vector<double>(std::size_t(bands), v); };
-  r.energy = {filled(1), filled(2), filled(3), filled(4), filled(-1e-17)};
+  r.energy = {filled(1), filled(0.5), filled(2), filled(3), filled(4), filled(-1e-17)};
   r.seconds = 7.5;
   r.residual_history = {1, 0.5, 0.25};
   r.message = "not converged after 42 sweeps";
@@ -270,7 +271,8 @@ inline Gathered gathered(const PatchMesh& mesh, GatherAt at) {
     for (std::size_t k = 0; k < eyes; ++k) g.eye_of_corner.push_back(Index(eyes - 1 - k));
   }
   const auto filled = [](double v) { return std::vector<double>(3, v); };
-  const EnergyAccount energy{filled(1), filled(2), filled(3), filled(4), filled(-1e-17)};
+  const EnergyAccount energy{filled(1), filled(0.5), filled(2),
+                             filled(3), filled(4),   filled(-1e-17)};
   g.summary.status = GatherStatus::pass_limit;
   g.summary.passes = {{0.5, 1.0 / 3, std::nullopt, energy, filled(5)},
                       {0.25, 1.0 / 7, 2.5, energy, filled(6)}};
@@ -293,7 +295,8 @@ inline Results results(Index side, Precision precision, int bands = 3) {
   r.factors = factors(r.mesh->mesh, precision);
   r.factors_key = "patches=100 resolution=256";
   const std::size_t n = r.mesh->mesh.size();
-  r.materials = {std::vector<Vec3>(n, {0.1, 0.2, 0.3}), std::vector<Vec3>(n, {0, 1e-9, 17})};
+  r.materials = {
+      std::vector<Vec3>(n, {0.1, 0.2, 0.3}), std::vector<Vec3>(n, {0, 1e-9, 17}), {0.25, 0, 3}};
   r.solution = solution(n, bands);
   r.solution_key = "tolerance=1e-6";
   // Of both kinds, one in each sample.
@@ -314,8 +317,8 @@ inline auto members(const Texture& s) {
   return std::tie(a, b, c, d, e);
 }
 inline auto members(const Material& s) {
-  const auto& [a, b, c, d, e] = s;
-  return std::tie(a, b, c, d, e);
+  const auto& [a, b, c, d, e, f] = s;
+  return std::tie(a, b, c, d, e, f);
 }
 inline auto members(const Surface& s) {
   const auto& [a, b, c] = s;
@@ -326,8 +329,8 @@ inline auto members(const Camera& s) {
   return std::tie(a, b, c, d, e, f);
 }
 inline auto members(const Scene& s) {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m);
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
 }
 inline auto members(const PlanarPolygons& s) {
   const auto& [a, b, c, d, e, f, g, h] = s;
@@ -370,12 +373,12 @@ inline auto members(const FormFactors& s) {
   return std::tie(a, b, c, d, e, f, g, h);
 }
 inline auto members(const PatchMaterials& s) {
-  const auto& [a, b] = s;
-  return std::tie(a, b);
+  const auto& [a, b, c] = s;
+  return std::tie(a, b, c);
 }
 inline auto members(const EnergyAccount& s) {
-  const auto& [a, b, c, d, e] = s;
-  return std::tie(a, b, c, d, e);
+  const auto& [a, b, c, d, e, f] = s;
+  return std::tie(a, b, c, d, e, f);
 }
 inline auto members(const SolveSkips& s) {
   const auto& [a, b, c] = s;

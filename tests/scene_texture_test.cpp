@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "radiosity/scene.h"
@@ -193,7 +194,69 @@ TEST_F(SceneTexture, AnOverriddenReflectanceReplacesTheTexture) {
   const Scene scene = load("map_Kd grey.png\n", options);
   EXPECT_EQ(scene.materialOf(0).texture, kNone);
   EXPECT_EQ(scene.materialOf(0).reflectance, Vec3(.7));
-  EXPECT_NOTE(scene.notes, "paint: reflectance 1 x texture -> 0.7", Severity::info);
+  EXPECT_NOTE(scene.notes,
+              "paint: reflectance 1 x texture -> 0.7; its texture " + path("grey.png") +
+                  " is dropped (tint keeps it)",
+              Severity::info);
+}
+
+TEST_F(SceneTexture, ATintKeepsTheTexture) {
+  write("grey.png", png(1, {"\x40"}, 0, 8));
+  SceneOptions options;
+  options.set = {"paint.tint=.5,1,.25"};
+  const Scene scene = load("Kd .8 .8 .8\nmap_Kd grey.png\n", options);
+  EXPECT_EQ(scene.materialOf(0).texture, 0u);
+  EXPECT_EQ(scene.materialOf(0).reflectance, Vec3(.4, .8, .2));
+  EXPECT_NOTE(scene.notes, "paint: reflectance 0.8 x texture -> 0.4 0.8 0.2 x texture",
+              Severity::info);
+  options.set = {"paint.tint=2"};
+  EXPECT_CONTAINS(inputErrorOf([&] { load("Kd .8 .8 .8\nmap_Kd grey.png\n", options); }),
+                  "--set paint.tint=2: material paint: reflectance 1.6 is outside 0 to 1");
+}
+
+TEST_F(SceneTexture, AFactorOfZeroBesideATextureMeansTheTexture) {
+  write("grey.png", png(1, {"\x40"}, 0, 8));
+  Scene scene = load("Kd 0 0 0\nmap_Kd grey.png\n");
+  EXPECT_EQ(scene.materialOf(0).reflectance, Vec3(1));
+  EXPECT_NOTE(scene.notes, "Kd is 0 beside map_Kd: the texture alone counts, material: paint",
+              Severity::info);
+  scene = load("Kd 0 0 .5\nmap_Kd grey.png\n");
+  EXPECT_EQ(scene.materialOf(0).reflectance, Vec3(0, 0, .5)) << "a colour";
+  EXPECT_EQ(load("Kd 0 0 0\nmap_Kd lost.png\n").materialOf(0).reflectance, Vec3(0));
+}
+
+TEST_F(SceneTexture, AnEmissiveTextureMultipliesKe) {
+  write("grey.png", png(1, {"\x40"}, 0, 8));
+  Scene scene = load("Ke 2 1 0\nmap_Ke grey.png\n");
+  EXPECT_EQ(scene.materialOf(0).emission_texture, 0u);
+  EXPECT_EQ(scene.materialOf(0).texture, kNone);
+  EXPECT_DOUBLE_EQ(scene.materialOf(0).emission.x, 2 * M_PI);
+  for (const std::string ke : {"", "Ke 0 0 0\n"}) {
+    scene = load(ke + "map_Ke grey.png\n");
+    EXPECT_DOUBLE_EQ(scene.materialOf(0).emission.x, M_PI);
+    EXPECT_NOTE(
+        scene.notes,
+        "Ke is 0 beside map_Ke: the texture alone counts (1 is 1 W/m^2/sr), material: paint",
+        Severity::info);
+  }
+  EXPECT_EQ(load("map_Ke lost.png\n").materialOf(0).emission, Vec3(0));
+  SceneOptions options;
+  options.set = {"paint.radiance=3"};
+  scene = load("Ke 1 1 1\nmap_Ke grey.png\n", options);
+  EXPECT_EQ(scene.materialOf(0).emission_texture, kNone);
+  EXPECT_NOTE(scene.notes, "is dropped", Severity::info);
+}
+
+TEST_F(SceneTexture, AnEmissiveTextureNeedsCoordinatesToo) {
+  write("grey.png", png(1, {"\x40"}, 0, 8));
+  const Scene scene =
+      load("Ke 1 1 1\nmap_Ke grey.png\n", {}, kFace + "o bare\nusemtl paint\nf 1/1 2/2 3\n");
+  EXPECT_EQ(scene.materialOf(0).emission_texture, 0u);
+  EXPECT_EQ(scene.materialOf(1).emission, Vec3(0));
+  EXPECT_NOTE(scene.notes,
+              "emissive texture not used, faces without texture coordinates; they emit nothing: "
+              "bare/paint",
+              Severity::warning);
 }
 
 /// A textured triangle; `texture_info` is the material's baseColorTexture.
@@ -280,6 +343,32 @@ TEST_F(SceneGltfTexture, AppliesTheTextureTransform) {
     EXPECT_NEAR(scene.texcoords[k].x, expected[k].x, 1e-15);
     EXPECT_NEAR(scene.texcoords[k].y, expected[k].y, 1e-15);
   }
+}
+
+TEST_F(SceneGltfTexture, ReadsEmissiveTextures) {
+  Json json = document({{"index", 0}});
+  json["materials"][0]["emissiveTexture"] = {{"index", 0}};
+  json["materials"][0]["emissiveFactor"] = {1, .5, 0};
+  Scene scene = load(json);
+  EXPECT_EQ(scene.textures.size(), 1u) << "one image, one texture";
+  EXPECT_EQ(scene.materialOf(0).emission_texture, 0u);
+  EXPECT_EQ(scene.materialOf(0).texture, 0u);
+  EXPECT_DOUBLE_EQ(scene.materialOf(0).emission.y, .5 * M_PI);
+  // Other coordinates than the base colour's.
+  json["materials"][0]["emissiveTexture"] = {{"index", 0}, {"texCoord", 1}};
+  scene = load(json);
+  EXPECT_EQ(scene.materialOf(0).emission_texture, kNone);
+  EXPECT_NOTE(scene.notes, "the emissive texture has other coordinates than the base colour",
+              Severity::warning);
+  // Alone, it may have any.
+  json["materials"][0].erase("pbrMetallicRoughness");
+  json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] = 1;
+  scene = load(json);
+  EXPECT_EQ(scene.materialOf(0).emission_texture, 0u);
+  EXPECT_EQ(scene.texcoords.size(), 3u);
+  // A factor of 0, the default, emits nothing whatever the texture.
+  json["materials"][0].erase("emissiveFactor");
+  EXPECT_EQ(load(json).materialOf(0).emission_texture, kNone);
 }
 
 TEST_F(SceneGltfTexture, UsesTheFactorWithoutTheRightCoordinates) {

@@ -123,18 +123,20 @@ TEST(SolveSingular, OnlyTheBandThatIsWhiteAndLitCounts) {
   EXPECT_NE(summary.message.find("band 2"), std::string::npos) << summary.message;
 }
 
-// rho = 1 - 1e-9 in a furnace takes 1e10 sweeps: the limit comes first and is reported as such;
-// the true residual after k sweeps of Jacobi is rho^(k).
+// rho = 1 - 1e-9 in a furnace takes 1e10 sweeps of Jacobi: the limit comes first and is reported as
+// such; the true residual after k sweeps is rho^(k). Combined sweeps find B = E / (1 - rho) = 1e9,
+// to the rounding of 1 - rho (1e-16 of 1e-9) and of the rows' sums.
 TEST(SolveSingular, NearlyWhiteIsSolvedOrSaidNotToBe) {
   TwoRooms rooms;
   std::fill(rooms.rho.begin(), rooms.rho.end(), 1 - 1e-9);
   std::fill(rooms.emission.begin(), rooms.emission.end(), 1.0);
-  for (const Solver solver : kSolvers) {
-    const auto summary = rooms.solve(solver).summary;
-    EXPECT_EQ(summary.status, SolveStatus::no_convergence);
-    EXPECT_GT(summary.residual, 0.99);
-    EXPECT_FALSE(summary.usable());
-  }
+  const auto jacobi = rooms.solve(Solver::jacobi).summary;
+  EXPECT_EQ(jacobi.status, SolveStatus::no_convergence);
+  EXPECT_GT(jacobi.residual, 0.99);
+  EXPECT_FALSE(jacobi.usable());
+  const Solution seidel = rooms.solve(Solver::gauss_seidel);
+  EXPECT_EQ(seidel.summary.status, SolveStatus::converged) << seidel.summary.message;
+  for (const double b : seidel.radiosity) EXPECT_NEAR(b, 1e9, 1e9 * 1e-6);
 }
 
 TEST(SolveEdges, NoLight) {

@@ -135,7 +135,7 @@ double spectralRadius(const Matrix& m) {
 
 // Jacobi's iteration matrix is R F, Gauss-Seidel's inv(I - L) U with R F = L + U, L strictly lower
 // (the diagonal of F is 0 here). Residuals shrink by its spectral radius a sweep in the long run,
-// and the sweeps taken are those that this predicts.
+// and Jacobi's sweeps are those that this predicts. Gauss-Seidel's are combined and take fewer.
 TEST(Solve, ContractsByTheSpectralRadius) {
   test::Random random(5);
   const Eigen::Index n = 60;
@@ -147,28 +147,33 @@ TEST(Solve, ContractsByTheSpectralRadius) {
   const Matrix lower = rf.triangularView<Eigen::StrictlyLower>();
   const Matrix upper = rf.triangularView<Eigen::StrictlyUpper>();
   const Matrix identity = Matrix::Identity(n, n);
-  const Matrix iterations[] = {rf, (identity - lower).partialPivLu().solve(upper)};
   const auto factors = test::factorsFrom(f, std::vector<double>(std::size_t(n), 1.0));
   std::vector<double> emission(std::size_t(n), 0.0);
   emission[7] = 1;
-  for (const Solver solver : kSolvers) {
-    const double radius = spectralRadius(iterations[solver == Solver::jacobi ? 0 : 1]);
+  const auto run = [&](Solver solver) {
     Progress quiet;
-    const auto summary =
-        solve(factors, rho, emission, 1, test::options(solver, 1e-10), quiet).summary;
-    const auto& history = summary.residual_history;
-    ASSERT_EQ(history.size(), std::size_t(summary.iterations));
-    ASSERT_GT(summary.iterations, 20);
-    // The last two entries of Gauss-Seidel's history may be of two kinds; take those before. The
-    // other eigenvalues are below a quarter of the largest: after ten sweeps they are 1e-6 of it.
-    const double measured = history[history.size() - 3] / history[history.size() - 4];
-    EXPECT_NEAR(measured, radius, 1e-3 * radius);
-    const double predicted = std::log(1e-10 / history[0]) / std::log(radius);
-    EXPECT_NEAR(summary.iterations, predicted, 0.15 * predicted + 2);  // transient of the start
-  }
+    return solve(factors, rho, emission, 1, test::options(solver, 1e-10), quiet).summary;
+  };
+  const auto predicted = [](double radius, const std::vector<double>& history) {
+    return std::log(1e-10 / history[0]) / std::log(radius);
+  };
+  const SolveSummary jacobi = run(Solver::jacobi);
+  const double radius = spectralRadius(rf);
+  const auto& history = jacobi.residual_history;
+  ASSERT_EQ(history.size(), std::size_t(jacobi.iterations));
+  ASSERT_GT(jacobi.iterations, 20);
+  // The other eigenvalues are below a quarter of the largest: after ten sweeps they are 1e-6 of it.
+  EXPECT_NEAR(history[history.size() - 3] / history[history.size() - 4], radius, 1e-3 * radius);
+  EXPECT_NEAR(jacobi.iterations, predicted(radius, history),
+              0.15 * predicted(radius, history) + 2);  // transient of the start
+  const SolveSummary seidel = run(Solver::gauss_seidel);
+  const double plain = predicted(spectralRadius((identity - lower).partialPivLu().solve(upper)),
+                                 seidel.residual_history);
+  ASSERT_EQ(seidel.residual_history.size(), std::size_t(seidel.iterations));
+  EXPECT_LT(seidel.iterations, 0.75 * plain);
 }
 
-TEST(Solve, GaussSeidelTakesAboutHalfTheSweeps) {
+TEST(Solve, GaussSeidelTakesLessThanHalfTheSweeps) {
   const auto factors = test::factorsFrom(test::cube(), std::vector<double>(6, 1.0));
   const std::vector<double> rho(6, 0.9);
   const std::vector<double> emission{1, 0, 0, 0, 0, 0};
@@ -178,9 +183,8 @@ TEST(Solve, GaussSeidelTakesAboutHalfTheSweeps) {
   const int seidel =
       solve(factors, rho, emission, 1, test::options(Solver::gauss_seidel, 1e-8), quiet)
           .summary.iterations;
-  // Asymptotically half for consistently ordered matrices (Young 1954); a cube is not quite one.
-  EXPECT_GT(seidel, 0.35 * jacobi);
-  EXPECT_LT(seidel, 0.65 * jacobi);
+  // Plain sweeps take half for consistently ordered matrices (Young 1954); combined ones fewer.
+  EXPECT_LT(seidel, 0.5 * jacobi);
 }
 
 TEST(SolveEnergy, ClosesWhereFIsReciprocal) {

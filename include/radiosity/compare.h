@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,12 +31,14 @@ struct LightField {
   std::vector<Index> cell_surface;              ///< by cell, into surface_names
   std::vector<std::string> surface_names;
   std::vector<std::uint8_t> clipped;  ///< T, 1: a corner is at the top of its range; or empty
+  std::vector<std::uint8_t> emits;    ///< by cell, 1: a lamp; empty: not known
   bool constant = false;              ///< one value a cell
   bool relative = false;              ///< no unit: srgb8
 };
 
-/// One value a patch: N * 3, W/m^2, row-major.
-LightField lightOf(const PatchMesh& mesh, std::span<const double> radiosity, std::string name);
+/// One value a patch: N * 3, W/m^2, row-major. `emission`: N, or empty where it is not known.
+LightField lightOf(const PatchMesh& mesh, std::span<const double> radiosity, std::string name,
+                   std::span<const Vec3> emission = {});
 LightField lightOf(const LitMesh& mesh, LightUnit unit);
 
 struct CompareOptions {
@@ -83,6 +86,9 @@ struct Comparison {
   double fitted_scale = 1;
   double fitted_l2 = 0;
   BandSums sums;
+  /// Of what does not emit, which a lamp outweighs in `sums`; empty: neither side says what emits,
+  /// or nothing does.
+  std::optional<BandSums> without_emitters;
   LargestDifference largest;
   std::vector<SurfaceDifference> surfaces;  ///< in order of their share of the difference
   std::vector<double> difference;           ///< |B - A|, Rec. 709 luminance, by cell or pixel; NaN:

@@ -22,7 +22,8 @@ enum class GatherAt {
 struct GatherOptions {
   GatherAt at = GatherAt::vertices;
   int passes = 100;  ///< at most, 1 to 100000; pass k adds the k-th bounce
-  /// Stop when the bound of |B* - B| is at most this times the largest emission, in every band.
+  /// Stop when the bound of |B* - B| is at most this times the largest emission (pi times the
+  /// radiance of the sky, where that is more), in every band.
   /// Between 0 and 1. Radiosities are 32-bit floats: below about 1e-6 it is not reached.
   double tolerance = 1e-4;
   int resolution = 256;    ///< of the hemicube's top face, as in FormFactorOptions
@@ -46,7 +47,7 @@ struct GatherPass {
   /// (q change + rounding) / (1 - q), q = max rho_i fronts_i. Empty where q is 1 or more.
   std::optional<double> bound;
   /// Of H_k and the B_(k-1) it was gathered from, each eye weighted with the area its value stands
-  /// for. emitted = absorbed + to_sky + on_backs + in_flight + imbalance.
+  /// for. emitted + from_sky = absorbed + to_sky + on_backs + in_flight + imbalance.
   EnergyAccount energy;
   std::vector<double> in_flight;  ///< W a band, still to be reflected: sum of area (B_k - B_(k-1))
 };
@@ -54,7 +55,7 @@ struct GatherPass {
 enum class GatherStatus {
   converged,   ///< the bound of |B* - B| is within the tolerance; usable
   pass_limit,  ///< `passes` came first; B has so many bounces
-  no_light     ///< E = 0 in every band: B = 0
+  no_light     ///< E = 0 and the sky is dark: B = 0
 };
 
 struct GatherSummary {

@@ -124,6 +124,7 @@ double smallestAngle(const PatchMesh& mesh);
 struct PatchMaterials {
   std::vector<Vec3> reflectance;  ///< N, 0 to 1
   std::vector<Vec3> emission;     ///< N, exitance, W/m^2
+  Vec3 sky{0.0};                  ///< Scene::sky: radiance from where nothing stands, W/m^2/sr
 };
 PatchMaterials patchMaterials(const Scene& scene, const PatchMesh& mesh);
 

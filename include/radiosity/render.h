@@ -26,12 +26,23 @@ struct RenderOptions {
   bool smooth = true;       ///< interpolate over vertices; false: constant patches
   double crease = 30;       ///< degrees; values are not shared across sharper edges
   bool show_backs = false;  ///< one-sided patches seen from behind: true black, false transparent
+  /// What is seen where nothing is hit, opaque: a sky. None: transparent.
+  std::optional<Vec3> background;
   void validate() const;
 };
 
-/// A camera that frames the mesh: inside a closed scene (looking at its largest extent), outside an
-/// open one, on the side most patches face.
-Camera framingCamera(const PatchMesh& mesh, bool closed, double aspect);
+/// A camera for a scene without one, which shows much of the scene, and of that what is lit: from
+/// inside a room, open or closed, at eye height; else from outside, on the side from which most can
+/// be seen. A room is where nearly all directions end on fronts: a window may be open, a wall may
+/// not be missing. Its name says which: "framed from inside", "framed from outside".
+/// `light`: N values >= 0, what each patch reflects; empty: all are lit alike. Errors: InputError
+/// where sizes differ or the aspect ratio is no positive number.
+Camera framingCamera(const PatchMesh& mesh, bool closed, double aspect,
+                     std::span<const double> light = {});
+
+/// The brightness that is typical of what is lit, sum a v^2 / sum a v over areas a and values v;
+/// 0 where all are 0. N values.
+double typicalLight(const PatchMesh& mesh, std::span<const double> light);
 
 /// "eye=x,y,z;target=x,y,z;up=x,y,z;fov=DEGREES" (up and fov may be left out) -> Camera.
 /// InputError says which part is wrong.

@@ -19,7 +19,7 @@ struct Note {
   std::string text;
 };
 
-/// Linear RGB texels, row-major, top row first.
+/// Linear RGB texels, row-major, top row first; finite and >= 0, as a reflectance at most 1.
 struct Texture {
   std::string name;
   int width = 0;
@@ -34,7 +34,8 @@ struct Material {
   Vec3 reflectance{0.5};  ///< rho, 0 to 1
   Vec3 emission{0.0};     ///< radiant exitance M = pi L in W/m^2 (the file gives radiance L)
   bool two_sided = false;
-  Index texture = kNone;  ///< into Scene::textures; multiplies `reflectance`
+  Index texture = kNone;           ///< into Scene::textures; multiplies `reflectance`
+  Index emission_texture = kNone;  ///< into Scene::textures; multiplies `emission`
 };
 
 /// Faces of one object (or node) with one material. The unit people name on the command line.
@@ -72,6 +73,8 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Texture> textures;
   std::vector<Camera> cameras;
+  /// Radiance W/m^2/sr that comes from every direction in which nothing stands.
+  Vec3 sky{0.0};
   std::string unit = "m";  ///< the file's unit before conversion: mm, cm, m, in, ft
   std::vector<Note> notes;
 
@@ -95,6 +98,7 @@ struct SceneOptions {
   std::string materials_file;          ///< JSON {"NAME": {"reflectance": .., "emission": ..}}
   std::vector<std::string> one_sided;  ///< material, object or surface names, or "all"
   std::vector<std::string> two_sided;  ///< the same; one_sided is applied first
+  std::optional<Vec3> sky;             ///< replaces Scene::sky; finite, >= 0
   /// Throws InputError naming the option and its range.
   void validate() const;
 };
@@ -107,12 +111,13 @@ struct SceneOptions {
 /// into memory.
 Scene loadScene(const std::string& path, const SceneOptions& options = {});
 
-/// Applies `set`, `materials_file`, `one_sided`, `two_sided` to a scene already in memory (one
-/// that came back from a results file). NAME is a surface, material or object, tried in that
+/// Applies `set`, `materials_file`, `one_sided`, `two_sided`, `sky` to a scene already in memory
+/// (one that came back from a results file). NAME is a surface, material or object, tried in that
 /// order, but the material where a surface has its name only because its object has it too;
-/// PROPERTY is reflectance, emission (exitance, W/m^2) or radiance (W/m^2/sr); VALUE is one number
-/// or three with commas. A surface that shares its material gets a copy of its own. Unknown names
-/// are an InputError that lists the names there are.
+/// PROPERTY is reflectance, emission (exitance, W/m^2), radiance (W/m^2/sr) or tint (what the
+/// reflectance is multiplied by); VALUE is one number or three with commas. Reflectance and
+/// emission replace a texture, tint keeps it. A surface that shares its material gets a copy of its
+/// own. Unknown names are an InputError that lists the names there are.
 void applyOverrides(Scene& scene, const SceneOptions& options);
 
 /// What `radiosity info` prints about one surface.

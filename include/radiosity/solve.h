@@ -15,8 +15,9 @@ enum class Solver { jacobi, gauss_seidel };
 
 struct SolveOptions {
   Solver solver = Solver::gauss_seidel;
-  /// Stop when max_i |r_i| <= tolerance * max_i |E_i| in every band, r the true residual. Between 0
-  /// and 1; below about 1e-14 rounding keeps it from being reached.
+  /// Stop when max_i |r_i| <= tolerance * max_i |E_i| in every band, r the true residual, E what a
+  /// patch emits and what it reflects of the sky. Between 0 and 1; below about 1e-14 rounding keeps
+  /// it from being reached.
   double tolerance = 1e-6;
   int max_iterations = 10000;  ///< 1 or more
   void validate() const;
@@ -25,14 +26,16 @@ struct SolveOptions {
 enum class SolveStatus {
   converged,       ///< |E + rho F B - B|_inf <= tolerance |E|_inf in every band; usable
   no_convergence,  ///< the iteration limit came first; B is the last iterate, not usable as it is
-  no_light,        ///< E = 0 in every band: B = 0; usable, but dark
+  no_light,        ///< nothing emits, no sky shines in: B = 0; usable, but dark
   singular,        ///< rho = 1 all over a closed room that is lit: no solution; B is empty
 };
 
-/// Where the light goes, W, one value a band. emitted = absorbed + to_sky + on_backs + imbalance;
-/// imbalance is what missing reciprocity of F and the residual leave over, 0 for an exact F and B.
+/// Where the light goes, W, one value a band. emitted + from_sky = absorbed + to_sky + on_backs +
+/// imbalance; imbalance is what missing reciprocity of F and the residual leave over, 0 for an
+/// exact F and B.
 struct EnergyAccount {
   std::vector<double> emitted;
+  std::vector<double> from_sky;  ///< falls on the patches from a sky that shines
   std::vector<double> absorbed;
   std::vector<double> to_sky;
   std::vector<double> on_backs;
@@ -58,9 +61,9 @@ struct SolveSummary {
   std::optional<double> error_bound;
   EnergyAccount energy;
   double seconds = 0;
-  /// Relative, one a sweep. Jacobi: the true residual. Gauss-Seidel: the largest change, which is
-  /// each row's residual when its turn came; from the first change within tolerance on, and in the
-  /// last entry always, the true residual.
+  /// Relative, one a sweep. Jacobi: the true residual. Gauss-Seidel: the largest change that the
+  /// sweeps so far, combined, leave to a further one; where a sweep's own change is within tolerance
+  /// and in the last entry always, the true residual.
   std::vector<double> residual_history;
   std::string message;  ///< plain words, with numbers; says if B is usable
   bool usable() const {
@@ -71,7 +74,7 @@ struct SolveSummary {
 struct Solution {
   int bands = 3;
   std::vector<double> radiosity;   ///< N * bands, row-major, W/m^2
-  std::vector<double> irradiance;  ///< N * bands: H = F B
+  std::vector<double> irradiance;  ///< N * bands: H = F B + what the sky sends
   SolveSummary summary;
 };
 
@@ -79,10 +82,12 @@ struct Solution {
 /// naming the patch. Needs a matrix of N rows and accounts of N values. What the scene does not
 /// need is not computed, see SolveSkips: B and H have the same bits as if it were. Not converging
 /// is data, not an exception. `group_names[group[i]]` names patch i's surface in messages; both may
-/// be empty.
+/// be empty. `sky`: radiance from every direction that a row leaves to the sky, W/m^2/sr, a band
+/// each, finite and >= 0; empty: dark. It falls on patch i as pi sky F_i,sky (Lambert's law over a
+/// uniform part of the hemisphere): B = E + rho (F B + pi sky F_sky).
 Solution solve(const FormFactors& factors, std::span<const double> reflectance,
                std::span<const double> emission, int bands, const SolveOptions& options,
                Progress& progress, std::span<const Index> group = {},
-               std::span<const std::string> group_names = {});
+               std::span<const std::string> group_names = {}, std::span<const double> sky = {});
 
 }  // namespace radiosity

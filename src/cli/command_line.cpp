@@ -67,7 +67,16 @@ void addSceneOptions(CLI::App& app, Request& r) {
       ->check(CLI::IsMember({"on", "off"}));
   add(app, "Scene", "--set", r.scene.set, "NAME.PROPERTY=VALUE",
       "Override a surface, material or object: reflectance (0 to 1), emission (exitance, W/m^2) "
-      "or radiance (W/m^2/sr); one number or three (R,G,B). May be repeated");
+      "or radiance (W/m^2/sr), which replace a texture, or tint, which keeps it and multiplies; "
+      "one "
+      "number or three (R,G,B). May be repeated");
+  app.add_option_function<std::string>(
+         "--sky", [&r](const std::string& text) { r.scene.sky = parseSky(text); },
+         "Light an open scene from every direction in which nothing stands, also from below: "
+         "radiance, W/m^2/sr; one number or R,G,B (default 0). Pictures show it, opaque, where "
+         "nothing is hit")
+      ->group("Scene")
+      ->option_text("RADIANCE");
   add(app, "Scene", "--materials", r.scene.materials_file, "FILE.json",
       R"(Overrides from a file: {"NAME": {"reflectance": [R,G,B], "emission": [R,G,B]}})");
   add(app, "Scene", "--one-sided", r.scene.one_sided, "NAME|all",
@@ -219,7 +228,9 @@ void addCameraOptions(CLI::App& app, Request& r) {
   const RenderOptions defaults;
   add(app, "Picture", "--camera", r.camera, "CAMERA",
       "Name of a camera in the scene, or eye=X,Y,Z;target=X,Y,Z[;up=X,Y,Z][;fov=DEGREES], metres "
-      "(default: the scene's first, else one that frames the scene)");
+      "(default: the scene's first, else one in a room at eye height, or from outside where there "
+      "is none, "
+      "towards what is lit)");
   add(app, "Picture", "--width", r.width, "PIXELS", fmt::format("Default {}", defaults.width));
   add(app, "Picture", "--height", r.height, "PIXELS",
       "Default: the width, or what the camera's shape asks for");

@@ -27,6 +27,11 @@ int runRender(Session& session);
 /// subcommand is factors, solve or gather.
 OutputSet claimOutputs(const Session& session);
 
+/// Writes the .h5 among `files` with the stages there are: after form factors were computed, and
+/// once more with the solution. What comes after may be interrupted without losing them.
+void keepFactors(Session& session, Pipeline& pipeline, const OutputSet& files);
+void keepSolution(Session& session, Pipeline& pipeline, const OutputSet& files);
+
 /// Writes the .h5 and .mtx among `files`, after saying how large they will be. A results file
 /// that would not change is left alone.
 void writeStages(Session& session, Pipeline& pipeline, OutputSet& files);

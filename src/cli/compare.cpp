@@ -68,16 +68,23 @@ LightUnit decideUnit(const Side& side, const std::string& said, std::optional<Li
       side.path, what, optionOf(side)));
 }
 
+std::span<const Vec3> emissionOf(const Results& results) {
+  return results.materials ? std::span<const Vec3>(results.materials->emission)
+                           : std::span<const Vec3>();
+}
+
 void readResultsSide(Side& side, const std::string& said) {
   const Results results = readResults(side.path, false);
   side.unit = decideUnit(side, said, LightUnit::radiosity, "values");
   if (results.mesh && results.solution && !results.solution->radiosity.empty()) {
     side.light = "matrix solution";
-    side.content = lightOf(results.mesh->mesh, results.solution->radiosity, side.path);
+    side.content =
+        lightOf(results.mesh->mesh, results.solution->radiosity, side.path, emissionOf(results));
   } else if (results.mesh && results.gathered) {
     side.light = "gathered light";
-    side.content = lightOf(results.mesh->mesh,
-                           patchRadiosity(results.mesh->mesh, *results.gathered), side.path);
+    side.content =
+        lightOf(results.mesh->mesh, patchRadiosity(results.mesh->mesh, *results.gathered),
+                side.path, emissionOf(results));
   } else {
     throw InputError(side.path +
                      ": holds no light yet; run radiosity solve or radiosity gather on it");
@@ -159,10 +166,40 @@ void reportSurfaces(Report& report, const Comparison& c) {
                rows);
 }
 
+/// What a lamp outweighs, and where it is worst, in one line: each can hide behind the other.
+void reportHeadline(Report& report, const Comparison& c) {
+  std::string beside;
+  if (c.without_emitters) {
+    beside = fmt::format("without emitters {}", numberText(c.without_emitters->relativeL2()));
+  }
+  const SurfaceDifference* worst = nullptr;
+  for (const SurfaceDifference& s : c.surfaces) {
+    if (!(s.sums.area > 0)) continue;
+    if (worst == nullptr || s.sums.relativeL2() > worst->sums.relativeL2()) worst = &s;
+  }
+  if (worst != nullptr) {
+    beside += fmt::format("{}worst surface {}: {}", beside.empty() ? "" : "; ",
+                          worst->name.empty() ? "(unnamed)" : worst->name,
+                          numberText(worst->sums.relativeL2()));
+  }
+  report.number("relative_l2", "relative L2 difference", c.relativeL2(),
+                beside.empty() ? beside : "(" + beside + ")");
+  report.mute(true);
+  if (c.without_emitters) {
+    report.number("relative_l2_without_emitters", "", c.without_emitters->relativeL2());
+  }
+  if (worst != nullptr) {
+    report.text("worst_surface", "", worst->name);
+    report.number("worst_surface_l2", "", worst->sums.relativeL2());
+  }
+  report.mute(false);
+}
+
 void reportComparison(Report& report, const Comparison& c, bool pictures, bool relative) {
   constexpr const char* kBands[] = {"R", "G", "B"};
   const std::string unit = relative ? "of full scale" : pictures ? "W/m^2/sr" : "W/m^2";
   const std::string area = pictures ? "pixels" : "m^2";
+  reportHeadline(report, c);
   report.number("area_a", pictures ? "shown by A" : "area of A", c.area_a, area);
   report.number("area_b", pictures ? "shown by B" : "area of B", c.area_b, area);
   report.text("matched_a", "matched of A", percent(c.matched_a, c.area_a));
@@ -171,9 +208,8 @@ void reportComparison(Report& report, const Comparison& c, bool pictures, bool r
   report.count("cells", pictures ? "pixels compared" : "cells compared", c.cells);
   if (!pictures) report.text("cells_of", "means over cells of", c.cells_of_b ? "B" : "A");
   report.number("scale", "B was multiplied by", c.scale);
-  report.number("relative_l2", "relative L2 difference", c.relativeL2());
   const double bands[] = {c.relativeL2(0), c.relativeL2(1), c.relativeL2(2)};
-  report.bands("relative_l2_bands", "  by band (R G B)", bands, "");
+  report.bands("relative_l2_bands", "relative L2 by band (R G B)", bands, "");
   report.number("fitted_scale", "best factor for B", c.fitted_scale);
   report.number("fitted_l2", "  would leave", c.fitted_l2);
   report.number("largest", "largest difference", std::abs(c.largest.b - c.largest.a), unit);
@@ -325,13 +361,15 @@ int compareWithGather(Session& session, OutputSet& files) {
   pipeline.requireLight();
   pipeline.mesh();
   pipeline.factors();
+  keepFactors(session, pipeline, files);
   pipeline.solution();
   if (const int code = judgeSolution(session, pipeline); code != 0) return code;
   pipeline.gathered();
   const PatchMesh& mesh = pipeline.patches();
-  const LightField a = lightOf(mesh, pipeline.solved().radiosity, "the matrix solution");
+  const std::vector<Vec3>& emission = pipeline.materials().emission;
+  const LightField a = lightOf(mesh, pipeline.solved().radiosity, "the matrix solution", emission);
   const LightField b =
-      lightOf(mesh, patchRadiosity(mesh, pipeline.gatheredLight()), "the gathered light");
+      lightOf(mesh, patchRadiosity(mesh, pipeline.gatheredLight()), "the gathered light", emission);
   const Comparison c = compare(a, b, options);
   session.report.section("comparison", "Comparison: A the matrix solution, B the gathered light");
   reportComparison(session.report, c, false, false);
@@ -339,7 +377,8 @@ int compareWithGather(Session& session, OutputSet& files) {
   const int code = judge(session, c);
   if (files.has(Format::png)) {
     Picture picture = choosePicture(request, pipeline.scene());
-    framePicture(picture, pipeline.patches(), pipeline.formFactors().report.closed);
+    framePicture(picture, pipeline.patches(), pipeline.formFactors().report.closed,
+                 solvedLight(pipeline));
     drawField(session, a, c, picture, files);
   }
   writeStages(session, pipeline, files);

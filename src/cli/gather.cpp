@@ -1,6 +1,7 @@
 #include "radiosity/gather.h"
 
 #include "cli/commands.h"
+#include "cli/light_cure.h"
 #include "cli/picture.h"
 
 namespace radiosity::cli {
@@ -8,14 +9,14 @@ namespace radiosity::cli {
 namespace {
 
 /// 1 where a limit that nobody asked for came first; 0 otherwise.
-int judgeGathered(Session& session, const GatherSummary& summary) {
+int judgeGathered(Session& session, const Pipeline& pipeline) {
+  const GatherSummary& summary = pipeline.gatheredLight().summary;
   if (summary.status == GatherStatus::converged) return 0;
   const bool asked = summary.passes.size() != std::size_t(GatherOptions().passes);
   if (summary.status == GatherStatus::pass_limit && (asked || session.request.passes)) return 0;
   const bool dark = summary.status == GatherStatus::no_light;
   const Note note{dark ? Severity::warning : Severity::loud,
-                  dark ? "nothing emits light, so B = 0 everywhere; make something a lamp with "
-                         "--set NAME.radiance=VALUE"
+                  dark ? darknessText(session.request, pipeline.scene())
                        : summary.message + "; allow more --passes"};
   session.report.notes({&note, 1});
   return dark ? 0 : 1;
@@ -31,11 +32,12 @@ int runGather(Session& session) {
   pipeline.mesh();
   pipeline.gathered();
   const GatherSummary& summary = pipeline.gatheredLight().summary;
-  const int code = judgeGathered(session, summary);
+  const int code = judgeGathered(session, pipeline);
   if (files.has(Format::png) || files.has(Format::exr) || files.has(Format::glb)) {
-    framePicture(picture, pipeline.patches(), summary.closed);
+    const Light light = gatheredLight(pipeline);
+    framePicture(picture, pipeline.patches(), summary.closed, light);
     reportPicture(session.report, picture);
-    drawLight(session, pipeline.patches(), gatheredLight(pipeline), picture, files);
+    drawLight(session, pipeline.patches(), light, picture, files);
   }
   writeStages(session, pipeline, files);
   files.commit(session.report, session.progress);

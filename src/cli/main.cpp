@@ -6,6 +6,7 @@
 #include <exception>
 #include <new>
 #include <optional>
+#include <string>
 
 #include "base/atomic_file.h"
 #include "cli/commands.h"

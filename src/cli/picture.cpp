@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
+#include "base/luminance.h"
 #include "cli/words.h"
 #include "radiosity/results.h"
 
@@ -72,20 +74,35 @@ Picture choosePicture(const Request& request, const Scene& scene) {
   return picture;
 }
 
-void framePicture(Picture& picture, const PatchMesh& mesh, bool closed) {
+void framePicture(Picture& picture, const PatchMesh& mesh, bool closed, const Light& light) {
   if (!picture.camera_from.empty()) return;
   picture.camera =
-      framingCamera(mesh, closed, double(picture.options.width) / double(picture.options.height));
-  picture.camera_from =
-      closed ? "framed from inside the closed scene" : "framed from outside the open scene";
+      framingCamera(mesh, closed, double(picture.options.width) / double(picture.options.height),
+                    light.reflected);
+  picture.camera_from = picture.camera.name;
 }
 
-Light solvedLight(const Pipeline& pipeline) { return {pipeline.solved().radiosity, {}}; }
+namespace {
 
-Light gatheredLight(const Pipeline& pipeline) {
+Light lightOf(Pipeline& pipeline, std::vector<double> radiosity) {
+  Light light{std::move(radiosity), {}, {}, pipeline.scene().sky};
+  const std::vector<Vec3>& emission = pipeline.materials().emission;
+  light.reflected.reserve(emission.size());
+  for (std::size_t i = 0; i < emission.size(); ++i) {
+    const double* b = light.patches.data() + 3 * i;
+    light.reflected.push_back(std::max(0.0, luminanceOf(Vec3(b[0], b[1], b[2]) - emission[i])));
+  }
+  return light;
+}
+
+}  // namespace
+
+Light solvedLight(Pipeline& pipeline) { return lightOf(pipeline, pipeline.solved().radiosity); }
+
+Light gatheredLight(Pipeline& pipeline) {
   const PatchMesh& mesh = pipeline.patches();
   const Gathered& gathered = pipeline.gatheredLight();
-  Light light{patchRadiosity(mesh, gathered), {}};
+  Light light = lightOf(pipeline, patchRadiosity(mesh, gathered));
   if (gathered.at == GatherAt::vertices) light.corners = cornerRadiosity(mesh, gathered);
   return light;
 }
@@ -95,11 +112,12 @@ Image radiancePicture(const Picture& picture, const PatchMesh& mesh, const Light
   Light radiance = light;
   for (double& value : radiance.patches) value *= std::numbers::inv_pi;
   for (double& value : radiance.corners) value *= std::numbers::inv_pi;
+  RenderOptions options = picture.options;
+  if (light.sky != Vec3(0.0)) options.background = light.sky;
   if (radiance.corners.empty()) {
-    return render(mesh, radiance.patches, picture.camera, picture.options, progress);
+    return render(mesh, radiance.patches, picture.camera, options, progress);
   }
-  return render(mesh, radiance.patches, radiance.corners, picture.camera, picture.options,
-                progress);
+  return render(mesh, radiance.patches, radiance.corners, picture.camera, options, progress);
 }
 
 void reportPicture(Report& report, const Picture& picture) {
@@ -139,10 +157,46 @@ void writeLitMesh(const PatchMesh& mesh, const Light& light, OutputSet& files, d
               });
 }
 
+namespace {
+
+/// The brightest that more than a hundredth of the picture shows.
+double brightest(const Image& image) {
+  std::vector<double> values;
+  for (std::size_t k = 0; k < image.rgba.size(); k += 4) {
+    const float* p = image.rgba.data() + k;
+    values.push_back(p[3] > 0 ? luminanceOf(Vec3(p[0], p[1], p[2])) : 0.0);
+  }
+  const auto high = values.begin() + std::ptrdiff_t(0.99 * double(values.size() - 1));
+  std::nth_element(values.begin(), high, values.end());
+  return *high;
+}
+
+/// Automatic exposure makes a picture of anything; what is lit may lie elsewhere.
+void warnOfDarkness(Report& report, const PatchMesh& mesh, const Light& light,
+                    const Image& radiance) {
+  constexpr double kDark = 1e-3;  // ten stops: it would be black in a picture of what is lit
+  const double typical = typicalLight(mesh, light.reflected) / std::numbers::pi;
+  const double seen = brightest(radiance);
+  if (!(typical > 0) || seen >= kDark * typical) return;
+  const auto brightest_patch = std::max_element(light.reflected.begin(), light.reflected.end());
+  const auto i = std::size_t(brightest_patch - light.reflected.begin());
+  const Vec3 place = mesh.centroid[i];
+  const Note note{
+      Severity::warning,
+      fmt::format("nothing lit is in view: what the camera sees has {:.2g} W/m^2/sr, "
+                  "what is lit {:.2g}; point the camera at {}, with --camera "
+                  "'eye=X,Y,Z;target={:.3g},{:.3g},{:.3g}'",
+                  seen, typical, mesh.surface_names[mesh.surface[i]], place.x, place.y, place.z)};
+  report.notes({&note, 1});
+}
+
+}  // namespace
+
 void drawLight(Session& session, const PatchMesh& mesh, const Light& light, const Picture& picture,
                OutputSet& files) {
   const Image radiance = radiancePicture(picture, mesh, light, session.progress);
   const double ev = exposureOf(session.request, radiance);
+  if (session.request.exposure == "auto") warnOfDarkness(session.report, mesh, light, radiance);
   session.report.number("exposure_ev", "exposure", ev,
                         session.request.exposure == "auto" ? "EV (automatic)" : "EV");
   files.write(Format::png, fmt::format("picture, EV {:.2f}, sRGB", ev),

@@ -20,18 +20,20 @@ struct Picture {
 /// --exposure or an option of the picture is wrong: found before the work is done.
 Picture choosePicture(const Request& request, const Scene& scene);
 
-/// Where no camera was chosen, one that frames the scene, from inside a closed one.
-void framePicture(Picture& picture, const PatchMesh& mesh, bool closed);
-
 /// What is drawn: radiosity, W/m^2.
 struct Light {
-  std::vector<double> patches;  ///< N * 3
-  std::vector<double> corners;  ///< mesh.corners.size() * 3; empty: from the patches around them
+  std::vector<double> patches;    ///< N * 3
+  std::vector<double> corners;    ///< mesh.corners.size() * 3; empty: from the patches around them
+  std::vector<double> reflected;  ///< N: luminance of what is not emitted, W/m^2
+  Vec3 sky{0.0};                  ///< radiance where nothing is hit, W/m^2/sr
 };
-Light solvedLight(const Pipeline& pipeline);
-Light gatheredLight(const Pipeline& pipeline);
+Light solvedLight(Pipeline& pipeline);
+Light gatheredLight(Pipeline& pipeline);
 
-/// Radiance B / pi, W/m^2/sr, linear.
+/// Where no camera was chosen, one that frames the scene and what is lit in it.
+void framePicture(Picture& picture, const PatchMesh& mesh, bool closed, const Light& light = {});
+
+/// Radiance B / pi, W/m^2/sr, linear; the sky's, where it shines, behind all.
 Image radiancePicture(const Picture& picture, const PatchMesh& mesh, const Light& light,
                       Progress& progress);
 

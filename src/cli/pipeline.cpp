@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "base/input_file.h"
+#include "cli/light_cure.h"
 #include "cli/process_memory.h"
 #include "cli/summaries.h"
 #include "cli/words.h"
@@ -53,13 +55,14 @@ std::vector<double> flat(const std::vector<Vec3>& values) {
   return out;
 }
 
-/// Once input and options have been checked, what a stage cannot do is the run's failure.
-template <class Work>
-auto ownFault(const Work& work) {
+/// The input was good: what a later stage refuses then is no fault of it. Exit code 1, not 2.
+template <class Stage>
+auto computedStage(const char* name, const Stage& compute) {
   try {
-    return work();
+    return compute();
   } catch (const InputError& error) {
-    throw RunError(error.what());
+    throw RunError(
+        fmt::format("{} failed on a scene that was read without a fault: {}", name, error.what()));
   }
 }
 
@@ -143,13 +146,13 @@ void Pipeline::openScene(const std::string& results_output) {
 }
 
 void Pipeline::requireLight() const {
+  if (scene().sky != Vec3(0.0)) return;
   for (const Surface& surface : scene().surfaces) {
     if (scene().materials[surface.material].emission != Vec3(0.0)) return;
   }
-  throw InputError(fmt::format(
-      "{}: nothing in the scene emits light, so the picture would be black; make something a lamp, "
-      "e.g. --set '{}.radiance=10' (W/m^2/sr)",
-      request_.input, scene().surfaces.empty() ? "NAME" : scene().surfaces.front().name));
+  throw InputError(
+      fmt::format("{}: nothing in the scene emits light, so the picture would be black; {}",
+                  request_.input, lightCure(request_, scene())));
 }
 
 /// Why a stage has to be computed although the source may hold one.
@@ -169,7 +172,9 @@ void Pipeline::computed(const std::string& stage, const std::string& label,
 void Pipeline::mesh() {
   const StageKey key = meshKey(mesh_options_, scene());
   const bool own = request_.command == Command::mesh;
-  if (previous_.mesh && previous_.mesh_key == key.text()) {
+  mesh_reused_ = previous_.mesh && previous_.mesh_key == key.text();
+  replaces_ = previous_.factors || (previous_.mesh && !mesh_reused_);
+  if (mesh_reused_) {
     results_.mesh = std::move(previous_.mesh);
     report_.stage("mesh", "mesh", "reused", source_);
     summarizeMesh(report_, made(results_.mesh), own ? Detail::full : Detail::none);
@@ -239,11 +244,14 @@ void Pipeline::factors() {
   } else {
     const std::string reason = why(previous_.factors_key, key, previous_.factors.has_value());
     const Stopwatch watch;
-    if (!plan) plan = planFactors();
-    announceFactors(*plan);
-    results_.factors = ownFault([&] { return computeFormFactors(*plan, progress_); });
+    results_.factors = computedStage("form factors", [&] {
+      if (!plan) plan = planFactors();
+      announceFactors(*plan);
+      return computeFormFactors(*plan, progress_);
+    });
     results_.factors_key = key.text();
     matrix_loaded_ = true;
+    factors_computed_ = true;
     computed("form_factors", "form factors", reason, watch.seconds());
     summarizeFactors(report_, formFactors(), patches(), own ? Detail::full : Detail::brief);
   }
@@ -288,9 +296,11 @@ void Pipeline::solution() {
     const std::string reason = why(previous_.solution_key, key, previous_.solution.has_value());
     loadMatrix();
     const Stopwatch watch;
-    results_.solution = ownFault([&] {
+    const Vec3 sky = materials().sky;
+    const double radiance[] = {sky.x, sky.y, sky.z};
+    results_.solution = computedStage("solution", [&] {
       return solve(formFactors(), flat(materials().reflectance), flat(materials().emission), 3,
-                   solve_options_, progress_, patches().surface, patches().surface_names);
+                   solve_options_, progress_, patches().surface, patches().surface_names, radiance);
     });
     computed("solution", "solution", reason, watch.seconds());
   }
@@ -310,7 +320,7 @@ void Pipeline::gathered() {
     const std::string reason = why(previous_.gather_key, key, previous_.gathered.has_value());
     const Stopwatch watch;
     results_.gathered =
-        ownFault([&] { return gather(patches(), materials(), gather_options_, progress_); });
+        computedStage("gathering", [&] { return gather(patches(), materials(), gather_options_, progress_); });
     computed("gather", "gather", reason, watch.seconds());
   }
   results_.gather_key = key.text();
@@ -358,6 +368,23 @@ bool Pipeline::keepGathered() {
   results_.gather_key = previous_.gather_key;
   report_.stage("gather", "gather", "kept", "it still fits");
   return false;
+}
+
+bool Pipeline::onlyAdds() const {
+  return from_results_ && !request_.overridesScene() && !replaces_;
+}
+
+void Pipeline::save(const std::string& path) {
+  // What was gathered on the same mesh stays: its key says what it was made of.
+  const bool lend = mesh_reused_ && previous_.gathered && !results_.gathered;
+  if (lend) {
+    results_.gathered = std::move(previous_.gathered);
+    results_.gather_key = previous_.gather_key;
+  }
+  writeResults(path, results_, progress_);
+  if (lend) previous_.gathered = std::exchange(results_.gathered, std::nullopt);
+  saved_ = path;
+  changed_ = lend;
 }
 
 void Pipeline::keepLaterStages() {

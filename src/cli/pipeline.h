@@ -56,10 +56,18 @@ class Pipeline {
   const Gathered& gatheredLight() const { return made(results_.gathered); }
   const PatchMaterials& materials();
   bool fromResultsFile() const { return from_results_; }
-  /// True where results() differs from the file the stages came from.
+  /// True where what there is so far fills gaps of the results file given and replaces nothing in
+  /// it. After mesh().
+  bool onlyAdds() const;
+  bool factorsComputed() const { return factors_computed_; }
+  /// Writes the stages there are so far, so that what comes after can fail.
+  void save(const std::string& path);
+  /// True where the file holds results() as they are: the stages came from it, or were saved there.
+  bool isUpToDate(const std::string& path) const {
+    return !changed_ && (path == source_ || path == saved_);
+  }
+  /// True where results() differs from the file the stages came from, or were saved to since.
   bool changed() const { return changed_; }
-  /// The results file the stages came from; empty if none.
-  const std::string& source() const { return source_; }
 
  private:
   void openResults();
@@ -97,6 +105,10 @@ class Pipeline {
   bool from_results_ = false;
   bool matrix_loaded_ = false;
   bool changed_ = false;
+  bool mesh_reused_ = false;
+  bool factors_computed_ = false;
+  bool replaces_ = false;  ///< something of the source
+  std::string saved_;      ///< where save() wrote
   bool writes_results_ = false;
 };
 

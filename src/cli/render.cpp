@@ -4,6 +4,7 @@
 
 #include <charconv>
 
+#include "base/luminance.h"
 #include "cli/commands.h"
 #include "cli/picture.h"
 #include "cli/words.h"
@@ -53,7 +54,7 @@ void requirePatch(const Show& show, const PatchMesh& mesh) {
 std::vector<double> luminance(const std::vector<double>& rgb) {
   std::vector<double> out(rgb.size() / 3);
   for (std::size_t i = 0; i < out.size(); ++i) {
-    out[i] = 0.2126 * rgb[3 * i] + 0.7152 * rgb[3 * i + 1] + 0.0722 * rgb[3 * i + 2];
+    out[i] = luminanceOf({rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]});
   }
   return out;
 }
@@ -143,17 +144,24 @@ int runRender(Session& session) {
   if (show.needsLight()) pipeline.requireLight();
   pipeline.mesh();
   requirePatch(show, pipeline.patches());
+  if (!files.has(Format::results) && pipeline.onlyAdds()) {
+    files.add({request.input, Format::results});
+  }
   pipeline.factors();
+  keepFactors(session, pipeline, files);
   int code = 0;
+  Light light;
   if (show.needsLight()) {
     pipeline.solution();
     code = judgeSolution(session, pipeline);
     if (!pipeline.results().solution) throw RunError("no picture: the system is singular");
+    keepSolution(session, pipeline, files);
+    light = solvedLight(pipeline);
   }
-  framePicture(picture, pipeline.patches(), pipeline.formFactors().report.closed);
+  framePicture(picture, pipeline.patches(), pipeline.formFactors().report.closed, light);
   reportPicture(session.report, picture);
   if (show.quantity == Show::none) {
-    drawLight(session, pipeline.patches(), solvedLight(pipeline), picture, files);
+    drawLight(session, pipeline.patches(), light, picture, files);
   } else {
     drawQuantity(session, pipeline, picture, show, files);
   }

@@ -27,7 +27,7 @@ const char* commandName(Command command) {
 
 bool Request::overridesScene() const {
   return !scene.set.empty() || !scene.materials_file.empty() || !scene.one_sided.empty() ||
-         !scene.two_sided.empty();
+         !scene.two_sided.empty() || scene.sky.has_value();
 }
 
 namespace {

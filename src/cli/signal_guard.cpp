@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstdio>
 #include <ctime>
+#include <mutex>
 #include <optional>
 
 #include "base/atomic_file.h"
@@ -46,6 +47,16 @@ void waitForATick() {
   sem_timedwait(&wake, &until);
 }
 
+/// What is on disk already; the watching thread reads it.
+struct Kept {
+  std::mutex mutex;
+  std::string text;
+};
+Kept& kept() {
+  static Kept it;
+  return it;
+}
+
 /// For a run that does not come to its end.
 [[noreturn]] void endProcess(ConsoleProgress& progress) {
   progress.clear();
@@ -58,7 +69,16 @@ void waitForATick() {
 
 }  // namespace
 
+void sayIfInterrupted(const std::string& text) {
+  const std::lock_guard lock(kept().mutex);
+  kept().text = text;
+}
+
 std::string interruptedText() {
+  {
+    const std::lock_guard lock(kept().mutex);
+    if (!kept().text.empty()) return "interrupted; " + kept().text;
+  }
   return committedFiles() == 0 ? Cancelled().what() : "interrupted; what was written is whole";
 }
 

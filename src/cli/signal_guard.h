@@ -29,7 +29,10 @@ class SignalGuard {
   std::thread watcher_;
 };
 
-/// What a run says that was interrupted.
+/// What a run says that was interrupted: what is on disk by then, if anything.
 std::string interruptedText();
+
+/// From now on a run that is interrupted says so in these words.
+void sayIfInterrupted(const std::string& text);
 
 }  // namespace radiosity::cli

@@ -11,13 +11,14 @@ int runSolve(Session& session) {
   pipeline.open(files.path(Format::results));
   pipeline.mesh();
   pipeline.factors();
+  keepFactors(session, pipeline, files);
   pipeline.solution();
   const int code = judgeSolution(session, pipeline);
   writeStages(session, pipeline, files);
   if (files.has(Format::glb) && pipeline.results().solution) {
     Picture picture = choosePicture(session.request, pipeline.scene());
-    framePicture(picture, pipeline.patches(), pipeline.formFactors().report.closed);
     const Light light = solvedLight(pipeline);
+    framePicture(picture, pipeline.patches(), pipeline.formFactors().report.closed, light);
     const Image radiance = radiancePicture(picture, pipeline.patches(), light, session.progress);
     const double ev = exposureOf(session.request, radiance);
     writeLitMesh(pipeline.patches(), light, files, ev, picture.options.crease);

@@ -4,6 +4,8 @@
 #include <filesystem>
 
 #include "cli/commands.h"
+#include "cli/light_cure.h"
+#include "cli/signal_guard.h"
 #include "cli/words.h"
 #include "radiosity/results.h"
 
@@ -34,23 +36,49 @@ std::string contents(const Results& results) {
   return list;
 }
 
-void writeResultsFile(Session& session, Pipeline& pipeline, OutputSet& files) {
-  const std::string path = files.path(Format::results);
-  pipeline.keepLaterStages();
-  if (!pipeline.changed() && pipeline.source() == path) {
-    session.report.line("results", path + " is up to date");
-    return;
-  }
+/// Says how large the file will be; RunError where the disk has no room for it.
+void announceResults(Session& session, Pipeline& pipeline, const std::string& path) {
   pipeline.loadMatrix();
   const std::size_t bytes = estimateResultsBytes(pipeline.results());
   session.report.line("results", fmt::format("{}: {} to write", path, bytesText(bytes)));
   requireDiskSpace(path, bytes);
+}
+
+void writeResultsFile(Session& session, Pipeline& pipeline, OutputSet& files) {
+  const std::string path = files.path(Format::results);
+  pipeline.keepLaterStages();
+  if (pipeline.isUpToDate(path)) {
+    session.report.line("results", path + " is up to date");
+    return;
+  }
+  announceResults(session, pipeline, path);
   files.write(Format::results, contents(pipeline.results()), [&](const std::string& temporary) {
     writeResults(temporary, pipeline.results(), session.progress);
   });
 }
 
 }  // namespace
+
+void keepFactors(Session& session, Pipeline& pipeline, const OutputSet& files) {
+  const std::string path = files.path(Format::results);
+  if (path.empty() || !pipeline.factorsComputed()) return;
+  announceResults(session, pipeline, path);
+  pipeline.save(path);
+  sayIfInterrupted(path + " keeps the form factors");
+  session.report.line("kept", "form factors, in " + path);
+}
+
+void keepSolution(Session& session, Pipeline& pipeline, const OutputSet& files) {
+  const std::string path = files.path(Format::results);
+  if (path.empty() || pipeline.isUpToDate(path)) return;
+  pipeline.keepLaterStages();
+  announceResults(session, pipeline, path);
+  pipeline.save(path);
+  sayIfInterrupted(path + " keeps the form factors and the solution");
+  std::error_code ignored;
+  session.report.output(path, std::filesystem::file_size(path, ignored),
+                        contents(pipeline.results()));
+}
 
 void writeStages(Session& session, Pipeline& pipeline, OutputSet& files) {
   if (files.has(Format::results)) writeResultsFile(session, pipeline, files);
@@ -72,9 +100,7 @@ int judgeSolution(Session& session, Pipeline& pipeline) {
   const SolveSummary& summary = pipeline.solved().summary;
   if (summary.usable()) {
     if (summary.status == SolveStatus::no_light) {
-      const Note dark{Severity::warning,
-                      "nothing emits light, so B = 0 everywhere; make something a lamp with "
-                      "--set NAME.radiance=VALUE"};
+      const Note dark{Severity::warning, darknessText(session.request, pipeline.scene())};
       session.report.notes({&dark, 1});
     }
     return 0;

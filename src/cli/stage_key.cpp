@@ -40,6 +40,11 @@ std::string materialsHash(const PatchMaterials& materials) {
   return hash.hex();
 }
 
+std::string skyText(const Vec3& sky) {
+  return sky.x == sky.y && sky.y == sky.z ? fmt::format("{}", sky.x)
+                                          : fmt::format("{},{},{}", sky.x, sky.y, sky.z);
+}
+
 const char* nameOf(FormFactorMethod method) {
   if (method == FormFactorMethod::automatic) return "auto";
   return method == FormFactorMethod::exact ? "exact" : "hemicube";
@@ -181,6 +186,7 @@ StageKey solutionKey(const SolveOptions& options, const PatchMaterials& material
   key.add("solve-tolerance", fmt::format("{}", options.tolerance));
   key.add("max-iterations", fmt::format("{}", options.max_iterations));
   key.add("materials", materialsHash(materials));
+  key.add("sky", skyText(materials.sky));
   key.add("factors", factors.hex());
   return key;
 }
@@ -195,6 +201,7 @@ StageKey gatherKey(const GatherOptions& options, const PatchMaterials& materials
   key.add("seed", fmt::format("{}", options.seed));
   key.add("crease", fmt::format("{}", options.crease));
   key.add("materials", materialsHash(materials));
+  key.add("sky", skyText(materials.sky));
   key.add("mesh", geometryHash(mesh));
   return key;
 }

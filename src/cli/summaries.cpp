@@ -50,9 +50,10 @@ void describeMaterials(Report& report, const Scene& scene) {
   rows.reserve(scene.materials.size());
   for (const Material& m : scene.materials) {
     const double pi = 3.14159265358979323846;
-    rows.push_back({m.name, triple(m.reflectance),
-                    m.texture == kNone ? "" : scene.textures[m.texture].name, triple(m.emission),
-                    triple(m.emission / pi), m.two_sided ? "two" : "one"});
+    const auto textureName = [&](Index t) { return t == kNone ? "" : scene.textures[t].name; };
+    rows.push_back({m.name, triple(m.reflectance), textureName(m.texture), triple(m.emission),
+                    triple(m.emission / pi), textureName(m.emission_texture),
+                    m.two_sided ? "two" : "one"});
   }
   report.table("materials",
                {{"name", "material", false},
@@ -60,6 +61,7 @@ void describeMaterials(Report& report, const Scene& scene) {
                 {"texture", "texture", false},
                 {"exitance_W_per_m2", "exitance W/m^2", false},
                 {"radiance_W_per_m2_sr", "radiance W/m^2/sr", false},
+                {"emission_texture", "emission texture", false},
                 {"sides", "sides", false}},
                rows);
 }
@@ -105,6 +107,7 @@ void describeScene(Report& report, const Scene& scene) {
                     emits ? triple(s.emitted_power) : ""});
   }
   report.count("emitters", "emitting surfaces", emitters);
+  bands(report, "sky_W_per_m2_sr", "sky (R G B)", scene.sky, "W/m^2/sr");
   report.section("scene", "Surfaces");
   report.table("surfaces",
                {{"name", "surface", false},
@@ -206,27 +209,32 @@ const char* statusText(SolveStatus status) {
   return "singular";
 }
 
-/// Shares of the emitted power are easier to judge than watts.
-std::string shareOf(const std::vector<double>& part, const std::vector<double>& whole) {
-  const double sum = std::accumulate(whole.begin(), whole.end(), 0.0);
-  const double of = std::accumulate(part.begin(), part.end(), 0.0);
-  return sum > 0 ? fmt::format("W  ({:.3g}%)", 100 * of / sum) : "W";
+double sum(const std::vector<double>& bands) {
+  return std::accumulate(bands.begin(), bands.end(), 0.0);
+}
+
+/// What comes in: emitted, and from the sky.
+double incoming(const EnergyAccount& e) { return sum(e.emitted) + sum(e.from_sky); }
+
+/// Shares of the incoming power are easier to judge than watts.
+std::string shareOf(const std::vector<double>& part, const EnergyAccount& e) {
+  return incoming(e) > 0 ? fmt::format("W  ({:.3g}%)", 100 * sum(part) / incoming(e)) : "W";
 }
 
 void energyFigures(Report& report, const EnergyAccount& e) {
   report.bands("emitted_W", "emitted (R G B)", e.emitted, "W");
-  report.bands("absorbed_W", "absorbed", e.absorbed, shareOf(e.absorbed, e.emitted));
-  report.bands("to_sky_W", "left to the sky", e.to_sky, shareOf(e.to_sky, e.emitted));
-  report.bands("on_backs_W", "lost on backs", e.on_backs, shareOf(e.on_backs, e.emitted));
-  report.bands("imbalance_W", "imbalance", e.imbalance, shareOf(e.imbalance, e.emitted));
+  report.bands("from_sky_W", "from the sky", e.from_sky, "W");
+  report.bands("absorbed_W", "absorbed", e.absorbed, shareOf(e.absorbed, e));
+  report.bands("to_sky_W", "left to the sky", e.to_sky, shareOf(e.to_sky, e));
+  report.bands("on_backs_W", "lost on backs", e.on_backs, shareOf(e.on_backs, e));
+  report.bands("imbalance_W", "imbalance", e.imbalance, shareOf(e.imbalance, e));
 }
 
 /// A warning that names the surfaces whose backs take more than 0.1% of the light.
 void warnOfBacks(Report& report, const EnergyAccount& e,
                  const std::vector<double>& backs_by_surface, const PatchMesh& mesh) {
-  const double emitted = std::accumulate(e.emitted.begin(), e.emitted.end(), 0.0);
-  const double lost = std::accumulate(e.on_backs.begin(), e.on_backs.end(), 0.0);
-  if (!(emitted > 0) || lost <= kBacksWorthWarning * emitted) return;
+  const double lost = sum(e.on_backs);
+  if (!(incoming(e) > 0) || lost <= kBacksWorthWarning * incoming(e)) return;
   std::vector<std::pair<double, std::string>> seen;
   for (std::size_t s = 0; s < backs_by_surface.size(); ++s) {
     if (backs_by_surface[s] > 0) {
@@ -242,7 +250,7 @@ void warnOfBacks(Report& report, const EnergyAccount& e,
   const Note note{Severity::warning,
                   fmt::format("{:.2g}% of the light is lost on surfaces seen from behind: flipped? "
                               "({}); turn them round or use --two-sided NAME",
-                              100 * lost / emitted, names)};
+                              100 * lost / incoming(e), names)};
   report.notes({&note, 1});
 }
 
@@ -283,15 +291,12 @@ void summarizeSolution(Report& report, const Solution& solution, const FormFacto
 namespace {
 
 void passTable(Report& report, const std::vector<GatherPass>& passes) {
-  const auto sum = [](const std::vector<double>& bands) {
-    return std::accumulate(bands.begin(), bands.end(), 0.0);
-  };
   std::vector<std::vector<std::string>> rows;
   for (std::size_t k = 0; k < passes.size(); ++k) {
     const GatherPass& pass = passes[k];
-    const double emitted = sum(pass.energy.emitted);
+    const double whole = incoming(pass.energy);
     const auto share = [&](double part) {
-      return fmt::format("{:.4g}", emitted > 0 ? 100 * part / emitted : 0.0);
+      return fmt::format("{:.4g}", whole > 0 ? 100 * part / whole : 0.0);
     };
     rows.push_back({fmt::format("{}", k + 1), fmt::format("{:.3g}", pass.seconds),
                     fmt::format("{:.3e}", pass.change),
@@ -332,16 +337,15 @@ void gatherFigures(Report& report, const Gathered& gathered, const GatherOptions
 
 /// What points see stands for areas: where the patches are large, light is lost or made between.
 void warnOfImbalance(Report& report, const EnergyAccount& e) {
-  const double emitted = std::accumulate(e.emitted.begin(), e.emitted.end(), 0.0);
-  const double imbalance = std::accumulate(e.imbalance.begin(), e.imbalance.end(), 0.0);
-  if (!(std::abs(imbalance) > kImbalanceWorthWarning * emitted)) return;
+  const double imbalance = sum(e.imbalance);
+  if (!(std::abs(imbalance) > kImbalanceWorthWarning * incoming(e))) return;
   const std::string what = imbalance > 0 ? "of the light falls between the eyes and is lost"
                                          : "more light is received than leaves";
   const Note note{
       Severity::warning,
       fmt::format("{:.2g}% {}: the patches are too large for single points to stand for "
                   "them; give more --patches, or solve by the matrix (radiosity solve)",
-                  100 * std::abs(imbalance) / emitted, what)};
+                  100 * std::abs(imbalance) / incoming(e), what)};
   report.notes({&note, 1});
 }
 

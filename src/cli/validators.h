@@ -2,6 +2,9 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string>
+
+#include "radiosity/base.h"
 
 namespace radiosity::cli {
 
@@ -9,5 +12,8 @@ namespace radiosity::cli {
 const CLI::Validator& wholeNumber();
 /// CLI11's own names all digits of the largest double.
 const CLI::Validator& nonNegative();
+
+/// The value of --sky: one number or three with commas. InputError naming the option.
+Vec3 parseSky(const std::string& text);
 
 }  // namespace radiosity::cli

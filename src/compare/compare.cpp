@@ -84,6 +84,10 @@ bool isClipped(const LightField& field, std::size_t t) {
   return !field.clipped.empty() && field.clipped[t] != 0;
 }
 
+bool emits(const LightField& field, std::size_t t) {
+  return !field.emits.empty() && field.emits[field.cell[t]] != 0;
+}
+
 /// What one triangle has found on the other side.
 struct Found {
   double area = 0;      ///< compared
@@ -92,6 +96,7 @@ struct Found {
   Vec3 own{0.0};        ///< integrals over the area compared
   Vec3 other{0.0};
   Vec3 place{0.0};
+  bool emits = false;  ///< on this side or, somewhere, the other
 };
 
 class Matcher {
@@ -131,6 +136,7 @@ class Matcher {
         found.own += area * valueAt(own_, t, w);
         found.other += area * valueAt(other_, hit->triangle, hit->weights);
         found.place += area * point;
+        found.emits = found.emits || emits(own_, t) || emits(other_, hit->triangle);
       }
     });
     return found;
@@ -206,6 +212,7 @@ std::vector<ValuePair> pairsOf(const LightField& own, const std::vector<Found>& 
     pair.a += own_is_a ? found[t].own : found[t].other;
     pair.b += own_is_a ? found[t].other : found[t].own;
     pair.place += found[t].place;
+    pair.emits = pair.emits || found[t].emits;
   }
   for (std::size_t c = 0; c < pairs.size(); ++c) {
     pairs[c].surface = own.cell_surface[c];
@@ -223,9 +230,13 @@ std::vector<Found> pairUp(const LightField& a, const LightField& b) {
   for (std::size_t t = 0; t < found.size(); ++t) {
     const Triangle triangle = triangleOf(a, t);
     const Vec3 middle = (triangle.corner[0] + triangle.corner[1] + triangle.corner[2]) / 3.0;
-    found[t] = {
-        triangle.area,         0, 0, triangle.area * a.values[t][0], triangle.area * b.values[t][0],
-        triangle.area * middle};
+    found[t] = {triangle.area,
+                0,
+                0,
+                triangle.area * a.values[t][0],
+                triangle.area * b.values[t][0],
+                triangle.area * middle,
+                emits(a, t) || emits(b, t)};
   }
   return found;
 }

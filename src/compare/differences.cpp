@@ -8,11 +8,10 @@
 #include <numbers>
 #include <numeric>
 
+#include "base/luminance.h"
+
 namespace radiosity {
 namespace {
-
-/// Rec. 709.
-double luminance(const Vec3& v) { return 0.2126 * v.x + 0.7152 * v.y + 0.0722 * v.z; }
 
 /// The factor s that makes sum of weight |a - s b|^2 least, and what is left of |a|.
 void fit(const std::vector<ValuePair>& pairs, Comparison& comparison) {
@@ -109,6 +108,8 @@ void measureDifferences(std::vector<ValuePair>& pairs, const CompareOptions& opt
   std::vector<SurfaceDifference> surfaces(surface_names.size());
   for (std::size_t s = 0; s < surfaces.size(); ++s) surfaces[s].name = surface_names[s];
   comparison.difference.reserve(pairs.size());
+  BandSums reflecting;
+  bool any_emits = false;
   for (ValuePair& pair : pairs) {
     if (!(pair.weight > 0)) {
       comparison.difference.push_back(std::numeric_limits<double>::quiet_NaN());
@@ -117,11 +118,14 @@ void measureDifferences(std::vector<ValuePair>& pairs, const CompareOptions& opt
     pair.b *= comparison.scale;
     ++comparison.cells;
     comparison.sums.add(pair.weight, pair.a, pair.b);
+    if (!pair.emits) reflecting.add(pair.weight, pair.a, pair.b);
+    any_emits = any_emits || pair.emits;
     if (!surfaces.empty()) surfaces[pair.surface].sums.add(pair.weight, pair.a, pair.b);
     const Vec3 apart = pair.b - pair.a;
     comparison.difference.push_back(
-        luminance({std::abs(apart.x), std::abs(apart.y), std::abs(apart.z)}));
+        luminanceOf({std::abs(apart.x), std::abs(apart.y), std::abs(apart.z)}));
   }
+  if (any_emits) comparison.without_emitters = reflecting;
   comparison.surfaces = std::move(surfaces);
   findLargest(pairs, surface_names, comparison);
   nameFactor(options, comparison);

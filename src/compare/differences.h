@@ -16,6 +16,7 @@ struct ValuePair {
   Vec3 b{0.0};
   Vec3 place{0.0};
   Index surface = 0;
+  bool emits = false;
 };
 
 /// Fills scale, fit, sums, largest, surfaces, difference and cells from the pairs, and names a

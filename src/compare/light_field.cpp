@@ -31,7 +31,8 @@ bool isConstant(const LightField& field) {
 
 }  // namespace
 
-LightField lightOf(const PatchMesh& mesh, std::span<const double> radiosity, std::string name) {
+LightField lightOf(const PatchMesh& mesh, std::span<const double> radiosity, std::string name,
+                   std::span<const Vec3> emission) {
   if (radiosity.size() != 3 * mesh.size()) {
     throw InputError(fmt::format("{}: {} radiosities are given for {} patches", name,
                                  radiosity.size(), mesh.size()));
@@ -42,6 +43,7 @@ LightField lightOf(const PatchMesh& mesh, std::span<const double> radiosity, std
   field.surface_names = mesh.surface_names;
   field.cell_surface = mesh.surface;
   field.constant = true;
+  for (const Vec3& e : emission) field.emits.push_back(e == Vec3(0.0) ? 0 : 1);
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     const Vec3 value(radiosity[3 * i], radiosity[3 * i + 1], radiosity[3 * i + 2]);
     for (std::size_t t = mesh.piece_offset[i]; t < mesh.piece_offset[i + 1]; ++t) {

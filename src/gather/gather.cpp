@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "base/parallel.h"
 #include "formfactor/row_accounts.h"
@@ -21,7 +22,15 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+// Radiosities are 32-bit floats, and H may exceed E by far in a white room.
+constexpr double kLargest = 1e30;
+
 void checkMaterials(const PatchMesh& mesh, const PatchMaterials& materials) {
+  for (int b = 0; b < 3; ++b) {
+    if (materials.sky[b] >= 0 && materials.sky[b] <= kLargest) continue;
+    throw InputError(fmt::format("gather: sky radiance {} is not within 0 and {:g}",
+                                 materials.sky[b], kLargest));
+  }
   if (materials.reflectance.size() != mesh.size() || materials.emission.size() != mesh.size()) {
     throw InputError(
         fmt::format("gather: {} reflectances and {} emissions were given for {} patches",
@@ -36,8 +45,6 @@ void checkMaterials(const PatchMesh& mesh, const PatchMaterials& materials) {
       if (!(rho >= 0 && rho <= 1)) {
         throw InputError(fmt::format("{}: reflectance {} is not within 0 and 1", where, rho));
       }
-      // Radiosities are 32-bit floats, and H may exceed E by far in a white room.
-      constexpr double kLargest = 1e30;
       if (!(emission >= 0 && emission <= kLargest)) {
         throw InputError(
             fmt::format("{}: emission {} is not within 0 and {:g}", where, emission, kLargest));
@@ -111,10 +118,16 @@ class Passes {
     result_.sky[k] = float(received.sky);
     for (std::size_t b = 0; b < 3; ++b) {
       const std::size_t at = 3 * k + b;
-      result_.irradiance[at] = float(received.irradiance[b]);
+      const double irradiance = received.irradiance[b] + fromSky(k, b);
+      result_.irradiance[at] = float(irradiance);
       next_[at] = float(double(scene_.materials.emission[at]) +
-                        double(scene_.materials.reflectance[at]) * received.irradiance[b]);
+                        double(scene_.materials.reflectance[at]) * irradiance);
     }
+  }
+
+  /// Lambert's law over the part of the view that ends on the sky; once the eye has looked.
+  double fromSky(std::size_t k, std::size_t b) const {
+    return std::numbers::pi * scene_.sky[int(b)] * result_.sky[k];
   }
 
   /// All passes see the same.
@@ -140,7 +153,7 @@ class Passes {
     double bound = 0;
     relative_bound_ = 0;
     for (std::size_t b = 0; b < 3; ++b) {
-      const double emission = scene_.materials.largest_emission[b];
+      const double emission = scene_.largestSource(b);
       if (emission == 0) continue;
       double change = 0;
       double largest = 0;
@@ -162,7 +175,7 @@ class Passes {
 
   void account(GatherPass& pass) const {
     const std::vector<double> zeros(3, 0.0);
-    pass.energy = {zeros, zeros, zeros, zeros, zeros};
+    pass.energy = {zeros, zeros, zeros, zeros, zeros, zeros};
     pass.in_flight = zeros;
     EnergyAccount& energy = pass.energy;
     for (std::size_t k = 0; k < next_.size(); ++k) {
@@ -170,6 +183,7 @@ class Passes {
       const double area = scene_.area[k / 3];
       const double before = result_.radiosity[k];
       energy.emitted[b] += area * scene_.materials.emission[k];
+      energy.from_sky[b] += area * fromSky(k / 3, b);
       energy.absorbed[b] +=
           area * (1 - double(scene_.materials.reflectance[k])) * result_.irradiance[k];
       energy.to_sky[b] += area * result_.sky[k / 3] * before;
@@ -177,8 +191,8 @@ class Passes {
       if (scene_.eyes[k / 3].looks) pass.in_flight[b] += area * (double(next_[k]) - before);
     }
     for (std::size_t b = 0; b < 3; ++b) {
-      energy.imbalance[b] = energy.emitted[b] - energy.absorbed[b] - energy.to_sky[b] -
-                            energy.on_backs[b] - pass.in_flight[b];
+      energy.imbalance[b] = energy.emitted[b] + energy.from_sky[b] - energy.absorbed[b] -
+                            energy.to_sky[b] - energy.on_backs[b] - pass.in_flight[b];
     }
   }
 
@@ -264,8 +278,7 @@ Gathered gather(const PatchMesh& mesh, const PatchMaterials& materials,
   for (const Eye& eye : scene.eyes) result.position.push_back(eye.position);
   GatherSummary& summary = result.summary;
   summary.simd_target = scene.rows.kernels().target;
-  const auto& emission = scene.materials.largest_emission;
-  if (*std::max_element(emission.begin(), emission.end()) > 0) {
+  if (scene.largestSource(0) + scene.largestSource(1) + scene.largestSource(2) > 0) {
     runPasses(scene, options, result, progress);
   } else {
     summary.status = GatherStatus::no_light;

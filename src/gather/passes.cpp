@@ -1,6 +1,7 @@
 #include "gather/passes.h"
 
 #include <algorithm>
+#include <numbers>
 
 namespace radiosity {
 namespace {
@@ -27,7 +28,8 @@ GatherScene::GatherScene(const PatchMesh& patch_mesh, const PatchMaterials& of_p
       at(options.at),
       resolution(options.resolution),
       simd(options.simd),
-      rows(patch_mesh, eyeOptions(options)) {
+      rows(patch_mesh, eyeOptions(options)),
+      sky(of_patches.sky) {
   if (at == GatherAt::patches) {
     standAtPatches(of_patches, options);
   } else {
@@ -78,6 +80,10 @@ void GatherScene::standAtVertices(const PatchMaterials& of_patches, const Gather
       materials.reflectance[k] = float(of_patches.reflectance[first][b] + reflectance[b] / area[g]);
     }
   }
+}
+
+double GatherScene::largestSource(std::size_t band) const {
+  return std::max(materials.largest_emission[band], std::numbers::pi * sky[int(band)]);
 }
 
 std::size_t GatherScene::bytes() const {

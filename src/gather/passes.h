@@ -40,6 +40,10 @@ class GatherScene {
   std::vector<Index> eye_of_corner;  ///< at vertices
   std::optional<PatchBasis> basis;   ///< at vertices
   EyeMaterials materials;
+  Vec3 sky;  ///< radiance, W/m^2/sr
+  /// The largest emission of a band, or the exitance of the sky where that is more: what changes
+  /// are relative to.
+  double largestSource(std::size_t band) const;
 
  private:
   void standAtPatches(const PatchMaterials& of_patches, const GatherOptions& options);

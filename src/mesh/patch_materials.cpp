@@ -43,11 +43,9 @@ class PatchTexture {
   PatchTexture(const Scene& scene, const PatchMesh& mesh, std::span<const TextureMean> textures)
       : scene_(scene), mesh_(mesh), textures_(textures) {}
 
-  /// The area mean of the texture over patch i. `faces`: those that may lie under it.
-  Vec3 mean(std::size_t i, const std::vector<Index>& faces) const {
-    const Index surface = mesh_.surface[i];
-    const TextureMean& texture =
-        textures_[scene_.materials[scene_.surfaces[surface].material].texture];
+  /// The area mean of a texture of the scene over patch i. `faces`: those that may lie under it.
+  Vec3 mean(std::size_t i, Index texture_index, const std::vector<Index>& faces) const {
+    const TextureMean& texture = textures_[texture_index];
     const PlaneFrame frame =
         makeFrame(mesh_.centroid[i], mesh_.normal[i], axisAcross(mesh_.normal[i]));
     Sum sum;
@@ -165,8 +163,9 @@ class PatchTexture {
 };
 
 bool isTextured(const Scene& scene, Index surface) {
+  const Material& material = scene.materials[scene.surfaces[surface].material];
   return !scene.texcoords.empty() &&
-         scene.materials[scene.surfaces[surface].material].texture != kNone;
+         (material.texture != kNone || material.emission_texture != kNone);
 }
 
 /// For every textured front patch, the faces of its surface whose boxes meet its own.
@@ -206,6 +205,7 @@ PatchMaterials patchMaterials(const Scene& scene, const PatchMesh& mesh) {
   PatchMaterials result;
   result.reflectance.resize(mesh.size());
   result.emission.resize(mesh.size());
+  result.sky = scene.sky;
   std::vector<TextureMean> textures;
   textures.reserve(scene.textures.size());
   for (const Texture& texture : scene.textures) textures.emplace_back(texture);
@@ -216,11 +216,18 @@ PatchMaterials patchMaterials(const Scene& scene, const PatchMesh& mesh) {
     result.reflectance[i] = material.reflectance;
     result.emission[i] = material.emission;
     if (mesh.side[i] == 0 && mesh.area[i] > 0 && isTextured(scene, mesh.surface[i])) {
-      result.reflectance[i] *= patch_texture.mean(i, near[i]);
+      if (material.texture != kNone) {
+        result.reflectance[i] *= patch_texture.mean(i, material.texture, near[i]);
+      }
+      if (material.emission_texture != kNone) {
+        result.emission[i] *= patch_texture.mean(i, material.emission_texture, near[i]);
+      }
     }
   });
   for (std::size_t i = 0; i < mesh.size(); ++i) {
-    if (mesh.side[i] != 0) result.reflectance[i] = result.reflectance[mesh.twin[i]];
+    if (mesh.side[i] == 0) continue;
+    result.reflectance[i] = result.reflectance[mesh.twin[i]];
+    result.emission[i] = result.emission[mesh.twin[i]];
   }
   return result;
 }

@@ -214,11 +214,15 @@ PatchMesh subdivide(const CoarseComplex& complex, const Scene& scene, const Mesh
     const double start = std::max(std::sqrt(area / wanted), outlineOf(complex) / (4 * wanted));
     const double size = meetCount(subdivision, start, wanted);
     if (subdivision.count() > kMuchMore * wanted) {
+      const std::size_t polygons = complex.polygons.size();
       report.notes.push_back(
-          {Severity::info,
-           fmt::format("{} patches instead of {}: there are {} polygons, some with narrow details; "
-                       "large ones are not cut coarser than {:.3g} m for it",
-                       subdivision.count(), options.patches, complex.polygons.size(), size)});
+          {Severity::warning,
+           fmt::format("{} patches instead of {}: the scene has {} planar polygons, {}; large ones "
+                       "are not cut coarser than {:.3g} m for it",
+                       subdivision.count(), options.patches, polygons,
+                       polygons > options.patches ? "each at least one patch"
+                                                  : "whose outlines do not allow fewer",
+                       size)});
     }
   }
   PatchMesh mesh =

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/luminance.h"
 #include "radiosity/render.h"
 #include "render/percentile.h"
 
@@ -11,8 +12,7 @@ double autoExposure(const Image& image) {
   std::vector<double> luminance;
   for (std::size_t k = 0; k + 3 < image.rgba.size(); k += 4) {
     const float* p = image.rgba.data() + k;
-    // Rec. ITU-R BT.709: relative luminance of linear RGB.
-    if (p[3] > 0) luminance.push_back(0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2]);
+    if (p[3] > 0) luminance.push_back(luminanceOf(Vec3(p[0], p[1], p[2])));
   }
   if (luminance.empty()) return 0;
   const double bright = percentile(luminance, 0.99);

@@ -1,4 +1,6 @@
 // The default camera: tries viewpoints with a tiny render each and takes the one that shows most.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -20,7 +22,12 @@ constexpr double kInsideFov = 76;   // degrees; only a wide lens shows a room fr
 constexpr double kStraight =
     1.2;  // worth of looking along the room: verticals and corners in order
 constexpr double kOutsideFov = 40;  // degrees; little perspective distortion
+constexpr double kBelow = 0.6;      // worth of looking up from below: few things are looked at so
 constexpr double kMargin = 0.95;    // share of the picture that a framed scene fills
+constexpr double kEyeHeight = 1.6;  // metres above the floor, where the scene is as high as a room
+constexpr double kStanding = 1.1;   // worth of standing at that height
+constexpr double kEnclosed = 0.75;  // share of all directions that end on fronts within a room
+constexpr double kRoom = 1.5;       // worth of being in a room that has an outside too
 
 struct Box {
   Vec3 low{std::numeric_limits<double>::infinity()};
@@ -48,9 +55,26 @@ struct Candidate {
   double liked = 1;
 };
 
+/// The mesh and how brightly each patch is lit: 1 as is typical of what is lit, or more.
+struct LitMesh {
+  const PatchMesh& mesh;
+  std::vector<double> brightness;  ///< N, 0 to 1
+
+  LitMesh(const PatchMesh& patches, std::span<const double> light) : mesh(patches) {
+    brightness.assign(mesh.size(), 1.0);
+    const double typical = light.empty() ? 0 : typicalLight(mesh, light);
+    if (!(typical > 0)) return;
+    // A root, as eyes judge: half as bright is three quarters as well lit.
+    for (std::size_t i = 0; i < light.size(); ++i) {
+      brightness[i] = std::sqrt(std::min(1.0, light[i] / typical));
+    }
+  }
+};
+
 /// What a viewpoint sees. Shares of the picture and of the scene, 0 to 1.
 struct Glimpse {
   double fronts = 0;  ///< of the picture
+  double lit = 0;     ///< mean brightness of the fronts seen
   double near = 0;    ///< of the picture: surfaces closer than 4% of the scene's diagonal
   double shown = 0;   ///< of the scene, see shown()
 };
@@ -78,7 +102,8 @@ double shown(const PatchMesh& mesh, const std::vector<double>& seen) {
 
 /// A pixel at depth z sees the area z^2 / (f^2 |n . d|) of a surface with normal n along the ray d
 /// (d.z = 1), f the focal length in pixels; a patch is never counted for more than it has.
-Glimpse look(const PatchMesh& mesh, const Camera& camera, double aspect, double diagonal) {
+Glimpse look(const LitMesh& scene, const Camera& camera, double aspect, double diagonal) {
+  const PatchMesh& mesh = scene.mesh;
   const int width = std::max(8, int(std::lround(std::sqrt(kTrialPixels * aspect))));
   const int height = std::max(8, int(std::lround(std::sqrt(kTrialPixels / aspect))));
   const View view = makeView(camera, width, height);
@@ -100,28 +125,90 @@ Glimpse look(const PatchMesh& mesh, const Camera& camera, double aspect, double 
         const double cosine = std::abs(glm::dot(mesh.normal[patch], ray));
         seen[patch] += depth * depth / (view.focal * view.focal * cosine);
         ++glimpse.fronts;
+        glimpse.lit += scene.brightness[patch];
       }
     }
   }
   glimpse.shown = shown(mesh, seen);
+  if (glimpse.fronts > 0) glimpse.lit /= glimpse.fronts;
   glimpse.fronts /= double(width) * height;
   glimpse.near /= double(width) * height;
   return glimpse;
 }
 
-/// The first candidate whose score no later one beats by 1%; the score of all is 0: nothing.
-template <class Score>
-std::optional<Camera> best(const std::vector<Candidate>& candidates, const Score& score) {
+/// The share of all directions from a point that end on fronts: the six faces of a cube, a pixel
+/// counted as if all were as far away.
+double enclosure(const PatchMesh& mesh, const Vec3& eye) {
+  constexpr int kPixels = 16;
+  double fronts = 0;
+  for (int face = 0; face < 6; ++face) {
+    Camera camera;
+    camera.eye = eye;
+    camera.target = eye;
+    camera.target[face / 2] += (face % 2 == 0 ? 1 : -1) * (1 + std::abs(eye[face / 2]));
+    camera.up = face / 2 == 1 ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
+    camera.vertical_fov = 90 * kDegree;
+    const ItemBuffer items(mesh, makeView(camera, kPixels, kPixels), 1, true);
+    TileItems tile;
+    for (int t = 0; t < items.tileCount(); ++t) {
+      items.resolve(t, tile);
+      for (const Index piece : tile.piece) {
+        fronts += piece != kNone && !items.seenFromBehind(piece);
+      }
+    }
+  }
+  return fronts / (6.0 * kPixels * kPixels);
+}
+
+struct Scored {
+  Camera camera;
+  double score = 0;
+};
+
+/// Of the candidates that are allowed, the first whose score no later one beats by 1%; score 0:
+/// none shows anything.
+template <class Score, class Allowed>
+Scored best(const std::vector<Candidate>& candidates, const Score& score, const Allowed& allowed) {
   std::vector<double> scores(candidates.size());
   parallelFor(candidates.size(), 1, [&](std::size_t k) {
     scores[k] = candidates[k].liked * score(candidates[k].camera);
   });
-  std::size_t chosen = 0;
-  for (std::size_t k = 1; k < scores.size(); ++k) {
-    if (scores[k] > kBetter * scores[chosen]) chosen = k;
+  // Where the likeliest ones are not allowed, others hardly are.
+  constexpr int kTries = 12;
+  for (int tried = 0; tried < kTries && !scores.empty(); ++tried) {
+    std::size_t chosen = 0;
+    for (std::size_t k = 1; k < scores.size(); ++k) {
+      if (scores[k] > kBetter * scores[chosen]) chosen = k;
+    }
+    if (!(scores[chosen] > 0)) break;
+    if (allowed(candidates[chosen].camera)) return {candidates[chosen].camera, scores[chosen]};
+    scores[chosen] = 0;
   }
-  return !scores.empty() && scores[chosen] > 0 ? std::optional(candidates[chosen].camera)
-                                               : std::nullopt;
+  return {};
+}
+
+/// Shares of the box's height at which to stand, with what each is worth: where a person's eyes
+/// would be, if the box has the height of a room or a hall, and near the middle.
+std::vector<std::pair<double, double>> eyeHeights(double height) {
+  std::vector<std::pair<double, double>> shares = {{0.5, 1.0}, {0.62, 1.0}, {0.38, 1.0}};
+  if (height > 1.2 * kEyeHeight && height < 40 * kEyeHeight) {
+    shares.insert(shares.begin(), {kEyeHeight / height, kStanding});
+  }
+  return shares;
+}
+
+Camera insideCamera(const Vec3& eye, const Vec3& target, double aspect) {
+  Camera camera;
+  camera.eye = eye;
+  camera.target = target;
+  // A wide picture shows more to the sides, a tall one more above and below.
+  camera.vertical_fov = 2 * std::atan(std::tan(kInsideFov / 2 * kDegree) / std::sqrt(aspect));
+  return camera;
+}
+
+/// Whether a way leads anywhere but up and down, to something that is not at the eye's feet.
+bool isLevel(const Vec3& way, const Box& box) {
+  return std::hypot(way.x, way.z) > 0.02 * glm::length(box.size());
 }
 
 /// Viewpoints near the ends of the horizontal extents, the longer one first, each looking at the
@@ -134,22 +221,42 @@ std::vector<Candidate> viewpointsInside(const Box& box, double aspect) {
   for (const int axis : {longer, 2 - longer}) {
     for (const bool from_high : {true, false}) {  // from +z or +x first: forward is -z by custom
       for (const double lateral : {0.5, 0.25, 0.75}) {
-        for (const double height : {0.5, 0.62, 0.38}) {
+        for (const auto& [height, liked] : eyeHeights(size.y)) {
           for (const double inset : {0.03, 0.15, 0.35}) {
             Vec3 eye(lateral, height, lateral);
-            Vec3 target(0.5, 0.47, 0.5);
+            Vec3 target(0.5, std::min(0.47, std::max(height, 0.3)), 0.5);
             eye[axis] = from_high ? 1 - inset : inset;
             target[axis] = from_high ? 0 : 1;
-            Camera camera;
-            camera.eye = box.at(eye);
-            camera.target = box.at(target);
-            // A wide picture shows more to the sides, a tall one more above and below.
-            camera.vertical_fov =
-                2 * std::atan(std::tan(kInsideFov / 2 * kDegree) / std::sqrt(aspect));
-            candidates.push_back({camera, lateral == 0.5 ? kStraight : 1.0});
+            if (!isLevel(box.at(target) - box.at(eye), box)) continue;
+            candidates.push_back({insideCamera(box.at(eye), box.at(target), aspect),
+                                  liked * (lateral == 0.5 ? kStraight : 1.0)});
           }
         }
       }
+    }
+  }
+  return candidates;
+}
+
+/// Viewpoints all over the box that look at the middle of what is lit: light in one room of many.
+std::vector<Candidate> viewpointsAtLight(const LitMesh& scene, const Box& box, double aspect) {
+  Vec3 middle(0.0);
+  double total = 0;
+  for (std::size_t i = 0; i < scene.mesh.size(); ++i) {
+    const double weight = scene.mesh.area[i] * scene.brightness[i];
+    middle += weight * scene.mesh.centroid[i];
+    total += weight;
+  }
+  if (!(total > 0)) return {};
+  middle /= total;
+  const auto [height, liked] = eyeHeights(box.size().y).front();
+  std::vector<Candidate> candidates;
+  for (const double x : {0.1, 0.3, 0.5, 0.7, 0.9}) {
+    for (const double z : {0.9, 0.7, 0.5, 0.3, 0.1}) {
+      const Vec3 eye = box.at(Vec3(x, height, z));
+      const Vec3 target(middle.x, 0.5 * (middle.y + eye.y), middle.z);
+      if (!isLevel(target - eye, box)) continue;
+      candidates.push_back({insideCamera(eye, target, aspect), liked});
     }
   }
   return candidates;
@@ -187,37 +294,76 @@ std::vector<Candidate> viewpointsOutside(const PatchMesh& mesh, const Box& box, 
       const Vec3 direction(std::sin(azimuth * kDegree) * std::cos(elevation * kDegree),
                            std::sin(elevation * kDegree),
                            std::cos(azimuth * kDegree) * std::cos(elevation * kDegree));
-      candidates.push_back({framed(mesh, box, direction, aspect)});
+      candidates.push_back({framed(mesh, box, direction, aspect), elevation < 0 ? kBelow : 1.0});
     }
   }
   return candidates;
 }
 
+/// The best place to stand in the scene's room; score 0: there is none.
+Scored standInside(const LitMesh& scene, const Box& box, bool closed, double aspect) {
+  std::vector<Candidate> candidates = viewpointsInside(box, aspect);
+  for (Candidate& c : viewpointsAtLight(scene, box, aspect)) candidates.push_back(c);
+  const double diagonal = glm::length(box.size());
+  return best(
+      candidates,
+      [&](const Camera& camera) {
+        const Glimpse glimpse = look(scene, camera, aspect, diagonal);
+        // Inside a block, or outside the room, the eye sees backs or nothing.
+        if (glimpse.fronts < 0.5) return 0.0;
+        return glimpse.shown * glimpse.fronts * glimpse.fronts * (1 - glimpse.near) * glimpse.lit;
+      },
+      [&](const Camera& camera) {
+        return closed || enclosure(scene.mesh, camera.eye) >= kEnclosed;
+      });
+}
+
+Scored standOutside(const LitMesh& scene, const Box& box, double aspect) {
+  const double diagonal = glm::length(box.size());
+  return best(
+      viewpointsOutside(scene.mesh, box, aspect),
+      [&](const Camera& camera) {
+        const Glimpse glimpse = look(scene, camera, aspect, diagonal);
+        return glimpse.shown * glimpse.lit;
+      },
+      [](const Camera&) { return true; });
+}
+
+Camera named(Camera camera, const char* name) {
+  camera.name = name;
+  return camera;
+}
+
 }  // namespace
 
-Camera framingCamera(const PatchMesh& mesh, bool closed, double aspect) {
+double typicalLight(const PatchMesh& mesh, std::span<const double> light) {
+  if (light.size() != mesh.size()) {
+    throw InputError(fmt::format("framing: {} brightnesses were given for {} patches", light.size(),
+                                 mesh.size()));
+  }
+  double sum = 0;
+  double squares = 0;
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    sum += mesh.area[i] * light[i];
+    squares += mesh.area[i] * light[i] * light[i];
+  }
+  return sum > 0 ? squares / sum : 0;
+}
+
+Camera framingCamera(const PatchMesh& mesh, bool closed, double aspect,
+                     std::span<const double> light) {
   if (!(aspect > 0) || !std::isfinite(aspect)) {
     throw InputError("framing: the picture's aspect ratio must be positive");
   }
   const Box box = boundingBox(mesh);
   if (!(glm::length(box.size()) < std::numeric_limits<double>::infinity())) return {};  // empty
-  const double diagonal = glm::length(box.size());
-  std::optional<Camera> found;
-  if (closed) {
-    found = best(viewpointsInside(box, aspect), [&](const Camera& camera) {
-      const Glimpse glimpse = look(mesh, camera, aspect, diagonal);
-      // Inside a block, or outside the room, the eye sees backs or nothing.
-      if (glimpse.fronts < 0.5) return 0.0;
-      return glimpse.shown * glimpse.fronts * glimpse.fronts * (1 - glimpse.near);
-    });
-  }
-  if (!found) {  // open, or closed without a place inside: a solid seen from outside
-    found = best(viewpointsOutside(mesh, box, aspect),
-                 [&](const Camera& camera) { return look(mesh, camera, aspect, diagonal).shown; });
-  }
-  Camera camera = found.value_or(framed(mesh, box, Vec3(0, 0, 1), aspect));
-  camera.name = "framing";
-  return camera;
+  const LitMesh scene(mesh, light);
+  const Scored inside = standInside(scene, box, closed, aspect);
+  if (closed && inside.score > 0) return named(inside.camera, "framed from inside");
+  const Scored outside = standOutside(scene, box, aspect);
+  if (kRoom * inside.score > outside.score) return named(inside.camera, "framed from inside");
+  return named(outside.score > 0 ? outside.camera : framed(mesh, box, Vec3(0, 0, 1), aspect),
+               "framed from outside");
 }
 
 }  // namespace radiosity

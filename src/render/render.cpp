@@ -10,11 +10,14 @@
 namespace radiosity {
 namespace {
 
-/// Colour: the mean over the samples that hit; alpha: the share of them. The mean is taken as a
-/// difference to the first hit, so that a constant field keeps its value to the bit.
+/// Colour: the mean over the samples that hit something, a background too; alpha: the share of
+/// them. The mean is taken as a difference to the first hit, so that a constant field keeps its
+/// value to the bit.
 class RgbPixel {
  public:
-  explicit RgbPixel(Image& image) : image_(image) {}
+  RgbPixel(Image& image, const std::optional<Vec3>& background) : image_(image) {
+    if (background) background_ = {background->x, background->y, background->z};
+  }
 
   void begin() {
     hits_ = samples_ = 0;
@@ -22,8 +25,10 @@ class RgbPixel {
   }
   void sample(Seen seen, const std::array<double, 3>& value) {
     ++samples_;
-    if (seen == Seen::nothing) return;
-    const std::array<double, 3> colour = seen == Seen::front ? value : std::array<double, 3>{};
+    if (seen == Seen::nothing && !background_) return;
+    const std::array<double, 3> colour = seen == Seen::front     ? value
+                                         : seen == Seen::nothing ? *background_
+                                                                 : std::array<double, 3>{};
     if (hits_++ == 0) first_ = colour;
     for (int b = 0; b < 3; ++b) sum_[b] += colour[b] - first_[b];
   }
@@ -36,6 +41,7 @@ class RgbPixel {
 
  private:
   Image& image_;
+  std::optional<std::array<double, 3>> background_;
   int hits_ = 0;
   int samples_ = 0;
   std::array<double, 3> first_{};
@@ -50,7 +56,8 @@ Image draw(const PatchMesh& mesh, const PatchField& field, const Camera& camera,
   image.rgba.assign(std::size_t(image.width) * image.height * 4, 0.0f);
   progress.begin("picture", items.tileCount());
   forSamples(
-      mesh, items, field, [&](std::size_t) { return RgbPixel(image); }, progress);
+      mesh, items, field, [&](std::size_t) { return RgbPixel(image, options.background); },
+      progress);
   progress.end();
   return image;
 }

@@ -29,6 +29,7 @@ template <class Archive>
 void describe(Archive& a, Described<Archive, Scene>& s) {
   a("file", s.file);
   a("unit", s.unit);
+  a("sky", s.sky);
   a("vertices", s.vertices, "m");
   a("face_offset", s.face_offset);
   a("corners", s.corners);
@@ -46,6 +47,7 @@ void describe(Archive& a, Described<Archive, Scene>& s) {
     column("emission", &Material::emission, "W/m^2");
     column("two_sided", &Material::two_sided);
     column("texture", &Material::texture);
+    column("emission_texture", &Material::emission_texture);
   });
   a.table("cameras", s.cameras, [](auto& column) {
     column("name", &Camera::name);
@@ -236,6 +238,7 @@ void describe(Archive& a, Described<Archive, SolveSummary>& s) {
   a("residual_history", s.residual_history);
   a.group("energy", [&](auto& energy) {
     energy("emitted", s.energy.emitted, "W");
+    energy("from_sky", s.energy.from_sky, "W");
     energy("absorbed", s.energy.absorbed, "W");
     energy("to_sky", s.energy.to_sky, "W");
     energy("on_backs", s.energy.on_backs, "W");
@@ -255,6 +258,7 @@ template <class Archive>
 void describe(Archive& a, Described<Archive, PatchMaterials>& m) {
   a("reflectance", m.reflectance);
   a("emission", m.emission, "W/m^2");
+  a("sky", m.sky);
 }
 
 inline constexpr const char* kGatherAtWords[] = {"patches", "vertices"};
@@ -262,8 +266,9 @@ inline constexpr const char* kGatherStatusWords[] = {"converged", "pass_limit", 
 
 /// Passes as they are stored: a row each.
 struct PassColumns {
-  std::vector<double> seconds, change, bound;                                     // P
-  std::vector<double> emitted, absorbed, to_sky, on_backs, imbalance, in_flight;  // P x 3
+  std::vector<double> seconds, change, bound;  // P
+  // P x 3
+  std::vector<double> emitted, from_sky, absorbed, to_sky, on_backs, imbalance, in_flight;
 
   PassColumns() = default;
   explicit PassColumns(const std::vector<GatherPass>& passes) {
@@ -275,6 +280,7 @@ struct PassColumns {
       change.push_back(pass.change);
       bound.push_back(pass.bound.value_or(std::numeric_limits<double>::quiet_NaN()));
       append(emitted, pass.energy.emitted);
+      append(from_sky, pass.energy.from_sky);
       append(absorbed, pass.energy.absorbed);
       append(to_sky, pass.energy.to_sky);
       append(on_backs, pass.energy.on_backs);
@@ -289,7 +295,8 @@ struct PassColumns {
                                  from.begin() + std::ptrdiff_t(3 * pass + 3));
     };
     std::size_t count = std::min({seconds.size(), change.size(), bound.size()});
-    for (const auto* column : {&emitted, &absorbed, &to_sky, &on_backs, &imbalance, &in_flight}) {
+    for (const auto* column :
+         {&emitted, &from_sky, &absorbed, &to_sky, &on_backs, &imbalance, &in_flight}) {
       count = std::min(count, column->size() / 3);
     }
     std::vector<GatherPass> result(count);
@@ -298,8 +305,8 @@ struct PassColumns {
       pass.seconds = seconds[k];
       pass.change = change[k];
       if (!std::isnan(bound[k])) pass.bound = bound[k];
-      pass.energy = {bandsOf(emitted, k), bandsOf(absorbed, k), bandsOf(to_sky, k),
-                     bandsOf(on_backs, k), bandsOf(imbalance, k)};
+      pass.energy = {bandsOf(emitted, k), bandsOf(from_sky, k), bandsOf(absorbed, k),
+                     bandsOf(to_sky, k),  bandsOf(on_backs, k), bandsOf(imbalance, k)};
       pass.in_flight = bandsOf(in_flight, k);
     }
     return result;
@@ -312,6 +319,7 @@ void describe(Archive& a, Described<Archive, PassColumns>& p) {
   a("change", p.change);
   a("bound", p.bound, "W/m^2");
   a.rows("emitted", p.emitted, 3, "W");
+  a.rows("from_sky", p.from_sky, 3, "W");
   a.rows("absorbed", p.absorbed, 3, "W");
   a.rows("to_sky", p.to_sky, 3, "W");
   a.rows("on_backs", p.on_backs, 3, "W");

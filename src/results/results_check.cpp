@@ -52,6 +52,8 @@ void checkScene(const Checker& check, const Scene& s) {
   }
   for (const Material& material : s.materials) {
     check.indices({material.texture}, s.textures.size(), true, "/scene/materials/texture");
+    check.indices({material.emission_texture}, s.textures.size(), true,
+                  "/scene/materials/emission_texture");
   }
   for (std::size_t k = 0; k < s.textures.size(); ++k) {
     const Texture& t = s.textures[k];

@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "scene/likely_lamp.h"
 #include "scene/text.h"
 
 namespace radiosity {
@@ -41,11 +42,24 @@ void SceneChecks::reportLight(SceneInfo& info) const {
            fmt::format("{} emits but has no area: it gives no light", scene_.surfaces[s].name)});
     }
   }
-  if (!any) {
+  if (!any && (info.closed || scene_.sky == Vec3(0.0))) {
     info.problems.push_back(
         {Severity::loud,
-         "no surface emits light: the result will be dark; set one, for example --set "
-         "NAME.emission=17,12,4"});
+         fmt::format("no surface emits light: the result will be dark; make one a lamp, --set "
+                     "'{}.radiance=10'{}",
+                     likelyLamp(scene_), info.closed ? "" : ", or let the sky shine in, --sky 1")});
+  }
+  std::vector<std::string> textured;
+  for (const SurfaceInfo& surface : info.surfaces) {
+    const auto s = std::size_t(&surface - info.surfaces.data());
+    const Material& material = scene_.materials[scene_.surfaces[s].material];
+    if (material.emission_texture != kNone) textured.push_back(surface.name);
+  }
+  if (!textured.empty()) {
+    info.problems.push_back(
+        {Severity::info, fmt::format("emitted power as without the texture, which takes some "
+                                     "of it off: {}",
+                                     joinNames(textured))});
   }
   if (!absorbs && info.closed) {
     info.problems.push_back({Severity::loud,

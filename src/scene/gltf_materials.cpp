@@ -36,19 +36,16 @@ class MaterialReader {
  private:
   Material convert(const tinygltf::Material& gltf, const std::string& name);
   Vec3 emission(const tinygltf::Material& gltf, const std::string& name) const;
-  Index texture(const tinygltf::TextureInfo& info, const std::string& material);
+  Index texture(const tinygltf::TextureInfo& info, TextureUse use, const std::string& material);
   bool repeats(const tinygltf::Texture& texture, const std::string& material);
-  TexcoordSource texcoords(const tinygltf::TextureInfo& info) const;
+  static TexcoordSource texcoords(const tinygltf::TextureInfo& info);
+  Index emissionTexture(const tinygltf::Material& gltf, const Material& material);
   void noteIgnored(const tinygltf::Material& gltf, const std::string& name);
 
   const GltfFile& file_;
   const SceneOptions& options_;
   Scene& scene_;
   FeatureNotes& ignored_;
-  struct LoadedTexture {
-    Index index = kNone;
-    std::string problem;
-  };
   std::map<std::pair<int, bool>, LoadedTexture> texture_of_;  ///< by image, repeat
 };
 
@@ -60,7 +57,9 @@ GltfMaterials MaterialReader::read() {
     const std::string name =
         names.make(gltf.name.empty() ? fmt::format("material{}", m) : gltf.name);
     scene_.materials.push_back(convert(gltf, name));
-    result.texcoords.push_back(texcoords(gltf.pbrMetallicRoughness.baseColorTexture));
+    const bool glows_alone = scene_.materials.back().texture == kNone;
+    result.texcoords.push_back(
+        texcoords(glows_alone ? gltf.emissiveTexture : gltf.pbrMetallicRoughness.baseColorTexture));
     noteIgnored(gltf, name);
   }
   return result;
@@ -81,16 +80,36 @@ Material MaterialReader::convert(const tinygltf::Material& gltf, const std::stri
   material.emission = emission(gltf, name);
   if (pbr.baseColorTexture.index >= 0) {
     if (options_.textures) {
-      material.texture = texture(pbr.baseColorTexture, name);
+      material.texture = texture(pbr.baseColorTexture, TextureUse::reflectance, name);
     } else {
       ignored_.add("textures are off; the factor alone counts, material", name);
     }
   }
+  material.emission_texture = emissionTexture(gltf, material);
   if (material.texture == kNone && material.reflectance == Vec3(1.0)) {
     ignored_.add("reflectance 1, glTF's default base colour: all light is returned, material", name,
                  Severity::warning);
   }
   return material;
+}
+
+/// A corner of a face has one pair of texture coordinates here.
+Index MaterialReader::emissionTexture(const tinygltf::Material& gltf, const Material& material) {
+  if (gltf.emissiveTexture.index < 0 || material.emission == Vec3(0.0)) return kNone;
+  if (!options_.textures) {
+    ignored_.add("textures are off; the factor alone counts, material", material.name);
+    return kNone;
+  }
+  const bool alone = material.texture == kNone;
+  if (!alone &&
+      !(texcoords(gltf.emissiveTexture) == texcoords(gltf.pbrMetallicRoughness.baseColorTexture))) {
+    ignored_.add(
+        "the emissive texture has other coordinates than the base colour and is not used, "
+        "its factor alone emits, material",
+        material.name, Severity::warning);
+    return kNone;
+  }
+  return texture(gltf.emissiveTexture, TextureUse::emission, material.name);
 }
 
 /// Radiance is emissiveFactor x KHR_materials_emissive_strength; exitance is pi times that.
@@ -112,7 +131,8 @@ Vec3 MaterialReader::emission(const tinygltf::Material& gltf, const std::string&
   return exitance;
 }
 
-Index MaterialReader::texture(const tinygltf::TextureInfo& info, const std::string& material) {
+Index MaterialReader::texture(const tinygltf::TextureInfo& info, TextureUse use,
+                              const std::string& material) {
   const std::string what = "material " + material;
   const tinygltf::Texture& gltf = file_.at(file_.model.textures, info.index, "texture", what);
   const auto unusable = [&](const std::string& problem) {
@@ -131,15 +151,11 @@ Index MaterialReader::texture(const tinygltf::TextureInfo& info, const std::stri
   LoadedTexture& loaded = place->second;
   if (is_new) {
     TextureResult result = decodeTexture(name, bytes, options_.max_image);
-    loaded.problem = result.problem;
     if (result.has_alpha) ignored_.add("alpha is not used, texture", name);
-    if (loaded.problem.empty()) {
-      result.texture.repeat = repeat;
-      loaded.index = Index(scene_.textures.size());
-      scene_.textures.push_back(std::move(result.texture));
-    }
+    loaded = keepTexture(std::move(result), repeat, scene_);
   }
-  if (loaded.index == kNone) return unusable("texture " + name + " " + loaded.problem);
+  const std::string problem = loaded.problemAs(use);
+  if (!problem.empty()) return unusable("texture " + name + " " + problem);
   return loaded.index;
 }
 
@@ -159,7 +175,7 @@ bool MaterialReader::repeats(const tinygltf::Texture& texture, const std::string
   return !clamp;
 }
 
-TexcoordSource MaterialReader::texcoords(const tinygltf::TextureInfo& info) const {
+TexcoordSource MaterialReader::texcoords(const tinygltf::TextureInfo& info) {
   TexcoordSource source;
   source.set = info.texCoord;
   const auto extension = info.extensions.find("KHR_texture_transform");
@@ -180,10 +196,6 @@ void MaterialReader::noteIgnored(const tinygltf::Material& gltf, const std::stri
   }
   if (gltf.alphaMode != "OPAQUE") {
     ignored_.add("transparency (alphaMode) is not used, material", name, Severity::warning);
-  }
-  if (gltf.emissiveTexture.index >= 0) {
-    ignored_.add("the emissive texture is not used, its factor alone emits, material", name,
-                 Severity::warning);
   }
   for (const auto& [extension, value] : gltf.extensions) {
     if (isSupportedGltfExtension(extension)) continue;

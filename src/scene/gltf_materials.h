@@ -16,6 +16,7 @@ struct TexcoordSource {
   Vec2 scale{1.0};
   double rotation = 0;
   Vec2 apply(const Vec2& uv) const;
+  bool operator==(const TexcoordSource&) const = default;
 };
 
 struct GltfMaterials {

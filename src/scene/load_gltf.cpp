@@ -158,7 +158,7 @@ std::vector<Index> Reader::readPositions(const tinygltf::Primitive& primitive,
 /// One per vertex, transformed as the material asks; empty where there are none or none is needed.
 std::vector<Vec2> Reader::readTexcoords(const tinygltf::Primitive& primitive, Index material,
                                         std::size_t vertices, const std::string& what) const {
-  if (scene_.materials[material].texture == kNone) return {};
+  if (!isTextured(scene_.materials[material])) return {};
   const TexcoordSource& source = materials_.texcoords[material];
   const std::string name = fmt::format("TEXCOORD_{}", source.set);
   const auto attribute = primitive.attributes.find(name);

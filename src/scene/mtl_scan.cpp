@@ -55,7 +55,7 @@ void MtlScanner::statement(std::size_t line, std::string_view text) {
   if (keyword == "newmtl") {
     const std::string_view name = trimmed(text.substr(keyword.size()));
     if (name.empty()) fail("newmtl names no material; add the name");
-    materials_.push_back({std::string(name), line, {}, {}, false});
+    materials_.push_back({std::string(name), line, {}, {}, false, false});
     return;
   }
   if (materials_.empty()) {
@@ -70,9 +70,10 @@ void MtlScanner::statement(std::size_t line, std::string_view text) {
     checkEmission(fmt::format("{}:{}", file_, line), material.name, *material.radiance);
   } else if (keyword == "map_Kd") {
     material.textured = true;
+  } else if (keyword == "map_Ke") {
+    material.glows = true;
   } else if (isMap(keyword)) {
-    ignored_.add(fmt::format("texture {} is not used, material", keyword), material.name,
-                 keyword == "map_Ke" ? Severity::warning : Severity::info);
+    ignored_.add(fmt::format("texture {} is not used, material", keyword), material.name);
   } else if (std::find(kNumeric.begin(), kNumeric.end(), keyword) != kNumeric.end()) {
     noteIgnored(keyword, values(words));
   } else {

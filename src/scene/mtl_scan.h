@@ -16,6 +16,7 @@ struct MtlMaterial {
   std::optional<Vec3> reflectance;  ///< Kd as written
   std::optional<Vec3> radiance;     ///< Ke as written
   bool textured = false;            ///< has a map_Kd
+  bool glows = false;               ///< has a map_Ke
 };
 
 struct MtlScan {

@@ -33,7 +33,14 @@ class MaterialReader {
   void readLibrary(const fs::path& path);
   Material convert(const MtlMaterial& mtl, const tinyobj::material_t& parsed,
                    const fs::path& folder);
-  Index texture(const MtlMaterial& mtl, const tinyobj::material_t& parsed, const fs::path& folder);
+  struct Map {
+    const char* keyword;
+    TextureUse use;
+    const std::string& file;
+    const tinyobj::texture_option_t& option;
+  };
+  Index texture(const std::string& material, const Map& map, const fs::path& folder);
+  void noteTextureAlone(const std::string& factor, const std::string& material);
   void note(Severity severity, std::string text) {
     scene_.notes.push_back({severity, std::move(text)});
   }
@@ -41,10 +48,6 @@ class MaterialReader {
   const SceneOptions& options_;
   Scene& scene_;
   std::map<std::string, Index> index_of_;
-  struct LoadedTexture {
-    Index index = kNone;
-    std::string problem;
-  };
   std::map<std::pair<std::string, bool>, LoadedTexture> texture_of_;  ///< by path, repeat
   std::set<fs::path> read_;
   bool library_missing_ = false;
@@ -113,63 +116,77 @@ void MaterialReader::readLibrary(const fs::path& path) {
 Material MaterialReader::convert(const MtlMaterial& mtl, const tinyobj::material_t& parsed,
                                  const fs::path& folder) {
   Material material = defaultMaterial(mtl.name, options_);
-  if (mtl.textured && options_.textures) {
-    material.texture = texture(mtl, parsed, folder);
-  } else if (mtl.textured) {
-    ignored_.add("textures are off; the factor alone counts, material", mtl.name);
+  if (mtl.textured) {
+    material.texture = texture(
+        mtl.name,
+        {"map_Kd", TextureUse::reflectance, parsed.diffuse_texname, parsed.diffuse_texopt}, folder);
   }
-  if (mtl.reflectance) {
+  if (mtl.glows) {
+    material.emission_texture = texture(
+        mtl.name, {"map_Ke", TextureUse::emission, parsed.emissive_texname, parsed.emissive_texopt},
+        folder);
+  }
+  if (material.texture != kNone && mtl.reflectance.value_or(Vec3(0.0)) == Vec3(0.0)) {
+    material.reflectance = Vec3(1.0);
+    if (mtl.reflectance) noteTextureAlone("Kd", mtl.name);
+  } else if (mtl.reflectance) {
     material.reflectance = *mtl.reflectance;
     if (options_.kd_is_srgb) {
       for (int b = 0; b < 3; ++b) material.reflectance[b] = linearFromSrgb(material.reflectance[b]);
     }
-  } else if (material.texture != kNone) {
-    material.reflectance = Vec3(1.0);
   } else {
     note(Severity::info, fmt::format("material {} gives no Kd: reflectance {}", mtl.name,
                                      options_.default_reflectance));
   }
   if (mtl.radiance) material.emission = std::numbers::pi * *mtl.radiance;
+  if (material.emission_texture != kNone && material.emission == Vec3(0.0)) {
+    material.emission = Vec3(std::numbers::pi);
+    noteTextureAlone("Ke", mtl.name);
+  }
   return material;
 }
 
-Index MaterialReader::texture(const MtlMaterial& mtl, const tinyobj::material_t& parsed,
-                              const fs::path& folder) {
-  const tinyobj::texture_option_t& option = parsed.diffuse_texopt;
+/// Exporters write a factor of 0 beside a texture and mean the texture.
+void MaterialReader::noteTextureAlone(const std::string& factor, const std::string& material) {
+  ignored_.add(fmt::format("{0} is 0 beside map_{0}: the texture alone counts{1}, material", factor,
+                           factor == "Ke" ? " (1 is 1 W/m^2/sr)" : ""),
+               material);
+}
+
+Index MaterialReader::texture(const std::string& material, const Map& map, const fs::path& folder) {
+  if (!options_.textures) {
+    ignored_.add("textures are off; the factor alone counts, material", material);
+    return kNone;
+  }
   const auto differs = [](const tinyobj::real_t* v, double expected) {
     return v[0] != expected || v[1] != expected || v[2] != expected;
   };
-  if (differs(option.scale, 1) || differs(option.origin_offset, 0)) {
-    ignored_.add("map_Kd options -s and -o are not used, material", mtl.name, Severity::warning);
+  if (differs(map.option.scale, 1) || differs(map.option.origin_offset, 0)) {
+    ignored_.add(fmt::format("{} options -s and -o are not used, material", map.keyword), material,
+                 Severity::warning);
   }
-  std::string name(trimmed(parsed.diffuse_texname));
+  std::string name(trimmed(map.file));
   if (name.empty()) {
     note(Severity::warning,
-         fmt::format("material {}: map_Kd names no file that can be told from its options; the "
+         fmt::format("material {}: {} names no file that can be told from its options; the "
                      "factor alone counts",
-                     mtl.name));
+                     material, map.keyword));
     return kNone;
   }
   std::replace(name.begin(), name.end(), '\\', '/');
   const std::string path = (folder / name).string();
-  const auto [place, is_new] = texture_of_.try_emplace({path, !option.clamp});
+  const auto [place, is_new] = texture_of_.try_emplace({path, !map.option.clamp});
   LoadedTexture& loaded = place->second;
   if (is_new) {
     TextureResult result = readTexture(path, options_.max_image);
-    loaded.problem = result.problem;
     if (result.has_alpha) ignored_.add("alpha is not used, texture", path);
-    if (loaded.problem.empty()) {
-      result.texture.repeat = !option.clamp;
-      loaded.index = Index(scene_.textures.size());
-      scene_.textures.push_back(std::move(result.texture));
-    }
+    loaded = keepTexture(std::move(result), !map.option.clamp, scene_);
   }
-  if (loaded.index == kNone) {
-    ignored_.add(
-        fmt::format("texture {} {}; the factor alone counts, material", path, loaded.problem),
-        mtl.name, Severity::warning);
-  }
-  return loaded.index;
+  const std::string problem = loaded.problemAs(map.use);
+  if (problem.empty()) return loaded.index;
+  ignored_.add(fmt::format("texture {} {}; the factor alone counts, material", path, problem),
+               material, Severity::warning);
+  return kNone;
 }
 
 std::vector<Index> MaterialReader::resolve(const ObjScan& scan) {

@@ -6,6 +6,7 @@
 #include <set>
 #include <span>
 #include <unordered_map>
+#include <utility>
 
 #include "base/input_file.h"
 #include "scene/json_scan.h"
@@ -46,6 +47,7 @@ class Overrides {
   void setProperty(const std::string& name, const std::string& property, const Vec3& value,
                    const Origin& origin);
   void setSides(const std::string& name, bool two_sided, const Origin& origin);
+  void setSky(const Vec3& radiance);
   void readMaterialsFile(const std::string& path);
 
  private:
@@ -58,6 +60,10 @@ class Overrides {
   Index ownMaterial(Index surface, std::span<const Index> chosen);
   void note(std::string text) { scene_.notes.push_back({Severity::info, std::move(text)}); }
   void noteUnused(const std::string& name, Index material);
+  // Each says in words what changed.
+  std::string setReflectance(Material& material, const Vec3& value, const Origin& origin);
+  std::string setEmission(Material& material, const Vec3& value, const Origin& origin);
+  std::string dropTexture(Index& texture, const char* instead) const;
 
   Scene& scene_;
   ByName surfaces_called_;
@@ -120,33 +126,63 @@ Index Overrides::ownMaterial(Index surface, std::span<const Index> chosen) {
   return copy;
 }
 
+std::string withTexture(const Vec3& factor, Index texture) {
+  return describeBands(factor) + (texture == kNone ? "" : " x texture");
+}
+
+std::string setTint(Material& material, const Vec3& value, const Origin& origin) {
+  const Vec3 tinted = material.reflectance * value;
+  checkReflectance(origin.text, material.name, tinted);
+  const std::string before = withTexture(material.reflectance, material.texture);
+  material.reflectance = tinted;
+  return fmt::format("reflectance {} -> {}", before, withTexture(tinted, material.texture));
+}
+
 void Overrides::setProperty(const std::string& name, const std::string& property, const Vec3& value,
                             const Origin& origin) {
-  const bool reflectance = property == "reflectance";
-  if (!reflectance && property != "emission" && property != "radiance") {
-    origin.fail(fmt::format("`{}` is none of reflectance, emission, radiance", property));
+  const bool emission = property == "emission" || property == "radiance";
+  if (!emission && property != "reflectance" && property != "tint") {
+    origin.fail(fmt::format("`{}` is none of reflectance, tint, emission, radiance", property));
   }
-  const Vec3 exitance = property == "radiance" ? std::numbers::pi * value : value;
-  if (reflectance) {
-    checkReflectance(origin.text, name, value);
-  } else {
-    checkEmission(origin.text, name, exitance);
-  }
+  const Vec3 asked = property == "radiance" ? std::numbers::pi * value : value;
   std::set<std::string> said;
   for (const Index m : materialsOf(name, origin)) {
     Material& material = scene_.materials[m];
-    Vec3& target = reflectance ? material.reflectance : material.emission;
-    const std::string before =
-        describeBands(target) + (reflectance && material.texture != kNone ? " x texture" : "");
-    target = reflectance ? value : exitance;
-    // A value that was asked for is the value, not one more factor.
-    if (reflectance) material.texture = kNone;
-    const std::string change =
-        fmt::format("{}: {} {} -> {}{}", name, reflectance ? "reflectance" : "emission", before,
-                    describeBands(target), reflectance ? "" : " W/m^2");
-    if (said.insert(change).second) note(change);
+    const std::string change = emission             ? setEmission(material, asked, origin)
+                               : property == "tint" ? setTint(material, asked, origin)
+                                                    : setReflectance(material, asked, origin);
+    if (said.insert(change).second) note(fmt::format("{}: {}", name, change));
     noteUnused(name, m);
   }
+}
+
+// A value that was asked for is the value, not one more factor: its texture goes, and is named.
+std::string Overrides::dropTexture(Index& texture, const char* instead) const {
+  if (texture == kNone) return {};
+  const std::string dropped = scene_.textures[std::exchange(texture, kNone)].name;
+  return fmt::format("; its texture {} is dropped{}", dropped, instead);
+}
+
+std::string Overrides::setReflectance(Material& material, const Vec3& value, const Origin& origin) {
+  checkReflectance(origin.text, material.name, value);
+  const std::string before = withTexture(material.reflectance, material.texture);
+  material.reflectance = value;
+  return fmt::format("reflectance {} -> {}", before, describeBands(value)) +
+         dropTexture(material.texture, " (tint keeps it)");
+}
+
+std::string Overrides::setEmission(Material& material, const Vec3& value, const Origin& origin) {
+  checkEmission(origin.text, material.name, value);
+  const std::string before = withTexture(material.emission, material.emission_texture);
+  material.emission = value;
+  return fmt::format("emission {} -> {} W/m^2", before, describeBands(value)) +
+         dropTexture(material.emission_texture, "");
+}
+
+void Overrides::setSky(const Vec3& radiance) {
+  note(fmt::format("sky: radiance {} -> {} W/m^2/sr from where nothing stands",
+                   describeBands(scene_.sky), describeBands(radiance)));
+  scene_.sky = radiance;
 }
 
 void Overrides::noteUnused(const std::string& name, Index material) {
@@ -261,6 +297,7 @@ void applyOverrides(Scene& scene, const SceneOptions& options) {
     for (const std::string& name : options.two_sided) {
       overrides.setSides(name, true, {"--two-sided " + name});
     }
+    if (options.sky) overrides.setSky(*options.sky);
   } catch (...) {
     scene.materials = std::move(materials);
     scene.surfaces = std::move(surfaces);

@@ -78,15 +78,23 @@ void SceneBuilder::dropUnusableTextures() {
   bool textured = false;
   for (std::size_t s = 0; s < scene_.surfaces.size(); ++s) {
     Surface& surface = scene_.surfaces[s];
-    if (scene_.materials[surface.material].texture == kNone) continue;
+    if (!isTextured(scene_.materials[surface.material])) continue;
     if (!lacks_texcoords_[s]) {
       textured = true;
       continue;
     }
     Material plain = scene_.materials[surface.material];
-    plain.texture = kNone;
-    notes.add("texture not used, faces without texture coordinates; the factor alone counts",
-              surface.object + "/" + plain.name, Severity::warning);
+    const std::string name = surface.object + "/" + plain.name;
+    if (std::exchange(plain.texture, kNone) != kNone) {
+      notes.add("texture not used, faces without texture coordinates; the factor alone counts",
+                name, Severity::warning);
+    }
+    // A lamp all over is farther from what was meant than none.
+    if (std::exchange(plain.emission_texture, kNone) != kNone) {
+      plain.emission = Vec3(0.0);
+      notes.add("emissive texture not used, faces without texture coordinates; they emit nothing",
+                name, Severity::warning);
+    }
     surface.material = Index(scene_.materials.size());
     scene_.materials.push_back(std::move(plain));
   }

@@ -66,6 +66,10 @@ class SceneBuilder {
   std::vector<bool> lacks_texcoords_;  ///< by surface
 };
 
+inline bool isTextured(const Material& material) {
+  return material.texture != kNone || material.emission_texture != kNone;
+}
+
 /// Material `name` with the default reflectance.
 Material defaultMaterial(const std::string& name, const SceneOptions& options);
 

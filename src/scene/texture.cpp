@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
 #include <new>
+#include <utility>
 
 #include "base/image_codec.h"
 #include "base/input_file.h"
@@ -14,6 +17,12 @@
 namespace radiosity {
 
 namespace {
+
+TextureResult withProblem(std::string problem) {
+  TextureResult result;
+  result.problem = std::move(problem);
+  return result;
+}
 
 TextureResult textureFrom(const DecodedImage& image, const std::string& name) {
   TextureResult result;
@@ -46,8 +55,10 @@ TextureResult textureFrom(const DecodedImage& image, const std::string& name) {
     }
   }
   const bool usable = std::all_of(texture.texels.begin(), texture.texels.end(),
-                                  [](float t) { return t >= 0.0f && t <= 1.0f; });
-  if (!usable) result.problem = "has texels outside 0 to 1, which are no reflectances";
+                                  [](float t) { return t >= 0.0f && std::isfinite(t); });
+  if (!usable) result.problem = "has texels that are negative or not finite";
+  result.above_one =
+      std::any_of(texture.texels.begin(), texture.texels.end(), [](float t) { return t > 1.0f; });
   return result;
 }
 
@@ -56,9 +67,7 @@ template <class Read>
 TextureResult decoded(const std::string& name, const Read& read) {
   try {
     const DecodedImage image = read();
-    if (!image.opened) {
-      return {{}, false, "cannot be decoded (" + onOneLine(image.problem) + ")"};
-    }
+    if (!image.opened) return withProblem("cannot be decoded (" + onOneLine(image.problem) + ")");
     return textureFrom(image, name);
   } catch (const std::bad_alloc&) {
     throw RunError(fmt::format("{}: the image does not fit into memory; make it smaller", name));
@@ -67,11 +76,27 @@ TextureResult decoded(const std::string& name, const Read& read) {
 
 }  // namespace
 
+std::string LoadedTexture::problemAs(TextureUse use) const {
+  if (!problem.empty() || use == TextureUse::emission || !above_one) return problem;
+  return "has texels above 1, which are no reflectances";
+}
+
+LoadedTexture keepTexture(TextureResult result, bool repeat, Scene& scene) {
+  LoadedTexture loaded;
+  loaded.problem = result.problem;
+  loaded.above_one = result.above_one;
+  if (!loaded.problem.empty()) return loaded;
+  result.texture.repeat = repeat;
+  loaded.index = Index(scene.textures.size());
+  scene.textures.push_back(std::move(result.texture));
+  return loaded;
+}
+
 TextureResult readTexture(const std::string& path, double max_image) {
   std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) return {{}, false, "is not there"};
+  if (!std::filesystem::exists(path, ignored)) return withProblem("is not there");
   const std::string why = whyNotAFile(path);
-  if (!why.empty()) return {{}, false, why};
+  if (!why.empty()) return withProblem(why);
   return decoded(path, [&] { return imageCodec().read(path, max_image * 1e6); });
 }
 

@@ -12,8 +12,25 @@ namespace radiosity {
 struct TextureResult {
   Texture texture;
   bool has_alpha = false;  ///< a channel that is not used
+  bool above_one = false;  ///< a texel is above 1: it is no reflectance
   std::string problem;
 };
+
+/// What a texture multiplies.
+enum class TextureUse { reflectance, emission };
+
+/// An image that was looked for once, and what came of it.
+struct LoadedTexture {
+  Index index = kNone;  ///< into Scene::textures
+  std::string problem;  ///< where there is none
+  bool above_one = false;
+
+  /// Why it cannot be used so; empty: it can.
+  std::string problemAs(TextureUse use) const;
+};
+
+/// Puts what was read among the scene's textures.
+LoadedTexture keepTexture(TextureResult result, bool repeat, Scene& scene);
 
 /// Reads an image file. Integer samples are sRGB-encoded unless the file says that they are
 /// linear; float samples are linear. Grey is repeated in all bands, alpha is left out.

@@ -42,14 +42,16 @@ std::optional<double> boundFrom(const System& system, const Fields& fields, cons
 }  // namespace
 
 // The all-ones vector costs one product and serves wherever every rho_i rowsum_i < 1. Else the
-// solution of M w = 1, roughly: a residual of 1 - M w within 0.1 leaves v = M w >= 0.9 > 0.
+// solution of M w = 1, roughly: a residual of 1 - M w within 0.1 leaves v = M w >= 0.9 > 0. The
+// products with the first w and the last are worth a sweep each.
 std::optional<double> certifiedErrorBound(const System& system, const Fields& fields,
                                           int max_sweeps, Progress& progress) {
   const std::vector<double> ones(fields.radiosity.size(), 1.0);
   Fields trial{ones, ones};
   system.matrix.product(trial.radiosity, system.bands, trial.irradiance, system.reflecting);
   if (const auto bound = boundFrom(system, fields, trial)) return bound;
-  Convergence convergence(kRoughTolerance, max_sweeps, "bounding the error", progress);
+  if (max_sweeps < 3) return std::nullopt;
+  Convergence convergence(kRoughTolerance, max_sweeps - 2, "bounding the error", progress);
   trial = gaussSeidel(System(system.matrix, system.bands, system.reflectance, ones), convergence);
   return boundFrom(system, fields, trial);
 }

@@ -3,29 +3,30 @@
 namespace radiosity {
 
 // With reciprocity the light seen by fronts is the light that falls on them, sum_i A_i fronts_i B_i
-// = sum_j A_j H_j. The rows' accounts sum to 1 and B = E + rho H, so summing A_i B_i both ways
-// gives
-//     sum A E = sum A (1 - rho) H + sum A sky B + sum A backs B,
+// = sum_j A_j (H_j - S_j), S what falls from the sky. The rows' accounts sum to 1 and B = E + rho
+// H, so summing A_i B_i both ways gives
+//     sum A E + sum A S = sum A (1 - rho) H + sum A sky B + sum A backs B,
 // and what is left over measures missing reciprocity and the residual.
 EnergyAccount energyAccount(const FormFactors& factors, std::span<const double> reflectance,
-                            std::span<const double> emission, std::span<const double> radiosity,
+                            const Incoming& incoming, std::span<const double> radiosity,
                             std::span<const double> irradiance, int bands) {
   const auto width = std::size_t(bands);
   const std::vector<double> zeros(width, 0.0);
-  EnergyAccount account{zeros, zeros, zeros, zeros, zeros};
+  EnergyAccount account{zeros, zeros, zeros, zeros, zeros, zeros};
   const std::span<const double> area = factors.matrix.area();
   for (std::size_t i = 0; i < area.size(); ++i) {
     for (std::size_t b = 0; b < width; ++b) {
       const std::size_t k = i * width + b;
-      account.emitted[b] += area[i] * emission[k];
+      account.emitted[b] += area[i] * incoming.emission[k];
+      account.from_sky[b] += area[i] * incoming.sky[k];
       account.absorbed[b] += area[i] * (1 - reflectance[k]) * irradiance[k];
       account.to_sky[b] += area[i] * factors.sky[i] * radiosity[k];
       account.on_backs[b] += area[i] * factors.backs[i] * radiosity[k];
     }
   }
   for (std::size_t b = 0; b < width; ++b) {
-    account.imbalance[b] =
-        account.emitted[b] - account.absorbed[b] - account.to_sky[b] - account.on_backs[b];
+    account.imbalance[b] = account.emitted[b] + account.from_sky[b] - account.absorbed[b] -
+                           account.to_sky[b] - account.on_backs[b];
   }
   return account;
 }

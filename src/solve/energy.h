@@ -7,9 +7,15 @@
 
 namespace radiosity {
 
+/// What comes in: E, and what falls on the patches from the sky; N * bands, row-major, W/m^2.
+struct Incoming {
+  std::span<const double> emission;
+  std::span<const double> sky;
+};
+
 /// The account of B = `radiosity`, H = `irradiance`, all N * bands, row-major.
 EnergyAccount energyAccount(const FormFactors& factors, std::span<const double> reflectance,
-                            std::span<const double> emission, std::span<const double> radiosity,
+                            const Incoming& incoming, std::span<const double> radiosity,
                             std::span<const double> irradiance, int bands);
 
 }  // namespace radiosity

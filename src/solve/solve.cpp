@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <string_view>
 
@@ -44,7 +45,8 @@ struct PatchNames {
 };
 
 void checkSizes(const FormFactors& factors, std::span<const double> reflectance,
-                std::span<const double> emission, int bands, const PatchNames& names) {
+                std::span<const double> emission, std::span<const double> sky, int bands,
+                const PatchNames& names) {
   const std::size_t n = factors.matrix.size();
   if (bands < 1) throw InputError(fmt::format("solve: {} bands; 1 or more are needed", bands));
   const auto check = [](std::string_view what, std::size_t size, std::size_t expected) {
@@ -56,6 +58,11 @@ void checkSizes(const FormFactors& factors, std::span<const double> reflectance,
   check("row sum", factors.fronts.size(), n);
   check("back", factors.backs.size(), n);
   check("sky", factors.sky.size(), n);
+  if (!sky.empty()) check("sky radiance", sky.size(), std::size_t(bands));
+  for (const double radiance : sky) {
+    if (radiance >= 0 && std::isfinite(radiance)) continue;
+    throw InputError(fmt::format("solve: sky radiance {} is not a finite number >= 0", radiance));
+  }
   if (names.group.empty()) return;
   check("surface", names.group.size(), n);
   for (const Index g : names.group) {
@@ -76,6 +83,26 @@ void checkMaterials(std::span<const double> reflectance, std::span<const double>
                                    names.of(i), emission[k]));
     }
   }
+}
+
+/// What the sky sends to each patch, N * bands, W/m^2. An exact row's account of the sky may be a
+/// little below 0.
+std::vector<double> skyIrradiance(const FormFactors& factors, std::span<const double> sky,
+                                  int bands) {
+  std::vector<double> irradiance(factors.sky.size() * std::size_t(bands), 0.0);
+  for (std::size_t k = 0; !sky.empty() && k < irradiance.size(); ++k) {
+    const double share = std::max(0.0, factors.sky[k / std::size_t(bands)]);
+    irradiance[k] = std::numbers::pi * sky[k % std::size_t(bands)] * share;
+  }
+  return irradiance;
+}
+
+/// E and what is reflected of the sky.
+std::vector<double> sourceOf(std::span<const double> reflectance, std::span<const double> emission,
+                             std::span<const double> from_sky) {
+  std::vector<double> source(emission.begin(), emission.end());
+  for (std::size_t k = 0; k < source.size(); ++k) source[k] += reflectance[k] * from_sky[k];
+  return source;
 }
 
 /// Which bands are solved, and where each band's values come from.
@@ -152,7 +179,9 @@ std::string convergenceMessage(const SolveSummary& summary, const SolveOptions& 
       summary.error_bound
           ? fmt::format("the error against this matrix's solution is below {:.2e} W/m^2",
                         *summary.error_bound)
-          : std::string("no certificate: the error could not be bounded");
+          : std::string(
+                "no certificate: the error could not be bounded in the time that the "
+                "solution took");
   if (summary.status == SolveStatus::converged) {
     return fmt::format("converged: {}; {}; usable", numbers, bound);
   }
@@ -180,11 +209,20 @@ Fields iterate(const System& system, const SolveOptions& options, Progress& prog
   }
   summary.residual = summary.residual_history.back();
   if (!diverged) {
-    summary.error_bound = certifiedErrorBound(system, fields, options.max_iterations, progress);
+    summary.error_bound = certifiedErrorBound(system, fields, summary.iterations, progress);
   }
   summary.message = convergenceMessage(summary, options, diverged);
   blackIrradiance(system, fields);
   return fields;
+}
+
+/// Nothing leaves any patch.
+void nameDarkness(const std::vector<double>& from_sky, SolveSummary& summary) {
+  const bool sky = std::any_of(from_sky.begin(), from_sky.end(), [](double h) { return h > 0; });
+  summary.status = sky ? SolveStatus::converged : SolveStatus::no_light;
+  summary.message =
+      sky ? "converged: the sky shines in, but no patch emits or reflects, so B = 0; usable"
+          : "no light: no patch emits, so everything is dark; usable, but black";
 }
 
 }  // namespace
@@ -201,27 +239,28 @@ void SolveOptions::validate() const {
 Solution solve(const FormFactors& factors, std::span<const double> reflectance,
                std::span<const double> emission, int bands, const SolveOptions& options,
                Progress& progress, std::span<const Index> group,
-               std::span<const std::string> group_names) {
+               std::span<const std::string> group_names, std::span<const double> sky) {
   const auto start = std::chrono::steady_clock::now();
   const PatchNames names{group, group_names};
   options.validate();
-  checkSizes(factors, reflectance, emission, bands, names);
+  checkSizes(factors, reflectance, emission, sky, bands, names);
   checkMaterials(reflectance, emission, bands, names);
 
   Solution solution;
   solution.bands = bands;
   SolveSummary& summary = solution.summary;
-  const BandPlan plan(reflectance, emission, bands);
+  const std::vector<double> from_sky = skyIrradiance(factors, sky, bands);
+  const std::vector<double> source = sourceOf(reflectance, emission, from_sky);
+  const BandPlan plan(reflectance, source, bands);
   const System system(factors.matrix, int(plan.solved().size()), plan.pick(reflectance),
-                      plan.pick(emission));
+                      plan.pick(source));
   summary.skipped = {
       .black_patches = system.black, .dark_bands = plan.dark(), .equal_bands = plan.repeated()};
   if (plan.solved().empty()) {
     solution.radiosity.assign(emission.size(), 0.0);
     solution.irradiance.assign(emission.size(), 0.0);
-    summary.status = SolveStatus::no_light;
     summary.error_bound = 0.0;
-    summary.message = "no light: no patch emits, so everything is dark; usable, but black";
+    nameDarkness(from_sky, summary);
   } else if (const WhiteRoom room = findWhiteRoom(factors, system); !room.patches.empty()) {
     summary.status = SolveStatus::singular;
     summary.message = fmt::format(
@@ -235,8 +274,9 @@ Solution solve(const FormFactors& factors, std::span<const double> reflectance,
     solution.radiosity = plan.spread(fields.radiosity);
     solution.irradiance = plan.spread(fields.irradiance);
   }
-  summary.energy =
-      energyAccount(factors, reflectance, emission, solution.radiosity, solution.irradiance, bands);
+  for (std::size_t k = 0; k < from_sky.size(); ++k) solution.irradiance[k] += from_sky[k];
+  summary.energy = energyAccount(factors, reflectance, {emission, from_sky}, solution.radiosity,
+                                 solution.irradiance, bands);
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return solution;
 }

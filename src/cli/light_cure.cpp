@@ -1,0 +1,40 @@
+#include "cli/light_cure.h"
+
+#include <fmt/format.h>
+
+#include "scene/likely_lamp.h"
+
+namespace radiosity::cli {
+
+namespace {
+
+/// As a shell takes it for one word.
+std::string quoted(const std::string& word) {
+  const bool plain = !word.empty() && word.find_first_not_of(
+                                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                          "0123456789_./:=,+-@%") == std::string::npos;
+  if (plain) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+}  // namespace
+
+std::string lightCure(const Request& request, const Scene& scene) {
+  std::string command;
+  for (const std::string& argument : request.arguments) command += quoted(argument) + " ";
+  return fmt::format(
+      "make something a lamp: {}--set {} (W/m^2/sr), or light an open scene from "
+      "outside: --sky 1",
+      command, quoted(likelyLamp(scene) + ".radiance=10"));
+}
+
+std::string darknessText(const Request& request, const Scene& scene) {
+  const char* why = scene.sky == Vec3(0.0)
+                        ? "nothing emits light"
+                        : "nothing emits light and no patch sees the sky (the scene is closed)";
+  return fmt::format("{}, so B = 0 everywhere; {}", why, lightCure(request, scene));
+}
+
+}  // namespace radiosity::cli

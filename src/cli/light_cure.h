@@ -1,0 +1,18 @@
+// What to do about a scene in which it is dark.
+#pragma once
+
+#include <string>
+
+#include "cli/request.h"
+#include "radiosity/scene.h"
+
+namespace radiosity::cli {
+
+/// Both cures, a lamp and the sky, the lamp as a command line to paste: the one that was typed with
+/// --set for what is likeliest a lamp.
+std::string lightCure(const Request& request, const Scene& scene);
+
+/// A solution of B = 0, why, and both cures.
+std::string darknessText(const Request& request, const Scene& scene);
+
+}  // namespace radiosity::cli

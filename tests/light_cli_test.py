@@ -1,0 +1,182 @@
+"""What a user sees and sets: the sky, dark scenes, stages that are kept, what cannot be kept."""
+
+import json
+import shlex
+import signal
+import subprocess
+import sys
+import unittest
+
+import h5py
+import numpy as np
+import scipy.io
+import scipy.sparse
+
+from cli_runner import DATA, PROGRAM, SMALL, CliTest
+
+FLOOR = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\no floor\nf 4 3 2 1\n"
+
+
+class Sky(CliTest):
+    def test_a_floor_under_the_sky(self):
+        self.write("floor.obj", FLOOR)
+        report = self.report("solve", "floor.obj", "--patches", "9", "--sky", "1,2,0.5", "-o", "s.h5")
+        with h5py.File(self.folder / "s.h5") as file:
+            # rho = 0.5 where the file has no material; nothing but sky: rounding.
+            np.testing.assert_allclose(file["solution/radiosity"][()],
+                                       np.tile(0.5 * np.pi * np.array([1, 2, 0.5]), (9, 1)),
+                                       rtol=1e-14)
+            self.assertEqual(list(file["scene"].attrs["sky"]), [1, 2, 0.5])
+        np.testing.assert_allclose(report["solution"]["from_sky_W"], np.pi * np.array([1, 2, 0.5]),
+                                   rtol=1e-14)
+        # It stays in the file; another one is another solution with the same form factors.
+        again = self.report("solve", "s.h5")
+        self.assertEqual(again["stages"]["solution"]["action"], "reused")
+        darker = self.report("solve", "s.h5", "--sky", "0.5")
+        self.assertEqual(darker["stages"]["form_factors"]["action"], "reused")
+        self.assertIn("sky 1,2,0.5 -> 0.5", darker["stages"]["solution"]["detail"])
+
+    def test_pictures_show_it(self):
+        self.write("floor.obj", FLOOR)
+        self.run_program("render", "floor.obj", "--sky", "2", "--patches", "9", "-o", "p.png",
+                         "-o", "p.exr", "--camera", "eye=0.5,1,3;target=0.5,0.5,0", "--width", "64")
+        self.run_program("gather", "floor.obj", "--sky", "2", "--patches", "9", "--resolution",
+                         "64", "-o", "g.exr", "--camera", "eye=0.5,1,3;target=0.5,0.5,0",
+                         "--width", "64")
+        report = self.report("compare", "p.exr", "g.exr", "--tolerance", "1e-5")["comparison"]
+        self.assertEqual(report["area_a"], 64 * 64)  # every pixel shows something: alpha 1
+
+    def test_compare_with_gather(self):
+        self.run_program("compare", DATA / "cornell-box.obj", "--sky", "1", "--gather", *SMALL,
+                         "--at", "patches", "--gather-tolerance", "1e-6", "--tolerance", "5e-6")
+
+    def test_a_closed_scene_does_not_see_it(self):
+        run = self.run_program("solve", "box.obj", *SMALL, "--set", "lamp.radiance=0", "--sky", "1",
+                               "-o", "s.h5")
+        self.assertIn("nothing emits light and no patch sees the sky (the scene is closed)", run.err)
+
+    def test_what_is_no_radiance(self):
+        self.refuse("solve", "box.obj", "--sky", "bright",
+                    words=["--sky: 'bright' is not one finite number or three with commas"])
+        self.refuse("solve", "box.obj", "--sky", "1,-2,3", words=["--sky: sky radiance -2 is not"])
+
+
+class DarkScenes(CliTest):
+    def test_both_cures_are_named_and_the_first_can_be_pasted(self):
+        self.write("box.obj", (self.folder / "box.obj").read_text().replace("o room", "o my room"))
+        line = self.refuse("render", "box.obj", *SMALL, "--set", "lamp.radiance=0", "-o", "p.png")
+        self.assertEqual(line, "radiosity: box.obj: nothing in the scene emits light, so the picture "
+                         f"would be black; make something a lamp: {PROGRAM} render box.obj --patches "
+                         "60 --method hemicube --resolution 32 --set lamp.radiance=0 -o p.png --set "
+                         "lamp.radiance=10 (W/m^2/sr), or light an open scene from outside: --sky 1")
+        pasted = line.split("make something a lamp: ")[1].split(" (W/m^2/sr)")[0]
+        subprocess.run(shlex.split(pasted), cwd=self.folder, check=True, capture_output=True)
+        self.assertTrue((self.folder / "p.png").exists())
+
+    def test_nothing_lit_in_view(self):
+        # A camera in a second, dark room beside the lit one.
+        dark = "".join(f"v {x + 3} {y} {z}\n" for x, y, z in
+                       [(0, 0, 0), (0, 0, 1), (1, 0, 1), (1, 0, 0), (0, 1, 0), (1, 1, 0), (1, 1, 1),
+                        (0, 1, 1)])
+        faces = "".join(f"f {' '.join(str(int(v) + 8) for v in face.split())}\n" for face in
+                        ["1 2 3 4", "1 4 6 5", "2 8 7 3", "1 5 8 2", "4 3 7 6", "5 6 7 8"])
+        self.write("box.obj", (self.folder / "box.obj").read_text() + dark +
+                   "o dark\nusemtl wall\n" + faces)
+        camera = ["--camera", "eye=3.1,0.5,0.5;target=4,0.5,0.5"]
+        run = self.run_program("render", "box.obj", "--patches", "100", *camera, "-o", "p.png")
+        self.assertIn("radiosity: warning: nothing lit is in view", run.err)
+        # The camera that nobody gave is in the lit room.
+        run = self.run_program("render", "box.obj", "--patches", "100", "-o", "p.png")
+        self.assertNotIn("nothing lit", run.err)
+
+
+class KeptStages(CliTest):
+    """A Ctrl-C loses no form factors."""
+
+    def interrupt(self, arguments, after):
+        process = subprocess.Popen([PROGRAM, *arguments], cwd=self.folder, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
+        line = ""
+        while not line.startswith(after):
+            line = process.stdout.readline()
+            self.assertTrue(line, "the run ended before it was interrupted")
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=120)
+        self.assertEqual(process.returncode, 1, err)
+        return err.splitlines()[-1]
+
+    def test_while_solving(self):
+        # So bright a room, and such slow sweeps, that a signal finds it at work.
+        slow = ["--set", "wall.reflectance=0.9999999", "--set", "lamp.reflectance=0.9999999",
+                "--solver", "jacobi", "--max-iterations", "100000000"]
+        line = self.interrupt(["render", "box.obj", "--patches", "1500", *slow, "-o", "p.png",
+                               "-o", "p.h5"], after="kept ")
+        self.assertEqual(line, "radiosity: interrupted; p.h5 keeps the form factors")
+        self.assertEqual(self.files(), ["box.mtl", "box.obj", "p.h5"])
+        report = self.report("solve", "p.h5", "--solver", "gauss-seidel", "--max-iterations", "1000")
+        self.assertEqual(report["stages"]["form_factors"]["action"], "reused")
+        self.assertEqual(report["solution"]["status"], "converged")
+
+    def test_while_drawing(self):
+        picture = ["--width", "8000", "--height", "8000", "--samples", "8"]
+        line = self.interrupt(["render", "box.obj", *SMALL, *picture, "-o", "p.png", "-o", "p.h5"],
+                              after="Picture")
+        self.assertEqual(line,
+                         "radiosity: interrupted; p.h5 keeps the form factors and the solution")
+        self.assertEqual(self.files(), ["box.mtl", "box.obj", "p.h5"])
+        report = self.report("render", "p.h5", "-o", "p.png")
+        self.assertEqual(report["stages"]["solution"]["action"], "reused")
+
+    def test_a_results_file_given_gets_what_it_lacks_and_keeps_what_it_has(self):
+        self.run_program("mesh", "box.obj", *SMALL[:2], "-o", "m.h5")
+        self.run_program("render", "m.h5", *SMALL[2:], "-o", "p.png")
+        with h5py.File(self.folder / "m.h5") as file:
+            self.assertIn("form_factors", file)
+            self.assertIn("radiosity", file["solution"])
+        before = (self.folder / "m.h5").read_bytes()
+        for change in [["--set", "wall.reflectance=0.1"], ["--resolution", "64"]]:
+            run = self.run_program("render", "m.h5", *change, "-o", "p.png")
+            self.assertIn("m.h5 is left as it is", run.out)
+            self.assertEqual((self.folder / "m.h5").read_bytes(), before)
+
+
+class WhatCannotBeKept(CliTest):
+    def test_too_few_patches(self):
+        run = self.run_program("factors", "box.obj", "--patches", "3")
+        self.assertEqual(run.err, "radiosity: warning: 6 patches instead of 3: the scene has 6 planar "
+                         "polygons, each at least one patch; large ones are not cut coarser than "
+                         "2 m for it\n")
+        run = self.run_program("factors", "box.obj", "--patches", "6")
+        self.assertEqual(run.err, "")
+
+    def test_a_matrix_market_file_holds_the_values_of_the_results_file(self):
+        # Exact form factors are stored once a pair; blocks in a room make both parts.
+        self.run_program("factors", DATA / "cornell-box-closed.obj", "--patches", "150",
+                         "--closure", "enforce", "-o", "f.h5", "-o", "f.mtx")
+        with h5py.File(self.folder / "f.h5") as file:
+            g = file["form_factors"]
+            raw, change = (scipy.sparse.csr_matrix(
+                (h["data"][()].astype(float), h["indices"], h["indptr"]), h["shape"][()])
+                for h in [g, g["closure"]])
+        text = scipy.io.mmread(self.folder / "f.mtx").tocsr()
+        self.assertEqual(abs(raw + change - text).max(), 0)
+
+
+class CompareHeadline(CliTest):
+    def test_without_emitters_and_the_worst_surface(self):
+        self.run_program("solve", "box.obj", *SMALL, "-o", "r.h5")
+        self.run_program("solve", "box.obj", *SMALL, "--set", "wall.reflectance=.4", "-o", "s.h5")
+        run = self.run_program("compare", "r.h5", "s.h5", "--report", "c.json")
+        c = json.loads((self.folder / "c.json").read_text())["comparison"]
+        lines = run.out.splitlines()
+        headline = lines[lines.index("Comparison") + 1]
+        self.assertRegex(headline, r"^  relative L2 difference +[\d.]+ \(without emitters [\d.]+; "
+                         r"worst surface room/wall: [\d.]+\)$")
+        self.assertGreater(c["relative_l2_without_emitters"], 2 * c["relative_l2"])
+        # Walls alone do not emit here: both figures are theirs.
+        self.assertEqual(c["worst_surface"], "room/wall")
+        self.assertAlmostEqual(c["worst_surface_l2"], c["relative_l2_without_emitters"], delta=1e-12)
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())

@@ -1,0 +1,89 @@
+// Bright walls: few sweeps, and a bound that costs no more than the solution.
+#include <gtest/gtest.h>
+
+#include "solve_systems.h"
+
+namespace radiosity {
+namespace {
+
+/// A closed room of n patches; `coupling`: how much its two halves exchange, 1: as one room.
+test::Reciprocal rooms(std::size_t n, double coupling) {
+  test::Random random(7);
+  test::Reciprocal out{test::Matrix(n, n), std::vector<double>(n, 1.0)};
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      const bool together = (i < n / 2) == (j < n / 2);
+      out.f(Eigen::Index(i), Eigen::Index(j)) = out.f(Eigen::Index(j), Eigen::Index(i)) =
+          i == j ? 0 : random(0.5, 1.0) * (together ? 1 : coupling);
+    }
+  }
+  // Sinkhorn: rows of a symmetric matrix to 1.
+  for (int k = 0; k < 200; ++k) {
+    const Eigen::VectorXd d = out.f.rowwise().sum().cwiseSqrt().cwiseInverse();
+    out.f = d.asDiagonal() * out.f * d.asDiagonal();
+  }
+  return out;
+}
+
+// Plain Gauss-Seidel needs 6,905 sweeps at 0.999 in one room, and hundreds more where a second room
+// hardly exchanges light with it.
+TEST(BrightWalls, TakeAboutADozenSweeps) {
+  const std::size_t n = 200;
+  for (const double coupling : {1.0, 0.01, 0.0001}) {
+    const auto [f, area] = rooms(n, coupling);
+    const auto factors = test::factorsFrom(f, area);
+    for (const double rho : {0.9, 0.99, 0.999, 0.999999}) {
+      std::vector<double> emission(n, 0.0);
+      emission[3] = 1;
+      emission[5] = 0.5;
+      const std::vector<double> reflectance(n, rho);
+      Progress quiet;
+      const Solution s = solve(factors, reflectance, emission, 1,
+                               test::options(Solver::gauss_seidel, 1e-8), quiet);
+      ASSERT_EQ(s.summary.status, SolveStatus::converged) << s.summary.message;
+      EXPECT_LE(s.summary.iterations, 16) << coupling << ' ' << rho;
+      ASSERT_TRUE(s.summary.error_bound.has_value()) << s.summary.message;
+      // The true error: a direct solver's, in 64-bit mantissas.
+      const auto expected = test::direct(f, reflectance, emission, 1);
+      EXPECT_LE(test::largestDifference(s.radiosity, expected), *s.summary.error_bound);
+    }
+  }
+}
+
+// No wall absorbs, one opening lets light out: the spectral radius is 1 but for the opening.
+TEST(BrightWalls, OfReflectanceOneWithAnOpening) {
+  const std::size_t n = 200;
+  auto [f, area] = rooms(n, 0.01);
+  f.row(17) *= 0.9;
+  f.col(17) *= 0.9;
+  const auto factors = test::factorsFrom(f, area);
+  std::vector<double> emission(n, 0.0);
+  emission[150] = 1;
+  const std::vector<double> reflectance(n, 1.0);
+  Progress quiet;
+  const Solution s =
+      solve(factors, reflectance, emission, 1, test::options(Solver::gauss_seidel, 1e-6), quiet);
+  ASSERT_EQ(s.summary.status, SolveStatus::converged) << s.summary.message;
+  EXPECT_LE(s.summary.iterations, 20);
+  for (std::size_t i = 0; i < n; ++i) EXPECT_GE(s.radiosity[i], emission[i]) << i;
+}
+
+TEST(BrightWalls, TheBoundStopsWithASentence) {
+  const std::size_t n = 100;
+  const auto [f, area] = rooms(n, 1e-6);
+  const auto factors = test::factorsFrom(f, area);
+  std::vector<double> emission(n, 1.0);  // near the answer from the start: two sweeps do
+  const std::vector<double> reflectance(n, 1 - 1e-12);
+  Progress quiet;
+  const Solution s =
+      solve(factors, reflectance, emission, 1, test::options(Solver::gauss_seidel, 0.5, 2), quiet);
+  EXPECT_FALSE(s.summary.error_bound.has_value());
+  EXPECT_NE(
+      s.summary.message.find(
+          "no certificate: the error could not be bounded in the time that the solution took"),
+      std::string::npos)
+      << s.summary.message;
+}
+
+}  // namespace
+}  // namespace radiosity
