@@ -95,7 +95,9 @@ class Subcommands(CliTest):
         outputs = [word for name in names for word in ("-o", name)]
         report = self.report("render", "box.obj", *SMALL, "--width", "40", "--samples", "1",
                              *outputs)
-        self.assertEqual([o["path"] for o in report["outputs"]], names)
+        # The stages come first: they are kept before anything is drawn.
+        self.assertEqual([o["path"] for o in report["outputs"]],
+                         ["p.h5", "p.png", "p.exr", "p.glb", "p.mtx"])
         for output in report["outputs"]:
             self.assertEqual((self.folder / output["path"]).stat().st_size, output["bytes"])
         self.assertEqual((self.folder / "p.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
