@@ -24,13 +24,19 @@ class ResidualProgress {
     if (!(powers_ > 0 && residual > 0)) return;
     const double share = std::clamp(std::log(start_ / residual) / powers_, 0.0, 1.0);
     const auto steps = std::size_t(share * double(kSteps));
-    if (steps > done_) progress_.advance(steps - done_);
-    done_ = std::max(done_, steps);
+    advanceTo(steps);
   }
-  void end() { progress_.end(); }
+  void end() {
+    advanceTo(kSteps);
+    progress_.end();
+  }
 
  private:
-  static constexpr std::size_t kSteps = 1000;
+  void advanceTo(std::size_t steps) {
+    for (; done_ < steps; ++done_) progress_.advance();
+  }
+
+  static constexpr std::size_t kSteps = 100;
 
   Progress& progress_;
   double start_;

@@ -198,7 +198,7 @@ void RegionMesher::markInside() {
 /// Whether the triangles inside have the area of the loops: not where the loops touch, or where
 /// rounding has turned one over.
 bool RegionMesher::tiles() const {
-  double area = 0;
+  long double area = 0;
   double terms = 0;
   const Vec2 base = region_.points[0];
   const auto add = [&](const Vec2& a, const Vec2& b, double sign) {
@@ -216,8 +216,9 @@ bool RegionMesher::tiles() const {
     const Vec2 a = positionOf(f->vertex(0));
     add(positionOf(f->vertex(1)) - a, positionOf(f->vertex(2)) - a, -1.0);
   }
-  // Each product is rounded once, and so is what it is made of.
-  return std::abs(area) <= 0x1p-50 * terms;
+  // Products and the coordinates they are made of are rounded some times each; a triangle that is
+  // turned over or there twice counts far more.
+  return std::abs(double(area)) <= 0x1p-46 * terms;
 }
 
 double RegionMesher::smallestAngle() const {

@@ -189,6 +189,7 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   }
   progress.begin("finishing", 1);
   accountForBacks(mesh, seen_backs, result);
+  progress.advance();
   progress.end();
   progress.check();
   report.exact.seconds_finish = std::chrono::duration<double>(Clock::now() - finishing).count();
