@@ -266,7 +266,7 @@ class LargeFiles(FileTest):
     def test_many_objects_groups_and_materials(self):
         for keyword in ["o", "g", "usemtl"]:
             parts = "".join(f"{keyword} part{k}\nv {k} 0 0\nv {k} 1 0\nv {k} 0 1\nf -3 -2 -1\n"
-                            for k in range(100000))
+                            for k in range(40000))
             self.put("a.obj", parts)
             with self.subTest(keyword=keyword):
                 self.passes("info", "a.obj")

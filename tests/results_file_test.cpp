@@ -125,7 +125,7 @@ TEST_F(ResultsFile, NamesWhatIsNotAResultsFile) {
   std::filesystem::remove(file());
   std::filesystem::create_directory(file());
   EXPECT_FALSE(isResultsFile(file()));
-  expectInputError("not HDF5");
+  expectInputError("is a folder");
   EXPECT_THROW(write({}), InputError);
   std::filesystem::remove(file());
   H5Fclose(H5Fcreate(file().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));

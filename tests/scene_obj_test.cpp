@@ -151,7 +151,8 @@ TEST_F(SceneObj, RefusesFilesThatAreNoScene) {
   std::filesystem::create_directories(path("folder.obj"));
   EXPECT_CONTAINS(inputErrorOf([&] { loadScene(path("folder.obj")); }), "is a folder");
   const std::string blend = write("scene.blend", "BLENDER");
-  EXPECT_CONTAINS(inputErrorOf([&] { loadScene(blend); }), "export it as .obj, .gltf or .glb");
+  EXPECT_CONTAINS(inputErrorOf([&] { loadScene(blend); }),
+                  "export it as .obj, .gltf, .glb or .stl");
   EXPECT_CONTAINS(errorOf(""), "is empty");
   EXPECT_CONTAINS(errorOf("# nothing\n"), "no faces");
   EXPECT_CONTAINS(errorOf(kSquare + "l 1 2\n"), "no faces");
