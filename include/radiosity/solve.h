@@ -62,8 +62,8 @@ struct SolveSummary {
   EnergyAccount energy;
   double seconds = 0;
   /// Relative, one a sweep. Jacobi: the true residual. Gauss-Seidel: the largest change that the
-  /// sweeps so far, combined, leave to a further one; where a sweep's own change is within tolerance
-  /// and in the last entry always, the true residual.
+  /// sweeps so far, combined, leave to a further one; the true residual where that is within
+  /// tolerance, and in the last entry always.
   std::vector<double> residual_history;
   std::string message;  ///< plain words, with numbers; says if B is usable
   bool usable() const {
