@@ -41,7 +41,8 @@ TEST(BrightWalls, TakeAboutADozenSweeps) {
       const Solution s = solve(factors, reflectance, emission, 1,
                                test::options(Solver::gauss_seidel, 1e-8), quiet);
       ASSERT_EQ(s.summary.status, SolveStatus::converged) << s.summary.message;
-      EXPECT_LE(s.summary.iterations, 16) << coupling << ' ' << rho;
+      // A step a bounce pattern that survives, and one more for each room: 8 to 17.
+      EXPECT_LE(s.summary.iterations, 20) << coupling << ' ' << rho;
       ASSERT_TRUE(s.summary.error_bound.has_value()) << s.summary.message;
       // The true error: a direct solver's, in 64-bit mantissas.
       const auto expected = test::direct(f, reflectance, emission, 1);
@@ -68,21 +69,29 @@ TEST(BrightWalls, OfReflectanceOneWithAnOpening) {
   for (std::size_t i = 0; i < n; ++i) EXPECT_GE(s.radiosity[i], emission[i]) << i;
 }
 
+// Rows that sum to more than 1 need a vector of their own for the bound, and that takes sweeps:
+// two, as many as the solution was given, are not enough.
 TEST(BrightWalls, TheBoundStopsWithASentence) {
-  const std::size_t n = 100;
-  const auto [f, area] = rooms(n, 1e-6);
-  const auto factors = test::factorsFrom(f, area);
-  std::vector<double> emission(n, 1.0);  // near the answer from the start: two sweeps do
-  const std::vector<double> reflectance(n, 1 - 1e-12);
-  Progress quiet;
-  const Solution s =
-      solve(factors, reflectance, emission, 1, test::options(Solver::gauss_seidel, 0.5, 2), quiet);
-  EXPECT_FALSE(s.summary.error_bound.has_value());
+  test::Random random(5);
+  const Eigen::Index n = 100;
+  const auto factors = test::factorsFrom(
+      random.rows(n, [](auto i) { return i % 2 == 0 ? 1.2 : 0.7; }), std::vector<double>(100, 1.0));
+  const std::vector<double> emission(100, 1.0);
+  const std::vector<double> reflectance(100, 1.0);
+  const auto run = [&](int sweeps) {
+    Progress quiet;
+    return solve(factors, reflectance, emission, 1,
+                 test::options(Solver::gauss_seidel, 1e-6, sweeps), quiet)
+        .summary;
+  };
+  const SolveSummary short_run = run(2);
+  EXPECT_FALSE(short_run.error_bound.has_value());
   EXPECT_NE(
-      s.summary.message.find(
+      short_run.message.find(
           "no certificate: the error could not be bounded in the time that the solution took"),
       std::string::npos)
-      << s.summary.message;
+      << short_run.message;
+  EXPECT_TRUE(run(1000).error_bound.has_value()) << "given its time, it is found";
 }
 
 }  // namespace
