@@ -253,7 +253,8 @@ class Images(FileTest):
         image[29] ^= 1  # of the header's check sum
         run = self.run_limited("info", self.put_image(bytes(image)))
         for line in run.stderr.decode().splitlines():
-            self.assertTrue(line.startswith("radiosity: "), line)
+            # The program's own lines, progress among them where the machine is slow.
+            self.assertRegex(line, r"^(radiosity|reading): ")
 
 
 class LargeFiles(FileTest):
@@ -370,8 +371,10 @@ class TwoRunsAtOnce(FileTest):
         for run in runs:
             _, err = run.communicate(timeout=300)
             if run.returncode != 0:
-                self.assertEqual(err, "radiosity: s.h5: was replaced by another run meanwhile; run "
-                                      "this one again\n")
+                # Warnings and progress may stand before it.
+                self.assertEqual(err.splitlines()[-1],
+                                 "radiosity: s.h5: was replaced by another run meanwhile; run "
+                                 "this one again")
                 self.assertEqual(run.returncode, 1)
         self.run_program("info", "s.h5")
         self.assertRegex(self.run_program("solve", "s.h5").out, r"(?s)form factors +reused.*solution +reused")

@@ -255,7 +255,8 @@ TEST_F(SceneObj, NamesWhatADiffuseMaterialLeavesOut) {
   EXPECT_NOTE(scene.notes, "transparency (d, Tr) is not used, material: glass", Severity::warning);
   EXPECT_NOTE(scene.notes, "texture map_Bump is not used, material: glass", Severity::info);
   EXPECT_NOTE(scene.notes, "metalness (Pm) is not used, material: steel", Severity::info);
-  EXPECT_NOTE(scene.notes, "texture map_Ke is not used, material: steel", Severity::warning);
+  EXPECT_NOTE(scene.notes, "e.png is not there; the factor alone counts, material: steel",
+              Severity::warning);
   EXPECT_NOTE(scene.notes, "unknown MTL statement `blurb`", Severity::warning);
   EXPECT_NOTE(scene.notes, "material bare gives no Kd: reflectance 0.5", Severity::info);
   EXPECT_NOTE(scene.notes, "m.mtl:17: material bare is defined twice", Severity::warning);
