@@ -81,7 +81,7 @@ class EverydayScenes(CliTest):
         self.check(generators.doubled_house, 50)
 
     def test_photogrammetry(self):
-        self.check(generators.photogrammetry, 400)
+        self.check(generators.photogrammetry, 100)
 
     def test_city(self):
         self.check(generators.city, 200)

@@ -98,6 +98,7 @@ void planExact(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progres
 void planHemicubes(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {
   progress.begin("preparing", 1);
   const HemicubeScene& scene = prepared.hemicubes.emplace(prepared.mesh, prepared.options);
+  progress.advance();
   progress.end();
   progress.check();
   prepared.hemicube_estimate = estimateHemicubes(prepared.mesh, scene, prepared.options, progress);

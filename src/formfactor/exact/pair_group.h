@@ -36,7 +36,7 @@ struct VisibleFraction {
 /// pairs that miss by less than ten times are halved.)
 inline constexpr double kPerPart = 1.5;
 
-/// What a pair may take: points times the occluders looked past from each, some hundredths of a
+/// What a pair may take: points times the occluders looked past from each, a few tenths of a
 /// second. Steps of shadows that no halving resolves would take hundreds of times that.
 inline constexpr std::size_t kMostLooks = std::size_t(1) << 20;
 
