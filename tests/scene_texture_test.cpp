@@ -163,7 +163,8 @@ TEST_F(SceneTexture, GoesOnWithTheFactorWhereATextureCannotBeUsed) {
   EXPECT_EQ(load("map_Kd lost.png\n").materialOf(0).reflectance, Vec3(.5)) << "not 0.6, not 1";
   write("text.png", "not an image");
   scene = load("map_Kd text.png\n");
-  EXPECT_NOTE(scene.notes, "text.png cannot be decoded (of an unknown image format)", Severity::warning);
+  EXPECT_NOTE(scene.notes, "text.png cannot be decoded (of an unknown image format)",
+              Severity::warning);
   write("grey.png", png(1, {"\x40"}, 0, 8));
   // The library takes the file's name for the second number of -s.
   scene = load("map_Kd -s 2 grey.png\n");

@@ -319,8 +319,8 @@ void Pipeline::gathered() {
   } else {
     const std::string reason = why(previous_.gather_key, key, previous_.gathered.has_value());
     const Stopwatch watch;
-    results_.gathered =
-        computedStage("gathering", [&] { return gather(patches(), materials(), gather_options_, progress_); });
+    results_.gathered = computedStage(
+        "gathering", [&] { return gather(patches(), materials(), gather_options_, progress_); });
     computed("gather", "gather", reason, watch.seconds());
   }
   results_.gather_key = key.text();

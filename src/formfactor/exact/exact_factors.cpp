@@ -163,18 +163,10 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   std::vector<std::vector<SeenBack>> seen_backs(n);
   UncertainEntries uncertain(options.closure == ClosureMode::off ? 0 : n);
   UncertainEntries* const wanted = options.closure == ClosureMode::off ? nullptr : &uncertain;
-  const RowContext context{scene.elements,
-                           scene.order,
-                           scene.chunks,
-                           scene.visibility,
-                           kernels.unoccluded,
-                           kernels.partial,
-                           progress,
-                           recheckEvery(estimate.partial_pairs),
-                           result.matrix,
-                           wanted,
-                           result.backs,
-                           seen_backs};
+  const RowContext context{
+      scene.elements,     scene.order,     scene.chunks, scene.visibility,
+      kernels.unoccluded, kernels.partial, progress,     recheckEvery(estimate.partial_pairs),
+      result.matrix,      wanted,          result.backs, seen_backs};
   const RowSums sums = fillRows(context, scene.tasks, progress);
   using Clock = std::chrono::steady_clock;
   const Clock::time_point finishing = Clock::now();
