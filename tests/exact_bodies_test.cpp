@@ -131,7 +131,7 @@ TEST(ExactBodies, AllValuesAreNumbers) {
     }
     std::size_t faces = 0;
     const PatchMesh mesh = roomWithBall(
-        7, 12, [&](int r, int s) { return radius[std::size_t(r * 12 + s)]; }, faces);
+        7, 12, [&](int r, int s) { return radius[std::size_t(r) * 12 + std::size_t(s)]; }, faces);
     FormFactorOptions options;
     options.method = FormFactorMethod::exact;
     options.tolerance = 1e-2;

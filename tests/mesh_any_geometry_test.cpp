@@ -114,6 +114,7 @@ TEST(AnyGeometry, BowTiesAndPolygonsThatCrossThemselves) {
   b.face(bow, {{4, 0, 0}, {4, 2, 1}, {6, 0, 0}, {6, 2, 1}});
   // A star of five points drawn in one line.
   std::vector<Vec3> star;
+  star.reserve(5);
   for (int k = 0; k < 5; ++k) {
     const double a = 4 * std::numbers::pi * k / 5;
     star.emplace_back(10 + 2 * std::cos(a), 2 * std::sin(a), 0.0);
@@ -244,6 +245,7 @@ TEST(AnyGeometry, APolygonOfTwentyThousandCorners) {
   SceneBuilder b;
   const Index plate = b.surface("plate");
   std::vector<Vec3> corners;
+  corners.reserve(20000);
   for (int k = 0; k < 20000; ++k) {
     const double a = 2 * std::numbers::pi * k / 20000;
     const double r = 1 + 0.1 * std::sin(40 * a);

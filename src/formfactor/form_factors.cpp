@@ -149,7 +149,7 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress) {
   if (!plan.prepared) throw std::logic_error("this plan is not from planFormFactors()");
   const FormFactorPlan::Prepared& prepared = *plan.prepared;
   FormFactors result;
-  if (prepared.scene) {
+  if (prepared.scene && prepared.kernels) {
     result = exactFactors(prepared.mesh, *prepared.scene, *prepared.kernels, prepared.estimate,
                           prepared.options, progress);
     result.report.exact.seconds_prepare += prepared.seconds;

@@ -165,7 +165,7 @@ std::vector<Index> cutPlanes(InputFaces& input, const std::vector<Plane>& planes
                              const std::vector<Sheet>& sheets, EdgeTable& edges, Arrangement& out,
                              Progress& progress) {
   PlaneCuts cuts(input, planes, sheets, edges, progress);
-  const std::vector<Index> stuck = cuts.run();
+  std::vector<Index> stuck = cuts.run();
   if (stuck.empty()) out = cuts.arrangement();
   return stuck;
 }

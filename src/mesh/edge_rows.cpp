@@ -21,6 +21,7 @@ struct Range {
 EdgeRows::EdgeRows(const WeldedPoints& points, const PlaneImage& image,
                    const std::vector<std::array<Index, 2>>& edges, double margin) {
   std::vector<Range> ranges;
+  ranges.reserve(edges.size());
   double high = -std::numeric_limits<double>::infinity();
   low_ = -high;
   for (const auto& [a, b] : edges) {

@@ -173,6 +173,7 @@ std::vector<Index> Splitter::pass(const std::vector<Index>& changed, Progress& p
 /// are left out where that takes little.
 std::vector<Index> Splitter::edgesBeside(const std::vector<Index>& changed) const {
   std::vector<Box3> near;
+  near.reserve(changed.size());
   for (const Index e : changed) near.push_back(boxes_[e]);
   const BoxFilter filter(near);
   std::vector<Index> out;

@@ -89,6 +89,7 @@ using Cdt = CGAL::Constrained_Delaunay_triangulation_2<
 /// False if corners coincide or edges touch.
 bool insertOutline(std::span<const Vec2> outline, Cdt& cdt) {
   std::vector<std::pair<Cdt::Point, Index>> points;
+  points.reserve(outline.size());
   for (std::size_t k = 0; k < outline.size(); ++k) {
     points.emplace_back(Cdt::Point(outline[k].x, outline[k].y), Index(k));
   }

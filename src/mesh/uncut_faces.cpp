@@ -53,6 +53,7 @@ void addUncut(const Scene& scene, const InputFaces& input, CoarseComplex& comple
   for (const InputFace& face : input.uncut) {
     const PlaneImage image(face.normal);
     std::vector<Vec2> outline;
+    outline.reserve(face.loop.size());
     for (const Index v : face.loop) outline.push_back(image(input.points[v]));
     const bool back = scene.materials[scene.surfaces[face.surface].material].two_sided;
     double kept = 0;

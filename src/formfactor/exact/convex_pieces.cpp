@@ -146,6 +146,7 @@ std::vector<std::vector<Vec2>> convexPieces(const std::vector<std::vector<Vec2>>
     std::vector<std::pair<double, std::size_t>> crossing;
     std::erase_if(active, [&](std::size_t k) { return climbs[k].high_level <= level; });
     active.insert(active.end(), from_level[level].begin(), from_level[level].end());
+    crossing.reserve(active.size());
     for (const std::size_t k : active) {
       crossing.emplace_back(at(climbs[k], levels.size(), middle).x, k);
     }
