@@ -24,6 +24,7 @@ SceneChecks::SceneChecks(const Scene& scene, const WeldedFaces& faces)
   }
   topology_ = analyseTopology(faces, two_sided, is_double_);
   std::vector<Box> boxes;
+  boxes.reserve(topology_.parts.size());
   for (const ConnectedPart& part : topology_.parts) boxes.push_back({part.lower, part.upper});
   part_boxes_ = BoxTree(std::move(boxes));
 }

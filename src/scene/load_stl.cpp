@@ -68,6 +68,7 @@ class StlBuilder {
 
   void finish(const SceneOptions& options) {
     std::vector<std::string> solids;
+    solids.reserve(scene_.surfaces.size());
     for (const Surface& surface : scene_.surfaces) solids.push_back(surface.object);
     scene_.notes.push_back(
         {Severity::warning, fmt::format("no material, reflectance {}: {}",
