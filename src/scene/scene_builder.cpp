@@ -13,7 +13,7 @@ std::string UniqueNames::make(const std::string& wanted) {
   if (taken_.insert(wanted).second) return wanted;
   std::size_t& number = last_number_.try_emplace(wanted, 1).first->second;
   for (;;) {
-    const std::string name = fmt::format("{}#{}", wanted, ++number);
+    std::string name = fmt::format("{}#{}", wanted, ++number);
     if (taken_.insert(name).second) return name;
   }
 }
