@@ -153,9 +153,11 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress) {
     result = exactFactors(prepared.mesh, *prepared.scene, *prepared.kernels, prepared.estimate,
                           prepared.options, progress);
     result.report.exact.seconds_prepare += prepared.seconds;
-  } else {
+  } else if (prepared.hemicubes) {
     result = hemicubeFactors(prepared.mesh, *prepared.hemicubes, prepared.hemicube_estimate,
                              prepared.options, progress);
+  } else {
+    throw std::logic_error("this plan was not prepared");
   }
   FormFactorReport& report = result.report;
   report.method_reason = plan.reason;

@@ -25,10 +25,13 @@ class RgbPixel {
   }
   void sample(Seen seen, const std::array<double, 3>& value) {
     ++samples_;
-    if (seen == Seen::nothing && !background_) return;
-    const std::array<double, 3> colour = seen == Seen::front     ? value
-                                         : seen == Seen::nothing ? *background_
-                                                                 : std::array<double, 3>{};
+    std::array<double, 3> colour{};
+    if (seen == Seen::front) {
+      colour = value;
+    } else if (seen == Seen::nothing) {
+      if (!background_) return;
+      colour = *background_;
+    }
     if (hits_++ == 0) first_ = colour;
     for (int b = 0; b < 3; ++b) sum_[b] += colour[b] - first_[b];
   }
