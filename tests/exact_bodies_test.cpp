@@ -154,7 +154,7 @@ TEST(ExactBodies, CanBeInterrupted) {
   for (double& r : radius) r = any(random);
   std::size_t faces = 0;
   const PatchMesh mesh = roomWithBall(
-      40, 80, [&](int r, int s) { return radius[std::size_t(r * 80 + s)]; }, faces);
+      40, 80, [&](int r, int s) { return radius[std::size_t(r) * 80 + std::size_t(s)]; }, faces);
   FormFactorOptions options;
   options.method = FormFactorMethod::exact;
   for (const int milliseconds : {5, 50, 500, 2000}) {

@@ -71,7 +71,7 @@ void everywhere(const Scene& scene, const std::function<void(const MeshResult&)>
 /// A sphere of quads and triangles, `n` around.
 void addSphere(SceneBuilder& b, Index surface, const Vec3& centre, double radius, int n) {
   const auto at = [&](int i, int j) {
-    const double theta = std::numbers::pi * i / (n / 2);
+    const double theta = 2 * std::numbers::pi * i / n;
     const double phi = 2 * std::numbers::pi * (j % n) / n;
     if (i == 0 || i == n / 2) return centre + Vec3(0, 0, i == 0 ? radius : -radius);
     return centre + radius * Vec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),

@@ -240,6 +240,7 @@ TEST(FramingCamera, LooksTowardsWhatIsLit) {
     builder.box("two", {5, 0, 0}, {10, 2.5, 4}, 6, true);
     const PatchMesh mesh = builder.build();
     std::vector<double> light;
+    light.reserve(mesh.size());
     for (const Index s : mesh.surface) light.push_back((s == 0) == first_lit ? 3.0 : 1e-9);
     const Camera camera = framingCamera(mesh, true, 1, light);
     EXPECT_EQ(camera.eye.x < 5, first_lit);
