@@ -9,31 +9,13 @@ import sys
 import time
 import unittest
 
-from cli_runner import BOX_MTL, PROGRAM, CliTest
+from cli_runner import BOX_MTL, BOX_OBJ, PROGRAM, CliTest
 
 # On a quiet machine the program answers within half a second. Tests run several at a time, on
 # machines with other work, and the system may take a while to give back the memory.
 LONGEST_ANSWER = 5.0
 
-ROOM = """mtllib box.mtl
-v 0 0 0
-v 0 0 1
-v 1 0 1
-v 1 0 0
-v 0 1 0
-v 1 1 0
-v 1 1 1
-v 0 1 1
-o room
-usemtl wall
-f 1 2 3 4
-f 1 4 6 5
-f 2 8 7 3
-f 1 5 8 2
-f 4 3 7 6
-f 5 6 7 8
-o ball
-"""
+ROOM = BOX_OBJ + "o ball\nusemtl wall\n"
 
 
 def bumpy_ball(rings, sectors):

@@ -12,7 +12,7 @@
 #include "mesh/edge_rows.h"
 #include "mesh/face_locator.h"
 #include "mesh/sharp_corners.h"
-#include "mesh/winding_tree.h"
+#include "scene/winding_tree.h"
 
 namespace radiosity::test {
 namespace {
@@ -121,19 +121,19 @@ TEST(BoxFilter, LetsPassWhateverMeetsABox) {
   EXPECT_LT(kept, 2500) << "it filters nothing";
 }
 
-/// A closed torus of 2 n n triangles, outward.
-std::vector<std::array<Vec3, 3>> torus(int n) {
+/// A closed torus of 2 n n triangles, outward, each in a plane of its own.
+std::vector<WindingTree::Triangle> torus(int n) {
   const auto at = [n](int i, int j) {
     const double u = 2 * std::numbers::pi * i / n;
     const double v = 2 * std::numbers::pi * j / n;
     return Vec3((1 + 0.3 * std::cos(v)) * std::cos(u), (1 + 0.3 * std::cos(v)) * std::sin(u),
                 0.3 * std::sin(v));
   };
-  std::vector<std::array<Vec3, 3>> out;
+  std::vector<WindingTree::Triangle> out;
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
-      out.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
-      out.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+      out.push_back({{at(i, j), at(i + 1, j), at(i + 1, j + 1)}, Index(out.size())});
+      out.push_back({{at(i, j), at(i + 1, j + 1), at(i, j + 1)}, Index(out.size())});
     }
   }
   return out;
@@ -141,9 +141,7 @@ std::vector<std::array<Vec3, 3>> torus(int n) {
 
 TEST(WindingTree, TellsInsideFromOutside) {
   const auto triangles = torus(48);
-  std::vector<Index> plane(triangles.size());
-  for (Index k = 0; k < plane.size(); ++k) plane[k] = k;
-  const WindingTree tree(triangles, plane);
+  const WindingTree tree(triangles);
   Random random(9);
   for (int k = 0; k < 2000; ++k) {
     const Vec3 p = (random.point() - 0.5) * Vec3(3, 3, 1);
@@ -151,17 +149,16 @@ TEST(WindingTree, TellsInsideFromOutside) {
     const double depth = 0.3 - std::sqrt(ring * ring + p.z * p.z);
     if (std::abs(depth) < 0.01) continue;  // between the torus and its facets
     // Dipoles farther than three radii: hundredths, far from the half that would mislead.
-    EXPECT_NEAR(tree.around(p, kNone), depth > 0 ? 1.0 : 0.0, 0.05);
+    EXPECT_NEAR(tree.around(p), depth > 0 ? 1.0 : 0.0, 0.05);
   }
 }
 
 TEST(WindingTree, ATrianglesOwnPlaneCountsAsNothing) {
   const auto triangles = torus(48);
-  std::vector<Index> plane(triangles.size());
-  for (Index k = 0; k < plane.size(); ++k) plane[k] = k;
-  const WindingTree tree(triangles, plane);
+  const WindingTree tree(triangles);
   for (Index k = 0; k < triangles.size(); k += 37) {
-    const Vec3 middle = (triangles[k][0] + triangles[k][1] + triangles[k][2]) / 3.0;
+    const auto& [a, b, c] = triangles[k].corners;
+    const Vec3 middle = (a + b + c) / 3.0;
     EXPECT_NEAR(tree.around(middle, k), 0.5, 0.05) << k;
   }
 }

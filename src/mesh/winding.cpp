@@ -2,10 +2,11 @@
 
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "mesh/box_pairs.h"
 #include "mesh/union_find.h"
-#include "mesh/winding_tree.h"
+#include "scene/winding_tree.h"
 
 namespace radiosity {
 
@@ -50,6 +51,15 @@ double ownPlane(const PlaneCell& cell, Side side, Index component, const std::ve
   return sum;
 }
 
+WindingTree treeOf(const Component& component) {
+  std::vector<WindingTree::Triangle> triangles;
+  triangles.reserve(component.triangles.size());
+  for (std::size_t t = 0; t < component.triangles.size(); ++t) {
+    triangles.push_back({component.triangles[t], component.triangle_plane[t]});
+  }
+  return WindingTree(std::move(triangles));
+}
+
 }  // namespace
 
 Winding::Winding(const Arrangement& arrangement, const std::vector<Sheet>& sheets,
@@ -89,7 +99,7 @@ void Winding::lookAround(const std::vector<Index>& eyes, const Arrangement& arra
     const Component& component = components.list[c];
     if (!component.closed) continue;
     closed.push_back(c);
-    trees.emplace_back(component.triangles, component.triangle_plane);
+    trees.push_back(treeOf(component));
     boxes.push_back(component.box.grown(coincidence));
   }
   std::vector<Index> bodies(closed.size());

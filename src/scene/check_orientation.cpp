@@ -19,13 +19,30 @@ bool boxContains(const ConnectedPart& outer, const ConnectedPart& inner, double 
   return within(0) && within(1) && within(2);
 }
 
+/// Fans are enough, even of concave faces: they are only ever summed with signs.
+std::vector<WindingTree::Triangle> trianglesOf(const WeldedFaces& faces,
+                                               const ConnectedPart& part) {
+  std::vector<WindingTree::Triangle> out;
+  for (const Index f : part.faces) {
+    const auto face = faces.face(f);
+    for (std::size_t k = 2; k < face.size(); ++k) {
+      out.push_back(
+          {{faces.points[face[0]], faces.points[face[k - 1]], faces.points[face[k]]}, kNone});
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 /// Relative to the centre of the welded faces. `on`: so close to the part's faces that neither side
 /// is certain.
 Place SceneChecks::placeOf(const Vec3& point, const ConnectedPart& outer) const {
-  const WindingNumber& number = winding_.try_emplace(&outer, faces_, outer).first->second;
-  const double winding = std::abs(number.at(point));
+  auto tree = winding_.find(&outer);
+  if (tree == winding_.end()) {
+    tree = winding_.emplace(&outer, WindingTree(trianglesOf(faces_, outer))).first;
+  }
+  const double winding = std::abs(tree->second.around(point));
   if (winding >= 0.75) return Place::inside;
   return winding > 0.25 ? Place::on : Place::outside;
 }

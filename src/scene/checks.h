@@ -9,7 +9,7 @@
 #include "scene/box_tree.h"
 #include "scene/overlaps.h"
 #include "scene/topology.h"
-#include "scene/winding_number.h"
+#include "scene/winding_tree.h"
 
 namespace radiosity {
 
@@ -57,7 +57,7 @@ class SceneChecks {
   std::vector<std::uint8_t> is_double_;  ///< F
   Topology topology_;
   BoxTree part_boxes_;                                             ///< by part
-  mutable std::map<const ConnectedPart*, WindingNumber> winding_;  ///< of the parts asked about
+  mutable std::map<const ConnectedPart*, WindingTree> winding_;  ///< of the parts asked about
 };
 
 }  // namespace radiosity

@@ -1,4 +1,4 @@
-#include "scene/winding_number.h"
+#include "scene/winding_tree.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace radiosity {
 
@@ -16,9 +17,12 @@ namespace {
 /// is far from the quarter that would change an answer.
 constexpr double kFar = 4;
 
-/// Solid angle of a triangle, relative to the point it is seen from (A. van Oosterom, J. Strackee,
+/// Solid angle of a triangle, seen from a point (A. van Oosterom, J. Strackee,
 /// 1983, eq. 8).
-double solidAngle(const Vec3& a, const Vec3& b, const Vec3& c) {
+double solidAngle(const std::array<Vec3, 3>& corners, const Vec3& point) {
+  const Vec3 a = corners[0] - point;
+  const Vec3 b = corners[1] - point;
+  const Vec3 c = corners[2] - point;
   const double la = glm::length(a);
   const double lb = glm::length(b);
   const double lc = glm::length(c);
@@ -30,18 +34,11 @@ double solidAngle(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 }  // namespace
 
-WindingNumber::WindingNumber(const WeldedFaces& faces, const ConnectedPart& part) {
-  for (const Index f : part.faces) {
-    const auto face = faces.face(f);
-    for (std::size_t k = 2; k < face.size(); ++k) {
-      triangles_.push_back(
-          {faces.points[face[0]], faces.points[face[k - 1]], faces.points[face[k]]});
-    }
-  }
+WindingTree::WindingTree(std::vector<Triangle> triangles) : triangles_(std::move(triangles)) {
   if (!triangles_.empty()) build(0, triangles_.size());
 }
 
-std::size_t WindingNumber::build(std::size_t begin, std::size_t end) {
+std::size_t WindingTree::build(std::size_t begin, std::size_t end) {
   constexpr std::size_t kLeaf = 8;
   const std::size_t number = nodes_.size();
   Node node;
@@ -53,43 +50,43 @@ std::size_t WindingNumber::build(std::size_t begin, std::size_t end) {
   Vec3 lower(std::numeric_limits<double>::infinity());
   Vec3 upper = -lower;
   for (std::size_t k = begin; k < end; ++k) {
-    lower = glm::min(lower, triangles_[k].a);
-    upper = glm::max(upper, triangles_[k].a);
+    lower = glm::min(lower, triangles_[k].corners[0]);
+    upper = glm::max(upper, triangles_[k].corners[0]);
   }
   const Vec3 size = upper - lower;
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
   const std::size_t middle = begin + (end - begin) / 2;
   const auto place = triangles_.begin();
   std::nth_element(place + std::ptrdiff_t(begin), place + std::ptrdiff_t(middle),
-                   place + std::ptrdiff_t(end),
-                   [axis](const Triangle& a, const Triangle& b) { return a.a[axis] < b.a[axis]; });
+                   place + std::ptrdiff_t(end), [axis](const Triangle& a, const Triangle& b) {
+                     return a.corners[0][axis] < b.corners[0][axis];
+                   });
   build(begin, middle);
   const std::size_t second = build(middle, end);
   nodes_[number].second = second;
   return number;
 }
 
-void WindingNumber::measure(Node& node) const {
+void WindingTree::measure(Node& node) const {
   Vec3 weighted{0.0};
   double total = 0;
   for (std::size_t k = node.begin; k < node.end; ++k) {
-    const Triangle& t = triangles_[k];
-    const Vec3 area = 0.5 * glm::cross(t.b - t.a, t.c - t.a);
+    const auto& [a, b, c] = triangles_[k].corners;
+    const Vec3 area = 0.5 * glm::cross(b - a, c - a);
     const double size = glm::length(area);
     node.area += area;
-    weighted += size / 3 * (t.a + t.b + t.c);
+    weighted += size / 3 * (a + b + c);
     total += size;
   }
-  node.middle = total > 0 ? weighted / total : triangles_[node.begin].a;
+  node.middle = total > 0 ? weighted / total : triangles_[node.begin].corners[0];
   for (std::size_t k = node.begin; k < node.end; ++k) {
-    const Triangle& t = triangles_[k];
-    for (const Vec3& corner : {t.a, t.b, t.c}) {
+    for (const Vec3& corner : triangles_[k].corners) {
       node.radius = std::max(node.radius, glm::distance(corner, node.middle));
     }
   }
 }
 
-double WindingNumber::at(const Vec3& point) const {
+double WindingTree::around(const Vec3& point, Index own) const {
   double angle = 0;
   std::vector<std::size_t> waiting;
   if (!nodes_.empty()) waiting.push_back(0);
@@ -104,7 +101,7 @@ double WindingNumber::at(const Vec3& point) const {
     } else if (node.second == 0) {
       for (std::size_t k = node.begin; k < node.end; ++k) {
         const Triangle& t = triangles_[k];
-        angle += solidAngle(t.a - point, t.b - point, t.c - point);
+        if (own == kNone || t.plane != own) angle += solidAngle(t.corners, point);
       }
     } else {
       waiting.push_back(number + 1);
