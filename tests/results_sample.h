@@ -155,6 +155,7 @@ inline ExactReport exactReport() {
   e.clipped = 37;
   e.points = 38;
   e.subdivided = 39;
+  e.evaluated_again = 47;
   e.rechecked = 41;
   e.recheck_ratio = 42.5;
   e.seconds_prepare = 43.5;
@@ -358,9 +359,9 @@ inline auto members(const ClosureReport& s) {
 }
 inline auto members(const ExactReport& s) {
   const auto& [v0, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13, v14, v15, v16, v17, v18,
-               v19, v20, v21, v22, v23, v24, v25, v26, v27] = s;
+               v19, v20, v21, v22, v23, v24, v25, v26, v27, v28] = s;
   return std::tie(v0, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13, v14, v15, v16, v17,
-                  v18, v19, v20, v21, v22, v23, v24, v25, v26, v27);
+                  v18, v19, v20, v21, v22, v23, v24, v25, v26, v27, v28);
 }
 inline auto members(const FormFactorReport& s) {
   const auto& [v0, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13, v14, v15, v16, v17, v18,

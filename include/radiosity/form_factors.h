@@ -79,7 +79,9 @@ struct ExactReport {
 
   std::size_t points = 0;      ///< point evaluations of partial pairs
   std::size_t subdivided = 0;  ///< partial pairs that needed more than the first rule
-  std::size_t rechecked = 0;   ///< partial pairs evaluated again from the other end
+  /// Partial pairs evaluated again in double precision: too near for their points, or intricate.
+  std::size_t evaluated_again = 0;
+  std::size_t rechecked = 0;  ///< partial pairs evaluated again from the other end
   /// rms of (difference of the two ends / the error both state); where it is above 0.6, a share
   /// of the surplus is part of the error figures.
   double recheck_ratio = 0;
@@ -138,8 +140,9 @@ struct FormFactors {
   std::vector<double> sky;
   /// Area-weighted share of the scene's view that ends on each surface's back, by surface.
   std::vector<double> backs_by_surface;
-  /// Exact: N error figures; sqrt(sum_j (F_ij - true F_ij)^2) stays below error[i] in 99% of rows,
-  /// and the median of the figures is at most ten times the true one. Hemicube: empty.
+  /// Exact: N error figures; sqrt(sum_j (F_ij - true F_ij)^2), bare backs among the j, stays below
+  /// error[i] in 99% of rows, and the median of the figures is at most ten times the true one.
+  /// Hemicube: empty.
   std::vector<double> error;
   std::string method = "hemicube";  ///< or "exact"
   FormFactorReport report;

@@ -62,6 +62,7 @@ void exactFigures(Report& report, const ExactReport& e) {
   report.count("clipped", "  clipped to front sides", e.clipped);
   report.count("points", "points of partial pairs", e.points);
   report.count("subdivided", "partial pairs refined", e.subdivided);
+  report.count("evaluated_again", "partial pairs again in double", e.evaluated_again);
   report.count("rechecked", "checked from other end", e.rechecked);
   report.number("recheck_ratio", "  difference / stated", e.recheck_ratio);
   report.seconds("seconds_prepare", "time: preparing", e.seconds_prepare);

@@ -168,6 +168,7 @@ void describe(Archive& a, Described<Archive, ExactReport>& r) {
   a("clipped", r.clipped);
   a("points", r.points);
   a("subdivided", r.subdivided);
+  a("evaluated_again", r.evaluated_again);
   a("rechecked", r.rechecked);
   a("recheck_ratio", r.recheck_ratio);
   a("seconds_prepare", r.seconds_prepare);

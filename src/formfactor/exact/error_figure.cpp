@@ -5,12 +5,22 @@
 
 namespace radiosity {
 
+ErrorSums::Clipped& ErrorSums::Clipped::operator+=(const Clipped& other) {
+  squares += other.squares;
+  fourths += other.fourths;
+  areas += other.areas;
+  return *this;
+}
+
+double ErrorSums::Clipped::figure(double surplus) const {
+  return squares + std::sqrt(fourths) + surplus * areas;
+}
+
 ErrorSums& ErrorSums::operator+=(const ErrorSums& other) {
   for (std::size_t i = 0; i < squares_.size(); ++i) {
     squares_[i] += other.squares_[i];
-    clipped_[i].squares += other.clipped_[i].squares;
-    clipped_[i].fourths += other.clipped_[i].fourths;
-    clipped_[i].areas += other.clipped_[i].areas;
+    clipped_[i] += other.clipped_[i];
+    bare_[i] += other.bare_[i];
   }
   difference_ += other.difference_;
   stated_ += other.stated_;
@@ -62,11 +72,11 @@ double ErrorSums::figures(std::span<const double> area, double closed_form,
   const double closed = kClosedFormShare * closed_form;
   double errors = 0;
   for (std::size_t i = 0; i < figure.size(); ++i) {
-    const Clipped& sums = clipped_[i];
-    const double clipped = sums.squares + std::sqrt(sums.fourths) + surplus * sums.areas;
-    const double square = clipped + closed * closed * squares_[i];
-    figure[i] = std::sqrt(square) / area[i];
-    errors += square / area[i];
+    const double closed_forms = closed * closed * squares_[i];
+    Clipped row = clipped_[i];
+    errors += (closed_forms + row.figure(surplus)) / area[i];
+    row += bare_[i];
+    figure[i] = std::sqrt(closed_forms + row.figure(surplus)) / area[i];
   }
   const double squares = weightedSquares(area);
   return squares > 0 ? std::sqrt(errors / squares) : 0.0;

@@ -20,6 +20,9 @@ namespace radiosity {
 ///
 ///     sqrt(sum_j err_ij^2 + sqrt(sum_clipped j err_ij^4)).
 ///
+/// Clipped pairs with bare backs count in the row's figure as well, though not in the matrix's:
+/// what a row leaves to the sky is only as good as what it sees of them.
+///
 /// Of what all points miss the rules know nothing. So a random subset of the clipped pairs is
 /// evaluated again with points on the other element, where shadows lie differently. Where the two
 /// ends differ by more than is usual, a part of the surplus, in squares and as a mean over all that
@@ -49,7 +52,7 @@ namespace radiosity {
 class ErrorSums {
  public:
   ErrorSums() = default;
-  explicit ErrorSums(std::size_t rows) : squares_(rows, 0.0), clipped_(rows) {}
+  explicit ErrorSums(std::size_t rows) : squares_(rows, 0.0), clipped_(rows), bare_(rows) {}
 
   ErrorSums& operator+=(const ErrorSums& other);
 
@@ -57,13 +60,11 @@ class ErrorSums {
   void addAndScale(std::size_t row, std::span<double> exchange, double inverse_area);
   /// `error`: absolute, of the exchange of one clipped pair. `areas`: the product of theirs.
   void addPartial(std::size_t row, std::size_t column, double error, double areas) {
-    const double square = error * error;
-    for (Clipped* of : {&clipped_[row], &clipped_[column]}) {
-      of->squares += square;
-      of->fourths += square * square;
-      of->areas += areas;
-    }
+    clipped_[row].add(error, areas);
+    clipped_[column].add(error, areas);
   }
+  /// The same of a row and a bare back.
+  void addBare(std::size_t row, double error, double areas) { bare_[row].add(error, areas); }
   /// The same pair from both ends: how far they differ and the error each states.
   void addRecheck(double difference, double stated, double other_stated, double areas) {
     difference_ += difference * difference / areas;
@@ -93,13 +94,24 @@ class ErrorSums {
  private:
   /// Sums over a row's clipped pairs.
   struct Clipped {
+    void add(double error, double product_of_areas) {
+      const double square = error * error;
+      squares += square;
+      fourths += square * square;
+      areas += product_of_areas;
+    }
+    Clipped& operator+=(const Clipped& other);
+    /// The square of the error, of exchange. `surplus`: of a pair, over the product of its areas.
+    double figure(double surplus) const;
+
     double squares = 0;  ///< err_ij^2, as stated
     double fourths = 0;  ///< err_ij^4
     double areas = 0;    ///< A_i A_j
   };
 
-  std::vector<double> squares_;  ///< sum_j G_ij^2
-  std::vector<Clipped> clipped_;
+  std::vector<double> squares_;   ///< sum_j G_ij^2
+  std::vector<Clipped> clipped_;  ///< pairs of patches
+  std::vector<Clipped> bare_;     ///< pairs of a patch and a bare back
   double difference_ = 0;
   double stated_ = 0;
   std::size_t rechecked_ = 0;

@@ -76,6 +76,7 @@ void reportCounts(const ExactScene& scene, const RowSums& sums, ExactReport& rep
   report.clipped = sums.unoccluded.clipped;
   report.points = sums.partial.points;
   report.subdivided = sums.partial.subdivided;
+  report.evaluated_again = sums.partial.again;
   report.rechecked = sums.error.rechecked();
   report.recheck_ratio = sums.error.recheckRatio();
   report.seconds_visibility = sums.seconds_visibility;

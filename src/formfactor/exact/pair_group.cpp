@@ -174,7 +174,8 @@ typename PairGroups<T>::Members PairGroups<T>::integrateCell(const SampleCell& c
 template <class T>
 bool PairGroups<T>::isSpent(Index member, const VisibleFraction& so_far) const {
   const std::size_t occluders = std::max<std::size_t>(targets_[member].blockers.size(), 1);
-  return so_far.points > kMostLooks / occluders;
+  constexpr std::size_t kMost = std::is_same_v<T, double> ? kMostLooks : kMostSingleLooks;
+  return so_far.points > kMost / occluders;
 }
 
 /// Fills sums_ by a rule of side x side points.

@@ -39,6 +39,8 @@ inline constexpr double kPerPart = 1.5;
 /// What a pair may take: points times the occluders looked past from each, a few tenths of a
 /// second. Steps of shadows that no halving resolves would take hundreds of times that.
 inline constexpr std::size_t kMostLooks = std::size_t(1) << 20;
+/// In single precision: between critical lines, in double precision, what takes more takes fewer.
+inline constexpr std::size_t kMostSingleLooks = std::size_t(1) << 12;
 
 /// Root mean square of the error of a visible fraction by 2 x 2 points; `change`: SampledPair's.
 double expectedError(double change);

@@ -26,6 +26,18 @@ constexpr double kOfFarKernels = 2;
 /// of 100 rows.
 constexpr double kSafety = 2.55;
 
+/// Of one pair from its two ends: the one that resolves it better. What they differ by is shared
+/// out by how badly each resolves it; a half is its error where they are alike.
+PartialExchange betterResolved(const PartialExchange& a, const PartialExchange& b) {
+  const double both = a.unresolved + b.unresolved;
+  PartialExchange better = a.unresolved <= b.unresolved ? a : b;
+  if (better.unresolved > kResolved) {
+    const double share = std::isfinite(both) ? better.unresolved / both : 0.5;
+    better.error = std::hypot(better.error, share * (a.exchange - b.exchange));
+  }
+  return better;
+}
+
 }  // namespace
 
 double allowedError(const ElementSet& elements, const PartialPair& pair, double tolerance) {
@@ -40,6 +52,7 @@ PartialCounts& PartialCounts::operator+=(const PartialCounts& other) {
   hidden += other.hidden;
   cut_short += other.cut_short;
   by_segments += other.by_segments;
+  again += other.again;
   return *this;
 }
 
@@ -57,7 +70,6 @@ void PartialKernel::integrate(const ClipKernels<T>& kernels, std::span<const Par
                               std::span<PartialExchange> out, PartialCounts& counts,
                               const Progress* progress) const {
   std::fill(out.begin(), out.end(), PartialExchange());
-  counts.pairs += pairs.size();
   PairPreparation ready(elements_, occluders_, distances_);
   ready.prepare(pairs, occluder_list, end);
   PairGroups<T> groups(elements_, kernels, std::cbrt(kFarError / (kOfFarKernels * tolerance_)),
@@ -83,27 +95,66 @@ void PartialKernel::integrate(const ClipKernels<T>& kernels, std::span<const Par
       const VisibleFraction& found = fractions[k];
       const PartialPair& pair = pairs[group[k].pair];
       PartialExchange& exchange = out[group[k].pair];
-      exchange = {pair.unoccluded * found.fraction(), kSafety * pair.unoccluded * found.error()};
+      exchange = {pair.unoccluded * found.fraction(), kSafety * pair.unoccluded * found.error(),
+                  std::abs(found.whole / pair.unoccluded - 1), found.cut_short};
       if (!std::isfinite(exchange.exchange) || !std::isfinite(exchange.error)) {
         exchange = exchangeBySegments(elements_, occluders_, pair, occluder_list);
         ++counts.by_segments;
       }
-      counts.cut_short += found.cut_short;
       counts.points += found.points;
       counts.subdivided += found.refined;
     }
     begin = last;
   }
-  for (const PartialExchange& found : out) counts.hidden += found.exchange == 0;
 }
 
 void PartialKernel::evaluate(std::span<const PartialPair> pairs,
                              std::span<const Index> occluder_list, std::span<PartialExchange> out,
                              PartialCounts& counts, const Progress* progress) const {
+  counts.pairs += pairs.size();
   if (tolerance_ >= kSinglePrecision) {
     integrate(kernels_.single, pairs, occluder_list, SampledEnd::calmer, out, counts, progress);
   } else {
     integrate(kernels_.exact, pairs, occluder_list, SampledEnd::calmer, out, counts, progress);
+  }
+  evaluateAgain(pairs, occluder_list, out, counts, progress);
+  for (const PartialExchange& found : out) {
+    counts.hidden += found.exchange == 0;
+    counts.cut_short += found.cut_short;
+  }
+}
+
+void PartialKernel::evaluateAgain(std::span<const PartialPair> pairs,
+                                  std::span<const Index> occluder_list,
+                                  std::span<PartialExchange> out, PartialCounts& counts,
+                                  const Progress* progress) const {
+  const bool single = tolerance_ >= kSinglePrecision;
+  std::vector<std::size_t> which;
+  std::vector<PartialPair> doubtful;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (out[k].unresolved <= kResolved && !(single && out[k].cut_short)) continue;
+    which.push_back(k);
+    doubtful.push_back(pairs[k]);
+  }
+  if (which.empty()) return;
+  counts.again += which.size();
+  std::vector<PartialExchange> calmer(which.size());
+  std::vector<PartialExchange> restless(which.size());
+  integrate(kernels_.exact, doubtful, occluder_list, SampledEnd::calmer, calmer, counts, progress);
+  // The other end where this one will not do.
+  std::vector<std::size_t> still;
+  std::vector<PartialPair> unresolved;
+  for (std::size_t k = 0; k < which.size(); ++k) {
+    out[which[k]] = calmer[k];
+    if (calmer[k].unresolved <= kResolved) continue;
+    still.push_back(which[k]);
+    unresolved.push_back(doubtful[k]);
+  }
+  restless.resize(still.size());
+  integrate(kernels_.exact, unresolved, occluder_list, SampledEnd::restless, restless, counts,
+            progress);
+  for (std::size_t k = 0; k < still.size(); ++k) {
+    out[still[k]] = betterResolved(out[still[k]], restless[k]);
   }
 }
 

@@ -151,10 +151,13 @@ void RowAssembly::evaluatePartial(RowSums& sums) {
     const auto& [row, column, begin, end, unoccluded] = pairs[k];
     panel_[place(row, column)] = partial_[k].exchange;
     marked_[place(row, column)] = 1;
+    const Index a = order.rank[row];
     if (column < context_.elements.patch_elements) {
-      const Index a = order.rank[row];
       const Index b = order.rank[column];
       sums.error.addPartial(a, b, partial_[k].error, order.area[a] * order.area[b]);
+    } else {
+      const double areas = order.area[a] * context_.elements.area[column];
+      sums.error.addBare(a, partial_[k].error, areas);
     }
   }
   recheck(sums);
@@ -168,6 +171,7 @@ void RowAssembly::recheck(RowSums& sums) const {
     if (pairHash(pair.row, pair.column) % context_.recheck_every != 0) continue;
     context_.progress.check();
     const PartialExchange other = context_.partial.evaluateFromOtherEnd(pair, pairs_.occluder_list);
+    if (other.unresolved > kResolved) continue;  // says nothing of this end
     const double areas = order.area[order.rank[pair.row]] * order.area[order.rank[pair.column]];
     sums.error.addRecheck(partial_[k].exchange - other.exchange, partial_[k].error, other.error,
                           areas);
