@@ -47,6 +47,8 @@ class BetweenLines {
     double coarseIntegral(const std::array<double, kPoints>& values) const;
     double error(double fraction, bool near) const;
   };
+  void addPart(const CriticalLines::Part& part);
+  void addTriangle(const Vec2& a, const Vec2& b, const Vec2& c);
   void add(const SampleCell& cell, int halvings);
 
   GroupView<double>& view_;

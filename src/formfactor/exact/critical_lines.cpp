@@ -34,6 +34,13 @@ struct Range {
   bool empty() const { return !(begin < end); }
 };
 
+/// Where an edge meets the plane of height 0, as a parameter; outside [0, 1]: nowhere.
+double footOf(double from, double to, double touching) {
+  if (std::min(from, to) > touching || std::max(from, to) < touching) return -1;
+  if (std::min(from, to) < -touching) return from / (from - to);
+  return from < to ? 0.0 : 1.0;
+}
+
 Range between(double from, double to, double low, double high) {
   Range range;
   range.keep(from - low, to - low);
@@ -60,6 +67,7 @@ bool CriticalLines::cut(std::span<const Vec3> polygon, const Vec3& normal,
     size = std::max(size, glm::length(parts_[0].back()));
   }
   narrow_ = kNarrow * size;
+  findFeet(target, blockers);
   for (const Blocker& blocker : blockers) {
     const Occluder& body = *blocker.body;
     facePlanes(body);
@@ -121,9 +129,8 @@ void CriticalLines::edgesPastFoot(const Vec3& corner, const Occluder& body) {
     const Vec3& to = body.corners[edge.to];
     const double h0 = height(from);
     const double h1 = height(to);
-    if (std::min(h0, h1) > coincidence_ || std::max(h0, h1) < coincidence_) continue;
-    double t = h0 < h1 ? 0.0 : 1.0;
-    if (std::min(h0, h1) < -coincidence_) t = h0 / (h0 - h1);
+    const double t = footOf(h0, h1, coincidence_);
+    if (t < 0) continue;
     const Vec2 foot = frame_.flat(from + (to - from) * t);
     const double distance = glm::length(foot - at);
     if (distance > narrow_) cutAlongSegment(foot, foot + (foot - at) * (kFarAway / distance));
@@ -158,6 +165,27 @@ void CriticalLines::facePlanes(const Occluder& body) {
     const Vec2 across = normal / length;
     cutAlong(across * (distance / length), {-across.y, across.x}, -kInfinity, kInfinity);
   }
+}
+
+void CriticalLines::findFeet(std::span<const Vec3> target, std::span<const Blocker> blockers) {
+  feet_.clear();
+  for (const Vec3& corner : target) {
+    if (std::abs(height(corner)) <= coincidence_) feet_.push_back(frame_.flat(corner));
+  }
+  for (const Blocker& blocker : blockers) {
+    const Occluder& body = *blocker.body;
+    for (const Occluder::Edge& edge : body.edges) {
+      const Vec3& from = body.corners[edge.from];
+      const Vec3& to = body.corners[edge.to];
+      const double t = footOf(height(from), height(to), coincidence_);
+      if (t >= 0) feet_.push_back(frame_.flat(from + (to - from) * t));
+    }
+  }
+}
+
+bool CriticalLines::isFoot(const Vec2& corner) const {
+  return std::any_of(feet_.begin(), feet_.end(),
+                     [&](const Vec2& foot) { return glm::length(foot - corner) <= coincidence_; });
 }
 
 void CriticalLines::cutAlongSegment(const Vec2& from, const Vec2& to) {

@@ -32,6 +32,10 @@ class CriticalLines {
 
   std::span<const Part> parts() const { return {parts_.data(), count_}; }
   Vec3 lift(const Vec2& p) const { return frame_.lift(p); }
+  /// Whether a body's outline, or a corner of the target, stands on the polygon's plane in this
+  /// corner of a part: how much an eye beside it sees depends on which side of it the eye is,
+  /// however near it is.
+  bool isFoot(const Vec2& corner) const;
 
  private:
   struct Segment {
@@ -43,6 +47,7 @@ class CriticalLines {
   void edgesPastFoot(const Vec3& corner, const Occluder& body);
   void cornersPastEdge(const Segment& edge, const Occluder& body);
   void facePlanes(const Occluder& body);
+  void findFeet(std::span<const Vec3> target, std::span<const Blocker> blockers);
   void cutAlongSegment(const Vec2& from, const Vec2& to);
   void cutAlong(const Vec2& on, const Vec2& along, double begin, double end);
   double side(const Vec2& corner, const Vec2& on, const Vec2& along) const;
@@ -51,7 +56,8 @@ class CriticalLines {
 
   PlaneFrame frame_;
   double coincidence_ = 0;
-  double narrow_ = 0;        ///< no part is cut off that is narrower
+  double narrow_ = 0;  ///< no part is cut off that is narrower
+  std::vector<Vec2> feet_;
   std::vector<Part> parts_;  ///< the first count_ are in use
   std::size_t count_ = 0;
   std::size_t most_parts_ = 0;
