@@ -56,7 +56,7 @@ class SceneChecks {
   std::vector<DoubledFace> doubled_;
   std::vector<std::uint8_t> is_double_;  ///< F
   Topology topology_;
-  BoxTree part_boxes_;                                             ///< by part
+  BoxTree part_boxes_;                                           ///< by part
   mutable std::map<const ConnectedPart*, WindingTree> winding_;  ///< of the parts asked about
 };
 
