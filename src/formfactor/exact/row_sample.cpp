@@ -12,21 +12,26 @@ namespace radiosity {
 namespace {
 
 /// Of a task, ranges are taken until there are so many rows: what columns share is shared by rows.
-constexpr std::size_t kLeastRows = 8;
+constexpr std::size_t kLeastRows = 4;
 /// Facets looked at, and tests made, for one range of rows.
 constexpr std::size_t kMostFacets = 256;
-constexpr std::size_t kMostTests = 50'000;
+constexpr std::size_t kMostLargeFacets = 6;
+constexpr std::size_t kMostTests = 25'000;
+/// Tests for each occluder, besides: what may come between two large facets is looked for among
+/// all, and that settles nothing yet. At most so many.
+constexpr std::size_t kTestsAnOccluder = 40;
+constexpr std::size_t kMostTestsAtAll = 400'000;
 /// Partial pairs of a task whose cost is guessed, evenly among all.
-constexpr std::size_t kGuessedPairs = 96;
+constexpr std::size_t kGuessedPairs = 48;
 /// Pairs of a task that are clipped: as many as can be expected to take this, in so many batches
 /// until they have taken it. (A few pairs, near to each other, carry half of the time or more: in
 /// gazebo.obj of the lightmapper's examples one pair in 300 takes 38%. Many short batches meet
 /// them.)
-constexpr double kClipSeconds = 0.03;
-constexpr std::size_t kMostClipped = 2048;
+constexpr double kClipSeconds = 0.012;
+constexpr std::size_t kMostClipped = 1024;
 constexpr std::size_t kBatches = 16;
 /// Values in closed form that are computed.
-constexpr std::size_t kMostValues = 1 << 14;
+constexpr std::size_t kMostValues = 1 << 13;
 
 /// What was found in one place.
 struct Piece {
@@ -46,9 +51,9 @@ struct Piece {
   BothClocks taken;          ///< by all of it
 };
 
-double openPairs(const ExactScene& scene, std::span<const ElementRange> ranges) {
+double openPairs(const ExactScene& scene, std::span<const ElementRange> ranges, FacetSize size) {
   double pairs = 0;
-  for (const ElementRange& range : ranges) pairs += double(scene.visibility.openPairs(range));
+  for (const ElementRange& range : ranges) pairs += double(scene.visibility.openPairs(range, size));
   return pairs;
 }
 
@@ -63,16 +68,20 @@ std::span<const ElementRange> someRows(std::span<const ElementRange> task) {
 }
 
 /// Partial pairs and blocks of some rows, and what finding them took.
-void classify(const ExactScene& scene, std::span<const ElementRange> ranges, std::size_t place,
-              RecordedPairs& recorded, Piece& piece) {
+void classify(const ExactScene& scene, std::span<const ElementRange> ranges, FacetSize size,
+              std::size_t place, RecordedPairs& recorded, Piece& piece) {
   VisibilityCounts counts;
   const double start = processorSeconds();
   for (const ElementRange& range : ranges) {
-    const std::size_t facets = scene.visibility.openFacetsAfter(range);
+    const std::size_t facets = scene.visibility.openFacetsAfter(range, size);
     VisibilitySample sample;
-    sample.facet_stride = std::max<std::size_t>(1, facets / kMostFacets);
+    sample.size = size;
+    const std::size_t most = size == FacetSize::large ? kMostLargeFacets : kMostFacets;
+    sample.facet_stride = std::max<std::size_t>(1, facets / most);
     sample.first_facet = place % sample.facet_stride;
-    sample.most_tests = counts.shaft_tests + kMostTests;
+    sample.most_tests =
+        counts.shaft_tests +
+        std::min(kMostTests + kTestsAnOccluder * scene.occluders.occluders.size(), kMostTestsAtAll);
     scene.visibility.classifySome(range, sample, recorded, counts);
     piece.rows += double(range.size());
   }
@@ -187,11 +196,11 @@ void costOfPairs(const ExactScene& scene, const ExactKernels& kernels,
 }
 
 Piece lookAt(const ExactScene& scene, const ExactKernels& kernels, double tolerance,
-             std::size_t place, std::span<const ElementRange> task) {
+             std::size_t place, std::span<const ElementRange> task, FacetSize size) {
   const BothWatches watches;
   Piece piece;
   RecordedPairs recorded;
-  classify(scene, someRows(task), place, recorded, piece);
+  classify(scene, someRows(task), size, place, recorded, piece);
   evaluateUnoccluded(kernels.unoccluded, recorded, piece);
   costOfPairs(scene, kernels, recorded, tolerance, piece);
   piece.taken = watches.elapsed();
@@ -245,14 +254,19 @@ RowSample sumOf(const std::vector<Piece>& pieces, double task_rows) {
 RowSample sampleRows(const ExactScene& scene, const ExactKernels& kernels, double tolerance,
                      Progress& progress) {
   const std::size_t tasks = scene.tasks.size();
-  std::vector<Piece> pieces(std::min(tasks, kSampleSteps));
-  parallelFor(pieces.size(), 1, [&](std::size_t k) {
+  const std::size_t places = std::min(tasks, kSampleSteps);
+  std::vector<Piece> pieces(2 * places);
+  parallelFor(places, 1, [&](std::size_t k) {
     if (progress.cancelled()) return;
-    const std::size_t first = k * tasks / pieces.size();
-    const std::size_t end = (k + 1) * tasks / pieces.size();
-    pieces[k] = lookAt(scene, kernels, tolerance, k, scene.tasks[(first + end) / 2]);
-    for (std::size_t t = first; t < end; ++t) {
-      pieces[k].weight += openPairs(scene, scene.tasks[t]);
+    const std::size_t first = k * tasks / places;
+    const std::size_t end = (k + 1) * tasks / places;
+    const std::span<const ElementRange> task = scene.tasks[(first + end) / 2];
+    for (const FacetSize size : {FacetSize::small, FacetSize::large}) {
+      Piece piece = lookAt(scene, kernels, tolerance, k, task, size);
+      for (std::size_t t = first; t < end; ++t) {
+        piece.weight += openPairs(scene, scene.tasks[t], size);
+      }
+      pieces[2 * k + std::size_t(size == FacetSize::large)] = piece;
     }
     progress.advance();
   });

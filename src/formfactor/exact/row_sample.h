@@ -25,14 +25,15 @@ struct RowSample {
   double busy = 1;
 };
 
-/// Some rows of up to 16 tasks against all later facets, or against every so many-th where there
-/// are very many. The work has a bound, in tests and pairs and not by the clock, so that all but
-/// the seconds comes out the same in every run; only the clipping that is timed stops by the clock.
-/// (0.1 to 0.5 s of a core, 2.7 GHz Xeon, from the Cornell box to a furnished room; a single pair
-/// may take longer than that where the tolerance is 1e-6 and bodies are round.)
-/// Steps `progress` by kSampleSteps; calls its check().
+/// Some rows of up to kSampleSteps tasks against all later facets, or against every so many-th
+/// where there are very many; facets of many elements apart from those of few. The work has a
+/// bound, in tests and pairs and not by the clock, so that all but the seconds comes out the same
+/// in every run; only the clipping that is timed stops by the clock. (0.1 to 0.9 s on two threads
+/// of a 2.7 GHz Xeon, from the Cornell box to a head of 500 quadrilaterals; a single pair may take
+/// longer than that where the tolerance is 1e-6 and bodies are round.) Steps `progress` by
+/// kSampleSteps; calls its check().
 RowSample sampleRows(const ExactScene& scene, const ExactKernels& kernels, double tolerance,
                      Progress& progress);
-inline constexpr std::size_t kSampleSteps = 16;
+inline constexpr std::size_t kSampleSteps = 24;
 
 }  // namespace radiosity

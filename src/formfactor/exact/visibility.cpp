@@ -61,9 +61,13 @@ Visibility::Visibility(const ElementSet& elements, const OccluderSet& occluders,
   for (Index o = 0; o < occluders.occluders.size(); ++o) {
     for (const Index f : occluders.occluders[o].facets) own_[f].push_back(o);
   }
-  open_after_.resize(open_facets_.size() + 1, 0);
+  open_after_.resize(open_facets_.size() + 1);
+  large_after_ = open_after_;
   for (std::size_t k = open_facets_.size(); k > 0; --k) {
-    open_after_[k - 1] = open_after_[k] + elements.facets[open_facets_[k - 1]].elements.size();
+    const std::size_t size = elements.facets[open_facets_[k - 1]].elements.size();
+    const auto added = [&](const Open& to) { return Open{to.facets + 1, to.elements + size}; };
+    open_after_[k - 1] = added(open_after_[k]);
+    large_after_[k - 1] = size >= kLargeFacet ? added(large_after_[k]) : large_after_[k];
   }
 }
 
@@ -99,15 +103,24 @@ void Visibility::classifySome(ElementRange rows, const VisibilitySample& sample,
               [&](Index cluster) { descent.run(facet, cluster); });
 }
 
-std::size_t Visibility::openFacetsAfter(ElementRange rows) const {
+Visibility::Open Visibility::openAfter(ElementRange rows, FacetSize size) const {
   const Index facet = elements_.facet[rows.first];
-  if (occluders_.sealed[facet]) return 0;
-  return std::size_t(open_facets_.end() -
-                     std::upper_bound(open_facets_.begin(), open_facets_.end(), facet));
+  if (occluders_.sealed[facet]) return {};
+  const auto next = std::upper_bound(open_facets_.begin(), open_facets_.end(), facet);
+  const auto k = std::size_t(next - open_facets_.begin());
+  const Open& any = open_after_[k];
+  const Open& large = large_after_[k];
+  if (size == FacetSize::any) return any;
+  if (size == FacetSize::large) return large;
+  return {any.facets - large.facets, any.elements - large.elements};
 }
 
-std::size_t Visibility::openPairs(ElementRange rows) const {
-  return rows.size() * open_after_[open_facets_.size() - openFacetsAfter(rows)];
+std::size_t Visibility::openFacetsAfter(ElementRange rows, FacetSize size) const {
+  return openAfter(rows, size).facets;
+}
+
+std::size_t Visibility::openPairs(ElementRange rows, FacetSize size) const {
+  return rows.size() * openAfter(rows, size).elements;
 }
 
 }  // namespace radiosity

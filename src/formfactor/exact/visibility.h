@@ -26,8 +26,15 @@ struct VisibilityCounts {
 };
 
 /// Which pairs of some rows a sample looks at, and how long.
+/// What walls see of walls is a large part of the work in few facets: among thousands of small ones
+/// a stride would pass them by, or count them too often. So they are sampled apart.
+enum class FacetSize { any, small, large };
+/// Elements that a large facet has at least.
+inline constexpr std::size_t kLargeFacet = 8;
+
 struct VisibilitySample {
-  std::size_t facet_stride = 1;  ///< every so many-th of the open facets after theirs,
+  FacetSize size = FacetSize::any;
+  std::size_t facet_stride = 1;  ///< every so many-th of these, of the open facets after theirs,
   std::size_t first_facet = 0;   ///< from this one of them on
   std::size_t most_tests = std::numeric_limits<std::size_t>::max();  ///< then it stops as it is
 };
@@ -66,9 +73,9 @@ class Visibility {
   void classifySome(ElementRange rows, const VisibilitySample& sample, VisibilitySink& sink,
                     VisibilityCounts& counts) const;
   /// How many facets after that of `rows` classifySome() chooses from; 0 where the rows are sealed.
-  std::size_t openFacetsAfter(ElementRange rows) const;
+  std::size_t openFacetsAfter(ElementRange rows, FacetSize size = FacetSize::any) const;
   /// Pairs of `rows` with the elements of these.
-  std::size_t openPairs(ElementRange rows) const;
+  std::size_t openPairs(ElementRange rows, FacetSize size = FacetSize::any) const;
 
  private:
   friend class VisibilityDescent;
@@ -77,9 +84,15 @@ class Visibility {
   const OccluderSet& occluders_;
   OccluderTree tree_;
   VisibilityKernels kernels_;
-  std::vector<ShapeCorners> shapes_;     ///< of clusters: bounds, or a leaf's element itself
-  std::vector<Index> open_facets_;       ///< not sealed, ascending
-  std::vector<std::size_t> open_after_;  ///< elements of open facets from one of them on
+  std::vector<ShapeCorners> shapes_;  ///< of clusters: bounds, or a leaf's element itself
+  std::vector<Index> open_facets_;    ///< not sealed, ascending
+  struct Open {
+    std::size_t facets = 0;
+    std::size_t elements = 0;
+  };
+  Open openAfter(ElementRange rows, FacetSize size) const;
+  std::vector<Open> open_after_;         ///< open facets from one of them on
+  std::vector<Open> large_after_;        ///< of these the large ones
   std::vector<std::vector<Index>> own_;  ///< of a facet: occluders that it lies on, ascending
 };
 

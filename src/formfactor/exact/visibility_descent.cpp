@@ -39,9 +39,13 @@ void VisibilityDescent::run(Index facet, Index cluster) {
   dropCandidates(0);
   const std::vector<Index>& open = visibility_.open_facets_;
   const auto after = std::upper_bound(open.begin(), open.end(), facet) - open.begin();
-  for (std::size_t k = std::size_t(after) + sample_.first_facet; k < open.size() && !enough();
-       k += sample_.facet_stride) {
+  std::size_t left = sample_.first_facet;  // until the next
+  for (auto k = std::size_t(after); k < open.size() && !enough(); ++k) {
+    const bool large = elements_.facets[open[k]].elements.size() >= kLargeFacet;
+    if (sample_.size == (large ? FacetSize::small : FacetSize::large)) continue;
+    if (left-- > 0) continue;
     addFacet(open[k]);
+    left = sample_.facet_stride - 1;
   }
   descend(cluster, 0, 0, items_.size());
 }
