@@ -108,6 +108,8 @@ class EverydayScenes(CliTest):
         # Lengths below 0.2 are coincident here: slabs up to 3e-3 high may lie in the floor of a room
         # that is 3 high, or not, patch by patch.
         self.check(generators.two_million_units_apart, 100, welded=1e-3)
+        said = self.run_program("mesh", "two_million_units_apart.obj", "-o", "again.h5")
+        self.assertIn("m from all others: lengths below 0.2 m", said.err)
 
 
 if __name__ == "__main__":

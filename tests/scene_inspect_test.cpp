@@ -199,6 +199,24 @@ TEST(SceneInspect, MeasuresOverlapsInOnePlane) {
   }
 }
 
+TEST(SceneInspect, NamesWhatLiesFarFromAllElse) {
+  const auto withAStray = [](double distance) {
+    Room room;
+    const Index stray = room.builder.surface("stray");
+    room.builder.level(stray, distance, 0, distance + 1, 1, 2);
+    return room.builder.scene();
+  };
+  for (const Scene& scene : {withAStray(1e6), turned(withAStray(-1e6))}) {
+    EXPECT_NOTE(inspectScene(scene).problems, "1 of 7 faces (stray/stray) lie ", Severity::warning);
+  }
+  EXPECT_EQ(problemsOf(withAStray(1000)).find("from all others"), std::string::npos);
+  // Two sheets are as far apart as they look, however thin each is.
+  SceneBuilder sheets;
+  sheets.level(sheets.surface("lower"), 0, 0, 1, 1, 0);
+  sheets.level(sheets.surface("upper"), 0, 0, 1, 1, 3);
+  EXPECT_EQ(problemsOf(sheets.scene()).find("from all others"), std::string::npos);
+}
+
 TEST(SceneInspect, SeesALampThatLiesFaceDown) {
   Room room;
   room.builder.level(room.lamp, 0.5, 0.5, 1.5, 1.5, 4, true);

@@ -19,6 +19,7 @@
 #include "mesh/sheets.h"
 #include "mesh/split_edges.h"
 #include "mesh/uncut_faces.h"
+#include "scene/far_apart.h"
 
 namespace radiosity {
 
@@ -203,6 +204,7 @@ CoarseComplex buildComplex(const Scene& scene, const MeshOptions& options, MeshR
     CoarseComplex complex;
     if (attempt.run(complex, attempts < kAttemptsAlone, handling)) {
       report = attempt.report();
+      if (const auto note = noteFarApart(scene, options.weld)) report.notes.push_back(*note);
       return complex;
     }
     if (attempts == kAttempts) handling.assign(handling.size(), Handling::as_it_is);

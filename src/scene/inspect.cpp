@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "scene/checks.h"
+#include "scene/far_apart.h"
 
 namespace radiosity {
 
@@ -54,6 +55,7 @@ SceneInfo inspectScene(const Scene& scene, double weld) {
   info.open_edges = checks.openEdges();
   checks.reportLight(info);
   checks.reportExtent(info);
+  if (const auto note = noteFarApart(scene, weld)) info.problems.push_back(*note);
   checks.reportFaces(info);
   checks.reportOrientation(info);
   checks.reportOverlaps(info);

@@ -1,4 +1,4 @@
-"""Writes the scenes to a folder: python3 tests/everyday_scenes FOLDER [--share S] [NAME ...]
+"""Writes the scenes to a folder: python3 tests/everyday_scenes FOLDER [NAME ...] [--share S]
 
 Full size without --share; --share 0.01 makes them of a hundredth of the faces."""
 

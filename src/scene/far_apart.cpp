@@ -1,0 +1,88 @@
+#include "scene/far_apart.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <vector>
+
+#include "scene/box_tree.h"
+
+namespace radiosity {
+namespace {
+
+/// Gaps this much longer than what they part.
+constexpr double kFar = 1000;
+
+struct FaceBox {
+  Box box;
+  Index face;
+};
+
+Box both(const Box& a, const Box& b) {
+  return {glm::min(a.lower, b.lower), glm::max(a.upper, b.upper)};
+}
+double diagonalOf(const Box& box) { return glm::distance(box.lower, box.upper); }
+
+std::vector<FaceBox> boxesOf(const Scene& scene) {
+  std::vector<FaceBox> boxes;
+  for (std::size_t f = 0; f < scene.faceCount(); ++f) {
+    if (scene.face(f).empty()) continue;
+    const Vec3& first = scene.vertices[scene.face(f)[0]];
+    FaceBox of{{first, first}, Index(f)};
+    for (const Index v : scene.face(f)) {
+      of.box = both(of.box, {scene.vertices[v], scene.vertices[v]});
+    }
+    boxes.push_back(of);
+  }
+  return boxes;
+}
+
+struct Parted {
+  std::size_t first;  ///< box after the gap
+  double gap;
+};
+
+/// Where boxes in order of their lower ends fall into two groups along an axis.
+std::optional<Parted> partAlong(const std::vector<FaceBox>& boxes, glm::length_t axis) {
+  std::vector<Box> rest(boxes.size());  // all from one on
+  for (std::size_t k = boxes.size(); k-- > 0;) {
+    rest[k] = k + 1 < boxes.size() ? both(boxes[k].box, rest[k + 1]) : boxes[k].box;
+  }
+  Box before = boxes[0].box;
+  for (std::size_t k = 1; k < boxes.size(); ++k) {
+    const double gap = boxes[k].box.lower[axis] - before.upper[axis];
+    if (gap > kFar * std::max(diagonalOf(before), diagonalOf(rest[k]))) return Parted{k, gap};
+    before = both(before, boxes[k].box);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Note> noteFarApart(const Scene& scene, double weld) {
+  std::vector<FaceBox> boxes = boxesOf(scene);
+  if (boxes.empty()) return std::nullopt;
+  Box whole = boxes[0].box;
+  for (const FaceBox& of : boxes) whole = both(whole, of.box);
+  for (glm::length_t axis = 0; axis < 3; ++axis) {
+    std::sort(boxes.begin(), boxes.end(), [axis](const FaceBox& a, const FaceBox& b) {
+      return a.box.lower[axis] < b.box.lower[axis];
+    });
+    const std::optional<Parted> parted = partAlong(boxes, axis);
+    if (!parted) continue;
+    const bool first_are_fewer = 2 * parted->first <= boxes.size();
+    const std::size_t count = first_are_fewer ? parted->first : boxes.size() - parted->first;
+    const Index face = boxes[first_are_fewer ? 0 : parted->first].face;
+    return Note{Severity::warning,
+                fmt::format("{} of {} faces ({}) lie {:.3g} m from all others: lengths below "
+                            "{:.3g} m, a share of the scene's diagonal, count as nothing; move "
+                            "these faces closer or leave them out",
+                            count, boxes.size(), scene.surfaces[scene.face_surface[face]].name,
+                            parted->gap, weld * diagonalOf(whole))};
+  }
+  return std::nullopt;
+}
+
+}  // namespace radiosity
