@@ -20,9 +20,9 @@ constexpr double kOrder = 0.3;
 /// ... but not less than the difference is of that between the first rule and a single point in the
 /// middle: where a pole lies beside a part, rules gain the same factor with every order. ...
 constexpr double kFactor = 1;
-/// ... and at least: differences are small by chance, too; ...(A cube in a cube,
-/// 200 patches, whose pairs are all alike, so that none makes up for another: the worst row at 1e-5
-/// is off by 2.7 times its figure; with kOrder alone and a kLeast of .02, by 5.2 times.)
+/// ... and at least: differences are small by chance, too; ... (A cube in a cube, 200 patches,
+/// whose pairs are all alike, so that none makes up for another: the worst row at 1e-5 is off
+/// by 2.7 times its figure; with kOrder alone and a kLeast of .02, by 5.2 times.)
 constexpr double kLeast = 0.05;
 /// ... where shapes differ, mostly because an edge of a shadow touches a corner of the target all
 /// along, and is here or there by rounding; or where the target is so near that the form factor
