@@ -82,7 +82,7 @@ struct ExactReport {
   /// Partial pairs evaluated again in double precision: too near for their points, or intricate.
   std::size_t evaluated_again = 0;
   std::size_t rechecked = 0;  ///< partial pairs evaluated again from the other end
-  /// rms of (difference of the two ends / the error both state); where it is above 0.45, a share
+  /// rms of (difference of the two ends / the error both state); where it is above 0.5, a share
   /// of the surplus is part of the error figures.
   double recheck_ratio = 0;
 

@@ -33,7 +33,7 @@ constexpr double kLeastDoubtful = 0.1;
 constexpr double kOverlap = 1;
 
 /// Of what decides about halving, what is stated: parts that pass are mostly better.
-constexpr double kStated = 0.25;
+constexpr double kStated = 0.27;
 
 /// The point in the middle, among a part's, and its weight in the rule of 3 x 3.
 constexpr std::size_t kMiddle = 8;

@@ -26,7 +26,7 @@ constexpr double kOfFarKernels = 2;
 /// where few pairs carry a row, they are above the error of 99 of 100 rows. (At 2.55, fitted to the
 /// closed Cornell box of 985 patches: of 88% to 97% in a cube in a cube, and in the box of 120 and
 /// 400 patches.)
-constexpr double kSafety = 3.4;
+constexpr double kSafety = 3.1;
 
 /// Of one pair from its two ends: the one that resolves it better. What they differ by is shared
 /// out by how badly each resolves it; a half is its error where they are alike.
