@@ -19,7 +19,7 @@ constexpr std::size_t kMostLargeFacets = 6;
 constexpr std::size_t kMostTests = 25'000;
 /// Tests for each occluder, besides: what may come between two large facets is looked for among
 /// all, and that settles nothing yet. At most so many.
-constexpr std::size_t kTestsAnOccluder = 40;
+constexpr std::size_t kTestsAnOccluder = 100;
 constexpr std::size_t kMostTestsAtAll = 400'000;
 /// Partial pairs of a task whose cost is guessed, evenly among all.
 constexpr std::size_t kGuessedPairs = 48;
