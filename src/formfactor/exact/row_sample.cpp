@@ -1,6 +1,7 @@
 #include "formfactor/exact/row_sample.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <vector>
 
@@ -28,10 +29,24 @@ constexpr std::size_t kGuessedPairs = 48;
 /// gazebo.obj of the lightmapper's examples one pair in 300 takes 38%. Many short batches meet
 /// them.)
 constexpr double kClipSeconds = 0.012;
+/// And no pair more after so much in all places: at 1e-6 a single one past round bodies takes
+/// tenths of a second.
+constexpr double kClipSecondsAtAll = 0.8;
 constexpr std::size_t kMostClipped = 1024;
 constexpr std::size_t kBatches = 16;
+constexpr std::size_t kPlaceJump = 7;  // a prime, about a third of all places
 /// Values in closed form that are computed.
 constexpr std::size_t kMostValues = 1 << 13;
+
+/// What all threads have clipped.
+class ClipClock {
+ public:
+  void add(double seconds) { seconds_.fetch_add(seconds); }
+  bool spent() const { return seconds_.load() >= kClipSecondsAtAll; }
+
+ private:
+  std::atomic<double> seconds_ = 0;
+};
 
 /// What was found in one place.
 struct Piece {
@@ -156,13 +171,14 @@ std::vector<std::vector<PartialPair>> batchesOf(std::vector<PartialPair> pairs, 
 /// This alone stops by the clock: nothing but measured seconds comes of it.
 void clip(const ExactScene& scene, const ExactKernels& kernels,
           const std::vector<std::vector<PartialPair>>& batches,
-          std::span<const Index> occluder_list, double tolerance, Piece& piece) {
+          std::span<const Index> occluder_list, double tolerance, ClipClock& clock, Piece& piece) {
   std::vector<PartialExchange> out;
   PartialCounts counts;
   // In an order that jumps about: what the clock leaves out is like what it does not.
   constexpr std::size_t kJump = 7;
   static_assert(kBatches % kJump != 0);
-  for (std::size_t k = 0; k < kBatches && piece.clip_seconds < kClipSeconds; ++k) {
+  for (std::size_t k = 0; k < kBatches && piece.clip_seconds < kClipSeconds && !clock.spent();
+       ++k) {
     const std::size_t which = k * kJump % kBatches;
     if (which >= batches.size()) continue;
     std::vector<PartialPair> some = batches[which];
@@ -175,13 +191,15 @@ void clip(const ExactScene& scene, const ExactKernels& kernels,
     std::erase_if(some, [](const PartialPair& pair) { return !(pair.unoccluded > 0); });
     out.resize(some.size());
     kernels.partial.evaluate(some, occluder_list, out, counts);
-    piece.clip_seconds += processorSeconds() - start;
+    const double seconds = processorSeconds() - start;
+    piece.clip_seconds += seconds;
+    clock.add(seconds);
   }
 }
 
 /// What the partial pairs of some rows will take.
 void costOfPairs(const ExactScene& scene, const ExactKernels& kernels,
-                 const RecordedPairs& recorded, double tolerance, Piece& piece) {
+                 const RecordedPairs& recorded, double tolerance, ClipClock& clock, Piece& piece) {
   const std::size_t all = recorded.partial_pairs.size();
   if (all == 0) return;
   const std::vector<PartialPair> guessed = evenly(recorded.partial_pairs, kGuessedPairs);
@@ -192,17 +210,18 @@ void costOfPairs(const ExactScene& scene, const ExactKernels& kernels,
   const double affordable =
       std::clamp(kClipSeconds / std::max(of_one, 1e-9), 1.0, double(kMostClipped));
   clip(scene, kernels, batchesOf(recorded.partial_pairs, std::size_t(affordable)),
-       recorded.occluder_list, tolerance, piece);
+       recorded.occluder_list, tolerance, clock, piece);
 }
 
 Piece lookAt(const ExactScene& scene, const ExactKernels& kernels, double tolerance,
-             std::size_t place, std::span<const ElementRange> task, FacetSize size) {
+             std::size_t place, std::span<const ElementRange> task, FacetSize size,
+             ClipClock& clock) {
   const BothWatches watches;
   Piece piece;
   RecordedPairs recorded;
   classify(scene, someRows(task), size, place, recorded, piece);
   evaluateUnoccluded(kernels.unoccluded, recorded, piece);
-  costOfPairs(scene, kernels, recorded, tolerance, piece);
+  costOfPairs(scene, kernels, recorded, tolerance, clock, piece);
   piece.taken = watches.elapsed();
   return piece;
 }
@@ -256,13 +275,18 @@ RowSample sampleRows(const ExactScene& scene, const ExactKernels& kernels, doubl
   const std::size_t tasks = scene.tasks.size();
   const std::size_t places = std::min(tasks, kSampleSteps);
   std::vector<Piece> pieces(2 * places);
-  parallelFor(places, 1, [&](std::size_t k) {
+  ClipClock clock;
+  // In an order that jumps about: where clipping has taken its time, places that are left out are
+  // like those that are not.
+  const std::size_t jump = places % kPlaceJump == 0 ? 1 : kPlaceJump;
+  parallelFor(places, 1, [&](std::size_t n) {
     if (progress.cancelled()) return;
+    const std::size_t k = n * jump % places;
     const std::size_t first = k * tasks / places;
     const std::size_t end = (k + 1) * tasks / places;
     const std::span<const ElementRange> task = scene.tasks[(first + end) / 2];
     for (const FacetSize size : {FacetSize::small, FacetSize::large}) {
-      Piece piece = lookAt(scene, kernels, tolerance, k, task, size);
+      Piece piece = lookAt(scene, kernels, tolerance, k, task, size, clock);
       for (std::size_t t = first; t < end; ++t) {
         piece.weight += openPairs(scene, scene.tasks[t], size);
       }
