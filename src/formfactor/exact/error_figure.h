@@ -28,27 +28,28 @@ namespace radiosity {
 /// ends differ by more than is usual, a part of the surplus, in squares and as a mean over all that
 /// were looked at, is what every clipped pair's error may be larger.
 ///
-/// Measured at tolerances from 1e-1 to 1e-5 (curved and cluttered scene: to 1e-4, furnished room:
-/// 1e-1 and 1e-2), against rows of the benchmark's ground truth, good to 1e-7 of the mean form
-/// factor in the box and 1e-4 elsewhere:
+/// Measured at tolerances from 1e-1 to 1e-5 against rows of truth that are good to 1e-6 of the mean
+/// form factor, in scenes that no constant was fitted to (tools/bench --only figures):
 ///
-///     scene                        rows   below their figure   median of figure / error
-///     closed Cornell box, 258       258      99.2 to 100%            4.7 to 8.6
-///     closed Cornell box, 985       985      99.4 to 100%            5.2 to 8.2
-///     closed Cornell box, 5,096     100       98 to 100%             5.2 to 7.3
-///     closed Cornell box, 20,234    100       99 to 100%             4.5 to 8
-///     curved, 2,186                 100        100%                  5.8 to 9.9
-///     cluttered, 1,040              100        100%                  3.9 to 5.5
-///     furnished room, 9,530         100        100%                  4.5 and 5.7
+///     scene                       rows   below their figure   median of figure / error   worst
+///     closed Cornell box, 111      111      97 to 100%             5.3 to 7.4            3.7
+///     closed Cornell box, 392      392    98.7 to 100%             5.7 to 9.0            2.5
+///     closed Cornell box, 606      606    99.0 to 99.7%            5.8 to 9.0            3.2
+///     boxes that touch, 407        407    99.5 to 100%             4.5 to 8.4            1.1
+///     posts around a block, 398    398     100%; 90% at 1e-5       3.3 to 5.5            2.6
+///     cube in a cube, 480          480     100%; 95% at 1e-3       4.0 to 11             1.3
+///     cube in a cube, 204          204      97 to 100%; 62% at 1e-5   2.2 to 5.8         2.2
+///     tight cube in a cube, 432    432     100%; 92% below 1e-3    19 and more           4.2
+///     blades 1 : 40 to 1 : 400     387      89 to 97%              3.0 to 7.7            4.3
 ///
-/// (The 98% are at 1e-4; of 392 other rows, 390 are below there. At 3e-3 three of the 258 are
-/// above.)
-///
-/// In the curved scene, at 1e-3 and 1e-4, a quarter of the rows are off by far less than their
-/// figure: a few pairs carry a row, and whose kinks lie beside a cell is not seen. What figures
-/// miss are mostly neighbouring targets of one element past which the same edge of a shadow slips
-/// unseen, where another edge of that occluder is nearer and SampledPair::change goes by that.
-/// (truth_exact_test holds three meshes to it, against truth that shares no code.)
+/// (worst: the largest error over its figure.) In the symmetric scenes pairs are alike, whole rows
+/// of them share one point's luck, and it is all rows of a kind that are above their figure or
+/// none. Of a blade, points see the shadow or miss it. In the curved scene, at 1e-3 and 1e-4, a
+/// quarter of the rows are off by far less than their figure: a few pairs carry a row, and whose
+/// kinks lie beside a cell is not seen. What figures miss otherwise are mostly neighbouring targets
+/// of one element past which the same edge of a shadow slips unseen, where another edge of that
+/// occluder is nearer and SampledPair::change goes by that. (truth_exact_test holds three meshes to
+/// it, against truth that shares no code.)
 class ErrorSums {
  public:
   ErrorSums() = default;
