@@ -141,7 +141,6 @@ void PartialKernel::evaluateAgain(std::span<const PartialPair> pairs,
   if (which.empty()) return;
   counts.again += which.size();
   std::vector<PartialExchange> calmer(which.size());
-  std::vector<PartialExchange> restless(which.size());
   integrate(kernels_.exact, doubtful, occluder_list, SampledEnd::calmer, calmer, counts, progress);
   // The other end where this one will not do.
   std::vector<std::size_t> still;
@@ -152,7 +151,7 @@ void PartialKernel::evaluateAgain(std::span<const PartialPair> pairs,
     still.push_back(which[k]);
     unresolved.push_back(doubtful[k]);
   }
-  restless.resize(still.size());
+  std::vector<PartialExchange> restless(still.size());
   integrate(kernels_.exact, unresolved, occluder_list, SampledEnd::restless, restless, counts,
             progress);
   for (std::size_t k = 0; k < still.size(); ++k) {

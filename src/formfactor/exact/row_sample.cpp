@@ -34,7 +34,10 @@ constexpr double kClipSeconds = 0.012;
 constexpr double kClipSecondsAtAll = 0.8;
 constexpr std::size_t kMostClipped = 1024;
 constexpr std::size_t kBatches = 16;
-constexpr std::size_t kPlaceJump = 7;  // a prime, about a third of all places
+/// Where the clock may stop things, they are taken in an order that jumps about, so that what is
+/// left out is like what is not.
+constexpr std::size_t kJump = 7;
+static_assert(kBatches % kJump != 0);
 /// Values in closed form that are computed.
 constexpr std::size_t kMostValues = 1 << 13;
 
@@ -174,9 +177,6 @@ void clip(const ExactScene& scene, const ExactKernels& kernels,
           std::span<const Index> occluder_list, double tolerance, ClipClock& clock, Piece& piece) {
   std::vector<PartialExchange> out;
   PartialCounts counts;
-  // In an order that jumps about: what the clock leaves out is like what it does not.
-  constexpr std::size_t kJump = 7;
-  static_assert(kBatches % kJump != 0);
   for (std::size_t k = 0; k < kBatches && piece.clip_seconds < kClipSeconds && !clock.spent();
        ++k) {
     const std::size_t which = k * kJump % kBatches;
@@ -184,12 +184,12 @@ void clip(const ExactScene& scene, const ExactKernels& kernels,
     std::vector<PartialPair> some = batches[which];
     piece.clip_expected +=
         partialCost(scene.elements, scene.occluders, some, occluder_list, tolerance).seconds;
-    const double start = processorSeconds();
     for (PartialPair& pair : some) {
       pair.unoccluded = kernels.unoccluded.pair(pair.row, pair.column);
     }
     std::erase_if(some, [](const PartialPair& pair) { return !(pair.unoccluded > 0); });
     out.resize(some.size());
+    const double start = processorSeconds();
     kernels.partial.evaluate(some, occluder_list, out, counts);
     const double seconds = processorSeconds() - start;
     piece.clip_seconds += seconds;
@@ -276,9 +276,7 @@ RowSample sampleRows(const ExactScene& scene, const ExactKernels& kernels, doubl
   const std::size_t places = std::min(tasks, kSampleSteps);
   std::vector<Piece> pieces(2 * places);
   ClipClock clock;
-  // In an order that jumps about: where clipping has taken its time, places that are left out are
-  // like those that are not.
-  const std::size_t jump = places % kPlaceJump == 0 ? 1 : kPlaceJump;
+  const std::size_t jump = places % kJump == 0 ? 1 : kJump;
   parallelFor(places, 1, [&](std::size_t n) {
     if (progress.cancelled()) return;
     const std::size_t k = n * jump % places;
