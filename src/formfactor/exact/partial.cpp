@@ -130,33 +130,30 @@ void PartialKernel::evaluateAgain(std::span<const PartialPair> pairs,
                                   std::span<const Index> occluder_list,
                                   std::span<PartialExchange> out, PartialCounts& counts,
                                   const Progress* progress) const {
+  // Evaluates those that are wanted from one end, and gives each to take(). Returns their number.
+  const auto again = [&](SampledEnd end, const auto& wanted, const auto& take) {
+    std::vector<std::size_t> which;
+    std::vector<PartialPair> some;
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      if (!wanted(out[k])) continue;
+      which.push_back(k);
+      some.push_back(pairs[k]);
+    }
+    std::vector<PartialExchange> found(some.size());
+    if (!some.empty()) {
+      integrate(kernels_.exact, some, occluder_list, end, found, counts, progress);
+    }
+    for (std::size_t k = 0; k < which.size(); ++k) out[which[k]] = take(out[which[k]], found[k]);
+    return which.size();
+  };
+  const auto unresolved = [](const PartialExchange& x) { return x.unresolved > kResolved; };
+  const auto doubtful = [&](const PartialExchange& x) { return unresolved(x) || x.cut_short; };
+  const auto replaced = [](const PartialExchange&, const PartialExchange& found) { return found; };
+  // In double precision this end has been looked from already.
   const bool single = tolerance_ >= kSinglePrecision;
-  std::vector<std::size_t> which;
-  std::vector<PartialPair> doubtful;
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    if (out[k].unresolved <= kResolved && !(single && out[k].cut_short)) continue;
-    which.push_back(k);
-    doubtful.push_back(pairs[k]);
-  }
-  if (which.empty()) return;
-  counts.again += which.size();
-  std::vector<PartialExchange> calmer(which.size());
-  integrate(kernels_.exact, doubtful, occluder_list, SampledEnd::calmer, calmer, counts, progress);
-  // The other end where this one will not do.
-  std::vector<std::size_t> still;
-  std::vector<PartialPair> unresolved;
-  for (std::size_t k = 0; k < which.size(); ++k) {
-    out[which[k]] = calmer[k];
-    if (calmer[k].unresolved <= kResolved) continue;
-    still.push_back(which[k]);
-    unresolved.push_back(doubtful[k]);
-  }
-  std::vector<PartialExchange> restless(still.size());
-  integrate(kernels_.exact, unresolved, occluder_list, SampledEnd::restless, restless, counts,
-            progress);
-  for (std::size_t k = 0; k < still.size(); ++k) {
-    out[still[k]] = betterResolved(out[still[k]], restless[k]);
-  }
+  if (single) counts.again += again(SampledEnd::calmer, doubtful, replaced);
+  const std::size_t from_both = again(SampledEnd::restless, unresolved, betterResolved);
+  if (!single) counts.again += from_both;
 }
 
 PartialExchange PartialKernel::evaluateFromOtherEnd(const PartialPair& pair,
