@@ -381,7 +381,7 @@ TEST(ErrorSums, FiguresOfKnownErrors) {
   std::vector<double> row = {0, 0.5};
   sums.addAndScale(0, row, 0.5);
   EXPECT_EQ(row[1], 0.25);
-  sums.addPartial(0, 1, 0.01, 2.0);
+  sums.addPartial(0, 1, 0.01);
   const std::vector<double> area = {2, 1};
   std::vector<double> figure(2);
   // The square of a single pair's error scatters by as much again. sum A err^2 = 2 (2 (0.005)^2) +
@@ -389,27 +389,32 @@ TEST(ErrorSums, FiguresOfKnownErrors) {
   EXPECT_NEAR(sums.figures(area, 0, figure), std::sqrt(3e-4 / 0.375), 1e-15);
   EXPECT_NEAR(figure[0], 0.005 * std::sqrt(2.0), 1e-16);
   EXPECT_NEAR(figure[1], 0.01 * std::sqrt(2.0), 1e-16);
-  // The two ends differ by half of what they state and, in squares, 8 times that: an eighth of
-  // the surplus, 8 times the square of what they state (0.008^2 + 0.006^2 = 0.01^2), is added: once
-  // more the square.
-  sums.addRecheck(0.01 * std::sqrt(8.25), 0.008, 0.006, 2.0);
-  EXPECT_NEAR(sums.recheckRatio(), std::sqrt(8.25), 1e-12);
+  // A pair is off by twice the figure of a row that has nothing else: figures are raised to three
+  // and a half times what they were.
+  sums.addRecheck(2 * 0.01 * std::sqrt(2.0), 0.01);
+  EXPECT_NEAR(sums.recheckRatio(), 2.0, 1e-12);
   sums.figures(area, 0, figure);
-  EXPECT_NEAR(figure[1], 0.01 * std::sqrt(3.0), 1e-15);
+  EXPECT_NEAR(figure[1], 3.5 * 0.01 * std::sqrt(2.0), 1e-15);
   // Of four equal pairs, 4 err^2, the sum scatters by half of itself.
   ErrorSums many(2);
-  for (int k = 0; k < 4; ++k) many.addPartial(0, 1, 0.01, 0.5);
+  for (int k = 0; k < 4; ++k) many.addPartial(0, 1, 0.01);
   many.figures(area, 0, figure);
   EXPECT_NEAR(figure[1], 0.01 * std::sqrt(6.0), 1e-15);
-  // Less than half of what they state changes nothing.
+  // What is off by less than four sevenths of the figure raises nothing.
   ErrorSums calm(2);
-  calm.addPartial(0, 1, 0.01, 2.0);
-  calm.addRecheck(0.0049, 0.008, 0.006, 2.0);
+  calm.addPartial(0, 1, 0.01);
+  calm.addRecheck(-0.008, 0.01);
   calm.figures(area, 0, figure);
   EXPECT_NEAR(figure[1], 0.01 * std::sqrt(2.0), 1e-16);
+  // Rows are drawn from all that was rechecked: of pairs of which one in ten is off by ten times
+  // what is stated, rows of one pair meet it.
+  ErrorSums mixed(2);
+  mixed.addPartial(0, 1, 0.01);
+  for (int k = 0; k < 10; ++k) mixed.addRecheck(k == 0 ? 0.1 : 0.001, 0.01);
+  EXPECT_NEAR(mixed.recheckRatio(), 10 / std::sqrt(2.0), 1e-12);
   // What is off of a bare back is off of the row's account of backs, not of the matrix.
   ErrorSums bare(2);
-  bare.addBare(1, 0.01, 2.0);
+  bare.addBare(1, 0.01);
   EXPECT_EQ(bare.figures(area, 0, figure), 0);
   EXPECT_EQ(figure[0], 0);
   EXPECT_NEAR(figure[1], 0.01 * std::sqrt(2.0), 1e-16);

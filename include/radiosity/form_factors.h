@@ -81,9 +81,9 @@ struct ExactReport {
   std::size_t subdivided = 0;  ///< partial pairs that needed more than the first rule
   /// Partial pairs evaluated again in double precision: too near for their points, or intricate.
   std::size_t evaluated_again = 0;
-  std::size_t rechecked = 0;  ///< partial pairs evaluated again from the other end
-  /// rms of (difference of the two ends / the error both state); where it is above 0.5, a share
-  /// of the surplus is part of the error figures.
+  std::size_t rechecked = 0;  ///< partial pairs evaluated again to an eighth of the tolerance
+  /// Error over figure that 1% of rows drawn from these pairs exceed; where 1.75 times that is more
+  /// than 1, error figures are raised by so much.
   double recheck_ratio = 0;
 
   /// Processor seconds by stage, summed over threads; preparing and finishing by the clock.

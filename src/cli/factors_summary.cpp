@@ -63,8 +63,8 @@ void exactFigures(Report& report, const ExactReport& e) {
   report.count("points", "points of partial pairs", e.points);
   report.count("subdivided", "partial pairs refined", e.subdivided);
   report.count("evaluated_again", "partial pairs again in double", e.evaluated_again);
-  report.count("rechecked", "checked from other end", e.rechecked);
-  report.number("recheck_ratio", "  difference / stated", e.recheck_ratio);
+  report.count("rechecked", "evaluated again to check", e.rechecked);
+  report.number("recheck_ratio", "  row error / figure, 99%", e.recheck_ratio);
   report.seconds("seconds_prepare", "time: preparing", e.seconds_prepare);
   report.seconds("seconds_visibility", "time: visibility", e.seconds_visibility);
   report.seconds("seconds_unoccluded", "time: closed forms", e.seconds_unoccluded);

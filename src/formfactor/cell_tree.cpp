@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <tuple>
 #include <utility>
 
 namespace radiosity {
@@ -40,15 +41,36 @@ Split splitBy(const std::vector<CellPart>& parts, const Line& line) {
   return split;
 }
 
+/// Parts that reach to a side of a line, of the side with more; slivers count.
+std::size_t largerSide(const std::vector<CellPart>& parts, const Line& line) {
+  std::size_t inside = 0;
+  std::size_t outside = 0;
+  for (const CellPart& part : parts) {
+    double low = line.at(part.corners.front());
+    double high = low;
+    for (const Vec2& corner : part.corners) {
+      const double height = line.at(corner);
+      low = std::min(low, height);
+      high = std::max(high, height);
+    }
+    const double least = kSliver * (high - low);
+    inside += high > least;
+    outside += low < -least;
+  }
+  return std::max(inside, outside);
+}
+
 /// Of all edges of the parts, the line that leaves the smaller larger half, or an empty split
-/// where no edge makes both halves smaller than the whole.
-std::pair<Line, Split> bestSplit(const std::vector<CellPart>& parts) {
+/// where no edge makes both halves smaller than the whole. `thorough`: all edges are tried, also
+/// those that seem no better before slivers are dropped.
+std::pair<Line, Split> bestSplit(const std::vector<CellPart>& parts, bool thorough) {
   std::pair<Line, Split> best;
   std::size_t best_size = parts.size();
   for (const CellPart& part : parts) {
     for (std::size_t k = 0, last = part.corners.size() - 1; k < part.corners.size(); last = k++) {
       if (part.corners[last] == part.corners[k]) continue;
       const Line line = lineThrough(part.corners[last], part.corners[k]);
+      if (!thorough && largerSide(parts, line) >= best_size) continue;
       Split split = splitBy(parts, line);
       const std::size_t size = std::max(split.inside.size(), split.outside.size());
       if (size < best_size) {
@@ -91,7 +113,8 @@ std::vector<Vec2> clipConvex(const std::vector<Vec2>& polygon, double a, double 
 std::int32_t buildCellTree(std::vector<CellPart> parts, std::vector<CellNode>& nodes) {
   const auto same = [&](const CellPart& part) { return part.item == parts.front().item; };
   if (std::all_of(parts.begin(), parts.end(), same)) return parts.front().item;
-  auto [line, split] = bestSplit(parts);
+  auto [line, split] = bestSplit(parts, false);
+  if (split.inside.empty() || split.outside.empty()) std::tie(line, split) = bestSplit(parts, true);
   if (split.inside.empty() || split.outside.empty()) return parts.front().item;
   const std::size_t node = nodes.size();
   nodes.push_back({line.a, line.b, line.c, 0, 0});

@@ -5,7 +5,11 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <numeric>
+#include <optional>
 #include <tuple>
+#include <utility>
+
+#include "base/parallel.h"
 
 namespace radiosity {
 namespace {
@@ -125,6 +129,7 @@ void ViewScene::addSides(const PatchMesh& mesh, bool with_grids) {
       members[mesh.polygon[i]][mesh.side[i] != 0].push_back(i);
     }
   }
+  std::vector<std::pair<const ViewPolygon*, std::vector<Index>*>> with_grid;
   for (ViewPolygon& polygon : polygons) {
     for (std::size_t s = 0; s < 2; ++s) {
       std::vector<Index>& own = members[polygon.source][s];
@@ -138,12 +143,19 @@ void ViewScene::addSides(const PatchMesh& mesh, bool with_grids) {
       std::sort(own.begin(), own.end(), [&](Index a, Index b) {
         return mesh.index_in_surface[a] < mesh.index_in_surface[b];
       });
-      std::vector<GridPiece> pieces;
-      for (const Index patch : own) appendPieces(mesh, patch, scale, pieces);
-      side.grid = Index(grids.size());
-      grids.emplace_back(pieces, polygon.origin, polygon.normal);
+      side.grid = Index(with_grid.size());
+      with_grid.emplace_back(&polygon, &own);
     }
   }
+  std::vector<std::optional<PatchGrid>> made(with_grid.size());
+  parallelFor(made.size(), 1, [&](std::size_t g) {
+    const auto& [polygon, own] = with_grid[g];
+    std::vector<GridPiece> pieces;
+    for (const Index patch : *own) appendPieces(mesh, patch, scale, pieces);
+    made[g].emplace(pieces, polygon->origin, polygon->normal);
+  });
+  grids.reserve(made.size());
+  for (std::optional<PatchGrid>& grid : made) grids.push_back(std::move(*grid));
 }
 
 void ViewScene::numberCells() {

@@ -17,15 +17,18 @@
 namespace radiosity {
 namespace {
 
-/// About this share of the clipped pairs is evaluated again from the other end, ...
+/// About this share of the clipped pairs is evaluated again, ...
 constexpr double kRecheckShare = 1.0 / 256;
-/// ... and at least so many, as far as there are.
-constexpr double kRecheckLeast = 256;
+/// ... and at least so many, as far as there are: at loose tolerances, and in double precision,
+/// where what rules miss is in fewer pairs, and theirs are dearer to begin with.
+constexpr double kRecheckLeast = 512;
+constexpr double kRecheckLeastTight = 1024;
 /// A row that leaves more than this to the sky needs no eye to tell that the scene is open.
 constexpr double kCertainSky = 0.01;
 
-std::size_t recheckEvery(double partial_pairs) {
-  const double share = std::max(kRecheckShare, kRecheckLeast / std::max(partial_pairs, 1.0));
+std::size_t recheckEvery(double partial_pairs, double tolerance) {
+  const double least = tolerance < kSinglePrecision ? kRecheckLeastTight : kRecheckLeast;
+  const double share = std::max(kRecheckShare, least / std::max(partial_pairs, 1.0));
   return std::size_t(std::max(1.0, 1 / share));
 }
 
@@ -165,9 +168,12 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   UncertainEntries uncertain(options.closure == ClosureMode::off ? 0 : n);
   UncertainEntries* const wanted = options.closure == ClosureMode::off ? nullptr : &uncertain;
   const RowContext context{
-      scene.elements,     scene.order,     scene.chunks, scene.visibility,
-      kernels.unoccluded, kernels.partial, progress,     recheckEvery(estimate.partial_pairs),
-      result.matrix,      wanted,          result.backs, seen_backs};
+      scene.elements,     scene.order,
+      scene.chunks,       scene.visibility,
+      kernels.unoccluded, kernels.partial,
+      progress,           recheckEvery(estimate.partial_pairs, options.tolerance),
+      result.matrix,      wanted,
+      result.backs,       seen_backs};
   const RowSums sums = fillRows(context, scene.tasks, progress);
   using Clock = std::chrono::steady_clock;
   const Clock::time_point finishing = Clock::now();

@@ -50,18 +50,26 @@ class SolidSearch {
         progress_(progress),
         users_(all.edgeUsers()),
         regions_(all, users_),
-        groups_(all, users_, candidates()) {}
+        groups_(all, users_, candidates()) {
+    forget();
+  }
 
   std::vector<ConvexSolid> run(std::vector<std::uint8_t>& taken) {
     std::vector<ConvexSolid> solids;
     addPlain(taken, solids);
-    failed_.clear();  // some of them may be solids where surfaces around them are opaque
-    tried_.clear();
+    forget();  // some of them may be solids where surfaces around them are opaque
     addOpaque(taken, solids);
     return solids;
   }
 
  private:
+  /// Drops what is known of sets that make no solid.
+  void forget() {
+    failed_.clear();
+    tried_.clear();
+    given_up_.fill(std::vector<std::uint8_t>(all_.polygons.size(), 0));
+  }
+
   /// Bodies that stand for themselves, or on something.
   void addPlain(std::vector<std::uint8_t>& taken, std::vector<ConvexSolid>& solids) {
     for (const bool convex_only : {true, false}) {
@@ -140,7 +148,14 @@ class SolidSearch {
     const std::vector<Growth> ways = large ? std::vector<Growth>{Growth::known}
                                            : std::vector<Growth>{Growth::greedy, Growth::careful};
     for (const Growth way : ways) {
+      std::vector<std::uint8_t>& given_up = given_up_[convex_only];
+      if (way == Growth::careful && given_up[seed] != 0) continue;
       const ConvexSet set = grow(seed, convex_only, way, taken);
+      if (way == Growth::careful) {
+        // From one of them the others give much the same once more, and each takes a hull for every
+        // polygon that might join.
+        for (const ConvexSet::Member& m : set.members) given_up[m.polygon] = 1;
+      }
       std::vector<Index> key = set.polygons();
       if (!large && failed_.count(key) != 0) continue;
       std::optional<ConvexSolid> solid = solidOf(set, opaque);
@@ -396,6 +411,8 @@ class SolidSearch {
   ConvexGroups groups_;
   std::set<std::vector<Index>> failed_;     ///< sets that make no solid
   std::set<std::pair<Index, bool>> tried_;  ///< large groups, and whether of convex polygons alone
+  /// Polygons of sets that were grown carefully, of all polygons and of convex ones alone.
+  std::array<std::vector<std::uint8_t>, 2> given_up_;
 };
 
 }  // namespace

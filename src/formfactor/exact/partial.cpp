@@ -67,14 +67,15 @@ PartialKernel::PartialKernel(const ElementSet& elements, const OccluderSet& occl
       tolerance_(tolerance) {}
 
 template <class T>
-void PartialKernel::integrate(const ClipKernels<T>& kernels, std::span<const PartialPair> pairs,
+void PartialKernel::integrate(const ClipKernels<T>& kernels, double tolerance,
+                              std::span<const PartialPair> pairs,
                               std::span<const Index> occluder_list, SampledEnd end,
                               std::span<PartialExchange> out, PartialCounts& counts,
                               const Progress* progress) const {
   std::fill(out.begin(), out.end(), PartialExchange());
   PairPreparation ready(elements_, occluders_, distances_);
   ready.prepare(pairs, occluder_list, end);
-  PairGroups<T> groups(elements_, kernels, std::cbrt(kFarError / (kOfFarKernels * tolerance_)),
+  PairGroups<T> groups(elements_, kernels, std::cbrt(kFarError / (kOfFarKernels * tolerance)),
                        progress);
   std::vector<VisibleFraction> fractions;
   const auto clipFacet = [&](const SampledPair& p) {
@@ -90,7 +91,7 @@ void PartialKernel::integrate(const ClipKernels<T>& kernels, std::span<const Par
     const auto group = std::span<const SampledPair>(ready.pairs).subspan(begin, last - begin);
     fractions.assign(group.size(), VisibleFraction());
     for (std::size_t k = 0; k < group.size(); ++k) {
-      fractions[k].allowed = allowedError(elements_, pairs[group[k].pair], tolerance_);
+      fractions[k].allowed = allowedError(elements_, pairs[group[k].pair], tolerance);
     }
     groups.integrate(group, ready.blockers, fractions);
     for (std::size_t k = 0; k < group.size(); ++k) {
@@ -113,20 +114,36 @@ void PartialKernel::integrate(const ClipKernels<T>& kernels, std::span<const Par
 void PartialKernel::evaluate(std::span<const PartialPair> pairs,
                              std::span<const Index> occluder_list, std::span<PartialExchange> out,
                              PartialCounts& counts, const Progress* progress) const {
+  evaluateTo(tolerance_, pairs, occluder_list, out, counts, progress);
+}
+
+void PartialKernel::evaluateStrictly(std::span<const PartialPair> pairs,
+                                     std::span<const Index> occluder_list,
+                                     std::span<PartialExchange> out,
+                                     const Progress* progress) const {
+  PartialCounts uncounted;
+  evaluateTo(kStricter * std::min(tolerance_, kSinglePrecision), pairs, occluder_list, out,
+             uncounted, progress);
+}
+
+void PartialKernel::evaluateTo(double tolerance, std::span<const PartialPair> pairs,
+                               std::span<const Index> occluder_list, std::span<PartialExchange> out,
+                               PartialCounts& counts, const Progress* progress) const {
   counts.pairs += pairs.size();
-  if (tolerance_ >= kSinglePrecision) {
-    integrate(kernels_.single, pairs, occluder_list, SampledEnd::calmer, out, counts, progress);
+  constexpr SampledEnd kEnd = SampledEnd::calmer;
+  if (tolerance >= kSinglePrecision) {
+    integrate(kernels_.single, tolerance, pairs, occluder_list, kEnd, out, counts, progress);
   } else {
-    integrate(kernels_.exact, pairs, occluder_list, SampledEnd::calmer, out, counts, progress);
+    integrate(kernels_.exact, tolerance, pairs, occluder_list, kEnd, out, counts, progress);
   }
-  evaluateAgain(pairs, occluder_list, out, counts, progress);
+  evaluateAgain(tolerance, pairs, occluder_list, out, counts, progress);
   for (const PartialExchange& found : out) {
     counts.hidden += found.exchange == 0;
     counts.cut_short += found.cut_short;
   }
 }
 
-void PartialKernel::evaluateAgain(std::span<const PartialPair> pairs,
+void PartialKernel::evaluateAgain(double tolerance, std::span<const PartialPair> pairs,
                                   std::span<const Index> occluder_list,
                                   std::span<PartialExchange> out, PartialCounts& counts,
                                   const Progress* progress) const {
@@ -141,7 +158,7 @@ void PartialKernel::evaluateAgain(std::span<const PartialPair> pairs,
     }
     std::vector<PartialExchange> found(some.size());
     if (!some.empty()) {
-      integrate(kernels_.exact, some, occluder_list, end, found, counts, progress);
+      integrate(kernels_.exact, tolerance, some, occluder_list, end, found, counts, progress);
     }
     for (std::size_t k = 0; k < which.size(); ++k) out[which[k]] = take(out[which[k]], found[k]);
     return which.size();
@@ -150,19 +167,10 @@ void PartialKernel::evaluateAgain(std::span<const PartialPair> pairs,
   const auto doubtful = [&](const PartialExchange& x) { return unresolved(x) || x.cut_short; };
   const auto replaced = [](const PartialExchange&, const PartialExchange& found) { return found; };
   // In double precision this end has been looked from already.
-  const bool single = tolerance_ >= kSinglePrecision;
+  const bool single = tolerance >= kSinglePrecision;
   if (single) counts.again += again(SampledEnd::calmer, doubtful, replaced);
   const std::size_t from_both = again(SampledEnd::restless, unresolved, betterResolved);
   if (!single) counts.again += from_both;
-}
-
-PartialExchange PartialKernel::evaluateFromOtherEnd(const PartialPair& pair,
-                                                    std::span<const Index> occluder_list) const {
-  PartialExchange out;
-  PartialCounts counts;
-  integrate(kernels_.exact, std::span(&pair, 1), occluder_list, SampledEnd::restless,
-            std::span(&out, 1), counts, nullptr);
-  return out;
 }
 
 }  // namespace radiosity

@@ -45,6 +45,9 @@ inline constexpr double kSinglePrecision = 2.5e-4;
 /// of the pairs of ordinary scenes and 15% of a scan with slivers.)
 inline constexpr double kResolved = 0.01;
 
+/// Of the tolerance, what spot checks are made to.
+inline constexpr double kStricter = 1.0 / 8;
+
 /// Error of the pair's visible fraction that is accepted at a tolerance.
 double allowedError(const ElementSet& elements, const PartialPair& pair, double tolerance);
 
@@ -74,19 +77,23 @@ class PartialKernel {
                 std::span<PartialExchange> out, PartialCounts& counts,
                 const Progress* progress = nullptr) const;
 
-  /// The same from the other end: points along which shadows move more. For spot checks.
-  PartialExchange evaluateFromOtherEnd(const PartialPair& pair,
-                                       std::span<const Index> occluder_list) const;
+  /// The same in double precision and to a fraction of the tolerance (kStricter): what it differs
+  /// by is nearly all of the error. For spot checks.
+  void evaluateStrictly(std::span<const PartialPair> pairs, std::span<const Index> occluder_list,
+                        std::span<PartialExchange> out, const Progress* progress = nullptr) const;
 
  private:
+  void evaluateTo(double tolerance, std::span<const PartialPair> pairs,
+                  std::span<const Index> occluder_list, std::span<PartialExchange> out,
+                  PartialCounts& counts, const Progress* progress) const;
   /// See kResolved.
-  void evaluateAgain(std::span<const PartialPair> pairs, std::span<const Index> occluder_list,
-                     std::span<PartialExchange> out, PartialCounts& counts,
-                     const Progress* progress) const;
+  void evaluateAgain(double tolerance, std::span<const PartialPair> pairs,
+                     std::span<const Index> occluder_list, std::span<PartialExchange> out,
+                     PartialCounts& counts, const Progress* progress) const;
   template <class T>
-  void integrate(const ClipKernels<T>& kernels, std::span<const PartialPair> pairs,
-                 std::span<const Index> occluder_list, SampledEnd end,
-                 std::span<PartialExchange> out, PartialCounts& counts,
+  void integrate(const ClipKernels<T>& kernels, double tolerance,
+                 std::span<const PartialPair> pairs, std::span<const Index> occluder_list,
+                 SampledEnd end, std::span<PartialExchange> out, PartialCounts& counts,
                  const Progress* progress) const;
 
   const ElementSet& elements_;

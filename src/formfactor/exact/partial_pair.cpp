@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "base/parallel.h"
 #include "formfactor/exact/partial.h"
 
 namespace radiosity {
@@ -50,10 +51,13 @@ EdgeDistances::EdgeDistances(const ElementSet& elements, const OccluderSet& occl
     : elements_(elements), occluders_(occluders) {
   const std::size_t count = elements.size();
   if (few || occluders.occluders.size() * count > kMostDistances) return;
-  table_.reserve(occluders.occluders.size() * count);
-  for (const Occluder& body : occluders.occluders) {
-    for (const Vec3& p : elements.centroid) table_.push_back(float(edgeDistance2(body, p)));
-  }
+  table_.resize(occluders.occluders.size() * count);
+  parallelFor(occluders.occluders.size(), 1, [&](std::size_t o) {
+    float* const distances = table_.data() + o * count;
+    for (std::size_t e = 0; e < count; ++e) {
+      distances[e] = float(edgeDistance2(occluders.occluders[o], elements.centroid[e]));
+    }
+  });
 }
 
 double EdgeDistances::squared(Index element, Index occluder) const {

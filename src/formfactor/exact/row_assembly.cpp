@@ -154,27 +154,31 @@ void RowAssembly::evaluatePartial(RowSums& sums) {
     const Index a = order.rank[row];
     if (column < context_.elements.patch_elements) {
       const Index b = order.rank[column];
-      sums.error.addPartial(a, b, partial_[k].error, order.area[a] * order.area[b]);
+      sums.error.addPartial(a, b, partial_[k].error);
     } else {
-      const double areas = order.area[a] * context_.elements.area[column];
-      sums.error.addBare(a, partial_[k].error, areas);
+      sums.error.addBare(a, partial_[k].error);
     }
   }
   recheck(sums);
 }
 
 void RowAssembly::recheck(RowSums& sums) const {
-  const PatchOrder& order = context_.order;
+  std::vector<PartialPair> pairs;
+  std::vector<std::size_t> which;
   for (std::size_t k = 0; k < partial_.size(); ++k) {
     const PartialPair& pair = pairs_.partial_pairs[k];
     if (pair.column >= context_.elements.patch_elements) continue;
+    if (partial_[k].cut_short) continue;  // it would take as much again, and states what it misses
     if (pairHash(pair.row, pair.column) % context_.recheck_every != 0) continue;
-    context_.progress.check();
-    const PartialExchange other = context_.partial.evaluateFromOtherEnd(pair, pairs_.occluder_list);
-    if (other.unresolved > kResolved) continue;  // says nothing of this end
-    const double areas = order.area[order.rank[pair.row]] * order.area[order.rank[pair.column]];
-    sums.error.addRecheck(partial_[k].exchange - other.exchange, partial_[k].error, other.error,
-                          areas);
+    which.push_back(k);
+    pairs.push_back(pair);
+  }
+  if (which.empty()) return;
+  std::vector<PartialExchange> strict(which.size());
+  context_.partial.evaluateStrictly(pairs, pairs_.occluder_list, strict, &context_.progress);
+  for (std::size_t k = 0; k < which.size(); ++k) {
+    const PartialExchange& found = partial_[which[k]];
+    sums.error.addRecheck(found.exchange - strict[k].exchange, found.error);
   }
 }
 

@@ -53,7 +53,7 @@ struct RowContext {
   const UnoccludedKernel& unoccluded;
   const PartialKernel& partial;
   const Progress& progress;
-  std::size_t recheck_every;  ///< about one clipped pair in so many is evaluated from both ends
+  std::size_t recheck_every;  ///< about one clipped pair in so many is evaluated again
   ExchangeMatrix& matrix;
   UncertainEntries* uncertain;  ///< clipped pairs and their errors go there; may be null
   std::vector<double>& backs;
