@@ -18,15 +18,30 @@ constexpr std::size_t kMostDistances = std::size_t(1) << 24;
 /// end is sampled must not depend on how distances, in single precision, are rounded.
 constexpr double kAlike = 1 + 1e-5;
 
+/// A body is thin whose thickness is less than so much of its radius. Of bodies with more faces
+/// than these it is not asked.
+constexpr double kThin = 0.1;
+constexpr std::size_t kMostThinPlanes = 16;
+
+/// What a thin body seen edge-on from the middle of an element hides goes down to nearly nothing
+/// there and up again, and points on both sides of it may see the same: as if shadows moved so many
+/// times as far. (Blades 1 : 40 and 1 : 400 in a room, 1e-4: 82% of rows are below their figure
+/// without, 91% with a factor of 2 and 99% with 4; points 728, 662 and 664 thousand.)
+constexpr float kEdgeOn = 4;
+/// Past more than these one is as good as lost among the others, and mostly part of a surface that
+/// is not thin.
+constexpr std::uint32_t kFewBlockers = 2;
+
 struct Heights {
   double least = std::numeric_limits<double>::infinity();
   double most = -least;
 };
 
-Heights heights(std::span<const Vec3> points, const Facet& facet) {
+template <class Plane>
+Heights heights(std::span<const Vec3> points, const Plane& plane) {
   Heights h;
   for (const Vec3& p : points) {
-    const double d = glm::dot(facet.normal, p) - facet.offset;
+    const double d = glm::dot(plane.normal, p) - plane.offset;
     h.least = std::min(h.least, d);
     h.most = std::max(h.most, d);
   }
@@ -45,10 +60,27 @@ double edgeDistance2(const Occluder& body, const Vec3& p) {
   return least;
 }
 
+/// The middle plane of a body that is thin; a normal of 0 for others.
+Occluder::Plane middleOfThin(const Occluder& body) {
+  Occluder::Plane best;
+  if (body.planes.size() > kMostThinPlanes) return best;
+  double least = kThin * body.radius;
+  for (const Occluder::Plane& plane : body.planes) {
+    double low = plane.offset;
+    for (const Vec3& v : body.corners) low = std::min(low, glm::dot(plane.normal, v));
+    if (plane.offset - low < least) {
+      least = plane.offset - low;
+      best = {plane.normal, 0.5 * (plane.offset + low)};
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 EdgeDistances::EdgeDistances(const ElementSet& elements, const OccluderSet& occluders, bool few)
     : elements_(elements), occluders_(occluders) {
+  for (const Occluder& body : occluders.occluders) thin_.push_back(middleOfThin(body));
   const std::size_t count = elements.size();
   if (few || occluders.occluders.size() * count > kMostDistances) return;
   table_.resize(occluders.occluders.size() * count);
@@ -58,6 +90,15 @@ EdgeDistances::EdgeDistances(const ElementSet& elements, const OccluderSet& occl
       distances[e] = float(edgeDistance2(occluders.occluders[o], elements.centroid[e]));
     }
   });
+}
+
+bool EdgeDistances::seesEdgeOn(Index element, Index occluder) const {
+  const Occluder::Plane& plane = thin_[occluder];
+  if (plane.normal == Vec3(0.0)) return false;
+  const double height = glm::dot(plane.normal, elements_.centroid[element]) - plane.offset;
+  if (std::abs(height) >= elements_.radius[element]) return false;
+  const Heights h = heights(elements_.outline(element), plane);
+  return h.least < -elements_.coincidence && h.most > elements_.coincidence;
 }
 
 double EdgeDistances::squared(Index element, Index occluder) const {
@@ -143,8 +184,14 @@ void PairPreparation::prepare(std::span<const PartialPair> batch,
     const bool at_row_end = row_is_calmer == (end == SampledEnd::calmer);
     pair.change = float(std::sqrt(at_row_end ? change2.row : change2.column));
     const double reach = at_row_end ? row_size : column_size;
+    const Index sampled = at_row_end ? given.row : given.column;
+    const bool few = pair.blockers_end - pair.blockers_begin <= kFewBlockers;
+    const bool edge_on =
+        few && std::any_of(blockers.begin() + pair.blockers_begin, blockers.end(),
+                           [&](const Blocker& b) { return distances_.seesEdgeOn(sampled, b.id); });
+    if (edge_on) pair.change *= kEdgeOn;
     pair.may_cross = (at_row_end ? at_row : at_column) <= reach * reach;
-    pair.sampled = at_row_end ? given.row : given.column;
+    pair.sampled = sampled;
     pair.target = at_row_end ? given.column : given.row;
     const bool row_cut = row.least < -touching;
     const bool column_cut = column.least < -touching;

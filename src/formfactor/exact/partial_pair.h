@@ -22,7 +22,7 @@ struct SampledPair {
   bool sampled_cut;    ///< reaches behind the target's plane
   bool target_cut;     ///< reaches behind the sampled element's plane
   /// How far shadows move across the target, in its sizes, from end to end of the sampled element:
-  /// that of the occluder where this is most.
+  /// that of the occluder where this is most. Several times that past a thin occluder seen edge-on.
   float change;
   bool may_cross;  ///< an occluder's edge comes within the sampled element's radius of its centroid
   std::uint32_t blockers_begin, blockers_end;  ///< into PairPreparation::blockers
@@ -37,7 +37,8 @@ enum class SampledEnd {
   restless,  ///< the other one
 };
 
-/// Distances of all elements from all occluders' edges, unless there are too many.
+/// Distances of all elements from all occluders' edges, unless there are too many, and from the
+/// planes of thin occluders.
 class EdgeDistances {
  public:
   /// `few`: of some pairs only, for which no table is worth making.
@@ -45,10 +46,15 @@ class EdgeDistances {
   /// Square of the distance from the element's centroid to the occluder's nearest edge.
   double squared(Index element, Index occluder) const;
 
+  /// True if the occluder is thin and its plane cuts the element, which sees it edge-on there and
+  /// broadside from elsewhere.
+  bool seesEdgeOn(Index element, Index occluder) const;
+
  private:
   const ElementSet& elements_;
   const OccluderSet& occluders_;
-  std::vector<float> table_;  ///< by occluder, then element; empty: computed on demand
+  std::vector<float> table_;           ///< by occluder, then element; empty: computed on demand
+  std::vector<Occluder::Plane> thin_;  ///< the middle of thin occluders; of others the normal is 0
 };
 
 /// Prepares one batch.
