@@ -375,6 +375,41 @@ TEST(ElementSet, PiecesOfAPatchStandTogether) {
   EXPECT_EQ(changes, patch_count);
 }
 
+/// Exchange areas between surfaces, m^2.
+std::vector<double> exchangeOfSurfaces(const Scene& scene, std::size_t patches, double tolerance,
+                                       bool& joined) {
+  MeshOptions meshing;
+  meshing.patches = patches;
+  Progress progress;
+  const PatchMesh mesh = meshScene(scene, meshing, progress).mesh;
+  joined = false;
+  for (std::size_t i = 0; i < mesh.size(); ++i) joined |= mesh.outline(i).size() > 4;
+  const FormFactors f = compute(mesh, exactly(tolerance));
+  const std::size_t n = mesh.surface_names.size();
+  std::vector<double> sum(n * n, 0.0);
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    for (std::size_t j = 0; j < mesh.size(); ++j) {
+      sum[mesh.surface[i] * n + mesh.surface[j]] += mesh.area[i] * f.matrix.at(i, j);
+    }
+  }
+  return sum;
+}
+
+TEST(ExactFactors, JoinedPatchesExchangeWhatTheirCellsDo) {
+  // What surfaces exchange does not depend on how they are cut.
+  const Scene scene = loadScene(RADIOSITY_SOURCE_DIR "/data/cornell-box-closed.obj");
+  bool joined = false;
+  const std::vector<double> few = exchangeOfSurfaces(scene, 20, 1e-5, joined);
+  ASSERT_TRUE(joined);
+  const std::vector<double> many = exchangeOfSurfaces(scene, 300, 1e-5, joined);
+  ASSERT_FALSE(joined);
+  const double total = std::accumulate(many.begin(), many.end(), 0.0);
+  for (std::size_t k = 0; k < few.size(); ++k) {
+    // A row is off by about the tolerance; surfaces are many rows.
+    EXPECT_NEAR(few[k], many[k], 1e-4 * many[k] + 1e-6 * total) << k;
+  }
+}
+
 TEST(ErrorSums, FiguresOfKnownErrors) {
   // Two rows of areas 2 and 1 with G_12 = 0.5, of which an error of 0.01 is stated.
   ErrorSums sums(2);

@@ -45,7 +45,7 @@ TEST(ExactEstimate, PointsAreForeseenWithinAFactorOfTwo) {
   Progress silent;
   for (const Case& c : {Case{"cornell-box-closed", 500, {1e-1, 1e-3, 1e-4, 1e-6}},
                         Case{"two-rooms", 500, {1e-2, 1e-3, 1e-4}}, Case{"cluttered", 300, {1e-2}},
-                        Case{"curved", 300, {1e-1}}}) {
+                        Case{"curved", 1500, {1e-1}}}) {
     const PatchMesh mesh = meshNamed(c.scene, c.patches);
     for (const double tolerance : c.tolerances) {
       const FormFactorOptions options = exactly(tolerance);
@@ -144,7 +144,7 @@ TEST(ExactEstimate, NothingInBetweenTakesNoPoints) {
 }
 
 TEST(Auto, ClutterAndToleranceDecide) {
-  const PatchMesh cluttered = meshNamed("furnished-room", 2000);
+  const PatchMesh cluttered = meshNamed("furnished-room", 5000);
   Progress silent;
   FormFactorOptions options;
   EXPECT_EQ(planFormFactors(cluttered, options, silent).method, FormFactorMethod::hemicube);

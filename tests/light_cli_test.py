@@ -145,7 +145,7 @@ class WhatCannotBeKept(CliTest):
         run = self.run_program("factors", "box.obj", "--patches", "3")
         self.assertEqual(run.err, "radiosity: warning: 6 patches instead of 3: the scene has 6 planar "
                          "polygons, each at least one patch; large ones are not cut coarser than "
-                         "2 m for it\n")
+                         "6 m for it\n")
         run = self.run_program("factors", "box.obj", "--patches", "6")
         self.assertEqual(run.err, "")
 

@@ -11,6 +11,8 @@
 #include "mesh/box_filter.h"
 #include "mesh/edge_rows.h"
 #include "mesh/face_locator.h"
+#include "mesh/join_cells.h"
+#include "mesh/join_loops.h"
 #include "mesh/sharp_corners.h"
 #include "scene/winding_tree.h"
 
@@ -207,6 +209,82 @@ TEST(TriangulateOutline, ManyCornersThatTouchThemselvesStillGiveAllTriangles) {
   double sum = 0;
   for (const auto& t : triangles) sum += areaOf(outline, t);
   EXPECT_NEAR(sum, 0.5 * n * std::sin(2 * std::numbers::pi / n) * 3, 1e-12);
+}
+
+TEST(JoinLoops, GiveTheOutlineOfBothOrNothing) {
+  using Loop = std::vector<Index>;
+  // Two squares of a grid side by side, numbered along its rows of three points.
+  EXPECT_EQ(joinLoops({0, 1, 4, 3}, {1, 2, 5, 4}), (Loop{0, 1, 2, 5, 4, 3}));
+  EXPECT_EQ(joinLoops({4, 3, 0, 1}, {5, 4, 1, 2}), (Loop{0, 1, 2, 5, 4, 3}));
+  // That meet in a point, or not at all.
+  EXPECT_EQ(joinLoops({0, 1, 4, 3}, {4, 5, 8, 7}), Loop());
+  EXPECT_EQ(joinLoops({0, 1, 4, 3}, {5, 6, 9, 8}), Loop());
+  // Seven squares around an eighth, on rows of four points, and the one that closes the ring.
+  EXPECT_EQ(joinLoops({0, 1, 2, 3, 7, 11, 15, 14, 10, 6, 5, 9, 13, 12, 8, 4}, {9, 10, 14, 13}),
+            Loop());
+  // The same region twice, the other way round: nothing is left.
+  EXPECT_EQ(joinLoops({0, 1, 2}, {2, 1, 0}), Loop());
+}
+
+/// A grid of `n` x `n` unit squares, turned in space and numbered along its rows.
+struct SquareGrid {
+  explicit SquareGrid(Index n) {
+    const Vec3 u = glm::normalize(Vec3(1, 2, 2));
+    const Vec3 v = glm::normalize(Vec3(2, 1, -2));
+    for (Index y = 0; y <= n; ++y) {
+      for (Index x = 0; x <= n; ++x) points.push_back(double(x) * u + double(y) * v);
+    }
+    for (Index y = 0; y < n; ++y) {
+      for (Index x = 0; x < n; ++x) {
+        const Index a = y * (n + 1) + x;
+        cells.push_back({a, a + 1, a + n + 2, a + n + 1});
+      }
+    }
+  }
+  double areaOf(std::span<const Index> outline) const {
+    Vec3 sum(0.0);
+    for (std::size_t k = 1; k + 1 < outline.size(); ++k) {
+      sum += glm::cross(points[outline[k]] - points[outline[0]],
+                        points[outline[k + 1]] - points[outline[0]]);
+    }
+    return 0.5 * glm::length(sum);
+  }
+  std::vector<Vec3> points;
+  std::vector<Cell> cells;
+};
+
+TEST(JoinCells, EveryCellIsInOnePatchOfNoMoreThanTheSize) {
+  const SquareGrid grid(12);
+  for (const double size : {1.0, 1.5, 2.5, 4.1, 100.0}) {
+    const std::vector<CellGroup> groups = joinCells(grid.cells, {}, grid.points, size);
+    std::vector<int> used(grid.cells.size(), 0);
+    for (const CellGroup& group : groups) {
+      for (const Index c : group.cells) ++used[c];
+      EXPECT_LE(double(group.cells.size()), size * size);
+      EXPECT_NEAR(grid.areaOf(group.outline), double(group.cells.size()), 1e-12 * 144);
+      double triangles = 0;
+      for (const auto& t : group.triangles) triangles += grid.areaOf(t);
+      if (group.triangles.empty()) continue;
+      EXPECT_NEAR(triangles, double(group.cells.size()), 1e-10);
+    }
+    EXPECT_EQ(std::ranges::count(used, 1), std::ptrdiff_t(used.size()));
+    // Whatever is joined is more than half as large as it may be, in the mean.
+    EXPECT_LT(double(groups.size()), 2 * 144 / (size * size) + 1) << size;
+  }
+  EXPECT_EQ(joinCells(grid.cells, {}, grid.points, 1.0).size(), grid.cells.size());
+}
+
+TEST(JoinCells, EdgesInsideAreKept) {
+  const SquareGrid grid(4);
+  // A wall along the second row of points.
+  std::vector<std::array<Index, 2>> wall;
+  for (Index x = 0; x < 4; ++x) wall.push_back({10 + x, 11 + x});
+  const std::vector<CellGroup> groups = joinCells(grid.cells, wall, grid.points, 3.0);
+  for (const CellGroup& group : groups) {
+    const bool below = group.cells.front() < 8;
+    for (const Index c : group.cells) EXPECT_EQ(c < 8, below);
+  }
+  EXPECT_LE(groups.size(), 4u);
 }
 
 }  // namespace

@@ -84,22 +84,30 @@ std::size_t bruteForceTJunctions(const PatchMesh& mesh, double tolerance) {
   return found;
 }
 
-/// Convex, counter-clockwise about its normal, along the polygon's normal, pieces tiling it.
+/// Along the polygon's normal, counter-clockwise about it, pieces tiling it; triangles and convex
+/// quadrilaterals, unless cells were joined for want of patches.
 void expectGoodPatches(const PatchMesh& mesh) {
+  bool joined = false;
+  for (std::size_t i = 0; i < mesh.size(); ++i) joined |= mesh.outline(i).size() > 4;
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     const auto outline = mesh.outline(i);
     const std::size_t n = outline.size();
-    ASSERT_TRUE(n == 3 || n == 4) << i;
+    ASSERT_GE(n, 3u) << i;
     ASSERT_GT(mesh.area[i], 0) << i;
     const Vec3 facing = mesh.side[i] == 0 ? mesh.polygons.normal[mesh.polygon[i]]
                                           : -mesh.polygons.normal[mesh.polygon[i]];
     EXPECT_EQ(mesh.normal[i], facing) << i;
+    double around = 0;
     for (std::size_t k = 0; k < n; ++k) {
       const Vec3& a = mesh.vertices[outline[k]];
       const Vec3& b = mesh.vertices[outline[(k + 1) % n]];
       const Vec3& c = mesh.vertices[outline[(k + 2) % n]];
+      const Vec3& first = mesh.vertices[outline[0]];
+      around += 0.5 * glm::dot(glm::cross(a - first, b - first), mesh.normal[i]);
+      if (joined) continue;
       EXPECT_GT(glm::dot(glm::cross(b - a, c - b), mesh.normal[i]), 0) << "patch " << i;
     }
+    EXPECT_NEAR(around, mesh.area[i], 1e-10 * mesh.area[i]);
     double pieces = 0;
     for (std::size_t t = mesh.piece_offset[i]; t < mesh.piece_offset[i + 1]; ++t) {
       const Vec3& a = mesh.vertices[mesh.pieces[t][0]];
@@ -181,7 +189,7 @@ TEST(Subdivide, GoodShapesStayGoodAtEverySize) {
       EXPECT_GE(smallestAngle(mesh), 20.0);
       EXPECT_EQ(report.smallest_angle, smallestAngle(mesh));
       EXPECT_EQ(report.smallest_angle_surface, "shape/shape");
-      EXPECT_EQ(report.triangles + report.quads, mesh.size());
+      EXPECT_LE(report.triangles + report.quads, mesh.size());
     }
   }
 }

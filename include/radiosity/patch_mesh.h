@@ -62,7 +62,9 @@ struct PatchMesh {
 };
 
 struct MeshOptions {
-  std::size_t patches = 2000;     ///< about how many patches (both sides counted once); 1 or more
+  /// About how many patches (both sides counted once); 1 or more. Where outlines alone take more
+  /// cells, cells of a polygon are joined; a polygon is at least one patch.
+  std::size_t patches = 2000;
   double max_edge = 0;            ///< metres; longest patch edge; 0: derived from `patches`
   double weld = 1e-7;             ///< coincidence, as a fraction of the scene's diagonal; 0 to 1e-2
   bool faces_as_patches = false;  ///< patch k is face k of the file; nothing welded, cut, reordered
@@ -94,8 +96,8 @@ struct MeshReport {
   std::size_t hidden_sides = 0;  ///< sides of two-sided planar polygons dropped: they see nothing
   std::size_t nonmanifold_edges = 0;
   std::size_t polygons = 0;
-  std::size_t triangles = 0;  ///< patches that are triangles
-  std::size_t quads = 0;
+  std::size_t triangles = 0;    ///< patches that are triangles
+  std::size_t quads = 0;        ///< ... that have four corners; others are joined cells, or faces
   std::size_t t_junctions = 0;  ///< counted by an independent checker; 0 unless faces_as_patches
   std::size_t crossings = 0;    ///< faces_as_patches: pairs of faces that cross, not repaired
   double smallest_angle = 0;    ///< degrees, over all patches

@@ -132,7 +132,7 @@ void Pipeline::openScene(const std::string& results_output) {
   progress_.end();
   changed_ = true;
   summarizeScene(report_, scene(), request_.input);
-  report_.notes(scene().notes);
+  if (request_.command != Command::info) report_.notes(scene().notes);  // they stand at its end
   std::error_code ignored;
   if (results_output.empty() || !std::filesystem::exists(results_output, ignored)) return;
   try {

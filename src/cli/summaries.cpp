@@ -159,10 +159,12 @@ void summarizeMesh(Report& report, const MeshResult& result, Detail detail) {
   const PatchMesh& mesh = result.mesh;
   const double area = std::accumulate(mesh.area.begin(), mesh.area.end(), 0.0);
   if (detail == Detail::brief) {
+    const std::size_t others = mesh.size() - r.quads - r.triangles;
     report.line(
-        "", fmt::format("{} ({}, {}) on {}; T-junctions {}; smallest angle {} deg",
+        "", fmt::format("{} ({}, {}{}) on {}; T-junctions {}; smallest angle {} deg",
                         plural(mesh.size(), "patch", "patches"), plural(r.quads, "quad", "quads"),
                         plural(r.triangles, "triangle", "triangles"),
+                        others > 0 ? fmt::format(", {} of more corners", others) : "",
                         plural(r.polygons, "polygon", "polygons"), r.t_junctions,
                         numberText(r.smallest_angle, 3)));
   }

@@ -42,8 +42,9 @@ struct CoarseComplex {
 CoarseComplex buildComplex(const Scene& scene, const MeshOptions& options, MeshReport& report,
                            Progress& progress);
 
-/// Cuts a complex into triangles and convex quads, conforming across polygons. Fills the report's
-/// patch figures and `kept`.
+/// Cuts a complex into triangles and convex quads, conforming across polygons; where those are more
+/// than the options ask for, cells of a polygon are joined. Fills the report's patch figures and
+/// `kept`.
 PatchMesh subdivide(const CoarseComplex& complex, const Scene& scene, const MeshOptions& options,
                     MeshReport& report, Progress& progress);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,11 @@ namespace radiosity {
 /// without area. Few corners are clipped as ears, many triangulated in n log n unless the outline
 /// touches or crosses itself.
 std::vector<std::array<Index, 3>> triangulateOutline(std::span<const Vec2> outline);
+
+/// The same by constrained Delaunay triangulation, n log n: a corner nearly in
+/// line with its neighbours is part of wide triangles. Empty if the outline touches or crosses
+/// itself.
+std::optional<std::vector<std::array<Index, 3>>> delaunayTriangles(std::span<const Vec2> outline);
 
 /// Some faces of a scene, flattened onto one plane.
 class FaceLocator {

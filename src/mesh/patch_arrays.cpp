@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <glm/geometric.hpp>
+#include <limits>
 
 #include "base/parallel.h"
 #include "mesh/face_locator.h"
@@ -68,29 +69,111 @@ void appendPolygon(PlanarPolygons& polygons, const CoarsePolygon& coarse,
   polygons.back_is_patch.push_back(coarse.back ? 1 : 0);
 }
 
-/// Appends one patch with corners `corner` (3 or 4, counter-clockwise about `normal`); positions
-/// are `points`, still near the origin. False, and nothing appended, if rounding leaves it no area.
-bool appendCell(PatchMesh& mesh, std::span<const Index> corner, const Vec3& normal,
-                std::span<const Vec3> points) {
-  double total = 0;
-  Vec3 moment(0.0);
-  const Vec3 base = points[corner[0]];
-  for (std::size_t k = 2; k < corner.size(); ++k) {
-    const Vec3 a = points[corner[k - 1]] - base;
-    const Vec3 b = points[corner[k]] - base;
-    const double area = 0.5 * glm::dot(glm::cross(a, b), normal);
-    if (!(area > kNoArea * glm::length(a) * glm::length(b))) return false;
-    total += area;
-    moment += area * (a + b) / 3.0;
+std::span<const Index> cornersOf(const Cell& cell) {
+  return {cell.data(), cell[3] == kNone ? std::size_t(3) : std::size_t(4)};
+}
+
+/// Convex cells as fans of triangles.
+struct CellTriangles {
+  std::vector<std::array<Index, 3>> triangles;
+  double area = 0;
+  Vec3 base{0.0};    ///< a corner
+  Vec3 moment{0.0};  ///< area times (centroid - base)
+
+  Vec3 centroid() const { return base + moment / area; }
+  /// `corner`: 3 or 4, counter-clockwise about `normal`; positions are `points`. False, and nothing
+  /// is added, if rounding leaves the cell no area.
+  bool add(std::span<const Index> corner, const Vec3& normal, std::span<const Vec3> points) {
+    double total = 0;
+    Vec3 about(0.0);
+    const Vec3 first = points[corner[0]];
+    for (std::size_t k = 2; k < corner.size(); ++k) {
+      const Vec3 a = points[corner[k - 1]] - first;
+      const Vec3 b = points[corner[k]] - first;
+      const double part = 0.5 * glm::dot(glm::cross(a, b), normal);
+      if (!(part > kNoArea * glm::length(a) * glm::length(b))) return false;
+      total += part;
+      about += part * (a + b) / 3.0;
+    }
+    for (std::size_t k = 2; k < corner.size(); ++k) {
+      triangles.push_back({corner[0], corner[k - 1], corner[k]});
+    }
+    if (area == 0) base = first;
+    area += total;
+    moment += total * (first - base) + about;
+    return true;
   }
-  for (std::size_t k = 2; k < corner.size(); ++k) {
-    mesh.pieces.push_back({corner[0], corner[k - 1], corner[k]});
+};
+
+/// The corners of a cell as the mesh numbers them.
+class CellCorners {
+ public:
+  CellCorners(const VertexNumbers& numbers, const PolygonCells& polygon, std::size_t source,
+              bool flip)
+      : numbers_(numbers), polygon_(polygon), source_(source), flip_(flip) {}
+
+  std::vector<Index> operator()(std::span<const Index> corners) const {
+    std::vector<Index> out;
+    out.reserve(corners.size());
+    for (const Index c : corners) out.push_back(numbers_.ofCorner(polygon_, source_, c));
+    if (flip_) std::reverse(out.begin(), out.end());
+    return out;
   }
-  mesh.corners.insert(mesh.corners.end(), corner.begin(), corner.end());
+
+ private:
+  const VertexNumbers& numbers_;
+  const PolygonCells& polygon_;
+  std::size_t source_;
+  bool flip_;
+};
+
+/// Where a patch is looked from: its centroid, or, where that is outside of it, the middle of the
+/// triangle that is nearest.
+Vec3 middleOf(const CellTriangles& patch, const Vec3& normal, std::span<const Vec3> points) {
+  const Vec3 centroid = patch.centroid();
+  Vec3 nearest = centroid;
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [a, b, c] : patch.triangles) {
+    const auto isLeft = [&](Index from, Index to) {
+      return glm::dot(glm::cross(points[to] - points[from], centroid - points[from]), normal) >= 0;
+    };
+    if (isLeft(a, b) && isLeft(b, c) && isLeft(c, a)) return centroid;
+    const Vec3 middle = (points[a] + points[b] + points[c]) / 3.0;
+    if (glm::distance(middle, centroid) < least) {
+      least = glm::distance(middle, centroid);
+      nearest = middle;
+    }
+  }
+  return nearest;
+}
+
+/// Appends a patch of one cell or several; positions are still near the origin. False, and nothing
+/// appended, if rounding leaves it no area.
+bool appendPatch(PatchMesh& mesh, const PolygonCells& polygon, Index number,
+                 const CellCorners& corners, std::span<const Vec3> points) {
+  const Vec3 normal = mesh.polygons.normal.back();
+  CellTriangles patch;
+  std::vector<Index> around;
+  if (polygon.groups.empty()) {
+    around = corners(cornersOf(polygon.cells[number]));
+    patch.add(around, normal, points);
+  } else {
+    const CellGroup& group = polygon.groups[number];
+    around = corners(group.outline);
+    for (const auto& triangle : group.triangles) patch.add(corners(triangle), normal, points);
+    for (const Index c : group.cells) {
+      if (!group.triangles.empty()) break;
+      patch.add(corners(cornersOf(polygon.cells[c])), normal, points);
+    }
+  }
+  if (patch.triangles.empty()) return false;
+  mesh.pieces.insert(mesh.pieces.end(), patch.triangles.begin(), patch.triangles.end());
+  mesh.corners.insert(mesh.corners.end(), around.begin(), around.end());
   mesh.corner_offset.push_back(mesh.corners.size());
   mesh.piece_offset.push_back(mesh.pieces.size());
-  mesh.area.push_back(total);
-  mesh.centroid.push_back(base + moment / total);
+  mesh.area.push_back(patch.area);
+  const bool alone = polygon.groups.empty() || polygon.groups[number].cells.size() == 1;
+  mesh.centroid.push_back(alone ? patch.centroid() : middleOf(patch, normal, points));
   mesh.normal.push_back(normal);
   return true;
 }
@@ -133,16 +216,10 @@ PatchMesh assemblePatches(const CoarseComplex& complex, const Scene& scene, cons
     const bool flip = source != p;
     first_patch.push_back(mesh.size());
     appendPolygon(mesh.polygons, coarse, complex, numbers);
-    for (const Cell& cell : cells[source].cells) {
-      std::array<Index, 4> corner{};
-      const std::size_t count = cell[3] == kNone ? 3 : 4;
-      for (std::size_t k = 0; k < count; ++k) {
-        corner[flip ? count - 1 - k : k] = numbers.ofCorner(cells[source], source, cell[k]);
-      }
-      if (!appendCell(mesh, {corner.data(), count}, mesh.polygons.normal.back(),
-                      numbers.points())) {
-        continue;
-      }
+    const PolygonCells& polygon = cells[source];
+    const CellCorners corners(numbers, polygon, source, flip);
+    for (Index k = 0; k < polygon.patches(); ++k) {
+      if (!appendPatch(mesh, polygon, k, corners, numbers.points())) continue;
       if (coarse.back) two_sided.push_back(Index(mesh.size() - 1));
       mesh.polygon.push_back(Index(p));
       mesh.surface.push_back(coarse.surface);

@@ -175,6 +175,7 @@ std::optional<PolygonCells> regionCells(const CoarseComplex& complex, const Edge
   PolygonCells result;
   result.cells = std::move(mesh->cells);
   result.boundary = std::move(builder.boundary());
+  result.inner = std::move(region.inner);
   for (const Vec2& p : mesh->interior) result.interior.push_back(builder.flattening().lift(p));
   return result;
 }

@@ -1,6 +1,7 @@
 // One planar polygon cut into cells.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "mesh/edge_cuts.h"
@@ -8,12 +9,23 @@
 
 namespace radiosity {
 
+/// Cells that are one patch.
+struct CellGroup {
+  std::vector<Index> outline;  ///< corners, counter-clockwise
+  std::vector<Index> cells;    ///< ascending
+  /// That tile it, corner to corner of the outline; empty: the cells do.
+  std::vector<std::array<Index, 3>> triangles;
+};
+
 /// Cells of one polygon, counter-clockwise about its normal. Corner c is boundary[c] (a point of
 /// the EdgeCuts) below boundary.size(), else interior[c - boundary.size()].
 struct PolygonCells {
   std::vector<Index> boundary;
   std::vector<Vec3> interior;
   std::vector<Cell> cells;
+  std::vector<std::array<Index, 2>> inner;  ///< edges inside that are there in all meshes
+  std::vector<CellGroup> groups;            ///< empty: each cell is a patch
+  std::size_t patches() const { return groups.empty() ? cells.size() : groups.size(); }
 };
 
 /// How large the cells are to be.

@@ -9,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "mesh/complex.h"
+#include "mesh/join_cells.h"
 #include "mesh/merge_cells.h"
 #include "mesh/mesh_figures.h"
 #include "mesh/patch_arrays.h"
@@ -75,11 +76,21 @@ class Subdivision {
       }
       if (!again) break;
     }
-    count_ = 0;
-    for (std::size_t p = 0; p < cells_.size(); ++p) {
-      count_ += cells_[cellSource(complex_, p)].cells.size();
-    }
-    return count_;
+    return recount();
+  }
+
+  /// Joins cells to patches of up to size^2; returns how many patches there are.
+  std::size_t join(double size) {
+    parallelFor(cells_.size(), 16, [&](std::size_t p) {
+      PolygonCells& polygon = cells_[p];
+      if (progress_.cancelled() || polygon.cells.size() < 2) return;
+      std::vector<Vec3> points;
+      for (const Index id : polygon.boundary) points.push_back(cuts_.point(id));
+      points.insert(points.end(), polygon.interior.begin(), polygon.interior.end());
+      polygon.groups = joinCells(polygon.cells, polygon.inner, points, size);
+    });
+    progress_.check();
+    return recount();
   }
 
   /// Polygons whose edges are not cut, for they lie too near to each other.
@@ -91,6 +102,14 @@ class Subdivision {
   const std::vector<PolygonCells>& cells() const { return cells_; }
 
  private:
+  std::size_t recount() {
+    count_ = 0;
+    for (std::size_t p = 0; p < cells_.size(); ++p) {
+      count_ += cells_[cellSource(complex_, p)].patches();
+    }
+    return count_;
+  }
+
   /// Fills cells_; returns the polygons, ascending, that have none, since their edges cross as cut.
   std::vector<Index> cutPolygons(const CellSize& size) {
     progress_.check();
@@ -158,6 +177,22 @@ double meetCount(Subdivision& subdivision, double start, double wanted) {
   return plain;
 }
 
+/// The same where outlines alone take more cells than that, by joining cells.
+double meetCountJoined(Subdivision& subdivision, double start, double wanted) {
+  const double largest = kLargestSize * start;
+  double last = 0;
+  const auto count = [&](double size) {
+    last = size;
+    subdivision.run({size, std::numeric_limits<double>::infinity()}, Rounding::nearest,
+                    kNoOpposites);
+    return double(subdivision.join(size));
+  };
+  if (count(largest) >= wanted) return largest;
+  const double size = sizeForCount(start, largest, wanted, count);
+  if (size != last) count(size);
+  return size;
+}
+
 /// Enters what the patches have less than their polygons: cells without area in details as small as
 /// rounding, and polygons that could not be cut at all.
 void accountForCells(const CoarseComplex& complex, const PatchMesh& mesh, MeshReport& report) {
@@ -212,7 +247,10 @@ PatchMesh subdivide(const CoarseComplex& complex, const Scene& scene, const Mesh
     // A wide polygon has area / size^2 cells, a thin one half its outline / size: as many as a
     // square at a quarter.
     const double start = std::max(std::sqrt(area / wanted), outlineOf(complex) / (4 * wanted));
-    const double size = meetCount(subdivision, start, wanted);
+    double size = meetCount(subdivision, start, wanted);
+    if (subdivision.count() > kMuchMore * wanted) {
+      size = meetCountJoined(subdivision, start, wanted);
+    }
     if (subdivision.count() > kMuchMore * wanted) {
       const std::size_t polygons = complex.polygons.size();
       report.notes.push_back(

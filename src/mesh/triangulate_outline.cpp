@@ -127,8 +127,9 @@ void markInside(Cdt& cdt) {
   }
 }
 
-/// n log n. Empty if the outline touches or crosses itself.
-std::optional<Triangles> triangulateSimple(std::span<const Vec2> outline) {
+}  // namespace
+
+std::optional<Triangles> delaunayTriangles(std::span<const Vec2> outline) {
   Cdt cdt;
   if (!insertOutline(outline, cdt)) return std::nullopt;
   markInside(cdt);
@@ -143,12 +144,10 @@ std::optional<Triangles> triangulateSimple(std::span<const Vec2> outline) {
   return out;
 }
 
-}  // namespace
-
 std::vector<std::array<Index, 3>> triangulateOutline(std::span<const Vec2> outline) {
   if (outline.size() < 3) return {};
   if (outline.size() > kManyCorners) {
-    if (auto triangles = triangulateSimple(outline)) return *triangles;
+    if (auto triangles = delaunayTriangles(outline)) return *triangles;
   }
   return clipEars(outline);
 }

@@ -60,16 +60,24 @@ Place SceneChecks::placeOf(const ConnectedPart& inner, const ConnectedPart& oute
   return Place::on;
 }
 
-bool SceneChecks::closed() const {
-  if (topology_.closed) return true;
-  return std::any_of(
-      topology_.parts.begin(), topology_.parts.end(), [&](const ConnectedPart& room) {
-        return room.closed && room.volume < 0 &&
-               std::all_of(topology_.parts.begin(), topology_.parts.end(),
-                           [&](const ConnectedPart& part) {
-                             return &part == &room || placeOf(part, room) != Place::outside;
-                           });
-      });
+bool SceneChecks::closed() const { return topology_.closed || enclosed(); }
+
+bool SceneChecks::enclosed() const {
+  const std::vector<ConnectedPart>& parts = topology_.parts;
+  if (parts.empty()) return false;
+  Vec3 lower = parts.front().lower;
+  Vec3 upper = parts.front().upper;
+  for (const ConnectedPart& part : parts) {
+    lower = glm::min(lower, part.lower);
+    upper = glm::max(upper, part.upper);
+  }
+  return std::any_of(parts.begin(), parts.end(), [&](const ConnectedPart& room) {
+    // Of many bodies inside out only one that reaches as far as all of them is looked at closely.
+    return room.closed && room.volume < 0 && room.lower == lower && room.upper == upper &&
+           std::all_of(parts.begin(), parts.end(), [&](const ConnectedPart& part) {
+             return &part == &room || placeOf(part, room) != Place::outside;
+           });
+  });
 }
 
 void SceneChecks::reportOrientation(SceneInfo& info) const {

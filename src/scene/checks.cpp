@@ -43,12 +43,14 @@ void SceneChecks::reportLight(SceneInfo& info) const {
            fmt::format("{} emits but has no area: it gives no light", scene_.surfaces[s].name)});
     }
   }
-  if (!any && (info.closed || scene_.sky == Vec3(0.0))) {
+  // A closed body that faces outwards is lit by the sky all around.
+  const bool sky_is_seen = !enclosed();
+  if (!any && !(sky_is_seen && scene_.sky != Vec3(0.0))) {
     info.problems.push_back(
         {Severity::loud,
          fmt::format("no surface emits light: the result will be dark; make one a lamp, --set "
                      "'{}.radiance=10'{}",
-                     likelyLamp(scene_), info.closed ? "" : ", or let the sky shine in, --sky 1")});
+                     likelyLamp(scene_), sky_is_seen ? ", or let the sky shine in, --sky 1" : "")});
   }
   std::vector<std::string> textured;
   for (const SurfaceInfo& surface : info.surfaces) {

@@ -22,6 +22,8 @@ class SceneChecks {
 
   /// Every edge is shared by two faces, oppositely, or one closed part encloses all others.
   bool closed() const;
+  /// One closed part that faces inwards holds all others: no sky is seen.
+  bool enclosed() const;
   std::size_t openEdges() const { return topology_.open_edges; }
 
   /// No emitter, emitters without area, a closed room that absorbs nothing.

@@ -21,6 +21,27 @@ struct Piece {
   std::uint8_t count;
 };
 
+/// Corners nearer to their neighbours' line, in a scene of size 1, are on it but for rounding.
+constexpr double kLevel = 0x1p-44;
+/// Parts of a patch may have so much more or less area than it.
+constexpr double kSameArea = 1e-10;
+
+/// An outline without the corners that its neighbours' edges were cut at.
+std::vector<Vec3> withoutLevelCorners(std::vector<Vec3> outline) {
+  for (std::size_t k = 0; k < outline.size() && outline.size() > 3;) {
+    const Vec3& before = outline[(k + outline.size() - 1) % outline.size()];
+    const Vec3& after = outline[(k + 1) % outline.size()];
+    const Vec3 across = glm::cross(after - before, outline[k] - before);
+    const bool goes_on = glm::dot(outline[k] - before, after - outline[k]) > 0;
+    if (goes_on && glm::length(across) <= kLevel * glm::distance(after, before)) {
+      outline.erase(outline.begin() + std::ptrdiff_t(k));
+    } else {
+      ++k;
+    }
+  }
+  return outline;
+}
+
 /// A triangle or a quadrilateral; a triangle's fourth corner repeats its third.
 Piece makePiece(Index patch, const std::vector<Vec3>& corners) {
   Piece piece{patch, {}, std::uint8_t(corners.size())};
@@ -117,18 +138,49 @@ class ElementBuilder {
   }
 
   void appendPieces(Index patch, std::vector<Piece>& pieces) const {
+    const Vec3& normal = mesh_.normal[patch];
     std::vector<Vec3> corners;
     for (const Index vertex : mesh_.outline(patch)) corners.push_back(place(vertex));
-    if (corners.size() <= 4 && isConvex(corners, mesh_.normal[patch], set_.coincidence)) {
+    if (corners.size() > 4) corners = withoutLevelCorners(corners);
+    if (corners.size() <= 4 && isConvex(corners, normal, set_.coincidence)) {
       pieces.push_back(makePiece(patch, corners));
+      return;
+    }
+    const std::size_t triangles = mesh_.piece_offset[patch + 1] - mesh_.piece_offset[patch];
+    const std::vector<Piece> trapezoids = trapezoidsOf(patch, corners);
+    if (!trapezoids.empty() && trapezoids.size() < triangles) {
+      pieces.insert(pieces.end(), trapezoids.begin(), trapezoids.end());
       return;
     }
     for (std::size_t t = mesh_.piece_offset[patch]; t < mesh_.piece_offset[patch + 1]; ++t) {
       corners.clear();
       for (const Index vertex : mesh_.pieces[t]) corners.push_back(place(vertex));
       const Piece piece = makePiece(patch, corners);
-      if (glm::dot(halves(piece.corners)[0], mesh_.normal[patch]) > 0) pieces.push_back(piece);
+      if (glm::dot(halves(piece.corners)[0], normal) > 0) pieces.push_back(piece);
     }
+  }
+
+  /// None if they have not the patch's area but for rounding.
+  std::vector<Piece> trapezoidsOf(Index patch, const std::vector<Vec3>& corners) const {
+    const Vec3& normal = mesh_.normal[patch];
+    const Vec3 middle = corners.front();
+    std::vector<Vec3> loop;
+    loop.reserve(corners.size());
+    for (const Vec3& corner : corners) loop.push_back(corner - middle);
+    std::vector<Piece> pieces;
+    double area = 0;
+    for (std::vector<Vec3>& part : convexPieces({loop}, normal, 0)) {
+      for (Vec3& corner : part) corner += middle;
+      const Piece piece = makePiece(patch, part);
+      const auto [first, second] = halves(piece.corners);
+      const double found = glm::dot(first + second, normal);
+      if (!(found > 0)) continue;
+      area += found;
+      pieces.push_back(piece);
+    }
+    const double wanted = mesh_.area[patch] * set_.scale * set_.scale;
+    if (std::abs(area - wanted) > kSameArea * wanted) return {};
+    return pieces;
   }
 
   void addSide(Index polygon, bool back, const std::vector<Index>& patches) {

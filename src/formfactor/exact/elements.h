@@ -48,11 +48,12 @@ struct Facet {
 /// origin and multiplied by a power of two that brings its size to about 1: form factors do not
 /// change, and nothing depends on the scene's unit or place. Areas are scaled likewise.
 ///
-/// A patch that is a triangle or a convex quadrilateral is one element; any other patch is one
-/// element a piece. Facets are ordered by surface name, polygon index within the surface and side,
-/// bare ones after all others; elements within a facet follow a quadtree in the facet's plane
-/// (ties: index within the surface), those of one patch next to each other. So nothing depends on
-/// how patches are numbered.
+/// A patch that is a triangle or a convex quadrilateral, but for corners in line with their
+/// neighbours, is one element; any other patch is cut into trapezoids, or its pieces if those are
+/// fewer, of which each is one. Facets are ordered by surface name, polygon index within the
+/// surface and side, bare ones after all others; elements within a facet follow a quadtree in the
+/// facet's plane (ties: index within the surface), those of one patch next to each other. So
+/// nothing depends on how patches are numbered.
 struct ElementSet {
   explicit ElementSet(const PatchMesh& mesh);
 

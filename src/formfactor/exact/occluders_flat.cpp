@@ -5,12 +5,12 @@
 #include <glm/geometric.hpp>
 #include <map>
 #include <numeric>
-#include <set>
 #include <tuple>
 
 #include "formfactor/exact/convex_pieces.h"
 #include "formfactor/exact/occluders_hull.h"
 #include "formfactor/exact/occluders_triangles.h"
+#include "mesh/join_loops.h"
 
 namespace radiosity {
 namespace {
@@ -129,26 +129,8 @@ class PieceMerger {
 
   /// The outline of two pieces together; empty if it is no single convex loop.
   std::vector<Index> unionOf(const std::vector<Index>& a, const std::vector<Index>& b) const {
-    std::map<Index, Index> next;
-    std::set<OccluderEdge> rest;
-    for (const std::vector<Index>* loop : {&a, &b}) {
-      for (std::size_t k = 0; k < loop->size(); ++k) {
-        const OccluderEdge edge((*loop)[k], (*loop)[(k + 1) % loop->size()]);
-        if (rest.erase({edge.second, edge.first}) == 0) rest.insert(edge);
-      }
-    }
-    for (const OccluderEdge& edge : rest) {
-      if (!next.emplace(edge.first, edge.second).second) return {};
-    }
-    if (next.empty()) return {};
-    std::vector<Index> loop{next.begin()->first};
-    for (std::size_t steps = 0; steps < next.size(); ++steps) {
-      const auto step = next.find(loop.back());
-      if (step == next.end()) return {};
-      if (step->second == loop.front()) break;
-      loop.push_back(step->second);
-    }
-    if (loop.size() != next.size() || !isConvex(loop)) return {};
+    std::vector<Index> loop = joinLoops(a, b);
+    if (!loop.empty() && !isConvex(loop)) return {};
     return loop;
   }
 
