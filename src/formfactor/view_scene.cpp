@@ -155,7 +155,9 @@ void ViewScene::addSides(const PatchMesh& mesh, bool with_grids) {
     made[g].emplace(pieces, polygon->origin, polygon->normal);
   });
   grids.reserve(made.size());
-  for (std::optional<PatchGrid>& grid : made) grids.push_back(std::move(*grid));
+  for (std::optional<PatchGrid>& grid : made) {
+    if (grid) grids.push_back(std::move(*grid));
+  }
 }
 
 void ViewScene::numberCells() {

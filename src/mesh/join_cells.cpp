@@ -173,6 +173,7 @@ void dropInnerCorners(CellGroup& group, std::span<const Cell> cells, std::span<c
   const PlaneFrame frame =
       makeFrame(points[group.outline[0]], glm::normalize(area), axisAcross(area));
   std::vector<Vec2> flat;
+  flat.reserve(group.outline.size());
   for (const Index v : group.outline) flat.push_back(frame.flat(points[v]));
   const auto triangles = delaunayTriangles(flat);
   if (!triangles) return;

@@ -85,6 +85,7 @@ class Subdivision {
       PolygonCells& polygon = cells_[p];
       if (progress_.cancelled() || polygon.cells.size() < 2) return;
       std::vector<Vec3> points;
+      points.reserve(polygon.boundary.size() + polygon.interior.size());
       for (const Index id : polygon.boundary) points.push_back(cuts_.point(id));
       points.insert(points.end(), polygon.interior.begin(), polygon.interior.end());
       polygon.groups = joinCells(polygon.cells, polygon.inner, points, size);
