@@ -228,7 +228,10 @@ bool Pipeline::factorsFit(const StageKey& key, std::optional<FormFactorPlan>& pl
 FormFactorPlan Pipeline::planFactors() const {
   FormFactorOptions options = factor_options_;
   options.memory_held = residentBytes();
-  return planFormFactors(patches(), options, progress_);
+  FormFactorPlan plan = planFormFactors(patches(), options, progress_);
+  // Planning may have tried the exact method, which takes more than hemicubes then do.
+  plan.bytes = std::max(plan.bytes, peakBytes());
+  return plan;
 }
 
 void Pipeline::factors() {
@@ -249,6 +252,7 @@ void Pipeline::factors() {
       announceFactors(*plan);
       return computeFormFactors(*plan, progress_);
     });
+    results_.factors->report.estimated_bytes = plan->bytes;
     results_.factors_key = key.text();
     matrix_loaded_ = true;
     factors_computed_ = true;

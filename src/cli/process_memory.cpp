@@ -1,5 +1,6 @@
 #include "cli/process_memory.h"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -12,6 +13,12 @@ std::size_t residentBytes() {
   std::size_t resident = 0;
   if (!(file >> all >> resident)) return 0;
   return resident * std::size_t(sysconf(_SC_PAGESIZE));
+}
+
+std::size_t peakBytes() {
+  rusage usage{};
+  constexpr std::size_t kKibibyte = 1024;
+  return getrusage(RUSAGE_SELF, &usage) == 0 ? std::size_t(usage.ru_maxrss) * kKibibyte : 0;
 }
 
 }  // namespace radiosity::cli

@@ -8,4 +8,7 @@ namespace radiosity::cli {
 /// Bytes of memory that are this process's now, libraries included; 0 where it is not known.
 std::size_t residentBytes();
 
+/// The most that were, up to now; 0 where it is not known.
+std::size_t peakBytes();
+
 }  // namespace radiosity::cli

@@ -122,7 +122,7 @@ void PartialKernel::evaluateStrictly(std::span<const PartialPair> pairs,
                                      std::span<PartialExchange> out,
                                      const Progress* progress) const {
   PartialCounts uncounted;
-  evaluateTo(kStricter * std::min(tolerance_, kSinglePrecision), pairs, occluder_list, out,
+  evaluateTo(std::min(kStricter * tolerance_, kStricterLoosest), pairs, occluder_list, out,
              uncounted, progress);
 }
 

@@ -45,8 +45,10 @@ inline constexpr double kSinglePrecision = 2.5e-4;
 /// of the pairs of ordinary scenes and 15% of a scan with slivers.)
 inline constexpr double kResolved = 0.01;
 
-/// Of the tolerance, what spot checks are made to.
+/// Of the tolerance, what spot checks are made to; and what they are made to at most, so that they
+/// are in double precision.
 inline constexpr double kStricter = 1.0 / 8;
+inline constexpr double kStricterLoosest = kSinglePrecision / 2;
 
 /// Error of the pair's visible fraction that is accepted at a tolerance.
 double allowedError(const ElementSet& elements, const PartialPair& pair, double tolerance);
