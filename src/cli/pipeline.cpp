@@ -250,9 +250,10 @@ void Pipeline::factors() {
     results_.factors = computedStage("form factors", [&] {
       if (!plan) plan = planFactors();
       announceFactors(*plan);
-      return computeFormFactors(*plan, progress_);
+      FormFactors factors = computeFormFactors(*plan, progress_);
+      factors.report.estimated_bytes = plan->bytes;
+      return factors;
     });
-    results_.factors->report.estimated_bytes = plan->bytes;
     results_.factors_key = key.text();
     matrix_loaded_ = true;
     factors_computed_ = true;
