@@ -141,8 +141,8 @@ struct FormFactors {
   /// Area-weighted share of the scene's view that ends on each surface's back, by surface.
   std::vector<double> backs_by_surface;
   /// Exact: N error figures; sqrt(sum_j (F_ij - true F_ij)^2), bare backs among the j, stays below
-  /// error[i] in about 99% of rows, and the median of the figures is at most ten times the true
-  /// one. Hemicube: empty.
+  /// error[i] in about 99% of rows; the median of the figures is mostly 4 to 11 times the true one.
+  /// Hemicube: empty.
   std::vector<double> error;
   std::string method = "hemicube";  ///< or "exact"
   FormFactorReport report;

@@ -13,7 +13,7 @@ namespace radiosity {
 /// centroid, and which are compact or more so than their parts. Edges in
 /// `inner`, where something stands on the polygon, are kept, and so is the polygon's outline as it
 /// is cut: what conforms goes on conforming. A patch is one loop around cells. `points`: of the
-/// cells' corners. Returns the patches in the order of their first cells. n log^2 n.
+/// cells' corners. Returns the patches in the order of their first cells.
 std::vector<CellGroup> joinCells(std::span<const Cell> cells,
                                  std::span<const std::array<Index, 2>> inner,
                                  std::span<const Vec3> points, double size);
