@@ -8,8 +8,7 @@
 
 namespace radiosity {
 
-ConvexGroups::ConvexGroups(const OccluderPolygons& all,
-                           const std::map<OccluderEdge, std::vector<Index>>& users,
+ConvexGroups::ConvexGroups(const OccluderPolygons& all, const OccluderEdgeUsers& users,
                            const std::vector<std::uint8_t>& joins)
     : group_(all.polygons.size()),
       level_(all.polygons.size()),

@@ -20,7 +20,7 @@ class ConvexGroups {
   static constexpr std::size_t kLarge = 64;
 
   /// `joins[p]`: 1 for polygons that may be faces of solids; others are left out.
-  ConvexGroups(const OccluderPolygons& all, const std::map<OccluderEdge, std::vector<Index>>& users,
+  ConvexGroups(const OccluderPolygons& all, const OccluderEdgeUsers& users,
                const std::vector<std::uint8_t>& joins);
 
   Index of(Index polygon) const { return group_[polygon]; }

@@ -49,11 +49,10 @@ ExactKernels::ExactKernels(const ExactScene& scene, const FormFactorOptions& opt
       unoccluded(scene.elements, closed_form, options.simd),
       partial(scene.elements, scene.occluders, options.tolerance, options.simd) {}
 
-ExactEstimate estimateExact(const ExactScene& scene, const ExactKernels& kernels,
-                            const FormFactorOptions& options, Progress& progress) {
-  progress.begin("planning", kSampleSteps);
-  const RowSample sample = sampleRows(scene, kernels, options.tolerance, progress);
-  progress.end();
+namespace {
+
+ExactEstimate estimateFrom(const RowSample& sample, const ExactScene& scene,
+                           const FormFactorOptions& options) {
   const auto patches = double(scene.elements.patch_elements);
   ExactEstimate estimate;
   estimate.partial_pairs = sample.partial;
@@ -90,6 +89,24 @@ ExactEstimate estimateExact(const ExactScene& scene, const ExactKernels& kernels
       (sample.seconds_visibility + sample.seconds_unoccluded + sample.seconds_partial) /
       double(threads);
   return estimate;
+}
+
+}  // namespace
+
+ExactEstimate estimateExact(const ExactScene& scene, const ExactKernels& kernels,
+                            const FormFactorOptions& options, Progress& progress) {
+  progress.begin("planning", kSampleSteps);
+  const RowSample sample = sampleRows(scene, kernels, options.tolerance, progress);
+  progress.end();
+  return estimateFrom(sample, scene, options);
+}
+
+ExactEstimate estimateExactRoughly(const ExactScene& scene, const FormFactorOptions& options,
+                                   Progress& progress) {
+  progress.begin("planning", kRoughSampleSteps);
+  const RowSample sample = sampleRowsRoughly(scene, options.tolerance, progress);
+  progress.end();
+  return estimateFrom(sample, scene, options);
 }
 
 }  // namespace radiosity

@@ -49,5 +49,8 @@ struct ExactEstimate {
 };
 ExactEstimate estimateExact(const ExactScene& scene, const ExactKernels& kernels,
                             const FormFactorOptions& options, Progress& progress);
+/// From a sixth of the sample, before there are kernels: without `measured`.
+ExactEstimate estimateExactRoughly(const ExactScene& scene, const FormFactorOptions& options,
+                                   Progress& progress);
 
 }  // namespace radiosity

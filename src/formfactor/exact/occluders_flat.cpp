@@ -15,7 +15,7 @@
 namespace radiosity {
 namespace {
 
-using Edges = std::map<OccluderEdge, std::vector<Index>>;
+using Edges = OccluderEdgeUsers;
 
 bool liesOn(const OccluderPolygons& all, const OccluderPolygon& polygon,
             const OccluderPolygon& plane) {

@@ -122,8 +122,8 @@ void OccluderPolygons::findBounding() {
   }
 }
 
-std::map<OccluderEdge, std::vector<Index>> OccluderPolygons::edgeUsers() const {
-  std::map<OccluderEdge, std::vector<Index>> users;
+OccluderEdgeUsers OccluderPolygons::edgeUsers() const {
+  OccluderEdgeUsers users;
   for (Index p = 0; p < polygons.size(); ++p) {
     for (const std::vector<Index>& loop : polygons[p].loops) {
       for (std::size_t k = 0; k < loop.size(); ++k) {

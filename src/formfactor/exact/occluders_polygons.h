@@ -34,6 +34,8 @@ struct OccluderPolygon {
 
 /// A directed edge between vertices.
 using OccluderEdge = std::pair<Index, Index>;
+/// Polygons that run along each directed edge.
+using OccluderEdgeUsers = std::map<OccluderEdge, std::vector<Index>>;
 
 /// Vertices closer than the coincidence are one (files may give each face its own). Polygons are
 /// ordered by surface name and index within the surface, so that nothing depends on numbering.
@@ -51,8 +53,7 @@ struct OccluderPolygons {
     return !vertex_tree.anyAbove(normal, offset + margin);
   }
 
-  /// Polygons that run along each directed edge of an outline.
-  std::map<OccluderEdge, std::vector<Index>> edgeUsers() const;
+  OccluderEdgeUsers edgeUsers() const;
 
  private:
   void addPolygon(const PatchMesh& mesh, const ElementSet& elements, Index p,

@@ -51,8 +51,7 @@ double solidAngle(const OccluderPolygons& all, const OccluderPolygon& polygon, c
 
 }  // namespace
 
-OccluderRegions::OccluderRegions(const OccluderPolygons& all,
-                                 const std::map<OccluderEdge, std::vector<Index>>& users)
+OccluderRegions::OccluderRegions(const OccluderPolygons& all, const OccluderEdgeUsers& users)
     : all_(all), component_(all.polygons.size()), side_class_(all.polygons.size()) {
   const std::size_t count = all.polygons.size();
   UnionFind joined(count);

@@ -17,8 +17,7 @@ namespace radiosity {
 /// the surface is crossed, by one from the front of a polygon to its back.
 class OccluderRegions {
  public:
-  OccluderRegions(const OccluderPolygons& all,
-                  const std::map<OccluderEdge, std::vector<Index>>& users);
+  OccluderRegions(const OccluderPolygons& all, const OccluderEdgeUsers& users);
 
   /// True if `polygon` belongs to a closed set of polygons and none of the scene's polygons looks
   /// into a region that this set winds about as often as about the points behind `polygon`. Then

@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <map>
+#include <iterator>
 #include <optional>
 #include <set>
+#include <utility>
 
+#include "base/parallel.h"
 #include "formfactor/exact/convex_groups.h"
+#include "formfactor/exact/convex_sets.h"
 #include "formfactor/exact/occluders_clip.h"
 #include "formfactor/exact/occluders_hull.h"
 #include "formfactor/exact/occluders_regions.h"
@@ -17,116 +19,180 @@
 namespace radiosity {
 namespace {
 
-/// Polygons in convex position.
-struct ConvexSet {
-  /// A polygon and the plane that it lies on, into `planes`.
-  using Member = ConvexSolid::OnFace;
-  std::vector<Member> members;
-  std::vector<Index> vertices;
-  std::vector<Occluder::Plane> planes;
-  /// Of Growth::known: planes by ConvexGroups::levelWith().
-  std::map<Index, std::vector<Index>> faces_of_level;
+using Flags = std::vector<std::uint8_t>;
 
-  std::vector<Index> polygons() const {
-    std::vector<Index> out;
-    out.reserve(members.size());
-    for (const Member& m : members) out.push_back(m.polygon);
-    return out;
+/// Groups of polygons that a thread searches at a time.
+constexpr std::size_t kGroupsAtOnce = 8;
+
+/// What is known of a group's polygons while it is searched. Flags go by the place in the group.
+struct GroupMemory {
+  explicit GroupMemory(std::size_t size) : taken(size, 0) {
+    given_up.fill(Flags(size, 0));
+    seen.fill(Flags(size, 0));
   }
+  Flags taken;
+  /// Polygons of sets that were grown carefully, of all polygons and of convex ones alone.
+  std::array<Flags, 2> given_up;
+  std::array<Flags, 2> seen;            ///< polygons that solids were made from, likewise
+  std::array<bool, 2> tried{};          ///< a large group, likewise
+  std::set<std::vector<Index>> failed;  ///< sets that make no solid
 };
 
-/// How a set is grown.
-enum class Growth {
-  greedy,
-  careful,  ///< no neighbours in one plane, which may belong to bodies side by side, and none
-            ///< with which the hull would not stay empty
-  known,    ///< all that come into question are known to be in convex position
+/// A solid that only the closed surface around it makes opaque.
+struct Candidate {
+  Index polygon;  ///< that it was grown from
+  double score;   ///< goes down as others take its faces
+  ConvexSolid solid;
 };
 
+/// Polygons in convex position are all of one group, so that groups are searched by themselves, in
+/// parallel.
 class SolidSearch {
  public:
-  SolidSearch(const OccluderPolygons& all, Progress& progress)
+  SolidSearch(const OccluderPolygons& all, Flags& taken, Progress& progress)
       : all_(all),
+        taken_(taken),
         progress_(progress),
         users_(all.edgeUsers()),
         regions_(all, users_),
-        groups_(all, users_, candidates()) {
-    forget();
+        groups_(all, users_, mayBeFaces()),
+        growth_(all, users_, groups_),
+        place_(all.polygons.size(), 0) {
+    findMembers();
   }
 
-  std::vector<ConvexSolid> run(std::vector<std::uint8_t>& taken) {
-    std::vector<ConvexSolid> solids;
-    addPlain(taken, solids);
-    forget();  // some of them may be solids where surfaces around them are opaque
-    addOpaque(taken, solids);
-    return solids;
+  std::vector<ConvexSolid> run() {
+    addPlain();
+    addOpaque();
+    return std::move(solids_);
   }
 
  private:
-  /// Drops what is known of sets that make no solid.
-  void forget() {
-    failed_.clear();
-    tried_.clear();
-    given_up_.fill(std::vector<std::uint8_t>(all_.polygons.size(), 0));
+  Flags mayBeFaces() const {
+    Flags out(all_.polygons.size());
+    for (Index p = 0; p < out.size(); ++p) out[p] = mayJoin(p, false) ? 1 : 0;
+    return out;
+  }
+
+  void findMembers() {
+    std::vector<Index> number(all_.polygons.size(), kNone);
+    for (Index p = 0; p < all_.polygons.size(); ++p) {
+      if (!mayJoin(p, false)) continue;
+      Index& g = number[groups_.of(p)];
+      if (g == kNone) {
+        g = Index(members_.size());
+        members_.emplace_back();
+      }
+      place_[p] = Index(members_[g].size());
+      members_[g].push_back(p);
+    }
+  }
+
+  /// search(g) for all groups, in parallel; in their order, what it returned.
+  template <class Found, class Search>
+  std::vector<Found> searchAll(const Search& search) {
+    std::vector<Found> found(members_.size());
+    parallelFor(members_.size(), kGroupsAtOnce, [&](std::size_t g) {
+      if (!progress_.cancelled()) found[g] = search(members_[g]);
+    });
+    progress_.check();
+    return found;
   }
 
   /// Bodies that stand for themselves, or on something.
-  void addPlain(std::vector<std::uint8_t>& taken, std::vector<ConvexSolid>& solids) {
+  void addPlain() {
+    using Found = std::vector<ConvexSolid>;
+    const Flags before = taken_;
+    std::vector<Found> found = searchAll<Found>([&](const auto& group) { return plain(group); });
+    for (std::size_t g = 0; g < members_.size(); ++g) {
+      // A solid of another group may lie on some of its polygons.
+      const bool is_changed = std::any_of(members_[g].begin(), members_[g].end(),
+                                          [&](Index p) { return taken_[p] != before[p]; });
+      if (is_changed) found[g] = plain(members_[g]);
+      for (ConvexSolid& solid : found[g]) {
+        take(solid);
+        solids_.push_back(std::move(solid));
+      }
+    }
+  }
+
+  std::vector<ConvexSolid> plain(const std::vector<Index>& group) const {
+    std::vector<ConvexSolid> solids;
+    GroupMemory memory(group.size());
     for (const bool convex_only : {true, false}) {
-      for (Index seed = 0; seed < all_.polygons.size(); ++seed) {
-        progress_.check();
-        if (taken[seed] || !mayJoin(seed, convex_only)) continue;
-        std::optional<ConvexSolid> solid = grownSolid(seed, convex_only, false, taken);
+      // What failed with all of them would fail once more.
+      if (!convex_only && solids.empty() && areConvex(group)) break;
+      for (const Index seed : group) {
+        if (isTaken(seed, memory) || !mayJoin(seed, convex_only)) continue;
+        std::optional<ConvexSolid> solid = grownSolid(seed, convex_only, false, memory);
         if (!solid) continue;
-        take(*solid, taken);
+        for (const ConvexSolid::OnFace& on : solid->on_faces) {
+          if (isOf(group, on.polygon)) memory.taken[place_[on.polygon]] = 1;
+        }
         solids.push_back(std::move(*solid));
       }
     }
+    return solids;
   }
 
   /// Bodies that touch others on several sides, so that their faces are cut or merged with others',
   /// like boards and books. Of those that only the closed surface around them makes opaque, those
   /// with much volume and most faces first.
-  void addOpaque(std::vector<std::uint8_t>& taken, std::vector<ConvexSolid>& solids) {
-    struct Candidate {
-      double score;
-      ConvexSolid solid;
-    };
+  void addOpaque() {
+    findOpaque();
+    using Found = std::vector<Candidate>;
     std::vector<Candidate> candidates;
-    std::array<std::vector<std::uint8_t>, 2> seen;
-    seen.fill(std::vector<std::uint8_t>(all_.polygons.size(), 0));
-    const auto score = [&](const ConvexSolid& solid) {
-      return areaOnFaces(solid, taken) * volumeOf(solid.body);
-    };
-    const auto consider = [&](std::optional<ConvexSolid> solid) {
-      if (solid) candidates.push_back({score(*solid), std::move(*solid)});
-    };
+    for (Found& found : searchAll<Found>([&](const auto& group) { return opaque(group); })) {
+      std::move(found.begin(), found.end(), std::back_inserter(candidates));
+    }
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Candidate& a, const Candidate& b) {
+                       return a.score != b.score ? a.score > b.score : a.polygon < b.polygon;
+                     });
+    for (Candidate& candidate : candidates) {
+      // Another may have taken its faces by now.
+      if (!(score(candidate.solid) > 0.5 * candidate.score)) continue;
+      take(candidate.solid);
+      solids_.push_back(std::move(candidate.solid));
+    }
+  }
+
+  /// One after the other: proofs have a common bound.
+  void findOpaque() {
+    opaque_.assign(all_.polygons.size(), 0);
     for (Index p = 0; p < all_.polygons.size(); ++p) {
       progress_.check();
-      if (taken[p] || !mayJoin(p, false) || isCurved(p) || !regions_.isBehindOpaque(p)) continue;
-      // From one face of a body its other faces give the same once more.
+      if (taken_[p] || !mayJoin(p, false) || isCurved(p)) continue;
+      opaque_[p] = regions_.isBehindOpaque(p) ? 1 : 0;
+    }
+  }
+
+  std::vector<Candidate> opaque(const std::vector<Index>& group) const {
+    std::vector<Candidate> candidates;
+    GroupMemory memory(group.size());
+    const bool are_convex = areConvex(group);
+    for (const Index p : group) {
+      if (opaque_[p] == 0) continue;
+      // From one face of a body its other faces give the same once more; so do convex polygons
+      // alone where there are no others.
       for (const bool convex_only : {false, true}) {
-        if (mayJoin(p, convex_only) && !seen[convex_only][p]) {
-          consider(grownSolid(p, convex_only, true, taken, &seen[convex_only]));
+        if ((convex_only && are_convex) || !mayJoin(p, convex_only) ||
+            memory.seen[convex_only][place_[p]] != 0) {
+          continue;
+        }
+        if (std::optional<ConvexSolid> solid = grownSolid(p, convex_only, true, memory)) {
+          candidates.push_back({p, score(*solid), std::move(*solid)});
         }
       }
       if (!mayJoin(p, true) || groups_.isLarge(p)) continue;
       std::optional<ConvexSolid> slab = slabSolid(p);
       // Alone on its slab the polygon blocks as well without it.
-      if (slab && areaOnFaces(*slab, taken) > all_.polygons[p].area) consider(std::move(slab));
+      if (slab && areaOnFaces(*slab) > all_.polygons[p].area) {
+        candidates.push_back({p, score(*slab), std::move(*slab)});
+      }
     }
-    std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
-    for (Candidate& candidate : candidates) {
-      // Another may have taken its faces by now.
-      if (!(score(candidate.solid) > 0.5 * candidate.score)) continue;
-      take(candidate.solid, taken);
-      solids.push_back(std::move(candidate.solid));
-    }
+    return candidates;
   }
-
-  /// Part of a curved surface that is no convex body as a whole.
-  bool isCurved(Index p) const { return groups_.isLarge(p) && !groups_.isConvex(p); }
 
   std::optional<ConvexSolid> slabSolid(Index p) const {
     std::optional<Occluder> body = slabBehind(all_, p);
@@ -136,166 +202,69 @@ class SolidSearch {
     return slab;
   }
 
-  /// `members`, if given: the polygons it was made from are marked there.
+  /// `opaque`: a closed surface around the solid may make it one.
   std::optional<ConvexSolid> grownSolid(Index seed, bool convex_only, bool opaque,
-                                        const std::vector<std::uint8_t>& taken,
-                                        std::vector<std::uint8_t>* members = nullptr) {
+                                        GroupMemory& memory) const {
     if (isCurved(seed)) return {};
     const bool large = groups_.isLarge(seed);
     // From one polygon of a curved body its others give the same once more.
-    if (large && !tried_.insert({groups_.of(seed), convex_only}).second) return {};
+    if (large && std::exchange(memory.tried[convex_only], true)) return {};
     // Several bodies may be in convex position, side by side: then carefully one of them.
     const std::vector<Growth> ways = large ? std::vector<Growth>{Growth::known}
                                            : std::vector<Growth>{Growth::greedy, Growth::careful};
     for (const Growth way : ways) {
-      std::vector<std::uint8_t>& given_up = given_up_[convex_only];
-      if (way == Growth::careful && given_up[seed] != 0) continue;
-      const ConvexSet set = grow(seed, convex_only, way, taken);
-      if (way == Growth::careful) {
-        // From one of them the others give much the same once more, and each takes a hull for every
-        // polygon that might join.
-        for (const ConvexSet::Member& m : set.members) given_up[m.polygon] = 1;
-      }
+      Flags& given_up = memory.given_up[convex_only];
+      if (way == Growth::careful && given_up[place_[seed]] != 0) continue;
+      const ConvexSet set = growth_.grow(
+          seed, way, [&](Index p) { return !isTaken(p, memory) && mayJoin(p, convex_only); });
+      // From one of them the others give much the same once more, and each takes a hull for every
+      // polygon that might join.
+      if (way == Growth::careful) mark(set, given_up);
       std::vector<Index> key = set.polygons();
-      if (!large && failed_.count(key) != 0) continue;
+      if (!large && memory.failed.count(key) != 0) continue;
       std::optional<ConvexSolid> solid = solidOf(set, opaque);
       if (!solid) {
-        if (!large) failed_.insert(std::move(key));
+        if (!large) memory.failed.insert(std::move(key));
         continue;
       }
-      if (members != nullptr) {
-        for (const ConvexSet::Member& m : set.members) (*members)[m.polygon] = 1;
-      }
+      mark(set, memory.seen[convex_only]);
       return solid;
     }
     return {};
   }
 
-  bool mayJoin(Index p, bool convex_only) const {
-    const OccluderPolygon& polygon = all_.polygons[p];
-    return polygon.planar && polygon.one_sided && !polygon.faces_scene &&
-           (polygon.convex || !convex_only);
+  void mark(const ConvexSet& set, Flags& flags) const {
+    for (const ConvexSet::Member& m : set.members) flags[place_[m.polygon]] = 1;
   }
 
-  std::vector<std::uint8_t> candidates() const {
-    std::vector<std::uint8_t> out(all_.polygons.size());
-    for (Index p = 0; p < out.size(); ++p) out[p] = mayJoin(p, false) ? 1 : 0;
-    return out;
+  bool mayJoin(Index p, bool convex_only) const { return mayBeFace(all_.polygons[p], convex_only); }
+
+  /// Part of a curved surface that is no convex body as a whole.
+  bool isCurved(Index p) const { return groups_.isLarge(p) && !groups_.isConvex(p); }
+
+  bool areConvex(const std::vector<Index>& group) const {
+    return std::all_of(group.begin(), group.end(), [&](Index p) { return mayJoin(p, true); });
   }
 
-  /// Adds a polygon if the set stays in convex position.
-  bool add(ConvexSet& set, Index p) const {
-    const OccluderPolygon& polygon = all_.polygons[p];
-    for (const Index v : set.vertices) {
-      const double height = glm::dot(polygon.normal, all_.vertices[v]) - polygon.offset;
-      if (height > all_.coincidence) return false;
-    }
-    for (const Occluder::Plane& plane : set.planes) {
-      if (!isBehind(all_, polygon, plane)) return false;
-    }
-    append(set, p, faceOf(set, polygon));
-    return true;
+  bool isOf(const std::vector<Index>& group, Index p) const {
+    return mayJoin(p, false) && groups_.of(p) == groups_.of(group.front());
   }
 
-  /// `face`: kNone for one of its own.
-  void append(ConvexSet& set, Index p, Index face) const {
-    const OccluderPolygon& polygon = all_.polygons[p];
-    if (face == kNone) {
-      face = Index(set.planes.size());
-      set.planes.push_back(planeOf(polygon));
-    }
-    set.vertices.insert(set.vertices.end(), polygon.corners.begin(), polygon.corners.end());
-    set.members.push_back({p, face});
+  /// By a solid found before, or by one of the group that is searched.
+  bool isTaken(Index p, const GroupMemory& memory) const {
+    return taken_[p] != 0 || memory.taken[place_[p]] != 0;
   }
 
-  /// The first face of the set that a polygon lies on, or kNone.
-  Index faceOf(const ConvexSet& set, const OccluderPolygon& polygon) const {
-    const auto face =
-        std::find_if(set.planes.begin(), set.planes.end(), [&](const Occluder::Plane& plane) {
-          return glm::dot(plane.normal, polygon.normal) > 0 && on(polygon, plane);
-        });
-    return face == set.planes.end() ? kNone : Index(face - set.planes.begin());
+  /// Marks the polygons that lie on faces of a solid.
+  void take(const ConvexSolid& solid) {
+    for (const ConvexSolid::OnFace& on : solid.on_faces) taken_[on.polygon] = 1;
   }
 
-  bool on(const OccluderPolygon& polygon, const Occluder::Plane& plane) const {
-    return isBehind(all_, polygon, plane) &&
-           isBehind(all_, polygon, {-plane.normal, -plane.offset});
-  }
-
-  ConvexSet grow(Index seed, bool convex_only, Growth way,
-                 const std::vector<std::uint8_t>& taken) const {
-    ConvexSet set;
-    join(set, seed, way == Growth::known ? way : Growth::greedy);
-    std::set<Index> met{seed};
-    for (std::size_t k = 0; k < set.members.size(); ++k) {
-      for (const std::vector<Index>& loop : all_.polygons[set.members[k].polygon].loops) {
-        for (std::size_t c = 0; c < loop.size(); ++c) {
-          const auto across = users_.find({loop[(c + 1) % loop.size()], loop[c]});
-          if (across == users_.end()) continue;
-          for (const Index p : across->second) {
-            if (taken[p] || !mayJoin(p, convex_only) || met.count(p) != 0) continue;
-            if (way == Growth::known && groups_.of(p) != groups_.of(seed)) continue;
-            met.insert(p);
-            join(set, p, way);
-          }
-        }
-      }
-    }
-    std::sort(set.members.begin(), set.members.end(),
-              [](const auto& a, const auto& b) { return a.polygon < b.polygon; });
-    return set;
-  }
-
-  /// Adds a polygon, if it may be.
-  void join(ConvexSet& set, Index p, Growth way) const {
-    const OccluderPolygon& polygon = all_.polygons[p];
-    if (way == Growth::known) {
-      std::vector<Index>& faces = set.faces_of_level[groups_.levelWith(p)];
-      const auto face = std::find_if(faces.begin(), faces.end(),
-                                     [&](Index k) { return on(polygon, set.planes[k]); });
-      if (face != faces.end()) {
-        append(set, p, *face);
-      } else {
-        faces.push_back(Index(set.planes.size()));
-        append(set, p, kNone);
-      }
-      return;
-    }
-    if (way == Growth::greedy) {
-      add(set, p);
-      return;
-    }
-    if (faceOf(set, polygon) != kNone) return;
-    ConvexSet before = set;
-    if (add(set, p) && !staysEmpty(set)) set = std::move(before);
-  }
-
-  std::optional<Occluder> hullOf(const ConvexSet& set) const {
-    std::vector<Index> vertices = set.vertices;
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    std::vector<Vec3> points;
-    points.reserve(vertices.size());
-    for (const Index v : vertices) points.push_back(all_.vertices[v]);
-    return convexHull(points, set.planes, all_.coincidence);
-  }
-
-  bool staysEmpty(const ConvexSet& set) const {
-    const std::optional<Occluder> hull = hullOf(set);
-    return !hull || hull->planes.size() < 4 || isEmpty(all_, *hull, ascending(set));
-  }
-
-  static std::vector<Index> ascending(const ConvexSet& set) {
-    std::vector<Index> polygons = set.polygons();
-    std::sort(polygons.begin(), polygons.end());
-    return polygons;
-  }
-
-  std::optional<ConvexSolid> solidOf(const ConvexSet& set, bool opaque) {
+  std::optional<ConvexSolid> solidOf(const ConvexSet& set, bool opaque) const {
     if (set.planes.size() < 2) return {};
-    std::optional<Occluder> hull = hullOf(set);
+    std::optional<Occluder> hull = growth_.hullOf(set);
     // Polygons back to back make no solid: they are one flat occluder.
-    if (!hull || hull->planes.size() < 4 || !isEmpty(all_, *hull, ascending(set)) ||
+    if (!hull || hull->planes.size() < 4 || !isEmpty(all_, *hull, set.polygons()) ||
         !isSealed(*hull, set, opaque)) {
       return {};
     }
@@ -319,22 +288,19 @@ class SolidSearch {
               [](const auto& a, const auto& b) { return a.polygon < b.polygon; });
   }
 
-  /// Marks the polygons that lie on faces of a solid.
-  static void take(const ConvexSolid& solid, std::vector<std::uint8_t>& taken) {
-    for (const ConvexSolid::OnFace& on : solid.on_faces) taken[on.polygon] = 1;
-  }
-
   /// Of polygons not taken yet.
-  double areaOnFaces(const ConvexSolid& solid, const std::vector<std::uint8_t>& taken) const {
+  double areaOnFaces(const ConvexSolid& solid) const {
     double area = 0;
     for (const ConvexSolid::OnFace& on : solid.on_faces) {
-      if (!taken[on.polygon]) area += all_.polygons[on.polygon].area;
+      if (!taken_[on.polygon]) area += all_.polygons[on.polygon].area;
     }
     return area;
   }
 
+  double score(const ConvexSolid& solid) const { return areaOnFaces(solid) * volumeOf(solid.body); }
+
   /// True if nothing gets in or out where the set does not cover the hull.
-  bool isSealed(const Occluder& hull, const ConvexSet& set, bool opaque) {
+  bool isSealed(const Occluder& hull, const ConvexSet& set, bool opaque) const {
     const std::vector<double> missing = missingAreas(hull, set);
     std::vector<Index> gaps;
     for (Index k = 0; k < hull.planes.size() && gaps.size() < 2; ++k) {
@@ -345,7 +311,7 @@ class SolidSearch {
     }
     if (gaps.empty()) return true;
     if (gaps.size() == 1 && isCovered(hull, set, gaps.front(), missing[gaps.front()])) return true;
-    return opaque && regions_.isBehindOpaque(set.members.front().polygon);
+    return opaque && opaque_[set.members.front().polygon] != 0;
   }
 
   /// Areas of the hull's faces that the set leaves open; 0 if within rounding.
@@ -381,7 +347,7 @@ class SolidSearch {
     bool tied = true;
     for (const ConvexSet::Member& m : set.members) {
       const OccluderPolygon& polygon = all_.polygons[m.polygon];
-      if (on(polygon, plane)) continue;
+      if (growth_.isOn(polygon, plane)) continue;
       for (const std::vector<Index>& loop : polygon.loops) {
         for (std::size_t c = 0; c < loop.size(); ++c) {
           const Index a = loop[c];
@@ -396,7 +362,7 @@ class SolidSearch {
     double covered = 0;
     all_.tree.query(boxAround(hull, all_.coincidence), [&](Index p) {
       const OccluderPolygon& polygon = all_.polygons[p];
-      if (glm::dot(polygon.normal, plane.normal) < 0 && on(polygon, plane)) {
+      if (glm::dot(polygon.normal, plane.normal) < 0 && growth_.isOn(polygon, plane)) {
         covered += areaInside(all_, polygon, prism, 0);
       }
       return true;
@@ -405,21 +371,23 @@ class SolidSearch {
   }
 
   const OccluderPolygons& all_;
+  Flags& taken_;
   Progress& progress_;
-  std::map<OccluderEdge, std::vector<Index>> users_;
+  OccluderEdgeUsers users_;
   OccluderRegions regions_;
   ConvexGroups groups_;
-  std::set<std::vector<Index>> failed_;     ///< sets that make no solid
-  std::set<std::pair<Index, bool>> tried_;  ///< large groups, and whether of convex polygons alone
-  /// Polygons of sets that were grown carefully, of all polygons and of convex ones alone.
-  std::array<std::vector<std::uint8_t>, 2> given_up_;
+  ConvexSetGrowth growth_;
+  std::vector<std::vector<Index>> members_;  ///< of groups
+  std::vector<Index> place_;                 ///< of polygons, in their groups
+  Flags opaque_;                             ///< polygons that nobody can look behind
+  std::vector<ConvexSolid> solids_;
 };
 
 }  // namespace
 
 std::vector<ConvexSolid> convexSolids(const OccluderPolygons& all, std::vector<std::uint8_t>& taken,
                                       Progress& progress) {
-  return SolidSearch(all, progress).run(taken);
+  return SolidSearch(all, taken, progress).run();
 }
 
 }  // namespace radiosity

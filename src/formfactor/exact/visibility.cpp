@@ -94,13 +94,14 @@ void Visibility::classify(ElementRange rows, VisibilitySink& sink, VisibilityCou
               [&](Index cluster) { descent.run(facet, cluster); });
 }
 
-void Visibility::classifySome(ElementRange rows, const VisibilitySample& sample,
-                              VisibilitySink& sink, VisibilityCounts& counts) const {
-  if (openFacetsAfter(rows) == 0) return;
+VisibilityOfFacets Visibility::classifySome(ElementRange rows, const VisibilitySample& sample,
+                                            VisibilitySink& sink, VisibilityCounts& counts) const {
+  if (openFacetsAfter(rows) == 0) return {};
   const Index facet = elements_.facet[rows.first];
   VisibilityDescent descent(*this, sink, counts, sample);
   forClusters(elements_, elements_.facets[facet].root, rows,
               [&](Index cluster) { descent.run(facet, cluster); });
+  return descent.ofFacets();
 }
 
 Visibility::Open Visibility::openAfter(ElementRange rows, FacetSize size) const {

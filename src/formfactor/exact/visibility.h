@@ -22,6 +22,8 @@ struct VisibilityCounts {
   std::size_t facet_pairs_no_exchange = 0;  ///< settled by their planes alone
   std::size_t facet_pairs_unoccluded = 0;   ///< settled whole: no visibility code ran below them
   std::size_t shaft_tests = 0;              ///< of an occluder against the space between two shapes
+  /// Pairs of elements that were settled, one way or another.
+  std::size_t settled() const { return no_exchange + unoccluded + hidden + partial; }
   VisibilityCounts& operator+=(const VisibilityCounts& other);
 };
 
@@ -37,6 +39,12 @@ struct VisibilitySample {
   std::size_t facet_stride = 1;  ///< every so many-th of these, of the open facets after theirs,
   std::size_t first_facet = 0;   ///< from this one of them on
   std::size_t most_tests = std::numeric_limits<std::size_t>::max();  ///< then it stops as it is
+};
+
+/// What a sample settled with facets as a whole, which it does first, ...
+struct VisibilityOfFacets {
+  VisibilityCounts settled;
+  std::size_t left = 0;  ///< ... and pairs of elements that it then looked at more closely
 };
 
 /// Receives the answers. `rows` are always inside the range asked for; `columns` come from one
@@ -70,8 +78,8 @@ class Visibility {
 
   /// Classifies the same rows against some of the facets after theirs that are not sealed, to find
   /// out what that takes; counts only pairs that it settles. Nothing of rows that are sealed.
-  void classifySome(ElementRange rows, const VisibilitySample& sample, VisibilitySink& sink,
-                    VisibilityCounts& counts) const;
+  VisibilityOfFacets classifySome(ElementRange rows, const VisibilitySample& sample,
+                                  VisibilitySink& sink, VisibilityCounts& counts) const;
   /// How many facets after that of `rows` classifySome() chooses from; 0 where the rows are sealed.
   std::size_t openFacetsAfter(ElementRange rows, FacetSize size = FacetSize::any) const;
   /// Pairs of `rows` with the elements of these.

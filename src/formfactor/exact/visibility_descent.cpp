@@ -39,6 +39,7 @@ void VisibilityDescent::run(Index facet, Index cluster) {
   dropCandidates(0);
   const std::vector<Index>& open = visibility_.open_facets_;
   const auto after = std::upper_bound(open.begin(), open.end(), facet) - open.begin();
+  const VisibilityCounts before = counts_;
   std::size_t left = sample_.first_facet;  // until the next
   for (auto k = std::size_t(after); k < open.size() && !enough(); ++k) {
     const bool large = elements_.facets[open[k]].elements.size() >= kLargeFacet;
@@ -47,7 +48,16 @@ void VisibilityDescent::run(Index facet, Index cluster) {
     addFacet(open[k]);
     left = sample_.facet_stride - 1;
   }
+  noteFacets(before);
   descend(cluster, 0, 0, items_.size());
+}
+
+void VisibilityDescent::noteFacets(const VisibilityCounts& before) {
+  VisibilityCounts& settled = of_facets_.settled;
+  settled.no_exchange += counts_.no_exchange - before.no_exchange;
+  settled.unoccluded += counts_.unoccluded - before.unoccluded;
+  settled.shaft_tests += counts_.shaft_tests - before.shaft_tests;
+  for (const Item& item : items_) of_facets_.left += pairs(top_, item.cluster);
 }
 
 /// Settles a facet by the planes, or by there being nothing in between; else it becomes an item.

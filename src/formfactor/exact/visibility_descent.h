@@ -19,6 +19,8 @@ class VisibilityDescent {
   /// All pairs of the clusters' elements with elements of open facets after `facet`, which the
   /// cluster belongs to; of a sample, some of them.
   void run(Index facet, Index cluster);
+  /// Of all runs.
+  const VisibilityOfFacets& ofFacets() const { return of_facets_; }
 
  private:
   /// A column cluster that is still open, and what may stand between.
@@ -38,6 +40,7 @@ class VisibilityDescent {
   };
 
   bool enough() const { return counts_.shaft_tests >= sample_.most_tests; }
+  void noteFacets(const VisibilityCounts& before);
   void addFacet(Index facet);
   void descend(Index row, std::size_t depth, std::size_t first_item, std::size_t end_item);
   void settle(Index row, std::size_t depth, Item item);
@@ -61,6 +64,7 @@ class VisibilityDescent {
   VisibilitySink& sink_;
   VisibilityCounts& counts_;
   VisibilitySample sample_;  ///< most_tests: of counts_, what was in them included
+  VisibilityOfFacets of_facets_;
   Index facet_ = 0;
   Index top_ = 0;
   std::vector<Item> items_;                        ///< a stack; each depth's at the end
