@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "formfactor/exact/exact_factors.h"
+#include "formfactor/exact/row_sample.h"
 #include "formfactor/hemicube_factors.h"
 
 namespace radiosity {
@@ -95,32 +96,36 @@ void choose(const ExactEstimate& estimate, const PatchMesh& mesh, const FormFact
   }
 }
 
-/// A rough estimate, and a full one unless the rough one settles that hemicubes are chosen.
-ExactEstimate estimate(const ExactScene& scene, FormFactorPlan::Prepared& prepared,
-                       Progress& progress) {
-  if (prepared.options.method == FormFactorMethod::automatic) {
-    const ExactEstimate rough = estimateExactRoughly(scene, prepared.options, progress);
-    const Wait wait = waitFor(rough, prepared.mesh, prepared.options);
-    if (isTooLong(wait, kFarBeyond)) return rough;
+/// A full sample, but for a rough one where that settles that hemicubes are chosen.
+RowSample sampleToChoose(const FormFactorPlan::Prepared& prepared, const ExactScene& scene,
+                         Progress& progress) {
+  const FormFactorOptions& options = prepared.options;
+  if (options.method == FormFactorMethod::automatic) {
+    RowSample rough = sampleRows(scene, options.tolerance, SampleSize::rough, progress);
+    const ExactEstimate estimate = estimateExact(scene, rough, options);
+    if (isTooLong(waitFor(estimate, prepared.mesh, options), kFarBeyond)) return rough;
   }
-  const ExactKernels& kernels = prepared.kernels.emplace(scene, prepared.options);
-  return estimateExact(scene, kernels, prepared.options, progress);
+  return sampleRows(scene, options.tolerance, SampleSize::full, progress);
 }
 
 void planExact(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {
+  const FormFactorOptions& options = prepared.options;
   progress.begin("preparing", ExactScene::kSteps);
   const ExactScene& scene = prepared.scene.emplace(prepared.mesh, progress);
   progress.end();
-  prepared.estimate = estimate(scene, prepared, progress);
-  choose(prepared.estimate, prepared.mesh, prepared.options, plan);
+  const RowSample sample = sampleToChoose(prepared, scene, progress);
+  prepared.estimate = estimateExact(scene, sample, options);
+  choose(prepared.estimate, prepared.mesh, options, plan);
+  if (plan.method != FormFactorMethod::exact) {
+    prepared.scene.reset();
+    return;
+  }
+  const ExactKernels& kernels = prepared.kernels.emplace(scene, options);
   plan.bytes = prepared.estimate.bytes;
   plan.matrix_bytes = prepared.estimate.matrix_bytes;
-  plan.seconds = prepared.estimate.measured;
+  plan.seconds = exactSeconds(scene, kernels, sample, options, progress);
   plan.refining =
       prepared.estimate.seconds > 0 ? prepared.estimate.refining / prepared.estimate.seconds : 0.0;
-  if (plan.method == FormFactorMethod::exact) return;
-  prepared.kernels.reset();
-  prepared.scene.reset();
 }
 
 void planHemicubes(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "formfactor/exact/row_sample.h"
+#include "formfactor/exact/row_times.h"
 #include "matrix/work_bytes.h"
 
 namespace radiosity {
@@ -21,6 +22,10 @@ constexpr double kLoosest = 1e-2;
 double closedFormTolerance(double tolerance) {
   if (tolerance <= FormFactorOptions().tolerance) return std::min(tolerance, kClosedForm);
   return std::min(kClosedFormShare * tolerance, kLoosest);
+}
+
+std::size_t threads() {
+  return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
 }
 
 /// Makes one of the scene's parts, then a step of progress, at which the run may end.
@@ -49,10 +54,8 @@ ExactKernels::ExactKernels(const ExactScene& scene, const FormFactorOptions& opt
       unoccluded(scene.elements, closed_form, options.simd),
       partial(scene.elements, scene.occluders, options.tolerance, options.simd) {}
 
-namespace {
-
-ExactEstimate estimateFrom(const RowSample& sample, const ExactScene& scene,
-                           const FormFactorOptions& options) {
+ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,
+                            const FormFactorOptions& options) {
   const auto patches = double(scene.elements.patch_elements);
   ExactEstimate estimate;
   estimate.partial_pairs = sample.partial;
@@ -61,20 +64,18 @@ ExactEstimate estimateFrom(const RowSample& sample, const ExactScene& scene,
   estimate.entries_per_row = patches > 0 ? std::min(2 * entries / patches, patches) : 0;
 
   const std::size_t n = scene.order.patch.size();
-  const std::size_t threads =
-      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   constexpr std::size_t kElementBytes = 512;  // an element, its cluster, the kernels' copies
   constexpr std::size_t kAccounts = 8 * sizeof(double);
   constexpr std::size_t kUncertainBytes = 4;  // of a partial pair, for closure: code, run, freedom
   const std::size_t row_sums = 4 * 2 * sizeof(double) * scene.order.ranked;
   const std::size_t filling =
-      threads * (scene.tasks.panelBytes(scene.elements) + row_sums + 2 * sample.task_bytes);
+      threads() * (scene.tasks.panelBytes(scene.elements) + row_sums + 2 * sample.task_bytes);
   estimate.matrix_bytes = ExchangeMatrix::estimateSymmetricBytes(n, estimate.entries_per_row,
                                                                  options.storedPrecision());
   estimate.bytes = options.memory_held + estimate.matrix_bytes +
                    std::size_t(sample.partial) * kUncertainBytes + n * kAccounts +
                    scene.elements.size() * kElementBytes +
-                   std::max(filling, matrixWorkBytes(n, threads));  // one after the other
+                   std::max(filling, matrixWorkBytes(n, threads()));  // one after the other
 
   // Measured on one core of a 2.7 GHz Xeon: a pair in closed form or by quadrature, with what is
   // asked for beside it, and a test whether something stands between.
@@ -84,29 +85,13 @@ ExactEstimate estimateFrom(const RowSample& sample, const ExactScene& scene,
       kUnoccluded * sample.unoccluded + kShaftTest * sample.shaft_tests + sample.cost.seconds;
   estimate.refining = sample.cost.refining;
   estimate.points = sample.cost.points;
-  estimate.measured =
-      sample.busy *
-      (sample.seconds_visibility + sample.seconds_unoccluded + sample.seconds_partial) /
-      double(threads);
   return estimate;
 }
 
-}  // namespace
-
-ExactEstimate estimateExact(const ExactScene& scene, const ExactKernels& kernels,
-                            const FormFactorOptions& options, Progress& progress) {
-  progress.begin("planning", kSampleSteps);
-  const RowSample sample = sampleRows(scene, kernels, options.tolerance, progress);
-  progress.end();
-  return estimateFrom(sample, scene, options);
-}
-
-ExactEstimate estimateExactRoughly(const ExactScene& scene, const FormFactorOptions& options,
-                                   Progress& progress) {
-  progress.begin("planning", kRoughSampleSteps);
-  const RowSample sample = sampleRowsRoughly(scene, options.tolerance, progress);
-  progress.end();
-  return estimateFrom(sample, scene, options);
+double exactSeconds(const ExactScene& scene, const ExactKernels& kernels, const RowSample& sample,
+                    const FormFactorOptions& options, Progress& progress) {
+  const RowTimes times = timeRows(scene, kernels, options.tolerance, sample, progress);
+  return times.busy * (times.visibility + times.unoccluded + times.partial) / double(threads());
 }
 
 }  // namespace radiosity

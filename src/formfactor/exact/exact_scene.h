@@ -33,8 +33,8 @@ struct ExactKernels {
   PartialKernel partial;
 };
 
-/// From the pairs of a sample of tasks. All but `measured` depends on the scene and the options
-/// alone, never on the machine or on what else it does.
+/// From the pairs of a sample of tasks, on the scene and the options alone, never on the machine or
+/// on what else it does.
 struct ExactEstimate {
   std::size_t bytes = 0;         ///< held at once, FormFactorOptions::memory_held included
   std::size_t matrix_bytes = 0;  ///< of these, the matrix
@@ -44,13 +44,12 @@ struct ExactEstimate {
   double points = 0;    ///< ExactReport::points; about, like the seconds
   double seconds = 0;   ///< of one core, at the rates of a usual machine
   double refining = 0;  ///< of the seconds, those that go with 1 / tolerance
-  /// Seconds by the clock on the threads allowed, at the rates that the sample had here and now.
-  double measured = 0;
 };
-ExactEstimate estimateExact(const ExactScene& scene, const ExactKernels& kernels,
-                            const FormFactorOptions& options, Progress& progress);
-/// From a sixth of the sample, before there are kernels: without `measured`.
-ExactEstimate estimateExactRoughly(const ExactScene& scene, const FormFactorOptions& options,
-                                   Progress& progress);
+struct RowSample;
+ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,
+                            const FormFactorOptions& options);
+/// Seconds by the clock on the threads allowed, at the rates that the sample has here and now.
+double exactSeconds(const ExactScene& scene, const ExactKernels& kernels, const RowSample& sample,
+                    const FormFactorOptions& options, Progress& progress);
 
 }  // namespace radiosity

@@ -1,18 +1,14 @@
 #include "formfactor/exact/row_sample.h"
 
 #include <algorithm>
-#include <array>
-#include <atomic>
-#include <cmath>
-#include <vector>
+#include <utility>
 
 #include "base/parallel.h"
-#include "base/processor_clock.h"
-#include "formfactor/exact/recorded_pairs.h"
 
 namespace radiosity {
 namespace {
 
+constexpr std::size_t kRoughSteps = kSampleSteps / 6;
 /// Of a task, ranges are taken until there are so many rows: what columns share is shared by rows.
 constexpr std::size_t kLeastRows = 4;
 /// Facets looked at, and tests made, for one range of rows.
@@ -25,57 +21,6 @@ constexpr std::size_t kTestsAnOccluder = 50;
 constexpr std::size_t kMostTestsAtAll = 200'000;
 /// Partial pairs of a task whose cost is guessed, evenly among all.
 constexpr std::size_t kGuessedPairs = 48;
-/// Pairs are clipped, to see how much longer they take than guessed, in up to so many rounds until
-/// they have taken this share of all that is guessed, but no less and no more seconds than these.
-/// (At 1e-6 a single pair past round bodies takes tenths of a second. A few pairs, near to each
-/// other, carry half of the time or more: in gazebo.obj of the lightmapper's examples one pair in
-/// 300 takes 38%. Many short batches meet them.)
-constexpr std::size_t kRounds = 16;
-constexpr double kClipShare = 0.02;
-constexpr double kLeastClipSeconds = 0.25;
-constexpr double kMostClipSeconds = 0.8;
-/// About so many pairs a round, by what they stand for; from places and classes that stand for less
-/// than this share, none; and no more in a batch than are guessed to take these seconds.
-constexpr double kPairsARound = 256;
-constexpr double kLeastShare = 1e-3;
-constexpr double kBatchSeconds = 1e-3;
-/// Batches are taken in an order that jumps about, so that what is left out when the time is up is
-/// like what is not.
-constexpr std::size_t kJump = 7;
-static_assert(kRounds % kJump != 0);
-/// Pairs with so many occluders or more are a class of their own: they are few, each takes up to a
-/// thousand times as long as others, and most of that is not foreseen. (Six spheres' facets in a
-/// box: one pair in ten has more, and these take nine tenths of the time.)
-constexpr Index kManyOccluders = 32;
-enum Clutter : std::size_t { few_occluders, many_occluders, clutter_classes };
-/// Values in closed form that are computed.
-constexpr std::size_t kMostValues = 1 << 13;
-
-/// Partial pairs of one class, in one place.
-struct ClippedPairs {
-  std::vector<PartialPair> pairs;
-  PartialCost cost;     ///< of all
-  double seconds = 0;   ///< of those that were clipped
-  double expected = 0;  ///< of the same, at the rates of a usual machine
-};
-
-/// What was found in one place.
-struct Piece {
-  double weight = 0;  ///< pairs that it stands for
-  double settled = 0;
-  double closely = 1;  ///< pairs for each that was settled in the descent
-  double unoccluded = 0;
-  double partial = 0;
-  double occluders = 0;
-  double shaft_tests = 0;
-  std::array<ClippedPairs, clutter_classes> clipped;
-  std::vector<Index> occluder_list;  ///< of the pairs
-  double rows = 0;
-  double record_bytes = 0;
-  double seconds_visibility = 0;
-  double seconds_unoccluded = 0;
-  BothClocks taken;  ///< by all of it
-};
 
 double openPairs(const ExactScene& scene, std::span<const ElementRange> ranges, FacetSize size) {
   double pairs = 0;
@@ -95,7 +40,7 @@ std::span<const ElementRange> someRows(std::span<const ElementRange> task) {
 
 /// Partial pairs and blocks of some rows, and what finding them took.
 void classify(const ExactScene& scene, std::span<const ElementRange> ranges, FacetSize size,
-              std::size_t place, RecordedPairs& recorded, Piece& piece) {
+              std::size_t place, RecordedPairs& recorded, SampledPlace& found) {
   VisibilityCounts counts;
   VisibilityOfFacets of_facets;
   const double start = processorSeconds();
@@ -113,7 +58,7 @@ void classify(const ExactScene& scene, std::span<const ElementRange> ranges, Fac
         scene.visibility.classifySome(range, sample, recorded, counts);
     of_facets.settled += of_range.settled;
     of_facets.left += of_range.left;
-    piece.rows += double(range.size());
+    found.rows += double(range.size());
   }
   const double seconds = processorSeconds() - start;
   // Where it stopped as it was, what was left of its facets is like what was settled of them.
@@ -123,45 +68,18 @@ void classify(const ExactScene& scene, std::span<const ElementRange> ranges, Fac
   const auto all = [&](std::size_t settled, std::size_t settled_whole) {
     return double(settled_whole) + share * double(settled - settled_whole);
   };
-  piece.settled = all(counts.settled(), whole.settled());
-  piece.unoccluded = all(counts.unoccluded, whole.unoccluded);
-  piece.shaft_tests = all(counts.shaft_tests, whole.shaft_tests);
-  piece.closely = share;
-  piece.partial = share * double(recorded.partial_pairs.size());
-  piece.occluders = share * double(recorded.occluder_list.size());
+  found.settled = all(counts.settled(), whole.settled());
+  found.unoccluded = all(counts.unoccluded, whole.unoccluded);
+  found.shaft_tests = all(counts.shaft_tests, whole.shaft_tests);
+  found.closely = share;
+  found.partial = share * double(recorded.partial_pairs.size());
+  found.occluders = share * double(recorded.occluder_list.size());
   if (counts.shaft_tests > 0) {
-    piece.seconds_visibility = seconds * piece.shaft_tests / double(counts.shaft_tests);
+    found.seconds_visibility = seconds * found.shaft_tests / double(counts.shaft_tests);
   }
-  piece.record_bytes =
-      piece.partial * double(sizeof(PartialPair) + sizeof(PartialExchange) + sizeof(Index)) +
-      piece.occluders * sizeof(Index) + double(recorded.blocks.size() * sizeof(PairBlock));
-}
-
-/// Values in closed form are asked for by whole chunks of columns: see RowAssembly.
-void evaluateUnoccluded(const UnoccludedKernel& kernel, const RecordedPairs& recorded,
-                        Piece& piece) {
-  std::vector<double> values;
-  UnoccludedCounts counts;
-  double computed = 0;
-  const std::size_t blocks = recorded.blocks.size();
-  const double start = processorSeconds();
-  // In an order that jumps about, so that what is left out is like what is not.
-  const auto jump = std::size_t(std::max(1.0, std::round(0.618 * double(blocks))));
-  for (std::size_t k = 0; k < blocks && computed < double(kMostValues); ++k) {
-    const PairBlock& block = recorded.blocks[k * jump % blocks];
-    const ElementRange rows{block.rows.first,
-                            std::min(block.rows.end, block.rows.first + Index(kLeastRows))};
-    const auto most = Index(kMostValues / rows.size());
-    const ElementRange columns{block.columns.first,
-                               std::min(block.columns.end, block.columns.first + most)};
-    values.resize(std::size_t(rows.size()) * columns.size());
-    kernel.block(rows, columns, values.data(), columns.size(), counts);
-    computed += double(values.size());
-  }
-  const double seconds = processorSeconds() - start;
-  if (computed > 0) {
-    piece.seconds_unoccluded = seconds * (piece.unoccluded + piece.partial) / computed;
-  }
+  found.record_bytes =
+      found.partial * double(sizeof(PartialPair) + sizeof(PartialExchange) + sizeof(Index)) +
+      found.occluders * sizeof(Index) + double(recorded.blocks.size() * sizeof(PairBlock));
 }
 
 /// Some pairs, evenly.
@@ -175,150 +93,60 @@ std::vector<PartialPair> evenly(const std::vector<PartialPair>& pairs, std::size
   return some;
 }
 
-/// A batch of pairs that are neighbours, and share work; batches evenly from all. Pairs are in
-/// order of their columns.
-std::span<const PartialPair> batchOf(std::span<const PartialPair> pairs, std::size_t size,
-                                     std::size_t which) {
-  if (which >= pairs.size() / size) return {};
-  const std::size_t count = std::min(kRounds, pairs.size() / size);
-  return pairs.subspan((2 * which + 1) * (pairs.size() - size) / (2 * count), size);
-}
-
-/// Clips a batch. Nothing but measured seconds comes of it.
-void clip(const ExactScene& scene, const ExactKernels& kernels, std::span<const PartialPair> batch,
-          std::span<const Index> occluder_list, double tolerance, ClippedPairs& clipped) {
-  std::vector<PartialPair> some(batch.begin(), batch.end());
-  clipped.expected +=
-      partialCost(scene.elements, scene.occluders, some, occluder_list, tolerance).seconds;
-  for (PartialPair& pair : some) {
-    pair.unoccluded = kernels.unoccluded.pair(pair.row, pair.column);
-  }
-  std::erase_if(some, [](const PartialPair& pair) { return !(pair.unoccluded > 0); });
-  std::vector<PartialExchange> out(some.size());
-  PartialCounts counts;
-  const double start = processorSeconds();
-  kernels.partial.evaluate(some, occluder_list, out, counts);
-  clipped.seconds += processorSeconds() - start;
-}
-
 /// What the partial pairs will take.
-void costOfPairs(const ExactScene& scene, RecordedPairs recorded, double tolerance, Piece& piece) {
+void costOfPairs(const ExactScene& scene, RecordedPairs recorded, double tolerance,
+                 SampledPlace& found) {
   for (const PartialPair& pair : recorded.partial_pairs) {
     const bool many = pair.occluders_end - pair.occluders_begin >= kManyOccluders;
-    piece.clipped[many ? many_occluders : few_occluders].pairs.push_back(pair);
+    found.classes[many ? many_occluders : few_occluders].pairs.push_back(pair);
   }
-  piece.occluder_list = std::move(recorded.occluder_list);
-  for (ClippedPairs& of_class : piece.clipped) {
+  found.occluder_list = std::move(recorded.occluder_list);
+  found.blocks = std::move(recorded.blocks);
+  for (SampledPairs& of_class : found.classes) {
     if (of_class.pairs.empty()) continue;
     std::stable_sort(of_class.pairs.begin(), of_class.pairs.end(),
                      [](const auto& a, const auto& b) { return a.column < b.column; });
     const std::vector<PartialPair> guessed = evenly(of_class.pairs, kGuessedPairs);
     const PartialCost sampled =
-        partialCost(scene.elements, scene.occluders, guessed, piece.occluder_list, tolerance);
+        partialCost(scene.elements, scene.occluders, guessed, found.occluder_list, tolerance);
     of_class.cost =
-        sampled * (piece.closely * double(of_class.pairs.size()) / double(guessed.size()));
+        sampled * (found.closely * double(of_class.pairs.size()) / double(guessed.size()));
   }
 }
 
-/// `kernels`: null for counts alone.
-Piece lookAt(const ExactScene& scene, const ExactKernels* kernels, double tolerance,
-             std::size_t place, std::span<const ElementRange> task, FacetSize size) {
+SampledPlace lookAt(const ExactScene& scene, double tolerance, std::size_t place,
+                    std::span<const ElementRange> task, FacetSize size) {
   const BothWatches watches;
-  Piece piece;
+  SampledPlace found;
   RecordedPairs recorded;
-  classify(scene, someRows(task), size, place, recorded, piece);
-  if (kernels != nullptr) evaluateUnoccluded(kernels->unoccluded, recorded, piece);
-  costOfPairs(scene, std::move(recorded), tolerance, piece);
-  piece.taken = watches.elapsed();
-  return piece;
+  classify(scene, someRows(task), size, place, recorded, found);
+  costOfPairs(scene, std::move(recorded), tolerance, found);
+  found.taken = watches.elapsed();
+  return found;
 }
 
-/// Seconds that the pairs of all tasks will take, as guessed, for which these stand.
-double guessedSeconds(const Piece& piece, const ClippedPairs& of_class) {
-  return piece.settled > 0 ? piece.weight / piece.settled * of_class.cost.seconds : 0.0;
-}
-
-void clipSome(const ExactScene& scene, const ExactKernels& kernels, double tolerance,
-              std::vector<Piece>& pieces, Progress& progress) {
+void sumUp(double task_rows, RowSample& sum) {
+  double looked_at = 0;  // pairs that the places with a result stand for
   double all = 0;
-  for (const Piece& piece : pieces) {
-    for (const ClippedPairs& of_class : piece.clipped) all += guessedSeconds(piece, of_class);
-  }
-  const double most = std::clamp(kClipShare * all, kLeastClipSeconds, kMostClipSeconds);
-  std::atomic<double> taken = 0;
-  for (std::size_t round = 0; round < kRounds && taken.load() < most; ++round) {
-    parallelFor(pieces.size(), 1, [&](std::size_t k) {
-      Piece& piece = pieces[k];
-      const BothWatches watches;
-      for (ClippedPairs& of_class : piece.clipped) {
-        const double share = guessedSeconds(piece, of_class) / all;
-        if (progress.cancelled() || taken.load() >= most || !(share > kLeastShare)) continue;
-        const double of_one =
-            of_class.cost.seconds / (piece.closely * double(of_class.pairs.size()));
-        const auto size =
-            std::size_t(std::max(1.0, std::min(kPairsARound * share, kBatchSeconds / of_one)));
-        const double before = of_class.seconds;
-        clip(scene, kernels, batchOf(of_class.pairs, size, round * kJump % kRounds),
-             piece.occluder_list, tolerance, of_class);
-        taken.fetch_add(of_class.seconds - before);
-      }
-      piece.taken += watches.elapsed();
-    });
-  }
-}
-
-/// Of a class, over all pieces.
-struct ClippedSum {
-  PartialCost cost;
-  double paced = 0;  ///< seconds of pieces of which pairs were clipped
-  double unpaced = 0;
-
-  /// Each piece at its own pace: where pairs are dear, fewer of them were clipped.
-  void add(const ClippedPairs& clipped, double share) {
-    cost += clipped.cost * share;
-    if (!(clipped.expected > 0)) return;
-    unpaced += share * clipped.cost.seconds;
-    paced += share * clipped.cost.seconds * (clipped.seconds / clipped.expected);
-  }
-  double seconds() const { return cost.seconds * (unpaced > 0 ? paced / unpaced : 1.0); }
-};
-
-RowSample sumOf(const std::vector<Piece>& pieces, double task_rows) {
-  RowSample sum;
-  double looked_at = 0;  // pairs that the pieces with a result stand for
-  double all = 0;
-  std::array<ClippedSum, clutter_classes> clipped;
-  BothClocks taken;
-  for (const Piece& piece : pieces) {
-    all += piece.weight;
-    taken += piece.taken;
-    if (!(piece.settled > 0)) continue;
-    looked_at += piece.weight;
-    const double share = piece.weight / piece.settled;
-    sum.unoccluded += share * piece.unoccluded;
-    sum.partial += share * piece.partial;
-    sum.occluders += share * piece.occluders;
-    sum.shaft_tests += share * piece.shaft_tests;
-    sum.seconds_visibility += share * piece.seconds_visibility;
-    sum.seconds_unoccluded += share * piece.seconds_unoccluded;
-    for (std::size_t c = 0; c < clutter_classes; ++c) clipped[c].add(piece.clipped[c], share);
-    const double task = task_rows / piece.rows * piece.record_bytes;
+  for (const SampledPlace& place : sum.places) {
+    all += place.weight;
+    const double share = place.share();
+    if (!(share > 0)) continue;
+    looked_at += place.weight;
+    sum.unoccluded += share * place.unoccluded;
+    sum.partial += share * place.partial;
+    sum.occluders += share * place.occluders;
+    sum.shaft_tests += share * place.shaft_tests;
+    for (const SampledPairs& of_class : place.classes) sum.cost += of_class.cost * share;
+    const double task = task_rows / place.rows * place.record_bytes;
     sum.task_bytes = std::max(sum.task_bytes, std::size_t(task));
   }
-  for (const ClippedSum& of_class : clipped) {
-    sum.cost += of_class.cost;
-    sum.seconds_partial += of_class.seconds();
+  if (!(looked_at > 0)) return;
+  sum.all_places = all / looked_at;
+  for (double* value : {&sum.unoccluded, &sum.partial, &sum.occluders, &sum.shaft_tests}) {
+    *value *= sum.all_places;
   }
-  if (looked_at > 0 && looked_at < all) {
-    const double share = all / looked_at;
-    for (double* value : {&sum.unoccluded, &sum.partial, &sum.occluders, &sum.shaft_tests,
-                          &sum.seconds_visibility, &sum.seconds_unoccluded, &sum.seconds_partial}) {
-      *value *= share;
-    }
-    sum.cost = sum.cost * share;
-  }
-  sum.busy = taken.ratio();
-  return sum;
+  sum.cost = sum.cost * sum.all_places;
 }
 
 /// A task that stands for several in a row.
@@ -355,36 +183,28 @@ void addPlaces(const ExactScene& scene, FacetSize size, std::size_t most,
   }
 }
 
-/// `kernels`: null for counts alone.
-RowSample sampleTasks(const ExactScene& scene, const ExactKernels* kernels, double tolerance,
-                      std::size_t most_places, Progress& progress) {
+}  // namespace
+
+RowSample sampleRows(const ExactScene& scene, double tolerance, SampleSize size,
+                     Progress& progress) {
+  const std::size_t most = (size == SampleSize::rough ? kRoughSteps : kSampleSteps) / 2;
   std::vector<Place> places;
-  addPlaces(scene, FacetSize::small, most_places, places);
-  addPlaces(scene, FacetSize::large, most_places, places);
-  std::vector<Piece> pieces(places.size());
+  addPlaces(scene, FacetSize::small, most, places);
+  addPlaces(scene, FacetSize::large, most, places);
+  RowSample sample;
+  sample.places.resize(places.size());
+  progress.begin("planning", places.size());
   parallelFor(places.size(), 1, [&](std::size_t k) {
     if (progress.cancelled()) return;
-    pieces[k] = lookAt(scene, kernels, tolerance, k, scene.tasks[places[k].task], places[k].size);
-    pieces[k].weight = places[k].weight;
+    sample.places[k] = lookAt(scene, tolerance, k, scene.tasks[places[k].task], places[k].size);
+    sample.places[k].weight = places[k].weight;
     progress.advance();
   });
   progress.check();
-  if (kernels != nullptr) clipSome(scene, *kernels, tolerance, pieces, progress);
-  progress.check();
+  progress.end();
   const std::size_t tasks = scene.tasks.size();
-  const double rows = tasks > 0 ? double(scene.elements.patch_elements) / double(tasks) : 0;
-  return sumOf(pieces, rows);
-}
-
-}  // namespace
-
-RowSample sampleRows(const ExactScene& scene, const ExactKernels& kernels, double tolerance,
-                     Progress& progress) {
-  return sampleTasks(scene, &kernels, tolerance, kSampleSteps / 2, progress);
-}
-
-RowSample sampleRowsRoughly(const ExactScene& scene, double tolerance, Progress& progress) {
-  return sampleTasks(scene, nullptr, tolerance, kRoughSampleSteps / 2, progress);
+  sumUp(tasks > 0 ? double(scene.elements.patch_elements) / double(tasks) : 0, sample);
+  return sample;
 }
 
 }  // namespace radiosity
