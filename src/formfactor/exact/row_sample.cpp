@@ -22,22 +22,6 @@ constexpr std::size_t kMostTestsAtAll = 200'000;
 /// Partial pairs of a task whose cost is guessed, evenly among all.
 constexpr std::size_t kGuessedPairs = 48;
 
-double openPairs(const ExactScene& scene, std::span<const ElementRange> ranges, FacetSize size) {
-  double pairs = 0;
-  for (const ElementRange& range : ranges) pairs += double(scene.visibility.openPairs(range, size));
-  return pairs;
-}
-
-/// Ranges from the middle of a task on, or its last ones.
-std::span<const ElementRange> someRows(std::span<const ElementRange> task) {
-  std::size_t first = task.size() / 2;
-  std::size_t rows = 0;
-  std::size_t end = first;
-  while (end < task.size() && rows < kLeastRows) rows += task[end++].size();
-  while (first > 0 && rows < kLeastRows) rows += task[--first].size();
-  return task.subspan(first, end - first);
-}
-
 /// Partial pairs and blocks of some rows, and what finding them took.
 void classify(const ExactScene& scene, std::span<const ElementRange> ranges, FacetSize size,
               std::size_t place, RecordedPairs& recorded, SampledPlace& found) {
@@ -114,12 +98,20 @@ void costOfPairs(const ExactScene& scene, RecordedPairs recorded, double toleran
   }
 }
 
-SampledPlace lookAt(const ExactScene& scene, double tolerance, std::size_t place,
-                    std::span<const ElementRange> task, FacetSize size) {
+/// Ranges of rows that stand for themselves and their neighbours, with facets of one size.
+struct Place {
+  std::span<const ElementRange> rows;
+  FacetSize size = FacetSize::small;
+  double weight = 0;  ///< open pairs of all these
+};
+
+SampledPlace lookAt(const ExactScene& scene, double tolerance, std::size_t number,
+                    const Place& place) {
   const BothWatches watches;
   SampledPlace found;
+  found.weight = place.weight;
   RecordedPairs recorded;
-  classify(scene, someRows(task), size, place, recorded, found);
+  classify(scene, place.rows, place.size, number, recorded, found);
   costOfPairs(scene, std::move(recorded), tolerance, found);
   found.taken = watches.elapsed();
   return found;
@@ -149,36 +141,49 @@ void sumUp(double task_rows, RowSample& sum) {
   sum.cost = sum.cost * sum.all_places;
 }
 
-/// A task that stands for several in a row.
-struct Place {
-  std::size_t task = 0;
-  FacetSize size = FacetSize::small;
-  double weight = 0;  ///< open pairs of all these
-};
+/// All ranges of rows of large facets, or of small ones.
+std::vector<ElementRange> rangesOf(const ExactScene& scene, FacetSize size) {
+  std::vector<ElementRange> ranges;
+  for (std::size_t t = 0; t < scene.tasks.size(); ++t) {
+    for (const ElementRange& range : scene.tasks[t]) {
+      const Facet& facet = scene.elements.facets[scene.elements.facet[range.first]];
+      const bool large = facet.elements.size() >= kLargeFacet;
+      if (large == (size == FacetSize::large)) ranges.push_back(range);
+    }
+  }
+  return ranges;
+}
 
-/// Up to `most` places of about as many open pairs each, at the task in their middle. (By numbers
-/// of tasks, a few of which pair walls with walls: what six spheres in a box take came out at 0.4.)
-void addPlaces(const ExactScene& scene, FacetSize size, std::size_t most,
-               std::vector<Place>& places) {
-  const std::size_t tasks = scene.tasks.size();
-  std::vector<double> until(tasks + 1, 0.0);  // open pairs of the tasks before
-  for (std::size_t t = 0; t < tasks; ++t) {
-    until[t + 1] = until[t] + openPairs(scene, scene.tasks[t], size);
+/// Ranges from one on, or the last ones, until they have kLeastRows.
+std::span<const ElementRange> rowsFrom(std::span<const ElementRange> ranges, std::size_t first) {
+  std::size_t rows = 0;
+  std::size_t end = first;
+  while (end < ranges.size() && rows < kLeastRows) rows += ranges[end++].size();
+  while (first > 0 && rows < kLeastRows) rows += ranges[--first].size();
+  return ranges.subspan(first, end - first);
+}
+
+/// Up to `most` places of about as many open pairs each, at the range in their middle.
+void addPlaces(const ExactScene& scene, std::span<const ElementRange> ranges, FacetSize size,
+               std::size_t most, std::vector<Place>& places) {
+  std::vector<double> until{0.0};  // open pairs of the ranges before
+  until.reserve(ranges.size() + 1);
+  for (const ElementRange& range : ranges) {
+    until.push_back(until.back() + double(scene.visibility.openPairs(range, size)));
   }
   std::size_t first = 0;
-  for (std::size_t k = 1; k <= most && first < tasks; ++k) {
-    const double quota = until[tasks] * double(k) / double(most);
+  for (std::size_t k = 1; k <= most && first < ranges.size(); ++k) {
+    const double quota = until.back() * double(k) / double(most);
     std::size_t end = first;
-    while (end < tasks && (k == most || until[end + 1] <= quota)) ++end;
+    while (end < ranges.size() && (k == most || until[end + 1] <= quota)) ++end;
     // One that is larger than a place has the places that it reaches into.
     if (end == first && until[first] < quota) ++end;
-    if (end == first) continue;
+    if (!(until[end] > until[first])) continue;
     const double middle = 0.5 * (until[first] + until[end]);
     const auto above = std::upper_bound(until.begin() + std::ptrdiff_t(first) + 1,
                                         until.begin() + std::ptrdiff_t(end), middle);
-    if (until[end] > until[first]) {
-      places.push_back({std::size_t(above - until.begin()) - 1, size, until[end] - until[first]});
-    }
+    const auto at = std::size_t(above - until.begin()) - 1;
+    places.push_back({rowsFrom(ranges.first(end), at), size, until[end] - until[first]});
     first = end;
   }
 }
@@ -187,17 +192,24 @@ void addPlaces(const ExactScene& scene, FacetSize size, std::size_t most,
 
 RowSample sampleRows(const ExactScene& scene, double tolerance, SampleSize size,
                      Progress& progress) {
-  const std::size_t most = (size == SampleSize::rough ? kRoughSteps : kSampleSteps) / 2;
+  const std::size_t most = size == SampleSize::rough ? kRoughSteps : kSampleSteps;
+  // What walls see of walls, and small facets of walls, are classes of their own: few of the rows,
+  // and much of the work.
+  const std::array<std::vector<ElementRange>, 2> ranges = {rangesOf(scene, FacetSize::large),
+                                                           rangesOf(scene, FacetSize::small)};
   std::vector<Place> places;
-  addPlaces(scene, FacetSize::small, most, places);
-  addPlaces(scene, FacetSize::large, most, places);
+  const std::size_t row_classes = (ranges[0].empty() ? 0U : 1U) + (ranges[1].empty() ? 0U : 1U);
+  for (const std::vector<ElementRange>& rows : ranges) {
+    for (const FacetSize columns : {FacetSize::large, FacetSize::small}) {
+      addPlaces(scene, rows, columns, most / (2 * std::max<std::size_t>(row_classes, 1)), places);
+    }
+  }
   RowSample sample;
   sample.places.resize(places.size());
   progress.begin("planning", places.size());
   parallelFor(places.size(), 1, [&](std::size_t k) {
     if (progress.cancelled()) return;
-    sample.places[k] = lookAt(scene, tolerance, k, scene.tasks[places[k].task], places[k].size);
-    sample.places[k].weight = places[k].weight;
+    sample.places[k] = lookAt(scene, tolerance, k, places[k]);
     progress.advance();
   });
   progress.check();

@@ -24,8 +24,8 @@ struct SampledPairs {
   PartialCost cost;                ///< of all that these stand for in the rows looked at
 };
 
-/// Some rows of a task and facets after theirs: what was found, brought to all pairs of these rows
-/// with these facets.
+/// Some rows and facets after theirs: what was found, brought to all pairs of these rows with these
+/// facets.
 struct SampledPlace {
   double weight = 0;   ///< open pairs that it stands for
   double settled = 0;  ///< pairs of the rows with the facets
@@ -59,17 +59,17 @@ struct RowSample {
   double all_places = 1;
 };
 
-/// `rough`: of a sixth as many tasks.
+/// `rough`: of a sixth as many places.
 enum class SampleSize { full, rough };
 
 /// Steps of progress at most.
 inline constexpr std::size_t kSampleSteps = 96;
 
-/// Some rows of up to kSampleSteps tasks against later facets of many elements or of few, each half
-/// of the tasks: all of these, or every so many-th where there are very many. The work has a
-/// bound, in tests and pairs and not by the clock, so that the counts come out the same in every
-/// run. (0.05 to 0.8 s on two threads of a 2.7 GHz Xeon, from a spotted cow to a couch among
-/// cushions.) Steps `progress`; calls its check().
+/// Some rows in up to kSampleSteps places, of large facets and of small ones, against later facets
+/// of many elements or of few: all of these, or every so many-th where there are very many. The
+/// work has a bound, in tests and pairs and not by the clock, so that the counts come out the same
+/// in every run. (0.05 to 0.8 s on two threads of a 2.7 GHz Xeon, from a spotted cow to a couch
+/// among cushions.) Steps `progress`; calls its check().
 RowSample sampleRows(const ExactScene& scene, double tolerance, SampleSize size,
                      Progress& progress);
 
