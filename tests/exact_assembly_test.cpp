@@ -7,8 +7,8 @@
 #include <random>
 
 #include "formfactor/closed_scene.h"
-#include "formfactor/exact/error_figure.h"
-#include "formfactor/exact/row_tasks.h"
+#include "formfactor/exact/assembly/error_figure.h"
+#include "formfactor/exact/assembly/row_tasks.h"
 #include "mesh_builder.h"
 #include "radiosity/form_factors.h"
 

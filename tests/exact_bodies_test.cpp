@@ -9,8 +9,8 @@
 #include <random>
 #include <thread>
 
-#include "formfactor/exact/elements.h"
-#include "formfactor/exact/occluders.h"
+#include "formfactor/exact/elements/elements.h"
+#include "formfactor/exact/occluders/occluders.h"
 #include "mesh_builder.h"
 #include "radiosity/form_factors.h"
 

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <random>
 
-#include "formfactor/aligned_buffer.h"
+#include "base/aligned_buffer.h"
 #include "formfactor/exact/clip_kernels.h"
-#include "formfactor/exact/target_rows.h"
-#include "formfactor/exact/visible_part.h"
+#include "formfactor/exact/occluded/target_rows.h"
+#include "formfactor/exact/occluded/visible_part.h"
 #include "occluder_builder.h"
 #include "simd_targets.h"
 

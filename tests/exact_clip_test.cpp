@@ -5,8 +5,8 @@
 #include <random>
 
 #include "formfactor/exact/convex_polygon.h"
-#include "formfactor/exact/silhouette.h"
-#include "formfactor/exact/visible_part.h"
+#include "formfactor/exact/occluded/silhouette.h"
+#include "formfactor/exact/occluded/visible_part.h"
 #include "occluder_builder.h"
 
 namespace radiosity {

@@ -8,9 +8,9 @@
 #include <numbers>
 #include <string>
 
-#include "formfactor/exact/contour.h"
 #include "formfactor/exact/point_to_polygon.h"
-#include "formfactor/exact/unoccluded.h"
+#include "formfactor/exact/unoccluded/contour.h"
+#include "formfactor/exact/unoccluded/unoccluded.h"
 #include "mesh_builder.h"
 
 namespace radiosity {

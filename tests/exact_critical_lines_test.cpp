@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
-#include "formfactor/exact/critical_lines.h"
-#include "formfactor/exact/visible_part.h"
+#include "formfactor/exact/occluded/critical_lines.h"
+#include "formfactor/exact/occluded/visible_part.h"
 #include "occluder_builder.h"
 
 namespace radiosity {

@@ -6,8 +6,8 @@
 #include <numeric>
 #include <random>
 
-#include "formfactor/exact/convex_pieces.h"
-#include "formfactor/exact/elements.h"
+#include "formfactor/exact/elements/convex_pieces.h"
+#include "formfactor/exact/elements/elements.h"
 #include "mesh_builder.h"
 
 namespace radiosity {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "exact_scenes.h"
-#include "formfactor/exact/exact_scene.h"
-#include "formfactor/exact/recorded_pairs.h"
-#include "formfactor/exact/row_sample.h"
+#include "formfactor/exact/assembly/exact_scene.h"
+#include "formfactor/exact/assembly/recorded_pairs.h"
+#include "formfactor/exact/assembly/row_sample.h"
 #include "mesh_builder.h"
 #include "radiosity/form_factors.h"
 

@@ -9,7 +9,7 @@
 
 #include "contour_reference.h"
 #include "element_pairs.h"
-#include "formfactor/exact/far_kernels.h"
+#include "formfactor/exact/unoccluded/far_kernels.h"
 #include "simd_targets.h"
 
 namespace radiosity {

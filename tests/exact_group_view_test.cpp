@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "formfactor/exact/group_view.h"
+#include "formfactor/exact/occluded/batch_visibility.h"
 #include "occluder_builder.h"
 
 namespace radiosity {
@@ -97,7 +97,7 @@ std::vector<const GroupTarget*> pointers(const Scene& scene) {
 /// Errors relative to the whole.
 template <class T>
 void expectAsExact(const ClipKernels<T>& kernels, double tolerance) {
-  GroupView<T> view(kernels);
+  BatchVisibility<T> view(kernels);
   VisiblePart exact;
   const SamplePoints points = cell().points(3);
   std::size_t partly = 0;
@@ -115,7 +115,7 @@ void expectAsExact(const ClipKernels<T>& kernels, double tolerance) {
         ASSERT_NEAR(visible, expected.visible, tolerance * expected.whole)
             << seed << ' ' << q << ' ' << k;
         const auto shape = view.shape(q)[k];
-        if (shape == GroupView<T>::kAllHiddenShape) {
+        if (shape == BatchVisibility<T>::kAllHiddenShape) {
           ASSERT_EQ(visible, 0);
           ++hidden;
         } else if (shape == 0) {
@@ -134,17 +134,17 @@ void expectAsExact(const ClipKernels<T>& kernels, double tolerance) {
 
 // Targets have h about 0.14 at distance 2: one term is known to 14 times what the kernels claim,
 // and inclusion and exclusion add up some ten.
-TEST(GroupView, DoublePrecisionIsThatOfOnePointAfterTheOther) {
+TEST(BatchVisibility, DoublePrecisionIsThatOfOnePointAfterTheOther) {
   expectAsExact<double>(simdClipKernels().exact, 10 * 14 * 1e-14);
 }
 
-TEST(GroupView, SinglePrecisionIsThatOfOnePointAfterTheOther) {
+TEST(BatchVisibility, SinglePrecisionIsThatOfOnePointAfterTheOther) {
   expectAsExact<float>(simdClipKernels().single, 10 * 14 * 2e-6);
 }
 
-TEST(GroupView, WhatIsLookedAtAlongWithATargetChangesNothing) {
-  GroupView<float> together(simdClipKernels().single);
-  GroupView<float> alone(simdClipKernels().single);
+TEST(BatchVisibility, WhatIsLookedAtAlongWithATargetChangesNothing) {
+  BatchVisibility<float> together(simdClipKernels().single);
+  BatchVisibility<float> alone(simdClipKernels().single);
   for (const std::size_t side : {2, 3}) {
     const SamplePoints points = cell().points(side);
     const Scene scene = randomScene(side);

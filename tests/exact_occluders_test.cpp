@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "exact_scenes.h"
-#include "formfactor/exact/occluders.h"
-#include "formfactor/exact/occluders_hull.h"
+#include "formfactor/exact/occluders/hull.h"
+#include "formfactor/exact/occluders/occluders.h"
 
 namespace radiosity {
 namespace {

@@ -8,11 +8,11 @@
 #include <stdexcept>
 #include <string>
 
-#include "formfactor/exact/error_figure.h"
-#include "formfactor/exact/partial.h"
-#include "formfactor/exact/partial_pair.h"
-#include "formfactor/exact/unoccluded.h"
-#include "formfactor/exact/visibility.h"
+#include "formfactor/exact/assembly/error_figure.h"
+#include "formfactor/exact/occluded/occluded_pairs.h"
+#include "formfactor/exact/occluded/pair_sampling.h"
+#include "formfactor/exact/unoccluded/unoccluded.h"
+#include "formfactor/exact/visibility/visibility.h"
 #include "mesh_builder.h"
 #include "occluder_builder.h"
 #include "truth/ground_truth.h"
@@ -45,10 +45,10 @@ struct Case : VisibilitySink {
     list.insert(list.end(), blockers.begin(), blockers.end());
     pairs.push_back({row, column, begin, std::uint32_t(list.size()), exact.pair(row, column)});
   }
-  std::vector<PartialExchange> evaluate(double tolerance, PartialCounts& counts,
-                                        bool simd = true) const {
-    std::vector<PartialExchange> out(pairs.size());
-    PartialKernel(elements, occluders, tolerance, simd).evaluate(pairs, list, out, counts);
+  std::vector<OccludedExchange> evaluate(double tolerance, OccludedCounts& counts,
+                                         bool simd = true) const {
+    std::vector<OccludedExchange> out(pairs.size());
+    OccludedKernel(elements, occluders, tolerance, simd).evaluate(pairs, list, out, counts);
     return out;
   }
 
@@ -56,7 +56,7 @@ struct Case : VisibilitySink {
   ElementSet elements;
   OccluderSet occluders;
   UnoccludedKernel exact;
-  std::vector<PartialPair> pairs;
+  std::vector<OccludedPair> pairs;
   std::vector<Index> list;
   struct Open {
     Index row, column;
@@ -84,7 +84,7 @@ double pastSheet(double x0, double x1, double y0, double y1, double tolerance) {
   for (const Case::Open& pair : scene.open) {
     if (plate(pair.row) && plate(pair.column)) sum += pair.exchange;
   }
-  PartialCounts counts;
+  OccludedCounts counts;
   const auto found = scene.evaluate(tolerance, counts);
   for (std::size_t k = 0; k < found.size(); ++k) {
     if (plate(scene.pairs[k].row) && plate(scene.pairs[k].column)) sum += found[k].exchange;
@@ -138,7 +138,7 @@ PatchMesh clutteredRoom(int n) {
 TEST(Partial, StaysBetweenNothingAndUnoccluded) {
   const Case scene(clutteredRoom(3));
   for (const double tolerance : {1e-3, 1e-4}) {
-    PartialCounts counts;
+    OccludedCounts counts;
     const auto found = scene.evaluate(tolerance, counts);
     EXPECT_EQ(counts.pairs, scene.pairs.size());
     EXPECT_GT(counts.subdivided, 0u);
@@ -153,15 +153,15 @@ TEST(Partial, StaysBetweenNothingAndUnoccluded) {
 TEST(Partial, VectorsAndBatchesChangeNothing) {
   const Case scene(clutteredRoom(3));
   for (const double tolerance : {1e-3, 1e-4}) {
-    PartialCounts counts;
+    OccludedCounts counts;
     const auto vectors = scene.evaluate(tolerance, counts);
     const auto scalar = scene.evaluate(tolerance, counts, false);
-    const PartialKernel kernel(scene.elements, scene.occluders, tolerance, true);
+    const OccludedKernel kernel(scene.elements, scene.occluders, tolerance, true);
     for (std::size_t k = 0; k < vectors.size(); ++k) {
       ASSERT_EQ(vectors[k].exchange, scalar[k].exchange);
       ASSERT_EQ(vectors[k].error, scalar[k].error);
       if (k % 16 != 0) continue;
-      PartialExchange alone;
+      OccludedExchange alone;
       kernel.evaluate(std::span(&scene.pairs[k], 1), scene.list, std::span(&alone, 1), counts);
       ASSERT_EQ(vectors[k].exchange, alone.exchange);
       ASSERT_EQ(vectors[k].error, alone.error);
@@ -172,10 +172,10 @@ TEST(Partial, VectorsAndBatchesChangeNothing) {
 TEST(Partial, StricterEvaluationConfirmsStatedErrors) {
   const Case scene(clutteredRoom(2));
   for (const double tolerance : {1e-2, 1e-4}) {
-    PartialCounts counts;
+    OccludedCounts counts;
     const auto found = scene.evaluate(tolerance, counts);
-    const PartialKernel kernel(scene.elements, scene.occluders, tolerance, true);
-    std::vector<PartialExchange> strict(found.size());
+    const OccludedKernel kernel(scene.elements, scene.occluders, tolerance, true);
+    std::vector<OccludedExchange> strict(found.size());
     kernel.evaluateStrictly(scene.pairs, scene.list, strict);
     double difference2 = 0;
     double stated2 = 0;
@@ -203,8 +203,8 @@ void square(MeshBuilder& builder, const std::string& name, double x, double y, d
 }
 
 /// The pair of the first two surfaces.
-const PartialPair& firstPair(const Case& scene) {
-  for (const PartialPair& pair : scene.pairs) {
+const OccludedPair& firstPair(const Case& scene) {
+  for (const OccludedPair& pair : scene.pairs) {
     if (scene.mesh.surface[scene.elements.patch[pair.row]] +
             scene.mesh.surface[scene.elements.patch[pair.column]] ==
         1) {
@@ -223,7 +223,7 @@ TEST(Partial, PointsLieWhereTheShadowThatMovesMostMovesLeast) {
   square(builder, "beside the large", 0.9, 0.1, 0.1, 1.1, true, true);
   square(builder, "beside the small", 0.15, 0.07, 0.997, 0.1, true, true);
   const Case scene(builder.build());
-  const PartialPair& pair = firstPair(scene);
+  const OccludedPair& pair = firstPair(scene);
   const EdgeDistances distances(scene.elements, scene.occluders);
   PairPreparation ready(scene.elements, scene.occluders, distances);
   ready.prepare(std::span(&pair, 1), scene.list, SampledEnd::calmer);
@@ -245,13 +245,13 @@ TEST(Partial, WhatFarKernelsLeaveOutIsStated) {
     square(builder, "large", away, 0.1, away, 1, false);
     builder.grid("edge", {away / 2, -3, away / 2}, {3, 0, 0}, {0, 6, 0}, 1, 1, true);
     const Case scene(builder.build());
-    const PartialPair& pair = firstPair(scene);
+    const OccludedPair& pair = firstPair(scene);
     const double area = scene.elements.scale * scene.elements.scale;
     const truth::GroundTruth truth(scene.mesh, {});
     const double exchange = scene.mesh.area[0] * truth.formFactor(0, 1);
-    PartialExchange found;
-    PartialCounts counts;
-    PartialKernel(scene.elements, scene.occluders, 0.1, true)
+    OccludedExchange found;
+    OccludedCounts counts;
+    OccludedKernel(scene.elements, scene.occluders, 0.1, true)
         .evaluate(std::span(&pair, 1), scene.list, std::span(&found, 1), counts);
     const double error = std::abs(found.exchange / area - exchange);
     EXPECT_LT(error, found.error / area) << away;
@@ -282,12 +282,12 @@ struct RowErrors {
 };
 
 RowErrors compareRows(const Case& scene, const TrueRows& rows, double tolerance) {
-  PartialCounts counts;
+  OccludedCounts counts;
   const auto found = scene.evaluate(tolerance, counts);
   std::vector<double> figure(scene.elements.patch_elements);
   ErrorSums sums(figure.size());
   for (std::size_t k = 0; k < found.size(); ++k) {
-    const PartialPair& pair = scene.pairs[k];
+    const OccludedPair& pair = scene.pairs[k];
     if (pair.column < figure.size()) sums.addPartial(pair.row, pair.column, found[k].error);
   }
   sums.figures(std::span(scene.elements.area).first(figure.size()), 0, figure);
@@ -300,7 +300,7 @@ RowErrors compareRows(const Case& scene, const TrueRows& rows, double tolerance)
     const double area = scene.elements.area[row];
     double row2 = 0;
     for (std::size_t k = 0; k < found.size(); ++k) {
-      const PartialPair& pair = scene.pairs[k];
+      const OccludedPair& pair = scene.pairs[k];
       if (pair.row != row && pair.column != row) continue;
       const Index other = pair.row == row ? pair.column : pair.row;
       if (other >= scene.elements.patch_elements) continue;

@@ -7,7 +7,7 @@
 #include <random>
 #include <utility>
 
-#include "formfactor/exact/sample_cell.h"
+#include "formfactor/exact/occluded/cell_rule.h"
 
 namespace radiosity {
 namespace {

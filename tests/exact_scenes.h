@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "formfactor/exact/elements.h"
-#include "formfactor/exact/occluders.h"
+#include "formfactor/exact/elements/elements.h"
+#include "formfactor/exact/occluders/occluders.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/scene.h"
 #include "scene_builder.h"

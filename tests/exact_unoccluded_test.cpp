@@ -8,7 +8,7 @@
 #include "contour_reference.h"
 #include "element_pairs.h"
 #include "formfactor/exact/flat_polygon.h"
-#include "formfactor/exact/unoccluded.h"
+#include "formfactor/exact/unoccluded/unoccluded.h"
 #include "mesh_builder.h"
 
 namespace radiosity {

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "formfactor/exact/visibility_kernels.h"
+#include "formfactor/exact/visibility/kernels.h"
 #include "simd_targets.h"
 
 namespace radiosity {

@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "exact_scenes.h"
-#include "formfactor/exact/visibility.h"
+#include "formfactor/exact/visibility/visibility.h"
 
 namespace radiosity {
 namespace {

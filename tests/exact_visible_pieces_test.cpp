@@ -7,7 +7,7 @@
 #include <random>
 #include <span>
 
-#include "formfactor/exact/visible_pieces.h"
+#include "formfactor/exact/occluded/visible_pieces.h"
 
 namespace radiosity {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "formfactor/delta_form_factors.h"
+#include "formfactor/hemicube/delta_form_factors.h"
 
 namespace radiosity {
 namespace {

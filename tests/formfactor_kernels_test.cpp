@@ -7,8 +7,8 @@
 #include <limits>
 #include <random>
 
-#include "formfactor/aligned_buffer.h"
-#include "formfactor/raster_kernels.h"
+#include "base/aligned_buffer.h"
+#include "formfactor/hemicube/raster_kernels.h"
 #include "mesh_builder.h"
 #include "radiosity/form_factors.h"
 #include "simd_targets.h"

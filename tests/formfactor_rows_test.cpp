@@ -5,7 +5,7 @@
 #include <numeric>
 #include <random>
 
-#include "formfactor/row_builder.h"
+#include "formfactor/hemicube/row_builder.h"
 #include "mesh_builder.h"
 #include "radiosity/form_factors.h"
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
+#include "formfactor/hemicube/row_builder.h"
 #include "formfactor/hidden_backs.h"
-#include "formfactor/row_builder.h"
 #include "mesh_builder.h"
 #include "radiosity/form_factors.h"
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "formfactor/row_builder.h"
+#include "formfactor/hemicube/row_builder.h"
 #include "mesh_builder.h"
 #include "radiosity/form_factors.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "formfactor/delta_form_factors.h"
+#include "formfactor/hemicube/delta_form_factors.h"
 #include "gather_scenes.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/solve.h"

@@ -111,7 +111,8 @@ struct MeshResult {
   MeshReport report;
 };
 
-/// Cuts the scene into patches. Errors: InputError if the scene has no face with area.
+/// Cuts the scene into patches. Errors: InputError if the scene has no face with area, and of
+/// validate().
 MeshResult meshScene(const Scene& scene, const MeshOptions& options, Progress& progress);
 
 /// T-junctions of any mesh: vertices that lie inside an edge of a patch (closer than

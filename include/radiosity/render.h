@@ -68,6 +68,12 @@ Image render(const PatchMesh& mesh, std::span<const double> values, const Camera
 Image render(const PatchMesh& mesh, std::span<const double> values, std::span<const double> corners,
              const Camera& camera, const RenderOptions& options, Progress& progress);
 
+/// The picture of the light that leaves the patches: radiance B / pi, W/m^2/sr. `radiosity`: N * 3,
+/// W/m^2; `corners`: the same at the corners of patches (mesh.corners.size() * 3), or empty.
+Image renderRadiance(const PatchMesh& mesh, std::span<const double> radiosity,
+                     std::span<const double> corners, const Camera& camera,
+                     const RenderOptions& options, Progress& progress);
+
 /// Exposure value: the picture is multiplied by 2^ev before the sRGB curve. Automatic: the 99th
 /// percentile of luminance over hit pixels maps to 0.8 (emitters clip), unless the median over the
 /// lit ones would fall below 0.1: a large lamp in view then clips too. 0 where nothing is lit.

@@ -2,6 +2,7 @@
 // double precision, as the file has it: nothing is welded, merged or dropped here.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -86,6 +87,19 @@ struct Scene {
     return materials[surfaces[face_surface[f]].material];
   }
 };
+
+/// A scene of one's own: triangles of vertices in metres, counter-clockwise seen from the front,
+/// each of one material. `triangle_material`: one a triangle, or none where there is one material.
+/// Surfaces are the materials, by name. Errors: as validate().
+Scene sceneOfTriangles(std::span<const Vec3> vertices,
+                       std::span<const std::array<Index, 3>> triangles,
+                       std::span<const Material> materials,
+                       std::span<const Index> triangle_material = {});
+
+/// Whether a scene made by hand keeps what is said of it above: that every index is in range, every
+/// number finite, each reflectance in [0, 1] and each name given once. Errors: InputError that
+/// names the element. meshScene() asks; readers of files have seen to it.
+void validate(const Scene& scene);
 
 /// How a file is read. The defaults are the ones the README states.
 struct SceneOptions {

@@ -8,6 +8,7 @@
 
 #include "radiosity/base.h"
 #include "radiosity/form_factors.h"
+#include "radiosity/patch_mesh.h"
 
 namespace radiosity {
 
@@ -89,5 +90,10 @@ Solution solve(const FormFactors& factors, std::span<const double> reflectance,
                std::span<const double> emission, int bands, const SolveOptions& options,
                Progress& progress, std::span<const Index> group = {},
                std::span<const std::string> group_names = {}, std::span<const double> sky = {});
+
+/// The same for three bands, with the materials and the surfaces of the mesh that the factors are
+/// of.
+Solution solve(const FormFactors& factors, const PatchMaterials& materials, const PatchMesh& mesh,
+               const SolveOptions& options, Progress& progress);
 
 }  // namespace radiosity

@@ -9,9 +9,11 @@
 
 #include "cli/command_texts.h"
 #include "cli/help_formatter.h"
+#include "cli/option_names.h"
 #include "cli/request.h"
 #include "cli/validators.h"
 #include "cli/words.h"
+#include "radiosity/version.h"
 
 namespace radiosity::cli {
 
@@ -111,7 +113,7 @@ void addFactorOptions(CLI::App& app, Request& r) {
       "exact (area to area, what is hidden clipped off), hemicube (seen from one point a patch), "
       "or "
       "auto (default): exact unless the scene is too cluttered; the report says why")
-      ->check(CLI::IsMember({"auto", "exact", "hemicube"}));
+      ->check(CLI::IsMember(namesIn(kMethodNames)));
   // Where results are compared, --tolerance is about the difference.
   const bool compares = app.get_name() == commandName(Command::compare);
   add(app, "Form factors", compares ? "--factor-tolerance" : "--tolerance", r.tolerance, "FRACTION",
@@ -122,7 +124,7 @@ void addFactorOptions(CLI::App& app, Request& r) {
   add(app, "Form factors", "--closure", r.closure, "off|report|enforce",
       "exact, in a closed scene: say how far row sums are from 1 (report, default), or change what "
       "is not known in closed form, as little as possible, until they are 1 (enforce)")
-      ->check(CLI::IsMember({"off", "report", "enforce"}));
+      ->check(CLI::IsMember(namesIn(kClosureNames)));
   add(app, "Form factors", "--resolution", r.resolution, "PIXELS",
       fmt::format("hemicube: edge of the top face; even, 16 to 4096 (default {})",
                   defaults.resolution));
@@ -150,7 +152,7 @@ void addFactorOptions(CLI::App& app, Request& r) {
 void addSolveOptions(CLI::App& app, Request& r) {
   const SolveOptions defaults;
   add(app, "Solve", "--solver", r.solver, "NAME", "gauss-seidel (default) or jacobi")
-      ->check(CLI::IsMember({"gauss-seidel", "jacobi"}));
+      ->check(CLI::IsMember(namesIn(kSolverNames)));
   add(app, "Solve", "--solve-tolerance", r.solve_tolerance, "RATIO",
       fmt::format("Stop when the largest residual is at most this times the largest emission "
                   "(default {})",
@@ -164,7 +166,7 @@ void addGatherOptions(CLI::App& app, Request& r) {
   add(app, "Gather", "--at", r.gather_at, "vertices|patches",
       "Where the eyes stand: at vertices, once per smooth side, what they see interpolated over "
       "patches (default); or at the centres of patches, each of one radiosity")
-      ->check(CLI::IsMember({"vertices", "patches"}));
+      ->check(CLI::IsMember(namesIn(kGatherAtNames)));
   add(app, "Gather", "--passes", r.passes, "K",
       fmt::format("Passes at most: pass k adds the k-th bounce (default {})", defaults.passes));
   add(app, "Gather", "--gather-tolerance", r.gather_tolerance, "RATIO",

@@ -13,6 +13,7 @@
 #include "cli/console_progress.h"
 #include "cli/signal_guard.h"
 #include "cli/words.h"
+#include "radiosity/version.h"
 
 namespace radiosity::cli {
 

@@ -11,6 +11,7 @@
 #include "base/luminance.h"
 #include "cli/words.h"
 #include "radiosity/results.h"
+#include "radiosity/version.h"
 
 namespace radiosity::cli {
 
@@ -109,15 +110,9 @@ Light gatheredLight(Pipeline& pipeline) {
 
 Image radiancePicture(const Picture& picture, const PatchMesh& mesh, const Light& light,
                       Progress& progress) {
-  Light radiance = light;
-  for (double& value : radiance.patches) value *= std::numbers::inv_pi;
-  for (double& value : radiance.corners) value *= std::numbers::inv_pi;
   RenderOptions options = picture.options;
   if (light.sky != Vec3(0.0)) options.background = light.sky;
-  if (radiance.corners.empty()) {
-    return render(mesh, radiance.patches, picture.camera, options, progress);
-  }
-  return render(mesh, radiance.patches, radiance.corners, picture.camera, options, progress);
+  return renderRadiance(mesh, light.patches, light.corners, picture.camera, options, progress);
 }
 
 void reportPicture(Report& report, const Picture& picture) {

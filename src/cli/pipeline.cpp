@@ -10,9 +10,11 @@
 
 #include "base/input_file.h"
 #include "cli/light_cure.h"
+#include "cli/option_names.h"
 #include "cli/process_memory.h"
 #include "cli/summaries.h"
 #include "cli/words.h"
+#include "radiosity/version.h"
 
 namespace radiosity::cli {
 
@@ -45,14 +47,6 @@ std::string cures(const FormFactorPlan& plan, const FormFactorOptions& options) 
   }
   return text + fmt::format(" fewer --patches, --method hemicube (about {}; less accurate)",
                             durationText(plan.hemicube_seconds));
-}
-
-/// Vec3 a patch -> row-major N x 3, as the solver takes it.
-std::vector<double> flat(const std::vector<Vec3>& values) {
-  std::vector<double> out;
-  out.reserve(3 * values.size());
-  for (const Vec3& v : values) out.insert(out.end(), {v.x, v.y, v.z});
-  return out;
 }
 
 /// The input was good: what a later stage refuses then is no fault of it. Exit code 1, not 2.
@@ -215,7 +209,8 @@ bool Pipeline::factorsFit(const StageKey& key, std::optional<FormFactorPlan>& pl
   const std::string& method = previous_.factors->method;
   const StageKey stored = usedKey(StageKey(previous_.factors_key), method);
   if (stored.text() != usedKey(key, method).text()) return false;
-  const FormFactorMethod made_by = methodNamed(method);
+  const FormFactorMethod made_by =
+      named(kMethodNames, method).value_or(FormFactorMethod::automatic);
   if (factor_options_.method != FormFactorMethod::automatic) {
     return factor_options_.method == made_by;
   }
@@ -301,11 +296,8 @@ void Pipeline::solution() {
     const std::string reason = why(previous_.solution_key, key, previous_.solution.has_value());
     loadMatrix();
     const Stopwatch watch;
-    const Vec3 sky = materials().sky;
-    const double radiance[] = {sky.x, sky.y, sky.z};
     results_.solution = computedStage("solution", [&] {
-      return solve(formFactors(), flat(materials().reflectance), flat(materials().emission), 3,
-                   solve_options_, progress_, patches().surface, patches().surface_names, radiance);
+      return solve(formFactors(), materials(), patches(), solve_options_, progress_);
     });
     computed("solution", "solution", reason, watch.seconds());
   }

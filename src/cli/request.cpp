@@ -1,5 +1,6 @@
 #include "cli/request.h"
 
+#include "cli/option_names.h"
 #include "cli/stage_key.h"
 #include "cli/words.h"
 
@@ -41,6 +42,12 @@ void set(Options& options, Value Options::*field, const std::optional<Given>& gi
   nameOption(name, [&] { options.validate(); });
 }
 
+/// Sets a field to the value of a word that the command line let through.
+template <class Table, class Enum>
+void setNamed(Enum& value, const Table& table, const std::optional<std::string>& word) {
+  if (word) value = named(table, *word).value_or(value);
+}
+
 }  // namespace
 
 MeshOptions Request::apply(MeshOptions options) const {
@@ -56,21 +63,21 @@ MeshOptions Request::apply(MeshOptions options) const {
 }
 
 FormFactorOptions Request::apply(FormFactorOptions options) const {
-  if (method) options.method = methodNamed(*method);
+  setNamed(options.method, kMethodNames, method);
   set(options, &FormFactorOptions::tolerance, tolerance, "--tolerance");
-  if (closure) options.closure = closureNamed(*closure);
+  setNamed(options.closure, kClosureNames, closure);
   if (near_pairs) options.near_exact = *near_pairs == "exact";
   set(options, &FormFactorOptions::resolution, resolution, "--resolution");
   set(options, &FormFactorOptions::seed, seed, "--seed");
   set(options, &FormFactorOptions::symmetrize, symmetrize, "--symmetrize");
-  if (precision) options.precision = precisionNamed(*precision);
+  if (precision) options.precision = named(kPrecisionNames, *precision);
   if (!memory_limit.empty()) options.memory_limit = parseBytes("--memory-limit", memory_limit);
   options.validate();
   return options;
 }
 
 SolveOptions Request::apply(SolveOptions options) const {
-  if (solver) options.solver = *solver == "jacobi" ? Solver::jacobi : Solver::gauss_seidel;
+  setNamed(options.solver, kSolverNames, solver);
   set(options, &SolveOptions::tolerance, solve_tolerance, "--solve-tolerance");
   set(options, &SolveOptions::max_iterations, max_iterations, "--max-iterations");
   options.validate();
@@ -78,7 +85,7 @@ SolveOptions Request::apply(SolveOptions options) const {
 }
 
 GatherOptions Request::apply(GatherOptions options) const {
-  if (gather_at) options.at = *gather_at == "patches" ? GatherAt::patches : GatherAt::vertices;
+  setNamed(options.at, kGatherAtNames, gather_at);
   set(options, &GatherOptions::passes, passes, "--passes");
   set(options, &GatherOptions::tolerance, gather_tolerance, "--gather-tolerance");
   set(options, &GatherOptions::resolution, resolution, "--resolution");

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "base/hash.h"
+#include "cli/option_names.h"
 
 namespace radiosity::cli {
 
@@ -45,14 +46,10 @@ std::string skyText(const Vec3& sky) {
                                           : fmt::format("{},{},{}", sky.x, sky.y, sky.z);
 }
 
-const char* nameOf(FormFactorMethod method) {
-  if (method == FormFactorMethod::automatic) return "auto";
-  return method == FormFactorMethod::exact ? "exact" : "hemicube";
-}
-
-const char* nameOf(ClosureMode closure) {
-  if (closure == ClosureMode::report) return "report";
-  return closure == ClosureMode::enforce ? "enforce" : "off";
+/// The option that a key names; as it was where it names none.
+template <class Table, class Enum>
+void readNamed(const StageKey& key, std::string_view name, const Table& table, Enum& value) {
+  if (const auto found = named(table, key.get(name).value_or(""))) value = *found;
 }
 
 std::string sceneHash(const Scene& scene) {
@@ -71,21 +68,6 @@ std::string sceneHash(const Scene& scene) {
 }
 
 }  // namespace
-
-FormFactorMethod methodNamed(std::string_view word) {
-  if (word == "hemicube") return FormFactorMethod::hemicube;
-  return word == "exact" ? FormFactorMethod::exact : FormFactorMethod::automatic;
-}
-
-ClosureMode closureNamed(std::string_view word) {
-  if (word == "off") return ClosureMode::off;
-  return word == "enforce" ? ClosureMode::enforce : ClosureMode::report;
-}
-
-std::optional<Precision> precisionNamed(std::string_view word) {
-  if (word == "single") return Precision::single;
-  return word == "double" ? std::optional(Precision::real) : std::nullopt;
-}
 
 StageKey::StageKey(std::string_view text) {
   while (!text.empty()) {
@@ -148,10 +130,10 @@ namespace {
 // method.
 StageKey factorsKeyOf(const FormFactorOptions& options, const std::string& mesh_hash) {
   StageKey key;
-  key.add("method", nameOf(options.method));
+  key.add("method", nameOf(kMethodNames, options.method));
   if (options.method != FormFactorMethod::hemicube) {
     key.add("tolerance", fmt::format("{}", options.tolerance));
-    key.add("closure", nameOf(options.closure));
+    key.add("closure", nameOf(kClosureNames, options.closure));
   }
   if (options.method != FormFactorMethod::exact) {
     key.add("resolution", fmt::format("{}", options.resolution));
@@ -159,7 +141,7 @@ StageKey factorsKeyOf(const FormFactorOptions& options, const std::string& mesh_
     key.add("symmetrize", onOff(options.symmetrize));
     key.add("near", options.nearExact() ? "exact" : "off");
   }
-  key.add("precision", options.storedPrecision() == Precision::real ? "double" : "single");
+  key.add("precision", nameOf(kPrecisionNames, options.storedPrecision()));
   key.add("mesh", mesh_hash);
   return key;
 }
@@ -173,7 +155,7 @@ StageKey factorsKey(const FormFactorOptions& options, const PatchMesh& mesh) {
 StageKey usedKey(const StageKey& factors_key, std::string_view method) {
   FormFactorOptions options = factorOptionsOf(factors_key);
   options.near_exact = options.nearExact();  // as `auto` had it, where that was asked for
-  options.method = methodNamed(method);
+  options.method = named(kMethodNames, method).value_or(options.method);
   return factorsKeyOf(options, factors_key.get("mesh").value_or(""));
 }
 
@@ -182,7 +164,7 @@ StageKey solutionKey(const SolveOptions& options, const PatchMaterials& material
   Hash factors;
   factors.text(factors_key.text());
   StageKey key;
-  key.add("solver", options.solver == Solver::jacobi ? "jacobi" : "gauss-seidel");
+  key.add("solver", nameOf(kSolverNames, options.solver));
   key.add("solve-tolerance", fmt::format("{}", options.tolerance));
   key.add("max-iterations", fmt::format("{}", options.max_iterations));
   key.add("materials", materialsHash(materials));
@@ -194,7 +176,7 @@ StageKey solutionKey(const SolveOptions& options, const PatchMaterials& material
 StageKey gatherKey(const GatherOptions& options, const PatchMaterials& materials,
                    const PatchMesh& mesh) {
   StageKey key;
-  key.add("at", options.at == GatherAt::patches ? "patches" : "vertices");
+  key.add("at", nameOf(kGatherAtNames, options.at));
   key.add("passes", fmt::format("{}", options.passes));
   key.add("gather-tolerance", fmt::format("{}", options.tolerance));
   key.add("resolution", fmt::format("{}", options.resolution));
@@ -217,22 +199,22 @@ MeshOptions meshOptionsOf(const StageKey& key) {
 
 FormFactorOptions factorOptionsOf(const StageKey& key) {
   FormFactorOptions options;
-  options.method = methodNamed(key.get("method").value_or(""));
+  readNamed(key, "method", kMethodNames, options.method);
   read(key, "tolerance", options.tolerance);
-  options.closure = closureNamed(key.get("closure").value_or(""));
+  readNamed(key, "closure", kClosureNames, options.closure);
   // What `automatic` does by itself does not bind another method that is asked for later.
   const bool near_exact = key.get("near") == "exact";
   if (near_exact != options.nearExact()) options.near_exact = near_exact;
   read(key, "resolution", options.resolution);
   read(key, "seed", options.seed);
   read(key, "symmetrize", options.symmetrize);
-  options.precision = precisionNamed(key.get("precision").value_or(""));
+  options.precision = named(kPrecisionNames, key.get("precision").value_or(""));
   return options;
 }
 
 SolveOptions solveOptionsOf(const StageKey& key) {
   SolveOptions options;
-  if (key.get("solver") == "jacobi") options.solver = Solver::jacobi;
+  readNamed(key, "solver", kSolverNames, options.solver);
   read(key, "solve-tolerance", options.tolerance);
   read(key, "max-iterations", options.max_iterations);
   return options;

@@ -45,11 +45,6 @@ StageKey solutionKey(const SolveOptions& options, const PatchMaterials& material
 StageKey gatherKey(const GatherOptions& options, const PatchMaterials& materials,
                    const PatchMesh& mesh);
 
-/// The words of the command line and of keys.
-FormFactorMethod methodNamed(std::string_view word);  ///< "hemicube", "exact", else automatic
-ClosureMode closureNamed(std::string_view word);      ///< "off", "enforce", else report
-std::optional<Precision> precisionNamed(std::string_view word);  ///< "single", "double", else none
-
 /// The options in a key; defaults where it says nothing.
 MeshOptions meshOptionsOf(const StageKey& key);
 FormFactorOptions factorOptionsOf(const StageKey& key);

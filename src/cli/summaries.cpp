@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "cli/option_names.h"
 #include "cli/section.h"
 #include "cli/words.h"
 
@@ -265,7 +266,7 @@ void summarizeSolution(Report& report, const Solution& solution, const FormFacto
   {
     const Section section(report, detail, "solution", "Solution");
     report.text("status", "status", statusText(s.status));
-    report.text("solver", "solver", options.solver == Solver::jacobi ? "jacobi" : "gauss-seidel");
+    report.text("solver", "solver", nameOf(kSolverNames, options.solver));
     report.count("iterations", "iterations", std::size_t(s.iterations));
     report.count("rows", "rows multiplied", s.rows);
     report.count("skipped_black_patches", "skipped: rows of black patches",

@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "base/geometry/box.h"
 #include "base/parallel.h"
 #include "compare/differences.h"
 #include "compare/surface_index.h"
@@ -17,23 +18,15 @@ namespace {
 
 constexpr double kEnough = 0.99;  ///< share of the area that must match
 
-struct Box {
-  Vec3 lower{HUGE_VAL};
-  Vec3 upper{-HUGE_VAL};
-  double diagonal() const { return glm::distance(lower, upper); }
-  std::string text() const {
-    return fmt::format("{:.4g},{:.4g},{:.4g} to {:.4g},{:.4g},{:.4g}", lower.x, lower.y, lower.z,
-                       upper.x, upper.y, upper.z);
-  }
-};
+std::string textOf(const Box3& box) {
+  return fmt::format("{:.4g},{:.4g},{:.4g} to {:.4g},{:.4g},{:.4g}", box.low.x, box.low.y,
+                     box.low.z, box.high.x, box.high.y, box.high.z);
+}
 
-Box boxOf(const LightField& field) {
-  Box box;
+Box3 boxOf(const LightField& field) {
+  Box3 box;
   for (const auto& triangle : field.triangles) {
-    for (const Index v : triangle) {
-      box.lower = glm::min(box.lower, field.vertices[v]);
-      box.upper = glm::max(box.upper, field.vertices[v]);
-    }
+    for (const Index v : triangle) box.add(field.vertices[v]);
   }
   return box;
 }
@@ -174,7 +167,7 @@ void requireEnough(const LightField& a, const LightField& b, const Comparison& c
   std::string cure = fmt::format(
       "A spans {}, B {}; bring both into the same unit and axes, or allow points farther apart "
       "with --match{}",
-      boxOf(a).text(), boxOf(b).text(),
+      textOf(boxOf(a)), textOf(boxOf(b)),
       of_a > 0 && of_b > 0 ? ", or compare what there is with --partial" : "");
   if (share(opposite, comparison.area_a) > 0.01) {
     cure = fmt::format(

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "formfactor/hemicube/row_builder.h"
 #include "formfactor/hidden_backs.h"
-#include "formfactor/row_builder.h"
 #include "mesh/union_find.h"
 
 namespace radiosity {

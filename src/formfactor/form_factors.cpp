@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "formfactor/exact/exact_factors.h"
-#include "formfactor/exact/row_sample.h"
-#include "formfactor/hemicube_factors.h"
+#include "formfactor/exact/assembly/exact_factors.h"
+#include "formfactor/exact/assembly/row_sample.h"
+#include "formfactor/hemicube/hemicube_factors.h"
 
 namespace radiosity {
 

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "base/parallel.h"
-#include "formfactor/eye_frame.h"
+#include "formfactor/hemicube/eye_frame.h"
 
 namespace radiosity {
 namespace {

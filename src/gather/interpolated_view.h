@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "formfactor/eye_frame.h"
-#include "formfactor/hemicube.h"
+#include "formfactor/hemicube/eye_frame.h"
+#include "formfactor/hemicube/hemicube.h"
 #include "gather/interpolation_kernels.h"
 #include "gather/patch_basis.h"
 #include "radiosity/gather.h"

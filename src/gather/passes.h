@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "formfactor/row_builder.h"
+#include "formfactor/hemicube/row_builder.h"
 #include "gather/eyes.h"
 #include "gather/interpolated_view.h"
 #include "gather/patch_basis.h"

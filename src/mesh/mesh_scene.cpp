@@ -4,6 +4,7 @@ namespace radiosity {
 
 MeshResult meshScene(const Scene& scene, const MeshOptions& options, Progress& progress) {
   options.validate();
+  validate(scene);
   MeshResult result;
   if (options.faces_as_patches) {
     result.mesh = facesAsPatches(scene, options, result.report);

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/geometry/box.h"
 #include "base/parallel.h"
 #include "radiosity/render.h"
 #include "render/item_buffer.h"
@@ -29,22 +30,12 @@ constexpr double kStanding = 1.1;   // worth of standing at that height
 constexpr double kEnclosed = 0.75;  // share of all directions that end on fronts within a room
 constexpr double kRoom = 1.5;       // worth of being in a room that has an outside too
 
-struct Box {
-  Vec3 low{std::numeric_limits<double>::infinity()};
-  Vec3 high{-std::numeric_limits<double>::infinity()};
-  Vec3 size() const { return high - low; }
-  Vec3 at(const Vec3& share) const { return low + share * size(); }
-};
-
 /// Of the patches that have an area.
-Box boundingBox(const PatchMesh& mesh) {
-  Box box;
+Box3 boundingBox(const PatchMesh& mesh) {
+  Box3 box;
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     if (!(mesh.area[i] > 0)) continue;
-    for (const Index v : mesh.outline(i)) {
-      box.low = glm::min(box.low, mesh.vertices[v]);
-      box.high = glm::max(box.high, mesh.vertices[v]);
-    }
+    for (const Index v : mesh.outline(i)) box.add(mesh.vertices[v]);
   }
   return box;
 }
@@ -207,14 +198,14 @@ Camera insideCamera(const Vec3& eye, const Vec3& target, double aspect) {
 }
 
 /// Whether a way leads anywhere but up and down, to something that is not at the eye's feet.
-bool isLevel(const Vec3& way, const Box& box) {
+bool isLevel(const Vec3& way, const Box3& box) {
   return std::hypot(way.x, way.z) > 0.02 * glm::length(box.size());
 }
 
 /// Viewpoints near the ends of the horizontal extents, the longer one first, each looking at the
 /// middle of the opposite end. Further steps into the room and to the side find a place where the
 /// room is not a box or furniture stands at its end.
-std::vector<Candidate> viewpointsInside(const Box& box, double aspect) {
+std::vector<Candidate> viewpointsInside(const Box3& box, double aspect) {
   const Vec3 size = box.size();
   const int longer = size.x > size.z ? 0 : 2;
   std::vector<Candidate> candidates;
@@ -239,7 +230,7 @@ std::vector<Candidate> viewpointsInside(const Box& box, double aspect) {
 }
 
 /// Viewpoints all over the box that look at the middle of what is lit: light in one room of many.
-std::vector<Candidate> viewpointsAtLight(const LitMesh& scene, const Box& box, double aspect) {
+std::vector<Candidate> viewpointsAtLight(const LitMesh& scene, const Box3& box, double aspect) {
   Vec3 middle(0.0);
   double total = 0;
   for (std::size_t i = 0; i < scene.mesh.size(); ++i) {
@@ -263,7 +254,7 @@ std::vector<Candidate> viewpointsAtLight(const LitMesh& scene, const Box& box, d
 }
 
 /// Looks at the box's centre from `direction`, from so far that every vertex is in the picture.
-Camera framed(const PatchMesh& mesh, const Box& box, const Vec3& direction, double aspect) {
+Camera framed(const PatchMesh& mesh, const Box3& box, const Vec3& direction, double aspect) {
   Camera camera;
   camera.target = box.at(Vec3(0.5));
   camera.vertical_fov = kOutsideFov * kDegree;
@@ -286,7 +277,7 @@ Camera framed(const PatchMesh& mesh, const Box& box, const Vec3& direction, doub
 
 /// Straight on and level first (an open box, a plate), then from the side and above (a solid, a
 /// scene on a floor), at last from below.
-std::vector<Candidate> viewpointsOutside(const PatchMesh& mesh, const Box& box, double aspect) {
+std::vector<Candidate> viewpointsOutside(const PatchMesh& mesh, const Box3& box, double aspect) {
   std::vector<Candidate> candidates;
   for (const double elevation : {0.0, 20.0, 40.0, -20.0, -40.0}) {
     for (const double azimuth :
@@ -301,7 +292,7 @@ std::vector<Candidate> viewpointsOutside(const PatchMesh& mesh, const Box& box, 
 }
 
 /// The best place to stand in the scene's room; score 0: there is none.
-Scored standInside(const LitMesh& scene, const Box& box, bool closed, double aspect) {
+Scored standInside(const LitMesh& scene, const Box3& box, bool closed, double aspect) {
   std::vector<Candidate> candidates = viewpointsInside(box, aspect);
   for (Candidate& c : viewpointsAtLight(scene, box, aspect)) candidates.push_back(c);
   const double diagonal = glm::length(box.size());
@@ -318,7 +309,7 @@ Scored standInside(const LitMesh& scene, const Box& box, bool closed, double asp
       });
 }
 
-Scored standOutside(const LitMesh& scene, const Box& box, double aspect) {
+Scored standOutside(const LitMesh& scene, const Box3& box, double aspect) {
   const double diagonal = glm::length(box.size());
   return best(
       viewpointsOutside(scene.mesh, box, aspect),
@@ -355,7 +346,7 @@ Camera framingCamera(const PatchMesh& mesh, bool closed, double aspect,
   if (!(aspect > 0) || !std::isfinite(aspect)) {
     throw InputError("framing: the picture's aspect ratio must be positive");
   }
-  const Box box = boundingBox(mesh);
+  const Box3 box = boundingBox(mesh);
   if (!(glm::length(box.size()) < std::numeric_limits<double>::infinity())) return {};  // empty
   const LitMesh scene(mesh, light);
   const Scored inside = standInside(scene, box, closed, aspect);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "render/samples.h"
 
@@ -127,6 +128,18 @@ Image render(const PatchMesh& mesh, std::span<const double> values, std::span<co
   PatchField field = makeField(mesh, values, 3, constant);
   if (options.smooth) field.corners.assign(corners.begin(), corners.end());
   return draw(mesh, field, camera, options, progress);
+}
+
+Image renderRadiance(const PatchMesh& mesh, std::span<const double> radiosity,
+                     std::span<const double> corners, const Camera& camera,
+                     const RenderOptions& options, Progress& progress) {
+  const auto radiance = [](std::span<const double> exitance) {
+    std::vector<double> out(exitance.begin(), exitance.end());
+    for (double& value : out) value *= std::numbers::inv_pi;
+    return out;
+  };
+  if (corners.empty()) return render(mesh, radiance(radiosity), camera, options, progress);
+  return render(mesh, radiance(radiosity), radiance(corners), camera, options, progress);
 }
 
 }  // namespace radiosity

@@ -122,7 +122,10 @@ void SceneChecks::reportInsideOut(SceneInfo& info) const {
 std::vector<std::string> SceneChecks::contentsOf(const ConnectedPart& outer,
                                                  std::size_t most) const {
   std::vector<std::size_t> near;
-  part_boxes_.query({outer.lower, outer.upper}, [&](std::size_t k) { near.push_back(k); });
+  part_boxes_.query({outer.lower, outer.upper}, [&](Index k) {
+    near.push_back(k);
+    return true;
+  });
   std::sort(near.begin(), near.end());
   std::vector<std::string> contents;
   for (const std::size_t k : near) {

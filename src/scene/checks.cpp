@@ -23,7 +23,7 @@ SceneChecks::SceneChecks(const Scene& scene, const WeldedFaces& faces)
     two_sided[f] = scene.materialOf(f).two_sided ? 1 : 0;
   }
   topology_ = analyseTopology(faces, two_sided, is_double_);
-  std::vector<Box> boxes;
+  std::vector<Box3> boxes;
   boxes.reserve(topology_.parts.size());
   for (const ConnectedPart& part : topology_.parts) boxes.push_back({part.lower, part.upper});
   part_boxes_ = BoxTree(std::move(boxes));

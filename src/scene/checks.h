@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "base/geometry/box_tree.h"
 #include "radiosity/scene.h"
-#include "scene/box_tree.h"
 #include "scene/overlaps.h"
 #include "scene/topology.h"
 #include "scene/winding_tree.h"

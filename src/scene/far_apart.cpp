@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "scene/box_tree.h"
+#include "base/geometry/box.h"
 
 namespace radiosity {
 namespace {
@@ -16,24 +16,16 @@ namespace {
 constexpr double kFar = 1000;
 
 struct FaceBox {
-  Box box;
+  Box3 box;
   Index face;
 };
-
-Box both(const Box& a, const Box& b) {
-  return {glm::min(a.lower, b.lower), glm::max(a.upper, b.upper)};
-}
-double diagonalOf(const Box& box) { return glm::distance(box.lower, box.upper); }
 
 std::vector<FaceBox> boxesOf(const Scene& scene) {
   std::vector<FaceBox> boxes;
   for (std::size_t f = 0; f < scene.faceCount(); ++f) {
     if (scene.face(f).empty()) continue;
-    const Vec3& first = scene.vertices[scene.face(f)[0]];
-    FaceBox of{{first, first}, Index(f)};
-    for (const Index v : scene.face(f)) {
-      of.box = both(of.box, {scene.vertices[v], scene.vertices[v]});
-    }
+    FaceBox of{{}, Index(f)};
+    for (const Index v : scene.face(f)) of.box.add(scene.vertices[v]);
     boxes.push_back(of);
   }
   return boxes;
@@ -46,15 +38,16 @@ struct Parted {
 
 /// Where boxes in order of their lower ends fall into two groups along an axis.
 std::optional<Parted> partAlong(const std::vector<FaceBox>& boxes, glm::length_t axis) {
-  std::vector<Box> rest(boxes.size());  // all from one on
+  std::vector<Box3> rest(boxes.size());  // all from one on
   for (std::size_t k = boxes.size(); k-- > 0;) {
-    rest[k] = k + 1 < boxes.size() ? both(boxes[k].box, rest[k + 1]) : boxes[k].box;
+    if (k + 1 < boxes.size()) rest[k] = rest[k + 1];
+    rest[k].add(boxes[k].box);
   }
-  Box before = boxes[0].box;
+  Box3 before = boxes[0].box;
   for (std::size_t k = 1; k < boxes.size(); ++k) {
-    const double gap = boxes[k].box.lower[axis] - before.upper[axis];
-    if (gap > kFar * std::max(diagonalOf(before), diagonalOf(rest[k]))) return Parted{k, gap};
-    before = both(before, boxes[k].box);
+    const double gap = boxes[k].box.low[axis] - before.high[axis];
+    if (gap > kFar * std::max(before.diagonal(), rest[k].diagonal())) return Parted{k, gap};
+    before.add(boxes[k].box);
   }
   return std::nullopt;
 }
@@ -64,11 +57,11 @@ std::optional<Parted> partAlong(const std::vector<FaceBox>& boxes, glm::length_t
 std::optional<Note> noteFarApart(const Scene& scene, double weld) {
   std::vector<FaceBox> boxes = boxesOf(scene);
   if (boxes.empty()) return std::nullopt;
-  Box whole = boxes[0].box;
-  for (const FaceBox& of : boxes) whole = both(whole, of.box);
+  Box3 whole;
+  for (const FaceBox& of : boxes) whole.add(of.box);
   for (glm::length_t axis = 0; axis < 3; ++axis) {
     std::sort(boxes.begin(), boxes.end(), [axis](const FaceBox& a, const FaceBox& b) {
-      return a.box.lower[axis] < b.box.lower[axis];
+      return a.box.low[axis] < b.box.low[axis];
     });
     const std::optional<Parted> parted = partAlong(boxes, axis);
     if (!parted) continue;
@@ -80,7 +73,7 @@ std::optional<Note> noteFarApart(const Scene& scene, double weld) {
                             "{:.3g} m, a share of the scene's diagonal, count as nothing; move "
                             "these faces closer or leave them out",
                             count, boxes.size(), scene.surfaces[scene.face_surface[face]].name,
-                            parted->gap, weld * diagonalOf(whole))};
+                            parted->gap, weld * whole.diagonal())};
   }
   return std::nullopt;
 }

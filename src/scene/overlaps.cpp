@@ -8,20 +8,16 @@
 #include <map>
 #include <tuple>
 
-#include "scene/box_tree.h"
+#include "base/geometry/box_tree.h"
 
 namespace radiosity {
 
 namespace {
 
-Box boxOf(const WeldedFaces& faces, std::size_t f) {
-  Box box{faces.points[faces.face(f)[0]], faces.points[faces.face(f)[0]]};
-  for (const Index corner : faces.face(f)) {
-    box.lower = glm::min(box.lower, faces.points[corner]);
-    box.upper = glm::max(box.upper, faces.points[corner]);
-  }
-  const Vec3 margin(0.5 * faces.tolerance);
-  return {box.lower - margin, box.upper + margin};
+Box3 boxOf(const WeldedFaces& faces, std::size_t f) {
+  Box3 box;
+  for (const Index corner : faces.face(f)) box.add(faces.points[corner]);
+  return box.grown(0.5 * faces.tolerance);
 }
 
 using Triangle = std::array<Vec2, 3>;
@@ -169,7 +165,7 @@ std::vector<DoubledFace> findDoubledFaces(const WeldedFaces& faces) {
 
 OverlapSearch findOverlaps(const WeldedFaces& faces, const std::vector<std::uint8_t>& skip) {
   std::vector<std::size_t> included;
-  std::vector<Box> boxes;
+  std::vector<Box3> boxes;
   for (std::size_t f = 0; f < faces.size(); ++f) {
     if (isDegenerate(faces, f) || skip[f] != 0) continue;
     included.push_back(f);
@@ -181,21 +177,23 @@ OverlapSearch findOverlaps(const WeldedFaces& faces, const std::vector<std::uint
   double effort = 0;
   for (std::size_t i = 0; i < included.size() && effort <= kMostEffort; ++i) {
     const std::size_t f = included[i];
-    tree.query(boxes[i], [&](std::size_t j) {
-      if (j <= i || effort > kMostEffort) return;
+    tree.query(boxes[i], [&](Index j) {
+      if (j <= i) return true;
+      if (effort > kMostEffort) return false;
       const std::size_t g = included[j];
       effort += 1;
-      if (!liesInPlaneOf(faces, g, f) || !liesInPlaneOf(faces, f, g)) return;
+      if (!liesInPlaneOf(faces, g, f) || !liesInPlaneOf(faces, f, g)) return true;
       effort += double(faces.face(f).size()) * double(faces.face(g).size());
       const double area = commonArea(faces, f, g);
       // Neighbours whose shared edge is off by less than coincidence do not overlap.
       const double strip = faces.tolerance * std::min(perimeter(faces, f), perimeter(faces, g));
       const double smaller =
           std::min(glm::length(faces.area_vector[f]), glm::length(faces.area_vector[g]));
-      if (area <= strip || area <= 1e-12 * smaller) return;  // rounding of the clipping
+      if (area <= strip || area <= 1e-12 * smaller) return true;  // rounding of the clipping
       const bool alike = glm::dot(faces.area_vector[f], faces.area_vector[g]) > 0;
       overlaps.push_back({Index(f), Index(g), alike, area});
       effort += kOverlapEffort;
+      return true;
     });
   }
   search.complete = effort <= kMostEffort;

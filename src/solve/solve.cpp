@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <stdexcept>
 #include <string_view>
 
 #include "solve/certificate.h"
@@ -169,12 +170,31 @@ class BandPlan {
   std::vector<std::size_t> source_;  // by band: an index into solved_, or kDark
 };
 
+std::string_view titleOf(Solver solver) {
+  switch (solver) {
+    case Solver::jacobi:
+      return "Jacobi";
+    case Solver::gauss_seidel:
+      return "Gauss-Seidel";
+  }
+  return "";
+}
+
+Fields run(Solver solver, const System& system, Convergence& convergence) {
+  switch (solver) {
+    case Solver::jacobi:
+      return jacobi(system, convergence);
+    case Solver::gauss_seidel:
+      return gaussSeidel(system, convergence);
+  }
+  throw std::logic_error("a solver without an iteration");
+}
+
 std::string convergenceMessage(const SolveSummary& summary, const SolveOptions& options,
                                bool diverged) {
-  const std::string_view solver = options.solver == Solver::jacobi ? "Jacobi" : "Gauss-Seidel";
   const std::string numbers =
-      fmt::format("{} {} sweeps, residual {:.2e} (asked for {:.2e})", summary.iterations, solver,
-                  summary.residual, options.tolerance);
+      fmt::format("{} {} sweeps, residual {:.2e} (asked for {:.2e})", summary.iterations,
+                  titleOf(options.solver), summary.residual, options.tolerance);
   const std::string bound =
       summary.error_bound
           ? fmt::format("the error against this matrix's solution is below {:.2e} W/m^2",
@@ -199,8 +219,7 @@ Fields iterate(const System& system, const SolveOptions& options, Progress& prog
   bool diverged = false;
   {
     Convergence convergence(options.tolerance, options.max_iterations, "solving", progress);
-    fields = options.solver == Solver::jacobi ? jacobi(system, convergence)
-                                              : gaussSeidel(system, convergence);
+    fields = run(options.solver, system, convergence);
     diverged = convergence.diverged();
     summary.status = convergence.converged() ? SolveStatus::converged : SolveStatus::no_convergence;
     summary.iterations = convergence.sweeps();
@@ -279,6 +298,19 @@ Solution solve(const FormFactors& factors, std::span<const double> reflectance,
                                  solution.irradiance, bands);
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return solution;
+}
+
+Solution solve(const FormFactors& factors, const PatchMaterials& materials, const PatchMesh& mesh,
+               const SolveOptions& options, Progress& progress) {
+  const auto flat = [](const std::vector<Vec3>& values) {
+    std::vector<double> out;
+    out.reserve(3 * values.size());
+    for (const Vec3& v : values) out.insert(out.end(), {v.x, v.y, v.z});
+    return out;
+  };
+  const double sky[] = {materials.sky.x, materials.sky.y, materials.sky.z};
+  return solve(factors, flat(materials.reflectance), flat(materials.emission), 3, options, progress,
+               mesh.surface, mesh.surface_names, sky);
 }
 
 }  // namespace radiosity

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "embree_scene.h"
-#include "formfactor/eye_frame.h"
+#include "formfactor/hemicube/eye_frame.h"
 #include "formfactor/view_scene.h"
 
 namespace radiosity::bench {

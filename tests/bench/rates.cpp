@@ -14,7 +14,7 @@
 #include "bench_scenes.h"
 #include "clocks.h"
 #include "embree_view.h"
-#include "formfactor/row_builder.h"
+#include "formfactor/hemicube/row_builder.h"
 #include "radiosity/form_factors.h"
 
 namespace radiosity::bench {

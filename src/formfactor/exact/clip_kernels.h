@@ -11,7 +11,7 @@
 #include <string>
 #include <type_traits>
 
-#include "formfactor/exact/occluders.h"
+#include "formfactor/exact/occluders/occluders.h"
 #include "radiosity/base.h"
 
 namespace radiosity {

@@ -1,0 +1,48 @@
+// Boxes along the axes, in the plane and in space.
+#pragma once
+
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "radiosity/base.h"
+
+namespace radiosity {
+
+/// Empty until something is added: then both ends are infinite, the wrong way round. Ends belong to
+/// the box.
+template <class Vec>
+struct BoxOf {
+  static constexpr glm::length_t kAxes = Vec::length();
+
+  Vec low{std::numeric_limits<double>::infinity()};
+  Vec high{-std::numeric_limits<double>::infinity()};
+
+  void add(const Vec& p) {
+    for (glm::length_t k = 0; k < kAxes; ++k) {
+      if (p[k] < low[k]) low[k] = p[k];
+      if (p[k] > high[k]) high[k] = p[k];
+    }
+  }
+  void add(const BoxOf& other) {
+    add(other.low);
+    add(other.high);
+  }
+  Vec size() const { return high - low; }
+  Vec centre() const { return 0.5 * (low + high); }
+  double diagonal() const { return glm::length(size()); }
+  /// The point at a share of each side, from the low end.
+  Vec at(const Vec& share) const { return low + share * size(); }
+  BoxOf grown(double by) const { return {low - Vec(by), high + Vec(by)}; }
+  bool contains(const Vec& p) const { return meets({p, p}); }
+  bool meets(const BoxOf& other) const {
+    for (glm::length_t k = 0; k < kAxes; ++k) {
+      if (!(low[k] <= other.high[k] && high[k] >= other.low[k])) return false;
+    }
+    return true;
+  }
+};
+
+using Box2 = BoxOf<Vec2>;
+using Box3 = BoxOf<Vec3>;
+
+}  // namespace radiosity

@@ -1,0 +1,59 @@
+// Boxes by place.
+#pragma once
+
+#include <vector>
+
+#include "base/geometry/box.h"
+#include "radiosity/base.h"
+
+namespace radiosity {
+
+/// A binary tree over boxes: which of them meet a box.
+class BoxTree {
+ public:
+  BoxTree() = default;
+  explicit BoxTree(std::vector<Box3> boxes);
+
+  /// Calls visit(index) for every box that meets `box`, until it returns false.
+  template <class Visit>
+  void query(const Box3& box, const Visit& visit) const {
+    search([&](const Box3& other) { return other.meets(box); }, visit);
+  }
+
+  /// Calls visit(index) for every box that `meets` is true of, until it returns false. What `meets`
+  /// is false of, it must be false of all parts of.
+  template <class Meets, class Visit>
+  void search(const Meets& meets, const Visit& visit) const {
+    if (nodes_.empty()) return;
+    std::vector<Index> stack{0};
+    while (!stack.empty()) {
+      const Node& node = nodes_[stack.back()];
+      stack.pop_back();
+      if (!meets(node.bound)) continue;
+      if (node.count == 0) {
+        stack.push_back(node.first + 1);
+        stack.push_back(node.first);
+        continue;
+      }
+      for (Index k = node.first; k < node.first + node.count; ++k) {
+        if (meets(boxes_[order_[k]]) && !visit(order_[k])) return;
+      }
+    }
+  }
+
+  const Box3& bound() const { return nodes_.front().bound; }
+
+ private:
+  struct Node {
+    Box3 bound;
+    Index first = 0;  ///< child (the second follows it), or into order_
+    Index count = 0;  ///< of a leaf; 0: inner node
+  };
+  void build(Index node, Index first, Index count);
+
+  std::vector<Box3> boxes_;
+  std::vector<Index> order_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace radiosity

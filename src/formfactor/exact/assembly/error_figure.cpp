@@ -1,0 +1,111 @@
+#include "formfactor/exact/assembly/error_figure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace radiosity {
+namespace {
+
+/// Rows that are drawn, and pairs of each.
+constexpr std::size_t kRowsDrawn = 500;
+constexpr std::size_t kMostDrawn = 1024;
+/// Of the rows drawn: what so many stay below.
+constexpr double kQuantile = 0.99;
+
+}  // namespace
+
+ErrorSums::Clipped& ErrorSums::Clipped::operator+=(const Clipped& other) {
+  squares += other.squares;
+  fourths += other.fourths;
+  pairs += other.pairs;
+  return *this;
+}
+
+double ErrorSums::Clipped::figure() const { return squares + std::sqrt(fourths); }
+
+ErrorSums& ErrorSums::operator+=(const ErrorSums& other) {
+  for (std::size_t i = 0; i < squares_.size(); ++i) {
+    squares_[i] += other.squares_[i];
+    clipped_[i] += other.clipped_[i];
+    bare_[i] += other.bare_[i];
+  }
+  rechecks_.insert(rechecks_.end(), other.rechecks_.begin(), other.rechecks_.end());
+  return *this;
+}
+
+void ErrorSums::addAndScale(std::size_t row, std::span<double> exchange, double inverse_area) {
+  // Two passes of independent elements, and one sum in four lanes: the compiler may vectorise all
+  // of it without reordering an addition.
+  double* squares = squares_.data() + row;
+  const std::size_t n = exchange.size();
+  double lane[4] = {};
+  std::size_t m = 0;
+  for (; m + 4 <= n; m += 4) {
+    for (std::size_t l = 0; l < 4; ++l) {
+      const double square = exchange[m + l] * exchange[m + l];
+      squares[m + l] += square;
+      lane[l] += square;
+      exchange[m + l] *= inverse_area;
+    }
+  }
+  for (; m < n; ++m) {
+    const double square = exchange[m] * exchange[m];
+    squares[m] += square;
+    lane[0] += square;
+    exchange[m] *= inverse_area;
+  }
+  squares[0] += (lane[0] + lane[1]) + (lane[2] + lane[3]);
+}
+
+double ErrorSums::weightedSquares(std::span<const double> area) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < area.size(); ++i) sum += squares_[i] / area[i];
+  return sum;
+}
+
+double ErrorSums::recheckRatio() const {
+  std::size_t pairs = 0;
+  std::size_t rows = 0;
+  for (const Clipped& row : clipped_) {
+    pairs += row.pairs;
+    rows += row.pairs > 0;
+  }
+  if (rechecks_.empty() || rows == 0) return 0;
+  const std::size_t drawn = std::clamp<std::size_t>(pairs / rows, 1, kMostDrawn);
+  // The same numbers on every machine, unlike those of the library's distributions.
+  std::mt19937 random;
+  std::vector<double> ratios;
+  for (std::size_t r = 0; r < kRowsDrawn; ++r) {
+    Clipped row;
+    double square = 0;
+    for (std::size_t k = 0; k < drawn; ++k) {
+      const Recheck& pair = rechecks_[random() % rechecks_.size()];
+      square += pair.difference * pair.difference;
+      row.add(pair.stated);
+    }
+    if (row.squares > 0) ratios.push_back(square / row.figure());
+  }
+  if (ratios.empty()) return 0;
+  const auto place = ratios.begin() + std::ptrdiff_t(kQuantile * double(ratios.size() - 1));
+  std::nth_element(ratios.begin(), place, ratios.end());
+  return std::sqrt(*place);
+}
+
+double ErrorSums::figures(std::span<const double> area, double closed_form,
+                          std::span<double> figure) const {
+  const double raise = std::max(1.0, kAlike * recheckRatio());
+  const double closed = kClosedFormShare * closed_form;
+  double errors = 0;
+  for (std::size_t i = 0; i < figure.size(); ++i) {
+    const double closed_forms = closed * closed * squares_[i];
+    Clipped row = clipped_[i];
+    errors += (closed_forms + raise * raise * row.figure()) / area[i];
+    row += bare_[i];
+    figure[i] = std::sqrt(closed_forms + raise * raise * row.figure()) / area[i];
+  }
+  const double squares = weightedSquares(area);
+  return squares > 0 ? std::sqrt(errors / squares) : 0.0;
+}
+
+}  // namespace radiosity

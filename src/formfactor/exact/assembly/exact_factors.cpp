@@ -1,0 +1,198 @@
+#include "formfactor/exact/assembly/exact_factors.h"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "formfactor/closed_scene.h"
+#include "formfactor/hemicube/raster_kernels.h"
+#include "formfactor/row_accounts.h"
+#include "matrix/closure_progress.h"
+
+namespace radiosity {
+namespace {
+
+/// About this share of the clipped pairs is evaluated again, ...
+constexpr double kRecheckShare = 1.0 / 256;
+/// ... and at least so many, as far as there are: at loose tolerances, and in double precision,
+/// where what rules miss is in fewer pairs, and theirs are dearer to begin with.
+constexpr double kRecheckLeast = 512;
+constexpr double kRecheckLeastTight = 1024;
+/// A row that leaves more than this to the sky needs no eye to tell that the scene is open.
+constexpr double kCertainSky = 0.01;
+
+std::size_t recheckEvery(double partial_pairs, double tolerance) {
+  const double least = tolerance < kSinglePrecision ? kRecheckLeastTight : kRecheckLeast;
+  const double share = std::max(kRecheckShare, least / std::max(partial_pairs, 1.0));
+  return std::size_t(std::max(1.0, 1 / share));
+}
+
+/// All rows, in parallel. Sums are made in a tree that depends on the tasks alone.
+RowSums fillRows(const RowContext& context, const RowTasks& tasks, Progress& progress) {
+  tbb::enumerable_thread_specific<RowAssembly> workers([&] { return RowAssembly(context); });
+  using Range = tbb::blocked_range<std::size_t>;
+  progress.begin("form factors", context.order.ranked);
+  RowSums sums = tbb::parallel_deterministic_reduce(
+      Range(0, tasks.size(), 1), RowSums(context.order.ranked),
+      [&](const Range& range, RowSums part) {
+        for (std::size_t t = range.begin(); t != range.end(); ++t) {
+          const auto rows = tasks[t];
+          workers.local().run(rows, part);
+          const PatchOrder& order = context.order;
+          progress.advance(order.rank[rows.back().end - 1] + 1 - order.rank[rows.front().first]);
+        }
+        return part;
+      },
+      [](RowSums a, const RowSums& b) {
+        a += b;
+        return a;
+      });
+  progress.check();
+  progress.end();
+  return sums;
+}
+
+void reportCounts(const ExactScene& scene, const RowSums& sums, ExactReport& report) {
+  const ElementSet& elements = scene.elements;
+  report.elements = elements.patch_elements;
+  report.bare_elements = elements.size() - elements.patch_elements;
+  report.facets = elements.facets.size();
+  report.occluders = scene.occluders.occluders.size();
+  report.solids = scene.occluders.solids;
+  report.skipped_hull = scene.occluders.skipped_hull;
+  report.no_exchange = sums.visibility.no_exchange;
+  report.unoccluded = sums.visibility.unoccluded;
+  report.hidden = sums.visibility.hidden + sums.partial.hidden;
+  report.partial = sums.visibility.partial - sums.partial.hidden;
+  report.facet_pairs = sums.visibility.facet_pairs;
+  report.facet_pairs_no_exchange = sums.visibility.facet_pairs_no_exchange;
+  report.facet_pairs_unoccluded = sums.visibility.facet_pairs_unoccluded;
+  report.shaft_tests = sums.visibility.shaft_tests;
+  report.contour = sums.unoccluded.contour;
+  report.lambert = sums.unoccluded.lambert;
+  report.product = sums.unoccluded.product;
+  report.clipped = sums.unoccluded.clipped;
+  report.points = sums.partial.points;
+  report.subdivided = sums.partial.subdivided;
+  report.evaluated_again = sums.partial.again;
+  report.rechecked = sums.error.rechecked();
+  report.recheck_ratio = sums.error.recheckRatio();
+  report.seconds_visibility = sums.seconds_visibility;
+  report.seconds_unoccluded = sums.seconds_unoccluded;
+  report.seconds_partial = sums.seconds_partial;
+  report.seconds_assembly = sums.seconds_assembly;
+}
+
+/// What a stage could not do for some pairs, so that a simpler one did.
+void noteFallbacks(const OccludedCounts& counts, FormFactorReport& report) {
+  const auto add = [&](std::size_t pairs, const char* what) {
+    if (pairs == 0) return;
+    report.notes.push_back(
+        {Severity::info, fmt::format("{} partly hidden {} {}; their errors are "
+                                     "part of the error figures",
+                                     pairs, pairs == 1 ? "pair" : "pairs", what)});
+  };
+  add(counts.cut_short, "kept a larger error than asked for: shadows on them are too intricate");
+  add(counts.by_segments, "could not be clipped and were sampled by segments");
+}
+
+void setErrors(const PatchOrder& order, const ErrorSums& sums, double closed_form,
+               FormFactors& result) {
+  std::vector<double> figure(order.ranked);
+  result.report.error_figure = sums.figures(order.area, closed_form, figure);
+  result.error.assign(order.patch.size(), 0.0);
+  for (std::size_t k = 0; k < order.ranked; ++k) result.error[order.patch[k]] = figure[k];
+}
+
+/// Fronts are what the matrix holds; sky is what is left of an open scene's rows.
+void setAccounts(const PatchMesh& mesh, const PatchOrder& order, FormFactors& result,
+                 Progress& progress) {
+  result.fronts = result.matrix.rowSums();
+  double most_sky = 0;
+  for (std::size_t k = 0; k < order.ranked; ++k) {
+    const Index i = order.patch[k];
+    result.sky[i] = 1 - result.fronts[i] - result.backs[i];
+    most_sky = std::max(most_sky, result.sky[i]);
+  }
+  FormFactorReport& report = result.report;
+  report.closed = order.ranked > 0 && most_sky < kCertainSky &&
+                  (closedByTopology(mesh, progress) || closedByEye(mesh, progress));
+  for (double& sky : result.sky) {
+    const double excess = report.closed ? std::abs(sky) : -sky;
+    report.largest_row_error = std::max(report.largest_row_error, excess);
+    if (report.closed) sky = 0;
+  }
+}
+
+/// What a closed scene's rows lack of 1 is put on the clipped pairs, or it is said what that would
+/// take.
+void closeRows(const PatchOrder& order, const UncertainEntries& uncertain, double weighted_squares,
+               ClosureMode mode, FormFactors& result, Progress& progress) {
+  std::vector<double> target(order.patch.size(), 0.0);
+  for (std::size_t k = 0; k < order.ranked; ++k) {
+    target[order.patch[k]] = std::max(0.0, 1 - result.backs[order.patch[k]]);
+  }
+  const bool enforce = mode == ClosureMode::enforce;
+  const RawTotals raw{result.fronts, weighted_squares};
+  result.report.closure =
+      radiosity::closeRows(result.matrix, raw, uncertain, target, enforce, progress);
+  result.report.closure_enforced = enforce;
+  if (enforce) result.fronts = result.matrix.rowSums();
+}
+
+}  // namespace
+
+FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
+                         const ExactKernels& kernels, const ExactEstimate& estimate,
+                         const FormFactorOptions& options, Progress& progress) {
+  const std::size_t n = mesh.size();
+  FormFactors result;
+  result.method = "exact";
+  FormFactorReport& report = result.report;
+  report.polygons = mesh.polygons.size();
+  report.simd_target = (options.simd ? simdKernels() : scalarKernels()).target;
+  report.empty_rows = n - scene.order.ranked;
+  report.estimated_bytes = estimate.bytes;
+  refuseTooLarge(estimate.bytes, options, n);
+
+  result.matrix =
+      ExchangeMatrix::symmetric(mesh.area, scene.order.patch, options.storedPrecision());
+  result.backs.assign(n, 0.0);
+  result.sky.assign(n, 0.0);
+  std::vector<std::vector<SeenBack>> seen_backs(n);
+  UncertainEntries uncertain(options.closure == ClosureMode::off ? 0 : n);
+  UncertainEntries* const wanted = options.closure == ClosureMode::off ? nullptr : &uncertain;
+  const RowContext context{
+      scene.elements,     scene.order,
+      scene.chunks,       scene.visibility,
+      kernels.unoccluded, kernels.partial,
+      progress,           recheckEvery(estimate.partial_pairs, options.tolerance),
+      result.matrix,      wanted,
+      result.backs,       seen_backs};
+  const RowSums sums = fillRows(context, scene.tasks, progress);
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point finishing = Clock::now();
+  reportCounts(scene, sums, report.exact);
+  noteFallbacks(sums.partial, report);
+  setErrors(scene.order, sums.error, kernels.closed_form, result);
+  setAccounts(mesh, scene.order, result, progress);
+  if (report.closed && options.closure != ClosureMode::off) {
+    const double square = scene.elements.scale * scene.elements.scale;  // of an area
+    closeRows(scene.order, uncertain, sums.error.weightedSquares(scene.order.area) / square,
+              options.closure, result, progress);
+  }
+  progress.begin("finishing", 1);
+  accountForBacks(mesh, seen_backs, result);
+  progress.advance();
+  progress.end();
+  progress.check();
+  report.exact.seconds_finish = std::chrono::duration<double>(Clock::now() - finishing).count();
+  return result;
+}
+
+}  // namespace radiosity

@@ -1,0 +1,97 @@
+#include "formfactor/exact/assembly/exact_scene.h"
+
+#include <tbb/global_control.h>
+
+#include <algorithm>
+
+#include "formfactor/exact/assembly/row_sample.h"
+#include "formfactor/exact/assembly/row_times.h"
+#include "matrix/work_bytes.h"
+
+namespace radiosity {
+namespace {
+
+/// Closed forms hold this at the default tolerance, and what is asked below it. ...
+constexpr double kClosedForm = 1e-5;
+/// ... Where less is asked than that, a share of it: theirs, mostly a tenth of what they are held
+/// to, is then not seen beside the error of what is clipped. ...
+constexpr double kClosedFormShare = 0.1;
+/// ... The kernels are published for no more than this.
+constexpr double kLoosest = 1e-2;
+
+double closedFormTolerance(double tolerance) {
+  if (tolerance <= FormFactorOptions().tolerance) return std::min(tolerance, kClosedForm);
+  return std::min(kClosedFormShare * tolerance, kLoosest);
+}
+
+std::size_t threads() {
+  return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+}
+
+/// Makes one of the scene's parts, then a step of progress, at which the run may end.
+template <class Make>
+auto part(Progress& progress, const Make& make) {
+  auto made = make();
+  progress.advance();
+  progress.check();
+  return made;
+}
+
+}  // namespace
+
+ExactScene::ExactScene(const PatchMesh& mesh, Progress& progress)
+    : elements(part(progress, [&] { return ElementSet(mesh); })),
+      occluders(part(progress, [&] { return OccluderSet(mesh, elements, progress); })),
+      visibility(elements, occluders),
+      order(mesh, elements),
+      tasks(elements),
+      chunks(elements) {
+  progress.advance();
+}
+
+ExactKernels::ExactKernels(const ExactScene& scene, const FormFactorOptions& options)
+    : closed_form(closedFormTolerance(options.tolerance)),
+      unoccluded(scene.elements, closed_form, options.simd),
+      partial(scene.elements, scene.occluders, options.tolerance, options.simd) {}
+
+ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,
+                            const FormFactorOptions& options) {
+  const auto patches = double(scene.elements.patch_elements);
+  ExactEstimate estimate;
+  estimate.partial_pairs = sample.partial;
+  estimate.occluders_per_partial = sample.partial > 0 ? sample.occluders / sample.partial : 0;
+  const double entries = sample.unoccluded + sample.partial;
+  estimate.entries_per_row = patches > 0 ? std::min(2 * entries / patches, patches) : 0;
+
+  const std::size_t n = scene.order.patch.size();
+  constexpr std::size_t kElementBytes = 512;  // an element, its cluster, the kernels' copies
+  constexpr std::size_t kAccounts = 8 * sizeof(double);
+  constexpr std::size_t kUncertainBytes = 4;  // of a partial pair, for closure: code, run, freedom
+  const std::size_t row_sums = 4 * 2 * sizeof(double) * scene.order.ranked;
+  const std::size_t filling =
+      threads() * (scene.tasks.panelBytes(scene.elements) + row_sums + 2 * sample.task_bytes);
+  estimate.matrix_bytes = ExchangeMatrix::estimateSymmetricBytes(n, estimate.entries_per_row,
+                                                                 options.storedPrecision());
+  estimate.bytes = options.memory_held + estimate.matrix_bytes +
+                   std::size_t(sample.partial) * kUncertainBytes + n * kAccounts +
+                   scene.elements.size() * kElementBytes +
+                   std::max(filling, matrixWorkBytes(n, threads()));  // one after the other
+
+  // Measured on one core of a 2.7 GHz Xeon: a pair in closed form or by quadrature, with what is
+  // asked for beside it, and a test whether something stands between.
+  constexpr double kUnoccluded = 5e-8;
+  constexpr double kShaftTest = 9e-8;
+  estimate.seconds =
+      kUnoccluded * sample.unoccluded + kShaftTest * sample.shaft_tests + sample.cost.seconds;
+  estimate.refining = sample.cost.refining;
+  estimate.points = sample.cost.points;
+  return estimate;
+}
+
+double exactSeconds(const ExactScene& scene, const ExactKernels& kernels, const RowSample& sample,
+                    const FormFactorOptions& options, Progress& progress) {
+  const RowTimes times = timeRows(scene, kernels, options.tolerance, sample, progress);
+  return times.busy * (times.visibility + times.unoccluded + times.partial) / double(threads());
+}
+
+}  // namespace radiosity

@@ -1,0 +1,55 @@
+// What the exact method makes of a mesh before it computes anything, and what that will cost.
+#pragma once
+
+#include "formfactor/exact/assembly/row_assembly.h"
+#include "formfactor/exact/assembly/row_tasks.h"
+#include "formfactor/exact/elements/elements.h"
+#include "formfactor/exact/occluded/occluded_pairs.h"
+#include "formfactor/exact/occluders/occluders.h"
+#include "formfactor/exact/unoccluded/unoccluded.h"
+#include "formfactor/exact/visibility/visibility.h"
+#include "radiosity/form_factors.h"
+
+namespace radiosity {
+
+struct ExactScene {
+  /// Steps `progress` by kSteps. Throws Cancelled.
+  static constexpr std::size_t kSteps = 3;
+  ExactScene(const PatchMesh& mesh, Progress& progress);
+  ElementSet elements;
+  OccluderSet occluders;
+  Visibility visibility;
+  PatchOrder order;
+  RowTasks tasks;
+  ColumnChunks chunks;
+};
+
+/// What computes values, in closed form and by clipping, to the options' tolerance.
+struct ExactKernels {
+  /// Keeps `scene` by reference.
+  ExactKernels(const ExactScene& scene, const FormFactorOptions& options);
+  double closed_form;  ///< relative error that closed forms hold
+  UnoccludedKernel unoccluded;
+  OccludedKernel partial;
+};
+
+/// From the pairs of a sample of tasks, on the scene and the options alone, never on the machine or
+/// on what else it does.
+struct ExactEstimate {
+  std::size_t bytes = 0;         ///< held at once, FormFactorOptions::memory_held included
+  std::size_t matrix_bytes = 0;  ///< of these, the matrix
+  double entries_per_row = 0;    ///< at most
+  double partial_pairs = 0;
+  double occluders_per_partial = 0;
+  double points = 0;    ///< ExactReport::points; about, like the seconds
+  double seconds = 0;   ///< of one core, at the rates of a usual machine
+  double refining = 0;  ///< of the seconds, those that go with 1 / tolerance
+};
+struct RowSample;
+ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,
+                            const FormFactorOptions& options);
+/// Seconds by the clock on the threads allowed, at the rates that the sample has here and now.
+double exactSeconds(const ExactScene& scene, const ExactKernels& kernels, const RowSample& sample,
+                    const FormFactorOptions& options, Progress& progress);
+
+}  // namespace radiosity

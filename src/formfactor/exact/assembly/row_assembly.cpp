@@ -1,0 +1,291 @@
+#include "formfactor/exact/assembly/row_assembly.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+#include <numeric>
+
+#include "base/processor_clock.h"
+
+namespace radiosity {
+namespace {
+
+/// Adds the processor time of this thread from its making to its end to a sum.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& sum) : sum_(sum), start_(processorSeconds()) {}
+  ~Stopwatch() { sum_ += processorSeconds() - start_; }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double& sum_;
+  double start_;
+};
+
+/// A number of the pair that looks random and depends on nothing but the pair (SplitMix64, Steele,
+/// Lea & Flood 2014).
+std::uint64_t pairHash(Index row, Index column) {
+  std::uint64_t z = ((std::uint64_t(row) << 32U) | column) + 0x9e3779b97f4a7c15ULL;
+  z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;
+  z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;
+  return z ^ (z >> 31U);
+}
+
+}  // namespace
+
+PatchOrder::PatchOrder(const PatchMesh& mesh, const ElementSet& elements)
+    : rank(elements.patch_elements) {
+  std::vector<Index> rank_of(mesh.size(), kNone);
+  for (Index e = 0; e < elements.patch_elements; ++e) {
+    const Index p = elements.patch[e];
+    if (rank_of[p] == kNone) {
+      rank_of[p] = Index(patch.size());
+      patch.push_back(p);
+      first_element.push_back(e);
+      area.push_back(mesh.area[p] * elements.scale * elements.scale);
+    }
+    rank[e] = rank_of[p];
+  }
+  ranked = patch.size();
+  first_element.push_back(Index(elements.patch_elements));
+  for (Index p = 0; p < mesh.size(); ++p) {
+    if (rank_of[p] == kNone) patch.push_back(p);
+  }
+}
+
+RowSums& RowSums::operator+=(const RowSums& other) {
+  error += other.error;
+  visibility += other.visibility;
+  unoccluded += other.unoccluded;
+  partial += other.partial;
+  seconds_visibility += other.seconds_visibility;
+  seconds_unoccluded += other.seconds_unoccluded;
+  seconds_partial += other.seconds_partial;
+  seconds_assembly += other.seconds_assembly;
+  return *this;
+}
+
+void RowAssembly::run(std::span<const ElementRange> ranges, RowSums& sums) {
+  const ElementRange rows{ranges.front().first, ranges.back().end};
+  first_ = rows.first;
+  width_ = context_.elements.size() - first_;
+  const std::size_t places = (rows.size() * width_ + kMarks - 1) / kMarks * kMarks;
+  if (panel_.size() < places) panel_.resize(places);
+  marked_.assign(places, 0);
+  classify(ranges, sums);
+  evaluatePartial(sums);
+  if (context_.uncertain != nullptr) storeUncertain(rows);
+  storePatches(rows, sums);
+}
+
+void RowAssembly::classify(std::span<const ElementRange> ranges, RowSums& sums) {
+  pairs_.clear();
+  for (const ElementRange& range : ranges) {
+    const std::size_t first_block = pairs_.blocks.size();
+    const std::size_t first_pair = pairs_.partial_pairs.size();
+    {
+      const Stopwatch watch(sums.seconds_visibility);
+      context_.visibility.classify(range, pairs_, sums.visibility);
+    }
+    const Stopwatch watch(sums.seconds_unoccluded);
+    evaluateUnoccluded(range, first_block, first_pair, sums);
+  }
+}
+
+void RowAssembly::evaluateUnoccluded(ElementRange range, std::size_t first_block,
+                                     std::size_t first_pair, RowSums& sums) {
+  const ColumnChunks& chunks = context_.chunks;
+  for (std::size_t b = first_block; b < pairs_.blocks.size(); ++b) {
+    const PairBlock& block = pairs_.blocks[b];
+    const auto begin = asked_.begin() + chunks.of_element[block.columns.first];
+    const auto end = asked_.begin() + chunks.of_element[block.columns.end - 1] + 1;
+    std::fill(begin, end, std::uint8_t(1));
+    for (Index row = block.rows.first; row < block.rows.end; ++row) {
+      std::fill_n(marked_.begin() + std::ptrdiff_t(place(row, block.columns.first)),
+                  block.columns.size(), std::uint8_t(1));
+    }
+  }
+  for (std::size_t k = first_pair; k < pairs_.partial_pairs.size(); ++k) {
+    asked_[chunks.of_element[pairs_.partial_pairs[k].column]] = 1;
+  }
+  const std::vector<ElementRange>& ranges = chunks.ranges;
+  for (std::size_t c = chunks.of_element[range.end - 1]; c < ranges.size();) {
+    std::size_t end = c;
+    // Neighbours of one facet at once.
+    while (end < ranges.size() && asked_[end] != 0 &&
+           context_.elements.facet[ranges[end].first] == context_.elements.facet[ranges[c].first]) {
+      asked_[end++] = 0;
+    }
+    if (end > c) {
+      const ElementRange columns{ranges[c].first, ranges[end - 1].end};
+      context_.unoccluded.block(range, columns, &panel_[place(range.first, columns.first)], width_,
+                                sums.unoccluded);
+    }
+    c = std::max(end, c + 1);
+  }
+  dropPairsWithoutExchange(first_pair, sums);
+}
+
+/// Pairs that turn out to be below each other's horizon never reach the clipping.
+void RowAssembly::dropPairsWithoutExchange(std::size_t first_pair, RowSums& sums) {
+  std::vector<OccludedPair>& pairs = pairs_.partial_pairs;
+  std::size_t kept = first_pair;
+  for (std::size_t k = first_pair; k < pairs.size(); ++k) {
+    pairs[k].unoccluded = panel_[place(pairs[k].row, pairs[k].column)];
+    if (pairs[k].unoccluded > 0) pairs[kept++] = pairs[k];
+  }
+  sums.visibility.partial -= pairs.size() - kept;
+  sums.visibility.no_exchange += pairs.size() - kept;
+  pairs.resize(kept);
+}
+
+void RowAssembly::evaluatePartial(RowSums& sums) {
+  const Stopwatch watch(sums.seconds_partial);
+  const PatchOrder& order = context_.order;
+  const std::vector<OccludedPair>& pairs = pairs_.partial_pairs;
+  partial_.resize(pairs.size());
+  context_.partial.evaluate(pairs, pairs_.occluder_list, partial_, sums.partial,
+                            &context_.progress);
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const auto& [row, column, begin, end, unoccluded] = pairs[k];
+    panel_[place(row, column)] = partial_[k].exchange;
+    marked_[place(row, column)] = 1;
+    const Index a = order.rank[row];
+    if (column < context_.elements.patch_elements) {
+      const Index b = order.rank[column];
+      sums.error.addPartial(a, b, partial_[k].error);
+    } else {
+      sums.error.addBare(a, partial_[k].error);
+    }
+  }
+  recheck(sums);
+}
+
+void RowAssembly::recheck(RowSums& sums) const {
+  std::vector<OccludedPair> pairs;
+  std::vector<std::size_t> which;
+  for (std::size_t k = 0; k < partial_.size(); ++k) {
+    const OccludedPair& pair = pairs_.partial_pairs[k];
+    if (pair.column >= context_.elements.patch_elements) continue;
+    if (partial_[k].cut_short) continue;  // it would take as much again, and states what it misses
+    if (pairHash(pair.row, pair.column) % context_.recheck_every != 0) continue;
+    which.push_back(k);
+    pairs.push_back(pair);
+  }
+  if (which.empty()) return;
+  std::vector<OccludedExchange> strict(which.size());
+  context_.partial.evaluateStrictly(pairs, pairs_.occluder_list, strict, &context_.progress);
+  for (std::size_t k = 0; k < which.size(); ++k) {
+    const OccludedExchange& found = partial_[which[k]];
+    sums.error.addRecheck(found.exchange - strict[k].exchange, found.error);
+  }
+}
+
+void RowAssembly::storeUncertain(ElementRange rows) {
+  const PatchOrder& order = context_.order;
+  const auto isCounted = [&](std::size_t k) {
+    return pairs_.partial_pairs[k].column < context_.elements.patch_elements;
+  };
+  // Dealt out by rows: within a row they mostly stand in order already.
+  const Index first = order.rank[rows.first];
+  const Index count = order.rank[rows.end - 1] + 1 - first;
+  row_begin_.assign(count + 2, 0);
+  for (std::size_t k = 0; k < partial_.size(); ++k) {
+    if (isCounted(k)) ++row_begin_[order.rank[pairs_.partial_pairs[k].row] - first + 2];
+  }
+  std::partial_sum(row_begin_.begin(), row_begin_.end(), row_begin_.begin());
+  uncertain_.resize(row_begin_.back());
+  for (std::size_t k = 0; k < partial_.size(); ++k) {
+    if (!isCounted(k)) continue;
+    const OccludedPair& pair = pairs_.partial_pairs[k];
+    const Index row = order.rank[pair.row];
+    uncertain_[row_begin_[row - first + 1]++] = {order.rank[pair.column],
+                                                 partial_[k].error / order.area[row]};
+  }
+  for (std::size_t r = 0; r < count; ++r) {
+    storeUncertainRow(
+        first + r, std::span(uncertain_).subspan(row_begin_[r], row_begin_[r + 1] - row_begin_[r]));
+  }
+}
+
+void RowAssembly::storeUncertainRow(std::size_t rank, std::span<Uncertain> entries) {
+  if (entries.empty()) return;
+  if (!std::is_sorted(entries.begin(), entries.end())) std::sort(entries.begin(), entries.end());
+  later_.clear();
+  errors_.clear();
+  for (const auto& [column, error] : entries) {
+    if (!later_.empty() && later_.back() == column) {
+      errors_.back() += error;  // another piece of the same patches
+    } else {
+      later_.push_back(column);
+      errors_.push_back(error);
+    }
+  }
+  context_.uncertain->setRow(rank, later_, errors_);
+}
+
+void RowAssembly::storePatches(ElementRange rows, RowSums& sums) {
+  const Stopwatch watch(sums.seconds_assembly);
+  const PatchOrder& order = context_.order;
+  clearUnmarked();
+  const std::size_t end = order.rank[rows.end - 1] + 1;
+  for (std::size_t rank = order.rank[rows.first]; rank < end; ++rank) {
+    const std::span<double> exchange =
+        patchRow(rank, {order.first_element[rank], order.first_element[rank + 1]});
+    assert(std::all_of(exchange.begin(), exchange.end(), [](double g) { return g >= 0; }));
+    sums.error.addAndScale(rank, exchange, 1 / order.area[rank]);
+    context_.matrix.setUpperRow(rank, exchange);
+  }
+}
+
+/// Eight marks at a time: where things are, they are mostly all marked or none.
+void RowAssembly::clearUnmarked() {
+  constexpr std::uint64_t kAllMarked = 0x0101010101010101ULL;
+  for (std::size_t k = 0; k < marked_.size(); k += kMarks) {
+    std::uint64_t marks = 0;
+    std::memcpy(&marks, &marked_[k], kMarks);
+    if (marks == kAllMarked) continue;
+    for (std::size_t m = k; m < k + kMarks; ++m) panel_[m] = marked_[m] != 0 ? panel_[m] : 0.0;
+  }
+}
+
+std::span<double> RowAssembly::patchRow(std::size_t rank, ElementRange rows) {
+  const PatchOrder& order = context_.order;
+  const Index patch_elements = Index(context_.elements.patch_elements);
+  for (Index row = rows.first; row < rows.end; ++row) {
+    const std::size_t bare = context_.elements.size() - patch_elements;
+    storeBacks(rank, {panel_.data() + (place(row, first_) + (patch_elements - first_)), bare});
+  }
+  if (order.ranked == patch_elements) {  // every patch is one element
+    return {&panel_[place(rows.first, rows.first)], patch_elements - rows.first};
+  }
+  folded_.assign(order.ranked - rank, 0.0);
+  for (Index row = rows.first; row < rows.end; ++row) {
+    const double* values = panel_.data() + place(row, first_);
+    for (Index e = rows.end; e < patch_elements; ++e) {
+      folded_[order.rank[e] - rank] += values[e - first_];
+    }
+  }
+  return folded_;
+}
+
+void RowAssembly::storeBacks(std::size_t rank, std::span<const double> bare) {
+  const Index patch = context_.order.patch[rank];
+  const ElementSet& elements = context_.elements;
+  for (std::size_t k = 0; k < bare.size(); ++k) {
+    if (!(bare[k] > 0)) continue;
+    const double share = bare[k] / context_.order.area[rank];
+    const Index surface =
+        elements.patch[elements.patch_elements + k] - Index(context_.backs.size());
+    context_.backs[patch] += share;
+    std::vector<SeenBack>& seen = context_.seen_backs[patch];
+    if (!seen.empty() && seen.back().surface == surface) {
+      seen.back().share += share;
+    } else {
+      seen.push_back({surface, share});
+    }
+  }
+}
+
+}  // namespace radiosity

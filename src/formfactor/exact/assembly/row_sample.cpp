@@ -1,0 +1,222 @@
+#include "formfactor/exact/assembly/row_sample.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/parallel.h"
+
+namespace radiosity {
+namespace {
+
+constexpr std::size_t kRoughSteps = kSampleSteps / 6;
+/// Of a task, ranges are taken until there are so many rows: what columns share is shared by rows.
+constexpr std::size_t kLeastRows = 4;
+/// Facets looked at, and tests made, for one range of rows.
+constexpr std::size_t kMostFacets = 128;
+constexpr std::size_t kMostLargeFacets = 4;
+constexpr std::size_t kMostTests = 12'500;
+/// Tests for each occluder, besides: what may come between two large facets is looked for among
+/// all, and that settles nothing yet. At most so many.
+constexpr std::size_t kTestsAnOccluder = 50;
+constexpr std::size_t kMostTestsAtAll = 200'000;
+/// Partial pairs of a task whose cost is guessed, evenly among all.
+constexpr std::size_t kGuessedPairs = 48;
+
+/// Partial pairs and blocks of some rows, and what finding them took.
+void classify(const ExactScene& scene, std::span<const ElementRange> ranges, FacetSize size,
+              std::size_t place, RecordedPairs& recorded, SampledPlace& found) {
+  VisibilityCounts counts;
+  VisibilityOfFacets of_facets;
+  const double start = processorSeconds();
+  for (const ElementRange& range : ranges) {
+    const std::size_t facets = scene.visibility.openFacetsAfter(range, size);
+    VisibilitySample sample;
+    sample.size = size;
+    const std::size_t most = size == FacetSize::large ? kMostLargeFacets : kMostFacets;
+    sample.facet_stride = std::max<std::size_t>(1, facets / most);
+    sample.first_facet = place % sample.facet_stride;
+    sample.most_tests =
+        counts.shaft_tests +
+        std::min(kMostTests + kTestsAnOccluder * scene.occluders.occluders.size(), kMostTestsAtAll);
+    const VisibilityOfFacets of_range =
+        scene.visibility.classifySome(range, sample, recorded, counts);
+    of_facets.settled += of_range.settled;
+    of_facets.left += of_range.left;
+    found.rows += double(range.size());
+  }
+  const double seconds = processorSeconds() - start;
+  // Where it stopped as it was, what was left of its facets is like what was settled of them.
+  const VisibilityCounts& whole = of_facets.settled;
+  const auto closely = double(counts.settled() - whole.settled());
+  const double share = closely > 0 ? double(of_facets.left) / closely : 1.0;
+  const auto all = [&](std::size_t settled, std::size_t settled_whole) {
+    return double(settled_whole) + share * double(settled - settled_whole);
+  };
+  found.settled = all(counts.settled(), whole.settled());
+  found.unoccluded = all(counts.unoccluded, whole.unoccluded);
+  found.shaft_tests = all(counts.shaft_tests, whole.shaft_tests);
+  found.closely = share;
+  found.partial = share * double(recorded.partial_pairs.size());
+  found.occluders = share * double(recorded.occluder_list.size());
+  if (counts.shaft_tests > 0) {
+    found.seconds_visibility = seconds * found.shaft_tests / double(counts.shaft_tests);
+  }
+  found.record_bytes =
+      found.partial * double(sizeof(OccludedPair) + sizeof(OccludedExchange) + sizeof(Index)) +
+      found.occluders * sizeof(Index) + double(recorded.blocks.size() * sizeof(PairBlock));
+}
+
+/// Some pairs, evenly.
+std::vector<OccludedPair> evenly(const std::vector<OccludedPair>& pairs, std::size_t most) {
+  const std::size_t count = std::min(pairs.size(), most);
+  std::vector<OccludedPair> some;
+  some.reserve(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    some.push_back(pairs[(2 * k + 1) * pairs.size() / (2 * count)]);
+  }
+  return some;
+}
+
+/// What the partial pairs will take.
+void costOfPairs(const ExactScene& scene, RecordedPairs recorded, double tolerance,
+                 SampledPlace& found) {
+  for (const OccludedPair& pair : recorded.partial_pairs) {
+    const bool many = pair.occluders_end - pair.occluders_begin >= kManyOccluders;
+    found.classes[many ? many_occluders : few_occluders].pairs.push_back(pair);
+  }
+  found.occluder_list = std::move(recorded.occluder_list);
+  found.blocks = std::move(recorded.blocks);
+  for (SampledPairs& of_class : found.classes) {
+    if (of_class.pairs.empty()) continue;
+    std::stable_sort(of_class.pairs.begin(), of_class.pairs.end(),
+                     [](const auto& a, const auto& b) { return a.column < b.column; });
+    const std::vector<OccludedPair> guessed = evenly(of_class.pairs, kGuessedPairs);
+    const OccludedCost sampled =
+        occludedCost(scene.elements, scene.occluders, guessed, found.occluder_list, tolerance);
+    of_class.cost =
+        sampled * (found.closely * double(of_class.pairs.size()) / double(guessed.size()));
+  }
+}
+
+/// Ranges of rows that stand for themselves and their neighbours, with facets of one size.
+struct Place {
+  std::span<const ElementRange> rows;
+  FacetSize size = FacetSize::small;
+  double weight = 0;  ///< open pairs of all these
+};
+
+SampledPlace lookAt(const ExactScene& scene, double tolerance, std::size_t number,
+                    const Place& place) {
+  const BothWatches watches;
+  SampledPlace found;
+  found.weight = place.weight;
+  RecordedPairs recorded;
+  classify(scene, place.rows, place.size, number, recorded, found);
+  costOfPairs(scene, std::move(recorded), tolerance, found);
+  found.taken = watches.elapsed();
+  return found;
+}
+
+void sumUp(double task_rows, RowSample& sum) {
+  double looked_at = 0;  // pairs that the places with a result stand for
+  double all = 0;
+  for (const SampledPlace& place : sum.places) {
+    all += place.weight;
+    const double share = place.share();
+    if (!(share > 0)) continue;
+    looked_at += place.weight;
+    sum.unoccluded += share * place.unoccluded;
+    sum.partial += share * place.partial;
+    sum.occluders += share * place.occluders;
+    sum.shaft_tests += share * place.shaft_tests;
+    for (const SampledPairs& of_class : place.classes) sum.cost += of_class.cost * share;
+    const double task = task_rows / place.rows * place.record_bytes;
+    sum.task_bytes = std::max(sum.task_bytes, std::size_t(task));
+  }
+  if (!(looked_at > 0)) return;
+  sum.all_places = all / looked_at;
+  for (double* value : {&sum.unoccluded, &sum.partial, &sum.occluders, &sum.shaft_tests}) {
+    *value *= sum.all_places;
+  }
+  sum.cost = sum.cost * sum.all_places;
+}
+
+/// All ranges of rows of large facets, or of small ones.
+std::vector<ElementRange> rangesOf(const ExactScene& scene, FacetSize size) {
+  std::vector<ElementRange> ranges;
+  for (std::size_t t = 0; t < scene.tasks.size(); ++t) {
+    for (const ElementRange& range : scene.tasks[t]) {
+      const Facet& facet = scene.elements.facets[scene.elements.facet[range.first]];
+      const bool large = facet.elements.size() >= kLargeFacet;
+      if (large == (size == FacetSize::large)) ranges.push_back(range);
+    }
+  }
+  return ranges;
+}
+
+/// Ranges from one on, or the last ones, until they have kLeastRows.
+std::span<const ElementRange> rowsFrom(std::span<const ElementRange> ranges, std::size_t first) {
+  std::size_t rows = 0;
+  std::size_t end = first;
+  while (end < ranges.size() && rows < kLeastRows) rows += ranges[end++].size();
+  while (first > 0 && rows < kLeastRows) rows += ranges[--first].size();
+  return ranges.subspan(first, end - first);
+}
+
+/// Up to `most` places of about as many open pairs each, at the range in their middle.
+void addPlaces(const ExactScene& scene, std::span<const ElementRange> ranges, FacetSize size,
+               std::size_t most, std::vector<Place>& places) {
+  std::vector<double> until{0.0};  // open pairs of the ranges before
+  until.reserve(ranges.size() + 1);
+  for (const ElementRange& range : ranges) {
+    until.push_back(until.back() + double(scene.visibility.openPairs(range, size)));
+  }
+  std::size_t first = 0;
+  for (std::size_t k = 1; k <= most && first < ranges.size(); ++k) {
+    const double quota = until.back() * double(k) / double(most);
+    std::size_t end = first;
+    while (end < ranges.size() && (k == most || until[end + 1] <= quota)) ++end;
+    // One that is larger than a place has the places that it reaches into.
+    if (end == first && until[first] < quota) ++end;
+    if (!(until[end] > until[first])) continue;
+    const double middle = 0.5 * (until[first] + until[end]);
+    const auto above = std::upper_bound(until.begin() + std::ptrdiff_t(first) + 1,
+                                        until.begin() + std::ptrdiff_t(end), middle);
+    const auto at = std::size_t(above - until.begin()) - 1;
+    places.push_back({rowsFrom(ranges.first(end), at), size, until[end] - until[first]});
+    first = end;
+  }
+}
+
+}  // namespace
+
+RowSample sampleRows(const ExactScene& scene, double tolerance, SampleSize size,
+                     Progress& progress) {
+  const std::size_t most = size == SampleSize::rough ? kRoughSteps : kSampleSteps;
+  // What walls see of walls, and small facets of walls, are classes of their own: few of the rows,
+  // and much of the work.
+  const std::array<std::vector<ElementRange>, 2> ranges = {rangesOf(scene, FacetSize::large),
+                                                           rangesOf(scene, FacetSize::small)};
+  std::vector<Place> places;
+  const std::size_t row_classes = (ranges[0].empty() ? 0U : 1U) + (ranges[1].empty() ? 0U : 1U);
+  for (const std::vector<ElementRange>& rows : ranges) {
+    for (const FacetSize columns : {FacetSize::large, FacetSize::small}) {
+      addPlaces(scene, rows, columns, most / (2 * std::max<std::size_t>(row_classes, 1)), places);
+    }
+  }
+  RowSample sample;
+  sample.places.resize(places.size());
+  progress.begin("planning", places.size());
+  parallelFor(places.size(), 1, [&](std::size_t k) {
+    if (progress.cancelled()) return;
+    sample.places[k] = lookAt(scene, tolerance, k, places[k]);
+    progress.advance();
+  });
+  progress.check();
+  progress.end();
+  const std::size_t tasks = scene.tasks.size();
+  sumUp(tasks > 0 ? double(scene.elements.patch_elements) / double(tasks) : 0, sample);
+  return sample;
+}
+
+}  // namespace radiosity

@@ -1,0 +1,205 @@
+#include "formfactor/exact/assembly/row_times.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "base/parallel.h"
+
+namespace radiosity {
+namespace {
+
+/// Pairs are clipped, to see how much longer they take than guessed, in up to so many rounds until
+/// they have taken this share of all that is guessed, but no less and no more seconds than these.
+/// (At 1e-6 a single pair past round bodies takes tenths of a second. A few pairs, near to each
+/// other, carry half of the time or more: in gazebo.obj of the lightmapper's examples one pair in
+/// 300 takes 38%. Many short batches meet them.)
+constexpr std::size_t kRounds = 16;
+constexpr double kClipShare = 0.02;
+constexpr double kLeastClipSeconds = 0.25;
+constexpr double kMostClipSeconds = 0.8;
+/// About so many pairs a round, by what they stand for; from places and classes that stand for less
+/// than this share, none; and no more in a batch than are guessed to take these seconds.
+constexpr double kPairsARound = 256;
+constexpr double kLeastShare = 1e-3;
+constexpr double kBatchSeconds = 1e-3;
+/// Batches are taken in an order that jumps about, so that what is left out when the time is up is
+/// like what is not.
+constexpr std::size_t kJump = 7;
+static_assert(kRounds % kJump != 0);
+/// Values in closed form that are computed in a place, of so many rows at a time.
+constexpr std::size_t kMostValues = 1 << 13;
+constexpr Index kValueRows = 4;
+
+/// Partial pairs of one class, in one place.
+struct ClipTime {
+  double seconds = 0;   ///< of those that were clipped
+  double expected = 0;  ///< of the same, at the rates of a usual machine
+};
+
+struct PlaceTime {
+  std::array<ClipTime, clutter_classes> clipped;
+  double unoccluded = 0;
+  BothClocks taken;  ///< by all of it
+};
+
+/// Values in closed form are asked for by whole chunks of columns: see RowAssembly.
+double unoccludedSeconds(const UnoccludedKernel& kernel, const SampledPlace& place) {
+  std::vector<double> values;
+  UnoccludedCounts counts;
+  double computed = 0;
+  const std::size_t blocks = place.blocks.size();
+  const double start = processorSeconds();
+  // In an order that jumps about, so that what is left out is like what is not.
+  const auto jump = std::size_t(std::max(1.0, std::round(0.618 * double(blocks))));
+  for (std::size_t k = 0; k < blocks && computed < double(kMostValues); ++k) {
+    const PairBlock& block = place.blocks[k * jump % blocks];
+    const ElementRange rows{block.rows.first,
+                            std::min(block.rows.end, block.rows.first + kValueRows)};
+    const auto most = Index(kMostValues / rows.size());
+    const ElementRange columns{block.columns.first,
+                               std::min(block.columns.end, block.columns.first + most)};
+    values.resize(std::size_t(rows.size()) * columns.size());
+    kernel.block(rows, columns, values.data(), columns.size(), counts);
+    computed += double(values.size());
+  }
+  const double seconds = processorSeconds() - start;
+  return computed > 0 ? seconds * (place.unoccluded + place.partial) / computed : 0.0;
+}
+
+/// A batch of pairs that are neighbours, and share work; batches evenly from all. Pairs are in
+/// order of their columns.
+std::span<const OccludedPair> batchOf(std::span<const OccludedPair> pairs, std::size_t size,
+                                      std::size_t which) {
+  if (which >= pairs.size() / size) return {};
+  const std::size_t count = std::min(kRounds, pairs.size() / size);
+  return pairs.subspan((2 * which + 1) * (pairs.size() - size) / (2 * count), size);
+}
+
+/// Clips a batch. Nothing but measured seconds comes of it.
+void clip(const ExactScene& scene, const ExactKernels& kernels, std::span<const OccludedPair> batch,
+          std::span<const Index> occluder_list, double tolerance, ClipTime& clipped) {
+  std::vector<OccludedPair> some(batch.begin(), batch.end());
+  clipped.expected +=
+      occludedCost(scene.elements, scene.occluders, some, occluder_list, tolerance).seconds;
+  for (OccludedPair& pair : some) {
+    pair.unoccluded = kernels.unoccluded.pair(pair.row, pair.column);
+  }
+  std::erase_if(some, [](const OccludedPair& pair) { return !(pair.unoccluded > 0); });
+  std::vector<OccludedExchange> out(some.size());
+  OccludedCounts counts;
+  const double start = processorSeconds();
+  kernels.partial.evaluate(some, occluder_list, out, counts);
+  clipped.seconds += processorSeconds() - start;
+}
+
+/// Seconds that the pairs of all tasks will take, as guessed, for which these stand.
+double guessedSeconds(const SampledPlace& place, const SampledPairs& of_class) {
+  return place.share() * of_class.cost.seconds;
+}
+
+class ClipRounds {
+ public:
+  ClipRounds(const ExactScene& scene, const ExactKernels& kernels, double tolerance,
+             const RowSample& sample, std::vector<PlaceTime>& times, Progress& progress)
+      : scene_(scene),
+        kernels_(kernels),
+        tolerance_(tolerance),
+        sample_(sample),
+        times_(times),
+        progress_(progress) {
+    for (const SampledPlace& place : sample.places) {
+      for (const SampledPairs& of_class : place.classes) all_ += guessedSeconds(place, of_class);
+    }
+    most_ = std::clamp(kClipShare * all_, kLeastClipSeconds, kMostClipSeconds);
+  }
+
+  void run() {
+    for (std::size_t round = 0; round < kRounds && !isOver(); ++round) {
+      const std::size_t which = round * kJump % kRounds;
+      parallelFor(times_.size(), 1, [&](std::size_t k) {
+        const BothWatches watches;
+        for (std::size_t c = 0; c < clutter_classes; ++c) {
+          clipSome(sample_.places[k], sample_.places[k].classes[c], which, times_[k].clipped[c]);
+        }
+        times_[k].taken += watches.elapsed();
+      });
+    }
+  }
+
+ private:
+  bool isOver() const { return progress_.cancelled() || taken_.load() >= most_; }
+
+  void clipSome(const SampledPlace& place, const SampledPairs& of_class, std::size_t which,
+                ClipTime& clipped) {
+    const double share = guessedSeconds(place, of_class) / all_;
+    if (isOver() || !(share > kLeastShare)) return;
+    const double of_one = of_class.cost.seconds / (place.closely * double(of_class.pairs.size()));
+    const auto size =
+        std::size_t(std::max(1.0, std::min(kPairsARound * share, kBatchSeconds / of_one)));
+    const double before = clipped.seconds;
+    clip(scene_, kernels_, batchOf(of_class.pairs, size, which), place.occluder_list, tolerance_,
+         clipped);
+    taken_.fetch_add(clipped.seconds - before);
+  }
+
+  const ExactScene& scene_;
+  const ExactKernels& kernels_;
+  double tolerance_;
+  const RowSample& sample_;
+  std::vector<PlaceTime>& times_;
+  Progress& progress_;
+  double all_ = 0;   ///< guessed for all pairs
+  double most_ = 0;  ///< seconds
+  std::atomic<double> taken_ = 0;
+};
+
+/// Of the pairs of a class, each place at its own pace: where pairs are dear, fewer of them were
+/// clipped.
+double partialSeconds(const RowSample& sample, const std::vector<PlaceTime>& times, Clutter of) {
+  double guessed = 0;
+  double unpaced = 0;  // of this, where pairs were clipped
+  double paced = 0;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const double seconds = guessedSeconds(sample.places[k], sample.places[k].classes[of]);
+    const ClipTime& clipped = times[k].clipped[of];
+    guessed += seconds;
+    if (!(clipped.expected > 0)) continue;
+    unpaced += seconds;
+    paced += seconds * (clipped.seconds / clipped.expected);
+  }
+  return unpaced > 0 ? guessed * paced / unpaced : guessed;
+}
+
+}  // namespace
+
+RowTimes timeRows(const ExactScene& scene, const ExactKernels& kernels, double tolerance,
+                  const RowSample& sample, Progress& progress) {
+  std::vector<PlaceTime> times(sample.places.size());
+  parallelFor(times.size(), 1, [&](std::size_t k) {
+    if (progress.cancelled()) return;
+    const BothWatches watches;
+    times[k].unoccluded = unoccludedSeconds(kernels.unoccluded, sample.places[k]);
+    times[k].taken = watches.elapsed();
+  });
+  ClipRounds(scene, kernels, tolerance, sample, times, progress).run();
+  progress.check();
+  RowTimes sum;
+  BothClocks taken;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const double share = sample.all_places * sample.places[k].share();
+    sum.visibility += share * sample.places[k].seconds_visibility;
+    sum.unoccluded += share * times[k].unoccluded;
+    taken += sample.places[k].taken;
+    taken += times[k].taken;
+  }
+  for (const Clutter of : {few_occluders, many_occluders}) {
+    sum.partial += sample.all_places * partialSeconds(sample, times, of);
+  }
+  sum.busy = taken.ratio();
+  return sum;
+}
+
+}  // namespace radiosity

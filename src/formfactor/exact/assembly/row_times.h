@@ -1,0 +1,23 @@
+// What the work of a sample of the rows takes, here and now.
+#pragma once
+
+#include "formfactor/exact/assembly/row_sample.h"
+
+namespace radiosity {
+
+/// Processor seconds of all rows, foreseen from those of the sample.
+struct RowTimes {
+  double visibility = 0;
+  double unoccluded = 0;
+  double partial = 0;
+  /// How much longer the sample took by the clock: other work on the machine.
+  double busy = 1;
+};
+
+/// Evaluates unoccluded blocks and clips pairs of the sample for some tenths of a second of
+/// processors' time. (A single pair may take longer than that where the tolerance is 1e-6 and
+/// bodies are round.) Calls check() of `progress`.
+RowTimes timeRows(const ExactScene& scene, const ExactKernels& kernels, double tolerance,
+                  const RowSample& sample, Progress& progress);
+
+}  // namespace radiosity

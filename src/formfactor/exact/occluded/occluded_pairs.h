@@ -1,0 +1,108 @@
+// Exchange areas of elements that see each other past something.
+#pragma once
+
+#include <span>
+
+#include "formfactor/exact/clip_kernels.h"
+#include "formfactor/exact/elements/elements.h"
+#include "formfactor/exact/occluded/pair_sampling.h"
+#include "formfactor/exact/occluders/occluders.h"
+
+namespace radiosity {
+
+struct OccludedCounts {
+  std::size_t pairs = 0;
+  std::size_t points = 0;       ///< point-to-element evaluations
+  std::size_t subdivided = 0;   ///< pairs that needed more than the first rule
+  std::size_t hidden = 0;       ///< found to exchange nothing
+  std::size_t cut_short = 0;    ///< kept with a larger error than accepted (kMostLooks)
+  std::size_t by_segments = 0;  ///< clipping gave no number: segmentFraction() did
+  std::size_t again = 0;  ///< evaluated from both ends in double precision: see OccludedKernel
+  OccludedCounts& operator+=(const OccludedCounts& other);
+};
+
+struct OccludedExchange {
+  double exchange = 0;  ///< G, scaled units; 0 <= G <= the unoccluded G, by construction
+  double error = 0;     ///< estimate of its absolute error, from embedded rules
+  /// By how much the points' sum of the unoccluded exchange misses its closed form, of that: the
+  /// points resolve the elements' nearness, or they do not.
+  double unresolved = 0;
+  bool cut_short = false;  ///< kept with a larger error than accepted: it took too much
+};
+
+struct OccludedPair {
+  Index row, column;                             ///< elements
+  std::uint32_t occluders_begin, occluders_end;  ///< into the list given along
+  double unoccluded;                             ///< G with nothing between (UnoccludedKernel)
+};
+
+/// Below this tolerance single precision is not enough: it knows the form factor to a target of
+/// size h at distance r to 1e-6 r/h, and meshes of 20,000 patches have r/h near 100.
+inline constexpr double kSinglePrecision = 2.5e-4;
+
+/// What points may miss of the unoccluded exchange, and be believed. (Of pairs that miss by less,
+/// 1% are off by more than they state; by more, 10% to 25% are, up to a hundred times. These are 1%
+/// of the pairs of ordinary scenes and 15% of a scan with slivers.)
+inline constexpr double kResolved = 0.01;
+
+/// Of the tolerance, what spot checks are made to; and what they are made to at most, so that they
+/// are in double precision.
+inline constexpr double kStricter = 1.0 / 8;
+inline constexpr double kStricterLoosest = kSinglePrecision / 2;
+
+/// Error of the pair's visible fraction that is accepted at a tolerance.
+double allowedError(const ElementSet& elements, const OccludedPair& pair, double tolerance);
+
+/// The exact unoccluded value times the visible fraction. The fraction is the quotient of two
+/// quadratures over the points of one element, the one along which shadows move less across the
+/// other: of the visible and of the whole form factor from the point to the other element, each in
+/// closed form. So it lies in [0, 1], is exact where nothing or everything is hidden, and what the
+/// quadrature gets wrong about the elements' nearness cancels.
+///
+/// Unless it gets nearly all of it wrong: of a large element that a sliver touches, no point of a
+/// few lies where the exchange takes place. Pairs of which the points miss the unoccluded value by
+/// more than kResolved, and those that single precision would need many points for, are evaluated
+/// again in double precision, from both ends.
+class OccludedKernel {
+ public:
+  /// `tolerance`: error aimed at for F, relative to the mean form factor 1/N: the root mean square
+  /// over the entries of a row (see FormFactorOptions). Elements and occluders are kept by
+  /// reference.
+  OccludedKernel(const ElementSet& elements, const OccluderSet& occluders, double tolerance,
+                 bool simd);
+
+  /// out[k] for pairs[k]; a batch, so that pairs past one occluder share vectors: the more pairs
+  /// the better, from some thousands on. Results do not depend on how pairs are batched.
+  /// Thread-safe. Throws Cancelled where `progress`, if given, is cancelled. Values are finite
+  /// whatever the geometry.
+  void evaluate(std::span<const OccludedPair> pairs, std::span<const Index> occluder_list,
+                std::span<OccludedExchange> out, OccludedCounts& counts,
+                const Progress* progress = nullptr) const;
+
+  /// The same in double precision and to a fraction of the tolerance (kStricter): what it differs
+  /// by is nearly all of the error. For spot checks.
+  void evaluateStrictly(std::span<const OccludedPair> pairs, std::span<const Index> occluder_list,
+                        std::span<OccludedExchange> out, const Progress* progress = nullptr) const;
+
+ private:
+  void evaluateTo(double tolerance, std::span<const OccludedPair> pairs,
+                  std::span<const Index> occluder_list, std::span<OccludedExchange> out,
+                  OccludedCounts& counts, const Progress* progress) const;
+  /// See kResolved.
+  void evaluateAgain(double tolerance, std::span<const OccludedPair> pairs,
+                     std::span<const Index> occluder_list, std::span<OccludedExchange> out,
+                     OccludedCounts& counts, const Progress* progress) const;
+  template <class T>
+  void integrate(const ClipKernels<T>& kernels, double tolerance,
+                 std::span<const OccludedPair> pairs, std::span<const Index> occluder_list,
+                 SampledEnd end, std::span<OccludedExchange> out, OccludedCounts& counts,
+                 const Progress* progress) const;
+
+  const ElementSet& elements_;
+  const OccluderSet& occluders_;
+  EdgeDistances distances_;
+  ClipKernelSet kernels_;
+  double tolerance_;
+};
+
+}  // namespace radiosity

@@ -1,0 +1,241 @@
+#include "formfactor/exact/occluded/pair_sampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "base/parallel.h"
+#include "formfactor/exact/occluded/occluded_pairs.h"
+
+namespace radiosity {
+namespace {
+
+/// Entries of EdgeDistances' table: 64 MiB.
+constexpr std::size_t kMostDistances = std::size_t(1) << 24;
+
+/// Squares of changes that differ by less are alike: in symmetric scenes many are equal, and which
+/// end is sampled must not depend on how distances, in single precision, are rounded.
+constexpr double kAlike = 1 + 1e-5;
+
+/// A body is thin whose thickness is less than so much of its radius. Of bodies with more faces
+/// than these it is not asked.
+constexpr double kThin = 0.1;
+constexpr std::size_t kMostThinPlanes = 16;
+
+/// What a thin body seen edge-on from the middle of an element hides goes down to nearly nothing
+/// there and up again, and points on both sides of it may see the same: as if shadows moved so many
+/// times as far. (Blades 1 : 40 and 1 : 400 in a room, 1e-4: 82% of rows are below their figure
+/// without, 91% with a factor of 2 and 99% with 4; points 728, 662 and 664 thousand.)
+constexpr float kEdgeOn = 4;
+/// Past more than these one is as good as lost among the others, and mostly part of a surface that
+/// is not thin.
+constexpr std::uint32_t kFewBlockers = 2;
+
+struct Heights {
+  double least = std::numeric_limits<double>::infinity();
+  double most = -least;
+};
+
+template <class Plane>
+Heights heights(std::span<const Vec3> points, const Plane& plane) {
+  Heights h;
+  for (const Vec3& p : points) {
+    const double d = glm::dot(plane.normal, p) - plane.offset;
+    h.least = std::min(h.least, d);
+    h.most = std::max(h.most, d);
+  }
+  return h;
+}
+
+double edgeDistance2(const Occluder& body, const Vec3& p) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Occluder::Edge& edge : body.edges) {
+    const Vec3 a = p - body.corners[edge.from];
+    const Vec3 along = body.corners[edge.to] - body.corners[edge.from];
+    const double t = std::clamp(glm::dot(a, along) / glm::dot(along, along), 0.0, 1.0);
+    const Vec3 d = a - along * t;
+    least = std::min(least, glm::dot(d, d));
+  }
+  return least;
+}
+
+/// The middle plane of a body that is thin; a normal of 0 for others.
+Occluder::Plane middleOfThin(const Occluder& body) {
+  Occluder::Plane best;
+  if (body.planes.size() > kMostThinPlanes) return best;
+  double least = kThin * body.radius;
+  for (const Occluder::Plane& plane : body.planes) {
+    double low = plane.offset;
+    for (const Vec3& v : body.corners) low = std::min(low, glm::dot(plane.normal, v));
+    if (plane.offset - low < least) {
+      least = plane.offset - low;
+      best = {plane.normal, 0.5 * (plane.offset + low)};
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+EdgeDistances::EdgeDistances(const ElementSet& elements, const OccluderSet& occluders, bool few)
+    : elements_(elements), occluders_(occluders) {
+  for (const Occluder& body : occluders.occluders) thin_.push_back(middleOfThin(body));
+  const std::size_t count = elements.size();
+  if (few || occluders.occluders.size() * count > kMostDistances) return;
+  table_.resize(occluders.occluders.size() * count);
+  parallelFor(occluders.occluders.size(), 1, [&](std::size_t o) {
+    float* const distances = table_.data() + o * count;
+    for (std::size_t e = 0; e < count; ++e) {
+      distances[e] = float(edgeDistance2(occluders.occluders[o], elements.centroid[e]));
+    }
+  });
+}
+
+bool EdgeDistances::seesEdgeOn(Index element, Index occluder) const {
+  const Occluder::Plane& plane = thin_[occluder];
+  if (plane.normal == Vec3(0.0)) return false;
+  const double height = glm::dot(plane.normal, elements_.centroid[element]) - plane.offset;
+  if (std::abs(height) >= elements_.radius[element]) return false;
+  const Heights h = heights(elements_.outline(element), plane);
+  return h.least < -elements_.coincidence && h.most > elements_.coincidence;
+}
+
+double EdgeDistances::squared(Index element, Index occluder) const {
+  // Rounded either way, so that what is chosen does not depend on the table's size.
+  if (!table_.empty()) return table_[occluder * elements_.size() + element];
+  return float(edgeDistance2(occluders_.occluders[occluder], elements_.centroid[element]));
+}
+
+PairPreparation::PairPreparation(const ElementSet& elements, const OccluderSet& occluders,
+                                 const EdgeDistances& distances)
+    : elements_(elements),
+      occluders_(occluders),
+      distances_(distances),
+      between_(occluders.occluders.size()) {}
+
+const PairPreparation::Between& PairPreparation::between(Index occluder, Index row_facet,
+                                                         Index column_facet) {
+  if (row_facet != row_facet_ || column_facet != column_facet_) {
+    row_facet_ = row_facet;
+    column_facet_ = column_facet;
+    ++stamp_;
+  }
+  Between& found = between_[occluder];
+  if (found.stamp != stamp_) {
+    const Occluder& body = occluders_.occluders[occluder];
+    const Heights first = heights(body.corners, elements_.facets[row_facet]);
+    const Heights second = heights(body.corners, elements_.facets[column_facet]);
+    const double touching = elements_.coincidence;
+    found = {stamp_, first.most > touching && second.most > touching, first.least < -touching,
+             second.least < -touching};
+  }
+  return found;
+}
+
+/// Of similar triangles with their tips on the occluders' edges. Of an edge that touches the target
+/// no shadow moves, but others of the same occluder may be a target's size away.
+PairPreparation::Near PairPreparation::shadowChanges(double row_size, double column_size) const {
+  const double row_size2 = row_size * row_size;
+  const double column_size2 = column_size * column_size;
+  // Apart, or beside the target: squares, in sizes of the sampled element.
+  const double by_row = row_size2 / column_size2;
+  const double by_column = column_size2 / row_size2;
+  Near most{0, 0};
+  for (const Near& blocker : near_) {
+    most.row = std::max(most.row, std::max(blocker.column * by_row, row_size2) / blocker.row);
+    most.column =
+        std::max(most.column, std::max(blocker.row * by_column, column_size2) / blocker.column);
+  }
+  return most;
+}
+
+void PairPreparation::prepare(std::span<const OccludedPair> batch,
+                              std::span<const Index> occluder_list, SampledEnd end) {
+  pairs.clear();
+  blockers.clear();
+  for (std::uint32_t k = 0; k < batch.size(); ++k) {
+    const OccludedPair& given = batch[k];
+    const Index row_facet = elements_.facet[given.row];
+    const Index column_facet = elements_.facet[given.column];
+    const Heights row = heights(elements_.outline(given.row), elements_.facets[column_facet]);
+    const Heights column = heights(elements_.outline(given.column), elements_.facets[row_facet]);
+    const double touching = elements_.coincidence;
+    if (row.most <= touching || column.most <= touching) continue;
+    SampledPair pair;
+    pair.pair = k;
+    pair.blockers_begin = std::uint32_t(blockers.size());
+    double at_row = std::numeric_limits<double>::infinity();
+    double at_column = at_row;
+    near_.clear();
+    for (std::uint32_t o = given.occluders_begin; o < given.occluders_end; ++o) {
+      const Index id = occluder_list[o];
+      if (!between(id, row_facet, column_facet).blocks) continue;
+      blockers.push_back({&occluders_.occluders[id], id, false});
+      near_.push_back({distances_.squared(given.row, id), distances_.squared(given.column, id)});
+      at_row = std::min(at_row, near_.back().row);
+      at_column = std::min(at_column, near_.back().column);
+    }
+    pair.blockers_end = std::uint32_t(blockers.size());
+    const double row_size = elements_.radius[given.row];
+    const double column_size = elements_.radius[given.column];
+    const Near change2 = shadowChanges(row_size, column_size);
+    const bool row_is_calmer = change2.row <= kAlike * change2.column;
+    const bool at_row_end = row_is_calmer == (end == SampledEnd::calmer);
+    pair.change = float(std::sqrt(at_row_end ? change2.row : change2.column));
+    const double reach = at_row_end ? row_size : column_size;
+    const Index sampled = at_row_end ? given.row : given.column;
+    const bool few = pair.blockers_end - pair.blockers_begin <= kFewBlockers;
+    const bool edge_on =
+        few && std::any_of(blockers.begin() + pair.blockers_begin, blockers.end(),
+                           [&](const Blocker& b) { return distances_.seesEdgeOn(sampled, b.id); });
+    if (edge_on) pair.change *= kEdgeOn;
+    pair.may_cross = (at_row_end ? at_row : at_column) <= reach * reach;
+    pair.sampled = sampled;
+    pair.target = at_row_end ? given.column : given.row;
+    const bool row_cut = row.least < -touching;
+    const bool column_cut = column.least < -touching;
+    pair.sampled_cut = at_row_end ? row_cut : column_cut;
+    pair.target_cut = at_row_end ? column_cut : row_cut;
+    for (std::uint32_t b = pair.blockers_begin; b < pair.blockers_end; ++b) {
+      const Between& where = between(blockers[b].id, row_facet, column_facet);
+      blockers[b].cuts_target = at_row_end ? where.cuts_second : where.cuts_first;
+    }
+    pairs.push_back(pair);
+  }
+  // One word a pair: comparing fields in three arrays would take longer than clipping.
+  order_.clear();
+  for (std::uint32_t k = 0; k < pairs.size(); ++k) {
+    const SampledPair& p = pairs[k];
+    order_.push_back({std::uint64_t(p.sampled) << 32 | std::uint64_t(p.sampled_cut) << 31, k});
+    // Uncut ones first; cut ones by target, and so by its facet.
+    order_.back().key |= p.target;
+  }
+  std::sort(order_.begin(), order_.end(),
+            [](const Place& a, const Place& b) { return a.key < b.key; });
+  sorted_.clear();
+  for (const Place& place : order_) sorted_.push_back(pairs[place.pair]);
+  pairs.swap(sorted_);
+}
+
+std::vector<Vec3> partInFront(const ElementSet& elements, Index element, const Facet& facet) {
+  const std::span<const Vec3> outline = elements.outline(element);
+  // A corner that touches the plane is on it: cut off beside it, a sliver as wide as rounding would
+  // be left, of which no rule makes a mean.
+  const auto height = [&](const Vec3& p) {
+    const double d = glm::dot(facet.normal, p) - facet.offset;
+    return std::abs(d) <= elements.coincidence ? 0.0 : d;
+  };
+  std::vector<Vec3> part;
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const Vec3& p = outline[k];
+    const Vec3& q = outline[(k + 1) % outline.size()];
+    const double at_p = height(p);
+    const double at_q = height(q);
+    if (at_p >= 0) part.push_back(p);
+    if (at_p * at_q < 0) part.push_back(p + (q - p) * (at_p / (at_p - at_q)));
+  }
+  return part;
+}
+
+}  // namespace radiosity

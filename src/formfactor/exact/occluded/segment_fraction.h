@@ -1,0 +1,17 @@
+// The visible fraction of a pair by segments: for pairs that nothing else can tell.
+#pragma once
+
+#include <span>
+
+#include "formfactor/exact/occluded/occluded_pairs.h"
+
+namespace radiosity {
+
+/// Between 9 points of each element, in front of each other's planes: the share of the segments
+/// that no occluder meets, times the unoccluded exchange. What all of them meet is hidden. The
+/// error is that of as many random segments, and at least that of one. Finite whatever the
+/// geometry.
+OccludedExchange exchangeBySegments(const ElementSet& elements, const OccluderSet& occluders,
+                                    const OccludedPair& pair, std::span<const Index> occluder_list);
+
+}  // namespace radiosity

@@ -1,0 +1,125 @@
+#include "formfactor/exact/occluders/clip.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <vector>
+
+#include "mesh/plane_frame.h"
+
+namespace radiosity {
+namespace {
+
+/// The part of a loop where dot(normal, x) <= offset.
+std::vector<Vec3> clippedBelow(const std::vector<Vec3>& loop, const Vec3& normal, double offset) {
+  std::vector<Vec3> out;
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    const Vec3& a = loop[k];
+    const Vec3& b = loop[(k + 1) % loop.size()];
+    const double da = glm::dot(normal, a) - offset;
+    const double db = glm::dot(normal, b) - offset;
+    if (da <= 0) out.push_back(a);
+    if ((da <= 0) != (db <= 0)) out.push_back(a + (b - a) * (da / (da - db)));
+  }
+  return out;
+}
+
+/// What clipping leaves of the loops; none if a plane shows that there is nothing.
+std::vector<std::vector<Vec3>> partsInside(const OccluderPolygons& all,
+                                           const OccluderPolygon& polygon, const Occluder& body,
+                                           double margin) {
+  std::vector<std::vector<Vec3>> parts;
+  for (const Occluder::Plane& plane : body.planes) {
+    const bool outside = std::all_of(polygon.corners.begin(), polygon.corners.end(), [&](Index v) {
+      return glm::dot(plane.normal, all.vertices[v]) >= plane.offset - margin;
+    });
+    if (outside) return parts;
+  }
+  for (const std::vector<Index>& loop : polygon.loops) {
+    std::vector<Vec3> part;
+    part.reserve(loop.size());
+    for (const Index v : loop) part.push_back(all.vertices[v]);
+    for (const Occluder::Plane& plane : body.planes) {
+      part = clippedBelow(part, plane.normal, plane.offset - margin);
+    }
+    if (!part.empty()) parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+}  // namespace
+
+double areaInside(const OccluderPolygons& all, const OccluderPolygon& polygon, const Occluder& body,
+                  double margin) {
+  Vec3 sum(0.0);
+  for (const std::vector<Vec3>& part : partsInside(all, polygon, body, margin)) {
+    sum += vectorArea(part.size(), [&](std::size_t k) { return part[k]; });
+  }
+  return std::abs(glm::dot(sum, polygon.normal));
+}
+
+double highestInside(const OccluderPolygons& all, const OccluderPolygon& polygon,
+                     const Occluder& body, double margin) {
+  double highest = -std::numeric_limits<double>::infinity();
+  Vec3 sum(0.0);
+  double size = 0;
+  for (const std::vector<Vec3>& part : partsInside(all, polygon, body, margin)) {
+    sum += vectorArea(part.size(), [&](std::size_t k) { return part[k]; });
+    for (const Vec3& p : part) {
+      highest = std::max(highest, glm::dot(body.planes[0].normal, p));
+      size = std::max(size, glm::distance(p, part[0]));
+    }
+  }
+  const bool any = glm::length(sum) > margin * size;
+  return any ? highest : -std::numeric_limits<double>::infinity();
+}
+
+Occluder::Plane planeOf(const OccluderPolygon& polygon) { return {polygon.normal, polygon.offset}; }
+
+bool isBehind(const OccluderPolygons& all, const OccluderPolygon& polygon,
+              const Occluder::Plane& plane) {
+  return std::all_of(polygon.corners.begin(), polygon.corners.end(), [&](Index v) {
+    return glm::dot(plane.normal, all.vertices[v]) <= plane.offset + all.coincidence;
+  });
+}
+
+Index faceThatHolds(const OccluderPolygons& all, const OccluderPolygon& polygon,
+                    const Occluder& solid) {
+  std::vector<std::uint8_t> on(solid.planes.size(), 1);
+  for (const Index v : polygon.corners) {
+    const Vec3& p = all.vertices[v];
+    if (glm::distance(p, solid.centre) > solid.radius + all.coincidence) return kNone;
+    for (std::size_t k = 0; k < solid.planes.size(); ++k) {
+      const double height = glm::dot(solid.planes[k].normal, p) - solid.planes[k].offset;
+      if (height > all.coincidence) return kNone;
+      if (height < -all.coincidence) on[k] = 0;
+    }
+  }
+  const auto face = std::find(on.begin(), on.end(), 1);
+  return face == on.end() ? kNone : Index(face - on.begin());
+}
+
+Box3 boxAround(const Occluder& body, double margin) {
+  Box3 box;
+  for (const Vec3& corner : body.corners) box.add(corner);
+  return box.grown(margin);
+}
+
+bool isEmpty(const OccluderPolygons& all, const Occluder& body, std::span<const Index> own) {
+  bool empty = true;
+  const auto apart = [&](const Box3& box) {
+    return glm::distance(glm::clamp(body.centre, box.low, box.high), body.centre) > body.radius;
+  };
+  all.tree.query(boxAround(body, 0), [&](Index p) {
+    if (!std::binary_search(own.begin(), own.end(), p) && !apart(all.polygons[p].box)) {
+      const double inside = areaInside(all, all.polygons[p], body, all.coincidence);
+      empty = inside <= all.coincidence * body.radius;
+    }
+    return empty;
+  });
+  return empty;
+}
+
+}  // namespace radiosity

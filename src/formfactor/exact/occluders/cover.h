@@ -1,0 +1,18 @@
+// Which polygons are nothing but faces of solids.
+#pragma once
+
+#include <span>
+
+#include "base/geometry/box_tree.h"
+#include "formfactor/exact/occluders/occluders.h"
+#include "formfactor/exact/occluders/polygons.h"
+
+namespace radiosity {
+
+/// True if faces of the solids, together, cover the polygon: what it blocks they block, right
+/// behind or in front of it. What each face leaves is cut off in convex pieces and handed to the
+/// next. `places`: of the solids' boxes.
+bool isCoveredBySolids(const OccluderPolygons& all, const OccluderPolygon& polygon,
+                       std::span<const Occluder> solids, const BoxTree& places);
+
+}  // namespace radiosity

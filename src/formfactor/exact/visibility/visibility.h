@@ -1,0 +1,107 @@
+// Which elements see each other wholly, not at all, or past what.
+#pragma once
+
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "formfactor/exact/elements/elements.h"
+#include "formfactor/exact/occluders/occluders.h"
+#include "formfactor/exact/visibility/shadow.h"
+#include "formfactor/exact/visibility/tree.h"
+
+namespace radiosity {
+
+/// What classification did, in pairs of elements (each unordered pair counted once).
+struct VisibilityCounts {
+  std::size_t no_exchange = 0;  ///< coplanar, back to back, below each other's horizon
+  std::size_t unoccluded = 0;
+  std::size_t hidden = 0;
+  std::size_t partial = 0;
+  std::size_t facet_pairs = 0;              ///< looked at: ranges of rows and facets after theirs
+  std::size_t facet_pairs_no_exchange = 0;  ///< settled by their planes alone
+  std::size_t facet_pairs_unoccluded = 0;   ///< settled whole: no visibility code ran below them
+  std::size_t shaft_tests = 0;              ///< of an occluder against the space between two shapes
+  /// Pairs of elements that were settled, one way or another.
+  std::size_t settled() const { return no_exchange + unoccluded + hidden + partial; }
+  VisibilityCounts& operator+=(const VisibilityCounts& other);
+};
+
+/// Which pairs of some rows a sample looks at, and how long.
+/// What walls see of walls is a large part of the work in few facets: among thousands of small ones
+/// a stride would pass them by, or count them too often. So they are sampled apart.
+enum class FacetSize { any, small, large };
+/// Elements that a large facet has at least.
+inline constexpr std::size_t kLargeFacet = 8;
+
+struct VisibilitySample {
+  FacetSize size = FacetSize::any;
+  std::size_t facet_stride = 1;  ///< every so many-th of these, of the open facets after theirs,
+  std::size_t first_facet = 0;   ///< from this one of them on
+  std::size_t most_tests = std::numeric_limits<std::size_t>::max();  ///< then it stops as it is
+};
+
+/// What a sample settled with facets as a whole, which it does first, ...
+struct VisibilityOfFacets {
+  VisibilityCounts settled;
+  std::size_t left = 0;  ///< ... and pairs of elements that it then looked at more closely
+};
+
+/// Receives the answers. `rows` are always inside the range asked for; `columns` come from one
+/// facet.
+class VisibilitySink {
+ public:
+  virtual ~VisibilitySink() = default;
+  /// Called again and again while pairs are settled; may throw to end that.
+  virtual void poll() const {}
+  /// Nothing stands between any element of `rows` and any of `columns`. Some may still be below
+  /// another's horizon, or cross its plane.
+  virtual void unoccluded(ElementRange rows, ElementRange columns) = 0;
+  /// At least these may stand between; ids ascending, into OccluderSet::occluders, one or more.
+  virtual void partial(Index row, Index column, std::span<const Index> occluders) = 0;
+};
+
+/// Classifies pairs of elements by descending two quadtrees at once, the list of what may stand
+/// between two clusters handed down and thinned out on the way. What a whole pair of clusters
+/// shares is settled there: nothing in between, or one convex body that hides all. Every answer
+/// but `partial` is proved; touching within the coincidence blocks nothing.
+class Visibility {
+ public:
+  /// Both are kept by reference. `simd` false: scalar twin, the same answers.
+  Visibility(const ElementSet& elements, const OccluderSet& occluders, bool simd = true);
+
+  /// Classifies elements `rows` (of one facet that is not bare; best a cluster's range) against
+  /// the elements of their own facet that come after each (no exchange), and against all elements
+  /// of the facets that come after it. Pairs without exchange and hidden ones are not reported, but
+  /// counted. Thread-safe.
+  void classify(ElementRange rows, VisibilitySink& sink, VisibilityCounts& counts) const;
+
+  /// Classifies the same rows against some of the facets after theirs that are not sealed, to find
+  /// out what that takes; counts only pairs that it settles. Nothing of rows that are sealed.
+  VisibilityOfFacets classifySome(ElementRange rows, const VisibilitySample& sample,
+                                  VisibilitySink& sink, VisibilityCounts& counts) const;
+  /// How many facets after that of `rows` classifySome() chooses from; 0 where the rows are sealed.
+  std::size_t openFacetsAfter(ElementRange rows, FacetSize size = FacetSize::any) const;
+  /// Pairs of `rows` with the elements of these.
+  std::size_t openPairs(ElementRange rows, FacetSize size = FacetSize::any) const;
+
+ private:
+  friend class VisibilityDescent;
+
+  const ElementSet& elements_;
+  const OccluderSet& occluders_;
+  OccluderTree tree_;
+  VisibilityKernels kernels_;
+  std::vector<ShapeCorners> shapes_;  ///< of clusters: bounds, or a leaf's element itself
+  std::vector<Index> open_facets_;    ///< not sealed, ascending
+  struct Open {
+    std::size_t facets = 0;
+    std::size_t elements = 0;
+  };
+  Open openAfter(ElementRange rows, FacetSize size) const;
+  std::vector<Open> open_after_;         ///< open facets from one of them on
+  std::vector<Open> large_after_;        ///< of these the large ones
+  std::vector<std::vector<Index>> own_;  ///< of a facet: occluders that it lies on, ascending
+};
+
+}  // namespace radiosity

@@ -1,0 +1,83 @@
+// What hemicubes will take: a sample of them is looked through.
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "base/parallel.h"
+#include "base/processor_clock.h"
+#include "formfactor/hemicube/hemicube_factors.h"
+
+namespace radiosity {
+namespace {
+
+/// One row in so many, as far as these are at least and at most so many rows: so a sample takes a
+/// few per cent of the whole, or not long.
+constexpr std::size_t kOneIn = 40;
+constexpr std::size_t kLeastRows = 8;
+constexpr std::size_t kMostRows = 32;
+
+struct SampledRow {
+  std::size_t entries = 0;
+  std::size_t hemicube_bytes = 0;
+  double seconds = 0;  ///< of a processor
+  BothClocks taken;    ///< by all of it
+};
+
+/// The second look is timed: the first one also makes room for itself.
+SampledRow lookFrom(std::size_t patch, std::size_t patches, const HemicubeScene& scene) {
+  const BothWatches watches;
+  Hemicube hemicube = scene.rows.makeHemicube();
+  std::vector<std::uint8_t> hidden;
+  PackedRow row;
+  SampledRow sampled;
+  for (int look = 0; look < 2; ++look) {
+    const double start = processorSeconds();
+    row.pack(scene.rows.look(patch, hemicube, hidden), patches);
+    sampled.entries = row.columns.size();
+    if (scene.near_pairs) scene.near_pairs->correct(patch, row);
+    sampled.seconds = processorSeconds() - start;
+  }
+  sampled.hemicube_bytes = hemicube.bytes();
+  sampled.taken = watches.elapsed();
+  return sampled;
+}
+
+}  // namespace
+
+HemicubeEstimate estimateHemicubes(const PatchMesh& mesh, const HemicubeScene& scene,
+                                   const FormFactorOptions& options, Progress& progress) {
+  const std::size_t n = mesh.size();
+  const std::size_t samples = std::min(n, std::clamp(n / kOneIn, kLeastRows, kMostRows));
+  std::vector<SampledRow> rows(samples);
+  progress.begin("planning", samples);
+  parallelFor(samples, 1, [&](std::size_t k) {
+    const std::size_t patch = (2 * k + 1) * n / (2 * samples);
+    if (progress.cancelled() || scene.rows.isEmpty(patch)) return;
+    rows[k] = lookFrom(patch, n, scene);
+    progress.advance();
+  });
+  progress.check();
+  progress.end();
+  SampledRow sum;
+  for (const SampledRow& row : rows) {
+    sum.entries += row.entries;
+    sum.seconds += row.seconds;
+    sum.taken += row.taken;
+    sum.hemicube_bytes = std::max(sum.hemicube_bytes, row.hemicube_bytes);
+  }
+  const double share = samples > 0 ? 1 / double(samples) : 0;
+  const std::size_t threads =
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  HemicubeEstimate estimate;
+  estimate.matrix_bytes =
+      ExchangeMatrix::estimateBytes(n, share * double(sum.entries), options.storedPrecision());
+  constexpr std::size_t kAccounts = 4 * sizeof(double);  // fronts, backs, sky, area
+  // Merging both estimates makes a second matrix beside the first.
+  estimate.bytes = options.memory_held + (options.symmetrize ? 2 : 1) * estimate.matrix_bytes +
+                   n * kAccounts + scene.rows.sharedBytes() + threads * sum.hemicube_bytes;
+  estimate.measured = sum.taken.ratio() * share * sum.seconds * double(n) / double(threads);
+  return estimate;
+}
+
+}  // namespace radiosity

@@ -1,0 +1,145 @@
+#include "formfactor/hemicube/hemicube_factors.h"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/parallel.h"
+#include "formfactor/hemicube/row_builder.h"
+#include "formfactor/row_accounts.h"
+#include "matrix/closure_progress.h"
+
+namespace radiosity {
+namespace {
+
+struct Worker {
+  Hemicube hemicube;
+  std::vector<std::uint8_t> hidden;
+  PackedRow row;
+  std::size_t near_pairs = 0;
+  std::size_t capped = 0;
+};
+
+/// Stores row i as it was seen, or with its near entries put right.
+void storeRow(std::size_t i, const HemicubeView& view, const NearPairs* near_pairs, Worker& worker,
+              FormFactors& result, std::vector<SeenBack>& seen_backs) {
+  const std::size_t n = result.fronts.size();
+  worker.row.pack(view, n);
+  result.fronts[i] = view.fronts;
+  double rest = 1;
+  if (near_pairs != nullptr) {
+    const NearPairs::Outcome outcome = near_pairs->correct(i, worker.row);
+    worker.near_pairs += outcome.replaced;
+    worker.capped += outcome.capped;
+    rest = outcome.rest;
+    const std::vector<double>& values = worker.row.values;
+    result.fronts[i] = std::accumulate(values.begin(), values.end(), 0.0);
+  }
+  result.matrix.setRow(i, worker.row.columns, worker.row.values);
+  result.backs[i] = rest * view.backs;
+  result.sky[i] = rest * view.sky;
+  for (std::size_t item = n; view.backs > 0 && item < view.items.size(); ++item) {
+    if (view.items[item] > 0) seen_backs.push_back({Index(item - n), rest * view.items[item]});
+  }
+}
+
+void fillRows(const HemicubeScene& scene, FormFactors& result,
+              std::vector<std::vector<SeenBack>>& seen_backs, Progress& progress) {
+  const RowBuilder& rows = scene.rows;
+  const NearPairs* const near_pairs = scene.near_pairs ? &*scene.near_pairs : nullptr;
+  const std::size_t n = result.fronts.size();
+  tbb::enumerable_thread_specific<Worker> workers([&] {
+    return Worker{rows.makeHemicube(), {}, {}, 0, 0};
+  });
+  progress.begin("form factors", n);
+  parallelFor(n, 1, [&](std::size_t i) {
+    if (progress.cancelled()) return;
+    if (!rows.isEmpty(i)) {
+      Worker& worker = workers.local();
+      const HemicubeView& view = rows.look(i, worker.hemicube, worker.hidden);
+      storeRow(i, view, near_pairs, worker, result, seen_backs[i]);
+    }
+    progress.advance();
+  });
+  progress.check();
+  progress.end();
+
+  HemicubeCounts counts;
+  FormFactorReport& report = result.report;
+  for (const Worker& worker : workers) {
+    counts += worker.hemicube.counts();
+    report.near_pairs += worker.near_pairs;
+    report.capped += worker.capped;
+  }
+  report.hemicubes = counts.hemicubes;
+  report.empty_rows = n - counts.hemicubes;
+  report.rasterised_polygons = counts.rasterised_polygons;
+  report.skipped_own_plane = counts.skipped_own_plane;
+  report.skipped_horizon = counts.skipped_horizon;
+  report.skipped_facing_away = counts.skipped_facing_away;
+  report.skipped_face = counts.skipped_face;
+  report.pixels = counts.pixels;
+  report.closed = counts.hemicubes > 0 && counts.sky_pixels == 0;
+}
+
+void symmetrize(FormFactors& result, Progress& progress) {
+  // The row sums to restore are the raw ones: 1 in a closed scene, what was seen in an open one.
+  result.matrix = symmetrized(result.matrix);
+  result.report.closure = restoreClosure(result.matrix, result.fronts, progress);
+  result.report.symmetrized = true;
+}
+
+void checkRows(FormFactors& result) {
+  for (std::size_t i = 0; i < result.fronts.size(); ++i) {
+    const double sum = result.fronts[i] + result.backs[i] + result.sky[i];
+    if (sum > 0) {
+      result.report.largest_row_error =
+          std::max(result.report.largest_row_error, std::abs(sum - 1));
+    }
+  }
+}
+
+}  // namespace
+
+HemicubeScene::HemicubeScene(const PatchMesh& mesh, const FormFactorOptions& options)
+    : rows(mesh, options) {
+  if (options.nearExact()) near_pairs.emplace(mesh, options);
+}
+
+FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
+                            const HemicubeEstimate& estimate, const FormFactorOptions& options,
+                            Progress& progress) {
+  const std::size_t n = mesh.size();
+  FormFactors result;
+  result.method = "hemicube";
+  FormFactorReport& report = result.report;
+  report.polygons = mesh.polygons.size();
+  report.simd_target = scene.rows.kernels().target;
+  report.estimated_bytes = estimate.bytes;
+  refuseTooLarge(report.estimated_bytes, options, n);
+
+  result.matrix = ExchangeMatrix(mesh.area, options.storedPrecision());
+  result.fronts.assign(n, 0.0);
+  result.backs.assign(n, 0.0);
+  result.sky.assign(n, 0.0);
+  std::vector<std::vector<SeenBack>> seen_backs(n);
+  fillRows(scene, result, seen_backs, progress);
+  constexpr std::size_t kSteps = 2;
+  progress.begin("finishing", kSteps);
+  const auto step = [&] {
+    progress.advance();
+    progress.check();
+  };
+  accountForBacks(mesh, seen_backs, result);
+  checkRows(result);
+  step();
+  report.reciprocity_residual = reciprocityResidual(result.matrix);
+  step();
+  progress.end();
+  if (options.symmetrize) symmetrize(result, progress);
+  return result;
+}
+
+}  // namespace radiosity

@@ -1,0 +1,36 @@
+// The hemicube method: one look a patch.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "formfactor/hemicube/near_pairs.h"
+#include "formfactor/hemicube/row_builder.h"
+#include "radiosity/form_factors.h"
+
+namespace radiosity {
+
+/// What all rows share.
+struct HemicubeScene {
+  /// Keeps `mesh` by reference.
+  HemicubeScene(const PatchMesh& mesh, const FormFactorOptions& options);
+  RowBuilder rows;
+  std::optional<NearPairs> near_pairs;  ///< where near entries are to be made exact
+};
+
+/// From a sample of rows.
+struct HemicubeEstimate {
+  std::size_t bytes = 0;         ///< held at once, FormFactorOptions::memory_held included
+  std::size_t matrix_bytes = 0;  ///< of these, the matrix
+  double measured = 0;  ///< seconds by the clock on the threads allowed, at the sample's rates
+};
+HemicubeEstimate estimateHemicubes(const PatchMesh& mesh, const HemicubeScene& scene,
+                                   const FormFactorOptions& options, Progress& progress);
+
+/// Raw rows, as they were seen, unless `symmetrize`. See computeFormFactors(). `scene` is the
+/// mesh's, `estimate` the scene's.
+FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
+                            const HemicubeEstimate& estimate, const FormFactorOptions& options,
+                            Progress& progress);
+
+}  // namespace radiosity

@@ -1,0 +1,48 @@
+// What one point of a patch gets wrong about its neighbours, put right.
+#pragma once
+
+#include <vector>
+
+#include "formfactor/exact/elements/elements.h"
+#include "formfactor/exact/unoccluded/unoccluded.h"
+#include "formfactor/hemicube/row_builder.h"
+
+namespace radiosity {
+
+/// Replaces the near entries of hemicube rows by area-to-area form factors.
+///
+/// A hemicube sees from one point; its error goes as (patch size / distance)^2 and no number of
+/// pixels helps (Baum, Rushmeier & Winget 1989). A pair is near where its centroids are closer than
+/// two patch sizes. Its new value is the unoccluded area-to-area form factor times the visible
+/// fraction, which is what the hemicube saw over what its eye would see with nothing between. What
+/// is nearly all seen is taken for all: pixels along an edge are no occluder. The rest of the row,
+/// backs and sky are scaled to what is left of 1, in the proportions in which they were seen: a
+/// hemicube's row sums to 1, and so does the corrected one.
+class NearPairs {
+ public:
+  /// `mesh` is kept by reference.
+  NearPairs(const PatchMesh& mesh, const FormFactorOptions& options);
+
+  struct Outcome {
+    std::size_t replaced = 0;
+    std::size_t capped = 0;  ///< rows whose near entries alone exceed 1: scaled down to 1
+    double rest = 1;         ///< what the rest, backs and sky were multiplied by
+  };
+  /// `row`: of `patch`, as it was seen. Thread-safe.
+  Outcome correct(std::size_t patch, PackedRow& row) const;
+
+ private:
+  bool near(std::size_t i, std::size_t j) const;
+  /// Area-to-area value over point-to-area value, times what was seen; empty where the eye sees
+  /// nothing of j.
+  double corrected(std::size_t i, std::size_t j, double seen) const;
+
+  const PatchMesh& mesh_;
+  ElementSet elements_;
+  UnoccludedKernel kernel_;
+  double pixels_;                      ///< of a hemicube
+  std::vector<std::size_t> first_;     ///< N + 1, into patch_elements_
+  std::vector<Index> patch_elements_;  ///< elements by patch
+};
+
+}  // namespace radiosity

@@ -1,0 +1,56 @@
+// Rows of the form-factor matrix, one hemicube each.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "formfactor/hemicube/delta_form_factors.h"
+#include "formfactor/hemicube/hemicube.h"
+#include "formfactor/hidden_backs.h"
+#include "formfactor/view_scene.h"
+#include "radiosity/form_factors.h"
+
+namespace radiosity {
+
+/// What every row of one computation shares; made once, read by all threads.
+class RowBuilder {
+ public:
+  /// `mesh` is kept by reference.
+  RowBuilder(const PatchMesh& mesh, const FormFactorOptions& options);
+
+  const ViewScene& scene() const { return scene_; }
+  const RasterKernels& kernels() const { return kernels_; }
+  Hemicube makeHemicube() const { return {scene_, weights_, kernels_}; }
+  bool isEmpty(std::size_t patch) const;
+  /// The view from a patch that is not empty. `hidden`: scratch.
+  const HemicubeView& look(std::size_t patch, Hemicube& hemicube,
+                           std::vector<std::uint8_t>& hidden) const;
+
+  /// The view from any eye (metres) that looks along the unit `normal`, its hemicube turned by
+  /// `angle`. `own`: polygon of the mesh the eye lies in, or kNone. `runs`: see Hemicube::look().
+  const HemicubeView& lookFrom(const Vec3& eye, const Vec3& normal, double angle, Index own,
+                               Hemicube& hemicube, std::vector<std::uint8_t>& hidden,
+                               RunVisitor* runs = nullptr) const;
+
+  /// Bytes held by all rows and by one thread, without the matrix.
+  std::size_t sharedBytes() const { return scene_.bytes() + weights_.bytes(); }
+
+ private:
+  const PatchMesh& mesh_;
+  std::uint64_t seed_;
+  bool random_turns_;
+  ViewScene scene_;
+  HiddenBacks hidden_backs_;
+  DeltaFormFactors weights_;
+  RasterKernels kernels_;
+  std::vector<Index> polygon_place_;  ///< position in scene_.polygons of each polygon of the mesh
+};
+
+/// A row as it is stored: patches seen, ascending, and what they are worth.
+struct PackedRow {
+  std::vector<Index> columns;
+  std::vector<double> values;
+  void pack(const HemicubeView& view, std::size_t patches);
+};
+
+}  // namespace radiosity
