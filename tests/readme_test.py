@@ -1,0 +1,64 @@
+"""Runs every command of the program that a README gives, and follows every link."""
+import os
+import pathlib
+import re
+import shlex
+import subprocess
+import tempfile
+import unittest
+
+PROGRAM = os.environ["RADIOSITY"]
+ROOT = pathlib.Path(os.environ["RADIOSITY_SOURCE_DIR"])
+READMES = [ROOT / "README.md"] + sorted(
+    p for folder in ("data", "src", "tests") for p in (ROOT / folder).rglob("README.md"))
+
+
+def fenced_lines(readme):
+    """Lines of fenced blocks."""
+    for block in re.findall(r"^```\w*\n(.*?)^```", readme.read_text(), re.S | re.M):
+        yield from block.splitlines()
+
+
+def commands(readme):
+    """Argument lists of its `radiosity ...` lines."""
+    for line in fenced_lines(readme):
+        words = shlex.split(line.removeprefix("$ "), comments=True)
+        if words and words[0] == "radiosity":
+            yield words[1:]
+
+
+def anchors(readme):
+    """Headings as links name them."""
+    for title in re.findall(r"^#+ (.*)$", readme.read_text(), re.M):
+        yield re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
+
+
+class Readme(unittest.TestCase):
+    def test_every_command_runs(self):
+        with tempfile.TemporaryDirectory() as folder:
+            (pathlib.Path(folder) / "data").symlink_to(ROOT / "data")
+            run = 0
+            for readme in READMES:
+                for arguments in commands(readme):
+                    done = subprocess.run([PROGRAM, *arguments], cwd=folder, capture_output=True,
+                                          text=True)
+                    said = f"{readme.relative_to(ROOT)}: {shlex.join(arguments)}\n{done.stderr}"
+                    self.assertEqual(done.returncode, 0, said)
+                    run += 1
+            self.assertGreater(run, 5)
+
+    def test_every_link_leads_somewhere(self):
+        for readme in READMES:
+            for target in re.findall(r"\]\(([^)\s]+)\)", readme.read_text()):
+                if re.match(r"[a-z]+:", target):
+                    continue
+                path, _, anchor = target.partition("#")
+                where = (readme.parent / path).resolve() if path else readme
+                said = f"{readme.relative_to(ROOT)}: {target}"
+                self.assertTrue(where.exists(), said)
+                if anchor:
+                    self.assertIn(anchor, list(anchors(where)), said)
+
+
+if __name__ == "__main__":
+    unittest.main()
