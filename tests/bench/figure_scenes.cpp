@@ -1,6 +1,6 @@
 #include "figure_scenes.h"
 
-#include "scene_builder.h"
+#include "support/scene_builder.h"
 
 namespace radiosity::bench {
 namespace {

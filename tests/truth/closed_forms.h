@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh_builder.h"
+#include "support/mesh_builder.h"
 
 namespace radiosity::truth {
 

@@ -1,0 +1,347 @@
+// The HDF5 results file: nothing lost, damage named, whole or not there at all.
+#include <gtest/gtest.h>
+#include <hdf5.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "results_sample.h"
+#include "support/results_folder.h"
+
+namespace radiosity {
+namespace {
+
+class ResultsFile : public FolderTest {
+ protected:
+  void write(const Results& results) { writeResults(file(), results, progress_); }
+  std::string file() const { return path("x.h5"); }
+  void expectInputError(const std::string& part) const {
+    expectError<InputError>(file(), part, [&] { readResults(file()); });
+  }
+};
+
+TEST_F(ResultsFile, GivesBackEveryField) {
+  for (const Precision precision : {Precision::single, Precision::real}) {
+    // Small: all datasets in their headers. 60: chunks, several of them for the matrix.
+    for (const Index side : {2u, 60u}) {
+      const Results written = sample::results(side, precision, side == 2 ? 1 : 3);
+      write(written);
+      EXPECT_TRUE(isResultsFile(file()));
+      const Results read = readResults(file());
+      EXPECT_TRUE(sample::same(written.scene, read.scene));
+      EXPECT_TRUE(sample::same(written.mesh, read.mesh));
+      EXPECT_TRUE(sample::same(written.factors, read.factors));
+      EXPECT_TRUE(sample::same(written.solution, read.solution));
+      EXPECT_TRUE(sample::same(written, read));
+    }
+  }
+}
+
+TEST_F(ResultsFile, GivesBackWhateverStagesThereAre) {
+  const Results full = sample::results(3, Precision::single);
+  for (int stages = 0; stages < 64; ++stages) {
+    Results some = full;
+    // What was gathered belongs to a mesh and is not stored without it.
+    if ((stages & 34) != 34) some.gathered.reset(), some.gather_key.clear();
+    if ((stages & 1) == 0) some.scene.reset();
+    if ((stages & 2) == 0) some.mesh.reset(), some.mesh_key.clear();
+    if ((stages & 4) == 0) some.factors.reset(), some.factors_key.clear();
+    if ((stages & 8) == 0) some.materials.reset();
+    if ((stages & 16) == 0) some.solution.reset(), some.solution_key.clear();
+    write(some);
+    EXPECT_TRUE(sample::same(some, readResults(file()))) << stages;
+  }
+}
+
+TEST_F(ResultsFile, KeepsTheUnusual) {
+  Results odd = sample::results(3, Precision::real);
+  Solution solution = sample::solution(0, 3);
+  solution.summary.error_bound.reset();
+  solution.summary.status = SolveStatus::singular;
+  odd.solution = solution;
+  Scene scene = sample::scene();
+  scene.texcoords.clear();
+  scene.textures.clear();
+  scene.materials[0].texture = kNone;
+  scene.materials[1].emission_texture = kNone;
+  scene.notes.clear();
+  odd.scene = scene;
+  MeshResult mesh = {sample::mesh(3), sample::meshReport()};
+  mesh.report.notes.assign(5000, {Severity::info, "one of many"});
+  odd.mesh = mesh;
+  odd.mesh_key = std::string(200000, 'k');  // above what an object header holds
+  write(odd);
+  EXPECT_TRUE(sample::same(odd, readResults(file())));
+
+  Results empty;
+  empty.version = "1.2.3";
+  write(empty);
+  EXPECT_TRUE(sample::same(empty, readResults(file())));
+}
+
+TEST_F(ResultsFile, LeavesTheMatrixOutOnRequest) {
+  const Results written = sample::results(3, Precision::single);
+  write(written);
+  const Results read = readResults(file(), false);
+  FormFactors bare = sample::factors(sample::mesh(3), Precision::single);
+  bare.matrix = {};
+  EXPECT_TRUE(sample::same(std::optional(bare), read.factors));
+  EXPECT_TRUE(sample::same(written.solution, read.solution));
+  // Written back it would lose the matrix without a word.
+  EXPECT_THROW(writeResults(path("y.h5"), read, progress_), RunError);
+  EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(ResultsFile, SameResultsGiveTheSameBytes) {
+  write(sample::results(20, Precision::single));
+  const std::vector<char> first = load(file());
+  write(sample::results(20, Precision::single));
+  EXPECT_EQ(first, load(file()));
+}
+
+TEST_F(ResultsFile, SizeIsKnownBeforeItIsWritten) {
+  for (const Precision precision : {Precision::single, Precision::real}) {
+    for (const Index side : {1u, 2u, 5u, 12u, 30u, 60u}) {
+      const Results results = sample::results(side, precision);
+      write(results);
+      const double size = double(std::filesystem::file_size(file()));
+      // HDF5 hands out metadata in blocks of 2 KiB, some of them half empty: two of them, or 5%.
+      EXPECT_NEAR(double(estimateResultsBytes(results)), size, std::max(4096.0, 0.05 * size))
+          << side;
+    }
+  }
+  const Results none;
+  write(none);
+  EXPECT_NEAR(double(estimateResultsBytes(none)), double(std::filesystem::file_size(file())),
+              4096.0);
+}
+
+TEST_F(ResultsFile, NamesWhatIsNotAResultsFile) {
+  expectInputError("no such file");
+  save(file(), {'v', ' ', '1'});
+  EXPECT_FALSE(isResultsFile(file()));
+  expectInputError("not HDF5");
+  std::filesystem::remove(file());
+  std::filesystem::create_directory(file());
+  EXPECT_FALSE(isResultsFile(file()));
+  expectInputError("is a folder");
+  EXPECT_THROW(write({}), InputError);
+  std::filesystem::remove(file());
+  H5Fclose(H5Fcreate(file().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+  EXPECT_TRUE(isResultsFile(file()));
+  expectInputError("another program");
+}
+
+/// Opens the file as another program would, to change one thing in it.
+class Edit {
+ public:
+  explicit Edit(const std::string& path)
+      : file_(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT)) {}
+  ~Edit() { H5Fclose(file_); }
+  template <class T>
+  void element(const char* dataset, hid_t type, hsize_t at, T value) {
+    const hid_t id = H5Dopen2(file_, dataset, H5P_DEFAULT);
+    const hid_t space = H5Dget_space(id);
+    const hsize_t one = 1;
+    const hid_t memory = H5Screate_simple(1, &one, nullptr);
+    H5Sselect_elements(space, H5S_SELECT_SET, 1, &at);
+    EXPECT_GE(H5Dwrite(id, type, memory, space, H5P_DEFAULT, &value), 0);
+    H5Sclose(memory);
+    H5Sclose(space);
+    H5Dclose(id);
+  }
+  template <class T>
+  void attribute(const char* object, const char* name, hid_t type, T value) {
+    const hid_t group = H5Gopen2(file_, object, H5P_DEFAULT);
+    const hid_t id = H5Aopen(group, name, H5P_DEFAULT);
+    EXPECT_GE(H5Awrite(id, type, &value), 0);
+    H5Aclose(id);
+    H5Gclose(group);
+  }
+  void remove(const char* name) { EXPECT_GE(H5Ldelete(file_, name, H5P_DEFAULT), 0); }
+  void vector(const char* name, hid_t type, hsize_t length) {
+    const hid_t space = H5Screate_simple(1, &length, nullptr);
+    H5Dclose(H5Dcreate2(file_, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+    H5Sclose(space);
+  }
+
+ private:
+  hid_t file_;
+};
+
+TEST_F(ResultsFile, NamesWhatAnotherProgramChanged) {
+  const Results good = sample::results(3, Precision::single);
+  const auto expectAfter = [&](const auto& change, const std::string& part) {
+    write(good);
+    {
+      Edit edit(file());
+      change(edit);
+    }
+    SCOPED_TRACE(part);
+    expectInputError(part);
+  };
+  expectAfter([](Edit& e) { e.attribute("/", "format_version", H5T_NATIVE_INT, 99); },
+              "format version 99");
+  expectAfter([](Edit& e) { e.remove("/form_factors/data"); }, "/form_factors/data is missing");
+  expectAfter([](Edit& e) { e.remove("/mesh/area"); }, "/mesh/area is missing");
+  expectAfter([](Edit& e) { e.remove("/scene/surfaces/name"); }, "/scene/surfaces/name is missing");
+  expectAfter([](Edit& e) { e.element("/form_factors/indices", H5T_NATIVE_INT, 0, 4711); },
+              "/form_factors/indices has a row");
+  expectAfter([](Edit& e) { e.element("/form_factors/indices", H5T_NATIVE_INT, 0, -1); },
+              "/form_factors/indices has a row");
+  expectAfter([](Edit& e) { e.element("/form_factors/data", H5T_NATIVE_FLOAT, 2, NAN); },
+              "/form_factors/data has a row");
+  expectAfter([](Edit& e) { e.element("/form_factors/indptr", H5T_NATIVE_LONG, 3, 1000000L); },
+              "/form_factors/indptr does not divide");
+  expectAfter([](Edit& e) { e.element("/form_factors/shape", H5T_NATIVE_LONG, 1, 9L); },
+              "/form_factors/shape is not 10 x 10");
+  expectAfter([](Edit& e) { e.element("/form_factors/area", H5T_NATIVE_DOUBLE, 0, -1.0); },
+              "/form_factors/area holds the area -1");
+  expectAfter([](Edit& e) { e.element("/mesh/corners", H5T_NATIVE_UINT, 0, 1000u); },
+              "/mesh/corners points beyond");
+  expectAfter([](Edit& e) { e.element("/mesh/piece_offset", H5T_NATIVE_ULONG, 1, 1000000ul); },
+              "/mesh/piece_offset does not divide");
+  expectAfter([](Edit& e) { e.element("/scene/materials/texture", H5T_NATIVE_UINT, 0, 2u); },
+              "/scene/materials/texture points beyond");
+  expectAfter(
+      [](Edit& e) { e.element("/scene/materials/emission_texture", H5T_NATIVE_UINT, 0, 2u); },
+      "/scene/materials/emission_texture points beyond");
+  expectAfter([](Edit& e) { e.attribute("/solution", "bands", H5T_NATIVE_INT, 0); },
+              "/solution/radiosity is not");
+  expectAfter(
+      [](Edit& e) {
+        e.remove("/form_factors/sky");
+        e.vector("/form_factors/sky", H5T_NATIVE_DOUBLE, 7);
+      },
+      "/form_factors/sky");
+  expectAfter(
+      [](Edit& e) {
+        e.remove("/mesh/area");
+        e.vector("/mesh/area", H5T_NATIVE_FLOAT, 10);
+      },
+      "/mesh/area is not a vector of 64-bit float");
+  // An extent nothing stands behind must not be believed (8 TB).
+  expectAfter(
+      [](Edit& e) {
+        e.remove("/mesh/area");
+        e.vector("/mesh/area", H5T_NATIVE_DOUBLE, hsize_t(1) << 40);
+      },
+      "/mesh/area claims");
+}
+
+TEST_F(ResultsFile, TruncationIsAnInputError) {
+  write(sample::results(12, Precision::single));
+  const std::vector<char> whole = load(file());
+  const Results good = readResults(file());
+  for (std::size_t k = 0; k < 200; ++k) {
+    const std::size_t length = whole.size() * k / 200;
+    save(file(), {whole.begin(), whole.begin() + std::ptrdiff_t(length)});
+    expectInputError(length < 8     ? "not HDF5"
+                     : length < 100 ? "truncated or damaged ("
+                                    : "truncated or damaged (truncated file");
+  }
+}
+
+TEST_F(ResultsFile, EveryFlippedByteIsNoticedOrHarmless) {
+  write(sample::results(12, Precision::single));
+  const std::vector<char> whole = load(file());
+  const Results good = readResults(file());
+  std::size_t noticed = 0;
+  std::size_t harmless = 0;
+  // A prime step visits every kind of place; every byte of the first 2 KiB is visited.
+  for (std::size_t at = 0; at < whole.size(); at += at < 2048 ? 1 : 151) {
+    std::vector<char> damaged = whole;
+    damaged[at] = char(damaged[at] ^ (1 << (at % 8)));
+    save(file(), damaged);
+    try {
+      ASSERT_TRUE(sample::same(good, readResults(file()))) << "byte " << at;
+      ++harmless;
+    } catch (const InputError& error) {
+      const std::string message = error.what();
+      ASSERT_EQ(message.rfind(file(), 0), 0u) << message;
+      ASSERT_EQ(message.find("unknown reason"), std::string::npos) << message;
+      ++noticed;
+    }
+  }
+  // Unused space between blocks is all that may be harmless.
+  EXPECT_GT(noticed, 4 * harmless);
+}
+
+TEST_F(ResultsFile, FullDiskLeavesTheOldFile) {
+  const Results small = sample::results(3, Precision::single);
+  const Results large = sample::results(20, Precision::single);
+  write(small);
+  const std::size_t size = estimateResultsBytes(large);
+  for (int part = 0; part < 40; ++part) {
+    const FullDisk disk(part * size / 40);
+    expectError<RunError>(file(), "cannot be written: File too large", [&] { write(large); });
+    EXPECT_EQ(files(), 1u) << part;
+  }
+  EXPECT_TRUE(sample::same(small, readResults(file())));
+  write(large);
+  EXPECT_TRUE(sample::same(large, readResults(file())));
+}
+
+/// HDF5 1.10 crashes at exit after a file it could not flush; a process that met a full disk must
+/// end as it means to.
+TEST_F(ResultsFile, FullDiskDoesNotCrashTheExit) {
+  const Results results = sample::results(20, Precision::single);
+  const auto run = [&] {
+    const FullDisk disk(10000);
+    try {
+      write(results);
+    } catch (const RunError&) {
+      std::exit(3);
+    }
+  };
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";
+  EXPECT_EXIT(run(), ::testing::ExitedWithCode(3), "^$");
+}
+
+TEST_F(ResultsFile, InterruptionLeavesTheOldFile) {
+  const Results small = sample::results(3, Precision::single);
+  write(small);
+  class Impatient : public Progress {
+   public:
+    void advance(std::size_t steps) override {
+      done_ += steps;
+      if (done_ > 100) cancel();
+    }
+
+   private:
+    std::size_t done_ = 0;
+  } impatient;
+  EXPECT_THROW(writeResults(file(), sample::results(20, Precision::single), impatient), Cancelled);
+  EXPECT_EQ(files(), 1u);
+  EXPECT_TRUE(sample::same(small, readResults(file())));
+}
+
+TEST_F(ResultsFile, MissingFolderIsAnInputError) {
+  EXPECT_THROW(writeResults(path("no/x.h5"), {}, progress_), InputError);
+  EXPECT_EQ(files(), 0u);
+}
+
+/// Neither while it reads damage nor when the process ends.
+TEST_F(ResultsFile, HDF5PrintsNothing) {
+  write(sample::results(12, Precision::single));
+  const std::vector<char> whole = load(file());
+  const auto run = [&] {
+    for (std::size_t part = 1; part < 100; ++part) {
+      std::vector<char> bytes = whole;
+      bytes[bytes.size() * part / 100] ^= 0x40;
+      save(file(), bytes);
+      try {
+        readResults(file());
+      } catch (const InputError&) {
+        continue;
+      }
+    }
+    std::exit(3);
+  };
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";
+  EXPECT_EXIT(run(), ::testing::ExitedWithCode(3), "^$");
+}
+
+}  // namespace
+}  // namespace radiosity

@@ -1,0 +1,423 @@
+// glTF 2.0: files written here with their bytes embedded, read back and checked.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstring>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "radiosity/scene.h"
+#include "support/scene_files.h"
+
+namespace radiosity::test {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string base64(const std::string& bytes) {
+  static const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t k = 0; k < bytes.size(); k += 3) {
+    std::uint32_t word = 0;
+    for (std::size_t b = 0; b < 3; ++b) {
+      word = word << 8 | (k + b < bytes.size() ? std::uint8_t(bytes[k + b]) : 0u);
+    }
+    for (std::size_t d = 0; d < 4; ++d) {
+      text += k + d <= bytes.size() ? kDigits[word >> (18 - 6 * d) & 63] : '=';
+    }
+  }
+  return text;
+}
+
+/// A glTF document that grows: one buffer, one view and accessor a call of add().
+struct Document {
+  Json json = {{"asset", {{"version", "2.0"}}}, {"scene", 0}};
+  std::string bytes;
+
+  template <class T>
+  int add(const std::vector<T>& values, int component_type, const char* type, int components) {
+    while (bytes.size() % 4 != 0) bytes += '\0';
+    json["bufferViews"].push_back(
+        {{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", values.size() * sizeof(T)}});
+    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+    json["accessors"].push_back({{"bufferView", json["bufferViews"].size() - 1},
+                                 {"componentType", component_type},
+                                 {"count", values.size() / std::size_t(components)},
+                                 {"type", type}});
+    return int(json["accessors"].size()) - 1;
+  }
+  int positions(const std::vector<float>& values) { return add(values, 5126, "VEC3", 3); }
+
+  std::string text() {
+    json["buffers"] = {{{"uri", "data:application/octet-stream;base64," + base64(bytes)},
+                        {"byteLength", bytes.size()}}};
+    return json.dump();
+  }
+};
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+/// One triangle with corners (0,0,0), (1,0,0), (0,1,0) in a node "tri".
+Document triangle() {
+  Document d;
+  d.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  d.json["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", 0}}}}}}}};
+  d.json["nodes"] = {{{"mesh", 0}, {"name", "tri"}}};
+  d.json["scenes"] = {{{"nodes", {0}}}};
+  return d;
+}
+
+class SceneGltf : public SceneFiles {
+ protected:
+  Scene load(Document d, const SceneOptions& options = {}) {
+    return loadScene(write("scene.gltf", d.text()), options);
+  }
+  std::string errorOf(Document d) {
+    const std::string file = write("scene.gltf", d.text());
+    return inputErrorOf([&] { loadScene(file); });
+  }
+};
+
+Vec3 normalOf(const Scene& scene, std::size_t f) {
+  const auto face = scene.face(f);
+  const Vec3 a = scene.vertices[face[0]];
+  return glm::cross(scene.vertices[face[1]] - a, scene.vertices[face[2]] - a);
+}
+
+Vec3 corner(const Scene& scene, std::size_t f, std::size_t k) {
+  return scene.vertices[scene.face(f)[k]];
+}
+
+TEST_F(SceneGltf, ReadsATriangleWithoutMaterial) {
+  const Scene scene = load(triangle());
+  ASSERT_EQ(scene.faceCount(), 1u);
+  EXPECT_EQ(corner(scene, 0, 1), Vec3(1, 0, 0));
+  EXPECT_EQ(normalOf(scene, 0), Vec3(0, 0, 1));
+  EXPECT_EQ(scene.surfaces[0].name, "tri/default");
+  EXPECT_EQ(scene.materialOf(0).reflectance, Vec3(.5)) << "not glTF's base colour of 1";
+  EXPECT_FALSE(scene.materialOf(0).two_sided);
+  EXPECT_NOTE(scene.notes, "no material, reflectance 0.5: tri", Severity::warning);
+}
+
+TEST_F(SceneGltf, ReadsMaterials) {
+  Document d = triangle();
+  d.json["extensionsUsed"] = {"KHR_materials_emissive_strength", "KHR_materials_ior"};
+  d.json["extensionsRequired"] = {"KHR_materials_emissive_strength"};
+  d.json["materials"] = {
+      {{"name", "lamp"},
+       {"doubleSided", true},
+       {"emissiveFactor", {1.0, .5, .25}},
+       {"extensions",
+        {{"KHR_materials_emissive_strength", {{"emissiveStrength", 40}}},
+         {"KHR_materials_ior", {{"ior", 1.3}}}}},
+       {"pbrMetallicRoughness", {{"baseColorFactor", {.8, .4, .2, 1}}, {"metallicFactor", 0}}}},
+      {{"name", "lamp"}, {"emissiveFactor", {0, 0, 0}}, {"alphaMode", "BLEND"}}};
+  d.json["meshes"][0]["primitives"][0]["material"] = 0;
+  d.json["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 0}}}, {"material", 1}});
+  const Scene scene = load(d);
+  const Material& lamp = scene.materialOf(0);
+  EXPECT_EQ(lamp.reflectance, Vec3(.8, .4, .2));
+  for (int band = 0; band < 3; ++band) {
+    EXPECT_DOUBLE_EQ(lamp.emission[band], std::numbers::pi * 40 / double(1 << band));
+  }
+  EXPECT_TRUE(lamp.two_sided);
+  EXPECT_EQ(scene.surfaces[1].name, "tri/lamp#2") << "two materials of one name stay apart";
+  EXPECT_NOTE(scene.notes, "KHR_materials_ior is not used, material: lamp", Severity::info);
+  EXPECT_NOTE(scene.notes, "optional extensions that are not read: KHR_materials_ior",
+              Severity::info);
+  EXPECT_NOTE(scene.notes, "metalness is not used (glTF's default is 1), material: lamp#2",
+              Severity::info);
+  EXPECT_NOTE(scene.notes, "transparency (alphaMode) is not used, material: lamp#2",
+              Severity::warning);
+  EXPECT_NOTE(scene.notes, "glTF's default base colour: all light is returned, material: lamp#2",
+              Severity::warning);
+}
+
+TEST_F(SceneGltf, RefusesImpossibleMaterialsByName) {
+  Document d = triangle();
+  d.json["materials"] = {
+      {{"name", "red"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1.5, 0, 0, 1}}}}}};
+  EXPECT_CONTAINS(errorOf(d), "material red: reflectance 1.5 0 0 is outside 0 to 1");
+  d.json["materials"] = {{{"name", "dark"}, {"emissiveFactor", {-1, 0, 0}}}};
+  EXPECT_CONTAINS(errorOf(d), "material dark: emission");
+  d.json["materials"] = {
+      {{"name", "dark"},
+       {"emissiveFactor", {1, 1, 1}},
+       {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", -2}}}}}}};
+  EXPECT_CONTAINS(errorOf(d), "material dark: emission");
+}
+
+TEST_F(SceneGltf, RefusesUnknownRequiredExtensions) {
+  Document d = triangle();
+  d.json["extensionsUsed"] = {"KHR_draco_mesh_compression"};
+  EXPECT_NOTE(load(d).notes, "optional extensions that are not read: KHR_draco_mesh_compression",
+              Severity::info);
+  d.json["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+  EXPECT_CONTAINS(errorOf(d),
+                  "needs KHR_draco_mesh_compression, which is not supported; export without it");
+}
+
+TEST_F(SceneGltf, AppliesNestedTransformsInDouble) {
+  Document d = triangle();
+  const double half = std::sqrt(0.5);  // a quarter turn about z
+  d.json["nodes"] = {{{"name", "far"},
+                      {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1000000.1, 0, 0, 1}},
+                      {"children", {1}}},
+                     {{"name", "turned"},
+                      {"translation", {0, 3, 0}},
+                      {"rotation", {0, 0, half, half}},
+                      {"scale", {2, 1, 1}},
+                      {"mesh", 0}}};
+  const Scene scene = load(d);
+  // scale, then turn x to y, then move by 3 y, then by 1000000.1 x.
+  const std::array<Vec3, 3> expected = {Vec3(1000000.1, 3, 0), Vec3(1000000.1, 5, 0),
+                                        Vec3(999999.1, 3, 0)};
+  for (std::size_t k = 0; k < 3; ++k) {
+    // One ulp of 1e6 is 1.2e-10; single precision would be off by 0.04.
+    EXPECT_NEAR(glm::length(corner(scene, 0, k) - expected[k]), 0, 5e-10);
+  }
+  EXPECT_EQ(scene.surfaces[0].object, "turned");
+}
+
+TEST_F(SceneGltf, MirroredNodesKeepTheirFronts) {
+  Document d = triangle();
+  d.json["nodes"] = {{{"scale", {1, 1, -1}}, {"mesh", 0}, {"name", "a"}},
+                     {{"scale", {-1, 1, 1}}, {"mesh", 0}, {"name", "b"}},
+                     {{"scale", {-1, -1, 1}}, {"mesh", 0}, {"name", "c"}}};
+  d.json["scenes"] = {{{"nodes", {0, 1, 2}}}};
+  const Scene scene = load(d);
+  // The front of the mesh is +z. Mirrored in z it faces -z; in x, or turned, still +z.
+  EXPECT_LT(normalOf(scene, 0).z, 0);
+  EXPECT_GT(normalOf(scene, 1).z, 0);
+  EXPECT_GT(normalOf(scene, 2).z, 0);
+}
+
+TEST_F(SceneGltf, NamesInstancesApart) {
+  Document d = triangle();
+  d.json["meshes"][0]["name"] = "shape";
+  d.json["nodes"] = {{{"mesh", 0}, {"name", "leg"}}, {{"mesh", 0}, {"name", "leg"}}, {{"mesh", 0}}};
+  d.json["scenes"] = {{{"nodes", {0, 1, 2}}}};
+  const Scene scene = load(d);
+  ASSERT_EQ(scene.surfaces.size(), 3u);
+  EXPECT_EQ(scene.surfaces[0].object, "leg");
+  EXPECT_EQ(scene.surfaces[1].object, "leg#2");
+  EXPECT_EQ(scene.surfaces[2].object, "shape");
+}
+
+TEST_F(SceneGltf, ReadsStripsFansAndIndices) {
+  // Four corners of a square as a zigzag (strip) and around (fan): all triangles face +z.
+  for (const int mode : {5, 6}) {
+    Document d = triangle();
+    d.bytes.clear();
+    d.json.erase("bufferViews");
+    d.json.erase("accessors");
+    const int positions = mode == 5 ? d.positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0})
+                                    : d.positions({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
+    d.json["meshes"][0]["primitives"][0] = {{"attributes", {{"POSITION", positions}}},
+                                            {"mode", mode}};
+    Scene scene = load(d);
+    ASSERT_EQ(scene.faceCount(), 2u);
+    EXPECT_EQ(normalOf(scene, 0) + normalOf(scene, 1), Vec3(0, 0, 2)) << "mode " << mode;
+    // The same through indices of each width, backwards: faces -z.
+    const std::array<int, 3> indices = {
+        d.add(std::vector<std::uint8_t>{3, 2, 1, 0}, 5121, "SCALAR", 1),
+        d.add(std::vector<std::uint16_t>{3, 2, 1, 0}, 5123, "SCALAR", 1),
+        d.add(std::vector<std::uint32_t>{3, 2, 1, 0}, 5125, "SCALAR", 1)};
+    for (const int accessor : indices) {
+      d.json["meshes"][0]["primitives"][0]["indices"] = accessor;
+      scene = load(d);
+      ASSERT_EQ(scene.faceCount(), 2u);
+      // A strip read from its other end faces the same way, a fan turns round.
+      EXPECT_EQ(normalOf(scene, 0) + normalOf(scene, 1), Vec3(0, 0, mode == 5 ? 2 : -2));
+    }
+  }
+}
+
+TEST_F(SceneGltf, LeavesOutLinesByName) {
+  Document d = triangle();
+  d.json["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 0}}}, {"mode", 1}});
+  EXPECT_NOTE(load(d).notes, "lines and points have no area and are left out, in: tri",
+              Severity::info);
+  d.json["meshes"][0]["primitives"].erase(0);
+  EXPECT_CONTAINS(errorOf(d), "no faces");
+}
+
+TEST_F(SceneGltf, ReadsSparseAccessors) {
+  Document d = triangle();
+  d.add(std::vector<std::uint16_t>{2}, 5123, "SCALAR", 1);
+  d.positions({0, 5, 7});
+  d.json["accessors"][0]["sparse"] = {{"count", 1},
+                                      {"indices", {{"bufferView", 1}, {"componentType", 5123}}},
+                                      {"values", {{"bufferView", 2}}}};
+  Scene scene = load(d);
+  EXPECT_EQ(corner(scene, 0, 1), Vec3(1, 0, 0));
+  EXPECT_EQ(corner(scene, 0, 2), Vec3(0, 5, 7));
+  // Without a base all other elements are zero.
+  d.json["accessors"][0].erase("bufferView");
+  scene = load(d);
+  EXPECT_EQ(corner(scene, 0, 1), Vec3(0, 0, 0));
+  EXPECT_EQ(corner(scene, 0, 2), Vec3(0, 5, 7));
+  d.json["accessors"][0]["count"] = 2;
+  EXPECT_CONTAINS(errorOf(d), "sparse index beyond its end");
+}
+
+TEST_F(SceneGltf, ReadsQuantisedPositions) {
+  Document d = triangle();
+  d.json["extensionsRequired"] = {"KHR_mesh_quantization"};
+  const int accessor =
+      d.add(std::vector<std::uint16_t>{0, 0, 0, 65535, 0, 0, 0, 13107, 0}, 5123, "VEC3", 3);
+  d.json["accessors"][std::size_t(accessor)]["normalized"] = true;
+  d.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = accessor;
+  const Scene scene = load(d);
+  EXPECT_EQ(corner(scene, 0, 1), Vec3(1, 0, 0));
+  EXPECT_EQ(corner(scene, 0, 2), Vec3(0, 13107.0 / 65535, 0));
+}
+
+TEST_F(SceneGltf, ReadsCamerasThroughTheirNodes) {
+  Document d = triangle();
+  d.json["cameras"] = {{{"type", "perspective"},
+                        {"perspective", {{"yfov", .6}, {"aspectRatio", 1.5}, {"znear", .1}}}},
+                       {{"type", "orthographic"},
+                        {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"zfar", 1}, {"znear", .1}}}}};
+  const double half = std::sqrt(0.5);  // a quarter turn about y: -z becomes -x
+  d.json["nodes"].push_back({{"name", "eye"},
+                             {"camera", 0},
+                             {"translation", {10, 2, 0}},
+                             {"rotation", {0, half, 0, half}}});
+  d.json["nodes"].push_back({{"name", "plan"}, {"camera", 1}});
+  d.json["scenes"] = {{{"nodes", {0, 1, 2}}}};
+  SceneOptions options;
+  options.unit = "cm";
+  const Scene scene = load(d, options);
+  ASSERT_EQ(scene.cameras.size(), 1u);
+  const Camera& camera = scene.cameras[0];
+  EXPECT_EQ(camera.name, "eye");
+  EXPECT_EQ(camera.eye, 0.01 * Vec3(10, 2, 0));
+  const Vec3 forward = glm::normalize(camera.target - camera.eye);
+  // A few roundings of unit vectors.
+  EXPECT_NEAR(glm::length(forward - Vec3(-1, 0, 0)), 0, 1e-14);
+  EXPECT_NEAR(glm::length(camera.up - Vec3(0, 1, 0)), 0, 1e-14);
+  EXPECT_EQ(camera.vertical_fov, .6);
+  EXPECT_EQ(camera.aspect, 1.5);
+  EXPECT_NOTE(scene.notes, "orthographic cameras are not used: plan", Severity::warning);
+}
+
+TEST_F(SceneGltf, NamesLightsSkinsColoursAndOtherScenes) {
+  Document d = triangle();
+  d.json["extensionsUsed"] = {"KHR_lights_punctual"};
+  d.json["extensions"] = {
+      {"KHR_lights_punctual", {{"lights", {{{"type", "point"}, {"name", "Bulb"}}}}}}};
+  d.json["nodes"].push_back(
+      {{"name", "lightnode"}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  d.json["nodes"].push_back({{"name", "elsewhere"}, {"mesh", 0}});
+  d.json["scenes"] = {{{"nodes", {0, 1}}}, {{"nodes", {2}}}};
+  d.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = 0;
+  const Scene scene = load(d);
+  EXPECT_EQ(scene.faceCount(), 1u);
+  EXPECT_NOTE(scene.notes, "make them surfaces that emit: Bulb", Severity::warning);
+  EXPECT_NOTE(scene.notes, "vertex colours do not change the reflectance, node: tri",
+              Severity::warning);
+  EXPECT_NOTE(scene.notes, "not part of the scene that is read, node: elsewhere",
+              Severity::warning);
+}
+
+TEST_F(SceneGltf, RefusesReferencesThatLeadNowhere) {
+  const auto with = [&](const char* pointer, const Json& value) {
+    Document d = triangle();
+    d.json[Json::json_pointer(pointer)] = value;
+    return errorOf(d);
+  };
+  EXPECT_CONTAINS(with("/nodes/0/mesh", 5), "node tri refers to mesh 5, which does not exist");
+  EXPECT_CONTAINS(with("/scenes/0/nodes/0", 7), "refers to node 7");
+  EXPECT_CONTAINS(with("/scene", 3), "refers to scene 3");
+  EXPECT_CONTAINS(with("/nodes/0/children", {0}), "node tri is reached twice");
+  EXPECT_CONTAINS(with("/nodes/0/camera", 1), "refers to camera 1");
+  EXPECT_CONTAINS(with("/meshes/0/primitives/0/material", 2), "refers to material 2");
+  EXPECT_CONTAINS(with("/meshes/0/primitives/0/attributes/POSITION", 9), "accessor 9");
+  EXPECT_CONTAINS(with("/accessors/0/count", 4), "tri, primitive 0: POSITION reaches beyond");
+  EXPECT_CONTAINS(with("/accessors/0/count", 4000000000000000000ll), "reaches beyond");
+  EXPECT_CONTAINS(with("/accessors/0/byteOffset", 4), "reaches beyond");
+  EXPECT_CONTAINS(with("/accessors/0/type", "VEC2"), "is not a list of 3 numbers");
+  EXPECT_CONTAINS(with("/bufferViews/0/byteLength", 4000), "reaches beyond");
+  EXPECT_CONTAINS(with("/nodes/0/rotation", {0, 0, 0, 0}), "zero quaternion");
+}
+
+TEST_F(SceneGltf, RefusesBadIndicesAndPositions) {
+  Document d = triangle();
+  const int out = d.add(std::vector<std::uint16_t>{0, 1, 3}, 5123, "SCALAR", 1);
+  d.json["meshes"][0]["primitives"][0]["indices"] = out;
+  EXPECT_CONTAINS(errorOf(d), "tri, primitive 0: vertex 3 does not exist, there are 3");
+  const int four = d.add(std::vector<std::uint16_t>{0, 1, 2, 0}, 5123, "SCALAR", 1);
+  d.json["meshes"][0]["primitives"][0]["indices"] = four;
+  EXPECT_CONTAINS(errorOf(d), "4 indices do not make triangles");
+  const int nan = d.positions({0, 0, 0, 1, 0, 0, 0, kNaN, 0});
+  d.json["meshes"][0]["primitives"][0] = {{"attributes", {{"POSITION", nan}}}};
+  EXPECT_CONTAINS(errorOf(d), "tri, primitive 0: vertex 2 is not finite");
+}
+
+TEST_F(SceneGltf, RefusesFilesThatAreNoGltf) {
+  const auto errorIn = [&](const std::string& name, const std::string& content) {
+    const std::string file = write(name, content);
+    return inputErrorOf([&] { loadScene(file); });
+  };
+  EXPECT_CONTAINS(errorIn("a.gltf", "{ \"asset\": "),
+                  "a.gltf: is not JSON that can be read: it is cut off");
+  EXPECT_CONTAINS(errorIn("a.gltf", std::string("\x7f\0\1garbage", 10)),
+                  "neither binary glTF nor JSON");
+  EXPECT_CONTAINS(errorIn("a.glb", "not a binary glTF at all"),
+                  "a.glb: is neither binary glTF nor JSON");
+  EXPECT_CONTAINS(errorIn("a.gltf", ""), "is empty");
+  EXPECT_CONTAINS(inputErrorOf([&] { loadScene(path("absent.glb")); }), "no such file");
+  Document old = triangle();
+  old.json["asset"]["version"] = "1.0";
+  EXPECT_CONTAINS(errorOf(old), "is glTF 1.0");
+  Document away = triangle();
+  away.text();
+  away.json["buffers"][0]["uri"] = "lost.bin";
+  EXPECT_CONTAINS(errorIn("b.gltf", away.json.dump()), "lost.bin");
+}
+
+TEST_F(SceneGltf, RefusesOrReadsEveryTruncatedFile) {
+  Document d = triangle();
+  d.json["materials"] = {{{"name", "m"}, {"emissiveFactor", {1, 1, 1}}}};
+  const std::string text = d.text();
+  for (std::size_t size = 1; size < text.size(); size += 3) {
+    const std::string file = write("cut.gltf", text.substr(0, size));
+    EXPECT_CONTAINS(inputErrorOf([&] { loadScene(file); }),
+                    "cut.gltf: is not JSON that can be read");
+  }
+}
+
+TEST_F(SceneGltf, ReadsBinaryFiles) {
+  Document d = triangle();
+  d.text();
+  d.json["buffers"][0].erase("uri");
+  std::string json = d.json.dump();
+  while (json.size() % 4 != 0) json += ' ';
+  while (d.bytes.size() % 4 != 0) d.bytes += '\0';
+  std::string glb;
+  const auto word = [&](std::size_t value) {
+    const auto v = std::uint32_t(value);
+    glb.append(reinterpret_cast<const char*>(&v), 4);
+  };
+  glb = "glTF";
+  word(2);
+  word(12 + 8 + json.size() + 8 + d.bytes.size());
+  word(json.size());
+  glb += "JSON" + json;
+  word(d.bytes.size());
+  glb += std::string("BIN\0", 4) + d.bytes;
+  const Scene scene = loadScene(write("scene.GLB", glb));
+  ASSERT_EQ(scene.faceCount(), 1u);
+  EXPECT_EQ(corner(scene, 0, 2), Vec3(0, 1, 0));
+  for (std::size_t size = 1; size < glb.size(); size += 5) {
+    const std::string file = write("cut.glb", glb.substr(0, size));
+    EXPECT_CONTAINS(inputErrorOf([&] { loadScene(file); }), "cut.glb: ");
+  }
+}
+
+}  // namespace
+}  // namespace radiosity::test

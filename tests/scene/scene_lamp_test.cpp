@@ -1,0 +1,61 @@
+// What is likeliest a lamp.
+#include <gtest/gtest.h>
+
+#include "scene/likely_lamp.h"
+#include "support/scene_builder.h"
+
+namespace radiosity {
+namespace {
+
+using test::SceneBuilder;
+
+TEST(LikelyLamp, IsCalledSo) {
+  for (const std::string name : {"Lamp", "ceiling_light.003", "DeskLamp02", "bulb", "emitter",
+                                 "Emissive_white", "neon-lights"}) {
+    SceneBuilder builder;
+    builder.level(builder.surface("wall"), 0, 0, 1, 1, 0);
+    builder.level(builder.surface("light_wood_floor"), 0, 0, 1, 1, 0);
+    builder.level(builder.surfaceOf("thing", builder.material(name)), 0, 0, 1, 1, 1);
+    EXPECT_EQ(likelyLamp(builder.scene()), name);
+  }
+}
+
+TEST(LikelyLamp, AnObjectsNameWillDo) {
+  SceneBuilder builder;
+  const Index white = builder.material("white");
+  builder.level(builder.surfaceOf("flight of stairs", white), 0, 0, 1, 1, 0);
+  builder.level(builder.surfaceOf("floor lamp", white), 0, 0, 1, 1, 1);
+  EXPECT_EQ(likelyLamp(builder.scene()), "floor lamp/white");
+}
+
+TEST(LikelyLamp, ElseTheCeiling) {
+  SceneBuilder named;
+  named.level(named.surface("floor"), 0, 0, 1, 1, 0);
+  named.level(named.surfaceOf("Ceiling", named.material("white")), 0, 0, 1, 1, 1);
+  EXPECT_EQ(likelyLamp(named.scene()), "Ceiling/white");
+  // No name says so: the larger of two surfaces that face down, y being up; not a table's
+  // underside.
+  SceneBuilder builder;
+  const Index walls = builder.surface("a");
+  const Index small = builder.surface("b");
+  const Index large = builder.surface("c");
+  const Index table = builder.surface("d");
+  const auto down = [&](Index s, double size, double y) {
+    builder.face(s, {{0, y, 0}, {size, y, 0}, {size, y, size}, {0, y, size}});
+  };
+  builder.box(walls, {0, 0, 0}, {4, 3, 4}, false);
+  down(small, 1, 2.9);
+  down(large, 2, 2.95);
+  down(table, 3, 0.7);
+  EXPECT_EQ(likelyLamp(builder.scene()), "c/c");
+}
+
+TEST(LikelyLamp, ElseWhatThereIs) {
+  SceneBuilder builder;
+  builder.level(builder.surface("teapot"), 0, 0, 1, 1, 0);
+  EXPECT_EQ(likelyLamp(builder.scene()), "teapot/teapot");
+  EXPECT_EQ(likelyLamp(Scene()), "");
+}
+
+}  // namespace
+}  // namespace radiosity
