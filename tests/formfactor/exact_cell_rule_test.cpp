@@ -7,6 +7,7 @@
 #include <random>
 #include <utility>
 
+#include "formfactor/exact/occluded/cell_error.h"
 #include "formfactor/exact/occluded/cell_rule.h"
 
 namespace radiosity {

@@ -10,7 +10,7 @@
 #include <cmath>
 
 #include "formfactor/closed_scene.h"
-#include "formfactor/hemicube/raster_kernels.h"
+#include "formfactor/exact/clip_kernels.h"
 #include "formfactor/row_accounts.h"
 #include "matrix/closure_progress.h"
 
@@ -155,7 +155,7 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   result.method = "exact";
   FormFactorReport& report = result.report;
   report.polygons = mesh.polygons.size();
-  report.simd_target = (options.simd ? simdKernels() : scalarKernels()).target;
+  report.simd_target = (options.simd ? simdClipKernels() : scalarClipKernels()).target;
   report.empty_rows = n - scene.order.ranked;
   report.estimated_bytes = estimate.bytes;
   refuseTooLarge(estimate.bytes, options, n);

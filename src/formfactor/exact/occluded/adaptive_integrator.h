@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "formfactor/exact/occluded/batch_visibility.h"
+#include "formfactor/exact/occluded/cell_error.h"
 #include "formfactor/exact/occluded/critical_line_quadrature.h"
 #include "formfactor/exact/occluded/pair_sampling.h"
 
