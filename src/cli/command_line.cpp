@@ -193,8 +193,7 @@ void addCompareOptions(CLI::App& app, Request& r) {
   app.add_option("B", r.second, "What A is compared with; none with --gather")->option_text(" ");
   app.add_flag(
          "--gather", r.with_gather,
-         "Compare the matrix solution of A with the gather method, doing first whatever is not "
-         "done yet")
+         "Compare the matrix solution of A with the gather method, running missing stages first")
       ->group("Compare");
   for (const auto& [name, value] : {std::pair("--a-is", &r.a_is), std::pair("--b-is", &r.b_is)}) {
     add(app, "Compare", name, *value, "radiosity|radiance|srgb8",

@@ -5,7 +5,7 @@ namespace radiosity::cli {
 const char* descriptionOf(Command command) {
   switch (command) {
     case Command::info:
-      return "Say what a scene or results file holds and what looks wrong in it";
+      return "Summarize a scene or results file and report problems";
     case Command::mesh:
       return "Cut the scene into patches";
     case Command::factors:
@@ -15,11 +15,11 @@ const char* descriptionOf(Command command) {
     case Command::gather:
       return "Gather light through hemicubes, pass by pass, without a matrix";
     case Command::compare:
-      return "Say how far apart two lightings of one scene are, and where";
+      return "Measure how far apart two lightings of one scene are, and where";
     case Command::render:
       break;
   }
-  return "Draw the lit scene, doing first whatever is not done yet";
+  return "Draw the lit scene, running missing stages first";
 }
 
 const char* examplesOf(Command command) {

@@ -186,7 +186,7 @@ class Reuse(CliTest):
         self.assertRegex(out, r"(?m)^form factors +recomputed: resolution 64 -> 32$")
         self.assertRegex(out, r"(?m)^mesh +reused from s.h5$")
 
-    def test_what_the_method_that_was_picked_does_not_look_at(self):
+    def test_options_of_the_other_method_change_nothing(self):
         self.run_program("solve", "box.obj", "--patches", "60", "--method", "auto", "-o", "a.h5")
         for given in [["--resolution", "64"], ["--seed", "2"], ["--method", "exact"]]:
             report = self.report("solve", "a.h5", *given)

@@ -122,7 +122,7 @@ f 5 6 7 8
                                 "--passes", "2")
         self.assertNotIn("between the eyes", fine.err)
 
-    def test_what_cannot_be_drawn_is_found_first(self):
+    def test_pictures_that_cannot_be_drawn_are_refused_first(self):
         self.refuse("gather", "box.obj", *SMALL, "-o", "g.png", "--camera", "attic",
                     words=["--camera", "attic"])
         self.refuse("gather", "box.obj", *SMALL, "-o", "g.png", "--exposure", "bright",

@@ -55,7 +55,7 @@ class Sky(CliTest):
                                "-o", "s.h5")
         self.assertIn("nothing emits light and no patch sees the sky (the scene is closed)", run.err)
 
-    def test_what_is_no_radiance(self):
+    def test_a_sky_that_is_no_radiance_is_refused(self):
         self.refuse("solve", "box.obj", "--sky", "bright",
                     words=["--sky: 'bright' is not one finite number or three with commas"])
         self.refuse("solve", "box.obj", "--sky", "1,-2,3", words=["--sky: sky radiance -2 is not"])

@@ -65,7 +65,7 @@ class Interrupted : public testing::Test {
 // 0.35 s at most by design, the rest for a busy machine: far from the minute that is slept.
 constexpr double kAnswer = 2;
 
-TEST_F(Interrupted, WhatNeverPollsIsEndedAndLeavesNothing) {
+TEST_F(Interrupted, StageThatNeverPollsIsEndedAndLeavesNothing) {
   const Answer answer = interrupt(folder_ / "begun", [&](ConsoleProgress&) {
     const AtomicFile file(path("out.h5"));
     std::ofstream(file.temporary()) << "half";
@@ -78,7 +78,7 @@ TEST_F(Interrupted, WhatNeverPollsIsEndedAndLeavesNothing) {
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 
-TEST_F(Interrupted, WhatPollsEndsByItself) {
+TEST_F(Interrupted, StageThatPollsEndsByItself) {
   const Answer answer = interrupt(folder_ / "begun", [&](ConsoleProgress& progress) {
     const AtomicFile file(path("out.h5"));
     std::ofstream(file.temporary()) << "half";
@@ -94,7 +94,7 @@ TEST_F(Interrupted, WhatPollsEndsByItself) {
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 
-TEST_F(Interrupted, WhatIsCommittedStays) {
+TEST_F(Interrupted, CommittedFilesStay) {
   const Answer answer = interrupt(folder_ / "begun", [&](ConsoleProgress&) {
     AtomicFile whole(path("whole.h5"));
     std::ofstream(whole.temporary()) << "whole";

@@ -35,7 +35,7 @@ TEST(ComparePictures, FiguresMadeByHand) {
   EXPECT_NEAR(c.difference[6], 0.7152 * 0.5, 1e-12);
 }
 
-TEST(ComparePictures, WhatEitherDoesNotShowIsLeftOut) {
+TEST(ComparePictures, PixelsThatEitherMissesAreLeftOut) {
   const ImageFile a = picture(4, 2, 1, 1, 1);
   ImageFile b = picture(4, 2, 1, 1, 1);
   for (std::size_t k = 0; k < 4; ++k) b.image.rgba[k] = 0;  // pixel 0: nothing hit

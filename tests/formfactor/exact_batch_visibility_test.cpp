@@ -142,7 +142,7 @@ TEST(BatchVisibility, SinglePrecisionIsThatOfOnePointAfterTheOther) {
   expectAsExact<float>(simdClipKernels().single, 10 * 14 * 2e-6);
 }
 
-TEST(BatchVisibility, WhatIsLookedAtAlongWithATargetChangesNothing) {
+TEST(BatchVisibility, OtherTargetsOfTheBatchChangeNothing) {
   BatchVisibility<float> together(simdClipKernels().single);
   BatchVisibility<float> alone(simdClipKernels().single);
   for (const std::size_t side : {2, 3}) {

@@ -152,7 +152,7 @@ TEST(Auto, ClutterAndToleranceDecide) {
   EXPECT_EQ(planFormFactors(cluttered, options, silent).method, FormFactorMethod::exact);
 }
 
-TEST(Auto, WhoAsksForMoreIsNotGivenHemicubes) {
+TEST(Auto, TightTolerancesNeverSelectHemicubes) {
   const PatchMesh mesh = meshNamed("curved", 300);
   Progress silent;
   FormFactorOptions options;

@@ -97,7 +97,7 @@ struct Sheet {
   double form_factor;
 };
 
-TEST(Partial, PlatesPastASheet) {
+TEST(OccludedPairs, PlatesPastASheet) {
   // Closed forms: the aperture's and the obstructed form factor add up to that of the plates, and
   // the aperture's follows from those of rectangles. Tolerance 1e-7 of 1/N, N = 129: errors of
   // some 1500 partial pairs, each 20 times that at most and of either sign, are below 1e-6 in sum.
@@ -135,7 +135,7 @@ PatchMesh clutteredRoom(int n) {
   return builder.build();
 }
 
-TEST(Partial, StaysBetweenNothingAndUnoccluded) {
+TEST(OccludedPairs, StaysBetweenNothingAndUnoccluded) {
   const Case scene(clutteredRoom(3));
   for (const double tolerance : {1e-3, 1e-4}) {
     OccludedCounts counts;
@@ -150,7 +150,7 @@ TEST(Partial, StaysBetweenNothingAndUnoccluded) {
   }
 }
 
-TEST(Partial, VectorsAndBatchesChangeNothing) {
+TEST(OccludedPairs, VectorsAndBatchesChangeNothing) {
   const Case scene(clutteredRoom(3));
   for (const double tolerance : {1e-3, 1e-4}) {
     OccludedCounts counts;
@@ -169,7 +169,7 @@ TEST(Partial, VectorsAndBatchesChangeNothing) {
   }
 }
 
-TEST(Partial, StricterEvaluationConfirmsStatedErrors) {
+TEST(OccludedPairs, StricterEvaluationConfirmsStatedErrors) {
   const Case scene(clutteredRoom(2));
   for (const double tolerance : {1e-2, 1e-4}) {
     OccludedCounts counts;
@@ -214,7 +214,7 @@ const OccludedPair& firstPair(const Case& scene) {
   throw std::logic_error("the pair is not partial");
 }
 
-TEST(Partial, PointsLieWhereTheShadowThatMovesMostMovesLeast) {
+TEST(OccludedPairs, PointsLieWhereTheShadowThatMovesMostMovesLeast) {
   // A small plate closely beside an occluder, and a large one, farther in its own size from the
   // nearest edge of another: but from there the small one is seen past that or not, in a step.
   MeshBuilder builder;
@@ -235,7 +235,7 @@ TEST(Partial, PointsLieWhereTheShadowThatMovesMostMovesLeast) {
   EXPECT_LT(calmer.change, restless.change);
 }
 
-TEST(Partial, WhatFarKernelsLeaveOutIsStated) {
+TEST(OccludedPairs, ErrorOfFarKernelsIsStated) {
   // A target some of its radii away, to one side, part of it behind a straight edge: no kink
   // between the points, and at loose tolerances kernels that expand about the target's middle. What
   // is stated is a root mean square over targets, with a margin of 2.55: 4 times the error here.
@@ -319,7 +319,7 @@ RowErrors compareRows(const Case& scene, const TrueRows& rows, double tolerance)
   return errors;
 }
 
-TEST(Partial, RowsKeepTheToleranceAndSaySo) {
+TEST(OccludedPairs, RowsKeepTheToleranceAndSaySo) {
   // One block in a room, and twelve. The tolerance is for the root mean square over a row's
   // entries in mean form factors, which is less than theirs. It is met where a tenth of the pairs
   // are partial; among twelve blocks nearly all are: three times it is asserted. Figures are above

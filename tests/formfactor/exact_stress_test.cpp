@@ -68,16 +68,17 @@ void expectSane(const PatchMesh& mesh, const FormFactors& f, const std::string& 
 }
 
 /// Both methods, and the exact one against the truth: closed forms to 2e-5 (the 1e-5 of each value
-/// and what storage and summing add), entries past something to a tenth of the mean form factor (a
-/// hundred tolerances: a small part of a shadow may be overlooked).
-void expectTrue(const PatchMesh& mesh, const std::string& what) {
+/// and what storage and summing add), entries past something to `past` times the mean form
+/// factor. The tolerance is 1e-3 of that, for the root mean square; the worst single entries of
+/// these coarse scenes are off by 20 to 50 times as much.
+void expectTrue(const PatchMesh& mesh, const std::string& what, double past = 0.05) {
   expectSane(mesh, compute(mesh, FormFactorMethod::hemicube), what + ", hemicube");
   const FormFactors f = compute(mesh, FormFactorMethod::exact);
   expectSane(mesh, f, what + ", exact");
   truth::TruthOptions options;
   options.accuracy = 1e-4;
   const truth::GroundTruth truth(mesh, options);
-  const double past = f.report.exact.partial > 0 ? 0.1 / double(mesh.size()) : 0.0;
+  const double allowed = f.report.exact.partial > 0 ? past / double(mesh.size()) : 0.0;
   double off = 0;
   double all = 0;
   const std::size_t step = std::max<std::size_t>(1, mesh.size() / 6);
@@ -85,7 +86,7 @@ void expectTrue(const PatchMesh& mesh, const std::string& what) {
     const std::vector<double> row = truth.row(i).form_factors;
     for (std::size_t j = 0; j < mesh.size(); ++j) {
       const double value = f.matrix.at(i, j);
-      EXPECT_NEAR(value, row[j], 2e-5 * row[j] + past + 1e-14) << what << " " << i << " " << j;
+      EXPECT_NEAR(value, row[j], 2e-5 * row[j] + allowed + 1e-14) << what << " " << i << " " << j;
       off += mesh.area[i] * (value - row[j]) * (value - row[j]);
       all += mesh.area[i] * row[j] * row[j];
     }
@@ -193,7 +194,8 @@ TEST(Stress, PatchesOnThePlanesAndEdgesOfBlockers) {
   builder.box("room", Vec3(0), Vec3(1), 4, true);
   builder.box("block", Vec3(0.25, 0.25, 0.25), Vec3(0.5, 0.5, 0.75), 1);
   builder.grid("sheet", {0.625, 0, 0.25}, {0, 0.75, 0}, {0, 0, 0.5}, 2, 2, true);
-  expectTrue(builder.build(), "aligned");
+  // Shadows all step at once, where points are: the worst entries are off by 85 tolerances.
+  expectTrue(builder.build(), "aligned", 0.1);
 }
 
 TEST(Stress, SheetsOfAllKinds) {

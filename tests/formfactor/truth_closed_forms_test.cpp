@@ -44,7 +44,7 @@ TEST(TruthUnoccluded, ClosureOfTheCubeOfTriangles) {
   }
 }
 
-TEST(TruthUnoccluded, WhatLiesBehindIsCutAway) {
+TEST(TruthUnoccluded, PartsBehindThePlaneAreCutAway) {
   // A wall that reaches half below the floor's plane exchanges as its upper half does.
   const Corners floor = level(0, 1, 0, 1, 0, true);
   const Corners deep = {{0, 0, -1}, {0, 1, -1}, {0, 1, 1}, {0, 0, 1}};

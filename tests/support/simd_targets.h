@@ -24,6 +24,7 @@ int onEveryTarget(const Choose& choose, const Check& check) {
     check(kernels);
     ++count;
   }
+  EXPECT_GT(count, 0) << "no instruction set was tried";
   hwy::SetSupportedTargetsForTest(0);
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
   return count;
