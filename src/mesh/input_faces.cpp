@@ -237,9 +237,10 @@ void Cleaner::writeNotes() {
   }
   for (const auto& [name, count] : bent_) {
     report_.notes.push_back(
-        {Severity::info, fmt::format("{}: {} polygons are not planar (up to {:.3g} m off) and were "
-                                     "split into triangles",
-                                     name, count, report_.largest_deviation)});
+        {Severity::info,
+         fmt::format("{}: {} not planar (up to {:.3g} m off) and split into triangles", name,
+                     count == 1 ? "1 polygon was" : fmt::format("{} polygons were", count),
+                     report_.largest_deviation)});
   }
   for (const auto& [name, count] : twice_) {
     report_.notes.push_back(

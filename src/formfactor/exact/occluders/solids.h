@@ -28,7 +28,7 @@ struct ConvexSolid {
 ///   by edge or covers it (a box on a table); or the polygons belong to a closed surface with the
 ///   hull on the side that nobody looks into (a book between books on a board).
 /// Where faces were cut at contacts or merged with others', so that such sets are small, slabs
-/// behind single polygons stand in (occluders_slabs.h), the more telling one of each first.
+/// behind single polygons stand in (slabs.h), the more telling one of each first.
 /// A curved surface (ConvexGroups) is a solid if all of it is in convex position; parts of one that
 /// is not are left to be flat. So all takes n log n time.
 /// `taken[p]` becomes 1 for the polygons on the faces of the solids found.

@@ -27,13 +27,13 @@ struct VisibilityCounts {
   VisibilityCounts& operator+=(const VisibilityCounts& other);
 };
 
-/// Which pairs of some rows a sample looks at, and how long.
 /// What walls see of walls is a large part of the work in few facets: among thousands of small ones
 /// a stride would pass them by, or count them too often. So they are sampled apart.
 enum class FacetSize { any, small, large };
 /// Elements that a large facet has at least.
 inline constexpr std::size_t kLargeFacet = 8;
 
+/// Which pairs of some rows a sample looks at, and how long.
 struct VisibilitySample {
   FacetSize size = FacetSize::any;
   std::size_t facet_stride = 1;  ///< every so many-th of these, of the open facets after theirs,
