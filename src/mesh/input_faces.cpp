@@ -11,6 +11,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "base/finite.h"
 #include "mesh/box_pairs.h"
 #include "mesh/edge_key.h"
 #include "mesh/face_locator.h"
@@ -74,7 +75,7 @@ void Cleaner::weld(double weld) {
   Box3 box;
   for (const Index v : used) {
     const Vec3& p = scene_.vertices[v];
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+    if (!isFinite(p)) {
       throw InputError(
           fmt::format("{}: vertex {} is not finite; give it three numbers", scene_.file, v + 1));
     }

@@ -5,16 +5,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/finite.h"
+
 namespace radiosity {
 namespace {
 
-bool finite(const Vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
 void check(const Camera& camera) {
   const std::string name = camera.name.empty() ? "camera" : "camera \"" + camera.name + "\"";
-  if (!finite(camera.eye) || !finite(camera.target) || !finite(camera.up)) {
+  if (!isFinite(camera.eye) || !isFinite(camera.target) || !isFinite(camera.up)) {
     throw InputError(name + ": eye, target and up must be finite numbers");
   }
   if (camera.eye == camera.target) {

@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
+#include "base/finite.h"
 #include "results/checked_file.h"
 
 namespace radiosity {
@@ -13,7 +12,7 @@ namespace {
 void requireFinite(const LitMesh& mesh) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (const Vec3& colour : mesh.colours[t]) {
-      if (std::isfinite(colour.x) && std::isfinite(colour.y) && std::isfinite(colour.z)) continue;
+      if (isFinite(colour)) continue;
       throw InputError(fmt::format("{}: face {} has a colour that is not a number; export it again",
                                    mesh.file, mesh.face[t]));
     }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/finite.h"
 #include "scene/gltf_file.h"
 
 namespace radiosity {
@@ -16,10 +17,6 @@ namespace radiosity {
 /// node that is reached twice, a malformed transform.
 void forEachGltfNode(const GltfFile& file,
                      const std::function<void(int, const glm::dmat4&, const std::string&)>& visit);
-
-inline bool isFinite(const Vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 /// True for a primitive made of triangles, in whatever mode.
 bool hasTriangles(const tinygltf::Primitive& primitive);

@@ -5,14 +5,11 @@
 #include <set>
 #include <string>
 
+#include "base/finite.h"
 #include "radiosity/scene.h"
 
 namespace radiosity {
 namespace {
-
-bool isFinite(const Vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 class Validation {
  public:

@@ -81,6 +81,7 @@ std::span<const OccludedPair> batchOf(std::span<const OccludedPair> pairs, std::
 /// Clips a batch. Nothing but measured seconds comes of it.
 void clip(const ExactScene& scene, const ExactKernels& kernels, std::span<const OccludedPair> batch,
           std::span<const Index> occluder_list, double tolerance, ClipTime& clipped) {
+  if (batch.empty()) return;
   std::vector<OccludedPair> some(batch.begin(), batch.end());
   clipped.expected +=
       occludedCost(scene.elements, scene.occluders, some, occluder_list, tolerance).seconds;
