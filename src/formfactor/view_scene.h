@@ -33,8 +33,7 @@ struct ViewPolygon {
 /// precision depths neither overflow nor depend on the scene's unit; it changes no bit of any
 /// mantissa.
 struct ViewScene {
-  /// Without grids a side of many patches counts as its first: enough to tell bare sides.
-  explicit ViewScene(const PatchMesh& mesh, bool with_grids = true);
+  explicit ViewScene(const PatchMesh& mesh);
 
   std::size_t patches;  ///< N
   std::size_t items;    ///< N + surfaces
@@ -58,7 +57,7 @@ struct ViewScene {
  private:
   std::vector<Index> packVertices(const PatchMesh& mesh);
   void addPolygons(const PatchMesh& mesh);
-  void addSides(const PatchMesh& mesh, bool with_grids);
+  void addSides(const PatchMesh& mesh);
   void numberCells();
 };
 

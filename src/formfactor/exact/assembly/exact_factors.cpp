@@ -13,6 +13,7 @@
 #include "formfactor/exact/clip_kernels.h"
 #include "formfactor/row_accounts.h"
 #include "matrix/closure_progress.h"
+#include "mesh/enclosures.h"
 
 namespace radiosity {
 namespace {
@@ -120,8 +121,9 @@ void setAccounts(const PatchMesh& mesh, const PatchOrder& order, FormFactors& re
     most_sky = std::max(most_sky, result.sky[i]);
   }
   FormFactorReport& report = result.report;
+  std::optional<Enclosures> found;
   report.closed = order.ranked > 0 && most_sky < kCertainSky &&
-                  (closedByTopology(mesh, progress) || closedByEye(mesh, progress));
+                  (enclosuresOf(mesh, found).proved_closed || closedByEye(mesh, progress));
   for (double& sky : result.sky) {
     const double excess = report.closed ? std::abs(sky) : -sky;
     report.largest_row_error = std::max(report.largest_row_error, excess);

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <glm/geometric.hpp>
-#include <glm/vector_relational.hpp>
+#include <optional>
+#include <span>
 
 #include "base/geometry/box_tree.h"
 #include "base/geometry/point_tree.h"
-#include "formfactor/hidden_backs.h"
+#include "mesh/enclosures.h"
 
 namespace radiosity {
 namespace {
@@ -19,48 +20,62 @@ class UnseenBacks {
  public:
   explicit UnseenBacks(const PatchMesh& mesh)
       : mesh_(mesh),
-        scene_(mesh, false),
-        backs_(scene_),
-        vertices_(scene_.vertices),
+        enclosures_(enclosuresOf(mesh, found_)),
+        coincidence_(coincidenceOf(mesh)),
+        first_(firstAtSamePoint(mesh)),
+        vertices_(usedVertices()),
         patches_of_(mesh.polygons.size()),
-        own_vertex_(scene_.vertices.size(), 0),
-        own_polygon_(scene_.polygons.size(), 0) {
-    std::vector<Box3> boxes(scene_.polygons.size());
+        has_back_(mesh.polygons.size(), 0),
+        own_vertex_(mesh.vertices.size(), 0),
+        own_polygon_(mesh.polygons.size(), 0) {
+    std::vector<Box3> boxes(mesh.polygons.size());
     for (Index p = 0; p < boxes.size(); ++p) {
-      forCorners(scene_.polygons[p], [&](std::uint32_t v) { boxes[p].add(scene_.vertices[v]); });
+      for (const Index v : cornersOf(p)) boxes[p].add(mesh.vertices[v]);
     }
     places_ = BoxTree(std::move(boxes));
     for (Index i = 0; i < mesh.size(); ++i) {
-      if (mesh.polygon[i] != kNone && mesh.area[i] > 0) patches_of_[mesh.polygon[i]].push_back(i);
+      if (mesh.polygon[i] == kNone || !(mesh.area[i] > 0)) continue;
+      patches_of_[mesh.polygon[i]].push_back(i);
+      if (mesh.side[i] != 0) has_back_[mesh.polygon[i]] = 1;
     }
   }
 
   std::vector<std::uint8_t> find() {
-    std::vector<std::uint8_t> unseen = backs_.covered();
-    for (const ClosedSurface& surface : backs_.closedSurfaces()) {
+    std::vector<std::uint8_t> unseen = enclosures_.covered;
+    for (const ClosedSurface& surface : enclosures_.surfaces) {
       const bool proved = allOnFrontSide(surface);
       for (const Index p : surface.polygons) unseen[p] |= std::uint8_t(proved);
     }
-    std::vector<std::uint8_t> of_mesh(mesh_.polygons.size(), 0);
-    for (Index p = 0; p < scene_.polygons.size(); ++p) {
-      const ViewPolygon& polygon = scene_.polygons[p];
-      const bool bare = polygon.side[1].grid == kNone && polygon.side[1].item >= scene_.patches;
-      of_mesh[polygon.source] = bare && (unseen[p] || allInFront(polygon));
+    for (Index p = 0; p < unseen.size(); ++p) {
+      unseen[p] = has_back_[p] == 0 && (unseen[p] != 0 || allInFront(p));
     }
-    return of_mesh;
+    return unseen;
   }
 
  private:
-  bool allInFront(const ViewPolygon& polygon) const {
-    const double offset = glm::dot(polygon.normal, polygon.origin);
-    return !vertices_.anyAbove(-polygon.normal, scene_.coincidence - offset);
+  std::span<const Index> cornersOf(Index p) const {
+    const PlanarPolygons& all = mesh_.polygons;
+    const std::size_t begin = all.corner_offset[all.loopBegin(p)];
+    return {all.corners.data() + begin, all.corner_offset[all.loopEnd(p)] - begin};
   }
 
-  template <class Visit>
-  void forCorners(const ViewPolygon& polygon, Visit&& visit) const {
-    const std::uint32_t begin = scene_.loop_offset[polygon.loop_begin];
-    const std::uint32_t end = scene_.loop_offset[polygon.loop_end];
-    for (std::uint32_t k = begin; k < end; ++k) visit(scene_.corners[k]);
+  /// Points at which polygons have corners.
+  std::vector<Vec3> usedVertices() const {
+    std::vector<Index> used;
+    used.reserve(mesh_.polygons.corners.size());
+    for (const Index v : mesh_.polygons.corners) used.push_back(first_[v]);
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    std::vector<Vec3> points;
+    points.reserve(used.size());
+    for (const Index v : used) points.push_back(mesh_.vertices[v]);
+    return points;
+  }
+
+  bool allInFront(Index p) const {
+    const Vec3& normal = mesh_.polygons.normal[p];
+    const double offset = glm::dot(normal, mesh_.polygons.origin[p]);
+    return !vertices_.anyAbove(-normal, coincidence_ - offset);
   }
 
   /// Whether every patch that is not the surface's own lies on the side its fronts face: its
@@ -69,50 +84,48 @@ class UnseenBacks {
     ++stamp_;
     for (const Index p : surface.polygons) {
       own_polygon_[p] = stamp_;
-      forCorners(scene_.polygons[p], [&](std::uint32_t v) { own_vertex_[v] = stamp_; });
+      for (const Index v : cornersOf(p)) own_vertex_[first_[v]] = stamp_;
     }
     bool proved = true;
     const auto look = [&](Index p) {
-      proved = own_polygon_[p] == stamp_ || isOnFrontSide(surface, scene_.polygons[p]);
+      proved = own_polygon_[p] == stamp_ || isOnFrontSide(surface, p);
       return proved;
     };
-    if (surface.outward) {  // all that is out of its box is on its front side
+    if (surface.is_solid) {  // all that is out of its box is on its front side
       places_.query({surface.lower, surface.upper}, look);
     } else {
-      for (Index p = 0; p < scene_.polygons.size() && look(p); ++p) {
+      for (Index p = 0; p < mesh_.polygons.size() && look(p); ++p) {
       }
     }
     return proved;
   }
 
-  bool isOnFrontSide(const ClosedSurface& surface, const ViewPolygon& polygon) {
-    bool proved = true;
-    forCorners(polygon, [&](std::uint32_t v) {
-      proved = proved && (own_vertex_[v] == stamp_ || onFrontSide(surface, scene_.vertices[v]));
-    });
-    const std::vector<Index>& patches = patches_of_[polygon.source];
-    return proved && std::all_of(patches.begin(), patches.end(), [&](Index i) {
-             return onFrontSide(surface, mesh_.centroid[i] * scene_.scale);
-           });
+  bool isOnFrontSide(const ClosedSurface& surface, Index p) {
+    for (const Index v : cornersOf(p)) {
+      if (own_vertex_[first_[v]] == stamp_) continue;
+      if (!isPointOnFrontSide(surface, mesh_.vertices[v])) return false;
+    }
+    const std::vector<Index>& patches = patches_of_[p];
+    return std::all_of(patches.begin(), patches.end(),
+                       [&](Index i) { return isPointOnFrontSide(surface, mesh_.centroid[i]); });
   }
 
-  bool onFrontSide(const ClosedSurface& surface, const Vec3& point) {
-    const bool in_box = glm::all(glm::greaterThanEqual(point, surface.lower)) &&
-                        glm::all(glm::lessThanEqual(point, surface.upper));
-    if (in_box) {
-      for (const Index p : surface.polygons) {
-        forCorners(scene_.polygons[p], [&](std::uint32_t) { ++solid_angles_; });
-      }
+  bool isPointOnFrontSide(const ClosedSurface& surface, const Vec3& point) {
+    if (Box3{surface.lower, surface.upper}.contains(point)) {
+      for (const Index p : surface.polygons) solid_angles_ += cornersOf(p).size();
     }
-    return solid_angles_ <= kMostSolidAngles && backs_.onFrontSide(surface, point);
+    return solid_angles_ <= kMostSolidAngles && radiosity::isOnFrontSide(mesh_, surface, point);
   }
 
   const PatchMesh& mesh_;
-  const ViewScene scene_;
-  const HiddenBacks backs_;
+  std::optional<Enclosures> found_;  // where the mesh does not bring them
+  const Enclosures& enclosures_;
+  const double coincidence_;
+  const std::vector<Index> first_;
   const PointTree vertices_;
   BoxTree places_;                              // boxes of polygons
   std::vector<std::vector<Index>> patches_of_;  // of the mesh's polygons
+  std::vector<std::uint8_t> has_back_;          // 1: the back has patches
   std::vector<std::uint32_t> own_vertex_;       // stamps: of the surface in question
   std::vector<std::uint32_t> own_polygon_;
   std::uint32_t stamp_ = 0;
