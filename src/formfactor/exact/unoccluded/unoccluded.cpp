@@ -271,7 +271,7 @@ class UnoccludedKernel::Typed : public UnoccludedKernel::Implementation {
 };
 
 UnoccludedKernel::UnoccludedKernel(const ElementSet& elements, double tolerance, bool simd) {
-  const FarKernels kernels = simd ? simdFarKernels() : scalarFarKernels();
+  const FarKernels kernels = farKernels(simd);
   const ClipKernels<double> lambert = (simd ? simdClipKernels() : scalarClipKernels()).exact;
   if (tolerance < kFinestInSinglePrecision) {
     implementation_ =
