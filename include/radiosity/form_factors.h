@@ -45,7 +45,7 @@ struct FormFactorOptions {
   std::optional<bool> near_exact;
   std::size_t memory_limit = 0;  ///< bytes; 0: no limit
   std::size_t memory_held = 0;   ///< bytes that others hold: they count towards limit and estimate
-  bool simd = true;              ///< false: the scalar twin (same bits)
+  bool simd = true;              ///< false: Highway's scalar target (same bits)
 
   void validate() const;
   Precision storedPrecision() const;
@@ -109,7 +109,7 @@ struct FormFactorReport {
   std::size_t pixels = 0;               ///< resolved, summed over hemicubes
   std::size_t near_pairs = 0;           ///< entries replaced by area-to-area values
   std::size_t capped = 0;               ///< rows whose near entries were held at a sum of 1
-  std::string simd_target;              ///< e.g. "AVX3", "scalar"
+  std::string simd_target;              ///< Highway's name, e.g. "AVX3", "SCALAR"
   double seconds = 0;                   ///< all in all
   double seconds_plan = 0;       ///< of these, finding out what it will take; preparing included
   double estimated_seconds = 0;  ///< the others, as they were announced before the run

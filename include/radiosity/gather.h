@@ -35,7 +35,7 @@ struct GatherOptions {
   /// x ln x, whose mean over a patch the straight line from its value at the edge misses by a
   /// quarter of the patch; from a tenth of the patch it does not.
   double inset = 0.1;
-  bool simd = true;  ///< false: the scalar twin (same bits)
+  bool simd = true;  ///< false: Highway's scalar target (same bits)
   void validate() const;
 };
 

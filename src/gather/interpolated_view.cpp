@@ -21,7 +21,7 @@ InterpolatedView::InterpolatedView(const PatchMesh& mesh, const PatchBasis& basi
                                    const std::vector<float>& radiosity)
     : mesh_(mesh),
       basis_(basis),
-      kernels_(simd ? simdInterpolation() : scalarInterpolation()),
+      kernels_(interpolationKernels(simd)),
       scale_(scale),
       resolution_(resolution),
       eye_of_corner_(eye_of_corner),

@@ -231,7 +231,7 @@ TEST(ExactFactors, ConvexScenesRunNoVisibility) {
   EXPECT_LT(f.report.largest_row_error, 2e-5);  // the closed forms' 1e-5, and storage
 }
 
-TEST(ExactFactors, ThreadsScalarTwinAndScaleChangeNoBit) {
+TEST(ExactFactors, ThreadsScalarTargetAndScaleChangeNoBit) {
   const PatchMesh mesh = test::roomWithBlock(3).build();
   const FormFactors f = compute(mesh);
   setThreads(1);

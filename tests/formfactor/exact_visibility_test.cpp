@@ -187,8 +187,8 @@ TEST(ExactVisibilityFaces, AnswersAreTrueFarAwayAndTiny) {
   expectTrue(test::meshOf(test::scaled(test::hardRoom(), 1e-6), 200), 20000, 8);
 }
 
-/// The scalar twin answers alike, pair by pair.
-TEST(ExactVisibilityCounts, ScalarTwinGivesTheSame) {
+/// The scalar target answers alike, pair by pair.
+TEST(ExactVisibilityCounts, ScalarTargetGivesTheSame) {
   const PatchMesh mesh = test::meshOf(test::hardRoom(), 250);
   const Table table(mesh);
   const Visibility scalar(table.elements, table.occluders, false);

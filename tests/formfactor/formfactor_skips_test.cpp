@@ -49,7 +49,7 @@ TEST(Skips, TheSameEyeDrawsTheSamePolygonsHoweverFineThePatches) {
   const auto drawn = [](int n) {
     const ViewScene scene(test::roomWithBlock(n).build());
     const DeltaFormFactors weights(64);
-    Hemicube hemicube(scene, weights, simdKernels());
+    Hemicube hemicube(scene, weights, rasterKernels(true));
     hemicube.look(eyeFrame(Vec3(0.8, 0.2, 0.3) * scene.scale, Vec3(0.6, 0, 0.8), 1.0), kNone,
                   nullptr);
     return hemicube.counts().rasterised_polygons;
@@ -114,7 +114,7 @@ TEST(Skips, OutsideAFace) {
   builder.grid("lamp", {-0.1, -0.1, 1}, {0, 0.2, 0}, {0.2, 0, 0});
   const ViewScene scene(builder.build());
   const DeltaFormFactors weights(32);
-  Hemicube hemicube(scene, weights, simdKernels());
+  Hemicube hemicube(scene, weights, rasterKernels(true));
   hemicube.look(eyeFrame(Vec3(0.0), Vec3(0, 0, 1), 0.3), 0, nullptr);
   EXPECT_EQ(hemicube.counts().skipped_face, 4u);
   EXPECT_EQ(hemicube.counts().rasterised_polygons, 1u);
@@ -127,8 +127,8 @@ TEST(HiddenBacks, LeavingThemOutChangesNoPixel) {
   const ViewScene scene(mesh);
   const HiddenBacks backs(scene, mesh);
   const DeltaFormFactors weights(64);
-  Hemicube with(scene, weights, simdKernels());
-  Hemicube without(scene, weights, simdKernels());
+  Hemicube with(scene, weights, rasterKernels(true));
+  Hemicube without(scene, weights, rasterKernels(true));
   std::mt19937_64 random(21);
   std::uniform_real_distribution<double> unit(0, 1);
   std::vector<std::uint8_t> hidden;

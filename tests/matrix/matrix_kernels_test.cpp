@@ -13,8 +13,8 @@ namespace radiosity {
 namespace {
 
 template <class Check>
-int forEveryTarget(const Check& check) {
-  return test::onEveryTarget(triangleKernels, check);
+void forEveryTarget(const Check& check) {
+  test::onEveryTarget(triangleKernels, check);
 }
 
 struct Sample {
@@ -72,7 +72,7 @@ TEST(TriangleKernels, EveryInstructionSetGivesTheBitsOfTheDefinition) {
   for (const Precision precision : {Precision::single, Precision::real}) {
     for (std::size_t n = 0; n < 130; n += n < 20 ? 1 : 11) {
       const Sample sample(n, precision, unsigned(n));
-      const int targets = forEveryTarget([&](const TriangleKernels& kernels) {
+      forEveryTarget([&](const TriangleKernels& kernels) {
         for (int bands = 1; bands <= kMaxBands; ++bands) {
           std::vector<double> z = sample.z;
           std::vector<double> sums(kMaxBands, -1.0);
@@ -91,7 +91,6 @@ TEST(TriangleKernels, EveryInstructionSetGivesTheBitsOfTheDefinition) {
           EXPECT_EQ(both_sums, sums);
         }
       });
-      EXPECT_GE(targets, 1);
     }
   }
 }

@@ -1,8 +1,8 @@
 // Form factors from one point to many convex polygons, and to what one cone hides of each: the
-// inner loops of partial visibility, behind plain pointers. One set per instruction set and a
-// scalar twin; every set gives the same bits, since the loops only add, multiply, divide, compare
-// and take square roots, each correctly rounded by IEEE 754, nothing is contracted to a fused
-// multiply-add, and no lane's value depends on the others.
+// inner loops of partial visibility, behind plain pointers. One set per instruction set, Highway's
+// scalar target among them; every set gives the same bits, since the loops only add, multiply,
+// divide, compare and take square roots, each correctly rounded by IEEE 754, nothing is contracted
+// to a fused multiply-add, and no lane's value depends on the others.
 #pragma once
 
 #include <cstddef>
@@ -173,14 +173,12 @@ struct ClipKernels {
 inline constexpr double kFarError = 1;
 
 struct ClipKernelSet {
-  std::string target;  ///< instruction set, or "scalar"
+  std::string target;  ///< instruction set, by Highway's name
   ClipKernels<float> single;
   ClipKernels<double> exact;
 };
 
-/// The twin in plain C++, against which every other set is tested.
-ClipKernelSet scalarClipKernels();
-/// The best instruction set of this machine.
-ClipKernelSet simdClipKernels();
+/// The best instruction set of this machine; `simd` false: Highway's scalar target, the same bits.
+ClipKernelSet clipKernels(bool simd);
 
 }  // namespace radiosity

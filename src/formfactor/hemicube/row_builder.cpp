@@ -9,7 +9,7 @@ RowBuilder::RowBuilder(const PatchMesh& mesh, const FormFactorOptions& options)
       scene_(mesh),
       hidden_backs_(scene_, mesh),
       weights_(options.resolution),
-      kernels_(options.simd ? simdKernels() : scalarKernels()),
+      kernels_(rasterKernels(options.simd)),
       polygon_place_(mesh.polygons.size()) {
   for (Index p = 0; p < scene_.polygons.size(); ++p) polygon_place_[scene_.polygons[p].source] = p;
 }

@@ -157,7 +157,7 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   result.method = "exact";
   FormFactorReport& report = result.report;
   report.polygons = mesh.polygons.size();
-  report.simd_target = (options.simd ? simdClipKernels() : scalarClipKernels()).target;
+  report.simd_target = clipKernels(options.simd).target;
   report.empty_rows = n - scene.order.ranked;
   report.estimated_bytes = estimate.bytes;
   refuseTooLarge(estimate.bytes, options, n);

@@ -63,7 +63,7 @@ OccludedKernel::OccludedKernel(const ElementSet& elements, const OccluderSet& oc
     : elements_(elements),
       occluders_(occluders),
       distances_(elements, occluders),
-      kernels_(simd ? simdClipKernels() : scalarClipKernels()),
+      kernels_(clipKernels(simd)),
       tolerance_(tolerance) {}
 
 template <class T>

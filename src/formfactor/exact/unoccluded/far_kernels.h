@@ -114,13 +114,12 @@ using FarFunction = std::size_t (*)(FarRow<T>& row, const FarBatch<T>& batch,
 /// Writes G of the row with each column, or kNearPair; returns how many are near. All elements in
 /// front of each other's planes.
 struct FarKernels {
-  std::string target;  ///< instruction set, or "scalar"
+  std::string target;  ///< instruction set, by Highway's name
   FarFunction<float> single_precision;
   FarFunction<double> double_precision;
 };
 
-FarKernels scalarFarKernels();
-/// The best instruction set of this machine; the same bits.
-FarKernels simdFarKernels();
+/// The best instruction set of this machine; `simd` false: Highway's scalar target, the same bits.
+FarKernels farKernels(bool simd);
 
 }  // namespace radiosity

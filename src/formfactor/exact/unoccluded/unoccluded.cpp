@@ -271,8 +271,8 @@ class UnoccludedKernel::Typed : public UnoccludedKernel::Implementation {
 };
 
 UnoccludedKernel::UnoccludedKernel(const ElementSet& elements, double tolerance, bool simd) {
-  const FarKernels kernels = simd ? simdFarKernels() : scalarFarKernels();
-  const ClipKernels<double> lambert = (simd ? simdClipKernels() : scalarClipKernels()).exact;
+  const FarKernels kernels = farKernels(simd);
+  const ClipKernels<double> lambert = clipKernels(simd).exact;
   if (tolerance < kFinestInSinglePrecision) {
     implementation_ =
         std::make_unique<Typed<double>>(elements, tolerance, kernels.double_precision, lambert);

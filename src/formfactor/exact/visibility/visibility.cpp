@@ -49,7 +49,7 @@ Visibility::Visibility(const ElementSet& elements, const OccluderSet& occluders,
     : elements_(elements),
       occluders_(occluders),
       tree_(occluders.occluders),
-      kernels_(simd ? simdVisibilityKernels() : scalarVisibilityKernels()),
+      kernels_(visibilityKernels(simd)),
       own_(elements.facets.size()) {
   for (const Cluster& cluster : elements.clusters) {
     const bool leaf = cluster.child_count == 0;

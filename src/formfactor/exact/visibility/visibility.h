@@ -67,7 +67,7 @@ class VisibilitySink {
 /// but `partial` is proved; touching within the coincidence blocks nothing.
 class Visibility {
  public:
-  /// Both are kept by reference. `simd` false: scalar twin, the same answers.
+  /// Both are kept by reference. `simd` false: the scalar target, the same answers.
   Visibility(const ElementSet& elements, const OccluderSet& occluders, bool simd = true);
 
   /// Classifies elements `rows` (of one facet that is not bare; best a cluster's range) against
