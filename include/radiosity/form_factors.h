@@ -24,7 +24,7 @@ enum class FormFactorMethod {
 enum class ClosureMode {
   off,
   report,  ///< say how far the rows of a closed scene are from 1, change nothing
-  enforce  ///< change what is not known in closed form until they sum to 1
+  enforce  ///< change what is not known in closed form until they sum to 1 (closeRows())
 };
 
 struct FormFactorOptions {
@@ -39,7 +39,7 @@ struct FormFactorOptions {
   int resolution = 256;    ///< hemicube: pixels along an edge of the top face; even, 16 to 4096
   std::uint64_t seed = 1;  ///< hemicube: of the random turns about each normal
   bool random_turns = true;
-  bool symmetrize = false;  ///< hemicube: merge both estimates of each pair, then restore closure
+  bool symmetrize = false;  ///< hemicube: merge both estimates of each pair, then close rows
   /// Hemicube: pairs nearer than two patch sizes get the area-to-area value times the visible
   /// fraction that the item buffer tells. Empty: where `automatic` picked hemicubes, yes; else no.
   std::optional<bool> near_exact;
@@ -123,7 +123,7 @@ struct FormFactorReport {
   bool closed = false;      ///< no patch sees the sky
   bool symmetrized = false;
   ClosureReport closure;          ///< where symmetrized, or exact and closed
-  bool closure_enforced = false;  ///< else it is what closure would do
+  bool closure_enforced = false;  ///< exact: rows were closed, not only looked at
   ExactReport exact;
   std::vector<Note> notes;  ///< surfaces seen from behind, ...
 };
@@ -162,13 +162,17 @@ struct FormFactorPlan {
   double refining = 0;  ///< share of the seconds that goes with 1 / tolerance
   /// Seconds of hemicubes instead, where the exact method was picked and takes over a minute.
   double hemicube_seconds = 0;
-  /// What was made ready on the way, with the mesh by reference and the options: what the
-  /// computation starts from.
+  /// What was made ready on the way, with the mesh and the options: what the computation starts
+  /// from.
   struct Prepared;
   std::shared_ptr<const Prepared> prepared;
 };
+/// The plan keeps a copy of the mesh (about 300 bytes a patch), ...
 FormFactorPlan planFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
                                Progress& progress);
+/// ... or the mesh itself, which nobody may change while the plan is there.
+FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
+                               const FormFactorOptions& options, Progress& progress);
 
 /// All cores; the same bits for any number of them. Hemicube: raw rows, as they were seen, unless
 /// `symmetrize`; exact: a symmetric matrix.
@@ -176,8 +180,7 @@ FormFactorPlan planFormFactors(const PatchMesh& mesh, const FormFactorOptions& o
 FormFactors computeFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
                                Progress& progress);
 
-/// The same of a plan, which comes from planFormFactors(), as often as you like; its mesh must be
-/// there still, as it was.
+/// The same of a plan, which comes from planFormFactors(), as often as you like.
 FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress);
 
 }  // namespace radiosity

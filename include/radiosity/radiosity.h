@@ -7,6 +7,7 @@
 #include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
+#include "radiosity/matrix_functions.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/render.h"
 #include "radiosity/results.h"

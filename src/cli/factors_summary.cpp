@@ -77,14 +77,14 @@ void closureFigures(Report& report, const FormFactorReport& r) {
   const ClosureReport& c = r.closure;
   const bool done = r.symmetrized || r.closure_enforced;
   report.yesNo("closure_enforced", "closure: enforced", done);
-  report.count("closure_adjustable", "closure: pairs that may move", c.adjustable);
-  report.number("closure_residual_before", "closure: residual before", c.largest_residual_before);
-  report.number("closure_residual", done ? "closure: residual after" : "closure: would leave",
-                c.largest_residual);
-  report.number("closure_largest_move",
-                done ? "closure: largest move" : "closure: would move at most", c.largest_move);
-  report.number("closure_relative_move",
-                done ? "closure: move, relL2" : "closure: would move, relL2", c.relative_move);
+  const char* before = r.symmetrized ? "closure: rows off by, merged" : "closure: rows off 1 by";
+  report.number("closure_residual_before", before, c.largest_residual_before);
+  report.number("closure_residual_before_rms", "  root mean square", c.rms_residual_before);
+  if (!done) return;
+  report.number("closure_residual", "closure: rows off by, now", c.largest_residual);
+  report.count("closure_adjustable", "closure: pairs that could move", c.adjustable);
+  report.number("closure_largest_move", "closure: largest move", c.largest_move);
+  report.number("closure_relative_move", "closure: move, relL2", c.relative_move);
   report.count("closure_emptied", "closure: moved to 0", c.emptied);
   report.count("closure_fixed_rows", "closure: rows out of reach", c.fixed_rows);
   report.count("closure_iterations", "closure: iterations", std::size_t(c.iterations));
@@ -107,7 +107,8 @@ void accuracyFigures(Report& report, const FormFactors& factors) {
     report.number("reciprocity_residual", "reciprocity residual", r.reciprocity_residual);
     report.yesNo("symmetrized", "symmetrized", r.symmetrized);
   }
-  if (r.symmetrized || r.closure.adjustable > 0) closureFigures(report, r);
+  const bool looked_at = r.closure.largest_residual_before > 0;
+  if (r.symmetrized || r.closure_enforced || looked_at) closureFigures(report, r);
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ inline constexpr NameTable<ClosureMode, 3> kClosureNames{{{ClosureMode::off, "of
                                                           {ClosureMode::report, "report"},
                                                           {ClosureMode::enforce, "enforce"}}};
 inline constexpr NameTable<Precision, 2> kPrecisionNames{
-    {{Precision::single, "single"}, {Precision::real, "double"}}};
+    {{Precision::single_precision, "single"}, {Precision::double_precision, "double"}}};
 inline constexpr NameTable<Solver, 2> kSolverNames{
     {{Solver::gauss_seidel, "gauss-seidel"}, {Solver::jacobi, "jacobi"}}};
 inline constexpr NameTable<GatherAt, 2> kGatherAtNames{

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -188,7 +189,7 @@ void Pipeline::announceFactors(const FormFactorPlan& plan) {
   const bool exact = plan.method == FormFactorMethod::exact;
   // On disk every entry has a column number of 4 bytes. In memory a dense row has none, and a
   // symmetric matrix has half of the entries.
-  const std::size_t value = options.storedPrecision() == Precision::real ? 8 : 4;
+  const std::size_t value = options.storedPrecision() == Precision::double_precision ? 8 : 4;
   const std::size_t disk = plan.matrix_bytes * (exact ? 2 : 1) * (value + 4) / value;
   const std::string what =
       exact ? fmt::format("exact between {} to {}", plural(patches().size(), "patch", "patches"),
@@ -223,7 +224,9 @@ bool Pipeline::factorsFit(const StageKey& key, std::optional<FormFactorPlan>& pl
 FormFactorPlan Pipeline::planFactors() const {
   FormFactorOptions options = factor_options_;
   options.memory_held = residentBytes();
-  FormFactorPlan plan = planFormFactors(patches(), options, progress_);
+  // The mesh is among the results and outlives every plan: no copy is kept of it.
+  const std::shared_ptr<const PatchMesh> mesh(std::shared_ptr<const void>(), &patches());
+  FormFactorPlan plan = planFormFactors(mesh, options, progress_);
   // Planning may have tried the exact method, which takes more than hemicubes then do.
   plan.bytes = std::max(plan.bytes, peakBytes());
   return plan;

@@ -15,8 +15,10 @@
 namespace radiosity {
 
 struct FormFactorPlan::Prepared {
-  Prepared(const PatchMesh& of, const FormFactorOptions& with) : mesh(of), options(with) {}
-  const PatchMesh& mesh;
+  Prepared(std::shared_ptr<const PatchMesh> of, const FormFactorOptions& with)
+      : kept(std::move(of)), mesh(*kept), options(with) {}
+  std::shared_ptr<const PatchMesh> kept;
+  const PatchMesh& mesh;  ///< the one that is kept
   FormFactorOptions options;
   // Where the method is exact:
   std::optional<ExactScene> scene;
@@ -156,21 +158,28 @@ void FormFactorOptions::validate() const {
 
 Precision FormFactorOptions::storedPrecision() const {
   // Single precision rounds to 6e-8 of a value, well below a tolerance of 1e-6 of the mean.
-  return precision.value_or(tolerance < 1e-6 ? Precision::real : Precision::single);
+  return precision.value_or(tolerance < 1e-6 ? Precision::double_precision
+                                             : Precision::single_precision);
 }
 
 FormFactorPlan planFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
                                Progress& progress) {
+  return planFormFactors(std::make_shared<const PatchMesh>(mesh), options, progress);
+}
+
+FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
+                               const FormFactorOptions& options, Progress& progress) {
+  if (!mesh) throw std::logic_error("planFormFactors(): no mesh");
   options.validate();
   const Clock::time_point start = Clock::now();
-  auto prepared = std::make_shared<FormFactorPlan::Prepared>(mesh, options);
+  auto prepared = std::make_shared<FormFactorPlan::Prepared>(std::move(mesh), options);
   FormFactorPlan plan;
   if (options.method != FormFactorMethod::hemicube) planExact(*prepared, plan, progress);
   if (plan.method == FormFactorMethod::hemicube) {
     planHemicubes(*prepared, plan, progress);
   } else if (plan.seconds > kPatience) {
-    const HemicubeScene scene(mesh, options);
-    plan.hemicube_seconds = estimateHemicubes(mesh, scene, options, progress).measured;
+    const HemicubeScene scene(prepared->mesh, options);
+    plan.hemicube_seconds = estimateHemicubes(prepared->mesh, scene, options, progress).measured;
   }
   prepared->seconds = secondsSince(start);
   plan.prepared = std::move(prepared);
@@ -203,7 +212,9 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress) {
 
 FormFactors computeFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
                                Progress& progress) {
-  return computeFormFactors(planFormFactors(mesh, options, progress), progress);
+  // The plan does not outlive this call, and the mesh does: it is not copied.
+  const std::shared_ptr<const PatchMesh> here(std::shared_ptr<const void>(), &mesh);
+  return computeFormFactors(planFormFactors(here, options, progress), progress);
 }
 
 }  // namespace radiosity

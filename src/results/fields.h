@@ -135,11 +135,12 @@ void describe(Archive& a, Described<Archive, MeshReport>& r) {
 
 template <class Archive>
 void describe(Archive& a, Described<Archive, ClosureReport>& r) {
-  a("iterations", r.iterations);
   a("largest_residual_before", r.largest_residual_before);
+  a("rms_residual_before", r.rms_residual_before);
   a("largest_residual", r.largest_residual);
   a("largest_move", r.largest_move);
   a("relative_move", r.relative_move);
+  a("iterations", r.iterations);
   a("reached", r.reached);
   a("adjustable", r.adjustable);
   a("emptied", r.emptied);

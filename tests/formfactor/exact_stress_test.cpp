@@ -28,7 +28,7 @@ FormFactors compute(const PatchMesh& mesh, FormFactorMethod method, double toler
   options.method = method;
   options.tolerance = tolerance;
   options.resolution = 64;
-  options.precision = Precision::real;
+  options.precision = Precision::double_precision;
   options.simd = simd;
   Progress silent;
   return computeFormFactors(mesh, options, silent);

@@ -23,7 +23,7 @@ FormFactors exact(const PatchMesh& mesh, double tolerance = 1e-3) {
   FormFactorOptions options;
   options.method = FormFactorMethod::exact;
   options.tolerance = tolerance;
-  options.precision = Precision::real;
+  options.precision = Precision::double_precision;
   Progress silent;
   return computeFormFactors(mesh, options, silent);
 }

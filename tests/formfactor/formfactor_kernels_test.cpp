@@ -251,7 +251,7 @@ TEST(Kernels, WholeRowsAgreeOnEveryInstructionSet) {
   FormFactorOptions options;
   options.method = FormFactorMethod::hemicube;
   options.resolution = 50;
-  options.precision = Precision::real;
+  options.precision = Precision::double_precision;
   options.simd = false;
   Progress silent;
   const FormFactors expected = computeFormFactors(mesh, options, silent);

@@ -16,7 +16,7 @@ FormFactors compute(const PatchMesh& mesh, FormFactorMethod method,
   FormFactorOptions options;
   options.method = method;
   options.near_exact = near_exact;
-  options.precision = Precision::real;
+  options.precision = Precision::double_precision;
   options.tolerance = 1e-4;  // far below what hemicubes get wrong
   Progress silent;
   return computeFormFactors(mesh, options, silent);

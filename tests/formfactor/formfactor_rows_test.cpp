@@ -7,6 +7,7 @@
 
 #include "formfactor/hemicube/row_builder.h"
 #include "radiosity/form_factors.h"
+#include "radiosity/matrix_functions.h"
 #include "support/mesh_builder.h"
 #include "support/simd_targets.h"
 
@@ -29,7 +30,7 @@ FormFactors compute(const PatchMesh& mesh, FormFactorOptions options = hemicubes
 FormFactorOptions doublePrecision(int resolution) {
   FormFactorOptions options = hemicubes();
   options.resolution = resolution;
-  options.precision = Precision::real;
+  options.precision = Precision::double_precision;
   return options;
 }
 

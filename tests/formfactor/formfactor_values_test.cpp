@@ -145,7 +145,7 @@ double areaValue(const PatchMesh& mesh, int resolution, Index from = 0, Index to
   FormFactorOptions options;
   options.method = FormFactorMethod::hemicube;
   options.resolution = resolution;
-  options.precision = Precision::real;
+  options.precision = Precision::double_precision;
   Progress silent;
   const FormFactors f = computeFormFactors(mesh, options, silent);
   double sum = 0;

@@ -71,8 +71,6 @@ class ErrorSums {
   /// stated of it.
   void addRecheck(double difference, double stated) { rechecks_.push_back({difference, stated}); }
 
-  /// sum A F^2 over all pairs, both ways. `area`: of the rows.
-  double weightedSquares(std::span<const double> area) const;
   std::size_t rechecked() const { return rechecks_.size(); }
   /// Error over figure that one in a hundred rows exceeds, of rows drawn from the pairs that were
   /// rechecked; 0 where there are none.
@@ -90,6 +88,8 @@ class ErrorSums {
   double figures(std::span<const double> area, double closed_form, std::span<double> figure) const;
 
  private:
+  /// sum A F^2 over all pairs, both ways. `area`: of the rows.
+  double weightedSquares(std::span<const double> area) const;
   struct Recheck {
     double difference;
     double stated;

@@ -12,8 +12,8 @@
 #include "formfactor/closed_scene.h"
 #include "formfactor/exact/clip_kernels.h"
 #include "formfactor/row_accounts.h"
-#include "matrix/closure_progress.h"
 #include "mesh/enclosures.h"
+#include "radiosity/closure.h"
 
 namespace radiosity {
 namespace {
@@ -131,20 +131,22 @@ void setAccounts(const PatchMesh& mesh, const PatchOrder& order, FormFactors& re
   }
 }
 
-/// What a closed scene's rows lack of 1 is put on the clipped pairs, or it is said what that would
-/// take.
-void closeRows(const PatchOrder& order, const UncertainEntries& uncertain, double weighted_squares,
-               ClosureMode mode, FormFactors& result, Progress& progress) {
+/// Says what a closed scene's rows lack of 1, and puts it on the clipped pairs if that is asked
+/// for.
+void close(const PatchOrder& order, const UncertainEntries& uncertain, ClosureMode mode,
+           FormFactors& result, Progress& progress) {
   std::vector<double> target(order.patch.size(), 0.0);
   for (std::size_t k = 0; k < order.ranked; ++k) {
     target[order.patch[k]] = std::max(0.0, 1 - result.backs[order.patch[k]]);
   }
-  const bool enforce = mode == ClosureMode::enforce;
-  const RawTotals raw{result.fronts, weighted_squares};
-  result.report.closure =
-      radiosity::closeRows(result.matrix, raw, uncertain, target, enforce, progress);
-  result.report.closure_enforced = enforce;
-  if (enforce) result.fronts = result.matrix.rowSums();
+  FormFactorReport& report = result.report;
+  report.closure_enforced = mode == ClosureMode::enforce;
+  if (report.closure_enforced) {
+    report.closure = closeRows(result.matrix, uncertain, target, progress);
+    result.fronts = result.matrix.rowSums();
+  } else {
+    report.closure = reportClosure(result.fronts, target);
+  }
 }
 
 }  // namespace
@@ -167,14 +169,14 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   result.backs.assign(n, 0.0);
   result.sky.assign(n, 0.0);
   std::vector<std::vector<SeenBack>> seen_backs(n);
-  UncertainEntries uncertain(options.closure == ClosureMode::off ? 0 : n);
-  UncertainEntries* const wanted = options.closure == ClosureMode::off ? nullptr : &uncertain;
+  const bool enforces = options.closure == ClosureMode::enforce;
+  UncertainEntries uncertain(enforces ? n : 0);
   const RowContext context{
       scene.elements,     scene.order,
       scene.chunks,       scene.visibility,
       kernels.unoccluded, kernels.partial,
       progress,           recheckEvery(estimate.partial_pairs, options.tolerance),
-      result.matrix,      wanted,
+      result.matrix,      enforces ? &uncertain : nullptr,
       result.backs,       seen_backs};
   const RowSums sums = fillRows(context, scene.tasks, progress);
   using Clock = std::chrono::steady_clock;
@@ -184,9 +186,7 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   setErrors(scene.order, sums.error, kernels.closed_form, result);
   setAccounts(mesh, scene.order, result, progress);
   if (report.closed && options.closure != ClosureMode::off) {
-    const double square = scene.elements.scale * scene.elements.scale;  // of an area
-    closeRows(scene.order, uncertain, sums.error.weightedSquares(scene.order.area) / square,
-              options.closure, result, progress);
+    close(scene.order, uncertain, options.closure, result, progress);
   }
   progress.begin("finishing", 1);
   accountForBacks(mesh, seen_backs, result);

@@ -6,7 +6,8 @@
 
 #include "formfactor/exact/assembly/row_sample.h"
 #include "formfactor/exact/assembly/row_times.h"
-#include "matrix/work_bytes.h"
+#include "matrix/working_memory.h"
+#include "radiosity/matrix_functions.h"
 
 namespace radiosity {
 namespace {
@@ -67,15 +68,16 @@ ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,
   constexpr std::size_t kElementBytes = 512;  // an element, its cluster, the kernels' copies
   constexpr std::size_t kAccounts = 8 * sizeof(double);
   constexpr std::size_t kUncertainBytes = 4;  // of a partial pair, for closure: code, run, freedom
+  const bool enforces = options.closure == ClosureMode::enforce;
   const std::size_t row_sums = 4 * 2 * sizeof(double) * scene.order.ranked;
   const std::size_t filling =
       threads() * (scene.tasks.panelBytes(scene.elements) + row_sums + 2 * sample.task_bytes);
-  estimate.matrix_bytes = ExchangeMatrix::estimateSymmetricBytes(n, estimate.entries_per_row,
-                                                                 options.storedPrecision());
+  estimate.matrix_bytes =
+      estimateSymmetricBytes(n, estimate.entries_per_row, options.storedPrecision());
   estimate.bytes = options.memory_held + estimate.matrix_bytes +
-                   std::size_t(sample.partial) * kUncertainBytes + n * kAccounts +
+                   (enforces ? std::size_t(sample.partial) * kUncertainBytes : 0) + n * kAccounts +
                    scene.elements.size() * kElementBytes +
-                   std::max(filling, matrixWorkBytes(n, threads()));  // one after the other
+                   std::max(filling, matrixWorkingMemory(n, threads()));  // one after the other
 
   // Measured on one core of a 2.7 GHz Xeon: a pair in closed form or by quadrature, with what is
   // asked for beside it, and a test whether something stands between.

@@ -1,4 +1,4 @@
-// A pass over a triangle in which every row hands something on to later ones, by many threads.
+// A pass over the triangle, by many threads, in which every row hands something on to later ones.
 #pragma once
 
 #include <algorithm>
@@ -12,11 +12,11 @@ namespace radiosity {
 /// Rows handed on by different threads meet in the same places. So rows are dealt out in chunks of
 /// about equal work, each with sums of its own, which are added up in order. The chunks depend on
 /// the work alone, never on the threads: the same bits for any number of them.
-class TwoSidedPass {
+class TrianglePass {
  public:
   /// `work(k)`: of row k, in any unit. `overrun`: so many places after the last row may be touched.
   template <class Work>
-  TwoSidedPass(std::size_t rows, std::size_t overrun, const Work& work)
+  TrianglePass(std::size_t rows, std::size_t overrun, const Work& work)
       : rows_(rows), overrun_(overrun) {
     std::size_t total = 0;
     for (std::size_t k = 0; k < rows; ++k) total += work(k);

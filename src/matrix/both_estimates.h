@@ -1,4 +1,4 @@
-// Walks a matrix's rows and its columns side by side: what the two estimates of a pair need.
+// Both estimates of every pair: a walk along the rows of a matrix and its columns, side by side.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace radiosity {
 /// zeros where nothing is stored. Calls run in parallel. Columns are gathered a block at a time, so
 /// that memory beyond the matrix is kBlock * N values, not a transposed copy of it. Row form only.
 template <class Visit>
-void forRowsAndColumns(const ExchangeMatrix& matrix, const Visit& visit) {
+void forBothEstimates(const ExchangeMatrix& matrix, const Visit& visit) {
   constexpr std::size_t kBlock = 128;
   const std::size_t n = matrix.size();
   std::vector<double> columns(std::min(kBlock, n) * n);

@@ -1,39 +1,43 @@
 // Closure as weighted least squares with a multiplier a row.
+#include "radiosity/closure.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 #include <vector>
 
-#include "matrix/closure_progress.h"
-#include "matrix/closure_target.h"
+#include "base/parallel.h"
 #include "matrix/residual_progress.h"
 #include "matrix/run_row.h"
-#include "matrix/two_sided_pass.h"
-#include "radiosity/closure.h"
+#include "matrix/triangle_pass.h"
+#include "matrix/uncertain_row.h"
+#include "radiosity/matrix_functions.h"
 
 namespace radiosity {
 
 namespace {
 
-/// Of the largest raw residual: as near as a closure that is only reported comes to it.
-constexpr double kReportedShare = 0.01;
+constexpr std::size_t kRowGrain = 16;
 /// Newton steps; one where no entry turns negative, else a handful.
 constexpr int kMostRounds = 30;
 constexpr std::size_t kMostSteps = 2000;
 /// Of what rows lack: how well a step is solved. Entries that turn negative spoil a better one
 /// (inexact Newton: Dembo, Eisenstat & Steihaug, SIAM J. Numer. Anal. 19, 1982).
 constexpr double kForcing = 0.1;
+/// Of a residual's square, <r, (D + W) r> with D scaled to 1: below it r counts as a null vector.
+constexpr double kNull = 1e-10;
 /// Steps within which the residual must at least halve; else the target is out of reach.
 constexpr std::size_t kPatience = 50;
 /// Shortest part of a Newton step that is tried.
 constexpr double kShortestStep = 1e-6;
-/// The largest share of each row's own weight that is added to it once entries are held at 0: a row
-/// that lost all its free entries then still finds its way back. It falls with what rows lack.
-constexpr double kDamping = 1e-3;
+/// This, times what rows lack, is the share of each row's own weight that is added to it once
+/// entries are held at 0: a row that lost all its free entries then still finds its way back.
+constexpr double kDamping = 1e-2;
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
@@ -51,15 +55,14 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
 /// symmetric and positive semi-definite. Where no entry turns negative one step is all there is.
 class LeastSquaresClosure {
  public:
-  LeastSquaresClosure(const ExchangeMatrix& matrix, const UncertainEntries& uncertain,
-                      std::span<const double> target, const RawTotals& raw, Progress& progress);
+  LeastSquaresClosure(ExchangeMatrix& matrix, const UncertainEntries& uncertain,
+                      std::span<const double> target, Progress& progress);
 
   void findMultipliers(double tolerance);
-  /// The changes they make, as the matrix would store them, if they are to be kept; fills in the
-  /// report.
-  std::vector<RunRow> changes(double tolerance, bool keep);
-
-  const ClosureReport& report() const { return report_; }
+  /// Changes the matrix as they say.
+  void apply();
+  /// What came of it.
+  ClosureReport report(double tolerance) const;
 
  private:
   template <class Visit>
@@ -69,40 +72,40 @@ class LeastSquaresClosure {
   double largestLack() const;
   std::vector<double> newtonStep(double tolerance);
 
-  const ExchangeMatrix& matrix_;
+  ExchangeMatrix& matrix_;
   const UncertainEntries& uncertain_;
   Progress& progress_;
-  double raw_squares_;
-  TwoSidedPass pass_;
+  TrianglePass pass_;
   std::array<double, 256> squared_{};            // e^2 by code
   std::vector<double> area_;                     // in a unit that keeps its squares in range
   std::vector<std::vector<std::uint8_t>> free_;  // as uncertain_.row(k).codes, 0 where held at 0
-  std::vector<double> shortfall_;                // target - raw row sum
+  std::vector<double> goal_;                     // what rows are to sum to
+  std::vector<double> shortfall_;                // goal - row sum before
   std::vector<double> root_;                     // of D while all are free
   std::vector<double> multiplier_;
   // As evaluate() found them for the multipliers:
-  std::vector<double> lacking_;  // target - corrected row sum
+  std::vector<double> lacking_;  // goal - row sum after
   double dual_ = 0;              // f
   ClosureReport report_;
 };
 
-LeastSquaresClosure::LeastSquaresClosure(const ExchangeMatrix& matrix,
-                                         const UncertainEntries& uncertain,
-                                         std::span<const double> target, const RawTotals& raw,
-                                         Progress& progress)
+LeastSquaresClosure::LeastSquaresClosure(ExchangeMatrix& matrix, const UncertainEntries& uncertain,
+                                         std::span<const double> target, Progress& progress)
     : matrix_(matrix),
       uncertain_(uncertain),
       progress_(progress),
-      raw_squares_(raw.weighted_squares),
       pass_(matrix.size(), 0, [&](std::size_t k) { return uncertain.row(k).codes.size() + 1; }),
       area_(matrix.size()),
       free_(matrix.size()),
+      goal_(matrix.size()),
       shortfall_(matrix.size()),
       multiplier_(matrix.size(), 0.0) {
   for (std::size_t c = 1; c < squared_.size(); ++c) {
-    const double error = UncertainEntries::errorOf(std::uint8_t(c));
+    const double error = errorOfCode(std::uint8_t(c));
     squared_[c] = error * error;
   }
+  const std::vector<double> sums = matrix.rowSums();
+  report_ = reportClosure(sums, target);
   const std::span<const double> area = matrix.area();
   double largest = 0;
   for (const double a : area) largest = std::max(largest, a);
@@ -112,10 +115,8 @@ LeastSquaresClosure::LeastSquaresClosure(const ExchangeMatrix& matrix,
     free_[k] = uncertain.row(k).codes;
     area_[k] = std::ldexp(area[patch], -exponent);
     // A row that sums to 0 sees nothing or has no area: nothing is asked of it.
-    const double sum = raw.row_sums[patch];
-    shortfall_[k] = sum > 0 ? target[patch] - sum : 0.0;
-    report_.largest_residual_before =
-        std::max(report_.largest_residual_before, std::abs(shortfall_[k]));
+    goal_[k] = sums[patch] > 0 ? target[patch] : 0.0;
+    shortfall_[k] = goal_[k] - sums[patch];
   }
   report_.adjustable = uncertain.entries();
   root_ = timesWeights(std::vector<double>(matrix.size(), 1.0));
@@ -195,7 +196,7 @@ void LeastSquaresClosure::evaluate() {
 /// with another set).
 std::vector<double> LeastSquaresClosure::newtonStep(double tolerance) {
   const std::size_t n = area_.size();
-  const double damping = report_.emptied > 0 ? std::min(kDamping, largestLack()) : 0;
+  const double damping = report_.emptied > 0 ? kDamping * largestLack() : 0;
   std::vector<double> own(n, 1.0);  // D, scaled: 1 while all are free
   if (report_.emptied > 0) {
     own = timesWeights(own);
@@ -233,7 +234,9 @@ std::vector<double> LeastSquaresClosure::newtonStep(double tolerance) {
     return history.size() > kPatience &&
            history.back() > 0.5 * history[history.size() - 1 - kPatience];
   };
-  while (history.back() > tolerance && weight > 0 && history.size() < kMostSteps && !stalls()) {
+  // What is left where rows ask for what cannot be had is a null vector; beyond it there is noise.
+  const auto ends = [&] { return !(weight > kNull * dot(residual, residual)); };
+  while (history.back() > tolerance && !ends() && history.size() < kMostSteps && !stalls()) {
     const double step = weight / dot(of_direction, of_direction);
     for (std::size_t k = 0; k < n; ++k) {
       x[k] += step * direction[k];
@@ -286,88 +289,99 @@ void LeastSquaresClosure::findMultipliers(double tolerance) {
   shown.end();
 }
 
-// Rows are made one by one, and dropped again unless they are to be kept.
-std::vector<RunRow> LeastSquaresClosure::changes(double tolerance, bool keep) {
+void LeastSquaresClosure::apply() {
   const std::size_t n = area_.size();
-  std::vector<RunRow> kept(keep ? n : 0);
-  std::vector<double> gathered(n, 0.0);
+  const double squares = weightedSquares(matrix_);
+  const bool single = matrix_.precision() == Precision::single_precision;
   std::vector<double> largest(n, 0.0);
   std::vector<double> moved(n, 0.0);
-  const bool single = matrix_.precision() == Precision::single;
-  const auto row = [&](std::size_t k, double* handed_on, std::size_t) {
-    RunRow out{.runs = uncertain_.row(k).runs, .single = {}, .real = {}};
-    if (keep && single) out.single.assign(free_[k].size(), 0.0F);
-    if (keep && !single) out.real.assign(free_[k].size(), 0.0);
-    forUncertain(k, [&](std::size_t index, std::size_t later, std::uint8_t code, double f) {
-      const double wanted = area_[k] * squared_[code] * (multiplier_[k] + multiplier_[later]);
-      double change = std::max(-f, wanted);
-      if (single) change = double(float(change));
-      if (keep && single) out.single[index] = float(change);
-      if (keep && !single) out.real[index] = change;
-      gathered[k] += change;
-      handed_on[later - k - 1] += area_[k] * change;
+  parallelFor(n, kRowGrain, [&](std::size_t k) {
+    if (uncertain_.row(k).runs.empty()) return;
+    std::vector<double> values(n - k);
+    matrix_.upperRow(k, values);
+    forUncertain(k, [&](std::size_t, std::size_t later, std::uint8_t code, double f) {
+      const double slope = area_[k] * squared_[code];
+      const double wanted = f + slope * (multiplier_[k] + multiplier_[later]);
+      double& value = values[later - k];
+      value = std::max(0.0, wanted);
+      if (single) value = double(float(value));
+      const double change = value - f;
       if (change == 0) return;
       const double other_end = area_[k] / area_[later];
       largest[k] = std::max(largest[k], std::abs(change) * std::max(1.0, other_end));
       moved[k] += change * change * (1 + other_end);
     });
-    if (keep) kept[k] = std::move(out);
-  };
-  pass_.run(1, row, [&](std::size_t k, const double* handed) {
-    shortfall_[k] -= gathered[k] + (area_[k] > 0 ? handed[0] / area_[k] : 0);
+    matrix_.setUpperRow(k, values);
   });
-  report_.largest_residual = 0;
   double sum = 0;
   for (std::size_t k = 0; k < n; ++k) {
-    const double residual = std::abs(shortfall_[k]);
-    report_.largest_residual = std::max(report_.largest_residual, residual);
-    if (residual > tolerance && root_[k] == 0) ++report_.fixed_rows;
     report_.largest_move = std::max(report_.largest_move, largest[k]);
     sum += matrix_.area()[matrix_.order()[k]] * moved[k];
   }
-  report_.reached = report_.largest_residual <= tolerance;
-  report_.relative_move = raw_squares_ > 0 ? std::sqrt(sum / raw_squares_) : 0;
-  return kept;
+  report_.relative_move = squares > 0 ? std::sqrt(sum / squares) : 0;
+}
+
+ClosureReport LeastSquaresClosure::report(double tolerance) const {
+  ClosureReport report = report_;
+  const bool single = matrix_.precision() == Precision::single_precision;
+  const double rounding = single ? std::numeric_limits<float>::epsilon() / 2
+                                 : std::numeric_limits<double>::epsilon() / 2;
+  const std::vector<double> sums = matrix_.rowSums();
+  report.reached = true;
+  for (std::size_t k = 0; k < area_.size(); ++k) {
+    const double residual = std::abs(sums[matrix_.order()[k]] - goal_[k]);
+    report.largest_residual = std::max(report.largest_residual, residual);
+    const bool off = residual > tolerance + rounding * goal_[k];
+    if (off) report.reached = false;
+    if (off && root_[k] == 0) ++report.fixed_rows;
+  }
+  return report;
+}
+
+void checkTarget(std::span<const double> target, std::size_t n) {
+  if (target.size() != n) {
+    throw InputError(fmt::format("closure: {} row sums for {} rows", target.size(), n));
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!(target[i] >= 0) || !std::isfinite(target[i])) {
+      throw InputError(fmt::format("closure: {} is no sum for row {}", target[i], i));
+    }
+  }
 }
 
 }  // namespace
 
-ClosureReport closeRows(ExchangeMatrix& matrix, const UncertainEntries& uncertain,
-                        std::span<const double> target_row_sums, bool enforce, double tolerance) {
-  const std::vector<double> sums = matrix.rowSums(Part::raw);
-  return closeRows(matrix, {sums, weightedSquares(matrix, Part::raw)}, uncertain, target_row_sums,
-                   enforce, tolerance);
+ClosureReport reportClosure(std::span<const double> row_sums,
+                            std::span<const double> target_row_sums) {
+  checkTarget(target_row_sums, row_sums.size());
+  ClosureReport report;
+  std::size_t rows = 0;
+  double squares = 0;
+  for (std::size_t i = 0; i < row_sums.size(); ++i) {
+    if (!(row_sums[i] > 0)) continue;
+    const double residual = row_sums[i] - target_row_sums[i];
+    report.largest_residual_before = std::max(report.largest_residual_before, std::abs(residual));
+    squares += residual * residual;
+    ++rows;
+  }
+  if (rows > 0) report.rms_residual_before = std::sqrt(squares / double(rows));
+  return report;
 }
 
-ClosureReport closeRows(ExchangeMatrix& matrix, const RawTotals& raw,
-                        const UncertainEntries& uncertain, std::span<const double> target_row_sums,
-                        bool enforce, Progress& progress, double tolerance) {
-  checkClosureTarget(target_row_sums, matrix.size());
+ClosureReport closeRows(ExchangeMatrix& matrix, const UncertainEntries& uncertain,
+                        std::span<const double> target_row_sums, Progress& progress,
+                        double tolerance) {
+  checkTarget(target_row_sums, matrix.size());
   if (!matrix.isSymmetric() || uncertain.size() != matrix.size()) {
     throw InputError(fmt::format("closure: uncertain entries of {} rows for a {} matrix of {}",
                                  uncertain.size(),
                                  matrix.isSymmetric() ? "symmetric" : "row by row", matrix.size()));
   }
-  if (raw.row_sums.size() != matrix.size()) {
-    throw InputError(fmt::format("closure: {} raw row sums for a matrix of {}", raw.row_sums.size(),
-                                 matrix.size()));
-  }
-  LeastSquaresClosure closure(matrix, uncertain, target_row_sums, raw, progress);
-  if (!enforce) {
-    tolerance = std::max(tolerance, kReportedShare * closure.report().largest_residual_before);
-  }
-  // Half: the other half is left for the rounding of what is stored.
+  LeastSquaresClosure closure(matrix, uncertain, target_row_sums, progress);
+  // Half: the other half is left for the sums of what is stored.
   closure.findMultipliers(tolerance / 2);
-  std::vector<RunRow> changes = closure.changes(tolerance, enforce);
-  if (enforce) matrix.setCorrection(std::move(changes));
-  return closure.report();
-}
-
-ClosureReport closeRows(ExchangeMatrix& matrix, const RawTotals& raw,
-                        const UncertainEntries& uncertain, std::span<const double> target_row_sums,
-                        bool enforce, double tolerance) {
-  Progress silent;
-  return closeRows(matrix, raw, uncertain, target_row_sums, enforce, silent, tolerance);
+  closure.apply();
+  return closure.report(tolerance);
 }
 
 }  // namespace radiosity
