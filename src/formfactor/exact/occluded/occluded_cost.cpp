@@ -9,6 +9,7 @@
 #include "formfactor/exact/occluded/adaptive_integrator.h"
 #include "formfactor/exact/occluded/critical_lines.h"
 #include "formfactor/exact/occluded/pair_sampling.h"
+#include "formfactor/foreseen_work.h"
 
 namespace radiosity {
 namespace {
@@ -17,18 +18,9 @@ namespace {
 constexpr double kFirst = 4;
 
 /// Where double precision is asked for and bodies have few edges, elements are cut along critical
-/// lines instead, where it is worth that: into parts of 13 points, twice as dear.
+/// lines instead, where it is worth that: into parts of 13 points.
 constexpr double kCutFrom = kPointsParts * kPartWorth;
 constexpr double kPartPoints = kPointsParts * 13;
-constexpr double kDearer = 2;
-
-/// Seconds of one core of a 2.7 GHz Xeon that a point takes: for each occluder whose shadow falls
-/// on the target, mostly no more than some, however many may stand in between; and for each edge
-/// that has to be looked at. (230 ns in a cluttered scene of 20,000 patches, 1.7 us past the 300
-/// edges of round bodies; from 0.6 to 1.5 times this.)
-constexpr double kShadow = 1.2e-7;
-constexpr double kMostShadows = 4;
-constexpr double kEdge = 3.5e-9;
 
 /// From middle to middle, held below what a target that fills the view takes.
 double guessedExchange(const ElementSet& elements, const OccludedPair& pair) {
@@ -52,13 +44,13 @@ double edgesOf(std::span<const Blocker> blockers) {
 
 OccludedCost& OccludedCost::operator+=(const OccludedCost& other) {
   points += other.points;
-  seconds += other.seconds;
+  work += other.work;
   refining += other.refining;
   return *this;
 }
 
 OccludedCost OccludedCost::operator*(double share) const {
-  return {share * points, share * seconds, share * refining};
+  return {share * points, share * work, share * refining};
 }
 
 OccludedCost occludedCost(const ElementSet& elements, const OccluderSet& occluders,
@@ -80,8 +72,10 @@ OccludedCost occludedCost(const ElementSet& elements, const OccluderSet& occlude
     const bool cut = tolerance < kSinglePrecision && misses > kCutFrom &&
                      edges <= double(CriticalLines::kMostEdges);
     const double more = cut ? kPartPoints : kPointsMore * misses;
-    const double rate = kShadow * std::min(double(blockers.size()), kMostShadows) + kEdge * edges;
-    cost += {kFirst + more, rate * (kFirst + (cut ? kDearer : 1) * more), cut ? 0 : rate * more};
+    const double rate =
+        kClipWork * std::min(double(blockers.size()), kMostClips) + kEdgeWork * edges;
+    cost +=
+        {kFirst + more, rate * (kFirst + (cut ? kPartPointWork : 1) * more), cut ? 0 : rate * more};
   }
   return cost;
 }
