@@ -10,6 +10,7 @@
 
 #include "base/aligned_buffer.h"
 #include "formfactor/exact/clip_kernels.h"
+#include "formfactor/exact/error_model.h"
 #include "formfactor/exact/occluded/target_rows.h"
 #include "formfactor/exact/occluded/visible_part.h"
 #include "occluder_builder.h"
@@ -293,7 +294,7 @@ TEST(ClipKernels, DoublePrecisionKeepsItsAccuracy) {
 }
 
 TEST(ClipKernels, FarKernelsKeepTheirAccuracy) {
-  // The header's kFarError (h/r)^3, h half a diagonal of the quadrilaterals, at r 0.9 and more.
+  // kFarError (h/r)^3, h half a diagonal of the quadrilaterals, at r 0.9 and more.
   for (const double size : {0.1, 0.05, 0.02, 0.01}) {
     const double h_over_r = 0.75 * size / 0.9;
     const double tolerance = kFarError * std::pow(h_over_r, 3);

@@ -157,7 +157,8 @@ struct ClipKernels {
   /// the whole, for polygons of size h at distance r; tests hold every instruction set to it.
   ClipFunctions<T> near;
   /// By the kernel cos cos / (pi r^2) to second order about the polygon's middle. Accuracy,
-  /// besides: kFarError (h/r)^3, h the distance of the farthest corner from the middle.
+  /// besides: kFarError (error_model.h) times (h/r)^3, h the distance of the farthest corner from
+  /// the middle.
   ClipFunctions<T> far;
   /// The sides of BlockingCone that a body has from any of the points: its edges, then, if
   /// `with_faces`, its faces. Found in double precision. Returns their number.
@@ -169,8 +170,6 @@ struct ClipKernels {
   std::uint32_t (*missed)(const Occluder& body, const ConePoints& points, const Vec3* outline,
                           std::size_t corners, const ConeScratch& scratch, std::size_t& edge);
 };
-
-inline constexpr double kFarError = 1;
 
 struct ClipKernelSet {
   std::string target;  ///< instruction set, by Highway's name

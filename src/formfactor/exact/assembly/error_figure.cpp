@@ -4,6 +4,8 @@
 #include <cmath>
 #include <random>
 
+#include "formfactor/exact/error_model.h"
+
 namespace radiosity {
 namespace {
 
@@ -94,8 +96,8 @@ double ErrorSums::recheckRatio() const {
 
 double ErrorSums::figures(std::span<const double> area, double closed_form,
                           std::span<double> figure) const {
-  const double raise = std::max(1.0, kAlike * recheckRatio());
-  const double closed = kClosedFormShare * closed_form;
+  const double raise = std::max(1.0, kRowAlike * recheckRatio());
+  const double closed = kRowClosedForms * closed_form;
   double errors = 0;
   for (std::size_t i = 0; i < figure.size(); ++i) {
     const double closed_forms = closed * closed * squares_[i];

@@ -11,12 +11,12 @@ namespace radiosity {
 /// of disjoint sets of pairs add up.
 ///
 /// Errors of a row's pairs have different causes and signs, and add up in squares. For a pair in
-/// closed form err is 0.06 of the kernel's published accuracy: that is a bound, which the worst
-/// pair comes near, not a row (the box at 1e-5 leaves no more). For a pair clipped against
-/// occluders it is what its embedded rules say, with their margin. The square of its true error
-/// scatters about that: by how much the sum over a row's clipped pairs does goes with sqrt(sum_j
-/// err_ij^4), much where a few pairs carry the row and little where many do. A row's error figure
-/// is
+/// closed form err is kRowClosedForms (error_model.h) of the kernel's published accuracy: that is a
+/// bound, which the worst pair comes near, not a row (the box at 1e-5 leaves no more). For a pair
+/// clipped against occluders it is what its embedded rules say, with their margin. The square of
+/// its true error scatters about that: by how much the sum over a row's clipped pairs does goes
+/// with sqrt(sum_j err_ij^4), much where a few pairs carry the row and little where many do. A
+/// row's error figure is
 ///
 ///     sqrt(sum_j err_ij^2 + sqrt(sum_clipped j err_ij^4)).
 ///
@@ -27,7 +27,9 @@ namespace radiosity {
 /// alike, it is not enough. So a random subset of the clipped pairs is evaluated again to a
 /// fraction of the tolerance. What they differ by is taken for their error, rows are drawn at
 /// random from these pairs (the bootstrap of Efron 1979), and where the error of the worst
-/// hundredth of those rows comes near to its figure, the figures of all rows are raised.
+/// hundredth of those rows, times kRowAlike, exceeds its figure, the figures of all rows are
+/// raised. (Of a cube in a cube, 150 to 480 patches, at 1e-3 to 1e-5, rows exceed up to 1.6 times
+/// what is drawn.)
 ///
 /// Measured at tolerances from 1e-1 to 1e-5 against rows of truth that are good to 1e-6 of the mean
 /// form factor, in scenes that no constant was fitted to (tools/bench --only figures):
@@ -75,12 +77,6 @@ class ErrorSums {
   /// Error over figure that one in a hundred rows exceeds, of rows drawn from the pairs that were
   /// rechecked; 0 where there are none.
   double recheckRatio() const;
-
-  static constexpr double kClosedFormShare = 0.06;  ///< see above
-  /// By what recheckRatio() is multiplied before it raises figures: pairs of a real row are more
-  /// alike than pairs drawn from all. (A cube in a cube, 150 to 480 patches, at 1e-3 to 1e-5: up to
-  /// 1.6 times what is drawn.)
-  static constexpr double kAlike = 1.75;
 
   /// figure[row], absolute, of F. `area`: of the rows; `closed_form`: published relative accuracy
   /// of closed forms. Returns the matrix figure: sqrt(sum A err^2 / sum A F^2), with the same

@@ -6,6 +6,7 @@
 
 #include "formfactor/exact/assembly/row_sample.h"
 #include "formfactor/exact/assembly/row_times.h"
+#include "formfactor/foreseen_work.h"
 #include "matrix/working_memory.h"
 #include "radiosity/matrix_functions.h"
 
@@ -79,12 +80,8 @@ ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,
                    scene.elements.size() * kElementBytes +
                    std::max(filling, matrixWorkingMemory(n, threads()));  // one after the other
 
-  // Measured on one core of a 2.7 GHz Xeon: a pair in closed form or by quadrature, with what is
-  // asked for beside it, and a test whether something stands between.
-  constexpr double kUnoccluded = 5e-8;
-  constexpr double kShaftTest = 9e-8;
-  estimate.seconds =
-      kUnoccluded * sample.unoccluded + kShaftTest * sample.shaft_tests + sample.cost.seconds;
+  estimate.work =
+      kUnoccludedWork * sample.unoccluded + kShaftTestWork * sample.shaft_tests + sample.cost.work;
   estimate.refining = sample.cost.refining;
   estimate.points = sample.cost.points;
   return estimate;

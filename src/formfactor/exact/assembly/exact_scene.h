@@ -41,9 +41,9 @@ struct ExactEstimate {
   double entries_per_row = 0;    ///< at most
   double partial_pairs = 0;
   double occluders_per_partial = 0;
-  double points = 0;    ///< ExactReport::points; about, like the seconds
-  double seconds = 0;   ///< of one core, at the rates of a usual machine
-  double refining = 0;  ///< of the seconds, those that go with 1 / tolerance
+  double points = 0;    ///< ExactReport::points; about, like the work
+  double work = 0;      ///< see foreseen_work.h
+  double refining = 0;  ///< of the work, what goes with 1 / tolerance
 };
 struct RowSample;
 ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,

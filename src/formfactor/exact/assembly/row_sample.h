@@ -52,7 +52,7 @@ struct RowSample {
   double partial = 0;     ///< pairs that go to the clipping
   double occluders = 0;   ///< candidates, summed over these
   double shaft_tests = 0;
-  OccludedCost cost;           ///< of the partial pairs, at the rates of a usual machine
+  OccludedCost cost;           ///< of the partial pairs
   std::size_t task_bytes = 0;  ///< most that the clipped pairs of a task take, about
   std::vector<SampledPlace> places;
   /// Open pairs of all places, for each of places where pairs were settled.

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "formfactor/exact/error_model.h"
 #include "formfactor/exact/occluded/occluded_pairs.h"
 
 namespace radiosity {
@@ -18,19 +19,8 @@ constexpr std::size_t kMostDistances = std::size_t(1) << 24;
 /// end is sampled must not depend on how distances, in single precision, are rounded.
 constexpr double kAlike = 1 + 1e-5;
 
-/// A body is thin whose thickness is less than so much of its radius. Of bodies with more faces
-/// than these it is not asked.
-constexpr double kThin = 0.1;
+/// Of bodies with more faces than these it is not asked whether they are thin.
 constexpr std::size_t kMostThinPlanes = 16;
-
-/// What a thin body seen edge-on from the middle of an element hides goes down to nearly nothing
-/// there and up again, and points on both sides of it may see the same: as if shadows moved so many
-/// times as far. (Blades 1 : 40 and 1 : 400 in a room, 1e-4: 82% of rows are below their figure
-/// without, 91% with a factor of 2 and 99% with 4; points 728, 662 and 664 thousand.)
-constexpr float kEdgeOn = 4;
-/// Past more than these one is as good as lost among the others, and mostly part of a surface that
-/// is not thin.
-constexpr std::uint32_t kFewBlockers = 2;
 
 struct Heights {
   double least = std::numeric_limits<double>::infinity();
@@ -64,7 +54,7 @@ double edgeDistance2(const Occluder& body, const Vec3& p) {
 Occluder::Plane middleOfThin(const Occluder& body) {
   Occluder::Plane best;
   if (body.planes.size() > kMostThinPlanes) return best;
-  double least = kThin * body.radius;
+  double least = kPairThin * body.radius;
   for (const Occluder::Plane& plane : body.planes) {
     double low = plane.offset;
     for (const Vec3& v : body.corners) low = std::min(low, glm::dot(plane.normal, v));
@@ -185,11 +175,11 @@ void PairPreparation::prepare(std::span<const OccludedPair> batch,
     pair.change = float(std::sqrt(at_row_end ? change2.row : change2.column));
     const double reach = at_row_end ? row_size : column_size;
     const Index sampled = at_row_end ? given.row : given.column;
-    const bool few = pair.blockers_end - pair.blockers_begin <= kFewBlockers;
+    const bool few = pair.blockers_end - pair.blockers_begin <= kPairFewBlockers;
     const bool edge_on =
         few && std::any_of(blockers.begin() + pair.blockers_begin, blockers.end(),
                            [&](const Blocker& b) { return distances_.seesEdgeOn(sampled, b.id); });
-    if (edge_on) pair.change *= kEdgeOn;
+    if (edge_on) pair.change *= kPairEdgeOn;
     pair.may_cross = (at_row_end ? at_row : at_column) <= reach * reach;
     pair.sampled = sampled;
     pair.target = at_row_end ? given.column : given.row;
