@@ -5,9 +5,14 @@
 
 namespace radiosity {
 
-/// Relative luminance of linear RGB (Rec. ITU-R BT.709).
+/// What a unit of each band of linear RGB adds to luminance (Rec. ITU-R BT.709).
+inline constexpr double kLuminanceOfRed = 0.2126;
+inline constexpr double kLuminanceOfGreen = 0.7152;
+inline constexpr double kLuminanceOfBlue = 0.0722;
+
+/// Relative luminance of linear RGB.
 inline double luminanceOf(const Vec3& rgb) {
-  return 0.2126 * rgb.x + 0.7152 * rgb.y + 0.0722 * rgb.z;
+  return kLuminanceOfRed * rgb.x + kLuminanceOfGreen * rgb.y + kLuminanceOfBlue * rgb.z;
 }
 
 }  // namespace radiosity

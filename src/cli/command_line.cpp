@@ -7,12 +7,13 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "base/luminance.h"
 #include "cli/command_texts.h"
 #include "cli/help_formatter.h"
-#include "cli/option_names.h"
 #include "cli/request.h"
 #include "cli/validators.h"
 #include "cli/words.h"
+#include "radiosity/names.h"
 #include "radiosity/version.h"
 
 namespace radiosity::cli {
@@ -255,9 +256,11 @@ void addShowOptions(CLI::App& app, Request& r) {
   add(app, "Picture", "--crease", r.crease, "DEGREES",
       fmt::format("Interpolate across edges that bend less (default {})", defaults.crease));
   add(app, "Picture", "--show", r.show, "QUANTITY",
-      "False colour with a legend: radiosity or irradiance (W/m^2, Rec. 709 luminance weights "
-      "0.2126 R + 0.7152 G + 0.0722 B), form-factor:PATCH (F from patch number PATCH, from 0, to "
-      "each patch), row-sum (what each patch sees of the scene's fronts)");
+      fmt::format(
+          "False colour with a legend: radiosity or irradiance (W/m^2, Rec. 709 luminance weights "
+          "{} R + {} G + {} B), form-factor:PATCH (F from patch number PATCH, from 0, to each "
+          "patch), row-sum (what each patch sees of the scene's fronts)",
+          kLuminanceOfRed, kLuminanceOfGreen, kLuminanceOfBlue));
 }
 
 void addGeneralOptions(CLI::App& app, Request& r, Command command) {

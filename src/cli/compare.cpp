@@ -356,29 +356,27 @@ int compareWithGather(Session& session, OutputSet& files) {
                                  request.input, request.second));
   }
   const CompareOptions options = request.compareOptions();
-  Pipeline pipeline(request, session.report, session.progress);
-  pipeline.open(files.path(Format::results));
-  pipeline.requireLight();
-  pipeline.mesh();
-  pipeline.factors();
+  Run run(session, files.path(Format::results));
+  Pipeline& pipeline = run.pipeline;
+  requireLight(session, pipeline);
+  const PatchMesh& mesh = pipeline.mesh().mesh;
+  const FormFactors& factors = pipeline.factors();
   keepFactors(session, pipeline, files);
-  pipeline.solution();
   if (const int code = judgeSolution(session, pipeline); code != 0) return code;
-  pipeline.gathered();
-  const PatchMesh& mesh = pipeline.patches();
+  const Gathered& gathered = pipeline.gathered();
   const std::vector<Vec3>& emission = pipeline.materials().emission;
-  const LightField a = lightOf(mesh, pipeline.solved().radiosity, "the matrix solution", emission);
+  const LightField a =
+      lightOf(mesh, pipeline.solution().radiosity, "the matrix solution", emission);
   const LightField b =
-      lightOf(mesh, patchRadiosity(mesh, pipeline.gatheredLight()), "the gathered light", emission);
+      lightOf(mesh, patchRadiosity(mesh, gathered), "the gathered light", emission);
   const Comparison c = compare(a, b, options);
   session.report.section("comparison", "Comparison: A the matrix solution, B the gathered light");
   reportComparison(session.report, c, false, false);
-  session.report.text("gap", "where the gap comes from", gapCause(pipeline.gatheredLight()));
+  session.report.text("gap", "where the gap comes from", gapCause(gathered));
   const int code = judge(session, c);
   if (files.has(Format::png)) {
     Picture picture = choosePicture(request, pipeline.scene());
-    framePicture(picture, pipeline.patches(), pipeline.formFactors().report.closed,
-                 solvedLight(pipeline));
+    framePicture(picture, mesh, factors.report.closed, pipeline.solvedLight());
     drawField(session, a, c, picture, files);
   }
   writeStages(session, pipeline, files);

@@ -20,22 +20,9 @@ struct Picture {
 /// --exposure or an option of the picture is wrong: found before the work is done.
 Picture choosePicture(const Request& request, const Scene& scene);
 
-/// What is drawn: radiosity, W/m^2.
-struct Light {
-  std::vector<double> patches;    ///< N * 3
-  std::vector<double> corners;    ///< mesh.corners.size() * 3; empty: from the patches around them
-  std::vector<double> reflected;  ///< N: luminance of what is not emitted, W/m^2
-  Vec3 sky{0.0};                  ///< radiance where nothing is hit, W/m^2/sr
-};
-Light solvedLight(Pipeline& pipeline);
-Light gatheredLight(Pipeline& pipeline);
-
 /// Where no camera was chosen, one that frames the scene and what is lit in it.
-void framePicture(Picture& picture, const PatchMesh& mesh, bool closed, const Light& light = {});
-
-/// Radiance B / pi, W/m^2/sr, linear; the sky's, where it shines, behind all.
-Image radiancePicture(const Picture& picture, const PatchMesh& mesh, const Light& light,
-                      Progress& progress);
+void framePicture(Picture& picture, const PatchMesh& mesh, bool closed,
+                  const SurfaceLight& light = {});
 
 /// The picture's part of the report: camera and size.
 void reportPicture(Report& report, const Picture& picture);
@@ -45,11 +32,11 @@ using Metadata = std::vector<std::pair<std::string, std::string>>;
 Metadata metadataOf(const Picture& picture, const std::string& quantity, const std::string& unit);
 
 /// Draws the .png and .exr among `files`, writes the .glb, and reports the exposure.
-void drawLight(Session& session, const PatchMesh& mesh, const Light& light, const Picture& picture,
-               OutputSet& files);
+void drawLight(Session& session, const PatchMesh& mesh, const SurfaceLight& light,
+               const Picture& picture, OutputSet& files);
 
 /// Writes the .glb among `files` as a lit mesh.
-void writeLitMesh(const PatchMesh& mesh, const Light& light, OutputSet& files, double ev,
+void writeLitMesh(const PatchMesh& mesh, const SurfaceLight& light, OutputSet& files, double ev,
                   double crease);
 
 /// The EV of --exposure: the number, or what suits the picture.

@@ -2,39 +2,41 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <optional>
 
-#include "base/luminance.h"
 #include "cli/commands.h"
 #include "cli/picture.h"
 #include "cli/words.h"
+#include "radiosity/pipeline.h"
 #include "radiosity/results.h"
 
 namespace radiosity::cli {
 
 namespace {
 
-/// What --show names; `none`: the lit scene itself.
+/// What --show names; no quantity: the lit scene itself.
 struct Show {
-  enum Quantity { none, radiosity, irradiance, form_factor, row_sum } quantity = none;
+  std::optional<Quantity> quantity;
   std::size_t patch = 0;
 
   bool needsLight() const {
-    return quantity == none || quantity == radiosity || quantity == irradiance;
+    return !quantity || *quantity == Quantity::radiosity || *quantity == Quantity::irradiance;
   }
 };
 
 Show parseShow(const std::string& text) {
-  if (text.empty()) return {Show::none, 0};
-  if (text == "radiosity") return {Show::radiosity, 0};
-  if (text == "irradiance") return {Show::irradiance, 0};
-  if (text == "row-sum") return {Show::row_sum, 0};
+  if (text.empty()) return {};
+  if (text == "radiosity") return {Quantity::radiosity};
+  if (text == "irradiance") return {Quantity::irradiance};
+  if (text == "row-sum") return {Quantity::row_sum};
   const std::string prefix = "form-factor:";
   if (text.starts_with(prefix)) {
     std::size_t patch = 0;
     const char* last = text.data() + text.size();
     const auto [end, error] = std::from_chars(text.data() + prefix.size(), last, patch);
-    if (error == std::errc() && end == last) return {Show::form_factor, patch};
+    if (error == std::errc() && end == last) return {Quantity::form_factor, patch};
     throw InputError(
         fmt::format("--show: '{}' needs a patch number from 0, e.g. form-factor:12", text));
   }
@@ -45,44 +47,9 @@ Show parseShow(const std::string& text) {
 }
 
 void requirePatch(const Show& show, const PatchMesh& mesh) {
-  if (show.quantity != Show::form_factor || show.patch < mesh.size()) return;
+  if (show.quantity != Quantity::form_factor || show.patch < mesh.size()) return;
   throw InputError(fmt::format("--show: there is no patch {}; the mesh has patches 0 to {}",
                                show.patch, mesh.size() - 1));
-}
-
-/// Rec. 709 luminance of a field of three bands.
-std::vector<double> luminance(const std::vector<double>& rgb) {
-  std::vector<double> out(rgb.size() / 3);
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    out[i] = luminanceOf({rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]});
-  }
-  return out;
-}
-
-std::vector<double> rowOf(Pipeline& pipeline, std::size_t patch) {
-  pipeline.loadMatrix();
-  std::vector<double> row(pipeline.patches().size(), 0.0);
-  pipeline.formFactors().matrix.forRow(patch, [&](Index j, double f) { row[j] = f; });
-  return row;
-}
-
-std::vector<double> quantityOf(const Show& show, Pipeline& pipeline, FalseColour& legend) {
-  switch (show.quantity) {
-    case Show::radiosity:
-      legend = {"radiosity B (Rec. 709 luminance)", "W/m^2"};
-      return luminance(pipeline.solved().radiosity);
-    case Show::irradiance:
-      legend = {"irradiance H (Rec. 709 luminance)", "W/m^2"};
-      return luminance(pipeline.solved().irradiance);
-    case Show::form_factor:
-      legend = {fmt::format("form factor from patch {}", show.patch), ""};
-      return rowOf(pipeline, show.patch);
-    case Show::row_sum:
-    case Show::none:
-      break;
-  }
-  legend = {"row sum: fronts seen", ""};
-  return pipeline.formFactors().fronts;
 }
 
 /// Where the patch is whose form factors are drawn.
@@ -95,26 +62,26 @@ void describePatch(Report& report, const PatchMesh& mesh, const Show& show) {
 
 void drawQuantity(Session& session, Pipeline& pipeline, const Picture& picture, const Show& show,
                   OutputSet& files) {
-  FalseColour legend;
-  const std::vector<double> values = quantityOf(show, pipeline, legend);
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const PatchMesh& mesh = pipeline.mesh().mesh;
+  const ScalarField field = pipeline.field(*show.quantity, show.patch);
+  const FalseColour& legend = field.legend;
+  const auto [low, high] = std::minmax_element(field.values.begin(), field.values.end());
   session.report.text("quantity", "shown",
                       legend.unit.empty() ? legend.title : legend.title + ", " + legend.unit);
-  if (show.quantity == Show::form_factor) describePatch(session.report, pipeline.patches(), show);
+  if (show.quantity == Quantity::form_factor) describePatch(session.report, mesh, show);
   session.report.number("lowest", "lowest of all patches", *low, legend.unit);
   session.report.number("highest", "highest of all patches", *high, legend.unit);
   files.write(Format::png, legend.title, [&](const std::string& temporary) {
     writeImage(temporary,
-               renderFalseColour(pipeline.patches(), values, legend, picture.camera,
-                                 picture.options, session.progress),
+               renderFalseColour(mesh, field.values, legend, picture.camera, picture.options,
+                                 session.progress),
                true, metadataOf(picture, legend.title, legend.unit));
   });
   files.write(Format::exr, legend.title + " in each channel", [&](const std::string& temporary) {
     std::vector<double> grey;
-    grey.reserve(3 * values.size());
-    for (const double value : values) grey.insert(grey.end(), 3, value);
-    writeImage(temporary,
-               render(pipeline.patches(), grey, picture.camera, picture.options, session.progress),
+    grey.reserve(3 * field.values.size());
+    for (const double value : field.values) grey.insert(grey.end(), 3, value);
+    writeImage(temporary, render(mesh, grey, picture.camera, picture.options, session.progress),
                false, metadataOf(picture, legend.title, legend.unit));
   });
 }
@@ -125,7 +92,7 @@ void checkOutputs(const OutputSet& files, const Show& show) {
   if (!lit && !files.has(Format::png) && !files.has(Format::exr)) {
     throw InputError("render: name the picture with -o, e.g. -o picture.png (or .exr, .glb)");
   }
-  if (lit && show.quantity != Show::none) {
+  if (lit && show.quantity) {
     throw InputError(files.path(Format::glb) +
                      ": a lit mesh holds the radiosity only; use .png or .exr with --show");
   }
@@ -138,32 +105,33 @@ int runRender(Session& session) {
   OutputSet files = claimOutputs(session);
   const Show show = parseShow(request.show);
   checkOutputs(files, show);
-  Pipeline pipeline(request, session.report, session.progress);
-  pipeline.open(files.path(Format::results));
+  Run run(session, files.path(Format::results));
+  Pipeline& pipeline = run.pipeline;
   Picture picture = choosePicture(request, pipeline.scene());
-  if (show.needsLight()) pipeline.requireLight();
-  pipeline.mesh();
-  requirePatch(show, pipeline.patches());
+  if (show.needsLight()) requireLight(session, pipeline);
+  const PatchMesh& mesh = pipeline.mesh().mesh;
+  requirePatch(show, mesh);
   if (!files.has(Format::results) && pipeline.onlyAdds()) {
     files.add({request.input, Format::results});
   }
-  pipeline.factors();
+  const FormFactors& factors = pipeline.factors();
   keepFactors(session, pipeline, files);
   int code = 0;
-  Light light;
+  SurfaceLight light;
   if (show.needsLight()) {
-    pipeline.solution();
     code = judgeSolution(session, pipeline);
-    if (!pipeline.results().solution) throw RunError("no picture: the system is singular");
+    if (pipeline.solution().summary.status == SolveStatus::singular) {
+      throw RunError("no picture: the system is singular");
+    }
     keepSolution(session, pipeline, files);
-    light = solvedLight(pipeline);
+    light = pipeline.solvedLight();
   }
-  framePicture(picture, pipeline.patches(), pipeline.formFactors().report.closed, light);
+  framePicture(picture, mesh, factors.report.closed, light);
   reportPicture(session.report, picture);
-  if (show.quantity == Show::none) {
-    drawLight(session, pipeline.patches(), light, picture, files);
-  } else {
+  if (show.quantity) {
     drawQuantity(session, pipeline, picture, show, files);
+  } else {
+    drawLight(session, mesh, light, picture, files);
   }
   writeStages(session, pipeline, files);
   files.commit(session.report, session.progress);

@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "base/luminance.h"
 #include "render/samples.h"
 
 namespace radiosity {
@@ -140,6 +143,24 @@ Image renderRadiance(const PatchMesh& mesh, std::span<const double> radiosity,
   };
   if (corners.empty()) return render(mesh, radiance(radiosity), camera, options, progress);
   return render(mesh, radiance(radiosity), radiance(corners), camera, options, progress);
+}
+
+SurfaceLight surfaceLight(std::vector<double> radiosity, const PatchMaterials& materials) {
+  SurfaceLight light{std::move(radiosity), {}, {}, materials.sky};
+  const std::vector<Vec3>& emission = materials.emission;
+  light.reflected.reserve(emission.size());
+  for (std::size_t i = 0; i < emission.size(); ++i) {
+    const double* b = light.patches.data() + 3 * i;
+    light.reflected.push_back(std::max(0.0, luminanceOf(Vec3(b[0], b[1], b[2]) - emission[i])));
+  }
+  return light;
+}
+
+Image renderRadiance(const PatchMesh& mesh, const SurfaceLight& light, const Camera& camera,
+                     const RenderOptions& options, Progress& progress) {
+  RenderOptions with_sky = options;
+  if (light.sky != Vec3(0.0)) with_sky.background = light.sky;
+  return renderRadiance(mesh, light.patches, light.corners, camera, with_sky, progress);
 }
 
 }  // namespace radiosity

@@ -13,14 +13,10 @@ namespace radiosity {
 
 using h5::Described;
 
-inline constexpr const char* kSeverityWords[] = {"info", "warning", "loud"};
-inline constexpr const char* kStatusWords[] = {"converged", "no_convergence", "no_light",
-                                               "singular"};
-
 template <class Archive>
 void describeNotes(Archive& a, Described<Archive, std::vector<Note>>& notes) {
   a.table("notes", notes, [](auto& column) {
-    column.choice("severity", &Note::severity, kSeverityWords);
+    column.choice("severity", &Note::severity, kSeverityNames);
     column("text", &Note::text);
   });
 }
@@ -225,7 +221,7 @@ void describe(Archive& a, Described<Archive, FormFactors>& f) {
 
 template <class Archive>
 void describe(Archive& a, Described<Archive, SolveSummary>& s) {
-  a.choice("status", s.status, kStatusWords);
+  a.choice("status", s.status, kSolveStatusNames);
   a("iterations", s.iterations);
   a("rows", s.rows);
   a.group("skipped", [&](auto& skipped) {
@@ -262,9 +258,6 @@ void describe(Archive& a, Described<Archive, PatchMaterials>& m) {
   a("emission", m.emission, "W/m^2");
   a("sky", m.sky);
 }
-
-inline constexpr const char* kGatherAtWords[] = {"patches", "vertices"};
-inline constexpr const char* kGatherStatusWords[] = {"converged", "pass_limit", "no_light"};
 
 /// Passes as they are stored: a row each.
 struct PassColumns {
@@ -331,7 +324,7 @@ void describe(Archive& a, Described<Archive, PassColumns>& p) {
 
 template <class Archive>
 void describe(Archive& a, Described<Archive, GatherSummary>& s) {
-  a.choice("status", s.status, kGatherStatusWords);
+  a.choice("status", s.status, kGatherStatusNames);
   a("hemicubes", s.hemicubes);
   a("pixels", s.pixels);
   a("closed", s.closed);
@@ -353,7 +346,7 @@ void describe(Archive& a, Described<Archive, GatherSummary>& s) {
 
 template <class Archive>
 void describe(Archive& a, Described<Archive, Gathered>& g) {
-  a.choice("at", g.at, kGatherAtWords);
+  a.choice("at", g.at, kGatherAtNames);
   a("bands", g.bands);
   a.rows("radiosity", g.radiosity, 3, "W/m^2");
   a.rows("irradiance", g.irradiance, 3, "W/m^2");

@@ -1,4 +1,4 @@
-#include "cli/stage_key.h"
+#include "pipeline/stage_key.h"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <type_traits>
 
 #include "base/hash.h"
-#include "cli/option_names.h"
+#include "radiosity/names.h"
 
-namespace radiosity::cli {
+namespace radiosity {
 
 namespace {
 
@@ -50,6 +50,14 @@ std::string skyText(const Vec3& sky) {
 template <class Table, class Enum>
 void readNamed(const StageKey& key, std::string_view name, const Table& table, Enum& value) {
   if (const auto found = named(table, key.get(name).value_or(""))) value = *found;
+}
+
+/// Options that the command line does not have are named where they are not as by default, so that
+/// the keys in older files stay what they are.
+bool isNamedIfSet(std::string_view name) { return name == "random-turns" || name == "inset"; }
+
+void addTurns(StageKey& key, bool random_turns) {
+  if (!random_turns) key.add("random-turns", onOff(random_turns));
 }
 
 std::string sceneHash(const Scene& scene) {
@@ -105,11 +113,17 @@ std::string StageKey::difference(const StageKey& before, const StageKey& after) 
   for (const auto& [name, value] : after.pairs_) {
     const std::optional<std::string> old = before.get(name);
     if (old == value) continue;
-    std::string change = fmt::format("{} {} -> {}", name, old.value_or("unknown"), value);
+    std::string change = fmt::format(
+        "{} {} -> {}", name, old.value_or(isNamedIfSet(name) ? "default" : "unknown"), value);
     for (const auto& [identity, phrase] : kIdentities) {
       if (name == identity) change = phrase;
     }
     words += (words.empty() ? "" : ", ") + change;
+  }
+  if (!words.empty()) return words;
+  for (const auto& [name, value] : before.pairs_) {
+    if (after.get(name)) continue;
+    words += (words.empty() ? "" : ", ") + fmt::format("{} {} -> default", name, value);
   }
   return words;
 }
@@ -140,6 +154,7 @@ StageKey factorsKeyOf(const FormFactorOptions& options, const std::string& mesh_
     key.add("seed", fmt::format("{}", options.seed));
     key.add("symmetrize", onOff(options.symmetrize));
     key.add("near", options.nearExact() ? "exact" : "off");
+    addTurns(key, options.random_turns);
   }
   key.add("precision", nameOf(kPrecisionNames, options.storedPrecision()));
   key.add("mesh", mesh_hash);
@@ -182,6 +197,8 @@ StageKey gatherKey(const GatherOptions& options, const PatchMaterials& materials
   key.add("resolution", fmt::format("{}", options.resolution));
   key.add("seed", fmt::format("{}", options.seed));
   key.add("crease", fmt::format("{}", options.crease));
+  addTurns(key, options.random_turns);
+  if (options.inset != GatherOptions().inset) key.add("inset", fmt::format("{}", options.inset));
   key.add("materials", materialsHash(materials));
   key.add("sky", skyText(materials.sky));
   key.add("mesh", geometryHash(mesh));
@@ -208,6 +225,7 @@ FormFactorOptions factorOptionsOf(const StageKey& key) {
   read(key, "resolution", options.resolution);
   read(key, "seed", options.seed);
   read(key, "symmetrize", options.symmetrize);
+  read(key, "random-turns", options.random_turns);
   options.precision = named(kPrecisionNames, key.get("precision").value_or(""));
   return options;
 }
@@ -222,13 +240,15 @@ SolveOptions solveOptionsOf(const StageKey& key) {
 
 GatherOptions gatherOptionsOf(const StageKey& key) {
   GatherOptions options;
-  if (key.get("at") == "patches") options.at = GatherAt::patches;
+  readNamed(key, "at", kGatherAtNames, options.at);
   read(key, "passes", options.passes);
   read(key, "gather-tolerance", options.tolerance);
   read(key, "resolution", options.resolution);
   read(key, "seed", options.seed);
   read(key, "crease", options.crease);
+  read(key, "random-turns", options.random_turns);
+  read(key, "inset", options.inset);
   return options;
 }
 
-}  // namespace radiosity::cli
+}  // namespace radiosity

@@ -1,4 +1,5 @@
-// The words for what options may be: one table each, for the command line, keys and reports.
+// The words for values of enums: one table an enum, for the command line, the keys of stages,
+// results files, reports and bindings.
 #pragma once
 
 #include <array>
@@ -12,13 +13,17 @@
 #include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
+#include "radiosity/scene.h"
 #include "radiosity/solve.h"
 
-namespace radiosity::cli {
+namespace radiosity {
 
+/// Every value of an enum with its word.
 template <class Enum, std::size_t N>
 using NameTable = std::array<std::pair<Enum, std::string_view>, N>;
 
+inline constexpr NameTable<Severity, 3> kSeverityNames{
+    {{Severity::info, "info"}, {Severity::warning, "warning"}, {Severity::loud, "loud"}}};
 inline constexpr NameTable<FormFactorMethod, 3> kMethodNames{
     {{FormFactorMethod::automatic, "auto"},
      {FormFactorMethod::exact, "exact"},
@@ -30,19 +35,29 @@ inline constexpr NameTable<Precision, 2> kPrecisionNames{
     {{Precision::single_precision, "single"}, {Precision::double_precision, "double"}}};
 inline constexpr NameTable<Solver, 2> kSolverNames{
     {{Solver::gauss_seidel, "gauss-seidel"}, {Solver::jacobi, "jacobi"}}};
+inline constexpr NameTable<SolveStatus, 4> kSolveStatusNames{
+    {{SolveStatus::converged, "converged"},
+     {SolveStatus::no_convergence, "no_convergence"},
+     {SolveStatus::no_light, "no_light"},
+     {SolveStatus::singular, "singular"}}};
 inline constexpr NameTable<GatherAt, 2> kGatherAtNames{
     {{GatherAt::vertices, "vertices"}, {GatherAt::patches, "patches"}}};
 
-/// Throws logic_error where the table lacks the value.
+inline constexpr NameTable<GatherStatus, 3> kGatherStatusNames{
+    {{GatherStatus::converged, "converged"},
+     {GatherStatus::pass_limit, "pass_limit"},
+     {GatherStatus::no_light, "no_light"}}};
+
+/// The word for a value. Throws logic_error where the table lacks it.
 template <class Enum, std::size_t N>
 std::string nameOf(const NameTable<Enum, N>& table, Enum value) {
   for (const auto& [known, name] : table) {
     if (known == value) return std::string(name);
   }
-  throw std::logic_error("an option's value has no name");
+  throw std::logic_error("a value has no name");
 }
 
-/// Nothing where the word is none of the table's.
+/// The value that a word stands for; nothing where the word is none of the table's.
 template <class Enum, std::size_t N>
 std::optional<Enum> named(const NameTable<Enum, N>& table, std::string_view word) {
   for (const auto& [value, name] : table) {
@@ -51,6 +66,7 @@ std::optional<Enum> named(const NameTable<Enum, N>& table, std::string_view word
   return std::nullopt;
 }
 
+/// All words, in the table's order.
 template <class Enum, std::size_t N>
 std::vector<std::string> namesIn(const NameTable<Enum, N>& table) {
   std::vector<std::string> names;
@@ -59,4 +75,4 @@ std::vector<std::string> namesIn(const NameTable<Enum, N>& table) {
   return names;
 }
 
-}  // namespace radiosity::cli
+}  // namespace radiosity

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-namespace radiosity::cli {
+namespace radiosity {
 
 /// Bytes of memory that are this process's now, libraries included; 0 where it is not known.
 std::size_t residentBytes();
@@ -11,4 +11,4 @@ std::size_t residentBytes();
 /// The most that were, up to now; 0 where it is not known.
 std::size_t peakBytes();
 
-}  // namespace radiosity::cli
+}  // namespace radiosity

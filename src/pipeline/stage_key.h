@@ -14,7 +14,7 @@
 #include "radiosity/scene.h"
 #include "radiosity/solve.h"
 
-namespace radiosity::cli {
+namespace radiosity {
 
 /// "name=value name=value ...": readable in the results file, and options can be had back.
 class StageKey {
@@ -24,7 +24,8 @@ class StageKey {
   void add(std::string name, std::string value);
   std::optional<std::string> get(std::string_view name) const;
   std::string text() const;
-  /// What changed, in words: "resolution 256 -> 512, form factors changed".
+  /// What changed, in words: "resolution 256 -> 512, form factors changed". Empty where nothing
+  /// did.
   static std::string difference(const StageKey& before, const StageKey& after);
 
  private:
@@ -51,4 +52,4 @@ FormFactorOptions factorOptionsOf(const StageKey& key);
 SolveOptions solveOptionsOf(const StageKey& key);
 GatherOptions gatherOptionsOf(const StageKey& key);
 
-}  // namespace radiosity::cli
+}  // namespace radiosity

@@ -1,11 +1,11 @@
-#include "cli/process_memory.h"
+#include "pipeline/process_memory.h"
 
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <fstream>
 
-namespace radiosity::cli {
+namespace radiosity {
 
 std::size_t residentBytes() {
   std::ifstream file("/proc/self/statm");
@@ -21,4 +21,4 @@ std::size_t peakBytes() {
   return getrusage(RUSAGE_SELF, &usage) == 0 ? std::size_t(usage.ru_maxrss) * kKibibyte : 0;
 }
 
-}  // namespace radiosity::cli
+}  // namespace radiosity
