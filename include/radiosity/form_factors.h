@@ -167,7 +167,7 @@ struct FormFactorPlan {
   struct Prepared;
   std::shared_ptr<const Prepared> prepared;
 };
-/// The plan keeps a copy of the mesh (about 300 bytes a patch), ...
+/// The plan keeps a copy of the mesh (about 160 bytes a patch), ...
 FormFactorPlan planFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
                                Progress& progress);
 /// ... or the mesh itself, which nobody may change while the plan is there.
