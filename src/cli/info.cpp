@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "base/made.h"
 #include "cli/commands.h"
 #include "cli/summaries.h"
 
@@ -23,7 +24,7 @@ void describeStages(Session& session, const Pipeline& pipeline) {
     summarizeFactors(report, *stored.factors, stored.mesh->mesh, Detail::brief);
   }
   if (stored.solution) {
-    summarizeSolution(report, *stored.solution, *stored.factors, stored.mesh->mesh,
+    summarizeSolution(report, *stored.solution, made(stored.factors), stored.mesh->mesh,
                       pipeline.options().solve, Detail::brief);
   }
   if (stored.gathered) {

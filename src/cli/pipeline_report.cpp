@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/byte_text.h"
+#include "base/made.h"
 #include "cli/words.h"
 
 namespace radiosity::cli {
@@ -85,7 +86,7 @@ void PipelineReport::notReused(const std::string& path, const std::string& why) 
 
 void PipelineReport::planned(const Pipeline& pipeline, const FormFactorPlan& plan) {
   const FormFactorOptions& options = pipeline.options().factors;
-  const std::size_t patches = pipeline.results().mesh->mesh.size();
+  const std::size_t patches = made(pipeline.results().mesh).mesh.size();
   const bool exact = plan.method == FormFactorMethod::exact;
   // On disk every entry has a column number of 4 bytes. In memory a dense row has none, and a
   // symmetric matrix has half of the entries.
@@ -116,21 +117,21 @@ void PipelineReport::stage(const Pipeline& pipeline, const StageEvent& event) {
 void PipelineReport::summarize(const Pipeline& pipeline, const StageEvent& event) {
   const bool own = request_.command == wordsOf(event.stage).command;
   const Results& results = pipeline.results();
-  const PatchMesh& mesh = results.mesh->mesh;
+  const PatchMesh& mesh = made(results.mesh).mesh;
   const PipelineOptions& options = pipeline.options();
   // A mesh or form factors that were there already need no word where they are a step on the way.
   const Detail light = own ? Detail::full : Detail::brief;
   const Detail step = !own && event.action == StageAction::reused ? Detail::none : light;
   switch (event.stage) {
     case Stage::mesh:
-      return summarizeMesh(report_, *results.mesh, step);
+      return summarizeMesh(report_, made(results.mesh), step);
     case Stage::form_factors:
-      return summarizeFactors(report_, *results.factors, mesh, step);
+      return summarizeFactors(report_, made(results.factors), mesh, step);
     case Stage::solution:
-      return summarizeSolution(report_, *results.solution, *results.factors, mesh, options.solve,
-                               light);
+      return summarizeSolution(report_, made(results.solution), made(results.factors), mesh,
+                               options.solve, light);
     case Stage::gather:
-      return summarizeGathered(report_, *results.gathered, mesh, options.gather, light);
+      return summarizeGathered(report_, made(results.gathered), mesh, options.gather, light);
   }
 }
 

@@ -61,14 +61,14 @@ void describePatch(Report& report, const PatchMesh& mesh, const Show& show) {
 }
 
 void drawQuantity(Session& session, Pipeline& pipeline, const Picture& picture, const Show& show,
-                  OutputSet& files) {
+                  Quantity quantity, OutputSet& files) {
   const PatchMesh& mesh = pipeline.mesh().mesh;
-  const ScalarField field = pipeline.field(*show.quantity, show.patch);
+  const ScalarField field = pipeline.field(quantity, show.patch);
   const FalseColour& legend = field.legend;
   const auto [low, high] = std::minmax_element(field.values.begin(), field.values.end());
   session.report.text("quantity", "shown",
                       legend.unit.empty() ? legend.title : legend.title + ", " + legend.unit);
-  if (show.quantity == Quantity::form_factor) describePatch(session.report, mesh, show);
+  if (quantity == Quantity::form_factor) describePatch(session.report, mesh, show);
   session.report.number("lowest", "lowest of all patches", *low, legend.unit);
   session.report.number("highest", "highest of all patches", *high, legend.unit);
   files.write(Format::png, legend.title, [&](const std::string& temporary) {
@@ -129,7 +129,7 @@ int runRender(Session& session) {
   framePicture(picture, mesh, factors.report.closed, light);
   reportPicture(session.report, picture);
   if (show.quantity) {
-    drawQuantity(session, pipeline, picture, show, files);
+    drawQuantity(session, pipeline, picture, show, *show.quantity, files);
   } else {
     drawLight(session, mesh, light, picture, files);
   }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "base/luminance.h"
+#include "base/made.h"
 #include "radiosity/pipeline.h"
 
 namespace radiosity {
@@ -32,7 +33,7 @@ SurfaceLight Pipeline::solvedLight() {
 
 SurfaceLight Pipeline::gatheredLight() {
   const Gathered& light = gathered();
-  const PatchMesh& patches = results_.mesh->mesh;
+  const PatchMesh& patches = made(results_.mesh).mesh;
   SurfaceLight drawn = surfaceLight(patchRadiosity(patches, light), materialsOfMesh());
   if (light.at == GatherAt::vertices) drawn.corners = cornerRadiosity(patches, light);
   return drawn;

@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <stdexcept>
 #include <utility>
 
 #include "base/byte_text.h"
 #include "base/input_file.h"
+#include "base/made.h"
 #include "pipeline/stage_key.h"
 #include "radiosity/version.h"
 
@@ -39,10 +39,7 @@ Pipeline::Pipeline(Progress& progress, PipelineObserver* observer)
   results_.version = RADIOSITY_VERSION;
 }
 
-const Scene& Pipeline::scene() const {
-  if (!results_.scene) throw std::logic_error("a pipeline was used before it was opened");
-  return *results_.scene;
-}
+const Scene& Pipeline::scene() const { return made(results_.scene); }
 
 void Pipeline::open(const std::string& path, const SceneOptions& scene, const std::string& reuse) {
   requireFile(path);
@@ -94,9 +91,9 @@ void Pipeline::openResults(const std::string& path, const SceneOptions& scene) {
 }
 
 void Pipeline::overrideScene(const SceneOptions& overrides) {
-  std::vector<Note>& notes = results_.scene->notes;
+  std::vector<Note>& notes = made(results_.scene).notes;
   const std::size_t known = notes.size();
-  applyOverrides(*results_.scene, overrides);
+  applyOverrides(made(results_.scene), overrides);
   overridden_ = true;
   changed_ = true;
   observer_.notes(*this, std::span(notes).subspan(std::min(known, notes.size())));
@@ -155,7 +152,7 @@ void Pipeline::loadMatrix() {
 bool Pipeline::keepFactors() {
   if (results_.factors || !stored_.factors) return false;
   const StageKey key =
-      factorsKey(factorOptionsOf(StageKey(stored_.factors_key)), results_.mesh->mesh);
+      factorsKey(factorOptionsOf(StageKey(stored_.factors_key)), made(results_.mesh).mesh);
   std::optional<FormFactors> factors = std::exchange(stored_.factors, std::nullopt);
   if (key.text() != stored_.factors_key) {
     tell(Stage::form_factors, StageAction::dropped, why(stored_.factors_key, key));
@@ -185,7 +182,7 @@ bool Pipeline::keepSolution() {
 bool Pipeline::keepGathered() {
   if (results_.gathered || !stored_.gathered) return false;
   const StageKey key = gatherKey(gatherOptionsOf(StageKey(stored_.gather_key)), materialsOfMesh(),
-                                 results_.mesh->mesh);
+                                 made(results_.mesh).mesh);
   std::optional<Gathered> gathered = std::exchange(stored_.gathered, std::nullopt);
   if (key.text() != stored_.gather_key) {
     tell(Stage::gather, StageAction::dropped, why(stored_.gather_key, key));

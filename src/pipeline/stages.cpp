@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <stdexcept>
 #include <utility>
 
+#include "base/made.h"
 #include "pipeline/process_memory.h"
 #include "pipeline/stage_key.h"
 #include "radiosity/names.h"
@@ -89,7 +89,7 @@ void Pipeline::discardFrom(Stage first) {
 const MeshResult& Pipeline::mesh() {
   options_.mesh.validate();
   const StageKey key = meshKey(options_.mesh, scene());
-  if (results_.mesh && results_.mesh_key == key.text()) return *results_.mesh;
+  if (results_.mesh && results_.mesh_key == key.text()) return made(results_.mesh);
   discardFrom(Stage::mesh);
   mesh_reused_ = stored_.mesh && stored_.mesh_key == key.text();
   replaces_ = replaces_ || stored_.factors || (stored_.mesh && !mesh_reused_);
@@ -97,7 +97,7 @@ const MeshResult& Pipeline::mesh() {
     results_.mesh = taken(stored_.mesh);
     results_.mesh_key = key.text();
     tell(Stage::mesh, StageAction::reused, source_);
-    return *results_.mesh;
+    return made(results_.mesh);
   }
   const std::string reason = why(stored_.mesh_key, key);
   const Stopwatch watch;
@@ -105,7 +105,7 @@ const MeshResult& Pipeline::mesh() {
   results_.mesh_key = key.text();
   stored_.mesh.reset();
   computed(Stage::mesh, reason, watch.seconds());
-  return *results_.mesh;
+  return made(results_.mesh);
 }
 
 /// Whether form factors are what was asked for: other options than those that made them may differ.
@@ -130,7 +130,7 @@ bool Pipeline::factorsFit(const FormFactors& factors, const std::string& factors
 FormFactorPlan Pipeline::planFactors() const {
   FormFactorOptions options = options_.factors;
   if (options.memory_held == 0) options.memory_held = residentBytes();
-  FormFactorPlan plan = planFormFactors(results_.mesh->mesh, options, progress_);
+  FormFactorPlan plan = planFormFactors(made(results_.mesh).mesh, options, progress_);
   // Planning may have tried the exact method, which takes more than hemicubes then do.
   plan.bytes = std::max(plan.bytes, peakBytes());
   return plan;
@@ -151,11 +151,11 @@ const FormFactors& Pipeline::factors() {
   options_.factors.validate();
   const StageKey key = factorsKey(options_.factors, patches);
   const std::string asked = key.text();
-  if (results_.factors && factors_asked_ == asked) return *results_.factors;
+  if (results_.factors && factors_asked_ == asked) return made(results_.factors);
   std::optional<FormFactorPlan> plan;
   if (results_.factors && factorsFit(*results_.factors, results_.factors_key, key, plan)) {
     factors_asked_ = asked;
-    return *results_.factors;
+    return made(results_.factors);
   }
   discardFrom(Stage::form_factors);
   if (stored_.factors && factorsFit(*stored_.factors, stored_.factors_key, key, plan)) {
@@ -163,7 +163,7 @@ const FormFactors& Pipeline::factors() {
     results_.factors_key = stored_.factors_key;
     factors_asked_ = asked;
     tell(Stage::form_factors, StageAction::reused, source_);
-    return *results_.factors;
+    return made(results_.factors);
   }
   const std::string reason = why(stored_.factors_key, key);
   const Stopwatch watch;
@@ -173,13 +173,13 @@ const FormFactors& Pipeline::factors() {
   stored_.factors.reset();
   factors_computed_ = true;
   computed(Stage::form_factors, reason, watch.seconds());
-  return *results_.factors;
+  return made(results_.factors);
 }
 
 const ExchangeMatrix& Pipeline::matrix() {
   factors();
   loadMatrix();
-  return results_.factors->matrix;
+  return made(results_.factors).matrix;
 }
 
 StageKey Pipeline::usedFactorsKey() const {
@@ -188,8 +188,8 @@ StageKey Pipeline::usedFactorsKey() const {
 }
 
 const PatchMaterials& Pipeline::materialsOfMesh() {
-  if (!results_.materials) results_.materials = patchMaterials(scene(), results_.mesh->mesh);
-  return *results_.materials;
+  if (!results_.materials) results_.materials = patchMaterials(scene(), made(results_.mesh).mesh);
+  return made(results_.materials);
 }
 
 const PatchMaterials& Pipeline::materials() {
@@ -201,48 +201,48 @@ const Solution& Pipeline::solution() {
   factors();
   options_.solve.validate();
   const StageKey key = solutionKey(options_.solve, materialsOfMesh(), usedFactorsKey());
-  if (results_.solution && results_.solution_key == key.text()) return *results_.solution;
+  if (results_.solution && results_.solution_key == key.text()) return made(results_.solution);
   discardFrom(Stage::solution);
   if (stored_.solution && stored_.solution_key == key.text()) {
     results_.solution = taken(stored_.solution);
     results_.solution_key = key.text();
     tell(Stage::solution, StageAction::reused, source_);
-    return *results_.solution;
+    return made(results_.solution);
   }
   const std::string reason = why(stored_.solution_key, key);
   loadMatrix();
   const Stopwatch watch;
   results_.solution = computedStage("solution", [&] {
-    return solve(*results_.factors, *results_.materials, results_.mesh->mesh, options_.solve,
-                 progress_);
+    return solve(made(results_.factors), made(results_.materials), made(results_.mesh).mesh,
+                 options_.solve, progress_);
   });
   results_.solution_key = key.text();
   stored_.solution.reset();
   computed(Stage::solution, reason, watch.seconds());
-  return *results_.solution;
+  return made(results_.solution);
 }
 
 const Gathered& Pipeline::gathered() {
   const PatchMesh& patches = mesh().mesh;
   options_.gather.validate();
   const StageKey key = gatherKey(options_.gather, materialsOfMesh(), patches);
-  if (results_.gathered && results_.gather_key == key.text()) return *results_.gathered;
+  if (results_.gathered && results_.gather_key == key.text()) return made(results_.gathered);
   discardFrom(Stage::gather);
   if (stored_.gathered && stored_.gather_key == key.text()) {
     results_.gathered = taken(stored_.gathered);
     results_.gather_key = key.text();
     tell(Stage::gather, StageAction::reused, source_);
-    return *results_.gathered;
+    return made(results_.gathered);
   }
   const std::string reason = why(stored_.gather_key, key);
   const Stopwatch watch;
   results_.gathered = computedStage("gathering", [&] {
-    return gather(patches, *results_.materials, options_.gather, progress_);
+    return gather(patches, made(results_.materials), options_.gather, progress_);
   });
   results_.gather_key = key.text();
   stored_.gathered.reset();
   computed(Stage::gather, reason, watch.seconds());
-  return *results_.gathered;
+  return made(results_.gathered);
 }
 
 }  // namespace radiosity

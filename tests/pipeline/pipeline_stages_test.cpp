@@ -80,7 +80,7 @@ class PipelineStages : public FolderTest {
  protected:
   /// Every stage of the box, in a file.
   std::string savedBox() {
-    const std::string file = path("box.h5");
+    std::string file = path("box.h5");
     Pipeline pipeline(progress_);
     pipeline.open(kBox);
     makeCoarse(pipeline.options());
