@@ -9,7 +9,7 @@
 #include "radiosity/base.h"
 #include "radiosity/exchange_matrix.h"
 
-namespace radiosity {
+namespace [[gnu::visibility("default")]] radiosity {
 
 /// Rows that sum to 0 see nothing or have no area: they do not count.
 struct ClosureReport {

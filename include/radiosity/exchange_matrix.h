@@ -10,7 +10,7 @@
 
 #include "radiosity/base.h"
 
-namespace radiosity {
+namespace [[gnu::visibility("default")]] radiosity {
 
 enum class Precision { single_precision, double_precision };
 

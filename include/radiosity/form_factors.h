@@ -13,7 +13,7 @@
 #include "radiosity/exchange_matrix.h"
 #include "radiosity/patch_mesh.h"
 
-namespace radiosity {
+namespace [[gnu::visibility("default")]] radiosity {
 
 enum class FormFactorMethod {
   automatic,  ///< exact unless the scene is too cluttered for it; the report says what and why

@@ -12,7 +12,7 @@
 #include "radiosity/patch_mesh.h"
 #include "radiosity/solve.h"
 
-namespace radiosity {
+namespace [[gnu::visibility("default")]] radiosity {
 
 enum class GatherAt {
   patches,  ///< one eye a patch, at its centroid; a patch has one radiosity all over

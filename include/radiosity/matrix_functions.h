@@ -5,7 +5,7 @@
 
 #include "radiosity/exchange_matrix.h"
 
-namespace radiosity {
+namespace [[gnu::visibility("default")]] radiosity {
 
 /// sum_ij A_i F_ij^2, m^2: what errors in the area-weighted L2 norm are relative to.
 double weightedSquares(const ExchangeMatrix& matrix);

@@ -16,7 +16,7 @@
 #include "radiosity/scene.h"
 #include "radiosity/solve.h"
 
-namespace radiosity {
+namespace [[gnu::visibility("default")]] radiosity {
 
 /// Every value of an enum with its word.
 template <class Enum, std::size_t N>

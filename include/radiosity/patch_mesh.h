@@ -10,7 +10,7 @@
 #include "radiosity/base.h"
 #include "radiosity/scene.h"
 
-namespace radiosity {
+namespace [[gnu::visibility("default")]] radiosity {
 
 /// Planar polygons: the coarse faces of the scene, coplanar neighbours of a surface merged, cut
 /// where others touch or cross. They are what occludes and what is rasterised. A polygon is one or

@@ -18,7 +18,7 @@
 #include "radiosity/scene.h"
 #include "radiosity/solve.h"
 
-namespace radiosity {
+namespace [[gnu::visibility("default")]] radiosity {
 
 class Pipeline;
 class StageKey;

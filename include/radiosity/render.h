@@ -10,7 +10,7 @@
 #include "radiosity/patch_mesh.h"
 #include "radiosity/scene.h"
 
-namespace radiosity {
+namespace [[gnu::visibility("default")]] radiosity {
 
 /// RGBA, float, row-major, top row first, straight (not premultiplied) linear colour.
 struct Image {

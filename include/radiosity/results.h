@@ -17,7 +17,7 @@
 #include "radiosity/scene.h"
 #include "radiosity/solve.h"
 
-namespace radiosity {
+namespace [[gnu::visibility("default")]] radiosity {
 
 /// What a results file holds; an absent stage was not computed or was dropped. Each stage has a
 /// `key`: a text of the options that made it and of the stage before it. A stage is reused only

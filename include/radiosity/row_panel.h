@@ -8,7 +8,7 @@
 
 #include "radiosity/exchange_matrix.h"
 
-namespace radiosity {
+namespace [[gnu::visibility("default")]] radiosity {
 
 /// A stored row of the row form. One of `floats` and `doubles` is empty, by precision.
 struct RowView {

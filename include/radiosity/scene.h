@@ -11,7 +11,7 @@
 
 #include "radiosity/base.h"
 
-namespace radiosity {
+namespace [[gnu::visibility("default")]] radiosity {
 
 enum class Severity { info, warning, loud };
 
