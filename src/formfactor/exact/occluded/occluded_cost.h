@@ -19,8 +19,8 @@ struct OccludedCost {
 
 /// Of OccludedKernel with this tolerance, from how far shadows move across each pair: about. The
 /// pairs' unoccluded values are not looked at, but guessed. (Pairs of the closed Cornell box, two
-/// rooms, the cluttered and the curved scene at tolerances from 1e-1 to 1e-4: from a tenth of what is
-/// accepted to 200 times that, counted points are within a factor of 1.5.)
+/// rooms, the cluttered and the curved scene at tolerances from 1e-1 to 1e-4: from a tenth of what
+/// is accepted to 200 times that, counted points are within a factor of 1.5.)
 OccludedCost occludedCost(const ElementSet& elements, const OccluderSet& occluders,
                           std::span<const OccludedPair> pairs, std::span<const Index> occluder_list,
                           double tolerance);
