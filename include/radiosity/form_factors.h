@@ -29,7 +29,7 @@ enum class ClosureMode {
 
 struct FormFactorOptions {
   FormFactorMethod method = FormFactorMethod::automatic;
-  /// Exact: the error aimed at for a pair that is partly hidden, relative to the mean form factor
+  /// Exact: the error aimed at for an occluded pair, relative to the mean form factor
   /// 1/N; 1e-12 to 0.1. Closed forms hold it, or 1e-5 where it is larger, relative to each value;
   /// above the default, a tenth of it.
   double tolerance = 1e-3;
@@ -56,8 +56,8 @@ struct FormFactorOptions {
 /// patches; most patches are one), counted once.
 struct ExactReport {
   std::size_t elements = 0;
-  std::size_t bare_elements = 0;  ///< pieces of backs that are not patches: they only absorb
-  std::size_t facets = 0;         ///< planar sides that carry elements
+  std::size_t black_elements = 0;  ///< pieces of backs that are not patches: they only absorb
+  std::size_t facets = 0;          ///< planar sides that carry elements
   std::size_t occluders = 0;
   std::size_t solids = 0;        ///< of them convex solids, the rest is flat
   std::size_t skipped_hull = 0;  ///< polygons that cannot block: all of the scene is on one side
@@ -65,7 +65,7 @@ struct ExactReport {
   std::size_t no_exchange = 0;  ///< pairs coplanar, back to back, below each other's horizon
   std::size_t unoccluded = 0;   ///< pairs with nothing in between: no visibility code below them
   std::size_t hidden = 0;       ///< pairs found to exchange nothing
-  std::size_t partial = 0;      ///< pairs clipped against what is in between
+  std::size_t occluded = 0;     ///< pairs clipped against what is in between
 
   std::size_t facet_pairs = 0;
   std::size_t facet_pairs_no_exchange = 0;  ///< skipped whole, by their planes alone
@@ -77,11 +77,11 @@ struct ExactReport {
   std::size_t product = 0;  ///< values by product quadrature
   std::size_t clipped = 0;  ///< of all: crossing the other's plane, clipped first
 
-  std::size_t points = 0;      ///< point evaluations of partial pairs
-  std::size_t subdivided = 0;  ///< partial pairs that needed more than the first rule
-  /// Partial pairs evaluated again in double precision: too near for their points, or intricate.
+  std::size_t points = 0;      ///< point evaluations of occluded pairs
+  std::size_t subdivided = 0;  ///< occluded pairs that needed more than the first rule
+  /// Occluded pairs evaluated again in double precision: too near for their points, or intricate.
   std::size_t evaluated_again = 0;
-  std::size_t rechecked = 0;  ///< partial pairs evaluated again to an eighth of the tolerance
+  std::size_t rechecked = 0;  ///< occluded pairs evaluated again to an eighth of the tolerance
   /// Error over figure that 1% of rows drawn from these pairs exceed; where 1.75 times that is more
   /// than 1, error figures are raised by so much.
   double recheck_ratio = 0;
@@ -90,7 +90,7 @@ struct ExactReport {
   double seconds_prepare = 0;     ///< elements, occluders, estimates
   double seconds_visibility = 0;  ///< classifying pairs
   double seconds_unoccluded = 0;  ///< closed forms and quadrature
-  double seconds_partial = 0;     ///< clipping
+  double seconds_occluded = 0;    ///< clipping
   double seconds_assembly = 0;    ///< summing and storing
   double seconds_finish = 0;      ///< row sums, error figures, closure
 };
@@ -140,7 +140,7 @@ struct FormFactors {
   std::vector<double> sky;
   /// Area-weighted share of the scene's view that ends on each surface's back, by surface.
   std::vector<double> backs_by_surface;
-  /// Exact: N error figures; sqrt(sum_j (F_ij - true F_ij)^2), bare backs among the j, stays below
+  /// Exact: N error figures; sqrt(sum_j (F_ij - true F_ij)^2), black backs among the j, stays below
   /// error[i] in about 99% of rows; the median of the figures is mostly 4 to 11 times the true one.
   /// Hemicube: empty.
   std::vector<double> error;

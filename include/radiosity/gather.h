@@ -77,7 +77,7 @@ struct Gathered {
   int bands = 3;
   std::vector<float> radiosity;   ///< L * 3, row-major, W/m^2
   std::vector<float> irradiance;  ///< L * 3: H
-  std::vector<float> backs;       ///< L, share of the view that ends on bare backs
+  std::vector<float> backs;       ///< L, share of the view that ends on black backs
   std::vector<float> sky;         ///< L
   /// Share of all eyes' view that ends on each surface's back, eyes weighted with their areas; by
   /// surface.

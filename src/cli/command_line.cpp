@@ -118,10 +118,9 @@ void addFactorOptions(CLI::App& app, Request& r) {
   // Where results are compared, --tolerance is about the difference.
   const bool compares = app.get_name() == commandName(Command::compare);
   add(app, "Form factors", compares ? "--factor-tolerance" : "--tolerance", r.tolerance, "FRACTION",
-      fmt::format(
-          "exact: error aimed at for a partly hidden pair, relative to the mean form factor "
-          "1/N; 1e-12 to 0.1 (default {})",
-          defaults.tolerance));
+      fmt::format("exact: error aimed at for an occluded pair, relative to the mean form factor "
+                  "1/N; 1e-12 to 0.1 (default {})",
+                  defaults.tolerance));
   add(app, "Form factors", "--closure", r.closure, "off|report|enforce",
       "exact, in a closed scene: say how far row sums are from 1 (report, default), or change what "
       "is not known in closed form, as little as possible, until they are 1 (enforce)")

@@ -17,8 +17,8 @@ std::string briefLine(const FormFactors& factors) {
   const std::string scene = r.closed ? "closed scene" : "open scene";
   if (factors.method == "exact") {
     const ExactReport& e = r.exact;
-    return fmt::format("{}, {} partly hidden, in {}; {}; {}; error of the matrix about {}",
-                       plural(e.unoccluded + e.partial, "pair", "pairs"), countText(e.partial),
+    return fmt::format("{}, {} occluded, in {}; {}; {}; error of the matrix about {}",
+                       plural(e.unoccluded + e.occluded, "pair", "pairs"), countText(e.occluded),
                        durationText(r.seconds), bytesText(r.matrix_bytes), scene,
                        numberText(r.error_figure, 2));
   }
@@ -44,7 +44,7 @@ void hemicubeFigures(Report& report, const FormFactorReport& r) {
 /// Pairs of patches by what became of them, then what it took.
 void exactFigures(Report& report, const ExactReport& e) {
   report.count("elements", "elements", e.elements);
-  report.count("bare_elements", "  and of bare backs", e.bare_elements);
+  report.count("black_elements", "  and of black backs", e.black_elements);
   report.count("facets", "facets", e.facets);
   report.count("occluders", "occluders", e.occluders);
   report.count("solids", "  of them convex solids", e.solids);
@@ -52,7 +52,7 @@ void exactFigures(Report& report, const ExactReport& e) {
   report.count("pairs_no_exchange", "pairs without exchange", e.no_exchange);
   report.count("pairs_unoccluded", "pairs unoccluded", e.unoccluded);
   report.count("pairs_hidden", "pairs hidden", e.hidden);
-  report.count("pairs_partial", "pairs partly hidden", e.partial);
+  report.count("pairs_occluded", "pairs occluded", e.occluded);
   report.count("facet_pairs", "facet pairs", e.facet_pairs);
   report.count("skipped_facet_pairs", "skipped: no exchange", e.facet_pairs_no_exchange);
   report.count("skipped_visibility", "skipped: visibility", e.facet_pairs_unoccluded);
@@ -61,15 +61,15 @@ void exactFigures(Report& report, const ExactReport& e) {
   report.count("lambert", "values by Lambert", e.lambert);
   report.count("product", "values by quadrature", e.product);
   report.count("clipped", "  clipped to front sides", e.clipped);
-  report.count("points", "points of partial pairs", e.points);
-  report.count("subdivided", "partial pairs refined", e.subdivided);
-  report.count("evaluated_again", "partial pairs again in double", e.evaluated_again);
+  report.count("points", "points of occluded pairs", e.points);
+  report.count("subdivided", "occluded pairs refined", e.subdivided);
+  report.count("evaluated_again", "occluded pairs again in double", e.evaluated_again);
   report.count("rechecked", "evaluated again to check", e.rechecked);
   report.number("recheck_ratio", "  row error / figure, 99%", e.recheck_ratio);
   report.seconds("seconds_prepare", "time: preparing", e.seconds_prepare);
   report.seconds("seconds_visibility", "time: visibility", e.seconds_visibility);
   report.seconds("seconds_unoccluded", "time: closed forms", e.seconds_unoccluded);
-  report.seconds("seconds_partial", "time: clipping", e.seconds_partial);
+  report.seconds("seconds_occluded", "time: occluded pairs", e.seconds_occluded);
   report.seconds("seconds_assembly", "time: storing rows", e.seconds_assembly);
   report.seconds("seconds_finish", "time: finishing", e.seconds_finish);
 }

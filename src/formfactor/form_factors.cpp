@@ -40,7 +40,7 @@ double secondsSince(Clock::time_point start) {
 }
 
 /// Seconds of a wait that is worth saying how to shorten.
-constexpr double kPatience = 60;
+constexpr double kLongWait = 60;
 /// Hemicubes are chosen only where exact is much work (kMuchWork), and so many times theirs: they
 /// stall at some per cent of the matrix however many pixels they have.
 constexpr double kWorthTheError = 30;
@@ -55,26 +55,26 @@ double simpleHemicubeWork(const PatchMesh& mesh, const FormFactorOptions& option
 }
 
 std::string clutterText(const ExactEstimate& estimate) {
-  if (estimate.partial_pairs < 1) return "no pair of a sample is partly hidden";
-  return fmt::format("about {:.2g} pairs are partly hidden, past {:.1f} occluders each",
-                     estimate.partial_pairs, estimate.occluders_per_partial);
+  if (estimate.occluded_pairs < 1) return "no pair of a sample is occluded";
+  return fmt::format("about {:.2g} pairs are occluded, past {:.1f} occluders each",
+                     estimate.occluded_pairs, estimate.occluders_per_pair);
 }
 
 /// Of the exact method.
-struct Work {
+struct ExactWork {
   double all;    ///< see foreseen_work.h
   double times;  ///< as much as that of hemicubes in a simple scene
 };
 
-Work exactWork(const ExactEstimate& estimate, const PatchMesh& mesh,
-               const FormFactorOptions& options) {
+ExactWork exactWork(const ExactEstimate& estimate, const PatchMesh& mesh,
+                    const FormFactorOptions& options) {
   // Who asks for more than the default does not ask for hemicubes: what that adds does not count.
   const double beyond = std::max(0.0, 1 - options.tolerance / FormFactorOptions().tolerance);
   const double work = estimate.work - beyond * estimate.refining;
   return {work, work / simpleHemicubeWork(mesh, options)};
 }
 
-bool isTooMuch(const Work& work, double margin) {
+bool isTooMuch(const ExactWork& work, double margin) {
   return work.all > margin * kMuchWork && work.times > margin * kWorthTheError;
 }
 
@@ -83,7 +83,7 @@ void choose(const ExactEstimate& estimate, const PatchMesh& mesh, const FormFact
             FormFactorPlan& plan) {
   plan.method = FormFactorMethod::exact;
   if (options.method == FormFactorMethod::exact) return;
-  const Work work = exactWork(estimate, mesh, options);
+  const ExactWork work = exactWork(estimate, mesh, options);
   if (isTooMuch(work, 1)) {
     plan.method = FormFactorMethod::hemicube;
     plan.reason = fmt::format(
@@ -178,7 +178,7 @@ FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
   if (options.method != FormFactorMethod::hemicube) planExact(*prepared, plan, progress);
   if (plan.method == FormFactorMethod::hemicube) {
     planHemicubes(*prepared, plan, progress);
-  } else if (plan.seconds > kPatience) {
+  } else if (plan.seconds > kLongWait) {
     const HemicubeScene scene(prepared->mesh, options);
     plan.hemicube_seconds = estimateHemicubes(prepared->mesh, scene, options, progress).measured;
   }

@@ -11,7 +11,7 @@
 
 namespace radiosity {
 
-/// What a side of a polygon counts for. Items are 0 to N-1: patch; N + s: the bare back of surface
+/// What a side of a polygon counts for. Items are 0 to N-1: patch; N + s: the black back of surface
 /// s (a side without patches).
 struct PolygonSide {
   std::uint32_t item = kNone;  ///< everywhere, if `grid` is kNone

@@ -125,7 +125,7 @@ void InterpolatedView::alongRow(SeenFacet& facet, const ItemRun& run) const {
 void InterpolatedView::visit(const ItemRun& run) {
   if (run.begin >= run.end) return;
   const std::size_t patch = run.item;
-  if (patch >= mesh_.size()) {  // bare backs are black; what comes after them is the sky
+  if (patch >= mesh_.size()) {  // backs are black; what comes after them is the sky
     const std::size_t surface = patch - mesh_.size();
     if (surface < backs_.size()) backs_[surface] += run.weights[run.end] - run.weights[run.begin];
     return;

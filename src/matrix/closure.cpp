@@ -32,7 +32,7 @@ constexpr double kForcing = 0.1;
 /// Of a residual's square, <r, (D + W) r> with D scaled to 1: below it r counts as a null vector.
 constexpr double kNull = 1e-10;
 /// Steps within which the residual must at least halve; else the target is out of reach.
-constexpr std::size_t kPatience = 50;
+constexpr std::size_t kStagnantSteps = 50;
 /// Shortest part of a Newton step that is tried.
 constexpr double kShortestStep = 1e-6;
 /// This, times what rows lack, is the share of each row's own weight that is added to it once
@@ -231,8 +231,8 @@ std::vector<double> LeastSquaresClosure::newtonStep(double tolerance) {
   double weight = dot(residual, of_residual);
   std::vector<double> history{largest()};
   const auto stalls = [&] {
-    return history.size() > kPatience &&
-           history.back() > 0.5 * history[history.size() - 1 - kPatience];
+    return history.size() > kStagnantSteps &&
+           history.back() > 0.5 * history[history.size() - 1 - kStagnantSteps];
   };
   // What is left where rows ask for what cannot be had is a null vector; beyond it there is noise.
   const auto ends = [&] { return !(weight > kNull * dot(residual, residual)); };

@@ -146,7 +146,7 @@ void describe(Archive& a, Described<Archive, ClosureReport>& r) {
 template <class Archive>
 void describe(Archive& a, Described<Archive, ExactReport>& r) {
   a("elements", r.elements);
-  a("bare_elements", r.bare_elements);
+  a("black_elements", r.black_elements);
   a("facets", r.facets);
   a("occluders", r.occluders);
   a("solids", r.solids);
@@ -154,7 +154,7 @@ void describe(Archive& a, Described<Archive, ExactReport>& r) {
   a("no_exchange", r.no_exchange);
   a("unoccluded", r.unoccluded);
   a("hidden", r.hidden);
-  a("partial", r.partial);
+  a("occluded", r.occluded);
   a("facet_pairs", r.facet_pairs);
   a("facet_pairs_no_exchange", r.facet_pairs_no_exchange);
   a("facet_pairs_unoccluded", r.facet_pairs_unoccluded);
@@ -171,7 +171,7 @@ void describe(Archive& a, Described<Archive, ExactReport>& r) {
   a("seconds_prepare", r.seconds_prepare);
   a("seconds_visibility", r.seconds_visibility);
   a("seconds_unoccluded", r.seconds_unoccluded);
-  a("seconds_partial", r.seconds_partial);
+  a("seconds_occluded", r.seconds_occluded);
   a("seconds_assembly", r.seconds_assembly);
   a("seconds_finish", r.seconds_finish);
 }

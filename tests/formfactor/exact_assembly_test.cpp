@@ -102,7 +102,7 @@ TEST(ExactFactors, ObstructedPlates) {
   const PatchMesh mesh = twinPlates(4);
   const FormFactors f = compute(mesh, exactly(1e-4));
   EXPECT_NEAR(totalBetween(mesh, f, "low", "high"), 0.0995062945990, 2e-5);
-  EXPECT_GT(f.report.exact.partial, 0u);
+  EXPECT_GT(f.report.exact.occluded, 0u);
   EXPECT_GT(f.report.exact.rechecked, 0u);
 }
 
@@ -110,13 +110,13 @@ TEST(ExactFactors, FurnaceInAClosedRoomWithABlock) {
   const PatchMesh mesh = test::roomWithBlock(4).build();
   const FormFactors f = compute(mesh);
   EXPECT_TRUE(f.report.closed);
-  // Rows sum to 1 but for the error of partly hidden pairs. A row's sum of N errors is at most
+  // Rows sum to 1 but for the error of occluded pairs. A row's sum of N errors is at most
   // sqrt(N) times the root of their squares, which the figure bounds in 99 of 100 rows.
   const double root_n = std::sqrt(double(mesh.size()));
   std::size_t beyond = 0;
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     if (std::abs(f.fronts[i] - 1) > root_n * f.error[i]) ++beyond;
-    // 208 patches: half a mean form factor, of dozens of partly hidden pairs in the row.
+    // 208 patches: half a mean form factor, of dozens of occluded pairs in the row.
     EXPECT_NEAR(f.fronts[i], 1.0, 2.5e-3) << i;
     EXPECT_EQ(f.sky[i], 0.0);
     EXPECT_EQ(f.backs[i], 0.0);
@@ -143,8 +143,8 @@ TEST(ExactFactors, ClosureIsReportedOrEnforced) {
   const FormFactors closed = compute(mesh, options);
   ASSERT_TRUE(closed.report.closure_enforced);
   // All that were clipped but those whose rules agree to the bit; some of them came out as hidden.
-  EXPECT_LE(closed.report.closure.adjustable, raw.report.exact.partial + raw.report.exact.hidden);
-  EXPECT_GT(closed.report.closure.adjustable, raw.report.exact.partial * 9 / 10);
+  EXPECT_LE(closed.report.closure.adjustable, raw.report.exact.occluded + raw.report.exact.hidden);
+  EXPECT_GT(closed.report.closure.adjustable, raw.report.exact.occluded * 9 / 10);
   // Rows with an uncertain entry sum to 1 as well as single precision holds values that add up to
   // 1; the others are as far off as closed forms are.
   EXPECT_LT(closed.report.closure.largest_residual, 3e-5);
@@ -221,7 +221,7 @@ TEST(ExactFactors, CoplanarPatchesCostNothing) {
   const FormFactors f = compute(builder.build());
   const ExactReport& e = f.report.exact;
   EXPECT_EQ(e.elements, 10000u);
-  EXPECT_EQ(e.unoccluded + e.partial + e.hidden, 0u);
+  EXPECT_EQ(e.unoccluded + e.occluded + e.hidden, 0u);
   EXPECT_EQ(e.contour + e.lambert + e.product + e.points + e.shaft_tests, 0u);
   EXPECT_EQ(f.matrix.nonZeros(), 0u);
 }
@@ -231,7 +231,7 @@ TEST(ExactFactors, ConvexScenesRunNoVisibility) {
   builder.box("room", {0, 0, 0}, {1, 2, 3}, 4, true);
   const FormFactors f = compute(builder.build());
   const ExactReport& e = f.report.exact;
-  EXPECT_EQ(e.partial + e.hidden + e.shaft_tests + e.points, 0u);
+  EXPECT_EQ(e.occluded + e.hidden + e.shaft_tests + e.points, 0u);
   EXPECT_EQ(e.facet_pairs_unoccluded + e.facet_pairs_no_exchange, e.facet_pairs);
   // 15 pairs of walls of 16 x 16 pairs each.
   EXPECT_EQ(e.unoccluded, 15u * 256);
@@ -319,7 +319,7 @@ TEST(ExactFactors, AutoSaysWhatAndWhy) {
   const PatchMesh mesh = test::roomWithBlock(3).build();
   const FormFactors f = compute(mesh, FormFactorOptions());
   EXPECT_EQ(f.method, "exact");
-  EXPECT_NE(f.report.method_reason.find("partly hidden"), std::string::npos);
+  EXPECT_NE(f.report.method_reason.find("occluded"), std::string::npos);
   FormFactorOptions small;
   small.memory_limit = 1;
   EXPECT_EQ(planFormFactors(mesh, small, silent).method, FormFactorMethod::hemicube);
@@ -448,7 +448,7 @@ TEST(ErrorSums, FiguresOfKnownErrors) {
   std::vector<double> row = {0, 0.5};
   sums.addAndScale(0, row, 0.5);
   EXPECT_EQ(row[1], 0.25);
-  sums.addPartial(0, 1, 0.01);
+  sums.addOccluded(0, 1, 0.01);
   const std::vector<double> area = {2, 1};
   std::vector<double> figure(2);
   // The square of a single pair's error scatters by as much again. sum A err^2 = 2 (2 (0.005)^2) +
@@ -464,25 +464,25 @@ TEST(ErrorSums, FiguresOfKnownErrors) {
   EXPECT_NEAR(figure[1], 3.5 * 0.01 * std::sqrt(2.0), 1e-15);
   // Of four equal pairs, 4 err^2, the sum scatters by half of itself.
   ErrorSums many(2);
-  for (int k = 0; k < 4; ++k) many.addPartial(0, 1, 0.01);
+  for (int k = 0; k < 4; ++k) many.addOccluded(0, 1, 0.01);
   many.figures(area, 0, figure);
   EXPECT_NEAR(figure[1], 0.01 * std::sqrt(6.0), 1e-15);
   // What is off by less than four sevenths of the figure raises nothing.
   ErrorSums calm(2);
-  calm.addPartial(0, 1, 0.01);
+  calm.addOccluded(0, 1, 0.01);
   calm.addRecheck(-0.008, 0.01);
   calm.figures(area, 0, figure);
   EXPECT_NEAR(figure[1], 0.01 * std::sqrt(2.0), 1e-16);
   // Rows are drawn from all that was rechecked: of pairs of which one in ten is off by ten times
   // what is stated, rows of one pair meet it.
   ErrorSums mixed(2);
-  mixed.addPartial(0, 1, 0.01);
+  mixed.addOccluded(0, 1, 0.01);
   for (int k = 0; k < 10; ++k) mixed.addRecheck(k == 0 ? 0.1 : 0.001, 0.01);
   EXPECT_NEAR(mixed.recheckRatio(), 10 / std::sqrt(2.0), 1e-12);
-  // What is off of a bare back is off of the row's account of backs, not of the matrix.
-  ErrorSums bare(2);
-  bare.addBare(1, 0.01);
-  EXPECT_EQ(bare.figures(area, 0, figure), 0);
+  // What is off of a black back is off of the row's account of backs, not of the matrix.
+  ErrorSums black(2);
+  black.addBlackBack(1, 0.01);
+  EXPECT_EQ(black.figures(area, 0, figure), 0);
   EXPECT_EQ(figure[0], 0);
   EXPECT_NEAR(figure[1], 0.01 * std::sqrt(2.0), 1e-16);
   // Closed forms: 0.06 of 1e-3 of each value.

@@ -1,5 +1,5 @@
-// The vector kernels of partial visibility: the same bits on every instruction set, and the scalar
-// target against the exact clipper, which shares nothing with it but the formula.
+// The vector kernels of the visibility of occluded pairs: the same bits on every instruction set,
+// and the scalar target against the exact clipper, which shares nothing with it but the formula.
 #include <gtest/gtest.h>
 
 #include <algorithm>

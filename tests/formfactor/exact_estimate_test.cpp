@@ -67,8 +67,8 @@ TEST(ExactEstimate, IsTheSameInEveryRunButForTheClock) {
   setThreads(1);
   const ExactEstimate second = estimateOf(mesh, options);
   setThreads(0);
-  EXPECT_GT(first.partial_pairs, 0);
-  EXPECT_EQ(first.partial_pairs, second.partial_pairs);
+  EXPECT_GT(first.occluded_pairs, 0);
+  EXPECT_EQ(first.occluded_pairs, second.occluded_pairs);
   EXPECT_EQ(first.work, second.work);
   EXPECT_EQ(first.refining, second.refining);
   EXPECT_EQ(first.points, second.points);
@@ -88,7 +88,7 @@ TEST(ExactEstimate, ASampleWithoutBoundIsTheWhole) {
       VisibilityCounts counts;
       visibility.classify(range, whole, whole_counts);
       const VisibilityOfFacets of_facets = visibility.classifySome(range, {}, sampled, counts);
-      EXPECT_EQ(sampled.partial_pairs.size(), whole.partial_pairs.size());
+      EXPECT_EQ(sampled.occluded_pairs.size(), whole.occluded_pairs.size());
       EXPECT_EQ(counts.unoccluded, whole_counts.unoccluded);
       EXPECT_EQ(counts.hidden, whole_counts.hidden);
       EXPECT_EQ(counts.settled(), visibility.openPairs(range));
@@ -130,7 +130,7 @@ TEST(ExactEstimate, TighterTolerancesTakeLonger) {
   // What goes with 1 / tolerance; sums of some thousand numbers, rounded differently.
   EXPECT_NEAR(tight.work, loose.work + 9 * loose.refining, 1e-9 * tight.work);
   EXPECT_NEAR(tight.refining, 10 * loose.refining, 1e-9 * tight.work);
-  EXPECT_EQ(tight.partial_pairs, loose.partial_pairs);
+  EXPECT_EQ(tight.occluded_pairs, loose.occluded_pairs);
 }
 
 TEST(ExactEstimate, NothingInBetweenTakesNoPoints) {

@@ -97,7 +97,7 @@ TEST(Skips, Horizon) {
 
 TEST(Skips, FacingAway) {
   // A cube floating in a cubic room. The centre of each wall sees one face of the cube; the five
-  // others show it their backs. The cube's own faces see no bare back at all.
+  // others show it their backs. The cube's own faces see no black back at all.
   MeshBuilder builder;
   builder.box("room", {-1, -1, -1}, {1, 1, 1}, 1, true);
   builder.box("cube", {-0.25, -0.25, -0.25}, {0.25, 0.25, 0.25}, 1);

@@ -136,7 +136,7 @@ inline ExchangeMatrix matrix(const PatchMesh& m, Precision precision) {
 inline ExactReport exactReport() {
   ExactReport e;
   e.elements = 20;
-  e.bare_elements = 21;
+  e.black_elements = 21;
   e.facets = 22;
   e.occluders = 23;
   e.solids = 24;
@@ -144,7 +144,7 @@ inline ExactReport exactReport() {
   e.no_exchange = 26;
   e.unoccluded = 27;
   e.hidden = 28;
-  e.partial = 29;
+  e.occluded = 29;
   e.facet_pairs = 30;
   e.facet_pairs_no_exchange = 31;
   e.facet_pairs_unoccluded = 32;
@@ -161,7 +161,7 @@ inline ExactReport exactReport() {
   e.seconds_prepare = 43.5;
   e.seconds_visibility = 44.5;
   e.seconds_unoccluded = 45.5;
-  e.seconds_partial = 46.5;
+  e.seconds_occluded = 46.5;
   e.seconds_assembly = 47.5;
   e.seconds_finish = 48.5;
   return e;

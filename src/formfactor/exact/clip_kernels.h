@@ -1,8 +1,8 @@
 // Form factors from one point to many convex polygons, and to what one cone hides of each: the
-// inner loops of partial visibility, behind plain pointers. One set per instruction set, Highway's
-// scalar target among them; every set gives the same bits, since the loops only add, multiply,
-// divide, compare and take square roots, each correctly rounded by IEEE 754, nothing is contracted
-// to a fused multiply-add, and no lane's value depends on the others.
+// inner loops of the visibility of occluded pairs, behind plain pointers. One set per instruction
+// set, Highway's scalar target among them; every set gives the same bits, since the loops only add,
+// multiply, divide, compare and take square roots, each correctly rounded by IEEE 754, nothing is
+// contracted to a fused multiply-add, and no lane's value depends on the others.
 #pragma once
 
 #include <cstddef>

@@ -135,7 +135,7 @@ inline constexpr float kPairEdgeOn = 4;
 inline constexpr unsigned kPairFewBlockers = 2;
 
 /// Times the tolerance: what a single entry may be off by: allowedError(). The tolerance is for the
-/// root mean square over a row's entries; few entries are partial, and of those few are near what
+/// root mean square over a row's entries; few entries are occluded, and of those few are near what
 /// they may be. Set by hand: it trades time for error: what --tolerance means.
 inline constexpr double kPairMost = 12;
 

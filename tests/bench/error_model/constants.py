@@ -110,7 +110,7 @@ GROUPS = [
                  type="unsigned"),
         Constant("kPairMost", "Times the tolerance: what a single entry may be off by: "
                  "allowedError(). The tolerance is for the root mean square over a row's entries; "
-                 "few entries are partial, and of those few are near what they may be.",
+                 "few entries are occluded, and of those few are near what they may be.",
                  reason="it trades time for error: what --tolerance means."),
         Constant("kPairMargin", "Times a pair's error as its cells state it: OccludedKernel. Those "
                  "are root mean squares over all pairs of a scene, and rows have luck of their own: "

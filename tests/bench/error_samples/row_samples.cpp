@@ -41,7 +41,7 @@ void printPoints(const PatchMesh& mesh, const ExactReport& report, double tolera
   const ExactScene scene(mesh, silent);
   const RowSample sample = radiosity::sampleRows(scene, tolerance, SampleSize::full, silent);
   const ExactEstimate estimate = estimateExact(scene, sample, exactly(tolerance));
-  fmt::print("points {} {} {} {}\n", tolerance, estimate.partial_pairs, estimate.points,
+  fmt::print("points {} {} {} {}\n", tolerance, estimate.occluded_pairs, estimate.points,
              report.points);
 }
 

@@ -13,7 +13,7 @@ namespace radiosity::bench {
 ///     points tolerance pairs foreseen counted
 ///     closed error
 ///
-/// `recheck`: ErrorSums::recheckRatio(). `points`: of all partly hidden pairs. `closed`:
+/// `recheck`: ErrorSums::recheckRatio(). `points`: of all occluded pairs. `closed`:
 /// of a row's values with nothing in between, relL2, over what they are held to.
 void sampleRows(const PatchMesh& mesh, double reference, const std::vector<double>& tolerances);
 

@@ -48,7 +48,7 @@ Drawn drawPairs(const ExactScene& scene, std::size_t wanted, std::mt19937& rando
     VisibilityCounts counts;
     scene.visibility.classify(range, recorded, counts);
     std::vector<OccludedPair> some;
-    std::sample(recorded.partial_pairs.begin(), recorded.partial_pairs.end(),
+    std::sample(recorded.occluded_pairs.begin(), recorded.occluded_pairs.end(),
                 std::back_inserter(some), of_range, random);
     for (OccludedPair pair : some) {
       pair.unoccluded = unoccluded.pair(pair.row, pair.column);

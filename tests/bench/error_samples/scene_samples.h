@@ -1,4 +1,4 @@
-// Cells, parts and far targets of a scene's partly hidden pairs, with converged values.
+// Cells, parts and far targets of a scene's occluded pairs, with converged values.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace radiosity::bench {
 
-/// Of about `pairs` partly hidden pairs, drawn from a fixed seed, that neither element's plane
+/// Of about `pairs` occluded pairs, drawn from a fixed seed, that neither element's plane
 /// cuts, at several tolerances; everything as a share of the cell's, or pair's, whole form factor:
 ///
 ///     cell tolerance level one_shape may_cross one_occluder fraction change error cautious stated

@@ -18,7 +18,7 @@
 namespace radiosity {
 namespace {
 
-/// About this share of the clipped pairs is evaluated again, ...
+/// About this share of the occluded pairs is evaluated again, ...
 constexpr double kRecheckShare = 1.0 / 256;
 /// ... and at least so many, as far as there are: at loose tolerances, and in double precision,
 /// where what rules miss is in fewer pairs, and theirs are dearer to begin with.
@@ -27,9 +27,9 @@ constexpr double kRecheckLeastTight = 1024;
 /// A row that leaves more than this to the sky needs no eye to tell that the scene is open.
 constexpr double kCertainSky = 0.01;
 
-std::size_t recheckEvery(double partial_pairs, double tolerance) {
+std::size_t recheckEvery(double occluded_pairs, double tolerance) {
   const double least = tolerance < kSinglePrecision ? kRecheckLeastTight : kRecheckLeast;
-  const double share = std::max(kRecheckShare, least / std::max(partial_pairs, 1.0));
+  const double share = std::max(kRecheckShare, least / std::max(occluded_pairs, 1.0));
   return std::size_t(std::max(1.0, 1 / share));
 }
 
@@ -61,15 +61,15 @@ RowSums fillRows(const RowContext& context, const RowTasks& tasks, Progress& pro
 void reportCounts(const ExactScene& scene, const RowSums& sums, ExactReport& report) {
   const ElementSet& elements = scene.elements;
   report.elements = elements.patch_elements;
-  report.bare_elements = elements.size() - elements.patch_elements;
+  report.black_elements = elements.size() - elements.patch_elements;
   report.facets = elements.facets.size();
   report.occluders = scene.occluders.occluders.size();
   report.solids = scene.occluders.solids;
   report.skipped_hull = scene.occluders.skipped_hull;
   report.no_exchange = sums.visibility.no_exchange;
   report.unoccluded = sums.visibility.unoccluded;
-  report.hidden = sums.visibility.hidden + sums.partial.hidden;
-  report.partial = sums.visibility.partial - sums.partial.hidden;
+  report.hidden = sums.visibility.hidden + sums.occluded.hidden;
+  report.occluded = sums.visibility.occluded - sums.occluded.hidden;
   report.facet_pairs = sums.visibility.facet_pairs;
   report.facet_pairs_no_exchange = sums.visibility.facet_pairs_no_exchange;
   report.facet_pairs_unoccluded = sums.visibility.facet_pairs_unoccluded;
@@ -78,14 +78,14 @@ void reportCounts(const ExactScene& scene, const RowSums& sums, ExactReport& rep
   report.lambert = sums.unoccluded.lambert;
   report.product = sums.unoccluded.product;
   report.clipped = sums.unoccluded.clipped;
-  report.points = sums.partial.points;
-  report.subdivided = sums.partial.subdivided;
-  report.evaluated_again = sums.partial.again;
+  report.points = sums.occluded.points;
+  report.subdivided = sums.occluded.subdivided;
+  report.evaluated_again = sums.occluded.again;
   report.rechecked = sums.error.rechecked();
   report.recheck_ratio = sums.error.recheckRatio();
   report.seconds_visibility = sums.seconds_visibility;
   report.seconds_unoccluded = sums.seconds_unoccluded;
-  report.seconds_partial = sums.seconds_partial;
+  report.seconds_occluded = sums.seconds_occluded;
   report.seconds_assembly = sums.seconds_assembly;
 }
 
@@ -94,7 +94,7 @@ void noteFallbacks(const OccludedCounts& counts, FormFactorReport& report) {
   const auto add = [&](std::size_t pairs, const char* what) {
     if (pairs == 0) return;
     report.notes.push_back(
-        {Severity::info, fmt::format("{} partly hidden {} {}; their errors are "
+        {Severity::info, fmt::format("{} occluded {} {}; their errors are "
                                      "part of the error figures",
                                      pairs, pairs == 1 ? "pair" : "pairs", what)});
   };
@@ -131,7 +131,7 @@ void setAccounts(const PatchMesh& mesh, const PatchOrder& order, FormFactors& re
   }
 }
 
-/// Says what a closed scene's rows lack of 1, and puts it on the clipped pairs if that is asked
+/// Says what a closed scene's rows lack of 1, and puts it on the occluded pairs if that is asked
 /// for.
 void close(const PatchOrder& order, const UncertainEntries& uncertain, ClosureMode mode,
            FormFactors& result, Progress& progress) {
@@ -174,15 +174,15 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   const RowContext context{
       scene.elements,     scene.order,
       scene.chunks,       scene.visibility,
-      kernels.unoccluded, kernels.partial,
-      progress,           recheckEvery(estimate.partial_pairs, options.tolerance),
+      kernels.unoccluded, kernels.occluded,
+      progress,           recheckEvery(estimate.occluded_pairs, options.tolerance),
       result.matrix,      enforces ? &uncertain : nullptr,
       result.backs,       seen_backs};
   const RowSums sums = fillRows(context, scene.tasks, progress);
   using Clock = std::chrono::steady_clock;
   const Clock::time_point finishing = Clock::now();
   reportCounts(scene, sums, report.exact);
-  noteFallbacks(sums.partial, report);
+  noteFallbacks(sums.occluded, report);
   setErrors(scene.order, sums.error, kernels.closed_form, result);
   setAccounts(mesh, scene.order, result, progress);
   if (report.closed && options.closure != ClosureMode::off) {

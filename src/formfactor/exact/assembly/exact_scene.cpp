@@ -54,21 +54,22 @@ ExactScene::ExactScene(const PatchMesh& mesh, Progress& progress)
 ExactKernels::ExactKernels(const ExactScene& scene, const FormFactorOptions& options)
     : closed_form(closedFormTolerance(options.tolerance)),
       unoccluded(scene.elements, closed_form, options.simd),
-      partial(scene.elements, scene.occluders, options.tolerance, options.simd) {}
+      occluded(scene.elements, scene.occluders, options.tolerance, options.simd) {}
 
 ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,
                             const FormFactorOptions& options) {
   const auto patches = double(scene.elements.patch_elements);
   ExactEstimate estimate;
-  estimate.partial_pairs = sample.partial;
-  estimate.occluders_per_partial = sample.partial > 0 ? sample.occluders / sample.partial : 0;
-  const double entries = sample.unoccluded + sample.partial;
+  estimate.occluded_pairs = sample.occluded;
+  estimate.occluders_per_pair = sample.occluded > 0 ? sample.occluders / sample.occluded : 0;
+  const double entries = sample.unoccluded + sample.occluded;
   estimate.entries_per_row = patches > 0 ? std::min(2 * entries / patches, patches) : 0;
 
   const std::size_t n = scene.order.patch.size();
   constexpr std::size_t kElementBytes = 512;  // an element, its cluster, the kernels' copies
   constexpr std::size_t kAccounts = 8 * sizeof(double);
-  constexpr std::size_t kUncertainBytes = 4;  // of a partial pair, for closure: code, run, freedom
+  constexpr std::size_t kUncertainBytes =
+      4;  // of an occluded pair, for closure: code, run, freedom
   const bool enforces = options.closure == ClosureMode::enforce;
   const std::size_t row_sums = 4 * 2 * sizeof(double) * scene.order.ranked;
   const std::size_t filling =
@@ -76,7 +77,7 @@ ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,
   estimate.matrix_bytes =
       estimateSymmetricBytes(n, estimate.entries_per_row, options.storedPrecision());
   estimate.bytes = options.memory_held + estimate.matrix_bytes +
-                   (enforces ? std::size_t(sample.partial) * kUncertainBytes : 0) + n * kAccounts +
+                   (enforces ? std::size_t(sample.occluded) * kUncertainBytes : 0) + n * kAccounts +
                    scene.elements.size() * kElementBytes +
                    std::max(filling, matrixWorkingMemory(n, threads()));  // one after the other
 
@@ -90,7 +91,7 @@ ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,
 double exactSeconds(const ExactScene& scene, const ExactKernels& kernels, const RowSample& sample,
                     const FormFactorOptions& options, Progress& progress) {
   const RowTimes times = timeRows(scene, kernels, options.tolerance, sample, progress);
-  return times.busy * (times.visibility + times.unoccluded + times.partial) / double(threads());
+  return times.busy * (times.visibility + times.unoccluded + times.occluded) / double(threads());
 }
 
 }  // namespace radiosity

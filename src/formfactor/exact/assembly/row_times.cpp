@@ -33,7 +33,7 @@ static_assert(kRounds % kJump != 0);
 constexpr std::size_t kMostValues = 1 << 13;
 constexpr Index kValueRows = 4;
 
-/// Partial pairs of one class, in one place.
+/// Occluded pairs of one class, in one place.
 struct ClipTime {
   double seconds = 0;  ///< of those that were clipped
   double work = 0;     ///< foreseen, of the same
@@ -66,7 +66,7 @@ double unoccludedSeconds(const UnoccludedKernel& kernel, const SampledPlace& pla
     computed += double(values.size());
   }
   const double seconds = processorSeconds() - start;
-  return computed > 0 ? seconds * (place.unoccluded + place.partial) / computed : 0.0;
+  return computed > 0 ? seconds * (place.unoccluded + place.occluded) / computed : 0.0;
 }
 
 /// A batch of pairs that are neighbours, and share work; batches evenly from all. Pairs are in
@@ -92,7 +92,7 @@ void clip(const ExactScene& scene, const ExactKernels& kernels, std::span<const 
   std::vector<OccludedExchange> out(some.size());
   OccludedCounts counts;
   const double start = processorSeconds();
-  kernels.partial.evaluate(some, occluder_list, out, counts);
+  kernels.occluded.evaluate(some, occluder_list, out, counts);
   clipped.seconds += processorSeconds() - start;
 }
 
@@ -175,7 +175,7 @@ double overallPace(const std::vector<PlaceTime>& times) {
 
 /// Of the pairs of a class, each place at its own pace: where pairs are dear, fewer of them were
 /// clipped.
-double partialSeconds(const RowSample& sample, const std::vector<PlaceTime>& times, Clutter of) {
+double occludedSeconds(const RowSample& sample, const std::vector<PlaceTime>& times, Clutter of) {
   double work = 0;
   double paced = 0;  // of this, where pairs were clipped
   double seconds = 0;
@@ -213,7 +213,7 @@ RowTimes timeRows(const ExactScene& scene, const ExactKernels& kernels, double t
     taken += times[k].taken;
   }
   for (const Clutter of : {few_occluders, many_occluders}) {
-    sum.partial += sample.all_places * partialSeconds(sample, times, of);
+    sum.occluded += sample.all_places * occludedSeconds(sample, times, of);
   }
   sum.busy = taken.ratio();
   return sum;

@@ -125,14 +125,15 @@ const PairPreparation::Between& PairPreparation::between(Index occluder, Index r
 
 /// Of similar triangles with their tips on the occluders' edges. Of an edge that touches the target
 /// no shadow moves, but others of the same occluder may be a target's size away.
-PairPreparation::Near PairPreparation::shadowChanges(double row_size, double column_size) const {
+PairPreparation::EdgeDistancesSquared PairPreparation::shadowChanges(double row_size,
+                                                                     double column_size) const {
   const double row_size2 = row_size * row_size;
   const double column_size2 = column_size * column_size;
   // Apart, or beside the target: squares, in sizes of the sampled element.
   const double by_row = row_size2 / column_size2;
   const double by_column = column_size2 / row_size2;
-  Near most{0, 0};
-  for (const Near& blocker : near_) {
+  EdgeDistancesSquared most{0, 0};
+  for (const EdgeDistancesSquared& blocker : near_) {
     most.row = std::max(most.row, std::max(blocker.column * by_row, row_size2) / blocker.row);
     most.column =
         std::max(most.column, std::max(blocker.row * by_column, column_size2) / blocker.column);
@@ -169,7 +170,7 @@ void PairPreparation::prepare(std::span<const OccludedPair> batch,
     pair.blockers_end = std::uint32_t(blockers.size());
     const double row_size = elements_.radius[given.row];
     const double column_size = elements_.radius[given.column];
-    const Near change2 = shadowChanges(row_size, column_size);
+    const EdgeDistancesSquared change2 = shadowChanges(row_size, column_size);
     const bool row_is_calmer = change2.row <= kAlike * change2.column;
     const bool at_row_end = row_is_calmer == (end == SampledEnd::calmer);
     pair.change = float(std::sqrt(at_row_end ? change2.row : change2.column));
@@ -202,9 +203,9 @@ void PairPreparation::prepare(std::span<const OccludedPair> batch,
     order_.back().key |= p.target;
   }
   std::sort(order_.begin(), order_.end(),
-            [](const Place& a, const Place& b) { return a.key < b.key; });
+            [](const SortedPair& a, const SortedPair& b) { return a.key < b.key; });
   sorted_.clear();
-  for (const Place& place : order_) sorted_.push_back(pairs[place.pair]);
+  for (const SortedPair& place : order_) sorted_.push_back(pairs[place.pair]);
   pairs.swap(sorted_);
 }
 

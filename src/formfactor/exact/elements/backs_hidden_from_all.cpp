@@ -1,4 +1,4 @@
-#include "formfactor/exact/elements/unseen_backs.h"
+#include "formfactor/exact/elements/backs_hidden_from_all.h"
 
 #include <algorithm>
 #include <glm/geometric.hpp>
@@ -16,9 +16,9 @@ namespace {
 /// a second; a surface that needs more is not proved.
 constexpr std::size_t kMostSolidAngles = 1000000;
 
-class UnseenBacks {
+class BacksHiddenFromAll {
  public:
-  explicit UnseenBacks(const PatchMesh& mesh)
+  explicit BacksHiddenFromAll(const PatchMesh& mesh)
       : mesh_(mesh),
         enclosures_(enclosuresOf(mesh, found_)),
         coincidence_(coincidenceOf(mesh)),
@@ -41,15 +41,15 @@ class UnseenBacks {
   }
 
   std::vector<std::uint8_t> find() {
-    std::vector<std::uint8_t> unseen = enclosures_.covered;
+    std::vector<std::uint8_t> hidden = enclosures_.covered;
     for (const ClosedSurface& surface : enclosures_.surfaces) {
       const bool proved = allOnFrontSide(surface);
-      for (const Index p : surface.polygons) unseen[p] |= std::uint8_t(proved);
+      for (const Index p : surface.polygons) hidden[p] |= std::uint8_t(proved);
     }
-    for (Index p = 0; p < unseen.size(); ++p) {
-      unseen[p] = has_back_[p] == 0 && (unseen[p] != 0 || allInFront(p));
+    for (Index p = 0; p < hidden.size(); ++p) {
+      hidden[p] = has_back_[p] == 0 && (hidden[p] != 0 || allInFront(p));
     }
-    return unseen;
+    return hidden;
   }
 
  private:
@@ -134,6 +134,8 @@ class UnseenBacks {
 
 }  // namespace
 
-std::vector<std::uint8_t> unseenBacks(const PatchMesh& mesh) { return UnseenBacks(mesh).find(); }
+std::vector<std::uint8_t> backsHiddenFromAll(const PatchMesh& mesh) {
+  return BacksHiddenFromAll(mesh).find();
+}
 
 }  // namespace radiosity

@@ -12,6 +12,6 @@ namespace radiosity {
 /// a front covers it exactly, because all patches lie on its front side, or because it belongs to a
 /// closed surface and every patch is on the fronts' side of that (Enclosures). What is not proved
 /// is 0: such a back costs time, not accuracy.
-std::vector<std::uint8_t> unseenBacks(const PatchMesh& mesh);
+std::vector<std::uint8_t> backsHiddenFromAll(const PatchMesh& mesh);
 
 }  // namespace radiosity
