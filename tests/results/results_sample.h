@@ -339,7 +339,9 @@ inline auto members(const PlanarPolygons& s) {
   return std::tie(a, b, c, d, e, f, g, h);
 }
 inline auto members(const PatchMesh& s) {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = s;
+  // Enclosures are not kept in the file: they are found anew.
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, enclosures] = s;
+  static_cast<void>(enclosures);
   return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p);
 }
 inline auto members(const SurfaceAreas& s) {
