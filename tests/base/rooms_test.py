@@ -25,7 +25,8 @@ CASES = [
      ["formfactor/form_factors.cpp", "radiosity/results.h"]),
     ("render/legend.cpp", "radiosity/patch_mesh.h", ["radiosity/solve.h", "matrix/run_row.h"]),
     ("results/results_file.cpp", "radiosity/gather.h", ["radiosity/compare.h"]),
-    ("cli/words.cpp", "scene/text.h", ["mesh/winding.h", "results/archive.h"]),
+    ("pipeline/stages.cpp", "radiosity/results.h", ["radiosity/compare.h"]),
+    ("cli/words.cpp", "base/byte_text.h", ["mesh/winding.h", "scene/text.h"]),
 ]
 
 
