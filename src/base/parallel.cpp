@@ -17,4 +17,8 @@ void setThreads(int threads) {
   }
 }
 
+std::size_t allowedThreads() {
+  return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+}
+
 }  // namespace radiosity

@@ -18,4 +18,7 @@ void parallelFor(std::size_t count, std::size_t grain, const Body& body) {
                     });
 }
 
+/// How many threads setThreads() allows.
+std::size_t allowedThreads();
+
 }  // namespace radiosity

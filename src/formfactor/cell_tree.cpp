@@ -6,6 +6,8 @@
 #include <tuple>
 #include <utility>
 
+#include "base/geometry/clip.h"
+
 namespace radiosity {
 namespace {
 
@@ -86,27 +88,14 @@ std::pair<Line, Split> bestSplit(const std::vector<CellPart>& parts, bool thorou
 
 }  // namespace
 
-double doubledArea(const std::vector<Vec2>& polygon) {
-  double sum = 0;
-  for (std::size_t k = 2; k < polygon.size(); ++k) {
-    const Vec2 p = polygon[k - 1] - polygon[0];
-    const Vec2 q = polygon[k] - polygon[0];
-    sum += p.x * q.y - p.y * q.x;
-  }
-  return std::abs(sum);
-}
+double doubledArea(const std::vector<Vec2>& polygon) { return 2 * std::abs(polygonArea(polygon)); }
 
 std::vector<Vec2> clipConvex(const std::vector<Vec2>& polygon, double a, double b, double c) {
   const Line line{a, b, c};
   std::vector<Vec2> kept;
-  for (std::size_t k = 0, last = polygon.size() - 1; k < polygon.size(); last = k++) {
-    const double from = line.at(polygon[last]);
-    const double to = line.at(polygon[k]);
-    if ((from < 0) != (to < 0)) {
-      kept.push_back(polygon[last] + (polygon[k] - polygon[last]) * (from / (from - to)));
-    }
-    if (!(to < 0)) kept.push_back(polygon[k]);
-  }
+  clipCorners(
+      polygon, [&](const Vec2& p) { return line.at(p); },
+      [&](const Vec2& corner) { kept.push_back(corner); });
   return kept;
 }
 

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "mesh/plane_frame.h"
+#include "base/geometry/plane_frame.h"
 
 namespace radiosity {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "mesh/plane_frame.h"
+#include "base/geometry/plane_frame.h"
 #include "radiosity/scene.h"
 
 namespace radiosity {

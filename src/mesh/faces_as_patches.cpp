@@ -6,13 +6,13 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "base/geometry/plane_frame.h"
 #include "mesh/complex.h"
 #include "mesh/face_crossings.h"
 #include "mesh/face_locator.h"
 #include "mesh/face_polygons.h"
 #include "mesh/mesh_figures.h"
 #include "mesh/patch_arrays.h"
-#include "mesh/plane_frame.h"
 
 namespace radiosity {
 

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
-#include "mesh/plane_frame.h"
+#include "base/geometry/plane_frame.h"
 
 namespace radiosity {
 

@@ -7,9 +7,9 @@
 #include <set>
 #include <utility>
 
+#include "base/geometry/plane_frame.h"
 #include "mesh/face_locator.h"
 #include "mesh/join_loops.h"
-#include "mesh/plane_frame.h"
 
 namespace radiosity {
 namespace {

@@ -7,8 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "base/geometry/plane_frame.h"
 #include "mesh/edge_crossings.h"
-#include "mesh/plane_frame.h"
 #include "mesh/straighten.h"
 #include "mesh/trace_loops.h"
 #include "mesh/union_find.h"

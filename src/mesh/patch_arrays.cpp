@@ -4,9 +4,9 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "base/geometry/plane_frame.h"
 #include "base/parallel.h"
 #include "mesh/face_locator.h"
-#include "mesh/plane_frame.h"
 
 namespace radiosity {
 

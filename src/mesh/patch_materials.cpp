@@ -3,11 +3,11 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "base/geometry/clip.h"
+#include "base/geometry/plane_frame.h"
 #include "base/parallel.h"
 #include "mesh/box_pairs.h"
-#include "mesh/clip.h"
 #include "mesh/face_locator.h"
-#include "mesh/plane_frame.h"
 #include "mesh/texture_mean.h"
 #include "radiosity/patch_mesh.h"
 
@@ -114,7 +114,7 @@ class PatchTexture {
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec2& a = triangle.p[k];
       const Vec2 along = triangle.p[(k + 1) % 3] - a;
-      clipConvex(part, scratch, [&](const Vec2& p) { return cross2(along, p - a); });
+      clipLoop(part, scratch, [&](const Vec2& p) { return cross2(along, p - a); });
     }
     const double area = polygonArea(part);
     if (!(area > 0)) return;

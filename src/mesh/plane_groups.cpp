@@ -6,8 +6,8 @@
 #include <limits>
 #include <numeric>
 
+#include "base/geometry/plane_frame.h"
 #include "mesh/box_pairs.h"
-#include "mesh/plane_frame.h"
 
 namespace radiosity {
 

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <unordered_map>
 
-#include "mesh/plane_frame.h"
+#include "base/geometry/plane_frame.h"
 #include "mesh/plane_image.h"
 
 namespace radiosity {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "mesh/plane_frame.h"
+#include "base/geometry/plane_frame.h"
 #include "mesh/region.h"
 
 namespace radiosity {

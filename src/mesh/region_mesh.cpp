@@ -12,8 +12,8 @@
 #include <iterator>
 #include <unordered_set>
 
+#include "base/geometry/plane_frame.h"
 #include "mesh/edge_key.h"
-#include "mesh/plane_frame.h"
 #include "mesh/region.h"
 #include "mesh/triangle_shape.h"
 

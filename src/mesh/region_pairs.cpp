@@ -5,8 +5,8 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "base/geometry/plane_frame.h"
 #include "mesh/edge_key.h"
-#include "mesh/plane_frame.h"
 #include "mesh/region.h"
 
 namespace radiosity {

@@ -7,13 +7,13 @@
 #include <map>
 #include <set>
 
+#include "base/geometry/plane_frame.h"
 #include "base/parallel.h"
 #include "mesh/complex.h"
 #include "mesh/join_cells.h"
 #include "mesh/merge_cells.h"
 #include "mesh/mesh_figures.h"
 #include "mesh/patch_arrays.h"
-#include "mesh/plane_frame.h"
 #include "mesh/polygon_cells.h"
 #include "mesh/size_search.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 
-#include "mesh/clip.h"
+#include "base/geometry/clip.h"
 
 namespace radiosity {
 
@@ -108,8 +108,8 @@ Vec3 TextureMean::over(std::span<const Vec2> uv) const {
   double area = 0;
   for (double j = std::floor(low.y * size.y); j < high.y * size.y; ++j) {
     row = polygon;
-    clipConvex(row, scratch, [&](const Vec2& p) { return p.y - j; });
-    clipConvex(row, scratch, [&](const Vec2& p) { return j + 1 - p.y; });
+    clipLoop(row, scratch, [&](const Vec2& p) { return p.y - j; });
+    clipLoop(row, scratch, [&](const Vec2& p) { return j + 1 - p.y; });
     double left = high.x * size.x;
     double right = low.x * size.x;
     for (const Vec2& p : row) {
@@ -118,8 +118,8 @@ Vec3 TextureMean::over(std::span<const Vec2> uv) const {
     }
     for (double i = std::floor(left); i < right; ++i) {
       cell = row;
-      clipConvex(cell, scratch, [&](const Vec2& p) { return p.x - i; });
-      clipConvex(cell, scratch, [&](const Vec2& p) { return i + 1 - p.x; });
+      clipLoop(cell, scratch, [&](const Vec2& p) { return p.x - i; });
+      clipLoop(cell, scratch, [&](const Vec2& p) { return i + 1 - p.x; });
       const double share = std::abs(polygonArea(cell));
       sum += share * texel(level, long(i), long(j));
       area += share;

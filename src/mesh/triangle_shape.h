@@ -7,7 +7,7 @@
 #include <glm/trigonometric.hpp>
 #include <vector>
 
-#include "mesh/plane_frame.h"
+#include "base/geometry/plane_frame.h"
 
 namespace radiosity {
 

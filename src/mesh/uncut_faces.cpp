@@ -7,9 +7,9 @@
 #include <map>
 #include <string>
 
+#include "base/geometry/plane_frame.h"
 #include "mesh/face_locator.h"
 #include "mesh/merge_cells.h"
-#include "mesh/plane_frame.h"
 #include "mesh/plane_image.h"
 
 namespace radiosity {

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <span>
 
+#include "base/geometry/clip.h"
 #include "radiosity/base.h"
 
 namespace radiosity {
@@ -22,14 +23,9 @@ struct FlatPolygon {
 /// The part of a triangle or convex quadrilateral with dot(normal, x) >= offset. `normal` is unit.
 inline FlatPolygon clipToFront(std::span<const Vec3> outline, const Vec3& normal, double offset) {
   FlatPolygon front;
-  for (std::size_t k = 0, last = outline.size() - 1; k < outline.size(); last = k++) {
-    const double from = glm::dot(normal, outline[last]) - offset;
-    const double to = glm::dot(normal, outline[k]) - offset;
-    if ((from < 0) != (to < 0)) {
-      front.push(outline[last] + (outline[k] - outline[last]) * (from / (from - to)));
-    }
-    if (!(to < 0)) front.push(outline[k]);
-  }
+  clipCorners(
+      outline, [&](const Vec3& p) { return glm::dot(normal, p) - offset; },
+      [&](const Vec3& corner) { front.push(corner); });
   return front;
 }
 

@@ -1,5 +1,4 @@
 // What hemicubes will take: a sample of them is looked through.
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <vector>
@@ -68,8 +67,7 @@ HemicubeEstimate estimateHemicubes(const PatchMesh& mesh, const HemicubeScene& s
     sum.hemicube_bytes = std::max(sum.hemicube_bytes, row.hemicube_bytes);
   }
   const double share = samples > 0 ? 1 / double(samples) : 0;
-  const std::size_t threads =
-      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  const std::size_t threads = allowedThreads();
   HemicubeEstimate estimate;
   estimate.matrix_bytes =
       estimateRowFormBytes(n, share * double(sum.entries), options.storedPrecision());

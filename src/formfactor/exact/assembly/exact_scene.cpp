@@ -1,9 +1,8 @@
 #include "formfactor/exact/assembly/exact_scene.h"
 
-#include <tbb/global_control.h>
-
 #include <algorithm>
 
+#include "base/parallel.h"
 #include "formfactor/exact/assembly/row_sample.h"
 #include "formfactor/exact/assembly/row_times.h"
 #include "formfactor/foreseen_work.h"
@@ -24,10 +23,6 @@ constexpr double kLoosest = 1e-2;
 double closedFormTolerance(double tolerance) {
   if (tolerance <= FormFactorOptions().tolerance) return std::min(tolerance, kClosedForm);
   return std::min(kClosedFormShare * tolerance, kLoosest);
-}
-
-std::size_t threads() {
-  return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
 }
 
 /// Makes one of the scene's parts, then a step of progress, at which the run may end.
@@ -72,14 +67,15 @@ ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,
       4;  // of an occluded pair, for closure: code, run, freedom
   const bool enforces = options.closure == ClosureMode::enforce;
   const std::size_t row_sums = 4 * 2 * sizeof(double) * scene.order.ranked;
-  const std::size_t filling =
-      threads() * (scene.tasks.panelBytes(scene.elements) + row_sums + 2 * sample.task_bytes);
+  const std::size_t filling = allowedThreads() * (scene.tasks.panelBytes(scene.elements) +
+                                                  row_sums + 2 * sample.task_bytes);
   estimate.matrix_bytes =
       estimateSymmetricBytes(n, estimate.entries_per_row, options.storedPrecision());
-  estimate.bytes = options.memory_held + estimate.matrix_bytes +
-                   (enforces ? std::size_t(sample.occluded) * kUncertainBytes : 0) + n * kAccounts +
-                   scene.elements.size() * kElementBytes +
-                   std::max(filling, matrixWorkingMemory(n, threads()));  // one after the other
+  estimate.bytes =
+      options.memory_held + estimate.matrix_bytes +
+      (enforces ? std::size_t(sample.occluded) * kUncertainBytes : 0) + n * kAccounts +
+      scene.elements.size() * kElementBytes +
+      std::max(filling, matrixWorkingMemory(n, allowedThreads()));  // one after the other
 
   estimate.work =
       kUnoccludedWork * sample.unoccluded + kShaftTestWork * sample.shaft_tests + sample.cost.work;
@@ -91,7 +87,8 @@ ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,
 double exactSeconds(const ExactScene& scene, const ExactKernels& kernels, const RowSample& sample,
                     const FormFactorOptions& options, Progress& progress) {
   const RowTimes times = timeRows(scene, kernels, options.tolerance, sample, progress);
-  return times.busy * (times.visibility + times.unoccluded + times.occluded) / double(threads());
+  return times.busy * (times.visibility + times.unoccluded + times.occluded) /
+         double(allowedThreads());
 }
 
 }  // namespace radiosity

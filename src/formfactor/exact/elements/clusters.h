@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "base/geometry/plane_frame.h"
 #include "formfactor/exact/elements/elements.h"
-#include "mesh/plane_frame.h"
 
 namespace radiosity {
 

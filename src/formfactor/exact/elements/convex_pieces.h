@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "mesh/plane_frame.h"
+#include "base/geometry/plane_frame.h"
 #include "radiosity/patch_mesh.h"
 
 namespace radiosity {

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "base/geometry/plane_frame.h"
 #include "formfactor/exact/occluded/visible_part.h"
-#include "mesh/plane_frame.h"
 
 namespace radiosity {
 

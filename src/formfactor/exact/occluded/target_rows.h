@@ -5,9 +5,9 @@
 #include <span>
 
 #include "base/aligned_buffer.h"
+#include "base/geometry/plane_frame.h"
 #include "formfactor/exact/clip_kernels.h"
 #include "formfactor/exact/occluded/visible_part.h"
-#include "mesh/plane_frame.h"
 
 namespace radiosity {
 

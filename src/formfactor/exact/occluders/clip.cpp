@@ -7,24 +7,11 @@
 #include <limits>
 #include <vector>
 
-#include "mesh/plane_frame.h"
+#include "base/geometry/clip.h"
+#include "base/geometry/plane_frame.h"
 
 namespace radiosity {
 namespace {
-
-/// The part of a loop where dot(normal, x) <= offset.
-std::vector<Vec3> clippedBelow(const std::vector<Vec3>& loop, const Vec3& normal, double offset) {
-  std::vector<Vec3> out;
-  for (std::size_t k = 0; k < loop.size(); ++k) {
-    const Vec3& a = loop[k];
-    const Vec3& b = loop[(k + 1) % loop.size()];
-    const double da = glm::dot(normal, a) - offset;
-    const double db = glm::dot(normal, b) - offset;
-    if (da <= 0) out.push_back(a);
-    if ((da <= 0) != (db <= 0)) out.push_back(a + (b - a) * (da / (da - db)));
-  }
-  return out;
-}
 
 /// What clipping leaves of the loops; none if a plane shows that there is nothing.
 std::vector<std::vector<Vec3>> partsInside(const OccluderPolygons& all,
@@ -37,12 +24,14 @@ std::vector<std::vector<Vec3>> partsInside(const OccluderPolygons& all,
     });
     if (outside) return parts;
   }
+  std::vector<Vec3> scratch;
   for (const std::vector<Index>& loop : polygon.loops) {
     std::vector<Vec3> part;
     part.reserve(loop.size());
     for (const Index v : loop) part.push_back(all.vertices[v]);
     for (const Occluder::Plane& plane : body.planes) {
-      part = clippedBelow(part, plane.normal, plane.offset - margin);
+      const double offset = plane.offset - margin;
+      clipLoop(part, scratch, [&](const Vec3& p) { return offset - glm::dot(plane.normal, p); });
     }
     if (!part.empty()) parts.push_back(std::move(part));
   }

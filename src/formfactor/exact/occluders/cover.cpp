@@ -5,8 +5,8 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
+#include "base/geometry/plane_frame.h"
 #include "formfactor/exact/occluders/triangles.h"
-#include "mesh/plane_frame.h"
 
 namespace radiosity {
 namespace {

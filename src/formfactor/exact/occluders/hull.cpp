@@ -9,8 +9,8 @@
 #include <set>
 #include <utility>
 
+#include "base/geometry/plane_frame.h"
 #include "base/geometry/point_tree.h"
-#include "mesh/plane_frame.h"
 
 namespace radiosity {
 namespace {

@@ -7,8 +7,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "base/geometry/plane_frame.h"
 #include "formfactor/exact/occluders/hull.h"
-#include "mesh/plane_frame.h"
 #include "mesh/welded_points.h"
 
 namespace radiosity {

@@ -5,9 +5,9 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "base/geometry/plane_frame.h"
 #include "base/geometry/solid_angle.h"
 #include "formfactor/exact/occluders/triangles.h"
-#include "mesh/plane_frame.h"
 #include "mesh/union_find.h"
 
 namespace radiosity {

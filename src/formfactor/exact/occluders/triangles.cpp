@@ -5,8 +5,8 @@
 #include <glm/geometric.hpp>
 #include <tuple>
 
+#include "base/geometry/plane_frame.h"
 #include "mesh/face_locator.h"
-#include "mesh/plane_frame.h"
 
 namespace radiosity {
 namespace {

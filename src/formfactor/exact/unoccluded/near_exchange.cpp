@@ -6,10 +6,10 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "base/geometry/plane_frame.h"
 #include "formfactor/exact/error_model.h"
 #include "formfactor/exact/unoccluded/contour.h"
 #include "formfactor/exact/unoccluded/quadrature.h"
-#include "mesh/plane_frame.h"
 
 namespace radiosity {
 namespace {

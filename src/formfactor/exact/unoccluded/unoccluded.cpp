@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
+#include "base/geometry/plane_frame.h"
 #include "formfactor/exact/flat_polygon.h"
 #include "formfactor/exact/unoccluded/far_kernels.h"
 #include "formfactor/exact/unoccluded/near_exchange.h"
-#include "mesh/plane_frame.h"
 
 namespace radiosity {
 namespace {

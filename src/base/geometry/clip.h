@@ -1,0 +1,45 @@
+// Polygons cut by half-planes and half-spaces.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "radiosity/base.h"
+
+namespace radiosity {
+
+/// Calls keep(corner) for the corners, in order, of the part of a loop where side(p) >= 0
+/// (Sutherland & Hodgman 1974); `side` is affine. A concave loop stays one loop, with edges that
+/// run to and fro on the border. Nothing is kept where nothing is left.
+template <class Loop, class Side, class Keep>
+void clipCorners(const Loop& loop, const Side& side, const Keep& keep) {
+  for (std::size_t k = 0, last = loop.size() - 1; k < loop.size(); last = k++) {
+    const double from = side(loop[last]);
+    const double to = side(loop[k]);
+    if ((from < 0) != (to < 0)) {
+      keep(loop[last] + (loop[k] - loop[last]) * (from / (from - to)));
+    }
+    if (!(to < 0)) keep(loop[k]);
+  }
+}
+
+/// The same in place.
+template <class Vec, class Side>
+void clipLoop(std::vector<Vec>& loop, std::vector<Vec>& scratch, const Side& side) {
+  scratch.clear();
+  clipCorners(loop, side, [&](const Vec& corner) { scratch.push_back(corner); });
+  loop.swap(scratch);
+}
+
+/// Signed area, positive counter-clockwise; relative to the first corner.
+inline double polygonArea(std::span<const Vec2> polygon) {
+  double twice = 0;
+  for (std::size_t k = 2; k < polygon.size(); ++k) {
+    const Vec2 a = polygon[k - 1] - polygon[0];
+    const Vec2 b = polygon[k] - polygon[0];
+    twice += a.x * b.y - a.y * b.x;
+  }
+  return 0.5 * twice;
+}
+
+}  // namespace radiosity
