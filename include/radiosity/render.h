@@ -55,6 +55,11 @@ Camera parseCamera(const std::string& text);
 std::vector<double> cornerValues(const PatchMesh& mesh, std::span<const double> values, int bands,
                                  double crease);
 
+/// Colours to draw from values of `bands` bands each, row-major: three are red, green and blue as
+/// they are, one is grey (three times the same). Errors: InputError for other numbers of bands,
+/// which have no colours of their own, with the cure.
+std::vector<double> rgbOf(std::span<const double> values, int bands);
+
 /// The picture of a field over the patches (N * 3, row-major, finite): linear values, no tone
 /// mapping. Colour is the mean over the samples that hit, alpha their share. Pixels are square;
 /// where the picture is narrower than the camera's own aspect the vertical field grows, so that

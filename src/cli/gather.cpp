@@ -28,6 +28,7 @@ int runGather(Session& session) {
   OutputSet files = claimOutputs(session);
   Pipeline pipeline(session.request, session.report, session.progress);
   pipeline.open(files.path(Format::results));
+  requireColours(pipeline, session.request, files);
   Picture picture = choosePicture(session.request, pipeline.scene());
   pipeline.mesh();
   pipeline.gathered();
@@ -35,7 +36,7 @@ int runGather(Session& session) {
   const int code = judgeGathered(session, pipeline);
   if (files.has(Format::png) || files.has(Format::exr) || files.has(Format::glb)) {
     const Light light = gatheredLight(pipeline);
-    framePicture(picture, pipeline.patches(), summary.closed, light);
+    framePicture(picture, pipeline.patches(), summary.closed, light.reflected);
     reportPicture(session.report, picture);
     drawLight(session, pipeline.patches(), light, picture, files);
   }

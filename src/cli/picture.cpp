@@ -75,24 +75,50 @@ Picture choosePicture(const Request& request, const Scene& scene) {
   return picture;
 }
 
-void framePicture(Picture& picture, const PatchMesh& mesh, bool closed, const Light& light) {
+void framePicture(Picture& picture, const PatchMesh& mesh, bool closed,
+                  std::span<const double> reflected) {
   if (!picture.camera_from.empty()) return;
-  picture.camera =
-      framingCamera(mesh, closed, double(picture.options.width) / double(picture.options.height),
-                    light.reflected);
+  picture.camera = framingCamera(
+      mesh, closed, double(picture.options.width) / double(picture.options.height), reflected);
   picture.camera_from = picture.camera.name;
+}
+
+void requireColours(const Pipeline& pipeline, const Request& request, const OutputSet& files) {
+  const int bands = pipeline.bands();
+  if (bands == 1 || bands == 3) return;
+  for (const Format format : {Format::png, Format::exr, Format::glb}) {
+    if (!files.has(format)) continue;
+    throw InputError(fmt::format(
+        "{}: draws three bands (red, green, blue), or one in grey, and {} has {}; keep the numbers "
+        "(-o FILE.h5), or draw their sum: radiosity render {} --show radiosity -o FILE.png",
+        files.path(format), request.input, bands, request.input));
+  }
+}
+
+std::vector<double> reflectedLight(Pipeline& pipeline, std::span<const double> radiosity) {
+  const PatchMaterials& materials = pipeline.materials();
+  const auto bands = std::size_t(materials.bands);
+  std::vector<double> reflected;
+  reflected.reserve(radiosity.size() / bands);
+  std::vector<double> apart(bands);
+  for (std::size_t k = 0; k < radiosity.size(); k += bands) {
+    for (std::size_t b = 0; b < bands; ++b) {
+      apart[b] = radiosity[k + b] - materials.emission[k + b];
+    }
+    reflected.push_back(std::max(0.0, brightnessOf(apart)));
+  }
+  return reflected;
 }
 
 namespace {
 
-Light lightOf(Pipeline& pipeline, std::vector<double> radiosity) {
-  Light light{std::move(radiosity), {}, {}, pipeline.scene().sky};
-  const std::vector<Vec3>& emission = pipeline.materials().emission;
-  light.reflected.reserve(emission.size());
-  for (std::size_t i = 0; i < emission.size(); ++i) {
-    const double* b = light.patches.data() + 3 * i;
-    light.reflected.push_back(std::max(0.0, luminanceOf(Vec3(b[0], b[1], b[2]) - emission[i])));
-  }
+Light lightOf(Pipeline& pipeline, std::span<const double> radiosity) {
+  const PatchMaterials& materials = pipeline.materials();
+  Light light;
+  light.patches = rgbOf(radiosity, materials.bands);
+  light.reflected = reflectedLight(pipeline, radiosity);
+  const std::vector<double> sky = rgbOf(materials.sky, materials.bands);
+  if (!sky.empty()) light.sky = Vec3(sky[0], sky[1], sky[2]);
   return light;
 }
 
@@ -104,7 +130,9 @@ Light gatheredLight(Pipeline& pipeline) {
   const PatchMesh& mesh = pipeline.patches();
   const Gathered& gathered = pipeline.gatheredLight();
   Light light = lightOf(pipeline, patchRadiosity(mesh, gathered));
-  if (gathered.at == GatherAt::vertices) light.corners = cornerRadiosity(mesh, gathered);
+  if (gathered.at == GatherAt::vertices) {
+    light.corners = rgbOf(cornerRadiosity(mesh, gathered), gathered.bands);
+  }
   return light;
 }
 

@@ -1,6 +1,7 @@
 // The camera, size and exposure of a picture.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,14 +25,24 @@ Picture choosePicture(const Request& request, const Scene& scene);
 struct Light {
   std::vector<double> patches;    ///< N * 3
   std::vector<double> corners;    ///< mesh.corners.size() * 3; empty: from the patches around them
-  std::vector<double> reflected;  ///< N: luminance of what is not emitted, W/m^2
+  std::vector<double> reflected;  ///< N: reflectedLight()
   Vec3 sky{0.0};                  ///< radiance where nothing is hit, W/m^2/sr
 };
+/// One band is drawn grey; InputError where there are more than three, or two.
 Light solvedLight(Pipeline& pipeline);
 Light gatheredLight(Pipeline& pipeline);
 
-/// Where no camera was chosen, one that frames the scene and what is lit in it.
-void framePicture(Picture& picture, const PatchMesh& mesh, bool closed, const Light& light = {});
+/// InputError where `files` show colours and the bands have none: before the work is done.
+void requireColours(const Pipeline& pipeline, const Request& request, const OutputSet& files);
+
+/// N: how bright what each patch does not emit itself is, of any bands (brightnessOf()), W/m^2.
+/// `radiosity`: N * bands.
+std::vector<double> reflectedLight(Pipeline& pipeline, std::span<const double> radiosity);
+
+/// Where no camera was chosen, one that frames the scene and what is lit in it: `reflected`, N
+/// values or none.
+void framePicture(Picture& picture, const PatchMesh& mesh, bool closed,
+                  std::span<const double> reflected = {});
 
 /// Radiance B / pi, W/m^2/sr, linear; the sky's, where it shines, behind all.
 Image radiancePicture(const Picture& picture, const PatchMesh& mesh, const Light& light,

@@ -22,6 +22,8 @@ namespace {
 
 /// Who waits longer is told what would shorten it.
 constexpr double kLongWait = 60;
+/// Red, green and blue: all that scene files say.
+constexpr int kSceneBands = 3;
 
 class Stopwatch {
  public:
@@ -113,6 +115,12 @@ void Pipeline::openResults() {
   results_.scene = std::move(previous_.scene);
   summarizeScene(report_, scene(), request_.input);
   if (!request_.overridesScene()) return;
+  if (bands() != kSceneBands) {
+    throw InputError(fmt::format(
+        "{}: holds materials of {} bands, which options that change the scene's colours do not "
+        "reach; leave those out and change reflectance, emission and sky in /solution",
+        request_.input, bands()));
+  }
   std::vector<Note>& notes = made(results_.scene).notes;
   const std::size_t known = notes.size();
   applyOverrides(made(results_.scene), request_.scene);
@@ -140,6 +148,7 @@ void Pipeline::openScene(const std::string& results_output) {
 }
 
 void Pipeline::requireLight() const {
+  if (bands() != kSceneBands) return;  // the solver says where all is dark
   if (scene().sky != Vec3(0.0)) return;
   for (const Surface& surface : scene().surfaces) {
     if (scene().materials[surface.material].emission != Vec3(0.0)) return;
@@ -168,6 +177,7 @@ void Pipeline::mesh() {
   const bool own = request_.command == Command::mesh;
   mesh_reused_ = previous_.mesh && previous_.mesh_key == key.text();
   replaces_ = previous_.factors || (previous_.mesh && !mesh_reused_);
+  if (bands() != kSceneBands) takeOwnMaterials();
   if (mesh_reused_) {
     results_.mesh = std::move(previous_.mesh);
     report_.stage("mesh", "mesh", "reused", source_);
@@ -281,6 +291,22 @@ void Pipeline::loadMatrix() {
   progress_.check();
 }
 
+int Pipeline::bands() const {
+  if (results_.materials) return results_.materials->bands;
+  return from_results_ && previous_.materials ? previous_.materials->bands : kSceneBands;
+}
+
+void Pipeline::takeOwnMaterials() {
+  if (!mesh_reused_) {
+    throw InputError(
+        fmt::format("{}: holds materials of {} bands for each patch of its mesh, and the options "
+                    "given ask for another mesh; leave them out, or make the materials anew",
+                    request_.input, bands()));
+  }
+  results_.materials = std::move(previous_.materials);
+  previous_.materials.reset();
+}
+
 const PatchMaterials& Pipeline::materials() {
   if (!results_.materials) results_.materials = patchMaterials(scene(), patches());
   return made(results_.materials);
@@ -389,7 +415,8 @@ void Pipeline::keepLaterStages() {
   bool dropped = keepFactors();
   dropped = keepSolution() || dropped;
   dropped = keepGathered() || dropped;
-  if (!results_.solution && !results_.gathered) results_.materials.reset();
+  const bool of_scene = bands() == kSceneBands;
+  if (of_scene && !results_.solution && !results_.gathered) results_.materials.reset();
   changed_ = changed_ || dropped;
 }
 

@@ -55,6 +55,9 @@ class Pipeline {
   const Solution& solved() const { return made(results_.solution); }
   const Gathered& gatheredLight() const { return made(results_.gathered); }
   const PatchMaterials& materials();
+  /// Three, which the scene says; or what the results file given as input says itself, with
+  /// materials of its own, a row a patch. After open().
+  int bands() const;
   bool fromResultsFile() const { return from_results_; }
   /// True where what there is so far fills gaps of the results file given and replaces nothing in
   /// it. After mesh().
@@ -74,6 +77,8 @@ class Pipeline {
   /// Reads the stages of `path`, all but the matrix, and remembers in which state it was.
   void openSource(const std::string& path);
   void openScene(const std::string& results_output);
+  /// InputError where the mesh is not the one that the file's own materials belong to.
+  void takeOwnMaterials();
   /// What was given over what the results file has or the defaults; wrong ones are found here,
   /// before any work.
   void chooseOptions();

@@ -50,11 +50,12 @@ void requirePatch(const Show& show, const PatchMesh& mesh) {
                                show.patch, mesh.size() - 1));
 }
 
-/// Rec. 709 luminance of a field of three bands.
-std::vector<double> luminance(const std::vector<double>& rgb) {
-  std::vector<double> out(rgb.size() / 3);
+/// One number a patch for a field of any bands.
+std::vector<double> brightness(std::span<const double> values, int bands) {
+  const auto width = std::size_t(bands);
+  std::vector<double> out(values.size() / width);
   for (std::size_t i = 0; i < out.size(); ++i) {
-    out[i] = luminanceOf({rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]});
+    out[i] = brightnessOf(values.subspan(width * i, width));
   }
   return out;
 }
@@ -69,11 +70,11 @@ std::vector<double> rowOf(Pipeline& pipeline, std::size_t patch) {
 std::vector<double> quantityOf(const Show& show, Pipeline& pipeline, FalseColour& legend) {
   switch (show.quantity) {
     case Show::radiosity:
-      legend = {"radiosity B (Rec. 709 luminance)", "W/m^2"};
-      return luminance(pipeline.solved().radiosity);
+      legend = {"radiosity B" + brightnessText(pipeline.bands()), "W/m^2"};
+      return brightness(pipeline.solved().radiosity, pipeline.bands());
     case Show::irradiance:
-      legend = {"irradiance H (Rec. 709 luminance)", "W/m^2"};
-      return luminance(pipeline.solved().irradiance);
+      legend = {"irradiance H" + brightnessText(pipeline.bands()), "W/m^2"};
+      return brightness(pipeline.solved().irradiance, pipeline.bands());
     case Show::form_factor:
       legend = {fmt::format("form factor from patch {}", show.patch), ""};
       return rowOf(pipeline, show.patch);
@@ -141,6 +142,7 @@ int runRender(Session& session) {
   Pipeline pipeline(request, session.report, session.progress);
   pipeline.open(files.path(Format::results));
   Picture picture = choosePicture(request, pipeline.scene());
+  if (show.quantity == Show::none) requireColours(pipeline, request, files);
   if (show.needsLight()) pipeline.requireLight();
   pipeline.mesh();
   requirePatch(show, pipeline.patches());
@@ -150,18 +152,18 @@ int runRender(Session& session) {
   pipeline.factors();
   keepFactors(session, pipeline, files);
   int code = 0;
-  Light light;
+  std::vector<double> reflected;
   if (show.needsLight()) {
     pipeline.solution();
     code = judgeSolution(session, pipeline);
     if (!pipeline.results().solution) throw RunError("no picture: the system is singular");
     keepSolution(session, pipeline, files);
-    light = solvedLight(pipeline);
+    reflected = reflectedLight(pipeline, pipeline.solved().radiosity);
   }
-  framePicture(picture, pipeline.patches(), pipeline.formFactors().report.closed, light);
+  framePicture(picture, pipeline.patches(), pipeline.formFactors().report.closed, reflected);
   reportPicture(session.report, picture);
   if (show.quantity == Show::none) {
-    drawLight(session, pipeline.patches(), light, picture, files);
+    drawLight(session, pipeline.patches(), solvedLight(pipeline), picture, files);
   } else {
     drawQuantity(session, pipeline, picture, show, files);
   }

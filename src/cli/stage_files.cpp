@@ -109,7 +109,7 @@ int judgeSolution(Session& session, Pipeline& pipeline) {
   session.report.notes({&unusable, 1});
   if (summary.status == SolveStatus::singular) {
     pipeline.results().solution.reset();
-    pipeline.results().materials.reset();
+    if (pipeline.bands() == 3) pipeline.results().materials.reset();  // the scene has them
     pipeline.results().solution_key.clear();
   }
   return 1;

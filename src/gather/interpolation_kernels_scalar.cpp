@@ -4,7 +4,7 @@ namespace radiosity {
 namespace {
 
 template <std::size_t kCorners>
-void add(const FacetRow& facet, const PixelRow& pixels, LaneSums& sums) {
+void add(const FacetRow& facet, const PixelRow& pixels, LaneSums* sums) {
   for (int m = 0; m < pixels.count; ++m) {
     const double centre = pixels.first_centre + m;
     std::array<double, kCorners> a;
@@ -24,10 +24,10 @@ void add(const FacetRow& facet, const PixelRow& pixels, LaneSums& sums) {
       }
     }
     const double share = total > 0 ? (pixels.weights[m + 1] - pixels.weights[m]) / total : 0;
-    for (std::size_t b = 0; b < 3; ++b) {
+    for (std::size_t b = 0; b < facet.rise.size(); ++b) {
       double above = facet.rise[b][1] * w[1];
       for (std::size_t k = 2; k < kCorners; ++k) above += facet.rise[b][k] * w[k];
-      sums.sum[b][std::size_t(m) % kLanes] += share * above;
+      sums[b].sum[std::size_t(m) % kLanes] += share * above;
     }
   }
 }

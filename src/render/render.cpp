@@ -66,6 +66,14 @@ Image draw(const PatchMesh& mesh, const PatchField& field, const Camera& camera,
   return image;
 }
 
+void requireColours(const PatchMesh& mesh, std::span<const double> values) {
+  if (values.size() == 3 * mesh.size()) return;
+  throw InputError(fmt::format(
+      "render: a picture draws three bands, so {} patches need {} values, {} were given; "
+      "make colours of other bands, of one by rgbOf()",
+      mesh.size(), 3 * mesh.size(), values.size()));
+}
+
 void checkCorners(const PatchMesh& mesh, std::span<const double> corners) {
   if (corners.size() != 3 * mesh.corners.size()) {
     throw InputError(fmt::format("render: {} values at corners are needed, {} were given",
@@ -113,15 +121,31 @@ PatchField makeField(const PatchMesh& mesh, std::span<const double> values, int 
   return field;
 }
 
+std::vector<double> rgbOf(std::span<const double> values, int bands) {
+  if (bands == 3) return {values.begin(), values.end()};
+  if (bands != 1) {
+    throw InputError(
+        fmt::format("a picture draws three bands (red, green, blue), or one in grey, not {}; pick "
+                    "one or three of them, or make colours of them",
+                    bands));
+  }
+  std::vector<double> grey;
+  grey.reserve(3 * values.size());
+  for (const double value : values) grey.insert(grey.end(), 3, value);
+  return grey;
+}
+
 Image render(const PatchMesh& mesh, std::span<const double> values, const Camera& camera,
              const RenderOptions& options, Progress& progress) {
   options.validate();
+  requireColours(mesh, values);
   return draw(mesh, makeField(mesh, values, 3, options), camera, options, progress);
 }
 
 Image render(const PatchMesh& mesh, std::span<const double> values, std::span<const double> corners,
              const Camera& camera, const RenderOptions& options, Progress& progress) {
   options.validate();
+  requireColours(mesh, values);
   checkCorners(mesh, corners);
   RenderOptions constant = options;
   constant.smooth = false;
