@@ -69,9 +69,10 @@ LightUnit decideUnit(const Side& side, const std::string& said, std::optional<Li
       side.path, what, optionOf(side)));
 }
 
-std::span<const double> emissionOf(const Results& results) {
-  return results.materials ? std::span<const double>(results.materials->emission)
-                           : std::span<const double>();
+/// Empty where it is not known: materials of other bands are not what the light was made with.
+std::span<const double> emissionOf(const Results& results, int bands) {
+  if (!results.materials || results.materials->bands != bands) return {};
+  return results.materials->emission;
 }
 
 void readResultsSide(Side& side, const std::string& said) {
@@ -80,12 +81,12 @@ void readResultsSide(Side& side, const std::string& said) {
   if (results.mesh && results.solution && !results.solution->radiosity.empty()) {
     side.light = "matrix solution";
     side.content = lightOf(results.mesh->mesh, results.solution->radiosity, results.solution->bands,
-                           side.path, emissionOf(results));
+                           side.path, emissionOf(results, results.solution->bands));
   } else if (results.mesh && results.gathered) {
     side.light = "gathered light";
     side.content =
         lightOf(results.mesh->mesh, patchRadiosity(results.mesh->mesh, *results.gathered),
-                results.gathered->bands, side.path, emissionOf(results));
+                results.gathered->bands, side.path, emissionOf(results, results.gathered->bands));
   } else {
     throw InputError(side.path +
                      ": holds no light yet; run radiosity solve or radiosity gather on it");

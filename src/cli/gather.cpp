@@ -16,7 +16,7 @@ int judgeGathered(Session& session, const Pipeline& pipeline) {
   if (summary.status == GatherStatus::pass_limit && (asked || session.request.passes)) return 0;
   const bool dark = summary.status == GatherStatus::no_light;
   const Note note{dark ? Severity::warning : Severity::loud,
-                  dark ? darknessText(session.request, pipeline.scene())
+                  dark ? darknessText(session.request, pipeline.scene(), pipeline.bands())
                        : summary.message + "; allow more --passes"};
   session.report.notes({&note, 1});
   return dark ? 0 : 1;

@@ -29,6 +29,7 @@ class Bands(CliTest):
     def test_solve_uses_the_bands_of_the_file(self):
         for bands in (1, 2, 5, 8):
             name, rgb = self.spectral("s.h5", bands)
+            self.run_program("compare", name, name)  # the scene's light is still there
             report = self.report("solve", name)
             self.assertEqual(report["stages"]["form_factors"]["action"], "reused")
             self.assertEqual(len(report["solution"]["emitted_W"]), bands)
@@ -79,6 +80,14 @@ class Bands(CliTest):
         report = self.report("compare", "grey.exr", "rgb.exr")["comparison"]
         self.assertLess(report["relative_l2_bands"][0], 1e-5)
         self.assertGreater(report["relative_l2_bands"][1], 0.01)
+
+    def test_darkness_says_where_light_comes_from(self):
+        name, _ = self.spectral("s.h5", 5)
+        with h5py.File(self.folder / name, "r+") as file:
+            file["solution/emission"][...] = 0
+        run = self.run_program("solve", name)
+        self.assertIn("nothing emits light, so B = 0 everywhere; give patches an emission above 0 in "
+                      "/solution of s.h5", run.err)
 
     def test_what_does_not_reach_them_is_refused(self):
         name, _ = self.spectral("s.h5", 8)
