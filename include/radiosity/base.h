@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace radiosity {
+namespace [[gnu::visibility("default")]] radiosity {
 
 using Vec2 = glm::dvec2;
 using Vec3 = glm::dvec3;

@@ -11,7 +11,7 @@
 #include "radiosity/patch_mesh.h"
 #include "radiosity/results.h"
 
-namespace radiosity {
+namespace [[gnu::visibility("default")]] radiosity {
 
 /// What the numbers of a file mean.
 enum class LightUnit {

@@ -13,7 +13,7 @@
 #include "radiosity/exchange_matrix.h"
 #include "radiosity/patch_mesh.h"
 
-namespace radiosity {
+namespace [[gnu::visibility("default")]] radiosity {
 
 enum class FormFactorMethod {
   automatic,  ///< exact unless the scene is too cluttered for it; the report says what and why
@@ -24,12 +24,12 @@ enum class FormFactorMethod {
 enum class ClosureMode {
   off,
   report,  ///< say how far the rows of a closed scene are from 1, change nothing
-  enforce  ///< change what is not known in closed form until they sum to 1
+  enforce  ///< change what is not known in closed form until they sum to 1 (closeRows())
 };
 
 struct FormFactorOptions {
   FormFactorMethod method = FormFactorMethod::automatic;
-  /// Exact: the error aimed at for a pair that is partly hidden, relative to the mean form factor
+  /// Exact: the error aimed at for an occluded pair, relative to the mean form factor
   /// 1/N; 1e-12 to 0.1. Closed forms hold it, or 1e-5 where it is larger, relative to each value;
   /// above the default, a tenth of it.
   double tolerance = 1e-3;
@@ -39,13 +39,13 @@ struct FormFactorOptions {
   int resolution = 256;    ///< hemicube: pixels along an edge of the top face; even, 16 to 4096
   std::uint64_t seed = 1;  ///< hemicube: of the random turns about each normal
   bool random_turns = true;
-  bool symmetrize = false;  ///< hemicube: merge both estimates of each pair, then restore closure
+  bool symmetrize = false;  ///< hemicube: merge both estimates of each pair, then close rows
   /// Hemicube: pairs nearer than two patch sizes get the area-to-area value times the visible
   /// fraction that the item buffer tells. Empty: where `automatic` picked hemicubes, yes; else no.
   std::optional<bool> near_exact;
   std::size_t memory_limit = 0;  ///< bytes; 0: no limit
   std::size_t memory_held = 0;   ///< bytes that others hold: they count towards limit and estimate
-  bool simd = true;              ///< false: the scalar twin (same bits)
+  bool simd = true;              ///< false: Highway's scalar target (same bits)
 
   void validate() const;
   Precision storedPrecision() const;
@@ -56,8 +56,8 @@ struct FormFactorOptions {
 /// patches; most patches are one), counted once.
 struct ExactReport {
   std::size_t elements = 0;
-  std::size_t bare_elements = 0;  ///< pieces of backs that are not patches: they only absorb
-  std::size_t facets = 0;         ///< planar sides that carry elements
+  std::size_t black_elements = 0;  ///< pieces of backs that are not patches: they only absorb
+  std::size_t facets = 0;          ///< planar sides that carry elements
   std::size_t occluders = 0;
   std::size_t solids = 0;        ///< of them convex solids, the rest is flat
   std::size_t skipped_hull = 0;  ///< polygons that cannot block: all of the scene is on one side
@@ -65,7 +65,7 @@ struct ExactReport {
   std::size_t no_exchange = 0;  ///< pairs coplanar, back to back, below each other's horizon
   std::size_t unoccluded = 0;   ///< pairs with nothing in between: no visibility code below them
   std::size_t hidden = 0;       ///< pairs found to exchange nothing
-  std::size_t partial = 0;      ///< pairs clipped against what is in between
+  std::size_t occluded = 0;     ///< pairs clipped against what is in between
 
   std::size_t facet_pairs = 0;
   std::size_t facet_pairs_no_exchange = 0;  ///< skipped whole, by their planes alone
@@ -77,11 +77,11 @@ struct ExactReport {
   std::size_t product = 0;  ///< values by product quadrature
   std::size_t clipped = 0;  ///< of all: crossing the other's plane, clipped first
 
-  std::size_t points = 0;      ///< point evaluations of partial pairs
-  std::size_t subdivided = 0;  ///< partial pairs that needed more than the first rule
-  /// Partial pairs evaluated again in double precision: too near for their points, or intricate.
+  std::size_t points = 0;      ///< point evaluations of occluded pairs
+  std::size_t subdivided = 0;  ///< occluded pairs that needed more than the first rule
+  /// Occluded pairs evaluated again in double precision: too near for their points, or intricate.
   std::size_t evaluated_again = 0;
-  std::size_t rechecked = 0;  ///< partial pairs evaluated again to an eighth of the tolerance
+  std::size_t rechecked = 0;  ///< occluded pairs evaluated again to an eighth of the tolerance
   /// Error over figure that 1% of rows drawn from these pairs exceed; where 1.75 times that is more
   /// than 1, error figures are raised by so much.
   double recheck_ratio = 0;
@@ -90,7 +90,7 @@ struct ExactReport {
   double seconds_prepare = 0;     ///< elements, occluders, estimates
   double seconds_visibility = 0;  ///< classifying pairs
   double seconds_unoccluded = 0;  ///< closed forms and quadrature
-  double seconds_partial = 0;     ///< clipping
+  double seconds_occluded = 0;    ///< clipping
   double seconds_assembly = 0;    ///< summing and storing
   double seconds_finish = 0;      ///< row sums, error figures, closure
 };
@@ -109,7 +109,7 @@ struct FormFactorReport {
   std::size_t pixels = 0;               ///< resolved, summed over hemicubes
   std::size_t near_pairs = 0;           ///< entries replaced by area-to-area values
   std::size_t capped = 0;               ///< rows whose near entries were held at a sum of 1
-  std::string simd_target;              ///< e.g. "AVX3", "scalar"
+  std::string simd_target;              ///< Highway's name, e.g. "AVX3", "SCALAR"
   double seconds = 0;                   ///< all in all
   double seconds_plan = 0;       ///< of these, finding out what it will take; preparing included
   double estimated_seconds = 0;  ///< the others, as they were announced before the run
@@ -123,7 +123,7 @@ struct FormFactorReport {
   bool closed = false;      ///< no patch sees the sky
   bool symmetrized = false;
   ClosureReport closure;          ///< where symmetrized, or exact and closed
-  bool closure_enforced = false;  ///< else it is what closure would do
+  bool closure_enforced = false;  ///< exact: rows were closed, not only looked at
   ExactReport exact;
   std::vector<Note> notes;  ///< surfaces seen from behind, ...
 };
@@ -140,7 +140,7 @@ struct FormFactors {
   std::vector<double> sky;
   /// Area-weighted share of the scene's view that ends on each surface's back, by surface.
   std::vector<double> backs_by_surface;
-  /// Exact: N error figures; sqrt(sum_j (F_ij - true F_ij)^2), bare backs among the j, stays below
+  /// Exact: N error figures; sqrt(sum_j (F_ij - true F_ij)^2), black backs among the j, stays below
   /// error[i] in about 99% of rows; the median of the figures is mostly 4 to 11 times the true one.
   /// Hemicube: empty.
   std::vector<double> error;
@@ -162,13 +162,17 @@ struct FormFactorPlan {
   double refining = 0;  ///< share of the seconds that goes with 1 / tolerance
   /// Seconds of hemicubes instead, where the exact method was picked and takes over a minute.
   double hemicube_seconds = 0;
-  /// What was made ready on the way, with the mesh by reference and the options: what the
-  /// computation starts from.
+  /// What was made ready on the way, with the mesh and the options: what the computation starts
+  /// from.
   struct Prepared;
   std::shared_ptr<const Prepared> prepared;
 };
+/// The plan keeps a copy of the mesh (about 160 bytes a patch), ...
 FormFactorPlan planFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
                                Progress& progress);
+/// ... or the mesh itself, which nobody may change while the plan is there.
+FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
+                               const FormFactorOptions& options, Progress& progress);
 
 /// All cores; the same bits for any number of them. Hemicube: raw rows, as they were seen, unless
 /// `symmetrize`; exact: a symmetric matrix.
@@ -176,8 +180,7 @@ FormFactorPlan planFormFactors(const PatchMesh& mesh, const FormFactorOptions& o
 FormFactors computeFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
                                Progress& progress);
 
-/// The same of a plan, which comes from planFormFactors(), as often as you like; its mesh must be
-/// there still, as it was.
+/// The same of a plan, which comes from planFormFactors(), as often as you like.
 FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress);
 
 }  // namespace radiosity

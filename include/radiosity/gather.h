@@ -12,7 +12,7 @@
 #include "radiosity/patch_mesh.h"
 #include "radiosity/solve.h"
 
-namespace radiosity {
+namespace [[gnu::visibility("default")]] radiosity {
 
 enum class GatherAt {
   patches,  ///< one eye a patch, at its centroid; a patch has one radiosity all over
@@ -35,7 +35,7 @@ struct GatherOptions {
   /// x ln x, whose mean over a patch the straight line from its value at the edge misses by a
   /// quarter of the patch; from a tenth of the patch it does not.
   double inset = 0.1;
-  bool simd = true;  ///< false: the scalar twin (same bits)
+  bool simd = true;  ///< false: Highway's scalar target (same bits)
   void validate() const;
 };
 
@@ -77,7 +77,7 @@ struct Gathered {
   int bands = 3;                  ///< those of the materials
   std::vector<float> radiosity;   ///< L * bands, row-major, W/m^2
   std::vector<float> irradiance;  ///< L * bands: H
-  std::vector<float> backs;       ///< L, share of the view that ends on bare backs
+  std::vector<float> backs;       ///< L, share of the view that ends on black backs
   std::vector<float> sky;         ///< L
   /// Share of all eyes' view that ends on each surface's back, eyes weighted with their areas; by
   /// surface.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,7 +10,7 @@
 #include "radiosity/base.h"
 #include "radiosity/scene.h"
 
-namespace radiosity {
+namespace [[gnu::visibility("default")]] radiosity {
 
 /// Planar polygons: the coarse faces of the scene, coplanar neighbours of a surface merged, cut
 /// where others touch or cross. They are what occludes and what is rasterised. A polygon is one or
@@ -34,6 +35,25 @@ struct PlanarPolygons {
   }
 };
 
+/// A connected set of one-sided polygons proved to be a closed surface that neither touches nor
+/// crosses itself: it separates two regions, and its fronts face one of them.
+struct ClosedSurface {
+  std::vector<Index> polygons;  ///< into PatchMesh::polygons, ascending
+  Vec3 lower{0.0};              ///< its box, metres
+  Vec3 upper{0.0};
+  bool is_solid = true;  ///< fronts face the unbounded region: a body; else a room
+};
+
+/// What the polygons of a mesh enclose.
+struct Enclosures {
+  std::vector<ClosedSurface> surfaces;  ///< bodies and rooms
+  std::vector<Index> surface_of;        ///< P, into surfaces; kNone: of none that is proved
+  /// P, 1: a polygon on the very same corners faces the other way, so that its front hides this
+  /// one's back.
+  std::vector<std::uint8_t> covered;
+  bool proved_closed = false;  ///< every patch is on or in a room: none sees the sky
+};
+
 /// N patches, structure of arrays, double precision. All fronts come first, then the backs of
 /// two-sided patches; a back has its own centroid, normal (flipped) and corners (reversed).
 struct PatchMesh {
@@ -53,6 +73,9 @@ struct PatchMesh {
   std::vector<Index> twin;              ///< N, the patch on the other side, or kNone
   PlanarPolygons polygons;
   std::vector<std::string> surface_names;  ///< as Scene::surfaces, in order
+  /// Of `polygons`. meshScene() finds them; in a mesh from elsewhere they may be absent: whoever
+  /// needs them then finds them anew. Absent again where vertices or polygons are changed by hand.
+  std::optional<Enclosures> enclosures;
 
   std::size_t size() const { return area.size(); }
   std::size_t frontCount() const;
@@ -114,6 +137,9 @@ struct MeshResult {
 /// Cuts the scene into patches. Errors: InputError if the scene has no face with area, and of
 /// validate().
 MeshResult meshScene(const Scene& scene, const MeshOptions& options, Progress& progress);
+
+/// n log n in the polygons, but for rooms that others stand in. Throws Cancelled.
+Enclosures findEnclosures(const PatchMesh& mesh, Progress& progress);
 
 /// T-junctions of any mesh: vertices that lie inside an edge of a patch (closer than
 /// `tolerance` metres) without being one of its ends. Brute force by a grid; knows nothing of how

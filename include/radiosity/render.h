@@ -10,7 +10,7 @@
 #include "radiosity/patch_mesh.h"
 #include "radiosity/scene.h"
 
-namespace radiosity {
+namespace [[gnu::visibility("default")]] radiosity {
 
 /// RGBA, float, row-major, top row first, straight (not premultiplied) linear colour.
 struct Image {
@@ -48,6 +48,9 @@ double typicalLight(const PatchMesh& mesh, std::span<const double> light);
 /// InputError says which part is wrong.
 Camera parseCamera(const std::string& text);
 
+/// The camera as parseCamera() reads it, every digit of it.
+std::string cameraText(const Camera& camera);
+
 /// Corner values for Gouraud interpolation: for every entry of mesh.corners, `bands` values, the
 /// area-weighted mean of `values` over the patches of its group (cornerGroups()): a lamp does not
 /// bleed into its ceiling, a red wall not into a white one. A constant field stays that constant to
@@ -78,6 +81,40 @@ Image render(const PatchMesh& mesh, std::span<const double> values, std::span<co
 Image renderRadiance(const PatchMesh& mesh, std::span<const double> radiosity,
                      std::span<const double> corners, const Camera& camera,
                      const RenderOptions& options, Progress& progress);
+
+/// Light on the patches, as pictures show it.
+struct SurfaceLight {
+  std::vector<double> patches;  ///< N * 3: radiosity B, W/m^2
+  /// mesh.corners.size() * 3: B where it is known better than from the patches around; or empty.
+  std::vector<double> corners;
+  std::vector<double> reflected;  ///< N: as reflectedLight()
+  Vec3 sky{0.0};                  ///< radiance where nothing is hit, W/m^2/sr
+};
+
+/// N: how bright B - E is, what a patch does not emit itself, at least 0, W/m^2: its luminance, of
+/// bands that are not three their sum. `radiosity`: B, N * materials.bands, W/m^2.
+std::vector<double> reflectedLight(std::span<const double> radiosity,
+                                   const PatchMaterials& materials);
+
+/// The light of radiosities B (N * materials.bands, W/m^2) on patches of these materials. Errors:
+/// as rgbOf().
+SurfaceLight surfaceLight(std::span<const double> radiosity, const PatchMaterials& materials);
+
+/// The same with the sky, where it shines, behind all.
+Image renderRadiance(const PatchMesh& mesh, const SurfaceLight& light, const Camera& camera,
+                     const RenderOptions& options, Progress& progress);
+
+/// What a picture shows next to nothing of.
+struct UnlitView {
+  double seen = 0;      ///< radiance that more than a hundredth of the picture exceeds, W/m^2/sr
+  double lit = 0;       ///< radiance that is typical of what reflects light, W/m^2/sr
+  Index brightest = 0;  ///< the patch that reflects most
+};
+
+/// Where the scene is lit, but not what is in view: `radiance`, as renderRadiance() drew it, stays
+/// ten stops below what is typical. Automatic exposure makes a picture even of that.
+std::optional<UnlitView> unlitView(const PatchMesh& mesh, const SurfaceLight& light,
+                                   const Image& radiance);
 
 /// Exposure value: the picture is multiplied by 2^ev before the sRGB curve. Automatic: the 99th
 /// percentile of luminance over hit pixels maps to 0.8 (emitters clip), unless the median over the

@@ -17,7 +17,7 @@
 #include "radiosity/scene.h"
 #include "radiosity/solve.h"
 
-namespace radiosity {
+namespace [[gnu::visibility("default")]] radiosity {
 
 /// What a results file holds; an absent stage was not computed or was dropped. Each stage has a
 /// `key`: a text of the options that made it and of the stage before it. A stage is reused only
@@ -51,10 +51,9 @@ Results readResults(const std::string& path, bool with_factors = true);
 ///   /form_factors  csr_matrix((data, indices, indptr), shape) of scipy: data f32 or f64, indices
 ///                  int32 increasing in a row, indptr int64; row_sum (of data), fronts, backs, sky,
 ///                  error (figures of the rows; exact method), area; order where A_i F_ij = A_j
-///                  F_ji was stored once a pair (the patches in the order of storage); closure/:
-///                  what is to be added to data where closure was enforced, compressed rows
-///                  likewise; normal, centroid, surface, surface_names (those of /mesh); method,
-///                  key, geometry_hash, report/
+///                  F_ji was stored once a pair (the patches in the order of storage); normal,
+///                  centroid, surface, surface_names (those of /mesh); method, key, geometry_hash,
+///                  report/
 ///   /solution      radiosity, irradiance, reflectance, emission (N x bands), sky (an attribute of
 ///                  bands numbers; none: dark), summary/, key
 ///   /gather        radiosity, irradiance (L x bands, f32; L eyes), backs, sky, area, position;
@@ -69,8 +68,7 @@ void writeResults(const std::string& path, const Results& results, Progress& pro
 /// Bytes writeResults() will put on disk, within 4 kB.
 std::size_t estimateResultsBytes(const Results& results);
 
-/// MatrixMarket coordinate real general, 1-based, 17 significant digits: F as stored, with
-/// what closure adds.
+/// MatrixMarket coordinate real general, 1-based, 17 significant digits: F as stored.
 void writeMatrixMarket(const std::string& path, const ExchangeMatrix& matrix, Progress& progress);
 
 /// The patches as they are, by extension: .obj (outlines, one object a surface, in mesh order: face

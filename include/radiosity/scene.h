@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <string>
@@ -10,7 +11,7 @@
 
 #include "radiosity/base.h"
 
-namespace radiosity {
+namespace [[gnu::visibility("default")]] radiosity {
 
 enum class Severity { info, warning, loud };
 
@@ -37,6 +38,9 @@ struct Material {
   bool two_sided = false;
   Index texture = kNone;           ///< into Scene::textures; multiplies `reflectance`
   Index emission_texture = kNone;  ///< into Scene::textures; multiplies `emission`
+
+  /// W/m^2/sr: what of `emission` goes in each direction.
+  Vec3 radiance() const { return emission / std::numbers::pi; }
 };
 
 /// Faces of one object (or node) with one material. The unit people name on the command line.
@@ -156,6 +160,11 @@ struct SceneInfo {
   std::size_t open_edges = 0;  ///< used by one face alone
   std::vector<Note> problems;  ///< flipped normals, duplicates, degenerates, overlaps, no emitter
 };
+
+/// A material or surface whose name says that it shines ("ceiling_lamp", "Light.003"); else the
+/// ceiling, by name or as the surface with most area that faces down; else the first surface. A
+/// name that SceneOptions::set takes; empty in a scene without surfaces.
+std::string likelyLamp(const Scene& scene);
 
 /// Inspects a scene (does not change it). `weld`: coincidence, as a fraction of the diagonal.
 SceneInfo inspectScene(const Scene& scene, double weld = 1e-7);

@@ -10,7 +10,7 @@
 #include "radiosity/form_factors.h"
 #include "radiosity/patch_mesh.h"
 
-namespace radiosity {
+namespace [[gnu::visibility("default")]] radiosity {
 
 enum class Solver { jacobi, gauss_seidel };
 

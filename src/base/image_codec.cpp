@@ -16,7 +16,7 @@ const ImageCodec& openCodec() {
   if (entry == nullptr) {
     throw RunError(
         fmt::format("libradiosity_images.so cannot be used ({}); install it again beside "
-                    "libradiosity.so",
+                    "libradiosity.so, or in the program's library folder",
                     dlerror()));
   }
   return *reinterpret_cast<const ImageCodec* (*)()>(entry)();

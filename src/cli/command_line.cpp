@@ -7,12 +7,13 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "base/luminance.h"
 #include "cli/command_texts.h"
 #include "cli/help_formatter.h"
-#include "cli/option_names.h"
 #include "cli/request.h"
 #include "cli/validators.h"
 #include "cli/words.h"
+#include "radiosity/names.h"
 #include "radiosity/version.h"
 
 namespace radiosity::cli {
@@ -93,7 +94,7 @@ void addMeshOptions(CLI::App& app, Request& r) {
                              fmt::format("About how many patches (default {})", defaults.patches))
                              ->check(wholeNumber());
   CLI::Option* max_edge = add(app, "Mesh", "--max-edge", r.max_edge, "METRES",
-                              "Longest edge of a patch (default: what --patches asks for)");
+                              "Longest edge of a patch (default: derived from --patches)");
   add(app, "Mesh", "--weld", r.weld, "FRACTION",
       fmt::format("Points closer than this fraction of the scene's diagonal are one; 0 to 0.01 "
                   "(default {})",
@@ -110,20 +111,18 @@ void addMeshOptions(CLI::App& app, Request& r) {
 void addFactorOptions(CLI::App& app, Request& r) {
   const FormFactorOptions defaults;
   add(app, "Form factors", "--method", r.method, "METHOD",
-      "exact (area to area, what is hidden clipped off), hemicube (seen from one point a patch), "
-      "or "
+      "exact (area to area, hidden parts clipped off), hemicube (seen from one point a patch), or "
       "auto (default): exact unless the scene is too cluttered; the report says why")
       ->check(CLI::IsMember(namesIn(kMethodNames)));
   // Where results are compared, --tolerance is about the difference.
   const bool compares = app.get_name() == commandName(Command::compare);
   add(app, "Form factors", compares ? "--factor-tolerance" : "--tolerance", r.tolerance, "FRACTION",
-      fmt::format(
-          "exact: error aimed at for a partly hidden pair, relative to the mean form factor "
-          "1/N; 1e-12 to 0.1 (default {})",
-          defaults.tolerance));
+      fmt::format("exact: error aimed at for an occluded pair, relative to the mean form factor "
+                  "1/N; 1e-12 to 0.1 (default {})",
+                  defaults.tolerance));
   add(app, "Form factors", "--closure", r.closure, "off|report|enforce",
-      "exact, in a closed scene: say how far row sums are from 1 (report, default), or change what "
-      "is not known in closed form, as little as possible, until they are 1 (enforce)")
+      "In a closed scene say how far row sums are from 1 (report, default), or make them 1 by the "
+      "smallest change to occluded pairs (enforce)")
       ->check(CLI::IsMember(namesIn(kClosureNames)));
   add(app, "Form factors", "--resolution", r.resolution, "PIXELS",
       fmt::format("hemicube: edge of the top face; even, 16 to 4096 (default {})",
@@ -146,7 +145,8 @@ void addFactorOptions(CLI::App& app, Request& r) {
       "always double")
       ->check(CLI::IsMember({"auto", "single", "double"}));
   add(app, "Form factors", "--memory-limit", r.memory_limit, "SIZE",
-      "Refuse to start what needs more memory: bytes, or 512M, 2G, ... (default: no limit)");
+      "Refuse to start a computation that needs more memory: bytes, or 512M, 2G, ... (default: no "
+      "limit)");
 }
 
 void addSolveOptions(CLI::App& app, Request& r) {
@@ -164,8 +164,8 @@ void addSolveOptions(CLI::App& app, Request& r) {
 void addGatherOptions(CLI::App& app, Request& r) {
   const GatherOptions defaults;
   add(app, "Gather", "--at", r.gather_at, "vertices|patches",
-      "Where the eyes stand: at vertices, once per smooth side, what they see interpolated over "
-      "patches (default); or at the centres of patches, each of one radiosity")
+      "Where the eyes stand: at vertices (default), one for each smooth side, so that radiosity is "
+      "interpolated over patches; or at the centres of patches, one radiosity each")
       ->check(CLI::IsMember(namesIn(kGatherAtNames)));
   add(app, "Gather", "--passes", r.passes, "K",
       fmt::format("Passes at most: pass k adds the k-th bounce (default {})", defaults.passes));
@@ -190,7 +190,7 @@ void addEyeOptions(CLI::App& app, Request& r) {
 
 void addCompareOptions(CLI::App& app, Request& r) {
   const CompareOptions defaults;
-  app.add_option("B", r.second, "What A is compared with; none with --gather")->option_text(" ");
+  app.add_option("B", r.second, "The file to compare with A; none with --gather")->option_text(" ");
   app.add_flag(
          "--gather", r.with_gather,
          "Compare the matrix solution of A with the gather method, running missing stages first")
@@ -204,7 +204,7 @@ void addCompareOptions(CLI::App& app, Request& r) {
   app.add_flag("--fit-scale", r.fit_scale, "Multiply B by the factor that fits best, and print it")
       ->group("Compare");
   app.add_flag("--partial", r.partial,
-               "Compare what matches where it is less than 99% of either side's area")
+               "Compare the parts that match even where they are less than 99% of either side")
       ->group("Compare");
   add(app, "Compare", "--match", r.match, "FRACTION",
       fmt::format("How far apart points of one surface may be, of A's diagonal (default {})",
@@ -230,11 +230,10 @@ void addCameraOptions(CLI::App& app, Request& r) {
   add(app, "Picture", "--camera", r.camera, "CAMERA",
       "Name of a camera in the scene, or eye=X,Y,Z;target=X,Y,Z[;up=X,Y,Z][;fov=DEGREES], metres "
       "(default: the scene's first, else one in a room at eye height, or from outside where there "
-      "is none, "
-      "towards what is lit)");
+      "is none, aimed at lit surfaces)");
   add(app, "Picture", "--width", r.width, "PIXELS", fmt::format("Default {}", defaults.width));
   add(app, "Picture", "--height", r.height, "PIXELS",
-      "Default: the width, or what the camera's shape asks for");
+      "Default: from the width and the camera's aspect ratio; the width, where it has none");
 }
 
 void addRenderOptions(CLI::App& app, Request& r) {
@@ -255,9 +254,11 @@ void addShowOptions(CLI::App& app, Request& r) {
   add(app, "Picture", "--crease", r.crease, "DEGREES",
       fmt::format("Interpolate across edges that bend less (default {})", defaults.crease));
   add(app, "Picture", "--show", r.show, "QUANTITY",
-      "False colour with a legend: radiosity or irradiance (W/m^2, Rec. 709 luminance weights "
-      "0.2126 R + 0.7152 G + 0.0722 B), form-factor:PATCH (F from patch number PATCH, from 0, to "
-      "each patch), row-sum (what each patch sees of the scene's fronts)");
+      fmt::format(
+          "False colour with a legend: radiosity or irradiance (W/m^2, Rec. 709 luminance weights "
+          "{} R + {} G + {} B), form-factor:PATCH (F from patch number PATCH, from 0, to each "
+          "patch), row-sum (how much of each patch's view ends on fronts)",
+          kLuminanceOfRed, kLuminanceOfGreen, kLuminanceOfBlue));
 }
 
 void addGeneralOptions(CLI::App& app, Request& r, Command command) {
@@ -383,7 +384,7 @@ std::optional<int> parseCommandLine(int argc, char** argv, Request& request) {
   checkCommandWord(argc, argv);
   CLI::App app(
       "radiosity: light a scene by the matrix method. Scene -> patches -> form factors\n"
-      "-> radiosity -> picture; each subcommand does what is missing up to its stage.");
+      "-> radiosity -> picture; each subcommand runs the stages that are missing, up to its own.");
   app.name("radiosity");
   app.set_version_flag("--version", "radiosity " RADIOSITY_VERSION);
   app.require_subcommand(1);

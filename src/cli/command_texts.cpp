@@ -54,9 +54,9 @@ const char* examplesOf(Command command) {
       return "Files (-o): .h5 (results), .png (exposed, sRGB), .exr (radiance, W/m^2/sr, linear),\n"
              ".glb (lit mesh). A results file given as input is updated in place where no -o is "
              "given;\n"
-             "its mesh is reused, and so is the light gathered in it before. With --passes "
-             "reaching them\n"
-             "is no failure.\n\n"
+             "its mesh is reused, and so is the light gathered in it before. Reaching the limit "
+             "of\n"
+             "--passes is no failure.\n\n"
              "Examples:\n"
              "  radiosity gather data/cornell-box.obj --passes 8 -o gathered.h5 -o gathered.png\n"
              "  radiosity gather cornell.h5 --at patches --resolution 128";

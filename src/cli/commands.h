@@ -2,9 +2,10 @@
 #pragma once
 
 #include "cli/outputs.h"
-#include "cli/pipeline.h"
+#include "cli/pipeline_report.h"
 #include "cli/report.h"
 #include "cli/request.h"
+#include "radiosity/pipeline.h"
 
 namespace radiosity::cli {
 
@@ -12,6 +13,15 @@ struct Session {
   const Request& request;
   Report& report;
   Progress& progress;
+};
+
+/// The pipeline of one run, whose steps are reported.
+struct Run {
+  /// Opens the input with the options given. `results_output`: the .h5 this run writes, or empty.
+  explicit Run(Session& session, const std::string& results_output = {});
+
+  PipelineReport said;
+  Pipeline pipeline;
 };
 
 // Each returns the exit code: 0, or 1 where the solution is not usable.
@@ -36,8 +46,10 @@ void keepSolution(Session& session, Pipeline& pipeline, const OutputSet& files);
 /// that would not change is left alone.
 void writeStages(Session& session, Pipeline& pipeline, OutputSet& files);
 
-/// 0 where the solution is usable, else 1. Takes a solution without values (a singular system)
-/// out of the results.
+/// InputError, with the cure as a command line to paste, where nothing in the scene emits.
+void requireLight(const Session& session, const Pipeline& pipeline);
+
+/// Solves, where that was not done; 0 where the solution is usable, else 1, after saying why.
 int judgeSolution(Session& session, Pipeline& pipeline);
 
 /// Says so where a results file was the input, more was computed than it holds, and nothing is

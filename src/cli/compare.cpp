@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "base/input_file.h"
+#include "base/luminance.h"
 #include "cli/commands.h"
 #include "cli/picture.h"
 #include "cli/words.h"
@@ -364,30 +365,28 @@ int compareWithGather(Session& session, OutputSet& files) {
                                  request.input, request.second));
   }
   const CompareOptions options = request.compareOptions();
-  Pipeline pipeline(request, session.report, session.progress);
-  pipeline.open(files.path(Format::results));
-  pipeline.requireLight();
-  pipeline.mesh();
-  pipeline.factors();
+  Run run(session, files.path(Format::results));
+  Pipeline& pipeline = run.pipeline;
+  requireLight(session, pipeline);
+  const PatchMesh& mesh = pipeline.mesh().mesh;
+  const FormFactors& factors = pipeline.factors();
   keepFactors(session, pipeline, files);
-  pipeline.solution();
   if (const int code = judgeSolution(session, pipeline); code != 0) return code;
-  pipeline.gathered();
-  const PatchMesh& mesh = pipeline.patches();
+  const Gathered& gathered = pipeline.gathered();
   const PatchMaterials& materials = pipeline.materials();
-  const LightField a = lightOf(mesh, pipeline.solved().radiosity, materials.bands,
+  const LightField a = lightOf(mesh, pipeline.solution().radiosity, materials.bands,
                                "the matrix solution", materials.emission);
-  const LightField b = lightOf(mesh, patchRadiosity(mesh, pipeline.gatheredLight()),
-                               materials.bands, "the gathered light", materials.emission);
+  const LightField b = lightOf(mesh, patchRadiosity(mesh, gathered), materials.bands,
+                               "the gathered light", materials.emission);
   const Comparison c = compare(a, b, options);
   session.report.section("comparison", "Comparison: A the matrix solution, B the gathered light");
   reportComparison(session.report, c, false, false);
-  session.report.text("gap", "where the gap comes from", gapCause(pipeline.gatheredLight()));
+  session.report.text("gap", "where the gap comes from", gapCause(gathered));
   const int code = judge(session, c);
   if (files.has(Format::png)) {
     Picture picture = choosePicture(request, pipeline.scene());
-    framePicture(picture, pipeline.patches(), pipeline.formFactors().report.closed,
-                 reflectedLight(pipeline, pipeline.solved().radiosity));
+    framePicture(picture, mesh, factors.report.closed,
+                 reflectedLight(pipeline.solution().radiosity, materials));
     drawField(session, a, c, picture, files);
   }
   writeStages(session, pipeline, files);

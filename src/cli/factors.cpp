@@ -4,11 +4,9 @@ namespace radiosity::cli {
 
 int runFactors(Session& session) {
   OutputSet files = claimOutputs(session);
-  Pipeline pipeline(session.request, session.report, session.progress);
-  pipeline.open(files.path(Format::results));
-  pipeline.mesh();
-  pipeline.factors();
-  writeStages(session, pipeline, files);
+  Run run(session, files.path(Format::results));
+  run.pipeline.factors();
+  writeStages(session, run.pipeline, files);
   files.commit(session.report, session.progress);
   return 0;
 }

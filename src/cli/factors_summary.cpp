@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/byte_text.h"
 #include "cli/section.h"
 #include "cli/summaries.h"
 #include "cli/words.h"
@@ -16,8 +17,8 @@ std::string briefLine(const FormFactors& factors) {
   const std::string scene = r.closed ? "closed scene" : "open scene";
   if (factors.method == "exact") {
     const ExactReport& e = r.exact;
-    return fmt::format("{}, {} partly hidden, in {}; {}; {}; error of the matrix about {}",
-                       plural(e.unoccluded + e.partial, "pair", "pairs"), countText(e.partial),
+    return fmt::format("{}, {} occluded, in {}; {}; {}; error of the matrix about {}",
+                       plural(e.unoccluded + e.occluded, "pair", "pairs"), countText(e.occluded),
                        durationText(r.seconds), bytesText(r.matrix_bytes), scene,
                        numberText(r.error_figure, 2));
   }
@@ -43,7 +44,7 @@ void hemicubeFigures(Report& report, const FormFactorReport& r) {
 /// Pairs of patches by what became of them, then what it took.
 void exactFigures(Report& report, const ExactReport& e) {
   report.count("elements", "elements", e.elements);
-  report.count("bare_elements", "  and of bare backs", e.bare_elements);
+  report.count("black_elements", "  and of black backs", e.black_elements);
   report.count("facets", "facets", e.facets);
   report.count("occluders", "occluders", e.occluders);
   report.count("solids", "  of them convex solids", e.solids);
@@ -51,7 +52,7 @@ void exactFigures(Report& report, const ExactReport& e) {
   report.count("pairs_no_exchange", "pairs without exchange", e.no_exchange);
   report.count("pairs_unoccluded", "pairs unoccluded", e.unoccluded);
   report.count("pairs_hidden", "pairs hidden", e.hidden);
-  report.count("pairs_partial", "pairs partly hidden", e.partial);
+  report.count("pairs_occluded", "pairs occluded", e.occluded);
   report.count("facet_pairs", "facet pairs", e.facet_pairs);
   report.count("skipped_facet_pairs", "skipped: no exchange", e.facet_pairs_no_exchange);
   report.count("skipped_visibility", "skipped: visibility", e.facet_pairs_unoccluded);
@@ -60,15 +61,15 @@ void exactFigures(Report& report, const ExactReport& e) {
   report.count("lambert", "values by Lambert", e.lambert);
   report.count("product", "values by quadrature", e.product);
   report.count("clipped", "  clipped to front sides", e.clipped);
-  report.count("points", "points of partial pairs", e.points);
-  report.count("subdivided", "partial pairs refined", e.subdivided);
-  report.count("evaluated_again", "partial pairs again in double", e.evaluated_again);
+  report.count("points", "points of occluded pairs", e.points);
+  report.count("subdivided", "occluded pairs refined", e.subdivided);
+  report.count("evaluated_again", "occluded pairs again in double", e.evaluated_again);
   report.count("rechecked", "evaluated again to check", e.rechecked);
   report.number("recheck_ratio", "  row error / figure, 99%", e.recheck_ratio);
   report.seconds("seconds_prepare", "time: preparing", e.seconds_prepare);
   report.seconds("seconds_visibility", "time: visibility", e.seconds_visibility);
   report.seconds("seconds_unoccluded", "time: closed forms", e.seconds_unoccluded);
-  report.seconds("seconds_partial", "time: clipping", e.seconds_partial);
+  report.seconds("seconds_occluded", "time: occluded pairs", e.seconds_occluded);
   report.seconds("seconds_assembly", "time: storing rows", e.seconds_assembly);
   report.seconds("seconds_finish", "time: finishing", e.seconds_finish);
 }
@@ -77,14 +78,14 @@ void closureFigures(Report& report, const FormFactorReport& r) {
   const ClosureReport& c = r.closure;
   const bool done = r.symmetrized || r.closure_enforced;
   report.yesNo("closure_enforced", "closure: enforced", done);
-  report.count("closure_adjustable", "closure: pairs that may move", c.adjustable);
-  report.number("closure_residual_before", "closure: residual before", c.largest_residual_before);
-  report.number("closure_residual", done ? "closure: residual after" : "closure: would leave",
-                c.largest_residual);
-  report.number("closure_largest_move",
-                done ? "closure: largest move" : "closure: would move at most", c.largest_move);
-  report.number("closure_relative_move",
-                done ? "closure: move, relL2" : "closure: would move, relL2", c.relative_move);
+  const char* before = r.symmetrized ? "closure: rows off by, merged" : "closure: rows off 1 by";
+  report.number("closure_residual_before", before, c.largest_residual_before);
+  report.number("closure_residual_before_rms", "  root mean square", c.rms_residual_before);
+  if (!done) return;
+  report.number("closure_residual", "closure: rows off by, now", c.largest_residual);
+  report.count("closure_adjustable", "closure: pairs that could move", c.adjustable);
+  report.number("closure_largest_move", "closure: largest move", c.largest_move);
+  report.number("closure_relative_move", "closure: move, relL2", c.relative_move);
   report.count("closure_emptied", "closure: moved to 0", c.emptied);
   report.count("closure_fixed_rows", "closure: rows out of reach", c.fixed_rows);
   report.count("closure_iterations", "closure: iterations", std::size_t(c.iterations));
@@ -107,7 +108,8 @@ void accuracyFigures(Report& report, const FormFactors& factors) {
     report.number("reciprocity_residual", "reciprocity residual", r.reciprocity_residual);
     report.yesNo("symmetrized", "symmetrized", r.symmetrized);
   }
-  if (r.symmetrized || r.closure.adjustable > 0) closureFigures(report, r);
+  const bool looked_at = r.closure.largest_residual_before > 0;
+  if (r.symmetrized || r.closure_enforced || looked_at) closureFigures(report, r);
 }
 
 }  // namespace

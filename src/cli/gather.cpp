@@ -1,5 +1,3 @@
-#include "radiosity/gather.h"
-
 #include "cli/commands.h"
 #include "cli/light_cure.h"
 #include "cli/picture.h"
@@ -9,8 +7,7 @@ namespace radiosity::cli {
 namespace {
 
 /// 1 where a limit that nobody asked for came first; 0 otherwise.
-int judgeGathered(Session& session, const Pipeline& pipeline) {
-  const GatherSummary& summary = pipeline.gatheredLight().summary;
+int judgeGathered(Session& session, const Pipeline& pipeline, const GatherSummary& summary) {
   if (summary.status == GatherStatus::converged) return 0;
   const bool asked = summary.passes.size() != std::size_t(GatherOptions().passes);
   if (summary.status == GatherStatus::pass_limit && (asked || session.request.passes)) return 0;
@@ -26,19 +23,18 @@ int judgeGathered(Session& session, const Pipeline& pipeline) {
 
 int runGather(Session& session) {
   OutputSet files = claimOutputs(session);
-  Pipeline pipeline(session.request, session.report, session.progress);
-  pipeline.open(files.path(Format::results));
+  Run run(session, files.path(Format::results));
+  Pipeline& pipeline = run.pipeline;
   requireColours(pipeline, session.request, files);
   Picture picture = choosePicture(session.request, pipeline.scene());
-  pipeline.mesh();
-  pipeline.gathered();
-  const GatherSummary& summary = pipeline.gatheredLight().summary;
-  const int code = judgeGathered(session, pipeline);
+  const GatherSummary& summary = pipeline.gathered().summary;
+  const int code = judgeGathered(session, pipeline, summary);
   if (files.has(Format::png) || files.has(Format::exr) || files.has(Format::glb)) {
-    const Light light = gatheredLight(pipeline);
-    framePicture(picture, pipeline.patches(), summary.closed, light.reflected);
+    const PatchMesh& mesh = pipeline.mesh().mesh;
+    const SurfaceLight light = pipeline.gatheredLight();
+    framePicture(picture, mesh, summary.closed, light.reflected);
     reportPicture(session.report, picture);
-    drawLight(session, pipeline.patches(), light, picture, files);
+    drawLight(session, mesh, light, picture, files);
   }
   writeStages(session, pipeline, files);
   files.commit(session.report, session.progress);

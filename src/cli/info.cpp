@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "base/made.h"
 #include "cli/commands.h"
 #include "cli/summaries.h"
 
@@ -8,7 +9,8 @@ namespace radiosity::cli {
 namespace {
 
 /// The stages a results file holds, and the options that made them.
-void describeStages(Session& session, const Results& stored) {
+void describeStages(Session& session, const Pipeline& pipeline) {
+  const Results& stored = pipeline.stored();
   Report& report = session.report;
   report.section("file", "Stages in the file");
   report.text("version", "written by", "radiosity " + stored.version);
@@ -16,27 +18,27 @@ void describeStages(Session& session, const Results& stored) {
   if (stored.factors) report.text("factors_key", "form factors", stored.factors_key);
   if (stored.solution) report.text("solution_key", "solution", stored.solution_key);
   if (stored.gathered) report.text("gather_key", "gather", stored.gather_key);
-  if (stored.mesh) summarizeMesh(report, *stored.mesh, Detail::brief);
+  if (!stored.mesh) return;
+  summarizeMesh(report, *stored.mesh, Detail::brief);
   if (stored.factors) {
-    summarizeFactors(report, *stored.factors, made(stored.mesh).mesh, Detail::brief);
+    summarizeFactors(report, *stored.factors, stored.mesh->mesh, Detail::brief);
   }
   if (stored.solution) {
-    summarizeSolution(report, *stored.solution, made(stored.factors), made(stored.mesh).mesh,
-                      solveOptionsOf(StageKey(stored.solution_key)), Detail::brief);
+    summarizeSolution(report, *stored.solution, made(stored.factors), stored.mesh->mesh,
+                      pipeline.options().solve, Detail::brief);
   }
   if (stored.gathered) {
-    summarizeGathered(report, *stored.gathered, made(stored.mesh).mesh,
-                      gatherOptionsOf(StageKey(stored.gather_key)), Detail::brief);
+    summarizeGathered(report, *stored.gathered, stored.mesh->mesh, pipeline.options().gather,
+                      Detail::brief);
   }
 }
 
 }  // namespace
 
 int runInfo(Session& session) {
-  Pipeline pipeline(session.request, session.report, session.progress);
-  pipeline.open({});
-  describeScene(session.report, pipeline.scene());
-  if (pipeline.fromResultsFile()) describeStages(session, pipeline.stored());
+  const Run run(session);
+  describeScene(session.report, run.pipeline.scene());
+  if (run.pipeline.fromResultsFile()) describeStages(session, run.pipeline);
   return 0;
 }
 

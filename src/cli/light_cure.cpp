@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "scene/likely_lamp.h"
-
 namespace radiosity::cli {
 
 namespace {

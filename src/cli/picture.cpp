@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
-#include "base/luminance.h"
 #include "cli/words.h"
 #include "radiosity/results.h"
 #include "radiosity/version.h"
@@ -95,54 +93,6 @@ void requireColours(const Pipeline& pipeline, const Request& request, const Outp
   }
 }
 
-std::vector<double> reflectedLight(Pipeline& pipeline, std::span<const double> radiosity) {
-  const PatchMaterials& materials = pipeline.materials();
-  const auto bands = std::size_t(materials.bands);
-  std::vector<double> reflected;
-  reflected.reserve(radiosity.size() / bands);
-  std::vector<double> apart(bands);
-  for (std::size_t k = 0; k < radiosity.size(); k += bands) {
-    for (std::size_t b = 0; b < bands; ++b) {
-      apart[b] = radiosity[k + b] - materials.emission[k + b];
-    }
-    reflected.push_back(std::max(0.0, brightnessOf(apart)));
-  }
-  return reflected;
-}
-
-namespace {
-
-Light lightOf(Pipeline& pipeline, std::span<const double> radiosity) {
-  const PatchMaterials& materials = pipeline.materials();
-  Light light;
-  light.patches = rgbOf(radiosity, materials.bands);
-  light.reflected = reflectedLight(pipeline, radiosity);
-  const std::vector<double> sky = rgbOf(materials.sky, materials.bands);
-  if (!sky.empty()) light.sky = Vec3(sky[0], sky[1], sky[2]);
-  return light;
-}
-
-}  // namespace
-
-Light solvedLight(Pipeline& pipeline) { return lightOf(pipeline, pipeline.solved().radiosity); }
-
-Light gatheredLight(Pipeline& pipeline) {
-  const PatchMesh& mesh = pipeline.patches();
-  const Gathered& gathered = pipeline.gatheredLight();
-  Light light = lightOf(pipeline, patchRadiosity(mesh, gathered));
-  if (gathered.at == GatherAt::vertices) {
-    light.corners = rgbOf(cornerRadiosity(mesh, gathered), gathered.bands);
-  }
-  return light;
-}
-
-Image radiancePicture(const Picture& picture, const PatchMesh& mesh, const Light& light,
-                      Progress& progress) {
-  RenderOptions options = picture.options;
-  if (light.sky != Vec3(0.0)) options.background = light.sky;
-  return renderRadiance(mesh, light.patches, light.corners, picture.camera, options, progress);
-}
-
 void reportPicture(Report& report, const Picture& picture) {
   const Camera& c = picture.camera;
   const double eye[] = {c.eye.x, c.eye.y, c.eye.z};
@@ -151,7 +101,7 @@ void reportPicture(Report& report, const Picture& picture) {
   report.text("camera", "camera", picture.camera_from);
   report.bands("eye_m", "eye", eye, "m");
   report.bands("target_m", "target", target, "m");
-  report.number("vertical_fov_deg", "vertical field of view", c.vertical_fov * 180 / M_PI, "deg");
+  report.number("vertical_fov_deg", "vertical field of view", degrees(c.vertical_fov), "deg");
   report.text(
       "size", "size",
       fmt::format("{} x {} pixels, {} x {} samples", picture.options.width, picture.options.height,
@@ -159,16 +109,13 @@ void reportPicture(Report& report, const Picture& picture) {
 }
 
 Metadata metadataOf(const Picture& picture, const std::string& quantity, const std::string& unit) {
-  const Camera& c = picture.camera;
   return {{"Software", "radiosity " RADIOSITY_VERSION},
           {"quantity", quantity},
           {"unit", unit},
-          {"camera", fmt::format("eye={},{},{};target={},{},{};up={},{},{};fov={}", c.eye.x,
-                                 c.eye.y, c.eye.z, c.target.x, c.target.y, c.target.z, c.up.x,
-                                 c.up.y, c.up.z, c.vertical_fov * 180 / M_PI)}};
+          {"camera", cameraText(picture.camera)}};
 }
 
-void writeLitMesh(const PatchMesh& mesh, const Light& light, OutputSet& files, double ev,
+void writeLitMesh(const PatchMesh& mesh, const SurfaceLight& light, OutputSet& files, double ev,
                   double crease) {
   files.write(Format::glb, fmt::format("lit mesh, EV {:.2f}", ev),
               [&](const std::string& temporary) {
@@ -182,42 +129,28 @@ void writeLitMesh(const PatchMesh& mesh, const Light& light, OutputSet& files, d
 
 namespace {
 
-/// The brightest that more than a hundredth of the picture shows.
-double brightest(const Image& image) {
-  std::vector<double> values;
-  for (std::size_t k = 0; k < image.rgba.size(); k += 4) {
-    const float* p = image.rgba.data() + k;
-    values.push_back(p[3] > 0 ? luminanceOf(Vec3(p[0], p[1], p[2])) : 0.0);
-  }
-  const auto high = values.begin() + std::ptrdiff_t(0.99 * double(values.size() - 1));
-  std::nth_element(values.begin(), high, values.end());
-  return *high;
-}
-
 /// Automatic exposure makes a picture of anything; what is lit may lie elsewhere.
-void warnOfDarkness(Report& report, const PatchMesh& mesh, const Light& light,
+void warnOfDarkness(Report& report, const PatchMesh& mesh, const SurfaceLight& light,
                     const Image& radiance) {
-  constexpr double kDark = 1e-3;  // ten stops: it would be black in a picture of what is lit
-  const double typical = typicalLight(mesh, light.reflected) / std::numbers::pi;
-  const double seen = brightest(radiance);
-  if (!(typical > 0) || seen >= kDark * typical) return;
-  const auto brightest_patch = std::max_element(light.reflected.begin(), light.reflected.end());
-  const auto i = std::size_t(brightest_patch - light.reflected.begin());
+  const std::optional<UnlitView> view = unlitView(mesh, light, radiance);
+  if (!view) return;
+  const Index i = view->brightest;
   const Vec3 place = mesh.centroid[i];
-  const Note note{
-      Severity::warning,
-      fmt::format("nothing lit is in view: what the camera sees has {:.2g} W/m^2/sr, "
-                  "what is lit {:.2g}; point the camera at {}, with --camera "
-                  "'eye=X,Y,Z;target={:.3g},{:.3g},{:.3g}'",
-                  seen, typical, mesh.surface_names[mesh.surface[i]], place.x, place.y, place.z)};
+  const Note note{Severity::warning,
+                  fmt::format("nothing lit is in view: what the camera sees has {:.2g} W/m^2/sr, "
+                              "what is lit {:.2g}; point the camera at {}, with --camera "
+                              "'eye=X,Y,Z;target={:.3g},{:.3g},{:.3g}'",
+                              view->seen, view->lit, mesh.surface_names[mesh.surface[i]], place.x,
+                              place.y, place.z)};
   report.notes({&note, 1});
 }
 
 }  // namespace
 
-void drawLight(Session& session, const PatchMesh& mesh, const Light& light, const Picture& picture,
-               OutputSet& files) {
-  const Image radiance = radiancePicture(picture, mesh, light, session.progress);
+void drawLight(Session& session, const PatchMesh& mesh, const SurfaceLight& light,
+               const Picture& picture, OutputSet& files) {
+  const Image radiance =
+      renderRadiance(mesh, light, picture.camera, picture.options, session.progress);
   const double ev = exposureOf(session.request, radiance);
   if (session.request.exposure == "auto") warnOfDarkness(session.report, mesh, light, radiance);
   session.report.number("exposure_ev", "exposure", ev,

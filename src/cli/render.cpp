@@ -2,39 +2,41 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <optional>
 
-#include "base/luminance.h"
 #include "cli/commands.h"
 #include "cli/picture.h"
 #include "cli/words.h"
+#include "radiosity/pipeline.h"
 #include "radiosity/results.h"
 
 namespace radiosity::cli {
 
 namespace {
 
-/// What --show names; `none`: the lit scene itself.
+/// What --show names; no quantity: the lit scene itself.
 struct Show {
-  enum Quantity { none, radiosity, irradiance, form_factor, row_sum } quantity = none;
+  std::optional<Quantity> quantity;
   std::size_t patch = 0;
 
   bool needsLight() const {
-    return quantity == none || quantity == radiosity || quantity == irradiance;
+    return !quantity || *quantity == Quantity::radiosity || *quantity == Quantity::irradiance;
   }
 };
 
 Show parseShow(const std::string& text) {
-  if (text.empty()) return {Show::none, 0};
-  if (text == "radiosity") return {Show::radiosity, 0};
-  if (text == "irradiance") return {Show::irradiance, 0};
-  if (text == "row-sum") return {Show::row_sum, 0};
+  if (text.empty()) return {};
+  if (text == "radiosity") return {Quantity::radiosity};
+  if (text == "irradiance") return {Quantity::irradiance};
+  if (text == "row-sum") return {Quantity::row_sum};
   const std::string prefix = "form-factor:";
   if (text.starts_with(prefix)) {
     std::size_t patch = 0;
     const char* last = text.data() + text.size();
     const auto [end, error] = std::from_chars(text.data() + prefix.size(), last, patch);
-    if (error == std::errc() && end == last) return {Show::form_factor, patch};
+    if (error == std::errc() && end == last) return {Quantity::form_factor, patch};
     throw InputError(
         fmt::format("--show: '{}' needs a patch number from 0, e.g. form-factor:12", text));
   }
@@ -45,45 +47,9 @@ Show parseShow(const std::string& text) {
 }
 
 void requirePatch(const Show& show, const PatchMesh& mesh) {
-  if (show.quantity != Show::form_factor || show.patch < mesh.size()) return;
+  if (show.quantity != Quantity::form_factor || show.patch < mesh.size()) return;
   throw InputError(fmt::format("--show: there is no patch {}; the mesh has patches 0 to {}",
                                show.patch, mesh.size() - 1));
-}
-
-/// One number a patch for a field of any bands.
-std::vector<double> brightness(std::span<const double> values, int bands) {
-  const auto width = std::size_t(bands);
-  std::vector<double> out(values.size() / width);
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    out[i] = brightnessOf(values.subspan(width * i, width));
-  }
-  return out;
-}
-
-std::vector<double> rowOf(Pipeline& pipeline, std::size_t patch) {
-  pipeline.loadMatrix();
-  std::vector<double> row(pipeline.patches().size(), 0.0);
-  pipeline.formFactors().matrix.forRow(patch, [&](Index j, double f) { row[j] = f; });
-  return row;
-}
-
-std::vector<double> quantityOf(const Show& show, Pipeline& pipeline, FalseColour& legend) {
-  switch (show.quantity) {
-    case Show::radiosity:
-      legend = {"radiosity B" + brightnessText(pipeline.bands()), "W/m^2"};
-      return brightness(pipeline.solved().radiosity, pipeline.bands());
-    case Show::irradiance:
-      legend = {"irradiance H" + brightnessText(pipeline.bands()), "W/m^2"};
-      return brightness(pipeline.solved().irradiance, pipeline.bands());
-    case Show::form_factor:
-      legend = {fmt::format("form factor from patch {}", show.patch), ""};
-      return rowOf(pipeline, show.patch);
-    case Show::row_sum:
-    case Show::none:
-      break;
-  }
-  legend = {"row sum: fronts seen", ""};
-  return pipeline.formFactors().fronts;
 }
 
 /// Where the patch is whose form factors are drawn.
@@ -95,27 +61,27 @@ void describePatch(Report& report, const PatchMesh& mesh, const Show& show) {
 }
 
 void drawQuantity(Session& session, Pipeline& pipeline, const Picture& picture, const Show& show,
-                  OutputSet& files) {
-  FalseColour legend;
-  const std::vector<double> values = quantityOf(show, pipeline, legend);
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+                  Quantity quantity, OutputSet& files) {
+  const PatchMesh& mesh = pipeline.mesh().mesh;
+  const ScalarField field = pipeline.field(quantity, show.patch);
+  const FalseColour& legend = field.legend;
+  const auto [low, high] = std::minmax_element(field.values.begin(), field.values.end());
   session.report.text("quantity", "shown",
                       legend.unit.empty() ? legend.title : legend.title + ", " + legend.unit);
-  if (show.quantity == Show::form_factor) describePatch(session.report, pipeline.patches(), show);
+  if (quantity == Quantity::form_factor) describePatch(session.report, mesh, show);
   session.report.number("lowest", "lowest of all patches", *low, legend.unit);
   session.report.number("highest", "highest of all patches", *high, legend.unit);
   files.write(Format::png, legend.title, [&](const std::string& temporary) {
     writeImage(temporary,
-               renderFalseColour(pipeline.patches(), values, legend, picture.camera,
-                                 picture.options, session.progress),
+               renderFalseColour(mesh, field.values, legend, picture.camera, picture.options,
+                                 session.progress),
                true, metadataOf(picture, legend.title, legend.unit));
   });
   files.write(Format::exr, legend.title + " in each channel", [&](const std::string& temporary) {
     std::vector<double> grey;
-    grey.reserve(3 * values.size());
-    for (const double value : values) grey.insert(grey.end(), 3, value);
-    writeImage(temporary,
-               render(pipeline.patches(), grey, picture.camera, picture.options, session.progress),
+    grey.reserve(3 * field.values.size());
+    for (const double value : field.values) grey.insert(grey.end(), 3, value);
+    writeImage(temporary, render(mesh, grey, picture.camera, picture.options, session.progress),
                false, metadataOf(picture, legend.title, legend.unit));
   });
 }
@@ -126,7 +92,7 @@ void checkOutputs(const OutputSet& files, const Show& show) {
   if (!lit && !files.has(Format::png) && !files.has(Format::exr)) {
     throw InputError("render: name the picture with -o, e.g. -o picture.png (or .exr, .glb)");
   }
-  if (lit && show.quantity != Show::none) {
+  if (lit && show.quantity) {
     throw InputError(files.path(Format::glb) +
                      ": a lit mesh holds the radiosity only; use .png or .exr with --show");
   }
@@ -139,33 +105,34 @@ int runRender(Session& session) {
   OutputSet files = claimOutputs(session);
   const Show show = parseShow(request.show);
   checkOutputs(files, show);
-  Pipeline pipeline(request, session.report, session.progress);
-  pipeline.open(files.path(Format::results));
+  Run run(session, files.path(Format::results));
+  Pipeline& pipeline = run.pipeline;
   Picture picture = choosePicture(request, pipeline.scene());
-  if (show.quantity == Show::none) requireColours(pipeline, request, files);
-  if (show.needsLight()) pipeline.requireLight();
-  pipeline.mesh();
-  requirePatch(show, pipeline.patches());
+  if (!show.quantity) requireColours(pipeline, request, files);
+  if (show.needsLight()) requireLight(session, pipeline);
+  const PatchMesh& mesh = pipeline.mesh().mesh;
+  requirePatch(show, mesh);
   if (!files.has(Format::results) && pipeline.onlyAdds()) {
     files.add({request.input, Format::results});
   }
-  pipeline.factors();
+  const FormFactors& factors = pipeline.factors();
   keepFactors(session, pipeline, files);
   int code = 0;
   std::vector<double> reflected;
   if (show.needsLight()) {
-    pipeline.solution();
     code = judgeSolution(session, pipeline);
-    if (!pipeline.results().solution) throw RunError("no picture: the system is singular");
+    if (pipeline.solution().summary.status == SolveStatus::singular) {
+      throw RunError("no picture: the system is singular");
+    }
     keepSolution(session, pipeline, files);
-    reflected = reflectedLight(pipeline, pipeline.solved().radiosity);
+    reflected = reflectedLight(pipeline.solution().radiosity, pipeline.materials());
   }
-  framePicture(picture, pipeline.patches(), pipeline.formFactors().report.closed, reflected);
+  framePicture(picture, mesh, factors.report.closed, reflected);
   reportPicture(session.report, picture);
-  if (show.quantity == Show::none) {
-    drawLight(session, pipeline.patches(), solvedLight(pipeline), picture, files);
+  if (show.quantity) {
+    drawQuantity(session, pipeline, picture, show, *show.quantity, files);
   } else {
-    drawQuantity(session, pipeline, picture, show, files);
+    drawLight(session, mesh, pipeline.solvedLight(), picture, files);
   }
   writeStages(session, pipeline, files);
   files.commit(session.report, session.progress);

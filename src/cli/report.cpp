@@ -11,8 +11,10 @@
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
+#include "base/byte_text.h"
 #include "cli/words.h"
 #include "radiosity/base.h"
+#include "radiosity/names.h"
 
 namespace radiosity::cli {
 
@@ -29,18 +31,6 @@ constexpr std::size_t kMostNotes = 30;  // of one severity, beyond which they ar
 void put(std::FILE* stream, const std::string& text) {
   std::fputs(text.c_str(), stream);
   std::fflush(stream);
-}
-
-const char* severityName(Severity severity) {
-  switch (severity) {
-    case Severity::loud:
-      return "loud";
-    case Severity::warning:
-      return "warning";
-    case Severity::info:
-      break;
-  }
-  return "info";
 }
 
 void printNote(Severity severity, const std::string& text) {
@@ -200,7 +190,8 @@ void Report::notes(std::span<const Note> notes) {
     std::vector<std::string> shapes;  // in the order they came
     for (const Note& note : notes) {
       if (note.severity != severity) continue;
-      (*root_)["notes"].push_back({{"severity", severityName(severity)}, {"text", note.text}});
+      (*root_)["notes"].push_back(
+          {{"severity", nameOf(kSeverityNames, severity)}, {"text", note.text}});
       const std::string text = oneLine(note.text);
       const std::string shape = shapeOf(text);
       if (++count[shape] == 1) shapes.push_back(shape);

@@ -1,8 +1,7 @@
 #include "cli/request.h"
 
-#include "cli/option_names.h"
-#include "cli/stage_key.h"
 #include "cli/words.h"
+#include "radiosity/names.h"
 
 namespace radiosity::cli {
 
@@ -24,11 +23,6 @@ const char* commandName(Command command) {
       break;
   }
   return "render";
-}
-
-bool Request::overridesScene() const {
-  return !scene.set.empty() || !scene.materials_file.empty() || !scene.one_sided.empty() ||
-         !scene.two_sided.empty() || scene.sky.has_value();
 }
 
 namespace {

@@ -75,8 +75,6 @@ struct Request {
   std::string report;
   bool quiet = false;
 
-  /// Scene options that change a scene that came back from a results file.
-  bool overridesScene() const;
   /// `options` with what was given put in; validated.
   MeshOptions apply(MeshOptions options) const;
   FormFactorOptions apply(FormFactorOptions options) const;

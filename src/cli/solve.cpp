@@ -1,5 +1,3 @@
-#include "radiosity/solve.h"
-
 #include "cli/commands.h"
 #include "cli/picture.h"
 
@@ -7,23 +5,23 @@ namespace radiosity::cli {
 
 int runSolve(Session& session) {
   OutputSet files = claimOutputs(session);
-  Pipeline pipeline(session.request, session.report, session.progress);
-  pipeline.open(files.path(Format::results));
+  Run run(session, files.path(Format::results));
+  Pipeline& pipeline = run.pipeline;
   requireColours(pipeline, session.request, files);
-  pipeline.mesh();
-  pipeline.factors();
+  const FormFactors& factors = pipeline.factors();
   keepFactors(session, pipeline, files);
-  pipeline.solution();
   const int code = judgeSolution(session, pipeline);
+  const bool singular = pipeline.solution().summary.status == SolveStatus::singular;
   writeStages(session, pipeline, files);
-  if (files.has(Format::glb) && pipeline.results().solution) {
+  if (files.has(Format::glb) && !singular) {
     Picture picture = choosePicture(session.request, pipeline.scene());
-    const Light light = solvedLight(pipeline);
-    framePicture(picture, pipeline.patches(), pipeline.formFactors().report.closed,
-                 light.reflected);
-    const Image radiance = radiancePicture(picture, pipeline.patches(), light, session.progress);
+    const PatchMesh& mesh = pipeline.mesh().mesh;
+    const SurfaceLight light = pipeline.solvedLight();
+    framePicture(picture, mesh, factors.report.closed, light.reflected);
+    const Image radiance =
+        renderRadiance(mesh, light, picture.camera, picture.options, session.progress);
     const double ev = exposureOf(session.request, radiance);
-    writeLitMesh(pipeline.patches(), light, files, ev, picture.options.crease);
+    writeLitMesh(mesh, light, files, ev, picture.options.crease);
   }
   files.commit(session.report, session.progress);
   return code;

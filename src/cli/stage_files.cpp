@@ -1,8 +1,9 @@
-// What the subcommands share: the files that hold stages.
+// What the subcommands share: the input, and the files that hold stages.
 #include <fmt/format.h>
 
 #include <filesystem>
 
+#include "base/byte_text.h"
 #include "cli/commands.h"
 #include "cli/light_cure.h"
 #include "cli/signal_guard.h"
@@ -10,6 +11,35 @@
 #include "radiosity/results.h"
 
 namespace radiosity::cli {
+
+namespace {
+
+/// Said for every option given, also where it says what is the default.
+void refuseReadingOptions(const Request& request) {
+  if (request.reading_options.empty() || !isResultsFile(request.input)) return;
+  throw InputError(fmt::format(
+      "{}: {} says how a scene file is read, and this is a results file; give the scene file",
+      request.input, request.reading_options.front()));
+}
+
+}  // namespace
+
+Run::Run(Session& session, const std::string& results_output)
+    : said(session.request, session.report, !results_output.empty()),
+      pipeline(session.progress, &said) {
+  const Request& request = session.request;
+  refuseReadingOptions(request);
+  pipeline.open(request.input, request.scene, results_output);
+  PipelineOptions& options = pipeline.options();
+  options.mesh = request.apply(options.mesh);
+  options.factors = request.apply(options.factors);
+  options.solve = request.apply(options.solve);
+  options.gather = request.apply(options.gather);
+}
+
+void requireLight(const Session& session, const Pipeline& pipeline) {
+  pipeline.requireLight([&] { return lightCure(session.request, pipeline.scene()); });
+}
 
 OutputSet claimOutputs(const Session& session) {
   const Request& request = session.request;
@@ -63,7 +93,7 @@ void keepFactors(Session& session, Pipeline& pipeline, const OutputSet& files) {
   const std::string path = files.path(Format::results);
   if (path.empty() || !pipeline.factorsComputed()) return;
   announceResults(session, pipeline, path);
-  pipeline.save(path);
+  pipeline.checkpoint(path);
   sayIfInterrupted(path + " keeps the form factors");
   session.report.line("kept", "form factors, in " + path);
 }
@@ -83,8 +113,7 @@ void keepSolution(Session& session, Pipeline& pipeline, const OutputSet& files) 
 void writeStages(Session& session, Pipeline& pipeline, OutputSet& files) {
   if (files.has(Format::results)) writeResultsFile(session, pipeline, files);
   if (!files.has(Format::matrix_market)) return;
-  pipeline.loadMatrix();
-  const ExchangeMatrix& matrix = pipeline.formFactors().matrix;
+  const ExchangeMatrix& matrix = pipeline.matrix();
   // Two indices and 17 digits with sign, point and exponent: at most 40 characters an entry.
   const std::size_t bytes = 40 * matrix.nonZeros();
   const std::string path = files.path(Format::matrix_market);
@@ -97,7 +126,7 @@ void writeStages(Session& session, Pipeline& pipeline, OutputSet& files) {
 }
 
 int judgeSolution(Session& session, Pipeline& pipeline) {
-  const SolveSummary& summary = pipeline.solved().summary;
+  const SolveSummary& summary = pipeline.solution().summary;
   if (summary.usable()) {
     if (summary.status == SolveStatus::no_light) {
       const Note dark{Severity::warning,
@@ -108,11 +137,6 @@ int judgeSolution(Session& session, Pipeline& pipeline) {
   }
   const Note unusable{Severity::loud, summary.message};
   session.report.notes({&unusable, 1});
-  if (summary.status == SolveStatus::singular) {
-    pipeline.results().solution.reset();
-    if (pipeline.bands() == 3) pipeline.results().materials.reset();  // the scene has them
-    pipeline.results().solution_key.clear();
-  }
   return 1;
 }
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "cli/option_names.h"
 #include "cli/section.h"
 #include "cli/words.h"
+#include "radiosity/names.h"
 
 namespace radiosity::cli {
 
@@ -50,10 +50,9 @@ void describeMaterials(Report& report, const Scene& scene) {
   std::vector<std::vector<std::string>> rows;
   rows.reserve(scene.materials.size());
   for (const Material& m : scene.materials) {
-    const double pi = 3.14159265358979323846;
     const auto textureName = [&](Index t) { return t == kNone ? "" : scene.textures[t].name; };
     rows.push_back({m.name, triple(m.reflectance), textureName(m.texture), triple(m.emission),
-                    triple(m.emission / pi), textureName(m.emission_texture),
+                    triple(m.radiance()), textureName(m.emission_texture),
                     m.two_sided ? "two" : "one"});
   }
   report.table("materials",
@@ -71,8 +70,7 @@ void describeCameras(Report& report, const Scene& scene) {
   std::vector<std::vector<std::string>> rows;
   rows.reserve(scene.cameras.size());
   for (const Camera& c : scene.cameras) {
-    rows.push_back(
-        {c.name, triple(c.eye), triple(c.target), numberText(c.vertical_fov * 180 / M_PI)});
+    rows.push_back({c.name, triple(c.eye), triple(c.target), numberText(degrees(c.vertical_fov))});
   }
   report.table("cameras",
                {{"name", "camera", false},
@@ -198,20 +196,6 @@ void summarizeMesh(Report& report, const MeshResult& result, Detail detail) {
 
 namespace {
 
-const char* statusText(SolveStatus status) {
-  switch (status) {
-    case SolveStatus::converged:
-      return "converged";
-    case SolveStatus::no_convergence:
-      return "no_convergence";
-    case SolveStatus::no_light:
-      return "no_light";
-    case SolveStatus::singular:
-      break;
-  }
-  return "singular";
-}
-
 double sum(const std::vector<double>& bands) {
   return std::accumulate(bands.begin(), bands.end(), 0.0);
 }
@@ -266,7 +250,7 @@ void summarizeSolution(Report& report, const Solution& solution, const FormFacto
   if (detail == Detail::brief) report.line("", oneLine(s.message));
   {
     const Section section(report, detail, "solution", "Solution");
-    report.text("status", "status", statusText(s.status));
+    report.text("status", "status", nameOf(kSolveStatusNames, s.status));
     report.text("solver", "solver", nameOf(kSolverNames, options.solver));
     report.count("iterations", "iterations", std::size_t(s.iterations));
     report.count("rows", "rows multiplied", s.rows);
@@ -325,7 +309,7 @@ void gatherFigures(Report& report, const Gathered& gathered, const GatherOptions
                    Detail detail) {
   const GatherSummary& s = gathered.summary;
   const Section section(report, detail, "gather", "Gather");
-  report.text("at", "at", gathered.at == GatherAt::patches ? "patches" : "vertices");
+  report.text("at", "at", nameOf(kGatherAtNames, gathered.at));
   report.count("eyes", "eyes", gathered.area.size());
   report.count("hemicubes_per_pass", "hemicubes a pass", s.hemicubes);
   report.count("resolution", "pixels along an edge", std::size_t(options.resolution));

@@ -5,8 +5,8 @@
 #include <charconv>
 #include <optional>
 
+#include "base/parse.h"
 #include "cli/request.h"
-#include "scene/text.h"
 
 namespace radiosity::cli {
 

@@ -6,8 +6,10 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
+#include "base/byte_text.h"
 #include "base/printable.h"
 #include "radiosity/base.h"
 
@@ -23,19 +25,6 @@ std::string countText(std::size_t count) {
   return text;
 }
 
-std::string bytesText(std::size_t bytes) {
-  constexpr const char* kUnits[] = {"B", "KiB", "MiB", "GiB", "TiB", "PiB"};
-  auto value = double(bytes);
-  std::size_t unit = 0;
-  while (value >= 1024 && unit + 1 < std::size(kUnits)) {
-    value /= 1024;
-    ++unit;
-  }
-  if (unit == 0) return fmt::format("{} B", bytes);
-  return value < 100 ? fmt::format("{:.1f} {}", value, kUnits[unit])
-                     : fmt::format("{:.0f} {}", value, kUnits[unit]);
-}
-
 std::string durationText(double seconds) {
   if (seconds < 9.95) return fmt::format("{:.2f} s", seconds);
   const auto whole = static_cast<long long>(std::llround(seconds));
@@ -47,6 +36,8 @@ std::string durationText(double seconds) {
 std::string numberText(double value, int digits) {
   return std::isnan(value) ? "none" : fmt::format("{:.{}g}", value, digits);
 }
+
+double degrees(double radians) { return radians * 180 / std::numbers::pi; }
 
 std::string plural(std::size_t count, const std::string& one, const std::string& many) {
   return countText(count) + " " + (count == 1 ? one : many);
@@ -62,11 +53,6 @@ std::vector<std::string> bandNames(int bands) {
 std::string bandsText(int bands) {
   if (bands == 3) return "R G B";
   return bands == 1 ? "band 1" : fmt::format("bands 1 to {}", bands);
-}
-
-std::string brightnessText(int bands) {
-  if (bands == 3) return " (Rec. 709 luminance)";
-  return bands == 1 ? "" : " (sum of all bands)";
 }
 
 std::size_t parseBytes(const std::string& option, const std::string& text) {

@@ -12,14 +12,14 @@ namespace radiosity::cli {
 /// 1234567 -> "1,234,567".
 std::string countText(std::size_t count);
 
-/// Bytes with a binary unit: "512 B", "41.2 MiB".
-std::string bytesText(std::size_t bytes);
-
 /// "0.34 s", "12 s", "3 min 5 s", "2 h 10 min".
 std::string durationText(double seconds);
 
 /// Six significant digits, no trailing zeros; "none" for NaN.
 std::string numberText(double value, int digits = 6);
+
+/// Of an angle in radians.
+double degrees(double radians);
 
 /// "1 patch", "2,034 patches".
 std::string plural(std::size_t count, const std::string& one, const std::string& many);
@@ -28,8 +28,6 @@ std::string plural(std::size_t count, const std::string& one, const std::string&
 std::vector<std::string> bandNames(int bands);
 /// All of them behind a figure: "R G B", "band 1", "bands 1 to 8".
 std::string bandsText(int bands);
-/// What stands for all bands in one number (brightnessOf()), behind the name of a quantity.
-std::string brightnessText(int bands);
 
 /// "512M", "2G", "1.5GiB", "1000000" (bytes) -> bytes; units are binary. InputError names `option`.
 std::size_t parseBytes(const std::string& option, const std::string& text);

@@ -1,4 +1,4 @@
-// Whether any patch can see the sky. Both throw Cancelled.
+// Whether any patch can see the sky.
 #pragma once
 
 #include "radiosity/base.h"
@@ -6,12 +6,9 @@
 
 namespace radiosity {
 
-/// True where the mesh proves it: every patch lies on the inside of a closed surface that faces
-/// inwards (a room), or stands within one. False says nothing.
-bool closedByTopology(const PatchMesh& mesh, Progress& progress);
-
-/// True where no small hemicube (32 pixels) on any patch has a pixel of sky. Stops at the first
-/// that has one.
+/// True where no small hemicube (32 pixels) on any patch has a pixel of sky, for scenes that are
+/// not proved closed (Enclosures::proved_closed). Stops at the first that has one. Throws
+/// Cancelled.
 bool closedByEye(const PatchMesh& mesh, Progress& progress);
 
 }  // namespace radiosity

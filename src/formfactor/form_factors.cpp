@@ -10,13 +10,16 @@
 
 #include "formfactor/exact/assembly/exact_factors.h"
 #include "formfactor/exact/assembly/row_sample.h"
+#include "formfactor/foreseen_work.h"
 #include "formfactor/hemicube/hemicube_factors.h"
 
 namespace radiosity {
 
 struct FormFactorPlan::Prepared {
-  Prepared(const PatchMesh& of, const FormFactorOptions& with) : mesh(of), options(with) {}
-  const PatchMesh& mesh;
+  Prepared(std::shared_ptr<const PatchMesh> of, const FormFactorOptions& with)
+      : kept(std::move(of)), mesh(*kept), options(with) {}
+  std::shared_ptr<const PatchMesh> kept;
+  const PatchMesh& mesh;  ///< the one that is kept
   FormFactorOptions options;
   // Where the method is exact:
   std::optional<ExactScene> scene;
@@ -36,43 +39,43 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Hemicubes are chosen only where they save a wait, ...
-constexpr double kPatience = 60;
-/// ... and much of it: they stall at some per cent of the matrix however many pixels they have.
+/// Seconds of a wait that is worth saying how to shorten.
+constexpr double kLongWait = 60;
+/// Hemicubes are chosen only where exact is much work (kMuchWork), and so many times theirs: they
+/// stall at some per cent of the matrix however many pixels they have.
 constexpr double kWorthTheError = 30;
 /// A rough estimate decides where it is past both by this. (In 21 scenes of others it was 0.24 to
 /// 2.7 times the full one.)
 constexpr double kFarBeyond = 5;
 
-/// Of one core, in a scene of few polygons: what a hemicube of 256 pixels took on a 2.7 GHz Xeon;
-/// with the pixels elsewhere. The choice of a method rests on it, which is to be the same wherever
-/// and whenever it is made; in cluttered scenes they take longer.
-double simpleHemicubeSeconds(const PatchMesh& mesh, const FormFactorOptions& options) {
+/// In a scene of few polygons.
+double simpleHemicubeWork(const PatchMesh& mesh, const FormFactorOptions& options) {
   const double pixels = double(options.resolution) / 256;
-  return 4e-4 * pixels * pixels * double(mesh.size());
+  return kHemicubeWork * pixels * pixels * double(mesh.size());
 }
 
 std::string clutterText(const ExactEstimate& estimate) {
-  if (estimate.partial_pairs < 1) return "no pair of a sample is partly hidden";
-  return fmt::format("about {:.2g} pairs are partly hidden, past {:.1f} occluders each",
-                     estimate.partial_pairs, estimate.occluders_per_partial);
+  if (estimate.occluded_pairs < 1) return "no pair of a sample is occluded";
+  return fmt::format("about {:.2g} pairs are occluded, past {:.1f} occluders each",
+                     estimate.occluded_pairs, estimate.occluders_per_pair);
 }
 
-struct Wait {
-  double seconds;  ///< of the exact method
-  double times;    ///< as long as hemicubes in a simple scene
+/// Of the exact method.
+struct ExactWork {
+  double all;    ///< see foreseen_work.h
+  double times;  ///< as much as that of hemicubes in a simple scene
 };
 
-Wait waitFor(const ExactEstimate& estimate, const PatchMesh& mesh,
-             const FormFactorOptions& options) {
+ExactWork exactWork(const ExactEstimate& estimate, const PatchMesh& mesh,
+                    const FormFactorOptions& options) {
   // Who asks for more than the default does not ask for hemicubes: what that adds does not count.
   const double beyond = std::max(0.0, 1 - options.tolerance / FormFactorOptions().tolerance);
-  const double seconds = estimate.seconds - beyond * estimate.refining;
-  return {seconds, seconds / simpleHemicubeSeconds(mesh, options)};
+  const double work = estimate.work - beyond * estimate.refining;
+  return {work, work / simpleHemicubeWork(mesh, options)};
 }
 
-bool isTooLong(const Wait& wait, double margin) {
-  return wait.seconds > margin * kPatience && wait.times > margin * kWorthTheError;
+bool isTooMuch(const ExactWork& work, double margin) {
+  return work.all > margin * kMuchWork && work.times > margin * kWorthTheError;
 }
 
 /// The method, and why.
@@ -80,13 +83,13 @@ void choose(const ExactEstimate& estimate, const PatchMesh& mesh, const FormFact
             FormFactorPlan& plan) {
   plan.method = FormFactorMethod::exact;
   if (options.method == FormFactorMethod::exact) return;
-  const Wait wait = waitFor(estimate, mesh, options);
-  if (isTooLong(wait, 1)) {
+  const ExactWork work = exactWork(estimate, mesh, options);
+  if (isTooMuch(work, 1)) {
     plan.method = FormFactorMethod::hemicube;
     plan.reason = fmt::format(
         "hemicube: {}; exact would be {:.0f} times the work of as many "
         "hemicubes in a simple scene",
-        clutterText(estimate), wait.times);
+        clutterText(estimate), work.times);
   } else if (options.memory_limit > 0 && estimate.bytes > options.memory_limit) {
     plan.method = FormFactorMethod::hemicube;
     plan.reason = fmt::format("hemicube: exact would need {:.0f} MiB, more than the limit",
@@ -103,7 +106,7 @@ RowSample sampleToChoose(const FormFactorPlan::Prepared& prepared, const ExactSc
   if (options.method == FormFactorMethod::automatic) {
     RowSample rough = sampleRows(scene, options.tolerance, SampleSize::rough, progress);
     const ExactEstimate estimate = estimateExact(scene, rough, options);
-    if (isTooLong(waitFor(estimate, prepared.mesh, options), kFarBeyond)) return rough;
+    if (isTooMuch(exactWork(estimate, prepared.mesh, options), kFarBeyond)) return rough;
   }
   return sampleRows(scene, options.tolerance, SampleSize::full, progress);
 }
@@ -125,7 +128,7 @@ void planExact(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progres
   plan.matrix_bytes = prepared.estimate.matrix_bytes;
   plan.seconds = exactSeconds(scene, kernels, sample, options, progress);
   plan.refining =
-      prepared.estimate.seconds > 0 ? prepared.estimate.refining / prepared.estimate.seconds : 0.0;
+      prepared.estimate.work > 0 ? prepared.estimate.refining / prepared.estimate.work : 0.0;
 }
 
 void planHemicubes(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {
@@ -156,21 +159,28 @@ void FormFactorOptions::validate() const {
 
 Precision FormFactorOptions::storedPrecision() const {
   // Single precision rounds to 6e-8 of a value, well below a tolerance of 1e-6 of the mean.
-  return precision.value_or(tolerance < 1e-6 ? Precision::real : Precision::single);
+  return precision.value_or(tolerance < 1e-6 ? Precision::double_precision
+                                             : Precision::single_precision);
 }
 
 FormFactorPlan planFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
                                Progress& progress) {
+  return planFormFactors(std::make_shared<const PatchMesh>(mesh), options, progress);
+}
+
+FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
+                               const FormFactorOptions& options, Progress& progress) {
+  if (!mesh) throw std::logic_error("planFormFactors(): no mesh");
   options.validate();
   const Clock::time_point start = Clock::now();
-  auto prepared = std::make_shared<FormFactorPlan::Prepared>(mesh, options);
+  auto prepared = std::make_shared<FormFactorPlan::Prepared>(std::move(mesh), options);
   FormFactorPlan plan;
   if (options.method != FormFactorMethod::hemicube) planExact(*prepared, plan, progress);
   if (plan.method == FormFactorMethod::hemicube) {
     planHemicubes(*prepared, plan, progress);
-  } else if (plan.seconds > kPatience) {
-    const HemicubeScene scene(mesh, options);
-    plan.hemicube_seconds = estimateHemicubes(mesh, scene, options, progress).measured;
+  } else if (plan.seconds > kLongWait) {
+    const HemicubeScene scene(prepared->mesh, options);
+    plan.hemicube_seconds = estimateHemicubes(prepared->mesh, scene, options, progress).measured;
   }
   prepared->seconds = secondsSince(start);
   plan.prepared = std::move(prepared);
@@ -203,7 +213,9 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress) {
 
 FormFactors computeFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
                                Progress& progress) {
-  return computeFormFactors(planFormFactors(mesh, options, progress), progress);
+  // The plan does not outlive this call, and the mesh does: it is not copied.
+  const std::shared_ptr<const PatchMesh> here(std::shared_ptr<const void>(), &mesh);
+  return computeFormFactors(planFormFactors(here, options, progress), progress);
 }
 
 }  // namespace radiosity

@@ -10,7 +10,7 @@ namespace radiosity {
 namespace {
 
 constexpr double kMebibyte = 1024.0 * 1024.0;
-/// Share of the view on bare backs above which normals are suspect.
+/// Share of the view on black backs above which normals are suspect.
 constexpr double kSuspectBacks = 1e-3;
 
 void noteBacks(const PatchMesh& mesh, FormFactors& result) {
@@ -30,7 +30,7 @@ void noteBacks(const PatchMesh& mesh, FormFactors& result) {
   }
   result.report.notes.push_back(
       {Severity::warning,
-       fmt::format("{:.2f}% of the view ends on bare backs, seen from behind: {}; flipped? "
+       fmt::format("{:.2f}% of the view ends on black backs, seen from behind: {}; flipped? "
                    "(turn the faces over, or make them two-sided)",
                    100 * total, names)});
 }

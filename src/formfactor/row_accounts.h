@@ -8,7 +8,7 @@
 
 namespace radiosity {
 
-/// Bare backs one row sees.
+/// Black backs one row sees.
 struct SeenBack {
   Index surface;
   double share;

@@ -69,13 +69,13 @@ void appendPieces(const PatchMesh& mesh, std::size_t patch, double scale,
   }
 }
 
-ViewScene::ViewScene(const PatchMesh& mesh, bool with_grids)
+ViewScene::ViewScene(const PatchMesh& mesh)
     : patches(mesh.size()),
       items(mesh.size() + mesh.surface_names.size()),
       scale(powerOfTwoBelow(diagonal(mesh))),
       coincidence(MeshOptions().weld * diagonal(mesh) * scale) {
   addPolygons(mesh);
-  addSides(mesh, with_grids);
+  addSides(mesh);
   numberCells();
 }
 
@@ -122,7 +122,7 @@ void ViewScene::addPolygons(const PatchMesh& mesh) {
   }
 }
 
-void ViewScene::addSides(const PatchMesh& mesh, bool with_grids) {
+void ViewScene::addSides(const PatchMesh& mesh) {
   std::vector<std::array<std::vector<Index>, 2>> members(mesh.polygons.size());
   for (Index i = 0; i < mesh.size(); ++i) {
     if (mesh.polygon[i] != kNone && mesh.area[i] > 0) {
@@ -139,7 +139,7 @@ void ViewScene::addSides(const PatchMesh& mesh, bool with_grids) {
         continue;
       }
       side.item = own.front();
-      if (own.size() == 1 || !with_grids) continue;
+      if (own.size() == 1) continue;
       std::sort(own.begin(), own.end(), [&](Index a, Index b) {
         return mesh.index_in_surface[a] < mesh.index_in_surface[b];
       });

@@ -11,7 +11,7 @@
 
 namespace radiosity {
 
-/// What a side of a polygon counts for. Items are 0 to N-1: patch; N + s: the bare back of surface
+/// What a side of a polygon counts for. Items are 0 to N-1: patch; N + s: the black back of surface
 /// s (a side without patches).
 struct PolygonSide {
   std::uint32_t item = kNone;  ///< everywhere, if `grid` is kNone
@@ -33,8 +33,7 @@ struct ViewPolygon {
 /// precision depths neither overflow nor depend on the scene's unit; it changes no bit of any
 /// mantissa.
 struct ViewScene {
-  /// Without grids a side of many patches counts as its first: enough to tell bare sides.
-  explicit ViewScene(const PatchMesh& mesh, bool with_grids = true);
+  explicit ViewScene(const PatchMesh& mesh);
 
   std::size_t patches;  ///< N
   std::size_t items;    ///< N + surfaces
@@ -58,7 +57,7 @@ struct ViewScene {
  private:
   std::vector<Index> packVertices(const PatchMesh& mesh);
   void addPolygons(const PatchMesh& mesh);
-  void addSides(const PatchMesh& mesh, bool with_grids);
+  void addSides(const PatchMesh& mesh);
   void numberCells();
 };
 

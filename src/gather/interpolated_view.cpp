@@ -21,7 +21,7 @@ InterpolatedView::InterpolatedView(const PatchMesh& mesh, const PatchBasis& basi
                                    const std::vector<float>& radiosity, std::size_t bands)
     : mesh_(mesh),
       basis_(basis),
-      kernels_(simd ? simdInterpolation() : scalarInterpolation()),
+      kernels_(interpolationKernels(simd)),
       scale_(scale),
       resolution_(resolution),
       eye_of_corner_(eye_of_corner),
@@ -128,7 +128,7 @@ void InterpolatedView::alongRow(SeenFacet& facet, const ItemRun& run) const {
 void InterpolatedView::visit(const ItemRun& run) {
   if (run.begin >= run.end) return;
   const std::size_t patch = run.item;
-  if (patch >= mesh_.size()) {  // bare backs are black; what comes after them is the sky
+  if (patch >= mesh_.size()) {  // backs are black; what comes after them is the sky
     const std::size_t surface = patch - mesh_.size();
     if (surface < backs_.size()) backs_[surface] += run.weights[run.end] - run.weights[run.begin];
     return;

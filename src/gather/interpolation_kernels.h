@@ -1,5 +1,5 @@
 // The inner loop of interpolation: one facet along one run of pixels. One kernel per instruction
-// set and a scalar twin; all give the same bits.
+// set, Highway's scalar target among them; all give the same bits.
 #pragma once
 
 #include <array>
@@ -39,16 +39,14 @@ struct alignas(64) LaneSums {
 };
 
 struct InterpolationKernels {
-  std::string target;  ///< instruction set, or "scalar"
+  std::string target;  ///< instruction set, by Highway's name
   /// sums += weight * (value interpolated - value of corner 0) over the pixels. Pixels where the
   /// facet is seen as a point take corner 0's value. `sums`: one a band of the facet's rise.
   void (*addTriangle)(const FacetRow& facet, const PixelRow& pixels, LaneSums* sums);
   void (*addQuad)(const FacetRow& facet, const PixelRow& pixels, LaneSums* sums);
 };
 
-/// The twin in plain C++, against which every other set is tested.
-InterpolationKernels scalarInterpolation();
-/// The best instruction set of this machine.
-InterpolationKernels simdInterpolation();
+/// The best instruction set of this machine; `simd` false: Highway's scalar target, the same bits.
+InterpolationKernels interpolationKernels(bool simd);
 
 }  // namespace radiosity

@@ -123,7 +123,9 @@ namespace radiosity {
 
 HWY_EXPORT(kernels);
 
-InterpolationKernels simdInterpolation() { return HWY_DYNAMIC_DISPATCH(kernels)(); }
+InterpolationKernels interpolationKernels(bool simd) {
+  return (simd ? HWY_DYNAMIC_DISPATCH(kernels) : HWY_CHOOSE_FALLBACK(kernels))();
+}
 
 }  // namespace radiosity
 #endif

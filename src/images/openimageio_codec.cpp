@@ -159,7 +159,7 @@ class OpenImageIoCodec final : public ImageCodec {
 }  // namespace
 
 /// What imageCodec() asks this library for.
-extern "C" const ImageCodec* radiosityImageCodec() {
+extern "C" [[gnu::visibility("default")]] const ImageCodec* radiosityImageCodec() {
   static const OpenImageIoCodec kCodec;
   return &kCodec;
 }

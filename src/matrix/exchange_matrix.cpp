@@ -6,15 +6,12 @@
 #include <numeric>
 #include <utility>
 
+#include "matrix/matrix_row.h"
 #include "matrix/run_row.h"
 
 namespace radiosity {
 
 namespace {
-
-std::size_t valueBytes(Precision precision) {
-  return precision == Precision::single ? sizeof(float) : sizeof(double);
-}
 
 void checkRow(std::size_t i, std::size_t n, std::span<const Index> columns,
               std::span<const double> values) {
@@ -36,6 +33,13 @@ void checkRow(std::size_t i, std::size_t n, std::span<const Index> columns,
 }
 
 }  // namespace
+
+ExchangeMatrix::ExchangeMatrix() = default;
+ExchangeMatrix::ExchangeMatrix(const ExchangeMatrix&) = default;
+ExchangeMatrix::ExchangeMatrix(ExchangeMatrix&&) noexcept = default;
+ExchangeMatrix& ExchangeMatrix::operator=(const ExchangeMatrix&) = default;
+ExchangeMatrix& ExchangeMatrix::operator=(ExchangeMatrix&&) noexcept = default;
+ExchangeMatrix::~ExchangeMatrix() = default;
 
 ExchangeMatrix::ExchangeMatrix(std::vector<double> area, Precision precision)
     : area_(std::move(area)), precision_(precision), rows_(area_.size()) {
@@ -61,18 +65,23 @@ void ExchangeMatrix::setRow(std::size_t i, std::span<const Index> columns,
     }
   };
   if (!row.dense) row.columns.assign(columns.begin(), columns.end());
-  if (precision_ == Precision::single) {
-    fill(row.single);
+  if (precision_ == Precision::single_precision) {
+    fill(row.floats);
   } else {
-    fill(row.real);
+    fill(row.doubles);
   }
   rows_[i] = std::move(row);
+}
+
+RowView ExchangeMatrix::viewOf(std::size_t i) const {
+  const Row& row = rows_[i];
+  return {row.columns, row.floats, row.doubles, row.dense};
 }
 
 double ExchangeMatrix::at(std::size_t i, std::size_t j) const {
   if (!symmetric_) {
     double found = 0;
-    forStored(i, j, j + 1, [&](Index, double value) { found = value; });
+    viewOf(i).forEntries(j, j + 1, [&](Index, double value) { found = value; });
     return found;
   }
   if (position_[i] <= position_[j]) return storedUpper(position_[i], position_[j]);
@@ -80,52 +89,38 @@ double ExchangeMatrix::at(std::size_t i, std::size_t j) const {
   return mirrored == 0 ? 0 : mirrored * area_[j] / area_[i];
 }
 
-std::vector<Index> ExchangeMatrix::rowEntries(Part part) const {
+std::vector<Index> ExchangeMatrix::rowEntries() const {
   std::vector<Index> entries(size(), 0);
   for (std::size_t i = 0; i < rows_.size(); ++i) {
-    forStored(i, 0, size(), [&](Index, double) { ++entries[i]; });
+    viewOf(i).forEntries(0, size(), [&](Index, double) { ++entries[i]; });
   }
-  const auto count = [&](std::size_t k, std::size_t offset, const auto* values,
-                         std::size_t length) {
-    const Index* later = &order_[k] + 1 + offset;
-    Index own = 0;
-    for (std::size_t m = 0; m < length; ++m) {
-      const Index stored = values[m] != 0 ? 1 : 0;
-      own += stored;
-      entries[later[m]] += stored;
-    }
+  for (std::size_t k = 0; k < upper_.size(); ++k) {
+    Index own = diagonal_[k] != 0 ? 1 : 0;
+    forRuns(upper_[k], [&](std::size_t offset, const auto* values, std::size_t length) {
+      const Index* later = &order_[k] + 1 + offset;
+      for (std::size_t m = 0; m < length; ++m) {
+        const Index stored = values[m] != 0 ? 1 : 0;
+        own += stored;
+        entries[later[m]] += stored;
+      }
+    });
     entries[order_[k]] += own;
-  };
-  const bool sum = part == Part::corrected && isCorrected();
-  const std::vector<RunRow>& rows = part == Part::correction ? correction_ : upper_;
-  std::vector<double> row(sum ? size() : 0);
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    if (part != Part::correction && diagonal_[k] != 0) ++entries[order_[k]];
-    if (sum) {
-      upperRow(k, std::span(row).first(size() - k), part);
-      count(k, 0, row.data() + 1, size() - k - 1);
-    } else {
-      forRuns(rows[k], [&](std::size_t offset, const auto* values, std::size_t length) {
-        count(k, offset, values, length);
-      });
-    }
   }
   return entries;
 }
 
-std::size_t ExchangeMatrix::nonZeros(Part part) const {
-  const std::vector<Index> entries = rowEntries(part);
+std::size_t ExchangeMatrix::nonZeros() const {
+  const std::vector<Index> entries = rowEntries();
   return std::accumulate(entries.begin(), entries.end(), std::size_t(0));
 }
 
 std::size_t ExchangeMatrix::bytes() const {
   std::size_t total = 0;
   for (const Row& row : rows_) {
-    total += row.columns.size() * sizeof(Index) + row.single.size() * sizeof(float) +
-             row.real.size() * sizeof(double);
+    total += row.columns.size() * sizeof(Index) + row.floats.size() * sizeof(float) +
+             row.doubles.size() * sizeof(double);
   }
   for (const RunRow& row : upper_) total += bytesOf(row);
-  for (const RunRow& row : correction_) total += bytesOf(row);
   return total + diagonal_.size() * sizeof(double);
 }
 
@@ -134,19 +129,11 @@ std::size_t ExchangeMatrix::denseRows() const {
       std::count_if(rows_.begin(), rows_.end(), [](const Row& r) { return r.dense; }));
 }
 
-std::vector<double> ExchangeMatrix::rowSums(Part part) const {
+std::vector<double> ExchangeMatrix::rowSums() const {
   const std::vector<double> ones(size(), 1.0);
   std::vector<double> sums(size());
-  productOf(part, ones, 1, sums);
+  product(ones, 1, sums);
   return sums;
-}
-
-std::size_t ExchangeMatrix::estimateBytes(std::size_t n, double entries_per_row,
-                                          Precision precision) {
-  const auto value_bytes = double(valueBytes(precision));
-  const double sparse = entries_per_row * (value_bytes + sizeof(Index));
-  const double dense = double(n) * value_bytes;
-  return std::size_t(std::ceil(double(n) * std::min(sparse, dense)));
 }
 
 }  // namespace radiosity

@@ -2,7 +2,8 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "radiosity/exchange_matrix.h"
+#include "matrix/matrix_row.h"
+#include "matrix/run_row.h"
 
 namespace radiosity {
 
@@ -16,7 +17,7 @@ constexpr int kMaxBands = 4;
 
 /// Values of one stored row. `columns` is null for a dense row.
 template <class Value>
-struct RowView {
+struct StoredValues {
   const Value* values;
   const Index* columns;
   std::size_t count;
@@ -28,7 +29,7 @@ struct RowView {
 /// other. The order of additions depends on the columns alone and adding a stored 0 changes
 /// nothing, so dense and sparse storage give the same bits.
 template <int kBands, class Value>
-void dot(const RowView<Value>& row, const double* x, std::size_t stride, double* out) {
+void dot(const StoredValues<Value>& row, const double* x, std::size_t stride, double* out) {
   constexpr std::size_t kLanes = 4;
   double sum[kLanes][kBands] = {};
   const auto add = [&](std::size_t lane, std::size_t column, double value) {
@@ -47,7 +48,7 @@ void dot(const RowView<Value>& row, const double* x, std::size_t stride, double*
 }
 
 template <class Value>
-void dotAllBands(const RowView<Value>& row, const double* x, int bands, double* out) {
+void dotAllBands(const StoredValues<Value>& row, const double* x, int bands, double* out) {
   const auto stride = std::size_t(bands);
   for (int b = 0; b < bands; b += kMaxBands) {
     switch (std::min(bands - b, kMaxBands)) {
@@ -67,25 +68,25 @@ void dotAllBands(const RowView<Value>& row, const double* x, int bands, double* 
   }
 }
 
-}  // namespace
-
-void ExchangeMatrix::rowProduct(std::size_t i, std::span<const double> x, int bands,
-                                double* out) const {
-  const Row& row = rows_[i];
+/// out[b] = sum over the row of F_ij x[j * bands + b].
+void rowProduct(const RowView& row, const double* x, int bands, double* out) {
   const Index* columns = row.dense ? nullptr : row.columns.data();
-  if (precision_ == Precision::single) {
-    dotAllBands(RowView<float>{row.single.data(), columns, row.single.size()}, x.data(), bands,
-                out);
+  if (row.doubles.empty()) {
+    dotAllBands(StoredValues<float>{row.floats.data(), columns, row.floats.size()}, x, bands, out);
   } else {
-    dotAllBands(RowView<double>{row.real.data(), columns, row.real.size()}, x.data(), bands, out);
+    dotAllBands(StoredValues<double>{row.doubles.data(), columns, row.doubles.size()}, x, bands,
+                out);
   }
 }
 
-void ExchangeMatrix::productOf(Part part, std::span<const double> x, int bands, std::span<double> y,
-                               std::span<const std::uint8_t> wanted) const {
-  if (symmetric_) return symmetricProduct(part, x, bands, y, wanted);
+}  // namespace
+
+void ExchangeMatrix::product(std::span<const double> x, int bands, std::span<double> y,
+                             std::span<const std::uint8_t> wanted) const {
+  if (symmetric_) return symmetricProduct(x, bands, y, wanted);
   parallelFor(size(), kRowGrain, [&](std::size_t i) {
-    if (wanted.empty() || wanted[i] != 0) rowProduct(i, x, bands, &y[i * std::size_t(bands)]);
+    if (!wanted.empty() && wanted[i] == 0) return;
+    rowProduct(viewOf(i), x.data(), bands, &y[i * std::size_t(bands)]);
   });
 }
 
@@ -95,7 +96,7 @@ void ExchangeMatrix::sweep(std::span<double> x, int bands, const Update& update,
   std::vector<double> gathered(static_cast<std::size_t>(bands));
   for (std::size_t i = 0; i < size(); ++i) {
     if (!wanted.empty() && wanted[i] == 0) continue;
-    rowProduct(i, x, bands, gathered.data());
+    rowProduct(viewOf(i), x.data(), bands, gathered.data());
     update(i, gathered.data());
   }
 }

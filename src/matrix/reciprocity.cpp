@@ -1,10 +1,11 @@
 // A_i F_ij = A_j F_ji: how well a matrix keeps it, and how to make it keep it.
 #include <cmath>
 #include <numeric>
+#include <utility>
 #include <vector>
 
-#include "matrix/rows_and_columns.h"
-#include "radiosity/exchange_matrix.h"
+#include "matrix/both_estimates.h"
+#include "radiosity/matrix_functions.h"
 
 namespace radiosity {
 
@@ -25,7 +26,7 @@ double reciprocityResidual(const ExchangeMatrix& matrix) {
   const std::span<const double> area = matrix.area();
   std::vector<double> difference(matrix.size());  // a row each, summed in order at the end:
   std::vector<double> total(matrix.size());       // the same bits for any thread count
-  forRowsAndColumns(matrix, [&](std::size_t i, auto row, auto column) {
+  forBothEstimates(matrix, [&](std::size_t i, auto row, auto column) {
     for (std::size_t j = 0; j < row.size(); ++j) {
       const double g_ij = area[i] * row[j];
       const double g_ji = area[j] * column[j];
@@ -41,19 +42,19 @@ double reciprocityResidual(const ExchangeMatrix& matrix) {
 ExchangeMatrix symmetrized(const ExchangeMatrix& matrix) {
   if (matrix.isSymmetric()) return matrix;
   const std::span<const double> area = matrix.area();
-  ExchangeMatrix merged({area.begin(), area.end()}, matrix.precision());
-  forRowsAndColumns(matrix, [&](std::size_t i, auto row, auto column) {
-    std::vector<Index> columns;
-    std::vector<double> values;
-    for (std::size_t j = 0; j < row.size(); ++j) {
+  std::vector<Index> order(matrix.size());
+  std::iota(order.begin(), order.end(), Index(0));
+  auto merged =
+      ExchangeMatrix::symmetric({area.begin(), area.end()}, std::move(order), matrix.precision());
+  forBothEstimates(matrix, [&](std::size_t i, auto row, auto column) {
+    std::vector<double> factors(row.size() - i, 0.0);
+    for (std::size_t j = i; j < row.size(); ++j) {
       if (row[j] == 0 && column[j] == 0) continue;
       const double g = estimateWeight(area[i], area[j]) * (area[i] * row[j]) +
                        estimateWeight(area[j], area[i]) * (area[j] * column[j]);
-      if (!(g > 0)) continue;  // an area of 0: nothing is exchanged
-      columns.push_back(Index(j));
-      values.push_back(g / area[i]);
+      if (g > 0) factors[j - i] = g / area[i];  // else an area of 0: nothing is exchanged
     }
-    merged.setRow(i, columns, values);
+    merged.setUpperRow(i, factors);
   });
   return merged;
 }

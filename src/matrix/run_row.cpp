@@ -107,17 +107,17 @@ void RunFinder::extend(std::size_t count) {
 
 RunRow packRuns(std::span<const double> values, Precision precision) {
   RunRow row;
-  if (precision == Precision::single) {
-    pack(values, row.runs, row.single);
+  if (precision == Precision::single_precision) {
+    pack(values, row.runs, row.floats);
   } else {
-    pack(values, row.runs, row.real);
+    pack(values, row.runs, row.doubles);
   }
   return row;
 }
 
 std::size_t bytesOf(const RunRow& row) {
-  return row.runs.size() * sizeof(Run) + row.single.size() * sizeof(float) +
-         row.real.size() * sizeof(double);
+  return row.runs.size() * sizeof(Run) + row.floats.size() * sizeof(float) +
+         row.doubles.size() * sizeof(double);
 }
 
 }  // namespace radiosity

@@ -2,11 +2,27 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "radiosity/exchange_matrix.h"
 
 namespace radiosity {
+
+/// `skip` zeros that are left out and then `count` stored values. Longer stretches are several
+/// runs.
+struct Run {
+  std::uint16_t skip = 0;
+  std::uint16_t count = 0;
+};
+
+/// One row of a triangle as runs. The values are in `floats` or in `doubles`, by precision.
+struct RunRow {
+  std::vector<Run> runs;
+  std::vector<float> floats;
+  std::vector<double> doubles;
+};
 
 /// The smallest RunRow of `values`: zeros between two stored values are stored only where that is
 /// no longer than a new run. kOverrun zeros follow the values (triangle_kernels.h).
@@ -45,10 +61,10 @@ void forRuns(const std::vector<Run>& runs, Value* values, Visit&& visit) {
 /// The same for a row, `values` being float or double.
 template <class Visit>
 void forRuns(const RunRow& row, Visit&& visit) {
-  if (row.real.empty()) {
-    forRuns(row.runs, row.single.data(), visit);
+  if (row.doubles.empty()) {
+    forRuns(row.runs, row.floats.data(), visit);
   } else {
-    forRuns(row.runs, row.real.data(), visit);
+    forRuns(row.runs, row.doubles.data(), visit);
   }
 }
 
@@ -68,7 +84,7 @@ class RunReader {
     }
     if (run_ == runs.size() || offset < begin_) return 0;
     const std::size_t k = stored_ + (offset - begin_);
-    return row_->real.empty() ? double(row_->single[k]) : row_->real[k];
+    return row_->doubles.empty() ? double(row_->floats[k]) : row_->doubles[k];
   }
 
  private:

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "matrix/matrix_row.h"
 #include "matrix/run_row.h"
 #include "radiosity/exchange_matrix.h"
 
@@ -17,8 +18,6 @@ namespace radiosity {
 namespace {
 
 constexpr std::size_t kRowGrain = 16;
-
-const RunRow kEmptyRow;
 
 /// Largest stored value, so that a sum of N of them cannot overflow.
 constexpr double kLargest = 1e30;
@@ -83,58 +82,27 @@ void ExchangeMatrix::checkFactors(std::size_t k, std::span<const double> factors
 
 void ExchangeMatrix::setUpperRow(std::size_t k, std::span<const double> factors) {
   checkFactors(k, factors);
-  if (isCorrected()) throw InputError("exchange matrix: a corrected one is not set row by row");
   if (factors.empty()) {
     upper_[k] = {};
     diagonal_[k] = 0;
     return;
   }
   upper_[k] = packRuns(factors.subspan(1), precision_);
-  diagonal_[k] = precision_ == Precision::single ? double(float(factors[0])) : factors[0];
+  diagonal_[k] = precision_ == Precision::single_precision ? double(float(factors[0])) : factors[0];
 }
 
-void ExchangeMatrix::setCorrection(std::vector<RunRow> changes) {
-  if (!changes.empty() && (!symmetric_ || changes.size() != size())) {
-    throw InputError(fmt::format("exchange matrix: a correction of {} rows for a {} matrix of {}",
-                                 changes.size(), symmetric_ ? "symmetric" : "row by row", size()));
-  }
-  parallelFor(changes.size(), kRowGrain, [&](std::size_t k) {
-    std::vector<double> row(size() - k - 1, 0.0);
-    RunReader stored(upper_[k]);
-    forRuns(changes[k], [&](std::size_t offset, const auto* values, std::size_t count) {
-      for (std::size_t m = 0; m < count; ++m) {
-        const bool good = offset + m < row.size() && stored.at(offset + m) + values[m] >= 0;
-        if (!good) {
-          throw InputError(
-              fmt::format("exchange matrix: the correction of row {} leaves a value below 0", k));
-        }
-        row[offset + m] = values[m];
-      }
-    });
-    // However it came: the same changes are the same runs, and so give the same bits in products.
-    changes[k] = packRuns(row, precision_);
-  });
-  correction_ = std::move(changes);
-}
-
-void ExchangeMatrix::upperRow(std::size_t k, std::span<double> factors, Part part) const {
+void ExchangeMatrix::upperRow(std::size_t k, std::span<double> factors) const {
   std::fill(factors.begin(), factors.end(), 0.0);
-  const auto add = [&](const RunRow& row) {
-    forRuns(row, [&](std::size_t offset, const auto* values, std::size_t count) {
-      for (std::size_t m = 0; m < count; ++m) factors[1 + offset + m] += values[m];
-    });
-  };
-  if (part != Part::correction) {
-    factors[0] = diagonal_[k];
-    add(upper_[k]);
-  }
-  if (part != Part::raw && isCorrected()) add(correction_[k]);
+  factors[0] = diagonal_[k];
+  forRuns(upper_[k], [&](std::size_t offset, const auto* values, std::size_t count) {
+    std::copy(values, values + count, factors.begin() + std::ptrdiff_t(1 + offset));
+  });
 }
+
+const RunRow& ExchangeMatrix::upperRuns(std::size_t k) const { return upper_[k]; }
 
 double ExchangeMatrix::storedUpper(std::size_t k, std::size_t later) const {
-  if (k == later) return diagonal_[k];
-  const double raw = RunReader(upper_[k]).at(later - k - 1);
-  return isCorrected() ? raw + RunReader(correction_[k]).at(later - k - 1) : raw;
+  return k == later ? diagonal_[k] : RunReader(upper_[k]).at(later - k - 1);
 }
 
 std::size_t ExchangeMatrix::panelEnd(std::size_t first) const {
@@ -145,8 +113,7 @@ std::size_t ExchangeMatrix::panelEnd(std::size_t first) const {
 // Row i of F holds what row position(i) of the triangle stores, and, from every row k before it,
 // the one value at its own position. The second part touches all rows of the triangle above: all
 // rows of a panel are served while such a row is at hand, found in one walk along its runs.
-void ExchangeMatrix::spreadRows(std::size_t first, std::size_t last, Part part,
-                                std::span<double> out) const {
+void ExchangeMatrix::spreadRows(std::size_t first, std::size_t last, std::span<double> out) const {
   const std::size_t n = size();
   std::vector<std::pair<Index, Index>> wanted;  // position, row of the panel
   for (std::size_t i = first; i < last; ++i) wanted.emplace_back(position_[i], Index(i - first));
@@ -154,34 +121,21 @@ void ExchangeMatrix::spreadRows(std::size_t first, std::size_t last, Part part,
   parallelFor(wanted.size(), 1, [&](std::size_t w) {
     const std::size_t k = wanted[w].first;
     std::vector<double> stored(n - k);
-    upperRow(k, stored, part);
+    upperRow(k, stored);
     double* spread = &out[wanted[w].second * n];
     for (std::size_t m = 0; m < stored.size(); ++m) spread[order_[k + m]] = stored[m];
   });
   parallelFor(wanted.empty() ? 0 : wanted.back().first, kRowGrain, [&](std::size_t k) {
     const Index patch = order_[k];
-    RunReader raw(part != Part::correction ? upper_[k] : kEmptyRow);
-    RunReader change(part != Part::raw && isCorrected() ? correction_[k] : kEmptyRow);
+    RunReader stored(upper_[k]);
     auto next = std::upper_bound(wanted.begin(), wanted.end(), std::pair(Index(k), kNone));
     for (; next != wanted.end(); ++next) {
-      const std::size_t offset = next->first - k - 1;
-      const double value = raw.at(offset) + change.at(offset);
+      const double value = stored.at(next->first - k - 1);
       // The area of a patch that exchanges nothing may be 0.
       out[next->second * n + patch] =
           value == 0 ? 0 : value * area_[patch] / area_[order_[next->first]];
     }
   });
-}
-
-std::size_t ExchangeMatrix::estimateSymmetricBytes(std::size_t n, double entries_per_row,
-                                                   Precision precision) {
-  // Half of the entries, each a run of its own at worst; dense rows have one run to 65,535 values.
-  const double value = precision == Precision::single ? sizeof(float) : sizeof(double);
-  const double half = std::min(entries_per_row, double(n)) / 2;
-  const double dense_runs = 1 + double(n) / std::numeric_limits<std::uint16_t>::max();
-  const double sparse = half * (value + sizeof(Run));
-  const double dense = double(n) / 2 * value + dense_runs * sizeof(Run);
-  return std::size_t(std::ceil(double(n) * (std::min(sparse, dense) + sizeof(RunRow))));
 }
 
 }  // namespace radiosity

@@ -2,8 +2,9 @@
 // gathers F_kq x_q, and hands F_kq A_k x_k on to row q, which divides by its own area at the end.
 #include <algorithm>
 
+#include "matrix/run_row.h"
 #include "matrix/triangle_kernels.h"
-#include "matrix/two_sided_pass.h"
+#include "matrix/triangle_pass.h"
 #include "radiosity/exchange_matrix.h"
 
 namespace radiosity {
@@ -11,7 +12,7 @@ namespace radiosity {
 namespace {
 
 std::size_t workOf(const RunRow& row) {
-  return row.single.size() + row.real.size() + row.runs.size();
+  return row.floats.size() + row.doubles.size() + row.runs.size();
 }
 
 /// Some bands of N * bands values, a plane each, by position instead of patch.
@@ -44,14 +45,11 @@ double perArea(double handed, double area) { return area > 0 ? handed / area : 0
 
 }  // namespace
 
-void ExchangeMatrix::symmetricProduct(Part part, std::span<const double> x, int bands,
-                                      std::span<double> y,
+void ExchangeMatrix::symmetricProduct(std::span<const double> x, int bands, std::span<double> y,
                                       std::span<const std::uint8_t> wanted) const {
   const std::size_t n = size();
   const auto width = std::size_t(bands);
-  const bool raw = part != Part::correction;
-  const bool change = part != Part::raw && isCorrected();
-  const TwoSidedPass pass(n, kOverrun, [&](std::size_t k) { return workOf(upper_[k]); });
+  const TrianglePass pass(n, kOverrun, [&](std::size_t k) { return workOf(upper_[k]); });
   const TriangleKernels kernels = triangleKernels();
   for (int first = 0; first < bands; first += kMaxBands) {
     Planes in(n, first, std::min(first + kMaxBands, bands));
@@ -69,25 +67,21 @@ void ExchangeMatrix::symmetricProduct(Part part, std::span<const double> x, int 
                                  .bands = in.bands};
       const bool gathers = isWanted(wanted, order_[k]);
       const bool hands_on = std::any_of(factor, factor + planes, [](double f) { return f != 0; });
-      const auto add = [&](const RunRow& values) {
-        double sums[kMaxBands] = {};
-        if (gathers && hands_on) {
-          kernels.gather_and_hand_on(values, operands, factor, sums);
-        } else if (gathers) {
-          kernels.gather(values, operands, sums);
-        } else if (hands_on) {
-          kernels.hand_on(values, operands, factor);
-        }
-        for (std::size_t b = 0; b < planes; ++b) gathered[b * n + k] += sums[b];
-      };
-      if (raw) add(upper_[k]);
-      if (change) add(correction_[k]);
+      double sums[kMaxBands] = {};
+      if (gathers && hands_on) {
+        kernels.gather_and_hand_on(upper_[k], operands, factor, sums);
+      } else if (gathers) {
+        kernels.gather(upper_[k], operands, sums);
+      } else if (hands_on) {
+        kernels.hand_on(upper_[k], operands, factor);
+      }
+      for (std::size_t b = 0; b < planes; ++b) gathered[b * n + k] = sums[b];
     };
     const auto finish = [&](std::size_t k, const double* handed) {
       const Index patch = order_[k];
       if (!isWanted(wanted, patch)) return;
       for (std::size_t b = 0; b < planes; ++b) {
-        const double own = raw ? diagonal_[k] * in.values[b * in.stride + k] : 0;
+        const double own = diagonal_[k] * in.values[b * in.stride + k];
         y[patch * width + in.first_band + b] =
             gathered[b * n + k] + own + perArea(handed[b], area_[patch]);
       }
@@ -121,10 +115,6 @@ void ExchangeMatrix::symmetricSweep(std::span<double> x, int bands, const Update
   const auto gather = [&](std::size_t k) {
     for (int b = 0; b < bands; b += kMaxBands) {
       kernels.gather(upper_[k], operands(k, b), &sums[std::size_t(b)]);
-      if (!isCorrected()) continue;
-      double more[kMaxBands];
-      kernels.gather(correction_[k], operands(k, b), more);
-      for (int m = b; m < std::min(b + kMaxBands, bands); ++m) sums[std::size_t(m)] += more[m - b];
     }
   };
   for (std::size_t k = 0; k < n; ++k) {
@@ -143,7 +133,6 @@ void ExchangeMatrix::symmetricSweep(std::span<double> x, int bands, const Update
     if (std::all_of(factor.begin(), factor.end(), [](double f) { return f == 0; })) continue;
     for (int b = 0; b < bands; b += kMaxBands) {
       kernels.hand_on(upper_[k], operands(k, b), &factor[std::size_t(b)]);
-      if (isCorrected()) kernels.hand_on(correction_[k], operands(k, b), &factor[std::size_t(b)]);
     }
   }
 }

@@ -1,3 +1,4 @@
+#include "matrix/run_row.h"
 #include "matrix/triangle_kernels.h"
 
 // Vectors without a fixed size cannot stand in arrays.
@@ -80,10 +81,10 @@ void walkRuns(const std::vector<Run>& runs, const Value* HWY_RESTRICT values,
 
 template <int kBands, bool kGather, bool kHandOn>
 void walkRow(const RunRow& row, const RowOperands& operands, const double* factor, double* sums) {
-  if (row.real.empty()) {
-    walkRuns<kBands, kGather, kHandOn>(row.runs, row.single.data(), operands, factor, sums);
+  if (row.doubles.empty()) {
+    walkRuns<kBands, kGather, kHandOn>(row.runs, row.floats.data(), operands, factor, sums);
   } else {
-    walkRuns<kBands, kGather, kHandOn>(row.runs, row.real.data(), operands, factor, sums);
+    walkRuns<kBands, kGather, kHandOn>(row.runs, row.doubles.data(), operands, factor, sums);
   }
 }
 

@@ -5,8 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "matrix/run_row.h"
-#include "radiosity/closure.h"
+#include "matrix/uncertain_row.h"
 
 namespace radiosity {
 
@@ -31,7 +30,7 @@ std::uint8_t codeOf(double error) {
 
 }  // namespace
 
-double UncertainEntries::errorOf(std::uint8_t code) {
+double errorOfCode(std::uint8_t code) {
   static const std::array<double, 256> table = [] {
     std::array<double, 256> errors{};
     for (std::size_t c = 1; c < errors.size(); ++c) {
@@ -41,6 +40,17 @@ double UncertainEntries::errorOf(std::uint8_t code) {
   }();
   return table[code];
 }
+
+UncertainEntries::UncertainEntries() = default;
+UncertainEntries::UncertainEntries(std::size_t n) : rows_(n) {}
+UncertainEntries::UncertainEntries(const UncertainEntries&) = default;
+UncertainEntries::UncertainEntries(UncertainEntries&&) noexcept = default;
+UncertainEntries& UncertainEntries::operator=(const UncertainEntries&) = default;
+UncertainEntries& UncertainEntries::operator=(UncertainEntries&&) noexcept = default;
+UncertainEntries::~UncertainEntries() = default;
+
+std::size_t UncertainEntries::size() const { return rows_.size(); }
+const UncertainEntries::Row& UncertainEntries::row(std::size_t k) const { return rows_[k]; }
 
 void UncertainEntries::setRow(std::size_t k, std::span<const Index> later,
                               std::span<const double> errors) {

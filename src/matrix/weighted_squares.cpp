@@ -4,7 +4,7 @@
 
 #include "base/parallel.h"
 #include "matrix/run_row.h"
-#include "radiosity/exchange_matrix.h"
+#include "radiosity/matrix_functions.h"
 
 namespace radiosity {
 
@@ -41,7 +41,7 @@ double ofRows(const ExchangeMatrix& matrix) {
 }  // namespace
 
 // Both ends of a pair: A_k F_kq^2 + A_q F_qk^2 = A_k F_kq^2 (1 + A_k / A_q).
-double weightedSquares(const ExchangeMatrix& matrix, Part part) {
+double weightedSquares(const ExchangeMatrix& matrix) {
   if (!matrix.isSymmetric()) return ofRows(matrix);
   const std::size_t n = matrix.size();
   std::vector<double> area(n);
@@ -51,20 +51,12 @@ double weightedSquares(const ExchangeMatrix& matrix, Part part) {
     inverse[k] = area[k] > 0 ? 1 / area[k] : 0.0;
   }
   std::vector<double> rows(n, 0.0);
-  const bool as_stored = part == Part::raw || (part == Part::corrected && !matrix.isCorrected());
   parallelFor(n, kRowGrain, [&](std::size_t k) {
-    if (as_stored) {
-      const double diagonal = matrix.diagonal(k);
-      rows[k] = diagonal * diagonal;
-      forRuns(matrix.upperRuns(k), [&](std::size_t offset, const auto* values, std::size_t count) {
-        rows[k] += sumOfSquares(values, area[k], &inverse[k + 1 + offset], count);
-      });
-    } else {
-      std::vector<double> values(n - k);
-      matrix.upperRow(k, values, part);
-      rows[k] = values[0] * values[0];
-      rows[k] += sumOfSquares(values.data() + 1, area[k], inverse.data() + k + 1, n - k - 1);
-    }
+    const double diagonal = matrix.diagonal(k);
+    rows[k] = diagonal * diagonal;
+    forRuns(matrix.upperRuns(k), [&](std::size_t offset, const auto* values, std::size_t count) {
+      rows[k] += sumOfSquares(values, area[k], &inverse[k + 1 + offset], count);
+    });
     rows[k] *= area[k];
   });
   return std::accumulate(rows.begin(), rows.end(), 0.0);

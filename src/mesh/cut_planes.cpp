@@ -10,11 +10,11 @@ namespace radiosity {
 namespace {
 
 /// Rounds of making edges meet that cross only in the image of a plane: one is the rule, more are
-/// rare. From kPatience on, a vertex that an edge is to be led through becomes one with the edge's
-/// end if that is as near as a coincidence or two: there are ever fewer vertices then. What has not
-/// ended after kRounds is given up, and so is what grows: where many edges are about as long as the
-/// coincidence, each one made to meet another crosses two more.
-constexpr int kPatience = 4;
+/// rare. From kRoundsOfSnapping on, a vertex that an edge is to be led through becomes one with the
+/// edge's end if that is as near as a coincidence or two: there are ever fewer vertices then. What
+/// has not ended after kRounds is given up, and so is what grows: where many edges are about as
+/// long as the coincidence, each one made to meet another crosses two more.
+constexpr int kRoundsOfSnapping = 4;
 constexpr int kRounds = 40;
 constexpr double kGrowth = 2.0;
 
@@ -57,7 +57,7 @@ std::vector<Index> PlaneCuts::run() {
     markStale();
     cutStale();
     wanted = repairs();
-    if (round >= kPatience) wanted = collapse(wanted);
+    if (round >= kRoundsOfSnapping) wanted = collapse(wanted);
     const std::size_t count = wanted.splits.size() + wanted.merges.size();
     if (count == 0 || (round > 0 && double(count) > kGrowth * double(before))) break;
     before = count;

@@ -12,6 +12,7 @@ MeshResult meshScene(const Scene& scene, const MeshOptions& options, Progress& p
     const CoarseComplex complex = buildComplex(scene, options, result.report, progress);
     result.mesh = subdivide(complex, scene, options, result.report, progress);
   }
+  result.mesh.enclosures = findEnclosures(result.mesh, progress);
   return result;
 }
 

@@ -1,6 +1,7 @@
 // From linear values to a display's range.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "base/luminance.h"
@@ -8,6 +9,23 @@
 #include "render/percentile.h"
 
 namespace radiosity {
+
+namespace {
+
+/// The brightest that more than a hundredth of the picture shows.
+double brightest(const Image& image) {
+  std::vector<double> values;
+  for (std::size_t k = 0; k < image.rgba.size(); k += 4) {
+    const float* p = image.rgba.data() + k;
+    values.push_back(p[3] > 0 ? luminanceOf(Vec3(p[0], p[1], p[2])) : 0.0);
+  }
+  const auto high = values.begin() + std::ptrdiff_t(0.99 * double(values.size() - 1));
+  std::nth_element(values.begin(), high, values.end());
+  return *high;
+}
+
+}  // namespace
+
 double autoExposure(const Image& image) {
   std::vector<double> luminance;
   for (std::size_t k = 0; k + 3 < image.rgba.size(); k += 4) {
@@ -22,6 +40,16 @@ double autoExposure(const Image& image) {
   std::erase_if(luminance, [](double value) { return !(value > 0); });
   const double middle = percentile(luminance, 0.5);
   return std::log2(0.8 / std::min(bright, 8 * middle));
+}
+
+std::optional<UnlitView> unlitView(const PatchMesh& mesh, const SurfaceLight& light,
+                                   const Image& radiance) {
+  constexpr double kDark = 1e-3;  // ten stops: it would be black in a picture of what is lit
+  const double lit = typicalLight(mesh, light.reflected) / std::numbers::pi;
+  const double seen = brightest(radiance);
+  if (!(lit > 0) || seen >= kDark * lit) return std::nullopt;
+  const auto most = std::max_element(light.reflected.begin(), light.reflected.end());
+  return UnlitView{seen, lit, Index(most - light.reflected.begin())};
 }
 
 Image exposed(const Image& image, double ev) {

@@ -1,4 +1,8 @@
-// --camera "eye=x,y,z;target=x,y,z;up=x,y,z;fov=DEGREES"
+// Cameras as text: "eye=x,y,z;target=x,y,z;up=x,y,z;fov=DEGREES".
+#include <fmt/format.h>
+
+#include <numbers>
+
 #include "radiosity/render.h"
 #include "render/view.h"
 #include "scene/camera_text.h"
@@ -9,6 +13,12 @@ Camera parseCamera(const std::string& text) {
   Camera camera = readCamera(text, ';');
   makeView(camera, 1, 1);  // the checks every camera has to pass
   return camera;
+}
+
+std::string cameraText(const Camera& c) {
+  return fmt::format("eye={},{},{};target={},{},{};up={},{},{};fov={}", c.eye.x, c.eye.y, c.eye.z,
+                     c.target.x, c.target.y, c.target.z, c.up.x, c.up.y, c.up.z,
+                     c.vertical_fov * 180 / std::numbers::pi);
 }
 
 }  // namespace radiosity

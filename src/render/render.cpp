@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "base/luminance.h"
 #include "render/samples.h"
 
 namespace radiosity {
@@ -164,6 +167,37 @@ Image renderRadiance(const PatchMesh& mesh, std::span<const double> radiosity,
   };
   if (corners.empty()) return render(mesh, radiance(radiosity), camera, options, progress);
   return render(mesh, radiance(radiosity), radiance(corners), camera, options, progress);
+}
+
+std::vector<double> reflectedLight(std::span<const double> radiosity,
+                                   const PatchMaterials& materials) {
+  const auto bands = std::size_t(materials.bands);
+  std::vector<double> reflected;
+  reflected.reserve(radiosity.size() / bands);
+  std::vector<double> apart(bands);
+  for (std::size_t k = 0; k < radiosity.size(); k += bands) {
+    for (std::size_t b = 0; b < bands; ++b) {
+      apart[b] = radiosity[k + b] - materials.emission[k + b];
+    }
+    reflected.push_back(std::max(0.0, brightnessOf(apart)));
+  }
+  return reflected;
+}
+
+SurfaceLight surfaceLight(std::span<const double> radiosity, const PatchMaterials& materials) {
+  SurfaceLight light;
+  light.patches = rgbOf(radiosity, materials.bands);
+  light.reflected = reflectedLight(radiosity, materials);
+  const std::vector<double> sky = rgbOf(materials.sky, materials.bands);
+  if (!sky.empty()) light.sky = Vec3(sky[0], sky[1], sky[2]);
+  return light;
+}
+
+Image renderRadiance(const PatchMesh& mesh, const SurfaceLight& light, const Camera& camera,
+                     const RenderOptions& options, Progress& progress) {
+  RenderOptions with_sky = options;
+  if (light.sky != Vec3(0.0)) with_sky.background = light.sky;
+  return renderRadiance(mesh, light.patches, light.corners, camera, with_sky, progress);
 }
 
 }  // namespace radiosity

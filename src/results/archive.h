@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "radiosity/names.h"
 #include "results/h5.h"
 #include "results/h5_reader.h"
 
@@ -68,10 +69,10 @@ class FieldWriter {
   void numbers(const char* name, const std::vector<double>& values, std::size_t /*count*/) {
     if (!values.empty()) sink_->attribute(name, Number::f64, values.size(), values.data());
   }
-  /// An enum, as one of `words`.
-  template <class Enum>
-  void choice(const char* name, const Enum& value, std::span<const char* const> words) {
-    sink_->text(name, words[std::size_t(value)]);
+  /// An enum, as its word in `names`.
+  template <class Enum, std::size_t N>
+  void choice(const char* name, const Enum& value, const NameTable<Enum, N>& names) {
+    sink_->text(name, nameOf(names, value));
   }
   template <class Body>
   void group(const char* name, const Body& body) {
@@ -104,11 +105,11 @@ class FieldWriter {
         (*writer)(name, column, unit);
       }
     }
-    template <class Enum>
-    void choice(const char* name, Enum Record::*member, std::span<const char* const> words) {
+    template <class Enum, std::size_t N>
+    void choice(const char* name, Enum Record::*member, const NameTable<Enum, N>& names) {
       std::vector<std::string> column;
       column.reserve(records->size());
-      for (const Record& record : *records) column.emplace_back(words[std::size_t(record.*member)]);
+      for (const Record& record : *records) column.push_back(nameOf(names, record.*member));
       (*writer)(name, column);
     }
   };
@@ -163,9 +164,9 @@ class FieldReader {
     values.assign(source_->hasAttribute(name) ? count : 0, 0.0);
     if (!values.empty()) source_->attribute(name, Number::f64, count, values.data());
   }
-  template <class Enum>
-  void choice(const char* name, Enum& value, std::span<const char* const> words) {
-    value = parse<Enum>(name, source_->text(name), words);
+  template <class Enum, std::size_t N>
+  void choice(const char* name, Enum& value, const NameTable<Enum, N>& names) {
+    value = parse(name, source_->text(name), names);
   }
   template <class Body>
   void group(const char* name, const Body& body) {
@@ -200,13 +201,13 @@ class FieldReader {
         }
       }
     }
-    template <class Enum>
-    void choice(const char* name, Enum Record::*member, std::span<const char* const> words) {
+    template <class Enum, std::size_t N>
+    void choice(const char* name, Enum Record::*member, const NameTable<Enum, N>& names) {
       std::vector<std::string> column;
       (*reader)(name, column);
       fit(name, column.size());
       for (std::size_t k = 0; k < column.size(); ++k) {
-        (*records)[k].*member = reader->template parse<Enum>(name, column[k], words);
+        (*records)[k].*member = reader->parse(name, column[k], names);
       }
     }
     /// The first column says how many records there are.
@@ -217,11 +218,9 @@ class FieldReader {
   };
 
  private:
-  template <class Enum>
-  Enum parse(const char* name, const std::string& word, std::span<const char* const> words) const {
-    for (std::size_t k = 0; k < words.size(); ++k) {
-      if (word == words[k]) return Enum(k);
-    }
+  template <class Enum, std::size_t N>
+  Enum parse(const char* name, const std::string& word, const NameTable<Enum, N>& names) const {
+    if (const std::optional<Enum> value = named(names, word)) return *value;
     source_->fail(name, "holds the unknown word '" + word + "'");
   }
 

@@ -13,14 +13,10 @@ namespace radiosity {
 
 using h5::Described;
 
-inline constexpr const char* kSeverityWords[] = {"info", "warning", "loud"};
-inline constexpr const char* kStatusWords[] = {"converged", "no_convergence", "no_light",
-                                               "singular"};
-
 template <class Archive>
 void describeNotes(Archive& a, Described<Archive, std::vector<Note>>& notes) {
   a.table("notes", notes, [](auto& column) {
-    column.choice("severity", &Note::severity, kSeverityWords);
+    column.choice("severity", &Note::severity, kSeverityNames);
     column("text", &Note::text);
   });
 }
@@ -135,11 +131,12 @@ void describe(Archive& a, Described<Archive, MeshReport>& r) {
 
 template <class Archive>
 void describe(Archive& a, Described<Archive, ClosureReport>& r) {
-  a("iterations", r.iterations);
   a("largest_residual_before", r.largest_residual_before);
+  a("rms_residual_before", r.rms_residual_before);
   a("largest_residual", r.largest_residual);
   a("largest_move", r.largest_move);
   a("relative_move", r.relative_move);
+  a("iterations", r.iterations);
   a("reached", r.reached);
   a("adjustable", r.adjustable);
   a("emptied", r.emptied);
@@ -149,7 +146,7 @@ void describe(Archive& a, Described<Archive, ClosureReport>& r) {
 template <class Archive>
 void describe(Archive& a, Described<Archive, ExactReport>& r) {
   a("elements", r.elements);
-  a("bare_elements", r.bare_elements);
+  a("black_elements", r.black_elements);
   a("facets", r.facets);
   a("occluders", r.occluders);
   a("solids", r.solids);
@@ -157,7 +154,7 @@ void describe(Archive& a, Described<Archive, ExactReport>& r) {
   a("no_exchange", r.no_exchange);
   a("unoccluded", r.unoccluded);
   a("hidden", r.hidden);
-  a("partial", r.partial);
+  a("occluded", r.occluded);
   a("facet_pairs", r.facet_pairs);
   a("facet_pairs_no_exchange", r.facet_pairs_no_exchange);
   a("facet_pairs_unoccluded", r.facet_pairs_unoccluded);
@@ -174,7 +171,7 @@ void describe(Archive& a, Described<Archive, ExactReport>& r) {
   a("seconds_prepare", r.seconds_prepare);
   a("seconds_visibility", r.seconds_visibility);
   a("seconds_unoccluded", r.seconds_unoccluded);
-  a("seconds_partial", r.seconds_partial);
+  a("seconds_occluded", r.seconds_occluded);
   a("seconds_assembly", r.seconds_assembly);
   a("seconds_finish", r.seconds_finish);
 }
@@ -224,7 +221,7 @@ void describe(Archive& a, Described<Archive, FormFactors>& f) {
 
 template <class Archive>
 void describe(Archive& a, Described<Archive, SolveSummary>& s) {
-  a.choice("status", s.status, kStatusWords);
+  a.choice("status", s.status, kSolveStatusNames);
   a("iterations", s.iterations);
   a("rows", s.rows);
   a.group("skipped", [&](auto& skipped) {
@@ -263,9 +260,6 @@ void describe(Archive& a, Described<Archive, PatchMaterials>& m) {
   a.rows("emission", m.emission, bands, "W/m^2");
   a.numbers("sky", m.sky, bands);
 }
-
-inline constexpr const char* kGatherAtWords[] = {"patches", "vertices"};
-inline constexpr const char* kGatherStatusWords[] = {"converged", "pass_limit", "no_light"};
 
 /// Passes as they are stored: a row each.
 struct PassColumns {
@@ -333,7 +327,7 @@ void describe(Archive& a, Described<Archive, PassColumns>& p) {
 
 template <class Archive>
 void describe(Archive& a, Described<Archive, GatherSummary>& s, std::size_t bands) {
-  a.choice("status", s.status, kGatherStatusWords);
+  a.choice("status", s.status, kGatherStatusNames);
   a("hemicubes", s.hemicubes);
   a("pixels", s.pixels);
   a("closed", s.closed);
@@ -355,7 +349,7 @@ void describe(Archive& a, Described<Archive, GatherSummary>& s, std::size_t band
 
 template <class Archive>
 void describe(Archive& a, Described<Archive, Gathered>& g) {
-  a.choice("at", g.at, kGatherAtWords);
+  a.choice("at", g.at, kGatherAtNames);
   a("bands", g.bands);
   const auto bands = std::size_t(std::max(g.bands, 1));  // results_check.cpp refuses others
   a.rows("radiosity", g.radiosity, bands, "W/m^2");

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/input_file.h"
+#include "base/parse.h"
 #include "results/lit_mesh.h"
 #include "scene/obj_scan.h"
 #include "scene/text.h"

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "base/input_file.h"
+#include "base/parse.h"
 #include "results/lit_mesh.h"
 #include "scene/text.h"
 

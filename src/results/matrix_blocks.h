@@ -10,8 +10,7 @@ namespace radiosity {
 
 /// Writes area, shape (int64), indptr (int64), indices (int32, increasing in a row), data (f32 or
 /// f64 as stored) and row_sum (of what is stored); of a symmetric matrix also order (uint32, the
-/// patches as it stores them), which marks it as symmetric, and of a corrected one closure/ with
-/// shape, indptr, indices and data of what is to be added. Holds one chunk of each at a time, and
+/// patches as it stores them), which marks it as symmetric. Holds one chunk of each at a time, and
 /// of a symmetric matrix a panel of rows.
 void writeMatrix(h5::OutputGroup& group, const ExchangeMatrix& matrix, Progress& progress);
 

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <iterator>
-#include <optional>
 #include <vector>
 
 #include "base/parallel.h"
@@ -19,67 +18,15 @@ constexpr std::size_t kTaskEntries = std::size_t(1) << 16;
 /// of threads.
 constexpr std::size_t kTasks = 16;
 
-/// Consecutive rows with the very values that a results file holds: each part rounded to the
-/// matrix's precision (the far side of a pair of a symmetric matrix is computed, not stored), then
-/// added.
-class StoredRows {
- public:
-  StoredRows(const ExchangeMatrix& matrix, const RowPanel& raw)
-      : single_(matrix.precision() == Precision::single), raw_(raw) {
-    if (matrix.isCorrected()) {
-      correction_.emplace(matrix, raw.first(), raw.last(), Part::correction);
-      size_ = matrix.size();
-    }
-  }
-  std::size_t first() const { return raw_.first(); }
-  std::size_t last() const { return raw_.last(); }
-
-  template <class Visit>
-  void forRow(std::size_t i, const Visit& visit) const {
-    if (!correction_) {
-      raw_.forRow(i, [&](Index j, double value) { visit(j, rounded(value)); });
-      return;
-    }
-    std::vector<double> sums(size_, 0.0);
-    const auto add = [&](Index j, double value) { sums[j] += rounded(value); };
-    raw_.forRow(i, add);
-    correction_->forRow(i, add);
-    for (std::size_t j = 0; j < sums.size(); ++j) {
-      if (sums[j] != 0) visit(Index(j), sums[j]);
-    }
-  }
-
- private:
-  double rounded(double value) const { return single_ ? double(float(value)) : value; }
-
-  bool single_;
-  const RowPanel& raw_;
-  std::optional<RowPanel> correction_;
-  std::size_t size_ = 0;
-};
-
-/// Calls visit(rows) for ranges of rows that together are all, in order.
-template <class Visit>
-void forStoredRows(const ExchangeMatrix& matrix, const Visit& visit) {
-  matrix.forPanels([&](const RowPanel& raw) { visit(StoredRows(matrix, raw)); }, Part::raw);
-}
-
-std::size_t entriesOf(const StoredRows& rows, std::size_t i) {
+std::size_t entriesOf(const RowPanel& rows, std::size_t i) {
   std::size_t entries = 0;
   rows.forRow(i, [&](Index, double) { ++entries; });
   return entries;
 }
 
-std::size_t entriesOf(const ExchangeMatrix& matrix) {
-  if (!matrix.isCorrected()) return matrix.nonZeros();
-  std::size_t entries = 0;
-  forStoredRows(matrix, [&](const StoredRows& rows) {
-    for (std::size_t i = rows.first(); i < rows.last(); ++i) entries += entriesOf(rows, i);
-  });
-  return entries;
-}
-
-void formatRow(const StoredRows& rows, std::size_t i, fmt::memory_buffer& text) {
+/// With the very values that a results file holds, rounded to the matrix's precision: the far side
+/// of a pair of a symmetric matrix is computed, not stored.
+void formatRow(const RowPanel& rows, bool single, std::size_t i, fmt::memory_buffer& text) {
   const fmt::format_int row(i + 1);
   rows.forRow(i, [&](Index column, double value) {
     text.append(row.data(), row.data() + row.size());
@@ -87,13 +34,13 @@ void formatRow(const StoredRows& rows, std::size_t i, fmt::memory_buffer& text) 
     const fmt::format_int number(std::size_t(column) + 1);
     text.append(number.data(), number.data() + number.size());
     text.push_back(' ');
-    fmt::format_to(std::back_inserter(text), "{:.17g}\n", value);
+    fmt::format_to(std::back_inserter(text), "{:.17g}\n", single ? double(float(value)) : value);
   });
 }
 
 /// Formats rows from `first` on in up to kTasks tasks at once and writes them in order; returns the
 /// first row that is left.
-std::size_t writeBatch(CheckedFile& file, const StoredRows& rows, std::size_t first,
+std::size_t writeBatch(CheckedFile& file, const RowPanel& rows, bool single, std::size_t first,
                        std::vector<fmt::memory_buffer>& texts) {
   std::vector<std::size_t> starts = {first};
   std::size_t row = first;
@@ -105,7 +52,7 @@ std::size_t writeBatch(CheckedFile& file, const StoredRows& rows, std::size_t fi
   const std::size_t tasks = starts.size() - 1;
   parallelFor(tasks, 1, [&](std::size_t t) {
     texts[t].clear();
-    for (std::size_t i = starts[t]; i < starts[t + 1]; ++i) formatRow(rows, i, texts[t]);
+    for (std::size_t i = starts[t]; i < starts[t + 1]; ++i) formatRow(rows, single, i, texts[t]);
   });
   for (std::size_t t = 0; t < tasks; ++t) file.write(texts[t].data(), texts[t].size());
   return row;
@@ -116,19 +63,20 @@ std::size_t writeBatch(CheckedFile& file, const StoredRows& rows, std::size_t fi
 void writeMatrixMarket(const std::string& path, const ExchangeMatrix& matrix, Progress& progress) {
   CheckedFile file(path);
   const std::size_t n = matrix.size();
+  const bool single = matrix.precision() == Precision::single_precision;
   file.write(fmt::format(
       "%%MatrixMarket matrix coordinate real general\n"
       "% Form factors by radiosity: row i, column j holds F[i,j], the fraction of what\n"
       "% leaves patch i that reaches patch j; no unit. Patches are numbered from 1.\n"
-      "% The values as stored, {} bits, in 17 digits; closure, where enforced, is in them.\n"
+      "% The values as stored, {} bits, in 17 digits.\n"
       "{} {} {}\n",
-      matrix.precision() == Precision::single ? 32 : 64, n, n, entriesOf(matrix)));
+      single ? 32 : 64, n, n, matrix.nonZeros()));
   progress.begin("writing MatrixMarket", n);
   std::vector<fmt::memory_buffer> texts(kTasks);
-  forStoredRows(matrix, [&](const StoredRows& rows) {
+  matrix.forPanels([&](const RowPanel& rows) {
     for (std::size_t row = rows.first(); row < rows.last();) {
       progress.check();
-      const std::size_t next = writeBatch(file, rows, row, texts);
+      const std::size_t next = writeBatch(file, rows, single, row, texts);
       progress.advance(next - row);
       row = next;
     }

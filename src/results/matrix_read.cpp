@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "matrix/run_row.h"
 #include "results/matrix_blocks.h"
 
 namespace radiosity {
@@ -87,9 +86,8 @@ class BlockReader {
   using Store =
       std::function<void(std::size_t row, std::span<const std::int32_t>, std::span<const T>)>;
 
-  BlockReader(const h5::InputGroup& group, const std::vector<std::int64_t>& indptr, bool any_sign,
-              Store store)
-      : group_(&group), indptr_(&indptr), any_sign_(any_sign), store_(std::move(store)) {
+  BlockReader(const h5::InputGroup& group, const std::vector<std::int64_t>& indptr, Store store)
+      : group_(&group), indptr_(&indptr), store_(std::move(store)) {
     std::size_t rows = 0;
     indices_ = group.open("indices", Number::i32, 0, rows);
     data_ = group.open("data", h5::numberOf<T>(), 0, rows);
@@ -134,14 +132,13 @@ class BlockReader {
       if (Index(columns[k]) >= indptr_->size() - 1 || (k > 0 && columns[k] <= columns[k - 1])) {
         group_->fail("indices", fmt::format("has a row ({}) whose columns do not increase", i));
       }
-      if ((values[k] > 0 || any_sign_) && std::isfinite(values[k])) continue;
+      if (values[k] > 0 && std::isfinite(values[k])) continue;
       group_->fail("data", fmt::format("has a row ({}) with the form factor {}", i, values[k]));
     }
   }
 
   const h5::InputGroup* group_;
   const std::vector<std::int64_t>* indptr_;
-  bool any_sign_;
   Store store_;
   h5::Handle indices_;
   h5::Handle data_;
@@ -151,7 +148,7 @@ class BlockReader {
 
 template <class T>
 void readByRows(const h5::InputGroup& group, const StoredRows& rows, ExchangeMatrix& matrix) {
-  BlockReader<T>(group, rows.indptr, false, [&](std::size_t i, auto columns, auto values) {
+  BlockReader<T>(group, rows.indptr, [&](std::size_t i, auto columns, auto values) {
     matrix.setRow(i, std::vector<Index>(columns.begin(), columns.end()),
                   std::vector<double>(values.begin(), values.end()));
   }).readAll();
@@ -161,7 +158,7 @@ void readByRows(const h5::InputGroup& group, const StoredRows& rows, ExchangeMat
 /// order. Calls store(k, values from position k on) for every position.
 template <class T, class StoreUpper>
 void readTriangle(const h5::InputGroup& group, const StoredRows& rows, std::span<const Index> order,
-                  bool any_sign, const StoreUpper& store) {
+                  const StoreUpper& store) {
   std::vector<Index> position(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) position[order[k]] = Index(k);
   std::atomic<std::ptrdiff_t> surplus = 0;  // entries to later patches less those to earlier ones
@@ -178,30 +175,13 @@ void readTriangle(const h5::InputGroup& group, const StoredRows& rows, std::span
     store(k, upper);
     surplus.fetch_add(more, std::memory_order_relaxed);
   };
-  BlockReader<T>(group, rows.indptr, any_sign, keepUpper).readAll();
+  BlockReader<T>(group, rows.indptr, keepUpper).readAll();
   if (surplus != 0) group.fail("indices", "is not that of a symmetric matrix");
-}
-
-/// What closure adds to the rows.
-template <class T>
-void readCorrection(const h5::InputGroup& group, ExchangeMatrix& matrix) {
-  const StoredRows rows = openRows(group, matrix.size());
-  if (rows.number != h5::numberOf<T>()) group.fail("data", "is not stored as the matrix is");
-  std::vector<RunRow> changes(matrix.size());
-  readTriangle<T>(group, rows, matrix.order(), true,
-                  [&](std::size_t k, const std::vector<double>& upper) {
-                    changes[k] = packRuns(std::span(upper).subspan(1), matrix.precision());
-                  });
-  try {
-    matrix.setCorrection(std::move(changes));
-  } catch (const InputError& error) {
-    group.fail("data", fmt::format("does not fit: {}", error.what()));
-  }
 }
 
 template <class T>
 void readSymmetric(const h5::InputGroup& group, const StoredRows& rows, ExchangeMatrix& matrix) {
-  readTriangle<T>(group, rows, matrix.order(), false,
+  readTriangle<T>(group, rows, matrix.order(),
                   [&](std::size_t k, const std::vector<double>& upper) {
                     try {
                       matrix.setUpperRow(k, upper);
@@ -209,7 +189,6 @@ void readSymmetric(const h5::InputGroup& group, const StoredRows& rows, Exchange
                       group.fail("data", fmt::format("does not fit: {}", error.what()));
                     }
                   });
-  if (group.has("closure")) readCorrection<T>(group.group("closure"), matrix);
 }
 
 }  // namespace
@@ -224,7 +203,7 @@ ExchangeMatrix readMatrix(const h5::InputGroup& group) {
   }
   const StoredRows rows = openRows(group, n);
   const bool single = rows.number == Number::f32;
-  const Precision precision = single ? Precision::single : Precision::real;
+  const Precision precision = single ? Precision::single_precision : Precision::double_precision;
   if (group.has("order")) {
     auto matrix = ExchangeMatrix::symmetric(std::move(area), readOrder(group, n), precision);
     single ? readSymmetric<float>(group, rows, matrix) : readSymmetric<double>(group, rows, matrix);

@@ -43,56 +43,54 @@ class ColumnWriter {
   std::vector<T> buffer_;
 };
 
-std::vector<std::int64_t> rowStarts(const ExchangeMatrix& matrix, Part part) {
+std::vector<std::int64_t> rowStarts(const ExchangeMatrix& matrix) {
   std::vector<std::int64_t> indptr(matrix.size() + 1, 0);
-  const std::vector<Index> entries = matrix.rowEntries(part);
+  const std::vector<Index> entries = matrix.rowEntries();
   std::copy(entries.begin(), entries.end(), indptr.begin() + 1);
   for (std::size_t i = 0; i < matrix.size(); ++i) indptr[i + 1] += indptr[i];
   return indptr;
 }
 
 template <class T>
-void writeEntries(h5::OutputGroup& group, const ExchangeMatrix& matrix, Part part,
-                  std::size_t entries, Progress& progress) {
+void writeEntries(h5::OutputGroup& group, const ExchangeMatrix& matrix, std::size_t entries,
+                  Progress& progress) {
   ColumnWriter<std::int32_t> indices(group, "indices", entries);
   ColumnWriter<T> data(group, "data", entries);
   progress.begin("writing form factors", matrix.size());
-  matrix.forPanels(
-      [&](const RowPanel& rows) {
-        for (std::size_t i = rows.first(); i < rows.last(); ++i) {
-          progress.check();
-          rows.forRow(i, [&](Index column, double value) {
-            indices.push(std::int32_t(column));
-            data.push(T(value));
-          });
-          progress.advance();
-        }
-      },
-      part);
+  matrix.forPanels([&](const RowPanel& rows) {
+    for (std::size_t i = rows.first(); i < rows.last(); ++i) {
+      progress.check();
+      rows.forRow(i, [&](Index column, double value) {
+        indices.push(std::int32_t(column));
+        data.push(T(value));
+      });
+      progress.advance();
+    }
+  });
   indices.flush();
   data.flush();
   progress.end();
 }
 
-/// shape, indptr, indices and data of a part.
-void writeRows(h5::OutputGroup& group, const ExchangeMatrix& matrix, Part part,
-               Progress& progress) {
+/// shape, indptr, indices and data.
+void writeRows(h5::OutputGroup& group, const ExchangeMatrix& matrix, Progress& progress) {
   const std::int64_t n = std::int64_t(matrix.size());
   const std::int64_t shape[2] = {n, n};
   group.dataset("shape", {Number::i64, 2, 0}, shape, "");
-  const std::vector<std::int64_t> indptr = rowStarts(matrix, part);
+  const std::vector<std::int64_t> indptr = rowStarts(matrix);
   group.dataset("indptr", {Number::i64, indptr.size(), 0}, indptr.data(), "");
   const auto entries = std::size_t(indptr.back());
-  if (matrix.precision() == Precision::single) {
-    writeEntries<float>(group, matrix, part, entries, progress);
+  if (matrix.precision() == Precision::single_precision) {
+    writeEntries<float>(group, matrix, entries, progress);
   } else {
-    writeEntries<double>(group, matrix, part, entries, progress);
+    writeEntries<double>(group, matrix, entries, progress);
   }
 }
 
-void countRows(h5::SizeCounter& group, const ExchangeMatrix& matrix, Part part) {
-  const std::size_t entries = matrix.nonZeros(part);
-  const Number number = matrix.precision() == Precision::single ? Number::f32 : Number::f64;
+void countRows(h5::SizeCounter& group, const ExchangeMatrix& matrix) {
+  const std::size_t entries = matrix.nonZeros();
+  const Number number =
+      matrix.precision() == Precision::single_precision ? Number::f32 : Number::f64;
   group.dataset("shape", {Number::i64, 2, 0}, nullptr, "");
   group.dataset("indptr", {Number::i64, matrix.size() + 1, 0}, nullptr, "");
   group.dataset("indices", {Number::i32, entries, 0}, nullptr, "");
@@ -106,12 +104,9 @@ void writeMatrix(h5::OutputGroup& group, const ExchangeMatrix& matrix, Progress&
   if (matrix.isSymmetric()) {
     group.dataset("order", {h5::numberOf<Index>(), matrix.size(), 0}, matrix.order().data(), "");
   }
-  const std::vector<double> sums = matrix.rowSums(Part::raw);
+  const std::vector<double> sums = matrix.rowSums();
   group.dataset("row_sum", {Number::f64, sums.size(), 0}, sums.data(), "");
-  writeRows(group, matrix, Part::raw, progress);
-  if (!matrix.isCorrected()) return;
-  h5::OutputGroup closure = group.group("closure");
-  writeRows(closure, matrix, Part::correction, progress);
+  writeRows(group, matrix, progress);
 }
 
 void countMatrix(h5::SizeCounter& group, const ExchangeMatrix& matrix) {
@@ -119,10 +114,7 @@ void countMatrix(h5::SizeCounter& group, const ExchangeMatrix& matrix) {
   group.dataset("area", {Number::f64, n, 0}, nullptr, "m^2");
   if (matrix.isSymmetric()) group.dataset("order", {h5::numberOf<Index>(), n, 0}, nullptr, "");
   group.dataset("row_sum", {Number::f64, n, 0}, nullptr, "");
-  countRows(group, matrix, Part::raw);
-  if (!matrix.isCorrected()) return;
-  h5::SizeCounter closure = group.group("closure");
-  countRows(closure, matrix, Part::correction);
+  countRows(group, matrix);
 }
 
 }  // namespace radiosity

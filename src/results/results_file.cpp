@@ -27,7 +27,7 @@ using h5::SizeCounter;
 
 constexpr const char* kFormat = "radiosity results";
 /// Raised whenever an older program could misread the file.
-constexpr std::int32_t kFormatVersion = 3;
+constexpr std::int32_t kFormatVersion = 4;
 
 /// Everything but the matrix and the links, into a group or a counter.
 template <class Sink>

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/parse.h"
 #include "scene/text.h"
 
 namespace radiosity {

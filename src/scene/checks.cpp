@@ -10,7 +10,6 @@
 #include <map>
 #include <set>
 
-#include "scene/likely_lamp.h"
 #include "scene/text.h"
 
 namespace radiosity {

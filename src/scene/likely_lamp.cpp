@@ -1,5 +1,4 @@
-#include "scene/likely_lamp.h"
-
+// Which lamp to name.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -8,6 +7,8 @@
 #include <span>
 #include <string_view>
 #include <vector>
+
+#include "radiosity/scene.h"
 
 namespace radiosity {
 

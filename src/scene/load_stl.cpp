@@ -14,6 +14,7 @@
 
 #include "base/hash.h"
 #include "base/input_file.h"
+#include "base/parse.h"
 #include "scene/readers.h"
 #include "scene/scene_builder.h"
 #include "scene/text.h"

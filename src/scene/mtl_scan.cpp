@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/parse.h"
 #include "scene/obj_scan.h"
 #include "scene/text.h"
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "base/parse.h"
 #include "scene/camera_text.h"
 #include "scene/scene_builder.h"
 #include "scene/text.h"

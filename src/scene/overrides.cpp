@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/input_file.h"
+#include "base/parse.h"
 #include "scene/json_scan.h"
 #include "scene/scene_builder.h"
 #include "scene/text.h"

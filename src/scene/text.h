@@ -1,7 +1,6 @@
-// Reading text strictly: a number is a number or it is nothing.
+// Words of scene files and of messages about them.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,18 +18,6 @@ std::string onOneLine(std::string_view text);
 
 /// Words between blanks (space, tab, carriage return).
 std::vector<std::string_view> splitWords(std::string_view text);
-
-/// Parts between `separator`, empty ones included.
-std::vector<std::string_view> splitAt(std::string_view text, char separator);
-
-/// A finite decimal number that fills the whole of `word`, correctly rounded.
-std::optional<double> parseNumber(std::string_view word);
-
-/// A decimal integer that fills the whole of `word`.
-std::optional<long long> parseInteger(std::string_view word);
-
-/// "x,y,z" (no blanks) -> three finite numbers.
-std::optional<Vec3> parseTriple(std::string_view text);
 
 /// "a, b, c", and where there are more than `limit` names "... and 5 more".
 std::string joinNames(std::span<const std::string> names, std::size_t limit = 12);

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <utility>
 
+#include "base/geometry/solid_angle.h"
+
 namespace radiosity {
 
 namespace {
@@ -16,21 +18,6 @@ namespace {
 /// at most some 1/16 of the node's own, and terms of opposite sides of a part cancel: what is left
 /// is far from the quarter that would change an answer.
 constexpr double kFar = 4;
-
-/// Solid angle of a triangle, seen from a point (A. van Oosterom, J. Strackee,
-/// 1983, eq. 8).
-double solidAngle(const std::array<Vec3, 3>& corners, const Vec3& point) {
-  const Vec3 a = corners[0] - point;
-  const Vec3 b = corners[1] - point;
-  const Vec3 c = corners[2] - point;
-  const double la = glm::length(a);
-  const double lb = glm::length(b);
-  const double lc = glm::length(c);
-  const double numerator = glm::dot(a, glm::cross(b, c));
-  const double denominator =
-      la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
-  return 2 * std::atan2(numerator, denominator);
-}
 
 }  // namespace
 
@@ -101,7 +88,10 @@ double WindingTree::around(const Vec3& point, Index own) const {
     } else if (node.second == 0) {
       for (std::size_t k = node.begin; k < node.end; ++k) {
         const Triangle& t = triangles_[k];
-        if (own == kNone || t.plane != own) angle += solidAngle(t.corners, point);
+        if (own == kNone || t.plane != own) {
+          angle +=
+              signedSolidAngle(t.corners[0] - point, t.corners[1] - point, t.corners[2] - point);
+        }
       }
     } else {
       waiting.push_back(number + 1);

@@ -65,7 +65,7 @@ FormFactors castFormFactors(const PatchMesh& mesh, std::uint32_t rays, bool both
   const CosineRays caster(mesh);
   FormFactors result;
   result.method = "rays";
-  result.matrix = ExchangeMatrix(mesh.area, Precision::single);
+  result.matrix = ExchangeMatrix(mesh.area, Precision::single_precision);
   result.fronts.assign(n, 0.0);
   result.backs.assign(n, 0.0);
   result.sky.assign(n, 0.0);

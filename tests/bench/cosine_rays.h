@@ -25,7 +25,7 @@ class CosineRays {
   explicit CosineRays(const PatchMesh& mesh);
 
   struct Row {
-    std::vector<std::uint32_t> hits;  ///< by item: patches, then bare backs by surface
+    std::vector<std::uint32_t> hits;  ///< by item: patches, then black backs by surface
     std::uint32_t sky = 0;
     std::uint32_t own = 0;  ///< ended on the polygon they left from: rounding at grazing angles
   };

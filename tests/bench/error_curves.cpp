@@ -18,7 +18,7 @@ constexpr double kSolveTolerance = 1e-8;
 
 FormFactors asFormFactors(const PatchMesh& mesh, const TruthRows& truth) {
   FormFactors factors;
-  factors.matrix = ExchangeMatrix(mesh.area, Precision::real);
+  factors.matrix = ExchangeMatrix(mesh.area, Precision::double_precision);
   factors.fronts.assign(mesh.size(), 0.0);
   factors.backs.assign(mesh.size(), 0.0);
   factors.sky.assign(mesh.size(), 0.0);

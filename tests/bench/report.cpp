@@ -33,7 +33,7 @@ void printCurveHead(const SceneCurves& curves) {
       curves.truth_rows, curves.radiosity_reference);
   fmt::print("  {:<15} {:>9} | {:>9} {:>9} | {:>8} {:>8} {:>8} | {:>8} {:>6} {:>6} | {:>8} | {}\n",
              "method", "setting", "seconds", "wall", "relL2(F)", "largest", "relL2(B)", "own est.",
-             "rows", "median", "MiB", "pairs: unoccluded, hidden, partial");
+             "rows", "median", "MiB", "pairs: unoccluded, hidden, occluded");
 }
 
 void printMeasurement(const Measurement& m) {
@@ -48,7 +48,7 @@ void printMeasurement(const Measurement& m) {
   }
   fmt::print("{:>8.2f} |", double(m.bytes) / kMebibyte);
   if (m.exact.elements > 0) {
-    fmt::print(" {} {} {}", m.exact.unoccluded, m.exact.hidden, m.exact.partial);
+    fmt::print(" {} {} {}", m.exact.unoccluded, m.exact.hidden, m.exact.occluded);
   }
   fmt::print("\n");
   std::fflush(stdout);
@@ -111,7 +111,7 @@ void writeCsv(const std::string& path, const std::vector<SceneCurves>& curves) {
       "scene,patches,polygons,truth_rows,method,setting,value,user_s,system_s,wall_s,runs,"
       "relative_l2_F,largest_F,relative_l2_B,B_reference,error_figure,rows_covered,median_figure_"
       "over_error,largest_row_error,bytes,"
-      "pairs_no_exchange,pairs_unoccluded,pairs_hidden,pairs_partial,exact_left_out\n");
+      "pairs_no_exchange,pairs_unoccluded,pairs_hidden,pairs_occluded,exact_left_out\n");
   for (const SceneCurves& c : curves) {
     for (const Measurement& m : c.measurements) {
       out.print("{},{},{},{},{},{},{:g},{:.6f},{:.6f},{:.6f},{},{:.6e},{:.6e},{},{},", c.scene,
@@ -126,7 +126,7 @@ void writeCsv(const std::string& path, const std::vector<SceneCurves>& curves) {
       out.print("{:.3e},{},", m.largest_row_error, m.bytes);
       if (m.exact.elements > 0) {
         out.print("{},{},{},{},", m.exact.no_exchange, m.exact.unoccluded, m.exact.hidden,
-                  m.exact.partial);
+                  m.exact.occluded);
       } else {
         out.print(",,,,");
       }

@@ -256,7 +256,7 @@ class ExactFactors(CliTest):
         factors = report["form_factors"]
         self.assertEqual(factors["method"], "exact")
         self.assertIn("exact", factors["method_reason"])
-        for key in ["pairs_unoccluded", "pairs_partial", "pairs_hidden", "pairs_no_exchange",
+        for key in ["pairs_unoccluded", "pairs_occluded", "pairs_hidden", "pairs_no_exchange",
                     "error_figure", "row_error_median", "largest_row_error", "closed"]:
             self.assertIn(key, factors)
         out = self.run_program("factors", "box.obj", "--patches", "60").out

@@ -54,6 +54,9 @@ class Install(unittest.TestCase):
             said = run(str(root / "build/scene_to_picture"), f"{ROOT}/data/cornell-box.obj", str(drawn))
             self.assertIn("converged", said)
             self.assertGreater(drawn.stat().st_size, 1000)
+            again = [str(root / "build/solve_again"), f"{ROOT}/data/cornell-box.obj", str(root / "s.h5")]
+            self.assertEqual(run(*again).count("made"), 3)
+            self.assertEqual(run(*again).count("reused"), 3)
             (root / "data").symlink_to(ROOT / "data")
             subprocess.run([root / "build/readme"], cwd=root, check=True)
             self.assertGreater((root / "lit.png").stat().st_size, 1000)

@@ -28,7 +28,7 @@ struct Lit {
 };
 
 Lit light(const Scene& scene, std::size_t patches, int resolution,
-          Precision precision = Precision::single, double tolerance = 1e-6) {
+          Precision precision = Precision::single_precision, double tolerance = 1e-6) {
   Progress quiet;
   MeshOptions mesh_options;
   mesh_options.patches = patches;
@@ -92,7 +92,7 @@ TEST(Pipeline, EveryClosedSceneIsAFurnace) {
   for (const char* name : {"furnace-cube", "cornell-box-closed", "two-rooms", "curved"}) {
     Scene scene = loadScene(kData + name + ".obj");
     makeUniform(scene, 0.9, 1.0);
-    const Lit lit = light(scene, 600, 64, Precision::real, 1e-13);
+    const Lit lit = light(scene, 600, 64, Precision::double_precision, 1e-13);
     EXPECT_TRUE(lit.factors.report.closed) << name;
     EXPECT_EQ(lit.solution.summary.status, SolveStatus::converged) << name;
     double worst_row = 0;

@@ -11,7 +11,7 @@ int main() try {
   const double facing = 0.199824895698387;
   const double side = (1 - facing) / 4;
   FormFactors factors;
-  factors.matrix = ExchangeMatrix(std::vector<double>(6, 1.0), Precision::real);
+  factors.matrix = ExchangeMatrix(std::vector<double>(6, 1.0), Precision::double_precision);
   for (Index i = 0; i < 6; ++i) {
     std::vector<Index> columns;
     std::vector<double> values;

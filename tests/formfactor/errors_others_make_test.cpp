@@ -12,6 +12,7 @@
 #include "gather/gather_scenes.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
+#include "radiosity/matrix_functions.h"
 #include "radiosity/render.h"
 #include "radiosity/solve.h"
 #include "support/mesh_builder.h"
@@ -25,7 +26,7 @@ FormFactors factorsOf(const PatchMesh& mesh, FormFactorMethod method, bool symme
   FormFactorOptions options;
   options.method = method;
   options.resolution = 128;
-  options.precision = Precision::real;
+  options.precision = Precision::double_precision;
   options.symmetrize = symmetrize;
   Progress quiet;
   return computeFormFactors(mesh, options, quiet);

@@ -141,7 +141,7 @@ TEST(ExactBodies, AllValuesAreNumbers) {
       ASSERT_TRUE(std::isfinite(f.error[i])) << seed << " " << i;
       f.matrix.forRow(i, [&](Index, double value) { ASSERT_TRUE(value >= 0) << seed << " " << i; });
       // Rows of a room sum to 1 but for what the figures say: of these many entries, most of them
-      // partly hidden, errors of either sign.
+      // occluded, errors of either sign.
       EXPECT_NEAR(f.fronts[i] + f.backs[i], 1.0, 20 * f.error[i] + 1e-4) << seed << " " << i;
     }
   }

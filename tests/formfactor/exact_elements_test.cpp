@@ -62,7 +62,7 @@ void expectSoundClusters(const ElementSet& set) {
   EXPECT_TRUE(std::all_of(leaves.begin(), leaves.end(), [](int n) { return n == 1; }));
 }
 
-TEST(ExactElements, ClosedRoomHasOneElementAPatchAndNoBareBack) {
+TEST(ExactElements, ClosedRoomHasOneElementAPatchAndNoBlackBack) {
   const PatchMesh mesh = test::roomWithBlock(5).build();
   const ElementSet set(mesh);
   ASSERT_EQ(set.size(), mesh.size());
@@ -109,7 +109,7 @@ TEST(ExactElements, ASeenBackIsTiledAroundItsHole) {
   // The floor's back sees nothing: all of the scene is in front. The plate's back sees the floor.
   ASSERT_EQ(set.facets.size(), 3U);
   const Facet& back = set.facets[2];
-  EXPECT_TRUE(back.bare);
+  EXPECT_TRUE(back.black);
   EXPECT_TRUE(back.back);
   EXPECT_EQ(set.patch_elements, mesh.size());
   EXPECT_NEAR(back.normal.z, -1, 1e-15);
@@ -128,7 +128,7 @@ TEST(ExactElements, TwoSidedPolygonsHaveTwoFacets) {
   const ElementSet set(mesh);
   ASSERT_EQ(set.facets.size(), 2U);
   EXPECT_EQ(set.patch_elements, 12U);
-  EXPECT_FALSE(set.facets[0].back || set.facets[0].bare || set.facets[1].bare);
+  EXPECT_FALSE(set.facets[0].back || set.facets[0].black || set.facets[1].black);
   EXPECT_TRUE(set.facets[1].back);
   EXPECT_EQ(set.facets[0].normal, -set.facets[1].normal);
   for (Index e = 6; e < 12; ++e) EXPECT_EQ(mesh.side[set.patch[e]], 1);
@@ -149,7 +149,7 @@ TEST(ExactElements, ConcaveAndLargePatchesAreSplitAndDegenerateOnesLeftOut) {
   EXPECT_EQ(std::count(set.patch.begin(), set.patch.end(), 1U), 0);
   EXPECT_EQ(std::count(set.patch.begin(), set.patch.end(), 2U), 2);
   for (const Facet& facet : set.facets) {
-    if (!facet.bare && facet.polygon == 2) {
+    if (!facet.black && facet.polygon == 2) {
       EXPECT_NEAR(totalArea(set, facet), 1.25, 1e-14);
     }
   }
@@ -179,7 +179,7 @@ TEST(ExactElements, NothingDependsOnNumberingOrAPowerOfTwo) {
   }
 }
 
-TEST(ExactElements, ASolidNobodyLooksIntoHasNoBareBacks) {
+TEST(ExactElements, ASolidNobodyLooksIntoHasNoBlackBacks) {
   MeshBuilder builder;
   builder.box("room", {0, 0, 0}, {4, 4, 4}, 2, true);
   builder.box("block", {1, 1, 1}, {2, 2, 2}, 1);
@@ -187,9 +187,9 @@ TEST(ExactElements, ASolidNobodyLooksIntoHasNoBareBacks) {
   // A patch inside the block sees its backs.
   builder.grid("inside", {1.25, 1.25, 1.5}, {0.5, 0, 0}, {0, 0.5, 0});
   const ElementSet set(builder.build());
-  const auto bare = std::count_if(set.facets.begin(), set.facets.end(),
-                                  [](const Facet& facet) { return facet.bare; });
-  EXPECT_EQ(bare, 6 + 1);
+  const auto black = std::count_if(set.facets.begin(), set.facets.end(),
+                                   [](const Facet& facet) { return facet.black; });
+  EXPECT_EQ(black, 6 + 1);
 }
 
 TEST(ExactElements, AnEmptyMeshHasNone) {

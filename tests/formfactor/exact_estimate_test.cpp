@@ -11,6 +11,7 @@
 #include "formfactor/exact/assembly/exact_scene.h"
 #include "formfactor/exact/assembly/recorded_pairs.h"
 #include "formfactor/exact/assembly/row_sample.h"
+#include "formfactor/foreseen_work.h"
 #include "radiosity/form_factors.h"
 #include "support/mesh_builder.h"
 
@@ -66,9 +67,9 @@ TEST(ExactEstimate, IsTheSameInEveryRunButForTheClock) {
   setThreads(1);
   const ExactEstimate second = estimateOf(mesh, options);
   setThreads(0);
-  EXPECT_GT(first.partial_pairs, 0);
-  EXPECT_EQ(first.partial_pairs, second.partial_pairs);
-  EXPECT_EQ(first.seconds, second.seconds);
+  EXPECT_GT(first.occluded_pairs, 0);
+  EXPECT_EQ(first.occluded_pairs, second.occluded_pairs);
+  EXPECT_EQ(first.work, second.work);
   EXPECT_EQ(first.refining, second.refining);
   EXPECT_EQ(first.points, second.points);
   EXPECT_EQ(first.entries_per_row, second.entries_per_row);
@@ -87,7 +88,7 @@ TEST(ExactEstimate, ASampleWithoutBoundIsTheWhole) {
       VisibilityCounts counts;
       visibility.classify(range, whole, whole_counts);
       const VisibilityOfFacets of_facets = visibility.classifySome(range, {}, sampled, counts);
-      EXPECT_EQ(sampled.partial_pairs.size(), whole.partial_pairs.size());
+      EXPECT_EQ(sampled.occluded_pairs.size(), whole.occluded_pairs.size());
       EXPECT_EQ(counts.unoccluded, whole_counts.unoccluded);
       EXPECT_EQ(counts.hidden, whole_counts.hidden);
       EXPECT_EQ(counts.settled(), visibility.openPairs(range));
@@ -125,11 +126,11 @@ TEST(ExactEstimate, TighterTolerancesTakeLonger) {
   const ExactEstimate loose = estimateOf(mesh, exactly(1e-2));
   const ExactEstimate tight = estimateOf(mesh, exactly(1e-3));
   EXPECT_GT(loose.refining, 0);
-  EXPECT_LT(loose.refining, loose.seconds);
+  EXPECT_LT(loose.refining, loose.work);
   // What goes with 1 / tolerance; sums of some thousand numbers, rounded differently.
-  EXPECT_NEAR(tight.seconds, loose.seconds + 9 * loose.refining, 1e-9 * tight.seconds);
-  EXPECT_NEAR(tight.refining, 10 * loose.refining, 1e-9 * tight.seconds);
-  EXPECT_EQ(tight.partial_pairs, loose.partial_pairs);
+  EXPECT_NEAR(tight.work, loose.work + 9 * loose.refining, 1e-9 * tight.work);
+  EXPECT_NEAR(tight.refining, 10 * loose.refining, 1e-9 * tight.work);
+  EXPECT_EQ(tight.occluded_pairs, loose.occluded_pairs);
 }
 
 TEST(ExactEstimate, NothingInBetweenTakesNoPoints) {
@@ -140,7 +141,7 @@ TEST(ExactEstimate, NothingInBetweenTakesNoPoints) {
   const ExactEstimate estimate = estimateOf(mesh, exactly(1e-6));
   EXPECT_EQ(estimate.points, 0);
   EXPECT_EQ(estimate.refining, 0);
-  EXPECT_GT(estimate.seconds, 0);
+  EXPECT_GT(estimate.work, 0);
 }
 
 TEST(Auto, ClutterAndToleranceDecide) {
@@ -157,8 +158,8 @@ TEST(Auto, TightTolerancesNeverSelectHemicubes) {
   Progress silent;
   FormFactorOptions options;
   options.tolerance = 1e-6;
-  // Far longer than a minute, and than hemicubes.
-  EXPECT_GT(estimateOf(mesh, options).seconds, 1000);
+  // Far more than what hemicubes are chosen for elsewhere.
+  EXPECT_GT(estimateOf(mesh, options).work, 16 * kMuchWork);
   EXPECT_EQ(planFormFactors(mesh, options, silent).method, FormFactorMethod::exact);
 }
 

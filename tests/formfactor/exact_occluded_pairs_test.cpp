@@ -32,7 +32,7 @@ struct Case : VisibilitySink {
     const Visibility visibility(elements, occluders);
     VisibilityCounts counts;
     for (const Facet& facet : elements.facets) {
-      if (!facet.bare) visibility.classify(facet.elements, *this, counts);
+      if (!facet.black) visibility.classify(facet.elements, *this, counts);
     }
   }
   void unoccluded(ElementRange rows, ElementRange columns) override {
@@ -40,7 +40,7 @@ struct Case : VisibilitySink {
       for (Index c = columns.first; c < columns.end; ++c) open.push_back({r, c, exact.pair(r, c)});
     }
   }
-  void partial(Index row, Index column, std::span<const Index> blockers) override {
+  void occluded(Index row, Index column, std::span<const Index> blockers) override {
     const auto begin = std::uint32_t(list.size());
     list.insert(list.end(), blockers.begin(), blockers.end());
     pairs.push_back({row, column, begin, std::uint32_t(list.size()), exact.pair(row, column)});
@@ -100,7 +100,7 @@ struct Sheet {
 TEST(OccludedPairs, PlatesPastASheet) {
   // Closed forms: the aperture's and the obstructed form factor add up to that of the plates, and
   // the aperture's follows from those of rectangles. Tolerance 1e-7 of 1/N, N = 129: errors of
-  // some 1500 partial pairs, each 20 times that at most and of either sign, are below 1e-6 in sum.
+  // some 1500 occluded pairs, each 20 times that at most and of either sign, are below 1e-6 in sum.
   const std::vector<Sheet> sheets = {
       {0, 0.5, 0, 0.5, 0.149868671773790},       {0, 0.5, 0, 1, 0.0999124478491937},
       {0.45, 0.55, 0.45, 0.55, 0.1945396236482}, {0.375, 0.625, 0.375, 0.625, 0.1694742049118},
@@ -211,7 +211,7 @@ const OccludedPair& firstPair(const Case& scene) {
       return pair;
     }
   }
-  throw std::logic_error("the pair is not partial");
+  throw std::logic_error("the pair is not occluded");
 }
 
 TEST(OccludedPairs, PointsLieWhereTheShadowThatMovesMostMovesLeast) {
@@ -288,7 +288,7 @@ RowErrors compareRows(const Case& scene, const TrueRows& rows, double tolerance)
   ErrorSums sums(figure.size());
   for (std::size_t k = 0; k < found.size(); ++k) {
     const OccludedPair& pair = scene.pairs[k];
-    if (pair.column < figure.size()) sums.addPartial(pair.row, pair.column, found[k].error);
+    if (pair.column < figure.size()) sums.addOccluded(pair.row, pair.column, found[k].error);
   }
   sums.figures(std::span(scene.elements.area).first(figure.size()), 0, figure);
   RowErrors errors;
@@ -322,7 +322,7 @@ RowErrors compareRows(const Case& scene, const TrueRows& rows, double tolerance)
 TEST(OccludedPairs, RowsKeepTheToleranceAndSaySo) {
   // One block in a room, and twelve. The tolerance is for the root mean square over a row's
   // entries in mean form factors, which is less than theirs. It is met where a tenth of the pairs
-  // are partial; among twelve blocks nearly all are: three times it is asserted. Figures are above
+  // are occluded; among twelve blocks nearly all are: three times it is asserted. Figures are above
   // the error in every row of the sample, and within ten times it in half of them; twenty, where
   // large patches past many blocks leave much to guess.
   const Case block(test::roomWithBlock(3).build());

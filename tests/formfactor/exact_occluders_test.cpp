@@ -279,7 +279,7 @@ TEST(ExactPieces, BackToBackIsOne) {
   ASSERT_EQ(made.set.occluders.size(), 1u);
   EXPECT_TRUE(made.set.occluders[0].flat);
   EXPECT_EQ(made.set.occluders[0].facets.size(), 2u);
-  for (const std::uint8_t sealed : made.set.sealed) EXPECT_EQ(sealed, 0);
+  for (const std::uint8_t hidden : made.set.hidden_facets) EXPECT_EQ(hidden, 0);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ FormFactors compute(const PatchMesh& mesh, FormFactorMethod method, double toler
   options.method = method;
   options.tolerance = tolerance;
   options.resolution = 64;
-  options.precision = Precision::real;
+  options.precision = Precision::double_precision;
   options.simd = simd;
   Progress silent;
   return computeFormFactors(mesh, options, silent);
@@ -78,7 +78,7 @@ void expectTrue(const PatchMesh& mesh, const std::string& what, double past = 0.
   truth::TruthOptions options;
   options.accuracy = 1e-4;
   const truth::GroundTruth truth(mesh, options);
-  const double allowed = f.report.exact.partial > 0 ? past / double(mesh.size()) : 0.0;
+  const double allowed = f.report.exact.occluded > 0 ? past / double(mesh.size()) : 0.0;
   double off = 0;
   double all = 0;
   const std::size_t step = std::max<std::size_t>(1, mesh.size() / 6);
@@ -384,7 +384,7 @@ TEST(Sameness, PlaceScaleAndTurnLeaveExactValuesAsTheyAre) {
       return compute(m, FormFactorMethod::exact, c.tolerance);
     };
     const FormFactors plain = run(mesh);
-    EXPECT_GT(plain.report.exact.partial, 50u);
+    EXPECT_GT(plain.report.exact.occluded, 50u);
     for (const double scale : {1e-6, 0.3, 1e6}) {
       const PatchMesh scaled = transformed(mesh, scale, Vec3(0.0), 0);
       EXPECT_LT(largestDifference(plain, run(scaled)), c.allowed) << scale;
@@ -430,7 +430,7 @@ TEST(Skips, ConvexAndCoplanar) {
   plain.grid("floor", {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 100, 100);
   const ExactReport flat = compute(plain.build(), FormFactorMethod::exact).report.exact;
   EXPECT_EQ(flat.elements, 10000u);
-  EXPECT_EQ(flat.unoccluded + flat.hidden + flat.partial, 0u);
+  EXPECT_EQ(flat.unoccluded + flat.hidden + flat.occluded, 0u);
   EXPECT_EQ(flat.facet_pairs + flat.shaft_tests + flat.contour + flat.lambert + flat.product, 0u);
 
   SceneBuilder octahedron;
@@ -446,7 +446,7 @@ TEST(Skips, ConvexAndCoplanar) {
   }
   const PatchMesh mesh = test::meshOf(octahedron.scene(), 500);
   const FormFactors f = compute(mesh, FormFactorMethod::exact);
-  EXPECT_EQ(f.report.exact.shaft_tests + f.report.exact.partial + f.report.exact.hidden, 0u);
+  EXPECT_EQ(f.report.exact.shaft_tests + f.report.exact.occluded + f.report.exact.hidden, 0u);
   EXPECT_EQ(f.report.exact.occluders, 0u);
   for (const double sum : f.fronts) EXPECT_NEAR(sum, 1, 2e-5);
 }

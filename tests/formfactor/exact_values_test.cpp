@@ -23,7 +23,7 @@ FormFactors exact(const PatchMesh& mesh, double tolerance = 1e-3) {
   FormFactorOptions options;
   options.method = FormFactorMethod::exact;
   options.tolerance = tolerance;
-  options.precision = Precision::real;
+  options.precision = Precision::double_precision;
   Progress silent;
   return computeFormFactors(mesh, options, silent);
 }
@@ -95,7 +95,7 @@ TEST(ExactValues, ObstructedPlatesToNineDigitsTakeFewPoints) {
     // digits.
     EXPECT_NEAR(surfaceToSurface(mesh, f, "lower", "upper"), k.f, 1e-9) << k.name;
     points += f.report.exact.points;
-    pairs += f.report.exact.partial;
+    pairs += f.report.exact.occluded;
   }
   EXPECT_LT(points, 250 * pairs);  // 140 were counted
 }
@@ -204,7 +204,7 @@ TEST(ExactValues, ConcentricSpheres) {
     double areas[2] = {0, 0};
     for (std::size_t i = 0; i < mesh.size(); ++i) areas[mesh.surface[i]] += mesh.area[i];
     // Whatever leaves a convex solid reaches what encloses it: exact for the polyhedra. A row's
-    // N partial pairs are each within the tolerance's share 1/N, so that the sum is within it.
+    // N occluded pairs are each within the tolerance's share 1/N, so that the sum is within it.
     const double ratio = areas[0] / areas[1];
     EXPECT_NEAR(surfaceToSurface(mesh, f, "outer", "inner"), ratio, 1e-5) << sides;
     EXPECT_NEAR(surfaceToSurface(mesh, f, "outer", "outer"), 1 - ratio, 1e-5) << sides;

@@ -15,7 +15,7 @@ namespace {
 
 using test::SightLines;
 
-enum class Answer : std::uint8_t { kNone, kUnoccluded, kPartial };
+enum class Answer : std::uint8_t { kNone, kUnoccluded, kOccluded };
 
 /// All answers of a scene as a table of pairs, checked to be given once each.
 class Table : public VisibilitySink {
@@ -24,7 +24,7 @@ class Table : public VisibilitySink {
       : elements(mesh), occluders(mesh, elements), visibility(elements, occluders) {
     answers_.assign(elements.size() * elements.size(), Answer::kNone);
     for (const Facet& facet : elements.facets) {
-      if (!facet.bare) visibility.classify(facet.elements, *this, counts);
+      if (!facet.black) visibility.classify(facet.elements, *this, counts);
     }
   }
 
@@ -33,8 +33,8 @@ class Table : public VisibilitySink {
       for (Index c = columns.first; c < columns.end; ++c) set(r, c, Answer::kUnoccluded);
     }
   }
-  void partial(Index row, Index column, std::span<const Index> between) override {
-    set(row, column, Answer::kPartial);
+  void occluded(Index row, Index column, std::span<const Index> between) override {
+    set(row, column, Answer::kOccluded);
     EXPECT_FALSE(between.empty());
     EXPECT_TRUE(std::is_sorted(between.begin(), between.end()));
     candidates[{row, column}].assign(between.begin(), between.end());
@@ -67,22 +67,22 @@ class Table : public VisibilitySink {
 
 void expectCountsAddUp(const Table& table) {
   const VisibilityCounts& c = table.counts;
-  EXPECT_EQ(c.no_exchange + c.unoccluded + c.hidden + c.partial, table.pairs());
+  EXPECT_EQ(c.no_exchange + c.unoccluded + c.hidden + c.occluded, table.pairs());
   std::size_t unoccluded = 0;
-  std::size_t partial = 0;
+  std::size_t occluded = 0;
   for (std::size_t r = 0; r < table.elements.patch_elements; ++r) {
     for (std::size_t k = r + 1; k < table.elements.size(); ++k) {
       unoccluded += table.at(r, k) == Answer::kUnoccluded;
-      partial += table.at(r, k) == Answer::kPartial;
+      occluded += table.at(r, k) == Answer::kOccluded;
     }
   }
   EXPECT_EQ(unoccluded, c.unoccluded);
-  EXPECT_EQ(partial, c.partial);
+  EXPECT_EQ(occluded, c.occluded);
 }
 
 /// `lines` random pairs of elements, a random sight line each (from every pair there is, one after
 /// the other): none of an unoccluded pair is blocked, none of a pair not reported is free, and
-/// what blocks one of a partial pair is among its candidates.
+/// what blocks one of an occluded pair is among its candidates.
 void expectTrue(const PatchMesh& mesh, std::size_t lines, unsigned seed) {
   const Table table(mesh);
   expectCountsAddUp(table);
@@ -106,7 +106,7 @@ void expectTrue(const PatchMesh& mesh, std::size_t lines, unsigned seed) {
     const auto seen = sight.between(p, q, margin);
     if (seen == SightLines::Sight::kBlocked) {
       EXPECT_NE(table.at(r, c), Answer::kUnoccluded) << r << " " << c;
-      if (table.at(r, c) == Answer::kPartial) {
+      if (table.at(r, c) == Answer::kOccluded) {
         std::vector<Occluder> between;
         for (const Index o : table.candidates.at({Index(r), Index(c)})) {
           between.push_back(table.occluders.occluders[o]);
@@ -187,8 +187,8 @@ TEST(ExactVisibilityFaces, AnswersAreTrueFarAwayAndTiny) {
   expectTrue(test::meshOf(test::scaled(test::hardRoom(), 1e-6), 200), 20000, 8);
 }
 
-/// The scalar twin answers alike, pair by pair.
-TEST(ExactVisibilityCounts, ScalarTwinGivesTheSame) {
+/// The scalar target answers alike, pair by pair.
+TEST(ExactVisibilityCounts, ScalarTargetGivesTheSame) {
   const PatchMesh mesh = test::meshOf(test::hardRoom(), 250);
   const Table table(mesh);
   const Visibility scalar(table.elements, table.occluders, false);
@@ -198,16 +198,16 @@ TEST(ExactVisibilityCounts, ScalarTwinGivesTheSame) {
       EXPECT_EQ(table.at(r.first, c.first), Answer::kUnoccluded);
       EXPECT_EQ(table.at(r.end - 1, c.end - 1), Answer::kUnoccluded);
     }
-    void partial(Index r, Index c, std::span<const Index> between) override {
+    void occluded(Index r, Index c, std::span<const Index> between) override {
       EXPECT_TRUE(std::ranges::equal(table.candidates.at({r, c}), between));
     }
     const Table& table;
   } sink(table);
   VisibilityCounts counts;
   for (const Facet& facet : table.elements.facets) {
-    if (!facet.bare) scalar.classify(facet.elements, sink, counts);
+    if (!facet.black) scalar.classify(facet.elements, sink, counts);
   }
-  EXPECT_EQ(counts.partial, table.counts.partial);
+  EXPECT_EQ(counts.occluded, table.counts.occluded);
   EXPECT_EQ(counts.hidden, table.counts.hidden);
 }
 
@@ -218,7 +218,7 @@ TEST(ExactVisibilityCounts, ConvexRoomNeedsNoVisibility) {
   const Table table(test::meshOf(test::dataScene("furnace-cube"), 600));
   expectCountsAddUp(table);
   EXPECT_EQ(table.counts.shaft_tests, 0u);
-  EXPECT_EQ(table.counts.partial, 0u);
+  EXPECT_EQ(table.counts.occluded, 0u);
   EXPECT_EQ(table.counts.hidden, 0u);
   EXPECT_EQ(table.counts.facet_pairs_unoccluded, 15u);  // of six faces
 }
@@ -232,7 +232,7 @@ TEST(ExactVisibilityCounts, CoplanarPatchesAreNeverPaired) {
   const Visibility visibility(elements, occluders);
   struct Nothing : VisibilitySink {
     void unoccluded(ElementRange, ElementRange) override { ADD_FAILURE(); }
-    void partial(Index, Index, std::span<const Index>) override { ADD_FAILURE(); }
+    void occluded(Index, Index, std::span<const Index>) override { ADD_FAILURE(); }
   } sink;
   VisibilityCounts counts;
   for (const Facet& f : elements.facets) visibility.classify(f.elements, sink, counts);
@@ -242,7 +242,7 @@ TEST(ExactVisibilityCounts, CoplanarPatchesAreNeverPaired) {
 }
 
 /// Panels of rows give what whole facets give, but for pairs so close to a shadow's edge that it
-/// depends on the cluster they are settled in (measured: 1 of 10058 partial pairs).
+/// depends on the cluster they are settled in (measured: 1 of 10058 occluded pairs).
 TEST(ExactVisibilityCounts, AnyRangeOfRowsGivesTheSame) {
   const PatchMesh mesh = test::meshOf(test::hardRoom(), 250);
   const Table whole(mesh);
@@ -251,27 +251,28 @@ TEST(ExactVisibilityCounts, AnyRangeOfRowsGivesTheSame) {
     void unoccluded(ElementRange r, ElementRange c) override {
       pairs += std::size_t(r.size()) * c.size();
     }
-    void partial(Index, Index, std::span<const Index>) override {}
+    void occluded(Index, Index, std::span<const Index>) override {}
   } sink;
   VisibilityCounts counts;
   for (const Facet& facet : whole.elements.facets) {
-    if (facet.bare) continue;
+    if (facet.black) continue;
     for (Index r = facet.elements.first; r < facet.elements.end; r += 7) {
       whole.visibility.classify({r, std::min(r + 7, facet.elements.end)}, sink, counts);
     }
   }
-  EXPECT_EQ(counts.no_exchange + counts.unoccluded + counts.hidden + counts.partial, whole.pairs());
-  EXPECT_NEAR(double(counts.partial), double(whole.counts.partial), 10);
+  EXPECT_EQ(counts.no_exchange + counts.unoccluded + counts.hidden + counts.occluded,
+            whole.pairs());
+  EXPECT_NEAR(double(counts.occluded), double(whole.counts.occluded), 10);
   EXPECT_EQ(counts.unoccluded, sink.pairs);
 }
 
-/// Partial pairs thin out with the square root of the number of patches: only those along shadows'
+/// Occluded pairs thin out with the square root of the number of patches: only those along shadows'
 /// edges remain. Measured: 11.1% of all pairs at 985 patches, 4.95% at 5096.
 TEST(ExactVisibilityCounts, PartialPairsThinOut) {
   double before = 1;
   for (const std::size_t n : {300, 1200}) {
     const Table table(test::meshOf(test::dataScene("cornell-box-closed"), n));
-    const double share = double(table.counts.partial) / double(table.pairs());
+    const double share = double(table.counts.occluded) / double(table.pairs());
     EXPECT_LT(share, 4.2 / std::sqrt(double(table.elements.size())));
     EXPECT_LT(share, 0.65 * before);
     before = share;
@@ -286,7 +287,7 @@ TEST(ExactVisibilityCounts, FacesAsPatchesGiveTheSameClasses) {
   const Table read(test::meshOf(test::sceneOfPatches(mesh, scene), 1, true));
   EXPECT_EQ(own.occluders.solids, 2u);
   EXPECT_EQ(read.occluders.solids, 2u);
-  EXPECT_EQ(own.counts.partial, read.counts.partial);
+  EXPECT_EQ(own.counts.occluded, read.counts.occluded);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ FormFactors compute(const PatchMesh& mesh, FormFactorMethod method,
   FormFactorOptions options;
   options.method = method;
   options.near_exact = near_exact;
-  options.precision = Precision::real;
+  options.precision = Precision::double_precision;
   options.tolerance = 1e-4;  // far below what hemicubes get wrong
   Progress silent;
   return computeFormFactors(mesh, options, silent);
@@ -54,7 +54,7 @@ TEST(NearPairs, AWholeRoomGetsBetterAndStaysClosed) {
   const FormFactors exact = compute(mesh, FormFactorMethod::exact, false);
   const FormFactors plain = compute(mesh, FormFactorMethod::hemicube, false);
   const FormFactors corrected = compute(mesh, FormFactorMethod::hemicube, true);
-  // A single point is off by per cents next to an edge; what is left is partly hidden or less near.
+  // A single point is off by per cents next to an edge; what is left is occluded or less near.
   EXPECT_LT(difference(mesh, corrected, exact), 0.4 * difference(mesh, plain, exact));
   EXPECT_LE(corrected.report.largest_row_error, 1e-12);  // sums of at most 200 terms
   EXPECT_EQ(corrected.report.capped, 0u);

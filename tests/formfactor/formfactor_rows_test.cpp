@@ -7,7 +7,9 @@
 
 #include "formfactor/hemicube/row_builder.h"
 #include "radiosity/form_factors.h"
+#include "radiosity/matrix_functions.h"
 #include "support/mesh_builder.h"
+#include "support/simd_targets.h"
 
 namespace radiosity {
 namespace {
@@ -28,7 +30,7 @@ FormFactors compute(const PatchMesh& mesh, FormFactorOptions options = hemicubes
 FormFactorOptions doublePrecision(int resolution) {
   FormFactorOptions options = hemicubes();
   options.resolution = resolution;
-  options.precision = Precision::real;
+  options.precision = Precision::double_precision;
   return options;
 }
 
@@ -70,7 +72,7 @@ TEST(Rows, NoPixelLeaksOutOfAClosedScene) {
   const PatchMesh mesh = test::roomWithBlock(1).build();
   const ViewScene scene(mesh);
   const DeltaFormFactors weights(32);
-  Hemicube hemicube(scene, weights, simdKernels());
+  Hemicube hemicube(scene, weights, rasterKernels(true));
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> unit(0, 1);
   for (int k = 0; k < 3000; ++k) {
@@ -178,7 +180,7 @@ TEST(Rows, ScalingByAPowerOfTwoChangesNoBit) {
   }
 }
 
-TEST(Rows, ThreadCountAndScalarTwinChangeNoBit) {
+TEST(Rows, ThreadCountAndScalarTargetChangeNoBit) {
   const PatchMesh mesh = test::roomWithBlock(2).build();
   const FormFactors f = compute(mesh, doublePrecision(64));
   setThreads(1);
@@ -186,10 +188,10 @@ TEST(Rows, ThreadCountAndScalarTwinChangeNoBit) {
   setThreads(0);
   FormFactorOptions scalar = doublePrecision(64);
   scalar.simd = false;
-  const FormFactors twin = compute(mesh, scalar);
-  EXPECT_EQ(twin.report.simd_target, "scalar");
-  EXPECT_NE(f.report.simd_target, "scalar");
-  expectSameRows(f, twin);
+  const FormFactors by_scalars = compute(mesh, scalar);
+  EXPECT_EQ(by_scalars.report.simd_target, test::scalarTarget());
+  EXPECT_NE(f.report.simd_target, test::scalarTarget());
+  expectSameRows(f, by_scalars);
 }
 
 TEST(Rows, PermutationOfPatchesChangesNoBit) {

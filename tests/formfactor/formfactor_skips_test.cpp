@@ -49,7 +49,7 @@ TEST(Skips, TheSameEyeDrawsTheSamePolygonsHoweverFineThePatches) {
   const auto drawn = [](int n) {
     const ViewScene scene(test::roomWithBlock(n).build());
     const DeltaFormFactors weights(64);
-    Hemicube hemicube(scene, weights, simdKernels());
+    Hemicube hemicube(scene, weights, rasterKernels(true));
     hemicube.look(eyeFrame(Vec3(0.8, 0.2, 0.3) * scene.scale, Vec3(0.6, 0, 0.8), 1.0), kNone,
                   nullptr);
     return hemicube.counts().rasterised_polygons;
@@ -97,7 +97,7 @@ TEST(Skips, Horizon) {
 
 TEST(Skips, FacingAway) {
   // A cube floating in a cubic room. The centre of each wall sees one face of the cube; the five
-  // others show it their backs. The cube's own faces see no bare back at all.
+  // others show it their backs. The cube's own faces see no black back at all.
   MeshBuilder builder;
   builder.box("room", {-1, -1, -1}, {1, 1, 1}, 1, true);
   builder.box("cube", {-0.25, -0.25, -0.25}, {0.25, 0.25, 0.25}, 1);
@@ -114,92 +114,30 @@ TEST(Skips, OutsideAFace) {
   builder.grid("lamp", {-0.1, -0.1, 1}, {0, 0.2, 0}, {0.2, 0, 0});
   const ViewScene scene(builder.build());
   const DeltaFormFactors weights(32);
-  Hemicube hemicube(scene, weights, simdKernels());
+  Hemicube hemicube(scene, weights, rasterKernels(true));
   hemicube.look(eyeFrame(Vec3(0.0), Vec3(0, 0, 1), 0.3), 0, nullptr);
   EXPECT_EQ(hemicube.counts().skipped_face, 4u);
   EXPECT_EQ(hemicube.counts().rasterised_polygons, 1u);
 }
 
-std::size_t closedSurfaces(const MeshBuilder& builder) {
-  const ViewScene scene(builder.build());
-  return HiddenBacks(scene).closedSurfaces().size();
-}
-
-TEST(ClosedSurfaces, AreFoundAndTold) {
-  const ViewScene scene(test::roomWithBlock(1).build());
-  const HiddenBacks backs(scene);
-  ASSERT_EQ(backs.closedSurfaces().size(), 1u);
-  EXPECT_EQ(backs.closedSurfaces()[0].polygons.size(), 11u);
-  EXPECT_FALSE(backs.closedSurfaces()[0].outward);
-  // -1 inside the room, 0 in the block and outside: solid angles are exact to rounding.
-  const auto winding = [&](Vec3 p) {
-    return windingNumber(scene, backs.closedSurfaces()[0].polygons, p * scene.scale);
-  };
-  EXPECT_NEAR(winding({0.1, 0.2, 0.3}), -1, 1e-12);
-  EXPECT_NEAR(winding({0.4, 0.4, 0.2}), 0, 1e-12);
-  EXPECT_NEAR(winding({2, 0.5, 0.5}), 0, 1e-12);
-}
-
-TEST(ClosedSurfaces, AreNotClaimedWithoutProof) {
-  MeshBuilder open;
-  open.box("box", {0, 0, 0}, {1, 1, 1}, 1, false, false);
-  EXPECT_EQ(closedSurfaces(open), 0u);
-
-  MeshBuilder flipped;  // one face turned over
-  flipped.box("box", {0, 0, 0}, {1, 1, 1}, 1, false, false);
-  flipped.grid("bottom", {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
-  EXPECT_EQ(closedSurfaces(flipped), 0u);
-
-  MeshBuilder two_sided;
-  two_sided.box("box", {0, 0, 0}, {1, 1, 1}, 1, false, false);
-  two_sided.grid("bottom", {0, 0, 0}, {0, 1, 0}, {1, 0, 0}, 1, 1, true);
-  EXPECT_EQ(closedSurfaces(two_sided), 0u);
-
-  // A prism over a bow tie: closed and oriented, but two of its sides cross, and one of its two
-  // chambers is inside out.
-  const std::vector<Vec3> tie = {{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}};
-  MeshBuilder crossing;
-  Loop top;
-  for (std::size_t k = 0; k < 4; ++k) {
-    const Vec3 a = tie[k], b = tie[(k + 1) % 4], up(0, 0, 1);
-    crossing.polygon("side", {{a, b, b + up, a + up}});
-    top.insert(top.begin(), a + up);
-  }
-  const Loop low(tie.begin(), tie.end());
-  const auto addCap = [&](const Loop& loop) {  // two triangles through the crossing's corners
-    crossing.polygon("cap", {{loop[0], loop[1], loop[2]}});
-    crossing.polygon("cap", {{loop[0], loop[2], loop[3]}});
-  };
-  addCap(top);
-  addCap(low);
-  EXPECT_EQ(closedSurfaces(crossing), 0u);
-}
-
-TEST(ClosedSurfaces, TwoSolidsAreTwo) {
-  MeshBuilder builder;
-  builder.box("room", {-1, -1, -1}, {1, 1, 1}, 1, true);
-  builder.box("cube", {-0.25, -0.25, -0.25}, {0.25, 0.25, 0.25}, 1);
-  EXPECT_EQ(closedSurfaces(builder), 2u);
-}
-
 TEST(HiddenBacks, LeavingThemOutChangesNoPixel) {
   MeshBuilder builder = test::roomWithBlock(2);
   builder.box("floating", {0.65, 0.1, 0.5}, {0.85, 0.35, 0.9}, 2);
-  const ViewScene scene(builder.build());
-  const HiddenBacks backs(scene);
+  const PatchMesh mesh = builder.build();
+  const ViewScene scene(mesh);
+  const HiddenBacks backs(scene, mesh);
   const DeltaFormFactors weights(64);
-  Hemicube with(scene, weights, simdKernels());
-  Hemicube without(scene, weights, simdKernels());
+  Hemicube with(scene, weights, rasterKernels(true));
+  Hemicube without(scene, weights, rasterKernels(true));
   std::mt19937_64 random(21);
   std::uniform_real_distribution<double> unit(0, 1);
   std::vector<std::uint8_t> hidden;
   for (int k = 0; k < 300; ++k) {
     // Above the block, away from the floating one: in the fronts' region of both surfaces.
-    const Vec3 eye =
-        Vec3(0.6 * unit(random), unit(random), 0.46 + 0.5 * unit(random)) * scene.scale;
+    const Vec3 eye(0.6 * unit(random), unit(random), 0.46 + 0.5 * unit(random));
     const Vec3 normal =
         glm::normalize(Vec3(unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5));
-    const EyeFrame frame = eyeFrame(eye, normal, unit(random));
+    const EyeFrame frame = eyeFrame(eye * scene.scale, normal, unit(random));
     backs.fromEye(eye, kNone, hidden);
     const std::span<const double> all = without.look(frame, kNone, nullptr).items;
     const std::span<const double> fewer = with.look(frame, kNone, hidden.data()).items;
@@ -212,12 +150,13 @@ TEST(HiddenBacks, AreKeptForEyesOnTheOtherSide) {
   // Inside the solid cube, and outside the room: backs are what one sees.
   MeshBuilder builder;
   builder.box("cube", {0, 0, 0}, {1, 1, 1}, 1);
-  const ViewScene scene(builder.build());
-  const HiddenBacks backs(scene);
+  const PatchMesh mesh = builder.build();
+  const ViewScene scene(mesh);
+  const HiddenBacks backs(scene, mesh);
   std::vector<std::uint8_t> hidden;
-  backs.fromEye(Vec3(0.5) * scene.scale, kNone, hidden);
+  backs.fromEye(Vec3(0.5), kNone, hidden);
   EXPECT_EQ(std::count(hidden.begin(), hidden.end(), 1), 0);
-  backs.fromEye(Vec3(0.5, 0.5, 2) * scene.scale, kNone, hidden);
+  backs.fromEye(Vec3(0.5, 0.5, 2), kNone, hidden);
   EXPECT_EQ(std::count(hidden.begin(), hidden.end(), 1), 6);
 }
 

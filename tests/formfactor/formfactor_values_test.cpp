@@ -38,7 +38,7 @@ double rmsError(const std::vector<Loop>& loops, double truth, int resolution, in
   const PatchMesh mesh = builder.build();
   const ViewScene scene(mesh);
   const DeltaFormFactors weights(resolution);
-  Hemicube hemicube(scene, weights, simdKernels());
+  Hemicube hemicube(scene, weights, rasterKernels(true));
   double squares = 0;
   for (int seed = 0; seed < seeds; ++seed) {
     const double angle = turnAngle(mesh, 0, std::uint64_t(seed));
@@ -145,7 +145,7 @@ double areaValue(const PatchMesh& mesh, int resolution, Index from = 0, Index to
   FormFactorOptions options;
   options.method = FormFactorMethod::hemicube;
   options.resolution = resolution;
-  options.precision = Precision::real;
+  options.precision = Precision::double_precision;
   Progress silent;
   const FormFactors f = computeFormFactors(mesh, options, silent);
   double sum = 0;

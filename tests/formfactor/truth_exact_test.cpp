@@ -16,7 +16,7 @@ FormFactors exact(const PatchMesh& mesh, double tolerance = 1e-3) {
   FormFactorOptions options;
   options.method = FormFactorMethod::exact;
   options.tolerance = tolerance;
-  options.precision = Precision::real;
+  options.precision = Precision::double_precision;
   Progress silent;
   return computeFormFactors(mesh, options, silent);
 }
@@ -126,7 +126,7 @@ TEST(ExactAgainstTruth, FacesAsPatchesAreTheSamePatches) {
   const Judged& faces = judged()[2];
   ASSERT_EQ(faces.mesh.size(), own.mesh.size());
   EXPECT_EQ(faces.factors.report.exact.solids, own.factors.report.exact.solids);
-  EXPECT_EQ(faces.factors.report.exact.partial, own.factors.report.exact.partial);
+  EXPECT_EQ(faces.factors.report.exact.occluded, own.factors.report.exact.occluded);
   // Patch k is face k. Each value is within ten tolerances of the truth, so that two are within
   // twenty.
   for (std::size_t i = 0; i < own.mesh.size(); i += 7) {

@@ -174,8 +174,8 @@ struct ZTest {
   double largest = 0;      ///< |z|
   double mean_square = 0;  ///< of z
   std::size_t compared = 0;
-  std::size_t partial = 0;  ///< pairs past something, in the rows looked at
-  double mean_error = 0;    ///< standard error of a compared F, mean
+  std::size_t occluded = 0;  ///< pairs past something, in the rows looked at
+  double mean_error = 0;     ///< standard error of a compared F, mean
 };
 
 /// z = (rays - truth * factor) / standard error of every F_ij that 40 rays a scramble reach or
@@ -189,7 +189,7 @@ ZTest compare(const PatchMesh& mesh, std::span<const std::size_t> rows, double f
   for (const std::size_t i : rows) {
     const TruthRow exact = truth.row(i);
     const RayRow cast = castRow(mesh, rays, i);
-    test.partial += exact.partial;
+    test.occluded += exact.occluded;
     for (std::size_t j = 0; j < mesh.size(); ++j) {
       if (exact.form_factors[j] == 0) {
         EXPECT_EQ(cast.mean[j], 0.0) << i << " sees " << j;
@@ -259,11 +259,11 @@ TEST_P(TruthAgainstRays, AgreeWithinTheirStandardError) {
   const PatchMesh mesh = meshOf(name, patches);
   const ZTest test = compare(mesh, everyNth(mesh, count));
   RecordProperty("compared", std::to_string(test.compared));
-  RecordProperty("partial", std::to_string(test.partial));
+  RecordProperty("occluded", std::to_string(test.occluded));
   RecordProperty("largest", std::to_string(test.largest));
   RecordProperty("mean_square", std::to_string(test.mean_square));
   EXPECT_GT(test.compared, 320u);
-  EXPECT_GT(test.partial, 50u);
+  EXPECT_GT(test.occluded, 50u);
   EXPECT_LT(test.largest, kLargest) << test.compared;
   EXPECT_LT(test.mean_square, kMeanSquare) << test.compared << " " << test.mean_error;
 }

@@ -56,7 +56,7 @@ FormFactors matrixOf(const Room& room, int resolution) {
   FormFactorOptions options;
   options.method = FormFactorMethod::hemicube;
   options.resolution = resolution;
-  options.precision = Precision::real;
+  options.precision = Precision::double_precision;
   return computeFormFactors(room.mesh, options, quiet);
 }
 

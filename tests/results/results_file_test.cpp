@@ -23,7 +23,7 @@ class ResultsFile : public FolderTest {
 };
 
 TEST_F(ResultsFile, GivesBackEveryField) {
-  for (const Precision precision : {Precision::single, Precision::real}) {
+  for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
     // Small: all datasets in their headers. 60: chunks, several of them for the matrix.
     for (const auto& [side, bands] : {std::pair{2u, 1}, {2u, 2}, {60u, 3}, {2u, 5}, {60u, 8}}) {
       const Results written = sample::results(side, precision, bands);
@@ -40,7 +40,7 @@ TEST_F(ResultsFile, GivesBackEveryField) {
 }
 
 TEST_F(ResultsFile, GivesBackWhateverStagesThereAre) {
-  const Results full = sample::results(3, Precision::single);
+  const Results full = sample::results(3, Precision::single_precision);
   for (int stages = 0; stages < 64; ++stages) {
     Results some = full;
     // What was gathered belongs to a mesh and is not stored without it.
@@ -57,7 +57,7 @@ TEST_F(ResultsFile, GivesBackWhateverStagesThereAre) {
 
 TEST_F(ResultsFile, BandsAreThoseOfTheRows) {
   // As a program that uses the library, or h5py, makes a file: materials alone, the sky left out.
-  Results spectral = sample::results(3, Precision::single, 8);
+  Results spectral = sample::results(3, Precision::single_precision, 8);
   spectral.solution.reset();
   spectral.solution_key.clear();
   spectral.materials->sky.clear();
@@ -76,7 +76,7 @@ TEST_F(ResultsFile, BandsAreThoseOfTheRows) {
 }
 
 TEST_F(ResultsFile, KeepsTheUnusual) {
-  Results odd = sample::results(3, Precision::real);
+  Results odd = sample::results(3, Precision::double_precision);
   Solution solution = sample::solution(0, 3);
   solution.summary.error_bound.reset();
   solution.summary.status = SolveStatus::singular;
@@ -102,10 +102,10 @@ TEST_F(ResultsFile, KeepsTheUnusual) {
 }
 
 TEST_F(ResultsFile, LeavesTheMatrixOutOnRequest) {
-  const Results written = sample::results(3, Precision::single);
+  const Results written = sample::results(3, Precision::single_precision);
   write(written);
   const Results read = readResults(file(), false);
-  FormFactors bare = sample::factors(sample::mesh(3), Precision::single);
+  FormFactors bare = sample::factors(sample::mesh(3), Precision::single_precision);
   bare.matrix = {};
   EXPECT_TRUE(sample::same(std::optional(bare), read.factors));
   EXPECT_TRUE(sample::same(written.solution, read.solution));
@@ -115,14 +115,14 @@ TEST_F(ResultsFile, LeavesTheMatrixOutOnRequest) {
 }
 
 TEST_F(ResultsFile, SameResultsGiveTheSameBytes) {
-  write(sample::results(20, Precision::single));
+  write(sample::results(20, Precision::single_precision));
   const std::vector<char> first = load(file());
-  write(sample::results(20, Precision::single));
+  write(sample::results(20, Precision::single_precision));
   EXPECT_EQ(first, load(file()));
 }
 
 TEST_F(ResultsFile, SizeIsKnownBeforeItIsWritten) {
-  for (const Precision precision : {Precision::single, Precision::real}) {
+  for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
     for (const Index side : {1u, 2u, 5u, 12u, 30u, 60u}) {
       const Results results = sample::results(side, precision);
       write(results);
@@ -203,7 +203,7 @@ class Edit {
 };
 
 TEST_F(ResultsFile, NamesWhatAnotherProgramChanged) {
-  const Results good = sample::results(3, Precision::single);
+  const Results good = sample::results(3, Precision::single_precision);
   const auto expectAfter = [&](const auto& change, const std::string& part) {
     write(good);
     {
@@ -287,7 +287,7 @@ TEST_F(ResultsFile, NamesWhatAnotherProgramChanged) {
 }
 
 TEST_F(ResultsFile, TruncationIsAnInputError) {
-  write(sample::results(12, Precision::single));
+  write(sample::results(12, Precision::single_precision));
   const std::vector<char> whole = load(file());
   const Results good = readResults(file());
   for (std::size_t k = 0; k < 200; ++k) {
@@ -300,7 +300,7 @@ TEST_F(ResultsFile, TruncationIsAnInputError) {
 }
 
 TEST_F(ResultsFile, EveryFlippedByteIsNoticedOrHarmless) {
-  write(sample::results(12, Precision::single));
+  write(sample::results(12, Precision::single_precision));
   const std::vector<char> whole = load(file());
   const Results good = readResults(file());
   std::size_t noticed = 0;
@@ -325,8 +325,8 @@ TEST_F(ResultsFile, EveryFlippedByteIsNoticedOrHarmless) {
 }
 
 TEST_F(ResultsFile, FullDiskLeavesTheOldFile) {
-  const Results small = sample::results(3, Precision::single);
-  const Results large = sample::results(20, Precision::single);
+  const Results small = sample::results(3, Precision::single_precision);
+  const Results large = sample::results(20, Precision::single_precision);
   write(small);
   const std::size_t size = estimateResultsBytes(large);
   for (int part = 0; part < 40; ++part) {
@@ -342,7 +342,7 @@ TEST_F(ResultsFile, FullDiskLeavesTheOldFile) {
 /// HDF5 1.10 crashes at exit after a file it could not flush; a process that met a full disk must
 /// end as it means to.
 TEST_F(ResultsFile, FullDiskDoesNotCrashTheExit) {
-  const Results results = sample::results(20, Precision::single);
+  const Results results = sample::results(20, Precision::single_precision);
   const auto run = [&] {
     const FullDisk disk(10000);
     try {
@@ -356,7 +356,7 @@ TEST_F(ResultsFile, FullDiskDoesNotCrashTheExit) {
 }
 
 TEST_F(ResultsFile, InterruptionLeavesTheOldFile) {
-  const Results small = sample::results(3, Precision::single);
+  const Results small = sample::results(3, Precision::single_precision);
   write(small);
   class Impatient : public Progress {
    public:
@@ -368,7 +368,8 @@ TEST_F(ResultsFile, InterruptionLeavesTheOldFile) {
    private:
     std::size_t done_ = 0;
   } impatient;
-  EXPECT_THROW(writeResults(file(), sample::results(20, Precision::single), impatient), Cancelled);
+  EXPECT_THROW(writeResults(file(), sample::results(20, Precision::single_precision), impatient),
+               Cancelled);
   EXPECT_EQ(files(), 1u);
   EXPECT_TRUE(sample::same(small, readResults(file())));
 }
@@ -380,7 +381,7 @@ TEST_F(ResultsFile, MissingFolderIsAnInputError) {
 
 /// Neither while it reads damage nor when the process ends.
 TEST_F(ResultsFile, HDF5PrintsNothing) {
-  write(sample::results(12, Precision::single));
+  write(sample::results(12, Precision::single_precision));
   const std::vector<char> whole = load(file());
   const auto run = [&] {
     for (std::size_t part = 1; part < 100; ++part) {

@@ -13,7 +13,7 @@ namespace {
 class MatrixMarket : public FolderTest {};
 
 TEST_F(MatrixMarket, HoldsEveryEntryToTheBit) {
-  for (const Precision precision : {Precision::single, Precision::real}) {
+  for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
     // 17 x 17 patches: rows of all kinds. 60 x 60: more text than one batch of tasks holds.
     for (const Index side : {17u, 60u}) {
       const ExchangeMatrix matrix = sample::matrix(sample::mesh(side), precision);
@@ -45,7 +45,8 @@ TEST_F(MatrixMarket, HoldsEveryEntryToTheBit) {
 // The far side of a pair of a symmetric matrix is computed from the near one: what is written is
 // what a results file holds, rounded likewise.
 TEST_F(MatrixMarket, RoundsAsTheResultsFileDoes) {
-  ExchangeMatrix matrix = ExchangeMatrix::symmetric({1, 3, 0.7}, {0, 1, 2}, Precision::single);
+  ExchangeMatrix matrix =
+      ExchangeMatrix::symmetric({1, 3, 0.7}, {0, 1, 2}, Precision::single_precision);
   const std::vector<double> first = {0, 0.3, 0.1};
   const std::vector<double> second = {0, 0.05};
   matrix.setUpperRow(0, first);
@@ -68,7 +69,7 @@ TEST_F(MatrixMarket, RoundsAsTheResultsFileDoes) {
 }
 
 TEST_F(MatrixMarket, EmptyMatrix) {
-  writeMatrixMarket(path("x.mtx"), ExchangeMatrix({1, 2}, Precision::single), progress_);
+  writeMatrixMarket(path("x.mtx"), ExchangeMatrix({1, 2}, Precision::single_precision), progress_);
   std::ifstream file(path("x.mtx"));
   std::string line;
   while (std::getline(file, line) && line[0] == '%') {
@@ -77,7 +78,7 @@ TEST_F(MatrixMarket, EmptyMatrix) {
 }
 
 TEST_F(MatrixMarket, IsWholeOrNotThere) {
-  const ExchangeMatrix matrix = sample::matrix(sample::mesh(17), Precision::single);
+  const ExchangeMatrix matrix = sample::matrix(sample::mesh(17), Precision::single_precision);
   for (const rlim_t limit : {0, 100, 100000}) {
     const FullDisk disk(limit);
     expectError<RunError>(path("x.mtx"), "cannot be written",

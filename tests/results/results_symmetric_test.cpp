@@ -46,7 +46,7 @@ class ResultsSymmetric : public FolderTest {
 
 // 60 x 60 patches: several chunks of the file and several panels of the matrix.
 TEST_F(ResultsSymmetric, ComesBackToTheBit) {
-  for (const Precision precision : {Precision::single, Precision::real}) {
+  for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
     for (const Index side : {1u, 2u, 12u, 60u}) {
       const Results written = results(side, precision);
       writeResults(file(), written, progress_);
@@ -73,7 +73,7 @@ TEST_F(ResultsSymmetric, ComesBackToTheBit) {
 }
 
 TEST_F(ResultsSymmetric, TheFileHoldsAllOfFAsCompressedRows) {
-  const Results written = results(12, Precision::single);
+  const Results written = results(12, Precision::single_precision);
   writeResults(file(), written, progress_);
   const auto indptr = dataset<std::int64_t>("/form_factors/indptr", H5T_NATIVE_INT64);
   const auto indices = dataset<std::int32_t>("/form_factors/indices", H5T_NATIVE_INT32);
@@ -98,7 +98,7 @@ TEST_F(ResultsSymmetric, NamesWhatIsNotSymmetric) {
   const auto refused = [&](const std::string& part) {
     expectError<InputError>(file(), part, [&] { readResults(file()); });
   };
-  writeResults(file(), results(3, Precision::single), progress_);
+  writeResults(file(), results(3, Precision::single_precision), progress_);
   auto order = dataset<Index>("/form_factors/order", H5T_NATIVE_UINT32);
   std::swap(order[2], order[6]);
   change("/form_factors/order", H5T_NATIVE_UINT32, order);
@@ -111,7 +111,7 @@ TEST_F(ResultsSymmetric, NamesWhatIsNotSymmetric) {
   change("/form_factors/order", H5T_NATIVE_UINT32, order);
   refused("/form_factors/order does not name every patch once");
 
-  writeResults(file(), results(3, Precision::single), progress_);
+  writeResults(file(), results(3, Precision::single_precision), progress_);
   auto indptr = dataset<std::int64_t>("/form_factors/indptr", H5T_NATIVE_INT64);
   auto indices = dataset<std::int32_t>("/form_factors/indices", H5T_NATIVE_INT32);
   // A row gives its last entry to another column that it does not have: one end of a pair is gone.
@@ -126,46 +126,9 @@ TEST_F(ResultsSymmetric, NamesWhatIsNotSymmetric) {
   refused("/form_factors/indices is not that of a symmetric matrix");
 }
 
-// The file keeps what was computed and what closure adds apart; a solution made from what is read
-// back has the same bits.
-TEST_F(ResultsSymmetric, KeepsTheCorrectionApart) {
-  for (const Precision precision : {Precision::single, Precision::real}) {
-    Results written = results(12, precision);
-    ExchangeMatrix& matrix = written.factors->matrix;
-    const std::size_t n = matrix.size();
-    UncertainEntries uncertain(n);
-    for (std::size_t k = 0; k + 1 < n; k += 2) {
-      std::vector<Index> later;
-      for (std::size_t q = k + 1; q < n; q += 3) {
-        if (matrix.at(matrix.order()[k], matrix.order()[q]) > 0) later.push_back(Index(q));
-      }
-      uncertain.setRow(k, later, std::vector<double>(later.size(), 1e-3));
-    }
-    std::vector<double> target = matrix.rowSums();
-    for (double& sum : target) sum *= 1.01;
-    closeRows(matrix, uncertain, target, true);
-    ASSERT_TRUE(matrix.isCorrected());
-    const std::vector<double> raw = matrix.rowSums(Part::raw);
-    writeResults(file(), written, progress_);
-    const double size = double(std::filesystem::file_size(file()));
-    EXPECT_NEAR(double(estimateResultsBytes(written)), size, std::max(4096.0, 0.05 * size));
-    const ExchangeMatrix read = readResults(file()).factors.value().matrix;
-    EXPECT_TRUE(sample::same(matrix, read));
-    EXPECT_EQ(read.rowSums(Part::raw), raw);
-    EXPECT_EQ(read.rowSums(Part::correction), matrix.rowSums(Part::correction));
-    EXPECT_EQ(read.rowSums(), matrix.rowSums());
-    EXPECT_NE(read.rowSums(), raw);
-    EXPECT_EQ(dataset<double>("/form_factors/row_sum", H5T_NATIVE_DOUBLE), raw);
-  }
-  auto changes = dataset<double>("/form_factors/closure/data", H5T_NATIVE_DOUBLE);
-  for (double& change : changes) change = -1;
-  change("/form_factors/closure/data", H5T_NATIVE_DOUBLE, changes);
-  expectError<InputError>(file(), "/form_factors/closure/data does not fit",
-                          [&] { readResults(file()); });
-}
-
 TEST_F(ResultsSymmetric, MatrixMarketHoldsAllOfF) {
-  const ExchangeMatrix matrix = sample::symmetricMatrix(sample::mesh(17), Precision::single);
+  const ExchangeMatrix matrix =
+      sample::symmetricMatrix(sample::mesh(17), Precision::single_precision);
   writeMatrixMarket(path("x.mtx"), matrix, progress_);
   std::ifstream text(path("x.mtx"));
   std::string line;

@@ -1,7 +1,6 @@
 // What is likeliest a lamp.
 #include <gtest/gtest.h>
 
-#include "scene/likely_lamp.h"
 #include "support/scene_builder.h"
 
 namespace radiosity {

@@ -209,12 +209,13 @@ TEST(SolveEdges, EmissionOfAnyScale) {
 TEST(SolveEdges, ThreadsAndStorageDoNotChangeABit) {
   test::Random random(7);
   const auto f = random.rows(300, [&](auto) { return random(0.5, 1.0); });
-  const auto dense = test::factorsFrom(f, std::vector<double>(300, 1.0), 0, Precision::single);
+  const auto dense =
+      test::factorsFrom(f, std::vector<double>(300, 1.0), 0, Precision::single_precision);
   // Padded with patches that see nothing, the same rows are stored sparse.
   Matrix padded = Matrix::Zero(900, 900);
   padded.topLeftCorner(300, 300) = f;
   const auto sparse =
-      test::factorsFrom(padded, std::vector<double>(900, 1.0), 0, Precision::single);
+      test::factorsFrom(padded, std::vector<double>(900, 1.0), 0, Precision::single_precision);
   ASSERT_GT(dense.matrix.denseRows(), 200u);
   ASSERT_EQ(sparse.matrix.denseRows(), 0u);
   auto rho = random.vector(900, 0.2, 0.9);

@@ -30,7 +30,7 @@ inline void setAccounts(FormFactors& factors, double on_backs) {
 
 /// Form factors with F = `dense`, row by row, and those accounts.
 inline FormFactors factorsFrom(const Matrix& dense, std::vector<double> area, double on_backs = 0.0,
-                               Precision precision = Precision::real) {
+                               Precision precision = Precision::double_precision) {
   const auto n = std::size_t(dense.rows());
   FormFactors factors;
   factors.matrix = ExchangeMatrix(std::move(area), precision);
@@ -53,7 +53,7 @@ inline FormFactors factorsFrom(const Matrix& dense, std::vector<double> area, do
 /// are those of the half that is stored, rounded to `precision`.
 inline FormFactors symmetricFactorsFrom(const Matrix& dense, std::vector<double> area,
                                         double on_backs = 0.0,
-                                        Precision precision = Precision::real) {
+                                        Precision precision = Precision::double_precision) {
   const std::size_t n = area.size();
   std::vector<Index> order(n);
   for (std::size_t k = 0; k < n; ++k) order[k] = Index(k);

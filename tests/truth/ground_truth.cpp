@@ -119,7 +119,7 @@ GroundTruth::Exchange GroundTruth::exchange(const Sheet& a, const Sheet& b,
                                                   coincidence_, tolerance, options_.most_points);
   out.points = blocked.points;
   out.hidden = blocked.hidden;
-  out.partial = !blocked.clear && !blocked.hidden;
+  out.occluded = !blocked.clear && !blocked.hidden;
   out.error = blocked.error;
   out.unfinished = blocked.error > tolerance;
   if (blocked.hidden) {
@@ -147,14 +147,14 @@ void GroundTruth::addPair(std::size_t i, std::size_t j, TruthRow& row) const {
       all.value += one.value;
       all.error += one.error;
       row.points += one.points;
-      all.partial = all.partial || one.partial;
+      all.occluded = all.occluded || one.occluded;
       all.hidden = all.hidden || one.hidden;
       all.unfinished = all.unfinished || one.unfinished;
     }
   }
   row.form_factors[j] = all.value / area;
   row.largest_error = std::max(row.largest_error, all.error / area);
-  row.partial += all.partial || (all.hidden && all.value > 0);
+  row.occluded += all.occluded || (all.hidden && all.value > 0);
   row.hidden += all.hidden && all.value == 0;
   row.unfinished += all.unfinished;
 }

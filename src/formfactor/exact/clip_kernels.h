@@ -1,8 +1,8 @@
 // Form factors from one point to many convex polygons, and to what one cone hides of each: the
-// inner loops of partial visibility, behind plain pointers. One set per instruction set and a
-// scalar twin; every set gives the same bits, since the loops only add, multiply, divide, compare
-// and take square roots, each correctly rounded by IEEE 754, nothing is contracted to a fused
-// multiply-add, and no lane's value depends on the others.
+// inner loops of the visibility of occluded pairs, behind plain pointers. One set per instruction
+// set, Highway's scalar target among them; every set gives the same bits, since the loops only add,
+// multiply, divide, compare and take square roots, each correctly rounded by IEEE 754, nothing is
+// contracted to a fused multiply-add, and no lane's value depends on the others.
 #pragma once
 
 #include <cstddef>
@@ -157,7 +157,8 @@ struct ClipKernels {
   /// the whole, for polygons of size h at distance r; tests hold every instruction set to it.
   ClipFunctions<T> near;
   /// By the kernel cos cos / (pi r^2) to second order about the polygon's middle. Accuracy,
-  /// besides: kFarError (h/r)^3, h the distance of the farthest corner from the middle.
+  /// besides: kFarError (error_model.h) times (h/r)^3, h the distance of the farthest corner from
+  /// the middle.
   ClipFunctions<T> far;
   /// The sides of BlockingCone that a body has from any of the points: its edges, then, if
   /// `with_faces`, its faces. Found in double precision. Returns their number.
@@ -170,17 +171,13 @@ struct ClipKernels {
                           std::size_t corners, const ConeScratch& scratch, std::size_t& edge);
 };
 
-inline constexpr double kFarError = 1;
-
 struct ClipKernelSet {
-  std::string target;  ///< instruction set, or "scalar"
+  std::string target;  ///< instruction set, by Highway's name
   ClipKernels<float> single;
   ClipKernels<double> exact;
 };
 
-/// The twin in plain C++, against which every other set is tested.
-ClipKernelSet scalarClipKernels();
-/// The best instruction set of this machine.
-ClipKernelSet simdClipKernels();
+/// The best instruction set of this machine; `simd` false: Highway's scalar target, the same bits.
+ClipKernelSet clipKernels(bool simd);
 
 }  // namespace radiosity

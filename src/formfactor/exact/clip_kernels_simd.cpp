@@ -1,7 +1,6 @@
 #include <algorithm>
-#include <array>
-#include <limits>
-#include <type_traits>
+#include <cstddef>
+#include <cstdint>
 
 #include "formfactor/exact/clip_kernels.h"
 
@@ -11,88 +10,196 @@
 // After foreach_target.h, which compiles this file once per instruction set.
 #include <hwy/highway.h>
 
-#undef CLIP_INLINE
-#define CLIP_INLINE HWY_INLINE
+#include "formfactor/exact/clip_arcs-inl.h"
+#include "formfactor/exact/clip_moments-inl.h"
+#include "formfactor/exact/clip_polygons-inl.h"
+#include "formfactor/exact/clip_vectors-inl.h"
+#include "formfactor/exact/cone_kernels-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace radiosity::HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
+/// Shapes start with the polygon's own edges; any odd constants would do.
+constexpr std::uint32_t kEdgeLabel = 0x9e3779b9U;
+
+template <class T, class Integral>
+void wholeLanes(const TargetLanes<T>& targets, const EyePoint<T>& eye, T* form_factor) {
+  const Tag<T> d;
+  const Vector3<T> position = set3<T>(eye.position);
+  const Vector3<T> normal = set3<T>(eye.normal);
+  for (std::size_t lane = 0; lane < targets.count; lane += hn::Lanes(d)) {
+    Integral sum(sub3<T>(load3<T>(targets.middle, lane), position), load3<T>(targets.axis[0], lane),
+                 load3<T>(targets.axis[1], lane), normal);
+    Vector2<T> from = load2<T>(targets.corner[targets.corners - 1], lane);
+    for (std::size_t k = 0; k < targets.corners; ++k) {
+      const Vector2<T> to = load2<T>(targets.corner[k], lane);
+      sum.add(from, to);
+      from = to;
+    }
+    hn::Store(sum.formFactor(), d, form_factor + lane);
+  }
+}
+
+/// Cuts the polygons of `concerned` lanes to what is inside all of their cones' planes. Returns the
+/// sums of the labels of the edges that have a length then.
+template <class T>
+HWY_INLINE WordVector<T> cutToCone(VectorClip<T>& clip, IndexVector<T> first_plane,
+                                   Mask<T> concerned) {
+  const Tag<T> d;
+  const std::size_t corners = clip.targets.corners;
+  const auto label = [&](std::size_t p) HWY_ATTR {
+    const auto plane = hn::Add(first_plane, hn::Set(IndexTag<T>(), LaneIndex<T>(p)));
+    return hn::GatherIndex(WordTag<T>(), clip.planes.label, plane);
+  };
+  LaneLines<T>& own = clip.own;
+  own.clear();
+  for (std::size_t p = 0; p < clip.line_count && own.count <= own.kMost; ++p) {
+    const auto here = hn::And(concerned, clip.cutBy(p));
+    if (!hn::AllFalse(d, here)) own.add(clip.line(p), label(p), here);
+  }
+  auto word = hn::Zero(WordTag<T>());
+  if (own.count <= own.kMost) {
+    clip.startEdges();
+    for (std::size_t r = 0; r < own.count; ++r) {
+      clip.edges.cut(own.line[r], clip.noise, concerned);
+    }
+    for (std::size_t r = 0; r < own.count; ++r) {
+      word = clip.addEdge(word, corners + r, own.label[r], concerned);
+    }
+  } else {
+    clip.cutByPlanes(concerned);
+    for (std::size_t p = 0, edge = corners; p < clip.line_count; ++p) {
+      const auto here = hn::And(concerned, clip.cutBy(p));
+      if (!hn::AllFalse(d, here)) word = clip.addEdge(word, edge++, label(p), here);
+    }
+  }
+  for (std::size_t k = 0; k < corners; ++k) {
+    const std::uint32_t name = kEdgeLabel * std::uint32_t(2 * k + 1);
+    word = clip.addEdge(word, k, hn::Set(WordTag<T>(), ShapeWord<T>(name)), concerned);
+  }
+  return word;
+}
+
+/// Of a vector's lanes.
+template <class T>
+HWY_INLINE std::size_t mostPlanes(const LaneIndex<T>* plane_count) {
+  return std::size_t(*std::max_element(plane_count, plane_count + hn::Lanes(Tag<T>())));
+}
+
+/// The k-th plane of a cone, or one that does nothing.
+template <class T>
+HWY_INLINE IndexVector<T> planeOf(IndexVector<T> first, IndexVector<T> count, std::size_t k) {
+  const auto number = hn::Set(IndexTag<T>(), LaneIndex<T>(k));
+  static_assert(ConePlanes<T>::kAllInside == 0);
+  return hn::IfThenElseZero(hn::Lt(number, count), hn::Add(first, number));
+}
+
+template <class T, class Integral>
+void hiddenLanes(const TargetLanes<T>& targets, const EyePoints<T>& eyes,
+                 const ConePlanes<T>& planes, const ClipItems<T>& items,
+                 const LaneIndex<T>* first_plane, const LaneIndex<T>* plane_count,
+                 const HiddenParts<T>& out) {
+  const Tag<T> d;
+  const Vector3<T> normal = set3<T>(eyes.normal);
+  VectorClip<T> clip(targets, eyes, planes);
+  for (std::size_t at = 0; at < items.count; at += hn::Lanes(d)) {
+    clip.aim(items, at);
+    const auto first = hn::Load(IndexTag<T>(), first_plane + at);
+    const auto count = hn::Load(IndexTag<T>(), plane_count + at);
+    const std::size_t most = mostPlanes<T>(plane_count + at);
+    for (std::size_t p = 0; p < most; ++p) clip.classify(planeOf<T>(first, count, p));
+    const auto concerned = hn::AndNot(clip.nothing, clip.cut);
+    auto value = hn::IfThenElse(clip.nothing, hn::Zero(d), hn::Set(d, T(kHiddenWhole)));
+    auto word = hn::Zero(WordTag<T>());
+    auto low = hn::Zero(WordTag<T>());
+    auto high = hn::Zero(WordTag<T>());
+    if (!hn::AllFalse(d, concerned)) {
+      word = cutToCone<T>(clip, first, concerned);
+      value = hn::IfThenElse(concerned, clip.template formFactor<Integral>(normal), value);
+      for (std::size_t p = 0; p < most && p < 64; ++p) {
+        const auto here = hn::And(concerned, clip.cutBy(p));
+        const std::uint32_t mask = std::uint32_t(1) << p % 32;
+        const auto bit = hn::Set(WordTag<T>(), ShapeWord<T>(mask));
+        if (p < 32) low = addWhere<T>(low, here, bit);
+        if (p >= 32) high = addWhere<T>(high, here, bit);
+      }
+    }
+    hn::Store(value, d, out.form_factor + at);
+    hn::Store(word, WordTag<T>(), out.shape + at);
+    hn::Store(low, WordTag<T>(), out.cut_low + at);
+    hn::Store(high, WordTag<T>(), out.cut_high + at);
+  }
+}
+
+template <class T, class Integral>
+void commonLanes(const TargetLanes<T>& targets, const EyePoints<T>& eyes,
+                 const ConePlanes<T>& planes, const ClipItems<T>& items,
+                 const LaneIndex<T>* const* own_planes, const LaneIndex<T>* plane_count,
+                 T* form_factor) {
+  const Tag<T> d;
+  const Vector3<T> normal = set3<T>(eyes.normal);
+  VectorClip<T> clip(targets, eyes, planes);
+  for (std::size_t at = 0; at < items.count; at += hn::Lanes(d)) {
+    clip.aim(items, at);
+    const std::size_t most = mostPlanes<T>(plane_count + at);
+    for (std::size_t p = 0; p < most; ++p) {
+      clip.classify(hn::Load(IndexTag<T>(), own_planes[p] + at));
+    }
+    const auto concerned = hn::AndNot(clip.nothing, clip.cut);
+    auto value = hn::Zero(d);
+    if (!hn::AllFalse(d, concerned)) {
+      clip.cutByPlanes(concerned);
+      value = hn::IfThenElse(concerned, clip.template formFactor<Integral>(normal), value);
+    }
+    hn::Store(value, d, form_factor + at);
+  }
+}
+
+/// A lane an edge. The sums of lanes are added up in an order that does not depend on how many a
+/// vector has.
+template <class T, class Integral>
+T partsOfTarget(const TargetLanes<T>& targets, std::size_t target, const EyePoint<T>& eye,
+                const FlatEdges<T>& edges) {
+  const Tag<T> d;
+  const auto at = [&](const T* const* row) HWY_ATTR {
+    return Vector3<T>{hn::Set(d, row[0][target]), hn::Set(d, row[1][target]),
+                      hn::Set(d, row[2][target])};
+  };
+  const Vector3<T> middle = sub3<T>(at(targets.middle), set3<T>(eye.position));
+  const Integral none(middle, at(targets.axis[0]), at(targets.axis[1]), set3<T>(eye.normal));
+  alignas(64) T sums[Integral::kSums][kLaneAlignment];
+  for (std::size_t lane = 0; lane < kLaneAlignment; lane += hn::Lanes(d)) {
+    Integral sum = none;
+    for (std::size_t k = lane; k < edges.count; k += kLaneAlignment) {
+      sum.add(load2<T>(edges.from, k), load2<T>(edges.to, k));
+    }
+    sum.store(&sums[0][lane]);
+  }
+  T totals[Integral::kSums];
+  for (std::size_t s = 0; s < Integral::kSums; ++s) {
+    totals[s] = sums[s][0];
+    for (std::size_t lane = 1; lane < kLaneAlignment; ++lane) totals[s] += sums[s][lane];
+  }
+  Integral sum = none;
+  sum.set(totals);
+  alignas(64) T value[kLaneAlignment];
+  hn::Store(sum.formFactor(), d, value);
+  return value[0];
+}
 
 template <class T>
-struct Ops {
-  // Not more lanes than arrays are filled up to, and the same number for both precisions' words.
-  using D = hn::CappedTag<T, kLaneAlignment>;
-  using Words = hn::RebindToUnsigned<D>;
-  using Indices = hn::RebindToSigned<D>;
-  using V = hn::Vec<D>;
-  using M = hn::Mask<D>;
-  using U = hn::Vec<Words>;
-  using I = hn::Vec<Indices>;
-  static HWY_INLINE std::size_t lanes() { return hn::Lanes(D()); }
-  static HWY_INLINE V load(const T* p) { return hn::Load(D(), p); }
-  static HWY_INLINE void store(V v, T* p) { hn::Store(v, D(), p); }
-  /// Rounded.
-  static HWY_INLINE void storeAs(V v, T* p) { hn::Store(v, D(), p); }
-  static HWY_INLINE void storeAs(V v, float* p)
-    requires std::is_same_v<T, double>
-  {
-    const hn::Rebind<float, D> narrow;
-    hn::Store(hn::DemoteTo(narrow, v), narrow, p);
-  }
-  static HWY_INLINE V set(T v) { return hn::Set(D(), v); }
-  static HWY_INLINE V add(V a, V b) { return hn::Add(a, b); }
-  static HWY_INLINE V sub(V a, V b) { return hn::Sub(a, b); }
-  static HWY_INLINE V mul(V a, V b) { return hn::Mul(a, b); }
-  static HWY_INLINE V div(V a, V b) { return hn::Div(a, b); }
-  static HWY_INLINE V sqrt(V a) { return hn::Sqrt(a); }
-  static HWY_INLINE V abs(V a) { return hn::Abs(a); }
-  static HWY_INLINE V min(V a, V b) { return hn::Min(a, b); }
-  static HWY_INLINE V max(V a, V b) { return hn::Max(a, b); }
-  static HWY_INLINE M greater(V a, V b) { return hn::Gt(a, b); }
-  static HWY_INLINE M greaterEqual(V a, V b) { return hn::Ge(a, b); }
-  static HWY_INLINE M equal(V a, V b) { return hn::Eq(a, b); }
-  static HWY_INLINE M notEqual(V a, V b) { return hn::Ne(a, b); }
-  static HWY_INLINE M both(M a, M b) { return hn::And(a, b); }
-  static HWY_INLINE M either(M a, M b) { return hn::Or(a, b); }
-  /// b, but where a.
-  static HWY_INLINE M without(M a, M b) { return hn::AndNot(a, b); }
-  static HWY_INLINE bool all(M m) { return hn::AllTrue(D(), m); }
-  static HWY_INLINE bool none(M m) { return hn::AllFalse(D(), m); }
-  /// Lane k's as bit k.
-  static HWY_INLINE std::uint32_t bits(M m) {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(D(), m, bytes);
-    return bytes[0] | std::uint32_t(bytes[1]) << 8;
-  }
-  static HWY_INLINE V choose(M m, V yes, V no) { return hn::IfThenElse(m, yes, no); }
-  static HWY_INLINE U noLabel() { return hn::Zero(Words()); }
-  static HWY_INLINE U setWord(std::uint32_t word) { return hn::Set(Words(), word); }
-  static HWY_INLINE U addWord(U word, M m, U other) {
-    return hn::Add(word, hn::IfThenElseZero(hn::RebindMask(Words(), m), other));
-  }
-  static HWY_INLINE void storeWord(U word, ShapeWord<T>* p) { hn::Store(word, Words(), p); }
-  static HWY_INLINE I loadIndex(const LaneIndex<T>* p) { return hn::Load(Indices(), p); }
-  static HWY_INLINE V gather(const T* from, I index) { return hn::GatherIndex(D(), from, index); }
-  static HWY_INLINE U gatherWord(const ShapeWord<T>* from, I index) {
-    return hn::GatherIndex(Words(), from, index);
-  }
-  static HWY_INLINE I after(I first, std::size_t k) {
-    return hn::Add(first, hn::Set(Indices(), LaneIndex<T>(k)));
-  }
-  /// The k-th plane of a cone, or one that does nothing.
-  static HWY_INLINE I planeOf(I first, I count, std::size_t k) {
-    const I number = hn::Set(Indices(), LaneIndex<T>(k));
-    static_assert(ConePlanes<T>::kAllInside == 0);
-    return hn::IfThenElseZero(hn::Lt(number, count), hn::Add(first, number));
-  }
-};
+ClipKernels<T> kernelsIn() {
+  return {{wholeLanes<T, ArcSum<T>>, hiddenLanes<T, ArcSum<T>>, commonLanes<T, ArcSum<T>>,
+           partsOfTarget<T, ArcSum<T>>},
+          {wholeLanes<T, MomentSum<T>>, hiddenLanes<T, MomentSum<T>>, commonLanes<T, MomentSum<T>>,
+           partsOfTarget<T, MomentSum<T>>},
+          coneSides<T>,
+          pointsThatMiss};
+}
 
-#include "formfactor/exact/clip_kernels.inc"
-
-ClipKernelSet clipKernels() {
-  return {hwy::TargetName(HWY_TARGET), clipKernelsOf<float>(), clipKernelsOf<double>()};
+ClipKernelSet kernels() {
+  return {hwy::TargetName(HWY_TARGET), kernelsIn<float>(), kernelsIn<double>()};
 }
 
 }  // namespace
@@ -102,9 +209,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace radiosity {
 
-HWY_EXPORT(clipKernels);
+HWY_EXPORT(kernels);
 
-ClipKernelSet simdClipKernels() { return HWY_DYNAMIC_DISPATCH(clipKernels)(); }
+ClipKernelSet clipKernels(bool simd) {
+  return (simd ? HWY_DYNAMIC_DISPATCH(kernels) : HWY_CHOOSE_FALLBACK(kernels))();
+}
 
 }  // namespace radiosity
 #endif

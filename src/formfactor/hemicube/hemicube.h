@@ -42,16 +42,16 @@ struct HemicubeCounts {
 
 /// What an eye saw: form factors to every item, and their sums by kind, which add up to 1.
 struct HemicubeView {
-  std::span<const double> items;  ///< ViewScene::items values: patches, then bare backs by surface
+  std::span<const double> items;  ///< ViewScene::items values: patches, then black backs by surface
   double fronts = 0;              ///< sum over patches
-  double backs = 0;               ///< sum over bare backs
+  double backs = 0;               ///< sum over black backs
   double sky = 0;
 };
 
 /// Pixels [begin, end) of one row of a face that see one item. Pixel x has its centre at
 /// (x + first_centre, height) from the middle of the face, in pixels.
 struct ItemRun {
-  std::uint32_t item;  ///< patch, bare back or (ViewScene::items) the sky
+  std::uint32_t item;  ///< patch, black back or (ViewScene::items) the sky
   FaceGeometry face;
   double height;
   double first_centre;
@@ -76,7 +76,7 @@ class Hemicube {
 
   /// Looks from `frame` (in the scene's scaled coordinates). `own`: position in scene.polygons of
   /// the polygon the eye lies in, never drawn; kNone for an eye in free space. `hidden[p]` != 0
-  /// says the bare back of polygon p cannot be seen from here; may be null. Where `runs` is given
+  /// says the black back of polygon p cannot be seen from here; may be null. Where `runs` is given
   /// it receives all runs, and of the view only the sums by kind are made.
   const HemicubeView& look(const EyeFrame& frame, Index own, const std::uint8_t* hidden,
                            RunVisitor* runs = nullptr);

@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "base/processor_clock.h"
 #include "formfactor/hemicube/hemicube_factors.h"
+#include "radiosity/matrix_functions.h"
 
 namespace radiosity {
 namespace {
@@ -71,9 +72,9 @@ HemicubeEstimate estimateHemicubes(const PatchMesh& mesh, const HemicubeScene& s
       tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   HemicubeEstimate estimate;
   estimate.matrix_bytes =
-      ExchangeMatrix::estimateBytes(n, share * double(sum.entries), options.storedPrecision());
+      estimateRowFormBytes(n, share * double(sum.entries), options.storedPrecision());
   constexpr std::size_t kAccounts = 4 * sizeof(double);  // fronts, backs, sky, area
-  // Merging both estimates makes a second matrix beside the first.
+  // Merging makes a second matrix beside the first; it and closing its rows take no more than that.
   estimate.bytes = options.memory_held + (options.symmetrize ? 2 : 1) * estimate.matrix_bytes +
                    n * kAccounts + scene.rows.sharedBytes() + threads * sum.hemicube_bytes;
   estimate.measured = sum.taken.ratio() * share * sum.seconds * double(n) / double(threads);

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "base/parallel.h"
 #include "formfactor/hemicube/row_builder.h"
 #include "formfactor/row_accounts.h"
-#include "matrix/closure_progress.h"
+#include "radiosity/closure.h"
+#include "radiosity/matrix_functions.h"
 
 namespace radiosity {
 namespace {
@@ -84,10 +86,36 @@ void fillRows(const HemicubeScene& scene, FormFactors& result,
   report.closed = counts.hemicubes > 0 && counts.sky_pixels == 0;
 }
 
+/// How far off the entries of a merged matrix may be: the square of the error goes with the
+/// exchange area, as in van Leersum's closure (closure.h). In a unit that keeps errors of F
+/// below 1.
+UncertainEntries uncertainEntries(const ExchangeMatrix& matrix) {
+  const std::size_t n = matrix.size();
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const double a : matrix.area()) smallest = a > 0 ? std::min(smallest, a) : smallest;
+  UncertainEntries uncertain(n);
+  parallelFor(n, 1, [&](std::size_t k) {
+    std::vector<double> values(n - k);
+    matrix.upperRow(k, values);
+    const double share = smallest / matrix.area()[matrix.order()[k]];
+    std::vector<Index> later;
+    std::vector<double> errors;
+    for (std::size_t m = 1; m < values.size(); ++m) {
+      if (values[m] == 0) continue;
+      later.push_back(Index(k + m));
+      errors.push_back(std::sqrt(values[m] * share));
+    }
+    uncertain.setRow(k, later, errors);
+  });
+  return uncertain;
+}
+
 void symmetrize(FormFactors& result, Progress& progress) {
-  // The row sums to restore are the raw ones: 1 in a closed scene, what was seen in an open one.
+  constexpr double kTolerance = 1e-12;
   result.matrix = symmetrized(result.matrix);
-  result.report.closure = restoreClosure(result.matrix, result.fronts, progress);
+  // The row sums to restore are the raw ones: 1 in a closed scene, what was seen in an open one.
+  result.report.closure = closeRows(result.matrix, uncertainEntries(result.matrix), result.fronts,
+                                    progress, kTolerance);
   result.report.symmetrized = true;
 }
 

@@ -1,6 +1,7 @@
-// The inner loops of the item buffer, behind plain pointers: one set per instruction set and a
-// scalar twin. Every set gives the same bits: the kernels only add, multiply, divide, compare and
-// convert, each correctly rounded by IEEE 754, and nothing is contracted to a fused multiply-add.
+// The inner loops of the item buffer, behind plain pointers: one set per instruction set, Highway's
+// scalar target among them. Every set gives the same bits: the kernels only add, multiply, divide,
+// compare and convert, each correctly rounded by IEEE 754, and nothing is contracted to a fused
+// multiply-add.
 #pragma once
 
 #include <cstddef>
@@ -62,7 +63,7 @@ struct EdgeRows {
 };
 
 struct RasterKernels {
-  std::string target;  ///< instruction set, or "scalar"
+  std::string target;  ///< instruction set, by Highway's name
   /// crossings[y - first]: the first pixel of row y whose centre is not left of the edge, moved
   /// into [0, columns].
   void (*cross)(const EdgeRows& edge, std::int32_t* crossings);
@@ -84,9 +85,7 @@ struct RasterKernels {
                         std::int32_t* cells);
 };
 
-/// The twin in plain C++, against which every other set is tested.
-RasterKernels scalarKernels();
-/// The best instruction set of this machine.
-RasterKernels simdKernels();
+/// The best instruction set of this machine; `simd` false: Highway's scalar target, the same bits.
+RasterKernels rasterKernels(bool simd);
 
 }  // namespace radiosity

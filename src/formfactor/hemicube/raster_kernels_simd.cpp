@@ -206,7 +206,9 @@ namespace radiosity {
 
 HWY_EXPORT(kernels);
 
-RasterKernels simdKernels() { return HWY_DYNAMIC_DISPATCH(kernels)(); }
+RasterKernels rasterKernels(bool simd) {
+  return (simd ? HWY_DYNAMIC_DISPATCH(kernels) : HWY_CHOOSE_FALLBACK(kernels))();
+}
 
 }  // namespace radiosity
 #endif

@@ -7,9 +7,9 @@ RowBuilder::RowBuilder(const PatchMesh& mesh, const FormFactorOptions& options)
       seed_(options.seed),
       random_turns_(options.random_turns),
       scene_(mesh),
-      hidden_backs_(scene_),
+      hidden_backs_(scene_, mesh),
       weights_(options.resolution),
-      kernels_(options.simd ? simdKernels() : scalarKernels()),
+      kernels_(rasterKernels(options.simd)),
       polygon_place_(mesh.polygons.size()) {
   for (Index p = 0; p < scene_.polygons.size(); ++p) polygon_place_[scene_.polygons[p].source] = p;
 }
@@ -31,7 +31,7 @@ const HemicubeView& RowBuilder::lookFrom(const Vec3& eye, const Vec3& normal, do
                                          RunVisitor* runs) const {
   const Index place = own == kNone ? kNone : polygon_place_[own];
   const Vec3 scaled = eye * scene_.scale;
-  hidden_backs_.fromEye(scaled, place, hidden);
+  hidden_backs_.fromEye(eye, own, hidden);
   return hemicube.look(eyeFrame(scaled, normal, angle), place, hidden.data(), runs);
 }
 

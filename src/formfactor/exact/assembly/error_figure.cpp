@@ -4,6 +4,8 @@
 #include <cmath>
 #include <random>
 
+#include "formfactor/exact/error_model.h"
+
 namespace radiosity {
 namespace {
 
@@ -15,20 +17,20 @@ constexpr double kQuantile = 0.99;
 
 }  // namespace
 
-ErrorSums::Clipped& ErrorSums::Clipped::operator+=(const Clipped& other) {
+ErrorSums::PairErrors& ErrorSums::PairErrors::operator+=(const PairErrors& other) {
   squares += other.squares;
   fourths += other.fourths;
   pairs += other.pairs;
   return *this;
 }
 
-double ErrorSums::Clipped::figure() const { return squares + std::sqrt(fourths); }
+double ErrorSums::PairErrors::figure() const { return squares + std::sqrt(fourths); }
 
 ErrorSums& ErrorSums::operator+=(const ErrorSums& other) {
   for (std::size_t i = 0; i < squares_.size(); ++i) {
     squares_[i] += other.squares_[i];
-    clipped_[i] += other.clipped_[i];
-    bare_[i] += other.bare_[i];
+    occluded_[i] += other.occluded_[i];
+    black_backs_[i] += other.black_backs_[i];
   }
   rechecks_.insert(rechecks_.end(), other.rechecks_.begin(), other.rechecks_.end());
   return *this;
@@ -67,7 +69,7 @@ double ErrorSums::weightedSquares(std::span<const double> area) const {
 double ErrorSums::recheckRatio() const {
   std::size_t pairs = 0;
   std::size_t rows = 0;
-  for (const Clipped& row : clipped_) {
+  for (const PairErrors& row : occluded_) {
     pairs += row.pairs;
     rows += row.pairs > 0;
   }
@@ -77,7 +79,7 @@ double ErrorSums::recheckRatio() const {
   std::mt19937 random;
   std::vector<double> ratios;
   for (std::size_t r = 0; r < kRowsDrawn; ++r) {
-    Clipped row;
+    PairErrors row;
     double square = 0;
     for (std::size_t k = 0; k < drawn; ++k) {
       const Recheck& pair = rechecks_[random() % rechecks_.size()];
@@ -94,14 +96,14 @@ double ErrorSums::recheckRatio() const {
 
 double ErrorSums::figures(std::span<const double> area, double closed_form,
                           std::span<double> figure) const {
-  const double raise = std::max(1.0, kAlike * recheckRatio());
-  const double closed = kClosedFormShare * closed_form;
+  const double raise = std::max(1.0, kRowAlike * recheckRatio());
+  const double closed = kRowClosedForms * closed_form;
   double errors = 0;
   for (std::size_t i = 0; i < figure.size(); ++i) {
     const double closed_forms = closed * closed * squares_[i];
-    Clipped row = clipped_[i];
+    PairErrors row = occluded_[i];
     errors += (closed_forms + raise * raise * row.figure()) / area[i];
-    row += bare_[i];
+    row += black_backs_[i];
     figure[i] = std::sqrt(closed_forms + raise * raise * row.figure()) / area[i];
   }
   const double squares = weightedSquares(area);

@@ -11,23 +11,25 @@ namespace radiosity {
 /// of disjoint sets of pairs add up.
 ///
 /// Errors of a row's pairs have different causes and signs, and add up in squares. For a pair in
-/// closed form err is 0.06 of the kernel's published accuracy: that is a bound, which the worst
-/// pair comes near, not a row (the box at 1e-5 leaves no more). For a pair clipped against
-/// occluders it is what its embedded rules say, with their margin. The square of its true error
-/// scatters about that: by how much the sum over a row's clipped pairs does goes with sqrt(sum_j
-/// err_ij^4), much where a few pairs carry the row and little where many do. A row's error figure
-/// is
+/// closed form err is kRowClosedForms (error_model.h) of the kernel's published accuracy: that is a
+/// bound, which the worst pair comes near, not a row (the box at 1e-5 leaves no more). For a pair
+/// clipped against occluders it is what its embedded rules say, with their margin. The square of
+/// its true error scatters about that: by how much the sum over a row's occluded pairs does goes
+/// with sqrt(sum_j err_ij^4), much where a few pairs carry the row and little where many do. A
+/// row's error figure is
 ///
-///     sqrt(sum_j err_ij^2 + sqrt(sum_clipped j err_ij^4)).
+///     sqrt(sum_j err_ij^2 + sqrt(sum_occluded j err_ij^4)).
 ///
-/// Clipped pairs with bare backs count in the row's figure as well, though not in the matrix's:
+/// Occluded pairs with black backs count in the row's figure as well, though not in the matrix's:
 /// what a row leaves to the sky is only as good as what it sees of them.
 ///
 /// The rules' margin is fitted to some scenes. In others, of thin bodies or of many pairs that are
-/// alike, it is not enough. So a random subset of the clipped pairs is evaluated again to a
+/// alike, it is not enough. So a random subset of the occluded pairs is evaluated again to a
 /// fraction of the tolerance. What they differ by is taken for their error, rows are drawn at
 /// random from these pairs (the bootstrap of Efron 1979), and where the error of the worst
-/// hundredth of those rows comes near to its figure, the figures of all rows are raised.
+/// hundredth of those rows, times kRowAlike, exceeds its figure, the figures of all rows are
+/// raised. (Of a cube in a cube, 150 to 480 patches, at 1e-3 to 1e-5, rows exceed up to 1.6 times
+/// what is drawn.)
 ///
 /// Measured at tolerances from 1e-1 to 1e-5 against rows of truth that are good to 1e-6 of the mean
 /// form factor, in scenes that no constant was fitted to (tools/bench --only figures):
@@ -54,35 +56,27 @@ namespace radiosity {
 class ErrorSums {
  public:
   ErrorSums() = default;
-  explicit ErrorSums(std::size_t rows) : squares_(rows, 0.0), clipped_(rows), bare_(rows) {}
+  explicit ErrorSums(std::size_t rows) : squares_(rows, 0.0), occluded_(rows), black_backs_(rows) {}
 
   ErrorSums& operator+=(const ErrorSums& other);
 
   /// Adds the upper row of `row`: exchange[m] with row + m. Scales it to form factors.
   void addAndScale(std::size_t row, std::span<double> exchange, double inverse_area);
-  /// `error`: absolute, of the exchange of one clipped pair.
-  void addPartial(std::size_t row, std::size_t column, double error) {
-    clipped_[row].add(error);
-    clipped_[column].add(error);
+  /// `error`: absolute, of the exchange of one occluded pair.
+  void addOccluded(std::size_t row, std::size_t column, double error) {
+    occluded_[row].add(error);
+    occluded_[column].add(error);
   }
-  /// The same of a row and a bare back.
-  void addBare(std::size_t row, double error) { bare_[row].add(error); }
-  /// A clipped pair evaluated to a stricter tolerance: what it differs by, and the error that was
+  /// The same of a row and a black back.
+  void addBlackBack(std::size_t row, double error) { black_backs_[row].add(error); }
+  /// An occluded pair evaluated to a stricter tolerance: what it differs by, and the error that was
   /// stated of it.
   void addRecheck(double difference, double stated) { rechecks_.push_back({difference, stated}); }
 
-  /// sum A F^2 over all pairs, both ways. `area`: of the rows.
-  double weightedSquares(std::span<const double> area) const;
   std::size_t rechecked() const { return rechecks_.size(); }
   /// Error over figure that one in a hundred rows exceeds, of rows drawn from the pairs that were
   /// rechecked; 0 where there are none.
   double recheckRatio() const;
-
-  static constexpr double kClosedFormShare = 0.06;  ///< see above
-  /// By what recheckRatio() is multiplied before it raises figures: pairs of a real row are more
-  /// alike than pairs drawn from all. (A cube in a cube, 150 to 480 patches, at 1e-3 to 1e-5: up to
-  /// 1.6 times what is drawn.)
-  static constexpr double kAlike = 1.75;
 
   /// figure[row], absolute, of F. `area`: of the rows; `closed_form`: published relative accuracy
   /// of closed forms. Returns the matrix figure: sqrt(sum A err^2 / sum A F^2), with the same
@@ -90,19 +84,21 @@ class ErrorSums {
   double figures(std::span<const double> area, double closed_form, std::span<double> figure) const;
 
  private:
+  /// sum A F^2 over all pairs, both ways. `area`: of the rows.
+  double weightedSquares(std::span<const double> area) const;
   struct Recheck {
     double difference;
     double stated;
   };
-  /// Sums over a row's clipped pairs.
-  struct Clipped {
+  /// Sums over a row's occluded pairs.
+  struct PairErrors {
     void add(double error) {
       const double square = error * error;
       squares += square;
       fourths += square * square;
       ++pairs;
     }
-    Clipped& operator+=(const Clipped& other);
+    PairErrors& operator+=(const PairErrors& other);
     /// The square of the error, of exchange.
     double figure() const;
 
@@ -111,9 +107,9 @@ class ErrorSums {
     std::size_t pairs = 0;
   };
 
-  std::vector<double> squares_;   ///< sum_j G_ij^2
-  std::vector<Clipped> clipped_;  ///< pairs of patches
-  std::vector<Clipped> bare_;     ///< pairs of a patch and a bare back
+  std::vector<double> squares_;          ///< sum_j G_ij^2
+  std::vector<PairErrors> occluded_;     ///< pairs of patches
+  std::vector<PairErrors> black_backs_;  ///< pairs of a patch and a black back
   std::vector<Recheck> rechecks_;
 };
 

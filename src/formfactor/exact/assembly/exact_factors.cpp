@@ -12,12 +12,13 @@
 #include "formfactor/closed_scene.h"
 #include "formfactor/exact/clip_kernels.h"
 #include "formfactor/row_accounts.h"
-#include "matrix/closure_progress.h"
+#include "mesh/enclosures.h"
+#include "radiosity/closure.h"
 
 namespace radiosity {
 namespace {
 
-/// About this share of the clipped pairs is evaluated again, ...
+/// About this share of the occluded pairs is evaluated again, ...
 constexpr double kRecheckShare = 1.0 / 256;
 /// ... and at least so many, as far as there are: at loose tolerances, and in double precision,
 /// where what rules miss is in fewer pairs, and theirs are dearer to begin with.
@@ -26,9 +27,9 @@ constexpr double kRecheckLeastTight = 1024;
 /// A row that leaves more than this to the sky needs no eye to tell that the scene is open.
 constexpr double kCertainSky = 0.01;
 
-std::size_t recheckEvery(double partial_pairs, double tolerance) {
+std::size_t recheckEvery(double occluded_pairs, double tolerance) {
   const double least = tolerance < kSinglePrecision ? kRecheckLeastTight : kRecheckLeast;
-  const double share = std::max(kRecheckShare, least / std::max(partial_pairs, 1.0));
+  const double share = std::max(kRecheckShare, least / std::max(occluded_pairs, 1.0));
   return std::size_t(std::max(1.0, 1 / share));
 }
 
@@ -60,15 +61,15 @@ RowSums fillRows(const RowContext& context, const RowTasks& tasks, Progress& pro
 void reportCounts(const ExactScene& scene, const RowSums& sums, ExactReport& report) {
   const ElementSet& elements = scene.elements;
   report.elements = elements.patch_elements;
-  report.bare_elements = elements.size() - elements.patch_elements;
+  report.black_elements = elements.size() - elements.patch_elements;
   report.facets = elements.facets.size();
   report.occluders = scene.occluders.occluders.size();
   report.solids = scene.occluders.solids;
   report.skipped_hull = scene.occluders.skipped_hull;
   report.no_exchange = sums.visibility.no_exchange;
   report.unoccluded = sums.visibility.unoccluded;
-  report.hidden = sums.visibility.hidden + sums.partial.hidden;
-  report.partial = sums.visibility.partial - sums.partial.hidden;
+  report.hidden = sums.visibility.hidden + sums.occluded.hidden;
+  report.occluded = sums.visibility.occluded - sums.occluded.hidden;
   report.facet_pairs = sums.visibility.facet_pairs;
   report.facet_pairs_no_exchange = sums.visibility.facet_pairs_no_exchange;
   report.facet_pairs_unoccluded = sums.visibility.facet_pairs_unoccluded;
@@ -77,14 +78,14 @@ void reportCounts(const ExactScene& scene, const RowSums& sums, ExactReport& rep
   report.lambert = sums.unoccluded.lambert;
   report.product = sums.unoccluded.product;
   report.clipped = sums.unoccluded.clipped;
-  report.points = sums.partial.points;
-  report.subdivided = sums.partial.subdivided;
-  report.evaluated_again = sums.partial.again;
+  report.points = sums.occluded.points;
+  report.subdivided = sums.occluded.subdivided;
+  report.evaluated_again = sums.occluded.again;
   report.rechecked = sums.error.rechecked();
   report.recheck_ratio = sums.error.recheckRatio();
   report.seconds_visibility = sums.seconds_visibility;
   report.seconds_unoccluded = sums.seconds_unoccluded;
-  report.seconds_partial = sums.seconds_partial;
+  report.seconds_occluded = sums.seconds_occluded;
   report.seconds_assembly = sums.seconds_assembly;
 }
 
@@ -93,7 +94,7 @@ void noteFallbacks(const OccludedCounts& counts, FormFactorReport& report) {
   const auto add = [&](std::size_t pairs, const char* what) {
     if (pairs == 0) return;
     report.notes.push_back(
-        {Severity::info, fmt::format("{} partly hidden {} {}; their errors are "
+        {Severity::info, fmt::format("{} occluded {} {}; their errors are "
                                      "part of the error figures",
                                      pairs, pairs == 1 ? "pair" : "pairs", what)});
   };
@@ -120,8 +121,9 @@ void setAccounts(const PatchMesh& mesh, const PatchOrder& order, FormFactors& re
     most_sky = std::max(most_sky, result.sky[i]);
   }
   FormFactorReport& report = result.report;
+  std::optional<Enclosures> found;
   report.closed = order.ranked > 0 && most_sky < kCertainSky &&
-                  (closedByTopology(mesh, progress) || closedByEye(mesh, progress));
+                  (enclosuresOf(mesh, found).proved_closed || closedByEye(mesh, progress));
   for (double& sky : result.sky) {
     const double excess = report.closed ? std::abs(sky) : -sky;
     report.largest_row_error = std::max(report.largest_row_error, excess);
@@ -129,20 +131,22 @@ void setAccounts(const PatchMesh& mesh, const PatchOrder& order, FormFactors& re
   }
 }
 
-/// What a closed scene's rows lack of 1 is put on the clipped pairs, or it is said what that would
-/// take.
-void closeRows(const PatchOrder& order, const UncertainEntries& uncertain, double weighted_squares,
-               ClosureMode mode, FormFactors& result, Progress& progress) {
+/// Says what a closed scene's rows lack of 1, and puts it on the occluded pairs if that is asked
+/// for.
+void close(const PatchOrder& order, const UncertainEntries& uncertain, ClosureMode mode,
+           FormFactors& result, Progress& progress) {
   std::vector<double> target(order.patch.size(), 0.0);
   for (std::size_t k = 0; k < order.ranked; ++k) {
     target[order.patch[k]] = std::max(0.0, 1 - result.backs[order.patch[k]]);
   }
-  const bool enforce = mode == ClosureMode::enforce;
-  const RawTotals raw{result.fronts, weighted_squares};
-  result.report.closure =
-      radiosity::closeRows(result.matrix, raw, uncertain, target, enforce, progress);
-  result.report.closure_enforced = enforce;
-  if (enforce) result.fronts = result.matrix.rowSums();
+  FormFactorReport& report = result.report;
+  report.closure_enforced = mode == ClosureMode::enforce;
+  if (report.closure_enforced) {
+    report.closure = closeRows(result.matrix, uncertain, target, progress);
+    result.fronts = result.matrix.rowSums();
+  } else {
+    report.closure = reportClosure(result.fronts, target);
+  }
 }
 
 }  // namespace
@@ -155,7 +159,7 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   result.method = "exact";
   FormFactorReport& report = result.report;
   report.polygons = mesh.polygons.size();
-  report.simd_target = (options.simd ? simdClipKernels() : scalarClipKernels()).target;
+  report.simd_target = clipKernels(options.simd).target;
   report.empty_rows = n - scene.order.ranked;
   report.estimated_bytes = estimate.bytes;
   refuseTooLarge(estimate.bytes, options, n);
@@ -165,26 +169,24 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   result.backs.assign(n, 0.0);
   result.sky.assign(n, 0.0);
   std::vector<std::vector<SeenBack>> seen_backs(n);
-  UncertainEntries uncertain(options.closure == ClosureMode::off ? 0 : n);
-  UncertainEntries* const wanted = options.closure == ClosureMode::off ? nullptr : &uncertain;
+  const bool enforces = options.closure == ClosureMode::enforce;
+  UncertainEntries uncertain(enforces ? n : 0);
   const RowContext context{
       scene.elements,     scene.order,
       scene.chunks,       scene.visibility,
-      kernels.unoccluded, kernels.partial,
-      progress,           recheckEvery(estimate.partial_pairs, options.tolerance),
-      result.matrix,      wanted,
+      kernels.unoccluded, kernels.occluded,
+      progress,           recheckEvery(estimate.occluded_pairs, options.tolerance),
+      result.matrix,      enforces ? &uncertain : nullptr,
       result.backs,       seen_backs};
   const RowSums sums = fillRows(context, scene.tasks, progress);
   using Clock = std::chrono::steady_clock;
   const Clock::time_point finishing = Clock::now();
   reportCounts(scene, sums, report.exact);
-  noteFallbacks(sums.partial, report);
+  noteFallbacks(sums.occluded, report);
   setErrors(scene.order, sums.error, kernels.closed_form, result);
   setAccounts(mesh, scene.order, result, progress);
   if (report.closed && options.closure != ClosureMode::off) {
-    const double square = scene.elements.scale * scene.elements.scale;  // of an area
-    closeRows(scene.order, uncertain, sums.error.weightedSquares(scene.order.area) / square,
-              options.closure, result, progress);
+    close(scene.order, uncertain, options.closure, result, progress);
   }
   progress.begin("finishing", 1);
   accountForBacks(mesh, seen_backs, result);

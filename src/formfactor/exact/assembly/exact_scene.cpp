@@ -6,7 +6,9 @@
 
 #include "formfactor/exact/assembly/row_sample.h"
 #include "formfactor/exact/assembly/row_times.h"
-#include "matrix/work_bytes.h"
+#include "formfactor/foreseen_work.h"
+#include "matrix/working_memory.h"
+#include "radiosity/matrix_functions.h"
 
 namespace radiosity {
 namespace {
@@ -52,37 +54,35 @@ ExactScene::ExactScene(const PatchMesh& mesh, Progress& progress)
 ExactKernels::ExactKernels(const ExactScene& scene, const FormFactorOptions& options)
     : closed_form(closedFormTolerance(options.tolerance)),
       unoccluded(scene.elements, closed_form, options.simd),
-      partial(scene.elements, scene.occluders, options.tolerance, options.simd) {}
+      occluded(scene.elements, scene.occluders, options.tolerance, options.simd) {}
 
 ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,
                             const FormFactorOptions& options) {
   const auto patches = double(scene.elements.patch_elements);
   ExactEstimate estimate;
-  estimate.partial_pairs = sample.partial;
-  estimate.occluders_per_partial = sample.partial > 0 ? sample.occluders / sample.partial : 0;
-  const double entries = sample.unoccluded + sample.partial;
+  estimate.occluded_pairs = sample.occluded;
+  estimate.occluders_per_pair = sample.occluded > 0 ? sample.occluders / sample.occluded : 0;
+  const double entries = sample.unoccluded + sample.occluded;
   estimate.entries_per_row = patches > 0 ? std::min(2 * entries / patches, patches) : 0;
 
   const std::size_t n = scene.order.patch.size();
   constexpr std::size_t kElementBytes = 512;  // an element, its cluster, the kernels' copies
   constexpr std::size_t kAccounts = 8 * sizeof(double);
-  constexpr std::size_t kUncertainBytes = 4;  // of a partial pair, for closure: code, run, freedom
+  constexpr std::size_t kUncertainBytes =
+      4;  // of an occluded pair, for closure: code, run, freedom
+  const bool enforces = options.closure == ClosureMode::enforce;
   const std::size_t row_sums = 4 * 2 * sizeof(double) * scene.order.ranked;
   const std::size_t filling =
       threads() * (scene.tasks.panelBytes(scene.elements) + row_sums + 2 * sample.task_bytes);
-  estimate.matrix_bytes = ExchangeMatrix::estimateSymmetricBytes(n, estimate.entries_per_row,
-                                                                 options.storedPrecision());
+  estimate.matrix_bytes =
+      estimateSymmetricBytes(n, estimate.entries_per_row, options.storedPrecision());
   estimate.bytes = options.memory_held + estimate.matrix_bytes +
-                   std::size_t(sample.partial) * kUncertainBytes + n * kAccounts +
+                   (enforces ? std::size_t(sample.occluded) * kUncertainBytes : 0) + n * kAccounts +
                    scene.elements.size() * kElementBytes +
-                   std::max(filling, matrixWorkBytes(n, threads()));  // one after the other
+                   std::max(filling, matrixWorkingMemory(n, threads()));  // one after the other
 
-  // Measured on one core of a 2.7 GHz Xeon: a pair in closed form or by quadrature, with what is
-  // asked for beside it, and a test whether something stands between.
-  constexpr double kUnoccluded = 5e-8;
-  constexpr double kShaftTest = 9e-8;
-  estimate.seconds =
-      kUnoccluded * sample.unoccluded + kShaftTest * sample.shaft_tests + sample.cost.seconds;
+  estimate.work =
+      kUnoccludedWork * sample.unoccluded + kShaftTestWork * sample.shaft_tests + sample.cost.work;
   estimate.refining = sample.cost.refining;
   estimate.points = sample.cost.points;
   return estimate;
@@ -91,7 +91,7 @@ ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,
 double exactSeconds(const ExactScene& scene, const ExactKernels& kernels, const RowSample& sample,
                     const FormFactorOptions& options, Progress& progress) {
   const RowTimes times = timeRows(scene, kernels, options.tolerance, sample, progress);
-  return times.busy * (times.visibility + times.unoccluded + times.partial) / double(threads());
+  return times.busy * (times.visibility + times.unoccluded + times.occluded) / double(threads());
 }
 
 }  // namespace radiosity

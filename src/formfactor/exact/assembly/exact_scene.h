@@ -30,7 +30,7 @@ struct ExactKernels {
   ExactKernels(const ExactScene& scene, const FormFactorOptions& options);
   double closed_form;  ///< relative error that closed forms hold
   UnoccludedKernel unoccluded;
-  OccludedKernel partial;
+  OccludedKernel occluded;
 };
 
 /// From the pairs of a sample of tasks, on the scene and the options alone, never on the machine or
@@ -39,11 +39,11 @@ struct ExactEstimate {
   std::size_t bytes = 0;         ///< held at once, FormFactorOptions::memory_held included
   std::size_t matrix_bytes = 0;  ///< of these, the matrix
   double entries_per_row = 0;    ///< at most
-  double partial_pairs = 0;
-  double occluders_per_partial = 0;
-  double points = 0;    ///< ExactReport::points; about, like the seconds
-  double seconds = 0;   ///< of one core, at the rates of a usual machine
-  double refining = 0;  ///< of the seconds, those that go with 1 / tolerance
+  double occluded_pairs = 0;
+  double occluders_per_pair = 0;
+  double points = 0;    ///< ExactReport::points; about, like the work
+  double work = 0;      ///< see foreseen_work.h
+  double refining = 0;  ///< of the work, what goes with 1 / tolerance
 };
 struct RowSample;
 ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,

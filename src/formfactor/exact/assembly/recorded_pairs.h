@@ -28,19 +28,19 @@ class RecordedPairs final : public VisibilitySink {
   void unoccluded(ElementRange rows, ElementRange columns) override {
     blocks.push_back({rows, columns});
   }
-  void partial(Index row, Index column, std::span<const Index> occluders) override {
+  void occluded(Index row, Index column, std::span<const Index> occluders) override {
     const auto begin = std::uint32_t(occluder_list.size());
     occluder_list.insert(occluder_list.end(), occluders.begin(), occluders.end());
-    partial_pairs.push_back({row, column, begin, std::uint32_t(occluder_list.size()), 0.0});
+    occluded_pairs.push_back({row, column, begin, std::uint32_t(occluder_list.size()), 0.0});
   }
   void clear() {
     blocks.clear();
-    partial_pairs.clear();
+    occluded_pairs.clear();
     occluder_list.clear();
   }
 
   std::vector<PairBlock> blocks;
-  std::vector<OccludedPair> partial_pairs;
+  std::vector<OccludedPair> occluded_pairs;
   std::vector<Index> occluder_list;
 
  private:

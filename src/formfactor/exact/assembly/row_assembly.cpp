@@ -58,10 +58,10 @@ RowSums& RowSums::operator+=(const RowSums& other) {
   error += other.error;
   visibility += other.visibility;
   unoccluded += other.unoccluded;
-  partial += other.partial;
+  occluded += other.occluded;
   seconds_visibility += other.seconds_visibility;
   seconds_unoccluded += other.seconds_unoccluded;
-  seconds_partial += other.seconds_partial;
+  seconds_occluded += other.seconds_occluded;
   seconds_assembly += other.seconds_assembly;
   return *this;
 }
@@ -74,7 +74,7 @@ void RowAssembly::run(std::span<const ElementRange> ranges, RowSums& sums) {
   if (panel_.size() < places) panel_.resize(places);
   marked_.assign(places, 0);
   classify(ranges, sums);
-  evaluatePartial(sums);
+  evaluateOccluded(sums);
   if (context_.uncertain != nullptr) storeUncertain(rows);
   storePatches(rows, sums);
 }
@@ -83,7 +83,7 @@ void RowAssembly::classify(std::span<const ElementRange> ranges, RowSums& sums) 
   pairs_.clear();
   for (const ElementRange& range : ranges) {
     const std::size_t first_block = pairs_.blocks.size();
-    const std::size_t first_pair = pairs_.partial_pairs.size();
+    const std::size_t first_pair = pairs_.occluded_pairs.size();
     {
       const Stopwatch watch(sums.seconds_visibility);
       context_.visibility.classify(range, pairs_, sums.visibility);
@@ -106,8 +106,8 @@ void RowAssembly::evaluateUnoccluded(ElementRange range, std::size_t first_block
                   block.columns.size(), std::uint8_t(1));
     }
   }
-  for (std::size_t k = first_pair; k < pairs_.partial_pairs.size(); ++k) {
-    asked_[chunks.of_element[pairs_.partial_pairs[k].column]] = 1;
+  for (std::size_t k = first_pair; k < pairs_.occluded_pairs.size(); ++k) {
+    asked_[chunks.of_element[pairs_.occluded_pairs[k].column]] = 1;
   }
   const std::vector<ElementRange>& ranges = chunks.ranges;
   for (std::size_t c = chunks.of_element[range.end - 1]; c < ranges.size();) {
@@ -129,34 +129,34 @@ void RowAssembly::evaluateUnoccluded(ElementRange range, std::size_t first_block
 
 /// Pairs that turn out to be below each other's horizon never reach the clipping.
 void RowAssembly::dropPairsWithoutExchange(std::size_t first_pair, RowSums& sums) {
-  std::vector<OccludedPair>& pairs = pairs_.partial_pairs;
+  std::vector<OccludedPair>& pairs = pairs_.occluded_pairs;
   std::size_t kept = first_pair;
   for (std::size_t k = first_pair; k < pairs.size(); ++k) {
     pairs[k].unoccluded = panel_[place(pairs[k].row, pairs[k].column)];
     if (pairs[k].unoccluded > 0) pairs[kept++] = pairs[k];
   }
-  sums.visibility.partial -= pairs.size() - kept;
+  sums.visibility.occluded -= pairs.size() - kept;
   sums.visibility.no_exchange += pairs.size() - kept;
   pairs.resize(kept);
 }
 
-void RowAssembly::evaluatePartial(RowSums& sums) {
-  const Stopwatch watch(sums.seconds_partial);
+void RowAssembly::evaluateOccluded(RowSums& sums) {
+  const Stopwatch watch(sums.seconds_occluded);
   const PatchOrder& order = context_.order;
-  const std::vector<OccludedPair>& pairs = pairs_.partial_pairs;
-  partial_.resize(pairs.size());
-  context_.partial.evaluate(pairs, pairs_.occluder_list, partial_, sums.partial,
-                            &context_.progress);
+  const std::vector<OccludedPair>& pairs = pairs_.occluded_pairs;
+  occluded_.resize(pairs.size());
+  context_.occluded.evaluate(pairs, pairs_.occluder_list, occluded_, sums.occluded,
+                             &context_.progress);
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const auto& [row, column, begin, end, unoccluded] = pairs[k];
-    panel_[place(row, column)] = partial_[k].exchange;
+    panel_[place(row, column)] = occluded_[k].exchange;
     marked_[place(row, column)] = 1;
     const Index a = order.rank[row];
     if (column < context_.elements.patch_elements) {
       const Index b = order.rank[column];
-      sums.error.addPartial(a, b, partial_[k].error);
+      sums.error.addOccluded(a, b, occluded_[k].error);
     } else {
-      sums.error.addBare(a, partial_[k].error);
+      sums.error.addBlackBack(a, occluded_[k].error);
     }
   }
   recheck(sums);
@@ -165,19 +165,19 @@ void RowAssembly::evaluatePartial(RowSums& sums) {
 void RowAssembly::recheck(RowSums& sums) const {
   std::vector<OccludedPair> pairs;
   std::vector<std::size_t> which;
-  for (std::size_t k = 0; k < partial_.size(); ++k) {
-    const OccludedPair& pair = pairs_.partial_pairs[k];
+  for (std::size_t k = 0; k < occluded_.size(); ++k) {
+    const OccludedPair& pair = pairs_.occluded_pairs[k];
     if (pair.column >= context_.elements.patch_elements) continue;
-    if (partial_[k].cut_short) continue;  // it would take as much again, and states what it misses
+    if (occluded_[k].cut_short) continue;  // it would take as much again, and states what it misses
     if (pairHash(pair.row, pair.column) % context_.recheck_every != 0) continue;
     which.push_back(k);
     pairs.push_back(pair);
   }
   if (which.empty()) return;
   std::vector<OccludedExchange> strict(which.size());
-  context_.partial.evaluateStrictly(pairs, pairs_.occluder_list, strict, &context_.progress);
+  context_.occluded.evaluateStrictly(pairs, pairs_.occluder_list, strict, &context_.progress);
   for (std::size_t k = 0; k < which.size(); ++k) {
-    const OccludedExchange& found = partial_[which[k]];
+    const OccludedExchange& found = occluded_[which[k]];
     sums.error.addRecheck(found.exchange - strict[k].exchange, found.error);
   }
 }
@@ -185,23 +185,23 @@ void RowAssembly::recheck(RowSums& sums) const {
 void RowAssembly::storeUncertain(ElementRange rows) {
   const PatchOrder& order = context_.order;
   const auto isCounted = [&](std::size_t k) {
-    return pairs_.partial_pairs[k].column < context_.elements.patch_elements;
+    return pairs_.occluded_pairs[k].column < context_.elements.patch_elements;
   };
   // Dealt out by rows: within a row they mostly stand in order already.
   const Index first = order.rank[rows.first];
   const Index count = order.rank[rows.end - 1] + 1 - first;
   row_begin_.assign(count + 2, 0);
-  for (std::size_t k = 0; k < partial_.size(); ++k) {
-    if (isCounted(k)) ++row_begin_[order.rank[pairs_.partial_pairs[k].row] - first + 2];
+  for (std::size_t k = 0; k < occluded_.size(); ++k) {
+    if (isCounted(k)) ++row_begin_[order.rank[pairs_.occluded_pairs[k].row] - first + 2];
   }
   std::partial_sum(row_begin_.begin(), row_begin_.end(), row_begin_.begin());
   uncertain_.resize(row_begin_.back());
-  for (std::size_t k = 0; k < partial_.size(); ++k) {
+  for (std::size_t k = 0; k < occluded_.size(); ++k) {
     if (!isCounted(k)) continue;
-    const OccludedPair& pair = pairs_.partial_pairs[k];
+    const OccludedPair& pair = pairs_.occluded_pairs[k];
     const Index row = order.rank[pair.row];
     uncertain_[row_begin_[row - first + 1]++] = {order.rank[pair.column],
-                                                 partial_[k].error / order.area[row]};
+                                                 occluded_[k].error / order.area[row]};
   }
   for (std::size_t r = 0; r < count; ++r) {
     storeUncertainRow(
@@ -254,8 +254,8 @@ std::span<double> RowAssembly::patchRow(std::size_t rank, ElementRange rows) {
   const PatchOrder& order = context_.order;
   const Index patch_elements = Index(context_.elements.patch_elements);
   for (Index row = rows.first; row < rows.end; ++row) {
-    const std::size_t bare = context_.elements.size() - patch_elements;
-    storeBacks(rank, {panel_.data() + (place(row, first_) + (patch_elements - first_)), bare});
+    const std::size_t black = context_.elements.size() - patch_elements;
+    storeBacks(rank, {panel_.data() + (place(row, first_) + (patch_elements - first_)), black});
   }
   if (order.ranked == patch_elements) {  // every patch is one element
     return {&panel_[place(rows.first, rows.first)], patch_elements - rows.first};
@@ -270,12 +270,12 @@ std::span<double> RowAssembly::patchRow(std::size_t rank, ElementRange rows) {
   return folded_;
 }
 
-void RowAssembly::storeBacks(std::size_t rank, std::span<const double> bare) {
+void RowAssembly::storeBacks(std::size_t rank, std::span<const double> black) {
   const Index patch = context_.order.patch[rank];
   const ElementSet& elements = context_.elements;
-  for (std::size_t k = 0; k < bare.size(); ++k) {
-    if (!(bare[k] > 0)) continue;
-    const double share = bare[k] / context_.order.area[rank];
+  for (std::size_t k = 0; k < black.size(); ++k) {
+    if (!(black[k] > 0)) continue;
+    const double share = black[k] / context_.order.area[rank];
     const Index surface =
         elements.patch[elements.patch_elements + k] - Index(context_.backs.size());
     context_.backs[patch] += share;

@@ -37,10 +37,10 @@ struct RowSums {
   ErrorSums error;
   VisibilityCounts visibility;
   UnoccludedCounts unoccluded;
-  OccludedCounts partial;
+  OccludedCounts occluded;
   double seconds_visibility = 0;
   double seconds_unoccluded = 0;
-  double seconds_partial = 0;
+  double seconds_occluded = 0;
   double seconds_assembly = 0;
 };
 
@@ -51,11 +51,11 @@ struct RowContext {
   const ColumnChunks& chunks;
   const Visibility& visibility;
   const UnoccludedKernel& unoccluded;
-  const OccludedKernel& partial;
+  const OccludedKernel& occluded;
   const Progress& progress;
-  std::size_t recheck_every;  ///< about one clipped pair in so many is evaluated again
+  std::size_t recheck_every;  ///< about one occluded pair in so many is evaluated again
   ExchangeMatrix& matrix;
-  UncertainEntries* uncertain;  ///< clipped pairs and their errors go there; may be null
+  UncertainEntries* uncertain;  ///< occluded pairs and their errors go there; may be null
   std::vector<double>& backs;
   std::vector<std::vector<SeenBack>>& seen_backs;
 };
@@ -76,7 +76,7 @@ class RowAssembly {
 
  private:
   static constexpr std::size_t kMarks = 8;  ///< looked at together
-  /// A clipped pair of a row.
+  /// An occluded pair of a row.
   struct Uncertain {
     Index column;  ///< rank
     double error;  ///< of F
@@ -87,22 +87,22 @@ class RowAssembly {
   void evaluateUnoccluded(ElementRange range, std::size_t first_block, std::size_t first_pair,
                           RowSums& sums);
   void dropPairsWithoutExchange(std::size_t first_pair, RowSums& sums);
-  void evaluatePartial(RowSums& sums);
+  void evaluateOccluded(RowSums& sums);
   void recheck(RowSums& sums) const;
   void storeUncertain(ElementRange rows);
   void storeUncertainRow(std::size_t rank, std::span<Uncertain> entries);
   void storePatches(ElementRange rows, RowSums& sums);
   void clearUnmarked();
-  /// A patch's exchange with itself and all later ones, and with bare backs.
+  /// A patch's exchange with itself and all later ones, and with black backs.
   std::span<double> patchRow(std::size_t rank, ElementRange rows);
-  void storeBacks(std::size_t rank, std::span<const double> bare);
+  void storeBacks(std::size_t rank, std::span<const double> black);
   std::size_t place(Index row, Index column) const {
     return std::size_t(row - first_) * width_ + (column - first_);
   }
 
   const RowContext& context_;
   RecordedPairs pairs_;
-  std::vector<OccludedExchange> partial_;
+  std::vector<OccludedExchange> occluded_;
   std::vector<Uncertain> uncertain_;    ///< by row
   std::vector<std::size_t> row_begin_;  ///< into uncertain_, by rank from the task's first on
   std::vector<Index> later_;            ///< of one row

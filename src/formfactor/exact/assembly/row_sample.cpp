@@ -19,10 +19,10 @@ constexpr std::size_t kMostTests = 12'500;
 /// all, and that settles nothing yet. At most so many.
 constexpr std::size_t kTestsAnOccluder = 50;
 constexpr std::size_t kMostTestsAtAll = 200'000;
-/// Partial pairs of a task whose cost is guessed, evenly among all.
+/// Occluded pairs of a task whose cost is guessed, evenly among all.
 constexpr std::size_t kGuessedPairs = 48;
 
-/// Partial pairs and blocks of some rows, and what finding them took.
+/// Occluded pairs and blocks of some rows, and what finding them took.
 void classify(const ExactScene& scene, std::span<const ElementRange> ranges, FacetSize size,
               std::size_t place, RecordedPairs& recorded, SampledPlace& found) {
   VisibilityCounts counts;
@@ -56,13 +56,13 @@ void classify(const ExactScene& scene, std::span<const ElementRange> ranges, Fac
   found.unoccluded = all(counts.unoccluded, whole.unoccluded);
   found.shaft_tests = all(counts.shaft_tests, whole.shaft_tests);
   found.closely = share;
-  found.partial = share * double(recorded.partial_pairs.size());
+  found.occluded = share * double(recorded.occluded_pairs.size());
   found.occluders = share * double(recorded.occluder_list.size());
   if (counts.shaft_tests > 0) {
     found.seconds_visibility = seconds * found.shaft_tests / double(counts.shaft_tests);
   }
   found.record_bytes =
-      found.partial * double(sizeof(OccludedPair) + sizeof(OccludedExchange) + sizeof(Index)) +
+      found.occluded * double(sizeof(OccludedPair) + sizeof(OccludedExchange) + sizeof(Index)) +
       found.occluders * sizeof(Index) + double(recorded.blocks.size() * sizeof(PairBlock));
 }
 
@@ -77,10 +77,10 @@ std::vector<OccludedPair> evenly(const std::vector<OccludedPair>& pairs, std::si
   return some;
 }
 
-/// What the partial pairs will take.
+/// What the occluded pairs will take.
 void costOfPairs(const ExactScene& scene, RecordedPairs recorded, double tolerance,
                  SampledPlace& found) {
-  for (const OccludedPair& pair : recorded.partial_pairs) {
+  for (const OccludedPair& pair : recorded.occluded_pairs) {
     const bool many = pair.occluders_end - pair.occluders_begin >= kManyOccluders;
     found.classes[many ? many_occluders : few_occluders].pairs.push_back(pair);
   }
@@ -99,14 +99,14 @@ void costOfPairs(const ExactScene& scene, RecordedPairs recorded, double toleran
 }
 
 /// Ranges of rows that stand for themselves and their neighbours, with facets of one size.
-struct Place {
+struct SampledRanges {
   std::span<const ElementRange> rows;
   FacetSize size = FacetSize::small;
   double weight = 0;  ///< open pairs of all these
 };
 
 SampledPlace lookAt(const ExactScene& scene, double tolerance, std::size_t number,
-                    const Place& place) {
+                    const SampledRanges& place) {
   const BothWatches watches;
   SampledPlace found;
   found.weight = place.weight;
@@ -126,7 +126,7 @@ void sumUp(double task_rows, RowSample& sum) {
     if (!(share > 0)) continue;
     looked_at += place.weight;
     sum.unoccluded += share * place.unoccluded;
-    sum.partial += share * place.partial;
+    sum.occluded += share * place.occluded;
     sum.occluders += share * place.occluders;
     sum.shaft_tests += share * place.shaft_tests;
     for (const SampledPairs& of_class : place.classes) sum.cost += of_class.cost * share;
@@ -135,7 +135,7 @@ void sumUp(double task_rows, RowSample& sum) {
   }
   if (!(looked_at > 0)) return;
   sum.all_places = all / looked_at;
-  for (double* value : {&sum.unoccluded, &sum.partial, &sum.occluders, &sum.shaft_tests}) {
+  for (double* value : {&sum.unoccluded, &sum.occluded, &sum.occluders, &sum.shaft_tests}) {
     *value *= sum.all_places;
   }
   sum.cost = sum.cost * sum.all_places;
@@ -165,7 +165,7 @@ std::span<const ElementRange> rowsFrom(std::span<const ElementRange> ranges, std
 
 /// Up to `most` places of about as many open pairs each, at the range in their middle.
 void addPlaces(const ExactScene& scene, std::span<const ElementRange> ranges, FacetSize size,
-               std::size_t most, std::vector<Place>& places) {
+               std::size_t most, std::vector<SampledRanges>& places) {
   std::vector<double> until{0.0};  // open pairs of the ranges before
   until.reserve(ranges.size() + 1);
   for (const ElementRange& range : ranges) {
@@ -197,7 +197,7 @@ RowSample sampleRows(const ExactScene& scene, double tolerance, SampleSize size,
   // and much of the work.
   const std::array<std::vector<ElementRange>, 2> ranges = {rangesOf(scene, FacetSize::large),
                                                            rangesOf(scene, FacetSize::small)};
-  std::vector<Place> places;
+  std::vector<SampledRanges> places;
   const std::size_t row_classes = (ranges[0].empty() ? 0U : 1U) + (ranges[1].empty() ? 0U : 1U);
   for (const std::vector<ElementRange>& rows : ranges) {
     for (const FacetSize columns : {FacetSize::large, FacetSize::small}) {

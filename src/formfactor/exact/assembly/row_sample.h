@@ -18,7 +18,7 @@ namespace radiosity {
 inline constexpr Index kManyOccluders = 32;
 enum Clutter : std::size_t { few_occluders, many_occluders, clutter_classes };
 
-/// Partial pairs of one class.
+/// Occluded pairs of one class.
 struct SampledPairs {
   std::vector<OccludedPair> pairs;  ///< in order of their columns
   OccludedCost cost;                ///< of all that these stand for in the rows looked at
@@ -31,7 +31,7 @@ struct SampledPlace {
   double settled = 0;  ///< pairs of the rows with the facets
   double closely = 1;  ///< pairs for each that was settled in the descent
   double unoccluded = 0;
-  double partial = 0;
+  double occluded = 0;
   double occluders = 0;
   double shaft_tests = 0;
   double rows = 0;
@@ -40,7 +40,7 @@ struct SampledPlace {
   BothClocks taken;  ///< by all of it
   std::array<SampledPairs, clutter_classes> classes;
   std::vector<PairBlock> blocks;     ///< unoccluded
-  std::vector<Index> occluder_list;  ///< of the partial pairs
+  std::vector<Index> occluder_list;  ///< of the occluded pairs
 
   /// Open pairs for each that was settled; 0 where none was.
   double share() const { return settled > 0 ? weight / settled : 0.0; }
@@ -49,11 +49,11 @@ struct SampledPlace {
 /// Counts brought to all rows, and the places that they come from.
 struct RowSample {
   double unoccluded = 0;  ///< pairs with nothing in between, or below the horizon
-  double partial = 0;     ///< pairs that go to the clipping
+  double occluded = 0;    ///< pairs that go to the clipping
   double occluders = 0;   ///< candidates, summed over these
   double shaft_tests = 0;
-  OccludedCost cost;           ///< of the partial pairs, at the rates of a usual machine
-  std::size_t task_bytes = 0;  ///< most that the clipped pairs of a task take, about
+  OccludedCost cost;           ///< of the occluded pairs
+  std::size_t task_bytes = 0;  ///< most that the occluded pairs of a task take, about
   std::vector<SampledPlace> places;
   /// Open pairs of all places, for each of places where pairs were settled.
   double all_places = 1;

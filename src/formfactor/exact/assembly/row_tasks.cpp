@@ -39,7 +39,7 @@ void appendRanges(const ElementSet& elements, Index node, std::size_t most,
 RowTasks::RowTasks(const ElementSet& elements) {
   const std::size_t most = rowsPerTask(elements);
   for (const Facet& facet : elements.facets) {
-    if (!facet.bare) appendRanges(elements, facet.root, most, ranges_);
+    if (!facet.black) appendRanges(elements, facet.root, most, ranges_);
   }
   offset_.push_back(0);
   std::size_t rows = 0;

@@ -11,8 +11,8 @@
 namespace radiosity {
 namespace {
 
-/// Pairs are clipped, to see how much longer they take than guessed, in up to so many rounds until
-/// they have taken this share of all that is guessed, but no less and no more seconds than these.
+/// Pairs are clipped, to see how long their work takes, in up to so many rounds until this share of
+/// all the work that is foreseen is done, but for no less and no more seconds than these.
 /// (At 1e-6 a single pair past round bodies takes tenths of a second. A few pairs, near to each
 /// other, carry half of the time or more: in gazebo.obj of the lightmapper's examples one pair in
 /// 300 takes 38%. Many short batches meet them.)
@@ -21,10 +21,10 @@ constexpr double kClipShare = 0.02;
 constexpr double kLeastClipSeconds = 0.25;
 constexpr double kMostClipSeconds = 0.8;
 /// About so many pairs a round, by what they stand for; from places and classes that stand for less
-/// than this share, none; and no more in a batch than are guessed to take these seconds.
+/// than this share, none; and no more in a batch than this much work, about a millisecond.
 constexpr double kPairsARound = 256;
 constexpr double kLeastShare = 1e-3;
-constexpr double kBatchSeconds = 1e-3;
+constexpr double kBatchWork = 1e5;
 /// Batches are taken in an order that jumps about, so that what is left out when the time is up is
 /// like what is not.
 constexpr std::size_t kJump = 7;
@@ -33,10 +33,10 @@ static_assert(kRounds % kJump != 0);
 constexpr std::size_t kMostValues = 1 << 13;
 constexpr Index kValueRows = 4;
 
-/// Partial pairs of one class, in one place.
+/// Occluded pairs of one class, in one place.
 struct ClipTime {
-  double seconds = 0;   ///< of those that were clipped
-  double expected = 0;  ///< of the same, at the rates of a usual machine
+  double seconds = 0;  ///< of those that were clipped
+  double work = 0;     ///< foreseen, of the same
 };
 
 struct PlaceTime {
@@ -66,7 +66,7 @@ double unoccludedSeconds(const UnoccludedKernel& kernel, const SampledPlace& pla
     computed += double(values.size());
   }
   const double seconds = processorSeconds() - start;
-  return computed > 0 ? seconds * (place.unoccluded + place.partial) / computed : 0.0;
+  return computed > 0 ? seconds * (place.unoccluded + place.occluded) / computed : 0.0;
 }
 
 /// A batch of pairs that are neighbours, and share work; batches evenly from all. Pairs are in
@@ -83,8 +83,8 @@ void clip(const ExactScene& scene, const ExactKernels& kernels, std::span<const 
           std::span<const Index> occluder_list, double tolerance, ClipTime& clipped) {
   if (batch.empty()) return;
   std::vector<OccludedPair> some(batch.begin(), batch.end());
-  clipped.expected +=
-      occludedCost(scene.elements, scene.occluders, some, occluder_list, tolerance).seconds;
+  clipped.work +=
+      occludedCost(scene.elements, scene.occluders, some, occluder_list, tolerance).work;
   for (OccludedPair& pair : some) {
     pair.unoccluded = kernels.unoccluded.pair(pair.row, pair.column);
   }
@@ -92,13 +92,13 @@ void clip(const ExactScene& scene, const ExactKernels& kernels, std::span<const 
   std::vector<OccludedExchange> out(some.size());
   OccludedCounts counts;
   const double start = processorSeconds();
-  kernels.partial.evaluate(some, occluder_list, out, counts);
+  kernels.occluded.evaluate(some, occluder_list, out, counts);
   clipped.seconds += processorSeconds() - start;
 }
 
-/// Seconds that the pairs of all tasks will take, as guessed, for which these stand.
-double guessedSeconds(const SampledPlace& place, const SampledPairs& of_class) {
-  return place.share() * of_class.cost.seconds;
+/// Work of the pairs of all tasks for which these stand.
+double foreseenWork(const SampledPlace& place, const SampledPairs& of_class) {
+  return place.share() * of_class.cost.work;
 }
 
 class ClipRounds {
@@ -112,9 +112,8 @@ class ClipRounds {
         times_(times),
         progress_(progress) {
     for (const SampledPlace& place : sample.places) {
-      for (const SampledPairs& of_class : place.classes) all_ += guessedSeconds(place, of_class);
+      for (const SampledPairs& of_class : place.classes) all_ += foreseenWork(place, of_class);
     }
-    most_ = std::clamp(kClipShare * all_, kLeastClipSeconds, kMostClipSeconds);
   }
 
   void run() {
@@ -131,19 +130,24 @@ class ClipRounds {
   }
 
  private:
-  bool isOver() const { return progress_.cancelled() || taken_.load() >= most_; }
+  bool isOver() const {
+    const double taken = taken_.load();
+    return progress_.cancelled() || taken >= kMostClipSeconds ||
+           (taken >= kLeastClipSeconds && done_.load() >= kClipShare * all_);
+  }
 
   void clipSome(const SampledPlace& place, const SampledPairs& of_class, std::size_t which,
                 ClipTime& clipped) {
-    const double share = guessedSeconds(place, of_class) / all_;
+    const double share = foreseenWork(place, of_class) / all_;
     if (isOver() || !(share > kLeastShare)) return;
-    const double of_one = of_class.cost.seconds / (place.closely * double(of_class.pairs.size()));
-    const auto size =
-        std::size_t(std::max(1.0, std::min(kPairsARound * share, kBatchSeconds / of_one)));
-    const double before = clipped.seconds;
-    clip(scene_, kernels_, batchOf(of_class.pairs, size, which), place.occluder_list, tolerance_,
-         clipped);
-    taken_.fetch_add(clipped.seconds - before);
+    const auto pairs = double(of_class.pairs.size());
+    const double of_one = of_class.cost.work / (place.closely * pairs);
+    const double most = std::min({kPairsARound * share, kBatchWork / of_one, pairs});
+    const ClipTime before = clipped;
+    clip(scene_, kernels_, batchOf(of_class.pairs, std::size_t(std::max(1.0, most)), which),
+         place.occluder_list, tolerance_, clipped);
+    taken_.fetch_add(clipped.seconds - before.seconds);
+    done_.fetch_add(clipped.work - before.work);
   }
 
   const ExactScene& scene_;
@@ -152,26 +156,38 @@ class ClipRounds {
   const RowSample& sample_;
   std::vector<PlaceTime>& times_;
   Progress& progress_;
-  double all_ = 0;   ///< guessed for all pairs
-  double most_ = 0;  ///< seconds
+  double all_ = 0;  ///< work foreseen of all pairs
   std::atomic<double> taken_ = 0;
+  std::atomic<double> done_ = 0;  ///< work, in the seconds taken
 };
+
+/// Seconds for each unit of work, of all that was clipped.
+double overallPace(const std::vector<PlaceTime>& times) {
+  ClipTime all;
+  for (const PlaceTime& place : times) {
+    for (const ClipTime& clipped : place.clipped) {
+      all.seconds += clipped.seconds;
+      all.work += clipped.work;
+    }
+  }
+  return all.work > 0 ? all.seconds / all.work : 0.0;
+}
 
 /// Of the pairs of a class, each place at its own pace: where pairs are dear, fewer of them were
 /// clipped.
-double partialSeconds(const RowSample& sample, const std::vector<PlaceTime>& times, Clutter of) {
-  double guessed = 0;
-  double unpaced = 0;  // of this, where pairs were clipped
-  double paced = 0;
+double occludedSeconds(const RowSample& sample, const std::vector<PlaceTime>& times, Clutter of) {
+  double work = 0;
+  double paced = 0;  // of this, where pairs were clipped
+  double seconds = 0;
   for (std::size_t k = 0; k < times.size(); ++k) {
-    const double seconds = guessedSeconds(sample.places[k], sample.places[k].classes[of]);
+    const double of_place = foreseenWork(sample.places[k], sample.places[k].classes[of]);
     const ClipTime& clipped = times[k].clipped[of];
-    guessed += seconds;
-    if (!(clipped.expected > 0)) continue;
-    unpaced += seconds;
-    paced += seconds * (clipped.seconds / clipped.expected);
+    work += of_place;
+    if (!(clipped.work > 0)) continue;
+    paced += of_place;
+    seconds += of_place * (clipped.seconds / clipped.work);
   }
-  return unpaced > 0 ? guessed * paced / unpaced : guessed;
+  return work * (paced > 0 ? seconds / paced : overallPace(times));
 }
 
 }  // namespace
@@ -197,7 +213,7 @@ RowTimes timeRows(const ExactScene& scene, const ExactKernels& kernels, double t
     taken += times[k].taken;
   }
   for (const Clutter of : {few_occluders, many_occluders}) {
-    sum.partial += sample.all_places * partialSeconds(sample, times, of);
+    sum.occluded += sample.all_places * occludedSeconds(sample, times, of);
   }
   sum.busy = taken.ratio();
   return sum;

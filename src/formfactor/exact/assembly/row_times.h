@@ -9,7 +9,7 @@ namespace radiosity {
 struct RowTimes {
   double visibility = 0;
   double unoccluded = 0;
-  double partial = 0;
+  double occluded = 0;
   /// How much longer the sample took by the clock: other work on the machine.
   double busy = 1;
 };

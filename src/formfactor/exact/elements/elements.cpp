@@ -7,9 +7,9 @@
 #include <numeric>
 #include <tuple>
 
+#include "formfactor/exact/elements/backs_hidden_from_all.h"
 #include "formfactor/exact/elements/clusters.h"
 #include "formfactor/exact/elements/convex_pieces.h"
-#include "formfactor/exact/elements/unseen_backs.h"
 
 namespace radiosity {
 namespace {
@@ -81,10 +81,10 @@ class ElementBuilder {
       for (std::size_t side = 0; side < 2; ++side) addSide(p, side == 1, patches[p][side]);
     }
     set_.patch_elements = set_.size();
-    const std::vector<std::uint8_t> unseen = unseenBacks(mesh_);
+    const std::vector<std::uint8_t> hidden = backsHiddenFromAll(mesh_);
     for (const Index p : order) {
       for (std::size_t side = 0; side < 2; ++side) {
-        if (patches[p][side].empty() && !(side == 1 && unseen[p])) addBareSide(p, side == 1);
+        if (patches[p][side].empty() && !(side == 1 && hidden[p])) addBlackSide(p, side == 1);
       }
     }
   }
@@ -189,7 +189,7 @@ class ElementBuilder {
     addFacet(polygon, back, false, pieces);
   }
 
-  void addBareSide(Index polygon, bool back) {
+  void addBlackSide(Index polygon, bool back) {
     const double sign = back ? -1 : 1;
     const auto loops = polygonLoops(mesh_, polygon, set_.middle, set_.scale);
     const Vec3& normal = mesh_.polygons.normal[polygon];
@@ -204,13 +204,13 @@ class ElementBuilder {
     addFacet(polygon, back, true, pieces);
   }
 
-  void addFacet(Index polygon, bool back, bool bare, const std::vector<Piece>& pieces) {
+  void addFacet(Index polygon, bool back, bool black, const std::vector<Piece>& pieces) {
     if (pieces.empty()) return;
     const auto loops = polygonLoops(mesh_, polygon, set_.middle, set_.scale);
     Facet facet;
     facet.polygon = polygon;
     facet.back = back;
-    facet.bare = bare;
+    facet.black = black;
     facet.normal = mesh_.polygons.normal[polygon] * (back ? -1.0 : 1.0);
     const Vec3 origin = (mesh_.polygons.origin[polygon] - set_.middle) * set_.scale;
     facet.offset = glm::dot(facet.normal, origin);
@@ -232,7 +232,7 @@ class ElementBuilder {
       Vec2 lower = flat[first].lower;
       Vec2 upper = flat[first].upper;
       std::size_t end = first + 1;
-      for (; !bare && end < pieces.size() && pieces[end].patch == pieces[first].patch; ++end) {
+      for (; !black && end < pieces.size() && pieces[end].patch == pieces[first].patch; ++end) {
         lower = glm::min(lower, flat[end].lower);
         upper = glm::max(upper, flat[end].upper);
       }

@@ -35,9 +35,9 @@ struct Cluster {
 struct Facet {
   Index polygon = 0;  ///< of the mesh
   bool back = false;  ///< the polygon's back side
-  /// True: a bare back. Its elements are the polygon's own convex pieces, not patches; they absorb
+  /// True: a black back. Its elements are the polygon's own convex pieces, not patches; they absorb
   /// and return nothing, and are there to tell what is seen from behind from the sky.
-  bool bare = false;
+  bool black = false;
   Vec3 normal{0.0};   ///< unit, out of the side that carries the elements
   double offset = 0;  ///< dot(normal, x) = offset on the plane
   ElementRange elements;
@@ -51,7 +51,7 @@ struct Facet {
 /// A patch that is a triangle or a convex quadrilateral, but for corners in line with their
 /// neighbours, is one element; any other patch is cut into trapezoids, or its pieces if those are
 /// fewer, of which each is one. Facets are ordered by surface name, polygon index within the
-/// surface and side, bare ones after all others; elements within a facet follow a quadtree in the
+/// surface and side, black ones after all others; elements within a facet follow a quadtree in the
 /// facet's plane (ties: index within the surface), those of one patch next to each other. So
 /// nothing depends on how patches are numbered.
 struct ElementSet {
@@ -66,7 +66,7 @@ struct ElementSet {
   Vec3 middle{0.0};        ///< element coordinates are (mesh coordinates - middle) * scale
   double coincidence = 0;  ///< 1e-7 of the scene's diagonal, scaled: the one length tolerance
 
-  std::vector<Index> patch;                  ///< E; of a bare element: N + surface
+  std::vector<Index> patch;                  ///< E; of a black element: N + surface
   std::vector<Index> facet;                  ///< E
   std::vector<std::array<Vec3, 4>> corners;  ///< E, counter-clockwise about the facet's normal;
                                              ///< a triangle's fourth repeats its third
@@ -77,7 +77,7 @@ struct ElementSet {
   std::vector<Facet> facets;
   std::vector<Cluster> clusters;
   std::size_t patch_elements =
-      0;  ///< elements [0, patch_elements) belong to patches, the rest are bare
+      0;  ///< elements [0, patch_elements) belong to patches, the rest are black
 };
 
 }  // namespace radiosity

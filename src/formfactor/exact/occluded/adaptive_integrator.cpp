@@ -5,32 +5,17 @@
 #include <numeric>
 #include <type_traits>
 
+#include "formfactor/exact/error_model.h"
+
 namespace radiosity {
 namespace {
 
 /// Halvings of a cell: an end where an estimate does not fall.
 constexpr int kMostLevels = 10;
 
-/// Root mean square of the error of a visible fraction by 2 x 2 points, in changes (measured on the
-/// closed Cornell box, 1,000 to 5,000 patches, where it is proportional to the change).
-constexpr double kExpected4 = 0.016;
-
-/// Targets nearer than so many of their radii are near: VisibleFraction::near.
-constexpr double kNear = 4;
-
-/// Cells whose estimate is more than this share of what is accepted are looked at from outside,
-/// too, if a shadow's edge may have slipped between their points. (A block in a room, 162 patches,
-/// 1e-3: 7 rows were above their figure where only cells that would be cut were looked at so, all
-/// for cells in which every point saw everything. It takes 0 to 2% more points.)
-constexpr double kDoubtful = 0.7;
-
-/// Root mean square, in a half visible target's fraction, of what the kernels for far targets leave
-/// out, in their accuracy (curved scene, targets 2 to 4 radii away: 0.15 to 0.21).
-constexpr double kFarShare = 0.2;
-
 }  // namespace
 
-double expectedError(double change) { return kExpected4 * changeIn(0, change); }
+double expectedError(double change) { return kPairExpected4 * changeIn(0, change); }
 
 double VisibleFraction::error() const {
   if (!(whole > 0)) return 0;
@@ -89,7 +74,7 @@ void AdaptiveIntegrator<T>::integrate(std::span<const SampledPair> group,
       if ((distance >= far_reach_) != far) continue;
       fractions[k].change = double(group[k].change);
       if (far) fractions[k].far_error = kFarShare * kFarError / (distance * distance * distance);
-      fractions[k].near = distance < kNear;
+      fractions[k].near = distance < kPairNear;
       fractions[k].may_cross = group[k].may_cross;
       fractions[k].one_occluder = group[k].blockers_end - group[k].blockers_begin == 1;
       fractions[k].refined =
@@ -118,7 +103,8 @@ void AdaptiveIntegrator<T>::cutAtLines(std::span<const Vec3> polygon, Members& m
   if constexpr (std::is_same_v<T, double>) {
     std::erase_if(members.index, [&](Index m) {
       const double misses = expectedError(out[m].change) / out[m].allowed;
-      const double parts = std::min(misses / kPerPart, double(CriticalLineQuadrature::kMostParts));
+      const double parts =
+          std::min(misses / kPartWorth, double(CriticalLineQuadrature::kMostParts));
       return parts >= 1 &&
              between_lines_.integrate(polygon, normal_, targets_[m], far_, elements_.coincidence,
                                       std::size_t(parts), out[m]);
@@ -230,7 +216,7 @@ void AdaptiveIntegrator<T>::lookOutside(const SampleCell& cell, double share,
   };
   for (Index k = 0; k < members.index.size(); ++k) {
     const bool may_step = out[members.index[k]].may_cross;
-    if (!sums_[k].uncertain || !(may_step || exceeds(k, kDoubtful))) continue;
+    if (!sums_[k].uncertain || !(may_step || exceeds(k, kPairDoubtful))) continue;
     uncertain_.push_back(k);
     chosen_.push_back(&targets_[members.index[k]]);
   }

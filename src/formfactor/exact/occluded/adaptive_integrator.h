@@ -31,12 +31,6 @@ struct VisibleFraction {
   double error() const;
 };
 
-/// A part between critical lines takes 13 points of which no other pair has a share. It is worth
-/// them where the first rule is expected to miss by so many times what is accepted. (Closed Cornell
-/// box, 985 patches, 1e-5: 3.1 million points and an error of 3.3e-7; 5.1 million and 1.5e-6 where
-/// pairs that miss by less than ten times are halved.)
-inline constexpr double kPerPart = 1.5;
-
 /// What a pair may take: points times the occluders looked past from each, a few tenths of a
 /// second. Steps of shadows that no halving resolves would take hundreds of times that.
 inline constexpr std::size_t kMostLooks = std::size_t(1) << 20;

@@ -59,11 +59,11 @@ void BatchVisibility<T>::look(std::span<const SamplePoint> points, const Vec3& o
   std::fill_n(shape_.data(), values, ShapeWord<T>(0));
   std::fill_n(shadow_count_.data(), values, std::uint8_t(0));
   cones_.setPoints(points_);
-  collectUses();
+  collectBlockedTargets();
   cones_.build(group_blockers_);
-  hide();
+  castShadows();
   subtractHidden();
-  finish();
+  settleVisible();
 }
 
 /// Form factors with nothing in between. Few targets share vectors from all points, with the same
@@ -97,8 +97,8 @@ void BatchVisibility<T>::lookAtWhole() {
 
 /// Who uses which blocker, by target.
 template <class T>
-void BatchVisibility<T>::collectUses() {
-  uses_.clear();
+void BatchVisibility<T>::collectBlockedTargets() {
+  blocked_targets_.clear();
   group_blockers_.clear();
   numbers_.clear();
   for (std::size_t lane = 0; lane < group_.size(); ++lane) {
@@ -112,7 +112,7 @@ void BatchVisibility<T>::collectUses() {
       const auto next = std::uint32_t(group_blockers_.size());
       const std::uint32_t number = numbers_.of(blocker, next);
       if (number == next) group_blockers_.push_back(&blocker);
-      uses_.push_back({&blocker, std::uint32_t(lane), number});
+      blocked_targets_.push_back({&blocker, std::uint32_t(lane), number});
     }
   }
 }
@@ -130,8 +130,8 @@ ClipItems<T> BatchVisibility<T>::items(std::size_t count) const {
 
 /// What each occluder hides of each target it concerns, from each point: into form_factor_.
 template <class T>
-void BatchVisibility<T>::hide() {
-  const std::size_t count = points_.size() * uses_.size();
+void BatchVisibility<T>::castShadows() {
+  const std::size_t count = points_.size() * blocked_targets_.size();
   if (count == 0) return;
   const std::size_t lanes = paddedLanes(count);
   item_target_.reserve(lanes);
@@ -143,7 +143,7 @@ void BatchVisibility<T>::hide() {
   LaneIndex<T>* first = item_planes_.data();
   LaneIndex<T>* plane_count = first + lanes;
   std::size_t at = 0;
-  const auto add = [&](const Use& use, std::size_t point) {
+  const auto add = [&](const BlockedTarget& use, std::size_t point) {
     const Cone<T>& cone = cones_.cone(use.number, point);
     item_target_.data()[at] = LaneIndex<T>(use.lane);
     item_eye_.data()[at] = LaneIndex<T>(point);
@@ -151,9 +151,10 @@ void BatchVisibility<T>::hide() {
     plane_count[at++] = cone.count;
   };
   for (std::size_t q = 0; q < points_.size(); ++q) {
-    for (const Use& use : uses_) add(use, q);
+    for (const BlockedTarget& use : blocked_targets_) add(use, q);
   }
-  for (std::size_t left = lanes - count; left > 0; --left) add(uses_.back(), points_.size() - 1);
+  for (std::size_t left = lanes - count; left > 0; --left)
+    add(blocked_targets_.back(), points_.size() - 1);
   clip_.hidden(targets_.lanes(), eyes(), cones_.planes(), items(lanes), first, plane_count,
                {form_factor_.data(), word_.data(), cut_.data(), cut_.data() + lanes});
 }
@@ -162,15 +163,15 @@ void BatchVisibility<T>::hide() {
 template <class T>
 void BatchVisibility<T>::subtractHidden() {
   shadows_.clear();
-  const std::size_t lanes = paddedLanes(points_.size() * uses_.size());
+  const std::size_t lanes = paddedLanes(points_.size() * blocked_targets_.size());
   std::size_t item = 0;
   for (std::size_t q = 0; q < points_.size(); ++q) {
     const std::size_t row = q * targets_.lanes().count;
-    for (std::uint32_t u = 0; u < uses_.size(); ++u, ++item) {
+    for (std::uint32_t u = 0; u < blocked_targets_.size(); ++u, ++item) {
       const T hidden = form_factor_.data()[item];
-      const Cone<T>& cone = cones_.cone(uses_[u].number, q);
+      const Cone<T>& cone = cones_.cone(blocked_targets_[u].number, q);
       if (hidden == 0 && !cone.too_many) continue;
-      const std::size_t at = row + uses_[u].lane;
+      const std::size_t at = row + blocked_targets_[u].lane;
       std::uint8_t& count = shadow_count_.data()[at];
       if (hidden < 0) count = kHidden;
       if (count == kHidden) continue;
@@ -182,7 +183,7 @@ void BatchVisibility<T>::subtractHidden() {
       visible_.data()[at] -= hidden;
       shape_.data()[at] += word_.data()[item];
       if (count < kMostCounted) ++count;
-      if (group_[uses_[u].lane]->blockers.size() > 1) {
+      if (group_[blocked_targets_[u].lane]->blockers.size() > 1) {
         const std::uint64_t low = cut_.data()[item];
         const std::uint64_t high = cut_.data()[lanes + item];
         const std::uint64_t cut = cone.count <= 64 ? high << 32 | low : kUnknownCut;
@@ -194,7 +195,7 @@ void BatchVisibility<T>::subtractHidden() {
 }
 
 template <class T>
-void BatchVisibility<T>::finish() {
+void BatchVisibility<T>::settleVisible() {
   uniteShadows();
   const std::size_t values = points_.size() * targets_.lanes().count;
   for (std::size_t at = 0; at < values; ++at) {
@@ -329,7 +330,7 @@ void BatchVisibility<T>::addSides(const Shadow& shadow, std::size_t point, std::
     }
     return;
   }
-  const Cone<T>& cone = cones_.cone(uses_[shadow.use].number, point);
+  const Cone<T>& cone = cones_.cone(blocked_targets_[shadow.use].number, point);
   for (LaneIndex<T> k = 0; k < cone.count; ++k) add(cone.first + k);
 }
 
@@ -340,7 +341,7 @@ void BatchVisibility<T>::unite(std::span<Shadow> shadows) {
   const std::size_t point = at / targets_.lanes().count;
   const std::size_t lane = at % targets_.lanes().count;
   const auto too_many = [&](const Shadow& s) {
-    return cones_.cone(uses_[s.use].number, point).too_many;
+    return cones_.cone(blocked_targets_[s.use].number, point).too_many;
   };
   if (std::any_of(shadows.begin(), shadows.end(), too_many)) {
     uniteExactly(shadows);
@@ -348,7 +349,7 @@ void BatchVisibility<T>::unite(std::span<Shadow> shadows) {
   }
   std::sort(shadows.begin(), shadows.end(), [&](const Shadow& a, const Shadow& b) {
     if (a.hidden != b.hidden) return a.hidden > b.hidden;
-    return uses_[a.use].what->id < uses_[b.use].what->id;
+    return blocked_targets_[a.use].what->id < blocked_targets_[b.use].what->id;
   });
   const GroupTarget& target = *group_[lane];
   const double noise = kPlaneNoise<T> * glm::distance(points_[point].position, target.frame.origin);
@@ -401,7 +402,7 @@ void BatchVisibility<T>::uniteExactly(std::span<const Shadow> shadows) {
   const std::size_t lane = at % targets_.lanes().count;
   const GroupTarget& target = *group_[lane];
   united_.clear();
-  for (const Shadow& shadow : shadows) united_.push_back(*uses_[shadow.use].what);
+  for (const Shadow& shadow : shadows) united_.push_back(*blocked_targets_[shadow.use].what);
   const PointView view = exact_.look(points_[point].position, normal_,
                                      std::span(target.corners).first(target.corner_count), united_);
   const double fraction = view.whole > 0 ? view.visible / view.whole : 0;

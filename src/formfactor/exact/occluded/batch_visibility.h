@@ -71,7 +71,7 @@ class BatchVisibility {
   static constexpr std::uint8_t kHidden = 255;
 
   /// A target has a blocker.
-  struct Use {
+  struct BlockedTarget {
     const Blocker* what;
     std::uint32_t lane;
     std::uint32_t number;  ///< into group_blockers_
@@ -93,10 +93,10 @@ class BatchVisibility {
   };
 
   void lookAtWhole();
-  void collectUses();
-  void hide();
+  void collectBlockedTargets();
+  void castShadows();
   void subtractHidden();
-  void finish();
+  void settleVisible();
   void uniteShadows();
   void placeCommon();
   void setLane(const Common& common, std::size_t lane, std::size_t planes);
@@ -121,7 +121,7 @@ class BatchVisibility {
   AlignedBuffer<T> visible_;  ///< while shadows are drawn: less than 0 where they overlap
   AlignedBuffer<ShapeWord<T>> shape_;
   AlignedBuffer<std::uint8_t> shadow_count_;
-  std::vector<Use> uses_;
+  std::vector<BlockedTarget> blocked_targets_;
   std::vector<const Blocker*> group_blockers_;
   BlockerNumbers numbers_;
   BatchCones<T> cones_;

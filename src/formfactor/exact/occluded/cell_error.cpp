@@ -3,53 +3,23 @@
 #include <algorithm>
 #include <cmath>
 
+#include "formfactor/exact/error_model.h"
+
 namespace radiosity {
 namespace {
-
-/// Values that differ by less, in whole form factors, are flat.
-constexpr double kFlat = 0.05;
-
-/// Shares of first differences (2 x 2), and of second differences and slopes (3 x 3).
-constexpr double kSmooth4 = 0.010;
-constexpr double kKinked4 = 0.038;
-constexpr double kSmooth9 = 0.003;
-constexpr double kKinked9 = 0.022;
-constexpr double kSlope9 = 0.002;
-/// Shares of the change, of what no difference shows: where values are flat; where there is a kink,
-/// so that differences may be small by chance; and where there seems to be none.
-constexpr double kUnseenFlat4 = 0.011;
-constexpr double kUnseenKinked4 = 0.011;
-constexpr double kUnseenSmooth4 = 0.004;
-constexpr double kUnseenFlat9 = 0.0055;
-constexpr double kUnseenKinked9 = 0.002;
-constexpr double kUnseenSmooth9 = 0.0006;
-/// Of the seen part of the cautious estimate, in whole form factors and sides of the cell: where it
-/// is as much, kinks are as strong as it says; and where they grow no stronger.
-constexpr double kStrong4 = 0.0163;
-constexpr double kStrong9 = 0.0067;
-constexpr double kStrongest = 6;
-/// Of the unseen part, in flat cells: where the shadow's edge is well inside the target, and where
-/// it is at its border or not seen at all (3 x 3: where shapes differ, and a kink is known to be).
-constexpr double kInside4 = 0.36;
-constexpr double kInside9 = 0.22;
-constexpr double kBorder4 = 1.25;
-constexpr double kBorder9 = 0.75;
-/// Of residuals near the corners, and of an error guessed before they were seen.
-constexpr double kOutside = 0.0135;
-constexpr double kReassured = 0.2;
 
 /// Of what is unseen in a flat cell, what is stated.
 double flatShare(const CellValues& values) {
   const bool four = values.count == 4;
   // Shadows of one shape have their edges where they are; others come and go at the border.
-  const double border = values.one_shape ? 0 : kFlat;
+  const double border = values.one_shape ? 0 : kCellFlat;
   if (border < values.fraction && values.fraction < 1 - border) {
     if (!values.one_occluder) return 1;  // one shadow's edge says nothing of another's
-    return four ? kInside4 : kInside9;
+    return four ? kCellInside4 : kCellInside9;
   }
-  if (four) return kBorder4;
+  if (four) return kCellBorder4;
   // changeIn reckons with the chance that a kink is in the cell.
-  return values.one_shape ? 1 : kBorder9 / std::sqrt(values.side);
+  return values.one_shape ? 1 : kCellBorder9 / std::sqrt(values.side);
 }
 
 }  // namespace
@@ -57,7 +27,7 @@ double flatShare(const CellValues& values) {
 bool CellValues::flat() const {
   if (!(fraction > 0 && fraction < 1)) return true;
   const auto [least, most] = std::minmax_element(residual.begin(), residual.begin() + count);
-  return *most - *least < kFlat * whole;
+  return *most - *least < kCellFlat * whole;
 }
 
 double changeIn(int level, double change) {
@@ -67,9 +37,9 @@ double changeIn(int level, double change) {
 
 double CellValues::unseen() const {
   const bool four = count == 4;
-  double share = four ? kUnseenSmooth4 : kUnseenSmooth9;
-  if (!one_shape) share = four ? kUnseenKinked4 : kUnseenKinked9;
-  if (flat()) share = four ? kUnseenFlat4 : kUnseenFlat9;
+  double share = four ? kCellUnseenSmooth4 : kCellUnseenSmooth9;
+  if (!one_shape) share = four ? kCellUnseenKinked4 : kCellUnseenKinked9;
+  if (flat()) share = four ? kCellUnseenFlat4 : kCellUnseenFlat9;
   return share * change * whole;
 }
 
@@ -78,7 +48,7 @@ double CellValues::seen() const {
   if (count == 4) {
     const double along_u = std::abs(r[1] - r[0]) + std::abs(r[3] - r[2]);
     const double along_v = std::abs(r[2] - r[0]) + std::abs(r[3] - r[1]);
-    return 0.5 * (along_u + along_v) * (one_shape ? kSmooth4 : kKinked4);
+    return 0.5 * (along_u + along_v) * (one_shape ? kCellSmooth4 : kCellKinked4);
   }
   double bend = 0;
   double slope = 0;
@@ -91,8 +61,8 @@ double CellValues::seen() const {
   }
   // A kink between the outer points and the border changes the slope there, and nothing else.
   // A step in the middle does not bend: the points lie evenly about it.
-  const double of_slope = may_cross && !one_shape ? kKinked9 : kSlope9;
-  return bend * (one_shape ? kSmooth9 : kKinked9) + slope * of_slope;
+  const double of_slope = may_cross && !one_shape ? kCellKinked9 : kCellSlope9;
+  return bend * (one_shape ? kCellSmooth9 : kCellKinked9) + slope * of_slope;
 }
 
 CellError meanError(const CellValues& values) {
@@ -100,8 +70,9 @@ CellError meanError(const CellValues& values) {
   const double unseen = values.unseen();
   double stated_seen = seen;
   if (!values.one_shape && !values.may_cross) {
-    const double strong = (values.count == 4 ? kStrong4 : kStrong9) * values.side * values.whole;
-    stated_seen *= std::sqrt(std::min(seen / strong, kStrongest));
+    const double strong =
+        (values.count == 4 ? kCellStrong4 : kCellStrong9) * values.side * values.whole;
+    stated_seen *= std::sqrt(std::min(seen / strong, kCellStrongest));
   }
   const double stated_unseen = values.flat() ? unseen * flatShare(values) : unseen;
   return {std::sqrt(seen * seen + unseen * unseen),
@@ -110,7 +81,7 @@ CellError meanError(const CellValues& values) {
 
 CellError meanErrorOutside(const CellError& guessed, double residual) {
   if (!(guessed.cautious > 0)) return guessed;
-  const double cautious = std::max(kReassured * guessed.cautious, kOutside * residual);
+  const double cautious = std::max(kCellReassured * guessed.cautious, kCellOutside * residual);
   return {cautious, guessed.stated * (cautious / guessed.cautious)};
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "formfactor/exact/error_model.h"
 #include "formfactor/exact/occluded/adaptive_integrator.h"
 
 namespace radiosity {
@@ -11,69 +12,7 @@ namespace {
 /// An end where an estimate does not fall.
 constexpr int kMostHalvings = 10;
 
-/// Of what the two rules differ by, the error of the better one, on a smooth part. They are of
-/// order four and six in a part's size over the length on which values change; so where the
-/// difference is a share d of the values, the error is sqrt(d) of the difference, about. (In the
-/// closed Cornell box its root mean square over parts is one to two times this, of parts stated to
-/// be off by 1e-6 to 1e-8 of the pair.) ...
-constexpr double kOrder = 0.3;
-/// ... but not less than the difference is of that between the first rule and a single point in the
-/// middle: where a pole lies beside a part, rules gain the same factor with every order. ...
-constexpr double kFactor = 1;
-/// ... and at least: differences are small by chance, too; ... (A cube in a cube, 200 patches,
-/// whose pairs are all alike, so that none makes up for another: the worst row at 1e-5 is off
-/// by 2.7 times its figure; with kOrder alone and a kLeast of .02, by 5.2 times.)
-constexpr double kLeast = 0.05;
-/// ... where shapes differ, mostly because an edge of a shadow touches a corner of the target all
-/// along, and is here or there by rounding; or where the target is so near that the form factor
-/// itself changes much along the part, and two rules may agree and both be wrong; ...
-constexpr double kLeastDoubtful = 0.1;
-/// ... and where shadows overlap: edges of two may cross on an edge of the target, along a curve,
-/// and of a kink rules of few points miss as much as they see.
-constexpr double kOverlap = 1;
-
-/// Of what decides about halving, what is stated: parts that pass are mostly better.
-constexpr double kStated = 0.27;
-
-/// The point in the middle, among a part's, and its weight in the rule of 3 x 3.
-constexpr std::size_t kMiddle = 8;
-constexpr double kMiddleWeight = 64.0 / 324;
-
 }  // namespace
-
-double CriticalLineQuadrature::Part::integral(const std::array<double, kPoints>& values) const {
-  double sum = 0;
-  for (std::size_t q = kCoarse; q < kPoints; ++q) sum += weight[q] * values[q];
-  return sum;
-}
-
-double CriticalLineQuadrature::Part::coarseIntegral(
-    const std::array<double, kPoints>& values) const {
-  double sum = 0;
-  for (std::size_t q = 0; q < kCoarse; ++q) sum += weight[q] * values[q];
-  return sum;
-}
-
-/// Of the integral of visible minus `fraction` times whole form factor.
-double CriticalLineQuadrature::Part::error(double fraction, bool near) const {
-  std::array<double, kPoints> residual;
-  double largest = 0;
-  for (std::size_t q = 0; q < kPoints; ++q) {
-    residual[q] = visible[q] - fraction * whole[q];
-    largest = std::max(largest, std::abs(residual[q]));
-  }
-  if (!(largest > 0)) return 0;
-  const double fine = integral(residual);
-  const double coarse = coarseIntegral(residual);
-  const double difference = std::abs(fine - coarse);
-  if (overlap) return kOverlap * difference;
-  if (!(difference > 0)) return 0;
-  const double middle = residual[kMiddle] * weight[kMiddle] / kMiddleWeight;
-  const double before = std::max(std::abs(coarse - middle), difference);
-  const double share =
-      std::max(kFactor * difference / before, kOrder * std::sqrt(difference / (largest * area)));
-  return difference * std::clamp(share, one_shape && !near ? kLeast : kLeastDoubtful, 1.0);
-}
 
 void CriticalLineQuadrature::addPart(const CriticalLines::Part& part) {
   const std::size_t n = part.size();
@@ -119,7 +58,7 @@ void CriticalLineQuadrature::add(const SampleCell& cell, int halvings) {
   const SamplePoints more = cell.points(3);
   for (const SamplePoint& p : more.all()) points.point[points.count++] = p;
   view_.look(points.all(), cell.middle(), normal_, std::span(&target_, 1), far_);
-  for (std::size_t q = 0; q < kPoints; ++q) {
+  for (std::size_t q = 0; q < PartValues::kPoints; ++q) {
     part.weight[q] = points.point[q].weight;
     part.visible[q] = view_.visible(q)[0];
     part.whole[q] = view_.whole(q)[0];
@@ -140,7 +79,7 @@ bool CriticalLineQuadrature::integrate(std::span<const Vec3> polygon, const Vec3
   parts_.clear();
   for (const CriticalLines::Part& part : lines_.parts()) addPart(part);
   out.refined = true;
-  out.points += kPoints * parts_.size();
+  out.points += PartValues::kPoints * parts_.size();
   double visible = 0;
   double whole = 0;
   for (const Part& part : parts_) {
@@ -161,12 +100,12 @@ bool CriticalLineQuadrature::integrate(std::span<const Vec3> polygon, const Vec3
     if (too_large && !spent) {
       const std::size_t before = parts_.size();
       for (std::size_t c = 0; c < 4; ++c) add(part.cell.child(c), part.halvings + 1);
-      out.points += kPoints * (parts_.size() - before);
+      out.points += PartValues::kPoints * (parts_.size() - before);
       continue;
     }
     out.visible += part.integral(part.visible);
     out.whole += part_whole;
-    out.error2 += kStated * kStated * error * error;
+    out.error2 += kPartStated * kPartStated * error * error;
   }
   return true;
 }

@@ -1,13 +1,13 @@
 // Pairs whose sampled element is cut along the lines where what it sees has kinks.
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
 #include "formfactor/exact/occluded/batch_visibility.h"
 #include "formfactor/exact/occluded/cell_rule.h"
 #include "formfactor/exact/occluded/critical_lines.h"
+#include "formfactor/exact/occluded/part_error.h"
 
 namespace radiosity {
 
@@ -30,22 +30,10 @@ class CriticalLineQuadrature {
                  bool far, double coincidence, std::size_t most_parts, VisibleFraction& out);
 
  private:
-  static constexpr std::size_t kPoints = 13;  ///< 2 x 2, then 3 x 3
-  static constexpr std::size_t kCoarse = 4;   ///< of them the first
   /// A part and what it sees.
-  struct Part {
+  struct Part : PartValues {
     SampleCell cell;
     int halvings = 0;
-    double area = 0;
-    std::array<double, kPoints> visible;
-    std::array<double, kPoints> whole;
-    std::array<double, kPoints> weight;
-    bool one_shape = true;
-    bool overlap = false;  ///< of shadows on the target
-
-    double integral(const std::array<double, kPoints>& values) const;
-    double coarseIntegral(const std::array<double, kPoints>& values) const;
-    double error(double fraction, bool near) const;
   };
   void addPart(const CriticalLines::Part& part);
   void addTriangle(const Vec2& a, const Vec2& b, const Vec2& c);

@@ -5,36 +5,22 @@
 #include <numbers>
 #include <vector>
 
+#include "formfactor/exact/error_model.h"
 #include "formfactor/exact/occluded/adaptive_integrator.h"
 #include "formfactor/exact/occluded/critical_lines.h"
 #include "formfactor/exact/occluded/pair_sampling.h"
+#include "formfactor/foreseen_work.h"
 
 namespace radiosity {
 namespace {
 
-/// The first rule's points, and how many are added where it is expected to miss by just what is
-/// accepted. They go with the expected error: of the parts of an element those are cut again that a
-/// kink passes, twice as many each time, and what each adds to the error falls to a third. (Pairs
-/// of the closed Cornell box, two rooms, the cluttered and the curved scene at tolerances from 1e-1
-/// to 1e-4: from a tenth of what is accepted to 200 times that, counted points are within a factor
-/// of 1.5.)
+/// Points of the first rule.
 constexpr double kFirst = 4;
-constexpr double kMore = 5;
 
 /// Where double precision is asked for and bodies have few edges, elements are cut along critical
-/// lines instead, where it is worth that: into about five parts of 13 points, twice as dear.
-constexpr double kParts = 5;
-constexpr double kCutFrom = kParts * kPerPart;
-constexpr double kPartPoints = kParts * 13;
-constexpr double kDearer = 2;
-
-/// Seconds of one core of a 2.7 GHz Xeon that a point takes: for each occluder whose shadow falls
-/// on the target, mostly no more than some, however many may stand in between; and for each edge
-/// that has to be looked at. (230 ns in a cluttered scene of 20,000 patches, 1.7 us past the 300
-/// edges of round bodies; from 0.6 to 1.5 times this.)
-constexpr double kShadow = 1.2e-7;
-constexpr double kMostShadows = 4;
-constexpr double kEdge = 3.5e-9;
+/// lines instead, where it is worth that: into parts of 13 points.
+constexpr double kCutFrom = kPointsParts * kPartWorth;
+constexpr double kPartPoints = kPointsParts * 13;
 
 /// From middle to middle, held below what a target that fills the view takes.
 double guessedExchange(const ElementSet& elements, const OccludedPair& pair) {
@@ -58,13 +44,13 @@ double edgesOf(std::span<const Blocker> blockers) {
 
 OccludedCost& OccludedCost::operator+=(const OccludedCost& other) {
   points += other.points;
-  seconds += other.seconds;
+  work += other.work;
   refining += other.refining;
   return *this;
 }
 
 OccludedCost OccludedCost::operator*(double share) const {
-  return {share * points, share * seconds, share * refining};
+  return {share * points, share * work, share * refining};
 }
 
 OccludedCost occludedCost(const ElementSet& elements, const OccluderSet& occluders,
@@ -85,9 +71,11 @@ OccludedCost occludedCost(const ElementSet& elements, const OccluderSet& occlude
     const double edges = edgesOf(blockers);
     const bool cut = tolerance < kSinglePrecision && misses > kCutFrom &&
                      edges <= double(CriticalLines::kMostEdges);
-    const double more = cut ? kPartPoints : kMore * misses;
-    const double rate = kShadow * std::min(double(blockers.size()), kMostShadows) + kEdge * edges;
-    cost += {kFirst + more, rate * (kFirst + (cut ? kDearer : 1) * more), cut ? 0 : rate * more};
+    const double more = cut ? kPartPoints : kPointsMore * misses;
+    const double rate =
+        kClipWork * std::min(double(blockers.size()), kMostClips) + kEdgeWork * edges;
+    cost +=
+        {kFirst + more, rate * (kFirst + (cut ? kPartPointWork : 1) * more), cut ? 0 : rate * more};
   }
   return cost;
 }

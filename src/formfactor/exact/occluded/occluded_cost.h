@@ -11,14 +11,16 @@ namespace radiosity {
 
 struct OccludedCost {
   double points = 0;    ///< OccludedCounts::points
-  double seconds = 0;   ///< of one core, at the rates of a usual machine
-  double refining = 0;  ///< of the seconds, those that go with 1 / tolerance
+  double work = 0;      ///< see foreseen_work.h
+  double refining = 0;  ///< of the work, what goes with 1 / tolerance
   OccludedCost& operator+=(const OccludedCost& other);
   OccludedCost operator*(double share) const;
 };
 
 /// Of OccludedKernel with this tolerance, from how far shadows move across each pair: about. The
-/// pairs' unoccluded values are not looked at, but guessed.
+/// pairs' unoccluded values are not looked at, but guessed. (Pairs of the closed Cornell box, two
+/// rooms, the cluttered and the curved scene at tolerances from 1e-1 to 1e-4: from a tenth of what
+/// is accepted to 200 times that, counted points are within a factor of 1.5.)
 OccludedCost occludedCost(const ElementSet& elements, const OccluderSet& occluders,
                           std::span<const OccludedPair> pairs, std::span<const Index> occluder_list,
                           double tolerance);

@@ -4,36 +4,19 @@
 #include <cmath>
 #include <vector>
 
+#include "formfactor/exact/error_model.h"
 #include "formfactor/exact/occluded/adaptive_integrator.h"
 #include "formfactor/exact/occluded/segment_fraction.h"
 
 namespace radiosity {
 namespace {
 
-/// What a single entry may be off by, in tolerances. The tolerance is for the root mean square over
-/// a row's entries; few entries are partial, and of those few are near what they may be.
-constexpr double kOfOnePair = 12;
-
-/// What the kernels for far targets may add to the visible fraction's error at worst, in
-/// tolerances: at 1e-3 they begin 8 radii away. Of most targets it is a tenth of that and of either
-/// sign, and none of it is seen in the error of the matrix (from 4 radii on, it would add 4% to
-/// that of a cluttered scene).
-constexpr double kOfFarKernels = 2;
-
-/// Estimates are fitted to root mean squares over all pairs of a scene, and rows have luck of their
-/// own: their points and the shadows' edges that pass them are common to many of their pairs, the
-/// more so where a scene is symmetric and pairs are alike. Times this, and with what ErrorSums adds
-/// where few pairs carry a row, they are above the error of 99 of 100 rows. (At 2.55, fitted to the
-/// closed Cornell box of 985 patches: of 88% to 97% in a cube in a cube, and in the box of 120 and
-/// 400 patches.)
-constexpr double kSafety = 3.1;
-
 /// Of one pair from its two ends: the one that resolves it better. What they differ by is shared
 /// out by how badly each resolves it; a half is its error where they are alike.
 OccludedExchange betterResolved(const OccludedExchange& a, const OccludedExchange& b) {
   const double both = a.unresolved + b.unresolved;
   OccludedExchange better = a.unresolved <= b.unresolved ? a : b;
-  if (better.unresolved > kResolved) {
+  if (better.unresolved > kPairResolved) {
     const double share = std::isfinite(both) ? better.unresolved / both : 0.5;
     better.error = std::hypot(better.error, share * (a.exchange - b.exchange));
   }
@@ -44,7 +27,7 @@ OccludedExchange betterResolved(const OccludedExchange& a, const OccludedExchang
 
 double allowedError(const ElementSet& elements, const OccludedPair& pair, double tolerance) {
   const double area = std::min(elements.area[pair.row], elements.area[pair.column]);
-  return kOfOnePair * tolerance * area / (double(elements.patch_elements) * pair.unoccluded);
+  return kPairMost * tolerance * area / (double(elements.patch_elements) * pair.unoccluded);
 }
 
 OccludedCounts& OccludedCounts::operator+=(const OccludedCounts& other) {
@@ -63,7 +46,7 @@ OccludedKernel::OccludedKernel(const ElementSet& elements, const OccluderSet& oc
     : elements_(elements),
       occluders_(occluders),
       distances_(elements, occluders),
-      kernels_(simd ? simdClipKernels() : scalarClipKernels()),
+      kernels_(clipKernels(simd)),
       tolerance_(tolerance) {}
 
 template <class T>
@@ -75,8 +58,8 @@ void OccludedKernel::integrate(const ClipKernels<T>& kernels, double tolerance,
   std::fill(out.begin(), out.end(), OccludedExchange());
   PairPreparation ready(elements_, occluders_, distances_);
   ready.prepare(pairs, occluder_list, end);
-  AdaptiveIntegrator<T> groups(elements_, kernels,
-                               std::cbrt(kFarError / (kOfFarKernels * tolerance)), progress);
+  AdaptiveIntegrator<T> groups(elements_, kernels, std::cbrt(kFarError / (kFarMost * tolerance)),
+                               progress);
   std::vector<VisibleFraction> fractions;
   const auto clipFacet = [&](const SampledPair& p) {
     return p.sampled_cut ? elements_.facet[p.target] : kNone;
@@ -98,7 +81,7 @@ void OccludedKernel::integrate(const ClipKernels<T>& kernels, double tolerance,
       const VisibleFraction& found = fractions[k];
       const OccludedPair& pair = pairs[group[k].pair];
       OccludedExchange& exchange = out[group[k].pair];
-      exchange = {pair.unoccluded * found.fraction(), kSafety * pair.unoccluded * found.error(),
+      exchange = {pair.unoccluded * found.fraction(), kPairMargin * pair.unoccluded * found.error(),
                   std::abs(found.whole / pair.unoccluded - 1), found.cut_short};
       if (!std::isfinite(exchange.exchange) || !std::isfinite(exchange.error)) {
         exchange = exchangeBySegments(elements_, occluders_, pair, occluder_list);
@@ -164,7 +147,7 @@ void OccludedKernel::evaluateAgain(double tolerance, std::span<const OccludedPai
     for (std::size_t k = 0; k < which.size(); ++k) out[which[k]] = take(out[which[k]], found[k]);
     return which.size();
   };
-  const auto unresolved = [](const OccludedExchange& x) { return x.unresolved > kResolved; };
+  const auto unresolved = [](const OccludedExchange& x) { return x.unresolved > kPairResolved; };
   const auto doubtful = [&](const OccludedExchange& x) { return unresolved(x) || x.cut_short; };
   const auto replaced = [](const OccludedExchange&, const OccludedExchange& found) {
     return found;

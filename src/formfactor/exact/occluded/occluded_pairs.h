@@ -40,11 +40,6 @@ struct OccludedPair {
 /// size h at distance r to 1e-6 r/h, and meshes of 20,000 patches have r/h near 100.
 inline constexpr double kSinglePrecision = 2.5e-4;
 
-/// What points may miss of the unoccluded exchange, and be believed. (Of pairs that miss by less,
-/// 1% are off by more than they state; by more, 10% to 25% are, up to a hundred times. These are 1%
-/// of the pairs of ordinary scenes and 15% of a scan with slivers.)
-inline constexpr double kResolved = 0.01;
-
 /// Of the tolerance, what spot checks are made to; and what they are made to at most, so that they
 /// are in double precision.
 inline constexpr double kStricter = 1.0 / 8;
@@ -61,8 +56,8 @@ double allowedError(const ElementSet& elements, const OccludedPair& pair, double
 ///
 /// Unless it gets nearly all of it wrong: of a large element that a sliver touches, no point of a
 /// few lies where the exchange takes place. Pairs of which the points miss the unoccluded value by
-/// more than kResolved, and those that single precision would need many points for, are evaluated
-/// again in double precision, from both ends.
+/// more than kPairResolved, and those that single precision would need many points for, are
+/// evaluated again in double precision, from both ends.
 class OccludedKernel {
  public:
   /// `tolerance`: error aimed at for F, relative to the mean form factor 1/N: the root mean square
@@ -88,7 +83,7 @@ class OccludedKernel {
   void evaluateTo(double tolerance, std::span<const OccludedPair> pairs,
                   std::span<const Index> occluder_list, std::span<OccludedExchange> out,
                   OccludedCounts& counts, const Progress* progress) const;
-  /// See kResolved.
+  /// See kPairResolved.
   void evaluateAgain(double tolerance, std::span<const OccludedPair> pairs,
                      std::span<const Index> occluder_list, std::span<OccludedExchange> out,
                      OccludedCounts& counts, const Progress* progress) const;

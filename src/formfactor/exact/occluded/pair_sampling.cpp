@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "formfactor/exact/error_model.h"
 #include "formfactor/exact/occluded/occluded_pairs.h"
 
 namespace radiosity {
@@ -18,19 +19,8 @@ constexpr std::size_t kMostDistances = std::size_t(1) << 24;
 /// end is sampled must not depend on how distances, in single precision, are rounded.
 constexpr double kAlike = 1 + 1e-5;
 
-/// A body is thin whose thickness is less than so much of its radius. Of bodies with more faces
-/// than these it is not asked.
-constexpr double kThin = 0.1;
+/// Of bodies with more faces than these it is not asked whether they are thin.
 constexpr std::size_t kMostThinPlanes = 16;
-
-/// What a thin body seen edge-on from the middle of an element hides goes down to nearly nothing
-/// there and up again, and points on both sides of it may see the same: as if shadows moved so many
-/// times as far. (Blades 1 : 40 and 1 : 400 in a room, 1e-4: 82% of rows are below their figure
-/// without, 91% with a factor of 2 and 99% with 4; points 728, 662 and 664 thousand.)
-constexpr float kEdgeOn = 4;
-/// Past more than these one is as good as lost among the others, and mostly part of a surface that
-/// is not thin.
-constexpr std::uint32_t kFewBlockers = 2;
 
 struct Heights {
   double least = std::numeric_limits<double>::infinity();
@@ -64,7 +54,7 @@ double edgeDistance2(const Occluder& body, const Vec3& p) {
 Occluder::Plane middleOfThin(const Occluder& body) {
   Occluder::Plane best;
   if (body.planes.size() > kMostThinPlanes) return best;
-  double least = kThin * body.radius;
+  double least = kPairThin * body.radius;
   for (const Occluder::Plane& plane : body.planes) {
     double low = plane.offset;
     for (const Vec3& v : body.corners) low = std::min(low, glm::dot(plane.normal, v));
@@ -135,14 +125,15 @@ const PairPreparation::Between& PairPreparation::between(Index occluder, Index r
 
 /// Of similar triangles with their tips on the occluders' edges. Of an edge that touches the target
 /// no shadow moves, but others of the same occluder may be a target's size away.
-PairPreparation::Near PairPreparation::shadowChanges(double row_size, double column_size) const {
+PairPreparation::EdgeDistancesSquared PairPreparation::shadowChanges(double row_size,
+                                                                     double column_size) const {
   const double row_size2 = row_size * row_size;
   const double column_size2 = column_size * column_size;
   // Apart, or beside the target: squares, in sizes of the sampled element.
   const double by_row = row_size2 / column_size2;
   const double by_column = column_size2 / row_size2;
-  Near most{0, 0};
-  for (const Near& blocker : near_) {
+  EdgeDistancesSquared most{0, 0};
+  for (const EdgeDistancesSquared& blocker : near_) {
     most.row = std::max(most.row, std::max(blocker.column * by_row, row_size2) / blocker.row);
     most.column =
         std::max(most.column, std::max(blocker.row * by_column, column_size2) / blocker.column);
@@ -179,17 +170,17 @@ void PairPreparation::prepare(std::span<const OccludedPair> batch,
     pair.blockers_end = std::uint32_t(blockers.size());
     const double row_size = elements_.radius[given.row];
     const double column_size = elements_.radius[given.column];
-    const Near change2 = shadowChanges(row_size, column_size);
+    const EdgeDistancesSquared change2 = shadowChanges(row_size, column_size);
     const bool row_is_calmer = change2.row <= kAlike * change2.column;
     const bool at_row_end = row_is_calmer == (end == SampledEnd::calmer);
     pair.change = float(std::sqrt(at_row_end ? change2.row : change2.column));
     const double reach = at_row_end ? row_size : column_size;
     const Index sampled = at_row_end ? given.row : given.column;
-    const bool few = pair.blockers_end - pair.blockers_begin <= kFewBlockers;
+    const bool few = pair.blockers_end - pair.blockers_begin <= kPairFewBlockers;
     const bool edge_on =
         few && std::any_of(blockers.begin() + pair.blockers_begin, blockers.end(),
                            [&](const Blocker& b) { return distances_.seesEdgeOn(sampled, b.id); });
-    if (edge_on) pair.change *= kEdgeOn;
+    if (edge_on) pair.change *= kPairEdgeOn;
     pair.may_cross = (at_row_end ? at_row : at_column) <= reach * reach;
     pair.sampled = sampled;
     pair.target = at_row_end ? given.column : given.row;
@@ -212,9 +203,9 @@ void PairPreparation::prepare(std::span<const OccludedPair> batch,
     order_.back().key |= p.target;
   }
   std::sort(order_.begin(), order_.end(),
-            [](const Place& a, const Place& b) { return a.key < b.key; });
+            [](const SortedPair& a, const SortedPair& b) { return a.key < b.key; });
   sorted_.clear();
-  for (const Place& place : order_) sorted_.push_back(pairs[place.pair]);
+  for (const SortedPair& place : order_) sorted_.push_back(pairs[place.pair]);
   pairs.swap(sorted_);
 }
 

@@ -80,25 +80,25 @@ class PairPreparation {
     bool cuts_second = false;  ///< reaches behind the second facet's plane
   };
   /// Where a pair stands in the order of `pairs`.
-  struct Place {
+  struct SortedPair {
     std::uint64_t key;
     std::uint32_t pair;
   };
   /// Of both ends of a pair: squares of the distances to the nearest edge of one occluder.
-  struct Near {
+  struct EdgeDistancesSquared {
     double row, column;
   };
   const Between& between(Index occluder, Index row_facet, Index column_facet);
   /// Squares of SampledPair::change with the points on one end or the other.
-  Near shadowChanges(double row_size, double column_size) const;
+  EdgeDistancesSquared shadowChanges(double row_size, double column_size) const;
 
   const ElementSet& elements_;
   const OccluderSet& occluders_;
   const EdgeDistances& distances_;
-  std::vector<Place> order_;
+  std::vector<SortedPair> order_;
   std::vector<SampledPair> sorted_;
-  std::vector<Near> near_;        ///< of the current pair, by occluder
-  std::vector<Between> between_;  ///< by occluder, of the current two facets
+  std::vector<EdgeDistancesSquared> near_;  ///< of the current pair, by occluder
+  std::vector<Between> between_;            ///< by occluder, of the current two facets
   std::uint32_t stamp_ = 0;
   Index row_facet_ = kNone;
   Index column_facet_ = kNone;

@@ -22,7 +22,7 @@ void VisiblePieces::begin(std::span<const Vec2> polygon) {
 }
 
 /// Leaves the corners' heights in heights_.
-VisiblePieces::Place VisiblePieces::place(const Piece& piece, const ShadowSide& side,
+VisiblePieces::Side VisiblePieces::sideOf(const Piece& piece, const ShadowSide& side,
                                           double noise) {
   if (heights_.size() < piece.count) heights_.resize(2 * piece.count);
   const Vec2* const corner = &corners_[piece.first];
@@ -35,8 +35,8 @@ VisiblePieces::Place VisiblePieces::place(const Piece& piece, const ShadowSide& 
     least = std::min(least, height);
     most = std::max(most, height);
   }
-  if (most > noise && least < -noise) return Place::across;
-  return most + least < 0 ? Place::outside : Place::inside;
+  if (most > noise && least < -noise) return Side::across;
+  return most + least < 0 ? Side::outside : Side::inside;
 }
 
 /// False if the piece is outside the shadow; else cutting_ are the sides that cut it.
@@ -49,9 +49,9 @@ bool VisiblePieces::mayMeet(const Piece& piece, std::span<const ShadowSide> side
     if (side.a * u + side.b * v + side.c < 0) return false;
   }
   for (const ShadowSide& side : sides) {
-    const Place where = place(piece, side, noise);
-    if (where == Place::outside) return false;
-    if (where == Place::across) cutting_.push_back(&side);
+    const Side where = sideOf(piece, side, noise);
+    if (where == Side::outside) return false;
+    if (where == Side::across) cutting_.push_back(&side);
   }
   return true;
 }
@@ -79,9 +79,9 @@ VisiblePieces::Piece VisiblePieces::part(const Piece& piece, bool inside) {
 bool VisiblePieces::cutOut(Piece piece, double noise) {
   const std::size_t before = cut_off_.size();
   for (const ShadowSide* side : cutting_) {
-    const Place where = place(piece, *side, noise);
-    if (where == Place::inside) continue;
-    if (where == Place::outside) {
+    const Side where = sideOf(piece, *side, noise);
+    if (where == Side::inside) continue;
+    if (where == Side::outside) {
       cut_off_.resize(before);
       return false;
     }

@@ -46,9 +46,9 @@ class VisiblePieces {
     std::uint32_t count = 0;
     Vec2 low{0.0}, high{0.0};  ///< a box around it
   };
-  enum class Place : std::uint8_t { inside, outside, across };
+  enum class Side : std::uint8_t { inside, outside, across };
 
-  Place place(const Piece& piece, const ShadowSide& side, double noise);
+  Side sideOf(const Piece& piece, const ShadowSide& side, double noise);
   bool mayMeet(const Piece& piece, std::span<const ShadowSide> sides, double noise);
   bool cutOut(Piece piece, double noise);
   Piece part(const Piece& piece, bool inside);

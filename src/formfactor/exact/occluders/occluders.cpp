@@ -23,11 +23,12 @@ std::vector<std::vector<Index>> facetsOfPolygons(const ElementSet& elements, std
   return facets;
 }
 
-/// Puts a facet that lies on a face of a solid into its list; it is sealed if it looks inside.
+/// Puts a facet that lies on a face of a solid into its list; it is hidden if it looks inside.
 void attach(Occluder& solid, Index face, Index facet, const ElementSet& elements,
-            std::vector<std::uint8_t>& sealed) {
+            std::vector<std::uint8_t>& hidden_facets) {
   solid.facets.push_back(facet);
-  if (glm::dot(elements.facets[facet].normal, solid.planes[face].normal) < 0) sealed[facet] = 1;
+  if (glm::dot(elements.facets[facet].normal, solid.planes[face].normal) < 0)
+    hidden_facets[facet] = 1;
 }
 
 /// Which solids may be where a polygon is.
@@ -46,14 +47,14 @@ OccluderSet::OccluderSet(const PatchMesh& mesh, const ElementSet& elements) {
 }
 
 OccluderSet::OccluderSet(const PatchMesh& mesh, const ElementSet& elements, Progress& progress)
-    : sealed(elements.facets.size(), 0) {
+    : hidden_facets(elements.facets.size(), 0) {
   OccluderPolygons all(mesh, elements);
   const auto facets = facetsOfPolygons(elements, mesh.polygons.size());
   std::vector<std::uint8_t> taken(all.polygons.size(), 0);
   for (ConvexSolid& solid : convexSolids(all, taken, progress)) {
     for (const ConvexSolid::OnFace& on : solid.on_faces) {
       const Index source = all.polygons[on.polygon].source;
-      for (const Index f : facets[source]) attach(solid.body, on.face, f, elements, sealed);
+      for (const Index f : facets[source]) attach(solid.body, on.face, f, elements, hidden_facets);
     }
     occluders.push_back(std::move(solid.body));
   }
@@ -70,7 +71,7 @@ OccluderSet::OccluderSet(const PatchMesh& mesh, const ElementSet& elements, Prog
   }
   for (Index f = 0; f < elements.facets.size(); ++f) {
     const Facet& facet = elements.facets[f];
-    if (all.allBehind(facet.normal, facet.offset, elements.coincidence)) sealed[f] = 1;
+    if (all.allBehind(facet.normal, facet.offset, elements.coincidence)) hidden_facets[f] = 1;
   }
   for (const FlatPiece& piece : flatPieces(all, taken, progress)) {
     Occluder occluder;

@@ -47,7 +47,7 @@ struct OccluderSet {
   std::size_t skipped_hull = 0;  ///< polygons that cannot block: all of the scene is on one side
   /// Per facet: 1 if it sees nothing of the scene. It looks into a solid, or the whole scene is
   /// behind its plane.
-  std::vector<std::uint8_t> sealed;
+  std::vector<std::uint8_t> hidden_facets;
 };
 
 }  // namespace radiosity

@@ -58,7 +58,7 @@ OccluderPolygons::OccluderPolygons(const PatchMesh& mesh, const ElementSet& elem
   tree = BoxTree(std::move(boxes));
   std::vector<std::uint8_t> back_is_patch(source.size(), 0);
   for (const Facet& facet : elements.facets) {
-    if (facet.back && !facet.bare) back_is_patch[facet.polygon] = 1;
+    if (facet.back && !facet.black) back_is_patch[facet.polygon] = 1;
   }
   for (OccluderPolygon& polygon : polygons) polygon.one_sided = !back_is_patch[polygon.source];
 }

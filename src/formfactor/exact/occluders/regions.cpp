@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "base/geometry/solid_angle.h"
 #include "formfactor/exact/occluders/triangles.h"
 #include "mesh/plane_frame.h"
 #include "mesh/union_find.h"
@@ -29,21 +30,14 @@ std::optional<Vec3> innerPoint(const OccluderPolygons& all, const OccluderPolygo
   return point;
 }
 
-/// Signed solid angle of a polygon seen from a point off its plane (van Oosterom & Strackee 1983,
-/// over a fan: parts outside the polygon cancel).
+/// Signed solid angle of a polygon seen from a point off its plane, over a fan: parts outside the
+/// polygon cancel.
 double solidAngle(const OccluderPolygons& all, const OccluderPolygon& polygon, const Vec3& eye) {
   double angle = 0;
   for (const std::vector<Index>& loop : polygon.loops) {
     const Vec3 a = all.vertices[loop[0]] - eye;
-    const double la = glm::length(a);
     for (std::size_t k = 1; k + 1 < loop.size(); ++k) {
-      const Vec3 b = all.vertices[loop[k]] - eye;
-      const Vec3 c = all.vertices[loop[k + 1]] - eye;
-      const double lb = glm::length(b);
-      const double lc = glm::length(c);
-      angle += 2 * std::atan2(glm::dot(a, glm::cross(b, c)), la * lb * lc + glm::dot(a, b) * lc +
-                                                                 glm::dot(b, c) * la +
-                                                                 glm::dot(c, a) * lb);
+      angle += signedSolidAngle(a, all.vertices[loop[k]] - eye, all.vertices[loop[k + 1]] - eye);
     }
   }
   return angle;

@@ -265,7 +265,7 @@ class SolidSearch {
     std::optional<Occluder> hull = growth_.hullOf(set);
     // Polygons back to back make no solid: they are one flat occluder.
     if (!hull || hull->planes.size() < 4 || !isEmpty(all_, *hull, set.polygons()) ||
-        !isSealed(*hull, set, opaque)) {
+        !letsNothingIn(*hull, set, opaque)) {
       return {};
     }
     ConvexSolid solid{std::move(*hull), {}};
@@ -300,7 +300,7 @@ class SolidSearch {
   double score(const ConvexSolid& solid) const { return areaOnFaces(solid) * volumeOf(solid.body); }
 
   /// True if nothing gets in or out where the set does not cover the hull.
-  bool isSealed(const Occluder& hull, const ConvexSet& set, bool opaque) const {
+  bool letsNothingIn(const Occluder& hull, const ConvexSet& set, bool opaque) const {
     const std::vector<double> missing = missingAreas(hull, set);
     std::vector<Index> gaps;
     for (Index k = 0; k < hull.planes.size() && gaps.size() < 2; ++k) {

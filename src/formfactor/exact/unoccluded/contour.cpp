@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "formfactor/exact/error_model.h"
 #include "formfactor/exact/unoccluded/quadrature.h"
 
 namespace radiosity {
@@ -96,9 +97,9 @@ double gaussNodes(double length, double distance, double digits) {
 /// singular ends.
 std::span<const Node> chooseRule(double nodes, double digits) {
   if (nodes <= kMostGaussNodes) return gaussLegendre(int(nodes));
-  // About e^(-4 / step) for a logarithm at the end, measured.
+  // About e^(-kTanhSinhDigits / step) for a logarithm at the end.
   int level = 1;
-  while (level < kFinestTanhSinh && 4.0 * std::ldexp(1.0, level) < digits) ++level;
+  while (level < kFinestTanhSinh && kTanhSinhDigits * std::ldexp(1.0, level) < digits) ++level;
   return tanhSinh(level);
 }
 

@@ -22,29 +22,19 @@
 // triangle. The series serves where its error, kSeriesError R^2 and kSkewError skew R^(3/2), is
 // below the tolerance (relative); else the first rule (far_rules.h) with kRuleError R^order below
 // it, or for triangles kSkewRuleError R^(order - 1/2), and between the two for little skew; else
-// nothing: the pair is near. The constants bound what was found on pairs of all shapes and
-// placements; exact_far_kernels_test holds every instruction set to the tolerance.
+// nothing: the pair is near. The constants (error_model.h) bound what was found on pairs of all
+// shapes and placements; exact_far_kernels_test holds every instruction set to the tolerance.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <string>
 
 #include "formfactor/exact/unoccluded/far_columns.h"
 #include "formfactor/exact/unoccluded/far_rules.h"
 
 namespace radiosity {
-
-inline constexpr double kSeriesError = 1.7;
-inline constexpr double kSkewError = 6;
-/// An element counts as a triangle from a skew of 1 / kSkewFactor on.
-inline constexpr double kSkewFactor = 2.5;
-/// A rule in which densities that are not constant count as degrees: for parallelograms only.
-inline constexpr double kNever = std::numeric_limits<double>::infinity();
-inline constexpr std::array<double, kFarRules> kRuleError = {0.8, 0.22, 0.15, 0.02, 0.0025};
-inline constexpr std::array<double, kFarRules> kSkewRuleError = {6, kNever, 3, 0.4, 0.06};
 
 /// Up to which R each rule is good: plain + skew * skew_part.
 template <class T>
@@ -114,13 +104,12 @@ using FarFunction = std::size_t (*)(FarRow<T>& row, const FarBatch<T>& batch,
 /// Writes G of the row with each column, or kNearPair; returns how many are near. All elements in
 /// front of each other's planes.
 struct FarKernels {
-  std::string target;  ///< instruction set, or "scalar"
+  std::string target;  ///< instruction set, by Highway's name
   FarFunction<float> single_precision;
   FarFunction<double> double_precision;
 };
 
-FarKernels scalarFarKernels();
-/// The best instruction set of this machine; the same bits.
-FarKernels simdFarKernels();
+/// The best instruction set of this machine; `simd` false: Highway's scalar target, the same bits.
+FarKernels farKernels(bool simd);
 
 }  // namespace radiosity

@@ -3,6 +3,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "formfactor/exact/error_model.h"
 #include "formfactor/exact/unoccluded/far_kernels.h"
 
 namespace radiosity {
@@ -18,6 +19,8 @@ FarBounds FarLimits::of(const FlatShape& shape) const {
   }
   return bounds;
 }
+
+static_assert(kRuleError.size() == kFarRules && kSkewRuleError.size() == kFarRules);
 
 /// Skew above its inverse rules such a rule out.
 constexpr double kRulesOutSkew = 64;

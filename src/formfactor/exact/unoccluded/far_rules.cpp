@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "formfactor/exact/error_model.h"
 #include "formfactor/exact/unoccluded/quadrature.h"
 
 namespace radiosity {
@@ -33,7 +34,7 @@ FarRule stroudDegreeFive() {
   const double r = std::sqrt(0.6);
   FarRule rule;
   rule.count = 9;
-  rule.order = 2.75;  // as measured where elements touch the other's plane
+  rule.order = kStroudOrder;
   rule.weight_sets = 3;
   rule.points[0] = {0, 0, 1, 9, 0};
   const std::array<std::array<double, 2>, 4> axes = {{{r, 0}, {-r, 0}, {0, r}, {0, -r}}};

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "formfactor/exact/error_model.h"
 #include "formfactor/exact/unoccluded/contour.h"
 #include "formfactor/exact/unoccluded/quadrature.h"
 #include "mesh/plane_frame.h"
@@ -35,7 +36,6 @@ constexpr double kContourRounding = 1e-16;
 /// kLambertError ratio^(2n - 1), ratio = radius / distance (a triangle's Jacobian takes one
 /// degree).
 int pointsFor(double ratio, double tolerance) {
-  constexpr double kLambertError = 10;
   if (!(ratio < 1)) return kMostLambert + 1;
   const double needed = 0.5 * (std::log(tolerance / kLambertError) / std::log(ratio) + 1);
   return std::max(kLeastPoints, int(std::ceil(std::min(needed, kMostLambert + 1.0))));

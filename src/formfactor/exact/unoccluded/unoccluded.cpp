@@ -45,7 +45,7 @@ FacetFrame frameOf(const ElementSet& elements, const Facet& facet) {
 }
 
 /// A part of an element: a triangle or convex quadrilateral.
-struct Part {
+struct ElementPart {
   std::array<Vec3, 4> corners{};
   std::size_t count = 0;
   FlatShape shape;
@@ -56,9 +56,9 @@ struct Part {
   std::span<const Vec3> outline() const { return {corners.data(), count}; }
 };
 
-Part makePart(Index element, std::span<const Vec3> corners, const FacetFrame& frame,
-              const FarLimits& limits) {
-  Part part;
+ElementPart makePart(Index element, std::span<const Vec3> corners, const FacetFrame& frame,
+                     const FarLimits& limits) {
+  ElementPart part;
   part.element = element;
   part.count = corners.size();
   std::copy(corners.begin(), corners.end(), part.corners.begin());
@@ -72,10 +72,11 @@ Part makePart(Index element, std::span<const Vec3> corners, const FacetFrame& fr
 
 /// The part of an element in front of a plane, as one or two parts; what has no area is left out.
 void appendFront(const ElementSet& elements, Index element, const FacetFrame& frame,
-                 const FacetFrame& plane, const FarLimits& limits, std::vector<Part>& parts) {
+                 const FacetFrame& plane, const FarLimits& limits,
+                 std::vector<ElementPart>& parts) {
   const FlatPolygon front = clipToFront(elements.outline(element), plane.normal, plane.offset);
   const auto append = [&](std::span<const Vec3> corners) {
-    Part part = makePart(element, corners, frame, limits);
+    ElementPart part = makePart(element, corners, frame, limits);
     if (part.shape.area > 0) parts.push_back(part);
   };
   if (front.count < 3) return;
@@ -127,13 +128,13 @@ class UnoccludedKernel::Typed : public UnoccludedKernel::Implementation {
     if (rows.size() == 0 || columns.size() == 0) return;
     // Blocks may be as small as one pair: what they need is kept from one to the next.
     static thread_local Tile tile;
-    const Work work{frames_[elements_.facet[rows.first]],
-                    frames_[elements_.facet[columns.first]],
-                    rows,
-                    columns,
-                    out,
-                    stride,
-                    counts};
+    const RangePair work{frames_[elements_.facet[rows.first]],
+                         frames_[elements_.facet[columns.first]],
+                         rows,
+                         columns,
+                         out,
+                         stride,
+                         counts};
     for (Index r = 0; r < rows.size(); ++r) {
       std::fill_n(out + r * stride, columns.size(), 0.0);
     }
@@ -145,7 +146,7 @@ class UnoccludedKernel::Typed : public UnoccludedKernel::Implementation {
   }
 
  private:
-  struct Work {
+  struct RangePair {
     const FacetFrame& row_plane;
     const FacetFrame& column_plane;
     ElementRange rows, columns;
@@ -159,14 +160,14 @@ class UnoccludedKernel::Typed : public UnoccludedKernel::Implementation {
     ElementRange elements;
     std::vector<ElementRange> runs;  ///< wholly in front
     std::vector<T> heights;          ///< of `elements`
-    std::vector<Part> parts;         ///< of those that cross the plane
+    std::vector<ElementPart> parts;  ///< of those that cross the plane
     FarColumns<T> part_columns{0};
     std::vector<T> part_heights;
-    std::vector<Part> row_parts;
+    std::vector<ElementPart> row_parts;
     std::vector<T> values;
   };
 
-  void prepare(ElementRange range, const Work& work, Tile& tile) const {
+  void prepare(ElementRange range, const RangePair& work, Tile& tile) const {
     tile.elements = range;
     tile.runs.clear();
     tile.parts.clear();
@@ -194,21 +195,21 @@ class UnoccludedKernel::Typed : public UnoccludedKernel::Implementation {
     }
   }
 
-  void row(Index r, const Work& work, Tile& tile) const {
+  void row(Index r, const RangePair& work, Tile& tile) const {
     const Side side = sideOf(elements_, r, work.column_plane);
     if (side == Side::behind) return;
     if (side == Side::front) {
-      const Part whole{elements_.corners[r], elements_.corner_count[r], shapes_[r],
-                       bounds_[r],           elements_.radius[r],       r};
+      const ElementPart whole{elements_.corners[r], elements_.corner_count[r], shapes_[r],
+                              bounds_[r],           elements_.radius[r],       r};
       rowPart(whole, false, work, tile);
       return;
     }
     tile.row_parts.clear();
     appendFront(elements_, r, work.row_plane, work.column_plane, limits_, tile.row_parts);
-    for (const Part& part : tile.row_parts) rowPart(part, true, work, tile);
+    for (const ElementPart& part : tile.row_parts) rowPart(part, true, work, tile);
   }
 
-  void rowPart(const Part& part, bool cut, const Work& work, Tile& tile) const {
+  void rowPart(const ElementPart& part, bool cut, const RangePair& work, Tile& tile) const {
     FarRow<T> far(part.shape, work.row_plane, work.column_plane, part.bounds);
     double* out = work.out + (part.element - work.rows.first) * work.stride;
     for (const ElementRange& run : tile.runs) {
@@ -233,7 +234,7 @@ class UnoccludedKernel::Typed : public UnoccludedKernel::Implementation {
     if (!tile.parts.empty()) cutColumns(part, far, out, work, tile);
   }
 
-  void cutColumns(const Part& part, FarRow<T>& far, double* out, const Work& work,
+  void cutColumns(const ElementPart& part, FarRow<T>& far, double* out, const RangePair& work,
                   Tile& tile) const {
     const std::size_t count = tile.parts.size();
     const std::size_t near =
@@ -242,7 +243,7 @@ class UnoccludedKernel::Typed : public UnoccludedKernel::Implementation {
     work.counts.product += count - near;
     work.counts.clipped += count;
     for (std::size_t k = 0; k < count; ++k) {
-      const Part& column = tile.parts[k];
+      const ElementPart& column = tile.parts[k];
       const PlanarElement piece{column.outline(), work.column_plane.normal, column.shape.centroid,
                                 column.radius};
       out[column.element - work.columns.first] +=
@@ -250,7 +251,8 @@ class UnoccludedKernel::Typed : public UnoccludedKernel::Implementation {
     }
   }
 
-  double nearPair(const Part& row, const PlanarElement& column, const Work& work) const {
+  double nearPair(const ElementPart& row, const PlanarElement& column,
+                  const RangePair& work) const {
     const NearValue value =
         nearExchange({row.outline(), work.row_plane.normal, row.shape.centroid, row.radius}, column,
                      tolerance_, lambert_);
@@ -271,8 +273,8 @@ class UnoccludedKernel::Typed : public UnoccludedKernel::Implementation {
 };
 
 UnoccludedKernel::UnoccludedKernel(const ElementSet& elements, double tolerance, bool simd) {
-  const FarKernels kernels = simd ? simdFarKernels() : scalarFarKernels();
-  const ClipKernels<double> lambert = (simd ? simdClipKernels() : scalarClipKernels()).exact;
+  const FarKernels kernels = farKernels(simd);
+  const ClipKernels<double> lambert = clipKernels(simd).exact;
   if (tolerance < kFinestInSinglePrecision) {
     implementation_ =
         std::make_unique<Typed<double>>(elements, tolerance, kernels.double_precision, lambert);

@@ -36,7 +36,7 @@ struct UnoccludedCounts {
 class UnoccludedKernel {
  public:
   /// Keeps `elements` by reference. `tolerance`: relative, of every single value; 1e-12 to 1e-2;
-  /// below 3e-6 in double precision throughout. `simd` false: the scalar twin, the same bits.
+  /// below 3e-6 in double precision throughout. `simd` false: the scalar target, the same bits.
   UnoccludedKernel(const ElementSet& elements, double tolerance, bool simd);
   ~UnoccludedKernel();
 

@@ -155,10 +155,10 @@ void VisibilityDescent::settle(Index row, std::size_t depth, Item item) {
   const bool row_is_leaf = rows.child_count == 0;
   const bool column_is_leaf = columns.child_count == 0;
   if (row_is_leaf && column_is_leaf) {
-    ++counts_.partial;
-    sink_.partial(rows.elements.first, columns.elements.first,
-                  {candidates_.data() + item.first_candidate,
-                   std::size_t(item.end_candidate - item.first_candidate)});
+    ++counts_.occluded;
+    sink_.occluded(rows.elements.first, columns.elements.first,
+                   {candidates_.data() + item.first_candidate,
+                    std::size_t(item.end_candidate - item.first_candidate)});
     return;
   }
   if (!column_is_leaf && (row_is_leaf || columns.radius > rows.radius)) {

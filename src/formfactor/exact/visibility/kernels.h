@@ -1,6 +1,6 @@
-// The inner loops of visibility, behind plain pointers: one set per instruction set and a scalar
-// twin. Every set gives the same bits: the kernels only add, multiply and compare, and nothing is
-// contracted to a fused multiply-add.
+// The inner loops of visibility, behind plain pointers: one set per instruction set, Highway's
+// scalar target among them. Every set gives the same bits: the kernels only add, multiply and
+// compare, and nothing is contracted to a fused multiply-add.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@ struct ShadowPlane {
 inline constexpr std::size_t kPlaneBits = 64;
 
 struct VisibilityKernels {
-  std::string target;  ///< instruction set, or "scalar"
+  std::string target;  ///< instruction set, by Highway's name
   /// The first of the planes whose bits are set that all corners are `least` or more above;
   /// kPlaneBits if there is none. `below` gets the bits of those looked at that no corner reaches.
   std::size_t (*findAbove)(const ShadowPlane* planes, std::uint64_t bits, const ShapeCorners& shape,
@@ -37,9 +37,7 @@ struct VisibilityKernels {
                              const ShapeCorners& shape, double most);
 };
 
-/// The twin in plain C++, against which every other set is tested.
-VisibilityKernels scalarVisibilityKernels();
-/// The best instruction set of this machine.
-VisibilityKernels simdVisibilityKernels();
+/// The best instruction set of this machine; `simd` false: Highway's scalar target, the same bits.
+VisibilityKernels visibilityKernels(bool simd);
 
 }  // namespace radiosity

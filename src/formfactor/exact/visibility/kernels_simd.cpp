@@ -66,7 +66,9 @@ namespace radiosity {
 
 HWY_EXPORT(kernels);
 
-VisibilityKernels simdVisibilityKernels() { return HWY_DYNAMIC_DISPATCH(kernels)(); }
+VisibilityKernels visibilityKernels(bool simd) {
+  return (simd ? HWY_DYNAMIC_DISPATCH(kernels) : HWY_CHOOSE_FALLBACK(kernels))();
+}
 
 }  // namespace radiosity
 #endif

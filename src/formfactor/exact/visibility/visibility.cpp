@@ -37,7 +37,7 @@ VisibilityCounts& VisibilityCounts::operator+=(const VisibilityCounts& other) {
   no_exchange += other.no_exchange;
   unoccluded += other.unoccluded;
   hidden += other.hidden;
-  partial += other.partial;
+  occluded += other.occluded;
   facet_pairs += other.facet_pairs;
   facet_pairs_no_exchange += other.facet_pairs_no_exchange;
   facet_pairs_unoccluded += other.facet_pairs_unoccluded;
@@ -49,14 +49,14 @@ Visibility::Visibility(const ElementSet& elements, const OccluderSet& occluders,
     : elements_(elements),
       occluders_(occluders),
       tree_(occluders.occluders),
-      kernels_(simd ? simdVisibilityKernels() : scalarVisibilityKernels()),
+      kernels_(visibilityKernels(simd)),
       own_(elements.facets.size()) {
   for (const Cluster& cluster : elements.clusters) {
     const bool leaf = cluster.child_count == 0;
     shapes_.push_back(shapeOf(leaf ? elements.corners[cluster.elements.first] : cluster.bounds));
   }
   for (Index f = 0; f < elements.facets.size(); ++f) {
-    if (!occluders.sealed[f]) open_facets_.push_back(f);
+    if (!occluders.hidden_facets[f]) open_facets_.push_back(f);
   }
   for (Index o = 0; o < occluders.occluders.size(); ++o) {
     for (const Index f : occluders.occluders[o].facets) own_[f].push_back(o);
@@ -78,7 +78,7 @@ void Visibility::classify(ElementRange rows, VisibilitySink& sink, VisibilityCou
   for (Index r = rows.first; r < rows.end; ++r) counts.no_exchange += own.end - 1 - r;
   const std::size_t columns = elements_.size() - own.end;
   const std::size_t facets = elements_.facets.size() - 1 - facet;
-  if (occluders_.sealed[facet]) {
+  if (occluders_.hidden_facets[facet]) {
     counts.no_exchange += rows.size() * columns;
     counts.facet_pairs += facets;
     counts.facet_pairs_no_exchange += facets;
@@ -106,7 +106,7 @@ VisibilityOfFacets Visibility::classifySome(ElementRange rows, const VisibilityS
 
 Visibility::Open Visibility::openAfter(ElementRange rows, FacetSize size) const {
   const Index facet = elements_.facet[rows.first];
-  if (occluders_.sealed[facet]) return {};
+  if (occluders_.hidden_facets[facet]) return {};
   const auto next = std::upper_bound(open_facets_.begin(), open_facets_.end(), facet);
   const auto k = std::size_t(next - open_facets_.begin());
   const Open& any = open_after_[k];

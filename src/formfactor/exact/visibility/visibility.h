@@ -17,13 +17,13 @@ struct VisibilityCounts {
   std::size_t no_exchange = 0;  ///< coplanar, back to back, below each other's horizon
   std::size_t unoccluded = 0;
   std::size_t hidden = 0;
-  std::size_t partial = 0;
+  std::size_t occluded = 0;
   std::size_t facet_pairs = 0;              ///< looked at: ranges of rows and facets after theirs
   std::size_t facet_pairs_no_exchange = 0;  ///< settled by their planes alone
   std::size_t facet_pairs_unoccluded = 0;   ///< settled whole: no visibility code ran below them
   std::size_t shaft_tests = 0;              ///< of an occluder against the space between two shapes
   /// Pairs of elements that were settled, one way or another.
-  std::size_t settled() const { return no_exchange + unoccluded + hidden + partial; }
+  std::size_t settled() const { return no_exchange + unoccluded + hidden + occluded; }
   VisibilityCounts& operator+=(const VisibilityCounts& other);
 };
 
@@ -58,29 +58,31 @@ class VisibilitySink {
   /// another's horizon, or cross its plane.
   virtual void unoccluded(ElementRange rows, ElementRange columns) = 0;
   /// At least these may stand between; ids ascending, into OccluderSet::occluders, one or more.
-  virtual void partial(Index row, Index column, std::span<const Index> occluders) = 0;
+  virtual void occluded(Index row, Index column, std::span<const Index> occluders) = 0;
 };
 
 /// Classifies pairs of elements by descending two quadtrees at once, the list of what may stand
 /// between two clusters handed down and thinned out on the way. What a whole pair of clusters
 /// shares is settled there: nothing in between, or one convex body that hides all. Every answer
-/// but `partial` is proved; touching within the coincidence blocks nothing.
+/// but `occluded` is proved; touching within the coincidence blocks nothing.
 class Visibility {
  public:
-  /// Both are kept by reference. `simd` false: scalar twin, the same answers.
+  /// Both are kept by reference. `simd` false: the scalar target, the same answers.
   Visibility(const ElementSet& elements, const OccluderSet& occluders, bool simd = true);
 
-  /// Classifies elements `rows` (of one facet that is not bare; best a cluster's range) against
+  /// Classifies elements `rows` (of one facet that is not black; best a cluster's range) against
   /// the elements of their own facet that come after each (no exchange), and against all elements
   /// of the facets that come after it. Pairs without exchange and hidden ones are not reported, but
   /// counted. Thread-safe.
   void classify(ElementRange rows, VisibilitySink& sink, VisibilityCounts& counts) const;
 
-  /// Classifies the same rows against some of the facets after theirs that are not sealed, to find
-  /// out what that takes; counts only pairs that it settles. Nothing of rows that are sealed.
+  /// Classifies the same rows against some of the facets after theirs that are not hidden, to find
+  /// out what that takes; counts only pairs that it settles. Nothing of rows that are
+  /// hidden_facets.
   VisibilityOfFacets classifySome(ElementRange rows, const VisibilitySample& sample,
                                   VisibilitySink& sink, VisibilityCounts& counts) const;
-  /// How many facets after that of `rows` classifySome() chooses from; 0 where the rows are sealed.
+  /// How many facets after that of `rows` classifySome() chooses from; 0 where the rows are
+  /// hidden_facets.
   std::size_t openFacetsAfter(ElementRange rows, FacetSize size = FacetSize::any) const;
   /// Pairs of `rows` with the elements of these.
   std::size_t openPairs(ElementRange rows, FacetSize size = FacetSize::any) const;
@@ -93,7 +95,7 @@ class Visibility {
   OccluderTree tree_;
   VisibilityKernels kernels_;
   std::vector<ShapeCorners> shapes_;  ///< of clusters: bounds, or a leaf's element itself
-  std::vector<Index> open_facets_;    ///< not sealed, ascending
+  std::vector<Index> open_facets_;    ///< not hidden, ascending
   struct Open {
     std::size_t facets = 0;
     std::size_t elements = 0;

@@ -1,0 +1,28 @@
+// What is computed from whole matrices: norms, reciprocity, sizes.
+#pragma once
+
+#include <cstddef>
+
+#include "radiosity/exchange_matrix.h"
+
+namespace [[gnu::visibility("default")]] radiosity {
+
+/// sum_ij A_i F_ij^2, m^2: what errors in the area-weighted L2 norm are relative to.
+double weightedSquares(const ExchangeMatrix& matrix);
+
+/// sqrt(sum_ij (G_ij - G_ji)^2 / sum_ij G_ij^2): how far the two estimates of each pair differ.
+/// It detects errors, it does not bound them. 0 for an empty matrix.
+double reciprocityResidual(const ExchangeMatrix& matrix);
+
+/// Merges the two estimates of every pair, G_ij = w_i A_i F_ij + w_j A_j F_ji with
+/// w_i = A_j^2 / (A_i^2 + A_j^2) (the bias of the estimate made at i goes as A_i / d^2). The result
+/// has the symmetric form, patches in their own order, and row sums that are no longer what they
+/// were: closeRows() (closure.h) before solving in a closed scene.
+ExchangeMatrix symmetrized(const ExchangeMatrix& matrix);
+
+/// Bytes that N rows with `entries_per_row` entries take in row form.
+std::size_t estimateRowFormBytes(std::size_t n, double entries_per_row, Precision precision);
+/// The most that a symmetric matrix with that many entries a row takes, however they lie.
+std::size_t estimateSymmetricBytes(std::size_t n, double entries_per_row, Precision precision);
+
+}  // namespace radiosity

@@ -1,0 +1,78 @@
+// The words for values of enums: one table an enum, for the command line, the keys of stages,
+// results files, reports and bindings.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "radiosity/exchange_matrix.h"
+#include "radiosity/form_factors.h"
+#include "radiosity/gather.h"
+#include "radiosity/scene.h"
+#include "radiosity/solve.h"
+
+namespace [[gnu::visibility("default")]] radiosity {
+
+/// Every value of an enum with its word.
+template <class Enum, std::size_t N>
+using NameTable = std::array<std::pair<Enum, std::string_view>, N>;
+
+inline constexpr NameTable<Severity, 3> kSeverityNames{
+    {{Severity::info, "info"}, {Severity::warning, "warning"}, {Severity::loud, "loud"}}};
+inline constexpr NameTable<FormFactorMethod, 3> kMethodNames{
+    {{FormFactorMethod::automatic, "auto"},
+     {FormFactorMethod::exact, "exact"},
+     {FormFactorMethod::hemicube, "hemicube"}}};
+inline constexpr NameTable<ClosureMode, 3> kClosureNames{{{ClosureMode::off, "off"},
+                                                          {ClosureMode::report, "report"},
+                                                          {ClosureMode::enforce, "enforce"}}};
+inline constexpr NameTable<Precision, 2> kPrecisionNames{
+    {{Precision::single_precision, "single"}, {Precision::double_precision, "double"}}};
+inline constexpr NameTable<Solver, 2> kSolverNames{
+    {{Solver::gauss_seidel, "gauss-seidel"}, {Solver::jacobi, "jacobi"}}};
+inline constexpr NameTable<SolveStatus, 4> kSolveStatusNames{
+    {{SolveStatus::converged, "converged"},
+     {SolveStatus::no_convergence, "no_convergence"},
+     {SolveStatus::no_light, "no_light"},
+     {SolveStatus::singular, "singular"}}};
+inline constexpr NameTable<GatherAt, 2> kGatherAtNames{
+    {{GatherAt::vertices, "vertices"}, {GatherAt::patches, "patches"}}};
+
+inline constexpr NameTable<GatherStatus, 3> kGatherStatusNames{
+    {{GatherStatus::converged, "converged"},
+     {GatherStatus::pass_limit, "pass_limit"},
+     {GatherStatus::no_light, "no_light"}}};
+
+/// The word for a value. Throws logic_error where the table lacks it.
+template <class Enum, std::size_t N>
+std::string nameOf(const NameTable<Enum, N>& table, Enum value) {
+  for (const auto& [known, name] : table) {
+    if (known == value) return std::string(name);
+  }
+  throw std::logic_error("a value has no name");
+}
+
+/// The value that a word stands for; nothing where the word is none of the table's.
+template <class Enum, std::size_t N>
+std::optional<Enum> named(const NameTable<Enum, N>& table, std::string_view word) {
+  for (const auto& [value, name] : table) {
+    if (name == word) return value;
+  }
+  return std::nullopt;
+}
+
+/// All words, in the table's order.
+template <class Enum, std::size_t N>
+std::vector<std::string> namesIn(const NameTable<Enum, N>& table) {
+  std::vector<std::string> names;
+  names.reserve(N);
+  for (const auto& entry : table) names.emplace_back(entry.second);
+  return names;
+}
+
+}  // namespace radiosity

@@ -1,0 +1,225 @@
+// From a scene to patches, form factors and light in one object: each stage is made when it is
+// asked for, unless a results file has it already. The command line is made of this.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "radiosity/base.h"
+#include "radiosity/exchange_matrix.h"
+#include "radiosity/form_factors.h"
+#include "radiosity/gather.h"
+#include "radiosity/patch_mesh.h"
+#include "radiosity/render.h"
+#include "radiosity/results.h"
+#include "radiosity/scene.h"
+#include "radiosity/solve.h"
+
+namespace [[gnu::visibility("default")]] radiosity {
+
+class Pipeline;
+class StageKey;
+
+enum class Stage { mesh, form_factors, solution, gather };
+
+enum class StageAction {
+  reused,      ///< taken from a results file
+  computed,    ///< there was none
+  recomputed,  ///< there was one, which does not fit
+  kept,        ///< not asked for; the results file has it and it still fits
+  dropped      ///< not asked for; the results file has one, which no longer fits
+};
+
+/// What became of a stage.
+struct StageEvent {
+  Stage stage = Stage::mesh;
+  StageAction action = StageAction::computed;
+  /// Reused: the file it comes from. Recomputed and dropped: why, "resolution 256 -> 512".
+  std::string detail;
+  std::optional<double> seconds;  ///< by the clock; computed and recomputed
+};
+
+/// What a pipeline says as it goes. All calls come from the thread that called the pipeline, which
+/// holds by then what the call is about; what a call throws ends the step.
+class PipelineObserver {
+ public:
+  virtual ~PipelineObserver() = default;
+  /// The scene is there; overrides of one from a results file are applied after this.
+  virtual void opened(const Pipeline& /*pipeline*/) {}
+  /// What to know of the scene; of one from a results file, what overrides changed.
+  virtual void notes(const Pipeline& /*pipeline*/, std::span<const Note> /*notes*/) {}
+  /// The results file `path` was named for its stages and cannot be read, for the reason `why`.
+  virtual void notReused(const std::string& /*path*/, const std::string& /*why*/) {}
+  /// Form factors are about to be computed like this.
+  virtual void planned(const Pipeline& /*pipeline*/, const FormFactorPlan& /*plan*/) {}
+  virtual void stage(const Pipeline& /*pipeline*/, const StageEvent& /*event*/) {}
+};
+
+/// The options of every stage.
+struct PipelineOptions {
+  MeshOptions mesh;
+  FormFactorOptions factors;  ///< memory_held 0: what the process holds is taken
+  SolveOptions solve;
+  GatherOptions gather;
+};
+
+/// A scalar of every patch, to be drawn by renderFalseColour().
+enum class Quantity {
+  radiosity,    ///< luminance of B, W/m^2; of bands that are not three their sum
+  irradiance,   ///< the same of H
+  form_factor,  ///< F from one patch to each
+  row_sum       ///< what each patch sees of fronts
+};
+struct ScalarField {
+  std::vector<double> values;  ///< N
+  FalseColour legend;          ///< title and unit
+};
+
+/// Scene -> mesh -> form factors -> solution, and scene -> mesh -> gathered light.
+///
+/// mesh(), factors(), solution() and gathered() first make what they stand on. Each stage has a
+/// key, a text of its options and of what it was made from. One with the same key is reused: from
+/// this object where it was made before, else from a results file; otherwise it is computed, and
+/// what stands on the one before is discarded. So options() may be changed between calls.
+/// References that a call returned hold until the stage is made again.
+class Pipeline {
+ public:
+  /// Both must outlive it; no observer: nobody is told.
+  explicit Pipeline(Progress& progress, PipelineObserver* observer = nullptr);
+  Pipeline(const Pipeline&) = delete;
+  Pipeline& operator=(const Pipeline&) = delete;
+
+  // ---- One of these comes first, once.
+
+  /// Opens a scene file, or a results file (.h5), whose stages then are reused and whose options
+  /// are in options(). `scene`: for a results file the overrides alone (set, materials_file,
+  /// one_sided, two_sided, sky). `reuse`: with a scene file, the results file whose stages are
+  /// reused where they fit the scene and options(), as a rule the one that save() will write; it
+  /// need not be there. Errors: InputError for what cannot be read, for a results file without a
+  /// scene, where `scene` says how a scene file is read ("--unit") and `path` is a results file,
+  /// and for overrides of one with materials of its own (bands()).
+  void open(const std::string& path, const SceneOptions& scene = {}, const std::string& reuse = {});
+  /// A scene in memory, as validate(const Scene&) asks; `reuse` as above.
+  void open(Scene scene, const std::string& reuse = {});
+
+  // ---- Options: those the results file's stages were made with, elsewhere the defaults. To keep
+  // one, leave it; a stage whose options are changed is made again the next time it is asked for.
+
+  PipelineOptions& options() { return options_; }
+  const PipelineOptions& options() const { return options_; }
+
+  // ---- Stages. Errors: InputError for options out of range and a scene without area; RunError
+  // where form factors, solution or gathering fail on a scene that was read without a fault, where
+  // memory_limit is exceeded; Cancelled.
+
+  /// InputError also where the results file has materials of its own (bands()) and options() ask
+  /// for another mesh than the one they belong to.
+  const MeshResult& mesh();
+  /// Reused ones come without their matrix, which may be large: matrix() reads it.
+  const FormFactors& factors();
+  /// The matrix of factors(). RunError where another run has replaced the file it is in.
+  const ExchangeMatrix& matrix();
+  /// Not converging is data: look at its summary.
+  const Solution& solution();
+  /// By the gather method; stands on the mesh alone.
+  const Gathered& gathered();
+  /// Of the patches of mesh().
+  const PatchMaterials& materials();
+
+  // ---- What to draw.
+
+  /// Of solution(), which must have values, and of gathered(). One band is drawn grey; InputError
+  /// where there are two, or more than three.
+  SurfaceLight solvedLight();
+  SurfaceLight gatheredLight();
+  /// `patch`: of Quantity::form_factor, below N.
+  ScalarField field(Quantity quantity, std::size_t patch = 0);
+
+  // ---- What there is.
+
+  const Scene& scene() const;
+  /// Of the materials: three, which the scene says, or what the results file opened says itself
+  /// with materials of its own, a row a patch.
+  int bands() const;
+  /// InputError where nothing in the scene emits and no sky shines. `cure`: what the message says
+  /// to do about it; none: to name a lamp. Materials of the file's own are not looked at: the
+  /// summary of solution() or gathered() says where all is dark.
+  void requireLight(const std::function<std::string()>& cure = {}) const;
+  /// The stages made, reused or kept so far; form factors perhaps without their matrix.
+  const Results& results() const { return results_; }
+  /// What the results file holds and nobody has asked for yet.
+  const Results& stored() const { return stored_; }
+  bool fromResultsFile() const { return from_results_; }
+  /// Where factors() computed them: they may be dear, so checkpoint() is worth its time.
+  bool factorsComputed() const { return factors_computed_; }
+  /// After mesh(): true where the stages so far fill gaps of the results file opened and replace
+  /// nothing in it.
+  bool onlyAdds() const { return from_results_ && !overridden_ && !replaces_; }
+  /// Where results() differs from the file opened, or from that written since.
+  bool changed() const { return changed_; }
+  /// Where the file `path` holds results() as they are.
+  bool isUpToDate(const std::string& path) const;
+
+  // ---- The results file.
+
+  /// Completes results() for a file: stages of the results file that nobody asked for are kept
+  /// where they still fit, else dropped; a solution without values (of a singular system) is taken
+  /// out.
+  void keepLaterStages();
+  /// Reads the matrix of form factors that are there without it. Errors: as matrix().
+  void loadMatrix();
+  /// Both, then writes results(): the file appears whole or stays what it was. Errors: as
+  /// writeResults().
+  void save(const std::string& path);
+  /// Writes what there is before a later step can fail. Light gathered on the same mesh, which the
+  /// opened file may hold, stays; nothing is dropped yet.
+  void checkpoint(const std::string& path);
+
+ private:
+  void openResults(const std::string& path, const SceneOptions& scene);
+  void openSource(const std::string& path);
+  void openReused(const std::string& path);
+  void overrideScene(const SceneOptions& overrides);
+
+  std::string why(const std::string& stored_key, const StageKey& key) const;
+  void tell(Stage stage, StageAction action, const std::string& detail = {}) const;
+  void computed(Stage stage, const std::string& reason, double seconds);
+  void discardFrom(Stage first);
+
+  bool factorsFit(const FormFactors& factors, const std::string& factors_key, const StageKey& key,
+                  std::optional<FormFactorPlan>& plan) const;
+  FormFactorPlan planFactors() const;
+  FormFactors computeFactors(std::optional<FormFactorPlan> plan) const;
+  StageKey usedFactorsKey() const;
+  bool hasOwnMaterials() const;
+  void requireOwnMesh(bool reused) const;
+  const PatchMaterials& materialsOfMesh();
+
+  bool keepFactors();
+  bool keepSolution();
+  bool keepGathered();
+  void dropEmptySolution();
+
+  Progress& progress_;
+  PipelineObserver silent_;
+  PipelineObserver& observer_;
+  PipelineOptions options_;
+  Results results_;
+  Results stored_;  ///< a stage that left it, or was discarded, leaves its key: to say what changed
+  std::string name_;           ///< of the scene, for messages
+  std::string source_;         ///< the results file that stages come from
+  std::string source_state_;   ///< when it was read
+  std::string saved_;          ///< what save() or checkpoint() wrote
+  std::string factors_asked_;  ///< the key that the form factors at hand are known to fit
+  bool from_results_ = false;
+  bool overridden_ = false;
+  bool changed_ = false;
+  bool mesh_reused_ = false;
+  bool factors_computed_ = false;
+  bool replaces_ = false;
+};
+
+}  // namespace radiosity

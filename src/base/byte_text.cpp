@@ -1,0 +1,22 @@
+#include "base/byte_text.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+namespace radiosity {
+
+std::string bytesText(std::size_t bytes) {
+  constexpr const char* kUnits[] = {"B", "KiB", "MiB", "GiB", "TiB", "PiB"};
+  auto value = double(bytes);
+  std::size_t unit = 0;
+  while (value >= 1024 && unit + 1 < std::size(kUnits)) {
+    value /= 1024;
+    ++unit;
+  }
+  if (unit == 0) return fmt::format("{} B", bytes);
+  return value < 100 ? fmt::format("{:.1f} {}", value, kUnits[unit])
+                     : fmt::format("{:.0f} {}", value, kUnits[unit]);
+}
+
+}  // namespace radiosity

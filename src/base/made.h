@@ -1,0 +1,15 @@
+// Stages and other things that are made on the way.
+#pragma once
+
+#include <stdexcept>
+
+namespace radiosity {
+
+/// What must be there by now, of a std::optional. Throws logic_error where it is not.
+template <class Optional>
+auto& made(Optional& value) {
+  if (!value) throw std::logic_error("a stage was used before it was made");
+  return *value;
+}
+
+}  // namespace radiosity

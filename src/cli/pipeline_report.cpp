@@ -1,0 +1,138 @@
+#include "cli/pipeline_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/byte_text.h"
+#include "base/made.h"
+#include "cli/words.h"
+
+namespace radiosity::cli {
+
+namespace {
+
+/// Who waits longer is told what would shorten it.
+constexpr double kLongWait = 60;
+
+/// What shortens a wait, and to what, as far as that is known.
+std::string cures(const FormFactorPlan& plan, const FormFactorOptions& options) {
+  constexpr double kLoosest = 0.1;
+  if (plan.method == FormFactorMethod::hemicube) {
+    return "for less: fewer --patches, a lower --resolution";
+  }
+  std::string text = "for less:";
+  const double looser = std::min(kLoosest, 10 * options.tolerance);
+  if (looser > options.tolerance) {
+    const double left = plan.seconds * (1 - plan.refining * (1 - options.tolerance / looser));
+    text += fmt::format(" --tolerance {} (about {}),", numberText(looser), durationText(left));
+  }
+  return text + fmt::format(" fewer --patches, --method hemicube (about {}; less accurate)",
+                            durationText(plan.hemicube_seconds));
+}
+
+struct StageWords {
+  Command command;  ///< the one that is about this stage
+  const char* key;
+  const char* label;
+  const char* kept;
+};
+
+StageWords wordsOf(Stage stage) {
+  switch (stage) {
+    case Stage::mesh:
+      return {Command::mesh, "mesh", "mesh", "it still fits"};
+    case Stage::form_factors:
+      return {Command::factors, "form_factors", "form factors", "they still fit"};
+    case Stage::solution:
+      return {Command::solve, "solution", "solution", "it still fits"};
+    case Stage::gather:
+      break;
+  }
+  return {Command::gather, "gather", "gather", "it still fits"};
+}
+
+const char* wordOf(StageAction action) {
+  switch (action) {
+    case StageAction::reused:
+      return "reused";
+    case StageAction::computed:
+      return "computed";
+    case StageAction::recomputed:
+      return "recomputed";
+    case StageAction::kept:
+      return "kept";
+    case StageAction::dropped:
+      break;
+  }
+  return "dropped";
+}
+
+}  // namespace
+
+void PipelineReport::opened(const Pipeline& pipeline) {
+  summarizeScene(report_, pipeline.scene(), request_.input);
+}
+
+void PipelineReport::notes(const Pipeline& pipeline, std::span<const Note> notes) {
+  // Those of a scene file stand at the end of what `info` says.
+  if (request_.command == Command::info && !pipeline.fromResultsFile()) return;
+  report_.notes(notes);
+}
+
+void PipelineReport::notReused(const std::string& path, const std::string& why) {
+  report_.line("note", fmt::format("nothing is reused from {}: {}", path, oneLine(why)));
+}
+
+void PipelineReport::planned(const Pipeline& pipeline, const FormFactorPlan& plan) {
+  const FormFactorOptions& options = pipeline.options().factors;
+  const std::size_t patches = made(pipeline.results().mesh).mesh.size();
+  const bool exact = plan.method == FormFactorMethod::exact;
+  // On disk every entry has a column number of 4 bytes. In memory a dense row has none, and a
+  // symmetric matrix has half of the entries.
+  const std::size_t value = options.storedPrecision() == Precision::double_precision ? 8 : 4;
+  const std::size_t disk = plan.matrix_bytes * (exact ? 2 : 1) * (value + 4) / value;
+  const std::string what =
+      exact ? fmt::format("exact between {} to {}", plural(patches, "patch", "patches"),
+                          numberText(options.tolerance))
+            : fmt::format("{} of {} pixels", plural(patches, "hemicube", "hemicubes"),
+                          options.resolution);
+  report_.line("form factors",
+               fmt::format("{}: about {}, memory about {}{}", what, durationText(plan.seconds),
+                           bytesText(plan.bytes),
+                           writes_results_ ? ", disk at most about " + bytesText(disk) : ""));
+  if (!plan.reason.empty()) report_.line("", "method: " + plan.reason);
+  if (plan.seconds > kLongWait) report_.line("", cures(plan, options));
+}
+
+void PipelineReport::stage(const Pipeline& pipeline, const StageEvent& event) {
+  const StageWords words = wordsOf(event.stage);
+  const bool kept = event.action == StageAction::kept;
+  report_.stage(words.key, words.label, wordOf(event.action), kept ? words.kept : event.detail,
+                event.seconds.value_or(-1));
+  if (kept || event.action == StageAction::dropped) return;
+  summarize(pipeline, event);
+}
+
+void PipelineReport::summarize(const Pipeline& pipeline, const StageEvent& event) {
+  const bool own = request_.command == wordsOf(event.stage).command;
+  const Results& results = pipeline.results();
+  const PatchMesh& mesh = made(results.mesh).mesh;
+  const PipelineOptions& options = pipeline.options();
+  // A mesh or form factors that were there already need no word where they are a step on the way.
+  const Detail light = own ? Detail::full : Detail::brief;
+  const Detail step = !own && event.action == StageAction::reused ? Detail::none : light;
+  switch (event.stage) {
+    case Stage::mesh:
+      return summarizeMesh(report_, made(results.mesh), step);
+    case Stage::form_factors:
+      return summarizeFactors(report_, made(results.factors), mesh, step);
+    case Stage::solution:
+      return summarizeSolution(report_, made(results.solution), made(results.factors), mesh,
+                               options.solve, light);
+    case Stage::gather:
+      return summarizeGathered(report_, made(results.gathered), mesh, options.gather, light);
+  }
+}
+
+}  // namespace radiosity::cli

@@ -1,0 +1,34 @@
+// What a run says of its stages, on a line each, as they are made.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "cli/report.h"
+#include "cli/request.h"
+#include "cli/summaries.h"
+#include "radiosity/pipeline.h"
+
+namespace radiosity::cli {
+
+class PipelineReport : public PipelineObserver {
+ public:
+  /// `writes_results`: the run was asked for a results file.
+  PipelineReport(const Request& request, Report& report, bool writes_results)
+      : request_(request), report_(report), writes_results_(writes_results) {}
+
+  void opened(const Pipeline& pipeline) override;
+  void notes(const Pipeline& pipeline, std::span<const Note> notes) override;
+  void notReused(const std::string& path, const std::string& why) override;
+  void planned(const Pipeline& pipeline, const FormFactorPlan& plan) override;
+  void stage(const Pipeline& pipeline, const StageEvent& event) override;
+
+ private:
+  void summarize(const Pipeline& pipeline, const StageEvent& event);
+
+  const Request& request_;
+  Report& report_;
+  bool writes_results_;
+};
+
+}  // namespace radiosity::cli

@@ -1,0 +1,32 @@
+// What the two rules of a part between critical lines say of the error of the better one.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace radiosity {
+
+/// What the points of a part saw of the target.
+struct PartValues {
+  static constexpr std::size_t kPoints = 13;  ///< 2 x 2, then 3 x 3
+  static constexpr std::size_t kCoarse = 4;   ///< of them the first
+
+  std::array<double, kPoints> visible;
+  std::array<double, kPoints> whole;
+  std::array<double, kPoints> weight;
+  double area = 0;
+  bool one_shape = true;
+  bool overlap = false;  ///< of shadows on the target
+
+  /// By 3 x 3 points.
+  double integral(const std::array<double, kPoints>& values) const;
+  /// Of the integral of visible minus `fraction` times whole form factor. `near`: see
+  /// VisibleFraction. Decides whether the part is halved; of one that is kept, kPartStated times
+  /// this is stated.
+  double error(double fraction, bool near) const;
+
+ private:
+  double coarseIntegral(const std::array<double, kPoints>& values) const;
+};
+
+}  // namespace radiosity

@@ -1,0 +1,38 @@
+// Both estimates of every pair: a walk along the rows of a matrix and its columns, side by side.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "base/parallel.h"
+#include "radiosity/exchange_matrix.h"
+
+namespace radiosity {
+
+/// Calls visit(i, row, column) for every i, row[j] = F_ij and column[j] = F_ji, both N values with
+/// zeros where nothing is stored. Calls run in parallel. Columns are gathered a block at a time, so
+/// that memory beyond the matrix is kBlock * N values, not a transposed copy of it. Row form only.
+template <class Visit>
+void forBothEstimates(const ExchangeMatrix& matrix, const Visit& visit) {
+  constexpr std::size_t kBlock = 128;
+  const std::size_t n = matrix.size();
+  std::vector<double> columns(std::min(kBlock, n) * n);
+  for (std::size_t begin = 0; begin < n; begin += kBlock) {
+    const std::size_t count = std::min(kBlock, n - begin);
+    std::fill(columns.begin(), columns.end(), 0.0);
+    parallelFor(n, kBlock, [&](std::size_t j) {
+      matrix.forRow(j, begin, begin + count,
+                    [&](Index i, double value) { columns[(i - begin) * n + j] = value; });
+    });
+    parallelFor(count, 1, [&](std::size_t k) {
+      std::vector<double> row(n, 0.0);
+      matrix.forRow(begin + k, [&](Index j, double value) { row[j] = value; });
+      visit(begin + k, std::span<const double>(row),
+            std::span<const double>(columns).subspan(k * n, n));
+    });
+  }
+}
+
+}  // namespace radiosity

@@ -1,0 +1,387 @@
+// Closure as weighted least squares with a multiplier a row.
+#include "radiosity/closure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "base/parallel.h"
+#include "matrix/residual_progress.h"
+#include "matrix/run_row.h"
+#include "matrix/triangle_pass.h"
+#include "matrix/uncertain_row.h"
+#include "radiosity/matrix_functions.h"
+
+namespace radiosity {
+
+namespace {
+
+constexpr std::size_t kRowGrain = 16;
+/// Newton steps; one where no entry turns negative, else a handful.
+constexpr int kMostRounds = 30;
+constexpr std::size_t kMostSteps = 2000;
+/// Of what rows lack: how well a step is solved. Entries that turn negative spoil a better one
+/// (inexact Newton: Dembo, Eisenstat & Steihaug, SIAM J. Numer. Anal. 19, 1982).
+constexpr double kForcing = 0.1;
+/// Of a residual's square, <r, (D + W) r> with D scaled to 1: below it r counts as a null vector.
+constexpr double kNull = 1e-10;
+/// Steps within which the residual must at least halve; else the target is out of reach.
+constexpr std::size_t kStagnantSteps = 50;
+/// Shortest part of a Newton step that is tried.
+constexpr double kShortestStep = 1e-6;
+/// This, times what rows lack, is the share of each row's own weight that is added to it once
+/// entries are held at 0: a row that lost all its free entries then still finds its way back.
+constexpr double kDamping = 1e-2;
+
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+/// The problem, by position. With e_kq the error of F_kq and w_kq = (A_k e_kq)^2 the squared error
+/// of the exchange area, the least sum of d_kq^2 / (2 w_kq) over pairs under sum_q d_kq = r_k and
+/// d_kq >= -G_kq has
+///     d_kq = max(-G_kq, w_kq (m_k + m_q))
+/// with a multiplier m per row (the conditions of Karush, Kuhn and Tucker). The m minimise the dual
+///     f(m) = sum over pairs of phi_kq(m_k + m_q) - sum_k r_k m_k,   phi' = d,
+/// convex and piecewise quadratic; its slope is what the rows still lack, with the sign turned. One
+/// Newton step solves
+///     (D + W) step = what the rows lack,   D_k = sum_q w_kq over the entries that are not at 0,
+/// symmetric and positive semi-definite. Where no entry turns negative one step is all there is.
+class LeastSquaresClosure {
+ public:
+  LeastSquaresClosure(ExchangeMatrix& matrix, const UncertainEntries& uncertain,
+                      std::span<const double> target, Progress& progress);
+
+  void findMultipliers(double tolerance);
+  /// Changes the matrix as they say.
+  void apply();
+  /// What came of it.
+  ClosureReport report(double tolerance) const;
+
+ private:
+  template <class Visit>
+  void forUncertain(std::size_t k, const Visit& visit) const;
+  std::vector<double> timesWeights(const std::vector<double>& x) const;
+  void evaluate();
+  double largestLack() const;
+  std::vector<double> newtonStep(double tolerance);
+
+  ExchangeMatrix& matrix_;
+  const UncertainEntries& uncertain_;
+  Progress& progress_;
+  TrianglePass pass_;
+  std::array<double, 256> squared_{};            // e^2 by code
+  std::vector<double> area_;                     // in a unit that keeps its squares in range
+  std::vector<std::vector<std::uint8_t>> free_;  // as uncertain_.row(k).codes, 0 where held at 0
+  std::vector<double> goal_;                     // what rows are to sum to
+  std::vector<double> shortfall_;                // goal - row sum before
+  std::vector<double> root_;                     // of D while all are free
+  std::vector<double> multiplier_;
+  // As evaluate() found them for the multipliers:
+  std::vector<double> lacking_;  // goal - row sum after
+  double dual_ = 0;              // f
+  ClosureReport report_;
+};
+
+LeastSquaresClosure::LeastSquaresClosure(ExchangeMatrix& matrix, const UncertainEntries& uncertain,
+                                         std::span<const double> target, Progress& progress)
+    : matrix_(matrix),
+      uncertain_(uncertain),
+      progress_(progress),
+      pass_(matrix.size(), 0, [&](std::size_t k) { return uncertain.row(k).codes.size() + 1; }),
+      area_(matrix.size()),
+      free_(matrix.size()),
+      goal_(matrix.size()),
+      shortfall_(matrix.size()),
+      multiplier_(matrix.size(), 0.0) {
+  for (std::size_t c = 1; c < squared_.size(); ++c) {
+    const double error = errorOfCode(std::uint8_t(c));
+    squared_[c] = error * error;
+  }
+  const std::vector<double> sums = matrix.rowSums();
+  report_ = reportClosure(sums, target);
+  const std::span<const double> area = matrix.area();
+  double largest = 0;
+  for (const double a : area) largest = std::max(largest, a);
+  const int exponent = largest > 0 ? std::ilogb(largest) : 0;
+  for (std::size_t k = 0; k < matrix.size(); ++k) {
+    const Index patch = matrix.order()[k];
+    free_[k] = uncertain.row(k).codes;
+    area_[k] = std::ldexp(area[patch], -exponent);
+    // A row that sums to 0 sees nothing or has no area: nothing is asked of it.
+    goal_[k] = sums[patch] > 0 ? target[patch] : 0.0;
+    shortfall_[k] = goal_[k] - sums[patch];
+  }
+  report_.adjustable = uncertain.entries();
+  root_ = timesWeights(std::vector<double>(matrix.size(), 1.0));
+  for (double& d : root_) d = std::sqrt(d);
+  // What evaluate() would find while nothing is moved.
+  lacking_ = shortfall_;
+}
+
+/// Calls visit(index into the row's codes, position, code, F) for the uncertain entries of row k.
+template <class Visit>
+void LeastSquaresClosure::forUncertain(std::size_t k, const Visit& visit) const {
+  const UncertainEntries::Row& row = uncertain_.row(k);
+  RunReader stored(matrix_.upperRuns(k));
+  std::size_t index = 0;
+  forRuns(row.runs, row.codes.data(),
+          [&](std::size_t offset, const std::uint8_t* codes, std::size_t count) {
+            for (std::size_t m = 0; m < count; ++m, ++index) {
+              if (codes[m] == 0) continue;
+              visit(index, k + 1 + offset + m, codes[m], stored.at(offset + m));
+            }
+          });
+}
+
+/// W x over the free entries.
+std::vector<double> LeastSquaresClosure::timesWeights(const std::vector<double>& x) const {
+  std::vector<double> out(x.size());
+  const auto row = [&](std::size_t k, double* handed_on, std::size_t) {
+    const double squared_area = area_[k] * area_[k];
+    const double own = squared_area * x[k];
+    const double* later = x.data() + k + 1;
+    double gathered = 0;
+    forRuns(uncertain_.row(k).runs, free_[k].data(),
+            [&](std::size_t offset, const std::uint8_t* codes, std::size_t count) {
+              for (std::size_t m = 0; m < count; ++m) {
+                const double squared = squared_[codes[m]];
+                gathered += squared * later[offset + m];
+                handed_on[offset + m] += squared * own;
+              }
+            });
+    out[k] = squared_area * gathered;
+  };
+  pass_.run(1, row, [&](std::size_t k, const double* handed) { out[k] += handed[0]; });
+  return out;
+}
+
+/// What the multipliers come to: f, what the rows lack, which entries are free and which at 0.
+void LeastSquaresClosure::evaluate() {
+  const std::size_t n = area_.size();
+  std::vector<std::size_t> emptied(n, 0);
+  std::vector<double> value(n, 0.0);
+  lacking_ = shortfall_;
+  const auto row = [&](std::size_t k, double* handed_on, std::size_t) {
+    const double area = area_[k];
+    forUncertain(k, [&](std::size_t index, std::size_t later, std::uint8_t code, double f) {
+      const double sum = multiplier_[k] + multiplier_[later];
+      const double slope = area * squared_[code];  // of the change of F
+      const bool held = slope * sum < -f;
+      const double change = held ? -f : slope * sum;
+      free_[k][index] = held ? std::uint8_t(0) : code;
+      emptied[k] += held ? 1 : 0;
+      lacking_[k] -= change;
+      handed_on[later - k - 1] += area * change;
+      value[k] += area * (held ? -f * sum - f * f / (2 * slope) : change * sum / 2);
+    });
+    value[k] -= area * shortfall_[k] * multiplier_[k];
+  };
+  pass_.run(1, row, [&](std::size_t k, const double* handed) {
+    if (area_[k] > 0) lacking_[k] -= handed[0] / area_[k];
+  });
+  report_.emptied = std::accumulate(emptied.begin(), emptied.end(), std::size_t(0));
+  dual_ = std::accumulate(value.begin(), value.end(), 0.0);
+}
+
+/// Conjugate residuals (Stiefel 1955) on the system scaled by the root of D from both sides. It
+/// costs what conjugate gradients do, and its residual falls in every step also where the rows ask
+/// for what cannot be had (the matrix is singular where a set of rows shares uncertain entries only
+/// with another set).
+std::vector<double> LeastSquaresClosure::newtonStep(double tolerance) {
+  const std::size_t n = area_.size();
+  const double damping = report_.emptied > 0 ? kDamping * largestLack() : 0;
+  std::vector<double> own(n, 1.0);  // D, scaled: 1 while all are free
+  if (report_.emptied > 0) {
+    own = timesWeights(own);
+    for (std::size_t k = 0; k < n; ++k) {
+      own[k] = root_[k] > 0 ? own[k] / (root_[k] * root_[k]) + damping : 0;
+    }
+  }
+  const auto multiply = [&](const std::vector<double>& x) {
+    std::vector<double> scaled(n);
+    for (std::size_t k = 0; k < n; ++k) scaled[k] = root_[k] > 0 ? x[k] / root_[k] : 0;
+    std::vector<double> out = timesWeights(scaled);
+    for (std::size_t k = 0; k < n; ++k) {
+      out[k] = root_[k] > 0 ? own[k] * x[k] + out[k] / root_[k] : 0;
+    }
+    return out;
+  };
+  std::vector<double> x(n, 0.0);
+  std::vector<double> residual(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    residual[k] = root_[k] > 0 ? area_[k] * lacking_[k] / root_[k] : 0;
+  }
+  const auto largest = [&] {
+    double most = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      if (root_[k] > 0) most = std::max(most, std::abs(residual[k]) * root_[k] / area_[k]);
+    }
+    return most;
+  };
+  std::vector<double> direction = residual;
+  std::vector<double> of_residual = multiply(residual);
+  std::vector<double> of_direction = of_residual;
+  double weight = dot(residual, of_residual);
+  std::vector<double> history{largest()};
+  const auto stalls = [&] {
+    return history.size() > kStagnantSteps &&
+           history.back() > 0.5 * history[history.size() - 1 - kStagnantSteps];
+  };
+  // What is left where rows ask for what cannot be had is a null vector; beyond it there is noise.
+  const auto ends = [&] { return !(weight > kNull * dot(residual, residual)); };
+  while (history.back() > tolerance && !ends() && history.size() < kMostSteps && !stalls()) {
+    const double step = weight / dot(of_direction, of_direction);
+    for (std::size_t k = 0; k < n; ++k) {
+      x[k] += step * direction[k];
+      residual[k] -= step * of_direction[k];
+    }
+    progress_.check();
+    of_residual = multiply(residual);
+    const double last = std::exchange(weight, dot(residual, of_residual));
+    for (std::size_t k = 0; k < n; ++k) {
+      direction[k] = residual[k] + weight / last * direction[k];
+      of_direction[k] = of_residual[k] + weight / last * of_direction[k];
+    }
+    history.push_back(largest());
+    ++report_.iterations;
+  }
+  for (std::size_t k = 0; k < n; ++k) x[k] = root_[k] > 0 ? x[k] / root_[k] : 0;
+  return x;
+}
+
+/// Of the rows in which something may move.
+double LeastSquaresClosure::largestLack() const {
+  double largest = 0;
+  for (std::size_t k = 0; k < area_.size(); ++k) {
+    if (root_[k] > 0) largest = std::max(largest, std::abs(lacking_[k]));
+  }
+  return largest;
+}
+
+void LeastSquaresClosure::findMultipliers(double tolerance) {
+  ResidualProgress shown(progress_, "closure", largestLack(), tolerance);
+  for (int round = 0; round < kMostRounds && largestLack() > tolerance; ++round) {
+    shown.at(largestLack());
+    const std::vector<double> step = newtonStep(std::max(tolerance, kForcing * largestLack()));
+    const std::vector<double> start = multiplier_;
+    const double dual = dual_;
+    const double lack = largestLack();
+    // Near the end f changes by less than its rounding; there the rows themselves tell.
+    const auto better = [&] { return dual_ < dual || largestLack() < lack / 2; };
+    for (double part = 1; part >= kShortestStep; part /= 2) {
+      progress_.check();
+      for (std::size_t k = 0; k < step.size(); ++k) multiplier_[k] = start[k] + part * step[k];
+      evaluate();
+      if (better()) break;
+    }
+    if (better()) continue;
+    multiplier_ = start;
+    evaluate();
+    break;
+  }
+  shown.end();
+}
+
+void LeastSquaresClosure::apply() {
+  const std::size_t n = area_.size();
+  const double squares = weightedSquares(matrix_);
+  const bool single = matrix_.precision() == Precision::single_precision;
+  std::vector<double> largest(n, 0.0);
+  std::vector<double> moved(n, 0.0);
+  parallelFor(n, kRowGrain, [&](std::size_t k) {
+    if (uncertain_.row(k).runs.empty()) return;
+    std::vector<double> values(n - k);
+    matrix_.upperRow(k, values);
+    forUncertain(k, [&](std::size_t, std::size_t later, std::uint8_t code, double f) {
+      const double slope = area_[k] * squared_[code];
+      const double wanted = f + slope * (multiplier_[k] + multiplier_[later]);
+      double& value = values[later - k];
+      value = std::max(0.0, wanted);
+      if (single) value = double(float(value));
+      const double change = value - f;
+      if (change == 0) return;
+      const double other_end = area_[k] / area_[later];
+      largest[k] = std::max(largest[k], std::abs(change) * std::max(1.0, other_end));
+      moved[k] += change * change * (1 + other_end);
+    });
+    matrix_.setUpperRow(k, values);
+  });
+  double sum = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    report_.largest_move = std::max(report_.largest_move, largest[k]);
+    sum += matrix_.area()[matrix_.order()[k]] * moved[k];
+  }
+  report_.relative_move = squares > 0 ? std::sqrt(sum / squares) : 0;
+}
+
+ClosureReport LeastSquaresClosure::report(double tolerance) const {
+  ClosureReport report = report_;
+  const bool single = matrix_.precision() == Precision::single_precision;
+  const double rounding = single ? std::numeric_limits<float>::epsilon() / 2
+                                 : std::numeric_limits<double>::epsilon() / 2;
+  const std::vector<double> sums = matrix_.rowSums();
+  report.reached = true;
+  for (std::size_t k = 0; k < area_.size(); ++k) {
+    const double residual = std::abs(sums[matrix_.order()[k]] - goal_[k]);
+    report.largest_residual = std::max(report.largest_residual, residual);
+    const bool off = residual > tolerance + rounding * goal_[k];
+    if (off) report.reached = false;
+    if (off && root_[k] == 0) ++report.fixed_rows;
+  }
+  return report;
+}
+
+void checkTarget(std::span<const double> target, std::size_t n) {
+  if (target.size() != n) {
+    throw InputError(fmt::format("closure: {} row sums for {} rows", target.size(), n));
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!(target[i] >= 0) || !std::isfinite(target[i])) {
+      throw InputError(fmt::format("closure: {} is no sum for row {}", target[i], i));
+    }
+  }
+}
+
+}  // namespace
+
+ClosureReport reportClosure(std::span<const double> row_sums,
+                            std::span<const double> target_row_sums) {
+  checkTarget(target_row_sums, row_sums.size());
+  ClosureReport report;
+  std::size_t rows = 0;
+  double squares = 0;
+  for (std::size_t i = 0; i < row_sums.size(); ++i) {
+    if (!(row_sums[i] > 0)) continue;
+    const double residual = row_sums[i] - target_row_sums[i];
+    report.largest_residual_before = std::max(report.largest_residual_before, std::abs(residual));
+    squares += residual * residual;
+    ++rows;
+  }
+  if (rows > 0) report.rms_residual_before = std::sqrt(squares / double(rows));
+  return report;
+}
+
+ClosureReport closeRows(ExchangeMatrix& matrix, const UncertainEntries& uncertain,
+                        std::span<const double> target_row_sums, Progress& progress,
+                        double tolerance) {
+  checkTarget(target_row_sums, matrix.size());
+  if (!matrix.isSymmetric() || uncertain.size() != matrix.size()) {
+    throw InputError(fmt::format("closure: uncertain entries of {} rows for a {} matrix of {}",
+                                 uncertain.size(),
+                                 matrix.isSymmetric() ? "symmetric" : "row by row", matrix.size()));
+  }
+  LeastSquaresClosure closure(matrix, uncertain, target_row_sums, progress);
+  // Half: the other half is left for the sums of what is stored.
+  closure.findMultipliers(tolerance / 2);
+  closure.apply();
+  return closure.report(tolerance);
+}
+
+}  // namespace radiosity

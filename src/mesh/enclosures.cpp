@@ -1,0 +1,250 @@
+#include "mesh/enclosures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include "base/geometry/box.h"
+#include "base/geometry/solid_angle.h"
+#include "mesh/union_find.h"
+
+namespace radiosity {
+namespace {
+
+/// The proof that a scene is closed may take this many solid angles of triangles, about a second.
+constexpr std::size_t kMostSolidAngles = 10000000;
+
+using DirectedEdge = std::pair<Index, Index>;
+
+/// Calls visit(corner) for the corners of all loops of a polygon.
+template <class Visit>
+void forCorners(const PatchMesh& mesh, Index p, const Visit& visit) {
+  const PlanarPolygons& all = mesh.polygons;
+  for (std::size_t l = all.loopBegin(p); l < all.loopEnd(p); ++l) {
+    for (const Index v : all.loop(l)) visit(v);
+  }
+}
+
+/// Triangles (first corner of the loop, edge) whose signed sum is the polygons, holes included.
+template <class Visit>
+void forFans(const PatchMesh& mesh, std::span<const Index> polygons, const Visit& visit) {
+  const PlanarPolygons& all = mesh.polygons;
+  for (const Index p : polygons) {
+    for (std::size_t l = all.loopBegin(p); l < all.loopEnd(p); ++l) {
+      const std::span<const Index> loop = all.loop(l);
+      for (std::size_t k = 1; k + 1 < loop.size(); ++k) {
+        visit(mesh.vertices[loop[0]], mesh.vertices[loop[k]], mesh.vertices[loop[k + 1]]);
+      }
+    }
+  }
+}
+
+class EnclosureSearch {
+ public:
+  EnclosureSearch(const PatchMesh& mesh, Progress& progress)
+      : mesh_(mesh), progress_(progress), first_(firstAtSamePoint(mesh)) {}
+
+  Enclosures run() {
+    found_.surface_of.assign(mesh_.polygons.size(), kNone);
+    findCovered();
+    progress_.check();
+    findSurfaces();
+    progress_.check();
+    found_.proved_closed = provesClosed();
+    return std::move(found_);
+  }
+
+ private:
+  void findCovered() {
+    std::map<std::vector<Index>, std::vector<Index>> by_corners;
+    for (Index p = 0; p < mesh_.polygons.size(); ++p) {
+      std::vector<Index> key;
+      forCorners(mesh_, p, [&](Index v) { key.push_back(first_[v]); });
+      std::sort(key.begin(), key.end());
+      by_corners[std::move(key)].push_back(p);
+    }
+    const std::vector<Vec3>& normal = mesh_.polygons.normal;
+    found_.covered.assign(mesh_.polygons.size(), 0);
+    for (const auto& [corners, same] : by_corners) {
+      for (const Index p : same) {
+        found_.covered[p] = std::any_of(
+            same.begin(), same.end(), [&](Index q) { return glm::dot(normal[p], normal[q]) < 0; });
+      }
+    }
+  }
+
+  /// Joins polygons across edges that exactly two of them share, once each way. A set of one-sided
+  /// polygons all of whose edges are such is a closed oriented surface; embedded, it separates two
+  /// regions.
+  void findSurfaces() {
+    std::map<DirectedEdge, std::vector<Index>> users;
+    const PlanarPolygons& all = mesh_.polygons;
+    for (Index p = 0; p < all.size(); ++p) {
+      for (std::size_t l = all.loopBegin(p); l < all.loopEnd(p); ++l) {
+        const std::span<const Index> loop = all.loop(l);
+        for (std::size_t k = 0, last = loop.size() - 1; k < loop.size(); last = k++) {
+          users[{first_[loop[last]], first_[loop[k]]}].push_back(p);
+        }
+      }
+    }
+    UnionFind sets(all.size());
+    std::vector<std::uint8_t> open(all.back_is_patch);
+    for (const auto& [edge, polygons] : users) {
+      const auto opposite = users.find({edge.second, edge.first});
+      if (polygons.size() == 1 && opposite != users.end() && opposite->second.size() == 1) {
+        sets.unite(polygons.front(), opposite->second.front());
+      } else {
+        for (const Index p : polygons) open[p] = 1;
+      }
+    }
+    std::map<Index, std::vector<Index>> members;
+    for (Index p = 0; p < all.size(); ++p) members[sets.find(p)].push_back(p);
+    for (auto& [root, polygons] : members) {
+      progress_.check();
+      // Polygons back to back enclose nothing.
+      const bool flat = std::all_of(polygons.begin(), polygons.end(),
+                                    [&](Index p) { return found_.covered[p] != 0; });
+      const bool closed = !flat && std::none_of(polygons.begin(), polygons.end(),
+                                                [&](Index p) { return open[p] != 0; });
+      if (closed && isEmbedded(mesh_, first_, polygons, coincidenceOf(mesh_))) {
+        addSurface(std::move(polygons));
+      }
+    }
+  }
+
+  void addSurface(std::vector<Index> polygons) {
+    ClosedSurface surface;
+    const PlanarPolygons& all = mesh_.polygons;
+    const Vec3 base = mesh_.vertices[all.loop(all.loopBegin(polygons.front())).front()];
+    surface.lower = surface.upper = base;
+    double volume = 0;
+    forFans(mesh_, polygons, [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+      volume += glm::dot(a - base, glm::cross(b - base, c - base));
+      for (const Vec3& v : {a, b, c}) {
+        surface.lower = glm::min(surface.lower, v);
+        surface.upper = glm::max(surface.upper, v);
+      }
+    });
+    surface.is_solid = volume > 0;
+    for (const Index p : polygons) found_.surface_of[p] = Index(found_.surfaces.size());
+    surface.polygons = std::move(polygons);
+    found_.surfaces.push_back(std::move(surface));
+  }
+
+  /// Whether every patch lies on a room or in one. A set of polygons joined by vertices that are
+  /// not on the rooms lies on one side of each, since polygons are cut where they cross: one point
+  /// of it tells.
+  bool provesClosed() {
+    std::vector<const ClosedSurface*> rooms;
+    std::vector<std::uint8_t> on_room(mesh_.polygons.size(), 0);
+    std::size_t corners = 0;
+    for (const ClosedSurface& surface : found_.surfaces) {
+      if (surface.is_solid) continue;
+      rooms.push_back(&surface);
+      for (const Index p : surface.polygons) {
+        on_room[p] = 1;
+        forCorners(mesh_, p, [&](Index) { ++corners; });
+      }
+    }
+    if (rooms.empty()) return false;
+    const std::vector<Vec3> points = onePerSet(on_room);
+    if (points.size() * corners > kMostSolidAngles) return false;
+    return std::all_of(points.begin(), points.end(), [&](const Vec3& point) {
+      progress_.check();
+      return std::any_of(rooms.begin(), rooms.end(), [&](const ClosedSurface* room) {
+        // -1 within a room but for rounding; on its surface there is no such value.
+        return std::abs(windingNumber(mesh_, room->polygons, point) + 1) < 0.01;
+      });
+    });
+  }
+
+  std::vector<Vec3> onePerSet(const std::vector<std::uint8_t>& on_room) const {
+    std::vector<std::uint8_t> of_room(mesh_.vertices.size(), 0);
+    for (Index p = 0; p < mesh_.polygons.size(); ++p) {
+      if (on_room[p] != 0) forCorners(mesh_, p, [&](Index v) { of_room[first_[v]] = 1; });
+    }
+    UnionFind sets(mesh_.polygons.size());
+    std::vector<Index> user(mesh_.vertices.size(), kNone);
+    for (Index p = 0; p < mesh_.polygons.size(); ++p) {
+      forCorners(mesh_, p, [&](Index v) {
+        const Index point = first_[v];
+        if (of_room[point] != 0) return;
+        if (user[point] != kNone) sets.unite(p, user[point]);
+        user[point] = p;
+      });
+    }
+    std::vector<std::uint8_t> known(mesh_.polygons.size(), 0);
+    std::vector<Vec3> points;
+    for (std::size_t i = 0; i < mesh_.size(); ++i) {
+      const Index p = mesh_.polygon[i];
+      if (p == kNone || on_room[p] != 0) continue;
+      if (std::exchange(known[sets.find(p)], 1) == 0) points.push_back(mesh_.centroid[i]);
+    }
+    return points;
+  }
+
+  const PatchMesh& mesh_;
+  Progress& progress_;
+  std::vector<Index> first_;
+  Enclosures found_;
+};
+
+}  // namespace
+
+double coincidenceOf(const PatchMesh& mesh) {
+  Box3 box;
+  for (const Vec3& vertex : mesh.vertices) box.add(vertex);
+  return mesh.vertices.empty() ? 0 : MeshOptions().weld * glm::distance(box.low, box.high);
+}
+
+std::vector<Index> firstAtSamePoint(const PatchMesh& mesh) {
+  const auto key = [&](Index v) {
+    return std::tie(mesh.vertices[v].x, mesh.vertices[v].y, mesh.vertices[v].z);
+  };
+  std::vector<Index> order(mesh.vertices.size());
+  std::iota(order.begin(), order.end(), Index(0));
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return key(a) < key(b); });
+  std::vector<Index> first(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const bool same = k > 0 && key(order[k - 1]) == key(order[k]);
+    first[order[k]] = same ? first[order[k - 1]] : order[k];
+  }
+  return first;
+}
+
+double windingNumber(const PatchMesh& mesh, std::span<const Index> polygons, const Vec3& point) {
+  double angle = 0;
+  forFans(mesh, polygons, [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+    angle += signedSolidAngle(a - point, b - point, c - point);
+  });
+  return angle / (4 * std::numbers::pi);
+}
+
+bool isOnFrontSide(const PatchMesh& mesh, const ClosedSurface& surface, const Vec3& point) {
+  const bool outside_box = glm::any(glm::lessThan(point, surface.lower)) ||
+                           glm::any(glm::greaterThan(point, surface.upper));
+  if (outside_box) return surface.is_solid;
+  // The value is a whole number but for rounding, unless the point lies on the surface: then no
+  // claim.
+  const double front = surface.is_solid ? 0 : -1;
+  return std::abs(windingNumber(mesh, surface.polygons, point) - front) < 0.01;
+}
+
+const Enclosures& enclosuresOf(const PatchMesh& mesh, std::optional<Enclosures>& found) {
+  if (mesh.enclosures) return *mesh.enclosures;
+  Progress silent;
+  return found.emplace(findEnclosures(mesh, silent));
+}
+
+Enclosures findEnclosures(const PatchMesh& mesh, Progress& progress) {
+  return EnclosureSearch(mesh, progress).run();
+}
+
+}  // namespace radiosity

@@ -1,0 +1,35 @@
+// Points and polygons against the closed surfaces of a mesh (findEnclosures(), patch_mesh.h).
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "radiosity/patch_mesh.h"
+
+namespace radiosity {
+
+/// The coincidence of a mesh whose scene is not at hand: the default share of its diagonal, metres.
+double coincidenceOf(const PatchMesh& mesh);
+
+/// For every vertex the first of those at the very same point (faces_as_patches gives each face its
+/// own).
+std::vector<Index> firstAtSamePoint(const PatchMesh& mesh);
+
+/// What the mesh brings, or else what is found now and kept in `found`.
+const Enclosures& enclosuresOf(const PatchMesh& mesh, std::optional<Enclosures>& found);
+
+/// How often polygons wind about a point: 1 inside an outward solid, -1 inside a room, 0 outside of
+/// either. Their signed solid angles over 4 pi, no whole number on a polygon.
+double windingNumber(const PatchMesh& mesh, std::span<const Index> polygons, const Vec3& point);
+
+/// Whether a point lies on the side that the fronts of a closed surface face. On the surface:
+/// false.
+bool isOnFrontSide(const PatchMesh& mesh, const ClosedSurface& surface, const Vec3& point);
+
+/// True if no two of the polygons cross or touch, except at points that both have as corners
+/// (`first`, of firstAtSamePoint()). Doubtful cases, closer than `coincidence`, count as touching.
+bool isEmbedded(const PatchMesh& mesh, std::span<const Index> first,
+                std::span<const Index> polygons, double coincidence);
+
+}  // namespace radiosity

@@ -1,0 +1,67 @@
+// What is drawn of the stages.
+#include <fmt/format.h>
+
+#include "base/luminance.h"
+#include "base/made.h"
+#include "radiosity/pipeline.h"
+
+namespace radiosity {
+
+namespace {
+
+/// One number a patch, of any bands.
+std::vector<double> brightnessOfEach(std::span<const double> values, int bands) {
+  const auto width = std::size_t(bands);
+  std::vector<double> out(values.size() / width);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = brightnessOf(values.subspan(width * i, width));
+  }
+  return out;
+}
+
+ScalarField brightnessField(const char* title, std::span<const double> values, int bands) {
+  return {brightnessOfEach(values, bands), {title + brightnessText(bands), "W/m^2"}};
+}
+
+std::vector<double> rowOf(const ExchangeMatrix& matrix, std::size_t patch) {
+  std::vector<double> row(matrix.size(), 0.0);
+  matrix.forRow(patch, [&](Index j, double f) { row[j] = f; });
+  return row;
+}
+
+}  // namespace
+
+SurfaceLight Pipeline::solvedLight() {
+  const Solution& light = solution();
+  return surfaceLight(light.radiosity, materialsOfMesh());
+}
+
+SurfaceLight Pipeline::gatheredLight() {
+  const Gathered& light = gathered();
+  const PatchMesh& patches = made(results_.mesh).mesh;
+  SurfaceLight drawn = surfaceLight(patchRadiosity(patches, light), materialsOfMesh());
+  if (light.at == GatherAt::vertices) {
+    drawn.corners = rgbOf(cornerRadiosity(patches, light), light.bands);
+  }
+  return drawn;
+}
+
+ScalarField Pipeline::field(Quantity quantity, std::size_t patch) {
+  switch (quantity) {
+    case Quantity::radiosity: {
+      const Solution& light = solution();
+      return brightnessField("radiosity B", light.radiosity, light.bands);
+    }
+    case Quantity::irradiance: {
+      const Solution& light = solution();
+      return brightnessField("irradiance H", light.irradiance, light.bands);
+    }
+    case Quantity::form_factor:
+      return {rowOf(matrix(), patch), {fmt::format("form factor from patch {}", patch), ""}};
+    case Quantity::row_sum:
+      break;
+  }
+  return {factors().fronts, {"row sum: fronts seen", ""}};
+}
+
+}  // namespace radiosity

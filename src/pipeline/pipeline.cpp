@@ -1,0 +1,268 @@
+// Where stages come from, and the file they go to.
+#include "radiosity/pipeline.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "base/byte_text.h"
+#include "base/input_file.h"
+#include "base/made.h"
+#include "pipeline/stage_key.h"
+#include "radiosity/version.h"
+
+namespace radiosity {
+
+namespace {
+
+/// Red, green and blue: all that scene files say.
+constexpr int kSceneBands = 3;
+
+/// The option given that only a scene file has use for; null where there is none.
+const char* readingOption(const SceneOptions& given) {
+  const SceneOptions defaults;
+  if (!given.unit.empty()) return "--unit";
+  if (given.kd_is_srgb != defaults.kd_is_srgb) return "--kd-is";
+  if (given.default_reflectance != defaults.default_reflectance) return "--default-reflectance";
+  if (given.textures != defaults.textures) return "--textures";
+  return nullptr;
+}
+
+bool overrides(const SceneOptions& options) {
+  return !options.set.empty() || !options.materials_file.empty() || !options.one_sided.empty() ||
+         !options.two_sided.empty() || options.sky.has_value();
+}
+
+}  // namespace
+
+Pipeline::Pipeline(Progress& progress, PipelineObserver* observer)
+    : progress_(progress), observer_(observer != nullptr ? *observer : silent_) {
+  results_.version = RADIOSITY_VERSION;
+}
+
+const Scene& Pipeline::scene() const { return made(results_.scene); }
+
+void Pipeline::open(const std::string& path, const SceneOptions& scene, const std::string& reuse) {
+  requireFile(path);
+  scene.validate();
+  name_ = path;
+  if (isResultsFile(path)) {
+    openResults(path, scene);
+  } else {
+    progress_.begin("reading", 1);
+    results_.scene = loadScene(path, scene);
+    progress_.end();
+    openReused(reuse);
+  }
+  progress_.check();
+}
+
+void Pipeline::open(Scene scene, const std::string& reuse) {
+  validate(scene);
+  name_ = scene.file.empty() ? "the scene" : scene.file;
+  results_.scene = std::move(scene);
+  openReused(reuse);
+}
+
+/// Reads the stages of `path`, all but the matrix, and remembers in which state it was.
+void Pipeline::openSource(const std::string& path) {
+  source_state_ = fileState(path);
+  stored_ = readResults(path, false);
+  source_ = path;
+}
+
+void Pipeline::openResults(const std::string& path, const SceneOptions& scene) {
+  if (const char* option = readingOption(scene)) {
+    throw InputError(fmt::format(
+        "{}: {} says how a scene file is read, and this is a results file; give the scene file",
+        path, option));
+  }
+  openSource(path);
+  if (!stored_.scene) {
+    throw InputError(path + ": holds no scene; make it anew from the scene file");
+  }
+  results_.scene = std::exchange(stored_.scene, std::nullopt);
+  from_results_ = true;
+  options_ = {meshOptionsOf(StageKey(stored_.mesh_key)),
+              factorOptionsOf(StageKey(stored_.factors_key)),
+              solveOptionsOf(StageKey(stored_.solution_key)),
+              gatherOptionsOf(StageKey(stored_.gather_key))};
+  observer_.opened(*this);
+  if (overrides(scene)) overrideScene(scene);
+}
+
+void Pipeline::overrideScene(const SceneOptions& overrides) {
+  if (hasOwnMaterials()) {
+    throw InputError(fmt::format(
+        "{}: holds materials of {} bands, which options that change the scene's colours do not "
+        "reach; leave those out and change reflectance, emission and sky in /solution",
+        name_, bands()));
+  }
+  std::vector<Note>& notes = made(results_.scene).notes;
+  const std::size_t known = notes.size();
+  applyOverrides(made(results_.scene), overrides);
+  overridden_ = true;
+  changed_ = true;
+  observer_.notes(*this, std::span(notes).subspan(std::min(known, notes.size())));
+}
+
+void Pipeline::openReused(const std::string& path) {
+  changed_ = true;
+  observer_.opened(*this);
+  observer_.notes(*this, scene().notes);
+  std::error_code ignored;
+  if (path.empty() || !std::filesystem::exists(path, ignored)) return;
+  try {
+    if (isResultsFile(path)) openSource(path);
+  } catch (const InputError& error) {
+    // It is about to be replaced anyway: no stages to reuse, and no reason to fail.
+    observer_.notReused(path, error.what());
+  }
+}
+
+int Pipeline::bands() const {
+  if (results_.materials) return results_.materials->bands;
+  return from_results_ && stored_.materials ? stored_.materials->bands : kSceneBands;
+}
+
+/// Whether the materials are the results file's, of bands that no scene says.
+bool Pipeline::hasOwnMaterials() const { return bands() != kSceneBands; }
+
+/// The file's own materials belong to its mesh alone, which is `reused` or not.
+void Pipeline::requireOwnMesh(bool reused) const {
+  if (reused || !hasOwnMaterials()) return;
+  throw InputError(
+      fmt::format("{}: holds materials of {} bands for each patch of its mesh, and the options "
+                  "given ask for another mesh; leave them out, or make the materials anew",
+                  name_, bands()));
+}
+
+void Pipeline::requireLight(const std::function<std::string()>& cure) const {
+  if (hasOwnMaterials()) return;
+  if (scene().sky != Vec3(0.0)) return;
+  for (const Surface& surface : scene().surfaces) {
+    if (scene().materials[surface.material].emission != Vec3(0.0)) return;
+  }
+  throw InputError(fmt::format(
+      "{}: nothing in the scene emits light, so the picture would be black; {}", name_,
+      cure ? cure()
+           : fmt::format("make something a lamp, --set {}.radiance=10 (W/m^2/sr), or let the sky "
+                         "shine in, --sky 1",
+                         likelyLamp(scene()))));
+}
+
+bool Pipeline::isUpToDate(const std::string& path) const {
+  return !changed_ && (path == source_ || path == saved_);
+}
+
+void Pipeline::loadMatrix() {
+  if (!results_.factors || results_.factors->matrix.size() == results_.factors->fronts.size()) {
+    return;
+  }
+  const std::size_t bytes = results_.factors->report.matrix_bytes;
+  const std::size_t limit = options_.factors.memory_limit;
+  if (limit > 0 && bytes > limit) {
+    throw RunError(fmt::format("{}: its form factors take {} of memory, --memory-limit allows {}",
+                               source_, bytesText(bytes), bytesText(limit)));
+  }
+  std::optional<FormFactors> factors = std::move(readResults(source_, true).factors);
+  // Another run may have replaced the file since: its matrix belongs to another mesh.
+  if (!factors || fileState(source_) != source_state_) {
+    throw RunError(source_ + ": was replaced by another run meanwhile; run this one again");
+  }
+  results_.factors = std::move(factors);
+  progress_.check();
+}
+
+bool Pipeline::keepFactors() {
+  if (results_.factors || !stored_.factors) return false;
+  const StageKey key =
+      factorsKey(factorOptionsOf(StageKey(stored_.factors_key)), made(results_.mesh).mesh);
+  std::optional<FormFactors> factors = std::exchange(stored_.factors, std::nullopt);
+  if (key.text() != stored_.factors_key) {
+    tell(Stage::form_factors, StageAction::dropped, why(stored_.factors_key, key));
+    return true;
+  }
+  results_.factors = std::move(factors);
+  results_.factors_key = stored_.factors_key;
+  tell(Stage::form_factors, StageAction::kept);
+  return false;
+}
+
+bool Pipeline::keepSolution() {
+  if (results_.solution || !stored_.solution) return false;
+  const StageKey key = solutionKey(solveOptionsOf(StageKey(stored_.solution_key)),
+                                   materialsOfMesh(), usedFactorsKey());
+  std::optional<Solution> solution = std::exchange(stored_.solution, std::nullopt);
+  if (!results_.factors || key.text() != stored_.solution_key) {
+    tell(Stage::solution, StageAction::dropped, why(stored_.solution_key, key));
+    return true;
+  }
+  results_.solution = std::move(solution);
+  results_.solution_key = stored_.solution_key;
+  tell(Stage::solution, StageAction::kept);
+  return false;
+}
+
+bool Pipeline::keepGathered() {
+  if (results_.gathered || !stored_.gathered) return false;
+  const StageKey key = gatherKey(gatherOptionsOf(StageKey(stored_.gather_key)), materialsOfMesh(),
+                                 made(results_.mesh).mesh);
+  std::optional<Gathered> gathered = std::exchange(stored_.gathered, std::nullopt);
+  if (key.text() != stored_.gather_key) {
+    tell(Stage::gather, StageAction::dropped, why(stored_.gather_key, key));
+    return true;
+  }
+  results_.gathered = std::move(gathered);
+  results_.gather_key = stored_.gather_key;
+  tell(Stage::gather, StageAction::kept);
+  return false;
+}
+
+void Pipeline::dropEmptySolution() {
+  if (!results_.solution || !results_.solution->radiosity.empty()) return;
+  results_.solution.reset();
+  results_.solution_key.clear();
+}
+
+void Pipeline::keepLaterStages() {
+  if (!results_.mesh) mesh();
+  dropEmptySolution();
+  // In this order: a solution stands on its form factors.
+  bool dropped = keepFactors();
+  dropped = keepSolution() || dropped;
+  dropped = keepGathered() || dropped;
+  const bool needed = results_.solution || results_.gathered || hasOwnMaterials();
+  if (!needed) results_.materials.reset();
+  changed_ = changed_ || dropped;
+}
+
+void Pipeline::save(const std::string& path) {
+  keepLaterStages();
+  loadMatrix();
+  writeResults(path, results_, progress_);
+  saved_ = path;
+  changed_ = false;
+}
+
+void Pipeline::checkpoint(const std::string& path) {
+  dropEmptySolution();
+  loadMatrix();
+  // What was gathered on the same mesh stays: its key says what it was made of.
+  const bool lend = mesh_reused_ && stored_.gathered && !results_.gathered;
+  if (lend) {
+    results_.gathered = std::exchange(stored_.gathered, std::nullopt);
+    results_.gather_key = stored_.gather_key;
+  }
+  writeResults(path, results_, progress_);
+  if (lend) {
+    stored_.gathered = std::exchange(results_.gathered, std::nullopt);
+    results_.gather_key.clear();
+  }
+  saved_ = path;
+  changed_ = lend;
+}
+
+}  // namespace radiosity

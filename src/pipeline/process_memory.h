@@ -1,0 +1,14 @@
+// What this process holds.
+#pragma once
+
+#include <cstddef>
+
+namespace radiosity {
+
+/// Bytes of memory that are this process's now, libraries included; 0 where it is not known.
+std::size_t residentBytes();
+
+/// The most that were, up to now; 0 where it is not known.
+std::size_t peakBytes();
+
+}  // namespace radiosity

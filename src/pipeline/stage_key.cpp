@@ -1,0 +1,261 @@
+#include "pipeline/stage_key.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <type_traits>
+
+#include "base/hash.h"
+#include "radiosity/names.h"
+
+namespace radiosity {
+
+namespace {
+
+// Names whose values are identities, and how a change of one reads.
+constexpr std::pair<std::string_view, std::string_view> kIdentities[] = {
+    {"scene", "geometry changed"},
+    {"mesh", "mesh changed"},
+    {"materials", "materials changed"},
+    {"factors", "form factors changed"}};
+
+std::string onOff(bool value) { return value ? "on" : "off"; }
+
+template <class Number>
+void read(const StageKey& key, std::string_view name, Number& value) {
+  const std::optional<std::string> text = key.get(name);
+  if (!text) return;
+  if constexpr (std::is_same_v<Number, bool>) {
+    value = *text == "on";
+  } else {
+    Number parsed{};
+    const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), parsed);
+    if (error == std::errc() && end == text->data() + text->size()) value = parsed;
+  }
+}
+
+/// Arrays count as rows of all bands.
+std::string materialsHash(const PatchMaterials& materials) {
+  Hash hash;
+  for (const std::vector<double>* values : {&materials.reflectance, &materials.emission}) {
+    const std::uint64_t rows = values->size() / std::size_t(materials.bands);
+    hash.bytes(&rows, sizeof rows);
+    hash.bytes(values->data(), values->size() * sizeof(double));
+  }
+  return hash.hex();
+}
+
+/// One number where all bands have the same.
+std::string skyText(const std::vector<double>& sky) {
+  if (sky.empty()) return "0";
+  const bool grey = std::all_of(sky.begin(), sky.end(), [&](double s) { return s == sky[0]; });
+  return grey ? fmt::format("{}", sky[0]) : fmt::format("{}", fmt::join(sky, ","));
+}
+
+/// The option that a key names; as it was where it names none.
+template <class Table, class Enum>
+void readNamed(const StageKey& key, std::string_view name, const Table& table, Enum& value) {
+  if (const auto found = named(table, key.get(name).value_or(""))) value = *found;
+}
+
+/// Options that the command line does not have are named where they are not as by default, so that
+/// the keys in older files stay what they are.
+bool isNamedIfSet(std::string_view name) { return name == "random-turns" || name == "inset"; }
+
+void addTurns(StageKey& key, bool random_turns) {
+  if (!random_turns) key.add("random-turns", onOff(random_turns));
+}
+
+std::string sceneHash(const Scene& scene) {
+  Hash hash;
+  hash.array(scene.vertices);
+  hash.array(scene.face_offset);
+  hash.array(scene.corners);
+  hash.array(scene.face_surface);
+  for (const Surface& surface : scene.surfaces) {
+    hash.text(surface.name);
+    const Material& material = scene.materials[surface.material];
+    const bool emits = material.emission != Vec3(0.0);
+    hash.text(onOff(material.two_sided) + onOff(emits));
+  }
+  return hash.hex();
+}
+
+}  // namespace
+
+StageKey::StageKey(std::string_view text) {
+  while (!text.empty()) {
+    const std::string_view pair = text.substr(0, text.find(' '));
+    text.remove_prefix(std::min(text.size(), pair.size() + 1));
+    const std::size_t equals = pair.find('=');
+    if (equals != std::string_view::npos) {
+      add(std::string(pair.substr(0, equals)), std::string(pair.substr(equals + 1)));
+    }
+  }
+}
+
+void StageKey::add(std::string name, std::string value) {
+  pairs_.emplace_back(std::move(name), std::move(value));
+}
+
+std::optional<std::string> StageKey::get(std::string_view name) const {
+  for (const auto& [have, value] : pairs_) {
+    if (have == name) return value;
+  }
+  return std::nullopt;
+}
+
+std::string StageKey::text() const {
+  std::string text;
+  for (const auto& [name, value] : pairs_) {
+    if (!text.empty()) text += ' ';
+    text.append(name).append("=").append(value);
+  }
+  return text;
+}
+
+std::string StageKey::difference(const StageKey& before, const StageKey& after) {
+  std::string words;
+  for (const auto& [name, value] : after.pairs_) {
+    const std::optional<std::string> old = before.get(name);
+    if (old == value) continue;
+    std::string change = fmt::format(
+        "{} {} -> {}", name, old.value_or(isNamedIfSet(name) ? "default" : "unknown"), value);
+    for (const auto& [identity, phrase] : kIdentities) {
+      if (name == identity) change = phrase;
+    }
+    words += (words.empty() ? "" : ", ") + change;
+  }
+  if (!words.empty()) return words;
+  for (const auto& [name, value] : before.pairs_) {
+    if (after.get(name)) continue;
+    words += (words.empty() ? "" : ", ") + fmt::format("{} {} -> default", name, value);
+  }
+  return words;
+}
+
+StageKey meshKey(const MeshOptions& options, const Scene& scene) {
+  StageKey key;
+  key.add("patches", fmt::format("{}", options.patches));
+  key.add("max-edge", fmt::format("{}", options.max_edge));
+  key.add("weld", fmt::format("{}", options.weld));
+  key.add("faces-as-patches", onOff(options.faces_as_patches));
+  key.add("scene", sceneHash(scene));
+  return key;
+}
+
+namespace {
+
+// Every option the result may depend on, as asked for: another mesh may make `auto` pick the other
+// method.
+StageKey factorsKeyOf(const FormFactorOptions& options, const std::string& mesh_hash) {
+  StageKey key;
+  key.add("method", nameOf(kMethodNames, options.method));
+  if (options.method != FormFactorMethod::hemicube) {
+    key.add("tolerance", fmt::format("{}", options.tolerance));
+    key.add("closure", nameOf(kClosureNames, options.closure));
+  }
+  if (options.method != FormFactorMethod::exact) {
+    key.add("resolution", fmt::format("{}", options.resolution));
+    key.add("seed", fmt::format("{}", options.seed));
+    key.add("symmetrize", onOff(options.symmetrize));
+    key.add("near", options.nearExact() ? "exact" : "off");
+    addTurns(key, options.random_turns);
+  }
+  key.add("precision", nameOf(kPrecisionNames, options.storedPrecision()));
+  key.add("mesh", mesh_hash);
+  return key;
+}
+
+}  // namespace
+
+StageKey factorsKey(const FormFactorOptions& options, const PatchMesh& mesh) {
+  return factorsKeyOf(options, geometryHash(mesh));
+}
+
+StageKey usedKey(const StageKey& factors_key, std::string_view method) {
+  FormFactorOptions options = factorOptionsOf(factors_key);
+  options.near_exact = options.nearExact();  // as `auto` had it, where that was asked for
+  options.method = named(kMethodNames, method).value_or(options.method);
+  return factorsKeyOf(options, factors_key.get("mesh").value_or(""));
+}
+
+StageKey solutionKey(const SolveOptions& options, const PatchMaterials& materials,
+                     const StageKey& factors_key) {
+  Hash factors;
+  factors.text(factors_key.text());
+  StageKey key;
+  key.add("solver", nameOf(kSolverNames, options.solver));
+  key.add("solve-tolerance", fmt::format("{}", options.tolerance));
+  key.add("max-iterations", fmt::format("{}", options.max_iterations));
+  key.add("materials", materialsHash(materials));
+  key.add("sky", skyText(materials.sky));
+  key.add("factors", factors.hex());
+  return key;
+}
+
+StageKey gatherKey(const GatherOptions& options, const PatchMaterials& materials,
+                   const PatchMesh& mesh) {
+  StageKey key;
+  key.add("at", nameOf(kGatherAtNames, options.at));
+  key.add("passes", fmt::format("{}", options.passes));
+  key.add("gather-tolerance", fmt::format("{}", options.tolerance));
+  key.add("resolution", fmt::format("{}", options.resolution));
+  key.add("seed", fmt::format("{}", options.seed));
+  key.add("crease", fmt::format("{}", options.crease));
+  addTurns(key, options.random_turns);
+  if (options.inset != GatherOptions().inset) key.add("inset", fmt::format("{}", options.inset));
+  key.add("materials", materialsHash(materials));
+  key.add("sky", skyText(materials.sky));
+  key.add("mesh", geometryHash(mesh));
+  return key;
+}
+
+MeshOptions meshOptionsOf(const StageKey& key) {
+  MeshOptions options;
+  read(key, "patches", options.patches);
+  read(key, "max-edge", options.max_edge);
+  read(key, "weld", options.weld);
+  read(key, "faces-as-patches", options.faces_as_patches);
+  return options;
+}
+
+FormFactorOptions factorOptionsOf(const StageKey& key) {
+  FormFactorOptions options;
+  readNamed(key, "method", kMethodNames, options.method);
+  read(key, "tolerance", options.tolerance);
+  readNamed(key, "closure", kClosureNames, options.closure);
+  // What `automatic` does by itself does not bind another method that is asked for later.
+  const bool near_exact = key.get("near") == "exact";
+  if (near_exact != options.nearExact()) options.near_exact = near_exact;
+  read(key, "resolution", options.resolution);
+  read(key, "seed", options.seed);
+  read(key, "symmetrize", options.symmetrize);
+  read(key, "random-turns", options.random_turns);
+  options.precision = named(kPrecisionNames, key.get("precision").value_or(""));
+  return options;
+}
+
+SolveOptions solveOptionsOf(const StageKey& key) {
+  SolveOptions options;
+  readNamed(key, "solver", kSolverNames, options.solver);
+  read(key, "solve-tolerance", options.tolerance);
+  read(key, "max-iterations", options.max_iterations);
+  return options;
+}
+
+GatherOptions gatherOptionsOf(const StageKey& key) {
+  GatherOptions options;
+  readNamed(key, "at", kGatherAtNames, options.at);
+  read(key, "passes", options.passes);
+  read(key, "gather-tolerance", options.tolerance);
+  read(key, "resolution", options.resolution);
+  read(key, "seed", options.seed);
+  read(key, "crease", options.crease);
+  read(key, "random-turns", options.random_turns);
+  read(key, "inset", options.inset);
+  return options;
+}
+
+}  // namespace radiosity

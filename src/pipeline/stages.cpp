@@ -1,0 +1,251 @@
+// The stages: reused where the key fits, else made.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "base/made.h"
+#include "pipeline/process_memory.h"
+#include "pipeline/stage_key.h"
+#include "radiosity/names.h"
+#include "radiosity/pipeline.h"
+
+namespace radiosity {
+
+namespace {
+
+class Stopwatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// The input was good: what a later stage refuses then is no fault of it.
+template <class Compute>
+auto computedStage(const char* name, const Compute& compute) {
+  try {
+    return compute();
+  } catch (const InputError& error) {
+    throw RunError(
+        fmt::format("{} failed on a scene that was read without a fault: {}", name, error.what()));
+  }
+}
+
+/// Takes a stage out of `from`, where its key stays.
+template <class Value>
+std::optional<Value> taken(std::optional<Value>& from) {
+  return std::exchange(from, std::nullopt);
+}
+
+}  // namespace
+
+/// Why a stage has to be computed although there was one; empty where there was none.
+std::string Pipeline::why(const std::string& stored_key, const StageKey& key) const {
+  if (stored_key.empty()) return {};
+  const std::string difference = StageKey::difference(StageKey(stored_key), key);
+  return difference.empty() ? "its key is not readable" : difference;
+}
+
+void Pipeline::tell(Stage stage, StageAction action, const std::string& detail) const {
+  observer_.stage(*this, {stage, action, detail, std::nullopt});
+}
+
+void Pipeline::computed(Stage stage, const std::string& reason, double seconds) {
+  changed_ = true;
+  const StageAction action = reason.empty() ? StageAction::computed : StageAction::recomputed;
+  observer_.stage(*this, {stage, action, reason, seconds});
+  progress_.check();
+}
+
+/// Discards a stage that was made and what stands on it; their keys stay, to say what changed.
+void Pipeline::discardFrom(Stage first) {
+  const auto discard = [this](auto& stage, std::string& key, std::string& stored_key) {
+    if (!stage) return;
+    stage.reset();
+    stored_key = std::exchange(key, {});
+    changed_ = true;
+  };
+  const bool all = first == Stage::mesh;
+  if (all) {
+    discard(results_.mesh, results_.mesh_key, stored_.mesh_key);
+    results_.materials.reset();
+  }
+  if (all || first == Stage::form_factors) {
+    discard(results_.factors, results_.factors_key, stored_.factors_key);
+  }
+  if (all || first == Stage::gather) {
+    discard(results_.gathered, results_.gather_key, stored_.gather_key);
+  }
+  if (first != Stage::gather) {
+    discard(results_.solution, results_.solution_key, stored_.solution_key);
+  }
+}
+
+const MeshResult& Pipeline::mesh() {
+  options_.mesh.validate();
+  const StageKey key = meshKey(options_.mesh, scene());
+  if (results_.mesh && results_.mesh_key == key.text()) return made(results_.mesh);
+  const bool reused = stored_.mesh && stored_.mesh_key == key.text();
+  requireOwnMesh(reused);
+  discardFrom(Stage::mesh);
+  mesh_reused_ = reused;
+  replaces_ = replaces_ || stored_.factors || (stored_.mesh && !mesh_reused_);
+  if (mesh_reused_) {
+    results_.mesh = taken(stored_.mesh);
+    results_.mesh_key = key.text();
+    if (hasOwnMaterials()) results_.materials = taken(stored_.materials);
+    tell(Stage::mesh, StageAction::reused, source_);
+    return made(results_.mesh);
+  }
+  const std::string reason = why(stored_.mesh_key, key);
+  const Stopwatch watch;
+  results_.mesh = meshScene(scene(), options_.mesh, progress_);
+  results_.mesh_key = key.text();
+  stored_.mesh.reset();
+  computed(Stage::mesh, reason, watch.seconds());
+  return made(results_.mesh);
+}
+
+/// Whether form factors are what was asked for: other options than those that made them may differ.
+/// `plan` is set where it had to be made to tell.
+bool Pipeline::factorsFit(const FormFactors& factors, const std::string& factors_key,
+                          const StageKey& key, std::optional<FormFactorPlan>& plan) const {
+  if (factors_key == key.text()) return true;
+  const std::string& method = factors.method;
+  const StageKey made_with = usedKey(StageKey(factors_key), method);
+  if (made_with.text() != usedKey(key, method).text()) return false;
+  const FormFactorMethod made_by =
+      named(kMethodNames, method).value_or(FormFactorMethod::automatic);
+  if (options_.factors.method != FormFactorMethod::automatic) {
+    return options_.factors.method == made_by;
+  }
+  // Once they are there, exact ones are better whatever would be picked.
+  if (made_by == FormFactorMethod::exact) return true;
+  plan = planFactors();
+  return plan->method == made_by;
+}
+
+FormFactorPlan Pipeline::planFactors() const {
+  FormFactorOptions options = options_.factors;
+  if (options.memory_held == 0) options.memory_held = residentBytes();
+  FormFactorPlan plan = planFormFactors(made(results_.mesh).mesh, options, progress_);
+  // Planning may have tried the exact method, which takes more than hemicubes then do.
+  plan.bytes = std::max(plan.bytes, peakBytes());
+  return plan;
+}
+
+FormFactors Pipeline::computeFactors(std::optional<FormFactorPlan> plan) const {
+  return computedStage("form factors", [&] {
+    if (!plan) plan = planFactors();
+    observer_.planned(*this, *plan);
+    FormFactors factors = computeFormFactors(*plan, progress_);
+    factors.report.estimated_bytes = plan->bytes;
+    return factors;
+  });
+}
+
+const FormFactors& Pipeline::factors() {
+  const PatchMesh& patches = mesh().mesh;
+  options_.factors.validate();
+  const StageKey key = factorsKey(options_.factors, patches);
+  const std::string asked = key.text();
+  if (results_.factors && factors_asked_ == asked) return made(results_.factors);
+  std::optional<FormFactorPlan> plan;
+  if (results_.factors && factorsFit(*results_.factors, results_.factors_key, key, plan)) {
+    factors_asked_ = asked;
+    return made(results_.factors);
+  }
+  discardFrom(Stage::form_factors);
+  if (stored_.factors && factorsFit(*stored_.factors, stored_.factors_key, key, plan)) {
+    results_.factors = taken(stored_.factors);
+    results_.factors_key = stored_.factors_key;
+    factors_asked_ = asked;
+    tell(Stage::form_factors, StageAction::reused, source_);
+    return made(results_.factors);
+  }
+  const std::string reason = why(stored_.factors_key, key);
+  const Stopwatch watch;
+  results_.factors = computeFactors(std::move(plan));
+  results_.factors_key = asked;
+  factors_asked_ = asked;
+  stored_.factors.reset();
+  factors_computed_ = true;
+  computed(Stage::form_factors, reason, watch.seconds());
+  return made(results_.factors);
+}
+
+const ExchangeMatrix& Pipeline::matrix() {
+  factors();
+  loadMatrix();
+  return made(results_.factors).matrix;
+}
+
+StageKey Pipeline::usedFactorsKey() const {
+  if (!results_.factors) return {};
+  return usedKey(StageKey(results_.factors_key), results_.factors->method);
+}
+
+const PatchMaterials& Pipeline::materialsOfMesh() {
+  if (!results_.materials) results_.materials = patchMaterials(scene(), made(results_.mesh).mesh);
+  return made(results_.materials);
+}
+
+const PatchMaterials& Pipeline::materials() {
+  mesh();
+  return materialsOfMesh();
+}
+
+const Solution& Pipeline::solution() {
+  factors();
+  options_.solve.validate();
+  const StageKey key = solutionKey(options_.solve, materialsOfMesh(), usedFactorsKey());
+  if (results_.solution && results_.solution_key == key.text()) return made(results_.solution);
+  discardFrom(Stage::solution);
+  if (stored_.solution && stored_.solution_key == key.text()) {
+    results_.solution = taken(stored_.solution);
+    results_.solution_key = key.text();
+    tell(Stage::solution, StageAction::reused, source_);
+    return made(results_.solution);
+  }
+  const std::string reason = why(stored_.solution_key, key);
+  loadMatrix();
+  const Stopwatch watch;
+  results_.solution = computedStage("solution", [&] {
+    return solve(made(results_.factors), made(results_.materials), made(results_.mesh).mesh,
+                 options_.solve, progress_);
+  });
+  results_.solution_key = key.text();
+  stored_.solution.reset();
+  computed(Stage::solution, reason, watch.seconds());
+  return made(results_.solution);
+}
+
+const Gathered& Pipeline::gathered() {
+  const PatchMesh& patches = mesh().mesh;
+  options_.gather.validate();
+  const StageKey key = gatherKey(options_.gather, materialsOfMesh(), patches);
+  if (results_.gathered && results_.gather_key == key.text()) return made(results_.gathered);
+  discardFrom(Stage::gather);
+  if (stored_.gathered && stored_.gather_key == key.text()) {
+    results_.gathered = taken(stored_.gathered);
+    results_.gather_key = key.text();
+    tell(Stage::gather, StageAction::reused, source_);
+    return made(results_.gathered);
+  }
+  const std::string reason = why(stored_.gather_key, key);
+  const Stopwatch watch;
+  results_.gathered = computedStage("gathering", [&] {
+    return gather(patches, made(results_.materials), options_.gather, progress_);
+  });
+  results_.gather_key = key.text();
+  stored_.gathered.reset();
+  computed(Stage::gather, reason, watch.seconds());
+  return made(results_.gathered);
+}
+
+}  // namespace radiosity

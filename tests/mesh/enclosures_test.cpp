@@ -1,0 +1,133 @@
+// Bodies and rooms: the closed surfaces of a mesh.
+#include "mesh/enclosures.h"
+
+#include <gtest/gtest.h>
+
+#include "radiosity/patch_mesh.h"
+#include "support/mesh_builder.h"
+#include "support/scene_builder.h"
+
+namespace radiosity {
+namespace {
+
+using test::MeshBuilder;
+using Loop = MeshBuilder::Loop;
+
+Enclosures enclosuresOf(const MeshBuilder& builder) {
+  Progress silent;
+  return findEnclosures(builder.build(), silent);
+}
+
+std::size_t closedSurfaces(const MeshBuilder& builder) {
+  return enclosuresOf(builder).surfaces.size();
+}
+
+TEST(Enclosures, ARoomWithABlockOnItsFloorIsOneClosedSurface) {
+  const PatchMesh mesh = test::roomWithBlock(1).build();
+  const Enclosures found = enclosuresOf(test::roomWithBlock(1));
+  ASSERT_EQ(found.surfaces.size(), 1u);
+  const ClosedSurface& room = found.surfaces[0];
+  EXPECT_EQ(room.polygons.size(), 11u);
+  EXPECT_FALSE(room.is_solid);
+  // -1 inside the room, 0 in the block and outside: solid angles are exact to rounding.
+  EXPECT_NEAR(windingNumber(mesh, room.polygons, {0.1, 0.2, 0.3}), -1, 1e-12);
+  EXPECT_NEAR(windingNumber(mesh, room.polygons, {0.4, 0.4, 0.2}), 0, 1e-12);
+  EXPECT_NEAR(windingNumber(mesh, room.polygons, {2, 0.5, 0.5}), 0, 1e-12);
+}
+
+TEST(Enclosures, OpenFlippedTwoSidedAndCrossingSurfacesAreNone) {
+  MeshBuilder open;
+  open.box("box", {0, 0, 0}, {1, 1, 1}, 1, false, false);
+  EXPECT_EQ(closedSurfaces(open), 0u);
+
+  MeshBuilder flipped;  // one face turned over
+  flipped.box("box", {0, 0, 0}, {1, 1, 1}, 1, false, false);
+  flipped.grid("bottom", {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  EXPECT_EQ(closedSurfaces(flipped), 0u);
+
+  MeshBuilder two_sided;
+  two_sided.box("box", {0, 0, 0}, {1, 1, 1}, 1, false, false);
+  two_sided.grid("bottom", {0, 0, 0}, {0, 1, 0}, {1, 0, 0}, 1, 1, true);
+  EXPECT_EQ(closedSurfaces(two_sided), 0u);
+
+  // A prism over a bow tie: closed and oriented, but two of its sides cross, and one of its two
+  // chambers is inside out.
+  const std::vector<Vec3> tie = {{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}};
+  MeshBuilder crossing;
+  Loop top;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Vec3 a = tie[k], b = tie[(k + 1) % 4], up(0, 0, 1);
+    crossing.polygon("side", {{a, b, b + up, a + up}});
+    top.insert(top.begin(), a + up);
+  }
+  const Loop low(tie.begin(), tie.end());
+  const auto addCap = [&](const Loop& loop) {  // two triangles through the crossing's corners
+    crossing.polygon("cap", {{loop[0], loop[1], loop[2]}});
+    crossing.polygon("cap", {{loop[0], loop[2], loop[3]}});
+  };
+  addCap(top);
+  addCap(low);
+  EXPECT_EQ(closedSurfaces(crossing), 0u);
+}
+
+TEST(Enclosures, ABodyThatFloatsInARoomIsASurfaceOfItsOwn) {
+  MeshBuilder builder;
+  builder.box("room", {-1, -1, -1}, {1, 1, 1}, 1, true);
+  builder.box("cube", {-0.25, -0.25, -0.25}, {0.25, 0.25, 0.25}, 1);
+  EXPECT_EQ(closedSurfaces(builder), 2u);
+}
+
+bool provesClosed(const MeshBuilder& builder) { return enclosuresOf(builder).proved_closed; }
+
+TEST(Enclosures, ASceneIsProvedClosedWhereEveryPatchIsOnOrInARoom) {
+  EXPECT_TRUE(provesClosed(test::roomWithBlock(2)));
+  MeshBuilder inside;  // a block within a room, apart from it
+  inside.box("room", {0, 0, 0}, {1, 1, 1}, 1, true);
+  inside.box("block", {0.4, 0.4, 0.4}, {0.6, 0.6, 0.6}, 1);
+  EXPECT_TRUE(provesClosed(inside));
+  MeshBuilder outside;
+  outside.box("room", {0, 0, 0}, {1, 1, 1}, 1, true);
+  outside.box("block", {2.4, 0.4, 0.4}, {2.6, 0.6, 0.6}, 1);
+  EXPECT_FALSE(provesClosed(outside));
+  MeshBuilder open;
+  open.box("room", {0, 0, 0}, {1, 1, 1}, 1, true, false);
+  EXPECT_FALSE(provesClosed(open));
+  EXPECT_FALSE(provesClosed(MeshBuilder()));
+}
+
+TEST(Enclosures, APolygonIsCoveredByOneOnTheSameCornersThatFacesTheOtherWay) {
+  MeshBuilder builder;
+  builder.grid("above", {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  builder.grid("below", {0, 0, 0}, {0, 1, 0}, {1, 0, 0});
+  builder.grid("alone", {0, 0, 1}, {1, 0, 0}, {0, 1, 0});
+  const Enclosures found = enclosuresOf(builder);
+  EXPECT_EQ(found.covered, (std::vector<std::uint8_t>{1, 1, 0}));
+  // The two enclose nothing.
+  EXPECT_TRUE(found.surfaces.empty());
+  EXPECT_FALSE(found.proved_closed);
+}
+
+TEST(Enclosures, MeshingFindsThemWhateverTheSceneSizeAndTurn) {
+  test::SceneBuilder builder;
+  builder.box(builder.surface("room"), {0, 0, 0}, {3, 2, 2}, false);
+  builder.box(builder.surface("on the floor"), {0.5, 0.5, 0}, {1, 1, 0.5});
+  builder.box(builder.surface("in the air"), {2, 1, 1}, {2.5, 1.5, 1.5});
+  const Scene straight = builder.scene();
+  for (const Scene& scene : {straight, test::turned(straight), test::scaled(straight, 1e-6),
+                             test::turned(test::scaled(straight, 1e6))}) {
+    for (const bool faces : {false, true}) {
+      MeshOptions options;
+      options.patches = 100;
+      options.faces_as_patches = faces;
+      Progress silent;
+      const PatchMesh mesh = meshScene(scene, options, silent).mesh;
+      ASSERT_TRUE(mesh.enclosures.has_value());
+      // As they are, faces do not say that the room and the box on its floor are one surface.
+      EXPECT_EQ(mesh.enclosures->surfaces.size(), faces ? 3u : 2u);
+      EXPECT_TRUE(mesh.enclosures->proved_closed);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace radiosity
