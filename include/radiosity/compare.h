@@ -26,9 +26,10 @@ struct LightField {
   std::string name;  ///< in messages
   std::vector<Vec3> vertices;
   std::vector<std::array<Index, 3>> triangles;  ///< T
-  std::vector<std::array<Vec3, 3>> values;      ///< T: radiosity, or (srgb8) linear light
-  std::vector<Index> cell;                      ///< T
-  std::vector<Index> cell_surface;              ///< by cell, into surface_names
+  int bands = 3;                                ///< 1 or more
+  std::vector<double> values;  ///< T * 3 * bands: radiosity at each corner, or (srgb8) linear light
+  std::vector<Index> cell;     ///< T
+  std::vector<Index> cell_surface;  ///< by cell, into surface_names
   std::vector<std::string> surface_names;
   std::vector<std::uint8_t> clipped;  ///< T, 1: a corner is at the top of its range; or empty
   std::vector<std::uint8_t> emits;    ///< by cell, 1: a lamp; empty: not known
@@ -36,9 +37,11 @@ struct LightField {
   bool relative = false;              ///< no unit: srgb8
 };
 
-/// One value a patch: N * 3, W/m^2, row-major. `emission`: N, or empty where it is not known.
-LightField lightOf(const PatchMesh& mesh, std::span<const double> radiosity, std::string name,
-                   std::span<const Vec3> emission = {});
+/// One value a patch and band: N * bands, W/m^2, row-major. `emission`: likewise, or empty where it
+/// is not known. Errors: InputError where sizes are others.
+LightField lightOf(const PatchMesh& mesh, std::span<const double> radiosity, int bands,
+                   std::string name, std::span<const double> emission = {});
+/// Three bands.
 LightField lightOf(const LitMesh& mesh, LightUnit unit);
 
 struct CompareOptions {
@@ -51,12 +54,16 @@ struct CompareOptions {
 
 /// Sums over cells, weighted with area; [band].
 struct BandSums {
-  double area = 0;             ///< m^2, of what was compared
-  std::array<double, 3> a{};   ///< W: integral of A; pictures: sum over pixels
-  std::array<double, 3> b{};   ///< of B, scaled
-  std::array<double, 3> aa{};  ///< integral of A^2
-  std::array<double, 3> dd{};  ///< of (B - A)^2
-  void add(double weight, const Vec3& value_a, const Vec3& value_b);
+  BandSums() = default;
+  explicit BandSums(int bands);
+  double area = 0;         ///< m^2, of what was compared
+  std::vector<double> a;   ///< W: integral of A; pictures: sum over pixels
+  std::vector<double> b;   ///< of B, scaled
+  std::vector<double> aa;  ///< integral of A^2
+  std::vector<double> dd;  ///< of (B - A)^2
+  /// Values of all bands; those of B are multiplied by `scale`.
+  void add(double weight, std::span<const double> of_a, std::span<const double> of_b,
+           double scale = 1);
   /// sqrt(sum dd / sum aa), one band or (-1) all; 0 where both are 0, infinite where A alone is.
   double relativeL2(int band = -1) const;
 };
@@ -91,16 +98,18 @@ struct Comparison {
   std::optional<BandSums> without_emitters;
   LargestDifference largest;
   std::vector<SurfaceDifference> surfaces;  ///< in order of their share of the difference
-  std::vector<double> difference;           ///< |B - A|, Rec. 709 luminance, by cell or pixel; NaN:
-                                            ///< not compared
-  std::vector<Note> notes;                  ///< a factor of pi and others, by name
+  /// |B - A| by cell or pixel: Rec. 709 luminance where there are three bands, else the sum of all.
+  /// NaN: not compared.
+  std::vector<double> difference;
+  std::vector<Note> notes;  ///< a factor of pi and others, by name
 
   double relativeL2(int band = -1) const { return sums.relativeL2(band); }
 };
 
 /// Means over the cells of A (of B, where only B is constant on its cells) of both, matched by
 /// position: a point's counterpart is the nearest point of the other side that faces alike. Errors:
-/// InputError where the two cannot be compared, or too little of them matches; says what to do.
+/// InputError where the two cannot be compared (they have other bands, other units), or too little
+/// of them matches; says what to do.
 Comparison compare(const LightField& a, const LightField& b, const CompareOptions& options);
 
 /// Pictures of the same size, pixel by pixel where both show something; values are used as they

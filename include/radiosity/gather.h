@@ -74,9 +74,9 @@ struct GatherSummary {
 /// (degenerate patches) does not look: H = 0.
 struct Gathered {
   GatherAt at = GatherAt::patches;
-  int bands = 3;
-  std::vector<float> radiosity;   ///< L * 3, row-major, W/m^2
-  std::vector<float> irradiance;  ///< L * 3: H
+  int bands = 3;                  ///< those of the materials
+  std::vector<float> radiosity;   ///< L * bands, row-major, W/m^2
+  std::vector<float> irradiance;  ///< L * bands: H
   std::vector<float> backs;       ///< L, share of the view that ends on black backs
   std::vector<float> sky;         ///< L
   /// Share of all eyes' view that ends on each surface's back, eyes weighted with their areas; by
@@ -88,14 +88,15 @@ struct Gathered {
   GatherSummary summary;
 };
 
-/// Errors: InputError naming the option or the patch; Cancelled.
+/// Any number of bands: what is looked up once counts for all of them. Errors: InputError naming
+/// the option or the patch, and of PatchMaterials::requireSizes(); Cancelled.
 Gathered gather(const PatchMesh& mesh, const PatchMaterials& materials,
                 const GatherOptions& options, Progress& progress);
 
-/// Area mean of the radiosity over every patch, N * 3.
+/// Area mean of the radiosity over every patch, N * bands.
 std::vector<double> patchRadiosity(const PatchMesh& mesh, const Gathered& gathered);
 
-/// Radiosity at every entry of mesh.corners, * 3: as gathered, or each patch's own.
+/// Radiosity at every entry of mesh.corners, * bands: as gathered, or each patch's own.
 std::vector<double> cornerRadiosity(const PatchMesh& mesh, const Gathered& gathered);
 
 }  // namespace radiosity

@@ -149,12 +149,21 @@ std::size_t countTJunctions(const PatchMesh& mesh, double tolerance);
 /// Interior angles in degrees: the smallest over all patches of non-zero area.
 double smallestAngle(const PatchMesh& mesh);
 
-/// Reflectance and emission of every patch, textures averaged over the patch's area.
+/// Reflectance and emission of every patch, in any number of bands: one for heat (1 - emissivity
+/// and exitance), three for colours, more for spectra. A band knows nothing of the others.
 struct PatchMaterials {
-  std::vector<Vec3> reflectance;  ///< N, 0 to 1
-  std::vector<Vec3> emission;     ///< N, exitance, W/m^2
-  Vec3 sky{0.0};                  ///< Scene::sky: radiance from where nothing stands, W/m^2/sr
+  int bands = 3;                    ///< 1 or more
+  std::vector<double> reflectance;  ///< N * bands, row-major, 0 to 1
+  std::vector<double> emission;     ///< N * bands, exitance, W/m^2
+  std::vector<double> sky;  ///< bands: radiance from where nothing stands, W/m^2/sr; empty: dark
+
+  /// Errors: InputError naming the array whose size is not that of `patches` patches, and the size
+  /// it should have.
+  void requireSizes(std::size_t patches) const;
 };
+
+/// What the scene says: linear Rec. 709 red, green and blue, textures averaged over the patch's
+/// area, and Scene::sky.
 PatchMaterials patchMaterials(const Scene& scene, const PatchMesh& mesh);
 
 /// Corners of patches that share one value where a field is smooth: at every vertex those whose

@@ -68,8 +68,8 @@ struct PipelineOptions {
 
 /// A scalar of every patch, to be drawn by renderFalseColour().
 enum class Quantity {
-  radiosity,    ///< luminance of B, W/m^2
-  irradiance,   ///< luminance of H, W/m^2
+  radiosity,    ///< luminance of B, W/m^2; of bands that are not three their sum
+  irradiance,   ///< the same of H
   form_factor,  ///< F from one patch to each
   row_sum       ///< what each patch sees of fronts
 };
@@ -99,8 +99,8 @@ class Pipeline {
   /// one_sided, two_sided, sky). `reuse`: with a scene file, the results file whose stages are
   /// reused where they fit the scene and options(), as a rule the one that save() will write; it
   /// need not be there. Errors: InputError for what cannot be read, for a results file without a
-  /// scene, and where `scene` says how a scene file is read ("--unit") and `path` is a results
-  /// file.
+  /// scene, where `scene` says how a scene file is read ("--unit") and `path` is a results file,
+  /// and for overrides of one with materials of its own (bands()).
   void open(const std::string& path, const SceneOptions& scene = {}, const std::string& reuse = {});
   /// A scene in memory, as validate(const Scene&) asks; `reuse` as above.
   void open(Scene scene, const std::string& reuse = {});
@@ -115,6 +115,8 @@ class Pipeline {
   // where form factors, solution or gathering fail on a scene that was read without a fault, where
   // memory_limit is exceeded; Cancelled.
 
+  /// InputError also where the results file has materials of its own (bands()) and options() ask
+  /// for another mesh than the one they belong to.
   const MeshResult& mesh();
   /// Reused ones come without their matrix, which may be large: matrix() reads it.
   const FormFactors& factors();
@@ -129,7 +131,8 @@ class Pipeline {
 
   // ---- What to draw.
 
-  /// Of solution(), which must have values, and of gathered().
+  /// Of solution(), which must have values, and of gathered(). One band is drawn grey; InputError
+  /// where there are two, or more than three.
   SurfaceLight solvedLight();
   SurfaceLight gatheredLight();
   /// `patch`: of Quantity::form_factor, below N.
@@ -138,8 +141,12 @@ class Pipeline {
   // ---- What there is.
 
   const Scene& scene() const;
+  /// Of the materials: three, which the scene says, or what the results file opened says itself
+  /// with materials of its own, a row a patch.
+  int bands() const;
   /// InputError where nothing in the scene emits and no sky shines. `cure`: what the message says
-  /// to do about it; none: to name a lamp.
+  /// to do about it; none: to name a lamp. Materials of the file's own are not looked at: the
+  /// summary of solution() or gathered() says where all is dark.
   void requireLight(const std::function<std::string()>& cure = {}) const;
   /// The stages made, reused or kept so far; form factors perhaps without their matrix.
   const Results& results() const { return results_; }
@@ -187,6 +194,8 @@ class Pipeline {
   FormFactorPlan planFactors() const;
   FormFactors computeFactors(std::optional<FormFactorPlan> plan) const;
   StageKey usedFactorsKey() const;
+  bool hasOwnMaterials() const;
+  void requireOwnMesh(bool reused) const;
   const PatchMaterials& materialsOfMesh();
 
   bool keepFactors();

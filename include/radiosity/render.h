@@ -58,6 +58,11 @@ std::string cameraText(const Camera& camera);
 std::vector<double> cornerValues(const PatchMesh& mesh, std::span<const double> values, int bands,
                                  double crease);
 
+/// Colours to draw from values of `bands` bands each, row-major: three are red, green and blue as
+/// they are, one is grey (three times the same). Errors: InputError for other numbers of bands,
+/// which have no colours of their own, with the cure.
+std::vector<double> rgbOf(std::span<const double> values, int bands);
+
 /// The picture of a field over the patches (N * 3, row-major, finite): linear values, no tone
 /// mapping. Colour is the mean over the samples that hit, alpha their share. Pixels are square;
 /// where the picture is narrower than the camera's own aspect the vertical field grows, so that
@@ -82,12 +87,18 @@ struct SurfaceLight {
   std::vector<double> patches;  ///< N * 3: radiosity B, W/m^2
   /// mesh.corners.size() * 3: B where it is known better than from the patches around; or empty.
   std::vector<double> corners;
-  std::vector<double> reflected;  ///< N: luminance of B - E, what is not emitted, at least 0, W/m^2
+  std::vector<double> reflected;  ///< N: as reflectedLight()
   Vec3 sky{0.0};                  ///< radiance where nothing is hit, W/m^2/sr
 };
 
-/// The light of radiosities B (N * 3, W/m^2) on patches of these materials.
-SurfaceLight surfaceLight(std::vector<double> radiosity, const PatchMaterials& materials);
+/// N: how bright B - E is, what a patch does not emit itself, at least 0, W/m^2: its luminance, of
+/// bands that are not three their sum. `radiosity`: B, N * materials.bands, W/m^2.
+std::vector<double> reflectedLight(std::span<const double> radiosity,
+                                   const PatchMaterials& materials);
+
+/// The light of radiosities B (N * materials.bands, W/m^2) on patches of these materials. Errors:
+/// as rgbOf().
+SurfaceLight surfaceLight(std::span<const double> radiosity, const PatchMaterials& materials);
 
 /// The same with the sky, where it shines, behind all.
 Image renderRadiance(const PatchMesh& mesh, const SurfaceLight& light, const Camera& camera,

@@ -54,13 +54,15 @@ Results readResults(const std::string& path, bool with_factors = true);
 ///                  F_ji was stored once a pair (the patches in the order of storage); normal,
 ///                  centroid, surface, surface_names (those of /mesh); method, key, geometry_hash,
 ///                  report/
-///   /solution      radiosity, irradiance (N x bands), reflectance, emission (N x 3), summary/, key
-///   /gather        radiosity, irradiance (L x 3, f32; L eyes), backs, sky, area, position;
+///   /solution      radiosity, irradiance, reflectance, emission (N x bands), sky (an attribute of
+///                  bands numbers; none: dark), summary/, key
+///   /gather        radiosity, irradiance (L x bands, f32; L eyes), backs, sky, area, position;
 ///                  backs_by_surface;
 ///                  eye_of_corner (at vertices: the eye of every entry of /mesh/corners); at, key,
 ///                  summary/ with passes/ (a row a pass; bound is NaN where there is none)
-/// The matrix is written row by row, never copied. Errors: RunError (disk full), Cancelled; `path`
-/// then is what it was.
+/// Bands are as many as rows have columns: three from scene files, any number from a program.
+/// The matrix is written row by row, never copied. Errors: RunError (disk full), Cancelled, those
+/// of PatchMaterials::requireSizes(); `path` then is what it was.
 void writeResults(const std::string& path, const Results& results, Progress& progress);
 
 /// Bytes writeResults() will put on disk, within 4 kB.

@@ -91,8 +91,8 @@ Solution solve(const FormFactors& factors, std::span<const double> reflectance,
                Progress& progress, std::span<const Index> group = {},
                std::span<const std::string> group_names = {}, std::span<const double> sky = {});
 
-/// The same for three bands, with the materials and the surfaces of the mesh that the factors are
-/// of.
+/// The same with the materials, of any number of bands, and the surfaces of the mesh that the
+/// factors are of. Errors also of PatchMaterials::requireSizes().
 Solution solve(const FormFactors& factors, const PatchMaterials& materials, const PatchMesh& mesh,
                const SolveOptions& options, Progress& progress);
 

@@ -1,6 +1,10 @@
 // How bright a colour is.
 #pragma once
 
+#include <numeric>
+#include <span>
+#include <string>
+
 #include "radiosity/base.h"
 
 namespace radiosity {
@@ -13,6 +17,18 @@ inline constexpr double kLuminanceOfBlue = 0.0722;
 /// Relative luminance of linear RGB.
 inline double luminanceOf(const Vec3& rgb) {
   return kLuminanceOfRed * rgb.x + kLuminanceOfGreen * rgb.y + kLuminanceOfBlue * rgb.z;
+}
+
+/// One number for a value of any bands: the luminance of three, else the sum of all.
+inline double brightnessOf(std::span<const double> bands) {
+  if (bands.size() == 3) return luminanceOf({bands[0], bands[1], bands[2]});
+  return std::accumulate(bands.begin(), bands.end(), 0.0);
+}
+
+/// What brightnessOf() makes of so many bands, to stand behind the name of a quantity.
+inline std::string brightnessText(int bands) {
+  if (bands == 3) return " (Rec. 709 luminance)";
+  return bands == 1 ? "" : " (sum of all bands)";
 }
 
 }  // namespace radiosity

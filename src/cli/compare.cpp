@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <numeric>
 #include <variant>
 
 #include "base/input_file.h"
+#include "base/luminance.h"
 #include "cli/commands.h"
 #include "cli/picture.h"
 #include "cli/words.h"
@@ -68,9 +70,10 @@ LightUnit decideUnit(const Side& side, const std::string& said, std::optional<Li
       side.path, what, optionOf(side)));
 }
 
-std::span<const Vec3> emissionOf(const Results& results) {
-  return results.materials ? std::span<const Vec3>(results.materials->emission)
-                           : std::span<const Vec3>();
+/// Empty where it is not known: materials of other bands are not what the light was made with.
+std::span<const double> emissionOf(const Results& results, int bands) {
+  if (!results.materials || results.materials->bands != bands) return {};
+  return results.materials->emission;
 }
 
 void readResultsSide(Side& side, const std::string& said) {
@@ -78,13 +81,13 @@ void readResultsSide(Side& side, const std::string& said) {
   side.unit = decideUnit(side, said, LightUnit::radiosity, "values");
   if (results.mesh && results.solution && !results.solution->radiosity.empty()) {
     side.light = "matrix solution";
-    side.content =
-        lightOf(results.mesh->mesh, results.solution->radiosity, side.path, emissionOf(results));
+    side.content = lightOf(results.mesh->mesh, results.solution->radiosity, results.solution->bands,
+                           side.path, emissionOf(results, results.solution->bands));
   } else if (results.mesh && results.gathered) {
     side.light = "gathered light";
     side.content =
         lightOf(results.mesh->mesh, patchRadiosity(results.mesh->mesh, *results.gathered),
-                side.path, emissionOf(results));
+                results.gathered->bands, side.path, emissionOf(results, results.gathered->bands));
   } else {
     throw InputError(side.path +
                      ": holds no light yet; run radiosity solve or radiosity gather on it");
@@ -140,30 +143,34 @@ std::string percent(double part, double whole) {
   return fmt::format("{:.2f}%", whole > 0 ? 100 * part / whole : 0.0);
 }
 
+/// The key of a band's column: "l2_r_percent", "l2_band_1_percent".
+std::string columnKey(std::string band) {
+  for (char& c : band) c = c == ' ' ? '_' : char(std::tolower(static_cast<unsigned char>(c)));
+  return fmt::format("l2_{}_percent", band);
+}
+
 void reportSurfaces(Report& report, const Comparison& c) {
+  const int bands = int(c.sums.a.size());
   std::vector<std::vector<std::string>> rows;
   for (const SurfaceDifference& s : c.surfaces) {
     if (!(s.given > 0)) continue;
     const BandSums& sums = s.sums;
-    const auto mean = [&](const std::array<double, 3>& of) {
-      return sums.area > 0 ? numberText((of[0] + of[1] + of[2]) / (3 * sums.area), 4) : "none";
+    const auto mean = [&](const std::vector<double>& of) {
+      const double total = std::accumulate(of.begin(), of.end(), 0.0);
+      return sums.area > 0 ? numberText(total / (bands * sums.area), 4) : "none";
     };
     std::vector<std::string> row = {s.name.empty() ? "(unnamed)" : s.name, numberText(s.given, 4),
                                     percent(sums.area, s.given), mean(sums.a), mean(sums.b)};
-    for (int b = -1; b < 3; ++b) row.push_back(fmt::format("{:.3g}", 100 * sums.relativeL2(b)));
+    for (int b = -1; b < bands; ++b) row.push_back(fmt::format("{:.3g}", 100 * sums.relativeL2(b)));
     rows.push_back(std::move(row));
   }
-  report.table("surfaces",
-               {{"name", "surface", false},
-                {"area_m2", "area m^2"},
-                {"compared", "compared", false},
-                {"mean_a", "mean A"},
-                {"mean_b", "mean B"},
-                {"l2_percent", "L2 %"},
-                {"l2_r_percent", "R %"},
-                {"l2_g_percent", "G %"},
-                {"l2_b_percent", "B %"}},
-               rows);
+  std::vector<Report::Column> columns = {
+      {"name", "surface", false}, {"area_m2", "area m^2"}, {"compared", "compared", false},
+      {"mean_a", "mean A"},       {"mean_b", "mean B"},    {"l2_percent", "L2 %"}};
+  for (const std::string& band : bandNames(bands)) {
+    columns.push_back({columnKey(band), band + " %"});
+  }
+  report.table("surfaces", columns, rows);
 }
 
 /// What a lamp outweighs, and where it is worst, in one line: each can hide behind the other.
@@ -196,7 +203,7 @@ void reportHeadline(Report& report, const Comparison& c) {
 }
 
 void reportComparison(Report& report, const Comparison& c, bool pictures, bool relative) {
-  constexpr const char* kBands[] = {"R", "G", "B"};
+  const std::size_t count = c.sums.a.size();
   const std::string unit = relative ? "of full scale" : pictures ? "W/m^2/sr" : "W/m^2";
   const std::string area = pictures ? "pixels" : "m^2";
   reportHeadline(report, c);
@@ -208,8 +215,10 @@ void reportComparison(Report& report, const Comparison& c, bool pictures, bool r
   report.count("cells", pictures ? "pixels compared" : "cells compared", c.cells);
   if (!pictures) report.text("cells_of", "means over cells of", c.cells_of_b ? "B" : "A");
   report.number("scale", "B was multiplied by", c.scale);
-  const double bands[] = {c.relativeL2(0), c.relativeL2(1), c.relativeL2(2)};
-  report.bands("relative_l2_bands", "relative L2 by band (R G B)", bands, "");
+  std::vector<double> by_band;
+  for (std::size_t b = 0; b < count; ++b) by_band.push_back(c.relativeL2(int(b)));
+  report.bands("relative_l2_bands", fmt::format("relative L2 by band ({})", bandsText(int(count))),
+               by_band, "");
   report.number("fitted_scale", "best factor for B", c.fitted_scale);
   report.number("fitted_l2", "  would leave", c.fitted_l2);
   report.number("largest", "largest difference", std::abs(c.largest.b - c.largest.a), unit);
@@ -217,14 +226,14 @@ void reportComparison(Report& report, const Comparison& c, bool pictures, bool r
   report.bands("largest_at", "  at", std::span(place).first(pictures ? 2 : 3),
                pictures ? "pixel" : "m");
   if (!pictures) report.text("largest_on", "  on", c.largest.surface);
-  report.text("largest_band", "  band", kBands[c.largest.band]);
+  report.text("largest_band", "  band", bandNames(int(count))[std::size_t(c.largest.band)]);
   report.number("largest_a", "  A there", c.largest.a, unit);
   report.number("largest_b", "  B there", c.largest.b, unit);
   const std::string total = pictures || relative ? "" : "W";
   report.bands("energy_a", pictures ? "sum of A" : "leaves A", c.sums.a, total);
   report.bands("energy_b", pictures ? "sum of B" : "leaves B", c.sums.b, total);
-  double difference[3];
-  for (std::size_t b = 0; b < 3; ++b) difference[b] = c.sums.b[b] - c.sums.a[b];
+  std::vector<double> difference;
+  for (std::size_t b = 0; b < count; ++b) difference.push_back(c.sums.b[b] - c.sums.a[b]);
   report.bands("energy_difference", "  B - A", difference, total);
   reportSurfaces(report, c);
   report.notes(c.notes);
@@ -241,8 +250,8 @@ int judge(Session& session, const Comparison& c) {
 }
 
 /// False colour, the scale from 0.
-FalseColour legendOf(bool pictures, bool relative) {
-  return {"|B - A| (Rec. 709 luminance)", relative ? "" : pictures ? "W/m^2/sr" : "W/m^2"};
+FalseColour legendOf(int bands, bool pictures, bool relative) {
+  return {"|B - A|" + brightnessText(bands), relative ? "" : pictures ? "W/m^2/sr" : "W/m^2"};
 }
 
 void drawField(Session& session, const LightField& side, const Comparison& c, Picture picture,
@@ -254,11 +263,11 @@ void drawField(Session& session, const LightField& side, const Comparison& c, Pi
         framingCamera(mesh, false, double(picture.options.width) / double(picture.options.height));
   }
   files.write(Format::png, "difference, false colour", [&](const std::string& temporary) {
-    writeImage(
-        temporary,
-        renderFalseColour(mesh, differenceOnTriangles(side, c), legendOf(false, side.relative),
-                          picture.camera, picture.options, session.progress),
-        true);
+    writeImage(temporary,
+               renderFalseColour(mesh, differenceOnTriangles(side, c),
+                                 legendOf(side.bands, false, side.relative), picture.camera,
+                                 picture.options, session.progress),
+               true);
   });
 }
 
@@ -315,7 +324,7 @@ int compareFiles(Session& session, OutputSet& files) {
     files.write(Format::png, "difference, false colour", [&](const std::string& temporary) {
       writeImage(temporary,
                  falseColourPixels(a.image().image.width, a.image().image.height, c.difference,
-                                   legendOf(true, relative)),
+                                   legendOf(3, true, relative)),
                  true);
     });
   } else if (files.has(Format::png)) {
@@ -364,11 +373,11 @@ int compareWithGather(Session& session, OutputSet& files) {
   keepFactors(session, pipeline, files);
   if (const int code = judgeSolution(session, pipeline); code != 0) return code;
   const Gathered& gathered = pipeline.gathered();
-  const std::vector<Vec3>& emission = pipeline.materials().emission;
-  const LightField a =
-      lightOf(mesh, pipeline.solution().radiosity, "the matrix solution", emission);
-  const LightField b =
-      lightOf(mesh, patchRadiosity(mesh, gathered), "the gathered light", emission);
+  const PatchMaterials& materials = pipeline.materials();
+  const LightField a = lightOf(mesh, pipeline.solution().radiosity, materials.bands,
+                               "the matrix solution", materials.emission);
+  const LightField b = lightOf(mesh, patchRadiosity(mesh, gathered), materials.bands,
+                               "the gathered light", materials.emission);
   const Comparison c = compare(a, b, options);
   session.report.section("comparison", "Comparison: A the matrix solution, B the gathered light");
   reportComparison(session.report, c, false, false);
@@ -376,7 +385,8 @@ int compareWithGather(Session& session, OutputSet& files) {
   const int code = judge(session, c);
   if (files.has(Format::png)) {
     Picture picture = choosePicture(request, pipeline.scene());
-    framePicture(picture, mesh, factors.report.closed, pipeline.solvedLight());
+    framePicture(picture, mesh, factors.report.closed,
+                 reflectedLight(pipeline.solution().radiosity, materials));
     drawField(session, a, c, picture, files);
   }
   writeStages(session, pipeline, files);

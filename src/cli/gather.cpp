@@ -7,14 +7,14 @@ namespace radiosity::cli {
 namespace {
 
 /// 1 where a limit that nobody asked for came first; 0 otherwise.
-int judgeGathered(Session& session, const Scene& scene, const GatherSummary& summary) {
+int judgeGathered(Session& session, const Pipeline& pipeline, const GatherSummary& summary) {
   if (summary.status == GatherStatus::converged) return 0;
   const bool asked = summary.passes.size() != std::size_t(GatherOptions().passes);
   if (summary.status == GatherStatus::pass_limit && (asked || session.request.passes)) return 0;
   const bool dark = summary.status == GatherStatus::no_light;
-  const Note note{
-      dark ? Severity::warning : Severity::loud,
-      dark ? darknessText(session.request, scene) : summary.message + "; allow more --passes"};
+  const Note note{dark ? Severity::warning : Severity::loud,
+                  dark ? darknessText(session.request, pipeline.scene(), pipeline.bands())
+                       : summary.message + "; allow more --passes"};
   session.report.notes({&note, 1});
   return dark ? 0 : 1;
 }
@@ -25,13 +25,14 @@ int runGather(Session& session) {
   OutputSet files = claimOutputs(session);
   Run run(session, files.path(Format::results));
   Pipeline& pipeline = run.pipeline;
+  requireColours(pipeline, session.request, files);
   Picture picture = choosePicture(session.request, pipeline.scene());
   const GatherSummary& summary = pipeline.gathered().summary;
-  const int code = judgeGathered(session, pipeline.scene(), summary);
+  const int code = judgeGathered(session, pipeline, summary);
   if (files.has(Format::png) || files.has(Format::exr) || files.has(Format::glb)) {
     const PatchMesh& mesh = pipeline.mesh().mesh;
     const SurfaceLight light = pipeline.gatheredLight();
-    framePicture(picture, mesh, summary.closed, light);
+    framePicture(picture, mesh, summary.closed, light.reflected);
     reportPicture(session.report, picture);
     drawLight(session, mesh, light, picture, files);
   }

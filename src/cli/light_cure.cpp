@@ -28,7 +28,13 @@ std::string lightCure(const Request& request, const Scene& scene) {
       command, quoted(likelyLamp(scene) + ".radiance=10"));
 }
 
-std::string darknessText(const Request& request, const Scene& scene) {
+std::string darknessText(const Request& request, const Scene& scene, int bands) {
+  if (bands != 3) {
+    return fmt::format(
+        "nothing emits light, so B = 0 everywhere; give patches an emission above 0 in /solution "
+        "of {}",
+        request.input);
+  }
   const char* why = scene.sky == Vec3(0.0)
                         ? "nothing emits light"
                         : "nothing emits light and no patch sees the sky (the scene is closed)";

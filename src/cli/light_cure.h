@@ -12,7 +12,8 @@ namespace radiosity::cli {
 /// --set for what is likeliest a lamp.
 std::string lightCure(const Request& request, const Scene& scene);
 
-/// A solution of B = 0, why, and both cures.
-std::string darknessText(const Request& request, const Scene& scene);
+/// A solution of B = 0, why, and both cures; where `bands` are not a scene's three, where the
+/// file's own materials stand.
+std::string darknessText(const Request& request, const Scene& scene, int bands);
 
 }  // namespace radiosity::cli

@@ -73,12 +73,24 @@ Picture choosePicture(const Request& request, const Scene& scene) {
   return picture;
 }
 
-void framePicture(Picture& picture, const PatchMesh& mesh, bool closed, const SurfaceLight& light) {
+void framePicture(Picture& picture, const PatchMesh& mesh, bool closed,
+                  std::span<const double> reflected) {
   if (!picture.camera_from.empty()) return;
-  picture.camera =
-      framingCamera(mesh, closed, double(picture.options.width) / double(picture.options.height),
-                    light.reflected);
+  picture.camera = framingCamera(
+      mesh, closed, double(picture.options.width) / double(picture.options.height), reflected);
   picture.camera_from = picture.camera.name;
+}
+
+void requireColours(const Pipeline& pipeline, const Request& request, const OutputSet& files) {
+  const int bands = pipeline.bands();
+  if (bands == 1 || bands == 3) return;
+  for (const Format format : {Format::png, Format::exr, Format::glb}) {
+    if (!files.has(format)) continue;
+    throw InputError(fmt::format(
+        "{}: draws three bands (red, green, blue), or one in grey, and {} has {}; keep the numbers "
+        "(-o FILE.h5), or draw their sum: radiosity render {} --show radiosity -o FILE.png",
+        files.path(format), request.input, bands, request.input));
+  }
 }
 
 void reportPicture(Report& report, const Picture& picture) {

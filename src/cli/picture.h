@@ -1,6 +1,7 @@
 // The camera, size and exposure of a picture.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,9 +21,13 @@ struct Picture {
 /// --exposure or an option of the picture is wrong: found before the work is done.
 Picture choosePicture(const Request& request, const Scene& scene);
 
-/// Where no camera was chosen, one that frames the scene and what is lit in it.
+/// InputError where `files` show colours and the bands have none: before the work is done.
+void requireColours(const Pipeline& pipeline, const Request& request, const OutputSet& files);
+
+/// Where no camera was chosen, one that frames the scene and what is lit in it: `reflected`, N
+/// values as reflectedLight(), or none.
 void framePicture(Picture& picture, const PatchMesh& mesh, bool closed,
-                  const SurfaceLight& light = {});
+                  std::span<const double> reflected = {});
 
 /// The picture's part of the report: camera and size.
 void reportPicture(Report& report, const Picture& picture);

@@ -108,6 +108,7 @@ int runRender(Session& session) {
   Run run(session, files.path(Format::results));
   Pipeline& pipeline = run.pipeline;
   Picture picture = choosePicture(request, pipeline.scene());
+  if (!show.quantity) requireColours(pipeline, request, files);
   if (show.needsLight()) requireLight(session, pipeline);
   const PatchMesh& mesh = pipeline.mesh().mesh;
   requirePatch(show, mesh);
@@ -117,21 +118,21 @@ int runRender(Session& session) {
   const FormFactors& factors = pipeline.factors();
   keepFactors(session, pipeline, files);
   int code = 0;
-  SurfaceLight light;
+  std::vector<double> reflected;
   if (show.needsLight()) {
     code = judgeSolution(session, pipeline);
     if (pipeline.solution().summary.status == SolveStatus::singular) {
       throw RunError("no picture: the system is singular");
     }
     keepSolution(session, pipeline, files);
-    light = pipeline.solvedLight();
+    reflected = reflectedLight(pipeline.solution().radiosity, pipeline.materials());
   }
-  framePicture(picture, mesh, factors.report.closed, light);
+  framePicture(picture, mesh, factors.report.closed, reflected);
   reportPicture(session.report, picture);
   if (show.quantity) {
     drawQuantity(session, pipeline, picture, show, *show.quantity, files);
   } else {
-    drawLight(session, mesh, light, picture, files);
+    drawLight(session, mesh, pipeline.solvedLight(), picture, files);
   }
   writeStages(session, pipeline, files);
   files.commit(session.report, session.progress);

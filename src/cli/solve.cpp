@@ -7,6 +7,7 @@ int runSolve(Session& session) {
   OutputSet files = claimOutputs(session);
   Run run(session, files.path(Format::results));
   Pipeline& pipeline = run.pipeline;
+  requireColours(pipeline, session.request, files);
   const FormFactors& factors = pipeline.factors();
   keepFactors(session, pipeline, files);
   const int code = judgeSolution(session, pipeline);
@@ -16,7 +17,7 @@ int runSolve(Session& session) {
     Picture picture = choosePicture(session.request, pipeline.scene());
     const PatchMesh& mesh = pipeline.mesh().mesh;
     const SurfaceLight light = pipeline.solvedLight();
-    framePicture(picture, mesh, factors.report.closed, light);
+    framePicture(picture, mesh, factors.report.closed, light.reflected);
     const Image radiance =
         renderRadiance(mesh, light, picture.camera, picture.options, session.progress);
     const double ev = exposureOf(session.request, radiance);

@@ -129,7 +129,8 @@ int judgeSolution(Session& session, Pipeline& pipeline) {
   const SolveSummary& summary = pipeline.solution().summary;
   if (summary.usable()) {
     if (summary.status == SolveStatus::no_light) {
-      const Note dark{Severity::warning, darknessText(session.request, pipeline.scene())};
+      const Note dark{Severity::warning,
+                      darknessText(session.request, pipeline.scene(), pipeline.bands())};
       session.report.notes({&dark, 1});
     }
     return 0;

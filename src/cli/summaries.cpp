@@ -209,7 +209,8 @@ std::string shareOf(const std::vector<double>& part, const EnergyAccount& e) {
 }
 
 void energyFigures(Report& report, const EnergyAccount& e) {
-  report.bands("emitted_W", "emitted (R G B)", e.emitted, "W");
+  report.bands("emitted_W", fmt::format("emitted ({})", bandsText(int(e.emitted.size()))),
+               e.emitted, "W");
   report.bands("from_sky_W", "from the sky", e.from_sky, "W");
   report.bands("absorbed_W", "absorbed", e.absorbed, shareOf(e.absorbed, e));
   report.bands("to_sky_W", "left to the sky", e.to_sky, shareOf(e.to_sky, e));

@@ -43,6 +43,18 @@ std::string plural(std::size_t count, const std::string& one, const std::string&
   return countText(count) + " " + (count == 1 ? one : many);
 }
 
+std::vector<std::string> bandNames(int bands) {
+  if (bands == 3) return {"R", "G", "B"};
+  std::vector<std::string> names;
+  for (int b = 1; b <= bands; ++b) names.push_back(fmt::format("band {}", b));
+  return names;
+}
+
+std::string bandsText(int bands) {
+  if (bands == 3) return "R G B";
+  return bands == 1 ? "band 1" : fmt::format("bands 1 to {}", bands);
+}
+
 std::size_t parseBytes(const std::string& option, const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

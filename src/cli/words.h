@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace radiosity::cli {
 
@@ -22,6 +23,11 @@ double degrees(double radians);
 
 /// "1 patch", "2,034 patches".
 std::string plural(std::size_t count, const std::string& one, const std::string& many);
+
+/// What bands are called: "R", "G", "B", or where there are not three "band 1", "band 2", ...
+std::vector<std::string> bandNames(int bands);
+/// All of them behind a figure: "R G B", "band 1", "bands 1 to 8".
+std::string bandsText(int bands);
 
 /// "512M", "2G", "1.5GiB", "1000000" (bytes) -> bytes; units are binary. InputError names `option`.
 std::size_t parseBytes(const std::string& option, const std::string& text);

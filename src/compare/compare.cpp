@@ -67,10 +67,17 @@ void forSubTriangles(int n, const Visit& visit) {
   }
 }
 
-Vec3 valueAt(const LightField& field, std::size_t t, const Vec3& weights) {
-  const std::array<Vec3, 3>& v = field.values[t];
-  // As differences: a constant stays itself.
-  return v[0] + weights.y * (v[1] - v[0]) + weights.z * (v[2] - v[0]);
+/// Adds area times the value at a point of triangle t, all bands.
+void addValue(const LightField& field, std::size_t t, const Vec3& weights, double area,
+              std::span<double> sum) {
+  const std::size_t bands = sum.size();
+  const double* v0 = field.values.data() + 3 * bands * t;
+  const double* v1 = v0 + bands;
+  const double* v2 = v1 + bands;
+  for (std::size_t b = 0; b < bands; ++b) {
+    // As differences: a constant stays itself.
+    sum[b] += area * (v0[b] + weights.y * (v1[b] - v0[b]) + weights.z * (v2[b] - v0[b]));
+  }
 }
 
 bool isClipped(const LightField& field, std::size_t t) {
@@ -86,10 +93,24 @@ struct Found {
   double area = 0;      ///< compared
   double clipped = 0;   ///< matched, but one side is clipped there
   double opposite = 0;  ///< not matched, but for something that faces the other way
-  Vec3 own{0.0};        ///< integrals over the area compared
-  Vec3 other{0.0};
-  Vec3 place{0.0};
-  bool emits = false;  ///< on this side or, somewhere, the other
+  Vec3 place{0.0};      ///< integral over the area compared
+  bool emits = false;   ///< on this side or, somewhere, the other
+};
+
+/// What all triangles of one side have found.
+struct AllFound {
+  AllFound(std::size_t count, int band_count)
+      : bands(std::size_t(band_count)),
+        triangles(count),
+        own(count * bands, 0.0),
+        other(count * bands, 0.0) {}
+  std::span<double> ownOf(std::size_t t) { return {own.data() + t * bands, bands}; }
+  std::span<double> otherOf(std::size_t t) { return {other.data() + t * bands, bands}; }
+
+  std::size_t bands;
+  std::vector<Found> triangles;
+  std::vector<double> own;  ///< triangles * bands: integrals over the area compared
+  std::vector<double> other;
 };
 
 class Matcher {
@@ -99,15 +120,17 @@ class Matcher {
     mean_area_ = areaOf(other) / double(other.triangles.size());
   }
 
-  std::vector<Found> run() const {
-    std::vector<Found> found(own_.triangles.size());
+  AllFound run() const {
+    AllFound found(own_.triangles.size(), own_.bands);
     constexpr std::size_t kGrain = 32;
-    parallelFor(found.size(), kGrain, [&](std::size_t t) { found[t] = match(t); });
+    parallelFor(found.triangles.size(), kGrain, [&](std::size_t t) {
+      found.triangles[t] = match(t, found.ownOf(t), found.otherOf(t));
+    });
     return found;
   }
 
  private:
-  Found match(std::size_t t) const {
+  Found match(std::size_t t, std::span<double> own, std::span<double> other) const {
     const Triangle triangle = triangleOf(own_, t);
     Found found;
     if (!(triangle.area > 0)) return found;
@@ -126,8 +149,8 @@ class Matcher {
         found.clipped += area;
       } else {
         found.area += area;
-        found.own += area * valueAt(own_, t, w);
-        found.other += area * valueAt(other_, hit->triangle, hit->weights);
+        addValue(own_, t, w, area, own);
+        addValue(other_, hit->triangle, hit->weights, area, other);
         found.place += area * point;
         found.emits = found.emits || emits(own_, t) || emits(other_, hit->triangle);
       }
@@ -148,9 +171,9 @@ struct Matched {
   double opposite = 0;
 };
 
-Matched totalOf(const std::vector<Found>& found) {
+Matched totalOf(const AllFound& found) {
   Matched total;
-  for (const Found& f : found) {
+  for (const Found& f : found.triangles) {
     total.compared += f.area;
     total.clipped += f.clipped;
     total.opposite += f.opposite;
@@ -181,6 +204,17 @@ void requireEnough(const LightField& a, const LightField& b, const Comparison& c
       a.name, b.name, 100 * of_a, 100 * of_b, 100 * kEnough, cure));
 }
 
+void requireBands(const LightField& a, const LightField& b) {
+  if (a.bands == b.bands) return;
+  const auto text = [](int bands) {
+    return fmt::format("{} band{}", bands, bands == 1 ? "" : "s");
+  };
+  throw InputError(fmt::format(
+      "{} has {} and {} has {}, so there is nothing to set against each other; compare light of "
+      "the same bands: solve or gather both with materials of as many",
+      a.name, text(a.bands), b.name, text(b.bands)));
+}
+
 void requireUnits(const LightField& a, const LightField& b, const CompareOptions& options) {
   if (a.relative == b.relative || options.fit_scale) return;
   const bool first = a.relative;
@@ -196,40 +230,43 @@ bool sameCells(const LightField& a, const LightField& b) {
 }
 
 /// One pair a cell of `own`; a and b are told apart by `own_is_a`.
-std::vector<ValuePair> pairsOf(const LightField& own, const std::vector<Found>& found,
-                               bool own_is_a) {
-  std::vector<ValuePair> pairs(own.cell_surface.size());
-  for (std::size_t t = 0; t < found.size(); ++t) {
-    ValuePair& pair = pairs[own.cell[t]];
-    pair.weight += found[t].area;
-    pair.a += own_is_a ? found[t].own : found[t].other;
-    pair.b += own_is_a ? found[t].other : found[t].own;
-    pair.place += found[t].place;
-    pair.emits = pair.emits || found[t].emits;
+ValuePairs pairsOf(const LightField& own, const AllFound& found, bool own_is_a) {
+  ValuePairs pairs(own.cell_surface.size(), own.bands);
+  const std::size_t bands = found.bands;
+  const std::vector<double>& a = own_is_a ? found.own : found.other;
+  const std::vector<double>& b = own_is_a ? found.other : found.own;
+  for (std::size_t t = 0; t < found.triangles.size(); ++t) {
+    const std::size_t c = own.cell[t];
+    PairWeight& pair = pairs.weights[c];
+    pair.weight += found.triangles[t].area;
+    pair.place += found.triangles[t].place;
+    pair.emits = pair.emits || found.triangles[t].emits;
+    for (std::size_t k = 0; k < bands; ++k) {
+      pairs.ofA(c)[k] += a[bands * t + k];
+      pairs.ofB(c)[k] += b[bands * t + k];
+    }
   }
-  for (std::size_t c = 0; c < pairs.size(); ++c) {
-    pairs[c].surface = own.cell_surface[c];
-    if (!(pairs[c].weight > 0)) continue;
-    pairs[c].a /= pairs[c].weight;
-    pairs[c].b /= pairs[c].weight;
-    pairs[c].place /= pairs[c].weight;
+  for (std::size_t c = 0; c < pairs.weights.size(); ++c) {
+    PairWeight& pair = pairs.weights[c];
+    pair.surface = own.cell_surface[c];
+    if (!(pair.weight > 0)) continue;
+    pair.place /= pair.weight;
+    for (double& value : pairs.ofA(c)) value /= pair.weight;
+    for (double& value : pairs.ofB(c)) value /= pair.weight;
   }
   return pairs;
 }
 
 /// The same cells on both sides: nothing has to be searched.
-std::vector<Found> pairUp(const LightField& a, const LightField& b) {
-  std::vector<Found> found(a.triangles.size());
-  for (std::size_t t = 0; t < found.size(); ++t) {
+AllFound pairUp(const LightField& a, const LightField& b) {
+  AllFound found(a.triangles.size(), a.bands);
+  const Vec3 first_corner(1, 0, 0);  // values are constant on it
+  for (std::size_t t = 0; t < found.triangles.size(); ++t) {
     const Triangle triangle = triangleOf(a, t);
     const Vec3 middle = (triangle.corner[0] + triangle.corner[1] + triangle.corner[2]) / 3.0;
-    found[t] = {triangle.area,
-                0,
-                0,
-                triangle.area * a.values[t][0],
-                triangle.area * b.values[t][0],
-                triangle.area * middle,
-                emits(a, t) || emits(b, t)};
+    found.triangles[t] = {triangle.area, 0, 0, triangle.area * middle, emits(a, t) || emits(b, t)};
+    addValue(a, t, first_corner, triangle.area, found.ownOf(t));
+    addValue(b, t, first_corner, triangle.area, found.otherOf(t));
   }
   return found;
 }
@@ -244,6 +281,7 @@ void CompareOptions::validate() const {
 
 Comparison compare(const LightField& a, const LightField& b, const CompareOptions& options) {
   options.validate();
+  requireBands(a, b);
   requireUnits(a, b, options);
   const bool own_is_a = a.constant || !b.constant;
   const LightField& own = own_is_a ? a : b;
@@ -252,7 +290,7 @@ Comparison compare(const LightField& a, const LightField& b, const CompareOption
   comparison.cells_of_b = !own_is_a;
   comparison.area_a = areaOf(a);
   comparison.area_b = areaOf(b);
-  std::vector<Found> found;
+  AllFound found(0, own.bands);
   double opposite = 0;
   if (sameCells(a, b)) {
     found = pairUp(a, b);
@@ -272,7 +310,7 @@ Comparison compare(const LightField& a, const LightField& b, const CompareOption
     opposite = of_a.opposite;
   }
   requireEnough(a, b, comparison, opposite, options);
-  std::vector<ValuePair> pairs = pairsOf(own, found, own_is_a);
+  ValuePairs pairs = pairsOf(own, found, own_is_a);
   measureDifferences(pairs, options, own.surface_names, comparison);
   std::vector<double> given(own.surface_names.size(), 0.0);
   for (std::size_t t = 0; t < own.triangles.size(); ++t) {

@@ -14,19 +14,22 @@ namespace radiosity {
 namespace {
 
 /// The factor s that makes sum of weight |a - s b|^2 least, and what is left of |a|.
-void fit(const std::vector<ValuePair>& pairs, Comparison& comparison) {
+void fit(const ValuePairs& pairs, Comparison& comparison) {
   double ab = 0;
   double bb = 0;
-  for (const ValuePair& pair : pairs) {
-    for (int k = 0; k < 3; ++k) {
-      ab += pair.weight * pair.a[k] * pair.b[k];
-      bb += pair.weight * pair.b[k] * pair.b[k];
+  for (std::size_t p = 0; p < pairs.weights.size(); ++p) {
+    const double weight = pairs.weights[p].weight;
+    const std::span<const double> a = pairs.ofA(p);
+    const std::span<const double> b = pairs.ofB(p);
+    for (std::size_t k = 0; k < pairs.bands; ++k) {
+      ab += weight * a[k] * b[k];
+      bb += weight * b[k] * b[k];
     }
   }
   comparison.fitted_scale = bb > 0 ? ab / bb : 1;
-  BandSums sums;
-  for (const ValuePair& pair : pairs) {
-    sums.add(pair.weight, pair.a, pair.b * comparison.fitted_scale);
+  BandSums sums(int(pairs.bands));
+  for (std::size_t p = 0; p < pairs.weights.size(); ++p) {
+    sums.add(pairs.weights[p].weight, pairs.ofA(p), pairs.ofB(p), comparison.fitted_scale);
   }
   comparison.fitted_l2 = sums.relativeL2();
 }
@@ -58,15 +61,18 @@ void nameFactor(const CompareOptions& options, Comparison& comparison) {
   comparison.notes.push_back({Severity::warning, what + "; " + cause});
 }
 
-void findLargest(const std::vector<ValuePair>& pairs, const std::vector<std::string>& names,
+void findLargest(const ValuePairs& pairs, const std::vector<std::string>& names,
                  Comparison& comparison) {
   double most = -1;
-  for (const ValuePair& pair : pairs) {
-    for (int k = 0; pair.weight > 0 && k < 3; ++k) {
-      if (!(std::abs(pair.b[k] - pair.a[k]) > most)) continue;
-      most = std::abs(pair.b[k] - pair.a[k]);
-      comparison.largest = {pair.place, names.empty() ? "" : names[pair.surface], k, pair.a[k],
-                            pair.b[k]};
+  for (std::size_t p = 0; p < pairs.weights.size(); ++p) {
+    const PairWeight& pair = pairs.weights[p];
+    const std::span<const double> a = pairs.ofA(p);
+    const std::span<const double> b = pairs.ofB(p);
+    for (std::size_t k = 0; pair.weight > 0 && k < pairs.bands; ++k) {
+      if (!(std::abs(b[k] - a[k]) > most)) continue;
+      most = std::abs(b[k] - a[k]);
+      comparison.largest = {pair.place, names.empty() ? "" : names[pair.surface], int(k), a[k],
+                            b[k]};
     }
   }
 }
@@ -81,11 +87,18 @@ void sortSurfaces(Comparison& comparison) {
 
 }  // namespace
 
-void BandSums::add(double weight, const Vec3& value_a, const Vec3& value_b) {
+BandSums::BandSums(int bands)
+    : a(std::size_t(bands), 0.0),
+      b(std::size_t(bands), 0.0),
+      aa(std::size_t(bands), 0.0),
+      dd(std::size_t(bands), 0.0) {}
+
+void BandSums::add(double weight, std::span<const double> of_a, std::span<const double> of_b,
+                   double scale) {
   area += weight;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double x = value_a[int(k)];
-    const double y = value_b[int(k)];
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    const double x = of_a[k];
+    const double y = of_b[k] * scale;
     a[k] += weight * x;
     b[k] += weight * y;
     aa[k] += weight * x * x;
@@ -94,36 +107,43 @@ void BandSums::add(double weight, const Vec3& value_a, const Vec3& value_b) {
 }
 
 double BandSums::relativeL2(int band) const {
-  const auto of = [&](const std::array<double, 3>& sums) {
-    return band < 0 ? sums[0] + sums[1] + sums[2] : sums[std::size_t(band)];
+  const auto of = [&](const std::vector<double>& sums) {
+    return band < 0 ? std::accumulate(sums.begin(), sums.end(), 0.0) : sums[std::size_t(band)];
   };
   if (of(dd) == 0) return 0;
   return of(aa) > 0 ? std::sqrt(of(dd) / of(aa)) : std::numeric_limits<double>::infinity();
 }
 
-void measureDifferences(std::vector<ValuePair>& pairs, const CompareOptions& options,
+void measureDifferences(ValuePairs& pairs, const CompareOptions& options,
                         const std::vector<std::string>& surface_names, Comparison& comparison) {
+  const int bands = int(pairs.bands);
   fit(pairs, comparison);
   if (options.fit_scale) comparison.scale = comparison.fitted_scale;
+  for (double& value : pairs.b) value *= comparison.scale;
+  comparison.sums = BandSums(bands);
   std::vector<SurfaceDifference> surfaces(surface_names.size());
-  for (std::size_t s = 0; s < surfaces.size(); ++s) surfaces[s].name = surface_names[s];
-  comparison.difference.reserve(pairs.size());
-  BandSums reflecting;
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    surfaces[s] = {surface_names[s], 0, BandSums(bands)};
+  }
+  comparison.difference.reserve(pairs.weights.size());
+  BandSums reflecting(bands);
   bool any_emits = false;
-  for (ValuePair& pair : pairs) {
+  std::vector<double> apart(pairs.bands);
+  for (std::size_t p = 0; p < pairs.weights.size(); ++p) {
+    const PairWeight& pair = pairs.weights[p];
     if (!(pair.weight > 0)) {
       comparison.difference.push_back(std::numeric_limits<double>::quiet_NaN());
       continue;
     }
-    pair.b *= comparison.scale;
+    const std::span<const double> a = pairs.ofA(p);
+    const std::span<const double> b = pairs.ofB(p);
     ++comparison.cells;
-    comparison.sums.add(pair.weight, pair.a, pair.b);
-    if (!pair.emits) reflecting.add(pair.weight, pair.a, pair.b);
+    comparison.sums.add(pair.weight, a, b);
+    if (!pair.emits) reflecting.add(pair.weight, a, b);
     any_emits = any_emits || pair.emits;
-    if (!surfaces.empty()) surfaces[pair.surface].sums.add(pair.weight, pair.a, pair.b);
-    const Vec3 apart = pair.b - pair.a;
-    comparison.difference.push_back(
-        luminanceOf({std::abs(apart.x), std::abs(apart.y), std::abs(apart.z)}));
+    if (!surfaces.empty()) surfaces[pair.surface].sums.add(pair.weight, a, b);
+    for (std::size_t k = 0; k < pairs.bands; ++k) apart[k] = std::abs(b[k] - a[k]);
+    comparison.difference.push_back(brightnessOf(apart));
   }
   if (any_emits) comparison.without_emitters = reflecting;
   comparison.surfaces = std::move(surfaces);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -9,19 +10,36 @@
 
 namespace radiosity {
 
-/// The two values of a cell or pixel, and what they weigh; weight 0: not compared.
-struct ValuePair {
+/// What the two values of a cell or pixel weigh; weight 0: not compared.
+struct PairWeight {
   double weight = 0;
-  Vec3 a{0.0};
-  Vec3 b{0.0};
   Vec3 place{0.0};
   Index surface = 0;
   bool emits = false;
 };
 
+/// The two values of every cell or pixel, and what they weigh.
+struct ValuePairs {
+  ValuePairs(std::size_t count, int band_count)
+      : bands(std::size_t(band_count)),
+        weights(count),
+        a(count * bands, 0.0),
+        b(count * bands, 0.0) {}
+
+  std::span<double> ofA(std::size_t k) { return {a.data() + k * bands, bands}; }
+  std::span<double> ofB(std::size_t k) { return {b.data() + k * bands, bands}; }
+  std::span<const double> ofA(std::size_t k) const { return {a.data() + k * bands, bands}; }
+  std::span<const double> ofB(std::size_t k) const { return {b.data() + k * bands, bands}; }
+
+  std::size_t bands;
+  std::vector<PairWeight> weights;
+  std::vector<double> a;  ///< pairs * bands
+  std::vector<double> b;
+};
+
 /// Fills scale, fit, sums, largest, surfaces, difference and cells from the pairs, and names a
 /// factor between them that has a name. `surface_names` may be empty (pictures).
-void measureDifferences(std::vector<ValuePair>& pairs, const CompareOptions& options,
+void measureDifferences(ValuePairs& pairs, const CompareOptions& options,
                         const std::vector<std::string>& surface_names, Comparison& comparison);
 
 }  // namespace radiosity

@@ -1,6 +1,7 @@
 // Light on surfaces, out of everything that holds some.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <glm/geometric.hpp>
 #include <numbers>
 
@@ -18,38 +19,58 @@ Vec3 decoded(const Vec3& colour) {
 }
 
 bool isConstant(const LightField& field) {
-  std::vector<const Vec3*> first(field.cell_surface.size(), nullptr);
+  const auto bands = std::size_t(field.bands);
+  std::vector<const double*> first(field.cell_surface.size(), nullptr);
   for (std::size_t t = 0; t < field.triangles.size(); ++t) {
-    const Vec3*& known = first[field.cell[t]];
-    if (known == nullptr) known = &field.values[t][0];
-    for (const Vec3& value : field.values[t]) {
-      if (value != *known) return false;
+    const double* values = field.values.data() + 3 * bands * t;
+    const double*& known = first[field.cell[t]];
+    if (known == nullptr) known = values;
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      if (!std::equal(known, known + bands, values + bands * corner)) return false;
     }
   }
   return true;
 }
 
+void requireSizes(const PatchMesh& mesh, std::span<const double> radiosity, int bands,
+                  const std::string& name, std::span<const double> emission) {
+  const std::size_t needed = mesh.size() * std::size_t(std::max(bands, 1));
+  const auto check = [&](const char* what, std::size_t size) {
+    if (bands >= 1 && size == needed) return;
+    throw InputError(
+        fmt::format("{}: {} {} are given for {} patches of {} bands; give {}, a row of "
+                    "all bands for each patch",
+                    name, size, what, mesh.size(), bands, needed));
+  };
+  check("radiosities", radiosity.size());
+  if (!emission.empty()) check("emissions", emission.size());
+}
+
 }  // namespace
 
-LightField lightOf(const PatchMesh& mesh, std::span<const double> radiosity, std::string name,
-                   std::span<const Vec3> emission) {
-  if (radiosity.size() != 3 * mesh.size()) {
-    throw InputError(fmt::format("{}: {} radiosities are given for {} patches", name,
-                                 radiosity.size(), mesh.size()));
-  }
+LightField lightOf(const PatchMesh& mesh, std::span<const double> radiosity, int bands,
+                   std::string name, std::span<const double> emission) {
+  requireSizes(mesh, radiosity, bands, name, emission);
+  const auto width = std::size_t(bands);
   LightField field;
   field.name = std::move(name);
   field.vertices = mesh.vertices;
   field.surface_names = mesh.surface_names;
   field.cell_surface = mesh.surface;
+  field.bands = bands;
   field.constant = true;
-  for (const Vec3& e : emission) field.emits.push_back(e == Vec3(0.0) ? 0 : 1);
+  for (std::size_t i = 0; i < emission.size() / width; ++i) {
+    const std::span<const double> row = emission.subspan(width * i, width);
+    field.emits.push_back(std::any_of(row.begin(), row.end(), [](double e) { return e != 0; }));
+  }
   for (std::size_t i = 0; i < mesh.size(); ++i) {
-    const Vec3 value(radiosity[3 * i], radiosity[3 * i + 1], radiosity[3 * i + 2]);
+    const std::span<const double> row = radiosity.subspan(width * i, width);
     for (std::size_t t = mesh.piece_offset[i]; t < mesh.piece_offset[i + 1]; ++t) {
       if (!(mesh.area[i] > 0)) continue;
       field.triangles.push_back(mesh.pieces[t]);
-      field.values.push_back({value, value, value});
+      for (int corner = 0; corner < 3; ++corner) {
+        field.values.insert(field.values.end(), row.begin(), row.end());
+      }
       field.cell.push_back(Index(i));
     }
   }
@@ -64,19 +85,19 @@ LightField lightOf(const LitMesh& mesh, LightUnit unit) {
   field.cell = mesh.face;
   field.cell_surface = mesh.face_surface;
   field.surface_names = mesh.surface_names;
-  field.values = mesh.colours;
   if (unit == LightUnit::srgb8) {
     field.relative = true;
     field.clipped.assign(mesh.triangles.size(), 0);
   }
-  for (std::size_t t = 0; t < field.values.size(); ++t) {
-    for (Vec3& value : field.values[t]) {
+  for (std::size_t t = 0; t < mesh.colours.size(); ++t) {
+    for (Vec3 value : mesh.colours[t]) {
       if (unit == LightUnit::srgb8) {
         if (std::max({value.x, value.y, value.z}) >= kTopByte) field.clipped[t] = 1;
         value = decoded(value);
       } else if (unit == LightUnit::radiance) {
         value *= std::numbers::pi;
       }
+      field.values.insert(field.values.end(), {value.x, value.y, value.z});
     }
   }
   field.constant = isConstant(field);

@@ -56,7 +56,7 @@ Comparison compare(const ImageFile& a, LightUnit a_is, const ImageFile& b, Light
   requireComparable(a, a_is, b, b_is, options);
   Comparison comparison;
   const std::size_t count = a.image.rgba.size() / 4;
-  std::vector<ValuePair> pairs(count);
+  ValuePairs pairs(count, 3);
   for (std::size_t k = 0; k < count; ++k) {
     const Pixel in_a = pixelOf(a, a_is, k);
     const Pixel in_b = pixelOf(b, b_is, k);
@@ -73,7 +73,11 @@ Comparison compare(const ImageFile& a, LightUnit a_is, const ImageFile& b, Light
     const std::size_t column = k % width;
     const std::size_t row = k / width;
     const Vec3 place(double(column), double(row), 0);
-    pairs[k] = {1, in_a.value, in_b.value, place, 0};
+    pairs.weights[k] = {1, place, 0, false};
+    for (int c = 0; c < 3; ++c) {
+      pairs.ofA(k)[std::size_t(c)] = in_a.value[c];
+      pairs.ofB(k)[std::size_t(c)] = in_b.value[c];
+    }
   }
   if (comparison.matched_a == comparison.clipped) {
     throw InputError(

@@ -26,30 +26,25 @@ double secondsSince(Clock::time_point start) {
 constexpr double kLargest = 1e30;
 
 void checkMaterials(const PatchMesh& mesh, const PatchMaterials& materials) {
-  for (int b = 0; b < 3; ++b) {
-    if (materials.sky[b] >= 0 && materials.sky[b] <= kLargest) continue;
-    throw InputError(fmt::format("gather: sky radiance {} is not within 0 and {:g}",
-                                 materials.sky[b], kLargest));
-  }
-  if (materials.reflectance.size() != mesh.size() || materials.emission.size() != mesh.size()) {
+  materials.requireSizes(mesh.size());
+  for (const double radiance : materials.sky) {
+    if (radiance >= 0 && radiance <= kLargest) continue;
     throw InputError(
-        fmt::format("gather: {} reflectances and {} emissions were given for {} patches",
-                    materials.reflectance.size(), materials.emission.size(), mesh.size()));
+        fmt::format("gather: sky radiance {} is not within 0 and {:g}", radiance, kLargest));
   }
-  for (std::size_t i = 0; i < mesh.size(); ++i) {
-    for (int b = 0; b < 3; ++b) {
-      const double rho = materials.reflectance[i][b];
-      const double emission = materials.emission[i][b];
-      const std::string where =
-          fmt::format("gather: patch {} of surface \"{}\"", i, mesh.surface_names[mesh.surface[i]]);
-      if (!(rho >= 0 && rho <= 1)) {
-        throw InputError(fmt::format("{}: reflectance {} is not within 0 and 1", where, rho));
-      }
-      if (!(emission >= 0 && emission <= kLargest)) {
-        throw InputError(
-            fmt::format("{}: emission {} is not within 0 and {:g}", where, emission, kLargest));
-      }
+  for (std::size_t k = 0; k < materials.reflectance.size(); ++k) {
+    const double rho = materials.reflectance[k];
+    const double emission = materials.emission[k];
+    const bool reflects = rho >= 0 && rho <= 1;
+    if (reflects && emission >= 0 && emission <= kLargest) continue;
+    const std::size_t i = k / std::size_t(materials.bands);
+    const std::string where =
+        fmt::format("gather: patch {} of surface \"{}\"", i, mesh.surface_names[mesh.surface[i]]);
+    if (!reflects) {
+      throw InputError(fmt::format("{}: reflectance {} is not within 0 and 1", where, rho));
     }
+    throw InputError(
+        fmt::format("{}: emission {} is not within 0 and {:g}", where, emission, kLargest));
   }
 }
 
@@ -58,12 +53,13 @@ class Passes {
  public:
   Passes(const GatherScene& scene, Gathered& result)
       : scene_(scene),
+        bands_(scene.bands),
         result_(result),
         fronts_(scene.size(), 0.0F),
         seen_backs_(scene.size()),
         workers_([&] { return Gatherer(scene_, result_.radiosity); }) {
     result_.radiosity = scene.materials.emission;
-    result_.irradiance.assign(3 * scene.size(), 0.0F);
+    result_.irradiance.assign(bands_ * scene.size(), 0.0F);
     result_.backs.assign(scene.size(), 0.0F);
     result_.sky.assign(scene.size(), 0.0F);
     next_ = scene.materials.emission;
@@ -98,7 +94,7 @@ class Passes {
     return counts;
   }
   std::size_t bytes() const {
-    std::size_t sum = scene_.bytes() + scene_.size() * (4 * 3 + 3) * sizeof(float);
+    std::size_t sum = scene_.bytes() + scene_.size() * (4 * bands_ + 3) * sizeof(float);
     for (const Gatherer& worker : workers_) sum += worker.bytes();
     return sum;
   }
@@ -116,8 +112,8 @@ class Passes {
     fronts_[k] = float(received.fronts);
     result_.backs[k] = float(received.backs);
     result_.sky[k] = float(received.sky);
-    for (std::size_t b = 0; b < 3; ++b) {
-      const std::size_t at = 3 * k + b;
+    for (std::size_t b = 0; b < bands_; ++b) {
+      const std::size_t at = bands_ * k + b;
       const double irradiance = received.irradiance[b] + fromSky(k, b);
       result_.irradiance[at] = float(irradiance);
       next_[at] = float(double(scene_.materials.emission[at]) +
@@ -127,7 +123,7 @@ class Passes {
 
   /// Lambert's law over the part of the view that ends on the sky; once the eye has looked.
   double fromSky(std::size_t k, std::size_t b) const {
-    return std::numbers::pi * scene_.sky[int(b)] * result_.sky[k];
+    return std::numbers::pi * scene_.sky[b] * result_.sky[k];
   }
 
   /// All passes see the same.
@@ -152,16 +148,16 @@ class Passes {
     constexpr double kRounding = std::numeric_limits<float>::epsilon();
     double bound = 0;
     relative_bound_ = 0;
-    for (std::size_t b = 0; b < 3; ++b) {
+    for (std::size_t b = 0; b < bands_; ++b) {
       const double emission = scene_.largestSource(b);
       if (emission == 0) continue;
       double change = 0;
       double largest = 0;
       double q = 0;
-      for (std::size_t k = b; k < next_.size(); k += 3) {
+      for (std::size_t k = b; k < next_.size(); k += bands_) {
         change = std::max(change, std::abs(double(next_[k]) - double(result_.radiosity[k])));
         largest = std::max(largest, double(next_[k]));
-        q = std::max(q, double(scene_.materials.reflectance[k]) * fronts_[k / 3]);
+        q = std::max(q, double(scene_.materials.reflectance[k]) * fronts_[k / bands_]);
       }
       pass.change = std::max(pass.change, change / emission);
       // fronts are floats: a closed room with rho = 1 must not be bounded by rounding.
@@ -174,29 +170,31 @@ class Passes {
   }
 
   void account(GatherPass& pass) const {
-    const std::vector<double> zeros(3, 0.0);
+    const std::vector<double> zeros(bands_, 0.0);
     pass.energy = {zeros, zeros, zeros, zeros, zeros, zeros};
     pass.in_flight = zeros;
     EnergyAccount& energy = pass.energy;
     for (std::size_t k = 0; k < next_.size(); ++k) {
-      const std::size_t b = k % 3;
-      const double area = scene_.area[k / 3];
+      const std::size_t eye = k / bands_;
+      const std::size_t b = k % bands_;
+      const double area = scene_.area[eye];
       const double before = result_.radiosity[k];
       energy.emitted[b] += area * scene_.materials.emission[k];
-      energy.from_sky[b] += area * fromSky(k / 3, b);
+      energy.from_sky[b] += area * fromSky(eye, b);
       energy.absorbed[b] +=
           area * (1 - double(scene_.materials.reflectance[k])) * result_.irradiance[k];
-      energy.to_sky[b] += area * result_.sky[k / 3] * before;
-      energy.on_backs[b] += area * result_.backs[k / 3] * before;
-      if (scene_.eyes[k / 3].looks) pass.in_flight[b] += area * (double(next_[k]) - before);
+      energy.to_sky[b] += area * result_.sky[eye] * before;
+      energy.on_backs[b] += area * result_.backs[eye] * before;
+      if (scene_.eyes[eye].looks) pass.in_flight[b] += area * (double(next_[k]) - before);
     }
-    for (std::size_t b = 0; b < 3; ++b) {
+    for (std::size_t b = 0; b < bands_; ++b) {
       energy.imbalance[b] = energy.emitted[b] + energy.from_sky[b] - energy.absorbed[b] -
                             energy.to_sky[b] - energy.on_backs[b] - pass.in_flight[b];
     }
   }
 
   const GatherScene& scene_;
+  const std::size_t bands_;
   Gathered& result_;
   std::vector<float> next_;
   std::vector<float> fronts_;
@@ -272,18 +270,19 @@ Gathered gather(const PatchMesh& mesh, const PatchMaterials& materials,
   Gathered result;
   result.backs_by_surface.assign(mesh.surface_names.size(), 0.0);
   result.at = options.at;
+  result.bands = materials.bands;
   result.area = scene.area;
   result.eye_of_corner = scene.eye_of_corner;
   result.position.reserve(scene.size());
   for (const Eye& eye : scene.eyes) result.position.push_back(eye.position);
   GatherSummary& summary = result.summary;
   summary.simd_target = scene.rows.kernels().target;
-  if (scene.largestSource(0) + scene.largestSource(1) + scene.largestSource(2) > 0) {
+  if (scene.isLit()) {
     runPasses(scene, options, result, progress);
   } else {
     summary.status = GatherStatus::no_light;
     for (auto* field : {&result.radiosity, &result.irradiance}) {
-      field->assign(3 * scene.size(), 0.0F);
+      field->assign(scene.bands * scene.size(), 0.0F);
     }
     for (auto* share : {&result.backs, &result.sky}) share->assign(scene.size(), 0.0F);
   }
@@ -293,11 +292,14 @@ Gathered gather(const PatchMesh& mesh, const PatchMaterials& materials,
 }
 
 std::vector<double> cornerRadiosity(const PatchMesh& mesh, const Gathered& gathered) {
-  std::vector<double> values(3 * mesh.corners.size());
+  const auto bands = std::size_t(gathered.bands);
+  std::vector<double> values(bands * mesh.corners.size());
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     for (std::size_t c = mesh.corner_offset[i]; c < mesh.corner_offset[i + 1]; ++c) {
       const std::size_t eye = gathered.at == GatherAt::patches ? i : gathered.eye_of_corner[c];
-      for (std::size_t b = 0; b < 3; ++b) values[3 * c + b] = gathered.radiosity[3 * eye + b];
+      for (std::size_t b = 0; b < bands; ++b) {
+        values[bands * c + b] = gathered.radiosity[bands * eye + b];
+      }
     }
   }
   return values;
@@ -307,21 +309,22 @@ std::vector<double> patchRadiosity(const PatchMesh& mesh, const Gathered& gather
   if (gathered.at == GatherAt::patches) {
     return {gathered.radiosity.begin(), gathered.radiosity.end()};
   }
+  const auto bands = std::size_t(gathered.bands);
   const std::vector<double> weights = PatchBasis(mesh).areaWeights();
   const std::vector<double> corners = cornerRadiosity(mesh, gathered);
-  std::vector<double> means(3 * mesh.size(), 0.0);
+  std::vector<double> means(bands * mesh.size(), 0.0);
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     if (!(mesh.area[i] > 0)) continue;
     const std::size_t first = mesh.corner_offset[i];
-    for (std::size_t b = 0; b < 3; ++b) {
-      const double base = corners[3 * first + b];
+    for (std::size_t b = 0; b < bands; ++b) {
+      const double base = corners[bands * first + b];
       double sum = 0;
       double area = 0;
       for (std::size_t c = first; c < mesh.corner_offset[i + 1]; ++c) {
-        sum += weights[c] * (corners[3 * c + b] - base);
+        sum += weights[c] * (corners[bands * c + b] - base);
         area += weights[c];
       }
-      means[3 * i + b] = base + sum / area;
+      means[bands * i + b] = base + sum / area;
     }
   }
   return means;

@@ -18,7 +18,7 @@ double total(const std::array<double, kLanes>& lanes) {
 InterpolatedView::InterpolatedView(const PatchMesh& mesh, const PatchBasis& basis, double scale,
                                    int resolution, bool simd,
                                    const std::vector<Index>& eye_of_corner,
-                                   const std::vector<float>& radiosity)
+                                   const std::vector<float>& radiosity, std::size_t bands)
     : mesh_(mesh),
       basis_(basis),
       kernels_(interpolationKernels(simd)),
@@ -26,46 +26,46 @@ InterpolatedView::InterpolatedView(const PatchMesh& mesh, const PatchBasis& basi
       resolution_(resolution),
       eye_of_corner_(eye_of_corner),
       radiosity_(radiosity),
+      bands_(bands),
+      level_(bands, 0.0),
       backs_(mesh.surface_names.size(), 0.0),
+      above_(bands),
       prepared_(mesh.size(), 0),
       constant_(mesh.size(), 0),
-      facets_(basis.facetCount()) {}
+      facets_(basis.facetCount()),
+      facet_rise_(basis.facetCount() * bands) {}
 
 void InterpolatedView::begin(const EyeFrame& frame) {
   frame_ = frame;
-  level_ = {};
+  std::fill(level_.begin(), level_.end(), 0.0);
   std::fill(backs_.begin(), backs_.end(), 0.0);
-  above_ = {};
+  std::fill(above_.begin(), above_.end(), LaneSums());
   ++view_;
 }
 
-std::array<double, 3> InterpolatedView::irradiance() const {
-  std::array<double, 3> sum{};
-  for (std::size_t b = 0; b < 3; ++b) sum[b] = level_[b] + total(above_.sum[b]);
-  return sum;
+void InterpolatedView::irradiance(std::span<double> sum) const {
+  for (std::size_t b = 0; b < bands_; ++b) sum[b] = level_[b] + total(above_[b].sum);
 }
 
 std::size_t InterpolatedView::bytes() const {
   return prepared_.size() * sizeof(std::uint32_t) + constant_.size() +
-         facets_.size() * sizeof(SeenFacet);
+         facets_.size() * sizeof(SeenFacet) + facet_rise_.size() * sizeof(facet_rise_[0]);
 }
 
-std::array<double, 3> InterpolatedView::cornerMean(std::size_t patch) const {
+double InterpolatedView::cornerMean(std::size_t patch, std::size_t band) const {
   const std::size_t first = mesh_.corner_offset[patch];
   const std::size_t end = mesh_.corner_offset[patch + 1];
-  const std::array<double, 3> base = valueAt(patch, first);
-  std::array<double, 3> mean = base;
+  const double base = valueAt(patch, first, band);
+  double mean = base;
   for (std::size_t c = first; c < end; ++c) {
-    const std::array<double, 3> value = valueAt(patch, c);
-    for (std::size_t b = 0; b < 3; ++b) mean[b] += (value[b] - base[b]) / double(end - first);
+    mean += (valueAt(patch, c, band) - base) / double(end - first);
   }
   return mean;
 }
 
-std::array<double, 3> InterpolatedView::valueAt(std::size_t patch, std::size_t corner) const {
-  if (corner == BasisFacet::kInside) return cornerMean(patch);
-  const float* value = &radiosity_[3 * std::size_t(eye_of_corner_[corner])];
-  return {value[0], value[1], value[2]};
+double InterpolatedView::valueAt(std::size_t patch, std::size_t corner, std::size_t band) const {
+  if (corner == BasisFacet::kInside) return cornerMean(patch, band);
+  return radiosity_[bands_ * std::size_t(eye_of_corner_[corner]) + band];
 }
 
 void InterpolatedView::prepare(std::size_t patch) {
@@ -74,10 +74,11 @@ void InterpolatedView::prepare(std::size_t patch) {
   const std::size_t first = basis_.facetBegin(patch);
   bool constant = true;
   for (std::size_t f = 0; f < all.size(); ++f) {
-    SeenFacet& seen = facets_[first + f];
-    place(all[f], seen);
-    constant = setValues(patch, all[f], seen) && constant;
-    constant = constant && seen.level == facets_[first].level;
+    place(all[f], facets_[first + f]);
+    constant = setValues(patch, all[f], first + f) && constant;
+    for (std::size_t b = 0; b < bands_; ++b) {
+      constant = constant && facets_[first + f].row.rise[b][0] == facets_[first].row.rise[b][0];
+    }
   }
   constant_[patch] = constant;
 }
@@ -96,17 +97,19 @@ void InterpolatedView::place(const BasisFacet& facet, SeenFacet& seen) const {
   }
 }
 
-/// Differences to corner 0: a constant field stays that constant. True if it is one.
-bool InterpolatedView::setValues(std::size_t patch, const BasisFacet& facet,
-                                 SeenFacet& seen) const {
-  seen.level = valueAt(patch, facet.corner[0]);
+/// Differences to corner 0: a constant field stays that constant. True if all bands are constant.
+bool InterpolatedView::setValues(std::size_t patch, const BasisFacet& facet, std::size_t seen) {
+  std::array<double, 4>* rise = facet_rise_.data() + seen * bands_;
+  facets_[seen].row.rise = {rise, bands_};
+  const auto count = std::size_t(facet.count);
+  for (std::size_t b = 0; b < bands_; ++b) rise[b][0] = valueAt(patch, facet.corner[0], b);
   bool constant = true;
-  for (std::size_t k = 1; k < seen.count; ++k) {
-    const std::array<double, 3> value = valueAt(patch, facet.corner[k]);
-    const double factor = seen.count == 4 ? facet.area[k] : 1;
-    for (std::size_t b = 0; b < 3; ++b) {
-      constant = constant && value[b] == seen.level[b];
-      seen.row.rise[b][k] = factor * (value[b] - seen.level[b]);
+  for (std::size_t k = 1; k < count; ++k) {
+    const double factor = count == 4 ? facet.area[k] : 1;
+    for (std::size_t b = 0; b < bands_; ++b) {
+      const double value = valueAt(patch, facet.corner[k], b);
+      constant = constant && value == rise[b][0];
+      rise[b][k] = factor * (value - rise[b][0]);
     }
   }
   return constant;
@@ -140,11 +143,11 @@ void InterpolatedView::visit(const ItemRun& run) {
 void InterpolatedView::addRun(const SeenFacet& facet, const ItemRun& run, int begin, int end,
                               bool constant) {
   const double weight = run.weights[end] - run.weights[begin];
-  for (std::size_t b = 0; b < 3; ++b) level_[b] += weight * facet.level[b];
+  for (std::size_t b = 0; b < bands_; ++b) level_[b] += weight * facet.row.rise[b][0];
   if (constant) return;
   const PixelRow pixels{run.weights + begin, begin + run.first_centre, end - begin,
                         resolution_ - begin};
-  (facet.count == 4 ? kernels_.addQuad : kernels_.addTriangle)(facet.row, pixels, above_);
+  (facet.count == 4 ? kernels_.addQuad : kernels_.addTriangle)(facet.row, pixels, above_.data());
 }
 
 /// Each pixel belongs to the facet it lies deepest in: edges' values measured against their sum.

@@ -23,15 +23,15 @@ namespace radiosity {
 class InterpolatedView : public RunVisitor {
  public:
   /// All are kept by reference. `scale`: of the view scene the eye's frame is given in. `radiosity`
-  /// (eyes * 3) may change between views.
+  /// (eyes * bands) may change between views.
   InterpolatedView(const PatchMesh& mesh, const PatchBasis& basis, double scale, int resolution,
                    bool simd, const std::vector<Index>& eye_of_corner,
-                   const std::vector<float>& radiosity);
+                   const std::vector<float>& radiosity, std::size_t bands);
 
   void begin(const EyeFrame& frame);
   void visit(const ItemRun& run) override;
-  /// W/m^2, of all runs since begin().
-  std::array<double, 3> irradiance() const;
+  /// W/m^2, one a band, of all runs since begin().
+  void irradiance(std::span<double> sum) const;
   /// Weight of the runs since begin() that show each surface's back.
   std::span<const double> backsBySurface() const { return backs_; }
   /// Bytes of scratch memory.
@@ -40,16 +40,15 @@ class InterpolatedView : public RunVisitor {
  private:
   struct SeenFacet {
     std::size_t count = 3;
-    std::array<Vec3, 4> edge{};     ///< in the eye's frame; dot(edge k, r) is A_k
-    std::array<double, 3> level{};  ///< value of corner 0
-    FacetRow row;                   ///< slopes and bases are those of the row seen last
+    std::array<Vec3, 4> edge{};  ///< in the eye's frame; dot(edge k, r) is A_k
+    FacetRow row;                ///< slopes and bases are those of the row seen last
   };
 
   void prepare(std::size_t patch);
   void place(const BasisFacet& facet, SeenFacet& seen) const;
-  bool setValues(std::size_t patch, const BasisFacet& facet, SeenFacet& seen) const;
-  std::array<double, 3> cornerMean(std::size_t patch) const;
-  std::array<double, 3> valueAt(std::size_t patch, std::size_t corner) const;
+  bool setValues(std::size_t patch, const BasisFacet& facet, std::size_t seen);
+  double cornerMean(std::size_t patch, std::size_t band) const;
+  double valueAt(std::size_t patch, std::size_t corner, std::size_t band) const;
   void alongRow(SeenFacet& facet, const ItemRun& run) const;
   void addRun(const SeenFacet& facet, const ItemRun& run, int begin, int end, bool constant);
   void addManyFacets(std::size_t patch, const ItemRun& run);
@@ -61,14 +60,17 @@ class InterpolatedView : public RunVisitor {
   int resolution_;
   const std::vector<Index>& eye_of_corner_;
   const std::vector<float>& radiosity_;
+  std::size_t bands_;
   EyeFrame frame_;
-  std::array<double, 3> level_{};  ///< from corner 0's values
-  std::vector<double> backs_;      ///< by surface
-  LaneSums above_;                 ///< what the others add
+  std::vector<double> level_;    ///< bands; from corner 0's values
+  std::vector<double> backs_;    ///< by surface
+  std::vector<LaneSums> above_;  ///< bands; what the others add
   std::uint32_t view_ = 0;
   std::vector<std::uint32_t> prepared_;  ///< N, the view a patch was prepared for
   std::vector<std::uint8_t> constant_;   ///< N, of that view: the same value at all corners
   std::vector<SeenFacet> facets_;        ///< as PatchBasis numbers them
+  /// facets * bands: FacetRow::rise, and in place 0 the value of corner 0.
+  std::vector<std::array<double, 4>> facet_rise_;
 };
 
 }  // namespace radiosity

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <string>
 
 namespace radiosity {
@@ -18,8 +19,9 @@ struct FacetRow {
   std::array<double, 4> slope{};
   std::array<double, 4> base{};
   std::array<double, 4> area{};  ///< C_k; of a triangle, unused
-  /// [band][corner]: what corner k is above corner 0; of a quadrilateral times C_k.
-  std::array<std::array<double, 4>, 3> rise{};
+  /// [band][corner]: what corner k > 0 is above corner 0; of a quadrilateral times C_k. Kernels do
+  /// not read [band][0].
+  std::span<const std::array<double, 4>> rise;
 };
 
 /// Pixels of one row, the first with its centre at `first_centre`, pixel m worth
@@ -31,17 +33,17 @@ struct PixelRow {
   int readable;  ///< `count` or more: so many pixels have weights
 };
 
-/// W/m^2 above corner 0's value, [band][lane].
-struct LaneSums {
-  alignas(64) std::array<std::array<double, kLanes>, 3> sum{};
+/// One band's W/m^2 above corner 0's value.
+struct alignas(64) LaneSums {
+  std::array<double, kLanes> sum{};
 };
 
 struct InterpolationKernels {
   std::string target;  ///< instruction set, by Highway's name
   /// sums += weight * (value interpolated - value of corner 0) over the pixels. Pixels where the
-  /// facet is seen as a point take corner 0's value.
-  void (*addTriangle)(const FacetRow& facet, const PixelRow& pixels, LaneSums& sums);
-  void (*addQuad)(const FacetRow& facet, const PixelRow& pixels, LaneSums& sums);
+  /// facet is seen as a point take corner 0's value. `sums`: one a band of the facet's rise.
+  void (*addTriangle)(const FacetRow& facet, const PixelRow& pixels, LaneSums* sums);
+  void (*addQuad)(const FacetRow& facet, const PixelRow& pixels, LaneSums* sums);
 };
 
 /// The best instruction set of this machine; `simd` false: Highway's scalar target, the same bits.

@@ -34,20 +34,23 @@ HWY_INLINE Vector worth(const PixelRow& pixels, int first) {
   return left >= kWidth ? all : hn::IfThenElseZero(hn::FirstN(d, std::size_t(left)), all);
 }
 
-template <std::size_t kCorners>
+/// A facet and some of its bands, in registers for a whole run.
+template <std::size_t kCorners, std::size_t kBands>
 struct Broadcast {
   Vector slope[kCorners];
   Vector base[kCorners];
   Vector area[kCorners];
-  Vector rise[3][kCorners];
+  Vector rise[kBands][kCorners];
 
-  HWY_INLINE explicit Broadcast(const FacetRow& facet) {
+  HWY_INLINE Broadcast(const FacetRow& facet, std::size_t first_band) {
     const Doubles d;
     for (std::size_t k = 0; k < kCorners; ++k) {
       slope[k] = hn::Set(d, facet.slope[k]);
       base[k] = hn::Set(d, facet.base[k]);
       area[k] = hn::Set(d, facet.area[k]);
-      for (std::size_t b = 0; b < 3; ++b) rise[b][k] = hn::Set(d, facet.rise[b][k]);
+      for (std::size_t b = 0; b < kBands; ++b) {
+        rise[b][k] = hn::Set(d, facet.rise[first_band + b][k]);
+      }
     }
   }
 
@@ -72,10 +75,11 @@ struct Broadcast {
   }
 };
 
-template <std::size_t kCorners>
-void add(const FacetRow& facet, const PixelRow& pixels, LaneSums& sums) {
+template <std::size_t kCorners, std::size_t kBands>
+HWY_INLINE void addBands(const FacetRow& facet, std::size_t first_band, const PixelRow& pixels,
+                         LaneSums* sums) {
   const Doubles d;
-  const Broadcast<kCorners> all(facet);
+  const Broadcast<kCorners, kBands> all(facet, first_band);
   const Vector zero = hn::Zero(d);
   Vector centre = hn::Add(hn::Set(d, pixels.first_centre), hn::Iota(d, 0));
   const Vector step = hn::Set(d, double(kWidth));
@@ -85,17 +89,27 @@ void add(const FacetRow& facet, const PixelRow& pixels, LaneSums& sums) {
     const Vector total = all.weigh(centre, w);
     const Vector share =
         hn::IfThenElseZero(hn::Gt(total, zero), hn::Div(worth(pixels, first), total));
-    for (std::size_t b = 0; b < 3; ++b) {
+    for (std::size_t b = 0; b < kBands; ++b) {
       Vector above = hn::Mul(all.rise[b][1], w[1]);
       for (std::size_t k = 2; k < kCorners; ++k) {
         above = hn::Add(above, hn::Mul(all.rise[b][k], w[k]));
       }
-      double* sum = sums.sum[b].data() + v * std::size_t(kWidth);
+      double* sum = sums[first_band + b].sum.data() + v * std::size_t(kWidth);
       hn::Store(hn::Add(hn::Load(d, sum), hn::Mul(share, above)), d, sum);
     }
     centre = hn::Add(centre, step);
     v = (v + 1) % kVectors;
   }
+}
+
+/// Three bands at a time: colours are one turn.
+template <std::size_t kCorners>
+void add(const FacetRow& facet, const PixelRow& pixels, LaneSums* sums) {
+  const std::size_t bands = facet.rise.size();
+  std::size_t b = 0;
+  for (; b + 3 <= bands; b += 3) addBands<kCorners, 3>(facet, b, pixels, sums);
+  if (bands - b == 2) addBands<kCorners, 2>(facet, b, pixels, sums);
+  if (bands - b == 1) addBands<kCorners, 1>(facet, b, pixels, sums);
 }
 
 InterpolationKernels kernels() { return {hwy::TargetName(HWY_TARGET), add<3>, add<4>}; }

@@ -25,18 +25,21 @@ std::size_t bytesOf(const std::vector<Value>& values) {
 GatherScene::GatherScene(const PatchMesh& patch_mesh, const PatchMaterials& of_patches,
                          const GatherOptions& options)
     : mesh(patch_mesh),
+      bands(std::size_t(of_patches.bands)),
       at(options.at),
       resolution(options.resolution),
       simd(options.simd),
       rows(patch_mesh, eyeOptions(options)),
       sky(of_patches.sky) {
+  sky.resize(bands, 0.0);  // none: dark
   if (at == GatherAt::patches) {
     standAtPatches(of_patches, options);
   } else {
     standAtVertices(of_patches, options);
   }
+  materials.largest_emission.assign(bands, 0.0);
   for (std::size_t k = 0; k < materials.emission.size(); ++k) {
-    double& largest = materials.largest_emission[k % 3];
+    double& largest = materials.largest_emission[k % bands];
     largest = std::max(largest, double(materials.emission[k]));
   }
 }
@@ -44,12 +47,8 @@ GatherScene::GatherScene(const PatchMesh& patch_mesh, const PatchMaterials& of_p
 void GatherScene::standAtPatches(const PatchMaterials& of_patches, const GatherOptions& options) {
   eyes = patchEyes(mesh, options);
   area = mesh.area;
-  for (std::size_t i = 0; i < mesh.size(); ++i) {
-    for (int b = 0; b < 3; ++b) {
-      materials.emission.push_back(float(of_patches.emission[i][b]));
-      materials.reflectance.push_back(float(of_patches.reflectance[i][b]));
-    }
-  }
+  materials.emission.assign(of_patches.emission.begin(), of_patches.emission.end());
+  materials.reflectance.assign(of_patches.reflectance.begin(), of_patches.reflectance.end());
 }
 
 void GatherScene::standAtVertices(const PatchMaterials& of_patches, const GatherOptions& options) {
@@ -59,31 +58,38 @@ void GatherScene::standAtVertices(const PatchMaterials& of_patches, const Gather
   basis.emplace(mesh);
   const std::vector<double> weights = basis->areaWeights();
   area.assign(groups.size(), 0.0);
-  materials.emission.assign(3 * groups.size(), 0.0F);
-  materials.reflectance.assign(3 * groups.size(), 0.0F);
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    // As differences to the first patch: what is the same all round stays it to the bit.
-    const Index first = groups.patchesOf(g).front();
-    Vec3 emission(0.0);
-    Vec3 reflectance(0.0);
+    for (const std::size_t corner : groups.cornersOf(g)) area[g] += weights[corner];
+  }
+  // As differences to the first patch: what is the same all round stays it to the bit.
+  const auto meanOf = [&](const std::vector<double>& values, std::size_t g, std::size_t band) {
+    const double first = values[bands * groups.patchesOf(g).front() + band];
+    double sum = 0;
     for (std::size_t k = 0; k < groups.cornersOf(g).size(); ++k) {
-      const Index patch = groups.patchesOf(g)[k];
-      const double weight = weights[groups.cornersOf(g)[k]];
-      area[g] += weight;
-      emission += weight * (of_patches.emission[patch] - of_patches.emission[first]);
-      reflectance += weight * (of_patches.reflectance[patch] - of_patches.reflectance[first]);
+      const double value = values[bands * groups.patchesOf(g)[k] + band];
+      sum += weights[groups.cornersOf(g)[k]] * (value - first);
     }
+    return float(first + sum / area[g]);
+  };
+  materials.emission.assign(bands * groups.size(), 0.0F);
+  materials.reflectance.assign(bands * groups.size(), 0.0F);
+  for (std::size_t k = 0; k < materials.emission.size(); ++k) {
+    const std::size_t g = k / bands;
     if (!(area[g] > 0)) continue;
-    for (int b = 0; b < 3; ++b) {
-      const std::size_t k = 3 * g + std::size_t(b);
-      materials.emission[k] = float(of_patches.emission[first][b] + emission[b] / area[g]);
-      materials.reflectance[k] = float(of_patches.reflectance[first][b] + reflectance[b] / area[g]);
-    }
+    materials.emission[k] = meanOf(of_patches.emission, g, k % bands);
+    materials.reflectance[k] = meanOf(of_patches.reflectance, g, k % bands);
   }
 }
 
 double GatherScene::largestSource(std::size_t band) const {
-  return std::max(materials.largest_emission[band], std::numbers::pi * sky[int(band)]);
+  return std::max(materials.largest_emission[band], std::numbers::pi * sky[band]);
+}
+
+bool GatherScene::isLit() const {
+  for (std::size_t b = 0; b < bands; ++b) {
+    if (largestSource(b) > 0) return true;
+  }
+  return false;
 }
 
 std::size_t GatherScene::bytes() const {
@@ -93,10 +99,13 @@ std::size_t GatherScene::bytes() const {
 }
 
 Gatherer::Gatherer(const GatherScene& scene, const std::vector<float>& radiosity)
-    : scene_(scene), radiosity_(radiosity), hemicube_(scene.rows.makeHemicube()) {
+    : scene_(scene),
+      radiosity_(radiosity),
+      hemicube_(scene.rows.makeHemicube()),
+      irradiance_(scene.bands, 0.0) {
   if (scene.basis) {
     view_.emplace(scene.mesh, *scene.basis, scene.rows.scene().scale, scene.resolution, scene.simd,
-                  scene.eye_of_corner, radiosity);
+                  scene.eye_of_corner, radiosity, scene.bands);
   }
 }
 
@@ -107,15 +116,17 @@ Gatherer::Received Gatherer::look(std::size_t k) {
   const HemicubeView& view =
       *(seen_ = &scene_.rows.lookFrom(eye.position, eye.normal, eye.angle, eye.own, hemicube_,
                                       hidden_, view_ ? &*view_ : nullptr));
-  Received received{{}, view.fronts, view.backs, view.sky};
+  const Received received{irradiance_, view.fronts, view.backs, view.sky};
   if (view_) {
-    received.irradiance = view_->irradiance();
+    view_->irradiance(irradiance_);
     return received;
   }
+  std::fill(irradiance_.begin(), irradiance_.end(), 0.0);
+  const std::size_t bands = scene_.bands;
   for (std::size_t j = 0; j < scene_.mesh.size(); ++j) {
     const double weight = view.items[j];
     if (weight == 0) continue;
-    for (std::size_t b = 0; b < 3; ++b) received.irradiance[b] += weight * radiosity_[3 * j + b];
+    for (std::size_t b = 0; b < bands; ++b) irradiance_[b] += weight * radiosity_[bands * j + b];
   }
   return received;
 }

@@ -12,11 +12,11 @@
 
 namespace radiosity {
 
-/// Emission and reflectance of each eye, L * 3: the mean over what its value stands for.
+/// Emission and reflectance of each eye, L * bands: the mean over what its value stands for.
 struct EyeMaterials {
   std::vector<float> emission;
   std::vector<float> reflectance;
-  std::array<double, 3> largest_emission{};
+  std::vector<double> largest_emission;  ///< bands
 };
 
 /// The scene as the passes need it; made once.
@@ -31,6 +31,7 @@ class GatherScene {
   std::size_t bytes() const;
 
   const PatchMesh& mesh;
+  std::size_t bands;
   GatherAt at;
   int resolution;
   bool simd;
@@ -40,10 +41,12 @@ class GatherScene {
   std::vector<Index> eye_of_corner;  ///< at vertices
   std::optional<PatchBasis> basis;   ///< at vertices
   EyeMaterials materials;
-  Vec3 sky;  ///< radiance, W/m^2/sr
+  std::vector<double> sky;  ///< bands; radiance, W/m^2/sr
   /// The largest emission of a band, or the exitance of the sky where that is more: what changes
   /// are relative to.
   double largestSource(std::size_t band) const;
+  /// Something emits, or the sky shines, in some band.
+  bool isLit() const;
 
  private:
   void standAtPatches(const PatchMaterials& of_patches, const GatherOptions& options);
@@ -57,7 +60,7 @@ class Gatherer {
   Gatherer(const GatherScene& scene, const std::vector<float>& radiosity);
 
   struct Received {
-    std::array<double, 3> irradiance{};
+    std::span<const double> irradiance;  ///< bands; until the next look
     double fronts = 0;
     double backs = 0;
     double sky = 0;
@@ -73,6 +76,7 @@ class Gatherer {
   const std::vector<float>& radiosity_;
   Hemicube hemicube_;
   const HemicubeView* seen_ = nullptr;  ///< the last look's
+  std::vector<double> irradiance_;      ///< the last look's
   std::vector<std::uint8_t> hidden_;
   std::optional<InterpolatedView> view_;
 };

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -201,11 +203,35 @@ std::vector<std::vector<Index>> facesNear(const Scene& scene, const PatchMesh& m
 
 }  // namespace
 
+void PatchMaterials::requireSizes(std::size_t patches) const {
+  if (bands < 1) {
+    throw InputError(fmt::format("materials: {} bands; 1 or more are needed", bands));
+  }
+  const std::size_t needed = patches * std::size_t(bands);
+  const auto check = [&](const char* what, std::size_t size) {
+    if (size == needed) return;
+    throw InputError(
+        fmt::format("materials: {} {} are given, {} patches of {} bands take {}: a row of all "
+                    "bands for each patch; set `bands` to what a row holds",
+                    size, what, patches, bands, needed));
+  };
+  check("reflectances", reflectance.size());
+  check("emissions", emission.size());
+  if (sky.empty() || sky.size() == std::size_t(bands)) return;
+  throw InputError(
+      fmt::format("materials: the sky has {} bands, the patches have {}; give it as many, or none "
+                  "where it is dark",
+                  sky.size(), bands));
+}
+
 PatchMaterials patchMaterials(const Scene& scene, const PatchMesh& mesh) {
   PatchMaterials result;
-  result.reflectance.resize(mesh.size());
-  result.emission.resize(mesh.size());
-  result.sky = scene.sky;
+  result.reflectance.resize(3 * mesh.size());
+  result.emission.resize(3 * mesh.size());
+  result.sky = {scene.sky.x, scene.sky.y, scene.sky.z};
+  const auto put = [](std::vector<double>& values, std::size_t i, const Vec3& value) {
+    for (int b = 0; b < 3; ++b) values[3 * i + std::size_t(b)] = value[b];
+  };
   std::vector<TextureMean> textures;
   textures.reserve(scene.textures.size());
   for (const Texture& texture : scene.textures) textures.emplace_back(texture);
@@ -213,21 +239,25 @@ PatchMaterials patchMaterials(const Scene& scene, const PatchMesh& mesh) {
   const std::vector<std::vector<Index>> near = facesNear(scene, mesh);
   parallelFor(mesh.size(), 64, [&](std::size_t i) {
     const Material& material = scene.materials[scene.surfaces[mesh.surface[i]].material];
-    result.reflectance[i] = material.reflectance;
-    result.emission[i] = material.emission;
+    Vec3 reflectance = material.reflectance;
+    Vec3 emission = material.emission;
     if (mesh.side[i] == 0 && mesh.area[i] > 0 && isTextured(scene, mesh.surface[i])) {
       if (material.texture != kNone) {
-        result.reflectance[i] *= patch_texture.mean(i, material.texture, near[i]);
+        reflectance *= patch_texture.mean(i, material.texture, near[i]);
       }
       if (material.emission_texture != kNone) {
-        result.emission[i] *= patch_texture.mean(i, material.emission_texture, near[i]);
+        emission *= patch_texture.mean(i, material.emission_texture, near[i]);
       }
     }
+    put(result.reflectance, i, reflectance);
+    put(result.emission, i, emission);
   });
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     if (mesh.side[i] == 0) continue;
-    result.reflectance[i] = result.reflectance[mesh.twin[i]];
-    result.emission[i] = result.emission[mesh.twin[i]];
+    for (std::size_t b = 0; b < 3; ++b) {
+      result.reflectance[3 * i + b] = result.reflectance[3 * mesh.twin[i] + b];
+      result.emission[3 * i + b] = result.emission[3 * mesh.twin[i] + b];
+    }
   }
   return result;
 }

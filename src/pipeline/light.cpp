@@ -9,13 +9,18 @@ namespace radiosity {
 
 namespace {
 
-/// Of three bands a patch.
-std::vector<double> luminanceOfEach(std::span<const double> rgb) {
-  std::vector<double> out(rgb.size() / 3);
+/// One number a patch, of any bands.
+std::vector<double> brightnessOfEach(std::span<const double> values, int bands) {
+  const auto width = std::size_t(bands);
+  std::vector<double> out(values.size() / width);
   for (std::size_t i = 0; i < out.size(); ++i) {
-    out[i] = luminanceOf({rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]});
+    out[i] = brightnessOf(values.subspan(width * i, width));
   }
   return out;
+}
+
+ScalarField brightnessField(const char* title, std::span<const double> values, int bands) {
+  return {brightnessOfEach(values, bands), {title + brightnessText(bands), "W/m^2"}};
 }
 
 std::vector<double> rowOf(const ExchangeMatrix& matrix, std::size_t patch) {
@@ -35,17 +40,22 @@ SurfaceLight Pipeline::gatheredLight() {
   const Gathered& light = gathered();
   const PatchMesh& patches = made(results_.mesh).mesh;
   SurfaceLight drawn = surfaceLight(patchRadiosity(patches, light), materialsOfMesh());
-  if (light.at == GatherAt::vertices) drawn.corners = cornerRadiosity(patches, light);
+  if (light.at == GatherAt::vertices) {
+    drawn.corners = rgbOf(cornerRadiosity(patches, light), light.bands);
+  }
   return drawn;
 }
 
 ScalarField Pipeline::field(Quantity quantity, std::size_t patch) {
   switch (quantity) {
-    case Quantity::radiosity:
-      return {luminanceOfEach(solution().radiosity), {"radiosity B (Rec. 709 luminance)", "W/m^2"}};
-    case Quantity::irradiance:
-      return {luminanceOfEach(solution().irradiance),
-              {"irradiance H (Rec. 709 luminance)", "W/m^2"}};
+    case Quantity::radiosity: {
+      const Solution& light = solution();
+      return brightnessField("radiosity B", light.radiosity, light.bands);
+    }
+    case Quantity::irradiance: {
+      const Solution& light = solution();
+      return brightnessField("irradiance H", light.irradiance, light.bands);
+    }
     case Quantity::form_factor:
       return {rowOf(matrix(), patch), {fmt::format("form factor from patch {}", patch), ""}};
     case Quantity::row_sum:

@@ -17,6 +17,9 @@ namespace radiosity {
 
 namespace {
 
+/// Red, green and blue: all that scene files say.
+constexpr int kSceneBands = 3;
+
 /// The option given that only a scene file has use for; null where there is none.
 const char* readingOption(const SceneOptions& given) {
   const SceneOptions defaults;
@@ -91,6 +94,12 @@ void Pipeline::openResults(const std::string& path, const SceneOptions& scene) {
 }
 
 void Pipeline::overrideScene(const SceneOptions& overrides) {
+  if (hasOwnMaterials()) {
+    throw InputError(fmt::format(
+        "{}: holds materials of {} bands, which options that change the scene's colours do not "
+        "reach; leave those out and change reflectance, emission and sky in /solution",
+        name_, bands()));
+  }
   std::vector<Note>& notes = made(results_.scene).notes;
   const std::size_t known = notes.size();
   applyOverrides(made(results_.scene), overrides);
@@ -113,7 +122,25 @@ void Pipeline::openReused(const std::string& path) {
   }
 }
 
+int Pipeline::bands() const {
+  if (results_.materials) return results_.materials->bands;
+  return from_results_ && stored_.materials ? stored_.materials->bands : kSceneBands;
+}
+
+/// Whether the materials are the results file's, of bands that no scene says.
+bool Pipeline::hasOwnMaterials() const { return bands() != kSceneBands; }
+
+/// The file's own materials belong to its mesh alone, which is `reused` or not.
+void Pipeline::requireOwnMesh(bool reused) const {
+  if (reused || !hasOwnMaterials()) return;
+  throw InputError(
+      fmt::format("{}: holds materials of {} bands for each patch of its mesh, and the options "
+                  "given ask for another mesh; leave them out, or make the materials anew",
+                  name_, bands()));
+}
+
 void Pipeline::requireLight(const std::function<std::string()>& cure) const {
+  if (hasOwnMaterials()) return;
   if (scene().sky != Vec3(0.0)) return;
   for (const Surface& surface : scene().surfaces) {
     if (scene().materials[surface.material].emission != Vec3(0.0)) return;
@@ -207,7 +234,8 @@ void Pipeline::keepLaterStages() {
   bool dropped = keepFactors();
   dropped = keepSolution() || dropped;
   dropped = keepGathered() || dropped;
-  if (!results_.solution && !results_.gathered) results_.materials.reset();
+  const bool needed = results_.solution || results_.gathered || hasOwnMaterials();
+  if (!needed) results_.materials.reset();
   changed_ = changed_ || dropped;
 }
 

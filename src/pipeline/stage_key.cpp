@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <type_traits>
 
@@ -34,16 +35,22 @@ void read(const StageKey& key, std::string_view name, Number& value) {
   }
 }
 
+/// Arrays count as rows of all bands.
 std::string materialsHash(const PatchMaterials& materials) {
   Hash hash;
-  hash.array(materials.reflectance);
-  hash.array(materials.emission);
+  for (const std::vector<double>* values : {&materials.reflectance, &materials.emission}) {
+    const std::uint64_t rows = values->size() / std::size_t(materials.bands);
+    hash.bytes(&rows, sizeof rows);
+    hash.bytes(values->data(), values->size() * sizeof(double));
+  }
   return hash.hex();
 }
 
-std::string skyText(const Vec3& sky) {
-  return sky.x == sky.y && sky.y == sky.z ? fmt::format("{}", sky.x)
-                                          : fmt::format("{},{},{}", sky.x, sky.y, sky.z);
+/// One number where all bands have the same.
+std::string skyText(const std::vector<double>& sky) {
+  if (sky.empty()) return "0";
+  const bool grey = std::all_of(sky.begin(), sky.end(), [&](double s) { return s == sky[0]; });
+  return grey ? fmt::format("{}", sky[0]) : fmt::format("{}", fmt::join(sky, ","));
 }
 
 /// The option that a key names; as it was where it names none.

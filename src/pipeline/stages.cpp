@@ -90,12 +90,15 @@ const MeshResult& Pipeline::mesh() {
   options_.mesh.validate();
   const StageKey key = meshKey(options_.mesh, scene());
   if (results_.mesh && results_.mesh_key == key.text()) return made(results_.mesh);
+  const bool reused = stored_.mesh && stored_.mesh_key == key.text();
+  requireOwnMesh(reused);
   discardFrom(Stage::mesh);
-  mesh_reused_ = stored_.mesh && stored_.mesh_key == key.text();
+  mesh_reused_ = reused;
   replaces_ = replaces_ || stored_.factors || (stored_.mesh && !mesh_reused_);
   if (mesh_reused_) {
     results_.mesh = taken(stored_.mesh);
     results_.mesh_key = key.text();
+    if (hasOwnMaterials()) results_.materials = taken(stored_.materials);
     tell(Stage::mesh, StageAction::reused, source_);
     return made(results_.mesh);
   }

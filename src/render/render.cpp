@@ -69,6 +69,14 @@ Image draw(const PatchMesh& mesh, const PatchField& field, const Camera& camera,
   return image;
 }
 
+void requireColours(const PatchMesh& mesh, std::span<const double> values) {
+  if (values.size() == 3 * mesh.size()) return;
+  throw InputError(fmt::format(
+      "render: a picture draws three bands, so {} patches need {} values, {} were given; "
+      "make colours of other bands, of one by rgbOf()",
+      mesh.size(), 3 * mesh.size(), values.size()));
+}
+
 void checkCorners(const PatchMesh& mesh, std::span<const double> corners) {
   if (corners.size() != 3 * mesh.corners.size()) {
     throw InputError(fmt::format("render: {} values at corners are needed, {} were given",
@@ -116,15 +124,31 @@ PatchField makeField(const PatchMesh& mesh, std::span<const double> values, int 
   return field;
 }
 
+std::vector<double> rgbOf(std::span<const double> values, int bands) {
+  if (bands == 3) return {values.begin(), values.end()};
+  if (bands != 1) {
+    throw InputError(
+        fmt::format("a picture draws three bands (red, green, blue), or one in grey, not {}; pick "
+                    "one or three of them, or make colours of them",
+                    bands));
+  }
+  std::vector<double> grey;
+  grey.reserve(3 * values.size());
+  for (const double value : values) grey.insert(grey.end(), 3, value);
+  return grey;
+}
+
 Image render(const PatchMesh& mesh, std::span<const double> values, const Camera& camera,
              const RenderOptions& options, Progress& progress) {
   options.validate();
+  requireColours(mesh, values);
   return draw(mesh, makeField(mesh, values, 3, options), camera, options, progress);
 }
 
 Image render(const PatchMesh& mesh, std::span<const double> values, std::span<const double> corners,
              const Camera& camera, const RenderOptions& options, Progress& progress) {
   options.validate();
+  requireColours(mesh, values);
   checkCorners(mesh, corners);
   RenderOptions constant = options;
   constant.smooth = false;
@@ -145,14 +169,27 @@ Image renderRadiance(const PatchMesh& mesh, std::span<const double> radiosity,
   return render(mesh, radiance(radiosity), radiance(corners), camera, options, progress);
 }
 
-SurfaceLight surfaceLight(std::vector<double> radiosity, const PatchMaterials& materials) {
-  SurfaceLight light{std::move(radiosity), {}, {}, materials.sky};
-  const std::vector<Vec3>& emission = materials.emission;
-  light.reflected.reserve(emission.size());
-  for (std::size_t i = 0; i < emission.size(); ++i) {
-    const double* b = light.patches.data() + 3 * i;
-    light.reflected.push_back(std::max(0.0, luminanceOf(Vec3(b[0], b[1], b[2]) - emission[i])));
+std::vector<double> reflectedLight(std::span<const double> radiosity,
+                                   const PatchMaterials& materials) {
+  const auto bands = std::size_t(materials.bands);
+  std::vector<double> reflected;
+  reflected.reserve(radiosity.size() / bands);
+  std::vector<double> apart(bands);
+  for (std::size_t k = 0; k < radiosity.size(); k += bands) {
+    for (std::size_t b = 0; b < bands; ++b) {
+      apart[b] = radiosity[k + b] - materials.emission[k + b];
+    }
+    reflected.push_back(std::max(0.0, brightnessOf(apart)));
   }
+  return reflected;
+}
+
+SurfaceLight surfaceLight(std::span<const double> radiosity, const PatchMaterials& materials) {
+  SurfaceLight light;
+  light.patches = rgbOf(radiosity, materials.bands);
+  light.reflected = reflectedLight(radiosity, materials);
+  const std::vector<double> sky = rgbOf(materials.sky, materials.bands);
+  if (!sky.empty()) light.sky = Vec3(sky[0], sky[1], sky[2]);
   return light;
 }
 

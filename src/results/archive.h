@@ -65,6 +65,10 @@ class FieldWriter {
     const Shape shape{numberOf<Component>(), columns == 0 ? numbers : numbers / columns, columns};
     sink_->dataset(name, shape, values.data(), unit);
   }
+  /// A few numbers as one attribute; none where there are none.
+  void numbers(const char* name, const std::vector<double>& values, std::size_t /*count*/) {
+    if (!values.empty()) sink_->attribute(name, Number::f64, values.size(), values.data());
+  }
   /// An enum, as its word in `names`.
   template <class Enum, std::size_t N>
   void choice(const char* name, const Enum& value, const NameTable<Enum, N>& names) {
@@ -153,6 +157,12 @@ class FieldReader {
     const std::size_t numbers = columns == 0 ? count : count * columns;
     values.resize(numbers / kNumbersIn<T>);
     if (!values.empty()) source_->readAll(name, dataset, numberOf<Component>(), values.data());
+  }
+  /// How many columns the rows of a dataset have.
+  int columns(const char* name) const { return source_->columns(name); }
+  void numbers(const char* name, std::vector<double>& values, std::size_t count) {
+    values.assign(source_->hasAttribute(name) ? count : 0, 0.0);
+    if (!values.empty()) source_->attribute(name, Number::f64, count, values.data());
   }
   template <class Enum, std::size_t N>
   void choice(const char* name, Enum& value, const NameTable<Enum, N>& names) {

@@ -254,21 +254,24 @@ void describe(Archive& a, Described<Archive, Solution>& s) {
 
 template <class Archive>
 void describe(Archive& a, Described<Archive, PatchMaterials>& m) {
-  a("reflectance", m.reflectance);
-  a("emission", m.emission, "W/m^2");
-  a("sky", m.sky);
+  if constexpr (Archive::kReading) m.bands = a.columns("reflectance");
+  const auto bands = std::size_t(m.bands);
+  a.rows("reflectance", m.reflectance, bands);
+  a.rows("emission", m.emission, bands, "W/m^2");
+  a.numbers("sky", m.sky, bands);
 }
 
 /// Passes as they are stored: a row each.
 struct PassColumns {
+  std::size_t bands;
   std::vector<double> seconds, change, bound;  // P
-  // P x 3
+  // P x bands
   std::vector<double> emitted, from_sky, absorbed, to_sky, on_backs, imbalance, in_flight;
 
-  PassColumns() = default;
-  explicit PassColumns(const std::vector<GatherPass>& passes) {
-    const auto append = [](std::vector<double>& to, const std::vector<double>& bands) {
-      to.insert(to.end(), bands.begin(), bands.end());
+  explicit PassColumns(std::size_t band_count) : bands(band_count) {}
+  PassColumns(const std::vector<GatherPass>& passes, std::size_t band_count) : bands(band_count) {
+    const auto append = [](std::vector<double>& to, const std::vector<double>& row) {
+      to.insert(to.end(), row.begin(), row.end());
     };
     for (const GatherPass& pass : passes) {
       seconds.push_back(pass.seconds);
@@ -285,14 +288,14 @@ struct PassColumns {
   }
   /// Columns of unequal length end the list: results_check.cpp says so.
   std::vector<GatherPass> passes() const {
-    const auto bandsOf = [](const std::vector<double>& from, std::size_t pass) {
-      return std::vector<double>(from.begin() + std::ptrdiff_t(3 * pass),
-                                 from.begin() + std::ptrdiff_t(3 * pass + 3));
+    const auto bandsOf = [&](const std::vector<double>& from, std::size_t pass) {
+      const auto first = from.begin() + std::ptrdiff_t(bands * pass);
+      return std::vector<double>(first, first + std::ptrdiff_t(bands));
     };
     std::size_t count = std::min({seconds.size(), change.size(), bound.size()});
     for (const auto* column :
          {&emitted, &from_sky, &absorbed, &to_sky, &on_backs, &imbalance, &in_flight}) {
-      count = std::min(count, column->size() / 3);
+      count = std::min(count, column->size() / bands);
     }
     std::vector<GatherPass> result(count);
     for (std::size_t k = 0; k < count; ++k) {
@@ -313,17 +316,17 @@ void describe(Archive& a, Described<Archive, PassColumns>& p) {
   a("seconds", p.seconds, "s");
   a("change", p.change);
   a("bound", p.bound, "W/m^2");
-  a.rows("emitted", p.emitted, 3, "W");
-  a.rows("from_sky", p.from_sky, 3, "W");
-  a.rows("absorbed", p.absorbed, 3, "W");
-  a.rows("to_sky", p.to_sky, 3, "W");
-  a.rows("on_backs", p.on_backs, 3, "W");
-  a.rows("imbalance", p.imbalance, 3, "W");
-  a.rows("in_flight", p.in_flight, 3, "W");
+  a.rows("emitted", p.emitted, p.bands, "W");
+  a.rows("from_sky", p.from_sky, p.bands, "W");
+  a.rows("absorbed", p.absorbed, p.bands, "W");
+  a.rows("to_sky", p.to_sky, p.bands, "W");
+  a.rows("on_backs", p.on_backs, p.bands, "W");
+  a.rows("imbalance", p.imbalance, p.bands, "W");
+  a.rows("in_flight", p.in_flight, p.bands, "W");
 }
 
 template <class Archive>
-void describe(Archive& a, Described<Archive, GatherSummary>& s) {
+void describe(Archive& a, Described<Archive, GatherSummary>& s, std::size_t bands) {
   a.choice("status", s.status, kGatherStatusNames);
   a("hemicubes", s.hemicubes);
   a("pixels", s.pixels);
@@ -334,11 +337,11 @@ void describe(Archive& a, Described<Archive, GatherSummary>& s) {
   a("message", s.message);
   a.group("passes", [&](auto& passes) {
     if constexpr (Archive::kReading) {
-      PassColumns columns;
+      PassColumns columns(bands);
       describe(passes, columns);
       s.passes = columns.passes();
     } else {
-      const PassColumns columns(s.passes);
+      const PassColumns columns(s.passes, bands);
       describe(passes, columns);
     }
   });
@@ -348,15 +351,16 @@ template <class Archive>
 void describe(Archive& a, Described<Archive, Gathered>& g) {
   a.choice("at", g.at, kGatherAtNames);
   a("bands", g.bands);
-  a.rows("radiosity", g.radiosity, 3, "W/m^2");
-  a.rows("irradiance", g.irradiance, 3, "W/m^2");
+  const auto bands = std::size_t(std::max(g.bands, 1));  // results_check.cpp refuses others
+  a.rows("radiosity", g.radiosity, bands, "W/m^2");
+  a.rows("irradiance", g.irradiance, bands, "W/m^2");
   a("backs", g.backs);
   a("sky", g.sky);
   a("backs_by_surface", g.backs_by_surface);
   a("area", g.area, "m^2");
   a("position", g.position, "m");
   a("eye_of_corner", g.eye_of_corner);
-  a.group("summary", [&](auto& summary) { describe(summary, g.summary); });
+  a.group("summary", [&](auto& summary) { describe(summary, g.summary, bands); });
 }
 
 }  // namespace radiosity

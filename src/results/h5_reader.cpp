@@ -140,6 +140,14 @@ Handle InputGroup::open(const std::string& name, Number number, std::size_t colu
   return id;
 }
 
+int InputGroup::columns(const std::string& name) const {
+  constexpr hsize_t kMost = 1U << 20U;  // no row of numbers is as long
+  std::vector<hsize_t> extent;
+  openAny(name, extent);
+  if (extent.size() != 2 || extent[1] < 1 || extent[1] > kMost) fail(name, "has no rows of bands");
+  return int(extent[1]);
+}
+
 std::optional<Number> InputGroup::numberOfDataset(const std::string& name) const {
   std::vector<hsize_t> extent;
   const Handle id = openAny(name, extent);

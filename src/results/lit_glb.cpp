@@ -77,8 +77,10 @@ class LitPrimitive {
 void checkArguments(const std::string& path, const PatchMesh& mesh,
                     std::span<const double> radiosity, double ev) {
   if (radiosity.size() != 3 * mesh.size()) {
-    throw InputError(fmt::format("{}: a lit mesh of {} patches needs {} values, not {}", path,
-                                 mesh.size(), 3 * mesh.size(), radiosity.size()));
+    throw InputError(fmt::format(
+        "{}: a lit mesh of {} patches needs {} values, not {}: three bands each; make colours of "
+        "others, of one by rgbOf()",
+        path, mesh.size(), 3 * mesh.size(), radiosity.size()));
   }
   for (std::size_t k = 0; k < radiosity.size(); ++k) {
     if (std::isfinite(radiosity[k])) continue;

@@ -1,6 +1,7 @@
 // The results file as a whole: which groups there are and in which order.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <new>
@@ -101,6 +102,15 @@ void requireMatrix(const std::string& path, const Results& results) {
   }
 }
 
+/// Rows of another length would be cut short in the file.
+void requireRows(const Results& results) {
+  if (!results.materials) return;
+  const PatchMaterials& materials = *results.materials;
+  const auto bands = std::size_t(std::max(materials.bands, 1));
+  materials.requireSizes(results.mesh ? results.mesh->mesh.size()
+                                      : materials.reflectance.size() / bands);
+}
+
 void checkHead(const h5::InputFile& file, const InputGroup& root) {
   if (!root.hasAttribute("format") || root.text("format") != kFormat) {
     throw InputError(fmt::format(
@@ -195,6 +205,7 @@ Results readResults(const std::string& path, bool with_factors) {
 
 void writeResults(const std::string& path, const Results& results, Progress& progress) {
   requireMatrix(path, results);
+  requireRows(results);
   AtomicFile target(path);
   h5::OutputFile file(target.temporary(), path);
   {

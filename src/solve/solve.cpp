@@ -302,15 +302,9 @@ Solution solve(const FormFactors& factors, std::span<const double> reflectance,
 
 Solution solve(const FormFactors& factors, const PatchMaterials& materials, const PatchMesh& mesh,
                const SolveOptions& options, Progress& progress) {
-  const auto flat = [](const std::vector<Vec3>& values) {
-    std::vector<double> out;
-    out.reserve(3 * values.size());
-    for (const Vec3& v : values) out.insert(out.end(), {v.x, v.y, v.z});
-    return out;
-  };
-  const double sky[] = {materials.sky.x, materials.sky.y, materials.sky.z};
-  return solve(factors, flat(materials.reflectance), flat(materials.emission), 3, options, progress,
-               mesh.surface, mesh.surface_names, sky);
+  materials.requireSizes(mesh.size());
+  return solve(factors, materials.reflectance, materials.emission, materials.bands, options,
+               progress, mesh.surface, mesh.surface_names, materials.sky);
 }
 
 }  // namespace radiosity

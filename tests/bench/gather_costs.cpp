@@ -53,8 +53,9 @@ double jacobiGap(const BenchScene& scene, const Lighting& lighting) {
 /// Largest |B - 3/2| after one pass at vertices where E = 1 and rho = 1/2 all over.
 double furnaceGap(const BenchScene& scene) {
   PatchMaterials uniform;
-  uniform.reflectance.assign(scene.mesh.size(), Vec3(0.5));
-  uniform.emission.assign(scene.mesh.size(), Vec3(1.0));
+  uniform.bands = 1;
+  uniform.reflectance.assign(scene.mesh.size(), 0.5);
+  uniform.emission.assign(scene.mesh.size(), 1.0);
   const Gathered g = gathered(scene, uniform, GatherAt::vertices, 1);
   double gap = 0;
   for (const float b : g.radiosity) gap = std::max(gap, std::abs(double(b) - 1.5));

@@ -4,29 +4,25 @@
 
 namespace radiosity::bench {
 
-Lighting::Lighting(const BenchScene& scene) : materials_(patchMaterials(scene.scene, scene.mesh)) {
-  for (std::size_t i = 0; i < scene.mesh.size(); ++i) {
-    for (int b = 0; b < kBands; ++b) {
-      reflectance_.push_back(materials_.reflectance[i][b]);
-      emission_.push_back(materials_.emission[i][b]);
-    }
-  }
-}
+Lighting::Lighting(const BenchScene& scene) : materials_(patchMaterials(scene.scene, scene.mesh)) {}
 
 std::vector<double> Lighting::solve(const FormFactors& factors, double tolerance) const {
   SolveOptions options;
   options.tolerance = tolerance;
   Progress silent;
-  return radiosity::solve(factors, reflectance_, emission_, kBands, options, silent).radiosity;
+  return radiosity::solve(factors, materials_.reflectance, materials_.emission, materials_.bands,
+                          options, silent)
+      .radiosity;
 }
 
 std::vector<double> Lighting::bounce(const ExchangeMatrix& matrix,
                                      const std::vector<double>& b) const {
-  std::vector<double> next = emission_;
+  const auto bands = std::size_t(materials_.bands);
+  std::vector<double> next = materials_.emission;
   for (std::size_t i = 0; i < matrix.size(); ++i) {
     matrix.forRow(i, [&](Index j, double f) {
-      for (std::size_t k = 0; k < kBands; ++k) {
-        next[kBands * i + k] += reflectance_[kBands * i + k] * f * b[kBands * j + k];
+      for (std::size_t k = 0; k < bands; ++k) {
+        next[bands * i + k] += materials_.reflectance[bands * i + k] * f * b[bands * j + k];
       }
     });
   }

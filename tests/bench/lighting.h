@@ -20,13 +20,10 @@ class Lighting {
   /// E + rho F b.
   std::vector<double> bounce(const ExchangeMatrix& matrix, const std::vector<double>& b) const;
   /// N * 3.
-  const std::vector<double>& emission() const { return emission_; }
+  const std::vector<double>& emission() const { return materials_.emission; }
 
  private:
-  static constexpr int kBands = 3;
   PatchMaterials materials_;
-  std::vector<double> reflectance_;
-  std::vector<double> emission_;
 };
 
 /// Area-weighted relL2 over all bands: |b - reference| / |reference - base|. With the emission as

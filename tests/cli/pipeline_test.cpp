@@ -27,12 +27,6 @@ struct Lit {
   Solution solution;
 };
 
-std::vector<double> flat(const std::vector<Vec3>& values) {
-  std::vector<double> out;
-  for (const Vec3& v : values) out.insert(out.end(), {v.x, v.y, v.z});
-  return out;
-}
-
 Lit light(const Scene& scene, std::size_t patches, int resolution,
           Precision precision = Precision::single_precision, double tolerance = 1e-6) {
   Progress quiet;
@@ -48,8 +42,8 @@ Lit light(const Scene& scene, std::size_t patches, int resolution,
   lit.meshed = meshScene(scene, mesh_options, quiet);
   lit.factors = computeFormFactors(lit.meshed.mesh, options, quiet);
   lit.materials = patchMaterials(scene, lit.meshed.mesh);
-  lit.solution = solve(lit.factors, flat(lit.materials.reflectance), flat(lit.materials.emission),
-                       3, solving, quiet);
+  lit.solution =
+      solve(lit.factors, lit.materials.reflectance, lit.materials.emission, 3, solving, quiet);
   return lit;
 }
 

@@ -59,7 +59,7 @@ TEST(CompareFields, FiguresMadeByHand) {
   const PatchMesh mesh = builder.build();
   const std::vector<double> a = {2, 2, 2, 1, 1, 1};
   const std::vector<double> b = {3, 3, 3, 1, 1, 1};
-  const Comparison c = compare(lightOf(mesh, a, "A"), lightOf(mesh, b, "B"), {});
+  const Comparison c = compare(lightOf(mesh, a, 3, "A"), lightOf(mesh, b, 3, "B"), {});
   EXPECT_NEAR(c.relativeL2(), std::sqrt(1.0 / 7), 1e-15);
   for (int band = 0; band < 3; ++band) EXPECT_NEAR(c.relativeL2(band), std::sqrt(1.0 / 7), 1e-15);
   EXPECT_EQ(c.largest.surface, "small");
@@ -76,6 +76,84 @@ TEST(CompareFields, FiguresMadeByHand) {
   EXPECT_NEAR(c.difference[0], 1, 1e-15);  // luminance weights sum to 1
   EXPECT_EQ(c.difference[1], 0);
   EXPECT_EQ(c.matched_a, c.area_a);
+}
+
+TEST(CompareFields, EveryBandAloneHasTheFiguresItHasAmongOthers) {
+  QuadMesh builder;
+  builder.grid("left", {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 3, 2);
+  builder.grid("right", {1, 0, 0}, {3, 0, 0}, {0, 1, 0}, 2, 3);
+  const PatchMesh mesh = builder.build();
+  // The same squares cut otherwise: matched by position.
+  QuadMesh other_builder;
+  other_builder.grid("left", {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, 5);
+  other_builder.grid("right", {1, 0, 0}, {3, 0, 0}, {0, 1, 0}, 4, 1);
+  const PatchMesh other = other_builder.build();
+  const auto valuesOf = [](const PatchMesh& of, std::size_t bands, std::size_t only) {
+    std::vector<double> values;
+    for (const Vec3& c : of.centroid) {
+      for (std::size_t b = 0; b < bands; ++b) {
+        if (only < bands && only != b) continue;
+        values.push_back(1 + double(b) + c.x * (b % 2 == 0 ? 0.3 : -0.1) + double(b) * c.y);
+      }
+    }
+    return values;
+  };
+  for (const std::size_t bands : {1U, 2U, 3U, 5U, 8U}) {
+    for (const PatchMesh* second : {&mesh, &other}) {
+      std::vector<double> lit = valuesOf(*second, bands, bands);
+      for (double& value : lit) value = 1.5 * value + 0.25;
+      const int width = int(bands);
+      const Comparison all = compare(lightOf(mesh, valuesOf(mesh, bands, bands), width, "A"),
+                                     lightOf(*second, lit, width, "B"), {});
+      ASSERT_EQ(all.sums.a.size(), bands);
+      std::vector<double> difference(all.difference.size(), 0.0);
+      double dd = 0;
+      double aa = 0;
+      for (std::size_t b = 0; b < bands; ++b) {
+        std::vector<double> lit_alone = valuesOf(*second, bands, b);
+        for (double& value : lit_alone) value = 1.5 * value + 0.25;
+        const Comparison alone = compare(lightOf(mesh, valuesOf(mesh, bands, b), 1, "A"),
+                                         lightOf(*second, lit_alone, 1, "B"), {});
+        // Sums are made band by band: the same bits.
+        EXPECT_EQ(alone.sums.a[0], all.sums.a[b]);
+        EXPECT_EQ(alone.sums.b[0], all.sums.b[b]);
+        EXPECT_EQ(alone.relativeL2(0), all.relativeL2(int(b)));
+        EXPECT_EQ(alone.relativeL2(), alone.relativeL2(0));
+        EXPECT_EQ(alone.largest.band, 0);
+        dd += alone.sums.dd[0];
+        aa += alone.sums.aa[0];
+        for (std::size_t k = 0; k < difference.size(); ++k) difference[k] += alone.difference[k];
+      }
+      EXPECT_EQ(all.relativeL2(), std::sqrt(dd / aa));
+      // Three bands are colours, and have a luminance; all others are summed.
+      if (bands != 3) {
+        EXPECT_EQ(all.difference, difference);
+      }
+      EXPECT_EQ(all.largest.band, width - 1) << "the brightest";
+    }
+  }
+}
+
+TEST(CompareFields, OtherBandsAreRefusedWithTheCure) {
+  QuadMesh builder;
+  builder.grid("square", {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, 2);
+  const PatchMesh mesh = builder.build();
+  const LightField eight = lightOf(mesh, std::vector<double>(32, 1.0), 8, "spectrum.h5");
+  const LightField one = lightOf(mesh, std::vector<double>(4, 1.0), 1, "heat.h5");
+  const std::string error = refusal(eight, one);
+  EXPECT_NE(error.find("spectrum.h5 has 8 bands and heat.h5 has 1 band,"), std::string::npos)
+      << error;
+  EXPECT_NE(error.find("solve or gather both"), std::string::npos);
+  EXPECT_NE(refusal(one, light(square(2, ramp))), "");
+  const std::string sizes =
+      errorOf([&] { lightOf(mesh, std::vector<double>(12, 1.0), 8, "short.h5"); });
+  EXPECT_NE(sizes.find("short.h5: 12 radiosities are given for 4 patches of 8 bands; give 32"),
+            std::string::npos)
+      << sizes;
+  EXPECT_NE(errorOf([&] {
+              lightOf(mesh, std::vector<double>(4, 1.0), 1, "x", std::vector<double>(12, 0.0));
+            }),
+            "");
 }
 
 TEST(CompareFields, TheSameFieldOnOtherMeshesIsTheSame) {
@@ -99,7 +177,7 @@ TEST(CompareFields, PatchesAreSetAgainstMeans) {
   for (const Vec3& centroid : mesh.centroid) {
     for (int b = 0; b < 3; ++b) means.push_back(ramp(centroid)[b]);
   }
-  const LightField patches = lightOf(mesh, means, "patches");
+  const LightField patches = lightOf(mesh, means, 3, "patches");
   const LightField linear = light(square(7, ramp));
   // Samples of the seven columns do not fall evenly on the four: 1e-3 of the values at most.
   EXPECT_LT(compare(patches, linear, {}).relativeL2(), 1e-12);
@@ -128,7 +206,7 @@ TEST(CompareFields, SidesOfASheetAreToldApart) {
     both.face.push_back(Index(both.face_surface.size()));
     both.face_surface.push_back(0);
   }
-  EXPECT_EQ(compare(lightOf(mesh, values, "A"), light(both), {}).relativeL2(), 0);
+  EXPECT_EQ(compare(lightOf(mesh, values, 3, "A"), light(both), {}).relativeL2(), 0);
 }
 
 TEST(CompareFields, AnErrorOfPiIsFoundAndNamed) {

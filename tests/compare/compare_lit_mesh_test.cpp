@@ -130,7 +130,7 @@ TEST_F(LitMeshFiles, OurOwnLitMeshHoldsRadiosity) {
   writeLitGlb(path("lit.glb"), room.mesh, radiosity, 5.0, 30.0);
   const LitMesh mesh = readLitMesh(path("lit.glb"));
   EXPECT_TRUE(mesh.radiosity);
-  const Comparison c = compare(lightOf(room.mesh, radiosity, "A"),
+  const Comparison c = compare(lightOf(room.mesh, radiosity, 3, "A"),
                                lightOf(mesh, LightUnit::radiosity), CompareOptions());
   EXPECT_NEAR(c.matched_a, c.area_a, 1e-6 * c.area_a);
   EXPECT_NEAR(c.matched_b, c.area_b, 1e-6 * c.area_b);
@@ -146,16 +146,8 @@ TEST(OtherPrograms, CyclesAndTheMatrixAgreeOnTheCornellBox) {
   FormFactorOptions options;
   options.resolution = 128;
   const FormFactors factors = computeFormFactors(room.mesh, options, quiet);
-  std::vector<double> rho;
-  std::vector<double> emission;
-  for (std::size_t i = 0; i < room.mesh.size(); ++i) {
-    for (int b = 0; b < 3; ++b) {
-      rho.push_back(room.materials.reflectance[i][b]);
-      emission.push_back(room.materials.emission[i][b]);
-    }
-  }
-  const Solution solution = solve(factors, rho, emission, 3, SolveOptions(), quiet);
-  const LightField a = lightOf(room.mesh, solution.radiosity, "matrix");
+  const Solution solution = solve(factors, room.materials, room.mesh, SolveOptions(), quiet);
+  const LightField a = lightOf(room.mesh, solution.radiosity, 3, "matrix");
   const LitMesh mesh =
       readLitMesh(std::string(RADIOSITY_SOURCE_DIR "/data/cornell-box-cycles.ply"));
   const Comparison c = compare(a, lightOf(mesh, LightUnit::radiance), CompareOptions());

@@ -185,7 +185,7 @@ TEST(ErrorsOthersMake, NumbersThatAreNoneGoThrough) {
   for (const double nothing : {std::nan(""), HUGE_VAL, -1.0}) {
     for (const bool emits : {false, true}) {
       test::Room room = good;
-      (emits ? room.materials.emission : room.materials.reflectance)[5].y = nothing;
+      (emits ? room.materials.emission : room.materials.reflectance)[3 * 5 + 1] = nothing;
       EXPECT_THROW(gather(room.mesh, room.materials, GatherOptions(), quiet), InputError);
       std::vector<double> reflectance(n, 0.5);
       std::vector<double> emission(n, 1.0);

@@ -30,10 +30,8 @@ Gathered run(const Room& room, const GatherOptions& options) {
   return gather(room.mesh, room.materials, options, quiet);
 }
 
-double largest(const std::vector<Vec3>& values) {
-  double most = 0;
-  for (const Vec3& v : values) most = std::max({most, v.x, v.y, v.z});
-  return most;
+double largest(const std::vector<double>& values) {
+  return *std::max_element(values.begin(), values.end());
 }
 
 /// E + rho F B, all bands, or with F's transpose in F's place.
@@ -48,8 +46,7 @@ std::vector<double> jacobiStep(const Room& room, const ExchangeMatrix& matrix,
     });
   }
   for (std::size_t k = 0; k < h.size(); ++k) {
-    h[k] = room.materials.emission[k / 3][int(k % 3)] +
-           room.materials.reflectance[k / 3][int(k % 3)] * h[k];
+    h[k] = room.materials.emission[k] + room.materials.reflectance[k] * h[k];
   }
   return h;
 }
@@ -76,10 +73,7 @@ TEST(GatherAtPatches, EveryPassIsAJacobiIterate) {
     const Room room = test::loadRoom(scene, 250);
     const FormFactors factors = matrixOf(room, 64);
     const double scale = largest(room.materials.emission);
-    std::vector<double> b(3 * room.mesh.size());
-    for (std::size_t k = 0; k < b.size(); ++k) {
-      b[k] = room.materials.emission[k / 3][int(k % 3)];
-    }
+    std::vector<double> b = room.materials.emission;
     for (int passes = 1; passes <= 4; ++passes) {
       b = jacobiStep(room, factors.matrix, b);
       const Gathered gathered = run(room, atPatches(passes));
@@ -94,11 +88,7 @@ TEST(GatherAtPatches, TheTransposeWouldBeFound) {
   // pass already differs by far more than the 1e-6 the test above allows.
   const Room room = test::loadRoom("cornell-box-closed", 250);
   const FormFactors factors = matrixOf(room, 64);
-  std::vector<double> emission(3 * room.mesh.size());
-  for (std::size_t k = 0; k < emission.size(); ++k) {
-    emission[k] = room.materials.emission[k / 3][int(k % 3)];
-  }
-  const std::vector<double> wrong = jacobiStep(room, factors.matrix, emission, true);
+  const std::vector<double> wrong = jacobiStep(room, factors.matrix, room.materials.emission, true);
   const Gathered gathered = run(room, atPatches(1));
   EXPECT_GT(worst(gathered.radiosity, wrong), 1e-2 * largest(room.materials.emission));
 }
@@ -125,7 +115,7 @@ TEST(GatherAtPatches, EnergyOfEveryPassIsAccountedFor) {
   double reflected = 0;
   for (std::size_t i = 0; i < room.mesh.size(); ++i) {
     reflected +=
-        room.mesh.area[i] * (double(once.radiosity[3 * i]) - float(room.materials.emission[i].x));
+        room.mesh.area[i] * (double(once.radiosity[3 * i]) - float(room.materials.emission[3 * i]));
   }
   EXPECT_NEAR(once.summary.passes[0].in_flight[0], reflected, 1e-12 * reflected);
 }
@@ -200,13 +190,13 @@ TEST(GatherAtPatches, StopsOnTheBoundOrOnThePasses) {
 
 TEST(GatherAtPatches, NoBoundIsClaimedInAWhiteRoom) {
   Room room = test::loadRoom("furnace-cube", 96);
-  for (Vec3& rho : room.materials.reflectance) rho = Vec3(1.0);
+  for (double& rho : room.materials.reflectance) rho = 1;
   const Gathered gathered = run(room, atPatches(5));
   EXPECT_EQ(gathered.summary.status, GatherStatus::pass_limit);
   for (const GatherPass& pass : gathered.summary.passes) EXPECT_FALSE(pass.bound);
   // Nothing is absorbed: after k passes B = (k + 1) E, to the rounding of floats.
   for (std::size_t k = 0; k < gathered.radiosity.size(); ++k) {
-    const double e = room.materials.emission[k / 3][int(k % 3)];
+    const double e = room.materials.emission[k];
     EXPECT_NEAR(gathered.radiosity[k], 6 * e, 1e-5 * e);
   }
 }
@@ -215,11 +205,11 @@ TEST(GatherAtPatches, DarkScenesAndBadInputSaySo) {
   Room room = test::loadRoom("furnace-cube", 96);
   Progress quiet;
   Room dark = room;
-  for (Vec3& e : dark.materials.emission) e = Vec3(0.0);
+  for (double& e : dark.materials.emission) e = 0;
   const Gathered black = run(dark, atPatches(5));
   EXPECT_EQ(black.summary.status, GatherStatus::no_light);
   EXPECT_EQ(*std::max_element(black.radiosity.begin(), black.radiosity.end()), 0.0F);
-  room.materials.reflectance[7].y = 1.5;
+  room.materials.reflectance[3 * 7 + 1] = 1.5;
   try {
     run(room, atPatches(1));
     FAIL() << "a reflectance of 1.5 was taken";

@@ -32,8 +32,9 @@ inline Room loadRoom(const std::string& name, std::size_t patches) {
 
 /// The same reflectance and emission all over.
 inline void makeUniform(Room& room, double reflectance, double emission) {
-  room.materials.reflectance.assign(room.mesh.size(), Vec3(reflectance));
-  room.materials.emission.assign(room.mesh.size(), Vec3(emission));
+  const std::size_t count = room.mesh.size() * std::size_t(room.materials.bands);
+  room.materials.reflectance.assign(count, reflectance);
+  room.materials.emission.assign(count, emission);
 }
 
 }  // namespace radiosity::test

@@ -9,24 +9,19 @@
 #include "gather_scenes.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/solve.h"
+#include "support/colours.h"
 
 namespace radiosity {
 namespace {
 
 using test::Room;
 
-std::vector<double> flat(const std::vector<Vec3>& values) {
-  std::vector<double> out;
-  for (const Vec3& v : values) out.insert(out.end(), {v.x, v.y, v.z});
-  return out;
-}
-
 /// A closed cube of about `patches` patches, rho = 1/2, whose floor alone shines.
 Room litCube(std::size_t patches) {
   Room room = test::loadRoom("furnace-cube", patches);
   for (std::size_t i = 0; i < room.mesh.size(); ++i) {
-    room.materials.emission[i] = Vec3(room.mesh.normal[i].y > 0.5 ? 1.0 : 0.0);
-    room.materials.reflectance[i] = Vec3(0.5);
+    test::setRgb(room.materials.emission, i, Vec3(room.mesh.normal[i].y > 0.5 ? 1.0 : 0.0));
+    test::setRgb(room.materials.reflectance, i, Vec3(0.5));
   }
   return room;
 }
@@ -38,9 +33,7 @@ std::vector<double> exactSolution(const Room& room) {
   const FormFactors factors = computeFormFactors(room.mesh, options, quiet);
   SolveOptions solving;
   solving.tolerance = 1e-8;
-  return solve(factors, flat(room.materials.reflectance), flat(room.materials.emission), 3, solving,
-               quiet)
-      .radiosity;
+  return solve(factors, room.materials, room.mesh, solving, quiet).radiosity;
 }
 
 Gathered gatherAt(const Room& room, GatherAt at, int resolution, std::uint64_t seed = 1) {
@@ -60,7 +53,7 @@ double gap(const Room& room, const std::vector<double>& truth, const Gathered& g
   double dd = 0;
   double aa = 0;
   for (std::size_t i = 0; i < room.mesh.size(); ++i) {
-    const double reflected = truth[3 * i] - room.materials.emission[i].x;
+    const double reflected = truth[3 * i] - room.materials.emission[3 * i];
     const double difference = means[3 * i] - truth[3 * i];
     dd += room.mesh.area[i] * difference * difference;
     aa += room.mesh.area[i] * reflected * reflected;
@@ -124,8 +117,7 @@ TEST(GatherTruth, SeesThePointValueAndNotAnAreas) {
   // quarter of the top face's pixels, of three faces' worth in all.
   const Room room = [] {
     Room plates = test::loadRoom("facing-plates", 2);
-    plates.materials.reflectance.assign(plates.mesh.size(), Vec3(0.5));
-    plates.materials.emission.assign(plates.mesh.size(), Vec3(1.0));
+    test::makeUniform(plates, 0.5, 1.0);
     return plates;
   }();
   ASSERT_EQ(room.mesh.size(), 2u);
@@ -198,8 +190,7 @@ TEST(ErrorsOthersMake, AFixedNumberOfSweepsIsNotTakenForTheAnswer) {
   // Bright walls: after ten passes B changes by 5% a pass and is still a third short. The bound
   // says so, and the status is not "converged".
   Room room = litCube(24);
-  room.materials.reflectance.assign(room.mesh.size(), Vec3(0.9));
-  room.materials.emission.assign(room.mesh.size(), Vec3(1.0));
+  test::makeUniform(room, 0.9, 1.0);
   Progress quiet;
   GatherOptions options;
   options.resolution = 32;
@@ -215,7 +206,7 @@ TEST(ErrorsOthersMake, MaterialsAreNotGuessedFromNames) {
   // A surface called "lamp" that does not emit is dark, one called "wall" that does shines.
   Room room = litCube(24);
   room.mesh.surface_names.assign(room.mesh.surface_names.size(), "lamp/light");
-  room.materials.emission.assign(room.mesh.size(), Vec3(0.0));
+  room.materials.emission.assign(room.materials.emission.size(), 0.0);
   EXPECT_EQ(gatherAt(room, GatherAt::vertices, 32).summary.status, GatherStatus::no_light);
 }
 

@@ -1,6 +1,7 @@
 // The gather method at vertices: eyes at creases, interpolation of what is seen, accounts.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
@@ -11,6 +12,7 @@
 #include "gather/passes.h"
 #include "gather/patch_basis.h"
 #include "gather_scenes.h"
+#include "support/colours.h"
 #include "support/mesh_builder.h"
 
 namespace radiosity {
@@ -57,7 +59,7 @@ TEST(GatherAtVertices, AreasAddUpAndEnergyIsAccountedForWithThem) {
                 1e-9 * area);
     Vec3 emitted(0.0);
     for (std::size_t i = 0; i < room.mesh.size(); ++i) {
-      emitted += room.mesh.area[i] * room.materials.emission[i];
+      emitted += room.mesh.area[i] * test::rgbAt(room.materials.emission, i);
     }
     for (const GatherPass& pass : gathered.summary.passes) {
       for (std::size_t b = 0; b < 3; ++b) {
@@ -103,7 +105,7 @@ Room splitRoom() {
   test::makeUniform(room, 0.5, 0.0);
   for (std::size_t i = 0; i < room.mesh.size(); ++i) {
     if (room.mesh.surface_names[room.mesh.surface[i]] == "lamp")
-      room.materials.emission[i] = Vec3(1);
+      test::setRgb(room.materials.emission, i, Vec3(1));
   }
   return room;
 }
@@ -207,14 +209,16 @@ double irradianceOf(const PatchMesh& mesh, const Vec3& eye, int resolution,
   options.resolution = resolution;
   const RowBuilder rows(mesh, options);
   const PatchBasis basis(mesh);
-  InterpolatedView view(mesh, basis, rows.scene().scale, resolution, true, eye_of_corner,
-                        radiosity);
+  InterpolatedView view(mesh, basis, rows.scene().scale, resolution, true, eye_of_corner, radiosity,
+                        3);
   Hemicube hemicube = rows.makeHemicube();
   std::vector<std::uint8_t> hidden;
   const Vec3 up(0, 0, 1);
   view.begin(eyeFrame(eye * rows.scene().scale, up, 0.3));
   rows.lookFrom(eye, up, 0.3, kNone, hemicube, hidden, &view);
-  return view.irradiance()[0];
+  std::array<double, 3> irradiance{};
+  view.irradiance(irradiance);
+  return irradiance[0];
 }
 
 TEST(Interpolation, LinearFieldsAreSeenAsTheyAreHoweverTheyAreCut) {
@@ -282,7 +286,7 @@ TEST(GatherAtVertices, ThreadsScaleAndNumberingChangeNoBit) {
   const MeshBuilder builder = test::roomWithBlock(2);
   Room room{builder.build(), {}};
   test::makeUniform(room, 0.6, 0.0);
-  room.materials.emission[3] = Vec3(1, 2, 3);
+  test::setRgb(room.materials.emission, 3, {1, 2, 3});
   const Gathered reference = run(room, atVertices(4, 32));
 
   setThreads(1);
@@ -305,7 +309,8 @@ TEST(GatherAtVertices, ThreadsScaleAndNumberingChangeNoBit) {
   std::iota(order.begin(), order.end(), std::size_t(0));
   std::reverse(order.begin(), order.end());
   Room turned{builder.build(order), room.materials};
-  std::reverse(turned.materials.emission.begin(), turned.materials.emission.end());
+  test::setRgb(turned.materials.emission, 3, Vec3(0));
+  test::setRgb(turned.materials.emission, room.mesh.size() - 1 - 3, {1, 2, 3});
   const Gathered permuted = run(turned, atVertices(4, 32));
   const std::vector<double> a = cornerRadiosity(room.mesh, reference);
   const std::vector<double> b = cornerRadiosity(turned.mesh, permuted);

@@ -5,11 +5,13 @@
 #include <glm/geometric.hpp>
 
 #include "coarse_builder.h"
+#include "support/colours.h"
 
 namespace radiosity {
 namespace {
 
 using test::CoarseBuilder;
+using test::rgbAt;
 
 PatchMesh cut(CoarseBuilder& input, std::size_t patches) {
   MeshOptions options;
@@ -61,10 +63,11 @@ TEST(PatchMaterials, ConstantMaterialsAreCopied) {
   input.flat(sheet, {{{0, 0}, {1, 0}, {0, 1}}}).back = true;
   const PatchMesh mesh = cut(input, 10);
   const PatchMaterials materials = patchMaterials(input.scene(), mesh);
-  ASSERT_EQ(materials.reflectance.size(), mesh.size());
+  EXPECT_EQ(materials.bands, 3);
+  ASSERT_EQ(materials.reflectance.size(), 3 * mesh.size());
   for (std::size_t i = 0; i < mesh.size(); ++i) {
-    EXPECT_EQ(materials.reflectance[i], Vec3(0.1, 0.2, 0.3));
-    EXPECT_EQ(materials.emission[i], Vec3(4, 5, 6));
+    EXPECT_EQ(rgbAt(materials.reflectance, i), Vec3(0.1, 0.2, 0.3));
+    EXPECT_EQ(rgbAt(materials.emission, i), Vec3(4, 5, 6));
   }
 }
 
@@ -82,7 +85,8 @@ TEST(PatchMaterials, WholeTextureOnOnePatchGivesItsMean) {
     texturedSquare(input, texture);
     const PatchMesh mesh = cut(input, 1);
     ASSERT_EQ(mesh.size(), 1u);
-    expectNear(patchMaterials(input.scene(), mesh).reflectance[0], meanOf(texture), tolerance);
+    expectNear(rgbAt(patchMaterials(input.scene(), mesh).reflectance, 0), meanOf(texture),
+               tolerance);
   }
 }
 
@@ -99,10 +103,10 @@ TEST(PatchMaterials, EmissionIsAveragedAsReflectanceIs) {
   const PatchMaterials alone = patchMaterials(scene, mesh);
   Vec3 power(0.0);
   for (std::size_t i = 0; i < mesh.size(); ++i) {
-    expectNear(both.emission[i], both.reflectance[i] * Vec3(7, 0, 2), 1e-12);
-    EXPECT_EQ(alone.emission[i], both.emission[i]);
-    EXPECT_EQ(alone.reflectance[i], Vec3(1.0)) << "its factor";
-    power += mesh.area[i] * both.emission[i];
+    expectNear(rgbAt(both.emission, i), rgbAt(both.reflectance, i) * Vec3(7, 0, 2), 1e-12);
+    EXPECT_EQ(rgbAt(alone.emission, i), rgbAt(both.emission, i));
+    EXPECT_EQ(rgbAt(alone.reflectance, i), Vec3(1.0)) << "its factor";
+    power += mesh.area[i] * rgbAt(both.emission, i);
   }
   // Patches or not, the same light leaves: the mean over the square, of area 1.
   expectNear(power, meanOf(texture) * Vec3(7, 0, 2), 1e-12);
@@ -112,7 +116,8 @@ TEST(PatchMaterials, RepeatsAndClamps) {
   CoarseBuilder input;
   Texture texture = noise(3, 2);
   texturedSquare(input, texture, 3);
-  expectNear(patchMaterials(input.scene(), cut(input, 1)).reflectance[0], meanOf(texture), 1e-12);
+  expectNear(rgbAt(patchMaterials(input.scene(), cut(input, 1)).reflectance, 0), meanOf(texture),
+             1e-12);
   // Clamped, all but the first tile shows the last column and the last row of texels.
   input.scene().textures[0].repeat = false;
   const auto texel = [&](int i, int j) {
@@ -123,7 +128,7 @@ TEST(PatchMaterials, RepeatsAndClamps) {
   for (int j = 0; j < 6; ++j) {
     for (int i = 0; i < 9; ++i) expected += texel(std::min(i, 2), std::min(j, 1)) / 54.0;
   }
-  expectNear(patchMaterials(input.scene(), cut(input, 1)).reflectance[0], expected, 1e-12);
+  expectNear(rgbAt(patchMaterials(input.scene(), cut(input, 1)).reflectance, 0), expected, 1e-12);
 }
 
 TEST(PatchMaterials, EveryPatchGetsTheTexelsUnderIt) {
@@ -137,7 +142,7 @@ TEST(PatchMaterials, EveryPatchGetsTheTexelsUnderIt) {
     const int column = int(mesh.centroid[i].x * 4);
     const int row = int((1 - mesh.centroid[i].y) * 4);  // the first row is at the top
     const float* p = texture.texels.data() + 3 * (4 * row + column);
-    expectNear(materials.reflectance[i], {p[0], p[1], p[2]}, 1e-12);
+    expectNear(rgbAt(materials.reflectance, i), {p[0], p[1], p[2]}, 1e-12);
   }
 }
 
@@ -151,7 +156,8 @@ TEST(PatchMaterials, AreaWeightedSumIsTheMeanHoweverItIsCut) {
     const PatchMesh mesh = cut(input, patches);
     const PatchMaterials materials = patchMaterials(input.scene(), mesh);
     Vec3 sum(0.0);
-    for (std::size_t i = 0; i < mesh.size(); ++i) sum += mesh.area[i] * materials.reflectance[i];
+    for (std::size_t i = 0; i < mesh.size(); ++i)
+      sum += mesh.area[i] * rgbAt(materials.reflectance, i);
     expectNear(sum, meanOf(texture), 1e-12);
   }
 }
@@ -179,7 +185,7 @@ TEST(PatchMaterials, PatchOverSeveralFacesSeesThemAll) {
   ASSERT_EQ(mesh.size(), 1u);
   const float* p = texture.texels.data();
   const Vec3 expected = 0.5 * (0.25 * Vec3(p[0], p[1], p[2]) + 0.75 * Vec3(p[3], p[4], p[5]));
-  expectNear(patchMaterials(scene, mesh).reflectance[0], expected, 1e-12);
+  expectNear(rgbAt(patchMaterials(scene, mesh).reflectance, 0), expected, 1e-12);
 }
 
 TEST(PatchMaterials, FaceMappedToOnePointHasThatTexel) {
@@ -190,7 +196,9 @@ TEST(PatchMaterials, FaceMappedToOnePointHasThatTexel) {
   const float* p = texture.texels.data() + 3 * (8 * 6 + 3);
   for (const std::size_t patches : {1u, 9u}) {
     const PatchMaterials materials = patchMaterials(input.scene(), cut(input, patches));
-    for (const Vec3& rho : materials.reflectance) expectNear(rho, {p[0], p[1], p[2]}, 1e-12);
+    for (std::size_t i = 0; 3 * i < materials.reflectance.size(); ++i) {
+      expectNear(rgbAt(materials.reflectance, i), {p[0], p[1], p[2]}, 1e-12);
+    }
   }
 }
 
@@ -202,7 +210,7 @@ TEST(PatchMaterials, BacksShowTheFrontsTexture) {
   const PatchMaterials materials = patchMaterials(input.scene(), mesh);
   ASSERT_EQ(mesh.size(), 18u);
   for (std::size_t i = 0; i < 9; ++i) {
-    EXPECT_EQ(materials.reflectance[i], materials.reflectance[mesh.twin[i]]);
+    EXPECT_EQ(rgbAt(materials.reflectance, i), rgbAt(materials.reflectance, mesh.twin[i]));
   }
 }
 
@@ -214,7 +222,35 @@ TEST(PatchMaterials, FacesAsPatchesUseTheirOwnFace) {
   options.faces_as_patches = true;
   MeshReport report;
   const PatchMesh mesh = facesAsPatches(input.scene(), options, report);
-  expectNear(patchMaterials(input.scene(), mesh).reflectance[0], meanOf(texture), 1e-12);
+  expectNear(rgbAt(patchMaterials(input.scene(), mesh).reflectance, 0), meanOf(texture), 1e-12);
+}
+
+TEST(PatchMaterials, SizesThatDoNotFitAreNamed) {
+  const auto refusal = [](const PatchMaterials& materials, std::size_t patches) {
+    try {
+      materials.requireSizes(patches);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  for (const int bands : {1, 2, 3, 5, 8}) {
+    const auto width = std::size_t(bands);
+    PatchMaterials good{bands, std::vector<double>(4 * width), std::vector<double>(4 * width), {}};
+    EXPECT_EQ(refusal(good, 4), "") << "a dark sky may be left out";
+    good.sky.assign(width, 1.0);
+    EXPECT_EQ(refusal(good, 4), "");
+    EXPECT_NE(refusal(good, 5).find("reflectances are given, 5 patches"), std::string::npos);
+    PatchMaterials bad = good;
+    bad.emission.pop_back();
+    EXPECT_NE(refusal(bad, 4).find("emissions are given, 4 patches"), std::string::npos);
+    bad = good;
+    bad.sky.push_back(1);
+    EXPECT_NE(refusal(bad, 4).find("the sky has"), std::string::npos);
+    bad = good;
+    bad.bands = 0;
+    EXPECT_NE(refusal(bad, 4).find("1 or more are needed"), std::string::npos);
+  }
 }
 
 }  // namespace

@@ -226,7 +226,7 @@ TEST_F(PipelineStages, OptionsMayChangeBetweenCalls) {
   pipeline.options().mesh.patches = 200;
   EXPECT_GT(pipeline.mesh().mesh.size(), before);
   EXPECT_FALSE(pipeline.results().factors || pipeline.results().gathered);
-  EXPECT_EQ(pipeline.materials().emission.size(), pipeline.mesh().mesh.size());
+  EXPECT_EQ(pipeline.materials().emission.size(), 3 * pipeline.mesh().mesh.size());
   EXPECT_EQ(pipeline.solution().radiosity.size(), 3 * pipeline.mesh().mesh.size());
 }
 
@@ -344,6 +344,45 @@ TEST_F(PipelineStages, FieldsAreWhatIsAskedFor) {
   EXPECT_EQ(light.patches, pipeline.solution().radiosity);
   EXPECT_TRUE(light.corners.empty());
   EXPECT_EQ(pipeline.gatheredLight().corners.size(), 3 * pipeline.mesh().mesh.corners.size());
+}
+
+/// Materials that a program has written into a file, of other bands than a scene's three.
+TEST_F(PipelineStages, AFilesOwnMaterialsBelongToItsMesh) {
+  const std::string file = savedBox();
+  Results own = readResults(file);
+  PatchMaterials& materials = *own.materials;
+  const PatchMaterials of_scene = materials;
+  const std::size_t size = own.mesh->mesh.size();
+  materials = {5, {}, {}, {}};
+  for (std::size_t k = 0; k < 5 * size; ++k) {
+    const std::size_t rgb = 3 * (k / 5) + k % 5 % 3;
+    materials.reflectance.push_back(of_scene.reflectance[rgb]);
+    materials.emission.push_back(of_scene.emission[rgb]);
+  }
+  own.solution.reset();
+  own.gathered.reset();
+  writeResults(file, own, progress_);
+
+  Pipeline pipeline(progress_, &told_);
+  pipeline.open(file);
+  EXPECT_EQ(pipeline.bands(), 5);
+  const std::vector<double> b = pipeline.solution().radiosity;
+  EXPECT_EQ(told_.take(),
+            (Events{"mesh reused: " + file, "factors reused: " + file, "solution computed"}));
+  ASSERT_EQ(b.size(), 5 * size);
+  for (std::size_t i = 0; i < size; ++i) EXPECT_EQ(b[5 * i], b[5 * i + 3]) << i;
+  EXPECT_NEAR(pipeline.field(Quantity::radiosity).values[7], b[35] + b[36] + b[37] + b[38] + b[39],
+              1e-12 * b[35]);
+  expectError<InputError>("", "or one in grey, not 5", [&] { pipeline.solvedLight(); });
+
+  const std::size_t patches = std::exchange(pipeline.options().mesh.patches, 20);
+  expectError<InputError>(file, "ask for another mesh", [&] { pipeline.mesh(); });
+  pipeline.options().mesh.patches = patches;
+  EXPECT_EQ(pipeline.solution().radiosity, b) << "a refusal leaves all as it was";
+  SceneOptions overrides;
+  overrides.sky = Vec3(1.0);
+  Pipeline overridden(progress_);
+  expectError<InputError>(file, "materials of 5 bands", [&] { overridden.open(file, overrides); });
 }
 
 /// Results files live long: a key that is written differently would throw away what they hold.

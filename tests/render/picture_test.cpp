@@ -34,15 +34,7 @@ Image picture(const std::string& name) {
   const MeshResult meshed = meshScene(scene, mesh_options, quiet);
   const FormFactors factors = computeFormFactors(meshed.mesh, options, quiet);
   const PatchMaterials materials = patchMaterials(scene, meshed.mesh);
-  std::vector<double> reflectance;
-  std::vector<double> emission;
-  for (std::size_t i = 0; i < meshed.mesh.size(); ++i) {
-    for (int b = 0; b < 3; ++b) {
-      reflectance.push_back(materials.reflectance[i][b]);
-      emission.push_back(materials.emission[i][b]);
-    }
-  }
-  const Solution solution = solve(factors, reflectance, emission, 3, SolveOptions(), quiet);
+  const Solution solution = solve(factors, materials, meshed.mesh, SolveOptions(), quiet);
   RenderOptions rendering;
   rendering.width = 96;
   rendering.height = 96;

@@ -77,5 +77,27 @@ TEST(RenderOptions, BadValuesAreNamed) {
   EXPECT_THROW(picture(mesh, values, 8, 8), InputError);
 }
 
+TEST(RenderOptions, ThreeBandsAreColoursAndOneIsGrey) {
+  const std::vector<double> rgb = {1, 2, 3, 4, 5, 6};
+  EXPECT_EQ(rgbOf(rgb, 3), rgb);
+  EXPECT_EQ(rgbOf(std::vector<double>{1, 2}, 1), (std::vector<double>{1, 1, 1, 2, 2, 2}));
+  for (const int bands : {0, 2, 5, 8}) {
+    try {
+      rgbOf(rgb, bands);
+      ADD_FAILURE() << bands << " bands were made colours";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("draws three bands"), std::string::npos);
+      EXPECT_NE(std::string(error.what()).find("pick one or three"), std::string::npos);
+    }
+  }
+  const PatchMesh mesh = room();
+  try {
+    picture(mesh, std::vector<double>(8 * mesh.size(), 1.0), 8, 8);
+    ADD_FAILURE() << "eight bands were drawn";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("a picture draws three bands"), std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace radiosity

@@ -3,6 +3,7 @@
 #include <hdf5.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 
@@ -24,8 +25,8 @@ class ResultsFile : public FolderTest {
 TEST_F(ResultsFile, GivesBackEveryField) {
   for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
     // Small: all datasets in their headers. 60: chunks, several of them for the matrix.
-    for (const Index side : {2u, 60u}) {
-      const Results written = sample::results(side, precision, side == 2 ? 1 : 3);
+    for (const auto& [side, bands] : {std::pair{2u, 1}, {2u, 2}, {60u, 3}, {2u, 5}, {60u, 8}}) {
+      const Results written = sample::results(side, precision, bands);
       write(written);
       EXPECT_TRUE(isResultsFile(file()));
       const Results read = readResults(file());
@@ -52,6 +53,26 @@ TEST_F(ResultsFile, GivesBackWhateverStagesThereAre) {
     write(some);
     EXPECT_TRUE(sample::same(some, readResults(file()))) << stages;
   }
+}
+
+TEST_F(ResultsFile, BandsAreThoseOfTheRows) {
+  // As a program that uses the library, or h5py, makes a file: materials alone, the sky left out.
+  Results spectral = sample::results(3, Precision::single_precision, 8);
+  spectral.solution.reset();
+  spectral.solution_key.clear();
+  spectral.materials->sky.clear();
+  write(spectral);
+  const Results read = readResults(file());
+  ASSERT_TRUE(read.materials);
+  EXPECT_EQ(read.materials->bands, 8);
+  EXPECT_TRUE(read.materials->sky.empty());
+  EXPECT_TRUE(sample::same(spectral, read));
+
+  // Rows that the file would cut short are refused before anything is written.
+  spectral.materials->bands = 7;
+  expectError<InputError>("", "materials: 80 reflectances are given, 10 patches of 7 bands take 70",
+                          [&] { write(spectral); });
+  EXPECT_TRUE(sample::same(read, readResults(file())));
 }
 
 TEST_F(ResultsFile, KeepsTheUnusual) {
@@ -160,6 +181,17 @@ class Edit {
     H5Gclose(group);
   }
   void remove(const char* name) { EXPECT_GE(H5Ldelete(file_, name, H5P_DEFAULT), 0); }
+  /// Zeros.
+  void rows(const char* name, hsize_t count, hsize_t columns) {
+    const std::array<hsize_t, 2> extent = {count, columns};
+    const std::vector<double> zeros(count * columns, 0.0);
+    const hid_t space = H5Screate_simple(2, extent.data(), nullptr);
+    const hid_t id =
+        H5Dcreate2(file_, name, H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    EXPECT_GE(H5Dwrite(id, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, zeros.data()), 0);
+    H5Dclose(id);
+    H5Sclose(space);
+  }
   void vector(const char* name, hid_t type, hsize_t length) {
     const hid_t space = H5Screate_simple(1, &length, nullptr);
     H5Dclose(H5Dcreate2(file_, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
@@ -209,6 +241,30 @@ TEST_F(ResultsFile, NamesWhatAnotherProgramChanged) {
       "/scene/materials/emission_texture points beyond");
   expectAfter([](Edit& e) { e.attribute("/solution", "bands", H5T_NATIVE_INT, 0); },
               "/solution/radiosity is not");
+  expectAfter([](Edit& e) { e.attribute("/gather", "bands", H5T_NATIVE_INT, 5); },
+              "/gather/radiosity is not 5 columns");
+  expectAfter([](Edit& e) { e.attribute("/gather", "bands", H5T_NATIVE_INT, 0); },
+              "/gather/radiosity is not");
+  expectAfter(
+      [](Edit& e) {
+        e.remove("/solution/emission");
+        e.rows("/solution/emission", 10, 5);
+      },
+      "/solution/emission is not 3 columns");
+  expectAfter(
+      [](Edit& e) {
+        e.remove("/solution/reflectance");
+        e.vector("/solution/reflectance", H5T_NATIVE_DOUBLE, 30);
+      },
+      "/solution/reflectance has no rows of bands");
+  expectAfter(
+      [](Edit& e) {
+        e.remove("/solution/reflectance");
+        e.remove("/solution/emission");
+        e.rows("/solution/reflectance", 10, 5);
+        e.rows("/solution/emission", 10, 5);
+      },
+      "/solution/sky is not 5 64-bit float");
   expectAfter(
       [](Edit& e) {
         e.remove("/form_factors/sky");

@@ -251,14 +251,26 @@ inline Solution solution(std::size_t n, int bands) {
   return s;
 }
 
-inline Gathered gathered(const PatchMesh& mesh, GatherAt at) {
+inline PatchMaterials materials(std::size_t n, int bands) {
+  PatchMaterials m;
+  m.bands = bands;
+  for (std::size_t k = 0; k < n * std::size_t(bands); ++k) {
+    m.reflectance.push_back(1.0 / double(k + 3));
+    m.emission.push_back(1e-9 * double(k));
+  }
+  for (int b = 0; b < bands; ++b) m.sky.push_back(0.25 * double(b) + 0.1);
+  return m;
+}
+
+inline Gathered gathered(const PatchMesh& mesh, GatherAt at, int bands) {
   Gathered g;
   g.at = at;
+  g.bands = bands;
   const std::size_t eyes = at == GatherAt::patches ? mesh.size() : mesh.corners.size();
   for (std::size_t k = 0; k < eyes; ++k) {
-    for (std::size_t b = 0; b < 3; ++b) {
-      g.radiosity.push_back(std::sqrt(float(3 * k + b)));
-      g.irradiance.push_back(1e-30F * float(3 * k + b));
+    for (int b = 0; b < bands; ++b) {
+      g.radiosity.push_back(std::sqrt(float(k) + 0.1F * float(b)));
+      g.irradiance.push_back(1e-30F * float(k) + float(b));
     }
     g.backs.push_back(0.25F / float(k + 1));
     g.sky.push_back(0.125F / float(k + 1));
@@ -271,7 +283,7 @@ inline Gathered gathered(const PatchMesh& mesh, GatherAt at) {
   if (at == GatherAt::vertices) {
     for (std::size_t k = 0; k < eyes; ++k) g.eye_of_corner.push_back(Index(eyes - 1 - k));
   }
-  const auto filled = [](double v) { return std::vector<double>(3, v); };
+  const auto filled = [bands](double v) { return std::vector<double>(std::size_t(bands), v); };
   const EnergyAccount energy{filled(1), filled(0.5), filled(2),
                              filled(3), filled(4),   filled(-1e-17)};
   g.summary.status = GatherStatus::pass_limit;
@@ -296,14 +308,13 @@ inline Results results(Index side, Precision precision, int bands = 3) {
   r.factors = factors(r.mesh->mesh, precision);
   r.factors_key = "patches=100 resolution=256";
   const std::size_t n = r.mesh->mesh.size();
-  r.materials = {
-      std::vector<Vec3>(n, {0.1, 0.2, 0.3}), std::vector<Vec3>(n, {0, 1e-9, 17}), {0.25, 0, 3}};
+  r.materials = materials(n, bands);
   r.solution = solution(n, bands);
   r.solution_key = "tolerance=1e-6";
   // Of both kinds, one in each sample.
-  r.gathered =
-      gathered(r.mesh->mesh,
-               precision == Precision::single_precision ? GatherAt::patches : GatherAt::vertices);
+  r.gathered = gathered(
+      r.mesh->mesh,
+      precision == Precision::single_precision ? GatherAt::patches : GatherAt::vertices, bands);
   r.gather_key = "passes=2";
   return r;
 }
@@ -377,8 +388,8 @@ inline auto members(const FormFactors& s) {
   return std::tie(a, b, c, d, e, f, g, h);
 }
 inline auto members(const PatchMaterials& s) {
-  const auto& [a, b, c] = s;
-  return std::tie(a, b, c);
+  const auto& [a, b, c, d] = s;
+  return std::tie(a, b, c, d);
 }
 inline auto members(const EnergyAccount& s) {
   const auto& [a, b, c, d, e, f] = s;

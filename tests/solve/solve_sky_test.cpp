@@ -158,8 +158,10 @@ TEST(Sky, GatheredLightOfAFloorIsRhoPiL) {
   test::SceneBuilder builder;
   builder.level(builder.surface("floor"), 0, 0, 1, 1, 0);
   const PatchMesh mesh = meshOf(builder.scene(), 9);
-  PatchMaterials materials{std::vector<Vec3>(mesh.size(), Vec3(0.25)),
-                           std::vector<Vec3>(mesh.size(), Vec3(0.0)), Vec3(2, 0, 1)};
+  const PatchMaterials materials{3,
+                                 std::vector<double>(3 * mesh.size(), 0.25),
+                                 std::vector<double>(3 * mesh.size(), 0.0),
+                                 {2, 0, 1}};
   for (const GatherAt at : {GatherAt::patches, GatherAt::vertices}) {
     GatherOptions options;
     options.at = at;
@@ -169,7 +171,7 @@ TEST(Sky, GatheredLightOfAFloorIsRhoPiL) {
     EXPECT_EQ(int(g.summary.status), int(GatherStatus::converged)) << g.summary.message;
     for (std::size_t k = 0; k < g.radiosity.size(); ++k) {
       // 32-bit floats.
-      EXPECT_NEAR(g.radiosity[k], 0.25 * kPi * materials.sky[int(k % 3)], 1e-6);
+      EXPECT_NEAR(g.radiosity[k], 0.25 * kPi * materials.sky[k % 3], 1e-6);
     }
     // Light that the one pass leaves in flight is what the floor sends on.
     const GatherPass& last = g.summary.passes.back();
