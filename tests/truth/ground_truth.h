@@ -21,7 +21,7 @@ struct TruthOptions {
 struct TruthRow {
   std::vector<double> form_factors;  ///< N; F_ij, area to area, one-sided patches
   double largest_error = 0;    ///< largest error figure of an F_ij; the true error is below it
-  std::size_t occluded = 0;     ///< pairs that see each other past something
+  std::size_t occluded = 0;    ///< pairs that see each other past something
   std::size_t hidden = 0;      ///< pairs that face each other and see nothing of each other
   std::size_t unfinished = 0;  ///< pairs that ran out of points
   std::size_t points = 0;      ///< looked from, over all pairs
