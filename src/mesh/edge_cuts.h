@@ -53,8 +53,8 @@ class EdgeCuts {
   /// Later cuts leave the edges of a polygon uncut.
   void keepWhole(std::size_t polygon);
 
-  /// Points of the current cut: ids below vertexCount() are the complex's vertices, the others are
-  /// points inside edges.
+  /// Points of the current cut: ids below the number of the complex's vertices are these, the
+  /// others are points inside edges.
   Vec3 point(Index id) const;
   std::size_t pointCount() const { return complex_.vertices.size() + edge_points_.size(); }
   std::span<const Vec3> edgePoints() const { return edge_points_; }

@@ -57,8 +57,8 @@ using ShapeWord = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_
 template <class T>
 using LaneIndex = std::conditional_t<sizeof(T) == 4, std::int32_t, std::int64_t>;
 
-/// The sides of BlockingCones, one after the other: dot(normal, p) + offset >= 0 inside, p from the
-/// eye. The first two belong to no cone: all is inside the one, nothing inside the other.
+/// The sides of all `BlockingCone`s, one after the other: dot(normal, p) + offset >= 0 inside, p
+/// from the eye. The first two belong to no cone: all is inside the one, nothing inside the other.
 template <class T>
 struct ConePlanes {
   static constexpr LaneIndex<T> kAllInside = 0;

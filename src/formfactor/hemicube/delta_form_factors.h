@@ -16,7 +16,7 @@ namespace radiosity {
 /// (configuration factor B-3 of Howell's catalogue). A side face at distance 1 spans y in [-1,1]
 /// and height z in [0,1] with weight z / (pi (y^2 + z^2 + 1)^2), whose integral over dz dy is
 ///     -1/(2 pi) atan(y/sqrt(1+z^2)) / sqrt(1+z^2).
-/// Summed over the hemicube they give 1; tests/formfactor_delta_test.cpp checks it to 1e-14.
+/// Summed over the hemicube they give 1; formfactor_delta_test checks it to 1e-14.
 class DeltaFormFactors {
  public:
   /// `resolution`: pixels along an edge of the top face; even.

@@ -24,7 +24,7 @@ struct Cone {
   bool too_many;  ///< planes: left to VisiblePart; here, the cone has nothing inside
 };
 
-/// BlockingCones in the kernels' form, of one body from all points at once.
+/// `BlockingCone`s in the kernels' form, of one body from all points at once.
 template <class T>
 class BatchCones {
  public:

@@ -16,7 +16,7 @@ struct OccludedCounts {
   std::size_t subdivided = 0;   ///< pairs that needed more than the first rule
   std::size_t hidden = 0;       ///< found to exchange nothing
   std::size_t cut_short = 0;    ///< kept with a larger error than accepted (kMostLooks)
-  std::size_t by_segments = 0;  ///< clipping gave no number: segmentFraction() did
+  std::size_t by_segments = 0;  ///< clipping gave no number: exchangeBySegments() did
   std::size_t again = 0;  ///< evaluated from both ends in double precision: see OccludedKernel
   OccludedCounts& operator+=(const OccludedCounts& other);
 };
@@ -40,7 +40,7 @@ struct OccludedPair {
 /// size h at distance r to 1e-6 r/h, and meshes of 20,000 patches have r/h near 100.
 inline constexpr double kSinglePrecision = 2.5e-4;
 
-/// Of the tolerance, what spot checks are made to; and what they are made to at most, so that they
+/// Of the tolerance, what rechecks are made to; and what they are made to at most, so that they
 /// are in double precision.
 inline constexpr double kStricter = 1.0 / 8;
 inline constexpr double kStricterLoosest = kSinglePrecision / 2;
@@ -75,7 +75,7 @@ class OccludedKernel {
                 const Progress* progress = nullptr) const;
 
   /// The same in double precision and to a fraction of the tolerance (kStricter): what it differs
-  /// by is nearly all of the error. For spot checks.
+  /// by is nearly all of the error. For rechecks.
   void evaluateStrictly(std::span<const OccludedPair> pairs, std::span<const Index> occluder_list,
                         std::span<OccludedExchange> out, const Progress* progress = nullptr) const;
 
