@@ -18,7 +18,8 @@ namespace [[gnu::visibility("default")]] radiosity {
 enum class FormFactorMethod {
   automatic,  ///< exact unless the scene is too cluttered for it; the report says what and why
   hemicube,
-  exact
+  exact,
+  rays  ///< area to area, by counting cosine-distributed rays
 };
 
 enum class ClosureMode {

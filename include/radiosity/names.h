@@ -24,9 +24,10 @@ using NameTable = std::array<std::pair<Enum, std::string_view>, N>;
 
 inline constexpr NameTable<Severity, 3> kSeverityNames{
     {{Severity::info, "info"}, {Severity::warning, "warning"}, {Severity::loud, "loud"}}};
-inline constexpr NameTable<FormFactorMethod, 3> kMethodNames{
+inline constexpr NameTable<FormFactorMethod, 4> kMethodNames{
     {{FormFactorMethod::automatic, "auto"},
      {FormFactorMethod::exact, "exact"},
+     {FormFactorMethod::rays, "rays"},
      {FormFactorMethod::hemicube, "hemicube"}}};
 inline constexpr NameTable<ClosureMode, 3> kClosureNames{{{ClosureMode::off, "off"},
                                                           {ClosureMode::report, "report"},

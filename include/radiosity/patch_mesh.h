@@ -54,6 +54,21 @@ struct Enclosures {
   bool proved_closed = false;  ///< every patch is on or in a room: none sees the sky
 };
 
+/// Patches that share one unknown, where a scene has more of them than were asked for: each patch
+/// is in one cluster, with others of its surface and side (face clusters: Willmott, Heckbert &
+/// Garland, "Face Cluster Radiosity", 1999). Patches stay what they are for all that is seen and
+/// that blocks; form factors and the system to solve are between clusters.
+struct PatchClusters {
+  std::vector<Index> of_patch;     ///< N, each patch's cluster
+  std::vector<std::size_t> begin;  ///< K + 1, into patches
+  std::vector<Index> patches;      ///< cluster by cluster, ascending in each
+
+  std::size_t size() const { return begin.empty() ? 0 : begin.size() - 1; }
+  std::span<const Index> patchesOf(std::size_t cluster) const {
+    return {patches.data() + begin[cluster], begin[cluster + 1] - begin[cluster]};
+  }
+};
+
 /// N patches, structure of arrays, double precision. All fronts come first, then the backs of
 /// two-sided patches; a back has its own centroid, normal (flipped) and corners (reversed).
 struct PatchMesh {
@@ -76,8 +91,15 @@ struct PatchMesh {
   /// Of `polygons`. meshScene() finds them; in a mesh from elsewhere they may be absent: whoever
   /// needs them then finds them anew. Absent again where vertices or polygons are changed by hand.
   std::optional<Enclosures> enclosures;
+  /// Absent: every patch is an unknown of its own.
+  std::optional<PatchClusters> clusters;
 
   std::size_t size() const { return area.size(); }
+  /// Rows of the form-factor matrix: clusters where there are any, else patches.
+  std::size_t unknowns() const { return clusters ? clusters->size() : size(); }
+  std::size_t unknownOf(std::size_t patch) const {
+    return clusters ? clusters->of_patch[patch] : patch;
+  }
   std::size_t frontCount() const;
   std::span<const Index> outline(std::size_t i) const {
     return {corners.data() + corner_offset[i], corner_offset[i + 1] - corner_offset[i]};
