@@ -146,10 +146,11 @@ struct FormFactorReport {
 };
 
 /// The matrix and each row's three accounts, which sum to 1: seen fronts (the row sum), seen
-/// backs, sky. N values each, 0 in the row of a degenerate patch. Exact: fronts and backs are what
-/// was computed; sky is 0 in a closed scene, where 1 - fronts - backs is the raw error of closure,
-/// and 1 - fronts - backs in an open one, where rounding and the tolerance may leave it a little
-/// below 0.
+/// backs, sky. N values each, 0 in the row of a degenerate patch. Where patches share unknowns
+/// (PatchMesh::clusters) rows are those of clusters, PatchMesh::unknowns() of them. Exact: fronts
+/// and backs are what was computed; sky is 0 in a closed scene, where 1 - fronts - backs is the raw
+/// error of closure, and 1 - fronts - backs in an open one, where rounding and the tolerance may
+/// leave it a little below 0.
 struct FormFactors {
   ExchangeMatrix matrix;
   std::vector<double> fronts;
