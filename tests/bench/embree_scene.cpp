@@ -1,16 +1,17 @@
 #include "embree_scene.h"
 
+#include <fmt/format.h>
 #include <pmmintrin.h>
 #include <xmmintrin.h>
-
-#include "triangulate.h"
 
 namespace radiosity::bench {
 
 EmbreeScene::EmbreeScene(const ViewScene& scene)
     : device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_)) {
   for (Index p = 0; p < scene.polygons.size(); ++p) {
-    for (const auto& triangle : triangulate(scene, p)) {
+    const auto triangles = scene.trianglesOf(scene.polygons[p]);
+    if (!triangles) throw InputError(fmt::format("polygon {}: its loops cross", p));
+    for (const auto& triangle : *triangles) {
       triangles_.push_back(triangle);
       polygon_of_.push_back(p);
     }
