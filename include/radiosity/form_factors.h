@@ -96,6 +96,21 @@ struct ExactReport {
   double seconds_finish = 0;      ///< row sums, error figures, closure
 };
 
+/// What rays did.
+struct RayReport {
+  std::size_t triangles = 0;
+  std::size_t rays = 0;    ///< cast, all in all
+  std::size_t lost = 0;    ///< of them not counted: they hit the polygon they left, or ...
+  std::size_t leaked = 0;  ///< ... got out of a scene that is proved closed
+  int rounds = 0;
+  std::size_t short_rows = 0;     ///< that were given up before they met the tolerance
+  double largest_row_figure = 0;  ///< largest of FormFactors::error over the norm of its row
+  double seconds_prepare = 0;     ///< by the clock, as the others: the tree and the look-up
+  double seconds_cast = 0;
+  double seconds_merge = 0;
+  double seconds_close = 0;
+};
+
 /// What the computation did, skipped and found.
 struct FormFactorReport {
   std::string method_reason;  ///< why this method, where it was chosen automatically
@@ -126,14 +141,16 @@ struct FormFactorReport {
   ClosureReport closure;          ///< where symmetrized, or exact and closed
   bool closure_enforced = false;  ///< exact: rows were closed, not only looked at
   ExactReport exact;
+  RayReport rays;
   std::vector<Note> notes;  ///< surfaces seen from behind, ...
 };
 
 /// The matrix and each row's three accounts, which sum to 1: seen fronts (the row sum), seen
-/// backs, sky. N values each, 0 in the row of a degenerate patch. Exact: fronts and backs are what
-/// was computed; sky is 0 in a closed scene, where 1 - fronts - backs is the raw error of closure,
-/// and 1 - fronts - backs in an open one, where rounding and the tolerance may leave it a little
-/// below 0.
+/// backs, sky. N values each, 0 in the row of a degenerate patch. Where patches share unknowns
+/// (PatchMesh::clusters) rows are those of clusters, PatchMesh::unknowns() of them. Exact: fronts
+/// and backs are what was computed; sky is 0 in a closed scene, where 1 - fronts - backs is the raw
+/// error of closure, and 1 - fronts - backs in an open one, where rounding and the tolerance may
+/// leave it a little below 0.
 struct FormFactors {
   ExchangeMatrix matrix;
   std::vector<double> fronts;

@@ -107,8 +107,9 @@ struct PatchMesh {
 };
 
 struct MeshOptions {
-  /// About how many patches (both sides counted once); 1 or more. Where outlines alone take more
-  /// cells, cells of a polygon are joined; a polygon is at least one patch.
+  /// About how many unknowns (both sides counted once); 1 or more. Where outlines alone take more
+  /// cells, cells of a polygon are joined; a polygon is at least one patch. Where that is more than
+  /// 1.2 times as many, patches share unknowns (PatchMesh::clusters); a surface has at least one.
   std::size_t patches = 2000;
   double max_edge = 0;            ///< metres; longest patch edge; 0: derived from `patches`
   double weld = 1e-7;             ///< coincidence, as a fraction of the scene's diagonal; 0 to 1e-2
@@ -147,8 +148,10 @@ struct MeshReport {
   std::size_t crossings = 0;    ///< faces_as_patches: pairs of faces that cross, not repaired
   double smallest_angle = 0;    ///< degrees, over all patches
   std::string smallest_angle_surface;
-  double longest_edge = 0;  ///< metres
-  std::vector<Note> notes;  ///< what was repaired, by name
+  double longest_edge = 0;   ///< metres
+  std::size_t clusters = 0;  ///< unknowns that patches share; 0: every patch is one of its own
+  double widest_cone = 0;    ///< degrees; the most a patch's normal is off its cluster's mean
+  std::vector<Note> notes;   ///< what was repaired, by name
 };
 
 struct MeshResult {
@@ -208,8 +211,8 @@ struct CornerGroups {
 };
 CornerGroups cornerGroups(const PatchMesh& mesh, double crease);
 
-/// Identity of the geometry a form-factor matrix belongs to: vertices, patches, sides, surface
-/// names. Not reflectance or emission. 16 hex digits.
+/// Identity of the geometry a form-factor matrix belongs to: vertices, patches, sides, clusters,
+/// surface names. Not reflectance or emission. 16 hex digits.
 std::string geometryHash(const PatchMesh& mesh);
 
 }  // namespace radiosity

@@ -70,8 +70,9 @@ struct PipelineOptions {
 enum class Quantity {
   radiosity,    ///< luminance of B, W/m^2; of bands that are not three their sum
   irradiance,   ///< the same of H
-  form_factor,  ///< F from one patch to each
-  row_sum       ///< what each patch sees of fronts
+  form_factor,  ///< F from one patch to each; where patches share unknowns, from its cluster to
+                ///< the cluster of each
+  row_sum       ///< what each patch, or its cluster, sees of fronts
 };
 struct ScalarField {
   std::vector<double> values;  ///< N

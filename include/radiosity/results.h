@@ -47,7 +47,8 @@ Results readResults(const std::string& path, bool with_factors = true);
 /// things are attributes, arrays are datasets with their unit as an attribute. Layout:
 ///   /              format, format_version, version (of the program)
 ///   /scene         as Scene: vertices, corners, surfaces/, materials/, cameras/, textures/, notes/
-///   /mesh          as PatchMesh; key, geometry_hash, polygons/, report/
+///   /mesh          as PatchMesh; key, geometry_hash, polygons/, report/; where patches share
+///                  unknowns, clusters/of_patch: the row of /form_factors of each patch
 ///   /form_factors  csr_matrix((data, indices, indptr), shape) of scipy: data f32 or f64, indices
 ///                  int32 increasing in a row, indptr int64; row_sum (of data), fronts, backs, sky,
 ///                  error (figures of the rows; exact method), area; order where A_i F_ij = A_j

@@ -92,7 +92,11 @@ Solution solve(const FormFactors& factors, std::span<const double> reflectance,
                std::span<const std::string> group_names = {}, std::span<const double> sky = {});
 
 /// The same with the materials, of any number of bands, and the surfaces of the mesh that the
-/// factors are of. Errors also of PatchMaterials::requireSizes().
+/// factors are of. Where its patches share unknowns (PatchMesh::clusters), a cluster has the mean
+/// reflectance and emission of its patches by area, and the system between clusters is solved: the
+/// summary, with residual, bound and energy, is of that system. B and H are of patches all the
+/// same, N * bands: a patch has its cluster's H, and B = E + rho H with its own E and rho, so that
+/// textures stay sharp. Errors also of PatchMaterials::requireSizes().
 Solution solve(const FormFactors& factors, const PatchMaterials& materials, const PatchMesh& mesh,
                const SolveOptions& options, Progress& progress);
 

@@ -7,6 +7,7 @@
 #include "base/byte_text.h"
 #include "base/made.h"
 #include "cli/words.h"
+#include "radiosity/names.h"
 
 namespace radiosity::cli {
 
@@ -87,16 +88,16 @@ void PipelineReport::notReused(const std::string& path, const std::string& why) 
 void PipelineReport::planned(const Pipeline& pipeline, const FormFactorPlan& plan) {
   const FormFactorOptions& options = pipeline.options().factors;
   const std::size_t patches = made(pipeline.results().mesh).mesh.size();
-  const bool exact = plan.method == FormFactorMethod::exact;
+  const bool hemicubes = plan.method == FormFactorMethod::hemicube;
   // On disk every entry has a column number of 4 bytes. In memory a dense row has none, and a
   // symmetric matrix has half of the entries.
   const std::size_t value = options.storedPrecision() == Precision::double_precision ? 8 : 4;
-  const std::size_t disk = plan.matrix_bytes * (exact ? 2 : 1) * (value + 4) / value;
+  const std::size_t disk = plan.matrix_bytes * (hemicubes ? 1 : 2) * (value + 4) / value;
   const std::string what =
-      exact ? fmt::format("exact between {} to {}", plural(patches, "patch", "patches"),
-                          numberText(options.tolerance))
-            : fmt::format("{} of {} pixels", plural(patches, "hemicube", "hemicubes"),
-                          options.resolution);
+      hemicubes ? fmt::format("{} of {} pixels", plural(patches, "hemicube", "hemicubes"),
+                              options.resolution)
+                : fmt::format("{} between {} to {}", nameOf(kMethodNames, plan.method),
+                              plural(patches, "patch", "patches"), numberText(options.tolerance));
   report_.line("form factors",
                fmt::format("{}: about {}, memory about {}{}", what, durationText(plan.seconds),
                            bytesText(plan.bytes),

@@ -160,10 +160,11 @@ void summarizeMesh(Report& report, const MeshResult& result, Detail detail) {
   if (detail == Detail::brief) {
     const std::size_t others = mesh.size() - r.quads - r.triangles;
     report.line(
-        "", fmt::format("{} ({}, {}{}) on {}; T-junctions {}; smallest angle {} deg",
+        "", fmt::format("{} ({}, {}{}){} on {}; T-junctions {}; smallest angle {} deg",
                         plural(mesh.size(), "patch", "patches"), plural(r.quads, "quad", "quads"),
                         plural(r.triangles, "triangle", "triangles"),
                         others > 0 ? fmt::format(", {} of more corners", others) : "",
+                        r.clusters > 0 ? fmt::format(" in {} clusters", r.clusters) : "",
                         plural(r.polygons, "polygon", "polygons"), r.t_junctions,
                         numberText(r.smallest_angle, 3)));
   }
@@ -171,6 +172,9 @@ void summarizeMesh(Report& report, const MeshResult& result, Detail detail) {
     const Section section(report, detail, "mesh", "Mesh");
     report.count("patches", "patches", mesh.size());
     report.count("fronts", "of them fronts", mesh.frontCount());
+    report.count("unknowns", "unknowns", mesh.unknowns());
+    report.count("clusters", "clusters", r.clusters);
+    report.number("widest_cone_deg", "  normals off their mean by", r.widest_cone, "deg");
     report.count("quads", "quads", r.quads);
     report.count("triangles", "triangles", r.triangles);
     report.count("polygons", "planar polygons", r.polygons);

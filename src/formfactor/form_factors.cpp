@@ -12,6 +12,7 @@
 #include "formfactor/exact/assembly/row_sample.h"
 #include "formfactor/foreseen_work.h"
 #include "formfactor/hemicube/hemicube_factors.h"
+#include "formfactor/rays/ray_factors.h"
 
 namespace radiosity {
 
@@ -28,6 +29,8 @@ struct FormFactorPlan::Prepared {
   // Where it is not:
   std::optional<HemicubeScene> hemicubes;
   HemicubeEstimate hemicube_estimate;
+  std::optional<RayScene> rays;
+  RayEstimate ray_estimate;
   double seconds = 0;  ///< that this took
 };
 
@@ -144,6 +147,20 @@ void planHemicubes(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Pro
   plan.refining = 0;
 }
 
+void planRays(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {
+  progress.begin("preparing", 1);
+  const RayScene& scene = prepared.rays.emplace(prepared.mesh, prepared.options.seed);
+  progress.advance();
+  progress.end();
+  progress.check();
+  prepared.ray_estimate = estimateRays(scene, prepared.options, progress);
+  plan.method = FormFactorMethod::rays;
+  plan.bytes = prepared.ray_estimate.bytes;
+  plan.matrix_bytes = prepared.ray_estimate.matrix_bytes;
+  plan.seconds = prepared.ray_estimate.seconds;
+  plan.refining = 1;
+}
+
 }  // namespace
 
 void FormFactorOptions::validate() const {
@@ -175,10 +192,14 @@ FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
   const Clock::time_point start = Clock::now();
   auto prepared = std::make_shared<FormFactorPlan::Prepared>(std::move(mesh), options);
   FormFactorPlan plan;
-  if (options.method != FormFactorMethod::hemicube) planExact(*prepared, plan, progress);
+  if (options.method == FormFactorMethod::rays) {
+    planRays(*prepared, plan, progress);
+  } else if (options.method != FormFactorMethod::hemicube) {
+    planExact(*prepared, plan, progress);
+  }
   if (plan.method == FormFactorMethod::hemicube) {
     planHemicubes(*prepared, plan, progress);
-  } else if (plan.seconds > kLongWait) {
+  } else if (plan.method == FormFactorMethod::exact && plan.seconds > kLongWait) {
     const HemicubeScene scene(prepared->mesh, options);
     plan.hemicube_seconds = estimateHemicubes(prepared->mesh, scene, options, progress).measured;
   }
@@ -199,6 +220,9 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress) {
   } else if (prepared.hemicubes) {
     result = hemicubeFactors(prepared.mesh, *prepared.hemicubes, prepared.hemicube_estimate,
                              prepared.options, progress);
+  } else if (prepared.rays) {
+    result = rayFactors(prepared.mesh, *prepared.rays, prepared.ray_estimate, prepared.options,
+                        progress);
   } else {
     throw std::logic_error("this plan was not prepared");
   }

@@ -1,3 +1,4 @@
+#include "mesh/cluster_patches.h"
 #include "mesh/complex.h"
 
 namespace radiosity {
@@ -11,6 +12,7 @@ MeshResult meshScene(const Scene& scene, const MeshOptions& options, Progress& p
   } else {
     const CoarseComplex complex = buildComplex(scene, options, result.report, progress);
     result.mesh = subdivide(complex, scene, options, result.report, progress);
+    if (options.max_edge == 0) shareUnknowns(result.mesh, options, result.report, progress);
   }
   result.mesh.enclosures = findEnclosures(result.mesh, progress);
   return result;

@@ -143,10 +143,9 @@ class Subdivision {
   std::size_t count_ = 0;
 };
 
-/// Leaves the subdivision at about `wanted` cells; returns its size. Cuts opposite of vertices cost
-/// cells: they may neither cost the count that is had without them nor much coarser cells
-/// elsewhere.
-double meetCount(Subdivision& subdivision, double start, double wanted) {
+/// Leaves the subdivision at about `wanted` cells. Cuts opposite of vertices cost cells: they may
+/// neither cost the count that is had without them nor much coarser cells elsewhere.
+void meetCount(Subdivision& subdivision, double start, double wanted) {
   const double largest = kLargestSize * start;
   double spacing = kNoOpposites;
   double last = 0;
@@ -162,24 +161,23 @@ double meetCount(Subdivision& subdivision, double start, double wanted) {
   };
   const double plain = search(largest);
   subdivision.findOpposites(largest);
-  if (!subdivision.hasOpposites()) return plain;
+  if (!subdivision.hasOpposites()) return;
   const double coarsest = std::min(largest, kCoarser * plain);
   const double most = kMuchMore * std::max(wanted, subdivision.count());
   for (const double widths : kSpacings) {
     spacing = widths;
     const double fewest = count(coarsest);
     if (fewest > most) continue;
-    if (fewest >= wanted) return coarsest;
-    const double size = search(coarsest);
-    if (subdivision.count() <= most) return size;
+    if (fewest >= wanted) return;
+    search(coarsest);
+    if (subdivision.count() <= most) return;
   }
   spacing = kNoOpposites;
   count(plain);
-  return plain;
 }
 
 /// The same where outlines alone take more cells than that, by joining cells.
-double meetCountJoined(Subdivision& subdivision, double start, double wanted) {
+void meetCountJoined(Subdivision& subdivision, double start, double wanted) {
   const double largest = kLargestSize * start;
   double last = 0;
   const auto count = [&](double size) {
@@ -188,10 +186,9 @@ double meetCountJoined(Subdivision& subdivision, double start, double wanted) {
                     kNoOpposites);
     return double(subdivision.join(size));
   };
-  if (count(largest) >= wanted) return largest;
+  if (count(largest) >= wanted) return;
   const double size = sizeForCount(start, largest, wanted, count);
   if (size != last) count(size);
-  return size;
 }
 
 /// Enters what the patches have less than their polygons: cells without area in details as small as
@@ -248,21 +245,8 @@ PatchMesh subdivide(const CoarseComplex& complex, const Scene& scene, const Mesh
     // A wide polygon has area / size^2 cells, a thin one half its outline / size: as many as a
     // square at a quarter.
     const double start = std::max(std::sqrt(area / wanted), outlineOf(complex) / (4 * wanted));
-    double size = meetCount(subdivision, start, wanted);
-    if (subdivision.count() > kMuchMore * wanted) {
-      size = meetCountJoined(subdivision, start, wanted);
-    }
-    if (subdivision.count() > kMuchMore * wanted) {
-      const std::size_t polygons = complex.polygons.size();
-      report.notes.push_back(
-          {Severity::warning,
-           fmt::format("{} patches instead of {}: the scene has {} planar polygons, {}; large ones "
-                       "are not cut coarser than {:.3g} m for it",
-                       subdivision.count(), options.patches, polygons,
-                       polygons > options.patches ? "each at least one patch"
-                                                  : "whose outlines do not allow fewer",
-                       size)});
-    }
+    meetCount(subdivision, start, wanted);
+    if (subdivision.count() > kMuchMore * wanted) meetCountJoined(subdivision, start, wanted);
   }
   PatchMesh mesh =
       assemblePatches(complex, scene, subdivision.cuts(), subdivision.cells(), progress);

@@ -152,13 +152,14 @@ namespace {
 StageKey factorsKeyOf(const FormFactorOptions& options, const std::string& mesh_hash) {
   StageKey key;
   key.add("method", nameOf(kMethodNames, options.method));
+  const bool any = options.method == FormFactorMethod::automatic;
   if (options.method != FormFactorMethod::hemicube) {
     key.add("tolerance", fmt::format("{}", options.tolerance));
     key.add("closure", nameOf(kClosureNames, options.closure));
   }
-  if (options.method != FormFactorMethod::exact) {
+  if (options.method != FormFactorMethod::exact) key.add("seed", fmt::format("{}", options.seed));
+  if (any || options.method == FormFactorMethod::hemicube) {
     key.add("resolution", fmt::format("{}", options.resolution));
-    key.add("seed", fmt::format("{}", options.seed));
     key.add("symmetrize", onOff(options.symmetrize));
     key.add("near", options.nearExact() ? "exact" : "off");
     addTurns(key, options.random_turns);

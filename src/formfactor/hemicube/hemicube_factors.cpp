@@ -160,7 +160,7 @@ FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
     progress.advance();
     progress.check();
   };
-  accountForBacks(mesh, seen_backs, result);
+  accountForBacks(mesh, canonicalOrder(mesh), mesh.area, seen_backs, result);
   checkRows(result);
   step();
   report.reciprocity_residual = reciprocityResidual(result.matrix);

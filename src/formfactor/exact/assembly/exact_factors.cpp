@@ -189,7 +189,7 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
     close(scene.order, uncertain, options.closure, result, progress);
   }
   progress.begin("finishing", 1);
-  accountForBacks(mesh, seen_backs, result);
+  accountForBacks(mesh, canonicalOrder(mesh), mesh.area, seen_backs, result);
   progress.advance();
   progress.end();
   progress.check();

@@ -1,0 +1,291 @@
+#include "mesh/cluster_patches.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+#include <limits>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include "base/geometry/box_tree.h"
+#include "base/parallel.h"
+#include "mesh/agglomerate.h"
+
+namespace radiosity {
+
+namespace {
+
+// In sides of a square that has its share of the area:
+constexpr double kBend = 1.0;         ///< what a turn of the normal by 1 counts for
+constexpr double kLargestSide = 1.5;  ///< of a square as spread as a cluster may be
+/// The mean normal of a cap that reaches 53 degrees to all sides. Two equal sides of an edge of 90
+/// degrees have 0.71, so that they stay apart.
+constexpr double kStraight = 0.8;
+/// Nearest neighbours that a cluster without enough of them is offered to.
+constexpr std::size_t kNearest = 3;
+/// Where a round of offers to nearest neighbours leaves more than this, others are let in.
+constexpr double kWorthAnotherRound = 0.9;
+/// Patches at an edge are offered to the next ones there: all of them, but where very many meet.
+constexpr std::size_t kAtAnEdge = 4;
+
+/// The fronts by surface name and number within the surface.
+std::vector<Index> frontsInOrder(const PatchMesh& mesh) {
+  std::vector<Index> surfaces(mesh.surface_names.size());
+  std::iota(surfaces.begin(), surfaces.end(), Index(0));
+  std::stable_sort(surfaces.begin(), surfaces.end(),
+                   [&](Index a, Index b) { return mesh.surface_names[a] < mesh.surface_names[b]; });
+  std::vector<Index> place(surfaces.size());
+  for (Index k = 0; k < surfaces.size(); ++k) place[surfaces[k]] = k;
+  std::vector<Index> fronts;
+  for (Index i = 0; i < mesh.size(); ++i) {
+    if (mesh.side[i] == 0) fronts.push_back(i);
+  }
+  std::sort(fronts.begin(), fronts.end(), [&](Index a, Index b) {
+    return std::pair(place[mesh.surface[a]], mesh.index_in_surface[a]) <
+           std::pair(place[mesh.surface[b]], mesh.index_in_surface[b]);
+  });
+  return fronts;
+}
+
+std::vector<Agglomerate> piecesOf(const PatchMesh& mesh, std::span<const Index> fronts) {
+  const Vec3 centre = mesh.centroid[fronts[0]];
+  std::vector<Agglomerate> pieces;
+  pieces.reserve(fronts.size());
+  for (const Index i : fronts) {
+    const double area = mesh.area[i];
+    const Vec3 at = mesh.centroid[i] - centre;
+    pieces.push_back({area, area * at, area * mesh.normal[i], area * glm::dot(at, at)});
+  }
+  return pieces;
+}
+
+/// What ends at a vertex, of all edges from it to a vertex of a higher number.
+struct EdgeEnd {
+  Index other;  ///< vertex
+  Index front;
+  bool operator<(const EdgeEnd& b) const {
+    return std::tie(other, front) < std::tie(b.other, b.front);
+  }
+};
+
+/// Calls visit(fronts) with the fronts at each edge, ascending. Their outlines are `fronts`' of the
+/// mesh; a front is named by its place in `fronts`.
+template <class Visit>
+void forEdges(const PatchMesh& mesh, std::span<const Index> fronts, const Visit& visit) {
+  const auto forSides = [&](const auto& side) {
+    for (Index k = 0; k < fronts.size(); ++k) {
+      const auto outline = mesh.outline(fronts[k]);
+      for (std::size_t c = 0; c < outline.size(); ++c) {
+        const auto [low, high] = std::minmax(outline[c], outline[(c + 1) % outline.size()]);
+        side(low, high, k);
+      }
+    }
+  };
+  std::vector<std::size_t> begin(mesh.vertices.size() + 2, 0);
+  forSides([&](Index low, Index, Index) { ++begin[low + 2]; });
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<EdgeEnd> ends(begin.back());
+  forSides([&](Index low, Index high, Index k) { ends[begin[low + 1]++] = {high, k}; });
+  std::vector<Index> at;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    const std::span<EdgeEnd> here(&ends[begin[v]], begin[v + 1] - begin[v]);
+    std::sort(here.begin(), here.end());
+    for (std::size_t k = 0; k < here.size(); ++k) {
+      at.push_back(here[k].front);
+      if (k + 1 < here.size() && here[k + 1].other == here[k].other) continue;
+      visit(std::span<const Index>(at));
+      at.clear();
+    }
+  }
+}
+
+/// The clusters of fronts, by place in the order of fronts.
+class FrontClusters {
+ public:
+  FrontClusters(const PatchMesh& mesh, std::span<const Index> fronts, std::size_t wanted)
+      : mesh_(mesh), fronts_(fronts), wanted_(wanted), parts_({}, 0, 1) {
+    std::vector<Agglomerate> pieces = piecesOf(mesh, fronts);
+    double area = 0;
+    for (const Agglomerate& piece : pieces) area += piece.area;
+    side_ = std::sqrt(area / double(wanted));
+    parts_ = Agglomeration(std::move(pieces), kBend * side_, side_);
+  }
+
+  void run(Progress& progress) {
+    constexpr double kAny = std::numeric_limits<double>::infinity();
+    const double spread = kLargestSide * side_ / std::sqrt(6.0);  // of a square
+    offerAtEdges();
+    parts_.run({spread, kStraight}, wanted_, progress);
+    parts_.run({spread, 0}, wanted_, progress);
+    runNear({spread, 0}, kWorthAnotherRound, progress);
+    // Any two of a surface may be put together now: it ends with one cluster a surface.
+    runNear({kAny, 0}, 1, progress);
+  }
+
+  /// Of the front at a place: the place of the first in its cluster.
+  Index of(Index k) { return parts_.of(k); }
+
+ private:
+  void offerAtEdges() {
+    forEdges(mesh_, fronts_, [&](std::span<const Index> at) {
+      for (std::size_t a = 0; a < at.size(); ++a) {
+        for (std::size_t b = a + 1; b < std::min(at.size(), a + 1 + kAtAnEdge); ++b) {
+          if (mesh_.surface[fronts_[at[a]]] == mesh_.surface[fronts_[at[b]]]) {
+            parts_.offer(at[a], at[b]);
+          }
+        }
+      }
+    });
+  }
+
+  /// Offers each cluster to its nearest neighbours in the surface, and again as long as a round
+  /// leaves no more than `worth` of the clusters.
+  void runNear(const AgglomerateBounds& bounds, double worth, Progress& progress) {
+    while (parts_.size() > wanted_) {
+      const std::size_t before = parts_.size();
+      offerNearest(progress);
+      parts_.run(bounds, wanted_, progress);
+      if (double(parts_.size()) > worth * double(before) || parts_.size() == before) return;
+    }
+  }
+
+  void offerNearest(Progress& progress) {
+    std::vector<Index> clusters;
+    for (Index k = 0; k < fronts_.size(); ++k) {
+      const bool other = k > 0 && mesh_.surface[fronts_[k]] != mesh_.surface[fronts_[k - 1]];
+      if (other) offerNearestOf(std::exchange(clusters, {}), progress);
+      if (parts_.of(k) == k) clusters.push_back(k);
+    }
+    offerNearestOf(clusters, progress);
+  }
+
+  /// All clusters of one surface.
+  void offerNearestOf(const std::vector<Index>& clusters, Progress& progress) {
+    if (clusters.size() < 2) return;
+    progress.check();
+    std::vector<Box3> boxes;
+    for (const Index k : clusters) boxes.push_back({centroid(k), centroid(k)});
+    const BoxTree tree(std::move(boxes));
+    std::vector<std::vector<Index>> nearest(clusters.size());
+    parallelFor(clusters.size(), 64, [&](std::size_t c) {
+      if (!progress.cancelled()) nearest[c] = nearestOf(clusters, Index(c), tree);
+    });
+    progress.check();
+    for (std::size_t c = 0; c < clusters.size(); ++c) {
+      for (const Index other : nearest[c]) parts_.offer(clusters[c], other);
+    }
+  }
+
+  std::vector<Index> nearestOf(const std::vector<Index>& clusters, Index c,
+                               const BoxTree& tree) const {
+    using Found = std::pair<double, Index>;
+    std::vector<Found> found;  // ascending
+    const Vec3 here = centroid(clusters[c]);
+    tree.search(
+        [&](const Box3& box) {
+          const Vec3 away = glm::max(glm::max(box.low - here, here - box.high), Vec3(0.0));
+          return found.size() < kNearest || glm::dot(away, away) <= found.back().first;
+        },
+        [&](Index other) {
+          if (other == c) return true;
+          const Found next{parts_.distance2(clusters[c], clusters[other]), clusters[other]};
+          found.insert(std::lower_bound(found.begin(), found.end(), next), next);
+          if (found.size() > kNearest) found.pop_back();
+          return true;
+        });
+    std::vector<Index> out;
+    for (const Found& f : found) out.push_back(f.second);
+    return out;
+  }
+
+  Vec3 centroid(Index k) const { return parts_.at(k).moment / parts_.at(k).area; }
+
+  const PatchMesh& mesh_;
+  std::span<const Index> fronts_;
+  std::size_t wanted_;
+  double side_ = 0;
+  Agglomeration parts_;
+};
+
+/// Numbers clusters in the order of their first patches; `key`: of each patch, the same for all of
+/// a cluster, below `keys`.
+PatchClusters numbered(std::span<const Index> key, std::size_t keys) {
+  PatchClusters clusters;
+  std::vector<Index> number(keys, kNone);
+  Index count = 0;
+  for (const Index k : key) {
+    if (number[k] == kNone) number[k] = count++;
+    clusters.of_patch.push_back(number[k]);
+  }
+  clusters.begin.assign(count + 1, 0);
+  for (const Index c : clusters.of_patch) ++clusters.begin[c + 1];
+  std::partial_sum(clusters.begin.begin(), clusters.begin.end(), clusters.begin.begin());
+  clusters.patches.resize(key.size());
+  std::vector<std::size_t> next(clusters.begin.begin(), clusters.begin.end() - 1);
+  for (Index i = 0; i < key.size(); ++i) clusters.patches[next[clusters.of_patch[i]]++] = i;
+  return clusters;
+}
+
+/// Degrees; the most that the normal of a patch is off the mean of its cluster.
+double widestCone(const PatchMesh& mesh, const PatchClusters& clusters) {
+  double widest = 0;
+  for (std::size_t c = 0; c < clusters.size(); ++c) {
+    Vec3 mean(0.0);
+    for (const Index i : clusters.patchesOf(c)) mean += mesh.area[i] * mesh.normal[i];
+    for (const Index i : clusters.patchesOf(c)) {
+      const Vec3& n = mesh.normal[i];
+      widest = std::max(widest, std::atan2(glm::length(glm::cross(mean, n)), glm::dot(mean, n)));
+    }
+  }
+  return glm::degrees(widest);
+}
+
+}  // namespace
+
+PatchClusters clusterPatches(const PatchMesh& mesh, std::size_t wanted, Progress& progress) {
+  const std::vector<Index> fronts = frontsInOrder(mesh);
+  progress.begin("sharing unknowns", fronts.size() - std::min(wanted, fronts.size()));
+  FrontClusters parts(mesh, fronts, wanted);
+  parts.run(progress);
+  progress.end();
+  // Fronts have the places of their first as keys, backs those of their fronts' after them.
+  std::vector<Index> key(mesh.size());
+  for (Index k = 0; k < fronts.size(); ++k) {
+    const Index front = fronts[k];
+    key[front] = parts.of(k);
+    if (mesh.twin[front] != kNone) key[mesh.twin[front]] = Index(fronts.size()) + key[front];
+  }
+  return numbered(key, 2 * fronts.size());
+}
+
+void shareUnknowns(PatchMesh& mesh, const MeshOptions& options, MeshReport& report,
+                   Progress& progress) {
+  const std::size_t fronts = mesh.frontCount();
+  if (double(fronts) <= kMostPatchesKept * double(options.patches)) return;
+  mesh.clusters = clusterPatches(mesh, options.patches, progress);
+  report.clusters = mesh.clusters->size();
+  report.widest_cone = widestCone(mesh, *mesh.clusters);
+  report.notes.push_back(
+      {Severity::info,
+       fmt::format("{} patches share {} unknowns, since {} were asked for: light "
+                   "is solved for clusters of patches, whose normals are up to "
+                   "{:.0f} degrees off their mean",
+                   mesh.size(), report.clusters, options.patches, report.widest_cone)});
+  std::size_t shared = 0;  // by fronts
+  for (std::size_t c = 0; c < mesh.clusters->size(); ++c) {
+    shared += mesh.side[mesh.clusters->patchesOf(c)[0]] == 0 ? 1 : 0;
+  }
+  if (double(shared) <= kMostPatchesKept * double(options.patches)) return;
+  report.notes.push_back(
+      {Severity::warning,
+       fmt::format("--patches {} cannot be kept: the scene has {} surfaces, each at least one "
+                   "unknown; join surfaces in the file, or ask for {} or more",
+                   options.patches, shared, shared)});
+}
+
+}  // namespace radiosity
