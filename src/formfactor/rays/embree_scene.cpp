@@ -1,12 +1,13 @@
 #include "formfactor/rays/embree_scene.h"
 
+#include <fmt/format.h>
 #include <pmmintrin.h>
 #include <xmmintrin.h>
 
 #include <glm/common.hpp>
+#include <utility>
 
 #include "base/parallel.h"
-#include "formfactor/rays/polygon_triangles.h"
 #include "radiosity/base.h"
 
 namespace radiosity {
@@ -31,13 +32,22 @@ RTCDevice newDevice() {
   return device;
 }
 
+std::vector<std::array<Index, 3>> tiles(const ViewScene& scene, std::size_t p) {
+  auto triangles = scene.trianglesOf(scene.polygons[p]);
+  if (!triangles) {
+    throw RunError(fmt::format(
+        "rays: the outlines of polygon {} cross, so it has no triangles; use another --method",
+        scene.polygons[p].source));
+  }
+  return *std::move(triangles);
+}
+
 }  // namespace
 
 EmbreeScene::EmbreeScene(const ViewScene& scene)
     : middle_(middleOf(scene.vertices)), device_(newDevice()), scene_(rtcNewScene(device_)) {
-  std::vector<std::vector<std::array<std::uint32_t, 3>>> of_polygon(scene.polygons.size());
-  parallelFor(of_polygon.size(), 64,
-              [&](std::size_t p) { of_polygon[p] = polygonTriangles(scene, Index(p)); });
+  std::vector<std::vector<std::array<Index, 3>>> of_polygon(scene.polygons.size());
+  parallelFor(of_polygon.size(), 64, [&](std::size_t p) { of_polygon[p] = tiles(scene, p); });
   for (Index p = 0; p < of_polygon.size(); ++p) {
     triangles_.insert(triangles_.end(), of_polygon[p].begin(), of_polygon[p].end());
     polygon_of_.insert(polygon_of_.end(), of_polygon[p].size(), p);
