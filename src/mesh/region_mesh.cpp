@@ -95,6 +95,7 @@ class RegionMesher {
   }
 
   std::optional<RegionMesh> run() {
+    if (isPlainTriangle()) return RegionMesh{{}, {{2, 0, 1, kNone}}};
     if (!triangulate() || !tiles()) return std::nullopt;
     for (int round = 0; round < kRounds && worst().isBelow(kWantedAngle); ++round) {
       refine();
@@ -109,6 +110,7 @@ class RegionMesher {
   }
 
  private:
+  bool isPlainTriangle() const;
   bool triangulate();
   bool insertPieces(const std::vector<Vertex>& vertices);
   void markInside();
@@ -146,6 +148,22 @@ class RegionMesher {
   std::size_t inserted_ = 0;
   std::size_t budget_ = 0;
 };
+
+/// A triangle without points inside is its own triangulation: all its angles are given, and none of
+/// its edges may be cut or turned. Its corners begin where the triangulation of three points does.
+bool RegionMesher::isPlainTriangle() const {
+  if (region_.points.size() != 3 || region_.loops.size() != 1 || !region_.inner.empty() ||
+      !std::ranges::equal(region_.loops[0], std::array<Index, 3>{0, 1, 2}) || !interior_.empty() ||
+      std::isfinite(region_.longest)) {
+    return false;
+  }
+  const auto& p = region_.points;
+  // As corners come, to the bit: rounding may turn a sliver over from one corner and not from
+  // another.
+  return CGAL::orientation(pointOf(p[0]), pointOf(p[1]), pointOf(p[2])) == CGAL::LEFT_TURN &&
+         cross2(p[1] - p[0], p[2] - p[0]) > 0 && cross2(p[2] - p[1], p[0] - p[1]) > 0 &&
+         cross2(p[0] - p[2], p[1] - p[2]) > 0;
+}
 
 /// False if two pieces cross.
 bool RegionMesher::insertPieces(const std::vector<Vertex>& vertices) {
