@@ -30,9 +30,8 @@ std::string cures(const FormFactorPlan& plan, const FormFactorOptions& options) 
   const double tolerance = options.toleranceOf(plan.method);
   const double looser = std::min(kLoosest, (rays ? 3 : 10) * tolerance);
   if (looser > tolerance) {
-    const double left =
-        rays ? plan.seconds * std::pow(tolerance / looser, kRaysOrder)
-             : plan.seconds * (1 - plan.refining * (1 - tolerance / looser));
+    const double left = rays ? plan.seconds * std::pow(tolerance / looser, kRaysOrder)
+                             : plan.seconds * (1 - plan.refining * (1 - tolerance / looser));
     text += fmt::format(" --tolerance {} (about {}),", numberText(looser), durationText(left));
   }
   text += " fewer --patches";
@@ -108,7 +107,8 @@ void PipelineReport::planned(const Pipeline& pipeline, const FormFactorPlan& pla
       hemicubes ? fmt::format("{} of {} pixels", plural(patches, "hemicube", "hemicubes"),
                               options.resolution)
                 : fmt::format("{} between {} to {}", nameOf(kMethodNames, plan.method),
-                              plural(patches, "patch", "patches"), numberText(options.toleranceOf(plan.method)));
+                              plural(patches, "patch", "patches"),
+                              numberText(options.toleranceOf(plan.method)));
   report_.line("form factors",
                fmt::format("{}: about {}, memory about {}{}", what, durationText(plan.seconds),
                            bytesText(plan.bytes),

@@ -1,13 +1,11 @@
-// What the methods are foreseen to cost, as ratios of work.
+// What the exact method is foreseen to cost, as ratios of work.
 #pragma once
 
 namespace radiosity {
 
-// The choice of a method rests on these and on counts alone, so that it comes out the same on every
-// machine, however busy it is. They are no times: what is announced in seconds comes from a sample
-// that is timed where it runs (row_times.h, hemicube_estimate.cpp). The unit is a twelfth of a
-// clip, for that makes all others round; the ratios were measured once, on a core with vectors of
-// 512 bits.
+// They are no times: what is announced in seconds comes from a sample that is timed where it runs
+// (row_times.h). The unit is a twelfth of a clip, for that makes all others round; the ratios were
+// measured once, on a core with vectors of 512 bits.
 
 /// A clip: from one point, one occluder's shadow cut out of one target.
 inline constexpr double kClipWork = 12;
@@ -25,11 +23,5 @@ inline constexpr double kPartPointWork = 2;
 inline constexpr double kUnoccludedWork = 5;
 /// A test whether something stands between two clusters or elements.
 inline constexpr double kShaftTestWork = 9;
-/// A hemicube of 256 pixels in a scene of few polygons; with the pixels elsewhere. In cluttered
-/// scenes it takes more.
-inline constexpr double kHemicubeWork = 40'000;
-
-/// So much work is worth a look for something cheaper: some 10^8 clips, a minute or so of a core.
-inline constexpr double kMuchWork = 6e9;
 
 }  // namespace radiosity

@@ -10,7 +10,6 @@
 
 #include "formfactor/exact/assembly/exact_factors.h"
 #include "formfactor/exact/assembly/row_sample.h"
-#include "formfactor/foreseen_work.h"
 #include "formfactor/hemicube/hemicube_factors.h"
 #include "formfactor/rays/ray_factors.h"
 
@@ -42,8 +41,8 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Where no tolerance was asked for, the exact method, which then is far more accurate than rays, is
-/// worth so many times their seconds, or so many seconds.
+/// Where no tolerance was asked for, the exact method, which then is far more accurate than rays,
+/// is worth so many times their seconds, or so many seconds.
 constexpr double kWorthTimes = 2;
 constexpr double kWorthSeconds = 5;
 
@@ -63,8 +62,8 @@ void planExact(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progres
   progress.begin("preparing", ExactScene::kSteps);
   const ExactScene& scene = prepared.scene.emplace(prepared.mesh, progress);
   progress.end();
-  const RowSample sample = sampleRows(scene, options.toleranceOf(FormFactorMethod::exact),
-                                      SampleSize::full, progress);
+  const RowSample sample =
+      sampleRows(scene, options.toleranceOf(FormFactorMethod::exact), progress);
   prepared.estimate = estimateExact(scene, sample, options);
   const ExactKernels& kernels = prepared.kernels.emplace(scene, options);
   plan.method = FormFactorMethod::exact;
@@ -142,8 +141,9 @@ void FormFactorOptions::validate() const {
 
 Precision FormFactorOptions::storedPrecision() const {
   // Single precision rounds to 6e-8 of a value, well below a tolerance of 1e-6 of the mean.
-  return precision.value_or(tolerance.value_or(kExactTolerance) < 1e-6 ? Precision::double_precision
-                                             : Precision::single_precision);
+  return precision.value_or(tolerance.value_or(kExactTolerance) < 1e-6
+                                ? Precision::double_precision
+                                : Precision::single_precision);
 }
 
 FormFactorPlan planFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,

@@ -150,7 +150,7 @@ std::optional<SceneCurves> errorCurves(const BenchScene& scene, const TruthRows&
   printCurveHead(curves);
   for (const Measured& measured : exact) add(measured);
   printLeftOut(curves);
-  for (const Method& method : otherMethods(mesh.size(), quick)) {
+  for (const Method& method : otherMethods(quick)) {
     add(measure(method, mesh, truth, lighting));
   }
   return curves;

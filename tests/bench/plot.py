@@ -22,7 +22,6 @@ STYLES = {
     "hemicube": ("hemicube, 64 to 512 pixels", "#E69F00", "s"),
     "hemicube + near": ("hemicube, near pairs exact", "#009E73", "^"),
     "rays": ("ray casting (Embree, Sobol points)", "#0072B2", "o"),
-    "rays both ends": ("ray casting, both ends merged", "#56B4E9", "v"),
     "exact": ("exact, tolerance 0.1 to 1e-5", "#D55E00", "D"),
 }
 TITLES = {

@@ -73,10 +73,6 @@ std::optional<Arguments> parse(int count, char** values) {
 
 bool benchCurves(const Arguments& arguments) {
   fmt::print("\nError against time\n");
-  if (!sobolPointsAreStratified()) {
-    fmt::print("  the points of the ray caster are no net: NOT VERIFIED\n");
-    return false;
-  }
   std::vector<SceneCurves> all;
   Summary summary;
   bool verified = true;

@@ -61,30 +61,28 @@ double PowerLaw::secondsAt(double error) const { return std::pow(error / factor,
 std::vector<RayComparison> compareWithRays(const SceneCurves& curves) {
   const std::vector<Measurement> exact = curve(curves, "exact");
   std::vector<RayComparison> comparisons;
-  for (const char* name : {kRays, kRaysBothEnds}) {
-    std::vector<Measurement> rays = curve(curves, name);
-    // The cheapest points pay for setting up and trace small, incoherent batches: the law is that
-    // of the dearest.
-    if (std::ssize(rays) > kLawPoints) rays.erase(rays.begin(), rays.end() - kLawPoints);
-    if (rays.size() < 2) continue;
-    for (const double error : {1e-2, 1e-3}) {
-      const auto reached = std::find_if(exact.begin(), exact.end(), [&](const Measurement& m) {
-        return m.factors.relative_l2 <= error;
-      });
-      if (reached == exact.end()) continue;
-      RayComparison c;
-      c.scene = curves.scene;
-      c.patches = curves.patches;
-      c.curve = name;
-      c.error = error;
-      c.exact_seconds = reached->seconds.processor();
-      c.exact_tolerance = reached->value;
-      c.exact_error = reached->factors.relative_l2;
-      c.rays = fit(rays);
-      c.ray_seconds = c.rays.secondsAt(error);
-      c.extrapolated = error < rays.back().factors.relative_l2;
-      comparisons.push_back(c);
-    }
+  std::vector<Measurement> rays = curve(curves, kRays);
+  // The cheapest points pay for setting up and trace small, incoherent batches: the law is that
+  // of the dearest.
+  if (std::ssize(rays) > kLawPoints) rays.erase(rays.begin(), rays.end() - kLawPoints);
+  if (rays.size() < 2) return comparisons;
+  for (const double error : {1e-2, 1e-3}) {
+    const auto reached = std::find_if(exact.begin(), exact.end(), [&](const Measurement& m) {
+      return m.factors.relative_l2 <= error;
+    });
+    if (reached == exact.end()) continue;
+    RayComparison c;
+    c.scene = curves.scene;
+    c.patches = curves.patches;
+    c.curve = kRays;
+    c.error = error;
+    c.exact_seconds = reached->seconds.processor();
+    c.exact_tolerance = reached->value;
+    c.exact_error = reached->factors.relative_l2;
+    c.rays = fit(rays);
+    c.ray_seconds = c.rays.secondsAt(error);
+    c.extrapolated = error < rays.back().factors.relative_l2;
+    comparisons.push_back(c);
   }
   return comparisons;
 }

@@ -20,7 +20,7 @@ struct PowerLaw {
 struct RayComparison {
   std::string scene;
   std::size_t patches = 0;
-  std::string curve;           ///< kRays or kRaysBothEnds
+  std::string curve;           ///< kRays
   double error = 0;            ///< relL2(F)
   double exact_seconds = 0;    ///< of the cheapest setting measured that stays below the error
   double exact_tolerance = 0;  ///< that setting

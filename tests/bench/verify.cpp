@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
-#include "cosine_rays.h"
+#include "formfactor/rays/ray_caster.h"
 
 namespace radiosity::bench {
 namespace {
@@ -31,21 +33,24 @@ struct RayCheck {
 };
 
 RayCheck checkAgainstRays(const PatchMesh& mesh, const TruthRows& truth) {
-  const CosineRays caster(mesh);
-  CosineRays::Row cast;
+  const RayCaster caster(mesh);
   RayCheck check;
   double squares = 0;
   const std::size_t rows = std::min(kRowsCast, truth.index.size());
   for (std::size_t r = 0; r < rows; ++r) {
     const std::size_t k = (2 * r + 1) * truth.index.size() / (2 * rows);
-    caster.cast(truth.index[k], kRays, cast);
+    std::array<RayCaster::Counts, kReplicates> counts;
+    caster.cast(caster.origins(truth.index[k]), truth.index[k] * kReplicates, 0,
+                kRays / kReplicates, counts);
+    std::vector<std::uint32_t>& hits = counts[0].hits;
+    std::transform(hits.begin(), hits.end(), counts[1].hits.begin(), hits.begin(), std::plus());
     double fronts = 0;
     for (std::size_t j = 0; j < mesh.size(); ++j) {
       const double expected = truth.row[k][j] * kRays;
-      fronts += cast.hits[j];
-      if (expected < kFewestHits && cast.hits[j] < kFewestHits) continue;
-      const double spread = std::sqrt(std::max(expected, 1.0)) + kRounding * cast.hits[j];
-      const double deviation = (cast.hits[j] - expected) / spread;
+      fronts += hits[j];
+      if (expected < kFewestHits && hits[j] < kFewestHits) continue;
+      const double spread = std::sqrt(std::max(expected, 1.0)) + kRounding * hits[j];
+      const double deviation = (hits[j] - expected) / spread;
       check.largest_deviation = std::max(check.largest_deviation, std::abs(deviation));
       squares += deviation * deviation;
       ++check.entries;

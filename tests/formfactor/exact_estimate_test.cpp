@@ -21,7 +21,7 @@ namespace {
 ExactEstimate estimateOf(const PatchMesh& mesh, const FormFactorOptions& options) {
   Progress silent;
   const ExactScene scene(mesh, silent);
-  const RowSample sample = sampleRows(scene, options.tolerance, SampleSize::full, silent);
+  const RowSample sample = sampleRows(scene, options.toleranceOf(FormFactorMethod::exact), silent);
   return estimateExact(scene, sample, options);
 }
 
@@ -144,23 +144,38 @@ TEST(ExactEstimate, NothingInBetweenTakesNoPoints) {
   EXPECT_GT(estimate.work, 0);
 }
 
-TEST(Auto, ClutterAndToleranceDecide) {
+TEST(Auto, PicksExactWhereLittleIsOccluded) {
+  const PatchMesh mesh = meshNamed("cornell-box", 1000);
+  Progress silent;
+  for (const std::optional<double> tolerance : {std::optional<double>(), std::optional(1e-3)}) {
+    FormFactorOptions options;
+    options.tolerance = tolerance;
+    const FormFactorPlan plan = planFormFactors(mesh, options, silent);
+    EXPECT_EQ(plan.method, FormFactorMethod::exact);
+    // Rays need some hundred times as long.
+    ASSERT_TRUE(plan.other_seconds.has_value());
+    EXPECT_GT(*plan.other_seconds, plan.seconds);
+  }
+}
+
+TEST(Auto, PicksRaysInClutterAtALooseTolerance) {
   const PatchMesh cluttered = meshNamed("furnished-room", 5000);
   Progress silent;
   FormFactorOptions options;
-  EXPECT_EQ(planFormFactors(cluttered, options, silent).method, FormFactorMethod::hemicube);
-  options.tolerance = 0.1;
+  options.tolerance = 5e-2;
+  EXPECT_EQ(planFormFactors(cluttered, options, silent).method, FormFactorMethod::rays);
+  options.tolerance = 1e-5;
   EXPECT_EQ(planFormFactors(cluttered, options, silent).method, FormFactorMethod::exact);
 }
 
-TEST(Auto, TightTolerancesNeverSelectHemicubes) {
-  const PatchMesh mesh = meshNamed("curved", 300);
+TEST(Auto, PicksRaysWhereExactWouldPassTheMemoryLimit) {
+  const PatchMesh mesh = meshNamed("cornell-box", 1000);
   Progress silent;
   FormFactorOptions options;
-  options.tolerance = 1e-6;
-  // Far more than what hemicubes are chosen for elsewhere.
-  EXPECT_GT(estimateOf(mesh, options).work, 16 * kMuchWork);
-  EXPECT_EQ(planFormFactors(mesh, options, silent).method, FormFactorMethod::exact);
+  options.memory_limit = 1;
+  const FormFactorPlan plan = planFormFactors(mesh, options, silent);
+  EXPECT_EQ(plan.method, FormFactorMethod::rays);
+  EXPECT_THROW(computeFormFactors(plan, silent), RunError);
 }
 
 TEST(Plan, IsCarriedOutAsOftenAsAskedFor) {
@@ -175,7 +190,6 @@ TEST(Plan, IsCarriedOutAsOftenAsAskedFor) {
     for (int run = 0; run < 2; ++run) {
       const FormFactors f = computeFormFactors(plan, silent);
       EXPECT_EQ(f.method, direct.method);
-      EXPECT_EQ(f.report.method_reason, direct.report.method_reason);
       EXPECT_EQ(f.report.estimated_bytes, plan.bytes);
       for (std::size_t i = 0; i < mesh.size(); ++i) {
         for (std::size_t j = 0; j < mesh.size(); ++j) {

@@ -12,7 +12,7 @@ namespace {
 using test::MeshBuilder;
 
 FormFactors compute(const PatchMesh& mesh, FormFactorMethod method,
-                    std::optional<bool> near_exact) {
+                    bool near_exact) {
   FormFactorOptions options;
   options.method = method;
   options.near_exact = near_exact;
@@ -68,20 +68,6 @@ TEST(NearPairs, OffByDefault) {
   const FormFactors f = compute(test::roomWithBlock(2).build(), FormFactorMethod::hemicube,
                                 FormFactorOptions().near_exact);
   EXPECT_EQ(f.report.near_pairs, 0u);
-}
-
-TEST(NearPairs, OnWhereAutoPicksHemicubes) {
-  const PatchMesh mesh = test::roomWithBlock(6).build();
-  FormFactorOptions options;
-  options.resolution = 32;
-  // What the exact method would need is too much: hemicubes it is.
-  Progress silent;
-  options.memory_limit = planFormFactors(mesh, options, silent).bytes - 1;
-  const FormFactors picked = computeFormFactors(mesh, options, silent);
-  ASSERT_EQ(picked.method, "hemicube");
-  EXPECT_GT(picked.report.near_pairs, mesh.size());
-  options.near_exact = false;
-  EXPECT_EQ(computeFormFactors(mesh, options, silent).report.near_pairs, 0u);
 }
 
 }  // namespace

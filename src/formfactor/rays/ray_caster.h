@@ -15,8 +15,8 @@
 
 namespace radiosity {
 
-/// The share of rays from random points of i, in cosine-distributed directions, that ends on j is an
-/// unbiased estimate of F_ij, area to area. (Malley's method: points of a disc, raised to the
+/// The share of rays from random points of i, in cosine-distributed directions, that ends on j is
+/// an unbiased estimate of F_ij, area to area. (Malley's method: points of a disc, raised to the
 /// hemisphere. Howell, Menguc & Siegel, "Thermal Radiation Heat Transfer", ch. 7.)
 ///
 /// Points are Owen-scrambled Sobol points: two dimensions place the ray on the patches, two turn

@@ -12,7 +12,7 @@
 namespace radiosity {
 namespace {
 
-constexpr std::size_t kMostRows = 48;
+constexpr std::size_t kMostRows = 160;
 /// Rays of a sampled row, in each replicate: from the first number to the second its error is seen
 /// to fall.
 constexpr std::uint32_t kFewRays = kPilotRays;
@@ -28,11 +28,13 @@ struct SampledRow {
   RowAccuracy few;
   RowAccuracy many;
   double entries = 0;
+  double area = 0;
   BothClocks taken;  ///< by the rays from kFewRays on
 };
 
 SampledRow sampleRow(const RayScene& scene, std::size_t position, const Progress& progress) {
   SampledRow sampled;
+  sampled.area = scene.area()[position];
   RayRow row;
   scene.cast(position, kFewRays, row, progress);
   if (row.columns.empty() || progress.cancelled()) return sampled;
@@ -74,20 +76,27 @@ RayEstimate estimateRays(const RayScene& scene, const FormFactorOptions& options
   const double order = orderOf(rows);
   const double tolerance = options.toleranceOf(FormFactorMethod::rays);
   BothClocks taken;
+  double squares = 0;
+  double areas = 0;
+  for (const SampledRow& row : rows) {
+    squares += row.area * row.many.norm * row.many.norm;
+    areas += row.area;
+  }
+  const double usual_norm = areas > 0 ? std::sqrt(squares / areas) : 0.0;
   double rays = 0;
   double entries = 0;
   for (const SampledRow& row : rows) {
     taken += row.taken;
-    if (!(row.many.norm > 0)) continue;
-    const double over = row.many.error / (row.many.norm * tolerance);
-    const double needed =
-        std::clamp(kManyRays * std::pow(kMerged * over * over, 1 / order), double(kPilotRays),
-                   double(kMostRays));
+    const double norm = std::max(row.many.norm, usual_norm);
+    if (!(norm > 0)) continue;
+    const double over = row.many.error / (norm * tolerance);
+    const double needed = std::clamp(kManyRays * std::pow(kMerged * over * over, 1 / order),
+                                     double(kPilotRays), double(kMostRays));
     rays += needed;
     // Entries that more rays find: few of those that are not there yet.
     constexpr double kNewEntries = 0.3;
-    entries += std::min(double(n), row.entries * std::pow(std::max(1.0, needed / kManyRays),
-                                                          kNewEntries));
+    entries +=
+        std::min(double(n), row.entries * std::pow(std::max(1.0, needed / kManyRays), kNewEntries));
   }
   const double share = rows.empty() ? 0.0 : 1 / double(rows.size());
   const double sampled = double(kManyRays - kFewRays) * double(rows.size());
@@ -96,8 +105,8 @@ RayEstimate estimateRays(const RayScene& scene, const FormFactorOptions& options
   RayEstimate estimate;
   estimate.rays = kReplicates * kRounding * share * rays * double(n);
   const double all_entries = share * entries * double(n);
-  estimate.seconds = taken.ratio() / threads *
-                     (0.5 * estimate.rays * per_ray + kEntrySeconds * all_entries);
+  estimate.seconds =
+      taken.ratio() / threads * (0.5 * estimate.rays * per_ray + kEntrySeconds * all_entries);
   estimate.matrix_bytes = estimateSymmetricBytes(n, share * entries, options.storedPrecision());
   constexpr std::size_t kCountBytes = sizeof(Index) + kReplicates * sizeof(std::uint32_t) + 1;
   estimate.bytes = options.memory_held + scene.caster().bytes() + estimate.matrix_bytes +

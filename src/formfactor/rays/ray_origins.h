@@ -49,9 +49,9 @@ class RayOrigins {
 
   std::vector<Part> parts_;
   std::vector<RayFrame> frames_;
-  std::vector<double> end_;    ///< of each part's share of x; while adding, areas summed up
-  std::vector<float> first_;   ///< where each part's share begins
-  std::vector<float> stretch_; ///< 1 / share
+  std::vector<double> end_;     ///< of each part's share of x; while adding, areas summed up
+  std::vector<float> first_;    ///< where each part's share begins
+  std::vector<float> stretch_;  ///< 1 / share
 };
 
 }  // namespace radiosity

@@ -23,17 +23,18 @@ constexpr double kMostOrder = 2.5;
 /// What a row has come to.
 struct RowState {
   std::uint32_t rays = 0;
-  double error = 0;  ///< over the row's norm
+  double error = 0;
+  double norm = 0;
 };
 
-/// Rays for an error of `tolerance`, from what was seen with fewer.
-std::uint32_t raysNeeded(const RowState& before, const RowState& now, double tolerance) {
+/// Rays for an error of `aim`, from what was seen with fewer.
+std::uint32_t raysNeeded(const RowState& before, const RowState& now, double aim) {
   double order = kUsualOrder;
   if (before.rays > 0 && now.rays > before.rays && now.error > 0 && before.error > now.error) {
     order = 2 * std::log(before.error / now.error) / std::log(double(now.rays) / before.rays);
     order = std::clamp(order, kLeastOrder, kMostOrder);
   }
-  const double growth = std::pow(now.error / tolerance, 2 / order);
+  const double growth = std::pow(now.error / aim, 2 / order);
   return std::min(roundedRays(now.rays * std::min(growth, kMostGrowth)), kMostRays);
 }
 
@@ -57,9 +58,9 @@ class Rounds {
       measure(rays);
       for (std::size_t k = 0; k < rows_.size(); ++k) {
         rays[k] = 0;
-        if (now_[k].error <= tolerance_) continue;
+        if (isGoodEnough(k)) continue;
         if (report_.rounds < kMostRounds && now_[k].rays < kMostRays) {
-          rays[k] = raysNeeded(before_[k], now_[k], tolerance_);
+          rays[k] = raysNeeded(before_[k], now_[k], aim(k));
         }
       }
     }
@@ -108,19 +109,32 @@ class Rounds {
       const std::size_t k = merged.position;
       const RowAccuracy accuracy = accuracyOf(merged, rows_[k]);
       before_[k] = now_[k];
-      now_[k] = {rows_[k].rays, accuracy.norm > 0 ? accuracy.error / accuracy.norm : 0.0};
-      // Next to nothing was seen: too little to tell.
-      if (accuracy.norm == 0 && accuracy.error > 0) now_[k].error = 1;
+      now_[k] = {rows_[k].rays, accuracy.error, accuracy.norm};
     });
+    usual_norm_ = usualNorm();
     progress_.check();
     report_.seconds_merge += clockSeconds() - start;
   }
+
+  /// Of a row of the matrix: the root mean square, weighted by area.
+  double usualNorm() const {
+    double squares = 0;
+    double areas = 0;
+    for (std::size_t k = 0; k < now_.size(); ++k) {
+      squares += scene_.area()[k] * now_[k].norm * now_[k].norm;
+      areas += scene_.area()[k];
+    }
+    return areas > 0 ? std::sqrt(squares / areas) : 0.0;
+  }
+
+  double aim(std::size_t k) const { return tolerance_ * std::max(now_[k].norm, usual_norm_); }
+  bool isGoodEnough(std::size_t k) const { return now_[k].error <= aim(k); }
 
   void finish() {
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       const RayRow& row = rows_[k];
       report_.lost += row.lost[0] + row.lost[1];
-      report_.short_rows += now_[k].error > tolerance_;
+      report_.short_rows += isGoodEnough(k) ? 0 : 1;
       report_.leaked += row.leaked;
     }
   }
@@ -132,6 +146,7 @@ class Rounds {
   std::vector<RayRow> rows_;
   std::vector<RowState> before_;
   std::vector<RowState> now_;
+  double usual_norm_ = 0;
 };
 
 }  // namespace

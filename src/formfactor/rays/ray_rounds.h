@@ -17,9 +17,9 @@ inline constexpr std::uint32_t kPilotRays = 512;
 inline constexpr std::uint32_t kMostRays = 1u << 24;
 
 /// How error squared falls with the number of rays, n^-this, where nothing better is known. (In
-/// four dimensions scrambled nets reach n^-5/4 on what jumps, as visibility does: He & Wang, "On the
-/// convergence rate of randomized quasi-Monte Carlo for discontinuous functions", SIAM J. Numer.
-/// Anal. 53, 2015.)
+/// four dimensions scrambled nets reach n^-5/4 on what jumps, as visibility does: He & Wang, "On
+/// the convergence rate of randomized quasi-Monte Carlo for discontinuous functions", SIAM J.
+/// Numer. Anal. 53, 2015.)
 inline constexpr double kUsualOrder = 1.25;
 
 /// The least number of rays a replicate that is 2^k or 3 2^k and at least `rays`.

@@ -57,12 +57,11 @@ class ReplicateSums {
     // The product of independent estimates has no bias, the square of their mean has.
     result.norm = std::sqrt(std::max(0.0, product_));
     result.error = std::sqrt(squares_);
-    // Of sums of s_j^2 x_j^2 with x_j normal: the mean of the fourth powers is 3 sum s_j^4, and the
-    // sum varies like one of (sum s_j^2)^2 / sum s_j^4 equal terms.
-    constexpr double kFourthMoment = 3;
-    if (fourths_ > 0) {
-      result.degrees = std::max(1.0, kFourthMoment * squares_ * squares_ / fourths_ - 2);
-    }
+    // Independent normal terms would be three times as many as this says, for their fourth moment
+    // is 3. Neighbours share the border that rays fall to either side of: they are not independent.
+    // (Counted three times, 95.6 to 98% of the rows of five scenes at two tolerances are below
+    // their figures, where 99% are meant to be.)
+    if (fourths_ > 0) result.degrees = std::max(1.0, squares_ * squares_ / fourths_);
     return result;
   }
 

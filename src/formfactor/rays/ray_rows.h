@@ -26,7 +26,9 @@ struct RayRow {
   std::vector<std::array<std::uint32_t, kReplicates>> hits;
 
   /// That count in one replicate, ...
-  double counted(int replicate) const { return double(rays) - double(lost[std::size_t(replicate)]); }
+  double counted(int replicate) const {
+    return double(rays) - double(lost[std::size_t(replicate)]);
+  }
   /// ... and in both.
   double counted() const { return counted(0) + counted(1); }
 };

@@ -1,6 +1,5 @@
 #include "formfactor/rays/sobol.h"
 
-
 namespace radiosity {
 namespace {
 

@@ -8,7 +8,6 @@
 namespace radiosity {
 namespace {
 
-constexpr std::size_t kRoughSteps = kSampleSteps / 6;
 /// Of a task, ranges are taken until there are so many rows: what columns share is shared by rows.
 constexpr std::size_t kLeastRows = 4;
 /// Facets looked at, and tests made, for one range of rows.
@@ -190,9 +189,7 @@ void addPlaces(const ExactScene& scene, std::span<const ElementRange> ranges, Fa
 
 }  // namespace
 
-RowSample sampleRows(const ExactScene& scene, double tolerance, SampleSize size,
-                     Progress& progress) {
-  const std::size_t most = size == SampleSize::rough ? kRoughSteps : kSampleSteps;
+RowSample sampleRows(const ExactScene& scene, double tolerance, Progress& progress) {
   // What walls see of walls, and small facets of walls, are classes of their own: few of the rows,
   // and much of the work.
   const std::array<std::vector<ElementRange>, 2> ranges = {rangesOf(scene, FacetSize::large),
@@ -201,7 +198,7 @@ RowSample sampleRows(const ExactScene& scene, double tolerance, SampleSize size,
   const std::size_t row_classes = (ranges[0].empty() ? 0U : 1U) + (ranges[1].empty() ? 0U : 1U);
   for (const std::vector<ElementRange>& rows : ranges) {
     for (const FacetSize columns : {FacetSize::large, FacetSize::small}) {
-      addPlaces(scene, rows, columns, most / (2 * std::max<std::size_t>(row_classes, 1)), places);
+      addPlaces(scene, rows, columns, kSampleSteps / (2 * std::max<std::size_t>(row_classes, 1)), places);
     }
   }
   RowSample sample;

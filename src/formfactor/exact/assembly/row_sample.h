@@ -59,9 +59,6 @@ struct RowSample {
   double all_places = 1;
 };
 
-/// `rough`: of a sixth as many places.
-enum class SampleSize { full, rough };
-
 /// Steps of progress at most.
 inline constexpr std::size_t kSampleSteps = 96;
 
@@ -70,7 +67,6 @@ inline constexpr std::size_t kSampleSteps = 96;
 /// work has a bound, in tests and pairs and not by the clock, so that the counts come out the same
 /// in every run. (0.05 to 0.8 s on two threads of a 2.7 GHz Xeon, from a spotted cow to a couch
 /// among cushions.) Steps `progress`; calls its check().
-RowSample sampleRows(const ExactScene& scene, double tolerance, SampleSize size,
-                     Progress& progress);
+RowSample sampleRows(const ExactScene& scene, double tolerance, Progress& progress);
 
 }  // namespace radiosity

@@ -1,0 +1,246 @@
+// Form factors by rays against published values, against the exact method, and against themselves.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "formfactor/exact_scenes.h"
+#include "radiosity/form_factors.h"
+#include "radiosity/matrix_functions.h"
+#include "support/mesh_builder.h"
+
+namespace radiosity {
+namespace {
+
+FormFactorOptions byRays(double tolerance) {
+  FormFactorOptions options;
+  options.method = FormFactorMethod::rays;
+  options.tolerance = tolerance;
+  return options;
+}
+
+FormFactors computed(const PatchMesh& mesh, const FormFactorOptions& options) {
+  Progress silent;
+  return computeFormFactors(mesh, options, silent);
+}
+
+FormFactors exactOf(const PatchMesh& mesh, double tolerance) {
+  FormFactorOptions options;
+  options.method = FormFactorMethod::exact;
+  options.tolerance = tolerance;
+  return computed(mesh, options);
+}
+
+/// How far off rows are from true ones.
+struct Score {
+  std::size_t rows = 0;
+  std::size_t below_figure = 0;
+  double largest = 0;  ///< relL2 of a row
+  double all = 0;      ///< area-weighted relL2 of F
+};
+
+Score score(const FormFactors& rays, const FormFactors& truth) {
+  Score result;
+  double squares = 0;
+  double norms = 0;
+  const std::size_t n = truth.matrix.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    std::vector<double> row(n, 0.0);
+    double norm = 0;
+    truth.matrix.forRow(i, [&](Index j, double value) {
+      row[j] = value;
+      norm += value * value;
+    });
+    if (norm == 0) continue;
+    rays.matrix.forRow(i, [&](Index j, double value) { row[j] -= value; });
+    double square = 0;
+    for (const double difference : row) square += difference * difference;
+    squares += truth.matrix.area()[i] * square;
+    norms += truth.matrix.area()[i] * norm;
+    result.largest = std::max(result.largest, std::sqrt(square / norm));
+    ++result.rows;
+    result.below_figure += std::sqrt(square) <= rays.error[i] ? 1 : 0;
+  }
+  result.all = std::sqrt(squares / norms);
+  return result;
+}
+
+TEST(Rays, FindTheFormFactorsOfACube) {
+  // Opposite and adjoining faces of a cube (Howell, "A Catalog of Radiation Configuration Factors",
+  // C-11 and C-14).
+  constexpr double kOpposite = 0.199824895698;
+  constexpr double kAdjoining = 0.200043776075;
+  test::MeshBuilder builder;
+  builder.box("room", {0, 0, 0}, {1, 1, 1}, 1, true);
+  const PatchMesh mesh = builder.build();
+  const FormFactors f = computed(mesh, byRays(1e-4));
+  ASSERT_EQ(mesh.size(), 6u);
+  EXPECT_TRUE(f.report.closed);
+  for (std::size_t i = 0; i < 6; ++i) {
+    for (std::size_t j = 0; j < 6; ++j) {
+      if (i == j) continue;
+      const bool opposite = glm::dot(mesh.normal[i], mesh.normal[j]) < -0.5;
+      EXPECT_NEAR(f.matrix.at(i, j), opposite ? kOpposite : kAdjoining, f.error[i]);
+    }
+    // A figure that says nothing is none: the row's norm is .45, good to 1e-4, and so few entries
+    // cost a factor of 10 (the root of the 99% quantile of F(2, 2)), or 20 if one of them has it
+    // all.
+    EXPECT_LT(f.error[i], 20 * 1e-4 * 0.45);
+  }
+}
+
+TEST(Rays, KeepReciprocityAndClosure) {
+  const PatchMesh mesh = test::roomWithBlock(4).build();
+  const FormFactors f = computed(mesh, byRays(2e-2));
+  EXPECT_TRUE(f.matrix.isSymmetric());
+  EXPECT_TRUE(f.report.closed);
+  const std::vector<double> sums = f.matrix.rowSums();
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    // Values are stored in single precision: 6e-8 of each.
+    EXPECT_NEAR(sums[i] + f.backs[i], 1, 1e-7);
+    EXPECT_EQ(f.sky[i], 0);
+  }
+}
+
+class RaysAgainstExact : public testing::TestWithParam<const char*> {};
+
+TEST_P(RaysAgainstExact, RowsAreAsGoodAsAskedForAndAsStated) {
+  const PatchMesh mesh = test::meshOf(test::dataScene(GetParam()), 300);
+  ASSERT_FALSE(mesh.clusters);
+  const FormFactors truth = exactOf(mesh, 1e-4);
+  constexpr double kTolerance = 2e-2;
+  const FormFactors f = computed(mesh, byRays(kTolerance));
+  EXPECT_EQ(f.report.rays.short_rows, 0u);
+  const Score found = score(f, truth);
+  // The tolerance is the root mean square that is expected of a row: the matrix keeps it, and a
+  // row of few entries may be off by some times as much.
+  EXPECT_LT(found.all, kTolerance);
+  EXPECT_LT(found.largest, 3 * kTolerance);
+  // 99% are stated; of 300 to 400 rows two more may be above by chance (three standard deviations
+  // of a binomial are 1.6%).
+  EXPECT_GT(double(found.below_figure), 0.974 * double(found.rows));
+  EXPECT_NEAR(f.report.error_figure, found.all, 0.25 * found.all);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, RaysAgainstExact,
+                         testing::Values("cornell-box-closed", "two-rooms", "blocked-plates"));
+
+TEST(Rays, GiveTheSameBitsForAnyNumberOfThreads) {
+  const PatchMesh mesh = test::roomWithBlock(3).build();
+  setThreads(1);
+  const FormFactors one = computed(mesh, byRays(3e-2));
+  setThreads(0);
+  const FormFactors all = computed(mesh, byRays(3e-2));
+  EXPECT_EQ(one.report.rays.rays, all.report.rays.rays);
+  EXPECT_EQ(one.error, all.error);
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    for (std::size_t j = 0; j < mesh.size(); ++j) {
+      ASSERT_EQ(one.matrix.at(i, j), all.matrix.at(i, j));
+    }
+  }
+}
+
+TEST(Rays, OtherSeedsGiveOtherRaysAndTheSameValues) {
+  const PatchMesh mesh = test::roomWithBlock(3).build();
+  FormFactorOptions options = byRays(2e-2);
+  const FormFactors first = computed(mesh, options);
+  options.seed = 2;
+  const FormFactors second = computed(mesh, options);
+  const Score found = score(first, second);
+  EXPECT_GT(found.all, 0);
+  EXPECT_LT(found.all, 2 * 2e-2);  // each is off by one tolerance at most
+}
+
+TEST(Rays, DoNotDependOnPlaceOrUnit) {
+  const PatchMesh mesh = test::roomWithBlock(3).build();
+  PatchMesh far = mesh;
+  const Vec3 offset(1048576.0, -2097152.0, 524288.0);
+  for (Vec3& v : far.vertices) v = 1024.0 * v + offset;
+  for (Vec3& c : far.centroid) c = 1024.0 * c + offset;
+  for (Vec3& o : far.polygons.origin) o = 1024.0 * o + offset;
+  for (double& a : far.area) a *= 1024.0 * 1024.0;
+  const FormFactors here = computed(mesh, byRays(2e-2));
+  const FormFactors there = computed(far, byRays(2e-2));
+  // Single precision rounds places of rays: next to no ray ends elsewhere.
+  EXPECT_LT(score(there, here).all, 1e-3);
+}
+
+TEST(Rays, TellSkyAndBacksFromFronts) {
+  // A floor below a smaller plate that turns its black back down, in the open.
+  test::MeshBuilder builder;
+  builder.grid("floor", {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, 2);
+  builder.grid("plate", {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, 1, 1);
+  const PatchMesh mesh = builder.build();
+  const FormFactors f = computed(mesh, byRays(1e-2));
+  EXPECT_FALSE(f.report.closed);
+  double backs = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(f.fronts[i], 0);
+    EXPECT_NEAR(f.backs[i] + f.sky[i], 1, 1e-12);
+    backs += f.backs[i] / 4;
+  }
+  // Two unit squares one apart, as the faces of a cube; the floor's four rows have no entry, so
+  // that their backs alone are adapted: to 1e-2 of each.
+  EXPECT_NEAR(backs, 0.199824895698, 2e-3);
+  EXPECT_EQ(f.sky[4], 1);
+}
+
+TEST(Rays, GoOnUntilATighterToleranceIsMet) {
+  const PatchMesh mesh = test::roomWithBlock(3).build();
+  const FormFactors truth = exactOf(mesh, 1e-5);
+  double before = 1;
+  for (const double tolerance : {5e-2, 1e-2, 3e-3}) {
+    const Score found = score(computed(mesh, byRays(tolerance)), truth);
+    EXPECT_LT(found.all, tolerance);
+    EXPECT_LT(found.all, before);
+    before = found.all;
+  }
+}
+
+TEST(Rays, OfClustersAreSumsOverTheirPatches) {
+  PatchMesh mesh = test::roomWithBlock(4).build();
+  const FormFactors truth = exactOf(mesh, 1e-4);
+  PatchClusters clusters;  // pairs of patches that follow each other on a surface
+  clusters.begin.push_back(0);
+  for (Index i = 0; i < mesh.size(); ++i) {
+    const bool joins =
+        i > 0 && mesh.surface[i] == mesh.surface[i - 1] && clusters.patches.size() % 2;
+    if (!joins && i > 0) clusters.begin.push_back(clusters.patches.size());
+    clusters.patches.push_back(i);
+    clusters.of_patch.push_back(Index(clusters.begin.size() - 1));
+  }
+  clusters.begin.push_back(clusters.patches.size());
+  mesh.clusters = clusters;
+  const FormFactors f = computed(mesh, byRays(5e-3));
+  ASSERT_EQ(f.matrix.size(), clusters.size());
+  double squares = 0;
+  double norms = 0;
+  for (std::size_t k = 0; k < clusters.size(); ++k) {
+    std::vector<double> row(clusters.size(), 0.0);
+    double area = 0;
+    for (const Index i : clusters.patchesOf(k)) area += mesh.area[i];
+    for (const Index i : clusters.patchesOf(k)) {
+      truth.matrix.forRow(i, [&](Index j, double value) {
+        row[clusters.of_patch[j]] += mesh.area[i] * value / area;
+      });
+    }
+    for (std::size_t l = 0; l < row.size(); ++l) {
+      squares += area * std::pow(f.matrix.at(k, l) - row[l], 2);
+      norms += area * row[l] * row[l];
+    }
+  }
+  // What is expected of a row is a root mean square; of all of them together it is good to some
+  // per cent.
+  EXPECT_LT(std::sqrt(squares / norms), 1.1 * 5e-3);
+}
+
+TEST(Rays, CanBeInterrupted) {
+  const PatchMesh mesh = test::roomWithBlock(4).build();
+  Progress cancelled;
+  cancelled.cancel();
+  EXPECT_THROW(computeFormFactors(mesh, byRays(1e-3), cancelled), Cancelled);
+}
+
+}  // namespace
+}  // namespace radiosity
