@@ -155,6 +155,9 @@ std::vector<Index> Attempt::cut() {
   progress_.check();
   planes_ = groupByPlane(input_);
   sheets_ = findSheets(input_, planes_);
+  std::size_t sides = 0;
+  for (const Sheet& sheet : sheets_) sides += sheet.edges.size();
+  edges_.reserve(sides / 2 + sides / 8);  // most have two sides; some are open, some will be cut
   for (std::size_t s = 0; s < sheets_.size(); ++s) {
     for (const auto& [from, to] : sheets_[s].edges) edges_.addUse(from, to, Index(s), 1);
   }

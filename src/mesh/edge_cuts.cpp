@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/parallel.h"
 #include "mesh/edge_key.h"
 #include "mesh/four_sides.h"
 #include "mesh/sharp_corners.h"
@@ -28,6 +29,11 @@ EdgeCuts::EdgeCuts(const CoarseComplex& complex) : complex_(complex) {
   const std::size_t polygons = complex.polygons.size();
   loops_.resize(polygons);
   four_sides_.resize(polygons);
+  std::size_t sides = 0;
+  for (const CoarsePolygon& polygon : complex.polygons) {
+    for (const auto& loop : polygon.loops) sides += loop.size();
+  }
+  index_.reserve(sides / 2 + sides / 8);  // most edges have a polygon on each side
   for (std::size_t p = 0; p < polygons; ++p) {
     const CoarsePolygon& polygon = complex.polygons[p];
     for (const auto& loop : polygon.loops) {
@@ -40,13 +46,13 @@ EdgeCuts::EdgeCuts(const CoarseComplex& complex) : complex_(complex) {
   }
   whole_.assign(ends_.size(), 0);
   classes_ = EdgeClasses(length_);
-  for (std::size_t p = 0; p < polygons; ++p) {
+  parallelFor(polygons, 64, [&](std::size_t p) {
     const CoarsePolygon& polygon = complex.polygons[p];
-    if (polygon.loops.size() != 1 || !polygon.inner_edges.empty()) continue;
-    if (const auto sides = findFourSides(complex, polygon.loops[0], loops_[p][0])) {
-      joinOpposite(*sides);
-      four_sides_[p] = sides;
-    }
+    if (polygon.loops.size() != 1 || !polygon.inner_edges.empty()) return;
+    four_sides_[p] = findFourSides(complex, polygon.loops[0], loops_[p][0]);
+  });
+  for (const auto& four : four_sides_) {
+    if (four) joinOpposite(*four);
   }
   classes_.orient();
   limitAtSharpCorners();

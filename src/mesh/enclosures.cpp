@@ -102,7 +102,7 @@ class EnclosureSearch {
     parallelSort(order, [&](Index a, Index b) {
       const auto key = std::lexicographical_compare_three_way(
           cornersOf(a).begin(), cornersOf(a).end(), cornersOf(b).begin(), cornersOf(b).end());
-      return key != 0 ? key < 0 : a < b;
+      return std::is_neq(key) ? std::is_lt(key) : a < b;
     });
     const std::vector<Vec3>& normal = mesh_.polygons.normal;
     found_.covered.assign(count, 0);

@@ -1,11 +1,13 @@
 // Do polygons of one surface cross or touch each other?
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <span>
 
 #include "base/geometry/box_tree.h"
+#include "base/parallel.h"
 #include "mesh/enclosures.h"
 
 namespace radiosity {
@@ -111,14 +113,16 @@ bool isEmbedded(const PatchMesh& mesh, std::span<const Index> first,
   boxes.reserve(polygons.size());
   for (const Index p : polygons) boxes.push_back(all.box(p));
   const BoxTree tree(boxes);
-  bool apart = true;
-  for (Index i = 0; i < polygons.size() && apart; ++i) {
+  std::atomic<bool> apart{true};
+  parallelFor(polygons.size(), 64, [&](std::size_t i) {
+    if (!apart.load(std::memory_order_relaxed)) return;
     tree.query(boxes[i], [&](Index j) {
-      apart = j <= i ||
-              (!meets(all, polygons[i], polygons[j]) && !meets(all, polygons[j], polygons[i]));
-      return apart;
+      const bool is_apart = j <= i || (!meets(all, polygons[i], polygons[j]) &&
+                                       !meets(all, polygons[j], polygons[i]));
+      if (!is_apart) apart.store(false, std::memory_order_relaxed);
+      return is_apart;
     });
-  }
+  });
   return apart;
 }
 

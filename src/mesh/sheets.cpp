@@ -87,6 +87,11 @@ std::vector<Sheet> findSheets(const InputFaces& input, const std::vector<Plane>&
   return out;
 }
 
+void EdgeTable::reserve(std::size_t count) {
+  edges_.reserve(count);
+  index_.reserve(count);
+}
+
 Index EdgeTable::find(Index a, Index b) const {
   const auto it = index_.find(edgeKey(a, b));
   return it == index_.end() ? kNone : it->second;
@@ -98,6 +103,7 @@ Index EdgeTable::obtain(Index a, Index b) {
     edges_.emplace_back();
     edges_.back().a = std::min(a, b);
     edges_.back().b = std::max(a, b);
+    edges_.back().uses.reserve(2);  // most have a sheet on each side
   }
   return it->second;
 }

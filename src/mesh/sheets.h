@@ -46,6 +46,8 @@ struct Edge {
 /// All edges, each once. Edges that were split stay as dead entries.
 class EdgeTable {
  public:
+  /// Room for so many edges.
+  void reserve(std::size_t count);
   Index find(Index a, Index b) const;
   /// The edge between a and b (a != b), made if need be.
   Index obtain(Index a, Index b);

@@ -20,7 +20,7 @@ class PointTree {
     std::vector<Box3> boxes;
     boxes.reserve(points.size());
     for (const Vec3& p : points) boxes.push_back({p, p});
-    tree_ = BoxTree(std::move(boxes));
+    tree_ = BoxTree(boxes);
   }
 
   /// Whether dot(normal, p) > height for any point. `normal`: of length 1, or less.
