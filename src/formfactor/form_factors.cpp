@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "formfactor/cluster_factors.h"
 #include "formfactor/exact/assembly/exact_factors.h"
 #include "formfactor/exact/assembly/row_sample.h"
 #include "formfactor/foreseen_work.h"
@@ -111,6 +112,17 @@ RowSample sampleToChoose(const FormFactorPlan::Prepared& prepared, const ExactSc
   return sampleRows(scene, options.tolerance, SampleSize::full, progress);
 }
 
+/// Rows of patches are summed over clusters once they are there: what is held then, and what stays.
+template <class Estimate>
+void addClusters(const FormFactorPlan::Prepared& prepared, bool symmetric, Estimate& estimate) {
+  const PatchMesh& mesh = prepared.mesh;
+  if (!mesh.clusters) return;
+  const Precision precision = prepared.options.storedPrecision();
+  estimate.bytes += clusterFactorsBytes(mesh, symmetric, precision);
+  estimate.matrix_bytes =
+      std::min(estimate.matrix_bytes, clusterMatrixBytes(mesh, symmetric, precision));
+}
+
 void planExact(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {
   const FormFactorOptions& options = prepared.options;
   progress.begin("preparing", ExactScene::kSteps);
@@ -118,6 +130,7 @@ void planExact(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progres
   progress.end();
   const RowSample sample = sampleToChoose(prepared, scene, progress);
   prepared.estimate = estimateExact(scene, sample, options);
+  addClusters(prepared, true, prepared.estimate);
   choose(prepared.estimate, prepared.mesh, options, plan);
   if (plan.method != FormFactorMethod::exact) {
     prepared.scene.reset();
@@ -138,6 +151,7 @@ void planHemicubes(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Pro
   progress.end();
   progress.check();
   prepared.hemicube_estimate = estimateHemicubes(prepared.mesh, scene, prepared.options, progress);
+  addClusters(prepared, prepared.options.symmetrize, prepared.hemicube_estimate);
   plan.bytes = prepared.hemicube_estimate.bytes;
   plan.matrix_bytes = prepared.hemicube_estimate.matrix_bytes;
   plan.seconds = prepared.hemicube_estimate.measured;
@@ -202,6 +216,7 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress) {
   } else {
     throw std::logic_error("this plan was not prepared");
   }
+  if (prepared.mesh.clusters) result = clusterFactors(result, prepared.mesh, progress);
   FormFactorReport& report = result.report;
   report.method_reason = plan.reason;
   report.seconds_plan = prepared.seconds;

@@ -22,8 +22,4 @@ void accountForBacks(const PatchMesh& mesh, const std::vector<std::vector<SeenBa
 /// RunError, with the numbers, where `bytes` exceed the limit.
 void refuseTooLarge(std::size_t bytes, const FormFactorOptions& options, std::size_t patches);
 
-/// Patches by surface name and index within the surface: sums in this order do not depend on how
-/// patches are numbered.
-std::vector<Index> canonicalOrder(const PatchMesh& mesh);
-
 }  // namespace radiosity

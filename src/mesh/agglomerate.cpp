@@ -35,14 +35,6 @@ float Agglomeration::cost(Index a, Index b) const {
   return float(scale_ * (i * j / (i + j)) * distance2(a, b));
 }
 
-bool Agglomeration::allows(const AgglomerateBounds& bounds, Index a, Index b) const {
-  Agglomerate whole = sums_[a];
-  whole += sums_[b];
-  const double variance = whole.squares / whole.area - square(whole.moment / whole.area);
-  return variance <= bounds.spread * bounds.spread &&
-         glm::length(whole.normals) >= bounds.straight * whole.area;
-}
-
 void Agglomeration::offer(Index a, Index b) {
   a = parts_.find(a);
   b = parts_.find(b);
@@ -50,37 +42,33 @@ void Agglomeration::offer(Index a, Index b) {
   if (a != b) offers_.push_back({cost(a, b), a, b});
 }
 
-void Agglomeration::run(const AgglomerateBounds& bounds, std::size_t wanted, Progress& progress) {
-  std::vector<Offer> heap = std::exchange(offers_, {});
+void Agglomeration::run(std::size_t wanted, Progress& progress) {
   const std::greater<> last;
-  std::make_heap(heap.begin(), heap.end(), last);
+  std::make_heap(offers_.begin(), offers_.end(), last);
   std::size_t before = size_;
-  for (std::size_t step = 1; !heap.empty() && size_ > wanted; ++step) {
+  for (std::size_t step = 1; !offers_.empty() && size_ > wanted; ++step) {
     if (step % kStepsPerCheck == 0) {
       progress.check();
       progress.advance(std::exchange(before, size_) - size_);
     }
-    std::pop_heap(heap.begin(), heap.end(), last);
-    const Offer offer = heap.back();
-    heap.pop_back();
+    std::pop_heap(offers_.begin(), offers_.end(), last);
+    const Offer offer = offers_.back();
+    offers_.pop_back();
     Index a = parts_.find(offer.a);
     Index b = parts_.find(offer.b);
-    if (b < a) std::swap(a, b);
     if (a == b) continue;
+    if (b < a) std::swap(a, b);
     const float now = cost(a, b);
     if (now > offer.cost) {
-      heap.push_back({now, a, b});
-      std::push_heap(heap.begin(), heap.end(), last);
-    } else if (allows(bounds, a, b)) {
-      sums_[a] += sums_[b];
-      parts_.unite(a, b);
-      --size_;
-    } else {
       offers_.push_back({now, a, b});
+      std::push_heap(offers_.begin(), offers_.end(), last);
+      continue;
     }
+    sums_[a] += sums_[b];
+    parts_.unite(a, b);
+    --size_;
   }
   progress.advance(before - size_);
-  offers_.insert(offers_.end(), heap.begin(), heap.end());
 }
 
 }  // namespace radiosity

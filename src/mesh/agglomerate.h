@@ -13,23 +13,15 @@ namespace radiosity {
 /// A planar piece of a surface, and what pieces put together are: sums over pieces.
 struct Agglomerate {
   double area = 0;
-  Vec3 moment{0.0};    ///< area times centroid
-  Vec3 normals{0.0};   ///< area times normal
-  double squares = 0;  ///< area times centroid^2
+  Vec3 moment{0.0};   ///< area times centroid
+  Vec3 normals{0.0};  ///< area times normal
 
   Agglomerate& operator+=(const Agglomerate& other) {
     area += other.area;
     moment += other.moment;
     normals += other.normals;
-    squares += other.squares;
     return *this;
   }
-};
-
-/// What may be put together.
-struct AgglomerateBounds {
-  double spread;    ///< root mean square distance from the centroid, metres, at most
-  double straight;  ///< length of the mean of the normals at least; 1 where all are alike
 };
 
 /// Greedy agglomeration by Ward's criterion ("Hierarchical Grouping to Optimize an Objective
@@ -50,9 +42,9 @@ class Agglomeration {
 
   /// Two that may be put together; numbers of pieces.
   void offer(Index a, Index b);
-  /// Puts together what `bounds` allow, until `wanted` are left or no pair is. Pairs that are not
-  /// allowed are kept for another run. Throws Cancelled.
-  void run(const AgglomerateBounds& bounds, std::size_t wanted, Progress& progress);
+  /// Puts together what was offered, the cheapest pair first, until `wanted` are left or no pair
+  /// is. What is not used up waits for another run. Throws Cancelled.
+  void run(std::size_t wanted, Progress& progress);
 
   std::size_t size() const { return size_; }
   /// The smallest piece of what piece k is part of: it stands for the whole.
@@ -72,7 +64,6 @@ class Agglomeration {
     }
   };
   float cost(Index a, Index b) const;
-  bool allows(const AgglomerateBounds& bounds, Index a, Index b) const;
 
   std::vector<Agglomerate> sums_;
   UnionFind parts_;

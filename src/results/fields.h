@@ -97,6 +97,9 @@ void describe(Archive& a, Described<Archive, PatchMesh>& m) {
   a("twin", m.twin);
   a("surface_names", m.surface_names);
   a.group("polygons", [&](auto& polygons) { describe(polygons, m.polygons); });
+  if (a.present("clusters", m.clusters)) {
+    a.group("clusters", [&](auto& clusters) { clusters("of_patch", m.clusters->of_patch); });
+  }
 }
 
 template <class Archive>
@@ -118,6 +121,8 @@ void describe(Archive& a, Described<Archive, MeshReport>& r) {
   a("smallest_angle", r.smallest_angle);
   a("smallest_angle_surface", r.smallest_angle_surface);
   a("longest_edge", r.longest_edge);
+  a("clusters", r.clusters);
+  a("widest_cone", r.widest_cone);
   a.table("surfaces", r.surfaces, [](auto& column) {
     column("name", &SurfaceAreas::name);
     column("given", &SurfaceAreas::given, "m^2");

@@ -8,6 +8,7 @@
 
 #include "base/atomic_file.h"
 #include "base/input_file.h"
+#include "mesh/cluster_patches.h"
 #include "radiosity/results.h"
 #include "results/fields.h"
 #include "results/h5_reader.h"
@@ -27,7 +28,7 @@ using h5::SizeCounter;
 
 constexpr const char* kFormat = "radiosity results";
 /// Raised whenever an older program could misread the file.
-constexpr std::int32_t kFormatVersion = 4;
+constexpr std::int32_t kFormatVersion = 5;
 
 /// Everything but the matrix and the links, into a group or a counter.
 template <class Sink>
@@ -60,7 +61,11 @@ class StageWriter {
     Sink group = root_.group("form_factors");
     group.text("key", results_.factors_key);
     group.text("geometry_hash", geometry_hash_);
-    group.text("entry", "F[i,j]: the fraction of what leaves patch i that reaches patch j");
+    const bool shared = results_.mesh && results_.mesh->mesh.clusters;
+    group.text("entry", shared
+                            ? "F[i,j]: the fraction of what leaves cluster i that reaches "
+                              "cluster j; /mesh/clusters/of_patch names each patch's"
+                            : "F[i,j]: the fraction of what leaves patch i that reaches patch j");
     FieldWriter<Sink> fields(group);
     describe(fields, factors);
     return group;
@@ -200,6 +205,10 @@ Results readResults(const std::string& path, bool with_factors) {
     throw RunError(fmt::format("{}: does not fit into memory; use a larger machine", path));
   }
   checkResults(path, results);
+  if (results.mesh && results.mesh->mesh.clusters) {
+    std::optional<PatchClusters>& clusters = results.mesh->mesh.clusters;
+    clusters = clustersOf(std::move(clusters->of_patch), unknownsOf(results.mesh->mesh));
+  }
   return results;
 }
 
