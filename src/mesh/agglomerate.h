@@ -1,7 +1,6 @@
 // Putting things together that lie near each other and face alike, the cheapest pair first.
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -31,12 +30,11 @@ struct Agglomerate {
 ///     A_I A_J / (A_I + A_J) * (|c_I - c_J|^2 + bend^2 |n_I - n_J|^2).
 ///
 /// Pairs stand in a heap by this cost. One whose cost has risen since is put back; one whose cost
-/// has fallen is taken when its turn comes. So a pair costs a few steps of log n in all, and no
-/// lists of neighbours are kept. Ties go by number: the first, then the second of the pair.
+/// has fallen is taken when its turn comes. No lists of neighbours are kept: where run() is called
+/// for half as many each time, pairs are as many as wholes, and all takes n log n. Ties go by
+/// number: the first, then the second of the pair.
 class Agglomeration {
  public:
-  using Pair = std::array<Index, 2>;
-
   /// `unit`: a length that costs are of the order of, so that they fit into 32 bits.
   Agglomeration(std::vector<Agglomerate> pieces, double bend, double unit);
 
@@ -51,8 +49,8 @@ class Agglomeration {
   Index of(Index k) { return parts_.find(k); }
   /// Of a piece that stands for a whole.
   const Agglomerate& at(Index k) const { return sums_[k]; }
-  /// |c_I - c_J|^2 + bend^2 |n_I - n_J|^2 of two that stand for wholes.
-  double distance2(Index a, Index b) const;
+  /// |c_I - c_J|^2 + bend^2 |n_I - n_J|^2 of two that stand for wholes, with any `bend`.
+  double distance2(Index a, Index b, double bend) const;
 
  private:
   struct Offer {
@@ -64,10 +62,12 @@ class Agglomeration {
     }
   };
   float cost(Index a, Index b) const;
+  /// Each pair once, at its cost now: clusters meet along many edges.
+  void renew();
 
   std::vector<Agglomerate> sums_;
   UnionFind parts_;
-  double bend2_;
+  double bend_;
   double scale_;
   std::size_t size_;
   std::vector<Offer> offers_;

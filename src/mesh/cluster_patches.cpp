@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 #include <numeric>
+#include <ranges>
 #include <tuple>
 #include <utility>
 
@@ -91,11 +92,8 @@ class FrontClusters {
   FrontClusters(const PatchMesh& mesh, std::span<const Index> fronts, std::size_t wanted)
       : mesh_(mesh), fronts_(fronts), wanted_(wanted), parts_({}, 0, 1) {
     std::vector<Agglomerate> pieces = piecesOf(mesh, fronts);
-    double area = 0;
-    for (const Agglomerate& piece : pieces) area += piece.area;
-    const double side = std::sqrt(area / double(wanted));
-    bend_ = kBend * side;
-    parts_ = Agglomeration(std::move(pieces), bend_, side);
+    for (const Agglomerate& piece : pieces) area_ += piece.area;
+    parts_ = Agglomeration(std::move(pieces), kBend * sideOf(wanted), sideOf(wanted));
   }
 
   /// Neighbours are found anew whenever half of the clusters are gone. Every cluster that is not
@@ -104,6 +102,8 @@ class FrontClusters {
     offerAtEdges();
     for (std::size_t before = 0; parts_.size() > wanted_ && parts_.size() != before;) {
       before = parts_.size();
+      // What is near goes by the clusters there are, so that few are looked at.
+      bend_ = kBend * sideOf(before);
       offerNearest(progress);
       parts_.run(std::max(wanted_, before / 2), progress);
     }
@@ -113,6 +113,9 @@ class FrontClusters {
   Index of(Index k) { return parts_.of(k); }
 
  private:
+  /// Of a square, if so many shared out all area evenly.
+  double sideOf(std::size_t count) const { return std::sqrt(area_ / double(count)); }
+
   void offerAtEdges() {
     forEdges(mesh_, fronts_, [&](std::span<const Index> at) {
       for (std::size_t a = 0; a < at.size(); ++a) {
@@ -175,7 +178,8 @@ class FrontClusters {
           return glm::dot(away, away) <= most;
         },
         [&](Index other) {
-          const std::pair next{parts_.distance2(clusters[c], clusters[other]), clusters[other]};
+          const std::pair next{parts_.distance2(clusters[c], clusters[other], bend_),
+                               clusters[other]};
           if (other == c || next.first > most) return true;
           found.insert(std::lower_bound(found.begin(), found.end(), next), next);
           if (found.size() > kNearest) found.pop_back();
@@ -192,7 +196,8 @@ class FrontClusters {
   const PatchMesh& mesh_;
   std::span<const Index> fronts_;
   std::size_t wanted_;
-  double bend_ = 0;
+  double area_ = 0;
+  double bend_ = 0;  ///< among neighbours
   Agglomeration parts_;
 };
 
@@ -256,27 +261,29 @@ PatchClusters clusterPatches(const PatchMesh& mesh, std::size_t wanted, Progress
 
 void shareUnknowns(PatchMesh& mesh, const MeshOptions& options, MeshReport& report,
                    Progress& progress) {
-  const std::size_t fronts = mesh.frontCount();
-  if (double(fronts) <= kMostPatchesKept * double(options.patches)) return;
-  mesh.clusters = clusterPatches(mesh, options.patches, progress);
+  const double most = kMostPatchesKept * double(options.patches);
+  if (double(mesh.frontCount()) <= most) return;
+  PatchClusters clusters = clusterPatches(mesh, options.patches, progress);
+  const auto shared = std::size_t(std::ranges::count_if(
+      std::views::iota(std::size_t(0), clusters.size()),
+      [&](std::size_t c) { return mesh.side[clusters.patchesOf(c)[0]] == 0; }));
+  if (double(shared) > most) {
+    report.notes.push_back(
+        {Severity::warning,
+         fmt::format("--patches {} cannot be kept: the scene has {} surfaces, each at least one "
+                     "unknown; join surfaces in the file, or ask for {} or more",
+                     options.patches, shared, shared)});
+  }
+  if (clusters.size() == mesh.size()) return;
+  mesh.clusters = std::move(clusters);
   report.clusters = mesh.clusters->size();
   report.widest_cone = widestCone(mesh, *mesh.clusters);
   report.notes.push_back(
       {Severity::info,
-       fmt::format("{} patches share {} unknowns, since {} were asked for: light "
-                   "is solved for clusters of patches, whose normals are up to "
-                   "{:.0f} degrees off their mean",
+       fmt::format("{} patches share {} unknowns: {} were asked for; light is solved "
+                   "for clusters of patches, whose normals are up to {:.0f} degrees "
+                   "off their mean",
                    mesh.size(), report.clusters, options.patches, report.widest_cone)});
-  std::size_t shared = 0;  // by fronts
-  for (std::size_t c = 0; c < mesh.clusters->size(); ++c) {
-    shared += mesh.side[mesh.clusters->patchesOf(c)[0]] == 0 ? 1 : 0;
-  }
-  if (double(shared) <= kMostPatchesKept * double(options.patches)) return;
-  report.notes.push_back(
-      {Severity::warning,
-       fmt::format("--patches {} cannot be kept: the scene has {} surfaces, each at least one "
-                   "unknown; join surfaces in the file, or ask for {} or more",
-                   options.patches, shared, shared)});
 }
 
 }  // namespace radiosity

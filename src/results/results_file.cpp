@@ -5,6 +5,7 @@
 #include <array>
 #include <fstream>
 #include <new>
+#include <span>
 
 #include "base/atomic_file.h"
 #include "base/input_file.h"
@@ -93,12 +94,22 @@ class StageWriter {
   std::string geometry_hash_;  ///< empty without a mesh
 };
 
-/// What /form_factors shows of the mesh, so that a reader needs no other group.
-constexpr std::array<std::array<const char*, 2>, 4> kMeshLinks = {
+/// What /form_factors shows of the mesh, so that a reader needs no other group: of what its rows
+/// are, patches or clusters.
+using MeshLinks = std::span<const std::array<const char*, 2>>;
+constexpr std::array<std::array<const char*, 2>, 4> kPatchLinks = {
     {{"normal", "normal"},
      {"centroid", "centroid"},
      {"surface", "surface"},
      {"surface_names", "surface_names"}}};
+constexpr std::array<std::array<const char*, 2>, 1> kClusterLinks = {
+    {{"of_patch", "clusters/of_patch"}}};
+
+MeshLinks meshLinks(const Results& results) {
+  if (!results.mesh) return {};
+  if (results.mesh->mesh.clusters) return kClusterLinks;
+  return kPatchLinks;
+}
 
 void requireMatrix(const std::string& path, const Results& results) {
   if (results.factors && results.factors->matrix.size() != results.factors->fronts.size()) {
@@ -226,9 +237,7 @@ void writeResults(const std::string& path, const Results& results, Progress& pro
     if (results.mesh) mesh = stages.mesh(*results.mesh);
     if (results.factors) {
       OutputGroup factors = stages.factors(*results.factors);
-      for (const auto& [name, source] : kMeshLinks) {
-        if (mesh) factors.link(name, *mesh, source);
-      }
+      for (const auto& [name, source] : meshLinks(results)) factors.link(name, *mesh, source);
       writeMatrix(factors, results.factors->matrix, progress);
     }
     stages.solution();
@@ -248,9 +257,7 @@ std::size_t estimateResultsBytes(const Results& results) {
   if (results.mesh) stages.mesh(*results.mesh);
   if (results.factors) {
     SizeCounter factors = stages.factors(*results.factors);
-    for (const auto& link : kMeshLinks) {
-      if (results.mesh) factors.link(link[0]);
-    }
+    for (const auto& link : meshLinks(results)) factors.link(link[0]);
     countMatrix(factors, results.factors->matrix);
   }
   stages.solution();

@@ -265,8 +265,8 @@ TEST(ClustersOfAMesh, DoNotDependOnTheOrderOfSurfaces) {
 }
 
 TEST(ClustersOfAMesh, AreSmallWhereASurfaceBends) {
-  // The cap of a ball that a cluster may be: of 200 equal ones each reaches 8 degrees. Ward's
-  // criterion makes them unequal; four times as far says that they are caps, not strips around.
+  // A cap of a 200th of a ball reaches 8 degrees. Clusters are not equal, nor round: four times as
+  // far still says that none is a strip around the ball.
   const auto [mesh, report] = meshed(ball(), 200);
   EXPECT_LT(report.widest_cone, 32);
   EXPECT_GT(report.widest_cone, 4);

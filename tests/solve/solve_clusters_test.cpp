@@ -1,15 +1,16 @@
 // Light between clusters of patches against light between the patches themselves: the same form
 // factors, summed over clusters, must give every surface the same power.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <set>
+#include <string>
+#include <vector>
 
 #include "formfactor/cluster_factors.h"
+#include "radiosity/matrix_functions.h"
 #include "radiosity/solve.h"
 #include "support/scene_builder.h"
 
@@ -53,9 +54,11 @@ void room(SceneBuilder& builder, double width, double depth, double height) {
     builder.face(builder.surface(name, reflectance), corners);
   };
   wall("floor", 0.3, {{0, 0, 0}, {width, 0, 0}, {width, depth, 0}, {0, depth, 0}});
-  wall("ceiling", 0.8, {{0, 0, height}, {0, depth, height}, {width, depth, height}, {width, 0, height}});
+  wall("ceiling", 0.8,
+       {{0, 0, height}, {0, depth, height}, {width, depth, height}, {width, 0, height}});
   wall("left", 0.6, {{0, 0, 0}, {0, depth, 0}, {0, depth, height}, {0, 0, height}});
-  wall("right", 0.6, {{width, 0, 0}, {width, 0, height}, {width, depth, height}, {width, depth, 0}});
+  wall("right", 0.6,
+       {{width, 0, 0}, {width, 0, height}, {width, depth, height}, {width, depth, 0}});
   wall("near", 0.5, {{0, 0, 0}, {0, 0, height}, {width, 0, height}, {width, 0, 0}});
   wall("far", 0.5, {{0, depth, 0}, {width, depth, 0}, {width, depth, height}, {0, depth, height}});
 }
@@ -66,7 +69,16 @@ Scene ballAndVase() {
   room(builder, 4, 3, 2.5);
   turnedBody(builder, builder.surface("ball", 0.7), {1.2, 1, 0.7}, arc(0.5, -0.5, 0.5, 12), 24);
   turnedBody(builder, builder.surface("vase", 0.4), {2.8, 2, 0.2},
-             {{0, 0}, {0.2, 0}, {0.3, 0.2}, {0.35, 0.4}, {0.3, 0.6}, {0.15, 0.8}, {0.2, 1}, {0.25, 1.05}, {0, 1.05}}, 24);
+             {{0, 0},
+              {0.2, 0},
+              {0.3, 0.2},
+              {0.35, 0.4},
+              {0.3, 0.6},
+              {0.15, 0.8},
+              {0.2, 1},
+              {0.25, 1.05},
+              {0, 1.05}},
+             24);
   builder.level(builder.surface("lamp", 0.1, 30), 1.7, 1.2, 2.3, 1.8, 2.4, false);
   return builder.scene();
 }
@@ -112,7 +124,8 @@ Scene vault() {
   constexpr int kAlong = 10;
   for (int k = 0; k < kAround; ++k) {
     for (int l = 0; l < kAlong; ++l) {
-      builder.face(stone, {rim(k, 0.8 * l), rim(k, 0.8 * (l + 1)), rim(k + 1, 0.8 * (l + 1)), rim(k + 1, 0.8 * l)});
+      builder.face(stone, {rim(k, 0.8 * l), rim(k, 0.8 * (l + 1)), rim(k + 1, 0.8 * (l + 1)),
+                           rim(k + 1, 0.8 * l)});
     }
   }
   builder.face(builder.surface("floor", 0.3), {{0, 0, 0}, {4, 0, 0}, {4, 8, 0}, {0, 8, 0}});
@@ -128,73 +141,191 @@ Scene vault() {
   return builder.scene();
 }
 
+/// Form factors between all patches of a mesh that has clusters.
+FormFactors factorsOfPatches(PatchMesh mesh, FormFactorMethod method) {
+  mesh.clusters.reset();
+  FormFactorOptions options;
+  options.method = method;
+  options.tolerance = 0.1;  // of the mean form factor: both solutions have the same ones
+  options.resolution = 128;
+  options.symmetrize = true;
+  options.precision = Precision::double_precision;
+  Progress progress;
+  return computeFormFactors(mesh, options, progress);
+}
+
+PatchMesh meshed(const Scene& scene, std::size_t patches) {
+  Progress progress;
+  MeshOptions options;
+  options.patches = patches;
+  return meshScene(scene, options, progress).mesh;
+}
+
+Solution solved(const FormFactors& factors, const PatchMaterials& materials,
+                const PatchMesh& mesh) {
+  Progress progress;
+  return solve(factors, materials, mesh, {}, progress);
+}
+
+/// What leaves each surface, red, W.
 std::vector<double> powers(const PatchMesh& mesh, const Solution& solution) {
   std::vector<double> power(mesh.surface_names.size(), 0.0);
-  for (std::size_t i = 0; i < mesh.size(); ++i) power[mesh.surface[i]] += mesh.area[i] * solution.radiosity[3 * i];
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    power[mesh.surface[i]] += mesh.area[i] * solution.radiosity[3 * i];
+  }
   return power;
 }
 
-void compare(const char* name, const Scene& scene, std::size_t wanted, double reflectance_scale = 1) {
+struct Named {
+  const char* name;
+  Scene (*scene)();
+  std::size_t patches;
+  FormFactorMethod method;
+  double tolerance;
+};
+
+class SolveClusters : public testing::TestWithParam<Named> {};
+
+TEST_P(SolveClusters, GivesEverySurfaceThePowerThatItsPatchesHave) {
+  const auto& [name, scene, patches, method, tolerance] = GetParam();
+  const Scene given = scene();
+  const PatchMesh mesh = meshed(given, patches);
+  ASSERT_TRUE(mesh.clusters) << mesh.size();
+  ASSERT_GT(double(mesh.size()), 1.5 * double(mesh.unknowns()));
+  const FormFactors factors = factorsOfPatches(mesh, method);
+  const PatchMaterials materials = patchMaterials(given, mesh);
+  PatchMesh apart = mesh;
+  apart.clusters.reset();
   Progress progress;
-  MeshOptions options;
-  options.patches = wanted;
-  PatchMesh mesh = meshScene(scene, options, progress).mesh;
-  if (!mesh.clusters) { fmt::print("{} {}: no clusters, {} patches\n", name, wanted, mesh.size()); return; }
-  PatchMesh fine = mesh;
-  fine.clusters.reset();
-  FormFactorOptions how;
-  how.method = getenv("EXACT") ? FormFactorMethod::exact : FormFactorMethod::hemicube;
-  how.tolerance = 0.1;
-  how.resolution = 128;
-  how.symmetrize = true;
-  how.precision = Precision::double_precision;
-  const FormFactors factors = computeFormFactors(fine, how, progress);
-  PatchMaterials materials = patchMaterials(scene, mesh);
-  (void)reflectance_scale;
-  const Solution reference = solve(factors, materials, fine, {}, progress);
-  const Solution clustered = solve(clusterFactors(factors, mesh, progress), materials, mesh, {}, progress);
-  const auto a = powers(fine, reference);
-  const auto b = powers(mesh, clustered);
-  double worst = 0; std::string who;
-  for (std::size_t s = 0; s < a.size(); ++s) {
-    const double e = std::abs(b[s] / a[s] - 1);
-    if (e > worst) { worst = e; who = mesh.surface_names[s]; }
+  const auto expected = powers(mesh, solved(factors, materials, apart));
+  const Solution solution = solved(clusterFactors(factors, mesh, progress), materials, mesh);
+  EXPECT_EQ(solution.summary.status, SolveStatus::converged);
+  ASSERT_EQ(solution.radiosity.size(), 3 * mesh.size());
+  const auto power = powers(mesh, solution);
+  for (std::size_t s = 0; s < power.size(); ++s) {
+    EXPECT_NEAR(power[s], expected[s], tolerance * expected[s]) << mesh.surface_names[s];
   }
-  double err = 0, norm = 0;
-  for (std::size_t i = 0; i < mesh.size(); ++i) {
-    const double d = clustered.irradiance[3*i] - reference.irradiance[3*i];
-    err += mesh.area[i]*d*d; norm += mesh.area[i]*reference.irradiance[3*i]*reference.irradiance[3*i];
-  }
-  if (getenv("V")) for (std::size_t t = 0; t < a.size(); ++t) {
-    double e=0,h=0,area=0; std::size_t n=0; std::set<std::size_t> cs;
-    for (std::size_t i = 0; i < mesh.size(); ++i) if (mesh.surface[i]==t) {
-      const double d = clustered.irradiance[3*i] - reference.irradiance[3*i]; e+=mesh.area[i]*d*d; h+=mesh.area[i]*reference.irradiance[3*i]; area+=mesh.area[i]; ++n; cs.insert(mesh.unknownOf(i)); }
-    fmt::print("  {:24s} area {:8.4f} patches {:5d} clusters {:5d} power err {:7.3f}%  H mean {:.3f} H rms err {:.3f} share of err {:.4f}\n", mesh.surface_names[t], area, n, cs.size(), 100*(b[t]/a[t]-1), h/area, std::sqrt(e/area), e/err);
-  }
-  if (getenv("W") && wanted == 2000) {
-    std::vector<std::pair<double, std::size_t>> worst_c;
-    for (std::size_t c = 0; c < mesh.unknowns(); ++c) { double e = 0;
-      for (Index i : mesh.clusters->patchesOf(c)) { const double d = clustered.irradiance[3*i]-reference.irradiance[3*i]; e += mesh.area[i]*d*d; if (mesh.surface_names[mesh.surface[i]].substr(0,5)!="books") e=0; }
-      worst_c.push_back({e,c}); }
-    std::sort(worst_c.rbegin(), worst_c.rend());
-    double tot=0; for (auto&x:worst_c) tot+=x.first;
-    for (int k=0;k<8;++k) { fmt::print("cluster {} share {:.4f}\n", worst_c[k].second, worst_c[k].first/tot);
-      for (Index i : mesh.clusters->patchesOf(worst_c[k].second)) { auto c=mesh.centroid[i]; auto n=mesh.normal[i]; fmt::print("    a {:.5f} c {:.3f} {:.3f} {:.3f} n {:.1f} {:.1f} {:.1f} ref {:.3f} got {:.3f} poly {}\n", mesh.area[i], c.x,c.y,c.z,n.x,n.y,n.z, reference.irradiance[3*i], clustered.irradiance[3*i], mesh.polygon[i]); } }
-  }
-  fmt::print("{:14s} wanted {:5d} patches {:5d} clusters {:5d}: worst power {:.3f}% ({}), irradiance relL2 {:.3f}\n", name, wanted, mesh.size(), mesh.unknowns(), 100 * worst, who, std::sqrt(err / norm));
 }
 
-TEST(Clusters, Experiment) {
-  for (const std::size_t n : {60, 150, 400}) { if (getenv("V")) break;
-    compare("ball+vase", ballAndVase(), n);
-    compare("bowl", bowl(), n);
-    compare("hills", hills(), n);
-    compare("vault", vault(), n);
+Scene curved() { return loadScene(RADIOSITY_SOURCE_DIR "/data/curved.obj"); }
+Scene furnished() { return loadScene(RADIOSITY_SOURCE_DIR "/data/furnished-room.obj"); }
+
+constexpr auto kExact = FormFactorMethod::exact;
+constexpr auto kHemicube = FormFactorMethod::hemicube;
+
+// 1% of a surface's power is what clusters may cost. In the furnished room it is not kept: sides of
+// books are put together that are alike in place and direction, but of which some lie open to the
+// room and others deep between books. Geometry alone does not tell them apart; 2.6% was measured.
+INSTANTIATE_TEST_SUITE_P(Scenes, SolveClusters,
+                         testing::Values(Named{"BallAndVase", ballAndVase, 150, kExact, 0.01},
+                                         Named{"Bowl", bowl, 150, kExact, 0.01},
+                                         Named{"Hills", hills, 300, kHemicube, 0.01},
+                                         Named{"Vault", vault, 60, kExact, 0.01},
+                                         Named{"Curved", curved, 250, kHemicube, 0.01},
+                                         Named{"Furnished", furnished, 2000, kHemicube, 0.035}),
+                         [](const auto& scene) { return std::string(scene.param.name); });
+
+TEST(ClusterFactors, AreWhatComputeFormFactorsGivesForAMeshWithClusters) {
+  const PatchMesh mesh = meshed(vault(), 60);
+  ASSERT_TRUE(mesh.clusters);
+  const FormFactors of_patches = factorsOfPatches(mesh, kHemicube);
+  FormFactorOptions options;
+  options.method = kHemicube;
+  options.resolution = 128;
+  options.symmetrize = true;
+  options.precision = Precision::double_precision;
+  Progress progress;
+  const FormFactors factors = computeFormFactors(mesh, options, progress);
+  ASSERT_EQ(factors.matrix.size(), mesh.unknowns());
+  EXPECT_TRUE(factors.matrix.isSymmetric());
+  const FormFactors expected = clusterFactors(of_patches, mesh, progress);
+  EXPECT_EQ(factors.fronts, expected.fronts);
+  EXPECT_EQ(factors.backs, expected.backs);
+  EXPECT_EQ(factors.sky, expected.sky);
+  const std::vector<double> sums = factors.matrix.rowSums();
+  for (std::size_t c = 0; c < mesh.unknowns(); ++c) {
+    // Closed to 1e-12 as rows of patches, then summed over 16 patches and 60 clusters.
+    EXPECT_NEAR(sums[c], factors.fronts[c], 1e-11);
+    // Accounts of hemicubes sum to 1 but for rounding of 50,000 pixels.
+    EXPECT_NEAR(factors.fronts[c] + factors.backs[c] + factors.sky[c], 1, 1e-11);
   }
-  Scene curved = loadScene(RADIOSITY_SOURCE_DIR "/data/curved.obj", {});
-  for (const std::size_t n : {100, 250, 500}) if (!getenv("V")) compare("curved", curved, n);
-  Scene furnished = loadScene(RADIOSITY_SOURCE_DIR "/data/furnished-room.obj", {});
-  for (const std::size_t n : {300, 800, 2000}) compare("furnished", furnished, n);
+}
+
+TEST(ClusterFactors, HaveErrorFiguresThatBoundWhatErrorsOfPatchesCanDo) {
+  // Rows of patches that are off in every entry by as much and the same way: the worst that sums
+  // over clusters can make of them.
+  const PatchMesh mesh = meshed(vault(), 60);
+  const std::size_t n = mesh.size();
+  const auto matrixOf = [&](double error) {
+    ExchangeMatrix matrix(mesh.area, Precision::double_precision);
+    std::vector<Index> columns(n);
+    std::iota(columns.begin(), columns.end(), Index(0));
+    for (std::size_t i = 0; i < n; ++i) {
+      matrix.setRow(i, columns, std::vector<double>(n, 0.5 / double(n) + error));
+    }
+    return matrix;
+  };
+  const double error = 1e-4;
+  FormFactors wrong;
+  wrong.matrix = matrixOf(error);
+  wrong.error.assign(n, error * std::sqrt(double(n)));
+  Progress progress;
+  const FormFactors off = clusterFactors(wrong, mesh, progress);
+  const ExchangeMatrix truth =
+      aggregated(matrixOf(0), mesh.clusters->of_patch, mesh.unknowns(), progress);
+  ASSERT_EQ(off.error.size(), mesh.unknowns());
+  for (std::size_t c = 0; c < mesh.unknowns(); ++c) {
+    double square = 0;
+    for (std::size_t other = 0; other < mesh.unknowns(); ++other) {
+      square += std::pow(off.matrix.at(c, other) - truth.at(c, other), 2);
+    }
+    EXPECT_LE(std::sqrt(square), off.error[c]);
+  }
+}
+
+TEST(SolveWithClusters, KeepsEachPatchsOwnReflectanceAndEmission) {
+  const Scene scene = vault();
+  const PatchMesh mesh = meshed(scene, 60);
+  PatchMaterials materials = patchMaterials(scene, mesh);
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    for (std::size_t b = 0; b < 3; ++b) {
+      materials.reflectance[3 * i + b] *= i % 3 == 0 ? 0.5 : 1.0;
+      if (i % 2 == 0) materials.emission[3 * i + b] *= 2;
+    }
+  }
+  Progress progress;
+  const FormFactors factors = clusterFactors(factorsOfPatches(mesh, kHemicube), mesh, progress);
+  const Solution solution = solved(factors, materials, mesh);
+  double emitted = 0;
+  double absorbed = 0;
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    const std::size_t leader = mesh.clusters->patchesOf(mesh.unknownOf(i))[0];
+    EXPECT_EQ(solution.irradiance[3 * i], solution.irradiance[3 * leader]);
+    EXPECT_EQ(
+        solution.radiosity[3 * i],
+        materials.emission[3 * i] + materials.reflectance[3 * i] * solution.irradiance[3 * i]);
+    emitted += mesh.area[i] * materials.emission[3 * i];
+    absorbed += mesh.area[i] * (1 - materials.reflectance[3 * i]) * solution.irradiance[3 * i];
+  }
+  // Means by area: what clusters emit and absorb is what their patches do. Rounding.
+  EXPECT_NEAR(solution.summary.energy.emitted[0], emitted, 1e-12 * emitted);
+  EXPECT_NEAR(solution.summary.energy.absorbed[0], absorbed, 1e-12 * absorbed);
+}
+
+TEST(SolveWithClusters, NamesThePatchWhoseMaterialIsWrong) {
+  const Scene scene = vault();
+  const PatchMesh mesh = meshed(scene, 60);
+  Progress progress;
+  const FormFactors factors = clusterFactors(factorsOfPatches(mesh, kHemicube), mesh, progress);
+  PatchMaterials materials = patchMaterials(scene, mesh);
+  materials.reflectance[3 * 100] = 1.5;  // its cluster's mean may well be below 1
+  try {
+    solved(factors, materials, mesh);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("patch 100 of surface"), std::string::npos)
+        << error.what();
+  }
 }
 
 }  // namespace
