@@ -22,6 +22,11 @@ std::string briefLine(const FormFactors& factors) {
                        durationText(r.seconds), bytesText(r.matrix_bytes), scene,
                        numberText(r.error_figure, 2));
   }
+  if (factors.method == "rays") {
+    return fmt::format("{} rays in {}; {}; {}; error of the matrix about {}",
+                       countText(r.rays.rays), durationText(r.seconds), bytesText(r.matrix_bytes),
+                       scene, numberText(r.error_figure, 2));
+  }
   return fmt::format("{} in {}; {}; {}; largest row error {}",
                      plural(r.hemicubes, "hemicube", "hemicubes"), durationText(r.seconds),
                      bytesText(r.matrix_bytes), scene, numberText(r.largest_row_error, 3));
@@ -74,11 +79,27 @@ void exactFigures(Report& report, const ExactReport& e) {
   report.seconds("seconds_finish", "time: finishing", e.seconds_finish);
 }
 
+void rayFigures(Report& report, const RayReport& r) {
+  const double rate = r.seconds_cast > 0 ? 1e-6 * double(r.rays) / r.seconds_cast : 0.0;
+  report.count("triangles", "triangles", r.triangles);
+  report.count("rays", "rays", r.rays);
+  report.number("million_rays_per_second", "  a second, millions", rate);
+  report.count("rays_lost", "  not counted", r.lost);
+  report.count("rays_leaked", "  of them leaked out", r.leaked);
+  report.count("rounds", "rounds", std::size_t(r.rounds));
+  report.count("short_rows", "rows short of the tolerance", r.short_rows);
+  report.seconds("seconds_prepare", "time: preparing", r.seconds_prepare);
+  report.seconds("seconds_cast", "time: casting", r.seconds_cast);
+  report.seconds("seconds_merge", "time: merging", r.seconds_merge);
+  report.seconds("seconds_close", "time: closing rows", r.seconds_close);
+}
+
 void closureFigures(Report& report, const FormFactorReport& r) {
   const ClosureReport& c = r.closure;
   const bool done = r.symmetrized || r.closure_enforced;
   report.yesNo("closure_enforced", "closure: enforced", done);
-  const char* before = r.symmetrized ? "closure: rows off by, merged" : "closure: rows off 1 by";
+  const bool merged = r.symmetrized || r.rays.rounds > 0;
+  const char* before = merged ? "closure: rows off by, merged" : "closure: rows off 1 by";
   report.number("closure_residual_before", before, c.largest_residual_before);
   report.number("closure_residual_before_rms", "  root mean square", c.rms_residual_before);
   if (!done) return;
@@ -94,7 +115,7 @@ void closureFigures(Report& report, const FormFactorReport& r) {
 void accuracyFigures(Report& report, const FormFactors& factors) {
   const FormFactorReport& r = factors.report;
   report.yesNo("closed", "closed scene", r.closed);
-  if (factors.method == "exact") {
+  if (!factors.error.empty()) {
     report.number("error_figure", "error of F, relL2", r.error_figure);
     std::vector<double> rows = factors.error;
     std::sort(rows.begin(), rows.end());
@@ -132,6 +153,8 @@ void summarizeFactors(Report& report, const FormFactors& factors, const PatchMes
     report.count("polygons", "planar polygons", r.polygons);
     if (factors.method == "exact") {
       exactFigures(report, r.exact);
+    } else if (factors.method == "rays") {
+      rayFigures(report, r.rays);
     } else {
       hemicubeFigures(report, r);
     }

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/byte_text.h"
 #include "base/made.h"
 #include "cli/words.h"
+#include "radiosity/names.h"
 
 namespace radiosity::cli {
 
@@ -14,6 +16,8 @@ namespace {
 
 /// Who waits longer is told what would shorten it.
 constexpr double kLongWait = 60;
+/// The time of rays goes with about this power of 1 / tolerance.
+constexpr double kRaysOrder = 1.6;
 
 /// What shortens a wait, and to what, as far as that is known.
 std::string cures(const FormFactorPlan& plan, const FormFactorOptions& options) {
@@ -22,13 +26,20 @@ std::string cures(const FormFactorPlan& plan, const FormFactorOptions& options) 
     return "for less: fewer --patches, a lower --resolution";
   }
   std::string text = "for less:";
-  const double looser = std::min(kLoosest, 10 * options.tolerance);
-  if (looser > options.tolerance) {
-    const double left = plan.seconds * (1 - plan.refining * (1 - options.tolerance / looser));
+  const bool rays = plan.method == FormFactorMethod::rays;
+  const double tolerance = options.toleranceOf(plan.method);
+  const double looser = std::min(kLoosest, (rays ? 3 : 10) * tolerance);
+  if (looser > tolerance) {
+    const double left = rays ? plan.seconds * std::pow(tolerance / looser, kRaysOrder)
+                             : plan.seconds * (1 - plan.refining * (1 - tolerance / looser));
     text += fmt::format(" --tolerance {} (about {}),", numberText(looser), durationText(left));
   }
-  return text + fmt::format(" fewer --patches, --method hemicube (about {}; less accurate)",
-                            durationText(plan.hemicube_seconds));
+  text += " fewer --patches";
+  if (plan.other_seconds && *plan.other_seconds < plan.seconds) {
+    text += fmt::format(", --method {} (about {})", rays ? "exact" : "rays",
+                        durationText(*plan.other_seconds));
+  }
+  return text;
 }
 
 struct StageWords {
@@ -88,18 +99,19 @@ void PipelineReport::planned(const Pipeline& pipeline, const FormFactorPlan& pla
   const FormFactorOptions& options = pipeline.options().factors;
   const PatchMesh& mesh = made(pipeline.results().mesh).mesh;
   const std::size_t patches = mesh.size();
-  const bool exact = plan.method == FormFactorMethod::exact;
+  const bool hemicubes = plan.method == FormFactorMethod::hemicube;
   // On disk every entry has a column number of 4 bytes. In memory a dense row has none, and a
   // symmetric matrix has half of the entries.
   const std::size_t value = options.storedPrecision() == Precision::double_precision ? 8 : 4;
-  const std::size_t disk = plan.matrix_bytes * (exact ? 2 : 1) * (value + 4) / value;
+  const std::size_t disk = plan.matrix_bytes * (hemicubes ? 1 : 2) * (value + 4) / value;
   const std::string clusters =
-      mesh.clusters ? fmt::format(", summed over {} clusters", countText(mesh.unknowns())) : "";
+      mesh.clusters ? fmt::format(", for {} clusters", countText(mesh.unknowns())) : "";
   const std::string what =
-      exact ? fmt::format("exact between {} to {}", plural(patches, "patch", "patches"),
-                          numberText(options.tolerance))
-            : fmt::format("{} of {} pixels", plural(patches, "hemicube", "hemicubes"),
-                          options.resolution);
+      hemicubes ? fmt::format("{} of {} pixels", plural(patches, "hemicube", "hemicubes"),
+                              options.resolution)
+                : fmt::format("{} between {} to {}", nameOf(kMethodNames, plan.method),
+                              plural(patches, "patch", "patches"),
+                              numberText(options.toleranceOf(plan.method)));
   report_.line("form factors",
                fmt::format("{}{}: about {}, memory about {}{}", what, clusters,
                            durationText(plan.seconds), bytesText(plan.bytes),

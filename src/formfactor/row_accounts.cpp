@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "mesh/canonical_order.h"
 
@@ -38,18 +39,31 @@ void noteBacks(const PatchMesh& mesh, FormFactors& result) {
 
 }  // namespace
 
-void accountForBacks(const PatchMesh& mesh, const std::vector<std::vector<SeenBack>>& seen_backs,
-                     FormFactors& result) {
+UnknownOrder unknownOrder(const PatchMesh& mesh) {
+  UnknownOrder order;
+  std::vector<std::uint8_t> met(mesh.unknowns(), 0);
+  for (const Index patch : canonicalOrder(mesh)) {
+    const std::size_t unknown = mesh.unknownOf(patch);
+    if (std::exchange(met[unknown], 1) != 0) continue;
+    order.unknown.push_back(Index(unknown));
+    order.first_patch.push_back(patch);
+  }
+  return order;
+}
+
+void accountForBacks(const PatchMesh& mesh, std::span<const Index> order,
+                     std::span<const double> area,
+                     const std::vector<std::vector<SeenBack>>& seen_backs, FormFactors& result) {
   result.backs_by_surface.assign(mesh.surface_names.size(), 0.0);
-  double area = 0;
-  for (const Index i : canonicalOrder(mesh)) {
-    if (result.fronts[i] + result.backs[i] + result.sky[i] > 0) area += mesh.area[i];
+  double all = 0;
+  for (const Index i : order) {
+    if (result.fronts[i] + result.backs[i] + result.sky[i] > 0) all += area[i];
     for (const SeenBack& seen : seen_backs[i]) {
-      result.backs_by_surface[seen.surface] += mesh.area[i] * seen.share;
+      result.backs_by_surface[seen.surface] += area[i] * seen.share;
     }
   }
-  if (!(area > 0)) return;
-  for (double& share : result.backs_by_surface) share /= area;
+  if (!(all > 0)) return;
+  for (double& share : result.backs_by_surface) share /= all;
   noteBacks(mesh, result);
 }
 

@@ -1,6 +1,7 @@
 // What every method does with its rows: who is seen from behind, and what does not fit.
 #pragma once
 
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -14,12 +15,22 @@ struct SeenBack {
   double share;
 };
 
-/// Fills backs_by_surface from what each row saw (N lists) and warns, by name, of surfaces whose
-/// backs take more than 0.1% of the view. Needs the accounts.
-void accountForBacks(const PatchMesh& mesh, const std::vector<std::vector<SeenBack>>& seen_backs,
-                     FormFactors& result);
+/// Fills backs_by_surface from what each row saw and warns, by name, of surfaces whose backs take
+/// more than 0.1% of the view. Needs the accounts. `area` and `seen_backs`: a value a row; `order`:
+/// each row once.
+void accountForBacks(const PatchMesh& mesh, std::span<const Index> order,
+                     std::span<const double> area,
+                     const std::vector<std::vector<SeenBack>>& seen_backs, FormFactors& result);
 
 /// RunError, with the numbers, where `bytes` exceed the limit.
 void refuseTooLarge(std::size_t bytes, const FormFactorOptions& options, std::size_t patches);
+
+/// Unknowns in the order of their first patches in canonicalOrder() (mesh/canonical_order.h), and
+/// these patches.
+struct UnknownOrder {
+  std::vector<Index> unknown;
+  std::vector<Index> first_patch;
+};
+UnknownOrder unknownOrder(const PatchMesh& mesh);
 
 }  // namespace radiosity

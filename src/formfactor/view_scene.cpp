@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "mesh/triangulate.h"
 
 namespace radiosity {
 namespace {
@@ -175,6 +176,13 @@ std::size_t ViewScene::bytes() const {
                     (cells.size() + first_cell.size()) * sizeof(std::int32_t);
   for (const PatchGrid& grid : grids) sum += grid.bytes();
   return sum;
+}
+
+std::optional<std::vector<std::array<Index, 3>>> ViewScene::trianglesOf(
+    const ViewPolygon& polygon) const {
+  std::vector<std::span<const Index>> loops;
+  for (std::uint32_t l = polygon.loop_begin; l < polygon.loop_end; ++l) loops.push_back(loop(l));
+  return triangulatePolygon(vertices, loops, polygon.normal);
 }
 
 }  // namespace radiosity

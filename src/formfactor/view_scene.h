@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "formfactor/patch_grid.h"
@@ -53,6 +55,15 @@ struct ViewScene {
   std::int32_t skyCell() const { return std::int32_t(items); }
 
   std::size_t bytes() const;
+
+  /// Corners of loop `l`, into vertices.
+  std::span<const Index> loop(std::uint32_t l) const {
+    return std::span(corners).subspan(loop_offset[l], loop_offset[l + 1] - loop_offset[l]);
+  }
+
+  /// Triangles between the vertices that tile the polygon, counter-clockwise about its normal.
+  /// Nothing if its loops cross.
+  std::optional<std::vector<std::array<Index, 3>>> trianglesOf(const ViewPolygon& polygon) const;
 
  private:
   std::vector<Index> packVertices(const PatchMesh& mesh);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "mesh/triangulate.h"
+
 namespace radiosity {
 
 namespace {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,17 +9,6 @@
 #include "radiosity/scene.h"
 
 namespace radiosity {
-
-/// Triangles that tile a simple polygon in the plane (counter-clockwise or clockwise; they turn
-/// the same way): n - 2 of them. Collinear and repeated corners are allowed and may give triangles
-/// without area. Few corners are clipped as ears, many triangulated in n log n unless the outline
-/// touches or crosses itself.
-std::vector<std::array<Index, 3>> triangulateOutline(std::span<const Vec2> outline);
-
-/// The same by constrained Delaunay triangulation, n log n: a corner nearly in
-/// line with its neighbours is part of wide triangles. Empty if the outline touches or crosses
-/// itself.
-std::optional<std::vector<std::array<Index, 3>>> delaunayTriangles(std::span<const Vec2> outline);
 
 /// Some faces of a scene, flattened onto one plane.
 class FaceLocator {

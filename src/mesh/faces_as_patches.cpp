@@ -9,10 +9,10 @@
 #include "base/geometry/plane_frame.h"
 #include "mesh/complex.h"
 #include "mesh/face_crossings.h"
-#include "mesh/face_locator.h"
 #include "mesh/face_polygons.h"
 #include "mesh/mesh_figures.h"
 #include "mesh/patch_arrays.h"
+#include "mesh/triangulate.h"
 
 namespace radiosity {
 

@@ -12,10 +12,11 @@
 #include <utility>
 
 #include "base/finite.h"
+#include "base/geometry/plane_frame.h"
 #include "mesh/box_pairs.h"
 #include "mesh/edge_key.h"
-#include "mesh/face_locator.h"
 #include "mesh/plane_image.h"
+#include "mesh/triangulate.h"
 
 namespace radiosity {
 

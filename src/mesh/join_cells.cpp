@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "base/geometry/plane_frame.h"
-#include "mesh/face_locator.h"
 #include "mesh/join_loops.h"
+#include "mesh/triangulate.h"
 
 namespace radiosity {
 namespace {

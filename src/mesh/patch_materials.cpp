@@ -9,8 +9,8 @@
 #include "base/geometry/plane_frame.h"
 #include "base/parallel.h"
 #include "mesh/box_pairs.h"
-#include "mesh/face_locator.h"
 #include "mesh/texture_mean.h"
+#include "mesh/triangulate.h"
 #include "radiosity/patch_mesh.h"
 
 namespace radiosity {

@@ -8,9 +8,9 @@
 #include <string>
 
 #include "base/geometry/plane_frame.h"
-#include "mesh/face_locator.h"
 #include "mesh/merge_cells.h"
 #include "mesh/plane_image.h"
+#include "mesh/triangulate.h"
 
 namespace radiosity {
 

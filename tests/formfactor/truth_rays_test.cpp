@@ -9,7 +9,7 @@
 #include <numbers>
 #include <string>
 
-#include "bench/sobol.h"
+#include "formfactor/rays/sobol.h"
 #include "radiosity/scene.h"
 #include "support/scene_builder.h"
 #include "truth/ground_truth.h"
@@ -94,7 +94,7 @@ class Rays {
 
 constexpr std::size_t kScrambles = 32;
 constexpr std::size_t kBlocks = 4;
-constexpr std::size_t kPoints = kBlocks * bench::kBlock;
+constexpr std::size_t kPoints = kBlocks * kMostPoints;
 
 /// Means and standard errors of row i from independent scrambles of one Sobol net. Points are
 /// uniform on the patch, directions have a density of cosine / pi.
@@ -139,16 +139,16 @@ class PatchRays {
 
 RayRow castRow(const PatchMesh& mesh, const Rays& rays, std::size_t i) {
   const PatchRays ray(mesh, i);
-  const auto points = std::make_unique<bench::SobolPoints>();
-  const auto block = std::make_unique<bench::PointBlock>();
+  const auto points = std::make_unique<SobolPoints>();
+  const auto block = std::make_unique<PointBlock>();
   std::vector<double> sum(mesh.size(), 0.0);
   std::vector<double> squares(mesh.size(), 0.0);
   for (std::size_t scramble = 0; scramble < kScrambles; ++scramble) {
     std::vector<double> hits(mesh.size(), 0.0);
     for (std::size_t k = 0; k < kPoints; ++k) {
-      const std::size_t at = k % bench::kBlock;
+      const std::size_t at = k % kMostPoints;
       if (at == 0) {
-        points->block(std::uint32_t(k / bench::kBlock), bench::kBlock, 1000 * i + scramble, *block);
+        points->points(std::uint32_t(k), kMostPoints, 1000 * i + scramble, *block);
       }
       const auto [p, direction] =
           ray({(*block)[0][at], (*block)[1][at], (*block)[2][at], (*block)[3][at]});

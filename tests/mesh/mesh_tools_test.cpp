@@ -165,52 +165,6 @@ TEST(WindingTree, ATrianglesOwnPlaneCountsAsNothing) {
   }
 }
 
-double areaOf(const std::vector<Vec2>& p, const std::array<Index, 3>& t) {
-  return 0.5 * cross2(p[t[1]] - p[t[0]], p[t[2]] - p[t[0]]);
-}
-
-TEST(TriangulateOutline, ManyCornersAsFewAreTiledByAllTheirTriangles) {
-  for (const int n : {40, 3000}) {
-    for (const bool clockwise : {false, true}) {
-      std::vector<Vec2> outline;
-      for (int k = 0; k < n; ++k) {
-        const double a = (clockwise ? -2 : 2) * std::numbers::pi * k / n;
-        const double r = k % 2 == 0 ? 1.0 : 0.6;
-        outline.emplace_back(r * std::cos(a), r * std::sin(a));
-      }
-      const auto triangles = triangulateOutline(outline);
-      ASSERT_EQ(triangles.size(), std::size_t(n) - 2);
-      double sum = 0;
-      for (const auto& t : triangles) {
-        EXPECT_GE((clockwise ? -1 : 1) * areaOf(outline, t), 0);
-        sum += areaOf(outline, t);
-      }
-      // Of n corners in pairs: n / 2 kites; sums of n products.
-      const double expected = 0.5 * n * 0.6 * std::sin(2 * std::numbers::pi / n);
-      EXPECT_NEAR(std::abs(sum), expected, 1e-12);
-    }
-  }
-}
-
-TEST(TriangulateOutline, ManyCornersThatTouchThemselvesStillGiveAllTriangles) {
-  // A ring cut open: the cut is passed twice, its corners are there twice.
-  std::vector<Vec2> outline;
-  const int n = 100;
-  for (int k = 0; k <= n; ++k) {
-    const double a = 2 * std::numbers::pi * (k % n) / n;
-    outline.emplace_back(2 * std::cos(a), 2 * std::sin(a));
-  }
-  for (int k = n; k >= 0; --k) {
-    const double a = 2 * std::numbers::pi * (k % n) / n;
-    outline.emplace_back(std::cos(a), std::sin(a));
-  }
-  const auto triangles = triangulateOutline(outline);
-  EXPECT_EQ(triangles.size(), outline.size() - 2);
-  double sum = 0;
-  for (const auto& t : triangles) sum += areaOf(outline, t);
-  EXPECT_NEAR(sum, 0.5 * n * std::sin(2 * std::numbers::pi / n) * 3, 1e-12);
-}
-
 TEST(JoinLoops, GiveTheOutlineOfBothOrNothing) {
   using Loop = std::vector<Index>;
   // Two squares of a grid side by side, numbered along its rows of three points.

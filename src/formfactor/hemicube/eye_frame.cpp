@@ -4,7 +4,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "base/hash.h"
+#include "formfactor/patch_seed.h"
 
 namespace radiosity {
 
@@ -24,17 +24,7 @@ EyeFrame eyeFrame(const Vec3& eye, const Vec3& normal, double angle) {
 }
 
 double turnAngle(const PatchMesh& mesh, std::size_t patch, std::uint64_t seed) {
-  Hash hash;
-  hash.text(mesh.surface_names[mesh.surface[patch]]);
-  hash.bytes(&mesh.index_in_surface[patch], sizeof(Index));
-  hash.bytes(&mesh.side[patch], 1);
-  hash.bytes(&seed, sizeof seed);
-  // FNV-1a leaves the last bytes little mixed; the finaliser of splitmix64 (Steele et al. 2014)
-  // spreads them over all bits.
-  std::uint64_t bits = hash.value();
-  bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ull;
-  bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebull;
-  bits ^= bits >> 31;
+  const std::uint64_t bits = patchSeed(mesh, patch, seed);
   return double(bits >> 11) * 0x1p-53 * 2 * std::numbers::pi;
 }
 

@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "formfactor/hemicube/row_builder.h"
 #include "formfactor/row_accounts.h"
+#include "mesh/canonical_order.h"
 #include "radiosity/closure.h"
 #include "radiosity/matrix_functions.h"
 
@@ -133,7 +134,7 @@ void checkRows(FormFactors& result) {
 
 HemicubeScene::HemicubeScene(const PatchMesh& mesh, const FormFactorOptions& options)
     : rows(mesh, options) {
-  if (options.nearExact()) near_pairs.emplace(mesh, options);
+  if (options.near_exact) near_pairs.emplace(mesh, options);
 }
 
 FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
@@ -160,7 +161,7 @@ FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
     progress.advance();
     progress.check();
   };
-  accountForBacks(mesh, seen_backs, result);
+  accountForBacks(mesh, canonicalOrder(mesh), mesh.area, seen_backs, result);
   checkRows(result);
   step();
   report.reciprocity_residual = reciprocityResidual(result.matrix);

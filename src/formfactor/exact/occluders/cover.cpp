@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "base/geometry/plane_frame.h"
-#include "formfactor/exact/occluders/triangles.h"
 
 namespace radiosity {
 namespace {
@@ -71,7 +70,7 @@ bool isCoveredBySolids(const OccluderPolygons& all, const OccluderPolygon& polyg
   if (near.empty()) return false;
   std::sort(near.begin(), near.end());
   std::vector<Piece> open;
-  for (const auto& t : trianglesOf(all, polygon)) {
+  for (const auto& t : all.trianglesOf(polygon)) {
     open.push_back({all.vertices[t[0]], all.vertices[t[1]], all.vertices[t[2]]});
   }
   if (open.empty()) return false;

@@ -9,7 +9,6 @@
 
 #include "formfactor/exact/elements/convex_pieces.h"
 #include "formfactor/exact/occluders/hull.h"
-#include "formfactor/exact/occluders/triangles.h"
 #include "mesh/join_loops.h"
 
 namespace radiosity {
@@ -156,7 +155,7 @@ class PieceMerger {
 /// Triangles, or trapezoids on new vertices.
 std::vector<std::vector<Index>> convexParts(OccluderPolygons& all, const OccluderPolygon& polygon) {
   std::vector<std::vector<Index>> parts;
-  for (const auto& t : trianglesOf(all, polygon)) parts.emplace_back(t.begin(), t.end());
+  for (const auto& t : all.trianglesOf(polygon)) parts.emplace_back(t.begin(), t.end());
   if (!parts.empty()) return parts;
   std::vector<std::vector<Vec3>> loops;
   for (const std::vector<Index>& loop : polygon.loops) {

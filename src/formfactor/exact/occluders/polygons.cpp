@@ -5,10 +5,12 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <numeric>
+#include <span>
 #include <tuple>
 
 #include "base/geometry/plane_frame.h"
 #include "formfactor/exact/occluders/hull.h"
+#include "mesh/triangulate.h"
 #include "mesh/welded_points.h"
 
 namespace radiosity {
@@ -55,7 +57,7 @@ OccluderPolygons::OccluderPolygons(const PatchMesh& mesh, const ElementSet& elem
   std::vector<Box3> boxes;
   boxes.reserve(polygons.size());
   for (const OccluderPolygon& polygon : polygons) boxes.push_back(polygon.box);
-  tree = BoxTree(std::move(boxes));
+  tree = BoxTree(boxes);
   std::vector<std::uint8_t> back_is_patch(source.size(), 0);
   for (const Facet& facet : elements.facets) {
     if (facet.back && !facet.black) back_is_patch[facet.polygon] = 1;
@@ -132,6 +134,13 @@ OccluderEdgeUsers OccluderPolygons::edgeUsers() const {
     }
   }
   return users;
+}
+
+std::vector<std::array<Index, 3>> OccluderPolygons::trianglesOf(
+    const OccluderPolygon& polygon) const {
+  const std::vector<std::span<const Index>> loops(polygon.loops.begin(), polygon.loops.end());
+  return triangulatePolygon(vertices, loops, polygon.normal)
+      .value_or(std::vector<std::array<Index, 3>>());
 }
 
 }  // namespace radiosity

@@ -1,6 +1,7 @@
 // The planar polygons of a mesh as the search for occluders needs them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <utility>
@@ -54,6 +55,10 @@ struct OccluderPolygons {
   }
 
   OccluderEdgeUsers edgeUsers() const;
+
+  /// Triangles over the polygon's own vertices that tile it, counter-clockwise about its normal.
+  /// None if its loops cross.
+  std::vector<std::array<Index, 3>> trianglesOf(const OccluderPolygon& polygon) const;
 
  private:
   void addPolygon(const PatchMesh& mesh, const ElementSet& elements, Index p,

@@ -7,7 +7,6 @@
 
 #include "base/geometry/plane_frame.h"
 #include "base/geometry/solid_angle.h"
-#include "formfactor/exact/occluders/triangles.h"
 #include "mesh/union_find.h"
 
 namespace radiosity {
@@ -17,7 +16,7 @@ namespace {
 std::optional<Vec3> innerPoint(const OccluderPolygons& all, const OccluderPolygon& polygon) {
   double largest = 0;
   std::optional<Vec3> point;
-  for (const auto& t : trianglesOf(all, polygon)) {
+  for (const auto& t : all.trianglesOf(polygon)) {
     const Vec3& a = all.vertices[t[0]];
     const Vec3& b = all.vertices[t[1]];
     const Vec3& c = all.vertices[t[2]];
@@ -83,7 +82,7 @@ OccluderRegions::OccluderRegions(const OccluderPolygons& all, const OccluderEdge
       bound.add(all.polygons[p].box.high);
     }
   }
-  first_members_ = BoxTree(std::move(firsts));
+  first_members_ = BoxTree(firsts);
 }
 
 std::optional<int> OccluderRegions::doubledWinding(Index component, Index polygon) {

@@ -1,9 +1,7 @@
-#include "sobol.h"
+#include "formfactor/rays/sobol.h"
 
-#include <memory>
-#include <vector>
 
-namespace radiosity::bench {
+namespace radiosity {
 namespace {
 
 /// Joe and Kuo's table for one dimension: degree s of the primitive polynomial, its inner
@@ -73,7 +71,7 @@ SobolPoints::SobolPoints() {
     direction = directionNumbers(d);
     for (std::uint32_t& v : direction) v = reverseBits(v);
     auto& first = first_[std::size_t(d)];
-    for (std::uint32_t k = 0; k < kBlock; ++k) {
+    for (std::uint32_t k = 0; k < kMostPoints; ++k) {
       first[k] = 0;
       for (std::uint32_t bit = 0; bit < 32; ++bit) {
         if ((k >> bit) & 1u) first[k] ^= direction[bit];
@@ -82,14 +80,13 @@ SobolPoints::SobolPoints() {
   }
 }
 
-void SobolPoints::block(std::uint32_t block, std::size_t count, std::uint64_t seed,
-                        PointBlock& out) const {
+void SobolPoints::points(std::uint32_t first, std::size_t count, std::uint64_t seed,
+                         const PointArrays& out) const {
   for (std::size_t d = 0; d < kDimensions; ++d) {
     // The sequence is linear over XOR: point(a + b) = point(a) ^ point(b) where no bits meet.
     std::uint32_t base = 0;
-    const std::uint64_t start = std::uint64_t(block) * kBlock;
     for (std::size_t bit = 0; bit < 32; ++bit) {
-      if ((start >> bit) & 1u) base ^= direction_[d][bit];
+      if ((first >> bit) & 1u) base ^= direction_[d][bit];
     }
     const std::uint32_t dimension_seed = mixed(seed, d);
     for (std::size_t k = 0; k < count; ++k) {
@@ -99,25 +96,4 @@ void SobolPoints::block(std::uint32_t block, std::size_t count, std::uint64_t se
   }
 }
 
-bool sobolPointsAreStratified() {
-  const auto points = std::make_unique<SobolPoints>();
-  const auto block = std::make_unique<PointBlock>();
-  for (const std::uint64_t seed : {1ull, 2ull, 12345678901234ull}) {
-    for (const std::uint32_t position : {0u, 3u}) {
-      points->block(position, kBlock, seed, *block);
-      for (const auto& coordinates : *block) {
-        for (std::size_t count = 1; count <= kBlock; count *= 2) {
-          std::vector<char> taken(count, 0);
-          for (std::size_t k = 0; k < count; ++k) {
-            char& mark = taken[std::size_t(coordinates[k] * float(count))];
-            if (mark != 0) return false;
-            mark = 1;
-          }
-        }
-      }
-    }
-  }
-  return true;
-}
-
-}  // namespace radiosity::bench
+}  // namespace radiosity

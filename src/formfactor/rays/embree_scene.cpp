@@ -1,0 +1,90 @@
+#include "formfactor/rays/embree_scene.h"
+
+#include <fmt/format.h>
+#include <pmmintrin.h>
+#include <xmmintrin.h>
+
+#include <glm/common.hpp>
+#include <utility>
+
+#include "base/parallel.h"
+#include "radiosity/base.h"
+
+namespace radiosity {
+namespace {
+
+Vec3 middleOf(const std::vector<Vec3>& vertices) {
+  if (vertices.empty()) return Vec3(0.0);
+  Vec3 lower = vertices.front();
+  Vec3 upper = lower;
+  for (const Vec3& v : vertices) {
+    lower = glm::min(lower, v);
+    upper = glm::max(upper, v);
+  }
+  return 0.5 * (lower + upper);
+}
+
+/// One thread builds the tree: it then is the same in every run, and with it which of two
+/// triangles a ray through their common edge ends on.
+RTCDevice newDevice() {
+  const RTCDevice device = rtcNewDevice("threads=1");
+  if (device == nullptr) throw RunError("rays: Embree cannot be started on this processor");
+  return device;
+}
+
+std::vector<std::array<Index, 3>> tiles(const ViewScene& scene, std::size_t p) {
+  auto triangles = scene.trianglesOf(scene.polygons[p]);
+  if (!triangles) {
+    throw RunError(fmt::format(
+        "rays: the outlines of polygon {} cross, so it has no triangles; use another --method",
+        scene.polygons[p].source));
+  }
+  return *std::move(triangles);
+}
+
+}  // namespace
+
+EmbreeScene::EmbreeScene(const ViewScene& scene)
+    : middle_(middleOf(scene.vertices)), device_(newDevice()), scene_(rtcNewScene(device_)) {
+  std::vector<std::vector<std::array<Index, 3>>> of_polygon(scene.polygons.size());
+  parallelFor(of_polygon.size(), 64, [&](std::size_t p) { of_polygon[p] = tiles(scene, p); });
+  for (Index p = 0; p < of_polygon.size(); ++p) {
+    triangles_.insert(triangles_.end(), of_polygon[p].begin(), of_polygon[p].end());
+    polygon_of_.insert(polygon_of_.end(), of_polygon[p].size(), p);
+  }
+  const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                               RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                                               scene.vertices.size()));
+  for (const Vec3& v : scene.vertices) {
+    const glm::vec3 at = place(v);
+    for (int c = 0; c < 3; ++c) *vertices++ = at[c];
+  }
+  auto* corners = static_cast<std::uint32_t*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                              3 * sizeof(std::uint32_t), triangles_.size()));
+  for (const auto& triangle : triangles_) {
+    for (const std::uint32_t corner : triangle) *corners++ = corner;
+  }
+  rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene_, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
+  rtcCommitScene(scene_);
+}
+
+EmbreeScene::~EmbreeScene() {
+  rtcReleaseScene(scene_);
+  rtcReleaseDevice(device_);
+}
+
+FlushDenormals::FlushDenormals() : old_mode_(_mm_getcsr()) {
+  _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
+  _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+}
+
+FlushDenormals::~FlushDenormals() { _mm_setcsr(old_mode_); }
+
+}  // namespace radiosity

@@ -1,0 +1,274 @@
+#include "formfactor/rays/ray_caster.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "base/parallel.h"
+
+namespace radiosity {
+namespace {
+
+constexpr int kLanes = 16;
+/// Rays start this far in front of their patch, in scenes of size 1: a few roundings of single
+/// precision, so that few hit their own polygon and next to none miss a wall that the patch
+/// touches.
+constexpr float kLift = 2e-7F;
+/// Rays that are sorted together, at most: their batch fits the second-level cache.
+constexpr std::size_t kBatch = 16384;
+/// Directions are sorted into this many cells along each of two dimensions: kBatch points then put
+/// about one packet into each.
+constexpr std::uint32_t kCells = 32;
+
+/// cos and sin of angles up to pi / 4, to 1e-7.
+float smallCos(float x) {
+  const float y = x * x;
+  return 1 + y * (-0.5F + y * (1.0F / 24 + y * (-1.0F / 720 + y * (1.0F / 40320))));
+}
+float smallSin(float x) {
+  const float y = x * x;
+  return x * (1 + y * (-1.0F / 6 + y * (1.0F / 120 + y * (-1.0F / 5040))));
+}
+
+/// A point of the unit disc (Shirley and Chiu 1997, concentric), which keeps neighbours together.
+void toDisc(float x, float y, float& u, float& v) {
+  const float a = 2 * x - 1;
+  const float b = 2 * y - 1;
+  const bool wide = std::abs(a) > std::abs(b);
+  const float radius = wide ? a : b;
+  const float other = wide ? b : a;
+  const float angle = radius == 0 ? 0 : 0.785398163F * (other / radius);
+  const float along = radius * smallCos(angle);
+  const float across = radius * smallSin(angle);
+  u = wide ? along : across;
+  v = wide ? across : along;
+}
+
+/// The bits of a number below kCells with a 0 before each.
+std::uint32_t spread(std::uint32_t x) {
+  x = (x | (x << 4)) & 0x10fu;
+  x = (x | (x << 2)) & 0x133u;
+  return (x | (x << 1)) & 0x155u;
+}
+
+/// The place of cell (x, y), each below kCells, along a Z curve.
+std::uint16_t zCurve(std::uint32_t x, std::uint32_t y) {
+  return std::uint16_t(spread(x) | (spread(y) << 1));
+}
+
+std::uint32_t cellOf(float x) { return std::min(std::uint32_t(x * float(kCells)), kCells - 1); }
+
+/// The cell of a unit direction on an octahedron laid flat (Cigolle et al., JCGT 3(2), 2014).
+std::uint16_t octahedralCell(float x, float y, float z) {
+  const float scale = 1 / (std::abs(x) + std::abs(y) + std::abs(z));
+  float u = x * scale;
+  float v = y * scale;
+  if (z < 0) {
+    const float folded = (1 - std::abs(v)) * (u < 0 ? -1.0F : 1.0F);
+    v = (1 - std::abs(u)) * (v < 0 ? -1.0F : 1.0F);
+    u = folded;
+  }
+  return zCurve(cellOf(std::max(0.0F, 0.5F + 0.5F * u)), cellOf(std::max(0.0F, 0.5F + 0.5F * v)));
+}
+
+}  // namespace
+
+/// Rays that are sorted together: of all replicates, one after the other.
+struct RayCaster::Batch {
+  std::size_t each = 0;  ///< rays of a replicate
+  std::array<std::array<float, kBatch>, kDimensions> points;
+  std::array<std::array<float, kBatch>, 2> disc;
+  std::array<std::array<float, kBatch>, 3> origin;
+  std::array<std::array<float, kBatch>, 3> direction;
+  std::array<Index, kBatch> polygon;  ///< that each ray leaves from
+  std::array<std::uint16_t, kBatch> cell;
+  std::array<std::uint16_t, kBatch> order;
+
+  std::size_t size() const { return kReplicates * each; }
+
+  /// Points `first` to `first + each` of every replicate's sequence.
+  void place(const SobolPoints& sobol, std::uint64_t seed, std::uint32_t first) {
+    for (std::size_t r = 0; r < kReplicates; ++r) {
+      for (std::size_t done = 0; done < each;) {
+        const std::uint32_t from = first + std::uint32_t(done);
+        const std::size_t even = from == 0 ? kMostPoints : from & (~from + 1);
+        const std::size_t count = std::min({even, kMostPoints, each - done});
+        PointArrays out{};
+        for (std::size_t d = 0; d < kDimensions; ++d) out[d] = &points[d][r * each + done];
+        sobol.points(from, count, seed + r, out);
+        done += count;
+      }
+    }
+  }
+
+  void aim(const RayOrigins& origins) {
+    for (std::size_t k = 0; k < size(); ++k) {
+      toDisc(points[2][k], points[3][k], disc[0][k], disc[1][k]);
+    }
+    const bool planar = origins.isPlanar();
+    for (std::size_t k = 0; k < size(); ++k) {
+      float x = 0;
+      const RayOrigins::Part& part = origins.part(origins.partAt(points[0][k], x));
+      const RayFrame& frame = origins.frame(part.frame);
+      const glm::vec3 from = RayOrigins::pointAt(part, x, points[1][k]) + kLift * frame.z;
+      const float u = disc[0][k];
+      const float v = disc[1][k];
+      const float w = std::sqrt(std::max(0.0F, 1 - u * u - v * v));
+      const glm::vec3 along = u * frame.x + v * frame.y + w * frame.z;
+      for (std::size_t c = 0; c < 3; ++c) {
+        origin[c][k] = from[int(c)];
+        direction[c][k] = along[int(c)];
+      }
+      polygon[k] = part.polygon;
+      cell[k] = planar ? zCurve(cellOf(points[2][k]), cellOf(points[3][k]))
+                       : octahedralCell(along.x, along.y, along.z);
+    }
+  }
+
+  /// The order in which rays leave together: by direction.
+  void sort() {
+    std::array<std::uint16_t, kCells * kCells + 1> start{};
+    for (std::size_t k = 0; k < size(); ++k) ++start[cell[k] + 1u];
+    for (std::size_t c = 1; c < start.size(); ++c) {
+      start[c] = std::uint16_t(start[c] + start[c - 1]);
+    }
+    for (std::size_t k = 0; k < size(); ++k) order[start[cell[k]]++] = std::uint16_t(k);
+  }
+};
+
+RayCaster::RayCaster(const PatchMesh& mesh) : mesh_(mesh), scene_(mesh), embree_(scene_) {
+  setTargets();
+}
+
+std::size_t RayCaster::bytes() const {
+  // Embree's tree takes about so much a triangle in robust mode.
+  constexpr std::size_t kTreeBytes = 160;
+  return scene_.bytes() + targets_.size() * (sizeof(targets_[0]) + sizeof(Index) + kTreeBytes);
+}
+
+std::uint32_t RayCaster::unknownItem(std::uint32_t item) const {
+  const std::size_t patches = scene_.patches;
+  if (item < patches) return std::uint32_t(mesh_.unknownOf(item));
+  return std::uint32_t(mesh_.unknowns() + (item - patches));
+}
+
+void RayCaster::setTargets() {
+  // Where all patches of a side are of one unknown, there is nothing to look up.
+  std::vector<std::array<std::uint32_t, 2>> only(mesh_.polygons.size(), {kNone, kNone});
+  std::vector<std::array<std::uint8_t, 2>> several(mesh_.polygons.size(), {0, 0});
+  for (std::size_t i = 0; i < mesh_.size(); ++i) {
+    if (mesh_.polygon[i] == kNone) continue;
+    const std::size_t side = mesh_.side[i] != 0;
+    std::uint32_t& unknown = only[mesh_.polygon[i]][side];
+    const auto own = std::uint32_t(mesh_.unknownOf(i));
+    several[mesh_.polygon[i]][side] |= std::uint8_t(unknown != kNone && unknown != own);
+    unknown = own;
+  }
+  targets_.resize(embree_.triangles().size());
+  source_.resize(targets_.size());
+  parallelFor(targets_.size(), 1024, [&](std::size_t t) {
+    const ViewPolygon& polygon = scene_.polygons[embree_.polygonOf()[t]];
+    source_[t] = polygon.source;
+    const auto& corners = embree_.triangles()[t];
+    const Vec3 a = scene_.vertices[corners[0]];
+    const Vec3 ab = scene_.vertices[corners[1]] - a;
+    const Vec3 ac = scene_.vertices[corners[2]] - a;
+    for (std::size_t side = 0; side < 2; ++side) {
+      Target& target = targets_[t][side];
+      target.item = unknownItem(polygon.side[side].item);
+      if (several[polygon.source][side] == 0) continue;
+      const PatchGrid& grid = scene_.grids[polygon.side[side].grid];
+      const Vec3 from = a - polygon.origin;
+      target.grid = &grid;
+      target.u = {float(glm::dot(grid.uAxis(), from) + grid.uOffset()),
+                  float(glm::dot(grid.uAxis(), ab)), float(glm::dot(grid.uAxis(), ac))};
+      target.v = {float(glm::dot(grid.vAxis(), from) + grid.vOffset()),
+                  float(glm::dot(grid.vAxis(), ab)), float(glm::dot(grid.vAxis(), ac))};
+    }
+  });
+}
+
+std::uint32_t RayCaster::itemAt(const Target& target, float s, float t) const {
+  if (target.grid == nullptr) return target.item;
+  const PatchGrid& grid = *target.grid;
+  const float gu = target.u[0] + s * target.u[1] + t * target.u[2];
+  const float gv = target.v[0] + s * target.v[1] + t * target.v[2];
+  // Cells are centred on whole numbers.
+  const auto column = std::clamp(std::int32_t(gu + 0.5F), 0, grid.columns() - 1);
+  const auto row = std::clamp(std::int32_t(gv + 0.5F), 0, grid.rows() - 1);
+  std::int32_t entry = grid.cells()[std::size_t(row * grid.columns() + column)];
+  while (entry < 0) {
+    const CellNode& node = grid.node(~entry);
+    entry = node.a * gu + node.b * gv + node.c >= 0 ? node.inside : node.outside;
+  }
+  return unknownItem(std::uint32_t(entry));
+}
+
+void RayCaster::tracePacket(const Batch& batch, const std::uint16_t* order, int lanes,
+                            std::array<Counts, kReplicates>& of_replicate) const {
+  alignas(64) std::array<int, kLanes> valid;
+  RTCRayHit16 packet;
+  for (int k = 0; k < kLanes; ++k) {
+    valid[std::size_t(k)] = k < lanes ? -1 : 0;
+    const std::size_t from = order[k < lanes ? k : 0];
+    packet.ray.org_x[k] = batch.origin[0][from];
+    packet.ray.org_y[k] = batch.origin[1][from];
+    packet.ray.org_z[k] = batch.origin[2][from];
+    packet.ray.dir_x[k] = batch.direction[0][from];
+    packet.ray.dir_y[k] = batch.direction[1][from];
+    packet.ray.dir_z[k] = batch.direction[2][from];
+    packet.ray.tnear[k] = 0;
+    packet.ray.tfar[k] = std::numeric_limits<float>::infinity();
+    packet.ray.time[k] = 0;
+    packet.ray.mask[k] = 0xffffffffu;
+    packet.ray.flags[k] = 0;
+    packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+    packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+  }
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect16(valid.data(), embree_.handle(), &context, &packet);
+  for (int k = 0; k < lanes; ++k) {
+    Counts& counts = of_replicate[order[k] < batch.each ? 0 : 1];
+    if (packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) {
+      ++counts.sky;
+      continue;
+    }
+    const std::uint32_t triangle = packet.hit.primID[k];
+    if (source_[triangle] == batch.polygon[order[k]]) {
+      ++counts.own;
+      continue;
+    }
+    // A triangle's corners run counter-clockwise about the front, and Embree's normal is
+    // (v1 - v0) x (v2 - v0).
+    const bool front = packet.hit.Ng_x[k] * packet.ray.dir_x[k] +
+                           packet.hit.Ng_y[k] * packet.ray.dir_y[k] +
+                           packet.hit.Ng_z[k] * packet.ray.dir_z[k] <
+                       0;
+    ++counts.hits[itemAt(targets_[triangle][front ? 0 : 1], packet.hit.u[k], packet.hit.v[k])];
+  }
+}
+
+void RayCaster::cast(const RayOrigins& origins, std::uint64_t seed, std::uint32_t first,
+                     std::uint32_t last, std::array<Counts, kReplicates>& counts) const {
+  for (Counts& of : counts) of.hits.resize(items(), 0);
+  if (origins.empty()) return;
+  const FlushDenormals flush;
+  const auto batch = std::make_unique<Batch>();
+  while (first < last) {
+    batch->each = std::min<std::size_t>(last - first, kBatch / kReplicates);
+    batch->place(sobol_, seed, first);
+    batch->aim(origins);
+    batch->sort();
+    for (std::size_t k = 0; k < batch->size(); k += kLanes) {
+      const int lanes = int(std::min<std::size_t>(batch->size() - k, kLanes));
+      tracePacket(*batch, batch->order.data() + k, lanes, counts);
+    }
+    first += std::uint32_t(batch->each);
+  }
+}
+
+}  // namespace radiosity

@@ -1,0 +1,77 @@
+// Cosine-distributed rays from the patches of an unknown, counted by where they end.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "formfactor/rays/embree_scene.h"
+#include "formfactor/rays/ray_origins.h"
+#include "formfactor/rays/ray_rows.h"
+#include "formfactor/rays/sobol.h"
+#include "formfactor/view_scene.h"
+#include "radiosity/patch_mesh.h"
+
+namespace radiosity {
+
+/// The share of rays from random points of i, in cosine-distributed directions, that ends on j is an
+/// unbiased estimate of F_ij, area to area. (Malley's method: points of a disc, raised to the
+/// hemisphere. Howell, Menguc & Siegel, "Thermal Radiation Heat Transfer", ch. 7.)
+///
+/// Points are Owen-scrambled Sobol points: two dimensions place the ray on the patches, two turn
+/// it. Rays go out in packets of 16 through Embree, sorted so that a packet leaves in nearly one
+/// direction, against the planar polygons; the patch is found from the hit's position by the
+/// polygon's grid.
+class RayCaster {
+ public:
+  /// `mesh` is kept by reference.
+  explicit RayCaster(const PatchMesh& mesh);
+
+  /// Where rays ended, added to what was there. Items: 0 to K-1 an unknown (PatchMesh::unknowns()),
+  /// K + s the black back of surface s.
+  struct Counts {
+    std::vector<std::uint32_t> hits;  ///< items() values
+    std::uint32_t sky = 0;
+    std::uint32_t own = 0;  ///< on the polygon they left: rounding at grazing angles, no true hit
+  };
+  /// Rays `first` to `last` of each of the sequences of points that `seed` and the number after it
+  /// stand for. Thread-safe.
+  void cast(const RayOrigins& origins, std::uint64_t seed, std::uint32_t first, std::uint32_t last,
+            std::array<Counts, kReplicates>& counts) const;
+
+  RayOrigins origins(std::size_t unknown) const {
+    return {mesh_, unknown, scene_.scale, embree_.middle()};
+  }
+  std::size_t unknowns() const { return mesh_.unknowns(); }
+  std::size_t items() const { return mesh_.unknowns() + mesh_.surface_names.size(); }
+  std::size_t triangles() const { return embree_.triangles().size(); }
+  /// Held by this, about.
+  std::size_t bytes() const;
+
+ private:
+  /// What one side of a triangle counts for, and how a hit's position (Embree's s and t) maps to
+  /// the grid of its polygon: u[0] + u[1] s + u[2] t.
+  struct Target {
+    const PatchGrid* grid = nullptr;  ///< null: `item` everywhere
+    std::array<float, 3> u{};
+    std::array<float, 3> v{};
+    std::uint32_t item = 0;
+  };
+  struct Batch;
+
+  void setTargets();
+  std::uint32_t unknownItem(std::uint32_t item) const;
+  std::uint32_t itemAt(const Target& target, float s, float t) const;
+  void tracePacket(const Batch& batch, const std::uint16_t* order, int lanes,
+                   std::array<Counts, kReplicates>& counts) const;
+
+  const PatchMesh& mesh_;
+  ViewScene scene_;
+  EmbreeScene embree_;
+  SobolPoints sobol_;
+  std::vector<std::array<Target, 2>> targets_;  ///< by triangle; front, back
+  std::vector<Index> source_;                   ///< the mesh's polygon of each triangle
+};
+
+}  // namespace radiosity

@@ -1,0 +1,164 @@
+#include "formfactor/rays/ray_factors.h"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "base/processor_clock.h"
+#include "formfactor/rays/ray_rounds.h"
+#include "formfactor/row_accounts.h"
+#include "radiosity/closure.h"
+
+namespace radiosity {
+namespace {
+
+/// As good as single precision can restore rows.
+constexpr double kClosureTolerance = 1e-9;
+
+/// What a row saw of fronts, backs and sky, by its own rays alone.
+void setAccounts(const RayScene& scene, const std::vector<RayRow>& rows, FormFactors& result,
+                 std::vector<std::vector<SeenBack>>& seen_backs) {
+  const std::size_t n = rows.size();
+  parallelFor(n, 64, [&](std::size_t k) {
+    const RayRow& row = rows[k];
+    const Index i = scene.order()[k];
+    const double counted = row.counted();
+    if (!(counted > 0)) return;
+    double fronts = 0;
+    for (std::size_t e = 0; e < row.columns.size(); ++e) {
+      const double share = (double(row.hits[e][0]) + double(row.hits[e][1])) / counted;
+      if (row.columns[e] < n) {
+        fronts += share;
+      } else {
+        result.backs[i] += share;
+        seen_backs[i].push_back({Index(row.columns[e] - n), share});
+      }
+    }
+    result.fronts[i] = fronts;
+    result.sky[i] = (double(row.sky[0]) + double(row.sky[1])) / counted;
+  });
+}
+
+/// The matrix, its error figures and how far off each entry may be.
+void store(const RayScene& scene, const std::vector<RayRow>& rows, FormFactors& result,
+           UncertainEntries& uncertain) {
+  const std::size_t n = rows.size();
+  std::vector<double> density(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    density[k] = scene.area()[k] > 0 ? rows[k].counted() / scene.area()[k] : 0.0;
+  }
+  std::vector<RowAccuracy> accuracy(n);
+  struct Scratch {
+    std::vector<double> factors;
+    std::vector<Index> later;
+    std::vector<double> errors;
+  };
+  tbb::enumerable_thread_specific<Scratch> scratches;
+  forMergedRows(rows, scene.area(), {}, [&](const MergedRow& merged) {
+    const std::size_t k = merged.position;
+    Scratch& s = scratches.local();
+    s.factors.assign(n - k, 0.0);
+    s.later.clear();
+    s.errors.clear();
+    accuracy[k] = accuracyOf(merged, rows[k]);
+    for (std::size_t j = k; j < n; ++j) {
+      const double value = 0.5 * (merged.factors[j][0] + merged.factors[j][1]);
+      if (value == 0) continue;
+      s.factors[j - k] = value;
+      if (j == k) continue;
+      s.later.push_back(Index(j));
+      // Of independent rays: more than the true one, but it weighs entries all the same.
+      const double variance = value / ((density[k] + density[j]) * scene.area()[k]);
+      s.errors.push_back(std::min(1.0, std::sqrt(variance)));
+    }
+    result.matrix.setUpperRow(k, s.factors);
+    uncertain.setRow(k, s.later, s.errors);
+  });
+  double squares = 0;
+  double norms = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const RowAccuracy& row = accuracy[k];
+    const double figure = row.figure();
+    result.error[scene.order()[k]] = figure;
+    squares += scene.area()[k] * row.error * row.error;
+    norms += scene.area()[k] * row.norm * row.norm;
+    if (row.norm > 0) {
+      double& largest = result.report.rays.largest_row_figure;
+      largest = std::max(largest, figure / row.norm);
+    }
+  }
+  result.report.error_figure = norms > 0 ? std::sqrt(squares / norms) : 0.0;
+}
+
+/// Rows sum to what their own rays saw of fronts: merging has moved that.
+void close(const UncertainEntries& uncertain, ClosureMode mode, FormFactors& result,
+           Progress& progress) {
+  if (mode == ClosureMode::off) {
+    result.fronts = result.matrix.rowSums();
+    return;
+  }
+  result.report.closure =
+      closeRows(result.matrix, uncertain, result.fronts, progress, kClosureTolerance);
+  result.report.closure_enforced = true;
+}
+
+/// Sky is what rows leave, and nothing where the scene is closed.
+void balance(FormFactors& result) {
+  FormFactorReport& report = result.report;
+  for (std::size_t i = 0; i < result.fronts.size(); ++i) {
+    if (result.fronts[i] + result.backs[i] + result.sky[i] == 0) continue;
+    const double rest = 1 - result.fronts[i] - result.backs[i];
+    report.largest_row_error =
+        std::max(report.largest_row_error, report.closed ? std::abs(rest) : -rest);
+    result.sky[i] = report.closed ? 0.0 : rest;
+  }
+}
+
+bool seesSky(const std::vector<RayRow>& rows) {
+  return std::any_of(rows.begin(), rows.end(),
+                     [](const RayRow& row) { return row.sky[0] + row.sky[1] > 0; });
+}
+
+}  // namespace
+
+FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene, const RayEstimate& estimate,
+                       const FormFactorOptions& options, Progress& progress) {
+  const std::size_t n = scene.size();
+  FormFactors result;
+  result.method = "rays";
+  FormFactorReport& report = result.report;
+  report.polygons = mesh.polygons.size();
+  report.estimated_bytes = estimate.bytes;
+  refuseTooLarge(estimate.bytes, options, n);
+  std::vector<double> area(n);
+  for (std::size_t k = 0; k < n; ++k) area[scene.order()[k]] = scene.area()[k];
+  report.empty_rows = std::size_t(std::count(area.begin(), area.end(), 0.0));
+  report.rays.triangles = scene.caster().triangles();
+
+  std::vector<RayRow> rows = castRows(scene, options.toleranceOf(FormFactorMethod::rays), report.rays, progress);
+  report.closed = scene.provedClosed() || !seesSky(rows);
+  result.matrix = ExchangeMatrix::symmetric(std::move(area), scene.order(), options.storedPrecision());
+  result.fronts.assign(n, 0.0);
+  result.backs.assign(n, 0.0);
+  result.sky.assign(n, 0.0);
+  result.error.assign(n, 0.0);
+  std::vector<std::vector<SeenBack>> seen_backs(n);
+  UncertainEntries uncertain(n);
+  const double storing = clockSeconds();
+  setAccounts(scene, rows, result, seen_backs);
+  store(scene, rows, result, uncertain);
+  rows = {};
+  progress.check();
+  const double closing = clockSeconds();
+  report.rays.seconds_merge += closing - storing;
+  close(uncertain, options.closure, result, progress);
+  balance(result);
+  accountForBacks(mesh, scene.order(), result.matrix.area(), seen_backs, result);
+  report.rays.seconds_close = clockSeconds() - closing;
+  report.rays.seconds_prepare = scene.seconds();
+  return result;
+}
+
+}  // namespace radiosity

@@ -1,0 +1,95 @@
+#include "formfactor/rays/ray_origins.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "base/geometry/plane_frame.h"
+
+namespace radiosity {
+
+namespace {
+
+constexpr float kBelowOne = 1 - 0x1p-24F;
+
+/// `across`: not along any normal, the same for all patches of an unknown if that can be: then
+/// frames of patches that bend a little turn a little.
+RayFrame frameAround(const Vec3& normal, Vec3 across) {
+  constexpr double kParallel = 0.1;
+  if (glm::length(glm::cross(across, normal)) < kParallel) across = axisAcross(normal);
+  const Vec3 x = glm::normalize(glm::cross(across, normal));
+  return {glm::vec3(x), glm::vec3(glm::cross(normal, x)), glm::vec3(normal)};
+}
+
+}  // namespace
+
+RayOrigins::RayOrigins(const PatchMesh& mesh, std::size_t unknown, double scale,
+                       const Vec3& middle) {
+  if (mesh.clusters) {
+    for (const Index patch : mesh.clusters->patchesOf(unknown)) {
+      addPatch(mesh, patch, scale, middle);
+    }
+  } else {
+    addPatch(mesh, unknown, scale, middle);
+  }
+  if (parts_.empty()) return;
+  const double sum = end_.back();
+  double begin = 0;
+  for (double& end : end_) {
+    end /= sum;
+    first_.push_back(float(begin));
+    stretch_.push_back(float(1 / std::max(end - begin, 1e-30)));
+    begin = end;
+  }
+}
+
+void RayOrigins::addPatch(const PatchMesh& mesh, std::size_t patch, double scale,
+                          const Vec3& middle) {
+  if (mesh.polygon[patch] == kNone || !(mesh.area[patch] > 0)) return;
+  const auto vertex = [&](Index v) { return mesh.vertices[v] * scale - middle; };
+  const Vec3 across = parts_.empty() ? axisAcross(mesh.normal[patch]) : Vec3(frames_[0].y);
+  const RayFrame frame = frameAround(mesh.normal[patch], across);
+  if (frames_.empty() || frames_.back().z != frame.z) frames_.push_back(frame);
+  const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c, bool parallelogram) {
+    const double area = glm::length(glm::cross(b - a, c - a)) * (parallelogram ? 2 : 1);
+    if (!(area > 0)) return;
+    parts_.push_back({glm::vec3(a), glm::vec3(b - a), glm::vec3(c - a),
+                      std::uint32_t(frames_.size() - 1), mesh.polygon[patch], parallelogram});
+    end_.push_back((end_.empty() ? 0.0 : end_.back()) + area);
+  };
+  const auto outline = mesh.outline(patch);
+  if (outline.size() == 4) {
+    const Vec3 a = vertex(outline[0]);
+    const Vec3 b = vertex(outline[1]);
+    const Vec3 c = vertex(outline[2]);
+    const Vec3 d = vertex(outline[3]);
+    // To single precision, which is all the rays have.
+    if (glm::length(a - b + c - d) <= 1e-7 * glm::length(c - a)) {
+      add(a, b, d, true);
+      return;
+    }
+  }
+  for (std::size_t t = mesh.piece_offset[patch]; t < mesh.piece_offset[patch + 1]; ++t) {
+    const auto& [a, b, c] = mesh.pieces[t];
+    add(vertex(a), vertex(b), vertex(c), false);
+  }
+}
+
+std::uint32_t RayOrigins::partAt(float x, float& within) const {
+  if (parts_.size() == 1) {
+    within = x;
+    return 0;
+  }
+  const auto after = std::upper_bound(end_.begin(), end_.end() - 1, double(x));
+  const auto k = std::uint32_t(after - end_.begin());
+  within = std::clamp((x - first_[k]) * stretch_[k], 0.0F, kBelowOne);
+  return k;
+}
+
+glm::vec3 RayOrigins::pointAt(const Part& part, float x, float y) {
+  if (part.parallelogram) return part.corner + x * part.ab + y * part.ac;
+  const float root = std::sqrt(x);
+  return part.corner + root * ((1 - y) * part.ab + y * part.ac);
+}
+
+}  // namespace radiosity

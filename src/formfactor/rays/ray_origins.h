@@ -1,0 +1,57 @@
+// Where the rays of an unknown start: points over the area of all its patches.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "radiosity/patch_mesh.h"
+
+namespace radiosity {
+
+/// A unit normal and two directions across it.
+struct RayFrame {
+  glm::vec3 x;
+  glm::vec3 y;
+  glm::vec3 z;
+};
+
+/// The patches of one unknown as triangles and parallelograms to choose from by area. Coordinates
+/// are the mesh's times `scale` less `middle`, in single precision.
+class RayOrigins {
+ public:
+  RayOrigins(const PatchMesh& mesh, std::size_t unknown, double scale, const Vec3& middle);
+
+  struct Part {
+    glm::vec3 corner;
+    glm::vec3 ab;  ///< edges that leave the corner
+    glm::vec3 ac;
+    std::uint32_t frame;
+    Index polygon;  ///< of the mesh
+    bool parallelogram;
+  };
+
+  bool empty() const { return parts_.empty(); }
+  /// Of one plane: all rays have frame(0) and leave from polygon(0).
+  bool isPlanar() const { return frames_.size() == 1; }
+  const RayFrame& frame(std::uint32_t k) const { return frames_[k]; }
+  const Part& part(std::uint32_t k) const { return parts_[k]; }
+
+  /// The part that x in [0, 1) falls on, and where in its own range: parts have shares of x by
+  /// their area, so that points spread evenly over x spread evenly over all of it.
+  std::uint32_t partAt(float x, float& within) const;
+  /// The point of a part at (x, y) in [0, 1)^2; areas keep their ratios.
+  static glm::vec3 pointAt(const Part& part, float x, float y);
+
+ private:
+  void addPatch(const PatchMesh& mesh, std::size_t patch, double scale, const Vec3& middle);
+
+  std::vector<Part> parts_;
+  std::vector<RayFrame> frames_;
+  std::vector<double> end_;    ///< of each part's share of x; while adding, areas summed up
+  std::vector<float> first_;   ///< where each part's share begins
+  std::vector<float> stretch_; ///< 1 / share
+};
+
+}  // namespace radiosity

@@ -1,0 +1,151 @@
+#include "formfactor/rays/ray_rounds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/parallel.h"
+#include "base/processor_clock.h"
+#include "formfactor/rays/ray_factors.h"
+
+namespace radiosity {
+namespace {
+
+/// A row gets at most so many times the rays it had in one round: what a few rays say of its error
+/// is rough.
+constexpr double kMostGrowth = 32;
+/// A row that is still short after so many rounds is given up: its error does not fall.
+constexpr int kMostRounds = 24;
+/// Orders that two rounds may seem to show.
+constexpr double kLeastOrder = 0.9;
+constexpr double kMostOrder = 2.5;
+
+/// What a row has come to.
+struct RowState {
+  std::uint32_t rays = 0;
+  double error = 0;  ///< over the row's norm
+};
+
+/// Rays for an error of `tolerance`, from what was seen with fewer.
+std::uint32_t raysNeeded(const RowState& before, const RowState& now, double tolerance) {
+  double order = kUsualOrder;
+  if (before.rays > 0 && now.rays > before.rays && now.error > 0 && before.error > now.error) {
+    order = 2 * std::log(before.error / now.error) / std::log(double(now.rays) / before.rays);
+    order = std::clamp(order, kLeastOrder, kMostOrder);
+  }
+  const double growth = std::pow(now.error / tolerance, 2 / order);
+  return std::min(roundedRays(now.rays * std::min(growth, kMostGrowth)), kMostRays);
+}
+
+class Rounds {
+ public:
+  Rounds(const RayScene& scene, double tolerance, RayReport& report, Progress& progress)
+      : scene_(scene),
+        tolerance_(tolerance),
+        report_(report),
+        progress_(progress),
+        rows_(scene.size()),
+        before_(rows_.size()),
+        now_(rows_.size()) {}
+
+  std::vector<RayRow> run() {
+    std::vector<std::uint32_t> rays(rows_.size(), 0);
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      if (scene_.area()[k] > 0) rays[k] = kPilotRays;
+    }
+    while (cast(rays)) {
+      measure(rays);
+      for (std::size_t k = 0; k < rows_.size(); ++k) {
+        rays[k] = 0;
+        if (now_[k].error <= tolerance_) continue;
+        if (report_.rounds < kMostRounds && now_[k].rays < kMostRays) {
+          rays[k] = raysNeeded(before_[k], now_[k], tolerance_);
+        }
+      }
+    }
+    finish();
+    return std::move(rows_);
+  }
+
+ private:
+  /// Continues rows to as many rays as given, where that is more than they have.
+  bool cast(const std::vector<std::uint32_t>& rays) {
+    std::vector<Index> todo;
+    std::size_t all = 0;
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      if (rays[k] <= rows_[k].rays) continue;
+      todo.push_back(Index(k));
+      all += rays[k] - rows_[k].rays;
+    }
+    if (todo.empty()) return false;
+    const double start = clockSeconds();
+    // The longest first, so that no thread is left with one at the end.
+    std::stable_sort(todo.begin(), todo.end(), [&](Index a, Index b) {
+      return rays[a] - rows_[a].rays > rays[b] - rows_[b].rays;
+    });
+    progress_.begin(report_.rounds == 0 ? "first rays" : "form factors", all);
+    parallelFor(todo.size(), 1, [&](std::size_t t) {
+      if (progress_.cancelled()) return;
+      RayRow& row = rows_[todo[t]];
+      const std::uint32_t more = rays[todo[t]] - row.rays;
+      scene_.cast(todo[t], rays[todo[t]], row, progress_);
+      progress_.advance(more);
+    });
+    progress_.check();
+    progress_.end();
+    ++report_.rounds;
+    report_.rays += kReplicates * all;
+    report_.seconds_cast += clockSeconds() - start;
+    return true;
+  }
+
+  /// Rows that were not continued are better now, too: of them, too, others have counted more.
+  void measure(const std::vector<std::uint32_t>& rays) {
+    const double start = clockSeconds();
+    std::vector<std::uint8_t> wanted(rows_.size());
+    for (std::size_t k = 0; k < rows_.size(); ++k) wanted[k] = rays[k] > 0;
+    forMergedRows(rows_, scene_.area(), wanted, [&](const MergedRow& merged) {
+      const std::size_t k = merged.position;
+      const RowAccuracy accuracy = accuracyOf(merged, rows_[k]);
+      before_[k] = now_[k];
+      now_[k] = {rows_[k].rays, accuracy.norm > 0 ? accuracy.error / accuracy.norm : 0.0};
+      // Next to nothing was seen: too little to tell.
+      if (accuracy.norm == 0 && accuracy.error > 0) now_[k].error = 1;
+    });
+    progress_.check();
+    report_.seconds_merge += clockSeconds() - start;
+  }
+
+  void finish() {
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      const RayRow& row = rows_[k];
+      report_.lost += row.lost[0] + row.lost[1];
+      report_.short_rows += now_[k].error > tolerance_;
+      report_.leaked += row.leaked;
+    }
+  }
+
+  const RayScene& scene_;
+  double tolerance_;
+  RayReport& report_;
+  Progress& progress_;
+  std::vector<RayRow> rows_;
+  std::vector<RowState> before_;
+  std::vector<RowState> now_;
+};
+
+}  // namespace
+
+std::uint32_t roundedRays(double rays) {
+  double power = 1;
+  while (2 * power <= rays) power *= 2;
+  if (power >= rays) return std::uint32_t(power);
+  return std::uint32_t(1.5 * power >= rays ? 1.5 * power : 2 * power);
+}
+
+std::vector<RayRow> castRows(const RayScene& scene, double tolerance, RayReport& report,
+                             Progress& progress) {
+  return Rounds(scene, tolerance, report, progress).run();
+}
+
+}  // namespace radiosity

@@ -1,0 +1,32 @@
+// Rows cast round after round, each until it is as good as asked for.
+#pragma once
+
+#include <vector>
+
+#include "formfactor/rays/ray_rows.h"
+#include "radiosity/base.h"
+#include "radiosity/form_factors.h"
+
+namespace radiosity {
+
+class RayScene;
+
+/// Rays of the first round, in each replicate.
+inline constexpr std::uint32_t kPilotRays = 512;
+/// A row gets no more in each replicate: points then lie as close as their 24 bits can tell apart.
+inline constexpr std::uint32_t kMostRays = 1u << 24;
+
+/// How error squared falls with the number of rays, n^-this, where nothing better is known. (In
+/// four dimensions scrambled nets reach n^-5/4 on what jumps, as visibility does: He & Wang, "On the
+/// convergence rate of randomized quasi-Monte Carlo for discontinuous functions", SIAM J. Numer.
+/// Anal. 53, 2015.)
+inline constexpr double kUsualOrder = 1.25;
+
+/// The least number of rays a replicate that is 2^k or 3 2^k and at least `rays`.
+std::uint32_t roundedRays(double rays);
+
+/// All rows, by position. Fills what the report says of rays and rounds.
+std::vector<RayRow> castRows(const RayScene& scene, double tolerance, RayReport& report,
+                             Progress& progress);
+
+}  // namespace radiosity

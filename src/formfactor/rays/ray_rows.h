@@ -1,0 +1,67 @@
+// What rays counted, a row an unknown, and how good the matrix is that follows.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "radiosity/base.h"
+
+namespace radiosity {
+
+/// Each row is counted twice, by points scrambled independently: what the two differ by says how
+/// far off their mean is.
+inline constexpr int kReplicates = 2;
+
+/// Where the rays of one unknown ended. Columns are positions in the order of the matrix, then
+/// K + s for the black back of surface s; strictly increasing.
+struct RayRow {
+  std::uint32_t rays = 0;  ///< cast in each replicate
+  std::array<std::uint32_t, kReplicates> sky{};
+  std::array<std::uint32_t, kReplicates> lost{};  ///< no true hits: they do not count
+  std::uint32_t leaked = 0;                       ///< of these, out of a closed scene; of both
+  std::vector<Index> columns;
+  std::vector<std::array<std::uint32_t, kReplicates>> hits;
+
+  /// That count in one replicate, ...
+  double counted(int replicate) const { return double(rays) - double(lost[std::size_t(replicate)]); }
+  /// ... and in both.
+  double counted() const { return counted(0) + counted(1); }
+};
+
+/// Both estimates of a row's pairs merged: G_ij = (c_ij + c_ji) / (n_i / A_i + n_j / A_j), counts
+/// over rays a square metre. That is their mean weighted by the inverse of the variances that
+/// independent rays would have, A_i G_ij / n_i. Of each replicate.
+struct MergedRow {
+  std::size_t position = 0;
+  /// F from this row's unknown to the ones at all positions, by the first and the second replicate.
+  std::span<const std::array<double, kReplicates>> factors;
+};
+
+/// Calls visit(row) for the rows with `wanted` (by position; empty: all), several at once from
+/// different threads. `area`: K, by position. O(entries), in panels of memory.
+void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
+                   std::span<const std::uint8_t> wanted,
+                   const std::function<void(const MergedRow&)>& visit);
+
+/// How far off a row is, from its replicates.
+struct RowAccuracy {
+  double norm = 0;   ///< sqrt(sum_j F_ij^2)
+  double error = 0;  ///< root mean square expected of sqrt(sum_j (F_ij - true F_ij)^2)
+  /// About: of how many independent terms the squared error is the sum.
+  double degrees = 1;
+
+  /// What sqrt(sum_j (F_ij - true F_ij)^2) is below in 99% of rows: error squared over its estimate
+  /// is distributed like F with as many degrees of freedom above as below.
+  double figure() const;
+};
+
+/// `own`: the row itself, for the black backs in it, which nothing estimates from the other end.
+RowAccuracy accuracyOf(const MergedRow& merged, const RayRow& own);
+
+/// The same of a row by itself, before it is merged with what the others count.
+RowAccuracy accuracyAlone(const RayRow& row);
+
+}  // namespace radiosity

@@ -1,0 +1,94 @@
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "base/processor_clock.h"
+#include "formfactor/patch_seed.h"
+#include "formfactor/rays/ray_factors.h"
+#include "formfactor/row_accounts.h"
+#include "mesh/enclosures.h"
+
+namespace radiosity {
+
+namespace {
+
+/// Rays between two looks at whether to go on: some milliseconds.
+constexpr std::uint32_t kSlice = 1u << 16;
+
+std::vector<double> unknownAreas(const PatchMesh& mesh) {
+  std::vector<double> area(mesh.unknowns(), 0.0);
+  for (std::size_t i = 0; i < mesh.size(); ++i) area[mesh.unknownOf(i)] += mesh.area[i];
+  return area;
+}
+
+/// Counts of this thread, all 0.
+using Replicates = std::array<RayCaster::Counts, kReplicates>;
+Replicates& emptyCounts(std::size_t items) {
+  thread_local Replicates counts;
+  for (RayCaster::Counts& of : counts) {
+    of.hits.assign(items, 0);
+    of.sky = 0;
+    of.own = 0;
+  }
+  return counts;
+}
+
+}  // namespace
+
+RayScene::RayScene(const PatchMesh& mesh, std::uint64_t with_seed)
+    : start_(clockSeconds()), caster_(mesh) {
+  UnknownOrder by_identity = unknownOrder(mesh);
+  order_ = std::move(by_identity.unknown);
+  const std::vector<double> areas = unknownAreas(mesh);
+  for (std::size_t k = 0; k < order_.size(); ++k) {
+    area_.push_back(areas[order_[k]]);
+    seed_.push_back(patchSeed(mesh, by_identity.first_patch[k], with_seed));
+  }
+  std::optional<Enclosures> found;
+  proved_closed_ = enclosuresOf(mesh, found).proved_closed;
+  seconds_ = clockSeconds() - start_;
+}
+
+void RayScene::cast(std::size_t position, std::uint32_t rays, RayRow& row,
+                    const Progress& progress) const {
+  const RayOrigins origins = caster_.origins(order_[position]);
+  Replicates& counts = emptyCounts(caster_.items());
+  for (std::uint32_t first = row.rays; first < rays;) {
+    if (progress.cancelled()) return;
+    const std::uint32_t last = std::min(rays, (first / kSlice + 1) * kSlice);
+    caster_.cast(origins, seed_[position], first, last, counts);
+    first = last;
+  }
+  row.rays = rays;
+  addCounts(counts, row);
+}
+
+void RayScene::addCounts(std::array<RayCaster::Counts, kReplicates>& counts, RayRow& row) const {
+  const std::size_t n = order_.size();
+  for (std::size_t r = 0; r < kReplicates; ++r) {
+    RayCaster::Counts& of = counts[r];
+    for (std::size_t e = 0; e < row.columns.size(); ++e) {
+      const Index column = row.columns[e];
+      of.hits[column < n ? order_[column] : column] += row.hits[e][r];
+    }
+    row.lost[r] += of.own;
+    if (proved_closed_) {
+      row.lost[r] += of.sky;
+      row.leaked += of.sky;
+    } else {
+      row.sky[r] += of.sky;
+    }
+  }
+  row.columns.clear();
+  row.hits.clear();
+  for (Index column = 0; column < caster_.items(); ++column) {
+    const std::size_t item = column < n ? order_[column] : column;
+    const std::array<std::uint32_t, kReplicates> hits{counts[0].hits[item], counts[1].hits[item]};
+    if (hits[0] + hits[1] == 0) continue;
+    row.columns.push_back(column);
+    row.hits.push_back(hits);
+  }
+}
+
+}  // namespace radiosity
