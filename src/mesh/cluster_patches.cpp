@@ -143,8 +143,9 @@ class FrontClusters {
     if (clusters.size() < 2) return;
     progress.check();
     std::vector<Box3> boxes;
+    boxes.reserve(clusters.size());
     for (const Index k : clusters) boxes.push_back({centroid(k), centroid(k)});
-    const BoxTree tree(std::move(boxes));
+    const BoxTree tree(boxes);
     std::vector<std::vector<Index>> nearest(clusters.size());
     parallelFor(clusters.size(), 64, [&](std::size_t c) {
       if (!progress.cancelled()) nearest[c] = nearestOf(clusters, Index(c), tree);
@@ -187,6 +188,7 @@ class FrontClusters {
           return true;
         });
     std::vector<Index> out;
+    out.reserve(found.size());
     for (const auto& [distance2, other] : found) out.push_back(other);
     return out;
   }
