@@ -53,8 +53,8 @@ Results readResults(const std::string& path, bool with_factors = true);
 ///                  int32 increasing in a row, indptr int64; row_sum (of data), fronts, backs, sky,
 ///                  error (figures of the rows; exact method), area; order where A_i F_ij = A_j
 ///                  F_ji was stored once a pair (the patches in the order of storage); normal,
-///                  centroid, surface, surface_names (those of /mesh); method, key, geometry_hash,
-///                  report/
+///                  centroid, surface, surface_names (those of /mesh), or of_patch, where rows are
+///                  of clusters; method, key, geometry_hash, report/
 ///   /solution      radiosity, irradiance, reflectance, emission (N x bands), sky (an attribute of
 ///                  bands numbers; none: dark), summary/, key
 ///   /gather        radiosity, irradiance (L x bands, f32; L eyes), backs, sky, area, position;
@@ -69,7 +69,8 @@ void writeResults(const std::string& path, const Results& results, Progress& pro
 /// Bytes writeResults() will put on disk, within 4 kB.
 std::size_t estimateResultsBytes(const Results& results);
 
-/// MatrixMarket coordinate real general, 1-based, 17 significant digits: F as stored.
+/// MatrixMarket coordinate real general, 1-based, 17 significant digits: F as stored, a row an
+/// unknown.
 void writeMatrixMarket(const std::string& path, const ExchangeMatrix& matrix, Progress& progress);
 
 /// The patches as they are, by extension: .obj (outlines, one object a surface, in mesh order: face

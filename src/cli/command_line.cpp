@@ -91,7 +91,10 @@ void addSceneOptions(CLI::App& app, Request& r) {
 void addMeshOptions(CLI::App& app, Request& r) {
   const MeshOptions defaults;
   CLI::Option* patches = add(app, "Mesh", "--patches", r.patches, "N",
-                             fmt::format("About how many patches (default {})", defaults.patches))
+                             fmt::format("About how many patches (default {}); where a scene has "
+                                         "more planar pieces than that, they share as many "
+                                         "unknowns",
+                                         defaults.patches))
                              ->check(wholeNumber());
   CLI::Option* max_edge = add(app, "Mesh", "--max-edge", r.max_edge, "METRES",
                               "Longest edge of a patch (default: derived from --patches)");

@@ -97,12 +97,15 @@ void PipelineReport::notReused(const std::string& path, const std::string& why) 
 
 void PipelineReport::planned(const Pipeline& pipeline, const FormFactorPlan& plan) {
   const FormFactorOptions& options = pipeline.options().factors;
-  const std::size_t patches = made(pipeline.results().mesh).mesh.size();
+  const PatchMesh& mesh = made(pipeline.results().mesh).mesh;
+  const std::size_t patches = mesh.size();
   const bool hemicubes = plan.method == FormFactorMethod::hemicube;
   // On disk every entry has a column number of 4 bytes. In memory a dense row has none, and a
   // symmetric matrix has half of the entries.
   const std::size_t value = options.storedPrecision() == Precision::double_precision ? 8 : 4;
   const std::size_t disk = plan.matrix_bytes * (hemicubes ? 1 : 2) * (value + 4) / value;
+  const std::string clusters =
+      mesh.clusters ? fmt::format(", for {} clusters", countText(mesh.unknowns())) : "";
   const std::string what =
       hemicubes ? fmt::format("{} of {} pixels", plural(patches, "hemicube", "hemicubes"),
                               options.resolution)
@@ -110,8 +113,8 @@ void PipelineReport::planned(const Pipeline& pipeline, const FormFactorPlan& pla
                               plural(patches, "patch", "patches"),
                               numberText(options.toleranceOf(plan.method)));
   report_.line("form factors",
-               fmt::format("{}: about {}, memory about {}{}", what, durationText(plan.seconds),
-                           bytesText(plan.bytes),
+               fmt::format("{}{}: about {}, memory about {}{}", what, clusters,
+                           durationText(plan.seconds), bytesText(plan.bytes),
                            writes_results_ ? ", disk at most about " + bytesText(disk) : ""));
   if (!plan.reason.empty()) report_.line("", "method: " + plan.reason);
   if (plan.seconds > kLongWait) report_.line("", cures(plan, options));

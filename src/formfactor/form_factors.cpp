@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "formfactor/cluster_factors.h"
 #include "formfactor/exact/assembly/exact_factors.h"
 #include "formfactor/exact/assembly/row_sample.h"
 #include "formfactor/hemicube/hemicube_factors.h"
@@ -57,6 +58,17 @@ bool exactIsRight(const FormFactorPlan& exact, const FormFactorPlan& rays,
   return exact.seconds <= std::max(kWorthTimes * rays.seconds, kWorthSeconds);
 }
 
+/// Rows of patches are summed over clusters once they are there: what is held then, and what stays.
+template <class Estimate>
+void addClusters(const FormFactorPlan::Prepared& prepared, bool symmetric, Estimate& estimate) {
+  const PatchMesh& mesh = prepared.mesh;
+  if (!mesh.clusters) return;
+  const Precision precision = prepared.options.storedPrecision();
+  estimate.bytes += clusterFactorsBytes(mesh, symmetric, precision);
+  estimate.matrix_bytes =
+      std::min(estimate.matrix_bytes, clusterMatrixBytes(mesh, symmetric, precision));
+}
+
 void planExact(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {
   const FormFactorOptions& options = prepared.options;
   progress.begin("preparing", ExactScene::kSteps);
@@ -65,6 +77,7 @@ void planExact(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progres
   const RowSample sample =
       sampleRows(scene, options.toleranceOf(FormFactorMethod::exact), progress);
   prepared.estimate = estimateExact(scene, sample, options);
+  addClusters(prepared, true, prepared.estimate);
   const ExactKernels& kernels = prepared.kernels.emplace(scene, options);
   plan.method = FormFactorMethod::exact;
   plan.bytes = prepared.estimate.bytes;
@@ -81,6 +94,7 @@ void planHemicubes(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Pro
   progress.end();
   progress.check();
   prepared.hemicube_estimate = estimateHemicubes(prepared.mesh, scene, prepared.options, progress);
+  addClusters(prepared, prepared.options.symmetrize, prepared.hemicube_estimate);
   plan.bytes = prepared.hemicube_estimate.bytes;
   plan.matrix_bytes = prepared.hemicube_estimate.matrix_bytes;
   plan.seconds = prepared.hemicube_estimate.measured;
@@ -194,6 +208,9 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress) {
                         progress);
   } else {
     throw std::logic_error("this plan was not prepared");
+  }
+  if (prepared.mesh.clusters && !prepared.rays) {  // rays count between clusters themselves
+    result = clusterFactors(result, prepared.mesh, progress);
   }
   FormFactorReport& report = result.report;
   report.method_reason = plan.reason;

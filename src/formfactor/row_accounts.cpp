@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <numeric>
-#include <tuple>
+#include <utility>
+
+#include "mesh/canonical_order.h"
 
 namespace radiosity {
 namespace {
@@ -36,16 +38,6 @@ void noteBacks(const PatchMesh& mesh, FormFactors& result) {
 }
 
 }  // namespace
-
-std::vector<Index> canonicalOrder(const PatchMesh& mesh) {
-  std::vector<Index> order(mesh.size());
-  std::iota(order.begin(), order.end(), Index(0));
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
-    return std::tie(mesh.surface_names[mesh.surface[a]], mesh.index_in_surface[a], mesh.side[a]) <
-           std::tie(mesh.surface_names[mesh.surface[b]], mesh.index_in_surface[b], mesh.side[b]);
-  });
-  return order;
-}
 
 UnknownOrder unknownOrder(const PatchMesh& mesh) {
   UnknownOrder order;

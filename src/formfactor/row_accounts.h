@@ -25,11 +25,8 @@ void accountForBacks(const PatchMesh& mesh, std::span<const Index> order,
 /// RunError, with the numbers, where `bytes` exceed the limit.
 void refuseTooLarge(std::size_t bytes, const FormFactorOptions& options, std::size_t patches);
 
-/// Patches by surface name and index within the surface: sums in this order do not depend on how
-/// patches are numbered.
-std::vector<Index> canonicalOrder(const PatchMesh& mesh);
-
-/// Unknowns in the order of their first patches in that order, and these patches.
+/// Unknowns in the order of their first patches in canonicalOrder() (mesh/canonical_order.h), and
+/// these patches.
 struct UnknownOrder {
   std::vector<Index> unknown;
   std::vector<Index> first_patch;

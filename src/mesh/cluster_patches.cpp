@@ -7,48 +7,31 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
-#include <limits>
 #include <numeric>
+#include <ranges>
 #include <tuple>
 #include <utility>
 
 #include "base/geometry/box_tree.h"
 #include "base/parallel.h"
 #include "mesh/agglomerate.h"
+#include "mesh/canonical_order.h"
 
 namespace radiosity {
 
 namespace {
 
-// In sides of a square that has its share of the area:
-constexpr double kBend = 1.0;         ///< what a turn of the normal by 1 counts for
-constexpr double kLargestSide = 1.5;  ///< of a square as spread as a cluster may be
-/// The mean normal of a cap that reaches 53 degrees to all sides. Two equal sides of an edge of 90
-/// degrees have 0.71, so that they stay apart.
-constexpr double kStraight = 0.8;
-/// Nearest neighbours that a cluster without enough of them is offered to.
+/// What a turn of the normal by 1 counts for, in sides of a square that has its share of the area.
+/// With half of it or twice of it surfaces of six scenes have about the same power.
+constexpr double kBend = 1.0;
+/// Nearest neighbours that each cluster is offered to, beside those at its edges.
 constexpr std::size_t kNearest = 3;
-/// Where a round of offers to nearest neighbours leaves more than this, others are let in.
-constexpr double kWorthAnotherRound = 0.9;
-/// Patches at an edge are offered to the next ones there: all of them, but where very many meet.
+/// Patches at an edge are offered to so many that come next there: all, but where very many meet.
 constexpr std::size_t kAtAnEdge = 4;
 
-/// The fronts by surface name and number within the surface.
 std::vector<Index> frontsInOrder(const PatchMesh& mesh) {
-  std::vector<Index> surfaces(mesh.surface_names.size());
-  std::iota(surfaces.begin(), surfaces.end(), Index(0));
-  std::stable_sort(surfaces.begin(), surfaces.end(),
-                   [&](Index a, Index b) { return mesh.surface_names[a] < mesh.surface_names[b]; });
-  std::vector<Index> place(surfaces.size());
-  for (Index k = 0; k < surfaces.size(); ++k) place[surfaces[k]] = k;
-  std::vector<Index> fronts;
-  for (Index i = 0; i < mesh.size(); ++i) {
-    if (mesh.side[i] == 0) fronts.push_back(i);
-  }
-  std::sort(fronts.begin(), fronts.end(), [&](Index a, Index b) {
-    return std::pair(place[mesh.surface[a]], mesh.index_in_surface[a]) <
-           std::pair(place[mesh.surface[b]], mesh.index_in_surface[b]);
-  });
+  std::vector<Index> fronts = canonicalOrder(mesh);
+  std::erase_if(fronts, [&](Index i) { return mesh.side[i] != 0; });
   return fronts;
 }
 
@@ -58,8 +41,7 @@ std::vector<Agglomerate> piecesOf(const PatchMesh& mesh, std::span<const Index> 
   pieces.reserve(fronts.size());
   for (const Index i : fronts) {
     const double area = mesh.area[i];
-    const Vec3 at = mesh.centroid[i] - centre;
-    pieces.push_back({area, area * at, area * mesh.normal[i], area * glm::dot(at, at)});
+    pieces.push_back({area, area * (mesh.centroid[i] - centre), area * mesh.normal[i]});
   }
   return pieces;
 }
@@ -110,27 +92,30 @@ class FrontClusters {
   FrontClusters(const PatchMesh& mesh, std::span<const Index> fronts, std::size_t wanted)
       : mesh_(mesh), fronts_(fronts), wanted_(wanted), parts_({}, 0, 1) {
     std::vector<Agglomerate> pieces = piecesOf(mesh, fronts);
-    double area = 0;
-    for (const Agglomerate& piece : pieces) area += piece.area;
-    side_ = std::sqrt(area / double(wanted));
-    parts_ = Agglomeration(std::move(pieces), kBend * side_, side_);
+    for (const Agglomerate& piece : pieces) area_ += piece.area;
+    parts_ = Agglomeration(std::move(pieces), kBend * sideOf(wanted), sideOf(wanted));
   }
 
+  /// Neighbours are found anew whenever half of the clusters are gone. Every cluster that is not
+  /// alone in its surface has some, so this ends with as many as wanted, or one a surface.
   void run(Progress& progress) {
-    constexpr double kAny = std::numeric_limits<double>::infinity();
-    const double spread = kLargestSide * side_ / std::sqrt(6.0);  // of a square
     offerAtEdges();
-    parts_.run({spread, kStraight}, wanted_, progress);
-    parts_.run({spread, 0}, wanted_, progress);
-    runNear({spread, 0}, kWorthAnotherRound, progress);
-    // Any two of a surface may be put together now: it ends with one cluster a surface.
-    runNear({kAny, 0}, 1, progress);
+    for (std::size_t before = 0; parts_.size() > wanted_ && parts_.size() != before;) {
+      before = parts_.size();
+      // What is near goes by the clusters there are, so that few are looked at.
+      bend_ = kBend * sideOf(before);
+      offerNearest(progress);
+      parts_.run(std::max(wanted_, before / 2), progress);
+    }
   }
 
   /// Of the front at a place: the place of the first in its cluster.
   Index of(Index k) { return parts_.of(k); }
 
  private:
+  /// Of a square, if so many shared out all area evenly.
+  double sideOf(std::size_t count) const { return std::sqrt(area_ / double(count)); }
+
   void offerAtEdges() {
     forEdges(mesh_, fronts_, [&](std::span<const Index> at) {
       for (std::size_t a = 0; a < at.size(); ++a) {
@@ -141,17 +126,6 @@ class FrontClusters {
         }
       }
     });
-  }
-
-  /// Offers each cluster to its nearest neighbours in the surface, and again as long as a round
-  /// leaves no more than `worth` of the clusters.
-  void runNear(const AgglomerateBounds& bounds, double worth, Progress& progress) {
-    while (parts_.size() > wanted_) {
-      const std::size_t before = parts_.size();
-      offerNearest(progress);
-      parts_.run(bounds, wanted_, progress);
-      if (double(parts_.size()) > worth * double(before) || parts_.size() == before) return;
-    }
   }
 
   void offerNearest(Progress& progress) {
@@ -169,8 +143,9 @@ class FrontClusters {
     if (clusters.size() < 2) return;
     progress.check();
     std::vector<Box3> boxes;
+    boxes.reserve(clusters.size());
     for (const Index k : clusters) boxes.push_back({centroid(k), centroid(k)});
-    const BoxTree tree(std::move(boxes));
+    const BoxTree tree(boxes);
     std::vector<std::vector<Index>> nearest(clusters.size());
     parallelFor(clusters.size(), 64, [&](std::size_t c) {
       if (!progress.cancelled()) nearest[c] = nearestOf(clusters, Index(c), tree);
@@ -181,25 +156,40 @@ class FrontClusters {
     }
   }
 
+  /// Within a reach that grows until there are enough: a tree is searched from one end, wherever
+  /// the nearest may be.
   std::vector<Index> nearestOf(const std::vector<Index>& clusters, Index c,
                                const BoxTree& tree) const {
-    using Found = std::pair<double, Index>;
-    std::vector<Found> found;  // ascending
+    const double all = tree.bound().diagonal() + 2 * bend_;
+    double reach = std::sqrt(parts_.at(clusters[c]).area);
+    for (;; reach *= 2) {
+      std::vector<Index> found = nearestWithin(reach, clusters, c, tree);
+      if (found.size() == kNearest || reach > all) return found;
+    }
+  }
+
+  std::vector<Index> nearestWithin(double reach, const std::vector<Index>& clusters, Index c,
+                                   const BoxTree& tree) const {
+    std::vector<std::pair<double, Index>> found;  // ascending
     const Vec3 here = centroid(clusters[c]);
+    double most = reach * reach;
     tree.search(
         [&](const Box3& box) {
           const Vec3 away = glm::max(glm::max(box.low - here, here - box.high), Vec3(0.0));
-          return found.size() < kNearest || glm::dot(away, away) <= found.back().first;
+          return glm::dot(away, away) <= most;
         },
         [&](Index other) {
-          if (other == c) return true;
-          const Found next{parts_.distance2(clusters[c], clusters[other]), clusters[other]};
+          const std::pair next{parts_.distance2(clusters[c], clusters[other], bend_),
+                               clusters[other]};
+          if (other == c || next.first > most) return true;
           found.insert(std::lower_bound(found.begin(), found.end(), next), next);
           if (found.size() > kNearest) found.pop_back();
+          if (found.size() == kNearest) most = found.back().first;
           return true;
         });
     std::vector<Index> out;
-    for (const Found& f : found) out.push_back(f.second);
+    out.reserve(found.size());
+    for (const auto& [distance2, other] : found) out.push_back(other);
     return out;
   }
 
@@ -208,27 +198,20 @@ class FrontClusters {
   const PatchMesh& mesh_;
   std::span<const Index> fronts_;
   std::size_t wanted_;
-  double side_ = 0;
+  double area_ = 0;
+  double bend_ = 0;  ///< among neighbours
   Agglomeration parts_;
 };
 
-/// Numbers clusters in the order of their first patches; `key`: of each patch, the same for all of
-/// a cluster, below `keys`.
-PatchClusters numbered(std::span<const Index> key, std::size_t keys) {
-  PatchClusters clusters;
-  std::vector<Index> number(keys, kNone);
+/// Numbers keys in the order in which they first come; returns how many there are.
+std::size_t renumber(std::vector<Index>& keys, std::size_t limit) {
+  std::vector<Index> number(limit, kNone);
   Index count = 0;
-  for (const Index k : key) {
-    if (number[k] == kNone) number[k] = count++;
-    clusters.of_patch.push_back(number[k]);
+  for (Index& key : keys) {
+    if (number[key] == kNone) number[key] = count++;
+    key = number[key];
   }
-  clusters.begin.assign(count + 1, 0);
-  for (const Index c : clusters.of_patch) ++clusters.begin[c + 1];
-  std::partial_sum(clusters.begin.begin(), clusters.begin.end(), clusters.begin.begin());
-  clusters.patches.resize(key.size());
-  std::vector<std::size_t> next(clusters.begin.begin(), clusters.begin.end() - 1);
-  for (Index i = 0; i < key.size(); ++i) clusters.patches[next[clusters.of_patch[i]]++] = i;
-  return clusters;
+  return count;
 }
 
 /// Degrees; the most that the normal of a patch is off the mean of its cluster.
@@ -247,45 +230,62 @@ double widestCone(const PatchMesh& mesh, const PatchClusters& clusters) {
 
 }  // namespace
 
+PatchClusters clustersOf(std::vector<Index> of_patch, std::size_t count) {
+  PatchClusters clusters;
+  clusters.of_patch = std::move(of_patch);
+  clusters.begin.assign(count + 1, 0);
+  for (const Index c : clusters.of_patch) ++clusters.begin[c + 1];
+  std::partial_sum(clusters.begin.begin(), clusters.begin.end(), clusters.begin.begin());
+  clusters.patches.resize(clusters.of_patch.size());
+  std::vector<std::size_t> next(clusters.begin.begin(), clusters.begin.end() - 1);
+  for (Index i = 0; i < clusters.of_patch.size(); ++i) {
+    clusters.patches[next[clusters.of_patch[i]]++] = i;
+  }
+  return clusters;
+}
+
 PatchClusters clusterPatches(const PatchMesh& mesh, std::size_t wanted, Progress& progress) {
   const std::vector<Index> fronts = frontsInOrder(mesh);
   progress.begin("sharing unknowns", fronts.size() - std::min(wanted, fronts.size()));
   FrontClusters parts(mesh, fronts, wanted);
   parts.run(progress);
   progress.end();
-  // Fronts have the places of their first as keys, backs those of their fronts' after them.
+  // The key of a front is the place of the first in its cluster; those of backs follow.
   std::vector<Index> key(mesh.size());
   for (Index k = 0; k < fronts.size(); ++k) {
     const Index front = fronts[k];
     key[front] = parts.of(k);
     if (mesh.twin[front] != kNone) key[mesh.twin[front]] = Index(fronts.size()) + key[front];
   }
-  return numbered(key, 2 * fronts.size());
+  const std::size_t count = renumber(key, 2 * fronts.size());
+  return clustersOf(std::move(key), count);
 }
 
 void shareUnknowns(PatchMesh& mesh, const MeshOptions& options, MeshReport& report,
                    Progress& progress) {
-  const std::size_t fronts = mesh.frontCount();
-  if (double(fronts) <= kMostPatchesKept * double(options.patches)) return;
-  mesh.clusters = clusterPatches(mesh, options.patches, progress);
+  const double most = kMostPatchesKept * double(options.patches);
+  if (double(mesh.frontCount()) <= most) return;
+  PatchClusters clusters = clusterPatches(mesh, options.patches, progress);
+  const auto shared = std::size_t(std::ranges::count_if(
+      std::views::iota(std::size_t(0), clusters.size()),
+      [&](std::size_t c) { return mesh.side[clusters.patchesOf(c)[0]] == 0; }));
+  if (double(shared) > most) {
+    report.notes.push_back(
+        {Severity::warning,
+         fmt::format("--patches {} cannot be kept: the scene has {} surfaces, each at least one "
+                     "unknown; join surfaces in the file, or ask for {} or more",
+                     options.patches, shared, shared)});
+  }
+  if (clusters.size() == mesh.size()) return;
+  mesh.clusters = std::move(clusters);
   report.clusters = mesh.clusters->size();
   report.widest_cone = widestCone(mesh, *mesh.clusters);
   report.notes.push_back(
       {Severity::info,
-       fmt::format("{} patches share {} unknowns, since {} were asked for: light "
-                   "is solved for clusters of patches, whose normals are up to "
-                   "{:.0f} degrees off their mean",
+       fmt::format("{} patches share {} unknowns: {} were asked for; light is solved "
+                   "for clusters of patches, whose normals are up to {:.0f} degrees "
+                   "off their mean",
                    mesh.size(), report.clusters, options.patches, report.widest_cone)});
-  std::size_t shared = 0;  // by fronts
-  for (std::size_t c = 0; c < mesh.clusters->size(); ++c) {
-    shared += mesh.side[mesh.clusters->patchesOf(c)[0]] == 0 ? 1 : 0;
-  }
-  if (double(shared) <= kMostPatchesKept * double(options.patches)) return;
-  report.notes.push_back(
-      {Severity::warning,
-       fmt::format("--patches {} cannot be kept: the scene has {} surfaces, each at least one "
-                   "unknown; join surfaces in the file, or ask for {} or more",
-                   options.patches, shared, shared)});
 }
 
 }  // namespace radiosity

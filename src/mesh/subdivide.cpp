@@ -10,6 +10,7 @@
 #include "base/geometry/box.h"
 #include "base/geometry/plane_frame.h"
 #include "base/parallel.h"
+#include "mesh/cluster_patches.h"
 #include "mesh/complex.h"
 #include "mesh/join_cells.h"
 #include "mesh/merge_cells.h"
@@ -26,6 +27,9 @@ namespace {
 // most this much larger than if all area were shared out evenly.
 constexpr double kLargestSize = 3.0;
 constexpr double kMuchMore = 1.15;
+// Where patches share unknowns, cells are so much larger than if all area were shared out evenly: a
+// wall still has a cluster every so often, and other patches grow by a tenth or two.
+constexpr double kSharedSize = 1.5;
 // Cuts opposite of vertices across narrow strips lie at least so many widths apart: patches there
 // lean over to a far point less, from atan(1 / spacing) on. The first that can be afforded.
 constexpr double kSpacings[] = {1.0, 1.5, 2.0, 2.5, 3.0, 4.0};
@@ -228,6 +232,13 @@ void meetCountJoined(Subdivision& subdivision, double start, double wanted) {
   if (size != last) count(size);
 }
 
+/// Where patches will share unknowns: neither does a small polygon need more than one, nor is a
+/// large one to be cut coarser for it.
+void cutToShare(Subdivision& subdivision, double size) {
+  subdivision.run({size, std::numeric_limits<double>::infinity()}, Rounding::nearest, kNoOpposites);
+  subdivision.join(size);
+}
+
 /// Enters what the patches have less than their polygons: cells without area in details as small as
 /// rounding, and polygons that could not be cut at all.
 void accountForCells(const CoarseComplex& complex, const PatchMesh& mesh, MeshReport& report) {
@@ -282,8 +293,14 @@ PatchMesh subdivide(const CoarseComplex& complex, const Scene& scene, const Mesh
     // A wide polygon has area / size^2 cells, a thin one half its outline / size: as many as a
     // square at a quarter.
     const double start = std::max(std::sqrt(area / wanted), outlineOf(complex) / (4 * wanted));
-    meetCount(subdivision, start, wanted);
-    if (subdivision.count() > kMuchMore * wanted) meetCountJoined(subdivision, start, wanted);
+    const double most = kMostPatchesKept * wanted;
+    if (double(complex.polygons.size()) <= most) {
+      meetCount(subdivision, start, wanted);
+      if (subdivision.count() > kMuchMore * wanted) meetCountJoined(subdivision, start, wanted);
+    }
+    if (!(subdivision.count() > 0 && subdivision.count() <= most)) {
+      cutToShare(subdivision, kSharedSize * std::sqrt(area / wanted));
+    }
   }
   PatchMesh mesh =
       assemblePatches(complex, scene, subdivision.cuts(), subdivision.cells(), progress);

@@ -23,9 +23,17 @@ ScalarField brightnessField(const char* title, std::span<const double> values, i
   return {brightnessOfEach(values, bands), {title + brightnessText(bands), "W/m^2"}};
 }
 
-std::vector<double> rowOf(const ExchangeMatrix& matrix, std::size_t patch) {
+/// A value of each unknown as that of every patch that shares it.
+std::vector<double> ofPatches(const PatchMesh& mesh, std::span<const double> of_unknowns) {
+  std::vector<double> values;
+  values.reserve(mesh.size());
+  for (std::size_t i = 0; i < mesh.size(); ++i) values.push_back(of_unknowns[mesh.unknownOf(i)]);
+  return values;
+}
+
+std::vector<double> rowOf(const ExchangeMatrix& matrix, std::size_t unknown) {
   std::vector<double> row(matrix.size(), 0.0);
-  matrix.forRow(patch, [&](Index j, double f) { row[j] = f; });
+  matrix.forRow(unknown, [&](Index j, double f) { row[j] = f; });
   return row;
 }
 
@@ -56,12 +64,19 @@ ScalarField Pipeline::field(Quantity quantity, std::size_t patch) {
       const Solution& light = solution();
       return brightnessField("irradiance H", light.irradiance, light.bands);
     }
-    case Quantity::form_factor:
-      return {rowOf(matrix(), patch), {fmt::format("form factor from patch {}", patch), ""}};
+    case Quantity::form_factor: {
+      const ExchangeMatrix& factors = matrix();
+      const PatchMesh& patches = made(results_.mesh).mesh;
+      const char* between =
+          patches.clusters ? "form factor from cluster of patch" : "form factor from patch";
+      return {ofPatches(patches, rowOf(factors, patches.unknownOf(patch))),
+              {fmt::format("{} {}", between, patch), ""}};
+    }
     case Quantity::row_sum:
       break;
   }
-  return {factors().fronts, {"row sum: fronts seen", ""}};
+  const FormFactors& seen = factors();
+  return {ofPatches(made(results_.mesh).mesh, seen.fronts), {"row sum: fronts seen", ""}};
 }
 
 }  // namespace radiosity

@@ -74,6 +74,11 @@ class FieldWriter {
   void choice(const char* name, const Enum& value, const NameTable<Enum, N>& names) {
     sink_->text(name, nameOf(names, value));
   }
+  /// Whether there is a group of what may be absent; reading, it is made where there is.
+  template <class T>
+  bool present(const char* /*name*/, const std::optional<T>& value) {
+    return value.has_value();
+  }
   template <class Body>
   void group(const char* name, const Body& body) {
     auto inner_sink = sink_->group(name);
@@ -167,6 +172,11 @@ class FieldReader {
   template <class Enum, std::size_t N>
   void choice(const char* name, Enum& value, const NameTable<Enum, N>& names) {
     value = parse(name, source_->text(name), names);
+  }
+  template <class T>
+  bool present(const char* name, std::optional<T>& value) {
+    if (source_->has(name)) value.emplace();
+    return value.has_value();
   }
   template <class Body>
   void group(const char* name, const Body& body) {

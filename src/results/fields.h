@@ -97,6 +97,9 @@ void describe(Archive& a, Described<Archive, PatchMesh>& m) {
   a("twin", m.twin);
   a("surface_names", m.surface_names);
   a.group("polygons", [&](auto& polygons) { describe(polygons, m.polygons); });
+  if (a.present("clusters", m.clusters)) {
+    a.group("clusters", [&](auto& clusters) { clusters("of_patch", m.clusters->of_patch); });
+  }
 }
 
 template <class Archive>
@@ -118,6 +121,8 @@ void describe(Archive& a, Described<Archive, MeshReport>& r) {
   a("smallest_angle", r.smallest_angle);
   a("smallest_angle_surface", r.smallest_angle_surface);
   a("longest_edge", r.longest_edge);
+  a("clusters", r.clusters);
+  a("widest_cone", r.widest_cone);
   a.table("surfaces", r.surfaces, [](auto& column) {
     column("name", &SurfaceAreas::name);
     column("given", &SurfaceAreas::given, "m^2");
@@ -177,6 +182,21 @@ void describe(Archive& a, Described<Archive, ExactReport>& r) {
 }
 
 template <class Archive>
+void describe(Archive& a, Described<Archive, RayReport>& r) {
+  a("triangles", r.triangles);
+  a("rays", r.rays);
+  a("lost", r.lost);
+  a("leaked", r.leaked);
+  a("rounds", r.rounds);
+  a("short_rows", r.short_rows);
+  a("largest_row_figure", r.largest_row_figure);
+  a("seconds_prepare", r.seconds_prepare);
+  a("seconds_cast", r.seconds_cast);
+  a("seconds_merge", r.seconds_merge);
+  a("seconds_close", r.seconds_close);
+}
+
+template <class Archive>
 void describe(Archive& a, Described<Archive, FormFactorReport>& r) {
   a("method_reason", r.method_reason);
   a("hemicubes", r.hemicubes);
@@ -204,6 +224,7 @@ void describe(Archive& a, Described<Archive, FormFactorReport>& r) {
   a.group("closure", [&](auto& closure) { describe(closure, r.closure); });
   a("closure_enforced", r.closure_enforced);
   a.group("exact", [&](auto& exact) { describe(exact, r.exact); });
+  a.group("rays", [&](auto& rays) { describe(rays, r.rays); });
   describeNotes(a, r.notes);
 }
 

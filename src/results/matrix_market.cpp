@@ -67,7 +67,8 @@ void writeMatrixMarket(const std::string& path, const ExchangeMatrix& matrix, Pr
   file.write(fmt::format(
       "%%MatrixMarket matrix coordinate real general\n"
       "% Form factors by radiosity: row i, column j holds F[i,j], the fraction of what\n"
-      "% leaves patch i that reaches patch j; no unit. Patches are numbered from 1.\n"
+      "% leaves patch i that reaches patch j; no unit. Patches are numbered from 1; where\n"
+      "% patches share unknowns, rows and columns are their clusters.\n"
       "% The values as stored, {} bits, in 17 digits.\n"
       "{} {} {}\n",
       single ? 32 : 64, n, n, matrix.nonZeros()));

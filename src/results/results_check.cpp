@@ -78,6 +78,25 @@ void checkPolygons(const Checker& check, const PatchMesh& m) {
   check.length(p.back_is_patch, p.size(), "/mesh/polygons/back_is_patch");
 }
 
+/// The numbers are those of clusters, none is left out, and a cluster lies on one side of one
+/// surface.
+void checkClusters(const Checker& check, const PatchMesh& m) {
+  constexpr const char* kObject = "/mesh/clusters/of_patch";
+  const std::vector<Index>& of_patch = m.clusters->of_patch;
+  check.length(of_patch, m.size(), kObject);
+  check.indices(of_patch, m.size(), false, kObject);
+  std::vector<Index> first(unknownsOf(m), kNone);
+  for (Index i = 0; i < of_patch.size(); ++i) {
+    Index& leader = first[of_patch[i]];
+    if (leader == kNone) leader = i;
+    check.require(m.surface[i] == m.surface[leader] && m.side[i] == m.side[leader], kObject,
+                  "puts patches of two surfaces or sides together");
+  }
+  for (std::size_t c = 0; c < first.size(); ++c) {
+    check.require(first[c] != kNone, kObject, fmt::format("gives cluster {} no patch", c));
+  }
+}
+
 void checkMesh(const Checker& check, const PatchMesh& m) {
   const std::size_t n = m.size();
   check.offsets(m.corner_offset, n, m.corners.size(), "/mesh/corner_offset");
@@ -98,6 +117,7 @@ void checkMesh(const Checker& check, const PatchMesh& m) {
   check.length(m.twin, n, "/mesh/twin");
   check.indices(m.twin, n, true, "/mesh/twin");
   checkPolygons(check, m);
+  if (m.clusters) checkClusters(check, m);
 }
 
 void checkSolution(const Checker& check, const Solution& s) {
@@ -124,7 +144,21 @@ void checkGathered(const Checker& check, const Gathered& g, const PatchMesh& mes
   }
 }
 
+/// A row an unknown.
+void checkFactors(const Checker& check, const FormFactors& factors, const Results& results) {
+  const std::size_t rows = results.mesh ? unknownsOf(results.mesh->mesh) : factors.fronts.size();
+  check.length(factors.fronts, rows, "/form_factors/fronts");
+  check.length(factors.backs, rows, "/form_factors/backs");
+  check.length(factors.sky, rows, "/form_factors/sky");
+  if (!factors.error.empty()) check.length(factors.error, rows, "/form_factors/error");
+}
+
 }  // namespace
+
+std::size_t unknownsOf(const PatchMesh& mesh) {
+  if (!mesh.clusters || mesh.clusters->of_patch.empty()) return mesh.size();
+  return std::size_t(std::ranges::max(mesh.clusters->of_patch)) + 1;
+}
 
 void checkResults(const std::string& path, const Results& results) {
   const Checker check(path);
@@ -153,12 +187,8 @@ void checkResults(const std::string& path, const Results& results) {
     }
   }
   if (results.factors) {
-    same(results.factors->fronts.size(), "/form_factors/fronts");
-    same(results.factors->backs.size(), "/form_factors/backs");
-    same(results.factors->sky.size(), "/form_factors/sky");
-    if (!results.factors->error.empty()) {
-      same(results.factors->error.size(), "/form_factors/error");
-    }
+    checkFactors(check, *results.factors, results);
+    if (!results.mesh) same(results.factors->fronts.size(), "/form_factors/fronts");
   }
   if (results.materials) {
     const auto bands = std::size_t(results.materials->bands);

@@ -9,4 +9,7 @@ namespace radiosity {
 /// catches files that another program has edited.
 void checkResults(const std::string& path, const Results& results);
 
+/// As PatchMesh::unknowns(), of a mesh of whose clusters of_patch alone is filled in.
+std::size_t unknownsOf(const PatchMesh& mesh);
+
 }  // namespace radiosity

@@ -5,9 +5,11 @@
 #include <array>
 #include <fstream>
 #include <new>
+#include <span>
 
 #include "base/atomic_file.h"
 #include "base/input_file.h"
+#include "mesh/cluster_patches.h"
 #include "radiosity/results.h"
 #include "results/fields.h"
 #include "results/h5_reader.h"
@@ -27,7 +29,7 @@ using h5::SizeCounter;
 
 constexpr const char* kFormat = "radiosity results";
 /// Raised whenever an older program could misread the file.
-constexpr std::int32_t kFormatVersion = 4;
+constexpr std::int32_t kFormatVersion = 5;
 
 /// Everything but the matrix and the links, into a group or a counter.
 template <class Sink>
@@ -60,7 +62,11 @@ class StageWriter {
     Sink group = root_.group("form_factors");
     group.text("key", results_.factors_key);
     group.text("geometry_hash", geometry_hash_);
-    group.text("entry", "F[i,j]: the fraction of what leaves patch i that reaches patch j");
+    const bool shared = results_.mesh && results_.mesh->mesh.clusters;
+    group.text("entry", shared
+                            ? "F[i,j]: the fraction of what leaves cluster i that reaches "
+                              "cluster j; /mesh/clusters/of_patch names each patch's"
+                            : "F[i,j]: the fraction of what leaves patch i that reaches patch j");
     FieldWriter<Sink> fields(group);
     describe(fields, factors);
     return group;
@@ -88,12 +94,22 @@ class StageWriter {
   std::string geometry_hash_;  ///< empty without a mesh
 };
 
-/// What /form_factors shows of the mesh, so that a reader needs no other group.
-constexpr std::array<std::array<const char*, 2>, 4> kMeshLinks = {
+/// What /form_factors shows of the mesh, so that a reader needs no other group: of what its rows
+/// are, patches or clusters.
+using MeshLinks = std::span<const std::array<const char*, 2>>;
+constexpr std::array<std::array<const char*, 2>, 4> kPatchLinks = {
     {{"normal", "normal"},
      {"centroid", "centroid"},
      {"surface", "surface"},
      {"surface_names", "surface_names"}}};
+constexpr std::array<std::array<const char*, 2>, 1> kClusterLinks = {
+    {{"of_patch", "clusters/of_patch"}}};
+
+MeshLinks meshLinks(const Results& results) {
+  if (!results.mesh) return {};
+  if (results.mesh->mesh.clusters) return kClusterLinks;
+  return kPatchLinks;
+}
 
 void requireMatrix(const std::string& path, const Results& results) {
   if (results.factors && results.factors->matrix.size() != results.factors->fronts.size()) {
@@ -200,6 +216,10 @@ Results readResults(const std::string& path, bool with_factors) {
     throw RunError(fmt::format("{}: does not fit into memory; use a larger machine", path));
   }
   checkResults(path, results);
+  if (results.mesh && results.mesh->mesh.clusters) {
+    std::optional<PatchClusters>& clusters = results.mesh->mesh.clusters;
+    clusters = clustersOf(std::move(clusters->of_patch), unknownsOf(results.mesh->mesh));
+  }
   return results;
 }
 
@@ -217,9 +237,7 @@ void writeResults(const std::string& path, const Results& results, Progress& pro
     if (results.mesh) mesh = stages.mesh(*results.mesh);
     if (results.factors) {
       OutputGroup factors = stages.factors(*results.factors);
-      for (const auto& [name, source] : kMeshLinks) {
-        if (mesh) factors.link(name, *mesh, source);
-      }
+      for (const auto& [name, source] : meshLinks(results)) factors.link(name, *mesh, source);
       writeMatrix(factors, results.factors->matrix, progress);
     }
     stages.solution();
@@ -239,9 +257,7 @@ std::size_t estimateResultsBytes(const Results& results) {
   if (results.mesh) stages.mesh(*results.mesh);
   if (results.factors) {
     SizeCounter factors = stages.factors(*results.factors);
-    for (const auto& link : kMeshLinks) {
-      if (results.mesh) factors.link(link[0]);
-    }
+    for (const auto& link : meshLinks(results)) factors.link(link[0]);
     countMatrix(factors, results.factors->matrix);
   }
   stages.solution();

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "solve/certificate.h"
+#include "solve/clusters.h"
 #include "solve/energy.h"
 #include "solve/iteration.h"
 #include "solve/singular.h"
@@ -244,6 +245,24 @@ void nameDarkness(const std::vector<double>& from_sky, SolveSummary& summary) {
           : "no light: no patch emits, so everything is dark; usable, but black";
 }
 
+/// Between clusters; then B = E + rho H of every patch, with the irradiance of its cluster.
+Solution solveClusters(const FormFactors& factors, const PatchMaterials& materials,
+                       const PatchMesh& mesh, const SolveOptions& options, Progress& progress) {
+  const int bands = materials.bands;
+  checkMaterials(materials.reflectance, materials.emission, bands,
+                 {mesh.surface, mesh.surface_names});
+  Solution solution = solve(factors, clusterMeans(mesh, materials.reflectance, bands),
+                            clusterMeans(mesh, materials.emission, bands), bands, options, progress,
+                            clusterSurfaces(mesh), mesh.surface_names, materials.sky);
+  if (solution.irradiance.empty()) return solution;  // singular
+  solution.irradiance = ofEachPatch(mesh, solution.irradiance, bands);
+  solution.radiosity = materials.emission;
+  for (std::size_t k = 0; k < solution.radiosity.size(); ++k) {
+    solution.radiosity[k] += materials.reflectance[k] * solution.irradiance[k];
+  }
+  return solution;
+}
+
 }  // namespace
 
 void SolveOptions::validate() const {
@@ -303,6 +322,7 @@ Solution solve(const FormFactors& factors, std::span<const double> reflectance,
 Solution solve(const FormFactors& factors, const PatchMaterials& materials, const PatchMesh& mesh,
                const SolveOptions& options, Progress& progress) {
   materials.requireSizes(mesh.size());
+  if (mesh.clusters) return solveClusters(factors, materials, mesh, options, progress);
   return solve(factors, materials.reflectance, materials.emission, materials.bands, options,
                progress, mesh.surface, mesh.surface_names, materials.sky);
 }

@@ -142,12 +142,38 @@ class KeptStages(CliTest):
 
 class WhatCannotBeKept(CliTest):
     def test_too_few_patches(self):
-        run = self.run_program("factors", "box.obj", "--patches", "3")
-        self.assertEqual(run.err, "radiosity: warning: 6 patches instead of 3: the scene has 6 planar "
-                         "polygons, each at least one patch; large ones are not cut coarser than "
-                         "6 m for it\n")
+        # Six planar polygons of two surfaces.
+        run = self.run_program("factors", "box.obj", "--patches", "1")
+        self.assertEqual(run.err, "radiosity: warning: --patches 1 cannot be kept: the scene has 2 "
+                         "surfaces, each at least one unknown; join surfaces in the file, or ask "
+                         "for 2 or more\n")
         run = self.run_program("factors", "box.obj", "--patches", "6")
         self.assertEqual(run.err, "")
+
+    def test_patches_beyond_what_was_asked_for_share_unknowns(self):
+        run = self.run_program("solve", "box.obj", "--patches", "4", "-o", "s.h5")
+        self.assertEqual(run.err, "")
+        self.assertIn("6 patches share 4 unknowns: 4 were asked for", run.out)
+        self.assertIn("for 4 clusters", run.out)
+        with h5py.File(self.folder / "s.h5") as file:
+            self.assertEqual(list(file["form_factors/shape"]), [4, 4])
+            of_patch = file["form_factors/of_patch"][()]
+            self.assertEqual(sorted(set(of_patch)), [0, 1, 2, 3])
+            self.assertEqual(file["solution/radiosity"].shape, (6, 3))
+            self.assertEqual(file["mesh/report"].attrs["clusters"], 4)
+            irradiance = file["solution/irradiance"][()]
+            for cluster in range(4):
+                self.assertEqual(len(set(map(tuple, irradiance[of_patch == cluster]))), 1)
+        # What stands in the file is reused, drawn and listed.
+        report = self.report("render", "s.h5", "--show", "row-sum", "-o", "p.png")
+        self.assertEqual(report["stages"]["form_factors"]["action"], "reused")
+        self.assertIn("cluster of patch 5",
+                      self.run_program("render", "s.h5", "--show", "form-factor:5", "-o", "p.png").out)
+        self.run_program("factors", "s.h5", "-o", "f.mtx")
+        self.assertEqual(scipy.io.mmread(self.folder / "f.mtx").shape, (4, 4))
+        report = self.report("mesh", "box.obj", "--patches", "4")
+        self.assertEqual([report["mesh"][key] for key in ("patches", "unknowns", "clusters")],
+                         [6, 4, 4])
 
     def test_a_matrix_market_file_holds_the_values_of_the_results_file(self):
         # Exact form factors are stored once a pair; closed, their rows sum to 1 in either file.

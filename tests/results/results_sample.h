@@ -110,8 +110,29 @@ inline MeshReport meshReport() {
   r.smallest_angle = 20.5;
   r.smallest_angle_surface = "box/red";
   r.longest_edge = 1.25;
+  r.clusters = 14;
+  r.widest_cone = 57.5;
   r.notes = {{Severity::warning, "left wall: not planar by 3.2 mm"}};
   return r;
+}
+
+/// A patch and the one after the next share a cluster, where surface and side are the same.
+inline PatchClusters clusters(const PatchMesh& m) {
+  PatchClusters c;
+  std::vector<std::vector<Index>> found;
+  for (Index i = 0; i < m.size(); ++i) {
+    const bool joins = i >= 2 && m.surface[i] == m.surface[i - 2] && m.side[i] == m.side[i - 2] &&
+                       found[c.of_patch[i - 2]].size() == 1;
+    if (!joins) found.emplace_back();
+    c.of_patch.push_back(joins ? c.of_patch[i - 2] : Index(found.size() - 1));
+    found[c.of_patch[i]].push_back(i);
+  }
+  c.begin = {0};
+  for (const std::vector<Index>& patches : found) {
+    c.patches.insert(c.patches.end(), patches.begin(), patches.end());
+    c.begin.push_back(c.patches.size());
+  }
+  return c;
 }
 
 /// Rows of all kinds: empty (patch 1), sparse, and, from patch 2 on every fifth, full.
@@ -225,6 +246,7 @@ inline FormFactors factors(const PatchMesh& m, Precision precision) {
   r.capped = 13;
   r.error_figure = 1.25e-4;
   r.exact = exactReport();
+  r.rays = {61, 62, 63, 64, 65, 66, 0.67, 0.68, 0.69, 0.7, 0.71};
   r.notes = {{Severity::loud, "door: seen from behind: flipped?"}};
   return f;
 }
@@ -349,19 +371,23 @@ inline auto members(const PlanarPolygons& s) {
   const auto& [a, b, c, d, e, f, g, h] = s;
   return std::tie(a, b, c, d, e, f, g, h);
 }
+inline auto members(const PatchClusters& s) {
+  const auto& [a, b, c] = s;
+  return std::tie(a, b, c);
+}
 inline auto members(const PatchMesh& s) {
   // Enclosures are not kept in the file: they are found anew.
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, enclosures] = s;
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, enclosures, q] = s;
   static_cast<void>(enclosures);
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p);
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q);
 }
 inline auto members(const SurfaceAreas& s) {
   const auto& [a, b, c, d, e, f] = s;
   return std::tie(a, b, c, d, e, f);
 }
 inline auto members(const MeshReport& s) {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t);
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v);
 }
 inline auto members(const MeshResult& s) {
   const auto& [a, b] = s;
@@ -377,11 +403,15 @@ inline auto members(const ExactReport& s) {
   return std::tie(v0, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13, v14, v15, v16, v17,
                   v18, v19, v20, v21, v22, v23, v24, v25, v26, v27, v28);
 }
+inline auto members(const RayReport& s) {
+  const auto& [a, b, c, d, e, f, g, h, i, j, k] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k);
+}
 inline auto members(const FormFactorReport& s) {
   const auto& [v0, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13, v14, v15, v16, v17, v18,
-               v19, v20, v21, v22, v23, v24, v25, v26] = s;
+               v19, v20, v21, v22, v23, v24, v25, v26, v27] = s;
   return std::tie(v0, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13, v14, v15, v16, v17,
-                  v18, v19, v20, v21, v22, v23, v24, v25, v26);
+                  v18, v19, v20, v21, v22, v23, v24, v25, v26, v27);
 }
 inline auto members(const FormFactors& s) {
   const auto& [a, b, c, d, e, f, g, h] = s;

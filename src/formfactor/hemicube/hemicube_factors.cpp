@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "formfactor/hemicube/row_builder.h"
 #include "formfactor/row_accounts.h"
+#include "mesh/canonical_order.h"
 #include "radiosity/closure.h"
 #include "radiosity/matrix_functions.h"
 

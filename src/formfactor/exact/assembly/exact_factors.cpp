@@ -12,6 +12,7 @@
 #include "formfactor/closed_scene.h"
 #include "formfactor/exact/clip_kernels.h"
 #include "formfactor/row_accounts.h"
+#include "mesh/canonical_order.h"
 #include "mesh/enclosures.h"
 #include "radiosity/closure.h"
 
@@ -172,12 +173,18 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   const bool enforces = options.closure == ClosureMode::enforce;
   UncertainEntries uncertain(enforces ? n : 0);
   const RowContext context{
-      scene.elements,     scene.order,
-      scene.chunks,       scene.visibility,
-      kernels.unoccluded, kernels.occluded,
-      progress,           recheckEvery(estimate.occluded_pairs, options.toleranceOf(FormFactorMethod::exact)),
-      result.matrix,      enforces ? &uncertain : nullptr,
-      result.backs,       seen_backs};
+      scene.elements,
+      scene.order,
+      scene.chunks,
+      scene.visibility,
+      kernels.unoccluded,
+      kernels.occluded,
+      progress,
+      recheckEvery(estimate.occluded_pairs, options.toleranceOf(FormFactorMethod::exact)),
+      result.matrix,
+      enforces ? &uncertain : nullptr,
+      result.backs,
+      seen_backs};
   const RowSums sums = fillRows(context, scene.tasks, progress);
   using Clock = std::chrono::steady_clock;
   const Clock::time_point finishing = Clock::now();

@@ -1,0 +1,73 @@
+#include "formfactor/cluster_factors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/made.h"
+#include "radiosity/matrix_functions.h"
+
+namespace radiosity {
+
+namespace {
+
+/// Means of N values over each cluster, by area; none of none.
+std::vector<double> meansByArea(const PatchMesh& mesh, const PatchClusters& clusters,
+                                const std::vector<double>& values) {
+  std::vector<double> means;
+  for (std::size_t c = 0; !values.empty() && c < clusters.size(); ++c) {
+    double sum = 0;
+    double area = 0;
+    for (const Index i : clusters.patchesOf(c)) {
+      sum += mesh.area[i] * values[i];
+      area += mesh.area[i];
+    }
+    means.push_back(area > 0 ? sum / area : 0.0);
+  }
+  return means;
+}
+
+double mostPatches(const PatchClusters& clusters) {
+  std::size_t most = 0;
+  for (std::size_t c = 0; c < clusters.size(); ++c) {
+    most = std::max(most, clusters.patchesOf(c).size());
+  }
+  return double(most);
+}
+
+}  // namespace
+
+FormFactors clusterFactors(const FormFactors& factors, const PatchMesh& mesh, Progress& progress) {
+  const PatchClusters& clusters = made(mesh.clusters);
+  FormFactors result;
+  result.matrix = aggregated(factors.matrix, clusters.of_patch, clusters.size(), progress);
+  result.fronts = meansByArea(mesh, clusters, factors.fronts);
+  result.backs = meansByArea(mesh, clusters, factors.backs);
+  result.sky = meansByArea(mesh, clusters, factors.sky);
+  result.backs_by_surface = factors.backs_by_surface;
+  const double most = std::sqrt(mostPatches(clusters));
+  result.error = meansByArea(mesh, clusters, factors.error);
+  for (double& figure : result.error) figure *= most;
+  result.method = factors.method;
+  result.report = factors.report;
+  const double squares = weightedSquares(result.matrix);
+  if (squares > 0) {
+    result.report.error_figure *= most * std::sqrt(weightedSquares(factors.matrix) / squares);
+  }
+  return result;
+}
+
+std::size_t clusterMatrixBytes(const PatchMesh& mesh, bool symmetric, Precision precision) {
+  const std::size_t k = mesh.unknowns();
+  return symmetric ? estimateSymmetricBytes(k, double(k), precision)
+                   : estimateRowFormBytes(k, double(k), precision);
+}
+
+std::size_t clusterFactorsBytes(const PatchMesh& mesh, bool symmetric, Precision precision) {
+  const std::size_t k = mesh.unknowns();
+  // Exchange areas of the symmetric form are summed in 64 bits.
+  const std::size_t sums = symmetric ? k * (k + 1) / 2 * sizeof(double) : 0;
+  return sums + clusterMatrixBytes(mesh, symmetric, precision);
+}
+
+}  // namespace radiosity

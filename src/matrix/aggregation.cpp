@@ -1,0 +1,164 @@
+// From form factors between patches to form factors between groups of patches.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "base/parallel.h"
+#include "matrix/run_row.h"
+#include "radiosity/matrix_functions.h"
+
+namespace radiosity {
+
+namespace {
+
+void requireGroups(const ExchangeMatrix& matrix, std::span<const Index> group_of,
+                   std::size_t groups) {
+  if (group_of.size() != matrix.size()) {
+    throw InputError(fmt::format("exchange matrix: groups of {} patches are given for {}",
+                                 group_of.size(), matrix.size()));
+  }
+  for (std::size_t i = 0; i < group_of.size(); ++i) {
+    if (group_of[i] < groups) continue;
+    throw InputError(fmt::format("exchange matrix: patch {} is in group {}, of {} there are", i,
+                                 group_of[i], groups));
+  }
+}
+
+std::vector<double> areasOf(const ExchangeMatrix& matrix, std::span<const Index> group_of,
+                            std::size_t groups) {
+  std::vector<double> area(groups, 0.0);
+  for (std::size_t i = 0; i < group_of.size(); ++i) area[group_of[i]] += matrix.area()[i];
+  return area;
+}
+
+/// A group without an area exchanges nothing.
+double inverseOf(double area) { return area > 0 ? 1 / area : 0.0; }
+
+/// The patches of each group, ascending.
+std::vector<std::vector<Index>> patchesOf(std::span<const Index> group_of, std::size_t groups) {
+  std::vector<std::vector<Index>> patches(groups);
+  for (Index i = 0; i < group_of.size(); ++i) patches[group_of[i]].push_back(i);
+  return patches;
+}
+
+ExchangeMatrix aggregatedRows(const ExchangeMatrix& matrix, std::span<const Index> group_of,
+                              std::vector<double> area, Progress& progress) {
+  const std::size_t groups = area.size();
+  const std::vector<std::vector<Index>> patches = patchesOf(group_of, groups);
+  ExchangeMatrix result(std::move(area), matrix.precision());
+  parallelFor(groups, 1, [&](std::size_t group) {
+    if (progress.cancelled()) return;
+    std::vector<double> exchange(groups, 0.0);
+    for (const Index i : patches[group]) {
+      const double a = matrix.area()[i];
+      matrix.forRow(i, [&](Index j, double factor) { exchange[group_of[j]] += a * factor; });
+    }
+    const double inverse = inverseOf(result.area()[group]);
+    std::vector<Index> columns;
+    std::vector<double> values;
+    for (Index other = 0; other < groups; ++other) {
+      const double factor = exchange[other] * inverse;
+      if (!(factor > 0)) continue;
+      columns.push_back(other);
+      values.push_back(factor);
+    }
+    result.setRow(group, columns, values);
+    progress.advance(patches[group].size());
+  });
+  progress.check();
+  return result;
+}
+
+/// Groups in the order in which the patches of a symmetric matrix come upon them; those without
+/// patches last. Groups that do not see each other stay neighbours that way.
+std::vector<Index> orderOfGroups(std::span<const Index> patches, std::span<const Index> group_of,
+                                 std::size_t groups) {
+  std::vector<Index> order;
+  std::vector<char> seen(groups, 0);
+  const auto add = [&](Index group) {
+    if (!std::exchange(seen[group], 1)) order.push_back(group);
+  };
+  for (const Index i : patches) add(group_of[i]);
+  for (Index group = 0; group < groups; ++group) add(group);
+  return order;
+}
+
+/// Exchange areas of the upper triangle, all values.
+class Triangle {
+ public:
+  explicit Triangle(std::size_t size) : size_(size), values_(size * (size + 1) / 2, 0.0) {}
+  /// Row k: from its diagonal on.
+  std::span<double> row(std::size_t k) {
+    return {values_.data() + k * (2 * size_ - k + 1) / 2, size_ - k};
+  }
+  void add(std::size_t k, std::size_t other, double exchange) {
+    row(std::min(k, other))[std::max(k, other) - std::min(k, other)] += exchange;
+  }
+
+ private:
+  std::size_t size_;
+  std::vector<double> values_;
+};
+
+/// The sum over the pairs of a symmetric matrix, each counted from both its ends within a group.
+/// `place`: of the group, by the position of the patch.
+Triangle exchangeOfGroups(const ExchangeMatrix& matrix, std::span<const Index> place,
+                          std::size_t groups, Progress& progress) {
+  Triangle triangle(groups);
+  std::vector<double> exchange(groups, 0.0);  // of one patch, by place
+  for (std::size_t k = 0; k < place.size(); ++k) {
+    progress.check();
+    const Index own = place[k];
+    forRuns(matrix.upperRuns(k), [&](std::size_t offset, const auto* values, std::size_t count) {
+      const Index* later = &place[k + 1 + offset];
+      for (std::size_t m = 0; m < count; ++m) exchange[later[m]] += double(values[m]);
+    });
+    exchange[own] = 2 * exchange[own] + matrix.diagonal(k);
+    const double area = matrix.area()[matrix.order()[k]];
+    for (std::size_t other = 0; other < groups; ++other) {
+      if (exchange[other] == 0) continue;
+      triangle.add(own, other, area * std::exchange(exchange[other], 0.0));
+    }
+    progress.advance();
+  }
+  return triangle;
+}
+
+ExchangeMatrix aggregatedTriangle(const ExchangeMatrix& matrix, std::span<const Index> group_of,
+                                  std::vector<double> area, Progress& progress) {
+  const std::size_t groups = area.size();
+  std::vector<Index> order = orderOfGroups(matrix.order(), group_of, groups);
+  std::vector<Index> place_of(groups);
+  for (Index k = 0; k < groups; ++k) place_of[order[k]] = k;
+  std::vector<Index> place;
+  place.reserve(group_of.size());
+  for (const Index i : matrix.order()) place.push_back(place_of[group_of[i]]);
+  Triangle exchange = exchangeOfGroups(matrix, place, groups, progress);
+  ExchangeMatrix result =
+      ExchangeMatrix::symmetric(std::move(area), std::move(order), matrix.precision());
+  parallelFor(groups, 16, [&](std::size_t k) {
+    const std::span<double> row = exchange.row(k);
+    const double inverse = inverseOf(result.area()[result.order()[k]]);
+    for (double& value : row) value *= inverse;
+    result.setUpperRow(k, row);
+  });
+  return result;
+}
+
+}  // namespace
+
+ExchangeMatrix aggregated(const ExchangeMatrix& matrix, std::span<const Index> group_of,
+                          std::size_t groups, Progress& progress) {
+  requireGroups(matrix, group_of, groups);
+  std::vector<double> area = areasOf(matrix, group_of, groups);
+  progress.begin("summing over clusters", matrix.size());
+  ExchangeMatrix result = matrix.isSymmetric()
+                              ? aggregatedTriangle(matrix, group_of, std::move(area), progress)
+                              : aggregatedRows(matrix, group_of, std::move(area), progress);
+  progress.end();
+  return result;
+}
+
+}  // namespace radiosity

@@ -1,0 +1,56 @@
+#include "solve/clusters.h"
+
+#include <algorithm>
+
+#include "base/made.h"
+
+namespace radiosity {
+
+std::vector<double> clusterMeans(const PatchMesh& mesh, std::span<const double> values, int bands) {
+  const PatchClusters& clusters = made(mesh.clusters);
+  const auto width = std::size_t(bands);
+  std::vector<double> means(clusters.size() * width, 0.0);
+  for (std::size_t c = 0; c < clusters.size(); ++c) {
+    const std::span<const Index> patches = clusters.patchesOf(c);
+    for (std::size_t b = 0; b < width; ++b) {
+      double sum = 0;
+      double area = 0;
+      double low = values[patches[0] * width + b];
+      double high = low;
+      for (const Index i : patches) {
+        const double value = values[i * width + b];
+        sum += mesh.area[i] * value;
+        area += mesh.area[i];
+        low = std::min(low, value);
+        high = std::max(high, value);
+      }
+      // Rounding must not make a reflectance larger than that of every patch.
+      means[c * width + b] = area > 0 ? std::clamp(sum / area, low, high) : low;
+    }
+  }
+  return means;
+}
+
+std::vector<double> ofEachPatch(const PatchMesh& mesh, std::span<const double> of_clusters,
+                                int bands) {
+  const PatchClusters& clusters = made(mesh.clusters);
+  const auto width = std::size_t(bands);
+  std::vector<double> values;
+  values.reserve(mesh.size() * width);
+  for (const Index c : clusters.of_patch) {
+    const std::span<const double> row = of_clusters.subspan(c * width, width);
+    values.insert(values.end(), row.begin(), row.end());
+  }
+  return values;
+}
+
+std::vector<Index> clusterSurfaces(const PatchMesh& mesh) {
+  const PatchClusters& clusters = made(mesh.clusters);
+  std::vector<Index> surfaces;
+  for (std::size_t c = 0; c < clusters.size(); ++c) {
+    surfaces.push_back(mesh.surface[clusters.patchesOf(c)[0]]);
+  }
+  return surfaces;
+}
+
+}  // namespace radiosity
