@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "base/made.h"
+
 namespace radiosity {
 
 namespace {
@@ -82,7 +84,7 @@ void checkPolygons(const Checker& check, const PatchMesh& m) {
 /// surface.
 void checkClusters(const Checker& check, const PatchMesh& m) {
   constexpr const char* kObject = "/mesh/clusters/of_patch";
-  const std::vector<Index>& of_patch = m.clusters->of_patch;
+  const std::vector<Index>& of_patch = made(m.clusters).of_patch;
   check.length(of_patch, m.size(), kObject);
   check.indices(of_patch, m.size(), false, kObject);
   std::vector<Index> first(unknownsOf(m), kNone);

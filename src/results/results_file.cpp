@@ -9,6 +9,7 @@
 
 #include "base/atomic_file.h"
 #include "base/input_file.h"
+#include "base/made.h"
 #include "mesh/cluster_patches.h"
 #include "radiosity/results.h"
 #include "results/fields.h"
@@ -237,7 +238,7 @@ void writeResults(const std::string& path, const Results& results, Progress& pro
     if (results.mesh) mesh = stages.mesh(*results.mesh);
     if (results.factors) {
       OutputGroup factors = stages.factors(*results.factors);
-      for (const auto& [name, source] : meshLinks(results)) factors.link(name, *mesh, source);
+      for (const auto& [name, source] : meshLinks(results)) factors.link(name, made(mesh), source);
       writeMatrix(factors, results.factors->matrix, progress);
     }
     stages.solution();
