@@ -1,6 +1,6 @@
 // Form factors: F_ij, the fraction of what leaves patch i that reaches patch j. By hemicube (Cohen
-// & Greenberg 1985), seen from one eye at each patch's centroid; or exact, area to area, with the
-// part that is blocked taken off by clipping.
+// & Greenberg 1985), seen from one eye at each patch's centroid; exact, area to area, with the part
+// that is blocked taken off by clipping; or by rays.
 #pragma once
 
 #include <memory>
@@ -30,9 +30,9 @@ enum class ClosureMode {
 
 struct FormFactorOptions {
   FormFactorMethod method = FormFactorMethod::automatic;
-  /// Exact: the error aimed at for an occluded pair, relative to the mean form factor
-  /// 1/N; 1e-12 to 0.1. Closed forms hold it, or 1e-5 where it is larger, relative to each value;
-  /// above the default, a tenth of it.
+  /// Exact: the error aimed at for occluded pairs, relative to the mean form factor 1/N: the root
+  /// mean square over a row; 1e-12 to 0.1. Closed forms hold it, or 1e-5 where it is larger,
+  /// relative to each value; above the default, a tenth of it.
   double tolerance = 1e-3;
   ClosureMode closure = ClosureMode::report;
   /// Of the stored values; empty: single, double where the tolerance asks for more than 1e-6.
@@ -162,7 +162,7 @@ struct FormFactors {
   /// error[i] in about 99% of rows; the median of the figures is mostly 4 to 11 times the true one.
   /// Hemicube: empty.
   std::vector<double> error;
-  std::string method = "hemicube";  ///< or "exact"
+  std::string method = "hemicube";  ///< or "exact" or "rays"
   FormFactorReport report;
 };
 
@@ -188,7 +188,7 @@ struct FormFactorPlan {
 /// The plan keeps a copy of the mesh (about 160 bytes a patch), ...
 FormFactorPlan planFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
                                Progress& progress);
-/// ... or the mesh itself, which nobody may change while the plan is there.
+/// ... or the mesh itself, which must not change while the plan is there.
 FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
                                const FormFactorOptions& options, Progress& progress);
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "base/byte_text.h"
+#include "base/figure_text.h"
 #include "base/made.h"
 #include "cli/words.h"
 #include "radiosity/names.h"
@@ -102,7 +102,7 @@ void PipelineReport::planned(const Pipeline& pipeline, const FormFactorPlan& pla
                fmt::format("{}: about {}, memory about {}{}", what, durationText(plan.seconds),
                            bytesText(plan.bytes),
                            writes_results_ ? ", disk at most about " + bytesText(disk) : ""));
-  if (!plan.reason.empty()) report_.line("", "method: " + plan.reason);
+  if (!plan.reason.empty()) report_.line("", "because " + plan.reason);
   if (plan.seconds > kLongWait) report_.line("", cures(plan, options));
 }
 

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
+#include "base/figure_text.h"
 #include "formfactor/exact/assembly/exact_factors.h"
 #include "formfactor/exact/assembly/row_sample.h"
 #include "formfactor/foreseen_work.h"
@@ -59,8 +61,11 @@ double simpleHemicubeWork(const PatchMesh& mesh, const FormFactorOptions& option
 
 std::string clutterText(const ExactEstimate& estimate) {
   if (estimate.occluded_pairs < 1) return "no pair of a sample is occluded";
-  return fmt::format("about {:.2g} pairs are occluded, past {:.1f} occluders each",
-                     estimate.occluded_pairs, estimate.occluders_per_pair);
+  const double unit =
+      std::pow(10.0, std::max(0.0, std::floor(std::log10(estimate.occluded_pairs)) - 1));
+  const auto rounded = std::size_t(unit * std::round(estimate.occluded_pairs / unit));
+  return fmt::format("about {} pairs are occluded, past {:.1f} occluders each", countText(rounded),
+                     estimate.occluders_per_pair);
 }
 
 /// Of the exact method.
@@ -90,15 +95,13 @@ void choose(const ExactEstimate& estimate, const PatchMesh& mesh, const FormFact
   if (isTooMuch(work, 1)) {
     plan.method = FormFactorMethod::hemicube;
     plan.reason = fmt::format(
-        "hemicube: {}; exact would be {:.0f} times the work of as many "
-        "hemicubes in a simple scene",
+        "{}; exact would be {:.0f} times the work of as many hemicubes in a simple scene",
         clutterText(estimate), work.times);
   } else if (options.memory_limit > 0 && estimate.bytes > options.memory_limit) {
     plan.method = FormFactorMethod::hemicube;
-    plan.reason = fmt::format("hemicube: exact would need {:.0f} MiB, more than the limit",
-                              double(estimate.bytes) / (1024.0 * 1024.0));
+    plan.reason = "exact would need " + bytesText(estimate.bytes) + ", more than the limit";
   } else {
-    plan.reason = "exact: " + clutterText(estimate);
+    plan.reason = clutterText(estimate);
   }
 }
 
