@@ -13,7 +13,7 @@ namespace radiosity::cli {
 
 namespace {
 
-/// Who waits longer is told what would shorten it.
+/// For longer waits the report says what would shorten them.
 constexpr double kLongWait = 60;
 
 /// What shortens a wait, and to what, as far as that is known.

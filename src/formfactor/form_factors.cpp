@@ -76,7 +76,7 @@ struct ExactWork {
 
 ExactWork exactWork(const ExactEstimate& estimate, const PatchMesh& mesh,
                     const FormFactorOptions& options) {
-  // Who asks for more than the default does not ask for hemicubes: what that adds does not count.
+  // A tolerance below the default rules hemicubes out: the work that it adds does not count.
   const double beyond = std::max(0.0, 1 - options.tolerance / FormFactorOptions().tolerance);
   const double work = estimate.work - beyond * estimate.refining;
   return {work, work / simpleHemicubeWork(mesh, options)};
