@@ -1,6 +1,7 @@
-// Form factors: F_ij, the fraction of what leaves patch i that reaches patch j. By hemicube (Cohen
-// & Greenberg 1985), seen from one eye at each patch's centroid; exact, area to area, with the part
-// that is blocked taken off by clipping; or by rays.
+// Form factors: F_ij, the fraction of what leaves patch i that reaches patch j. Exact, area to area,
+// with the part that is blocked taken off by clipping; by rays, area to area as well; or by hemicube
+// (Cohen & Greenberg 1985), seen from one eye at each patch's centroid. Where patches share unknowns
+// (PatchMesh::clusters), i and j are clusters.
 #pragma once
 
 #include <memory>
@@ -16,7 +17,7 @@
 namespace [[gnu::visibility("default")]] radiosity {
 
 enum class FormFactorMethod {
-  automatic,  ///< exact unless the scene is too cluttered for it; the report says what and why
+  automatic,  ///< exact or rays, whichever a sample of rows says is right; the report says why
   hemicube,
   exact,
   rays  ///< area to area, by counting cosine-distributed rays
@@ -30,27 +31,34 @@ enum class ClosureMode {
 
 struct FormFactorOptions {
   FormFactorMethod method = FormFactorMethod::automatic;
-  /// Exact: the error aimed at for occluded pairs, relative to the mean form factor 1/N: the root
-  /// mean square over a row; 1e-12 to 0.1. Closed forms hold it, or 1e-5 where it is larger,
-  /// relative to each value; above the default, a tenth of it.
-  double tolerance = 1e-3;
+  /// 1e-12 to 0.1. Exact: the error aimed at for an occluded pair, relative to the mean form factor
+  /// 1/N, which keeps the relative error (L2) of a row below it, mostly far below; closed forms hold
+  /// it, or 1e-5 where it is larger, relative to each value; above kExactTolerance, a tenth of it.
+  /// Rays: the relative error (L2) of a row. Empty: what the method has by default.
+  std::optional<double> tolerance;
   ClosureMode closure = ClosureMode::report;
   /// Of the stored values; empty: single, double where the tolerance asks for more than 1e-6.
   std::optional<Precision> precision;
   int resolution = 256;    ///< hemicube: pixels along an edge of the top face; even, 16 to 4096
-  std::uint64_t seed = 1;  ///< hemicube: of the random turns about each normal
+  std::uint64_t seed = 1;  ///< rays: of their directions; hemicube: of the turns about each normal
   bool random_turns = true;
   bool symmetrize = false;  ///< hemicube: merge both estimates of each pair, then close rows
   /// Hemicube: pairs nearer than two patch sizes get the area-to-area value times the visible
-  /// fraction that the item buffer tells. Empty: where `automatic` picked hemicubes, yes; else no.
-  std::optional<bool> near_exact;
+  /// fraction that the item buffer tells.
+  bool near_exact = false;
   std::size_t memory_limit = 0;  ///< bytes; 0: no limit
   std::size_t memory_held = 0;   ///< bytes that others hold: they count towards limit and estimate
   bool simd = true;              ///< false: Highway's scalar target (same bits)
 
+  static constexpr double kExactTolerance = 1e-3;
+  static constexpr double kRayTolerance = 1e-2;
+
   void validate() const;
   Precision storedPrecision() const;
-  bool nearExact() const { return near_exact.value_or(method == FormFactorMethod::automatic); }
+  /// What a method other than hemicube works to.
+  double toleranceOf(FormFactorMethod by) const {
+    return tolerance.value_or(by == FormFactorMethod::rays ? kRayTolerance : kExactTolerance);
+  }
 };
 
 /// What the exact method did and skipped. A pair is an unordered pair of elements (convex pieces of
@@ -135,7 +143,7 @@ struct FormFactorReport {
   /// max |fronts + backs + sky - 1| over non-empty rows. Exact: raw where the scene is closed; else
   /// how far fronts + backs exceed 1.
   double largest_row_error = 0;
-  double error_figure = 0;  ///< exact: of the matrix, area-weighted relL2 of F; see FormFactors
+  double error_figure = 0;  ///< exact and rays: of the matrix, area-weighted relL2 of F; see FormFactors
   bool closed = false;      ///< no patch sees the sky
   bool symmetrized = false;
   ClosureReport closure;          ///< where symmetrized, or exact and closed
@@ -158,17 +166,16 @@ struct FormFactors {
   std::vector<double> sky;
   /// Area-weighted share of the scene's view that ends on each surface's back, by surface.
   std::vector<double> backs_by_surface;
-  /// Exact: N error figures; sqrt(sum_j (F_ij - true F_ij)^2), black backs among the j, stays below
-  /// error[i] in about 99% of rows; the median of the figures is mostly 4 to 11 times the true one.
-  /// Hemicube: empty.
+  /// Exact and rays: N error figures; sqrt(sum_j (F_ij - true F_ij)^2), black backs among the j,
+  /// stays below error[i] in about 99% of rows. Exact: the median of the figures is mostly 4 to 11
+  /// times the true one. Hemicube: empty.
   std::vector<double> error;
-  std::string method = "hemicube";  ///< or "exact" or "rays"
+  std::string method = "hemicube";  ///< or "exact", "rays"
   FormFactorReport report;
 };
 
 /// What a computation will do, found out from a sample of rows before time and memory are spent.
-/// The method and its reason rest on counts alone, with rates of a usual machine: they come out the
-/// same in every run. Seconds are by the clock, on the threads allowed, at the rates that the
+/// Where `automatic` leaves the choice, it rests on the seconds of exact and of rays. Seconds are by the clock, on the threads allowed, at the rates that the
 /// sample had here and now, and from now on: what the plan itself took is not in them. They are
 /// about; on scenes nothing was fitted to mostly within a factor of 2.
 struct FormFactorPlan {
@@ -177,9 +184,9 @@ struct FormFactorPlan {
   std::size_t bytes = 0;         ///< held at once, about; options.memory_held included
   std::size_t matrix_bytes = 0;  ///< of these, the matrix
   double seconds = 0;
-  double refining = 0;  ///< share of the seconds that goes with 1 / tolerance
-  /// Seconds of hemicubes instead, where the exact method was picked and takes over a minute.
-  double hemicube_seconds = 0;
+  double refining = 0;  ///< exact: share of the seconds that goes with 1 / tolerance
+  /// Seconds of the other one of exact and rays, where both were looked at.
+  std::optional<double> other_seconds;
   /// What was made ready on the way, with the mesh and the options: what the computation starts
   /// from.
   struct Prepared;

@@ -3,8 +3,12 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+#include <tbb/parallel_sort.h>
 
 #include <cstddef>
+#include <functional>
+#include <vector>
 
 namespace radiosity {
 
@@ -16,6 +20,19 @@ void parallelFor(std::size_t count, std::size_t grain, const Body& body) {
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
                     });
+}
+
+/// Calls both, side by side where a thread is free.
+template <class First, class Second>
+void parallelBoth(const First& first, const Second& second) {
+  tbb::parallel_invoke(first, second);
+}
+
+/// Sorts a vector by `less`, which must put no two different values in either order: equal ones may
+/// change places.
+template <class Value, class Less = std::less<Value>>
+void parallelSort(std::vector<Value>& values, const Less& less = {}) {
+  tbb::parallel_sort(values.begin(), values.end(), less);
 }
 
 /// How many threads setThreads() allows.

@@ -111,15 +111,16 @@ void addMeshOptions(CLI::App& app, Request& r) {
 void addFactorOptions(CLI::App& app, Request& r) {
   const FormFactorOptions defaults;
   add(app, "Form factors", "--method", r.method, "METHOD",
-      "exact (area to area, hidden parts clipped off), hemicube (seen from one point a patch), or "
-      "auto (default): exact unless the scene is too cluttered; the report says why")
+      "exact (area to area, hidden parts clipped off), rays (area to area, by counting rays), "
+      "hemicube (seen from one point a patch), or auto (default): exact or rays, by what a sample "
+      "of rows takes; the report says why")
       ->check(CLI::IsMember(namesIn(kMethodNames)));
   // Where results are compared, --tolerance is about the difference.
   const bool compares = app.get_name() == commandName(Command::compare);
   add(app, "Form factors", compares ? "--factor-tolerance" : "--tolerance", r.tolerance, "FRACTION",
       fmt::format("exact: error aimed at for an occluded pair, relative to the mean form factor "
-                  "1/N; 1e-12 to 0.1 (default {})",
-                  defaults.tolerance));
+                  "1/N (default {}); rays: relative error of a row, L2 (default {}); 1e-12 to 0.1",
+                  FormFactorOptions::kExactTolerance, FormFactorOptions::kRayTolerance));
   add(app, "Form factors", "--closure", r.closure, "off|report|enforce",
       "In a closed scene say how far row sums are from 1 (report, default), or make them 1 by the "
       "smallest change to occluded pairs (enforce)")
@@ -128,7 +129,8 @@ void addFactorOptions(CLI::App& app, Request& r) {
       fmt::format("hemicube: edge of the top face; even, 16 to 4096 (default {})",
                   defaults.resolution));
   add(app, "Form factors", "--seed", r.seed, "N",
-      fmt::format("hemicube: seed of the random turns (default {})", defaults.seed))
+      fmt::format("rays: seed of their directions; hemicube: of the random turns (default {})",
+                  defaults.seed))
       ->check(wholeNumber());
   app.add_flag_function(
          "--symmetrize,!--no-symmetrize", [&r](std::int64_t count) { r.symmetrize = count > 0; },
@@ -137,7 +139,7 @@ void addFactorOptions(CLI::App& app, Request& r) {
       ->group("Form factors");
   add(app, "Form factors", "--near", r.near_pairs, "exact|off",
       "hemicube: area-to-area values times the visible fraction for pairs closer than about two "
-      "patch sizes (default: exact where --method auto picked hemicubes, else off)")
+      "patch sizes (default: off)")
       ->check(CLI::IsMember({"exact", "off"}));
   add(app, "Form factors", "--precision", r.precision, "auto|single|double",
       "Of the stored form factors (default auto: single unless --tolerance is below 1e-6); sums "

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/figure_text.h"
 #include "base/made.h"
@@ -15,6 +16,8 @@ namespace {
 
 /// For longer waits the report says what would shorten them.
 constexpr double kLongWait = 60;
+/// The time of rays goes with about this power of 1 / tolerance.
+constexpr double kRaysOrder = 1.6;
 
 /// What shortens a wait, and to what, as far as that is known.
 std::string cures(const FormFactorPlan& plan, const FormFactorOptions& options) {
@@ -23,13 +26,21 @@ std::string cures(const FormFactorPlan& plan, const FormFactorOptions& options) 
     return "for less: fewer --patches, a lower --resolution";
   }
   std::string text = "for less:";
-  const double looser = std::min(kLoosest, 10 * options.tolerance);
-  if (looser > options.tolerance) {
-    const double left = plan.seconds * (1 - plan.refining * (1 - options.tolerance / looser));
+  const bool rays = plan.method == FormFactorMethod::rays;
+  const double tolerance = options.toleranceOf(plan.method);
+  const double looser = std::min(kLoosest, (rays ? 3 : 10) * tolerance);
+  if (looser > tolerance) {
+    const double left =
+        rays ? plan.seconds * std::pow(tolerance / looser, kRaysOrder)
+             : plan.seconds * (1 - plan.refining * (1 - tolerance / looser));
     text += fmt::format(" --tolerance {} (about {}),", numberText(looser), durationText(left));
   }
-  return text + fmt::format(" fewer --patches, --method hemicube (about {}; less accurate)",
-                            durationText(plan.hemicube_seconds));
+  text += " fewer --patches";
+  if (plan.other_seconds && *plan.other_seconds < plan.seconds) {
+    text += fmt::format(", --method {} (about {})", rays ? "exact" : "rays",
+                        durationText(*plan.other_seconds));
+  }
+  return text;
 }
 
 struct StageWords {
@@ -97,7 +108,7 @@ void PipelineReport::planned(const Pipeline& pipeline, const FormFactorPlan& pla
       hemicubes ? fmt::format("{} of {} pixels", plural(patches, "hemicube", "hemicubes"),
                               options.resolution)
                 : fmt::format("{} between {} to {}", nameOf(kMethodNames, plan.method),
-                              plural(patches, "patch", "patches"), numberText(options.tolerance));
+                              plural(patches, "patch", "patches"), numberText(options.toleranceOf(plan.method)));
   report_.line("form factors",
                fmt::format("{}: about {}, memory about {}{}", what, durationText(plan.seconds),
                            bytesText(plan.bytes),

@@ -44,77 +44,22 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Seconds of a wait that is worth saying how to shorten.
-constexpr double kLongWait = 60;
-/// Hemicubes are chosen only where exact is much work (kMuchWork), and so many times theirs: they
-/// stall at some per cent of the matrix however many pixels they have.
-constexpr double kWorthTheError = 30;
-/// A rough estimate decides where it is past both by this. (In 21 scenes of others it was 0.24 to
-/// 2.7 times the full one.)
-constexpr double kFarBeyond = 5;
+/// Where no tolerance was asked for, the exact method, which then is far more accurate than rays,
+/// is worth so many times their seconds, or so many seconds.
+constexpr double kWorthTimes = 2;
+constexpr double kWorthSeconds = 5;
 
-/// In a scene of few polygons.
-double simpleHemicubeWork(const PatchMesh& mesh, const FormFactorOptions& options) {
-  const double pixels = double(options.resolution) / 256;
-  return kHemicubeWork * pixels * pixels * double(mesh.size());
+std::string secondsText(double seconds) {
+  if (seconds < 0.1) return "less than 0.1 s";
+  if (seconds < 10) return fmt::format("about {:.2g} s", seconds);
+  return fmt::format("about {} s", countText(std::size_t(std::llround(seconds))));
 }
 
-std::string clutterText(const ExactEstimate& estimate) {
-  if (estimate.occluded_pairs < 1) return "no pair of a sample is occluded";
-  const double unit =
-      std::pow(10.0, std::max(0.0, std::floor(std::log10(estimate.occluded_pairs)) - 1));
-  const auto rounded = std::size_t(unit * std::round(estimate.occluded_pairs / unit));
-  return fmt::format("about {} pairs are occluded, past {:.1f} occluders each", countText(rounded),
-                     estimate.occluders_per_pair);
-}
-
-/// Of the exact method.
-struct ExactWork {
-  double all;    ///< see foreseen_work.h
-  double times;  ///< as much as that of hemicubes in a simple scene
-};
-
-ExactWork exactWork(const ExactEstimate& estimate, const PatchMesh& mesh,
-                    const FormFactorOptions& options) {
-  // A tolerance below the default rules hemicubes out: the work that it adds does not count.
-  const double beyond = std::max(0.0, 1 - options.tolerance / FormFactorOptions().tolerance);
-  const double work = estimate.work - beyond * estimate.refining;
-  return {work, work / simpleHemicubeWork(mesh, options)};
-}
-
-bool isTooMuch(const ExactWork& work, double margin) {
-  return work.all > margin * kMuchWork && work.times > margin * kWorthTheError;
-}
-
-/// The method, and why.
-void choose(const ExactEstimate& estimate, const PatchMesh& mesh, const FormFactorOptions& options,
-            FormFactorPlan& plan) {
-  plan.method = FormFactorMethod::exact;
-  if (options.method == FormFactorMethod::exact) return;
-  const ExactWork work = exactWork(estimate, mesh, options);
-  if (isTooMuch(work, 1)) {
-    plan.method = FormFactorMethod::hemicube;
-    plan.reason = fmt::format(
-        "{}; exact would be {:.0f} times the work of as many hemicubes in a simple scene",
-        clutterText(estimate), work.times);
-  } else if (options.memory_limit > 0 && estimate.bytes > options.memory_limit) {
-    plan.method = FormFactorMethod::hemicube;
-    plan.reason = "exact would need " + bytesText(estimate.bytes) + ", more than the limit";
-  } else {
-    plan.reason = clutterText(estimate);
-  }
-}
-
-/// A full sample, but for a rough one where that settles that hemicubes are chosen.
-RowSample sampleToChoose(const FormFactorPlan::Prepared& prepared, const ExactScene& scene,
-                         Progress& progress) {
-  const FormFactorOptions& options = prepared.options;
-  if (options.method == FormFactorMethod::automatic) {
-    RowSample rough = sampleRows(scene, options.tolerance, SampleSize::rough, progress);
-    const ExactEstimate estimate = estimateExact(scene, rough, options);
-    if (isTooMuch(exactWork(estimate, prepared.mesh, options), kFarBeyond)) return rough;
-  }
-  return sampleRows(scene, options.tolerance, SampleSize::full, progress);
+bool exactIsRight(const FormFactorPlan& exact, const FormFactorPlan& rays,
+                  const FormFactorOptions& options) {
+  if (options.memory_limit > 0 && exact.bytes > options.memory_limit) return false;
+  if (options.tolerance) return exact.seconds <= rays.seconds;
+  return exact.seconds <= std::max(kWorthTimes * rays.seconds, kWorthSeconds);
 }
 
 void planExact(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {
@@ -122,14 +67,11 @@ void planExact(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progres
   progress.begin("preparing", ExactScene::kSteps);
   const ExactScene& scene = prepared.scene.emplace(prepared.mesh, progress);
   progress.end();
-  const RowSample sample = sampleToChoose(prepared, scene, progress);
+  const RowSample sample =
+      sampleRows(scene, options.toleranceOf(FormFactorMethod::exact), SampleSize::full, progress);
   prepared.estimate = estimateExact(scene, sample, options);
-  choose(prepared.estimate, prepared.mesh, options, plan);
-  if (plan.method != FormFactorMethod::exact) {
-    prepared.scene.reset();
-    return;
-  }
   const ExactKernels& kernels = prepared.kernels.emplace(scene, options);
+  plan.method = FormFactorMethod::exact;
   plan.bytes = prepared.estimate.bytes;
   plan.matrix_bytes = prepared.estimate.matrix_bytes;
   plan.seconds = exactSeconds(scene, kernels, sample, options, progress);
@@ -147,7 +89,7 @@ void planHemicubes(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Pro
   plan.bytes = prepared.hemicube_estimate.bytes;
   plan.matrix_bytes = prepared.hemicube_estimate.matrix_bytes;
   plan.seconds = prepared.hemicube_estimate.measured;
-  plan.refining = 0;
+  plan.method = FormFactorMethod::hemicube;
 }
 
 void planRays(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {
@@ -161,7 +103,33 @@ void planRays(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress
   plan.bytes = prepared.ray_estimate.bytes;
   plan.matrix_bytes = prepared.ray_estimate.matrix_bytes;
   plan.seconds = prepared.ray_estimate.seconds;
-  plan.refining = 1;
+}
+
+/// Both are looked at, and one is kept.
+void planEither(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {
+  planRays(prepared, plan, progress);
+  if (prepared.mesh.clusters) {
+    plan.reason = "patches share unknowns";
+    return;
+  }
+  FormFactorPlan exact;
+  planExact(prepared, exact, progress);
+  const double ray_seconds = plan.seconds;
+  const double ray_tolerance = prepared.options.toleranceOf(FormFactorMethod::rays);
+  if (exactIsRight(exact, plan, prepared.options)) {
+    prepared.rays.reset();
+    plan = std::move(exact);
+    plan.other_seconds = ray_seconds;
+    plan.reason = fmt::format("it takes {}; rays, to {}, would take {}", secondsText(plan.seconds),
+                              ray_tolerance, secondsText(ray_seconds));
+  } else {
+    prepared.scene.reset();
+    prepared.kernels.reset();
+    plan.other_seconds = exact.seconds;
+    plan.reason =
+        fmt::format("to {} they take {}; exact would take {} and {}", ray_tolerance,
+                    secondsText(ray_seconds), secondsText(exact.seconds), bytesText(exact.bytes));
+  }
 }
 
 }  // namespace
@@ -171,16 +139,16 @@ void FormFactorOptions::validate() const {
     throw InputError(fmt::format(
         "hemicube resolution {}: give an even number of pixels from 16 to 4096", resolution));
   }
-  if (!(tolerance >= 1e-12 && tolerance <= 0.1)) {
-    throw InputError(fmt::format(
-        "tolerance {}: give a fraction of the mean form factor from 1e-12 to 0.1", tolerance));
+  if (tolerance && !(*tolerance >= 1e-12 && *tolerance <= 0.1)) {
+    throw InputError(fmt::format("tolerance {}: give a fraction from 1e-12 to 0.1", *tolerance));
   }
 }
 
 Precision FormFactorOptions::storedPrecision() const {
   // Single precision rounds to 6e-8 of a value, well below a tolerance of 1e-6 of the mean.
-  return precision.value_or(tolerance < 1e-6 ? Precision::double_precision
-                                             : Precision::single_precision);
+  return precision.value_or(tolerance.value_or(kExactTolerance) < 1e-6
+                                ? Precision::double_precision
+                                : Precision::single_precision);
 }
 
 FormFactorPlan planFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
@@ -195,16 +163,19 @@ FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
   const Clock::time_point start = Clock::now();
   auto prepared = std::make_shared<FormFactorPlan::Prepared>(std::move(mesh), options);
   FormFactorPlan plan;
-  if (options.method == FormFactorMethod::rays) {
-    planRays(*prepared, plan, progress);
-  } else if (options.method != FormFactorMethod::hemicube) {
-    planExact(*prepared, plan, progress);
-  }
-  if (plan.method == FormFactorMethod::hemicube) {
-    planHemicubes(*prepared, plan, progress);
-  } else if (plan.method == FormFactorMethod::exact && plan.seconds > kLongWait) {
-    const HemicubeScene scene(prepared->mesh, options);
-    plan.hemicube_seconds = estimateHemicubes(prepared->mesh, scene, options, progress).measured;
+  switch (options.method) {
+    case FormFactorMethod::automatic:
+      planEither(*prepared, plan, progress);
+      break;
+    case FormFactorMethod::exact:
+      planExact(*prepared, plan, progress);
+      break;
+    case FormFactorMethod::rays:
+      planRays(*prepared, plan, progress);
+      break;
+    case FormFactorMethod::hemicube:
+      planHemicubes(*prepared, plan, progress);
+      break;
   }
   prepared->seconds = secondsSince(start);
   plan.prepared = std::move(prepared);

@@ -1,66 +1,75 @@
 #include "mesh/box_pairs.h"
 
-#include <CGAL/Box_intersection_d/Box_d.h>
-#include <CGAL/box_intersection_d.h>
-
 #include <algorithm>
+
+#include "base/geometry/box_tree.h"
+#include "base/parallel.h"
 
 namespace radiosity {
 
 namespace {
 
-/// A box that knows its number; CGAL asks for unique ids.
-class NumberedBox
-    : public CGAL::Box_intersection_d::Box_d<double, 3, CGAL::Box_intersection_d::ID_NONE> {
- public:
-  using Base = CGAL::Box_intersection_d::Box_d<double, 3, CGAL::Box_intersection_d::ID_NONE>;
-  NumberedBox(const Box3& box, Index number)
-      : Base(CGAL::Bbox_3(box.low.x, box.low.y, box.low.z, box.high.x, box.high.y, box.high.z)),
-        number_(number) {}
-  std::size_t id() const { return number_; }
+using Pairs = std::vector<std::pair<Index, Index>>;
 
- private:
-  Index number_;
-};
+constexpr std::size_t kBoxesAtATime = 512;  // a task of a thread
 
-std::vector<NumberedBox> numbered(const std::vector<Box3>& boxes, const std::vector<Index>& which) {
-  std::vector<NumberedBox> out;
-  out.reserve(which.size());
-  for (const Index i : which) out.emplace_back(boxes[i], i);
+/// Pairs that visit(i, found) appends for each of `count` boxes, box by box.
+template <class Visit>
+Pairs pairsOf(std::size_t count, const Progress* progress, const Visit& visit) {
+  std::vector<Pairs> found((count + kBoxesAtATime - 1) / kBoxesAtATime);
+  parallelFor(found.size(), 1, [&](std::size_t block) {
+    if (progress != nullptr && progress->cancelled()) return;
+    const std::size_t end = std::min(count, (block + 1) * kBoxesAtATime);
+    for (std::size_t i = block * kBoxesAtATime; i < end; ++i) visit(Index(i), found[block]);
+  });
+  if (progress != nullptr) progress->check();
+  std::size_t total = 0;
+  for (const Pairs& some : found) total += some.size();
+  Pairs out;
+  out.reserve(total);
+  for (Pairs& some : found) {
+    out.insert(out.end(), some.begin(), some.end());
+    some = {};
+  }
   return out;
 }
 
 }  // namespace
 
-std::vector<std::pair<Index, Index>> overlappingPairs(const std::vector<Box3>& boxes,
-                                                      const Progress* progress) {
-  std::vector<Index> all(boxes.size());
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = Index(i);
-  return overlappingPairs(boxes, all, progress);
+Pairs overlappingPairs(const std::vector<Box3>& boxes, const Progress* progress,
+                       const PairFilter& wanted) {
+  const BoxTree tree(boxes);
+  return pairsOf(boxes.size(), progress, [&](Index i, Pairs& found) {
+    const auto begin = std::ptrdiff_t(found.size());
+    tree.query(boxes[i], [&](Index j) {
+      if (i < j && (!wanted || wanted(i, j))) found.emplace_back(i, j);
+      return true;
+    });
+    std::sort(found.begin() + begin, found.end());
+  });
 }
 
-std::vector<std::pair<Index, Index>> overlappingPairs(const std::vector<Box3>& boxes,
-                                                      const std::vector<Index>& some,
-                                                      const Progress* progress) {
-  std::vector<std::pair<Index, Index>> pairs;
-  std::size_t asked = 0;
-  const auto found = [&](const NumberedBox& a, const NumberedBox& b) {
-    if (progress != nullptr && ++asked % 65536 == 0) progress->check();
-    if (a.id() != b.id()) {
-      pairs.emplace_back(Index(std::min(a.id(), b.id())), Index(std::max(a.id(), b.id())));
-    }
-  };
-  auto first = numbered(boxes, some);
-  if (some.size() == boxes.size()) {
-    CGAL::box_self_intersection_d(first.begin(), first.end(), found);
-  } else {
-    std::vector<Index> all(boxes.size());
-    for (std::size_t i = 0; i < all.size(); ++i) all[i] = Index(i);
-    auto second = numbered(boxes, all);
-    CGAL::box_intersection_d(first.begin(), first.end(), second.begin(), second.end(), found);
+Pairs overlappingPairs(const std::vector<Box3>& boxes, const std::vector<Index>& some,
+                       const Progress* progress, const PairFilter& wanted) {
+  if (some.size() == boxes.size()) return overlappingPairs(boxes, progress, wanted);
+  std::vector<Box3> some_boxes;
+  some_boxes.reserve(some.size());
+  std::vector<char> is_some(boxes.size(), 0);
+  for (const Index i : some) {
+    some_boxes.push_back(boxes[i]);
+    is_some[i] = 1;
   }
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  const BoxTree tree(some_boxes);
+  Pairs pairs = pairsOf(boxes.size(), progress, [&](Index i, Pairs& found) {
+    tree.query(boxes[i], [&](Index k) {
+      const Index j = some[k];
+      if (i == j || (is_some[i] != 0 && j < i)) return true;
+      const auto [low, high] = std::minmax(i, j);
+      if (!wanted || wanted(low, high)) found.emplace_back(low, high);
+      return true;
+    });
+  });
+  parallelSort(pairs);
   return pairs;
 }
 

@@ -8,6 +8,7 @@
 #include <span>
 #include <unordered_map>
 
+#include "base/parallel.h"
 #include "mesh/edge_rows.h"
 #include "mesh/plane_image.h"
 
@@ -23,6 +24,7 @@ double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
   return glm::distance(p, a + t * d);
 }
 
+constexpr std::size_t kPairsAtATime = 256;  // of sheets: a task of a thread
 // Sheets with more edges than this are looked at by rows.
 constexpr std::size_t kManyEdges = 64;
 
@@ -41,28 +43,36 @@ struct Sides {
   bool meets() const { return (above && below) || (on && (above || below)); }
 };
 
+/// A line along which the sheets of a plane are touched or crossed.
+struct Contact {
+  Vec3 from{0.0};
+  Vec3 to{0.0};
+  Index plane = kNone;
+};
+
 class ContactFinder {
  public:
   ContactFinder(InputFaces& input, const std::vector<Plane>& planes,
                 const std::vector<Sheet>& sheets, EdgeTable& edges);
 
-  void pair(Index f, Index g);
+  /// Whether each of two sheets reaches the other's plane and does not lie along it.
+  bool mayMeet(Index f, Index g) const;
+  /// Appends the contacts of two sheets that may meet.
+  void pair(Index f, Index g, std::vector<Contact>& out) const;
+  void add(const Contact& contact);
 
  private:
-  std::span<const Index> edgesBeside(Index sheet, const Box3& box);
+  std::span<const Index> edgesBeside(Index sheet, const Box3& box, std::vector<Index>& some) const;
   Sides sidesOf(Index sheet, const Plane& plane) const;
-  bool addTraces(Index sheet, Index other, std::vector<Vec3>& points);
+  void addTraces(Index sheet, Index other, std::vector<Vec3>& points) const;
   Place place(const Vec3& p, Index sheet) const;
   std::span<const Index> edgesAt(Index sheet, const Vec2& q) const;
-  void add(const Vec3& from, const Vec3& to, Index plane);
-
   InputFaces& input_;
   const std::vector<Plane>& planes_;
   const std::vector<Sheet>& sheets_;
   EdgeTable& edges_;
   std::unordered_map<Index, EdgeRows> rows_;  ///< of sheets with many edges
   std::vector<Index> all_;                    ///< 0, 1, 2, ...: all edges of any other sheet
-  std::vector<Index> beside_;
 };
 
 ContactFinder::ContactFinder(InputFaces& input, const std::vector<Plane>& planes,
@@ -76,14 +86,20 @@ ContactFinder::ContactFinder(InputFaces& input, const std::vector<Plane>& planes
   }
 }
 
-/// The edges of a sheet that may meet a box.
-std::span<const Index> ContactFinder::edgesBeside(Index sheet, const Box3& box) {
+bool ContactFinder::mayMeet(Index f, Index g) const {
+  return sheets_[f].plane != sheets_[g].plane && sidesOf(f, planes_[sheets_[g].plane]).meets() &&
+         sidesOf(g, planes_[sheets_[f].plane]).meets();
+}
+
+/// The edges of a sheet that may meet a box; `some` may hold them.
+std::span<const Index> ContactFinder::edgesBeside(Index sheet, const Box3& box,
+                                                  std::vector<Index>& some) const {
   const auto rows = rows_.find(sheet);
   if (rows == rows_.end()) return std::span(all_).first(sheets_[sheet].edges.size());
   const PlaneImage image(planes_[sheets_[sheet].plane].normal);
   const auto [low, high] = std::minmax({image(box.low).y, image(box.high).y});
-  beside_ = rows->second.between(low - input_.coincidence, high + input_.coincidence);
-  return beside_;
+  some = rows->second.between(low - input_.coincidence, high + input_.coincidence);
+  return some;
 }
 
 /// The edges of a sheet that may be near a point of its image, or to the right of it.
@@ -118,15 +134,14 @@ Sides ContactFinder::sidesOf(Index number, const Plane& plane) const {
 }
 
 /// The points where the border of a sheet meets the plane of another one, as far as it is beside
-/// that: vertices within coincidence of it, and crossings of edges. False if the sheet does not
-/// reach the plane, or if all of it lies along the plane.
-bool ContactFinder::addTraces(Index number, Index other, std::vector<Vec3>& points) {
+/// that: vertices within coincidence of it, and crossings of edges.
+void ContactFinder::addTraces(Index number, Index other, std::vector<Vec3>& points) const {
   const double eps = input_.coincidence;
   const Sheet& sheet = sheets_[number];
   const Plane& plane = planes_[sheets_[other].plane];
-  if (!sidesOf(number, plane).meets()) return false;
   const Box3 beside = sheets_[other].box.grown(2.0 * eps);
-  for (const Index k : edgesBeside(number, sheets_[other].box)) {
+  std::vector<Index> some;
+  for (const Index k : edgesBeside(number, sheets_[other].box, some)) {
     const Vec3& a = input_.points[sheet.edges[k][0]];
     const Vec3& b = input_.points[sheet.edges[k][1]];
     if (!beside.meets(Box3{glm::min(a, b), glm::max(a, b)})) continue;
@@ -138,7 +153,6 @@ bool ContactFinder::addTraces(Index number, Index other, std::vector<Vec3>& poin
       points.push_back(a + (b - a) * (da / (da - db)));
     }
   }
-  return true;
 }
 
 /// Even-odd in the plane's image; the border is everything closer than coincidence to an edge.
@@ -161,17 +175,19 @@ Place ContactFinder::place(const Vec3& p, Index number) const {
   return inside ? Place::inside : Place::outside;
 }
 
-void ContactFinder::add(const Vec3& from, const Vec3& to, Index plane) {
-  const Index a = input_.points.insert(from);
-  const Index b = input_.points.insert(to);
-  if (a != b) edges_.addContact(a, b, plane);
+void ContactFinder::add(const Contact& contact) {
+  const Index a = input_.points.insert(contact.from);
+  const Index b = input_.points.insert(contact.to);
+  if (a != b) edges_.addContact(a, b, contact.plane);
 }
 
 /// Both sheets' traces lie on one line, where the planes meet. Between neighbouring traces
 /// neither sheet begins or ends, so one look in the middle tells what is there.
-void ContactFinder::pair(Index f, Index g) {
+void ContactFinder::pair(Index f, Index g, std::vector<Contact>& out) const {
   std::vector<Vec3> points;
-  if (!addTraces(f, g, points) || !addTraces(g, f, points) || points.empty()) return;
+  addTraces(f, g, points);
+  addTraces(g, f, points);
+  if (points.empty()) return;
   const auto farther = [](const Vec3& from) {
     return [from](const Vec3& a, const Vec3& b) {
       return glm::distance(a, from) < glm::distance(b, from);
@@ -189,8 +205,8 @@ void ContactFinder::pair(Index f, Index g) {
     const Place in_f = place(middle, f);
     const Place in_g = in_f == Place::outside ? Place::outside : place(middle, g);
     if (in_g == Place::outside) continue;
-    if (in_f == Place::inside) add(points[k], points[k + 1], sheets_[f].plane);
-    if (in_g == Place::inside) add(points[k], points[k + 1], sheets_[g].plane);
+    if (in_f == Place::inside) out.push_back({points[k], points[k + 1], sheets_[f].plane});
+    if (in_g == Place::inside) out.push_back({points[k], points[k + 1], sheets_[g].plane});
   }
 }
 
@@ -201,13 +217,23 @@ void addContacts(InputFaces& input, const std::vector<Plane>& planes,
   std::vector<Box3> boxes;
   boxes.reserve(sheets.size());
   for (const Sheet& sheet : sheets) boxes.push_back(sheet.box.grown(input.coincidence));
-  const auto pairs = overlappingPairs(boxes, &progress);
-  progress.begin("contacts", pairs.size());
   ContactFinder finder(input, planes, sheets, edges);
-  for (const auto& [f, g] : pairs) {
-    progress.check();
-    if (sheets[f].plane != sheets[g].plane) finder.pair(f, g);
-    progress.advance();
+  const auto pairs =
+      overlappingPairs(boxes, &progress, [&](Index f, Index g) { return finder.mayMeet(f, g); });
+  progress.begin("contacts", pairs.size());
+  std::vector<std::vector<Contact>> found((pairs.size() + kPairsAtATime - 1) / kPairsAtATime);
+  parallelFor(found.size(), 1, [&](std::size_t block) {
+    if (progress.cancelled()) return;
+    const std::size_t begin = block * kPairsAtATime;
+    const std::size_t end = std::min(pairs.size(), begin + kPairsAtATime);
+    for (std::size_t k = begin; k < end; ++k) {
+      finder.pair(pairs[k].first, pairs[k].second, found[block]);
+    }
+    progress.advance(end - begin);
+  });
+  progress.check();
+  for (const auto& contacts : found) {
+    for (const Contact& contact : contacts) finder.add(contact);
   }
   progress.end();
 }

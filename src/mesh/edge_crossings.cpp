@@ -14,6 +14,8 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_2;
 
+constexpr std::size_t kFewEdges = 8;  // so many are looked at pair by pair
+
 /// Two edges that leave `shared` overlap if they leave it in the same direction.
 bool overlap(const Point& shared, const Point& p, const Point& q) {
   return CGAL::collinear(shared, p, q) && !CGAL::collinear_are_ordered_along_line(p, shared, q);
@@ -36,6 +38,14 @@ bool anyCross(const WeldedPoints& points, const PlaneImage& image,
     return CGAL::do_intersect(Kernel::Segment_2(at(e[0]), at(e[1])),
                               Kernel::Segment_2(at(f[0]), at(f[1])));
   };
+  if (edges.size() <= kFewEdges) {
+    for (std::size_t k = 1; k < edges.size(); ++k) {
+      for (std::size_t i = 0; i < k; ++i) {
+        if (cross(edges[i], edges[k])) return true;
+      }
+    }
+    return false;
+  }
   std::vector<Box3> boxes(edges.size());
   for (std::size_t k = 0; k < edges.size(); ++k) {
     for (const Index v : edges[k]) boxes[k].add(Vec3(image(points[v]), 0.0));

@@ -271,6 +271,15 @@ void EdgeCuts::cut(double size, Rounding rounding, double spacing) {
   }
 }
 
+bool EdgeCuts::isUncut(std::size_t polygon) const {
+  const auto is_whole = [&](DirectedEdge e) { return pieces_[e.edge] == 1; };
+  return std::ranges::all_of(
+             loops_[polygon],
+             [&](const auto& loop) { return std::ranges::all_of(loop, is_whole); }) &&
+         std::ranges::all_of(complex_.polygons[polygon].inner_edges,
+                             [&](const auto& e) { return is_whole(find(e[0], e[1])); });
+}
+
 Vec3 EdgeCuts::point(Index id) const {
   const std::size_t vertices = complex_.vertices.size();
   return id < vertices ? complex_.vertices[id] : edge_points_[id - vertices];

@@ -53,6 +53,9 @@ class EdgeCuts {
   /// Later cuts leave the edges of a polygon uncut.
   void keepWhole(std::size_t polygon);
 
+  /// Whether the current cut leaves all edges of a polygon whole, inner ones included.
+  bool isUncut(std::size_t polygon) const;
+
   /// Points of the current cut: ids below the number of the complex's vertices are these, the
   /// others are points inside edges.
   Vec3 point(Index id) const;

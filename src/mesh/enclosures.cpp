@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
-#include <map>
 #include <numbers>
 #include <numeric>
 #include <tuple>
@@ -13,6 +13,8 @@
 
 #include "base/geometry/box.h"
 #include "base/geometry/solid_angle.h"
+#include "base/parallel.h"
+#include "mesh/edge_key.h"
 #include "mesh/union_find.h"
 
 namespace radiosity {
@@ -21,7 +23,26 @@ namespace {
 /// The proof that a scene is closed may take this many solid angles of triangles, about a second.
 constexpr std::size_t kMostSolidAngles = 10000000;
 
-using DirectedEdge = std::pair<Index, Index>;
+/// A polygon that runs along an edge, from its smaller vertex to the larger or back.
+struct EdgeUser {
+  std::uint64_t edge = 0;  ///< edgeKey()
+  bool reversed = false;
+  Index polygon = kNone;
+
+  bool isPoint() const { return Index(edge >> 32) == Index(edge); }
+  auto operator<=>(const EdgeUser&) const = default;
+};
+
+/// Calls visit(from, to) for all runs of 0 .. count - 1 whose members are the `same` as the first.
+template <class Same, class Visit>
+void forRuns(std::size_t count, const Same& same, const Visit& visit) {
+  for (std::size_t from = 0; from < count;) {
+    std::size_t to = from + 1;
+    while (to < count && same(from, to)) ++to;
+    visit(from, to);
+    from = to;
+  }
+}
 
 /// Calls visit(corner) for the corners of all loops of a polygon.
 template <class Visit>
@@ -63,50 +84,82 @@ class EnclosureSearch {
 
  private:
   void findCovered() {
-    std::map<std::vector<Index>, std::vector<Index>> by_corners;
-    for (Index p = 0; p < mesh_.polygons.size(); ++p) {
-      std::vector<Index> key;
-      forCorners(mesh_, p, [&](Index v) { key.push_back(first_[v]); });
-      std::sort(key.begin(), key.end());
-      by_corners[std::move(key)].push_back(p);
+    const std::size_t count = mesh_.polygons.size();
+    std::vector<std::size_t> begin{0};
+    std::vector<Index> corners;
+    begin.reserve(count + 1);
+    corners.reserve(mesh_.polygons.corners.size());
+    for (Index p = 0; p < count; ++p) {
+      forCorners(mesh_, p, [&](Index v) { corners.push_back(first_[v]); });
+      std::sort(corners.begin() + std::ptrdiff_t(begin.back()), corners.end());
+      begin.push_back(corners.size());
     }
+    const auto cornersOf = [&](Index p) {
+      return std::span(corners).subspan(begin[p], begin[p + 1] - begin[p]);
+    };
+    std::vector<Index> order(count);
+    std::iota(order.begin(), order.end(), Index(0));
+    parallelSort(order, [&](Index a, Index b) {
+      const auto key = std::lexicographical_compare_three_way(
+          cornersOf(a).begin(), cornersOf(a).end(), cornersOf(b).begin(), cornersOf(b).end());
+      return key != 0 ? key < 0 : a < b;
+    });
     const std::vector<Vec3>& normal = mesh_.polygons.normal;
-    found_.covered.assign(mesh_.polygons.size(), 0);
-    for (const auto& [corners, same] : by_corners) {
-      for (const Index p : same) {
-        found_.covered[p] = std::any_of(
-            same.begin(), same.end(), [&](Index q) { return glm::dot(normal[p], normal[q]) < 0; });
-      }
-    }
+    found_.covered.assign(count, 0);
+    forRuns(
+        count,
+        [&](std::size_t i, std::size_t k) {
+          return std::ranges::equal(cornersOf(order[i]), cornersOf(order[k]));
+        },
+        [&](std::size_t from, std::size_t to) {
+          const auto same = std::span(order).subspan(from, to - from);
+          for (const Index p : same) {
+            found_.covered[p] = std::ranges::any_of(
+                same, [&](Index q) { return glm::dot(normal[p], normal[q]) < 0; });
+          }
+        });
   }
 
   /// Joins polygons across edges that exactly two of them share, once each way. A set of one-sided
   /// polygons all of whose edges are such is a closed oriented surface; embedded, it separates two
   /// regions.
   void findSurfaces() {
-    std::map<DirectedEdge, std::vector<Index>> users;
+    std::vector<EdgeUser> users;
     const PlanarPolygons& all = mesh_.polygons;
+    users.reserve(all.corners.size());
     for (Index p = 0; p < all.size(); ++p) {
       for (std::size_t l = all.loopBegin(p); l < all.loopEnd(p); ++l) {
         const std::span<const Index> loop = all.loop(l);
         for (std::size_t k = 0, last = loop.size() - 1; k < loop.size(); last = k++) {
-          users[{first_[loop[last]], first_[loop[k]]}].push_back(p);
+          const Index from = first_[loop[last]];
+          const Index to = first_[loop[k]];
+          users.push_back({edgeKey(from, to), from > to, p});
         }
       }
     }
+    parallelSort(users);
     UnionFind sets(all.size());
     std::vector<std::uint8_t> open(all.back_is_patch);
-    for (const auto& [edge, polygons] : users) {
-      const auto opposite = users.find({edge.second, edge.first});
-      if (polygons.size() == 1 && opposite != users.end() && opposite->second.size() == 1) {
-        sets.unite(polygons.front(), opposite->second.front());
-      } else {
-        for (const Index p : polygons) open[p] = 1;
-      }
-    }
-    std::map<Index, std::vector<Index>> members;
-    for (Index p = 0; p < all.size(); ++p) members[sets.find(p)].push_back(p);
-    for (auto& [root, polygons] : members) {
+    forRuns(
+        users.size(), [&](std::size_t i, std::size_t k) { return users[i].edge == users[k].edge; },
+        [&](std::size_t from, std::size_t to) {
+          if (to - from == 2 && !users[from].reversed && users[from + 1].reversed) {
+            sets.unite(users[from].polygon, users[from + 1].polygon);
+            return;
+          }
+          if (to - from == 1 && users[from].isPoint()) return;
+          for (std::size_t k = from; k < to; ++k) open[users[k].polygon] = 1;
+        });
+    std::vector<std::pair<Index, Index>> members(all.size());  // set, polygon
+    for (Index p = 0; p < all.size(); ++p) members[p] = {sets.find(p), p};
+    parallelSort(members);
+    const auto sameSet = [&](std::size_t i, std::size_t k) {
+      return members[i].first == members[k].first;
+    };
+    forRuns(members.size(), sameSet, [&](std::size_t from, std::size_t to) {
+      std::vector<Index> polygons;
+      polygons.reserve(to - from);
+      for (std::size_t k = from; k < to; ++k) polygons.push_back(members[k].second);
       progress_.check();
       // Polygons back to back enclose nothing.
       const bool flat = std::all_of(polygons.begin(), polygons.end(),
@@ -116,7 +169,7 @@ class EnclosureSearch {
       if (closed && isEmbedded(mesh_, first_, polygons, coincidenceOf(mesh_))) {
         addSurface(std::move(polygons));
       }
-    }
+    });
   }
 
   void addSurface(std::vector<Index> polygons) {
@@ -206,11 +259,13 @@ double coincidenceOf(const PatchMesh& mesh) {
 
 std::vector<Index> firstAtSamePoint(const PatchMesh& mesh) {
   const auto key = [&](Index v) {
-    return std::tie(mesh.vertices[v].x, mesh.vertices[v].y, mesh.vertices[v].z);
+    const Vec3& p = mesh.vertices[v];
+    return std::tie(p.x, p.y, p.z);
   };
   std::vector<Index> order(mesh.vertices.size());
   std::iota(order.begin(), order.end(), Index(0));
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return key(a) < key(b); });
+  parallelSort(order,
+               [&](Index a, Index b) { return key(a) < key(b) || (!(key(b) < key(a)) && a < b); });
   std::vector<Index> first(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) {
     const bool same = k > 0 && key(order[k - 1]) == key(order[k]);

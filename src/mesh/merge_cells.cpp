@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <map>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
 #include "base/geometry/plane_frame.h"
+#include "base/parallel.h"
 #include "mesh/edge_crossings.h"
 #include "mesh/straighten.h"
 #include "mesh/trace_loops.h"
@@ -58,7 +59,7 @@ class Merger {
   void indexRecords();
   void joinRecords();
   void sortEdges();
-  std::vector<Index> usesOfNeeded() const;
+  EdgeUses usesOfNeeded() const;
   void straightenEdges();
   void traceDraft(Draft& draft) const;
   std::vector<std::array<Index, 2>> edgesOf(const Draft& draft) const;
@@ -181,19 +182,21 @@ void Merger::sortEdges() {
   }
 }
 
-/// By needed edge a number that says which polygons it borders and which it runs through.
-std::vector<Index> Merger::usesOfNeeded() const {
-  std::vector<std::vector<Index>> uses(needed_.size());
-  for (std::size_t d = 0; d < drafts_.size(); ++d) {
-    for (const Index e : drafts_[d].border) uses[needed_number_[e]].push_back(Index(2 * d));
-    for (const Index e : drafts_[d].inner) uses[needed_number_[e]].push_back(Index(2 * d + 1));
-  }
-  std::map<std::vector<Index>, Index> numbers;
-  std::vector<Index> out;
-  out.reserve(uses.size());
-  for (auto& use : uses) {
-    out.push_back(numbers.emplace(std::move(use), Index(numbers.size())).first->second);
-  }
+/// By needed edge which polygons it borders and which it runs through.
+EdgeUses Merger::usesOfNeeded() const {
+  EdgeUses out;
+  out.begin.assign(needed_.size() + 1, 0);
+  const auto forUses = [&](const auto& visit) {
+    for (std::size_t d = 0; d < drafts_.size(); ++d) {
+      for (const Index e : drafts_[d].border) visit(needed_number_[e], Index(2 * d));
+      for (const Index e : drafts_[d].inner) visit(needed_number_[e], Index(2 * d + 1));
+    }
+  };
+  forUses([&](Index edge, Index) { ++out.begin[edge + 1]; });
+  std::partial_sum(out.begin.begin(), out.begin.end(), out.begin.begin());
+  out.numbers.resize(out.begin.back());
+  std::vector<std::size_t> next(out.begin.begin(), out.begin.end() - 1);
+  forUses([&](Index edge, Index use) { out.numbers[next[edge]++] = use; });
   return out;
 }
 
@@ -204,16 +207,20 @@ void Merger::straightenEdges() {
   std::vector<std::array<Index, 2>> ends;
   ends.reserve(needed_.size());
   for (const Index e : needed_) ends.push_back({edges_[e].a, edges_[e].b});
-  const std::vector<Index> uses = usesOfNeeded();
+  const EdgeUses uses = usesOfNeeded();
   std::vector<bool> keep(input_.points.size(), false);
   std::vector<bool> stale(drafts_.size(), true);
   while (std::find(stale.begin(), stale.end(), true) != stale.end()) {
     straight_ = straighten(input_.points, input_.coincidence, ends, uses, keep);
+    std::vector<char> sound(drafts_.size(), 1);
+    parallelFor(drafts_.size(), 256, [&](std::size_t d) {
+      if (!stale[d]) return;
+      traceDraft(drafts_[d]);
+      sound[d] = isSound(drafts_[d]) ? 1 : 0;
+    });
     std::vector<Index> kept;
     for (std::size_t d = 0; d < drafts_.size(); ++d) {
-      if (!stale[d]) continue;
-      traceDraft(drafts_[d]);
-      if (!isSound(drafts_[d])) keepCorners(drafts_[d], keep, kept);
+      if (sound[d] == 0) keepCorners(drafts_[d], keep, kept);
     }
     stale = draftsAt(kept);
   }

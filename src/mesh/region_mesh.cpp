@@ -32,28 +32,55 @@ using Cdt = CGAL::Constrained_Delaunay_triangulation_2<Kernel, DataStructure,
 using Face = Cdt::Face_handle;
 using Vertex = Cdt::Vertex_handle;
 
-const double kWantedAngle = glm::radians(25.0);    // triangles below are worked on
-const double kAcceptedAngle = glm::radians(18.0);  // a new point must reach this around itself
-const double kWorthwhile = glm::radians(2.0);      // and gain this much
-constexpr int kRounds = 4;                         // refine, smooth, triangulate anew
-constexpr int kSweeps = 4;                         // of smoothing, a round
+const AngleLimit kWantedAngle(25.0);           // triangles below are worked on
+const AngleLimit kAcceptedAngle(18.0);         // a new point must reach this around itself
+const double kWorthwhile = glm::radians(2.0);  // and gain this much
+constexpr int kRounds = 4;                     // refine, smooth, triangulate anew
+constexpr int kSweeps = 4;                     // of smoothing, a round
 
 Vec2 positionOf(Vertex v) { return {v->point().x(), v->point().y()}; }
 Cdt::Point pointOf(const Vec2& p) { return {p.x, p.y}; }
+/// Whether rounding or a move has left a triangle no area, or turned it over.
+bool isTurnedOver(Face f) {
+  const Vec2 a = positionOf(f->vertex(0));
+  return cross2(positionOf(f->vertex(1)) - a, positionOf(f->vertex(2)) - a) <= 0;
+}
+
 /// The smallest angle that points and moves inside can change: those between two constraints are
-/// given. A triangle that is turned over has angle -1.
-double smallestFreeAngle(Face f) {
+/// given.
+Angle smallestFreeAngle(Face f) {
   const Vec2 p[3] = {positionOf(f->vertex(0)), positionOf(f->vertex(1)), positionOf(f->vertex(2))};
-  if (cross2(p[1] - p[0], p[2] - p[0]) <= 0) return -1;
-  double smallest = glm::radians(180.0);
+  Angle smallest;
   for (int i = 0; i < 3; ++i) {
     const int next = Cdt::ccw(i);
     const int last = Cdt::cw(i);
     if (f->is_constrained(next) && f->is_constrained(last)) continue;
-    smallest = std::min(smallest, angleAt(p[next], p[i], p[last]));
+    lower(smallest, {p[next], p[i], p[last]});
   }
   return smallest;
 }
+
+/// Of some triangles: the smallest free angle, below all angles where one is turned over.
+class Worst {
+ public:
+  void add(Face f) {
+    if (turned_over_ || isTurnedOver(f)) {
+      turned_over_ = true;
+    } else {
+      lower(smallest_, smallestFreeAngle(f));
+    }
+  }
+  bool isBelow(const AngleLimit& limit) const { return turned_over_ || limit.isAbove(smallest_); }
+  bool isBelow(const Worst& other) const {
+    return !other.turned_over_ && (turned_over_ || smallest_.isBelow(other.smallest_));
+  }
+  /// -1: one is turned over.
+  double radians() const { return turned_over_ ? -1.0 : smallest_.radians(); }
+
+ private:
+  Angle smallest_;
+  bool turned_over_ = false;
+};
 
 class RegionMesher {
  public:
@@ -68,8 +95,9 @@ class RegionMesher {
   }
 
   std::optional<RegionMesh> run() {
+    if (isPlainTriangle()) return RegionMesh{{}, {{2, 0, 1, kNone}}};
     if (!triangulate() || !tiles()) return std::nullopt;
-    for (int round = 0; round < kRounds && smallestAngle() < kWantedAngle; ++round) {
+    for (int round = 0; round < kRounds && worst().isBelow(kWantedAngle); ++round) {
       refine();
       smooth();
       takePositions();
@@ -82,6 +110,7 @@ class RegionMesher {
   }
 
  private:
+  bool isPlainTriangle() const;
   bool triangulate();
   bool insertPieces(const std::vector<Vertex>& vertices);
   void markInside();
@@ -91,7 +120,7 @@ class RegionMesher {
                                                           f->vertex(Cdt::ccw(i))->info())) > 0;
   }
   bool isFree(Vertex v) const { return v->info() >= region_.points.size(); }
-  double smallestAngle() const;
+  Worst worst() const;
   void refine();
   bool improve(Face bad, std::vector<Face>& changed);
   struct Trial {
@@ -103,7 +132,7 @@ class RegionMesher {
   Vertex insert(const Cdt::Point& p, Face where);
   void smooth();
   bool relax(Vertex v);
-  double smallestAround(Vertex v);
+  Worst worstAround(Vertex v);
   void flipFlat();
   bool isFlippable(Face f, int i) const;
   bool shorten(const std::vector<Cell>& cells);
@@ -119,6 +148,22 @@ class RegionMesher {
   std::size_t inserted_ = 0;
   std::size_t budget_ = 0;
 };
+
+/// A triangle without points inside is its own triangulation: all its angles are given, and none of
+/// its edges may be cut or turned. Its corners begin where the triangulation of three points does.
+bool RegionMesher::isPlainTriangle() const {
+  if (region_.points.size() != 3 || region_.loops.size() != 1 || !region_.inner.empty() ||
+      !std::ranges::equal(region_.loops[0], std::array<Index, 3>{0, 1, 2}) || !interior_.empty() ||
+      std::isfinite(region_.longest)) {
+    return false;
+  }
+  const auto& p = region_.points;
+  // As corners come, to the bit: rounding may turn a sliver over from one corner and not from
+  // another.
+  return CGAL::orientation(pointOf(p[0]), pointOf(p[1]), pointOf(p[2])) == CGAL::LEFT_TURN &&
+         cross2(p[1] - p[0], p[2] - p[0]) > 0 && cross2(p[2] - p[1], p[0] - p[1]) > 0 &&
+         cross2(p[0] - p[2], p[1] - p[2]) > 0;
+}
 
 /// False if two pieces cross.
 bool RegionMesher::insertPieces(const std::vector<Vertex>& vertices) {
@@ -221,12 +266,13 @@ bool RegionMesher::tiles() const {
   return std::abs(double(area)) <= 0x1p-46 * terms;
 }
 
-double RegionMesher::smallestAngle() const {
-  double smallest = glm::radians(180.0);
+/// Of the triangles inside.
+Worst RegionMesher::worst() const {
+  Worst out;
   for (Face f : cdt_.finite_face_handles()) {
-    if (f->info()) smallest = std::min(smallest, smallestFreeAngle(f));
+    if (f->info()) out.add(f);
   }
-  return smallest;
+  return out;
 }
 
 /// Delaunay refinement without encroachment rules: instead of reasoning about where a point may
@@ -234,7 +280,7 @@ double RegionMesher::smallestAngle() const {
 void RegionMesher::refine() {
   std::vector<std::array<Vertex, 3>> worst;
   const auto note = [&](Face f) {
-    if (f->info() && smallestFreeAngle(f) < kWantedAngle) {
+    if (f->info() && (isTurnedOver(f) || kWantedAngle.isAbove(smallestFreeAngle(f)))) {
       worst.push_back({f->vertex(0), f->vertex(1), f->vertex(2)});
     }
   };
@@ -263,25 +309,22 @@ RegionMesher::Trial RegionMesher::tryPoint(const Cdt::Point& p, Face bad) {
   std::vector<Face> zone;
   std::vector<Cdt::Edge> rim;
   cdt_.get_conflicts_and_boundary(p, std::back_inserter(zone), std::back_inserter(rim), where);
-  double before = glm::radians(180.0);
-  bool removes = false;
-  for (Face f : zone) {
-    before = std::min(before, smallestFreeAngle(f));
-    removes = removes || f == bad;
-  }
-  if (!removes) return trial;
-  double after = glm::radians(180.0);
+  if (std::find(zone.begin(), zone.end(), bad) == zone.end()) return trial;
+  Angle after;
   trial.clear = true;
   for (const auto& [f, side] : rim) {
     const Vec2 a = positionOf(f->vertex(Cdt::ccw(side)));
     const Vec2 b = positionOf(f->vertex(Cdt::cw(side)));
     const Vec2 q(p.x(), p.y());
-    after = std::min(after, smallestOf(q, a, b));
+    lower(after, smallestOf(q, a, b));
     if (!f->is_constrained(side)) continue;
     if (glm::dot(a - q, b - q) < 0) trial.clear = false;
     if (heightOver(q, a, b) <= region_.clearance) return {};
   }
-  if (after >= kAcceptedAngle && after >= before + kWorthwhile) trial.gain = after;
+  if (kAcceptedAngle.isAbove(after)) return trial;
+  Worst before;
+  for (Face f : zone) before.add(f);
+  if (after.radians() >= before.radians() + kWorthwhile) trial.gain = after.radians();
   return trial;
 }
 
@@ -328,20 +371,20 @@ bool RegionMesher::improve(Face bad, std::vector<Face>& changed) {
   return true;
 }
 
-double RegionMesher::smallestAround(Vertex v) {
-  double smallest = glm::radians(180.0);
+Worst RegionMesher::worstAround(Vertex v) {
+  Worst out;
   Cdt::Face_circulator f = cdt_.incident_faces(v);
   const Cdt::Face_circulator end = f;
   do {
-    smallest = std::min(smallest, smallestFreeAngle(f));
+    out.add(f);
   } while (++f != end);
-  return smallest;
+  return out;
 }
 
 /// Moves a free vertex towards the mean of its neighbours as far as its smallest angle grows.
 bool RegionMesher::relax(Vertex v) {
-  const double before = smallestAround(v);
-  if (before >= kWantedAngle) return false;
+  const Worst before = worstAround(v);
+  if (!before.isBelow(kWantedAngle)) return false;
   Vec2 mean(0.0);
   double count = 0;
   Cdt::Vertex_circulator w = cdt_.incident_vertices(v);
@@ -355,7 +398,7 @@ bool RegionMesher::relax(Vertex v) {
   const Vec2 from = positionOf(v);
   for (const double step : {1.0, 0.5, 0.25, -0.25}) {
     v->set_point(pointOf(from + step * (mean - from)));
-    if (smallestAround(v) > before) return true;
+    if (before.isBelow(worstAround(v))) return true;
   }
   v->set_point(old);
   return false;

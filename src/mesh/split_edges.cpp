@@ -50,6 +50,8 @@ class Splitter {
  private:
   std::vector<Index> edgesBeside(const std::vector<Index>& changed) const;
   bool isInside(Index vertex, const Edge& edge) const;
+  std::optional<Approach> passOf(const Edge& f, const Edge& g) const;
+  bool meet(Index first, Index second) const;
   void pair(Index first, Index second);
 
   WeldedPoints& points_;
@@ -72,6 +74,24 @@ bool Splitter::isInside(Index vertex, const Edge& edge) const {
   return glm::length(glm::cross(to_a, to_b)) < coincidence_ * length;
 }
 
+/// Where two edges without a common vertex pass each other closer than coincidence.
+std::optional<Approach> Splitter::passOf(const Edge& f, const Edge& g) const {
+  if (f.a == g.a || f.a == g.b || f.b == g.a || f.b == g.b) return std::nullopt;
+  const auto approach = interiorApproach(points_[f.a], points_[f.b], points_[g.a], points_[g.b]);
+  if (!approach || glm::distance(approach->on_first, approach->on_second) >= coincidence_) {
+    return std::nullopt;
+  }
+  return approach;
+}
+
+/// Whether pair() has anything to do.
+bool Splitter::meet(Index first, Index second) const {
+  const Edge& f = edges_[first];
+  const Edge& g = edges_[second];
+  return isInside(g.a, f) || isInside(g.b, f) || isInside(f.a, g) || isInside(f.b, g) ||
+         passOf(f, g);
+}
+
 void Splitter::pair(Index first, Index second) {
   const Edge& f = edges_[first];
   const Edge& g = edges_[second];
@@ -85,10 +105,9 @@ void Splitter::pair(Index first, Index second) {
   end(first, g.b);
   end(second, f.a);
   end(second, f.b);
-  const bool share = f.a == g.a || f.a == g.b || f.b == g.a || f.b == g.b;
-  if (touch || share) return;
-  const auto approach = interiorApproach(points_[f.a], points_[f.b], points_[g.a], points_[g.b]);
-  if (!approach || glm::distance(approach->on_first, approach->on_second) >= coincidence_) return;
+  if (touch) return;
+  const auto approach = passOf(f, g);
+  if (!approach) return;
   const Index vertex = points_.insert(0.5 * (approach->on_first + approach->on_second));
   const auto cross = [&](Index edge, const Edge& ends) {
     const bool shortens =
@@ -161,9 +180,8 @@ std::vector<Index> Splitter::pass(const std::vector<Index>& changed, Progress& p
     if (position[e] != kNone) some.push_back(position[e]);
   }
   splits_.clear();
-  std::size_t looked = 0;
-  for (const auto& [i, j] : overlappingPairs(boxes, some, &progress)) {
-    if (++looked % 4096 == 0) progress.check();
+  const auto met = [&](Index i, Index j) { return meet(edge_of[i], edge_of[j]); };
+  for (const auto& [i, j] : overlappingPairs(boxes, some, &progress, met)) {
     pair(edge_of[i], edge_of[j]);
   }
   return apply(splits_);

@@ -11,12 +11,12 @@ namespace {
 class Straightener {
  public:
   Straightener(const WeldedPoints& points, double coincidence,
-               const std::vector<std::array<Index, 2>>& edges, const std::vector<Index>& use,
+               const std::vector<std::array<Index, 2>>& edges, const EdgeUses& uses,
                const std::vector<bool>& keep)
       : points_(points),
         coincidence_(coincidence),
         edges_(edges),
-        use_(use),
+        uses_(uses),
         keep_(keep),
         at_(points.size()),
         done_(edges.size(), false) {
@@ -49,7 +49,8 @@ class Straightener {
 
   /// Nothing but the chain meets at a vertex inside it, and the chain is the same on both sides.
   bool endsChain(Index v) const {
-    return at_[v].size() != 2 || keep_[v] || use_[at_[v][0]] != use_[at_[v][1]];
+    return at_[v].size() != 2 || keep_[v] ||
+           !std::ranges::equal(uses_.of(at_[v][0]), uses_.of(at_[v][1]));
   }
 
   Chain chain(Index start, Index edge) {
@@ -118,7 +119,7 @@ class Straightener {
   const WeldedPoints& points_;
   double coincidence_;
   const std::vector<std::array<Index, 2>>& edges_;
-  const std::vector<Index>& use_;
+  const EdgeUses& uses_;
   const std::vector<bool>& keep_;
   std::vector<std::vector<Index>> at_;
   std::vector<bool> done_;
@@ -128,9 +129,9 @@ class Straightener {
 }  // namespace
 
 StraightEdges straighten(const WeldedPoints& points, double coincidence,
-                         const std::vector<std::array<Index, 2>>& edges,
-                         const std::vector<Index>& use, const std::vector<bool>& keep) {
-  return Straightener(points, coincidence, edges, use, keep).run();
+                         const std::vector<std::array<Index, 2>>& edges, const EdgeUses& uses,
+                         const std::vector<bool>& keep) {
+  return Straightener(points, coincidence, edges, uses, keep).run();
 }
 
 }  // namespace radiosity

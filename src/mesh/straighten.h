@@ -2,11 +2,22 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "mesh/welded_points.h"
 
 namespace radiosity {
+
+/// By edge a list of numbers.
+struct EdgeUses {
+  std::vector<std::size_t> begin;  ///< edges + 1, into numbers
+  std::vector<Index> numbers;
+
+  std::span<const Index> of(std::size_t edge) const {
+    return {numbers.data() + begin[edge], begin[edge + 1] - begin[edge]};
+  }
+};
 
 struct StraightEdges {
   std::vector<std::array<Index, 2>> edges;  ///< what is left
@@ -16,10 +27,10 @@ struct StraightEdges {
 
 /// Removes vertices at which exactly two of `edges` meet in a straight line: all that is removed
 /// between two neighbours that stay lies within coincidence of the line between them. Two edges
-/// become one only where `use` holds the same number for both: what borders or cuts a polygon along
-/// the one does so along the other. Vertices marked in `keep` stay.
+/// become one only where `uses` are the same of both: what borders or cuts a polygon along the one
+/// does so along the other. Vertices marked in `keep` stay.
 StraightEdges straighten(const WeldedPoints& points, double coincidence,
-                         const std::vector<std::array<Index, 2>>& edges,
-                         const std::vector<Index>& use, const std::vector<bool>& keep);
+                         const std::vector<std::array<Index, 2>>& edges, const EdgeUses& uses,
+                         const std::vector<bool>& keep);
 
 }  // namespace radiosity

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "base/geometry/box.h"
 #include "base/geometry/plane_frame.h"
 #include "base/parallel.h"
 #include "mesh/complex.h"
@@ -29,6 +30,9 @@ constexpr double kMuchMore = 1.15;
 // lean over to a far point less, from atan(1 / spacing) on. The first that can be afforded.
 constexpr double kSpacings[] = {1.0, 1.5, 2.0, 2.5, 3.0, 4.0};
 constexpr double kCoarser = 1.5;  // what they may cost: other cells at most this much larger
+// The background grid has as many steps as the polygon is sizes wide, rounded, and at least one:
+// one across all polygons of less than a step and a half. A little less, for what is rounded.
+constexpr double kPlainDiameter = 1.49;
 constexpr double kNoOpposites = std::numeric_limits<double>::infinity();
 
 double areaOf(const CoarseComplex& complex, const CoarsePolygon& polygon) {
@@ -59,10 +63,24 @@ double outlineOf(const CoarseComplex& complex) {
   return length;
 }
 
+/// Of the box around a polygon, which is at least the polygon's own.
+double diameterOf(const CoarseComplex& complex, const CoarsePolygon& polygon) {
+  Box3 box;
+  for (const auto& loop : polygon.loops) {
+    for (const Index v : loop) box.add(complex.vertices[v]);
+  }
+  return box.diagonal();
+}
+
 class Subdivision {
  public:
   Subdivision(const CoarseComplex& complex, Progress& progress)
-      : complex_(complex), progress_(progress), cuts_(complex) {}
+      : complex_(complex), progress_(progress), cuts_(complex) {
+    diameter_.reserve(complex.polygons.size());
+    for (const CoarsePolygon& polygon : complex.polygons) {
+      diameter_.push_back(diameterOf(complex, polygon));
+    }
+  }
 
   /// Cells of every polygon; returns how many there are.
   std::size_t run(const CellSize& size, Rounding rounding, double spacing) {
@@ -115,13 +133,23 @@ class Subdivision {
   std::vector<Index> cutPolygons(const CellSize& size) {
     progress_.check();
     progress_.begin("cutting into patches", complex_.polygons.size());
-    cells_.assign(complex_.polygons.size(), {});
+    cells_.resize(complex_.polygons.size());
+    is_plain_.resize(cells_.size(), 0);
     std::vector<char> crossed(cells_.size(), 0);
     parallelFor(cells_.size(), 16, [&](std::size_t p) {
       if (progress_.cancelled() || cellSource(complex_, p) != p) return;
+      const bool plain = isPlain(p, size);
+      cells_[p].groups.clear();
+      if (plain && is_plain_[p]) {
+        progress_.advance();
+        return;
+      }
+      is_plain_[p] = 0;
       if (auto cells = cellsOf(complex_, cuts_, p, size)) {
         cells_[p] = std::move(*cells);
+        is_plain_[p] = plain ? 1 : 0;
       } else {
+        cells_[p] = {};
         crossed[p] = 1;
       }
       progress_.advance();
@@ -135,11 +163,20 @@ class Subdivision {
     return out;
   }
 
+  /// No edge of the polygon is cut and no step of its background grid is shorter than the polygon:
+  /// then its cells are the same at any such size.
+  bool isPlain(std::size_t p, const CellSize& size) const {
+    return std::isinf(size.longest) && diameter_[p] < kPlainDiameter * size.size &&
+           cuts_.isUncut(p);
+  }
+
   const CoarseComplex& complex_;
   Progress& progress_;
   EdgeCuts cuts_;
   std::set<Index> whole_;
+  std::vector<double> diameter_;  ///< by polygon, at least
   std::vector<PolygonCells> cells_;
+  std::vector<char> is_plain_;  ///< by polygon: its cells are those of isPlain()
   std::size_t count_ = 0;
 };
 

@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <compare>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <unordered_map>
-#include <unordered_set>
+#include <numeric>
 
+#include "base/parallel.h"
 #include "mesh/edge_key.h"
 #include "mesh/mesh_figures.h"
 #include "radiosity/patch_mesh.h"
@@ -14,15 +16,26 @@ namespace radiosity {
 
 namespace {
 
-/// Points by the cell of a cubic grid they lie in.
+constexpr std::size_t kEdgesAtATime = 1024;  // a task of a thread
+
+/// Points by the cell of a cubic grid they lie in, cells by a hash of theirs.
 class PointGrid {
  public:
-  PointGrid(const PatchMesh& mesh, const Vec3& lower, double cell)
-      : mesh_(mesh), lower_(lower), cell_(cell) {}
-
-  void add(Index vertex) {
-    const auto c = cellOf(mesh_.vertices[vertex]);
-    cells_[keyOf(c[0], c[1], c[2])].push_back(vertex);
+  PointGrid(const PatchMesh& mesh, const std::vector<Index>& points, const Vec3& lower, double cell)
+      : mesh_(mesh),
+        lower_(lower),
+        cell_(cell),
+        mask_(std::bit_ceil(points.size() + 1) - 1),
+        begin_(mask_ + 2, 0),
+        points_(points.size()) {
+    const auto slotOf = [&](Index vertex) {
+      const auto c = cellOf(mesh_.vertices[vertex]);
+      return slot(c[0], c[1], c[2]);
+    };
+    for (const Index vertex : points) ++begin_[slotOf(vertex) + 1];
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
+    for (const Index vertex : points) points_[next[slotOf(vertex)]++] = vertex;
   }
 
   /// Calls visit(vertex) once for every point in the cells between `low` and `high`.
@@ -33,10 +46,10 @@ class PointGrid {
     for (long z = a[2]; z <= b[2]; ++z) {
       for (long y = a[1]; y <= b[1]; ++y) {
         for (long x = a[0]; x <= b[0]; ++x) {
-          const auto found = cells_.find(keyOf(x, y, z));
-          if (found == cells_.end()) continue;
-          for (const Index vertex : found->second) {
-            // Two cells of the box may share a key.
+          const std::size_t at = slot(x, y, z);
+          for (std::size_t k = begin_[at]; k < begin_[at + 1]; ++k) {
+            // Cells share slots.
+            const Index vertex = points_[k];
             if (cellOf(mesh_.vertices[vertex]) == std::array<long, 3>{x, y, z}) visit(vertex);
           }
         }
@@ -49,15 +62,19 @@ class PointGrid {
     const Vec3 c = glm::floor((p - lower_) / cell_);
     return {long(c.x), long(c.y), long(c.z)};
   }
-  static std::uint64_t keyOf(long x, long y, long z) {
-    return std::uint64_t(x) * 73856093u ^ std::uint64_t(y) * 19349663u * 4099u ^
-           std::uint64_t(z) * 83492791u * 16777259u;
+  std::size_t slot(long x, long y, long z) const {
+    const std::uint64_t key = std::uint64_t(x) * 0x9e3779b97f4a7c15ull ^
+                              std::uint64_t(y) * 0xc2b2ae3d27d4eb4full ^
+                              std::uint64_t(z) * 0x165667b19e3779f9ull;
+    return (key ^ key >> 32) & mask_;
   }
 
   const PatchMesh& mesh_;
   Vec3 lower_;
   double cell_;
-  std::unordered_map<std::uint64_t, std::vector<Index>> cells_;
+  std::size_t mask_;                ///< slots - 1
+  std::vector<std::size_t> begin_;  ///< by slot, into points_
+  std::vector<Index> points_;
 };
 
 struct Edges {
@@ -67,14 +84,33 @@ struct Edges {
 };
 
 Edges distinctEdges(const PatchMesh& mesh) {
-  Edges edges;
-  std::unordered_set<std::uint64_t> seen;
+  struct Side {
+    std::uint64_t key;
+    std::size_t corner;  ///< that it begins at
+    auto operator<=>(const Side&) const = default;
+  };
+  std::vector<Side> sides;
+  sides.reserve(mesh.corners.size());
+  std::vector<std::array<Index, 2>> ends;
+  ends.reserve(mesh.corners.size());
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     const auto outline = mesh.outline(i);
     for (std::size_t k = 0; k < outline.size(); ++k) {
-      const Index a = outline[k];
-      const Index b = outline[(k + 1) % outline.size()];
-      if (!seen.insert(edgeKey(a, b)).second) continue;
+      ends.push_back({outline[k], outline[(k + 1) % outline.size()]});
+      sides.push_back({edgeKey(ends.back()[0], ends.back()[1]), ends.size() - 1});
+    }
+  }
+  parallelSort(sides);
+  std::vector<char> is_first(ends.size(), 0);
+  for (std::size_t k = 0; k < sides.size(); ++k) {
+    is_first[sides[k].corner] = k == 0 || sides[k].key != sides[k - 1].key;
+  }
+  Edges edges;
+  std::size_t corner = 0;
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    for (const std::size_t end = corner + mesh.outline(i).size(); corner < end; ++corner) {
+      if (!is_first[corner]) continue;
+      const auto& [a, b] = ends[corner];
       edges.ends.push_back({a, b});
       edges.patch.push_back(Index(i));
       edges.mean_length += glm::length(mesh.vertices[b] - mesh.vertices[a]);
@@ -93,19 +129,20 @@ std::vector<Index> patchesAtTJunctions(const PatchMesh& mesh, double tolerance) 
   Vec3 lower = mesh.vertices[edges.ends[0][0]];
   for (const Vec3& vertex : mesh.vertices) lower = glm::min(lower, vertex);
   const double cell = std::max(edges.mean_length, 4 * tolerance);
-  PointGrid grid(mesh, lower, cell);
+  std::vector<Index> points;
   std::vector<bool> used(mesh.vertices.size(), false);
   for (const Index vertex : mesh.corners) {
-    if (!used[vertex]) grid.add(vertex);
+    if (!used[vertex]) points.push_back(vertex);
     used[vertex] = true;
   }
+  const PointGrid grid(mesh, points, lower, cell);
 
-  for (std::size_t e = 0; e < edges.ends.size(); ++e) {
+  const auto lookAlong = [&](std::size_t e, std::vector<Index>& found) {
     const auto [from, to] = edges.ends[e];
     const Vec3& a = mesh.vertices[from];
     const Vec3 along = mesh.vertices[to] - a;
     const double length = glm::length(along);
-    if (length <= 2 * tolerance) continue;
+    if (length <= 2 * tolerance) return;
     // Long edges are walked in steps of a cell; a point belongs to the step it projects onto.
     const double steps = std::ceil(length / cell);
     for (double step = 0; step < steps; ++step) {
@@ -117,10 +154,16 @@ std::vector<Index> patchesAtTJunctions(const PatchMesh& mesh, double tolerance) 
         const double t = glm::dot(away, along) / (length * length);
         if (std::floor(t * steps) != step) return;
         if (t * length <= tolerance || (1 - t) * length <= tolerance) return;
-        if (glm::length(away - t * along) <= tolerance) out.push_back(edges.patch[e]);
+        if (glm::length(away - t * along) <= tolerance) found.push_back(edges.patch[e]);
       });
     }
-  }
+  };
+  std::vector<std::vector<Index>> found((edges.ends.size() + kEdgesAtATime - 1) / kEdgesAtATime);
+  parallelFor(found.size(), 1, [&](std::size_t block) {
+    const std::size_t end = std::min(edges.ends.size(), (block + 1) * kEdgesAtATime);
+    for (std::size_t e = block * kEdgesAtATime; e < end; ++e) lookAlong(e, found[block]);
+  });
+  for (const auto& some : found) out.insert(out.end(), some.begin(), some.end());
   return out;
 }
 

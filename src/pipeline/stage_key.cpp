@@ -154,14 +154,14 @@ StageKey factorsKeyOf(const FormFactorOptions& options, const std::string& mesh_
   key.add("method", nameOf(kMethodNames, options.method));
   const bool any = options.method == FormFactorMethod::automatic;
   if (options.method != FormFactorMethod::hemicube) {
-    key.add("tolerance", fmt::format("{}", options.tolerance));
+    key.add("tolerance", options.tolerance ? fmt::format("{}", *options.tolerance) : "default");
     key.add("closure", nameOf(kClosureNames, options.closure));
   }
   if (options.method != FormFactorMethod::exact) key.add("seed", fmt::format("{}", options.seed));
   if (any || options.method == FormFactorMethod::hemicube) {
     key.add("resolution", fmt::format("{}", options.resolution));
     key.add("symmetrize", onOff(options.symmetrize));
-    key.add("near", options.nearExact() ? "exact" : "off");
+    key.add("near", options.near_exact ? "exact" : "off");
     addTurns(key, options.random_turns);
   }
   key.add("precision", nameOf(kPrecisionNames, options.storedPrecision()));
@@ -177,7 +177,6 @@ StageKey factorsKey(const FormFactorOptions& options, const PatchMesh& mesh) {
 
 StageKey usedKey(const StageKey& factors_key, std::string_view method) {
   FormFactorOptions options = factorOptionsOf(factors_key);
-  options.near_exact = options.nearExact();  // as `auto` had it, where that was asked for
   options.method = named(kMethodNames, method).value_or(options.method);
   return factorsKeyOf(options, factors_key.get("mesh").value_or(""));
 }
@@ -225,11 +224,11 @@ MeshOptions meshOptionsOf(const StageKey& key) {
 FormFactorOptions factorOptionsOf(const StageKey& key) {
   FormFactorOptions options;
   readNamed(key, "method", kMethodNames, options.method);
-  read(key, "tolerance", options.tolerance);
+  double tolerance = 0;
+  read(key, "tolerance", tolerance);
+  if (tolerance > 0) options.tolerance = tolerance;
   readNamed(key, "closure", kClosureNames, options.closure);
-  // What `automatic` does by itself does not bind another method that is asked for later.
-  const bool near_exact = key.get("near") == "exact";
-  if (near_exact != options.nearExact()) options.near_exact = near_exact;
+  options.near_exact = key.get("near") == "exact";
   read(key, "resolution", options.resolution);
   read(key, "seed", options.seed);
   read(key, "symmetrize", options.symmetrize);

@@ -25,7 +25,7 @@ SceneChecks::SceneChecks(const Scene& scene, const WeldedFaces& faces)
   std::vector<Box3> boxes;
   boxes.reserve(topology_.parts.size());
   for (const ConnectedPart& part : topology_.parts) boxes.push_back({part.lower, part.upper});
-  part_boxes_ = BoxTree(std::move(boxes));
+  part_boxes_ = BoxTree(boxes);
 }
 
 void SceneChecks::reportLight(SceneInfo& info) const {

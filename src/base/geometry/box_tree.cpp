@@ -2,27 +2,38 @@
 
 #include <algorithm>
 #include <numeric>
-#include <utility>
+
+#include "base/parallel.h"
 
 namespace radiosity {
 
-BoxTree::BoxTree(std::vector<Box3> boxes) : boxes_(std::move(boxes)), order_(boxes_.size()) {
-  std::iota(order_.begin(), order_.end(), Index(0));
-  if (boxes_.empty()) return;
-  nodes_.reserve(2 * boxes_.size());
-  nodes_.emplace_back();
-  build(0, 0, Index(boxes_.size()));
+namespace {
+
+constexpr Index kLeaf = 4;
+constexpr Index kWorthATask = 8192;
+
+/// Nodes below one of so many boxes.
+Index nodesBelow(Index count) {
+  return count <= kLeaf ? 0 : 2 + nodesBelow(count / 2) + nodesBelow(count - count / 2);
 }
 
-void BoxTree::build(Index node, Index first, Index count) {
-  constexpr Index kLeaf = 4;
-  Box3 bound = boxes_[order_[first]];
-  for (Index k = first; k < first + count; ++k) {
-    bound.add(boxes_[order_[k]]);
-  }
-  nodes_[node].bound = bound;
-  nodes_[node].first = first;
-  nodes_[node].count = count;
+}  // namespace
+
+BoxTree::BoxTree(const std::vector<Box3>& boxes) : order_(boxes.size()) {
+  std::iota(order_.begin(), order_.end(), Index(0));
+  if (boxes.empty()) return;
+  nodes_.resize(1 + nodesBelow(Index(boxes.size())));
+  build(0, 0, Index(boxes.size()), 1, boxes);
+  boxes_.reserve(boxes.size());
+  for (const Index k : order_) boxes_.push_back(boxes[k]);
+}
+
+/// `below`: where the nodes below this one begin.
+void BoxTree::build(Index node, Index first, Index count, Index below,
+                    const std::vector<Box3>& boxes) {
+  Box3 bound = boxes[order_[first]];
+  for (Index k = first; k < first + count; ++k) bound.add(boxes[order_[k]]);
+  nodes_[node] = {bound, first, count};
   if (count <= kLeaf) return;
   const Vec3 extent = bound.high - bound.low;
   const int axis =
@@ -30,17 +41,21 @@ void BoxTree::build(Index node, Index first, Index count) {
   const Index half = count / 2;
   std::nth_element(order_.begin() + first, order_.begin() + first + half,
                    order_.begin() + first + count, [&](Index a, Index b) {
-                     const double ca = boxes_[a].low[axis] + boxes_[a].high[axis];
-                     const double cb = boxes_[b].low[axis] + boxes_[b].high[axis];
+                     const double ca = boxes[a].low[axis] + boxes[a].high[axis];
+                     const double cb = boxes[b].low[axis] + boxes[b].high[axis];
                      return ca != cb ? ca < cb : a < b;
                    });
-  nodes_[node].first = Index(nodes_.size());
+  nodes_[node].first = below;
   nodes_[node].count = 0;
-  nodes_.emplace_back();
-  nodes_.emplace_back();
-  const Index child = nodes_[node].first;
-  build(child, first, half);
-  build(child + 1, first + half, count - half);
+  const Index right = below + 2 + nodesBelow(half);
+  const auto buildLeft = [&] { build(below, first, half, below + 2, boxes); };
+  const auto buildRight = [&] { build(below + 1, first + half, count - half, right, boxes); };
+  if (count < kWorthATask) {
+    buildLeft();
+    buildRight();
+  } else {
+    parallelBoth(buildLeft, buildRight);
+  }
 }
 
 }  // namespace radiosity

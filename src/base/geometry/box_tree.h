@@ -1,6 +1,7 @@
 // Boxes by place.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "base/geometry/box.h"
@@ -12,7 +13,7 @@ namespace radiosity {
 class BoxTree {
  public:
   BoxTree() = default;
-  explicit BoxTree(std::vector<Box3> boxes);
+  explicit BoxTree(const std::vector<Box3>& boxes);
 
   /// Calls visit(index) for every box that meets `box`, until it returns false.
   template <class Visit>
@@ -25,18 +26,19 @@ class BoxTree {
   template <class Meets, class Visit>
   void search(const Meets& meets, const Visit& visit) const {
     if (nodes_.empty()) return;
-    std::vector<Index> stack{0};
-    while (!stack.empty()) {
-      const Node& node = nodes_[stack.back()];
-      stack.pop_back();
+    std::array<Index, kDepth> stack;
+    std::size_t height = 1;
+    stack[0] = 0;
+    while (height > 0) {
+      const Node& node = nodes_[stack[--height]];
       if (!meets(node.bound)) continue;
       if (node.count == 0) {
-        stack.push_back(node.first + 1);
-        stack.push_back(node.first);
+        stack[height++] = node.first + 1;
+        stack[height++] = node.first;
         continue;
       }
       for (Index k = node.first; k < node.first + node.count; ++k) {
-        if (meets(boxes_[order_[k]]) && !visit(order_[k])) return;
+        if (meets(boxes_[k]) && !visit(order_[k])) return;
       }
     }
   }
@@ -49,10 +51,13 @@ class BoxTree {
     Index first = 0;  ///< child (the second follows it), or into order_
     Index count = 0;  ///< of a leaf; 0: inner node
   };
-  void build(Index node, Index first, Index count);
+  /// Halves are halved until few are left: more levels than an index has bits there are not, and a
+  /// search leaves one node a level for later.
+  static constexpr std::size_t kDepth = 34;
+  void build(Index node, Index first, Index count, Index below, const std::vector<Box3>& boxes);
 
-  std::vector<Box3> boxes_;
-  std::vector<Index> order_;
+  std::vector<Box3> boxes_;   ///< leaf by leaf
+  std::vector<Index> order_;  ///< of each its index
   std::vector<Node> nodes_;
 };
 

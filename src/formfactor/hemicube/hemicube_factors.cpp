@@ -133,7 +133,7 @@ void checkRows(FormFactors& result) {
 
 HemicubeScene::HemicubeScene(const PatchMesh& mesh, const FormFactorOptions& options)
     : rows(mesh, options) {
-  if (options.nearExact()) near_pairs.emplace(mesh, options);
+  if (options.near_exact) near_pairs.emplace(mesh, options);
 }
 
 FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,

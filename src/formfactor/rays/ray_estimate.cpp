@@ -72,13 +72,14 @@ RayEstimate estimateRays(const RayScene& scene, const FormFactorOptions& options
   progress.check();
   progress.end();
   const double order = orderOf(rows);
+  const double tolerance = options.toleranceOf(FormFactorMethod::rays);
   BothClocks taken;
   double rays = 0;
   double entries = 0;
   for (const SampledRow& row : rows) {
     taken += row.taken;
     if (!(row.many.norm > 0)) continue;
-    const double over = row.many.error / (row.many.norm * options.tolerance);
+    const double over = row.many.error / (row.many.norm * tolerance);
     const double needed =
         std::clamp(kManyRays * std::pow(kMerged * over * over, 1 / order), double(kPilotRays),
                    double(kMostRays));

@@ -137,7 +137,7 @@ FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene, const RayEs
   report.empty_rows = std::size_t(std::count(area.begin(), area.end(), 0.0));
   report.rays.triangles = scene.caster().triangles();
 
-  std::vector<RayRow> rows = castRows(scene, options.tolerance, report.rays, progress);
+  std::vector<RayRow> rows = castRows(scene, options.toleranceOf(FormFactorMethod::rays), report.rays, progress);
   report.closed = scene.provedClosed() || !seesSky(rows);
   result.matrix = ExchangeMatrix::symmetric(std::move(area), scene.order(), options.storedPrecision());
   result.fronts.assign(n, 0.0);

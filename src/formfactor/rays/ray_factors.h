@@ -56,7 +56,7 @@ RayEstimate estimateRays(const RayScene& scene, const FormFactorOptions& options
                          Progress& progress);
 
 /// Rows are cast in rounds: each is continued until the error expected of it, merged with what the
-/// others count, is below options.tolerance times its norm (relL2). Errors: RunError where the
+/// others count, is below options.toleranceOf(rays) times its norm (relL2). Errors: RunError where the
 /// estimate exceeds options.memory_limit.
 FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene, const RayEstimate& estimate,
                        const FormFactorOptions& options, Progress& progress);

@@ -175,7 +175,7 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
       scene.elements,     scene.order,
       scene.chunks,       scene.visibility,
       kernels.unoccluded, kernels.occluded,
-      progress,           recheckEvery(estimate.occluded_pairs, options.tolerance),
+      progress,           recheckEvery(estimate.occluded_pairs, options.toleranceOf(FormFactorMethod::exact)),
       result.matrix,      enforces ? &uncertain : nullptr,
       result.backs,       seen_backs};
   const RowSums sums = fillRows(context, scene.tasks, progress);

@@ -21,7 +21,7 @@ constexpr double kClosedFormShare = 0.1;
 constexpr double kLoosest = 1e-2;
 
 double closedFormTolerance(double tolerance) {
-  if (tolerance <= FormFactorOptions().tolerance) return std::min(tolerance, kClosedForm);
+  if (tolerance <= FormFactorOptions::kExactTolerance) return std::min(tolerance, kClosedForm);
   return std::min(kClosedFormShare * tolerance, kLoosest);
 }
 
@@ -47,9 +47,9 @@ ExactScene::ExactScene(const PatchMesh& mesh, Progress& progress)
 }
 
 ExactKernels::ExactKernels(const ExactScene& scene, const FormFactorOptions& options)
-    : closed_form(closedFormTolerance(options.tolerance)),
+    : closed_form(closedFormTolerance(options.toleranceOf(FormFactorMethod::exact))),
       unoccluded(scene.elements, closed_form, options.simd),
-      occluded(scene.elements, scene.occluders, options.tolerance, options.simd) {}
+      occluded(scene.elements, scene.occluders, options.toleranceOf(FormFactorMethod::exact), options.simd) {}
 
 ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,
                             const FormFactorOptions& options) {
@@ -86,7 +86,7 @@ ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,
 
 double exactSeconds(const ExactScene& scene, const ExactKernels& kernels, const RowSample& sample,
                     const FormFactorOptions& options, Progress& progress) {
-  const RowTimes times = timeRows(scene, kernels, options.tolerance, sample, progress);
+  const RowTimes times = timeRows(scene, kernels, options.toleranceOf(FormFactorMethod::exact), sample, progress);
   return times.busy * (times.visibility + times.unoccluded + times.occluded) /
          double(allowedThreads());
 }

@@ -32,7 +32,7 @@ class BacksHiddenFromAll {
     for (Index p = 0; p < boxes.size(); ++p) {
       for (const Index v : cornersOf(p)) boxes[p].add(mesh.vertices[v]);
     }
-    places_ = BoxTree(std::move(boxes));
+    places_ = BoxTree(boxes);
     for (Index i = 0; i < mesh.size(); ++i) {
       if (mesh.polygon[i] == kNone || !(mesh.area[i] > 0)) continue;
       patches_of_[mesh.polygon[i]].push_back(i);

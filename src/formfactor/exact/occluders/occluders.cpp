@@ -36,7 +36,7 @@ BoxTree placesOf(const std::vector<Occluder>& solids, double margin) {
   std::vector<Box3> boxes;
   boxes.reserve(solids.size());
   for (const Occluder& solid : solids) boxes.push_back(boxAround(solid, margin));
-  return BoxTree(std::move(boxes));
+  return BoxTree(boxes);
 }
 
 }  // namespace

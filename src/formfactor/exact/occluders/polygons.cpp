@@ -57,7 +57,7 @@ OccluderPolygons::OccluderPolygons(const PatchMesh& mesh, const ElementSet& elem
   std::vector<Box3> boxes;
   boxes.reserve(polygons.size());
   for (const OccluderPolygon& polygon : polygons) boxes.push_back(polygon.box);
-  tree = BoxTree(std::move(boxes));
+  tree = BoxTree(boxes);
   std::vector<std::uint8_t> back_is_patch(source.size(), 0);
   for (const Facet& facet : elements.facets) {
     if (facet.back && !facet.black) back_is_patch[facet.polygon] = 1;

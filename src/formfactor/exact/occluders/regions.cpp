@@ -79,7 +79,7 @@ OccluderRegions::OccluderRegions(const OccluderPolygons& all, const OccluderEdge
       bound.add(all.polygons[p].box.high);
     }
   }
-  first_members_ = BoxTree(std::move(firsts));
+  first_members_ = BoxTree(firsts);
 }
 
 std::optional<int> OccluderRegions::doubledWinding(Index component, Index polygon) {
