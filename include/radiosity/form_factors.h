@@ -1,7 +1,7 @@
-// Form factors: F_ij, the fraction of what leaves patch i that reaches patch j. Exact, area to area,
-// with the part that is blocked taken off by clipping; by rays, area to area as well; or by hemicube
-// (Cohen & Greenberg 1985), seen from one eye at each patch's centroid. Where patches share unknowns
-// (PatchMesh::clusters), i and j are clusters.
+// Form factors: F_ij, the fraction of what leaves patch i that reaches patch j. Exact, area to
+// area, with the part that is blocked taken off by clipping; by rays, area to area as well; or by
+// hemicube (Cohen & Greenberg 1985), seen from one eye at each patch's centroid. Where patches
+// share unknowns (PatchMesh::clusters), i and j are clusters.
 #pragma once
 
 #include <memory>
@@ -32,9 +32,9 @@ enum class ClosureMode {
 struct FormFactorOptions {
   FormFactorMethod method = FormFactorMethod::automatic;
   /// 1e-12 to 0.1. Exact: the error aimed at for an occluded pair, relative to the mean form factor
-  /// 1/N, which keeps the relative error (L2) of a row below it, mostly far below; closed forms hold
-  /// it, or 1e-5 where it is larger, relative to each value; above kExactTolerance, a tenth of it.
-  /// Rays: the relative error (L2) of a row. Empty: what the method has by default.
+  /// 1/N, which keeps the relative error (L2) of a row below it, mostly far below; closed forms
+  /// hold it, or 1e-5 where it is larger, relative to each value; above kExactTolerance, a tenth of
+  /// it. Rays: the relative error (L2) of a row. Empty: what the method has by default.
   std::optional<double> tolerance;
   ClosureMode closure = ClosureMode::report;
   /// Of the stored values; empty: single, double where the tolerance asks for more than 1e-6.
@@ -143,8 +143,9 @@ struct FormFactorReport {
   /// max |fronts + backs + sky - 1| over non-empty rows. Exact: raw where the scene is closed; else
   /// how far fronts + backs exceed 1.
   double largest_row_error = 0;
-  double error_figure = 0;  ///< exact and rays: of the matrix, area-weighted relL2 of F; see FormFactors
-  bool closed = false;      ///< no patch sees the sky
+  double error_figure =
+      0;  ///< exact and rays: of the matrix, area-weighted relL2 of F; see FormFactors
+  bool closed = false;  ///< no patch sees the sky
   bool symmetrized = false;
   ClosureReport closure;          ///< where symmetrized, or exact and closed
   bool closure_enforced = false;  ///< exact: rows were closed, not only looked at
@@ -175,9 +176,10 @@ struct FormFactors {
 };
 
 /// What a computation will do, found out from a sample of rows before time and memory are spent.
-/// Where `automatic` leaves the choice, it rests on the seconds of exact and of rays. Seconds are by the clock, on the threads allowed, at the rates that the
-/// sample had here and now, and from now on: what the plan itself took is not in them. They are
-/// about; on scenes nothing was fitted to mostly within a factor of 2.
+/// Where `automatic` leaves the choice, it rests on the seconds of exact and of rays. Seconds are
+/// by the clock, on the threads allowed, at the rates that the sample had here and now, and from
+/// now on: what the plan itself took is not in them. They are about; on scenes nothing was fitted
+/// to mostly within a factor of 2.
 struct FormFactorPlan {
   FormFactorMethod method = FormFactorMethod::hemicube;  ///< never automatic
   std::string reason;                                    ///< where it was automatic
