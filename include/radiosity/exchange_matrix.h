@@ -25,7 +25,7 @@ struct RunRow;
 /// smaller. The two values of a pair may be two estimates that differ.
 ///
 /// Symmetric form: A_i F_ij = A_j F_ji by construction, and half the memory. Patches stand in an
-/// order given once; stored is F_ij for j after i in that order, and F_ji = A_i F_ij / A_j follows.
+/// order given once; F_ij is stored for j after i in that order, and F_ji = A_i F_ij / A_j follows.
 /// A row leaves out its runs of zeros, so patches that do not see each other and are neighbours in
 /// the order (coplanar ones) cost nothing. Storing F and not G keeps values within 0 and 1 in a
 /// scene of any size.

@@ -199,7 +199,7 @@ struct FormFactorPlan {
 /// The plan keeps a copy of the mesh (about 160 bytes a patch), ...
 FormFactorPlan planFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
                                Progress& progress);
-/// ... or the mesh itself, which nobody may change while the plan is there.
+/// ... or the mesh itself, which must not change while the plan is there.
 FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
                                const FormFactorOptions& options, Progress& progress);
 

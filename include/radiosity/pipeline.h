@@ -199,6 +199,9 @@ class Pipeline {
   void requireOwnMesh(bool reused) const;
   const PatchMaterials& materialsOfMesh();
 
+  template <class T>
+  bool keep(Stage stage, std::optional<T> Results::*value, std::string Results::*value_key,
+            const StageKey& key, bool there = true);
   bool keepFactors();
   bool keepSolution();
   bool keepGathered();

@@ -5,7 +5,7 @@
 
 namespace radiosity {
 
-/// What must be there by now, of a std::optional. Throws logic_error where it is not.
+/// The value of an optional that must be set by now. Throws logic_error where it is not.
 template <class Optional>
 auto& made(Optional& value) {
   if (!value) throw std::logic_error("a stage was used before it was made");

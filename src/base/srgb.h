@@ -5,7 +5,7 @@
 
 namespace radiosity {
 
-/// What a file's sRGB-coded value means in linear light.
+/// The linear light that a file's sRGB-coded value stands for.
 inline double linearFromSrgb(double coded) {
   return coded <= 0.04045 ? coded / 12.92 : std::pow((coded + 0.055) / 1.055, 2.4);
 }

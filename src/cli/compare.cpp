@@ -52,7 +52,7 @@ std::optional<LightUnit> unitOf(const std::string& word) {
 
 std::string optionOf(const Side& side) { return side.label == "A" ? "--a-is" : "--b-is"; }
 
-/// What was said, else what the file says; else there is nothing to go by.
+/// The unit given; else the one that the file states; else there is nothing to go by.
 LightUnit decideUnit(const Side& side, const std::string& said, std::optional<LightUnit> of_file,
                      const std::string& what) {
   const std::optional<LightUnit> word = unitOf(said);
@@ -173,7 +173,7 @@ void reportSurfaces(Report& report, const Comparison& c) {
   report.table("surfaces", columns, rows);
 }
 
-/// What a lamp outweighs, and where it is worst, in one line: each can hide behind the other.
+/// The difference without lamps and the largest difference, in one line: each can hide the other.
 void reportHeadline(Report& report, const Comparison& c) {
   std::string beside;
   if (c.without_emitters) {

@@ -49,7 +49,7 @@ void ConsoleProgress::advance(std::size_t steps) {
 
 void ConsoleProgress::tick() {
   if (style_ == ProgressStyle::silent || elapsed() < next_draw_) return;
-  // Whoever comes while another thread draws goes on with its work.
+  // While one thread draws, the others go on with their work.
   const std::unique_lock lock(drawing_, std::try_to_lock);
   if (lock.owns_lock() && running_ && elapsed() >= next_draw_) draw();
 }

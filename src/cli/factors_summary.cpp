@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "base/byte_text.h"
+#include "base/figure_text.h"
 #include "cli/section.h"
 #include "cli/summaries.h"
 #include "cli/words.h"

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "base/byte_text.h"
+#include "base/figure_text.h"
 #include "cli/words.h"
 
 namespace radiosity::cli {

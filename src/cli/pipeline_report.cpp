@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/byte_text.h"
+#include "base/figure_text.h"
 #include "base/made.h"
 #include "cli/words.h"
 #include "radiosity/names.h"
@@ -14,7 +14,7 @@ namespace radiosity::cli {
 
 namespace {
 
-/// Who waits longer is told what would shorten it.
+/// For longer waits the report says what would shorten them.
 constexpr double kLongWait = 60;
 /// The time of rays goes with about this power of 1 / tolerance.
 constexpr double kRaysOrder = 1.6;
@@ -116,7 +116,7 @@ void PipelineReport::planned(const Pipeline& pipeline, const FormFactorPlan& pla
                fmt::format("{}{}: about {}, memory about {}{}", what, clusters,
                            durationText(plan.seconds), bytesText(plan.bytes),
                            writes_results_ ? ", disk at most about " + bytesText(disk) : ""));
-  if (!plan.reason.empty()) report_.line("", "method: " + plan.reason);
+  if (!plan.reason.empty()) report_.line("", "because " + plan.reason);
   if (plan.seconds > kLongWait) report_.line("", cures(plan, options));
 }
 

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
-#include "base/byte_text.h"
+#include "base/figure_text.h"
 #include "cli/words.h"
 #include "radiosity/base.h"
 #include "radiosity/names.h"

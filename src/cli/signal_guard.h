@@ -29,7 +29,7 @@ class SignalGuard {
   std::thread watcher_;
 };
 
-/// What a run says that was interrupted: what is on disk by then, if anything.
+/// The message of an interrupted run: it names what is on disk by then, if anything.
 std::string interruptedText();
 
 /// From now on a run that is interrupted says so in these words.

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "base/byte_text.h"
+#include "base/figure_text.h"
 #include "cli/commands.h"
 #include "cli/light_cure.h"
 #include "cli/signal_guard.h"

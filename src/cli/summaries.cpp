@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/figure_text.h"
 #include "cli/section.h"
 #include "cli/words.h"
 #include "radiosity/names.h"

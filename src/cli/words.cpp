@@ -9,21 +9,11 @@
 #include <numbers>
 #include <vector>
 
-#include "base/byte_text.h"
+#include "base/figure_text.h"
 #include "base/printable.h"
 #include "radiosity/base.h"
 
 namespace radiosity::cli {
-
-std::string countText(std::size_t count) {
-  const std::string digits = std::to_string(count);
-  std::string text;
-  for (std::size_t k = 0; k < digits.size(); ++k) {
-    if (k > 0 && (digits.size() - k) % 3 == 0) text += ',';
-    text += digits[k];
-  }
-  return text;
-}
 
 std::string durationText(double seconds) {
   if (seconds < 9.95) return fmt::format("{:.2f} s", seconds);

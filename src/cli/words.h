@@ -9,9 +9,6 @@
 
 namespace radiosity::cli {
 
-/// 1234567 -> "1,234,567".
-std::string countText(std::size_t count);
-
 /// "0.34 s", "12 s", "3 min 5 s", "2 h 10 min".
 std::string durationText(double seconds);
 

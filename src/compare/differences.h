@@ -10,7 +10,7 @@
 
 namespace radiosity {
 
-/// What the two values of a cell or pixel weigh; weight 0: not compared.
+/// The weight of a cell's or pixel's two values, and its place; weight 0: not compared.
 struct PairWeight {
   double weight = 0;
   Vec3 place{0.0};

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
+#include "base/figure_text.h"
 #include "formfactor/cluster_factors.h"
 #include "formfactor/exact/assembly/exact_factors.h"
 #include "formfactor/exact/assembly/row_sample.h"
@@ -48,7 +50,9 @@ constexpr double kWorthTimes = 2;
 constexpr double kWorthSeconds = 5;
 
 std::string secondsText(double seconds) {
-  return seconds < 0.1 ? "less than 0.1 s" : fmt::format("about {:.2g} s", seconds);
+  if (seconds < 0.1) return "less than 0.1 s";
+  if (seconds < 10) return fmt::format("about {:.2g} s", seconds);
+  return fmt::format("about {} s", countText(std::size_t(std::llround(seconds))));
 }
 
 bool exactIsRight(const FormFactorPlan& exact, const FormFactorPlan& rays,
@@ -135,9 +139,9 @@ void planEither(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progre
     prepared.scene.reset();
     prepared.kernels.reset();
     plan.other_seconds = exact.seconds;
-    plan.reason = fmt::format("to {} they take {}; exact would take {} and {:.0f} MiB",
-                              ray_tolerance, secondsText(ray_seconds), secondsText(exact.seconds),
-                              double(exact.bytes) / (1024.0 * 1024.0));
+    plan.reason =
+        fmt::format("to {} they take {}; exact would take {} and {}", ray_tolerance,
+                    secondsText(ray_seconds), secondsText(exact.seconds), bytesText(exact.bytes));
   }
 }
 

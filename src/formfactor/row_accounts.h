@@ -1,4 +1,5 @@
-// What every method does with its rows: who is seen from behind, and what does not fit.
+// Accounts of rows, the same for every method: which surfaces are seen from behind, what is
+// missing.
 #pragma once
 
 #include <span>

@@ -40,7 +40,7 @@ bool isWanted(std::span<const std::uint8_t> wanted, Index patch) {
   return wanted.empty() || wanted[patch] != 0;
 }
 
-/// What a row was handed on, divided by its area; a patch without area was handed nothing.
+/// The sum handed on to a row, divided by its area; a patch without area was handed nothing.
 double perArea(double handed, double area) { return area > 0 ? handed / area : 0.0; }
 
 }  // namespace

@@ -276,9 +276,14 @@ std::vector<Index> firstAtSamePoint(const PatchMesh& mesh) {
 
 double windingNumber(const PatchMesh& mesh, std::span<const Index> polygons, const Vec3& point) {
   double angle = 0;
-  forFans(mesh, polygons, [&](const Vec3& a, const Vec3& b, const Vec3& c) {
-    angle += signedSolidAngle(a - point, b - point, c - point);
-  });
+  const PlanarPolygons& all = mesh.polygons;
+  for (const Index p : polygons) {
+    for (std::size_t l = all.loopBegin(p); l < all.loopEnd(p); ++l) {
+      const std::span<const Index> loop = all.loop(l);
+      const auto corner = [&](std::size_t k) { return mesh.vertices[loop[k]]; };
+      angle += loopSolidAngle(loop.size(), corner, point);
+    }
+  }
   return angle / (4 * std::numbers::pi);
 }
 

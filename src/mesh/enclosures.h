@@ -16,7 +16,7 @@ double coincidenceOf(const PatchMesh& mesh);
 /// own).
 std::vector<Index> firstAtSamePoint(const PatchMesh& mesh);
 
-/// What the mesh brings, or else what is found now and kept in `found`.
+/// The mesh's own enclosures; where it has none, they are found now and kept in `found`.
 const Enclosures& enclosuresOf(const PatchMesh& mesh, std::optional<Enclosures>& found);
 
 /// How often polygons wind about a point: 1 inside an outward solid, -1 inside a room, 0 outside of

@@ -19,7 +19,8 @@ double distanceToLine(const Vec3& p, const Vec3& a, const Vec3& b) {
   return glm::length(glm::cross(along, p - a)) / glm::length(along);
 }
 
-std::vector<std::size_t> cornersOf(const CoarseComplex& complex, std::span<const Index> loop) {
+/// Where the loop turns: places in it.
+std::vector<std::size_t> turnsOf(const CoarseComplex& complex, std::span<const Index> loop) {
   std::vector<std::size_t> corners;
   const std::size_t n = loop.size();
   for (std::size_t k = 0; k < n; ++k) {
@@ -72,7 +73,7 @@ bool dividedAlike(const CoarseComplex& complex, std::span<const Index> side,
 
 std::optional<FourSides> findFourSides(const CoarseComplex& complex, std::span<const Index> loop,
                                        std::span<const DirectedEdge> edges) {
-  const std::vector<std::size_t> corners = cornersOf(complex, loop);
+  const std::vector<std::size_t> corners = turnsOf(complex, loop);
   if (corners.size() != 4) return std::nullopt;
   std::array<Vec3, 4> p;
   FourSides sides;

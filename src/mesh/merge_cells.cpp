@@ -330,7 +330,7 @@ void Merger::countCuts() {
   report_.cuts = std::size_t(std::count(cut.begin(), cut.end(), true));
 }
 
-/// What the loops of a draft have less than its cells.
+/// The area by which the loops of a draft fall short of its cells.
 double Merger::movedArea(const Draft& draft) const {
   double area = 0;
   for (const Index r : draft.records) area += arrangement_.cells[visible_[r].cell].area;

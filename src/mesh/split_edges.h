@@ -14,7 +14,7 @@ struct ForcedSplit {
   Index vertex = kNone;
 };
 
-/// What has to be changed before edges meet only at shared vertices.
+/// The changes by which edges come to meet only at shared vertices.
 struct Repairs {
   std::vector<ForcedSplit> splits;
   std::vector<std::array<Index, 2>> merges;  ///< vertices that are to become one

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "base/byte_text.h"
+#include "base/figure_text.h"
 #include "base/input_file.h"
 #include "base/made.h"
 #include "pipeline/stage_key.h"
@@ -176,49 +176,42 @@ void Pipeline::loadMatrix() {
   progress_.check();
 }
 
+/// Takes a stage of the results file that nobody asked for, where it was made by `key` and what it
+/// stands on is `there`. True where it is dropped.
+template <class T>
+bool Pipeline::keep(Stage stage, std::optional<T> Results::*value, std::string Results::*value_key,
+                    const StageKey& key, bool there) {
+  std::optional<T> found = std::exchange(stored_.*value, std::nullopt);
+  if (!there || key.text() != stored_.*value_key) {
+    tell(stage, StageAction::dropped, why(stored_.*value_key, key));
+    return true;
+  }
+  results_.*value = std::move(found);
+  results_.*value_key = stored_.*value_key;
+  tell(stage, StageAction::kept);
+  return false;
+}
+
 bool Pipeline::keepFactors() {
   if (results_.factors || !stored_.factors) return false;
   const StageKey key =
       factorsKey(factorOptionsOf(StageKey(stored_.factors_key)), made(results_.mesh).mesh);
-  std::optional<FormFactors> factors = std::exchange(stored_.factors, std::nullopt);
-  if (key.text() != stored_.factors_key) {
-    tell(Stage::form_factors, StageAction::dropped, why(stored_.factors_key, key));
-    return true;
-  }
-  results_.factors = std::move(factors);
-  results_.factors_key = stored_.factors_key;
-  tell(Stage::form_factors, StageAction::kept);
-  return false;
+  return keep(Stage::form_factors, &Results::factors, &Results::factors_key, key);
 }
 
 bool Pipeline::keepSolution() {
   if (results_.solution || !stored_.solution) return false;
   const StageKey key = solutionKey(solveOptionsOf(StageKey(stored_.solution_key)),
                                    materialsOfMesh(), usedFactorsKey());
-  std::optional<Solution> solution = std::exchange(stored_.solution, std::nullopt);
-  if (!results_.factors || key.text() != stored_.solution_key) {
-    tell(Stage::solution, StageAction::dropped, why(stored_.solution_key, key));
-    return true;
-  }
-  results_.solution = std::move(solution);
-  results_.solution_key = stored_.solution_key;
-  tell(Stage::solution, StageAction::kept);
-  return false;
+  return keep(Stage::solution, &Results::solution, &Results::solution_key, key,
+              results_.factors.has_value());
 }
 
 bool Pipeline::keepGathered() {
   if (results_.gathered || !stored_.gathered) return false;
   const StageKey key = gatherKey(gatherOptionsOf(StageKey(stored_.gather_key)), materialsOfMesh(),
                                  made(results_.mesh).mesh);
-  std::optional<Gathered> gathered = std::exchange(stored_.gathered, std::nullopt);
-  if (key.text() != stored_.gather_key) {
-    tell(Stage::gather, StageAction::dropped, why(stored_.gather_key, key));
-    return true;
-  }
-  results_.gathered = std::move(gathered);
-  results_.gather_key = stored_.gather_key;
-  tell(Stage::gather, StageAction::kept);
-  return false;
+  return keep(Stage::gather, &Results::gathered, &Results::gather_key, key);
 }
 
 void Pipeline::dropEmptySolution() {

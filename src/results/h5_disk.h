@@ -8,7 +8,7 @@ namespace radiosity::h5 {
 /// A file driver for HDF5 that cannot fail. The first write the system refuses is remembered, what
 /// comes after it is dropped, and HDF5 is told that all went well. HDF5 1.10 does not get over a
 /// file it cannot flush: it stays half open, and the process crashes when the library shuts down.
-/// Whoever writes asks error() and throws the file away.
+/// The writer asks error() and throws the file away.
 class Disk {
  public:
   Disk();

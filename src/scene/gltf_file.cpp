@@ -49,7 +49,7 @@ double loadComponent(const unsigned char* bytes, int type) {
   }
 }
 
-/// What an integer is divided by when it stands for a fraction (glTF 2.0, 3.6.2.2).
+/// The divisor of integers that stand for fractions (glTF 2.0, 3.6.2.2).
 double normalisation(int type) {
   switch (type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE:

@@ -1,4 +1,4 @@
-// What is asked of a glTF file before the library sees it, which trusts sizes and nesting.
+// Checks of a glTF file before the library reads it, for the library trusts sizes and nesting.
 #pragma once
 
 #include <string>

@@ -62,7 +62,7 @@ TextureResult textureFrom(const DecodedImage& image, const std::string& name) {
   return result;
 }
 
-/// What read() gives, with what libraries throw made an outcome.
+/// As read(), but exceptions of libraries become outcomes.
 template <class Read>
 TextureResult decoded(const std::string& name, const Read& read) {
   try {

@@ -26,7 +26,7 @@ CASES = [
     ("render/legend.cpp", "radiosity/patch_mesh.h", ["radiosity/solve.h", "matrix/run_row.h"]),
     ("results/results_file.cpp", "radiosity/gather.h", ["radiosity/compare.h"]),
     ("pipeline/stages.cpp", "radiosity/results.h", ["radiosity/compare.h"]),
-    ("cli/words.cpp", "base/byte_text.h", ["mesh/winding.h", "scene/text.h"]),
+    ("cli/words.cpp", "base/figure_text.h", ["mesh/winding.h", "scene/text.h"]),
 ]
 
 

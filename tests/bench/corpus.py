@@ -26,7 +26,8 @@ import sys
 import tempfile
 import time
 
-SCENES = {".obj", ".gltf", ".glb", ".stl", ".ply"}
+from scene_files import SCENES, scene_files
+
 MEBIBYTE = 1024.0 * 1024.0
 GRACE = 10  # seconds between an interruption and the end
 POLL = 0.02
@@ -48,11 +49,6 @@ COLUMNS = {  # key: title
     "error_largest": "largest",
     "said": "last words",
 }
-
-
-def scene_files(folder, match):
-    found = [p for p in folder.rglob("*") if p.suffix.lower() in SCENES and p.is_file()]
-    return sorted(p for p in found if match in str(p))
 
 
 class Finished:
@@ -209,7 +205,7 @@ def main():
     options = parser.parse_args(arguments)
     if not (math.isfinite(options.limit) and options.limit > 0):
         parser.error(f"--limit {options.limit}: give seconds above 0")
-    files = scene_files(options.folder, options.match)
+    files = [f for f in scene_files([options.folder]) if options.match in str(f)]
     if not files:
         parser.error(f"{options.folder}: no scene files ({' '.join(sorted(SCENES))}) under it")
     options.out.mkdir(parents=True, exist_ok=True)

@@ -24,7 +24,8 @@ import time
 import h5py
 import numpy as np
 
-SCENES = {".obj", ".gltf", ".glb", ".stl"}
+from scene_files import scene_files
+
 DEFAULT = {"as-it-comes": ["render", "--sky", "1"]}
 OTHERS = {
     "enforced": ["render", "--sky", "1", "--patches", "300", "--method", "exact", "--closure",
@@ -34,11 +35,6 @@ OTHERS = {
     "gathered": ["gather", "--patches", "300", "--passes", "3"],
 }
 TIMED = ("seconds", "estimated", "measured", "bytes")  # in names of fields: the machine's, not ours
-
-
-def scene_files(folders):
-    found = {p for f in folders for p in (f.rglob("*") if f.is_dir() else [f])}
-    return sorted(p for p in found if p.suffix.lower() in SCENES)
 
 
 def run(program, scene, words, into, limit):

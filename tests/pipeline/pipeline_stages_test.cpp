@@ -400,7 +400,7 @@ TEST_F(PipelineStages, KeysKeepTheirText) {
             "patches=60 max-edge=0 weld=1e-07 faces-as-patches=off scene=" + hash);
   expectKey(
       results.factors_key,
-      "method=hemicube resolution=32 seed=1 symmetrize=off near=off precision=single mesh=" + hash);
+      "method=hemicube seed=1 resolution=32 symmetrize=off near=off precision=single mesh=" + hash);
   expectKey(results.solution_key,
             "solver=gauss-seidel solve-tolerance=1e-06 max-iterations=10000 "
             "materials=" +

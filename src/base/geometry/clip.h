@@ -8,19 +8,34 @@
 
 namespace radiosity {
 
+// Two clippers stand apart: exact/convex_polygon.h cuts pieces into both of their parts at once and
+// keeps track of where each edge comes from; exact/clip_polygons-inl.h clips a polygon in every
+// lane.
+
 /// Calls keep(corner) for the corners, in order, of the part of a loop where side(p) >= 0
-/// (Sutherland & Hodgman 1974); `side` is affine. A concave loop stays one loop, with edges that
-/// run to and fro on the border. Nothing is kept where nothing is left.
+/// (Sutherland & Hodgman 1974); `side` is affine, between(a, b, side(a), side(b)) the point of edge
+/// a b where it is 0. A concave loop stays one loop, with edges that run to and fro on the border.
+/// Nothing is kept where nothing is left.
+template <class Loop, class Side, class Between, class Keep>
+void clipCorners(const Loop& loop, const Side& side, const Between& between, const Keep& keep) {
+  if (loop.empty()) return;
+  std::size_t last = loop.size() - 1;
+  double from = side(loop[last]);
+  for (std::size_t k = 0; k < loop.size(); last = k++) {
+    const double to = side(loop[k]);
+    if ((from < 0) != (to < 0)) keep(between(loop[last], loop[k], from, to));
+    if (!(to < 0)) keep(loop[k]);
+    from = to;
+  }
+}
+
+/// The same for points of a plane or of space.
 template <class Loop, class Side, class Keep>
 void clipCorners(const Loop& loop, const Side& side, const Keep& keep) {
-  for (std::size_t k = 0, last = loop.size() - 1; k < loop.size(); last = k++) {
-    const double from = side(loop[last]);
-    const double to = side(loop[k]);
-    if ((from < 0) != (to < 0)) {
-      keep(loop[last] + (loop[k] - loop[last]) * (from / (from - to)));
-    }
-    if (!(to < 0)) keep(loop[k]);
-  }
+  const auto between = [](const auto& a, const auto& b, double from, double to) {
+    return a + (b - a) * (from / (from - to));
+  };
+  clipCorners(loop, side, between, keep);
 }
 
 /// The same in place.

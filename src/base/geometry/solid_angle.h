@@ -1,7 +1,8 @@
-// The solid angle of a triangle.
+// The solid angle of triangles and polygons.
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <glm/geometric.hpp>
 
 #include "radiosity/base.h"
@@ -19,6 +20,18 @@ inline double signedSolidAngle(const Vec3& a, const Vec3& b, const Vec3& c) {
   return 2 *
          std::atan2(glm::dot(a, glm::cross(b, c)),
                     la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
+}
+
+/// The same of a planar polygon with the corners point(0) .. point(count - 1), over a fan: what of
+/// it lies outside a concave polygon cancels.
+template <class PointAt>
+double loopSolidAngle(std::size_t count, const PointAt& point, const Vec3& eye) {
+  double angle = 0;
+  const Vec3 a = point(0) - eye;
+  for (std::size_t k = 1; k + 1 < count; ++k) {
+    angle += signedSolidAngle(a, point(k) - eye, point(k + 1) - eye);
+  }
+  return angle;
 }
 
 }  // namespace radiosity

@@ -3,6 +3,8 @@
 #include <tuple>
 #include <utility>
 
+#include "base/geometry/clip.h"
+
 namespace radiosity {
 namespace {
 
@@ -24,18 +26,9 @@ FacePoint crossing(FacePoint a, FacePoint b, double distance_a, double distance_
 void clipLoop(const std::vector<FacePoint>& in, const FaceGeometry& face, SidePlane plane,
               std::vector<FacePoint>& out) {
   out.clear();
-  if (in.empty()) return;
-  FacePoint from = in.back();
-  double from_distance = face.distance(from, plane);
-  for (const FacePoint& to : in) {
-    const double to_distance = face.distance(to, plane);
-    if ((from_distance < 0) != (to_distance < 0)) {
-      out.push_back(crossing(from, to, from_distance, to_distance));
-    }
-    if (!(to_distance < 0)) out.push_back(to);
-    from = to;
-    from_distance = to_distance;
-  }
+  clipCorners(
+      in, [&](const FacePoint& p) { return face.distance(p, plane); }, crossing,
+      [&](const FacePoint& p) { out.push_back(p); });
 }
 
 }  // namespace radiosity

@@ -7,7 +7,7 @@
 
 namespace radiosity {
 
-/// Clips one closed loop to the half-space `plane` (Sutherland & Hodgman 1974), in homogeneous
+/// Clips one closed loop to the half-space `plane` as clipCorners() does, in homogeneous
 /// coordinates. `in` and `out` must differ. Concave loops come back as one loop with edges that
 /// run to and fro in the plane: harmless, since the fill is even-odd and no pixel centre lies in
 /// a side plane.

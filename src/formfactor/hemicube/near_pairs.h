@@ -1,4 +1,4 @@
-// What one point of a patch gets wrong about its neighbours, put right.
+// Corrects form factors to near patches, which one point of a patch gets wrong.
 #pragma once
 
 #include <vector>

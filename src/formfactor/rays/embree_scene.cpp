@@ -1,11 +1,10 @@
 #include "formfactor/rays/embree_scene.h"
 
-#include <fmt/format.h>
 #include <pmmintrin.h>
 #include <xmmintrin.h>
 
 #include <glm/common.hpp>
-#include <utility>
+#include <optional>
 
 #include "base/parallel.h"
 #include "radiosity/base.h"
@@ -32,31 +31,30 @@ RTCDevice newDevice() {
   return device;
 }
 
-std::vector<std::array<Index, 3>> tiles(const ViewScene& scene, std::size_t p) {
-  auto triangles = scene.trianglesOf(scene.polygons[p]);
-  if (!triangles) {
-    throw RunError(fmt::format(
-        "rays: the outlines of polygon {} cross, so it has no triangles; use another --method",
-        scene.polygons[p].source));
-  }
-  return *std::move(triangles);
-}
-
 }  // namespace
 
-EmbreeScene::EmbreeScene(const ViewScene& scene)
-    : middle_(middleOf(scene.vertices)), device_(newDevice()), scene_(rtcNewScene(device_)) {
-  std::vector<std::vector<std::array<Index, 3>>> of_polygon(scene.polygons.size());
-  parallelFor(of_polygon.size(), 64, [&](std::size_t p) { of_polygon[p] = tiles(scene, p); });
+EmbreeScene::EmbreeScene(const ViewScene& scene, const PatchMesh& mesh)
+    : middle_(middleOf(scene.vertices)),
+      device_(newDevice()),
+      scene_(rtcNewScene(device_)),
+      vertices_(scene.vertices) {
+  std::vector<std::optional<std::vector<Triangle>>> of_polygon(scene.polygons.size());
+  parallelFor(of_polygon.size(), 64,
+              [&](std::size_t p) { of_polygon[p] = scene.trianglesOf(scene.polygons[p]); });
+  std::vector<Index> without_triangles;
   for (Index p = 0; p < of_polygon.size(); ++p) {
-    triangles_.insert(triangles_.end(), of_polygon[p].begin(), of_polygon[p].end());
-    polygon_of_.insert(polygon_of_.end(), of_polygon[p].size(), p);
+    if (!of_polygon[p]) {
+      without_triangles.push_back(p);
+      continue;
+    }
+    triangles_.insert(triangles_.end(), of_polygon[p]->begin(), of_polygon[p]->end());
+    polygon_of_.insert(polygon_of_.end(), of_polygon[p]->size(), p);
   }
+  if (!without_triangles.empty()) addTiles(scene, mesh, without_triangles);
   const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
-                                                               RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                                                               scene.vertices.size()));
-  for (const Vec3& v : scene.vertices) {
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices_.size()));
+  for (const Vec3& v : vertices_) {
     const glm::vec3 at = place(v);
     for (int c = 0; c < 3; ++c) *vertices++ = at[c];
   }
@@ -73,6 +71,23 @@ EmbreeScene::EmbreeScene(const ViewScene& scene)
   rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
   rtcCommitScene(scene_);
+}
+
+void EmbreeScene::addTiles(const ViewScene& scene, const PatchMesh& mesh,
+                           const std::vector<Index>& without_triangles) {
+  std::vector<Index> place(mesh.polygons.size(), kNone);  // of those without triangles
+  for (const Index p : without_triangles) place[scene.polygons[p].source] = p;
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    // A back has the tiles of its front.
+    const Index polygon = mesh.polygon[i];
+    if (polygon == kNone || place[polygon] == kNone || mesh.side[i] != 0) continue;
+    for (std::size_t t = mesh.piece_offset[i]; t < mesh.piece_offset[i + 1]; ++t) {
+      const auto first = std::uint32_t(vertices_.size());
+      for (const Index v : mesh.pieces[t]) vertices_.push_back(mesh.vertices[v] * scene.scale);
+      triangles_.push_back({first, first + 1, first + 2});
+      polygon_of_.push_back(place[polygon]);
+    }
+  }
 }
 
 EmbreeScene::~EmbreeScene() {

@@ -16,7 +16,9 @@ namespace radiosity {
 /// no ray through between triangles that do.
 class EmbreeScene {
  public:
-  explicit EmbreeScene(const ViewScene& scene);
+  /// `mesh`: whose ViewScene that is. A polygon whose outlines cross is taken as the triangles that
+  /// tile its patches.
+  EmbreeScene(const ViewScene& scene, const PatchMesh& mesh);
   ~EmbreeScene();
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
@@ -26,16 +28,23 @@ class EmbreeScene {
   /// of the scene, so that none is lost far from the origin.
   const Vec3& middle() const { return middle_; }
   glm::vec3 place(const Vec3& vertex) const { return {vertex - middle_}; }
-  /// Corners in ViewScene::vertices.
+  /// In the coordinates of the ViewScene: its vertices, and those of such tiles.
+  const std::vector<Vec3>& vertices() const { return vertices_; }
+  /// Corners in vertices().
   const std::vector<std::array<std::uint32_t, 3>>& triangles() const { return triangles_; }
   /// Position in ViewScene::polygons of each triangle.
   const std::vector<std::uint32_t>& polygonOf() const { return polygon_of_; }
 
  private:
+  using Triangle = std::array<std::uint32_t, 3>;
+  void addTiles(const ViewScene& scene, const PatchMesh& mesh,
+                const std::vector<Index>& without_triangles);
+
   Vec3 middle_;
   RTCDevice device_;
   RTCScene scene_;
-  std::vector<std::array<std::uint32_t, 3>> triangles_;
+  std::vector<Vec3> vertices_;
+  std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> polygon_of_;
 };
 

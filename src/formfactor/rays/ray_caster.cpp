@@ -138,7 +138,7 @@ struct RayCaster::Batch {
   }
 };
 
-RayCaster::RayCaster(const PatchMesh& mesh) : mesh_(mesh), scene_(mesh), embree_(scene_) {
+RayCaster::RayCaster(const PatchMesh& mesh) : mesh_(mesh), scene_(mesh), embree_(scene_, mesh) {
   setTargets();
 }
 
@@ -172,9 +172,10 @@ void RayCaster::setTargets() {
     const ViewPolygon& polygon = scene_.polygons[embree_.polygonOf()[t]];
     source_[t] = polygon.source;
     const auto& corners = embree_.triangles()[t];
-    const Vec3 a = scene_.vertices[corners[0]];
-    const Vec3 ab = scene_.vertices[corners[1]] - a;
-    const Vec3 ac = scene_.vertices[corners[2]] - a;
+    const std::vector<Vec3>& vertices = embree_.vertices();
+    const Vec3 a = vertices[corners[0]];
+    const Vec3 ab = vertices[corners[1]] - a;
+    const Vec3 ac = vertices[corners[2]] - a;
     for (std::size_t side = 0; side < 2; ++side) {
       Target& target = targets_[t][side];
       target.item = unknownItem(polygon.side[side].item);

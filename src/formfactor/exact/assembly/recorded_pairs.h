@@ -1,4 +1,4 @@
-// What classification says of some rows, kept until it is worked off.
+// The classified pairs of some rows, kept until they are evaluated.
 #pragma once
 
 #include <span>

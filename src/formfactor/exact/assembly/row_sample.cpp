@@ -146,8 +146,7 @@ std::vector<ElementRange> rangesOf(const ExactScene& scene, FacetSize size) {
   for (std::size_t t = 0; t < scene.tasks.size(); ++t) {
     for (const ElementRange& range : scene.tasks[t]) {
       const Facet& facet = scene.elements.facets[scene.elements.facet[range.first]];
-      const bool large = facet.elements.size() >= kLargeFacet;
-      if (large == (size == FacetSize::large)) ranges.push_back(range);
+      if (isLarge(facet) == (size == FacetSize::large)) ranges.push_back(range);
     }
   }
   return ranges;

@@ -234,7 +234,7 @@ void AdaptiveIntegrator<T>::lookOutside(const SampleCell& cell, double share,
       largest = std::max(largest, std::abs(residual));
     }
     const CellError seen = meanErrorOutside(sum.error, area * largest);
-    // What was small enough is not believed to be smaller, only larger.
+    // An error that was small enough is only ever raised.
     if (exceeds(uncertain_[u], 1) || seen.cautious > sum.error.cautious) sum.error = seen;
   }
 }

@@ -95,7 +95,7 @@ void BatchVisibility<T>::lookAtWhole() {
   }
 }
 
-/// Who uses which blocker, by target.
+/// The blockers that each target uses, by target.
 template <class T>
 void BatchVisibility<T>::collectBlockedTargets() {
   blocked_targets_.clear();

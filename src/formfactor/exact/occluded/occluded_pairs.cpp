@@ -50,16 +50,15 @@ OccludedKernel::OccludedKernel(const ElementSet& elements, const OccluderSet& oc
       tolerance_(tolerance) {}
 
 template <class T>
-void OccludedKernel::integrate(const ClipKernels<T>& kernels, double tolerance,
-                               std::span<const OccludedPair> pairs,
-                               std::span<const Index> occluder_list, SampledEnd end,
-                               std::span<OccludedExchange> out, OccludedCounts& counts,
-                               const Progress* progress) const {
+void OccludedKernel::integrate(const ClipKernels<T>& kernels, const Batch& batch,
+                               SampledEnd end) const {
+  const std::span<const OccludedPair> pairs = batch.pairs;
+  const std::span<OccludedExchange> out = batch.out;
   std::fill(out.begin(), out.end(), OccludedExchange());
   PairPreparation ready(elements_, occluders_, distances_);
-  ready.prepare(pairs, occluder_list, end);
-  AdaptiveIntegrator<T> groups(elements_, kernels, std::cbrt(kFarError / (kFarMost * tolerance)),
-                               progress);
+  ready.prepare(pairs, batch.occluder_list, end);
+  AdaptiveIntegrator<T> groups(elements_, kernels,
+                               std::cbrt(kFarError / (kFarMost * batch.tolerance)), batch.progress);
   std::vector<VisibleFraction> fractions;
   const auto clipFacet = [&](const SampledPair& p) {
     return p.sampled_cut ? elements_.facet[p.target] : kNone;
@@ -74,7 +73,7 @@ void OccludedKernel::integrate(const ClipKernels<T>& kernels, double tolerance,
     const auto group = std::span<const SampledPair>(ready.pairs).subspan(begin, last - begin);
     fractions.assign(group.size(), VisibleFraction());
     for (std::size_t k = 0; k < group.size(); ++k) {
-      fractions[k].allowed = allowedError(elements_, pairs[group[k].pair], tolerance);
+      fractions[k].allowed = allowedError(elements_, pairs[group[k].pair], batch.tolerance);
     }
     groups.integrate(group, ready.blockers, fractions);
     for (std::size_t k = 0; k < group.size(); ++k) {
@@ -84,11 +83,11 @@ void OccludedKernel::integrate(const ClipKernels<T>& kernels, double tolerance,
       exchange = {pair.unoccluded * found.fraction(), kPairMargin * pair.unoccluded * found.error(),
                   std::abs(found.whole / pair.unoccluded - 1), found.cut_short};
       if (!std::isfinite(exchange.exchange) || !std::isfinite(exchange.error)) {
-        exchange = exchangeBySegments(elements_, occluders_, pair, occluder_list);
-        ++counts.by_segments;
+        exchange = exchangeBySegments(elements_, occluders_, pair, batch.occluder_list);
+        ++batch.counts.by_segments;
       }
-      counts.points += found.points;
-      counts.subdivided += found.refined;
+      batch.counts.points += found.points;
+      batch.counts.subdivided += found.refined;
     }
     begin = last;
   }
@@ -97,7 +96,7 @@ void OccludedKernel::integrate(const ClipKernels<T>& kernels, double tolerance,
 void OccludedKernel::evaluate(std::span<const OccludedPair> pairs,
                               std::span<const Index> occluder_list, std::span<OccludedExchange> out,
                               OccludedCounts& counts, const Progress* progress) const {
-  evaluateTo(tolerance_, pairs, occluder_list, out, counts, progress);
+  evaluate({tolerance_, pairs, occluder_list, out, counts, progress});
 }
 
 void OccludedKernel::evaluateStrictly(std::span<const OccludedPair> pairs,
@@ -105,46 +104,44 @@ void OccludedKernel::evaluateStrictly(std::span<const OccludedPair> pairs,
                                       std::span<OccludedExchange> out,
                                       const Progress* progress) const {
   OccludedCounts uncounted;
-  evaluateTo(std::min(kStricter * tolerance_, kStricterLoosest), pairs, occluder_list, out,
-             uncounted, progress);
+  evaluate({std::min(kStricter * tolerance_, kStricterLoosest), pairs, occluder_list, out,
+            uncounted, progress});
 }
 
-void OccludedKernel::evaluateTo(double tolerance, std::span<const OccludedPair> pairs,
-                                std::span<const Index> occluder_list,
-                                std::span<OccludedExchange> out, OccludedCounts& counts,
-                                const Progress* progress) const {
-  counts.pairs += pairs.size();
-  constexpr SampledEnd kEnd = SampledEnd::calmer;
-  if (tolerance >= kSinglePrecision) {
-    integrate(kernels_.single, tolerance, pairs, occluder_list, kEnd, out, counts, progress);
+void OccludedKernel::evaluate(const Batch& batch) const {
+  batch.counts.pairs += batch.pairs.size();
+  if (batch.tolerance >= kSinglePrecision) {
+    integrate(kernels_.single, batch, SampledEnd::calmer);
   } else {
-    integrate(kernels_.exact, tolerance, pairs, occluder_list, kEnd, out, counts, progress);
+    integrate(kernels_.exact, batch, SampledEnd::calmer);
   }
-  evaluateAgain(tolerance, pairs, occluder_list, out, counts, progress);
-  for (const OccludedExchange& found : out) {
-    counts.hidden += found.exchange == 0;
-    counts.cut_short += found.cut_short;
+  evaluateAgain(batch);
+  for (const OccludedExchange& found : batch.out) {
+    batch.counts.hidden += found.exchange == 0;
+    batch.counts.cut_short += found.cut_short;
   }
 }
 
-void OccludedKernel::evaluateAgain(double tolerance, std::span<const OccludedPair> pairs,
-                                   std::span<const Index> occluder_list,
-                                   std::span<OccludedExchange> out, OccludedCounts& counts,
-                                   const Progress* progress) const {
+void OccludedKernel::evaluateAgain(const Batch& batch) const {
   // Evaluates those that are wanted from one end, and gives each to take(). Returns their number.
   const auto again = [&](SampledEnd end, const auto& wanted, const auto& take) {
     std::vector<std::size_t> which;
     std::vector<OccludedPair> some;
-    for (std::size_t k = 0; k < pairs.size(); ++k) {
-      if (!wanted(out[k])) continue;
+    for (std::size_t k = 0; k < batch.pairs.size(); ++k) {
+      if (!wanted(batch.out[k])) continue;
       which.push_back(k);
-      some.push_back(pairs[k]);
+      some.push_back(batch.pairs[k]);
     }
     std::vector<OccludedExchange> found(some.size());
     if (!some.empty()) {
-      integrate(kernels_.exact, tolerance, some, occluder_list, end, found, counts, progress);
+      integrate(kernels_.exact,
+                {batch.tolerance, some, batch.occluder_list, found, batch.counts, batch.progress},
+                end);
     }
-    for (std::size_t k = 0; k < which.size(); ++k) out[which[k]] = take(out[which[k]], found[k]);
+    for (std::size_t k = 0; k < which.size(); ++k) {
+      OccludedExchange& exchange = batch.out[which[k]];
+      exchange = take(exchange, found[k]);
+    }
     return which.size();
   };
   const auto unresolved = [](const OccludedExchange& x) { return x.unresolved > kPairResolved; };
@@ -153,10 +150,10 @@ void OccludedKernel::evaluateAgain(double tolerance, std::span<const OccludedPai
     return found;
   };
   // In double precision this end has been looked from already.
-  const bool single = tolerance >= kSinglePrecision;
-  if (single) counts.again += again(SampledEnd::calmer, doubtful, replaced);
+  const bool single = batch.tolerance >= kSinglePrecision;
+  if (single) batch.counts.again += again(SampledEnd::calmer, doubtful, replaced);
   const std::size_t from_both = again(SampledEnd::restless, unresolved, betterResolved);
-  if (!single) counts.again += from_both;
+  if (!single) batch.counts.again += from_both;
 }
 
 }  // namespace radiosity

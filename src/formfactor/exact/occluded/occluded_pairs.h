@@ -60,9 +60,7 @@ double allowedError(const ElementSet& elements, const OccludedPair& pair, double
 /// evaluated again in double precision, from both ends.
 class OccludedKernel {
  public:
-  /// `tolerance`: error aimed at for F, relative to the mean form factor 1/N: the root mean square
-  /// over the entries of a row (see FormFactorOptions). Elements and occluders are kept by
-  /// reference.
+  /// `tolerance`: as FormFactorOptions::tolerance. Elements and occluders are kept by reference.
   OccludedKernel(const ElementSet& elements, const OccluderSet& occluders, double tolerance,
                  bool simd);
 
@@ -80,18 +78,20 @@ class OccludedKernel {
                         std::span<OccludedExchange> out, const Progress* progress = nullptr) const;
 
  private:
-  void evaluateTo(double tolerance, std::span<const OccludedPair> pairs,
-                  std::span<const Index> occluder_list, std::span<OccludedExchange> out,
-                  OccludedCounts& counts, const Progress* progress) const;
+  /// Some pairs, and what is made of them.
+  struct Batch {
+    double tolerance;
+    std::span<const OccludedPair> pairs;
+    std::span<const Index> occluder_list;
+    std::span<OccludedExchange> out;
+    OccludedCounts& counts;
+    const Progress* progress;
+  };
+  void evaluate(const Batch& batch) const;
   /// See kPairResolved.
-  void evaluateAgain(double tolerance, std::span<const OccludedPair> pairs,
-                     std::span<const Index> occluder_list, std::span<OccludedExchange> out,
-                     OccludedCounts& counts, const Progress* progress) const;
+  void evaluateAgain(const Batch& batch) const;
   template <class T>
-  void integrate(const ClipKernels<T>& kernels, double tolerance,
-                 std::span<const OccludedPair> pairs, std::span<const Index> occluder_list,
-                 SampledEnd end, std::span<OccludedExchange> out, OccludedCounts& counts,
-                 const Progress* progress) const;
+  void integrate(const ClipKernels<T>& kernels, const Batch& batch, SampledEnd end) const;
 
   const ElementSet& elements_;
   const OccluderSet& occluders_;

@@ -29,15 +29,12 @@ std::optional<Vec3> innerPoint(const OccluderPolygons& all, const OccluderPolygo
   return point;
 }
 
-/// Signed solid angle of a polygon seen from a point off its plane, over a fan: parts outside the
-/// polygon cancel.
+/// Signed solid angle of a polygon seen from a point off its plane.
 double solidAngle(const OccluderPolygons& all, const OccluderPolygon& polygon, const Vec3& eye) {
   double angle = 0;
   for (const std::vector<Index>& loop : polygon.loops) {
-    const Vec3 a = all.vertices[loop[0]] - eye;
-    for (std::size_t k = 1; k + 1 < loop.size(); ++k) {
-      angle += signedSolidAngle(a, all.vertices[loop[k]] - eye, all.vertices[loop[k + 1]] - eye);
-    }
+    const auto corner = [&](std::size_t k) { return all.vertices[loop[k]]; };
+    angle += loopSolidAngle(loop.size(), corner, eye);
   }
   return angle;
 }

@@ -15,6 +15,10 @@ namespace radiosity {
 /// Polygons joined by edges. A set of one-sided polygons each of whose edges is run along as often
 /// one way as the other is closed: the number of times it winds about a point changes only where
 /// the surface is crossed, by one from the front of a polygon to its back.
+///
+/// PatchMesh::enclosures would not do: a surface is proved there if it neither touches nor crosses
+/// itself, and each of its edges belongs to two polygons alone. Bodies that stand edge to edge, or
+/// reach into each other, are closed for this purpose and not for that.
 class OccluderRegions {
  public:
   OccluderRegions(const OccluderPolygons& all, const OccluderEdgeUsers& users);

@@ -42,7 +42,7 @@ void VisibilityDescent::run(Index facet, Index cluster) {
   const VisibilityCounts before = counts_;
   std::size_t left = sample_.first_facet;  // until the next
   for (auto k = std::size_t(after); k < open.size() && !enough(); ++k) {
-    const bool large = elements_.facets[open[k]].elements.size() >= kLargeFacet;
+    const bool large = isLarge(elements_.facets[open[k]]);
     if (sample_.size == (large ? FacetSize::small : FacetSize::large)) continue;
     if (left-- > 0) continue;
     addFacet(open[k]);

@@ -64,10 +64,12 @@ Visibility::Visibility(const ElementSet& elements, const OccluderSet& occluders,
   open_after_.resize(open_facets_.size() + 1);
   large_after_ = open_after_;
   for (std::size_t k = open_facets_.size(); k > 0; --k) {
-    const std::size_t size = elements.facets[open_facets_[k - 1]].elements.size();
-    const auto added = [&](const Open& to) { return Open{to.facets + 1, to.elements + size}; };
+    const Facet& facet = elements.facets[open_facets_[k - 1]];
+    const auto added = [&](const Open& to) {
+      return Open{to.facets + 1, to.elements + facet.elements.size()};
+    };
     open_after_[k - 1] = added(open_after_[k]);
-    large_after_[k - 1] = size >= kLargeFacet ? added(large_after_[k]) : large_after_[k];
+    large_after_[k - 1] = isLarge(facet) ? added(large_after_[k]) : large_after_[k];
   }
 }
 

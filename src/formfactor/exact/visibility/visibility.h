@@ -30,8 +30,8 @@ struct VisibilityCounts {
 /// What walls see of walls is a large part of the work in few facets: among thousands of small ones
 /// a stride would pass them by, or count them too often. So they are sampled apart.
 enum class FacetSize { any, small, large };
-/// Elements that a large facet has at least.
-inline constexpr std::size_t kLargeFacet = 8;
+/// Of eight elements or more.
+inline bool isLarge(const Facet& facet) { return facet.elements.size() >= 8; }
 
 /// Which pairs of some rows a sample looks at, and how long.
 struct VisibilitySample {

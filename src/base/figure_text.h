@@ -1,10 +1,13 @@
-// Sizes as people read them.
+// Counts and sizes as people read them.
 #pragma once
 
 #include <cstddef>
 #include <string>
 
 namespace radiosity {
+
+/// 1234567 -> "1,234,567".
+std::string countText(std::size_t count);
 
 /// Bytes with a binary unit: "512 B", "41.2 MiB".
 std::string bytesText(std::size_t bytes);

@@ -1,10 +1,20 @@
-#include "base/byte_text.h"
+#include "base/figure_text.h"
 
 #include <fmt/format.h>
 
 #include <iterator>
 
 namespace radiosity {
+
+std::string countText(std::size_t count) {
+  const std::string digits = std::to_string(count);
+  std::string text;
+  for (std::size_t k = 0; k < digits.size(); ++k) {
+    if (k > 0 && (digits.size() - k) % 3 == 0) text += ',';
+    text += digits[k];
+  }
+  return text;
+}
 
 std::string bytesText(std::size_t bytes) {
   constexpr const char* kUnits[] = {"B", "KiB", "MiB", "GiB", "TiB", "PiB"};
