@@ -30,7 +30,7 @@ std::array<Vec3, 3> faceAxes(int face) {
 
 }  // namespace
 
-EmbreeView::EmbreeView(const ViewScene& scene) : scene_(scene) {}
+EmbreeView::EmbreeView(const ViewScene& scene, const PatchMesh& mesh) : scene_(scene, mesh) {}
 
 const std::vector<std::uint32_t>& EmbreeView::trace(const EyeFrame& frame, int resolution) {
   const FlushDenormals flush;
@@ -48,7 +48,7 @@ void EmbreeView::traceFace(const EyeFrame& frame, int face, int resolution, std:
   const glm::vec3 forward(frame.axes * axes[0]);
   const glm::vec3 right(frame.axes * axes[1]);
   const glm::vec3 up(frame.axes * axes[2]);
-  const glm::vec3 eye(frame.eye);
+  const glm::vec3 eye = scene_.place(frame.eye);
   const int rows = face == 0 ? resolution : resolution / 2;
   const float size = 2.0F / float(resolution);
   const float bottom = face == 0 ? -1.0F : 0.0F;

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "embree_scene.h"
 #include "formfactor/hemicube/eye_frame.h"
+#include "formfactor/rays/embree_scene.h"
 #include "formfactor/view_scene.h"
 
 namespace radiosity::bench {
@@ -15,7 +15,8 @@ namespace radiosity::bench {
 /// flushed. It notes which polygon each ray hits and does no more: no look-up of patches, no sums.
 class EmbreeView {
  public:
-  explicit EmbreeView(const ViewScene& scene);
+  /// `mesh`: whose scene it is.
+  EmbreeView(const ViewScene& scene, const PatchMesh& mesh);
 
   /// Polygon positions in scene.polygons (kNone: nothing hit), face after face, rows ascending.
   /// `resolution`: a multiple of 8.

@@ -53,7 +53,7 @@ EyeFrame frameOf(const PatchMesh& mesh, const RowBuilder& rows, std::size_t patc
 double agreement(const PatchMesh& mesh, int resolution) {
   const RowBuilder rows(mesh, optionsFor(resolution));
   Hemicube hemicube = rows.makeHemicube();
-  EmbreeView embree(rows.scene());
+  EmbreeView embree(rows.scene(), mesh);
   std::vector<std::uint8_t> hidden;
   std::size_t same = 0;
   std::size_t all = 0;
@@ -102,7 +102,7 @@ Times timeHemicubes(const RateScene& scene, int resolution) {
   const RowBuilder fine_rows(scene.fine_mesh, optionsFor(resolution));
   Hemicube hemicube = rows.makeHemicube();
   Hemicube fine_hemicube = fine_rows.makeHemicube();
-  EmbreeView embree(rows.scene());
+  EmbreeView embree(rows.scene(), scene.mesh);
   const std::vector<std::size_t> eyes = chooseEyes(scene.mesh, rows);
   const std::vector<std::size_t> fine_eyes = nearestPatches(scene.mesh, eyes, scene.fine_mesh);
   std::vector<std::uint8_t> hidden;
@@ -159,7 +159,7 @@ double rowRate(const PatchMesh& mesh, int resolution) {
 bool benchRate(const RateScene& scene) {
   const RowBuilder rows(scene.mesh, optionsFor(64));
   fmt::print("\n{}: {} polygons ({} triangles for Embree), {} patches ({}), {}\n", scene.name,
-             scene.mesh.polygons.size(), EmbreeView(rows.scene()).triangles(), scene.mesh.size(),
+             scene.mesh.polygons.size(), EmbreeView(rows.scene(), scene.mesh).triangles(), scene.mesh.size(),
              scene.fine_mesh.size(), rows.kernels().target);
   const double same = agreement(scene.mesh, 256);
   fmt::print("  verified: the same polygon in {:.4f}% of pixels\n", 100 * same);

@@ -140,18 +140,21 @@ class PatchRays {
 RayRow castRow(const PatchMesh& mesh, const Rays& rays, std::size_t i) {
   const PatchRays ray(mesh, i);
   const auto points = std::make_unique<SobolPoints>();
-  const auto block = std::make_unique<PointBlock>();
+  std::array<std::vector<float>, kDimensions> block;
+  PointArrays out{};
+  for (std::size_t d = 0; d < kDimensions; ++d) {
+    block[d].resize(kMostPoints);
+    out[d] = block[d].data();
+  }
   std::vector<double> sum(mesh.size(), 0.0);
   std::vector<double> squares(mesh.size(), 0.0);
   for (std::size_t scramble = 0; scramble < kScrambles; ++scramble) {
     std::vector<double> hits(mesh.size(), 0.0);
     for (std::size_t k = 0; k < kPoints; ++k) {
       const std::size_t at = k % kMostPoints;
-      if (at == 0) {
-        points->points(std::uint32_t(k), kMostPoints, 1000 * i + scramble, *block);
-      }
+      if (at == 0) points->points(std::uint32_t(k), kMostPoints, 1000 * i + scramble, out);
       const auto [p, direction] =
-          ray({(*block)[0][at], (*block)[1][at], (*block)[2][at], (*block)[3][at]});
+          ray({block[0][at], block[1][at], block[2][at], block[3][at]});
       if (const Index seen = rays.hit(p, direction); seen != kNone) hits[seen] += 1.0 / kPoints;
     }
     for (std::size_t j = 0; j < mesh.size(); ++j) {
