@@ -66,7 +66,7 @@ class EverydayScenes(CliTest):
         share of a row that may go with what was welded."""
         group = file["form_factors"]
         accounts = [group[name][:] for name in ("fronts", "backs", "sky")]
-        area = file["mesh/area"][:]
+        area = group["area"][:]
         figure = group["error"][:] if "error" in group else np.zeros(len(area))
         allowed = ROUNDING + welded + np.sqrt(len(area)) * figure
         missing = np.abs(sum(accounts) - 1)[area > 0]

@@ -42,8 +42,7 @@ Lit light(const Scene& scene, std::size_t patches, int resolution,
   lit.meshed = meshScene(scene, mesh_options, quiet);
   lit.factors = computeFormFactors(lit.meshed.mesh, options, quiet);
   lit.materials = patchMaterials(scene, lit.meshed.mesh);
-  lit.solution =
-      solve(lit.factors, lit.materials.reflectance, lit.materials.emission, 3, solving, quiet);
+  lit.solution = solve(lit.factors, lit.materials, lit.meshed.mesh, solving, quiet);
   return lit;
 }
 

@@ -77,7 +77,7 @@ TEST(Sky, AnOpenCubeSeesTheSkyByTheClosedForms) {
   scene.face_offset.pop_back();
   scene.face_surface.pop_back();
   scene.face_element.pop_back();
-  const PatchMesh mesh = meshOf(scene, 1);
+  const PatchMesh mesh = meshOf(scene, 5);
   ASSERT_EQ(mesh.size(), 5U);
   const FormFactors factors = exactFactors(mesh);
   const double opposite = 0.199824895698387;

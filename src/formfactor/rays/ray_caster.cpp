@@ -16,11 +16,22 @@ constexpr int kLanes = 16;
 /// precision, so that few hit their own polygon and next to none miss a wall that the patch
 /// touches.
 constexpr float kLift = 2e-7F;
+/// Of two hits no farther apart than this, in scenes of size 1, single precision cannot tell which
+/// is first.
+constexpr float kTie = 2e-6F;
 /// Rays that are sorted together, at most: their batch fits the second-level cache.
 constexpr std::size_t kBatch = 16384;
 /// Directions are sorted into this many cells along each of two dimensions: kBatch points then put
 /// about one packet into each.
 constexpr std::uint32_t kCells = 32;
+
+/// An intersection filter of a single ray.
+void refuseBacks(const RTCFilterFunctionNArguments* hit) {
+  const float along = RTCHitN_Ng_x(hit->hit, 1, 0) * RTCRayN_dir_x(hit->ray, 1, 0) +
+                      RTCHitN_Ng_y(hit->hit, 1, 0) * RTCRayN_dir_y(hit->ray, 1, 0) +
+                      RTCHitN_Ng_z(hit->hit, 1, 0) * RTCRayN_dir_z(hit->ray, 1, 0);
+  if (along >= 0) hit->valid[0] = 0;
+}
 
 /// cos and sin of angles up to pi / 4, to 1e-7.
 float smallCos(float x) {
@@ -56,6 +67,12 @@ std::uint32_t spread(std::uint32_t x) {
 /// The place of cell (x, y), each below kCells, along a Z curve.
 std::uint16_t zCurve(std::uint32_t x, std::uint32_t y) {
   return std::uint16_t(spread(x) | (spread(y) << 1));
+}
+
+/// The cell of a grid at a coordinate: cells are centred on whole numbers.
+std::int32_t cellAt(float x, std::int32_t cells) {
+  constexpr float kHalf = 0.5;
+  return std::clamp(std::int32_t(x + kHalf), 0, cells - 1);
 }
 
 std::uint32_t cellOf(float x) { return std::min(std::uint32_t(x * float(kCells)), kCells - 1); }
@@ -196,15 +213,49 @@ std::uint32_t RayCaster::itemAt(const Target& target, float s, float t) const {
   const PatchGrid& grid = *target.grid;
   const float gu = target.u[0] + s * target.u[1] + t * target.u[2];
   const float gv = target.v[0] + s * target.v[1] + t * target.v[2];
-  // Cells are centred on whole numbers.
-  const auto column = std::clamp(std::int32_t(gu + 0.5F), 0, grid.columns() - 1);
-  const auto row = std::clamp(std::int32_t(gv + 0.5F), 0, grid.rows() - 1);
-  std::int32_t entry = grid.cells()[std::size_t(row * grid.columns() + column)];
+  const std::int32_t column = cellAt(gu, grid.columns());
+  const std::int32_t row = cellAt(gv, grid.rows());
+  std::int32_t entry =
+      grid.cells()[std::size_t(row) * std::size_t(grid.columns()) + std::size_t(column)];
   while (entry < 0) {
     const CellNode& node = grid.node(~entry);
     entry = node.a * gu + node.b * gv + node.c >= 0 ? node.inside : node.outside;
   }
   return unknownItem(std::uint32_t(entry));
+}
+
+/// What the ray in lane k has hit.
+std::uint32_t RayCaster::itemOf(const RTCRayHit16& packet, int k) const {
+  // A triangle's corners run counter-clockwise about the front, and Embree's normal is
+  // (v1 - v0) x (v2 - v0).
+  const float along = packet.hit.Ng_x[k] * packet.ray.dir_x[k] +
+                      packet.hit.Ng_y[k] * packet.ray.dir_y[k] +
+                      packet.hit.Ng_z[k] * packet.ray.dir_z[k];
+  const Target& target = targets_[packet.hit.primID[k]][along < 0 ? 0 : 1];
+  return itemAt(target, packet.hit.u[k], packet.hit.v[k]);
+}
+
+/// What shows its front where a ray has hit a back: of a plate without thickness, two polygons back
+/// to back, the front covers the back, but in depth they are a tie. kNone: nothing.
+std::uint32_t RayCaster::frontAt(const RTCRayHit16& packet, int k) const {
+  RTCRayHit ray{};
+  ray.ray.org_x = packet.ray.org_x[k];
+  ray.ray.org_y = packet.ray.org_y[k];
+  ray.ray.org_z = packet.ray.org_z[k];
+  ray.ray.dir_x = packet.ray.dir_x[k];
+  ray.ray.dir_y = packet.ray.dir_y[k];
+  ray.ray.dir_z = packet.ray.dir_z[k];
+  ray.ray.tnear = std::max(0.0F, packet.ray.tfar[k] - kTie);
+  ray.ray.tfar = packet.ray.tfar[k] + kTie;
+  ray.ray.mask = 0xffffffffu;
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.filter = refuseBacks;
+  rtcIntersect1(embree_.handle(), &context, &ray);
+  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return kNone;
+  return itemAt(targets_[ray.hit.primID][0], ray.hit.u, ray.hit.v);
 }
 
 void RayCaster::tracePacket(const Batch& batch, const std::uint16_t* order, int lanes,
@@ -243,13 +294,12 @@ void RayCaster::tracePacket(const Batch& batch, const std::uint16_t* order, int 
       ++counts.own;
       continue;
     }
-    // A triangle's corners run counter-clockwise about the front, and Embree's normal is
-    // (v1 - v0) x (v2 - v0).
-    const bool front = packet.hit.Ng_x[k] * packet.ray.dir_x[k] +
-                           packet.hit.Ng_y[k] * packet.ray.dir_y[k] +
-                           packet.hit.Ng_z[k] * packet.ray.dir_z[k] <
-                       0;
-    ++counts.hits[itemAt(targets_[triangle][front ? 0 : 1], packet.hit.u[k], packet.hit.v[k])];
+    std::uint32_t item = itemOf(packet, k);
+    if (item >= unknowns()) {
+      const std::uint32_t front = frontAt(packet, k);
+      if (front != kNone) item = front;
+    }
+    ++counts.hits[item];
   }
 }
 

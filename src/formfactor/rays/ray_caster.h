@@ -63,6 +63,8 @@ class RayCaster {
   void setTargets();
   std::uint32_t unknownItem(std::uint32_t item) const;
   std::uint32_t itemAt(const Target& target, float s, float t) const;
+  std::uint32_t itemOf(const RTCRayHit16& packet, int k) const;
+  std::uint32_t frontAt(const RTCRayHit16& packet, int k) const;
   void tracePacket(const Batch& batch, const std::uint16_t* order, int lanes,
                    std::array<Counts, kReplicates>& counts) const;
 

@@ -90,8 +90,9 @@ RayEstimate estimateRays(const RayScene& scene, const FormFactorOptions& options
     const double norm = std::max(row.many.norm, usual_norm);
     if (!(norm > 0)) continue;
     const double over = row.many.error / (norm * tolerance);
-    const double needed = std::clamp(kManyRays * std::pow(kMerged * over * over, 1 / order),
-                                     double(kPilotRays), double(kMostRays));
+    // Beyond kMostRays rows are given up, and the tolerance is not kept: then this is too long.
+    const double needed =
+        std::max(double(kPilotRays), kManyRays * std::pow(kMerged * over * over, 1 / order));
     rays += needed;
     // Entries that more rays find: few of those that are not there yet.
     constexpr double kNewEntries = 0.3;
