@@ -95,8 +95,9 @@ Solution solve(const FormFactors& factors, std::span<const double> reflectance,
 /// factors are of. Where its patches share unknowns (PatchMesh::clusters), a cluster has the mean
 /// reflectance and emission of its patches by area, and the system between clusters is solved: the
 /// summary, with residual, bound and energy, is of that system. B and H are of patches all the
-/// same, N * bands: a patch has its cluster's H, and B = E + rho H with its own E and rho, so that
-/// textures stay sharp. Errors also of PatchMaterials::requireSizes().
+/// same, N * bands: H follows place and normal within a cluster by a linear fit to rays, and keeps
+/// the cluster's mean; B = E + rho H with each patch's own E and rho, so that textures stay sharp.
+/// Errors also of PatchMaterials::requireSizes().
 Solution solve(const FormFactors& factors, const PatchMaterials& materials, const PatchMesh& mesh,
                const SolveOptions& options, Progress& progress);
 

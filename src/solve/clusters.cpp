@@ -31,19 +31,6 @@ std::vector<double> clusterMeans(const PatchMesh& mesh, std::span<const double> 
   return means;
 }
 
-std::vector<double> ofEachPatch(const PatchMesh& mesh, std::span<const double> of_clusters,
-                                int bands) {
-  const PatchClusters& clusters = made(mesh.clusters);
-  const auto width = std::size_t(bands);
-  std::vector<double> values;
-  values.reserve(mesh.size() * width);
-  for (const Index c : clusters.of_patch) {
-    const std::span<const double> row = of_clusters.subspan(c * width, width);
-    values.insert(values.end(), row.begin(), row.end());
-  }
-  return values;
-}
-
 std::vector<Index> clusterSurfaces(const PatchMesh& mesh) {
   const PatchClusters& clusters = made(mesh.clusters);
   std::vector<Index> surfaces;

@@ -12,10 +12,6 @@ namespace radiosity {
 /// clusters. A mean lies within the values it is of.
 std::vector<double> clusterMeans(const PatchMesh& mesh, std::span<const double> values, int bands);
 
-/// One row a patch: that of its cluster.
-std::vector<double> ofEachPatch(const PatchMesh& mesh, std::span<const double> of_clusters,
-                                int bands);
-
 /// The surface of each cluster.
 std::vector<Index> clusterSurfaces(const PatchMesh& mesh);
 

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "formfactor/rays/patch_irradiance.h"
 #include "solve/certificate.h"
 #include "solve/clusters.h"
 #include "solve/energy.h"
@@ -245,7 +246,7 @@ void nameDarkness(const std::vector<double>& from_sky, SolveSummary& summary) {
           : "no light: no patch emits, so everything is dark; usable, but black";
 }
 
-/// Between clusters; then B = E + rho H of every patch, with the irradiance of its cluster.
+/// Between clusters; then B = E + rho H of every patch, with an irradiance of its own.
 Solution solveClusters(const FormFactors& factors, const PatchMaterials& materials,
                        const PatchMesh& mesh, const SolveOptions& options, Progress& progress) {
   const int bands = materials.bands;
@@ -255,7 +256,8 @@ Solution solveClusters(const FormFactors& factors, const PatchMaterials& materia
                             clusterMeans(mesh, materials.emission, bands), bands, options, progress,
                             clusterSurfaces(mesh), mesh.surface_names, materials.sky);
   if (solution.irradiance.empty()) return solution;  // singular
-  solution.irradiance = ofEachPatch(mesh, solution.irradiance, bands);
+  solution.irradiance = patchIrradiance(mesh, solution.radiosity, solution.irradiance, bands,
+                                        materials.sky, progress);
   solution.radiosity = materials.emission;
   for (std::size_t k = 0; k < solution.radiosity.size(); ++k) {
     solution.radiosity[k] += materials.reflectance[k] * solution.irradiance[k];

@@ -159,8 +159,8 @@ double rowRate(const PatchMesh& mesh, int resolution) {
 bool benchRate(const RateScene& scene) {
   const RowBuilder rows(scene.mesh, optionsFor(64));
   fmt::print("\n{}: {} polygons ({} triangles for Embree), {} patches ({}), {}\n", scene.name,
-             scene.mesh.polygons.size(), EmbreeView(rows.scene(), scene.mesh).triangles(), scene.mesh.size(),
-             scene.fine_mesh.size(), rows.kernels().target);
+             scene.mesh.polygons.size(), EmbreeView(rows.scene(), scene.mesh).triangles(),
+             scene.mesh.size(), scene.fine_mesh.size(), rows.kernels().target);
   const double same = agreement(scene.mesh, 256);
   fmt::print("  verified: the same polygon in {:.4f}% of pixels\n", 100 * same);
   if (same < 0.999) {

@@ -11,8 +11,7 @@ namespace {
 
 using test::MeshBuilder;
 
-FormFactors compute(const PatchMesh& mesh, FormFactorMethod method,
-                    bool near_exact) {
+FormFactors compute(const PatchMesh& mesh, FormFactorMethod method, bool near_exact) {
   FormFactorOptions options;
   options.method = method;
   options.near_exact = near_exact;

@@ -153,8 +153,7 @@ RayRow castRow(const PatchMesh& mesh, const Rays& rays, std::size_t i) {
     for (std::size_t k = 0; k < kPoints; ++k) {
       const std::size_t at = k % kMostPoints;
       if (at == 0) points->points(std::uint32_t(k), kMostPoints, 1000 * i + scramble, out);
-      const auto [p, direction] =
-          ray({block[0][at], block[1][at], block[2][at], block[3][at]});
+      const auto [p, direction] = ray({block[0][at], block[1][at], block[2][at], block[3][at]});
       if (const Index seen = rays.hit(p, direction); seen != kNone) hits[seen] += 1.0 / kPoints;
     }
     for (std::size_t j = 0; j < mesh.size(); ++j) {

@@ -12,6 +12,7 @@
 #include "formfactor/cluster_factors.h"
 #include "radiosity/matrix_functions.h"
 #include "radiosity/solve.h"
+#include "solve/clusters.h"
 #include "support/scene_builder.h"
 
 namespace radiosity {
@@ -296,20 +297,27 @@ TEST(SolveWithClusters, KeepsEachPatchsOwnReflectanceAndEmission) {
   Progress progress;
   const FormFactors factors = clusterFactors(factorsOfPatches(mesh, kHemicube), mesh, progress);
   const Solution solution = solved(factors, materials, mesh);
+  const Solution of_clusters =
+      solve(factors, clusterMeans(mesh, materials.reflectance, 3),
+            clusterMeans(mesh, materials.emission, 3), 3, SolveOptions(), progress);
+  const std::vector<double> means = clusterMeans(mesh, solution.irradiance, 3);
+  for (std::size_t k = 0; k < means.size(); ++k) {
+    EXPECT_NEAR(means[k], of_clusters.irradiance[k], 1e-9 * of_clusters.irradiance[k]);
+  }
   double emitted = 0;
   double absorbed = 0;
   for (std::size_t i = 0; i < mesh.size(); ++i) {
-    const std::size_t leader = mesh.clusters->patchesOf(mesh.unknownOf(i))[0];
-    EXPECT_EQ(solution.irradiance[3 * i], solution.irradiance[3 * leader]);
     EXPECT_EQ(
         solution.radiosity[3 * i],
         materials.emission[3 * i] + materials.reflectance[3 * i] * solution.irradiance[3 * i]);
     emitted += mesh.area[i] * materials.emission[3 * i];
     absorbed += mesh.area[i] * (1 - materials.reflectance[3 * i]) * solution.irradiance[3 * i];
   }
-  // Means by area: what clusters emit and absorb is what their patches do. Rounding.
+  // Means by area: what clusters emit is what their patches do. Rounding.
   EXPECT_NEAR(solution.summary.energy.emitted[0], emitted, 1e-12 * emitted);
-  EXPECT_NEAR(solution.summary.energy.absorbed[0], absorbed, 1e-12 * absorbed);
+  // What they absorb goes with the mean reflectance: some patches of a cluster are lit more than
+  // others, and not all reflect alike.
+  EXPECT_NEAR(solution.summary.energy.absorbed[0], absorbed, 1e-2 * absorbed);
 }
 
 TEST(SolveWithClusters, NamesThePatchWhoseMaterialIsWrong) {

@@ -16,6 +16,9 @@ constexpr int kLanes = 16;
 /// precision, so that few hit their own polygon and next to none miss a wall that the patch
 /// touches.
 constexpr float kLift = 2e-7F;
+/// What a ray may end on beside items.
+constexpr std::uint32_t kSky = kNone - 1;
+constexpr std::uint32_t kLost = kNone - 2;
 /// Of two hits no farther apart than this, in scenes of size 1, single precision cannot tell which
 /// is first.
 constexpr float kTie = 2e-6F;
@@ -100,6 +103,7 @@ struct RayCaster::Batch {
   std::array<std::array<float, kBatch>, 3> origin;
   std::array<std::array<float, kBatch>, 3> direction;
   std::array<Index, kBatch> polygon;  ///< that each ray leaves from
+  std::array<std::uint32_t, kBatch> frame;
   std::array<std::uint16_t, kBatch> cell;
   std::array<std::uint16_t, kBatch> order;
 
@@ -128,17 +132,18 @@ struct RayCaster::Batch {
     for (std::size_t k = 0; k < size(); ++k) {
       float x = 0;
       const RayOrigins::Part& part = origins.part(origins.partAt(points[0][k], x));
-      const RayFrame& frame = origins.frame(part.frame);
-      const glm::vec3 from = RayOrigins::pointAt(part, x, points[1][k]) + kLift * frame.z;
+      const RayFrame& axes = origins.frame(part.frame);
+      const glm::vec3 from = RayOrigins::pointAt(part, x, points[1][k]) + kLift * axes.z;
       const float u = disc[0][k];
       const float v = disc[1][k];
       const float w = std::sqrt(std::max(0.0F, 1 - u * u - v * v));
-      const glm::vec3 along = u * frame.x + v * frame.y + w * frame.z;
+      const glm::vec3 along = u * axes.x + v * axes.y + w * axes.z;
       for (std::size_t c = 0; c < 3; ++c) {
         origin[c][k] = from[int(c)];
         direction[c][k] = along[int(c)];
       }
       polygon[k] = part.polygon;
+      frame[k] = part.frame;
       cell[k] = planar ? zCurve(cellOf(points[2][k]), cellOf(points[3][k]))
                        : octahedralCell(along.x, along.y, along.z);
     }
@@ -258,8 +263,11 @@ std::uint32_t RayCaster::frontAt(const RTCRayHit16& packet, int k) const {
   return itemAt(targets_[ray.hit.primID][0], ray.hit.u, ray.hit.v);
 }
 
+/// Calls visit(ray, item), the ray's place in the batch; the item is kSky or kLost where it is
+/// none.
+template <class Visit>
 void RayCaster::tracePacket(const Batch& batch, const std::uint16_t* order, int lanes,
-                            std::array<Counts, kReplicates>& of_replicate) const {
+                            const Visit& visit) const {
   alignas(64) std::array<int, kLanes> valid;
   RTCRayHit16 packet;
   for (int k = 0; k < kLanes; ++k) {
@@ -284,14 +292,13 @@ void RayCaster::tracePacket(const Batch& batch, const std::uint16_t* order, int 
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcIntersect16(valid.data(), embree_.handle(), &context, &packet);
   for (int k = 0; k < lanes; ++k) {
-    Counts& counts = of_replicate[order[k] < batch.each ? 0 : 1];
     if (packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) {
-      ++counts.sky;
+      visit(order[k], kSky);
       continue;
     }
     const std::uint32_t triangle = packet.hit.primID[k];
     if (source_[triangle] == batch.polygon[order[k]]) {
-      ++counts.own;
+      visit(order[k], kLost);
       continue;
     }
     std::uint32_t item = itemOf(packet, k);
@@ -299,14 +306,14 @@ void RayCaster::tracePacket(const Batch& batch, const std::uint16_t* order, int 
       const std::uint32_t front = frontAt(packet, k);
       if (front != kNone) item = front;
     }
-    ++counts.hits[item];
+    visit(order[k], item);
   }
 }
 
-void RayCaster::cast(const RayOrigins& origins, std::uint64_t seed, std::uint32_t first,
-                     std::uint32_t last, std::array<Counts, kReplicates>& counts) const {
-  for (Counts& of : counts) of.hits.resize(items(), 0);
-  if (origins.empty()) return;
+/// Calls visit(batch, ray, item) for rays `first` to `last` of each replicate.
+template <class Visit>
+void RayCaster::trace(const RayOrigins& origins, std::uint64_t seed, std::uint32_t first,
+                      std::uint32_t last, const Visit& visit) const {
   const FlushDenormals flush;
   const auto batch = std::make_unique<Batch>();
   while (first < last) {
@@ -316,10 +323,37 @@ void RayCaster::cast(const RayOrigins& origins, std::uint64_t seed, std::uint32_
     batch->sort();
     for (std::size_t k = 0; k < batch->size(); k += kLanes) {
       const int lanes = int(std::min<std::size_t>(batch->size() - k, kLanes));
-      tracePacket(*batch, batch->order.data() + k, lanes, counts);
+      tracePacket(*batch, batch->order.data() + k, lanes,
+                  [&](std::size_t ray, std::uint32_t item) { visit(*batch, ray, item); });
     }
     first += std::uint32_t(batch->each);
   }
+}
+
+void RayCaster::cast(const RayOrigins& origins, std::uint64_t seed, std::uint32_t first,
+                     std::uint32_t last, std::array<Counts, kReplicates>& of_replicate) const {
+  for (Counts& of : of_replicate) of.hits.resize(items(), 0);
+  if (origins.empty()) return;
+  trace(origins, seed, first, last, [&](const Batch& batch, std::size_t ray, std::uint32_t item) {
+    Counts& counts = of_replicate[ray < batch.each ? 0 : 1];
+    if (item == kSky) {
+      ++counts.sky;
+    } else if (item == kLost) {
+      ++counts.own;
+    } else {
+      ++counts.hits[item];
+    }
+  });
+}
+
+void RayCaster::visitEnds(const RayOrigins& origins, std::uint64_t seed, std::uint32_t rays,
+                          const EndVisitor& visit) const {
+  if (origins.empty()) return;
+  trace(origins, seed, 0, rays, [&](const Batch& batch, std::size_t ray, std::uint32_t item) {
+    if (item == kLost) return;
+    const glm::vec3 from(batch.origin[0][ray], batch.origin[1][ray], batch.origin[2][ray]);
+    visit(from, origins.frame(batch.frame[ray]).z, item == kSky ? std::uint32_t(items()) : item);
+  });
 }
 
 }  // namespace radiosity

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -38,8 +39,17 @@ class RayCaster {
   /// Rays `first` to `last` of each of the sequences of points that `seed` and the number after it
   /// stand for. Thread-safe.
   void cast(const RayOrigins& origins, std::uint64_t seed, std::uint32_t first, std::uint32_t last,
-            std::array<Counts, kReplicates>& counts) const;
+            std::array<Counts, kReplicates>& of_replicate) const;
 
+  /// Visits, in a fixed order, where each of `rays` rays of every replicate leaves, the normal
+  /// there, and the item it ends on, items() for the sky. Lost rays are left out. Thread-safe.
+  using EndVisitor =
+      std::function<void(const glm::vec3& from, const glm::vec3& normal, std::uint32_t item)>;
+  void visitEnds(const RayOrigins& origins, std::uint64_t seed, std::uint32_t rays,
+                 const EndVisitor& visit) const;
+
+  /// A place of the mesh in the coordinates of rays.
+  glm::vec3 place(const Vec3& at) const { return embree_.place(at * scene_.scale); }
   RayOrigins origins(std::size_t unknown) const {
     return {mesh_, unknown, scene_.scale, embree_.middle()};
   }
@@ -65,8 +75,12 @@ class RayCaster {
   std::uint32_t itemAt(const Target& target, float s, float t) const;
   std::uint32_t itemOf(const RTCRayHit16& packet, int k) const;
   std::uint32_t frontAt(const RTCRayHit16& packet, int k) const;
+  template <class Visit>
+  void trace(const RayOrigins& origins, std::uint64_t seed, std::uint32_t first, std::uint32_t last,
+             const Visit& visit) const;
+  template <class Visit>
   void tracePacket(const Batch& batch, const std::uint16_t* order, int lanes,
-                   std::array<Counts, kReplicates>& counts) const;
+                   const Visit& visit) const;
 
   const PatchMesh& mesh_;
   ViewScene scene_;

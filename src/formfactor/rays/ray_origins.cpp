@@ -34,6 +34,7 @@ RayOrigins::RayOrigins(const PatchMesh& mesh, std::size_t unknown, double scale,
   }
   if (parts_.empty()) return;
   const double sum = end_.back();
+  size_ = std::sqrt(0.5 * sum);  // parts count twice their area
   double begin = 0;
   for (double& end : end_) {
     end /= sum;

@@ -33,6 +33,8 @@ class RayOrigins {
   };
 
   bool empty() const { return parts_.empty(); }
+  /// The side of a square of as much area.
+  double size() const { return size_; }
   /// Of one plane: all rays have frame(0) and leave from polygon(0).
   bool isPlanar() const { return frames_.size() == 1; }
   const RayFrame& frame(std::uint32_t k) const { return frames_[k]; }
@@ -47,6 +49,7 @@ class RayOrigins {
  private:
   void addPatch(const PatchMesh& mesh, std::size_t patch, double scale, const Vec3& middle);
 
+  double size_ = 0;
   std::vector<Part> parts_;
   std::vector<RayFrame> frames_;
   std::vector<double> end_;     ///< of each part's share of x; while adding, areas summed up

@@ -49,7 +49,8 @@ ExactScene::ExactScene(const PatchMesh& mesh, Progress& progress)
 ExactKernels::ExactKernels(const ExactScene& scene, const FormFactorOptions& options)
     : closed_form(closedFormTolerance(options.toleranceOf(FormFactorMethod::exact))),
       unoccluded(scene.elements, closed_form, options.simd),
-      occluded(scene.elements, scene.occluders, options.toleranceOf(FormFactorMethod::exact), options.simd) {}
+      occluded(scene.elements, scene.occluders, options.toleranceOf(FormFactorMethod::exact),
+               options.simd) {}
 
 ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,
                             const FormFactorOptions& options) {
@@ -86,7 +87,8 @@ ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,
 
 double exactSeconds(const ExactScene& scene, const ExactKernels& kernels, const RowSample& sample,
                     const FormFactorOptions& options, Progress& progress) {
-  const RowTimes times = timeRows(scene, kernels, options.toleranceOf(FormFactorMethod::exact), sample, progress);
+  const RowTimes times =
+      timeRows(scene, kernels, options.toleranceOf(FormFactorMethod::exact), sample, progress);
   return times.busy * (times.visibility + times.unoccluded + times.occluded) /
          double(allowedThreads());
 }

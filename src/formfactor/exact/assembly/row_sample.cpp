@@ -197,7 +197,8 @@ RowSample sampleRows(const ExactScene& scene, double tolerance, Progress& progre
   const std::size_t row_classes = (ranges[0].empty() ? 0U : 1U) + (ranges[1].empty() ? 0U : 1U);
   for (const std::vector<ElementRange>& rows : ranges) {
     for (const FacetSize columns : {FacetSize::large, FacetSize::small}) {
-      addPlaces(scene, rows, columns, kSampleSteps / (2 * std::max<std::size_t>(row_classes, 1)), places);
+      addPlaces(scene, rows, columns, kSampleSteps / (2 * std::max<std::size_t>(row_classes, 1)),
+                places);
     }
   }
   RowSample sample;

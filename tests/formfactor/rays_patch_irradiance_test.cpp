@@ -1,0 +1,108 @@
+// The irradiance of patches that share an unknown.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "formfactor/rays/patch_irradiance.h"
+#include "support/mesh_builder.h"
+
+namespace radiosity {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// One unknown for the patches of the first surface, one for each other patch.
+void shareFirstSurface(PatchMesh& mesh) {
+  PatchClusters clusters;
+  clusters.begin.push_back(0);
+  for (Index i = 0; i < mesh.size(); ++i) {
+    if (mesh.surface[i] != 0 || i == 0) {
+      if (i > 0) clusters.begin.push_back(i);
+    }
+    clusters.patches.push_back(i);
+    clusters.of_patch.push_back(Index(clusters.begin.size() - 1));
+  }
+  clusters.begin.push_back(mesh.size());
+  mesh.clusters = clusters;
+}
+
+/// A strip that bends from level to 75 degrees, like a piece of a cylinder, high above black
+/// ground.
+PatchMesh bentStrip() {
+  constexpr int kPieces = 6;
+  test::MeshBuilder builder;
+  const auto at = [](int k) {
+    const double angle = k * kPi / 12;
+    return Vec3(std::sin(angle), 0, 2 + std::cos(angle));
+  };
+  for (int k = 0; k < kPieces - 1; ++k) {
+    builder.grid("strip", at(k), at(k + 1) - at(k), {0, 1, 0});
+  }
+  builder.grid("ground", {-5000, -5000, 0}, {10000, 0, 0}, {0, 10000, 0});
+  PatchMesh mesh = builder.build();
+  shareFirstSurface(mesh);
+  return mesh;
+}
+
+TEST(PatchIrradiance, FollowsTheNormalUnderAnOpenSky) {
+  const PatchMesh mesh = bentStrip();
+  const std::size_t strip = mesh.size() - 1;
+  ASSERT_EQ(mesh.unknowns(), 2u);
+  // Under a uniform sky of radiance 1 above black ground: pi (1 + cos tilt) / 2, linear in the
+  // normal (Liu & Jordan, "The long-term average performance of flat-plate solar energy
+  // collectors", Solar Energy 7, 1963).
+  std::vector<double> truth;
+  double mean = 0;
+  double area = 0;
+  for (std::size_t i = 0; i < strip; ++i) {
+    truth.push_back(kPi * (1 + mesh.normal[i].z) / 2);
+    mean += mesh.area[i] * truth.back();
+    area += mesh.area[i];
+  }
+  mean /= area;
+  Progress silent;
+  const std::vector<double> sky = {1.0};
+  const std::vector<double> found = patchIrradiance(mesh, std::vector<double>{0, 0},
+                                                    std::vector<double>{mean, kPi}, 1, sky, silent);
+  double found_mean = 0;
+  for (std::size_t i = 0; i < strip; ++i) {
+    // 16,384 rays, each of them 0 or pi: 0.4% of pi at random, more at the ends of the strip.
+    EXPECT_NEAR(found[i], truth[i], 0.02 * kPi) << i;
+    found_mean += mesh.area[i] * found[i] / area;
+  }
+  EXPECT_NEAR(found_mean, mean, 1e-12);
+  EXPECT_EQ(found[strip], kPi);  // an unknown of one patch keeps its own
+}
+
+TEST(PatchIrradiance, IsTheSameEverywhereInAFurnace) {
+  test::MeshBuilder builder;
+  builder.box("room", {0, 0, 0}, {1, 1, 1}, 2, true);
+  PatchMesh mesh = builder.build();
+  shareFirstSurface(mesh);
+  ASSERT_EQ(mesh.unknowns(), 1u);
+  Progress silent;
+  const std::vector<double> one(2, 1.0);
+  for (const double h : patchIrradiance(mesh, one, one, 2, {}, silent)) EXPECT_EQ(h, 1.0);
+}
+
+TEST(PatchIrradiance, IsNeverNegativeAndKeepsTheMean) {
+  const PatchMesh mesh = bentStrip();
+  Progress silent;
+  const std::vector<double> sky = {1.0};
+  // A mean far below what the rays find: slopes would take some patches below 0.
+  const std::vector<double> found =
+      patchIrradiance(mesh, std::vector<double>{0, 0}, std::vector<double>{0.1, 0}, 1, sky, silent);
+  double sum = 0;
+  double area = 0;
+  for (std::size_t i = 0; i + 1 < mesh.size(); ++i) {
+    EXPECT_GE(found[i], 0);
+    sum += mesh.area[i] * found[i];
+    area += mesh.area[i];
+  }
+  EXPECT_NEAR(sum / area, 0.1, 1e-12);
+}
+
+}  // namespace
+}  // namespace radiosity
