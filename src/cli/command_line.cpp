@@ -126,7 +126,7 @@ void addFactorOptions(CLI::App& app, Request& r) {
                   FormFactorOptions::kExactTolerance, FormFactorOptions::kRayTolerance));
   add(app, "Form factors", "--closure", r.closure, "off|report|enforce",
       "In a closed scene say how far row sums are from 1 (report, default), or make them 1 by the "
-      "smallest change to occluded pairs (enforce)")
+      "smallest change to occluded pairs (enforce); rays: rows are closed unless off")
       ->check(CLI::IsMember(namesIn(kClosureNames)));
   add(app, "Form factors", "--resolution", r.resolution, "PIXELS",
       fmt::format("hemicube: edge of the top face; even, 16 to 4096 (default {})",
