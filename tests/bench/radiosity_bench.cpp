@@ -12,7 +12,6 @@
 #include "gather_costs.h"
 #include "rates.h"
 #include "report.h"
-#include "sobol.h"
 #include "summary.h"
 
 namespace radiosity::bench {

@@ -161,9 +161,11 @@ class WhatCannotBeKept(CliTest):
             self.assertEqual(sorted(set(of_patch)), [0, 1, 2, 3])
             self.assertEqual(file["solution/radiosity"].shape, (6, 3))
             self.assertEqual(file["mesh/report"].attrs["clusters"], 4)
+            # Each patch has an irradiance of its own, also where it shares the unknown.
             irradiance = file["solution/irradiance"][()]
-            for cluster in range(4):
-                self.assertEqual(len(set(map(tuple, irradiance[of_patch == cluster]))), 1)
+            self.assertEqual(irradiance.shape, (6, 3))
+            self.assertTrue((irradiance >= 0).all())
+            self.assertGreater(len(set(map(tuple, irradiance))), 4)
         # What stands in the file is reused, drawn and listed.
         report = self.report("render", "s.h5", "--show", "row-sum", "-o", "p.png")
         self.assertEqual(report["stages"]["form_factors"]["action"], "reused")
