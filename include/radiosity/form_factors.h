@@ -38,7 +38,7 @@ struct FormFactorOptions {
   /// all norms where that is larger; so the relative error of the matrix is below it. Empty: what
   /// the method has by default.
   std::optional<double> tolerance;
-  ClosureMode closure = ClosureMode::report;
+  ClosureMode closure = ClosureMode::report;  ///< rays: rows are closed unless `off`
   /// Of the stored values; empty: single, double where the tolerance asks for more than 1e-6.
   std::optional<Precision> precision;
   int resolution = 256;    ///< hemicube: pixels along an edge of the top face; even, 16 to 4096
