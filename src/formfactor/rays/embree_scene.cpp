@@ -1,6 +1,7 @@
 #include "formfactor/rays/embree_scene.h"
 
 #include <pmmintrin.h>
+#include <tbb/task_arena.h>
 #include <xmmintrin.h>
 
 #include <glm/common.hpp>
@@ -23,10 +24,8 @@ Vec3 middleOf(const std::vector<Vec3>& vertices) {
   return 0.5 * (lower + upper);
 }
 
-/// One thread builds the tree: it then is the same in every run, and with it which of two
-/// triangles a ray through their common edge ends on.
 RTCDevice newDevice() {
-  const RTCDevice device = rtcNewDevice("threads=1");
+  const RTCDevice device = rtcNewDevice(nullptr);
   if (device == nullptr) throw RunError("rays: Embree cannot be started on this processor");
   return device;
 }
@@ -70,7 +69,10 @@ EmbreeScene::EmbreeScene(const ViewScene& scene, const PatchMesh& mesh)
   rtcReleaseGeometry(geometry);
   rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
   rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
-  rtcCommitScene(scene_);
+  // One thread builds the tree: it then is the same in every run, and with it which of two
+  // triangles a ray through their common edge ends on. (A device with one thread would leave the
+  // whole process one.)
+  tbb::task_arena(1).execute([&] { rtcCommitScene(scene_); });
 }
 
 void EmbreeScene::addTiles(const ViewScene& scene, const PatchMesh& mesh,
