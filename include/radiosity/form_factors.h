@@ -145,8 +145,8 @@ struct FormFactorReport {
   /// max |fronts + backs + sky - 1| over non-empty rows. Exact: raw where the scene is closed; else
   /// how far fronts + backs exceed 1.
   double largest_row_error = 0;
-  double error_figure =
-      0;  ///< exact and rays: of the matrix, area-weighted relL2 of F; see FormFactors
+  /// Exact and rays: of the matrix, area-weighted relL2 of F; see FormFactors.
+  double error_figure = 0;
   bool closed = false;  ///< no patch sees the sky
   bool symmetrized = false;
   ClosureReport closure;          ///< where symmetrized, or exact and closed

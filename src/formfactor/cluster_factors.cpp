@@ -5,27 +5,12 @@
 #include <utility>
 
 #include "base/made.h"
+#include "mesh/cluster_means.h"
 #include "radiosity/matrix_functions.h"
 
 namespace radiosity {
 
 namespace {
-
-/// Means of N values over each cluster, by area; none of none.
-std::vector<double> meansByArea(const PatchMesh& mesh, const PatchClusters& clusters,
-                                const std::vector<double>& values) {
-  std::vector<double> means;
-  for (std::size_t c = 0; !values.empty() && c < clusters.size(); ++c) {
-    double sum = 0;
-    double area = 0;
-    for (const Index i : clusters.patchesOf(c)) {
-      sum += mesh.area[i] * values[i];
-      area += mesh.area[i];
-    }
-    means.push_back(area > 0 ? sum / area : 0.0);
-  }
-  return means;
-}
 
 double mostPatches(const PatchClusters& clusters) {
   std::size_t most = 0;
@@ -41,12 +26,12 @@ FormFactors clusterFactors(const FormFactors& factors, const PatchMesh& mesh, Pr
   const PatchClusters& clusters = made(mesh.clusters);
   FormFactors result;
   result.matrix = aggregated(factors.matrix, clusters.of_patch, clusters.size(), progress);
-  result.fronts = meansByArea(mesh, clusters, factors.fronts);
-  result.backs = meansByArea(mesh, clusters, factors.backs);
-  result.sky = meansByArea(mesh, clusters, factors.sky);
+  result.fronts = clusterMeans(mesh, factors.fronts, 1);
+  result.backs = clusterMeans(mesh, factors.backs, 1);
+  result.sky = clusterMeans(mesh, factors.sky, 1);
   result.backs_by_surface = factors.backs_by_surface;
   const double most = std::sqrt(mostPatches(clusters));
-  result.error = meansByArea(mesh, clusters, factors.error);
+  result.error = clusterMeans(mesh, factors.error, 1);
   for (double& figure : result.error) figure *= most;
   result.method = factors.method;
   result.report = factors.report;

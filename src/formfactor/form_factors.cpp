@@ -107,11 +107,14 @@ void planHemicubes(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Pro
 
 void planRays(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {
   progress.begin("preparing", 1);
+  const Clock::time_point start = Clock::now();
   const RayScene& scene = prepared.rays.emplace(prepared.mesh, prepared.options.seed);
+  const double preparing = secondsSince(start);
   progress.advance();
   progress.end();
   progress.check();
   prepared.ray_estimate = estimateRays(scene, prepared.options, progress);
+  prepared.ray_estimate.seconds_prepare = preparing;
   plan.method = FormFactorMethod::rays;
   plan.bytes = prepared.ray_estimate.bytes;
   plan.matrix_bytes = prepared.ray_estimate.matrix_bytes;

@@ -11,8 +11,8 @@
 #include <string_view>
 
 #include "formfactor/rays/patch_irradiance.h"
+#include "mesh/cluster_means.h"
 #include "solve/certificate.h"
-#include "solve/clusters.h"
 #include "solve/energy.h"
 #include "solve/iteration.h"
 #include "solve/singular.h"

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "formfactor/cluster_factors.h"
+#include "mesh/cluster_means.h"
 #include "radiosity/matrix_functions.h"
 #include "radiosity/solve.h"
-#include "solve/clusters.h"
 #include "support/scene_builder.h"
 
 namespace radiosity {

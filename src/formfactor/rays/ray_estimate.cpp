@@ -76,18 +76,13 @@ RayEstimate estimateRays(const RayScene& scene, const FormFactorOptions& options
   const double order = orderOf(rows);
   const double tolerance = options.toleranceOf(FormFactorMethod::rays);
   BothClocks taken;
-  double squares = 0;
-  double areas = 0;
-  for (const SampledRow& row : rows) {
-    squares += row.area * row.many.norm * row.many.norm;
-    areas += row.area;
-  }
-  const double usual_norm = areas > 0 ? std::sqrt(squares / areas) : 0.0;
+  UsualNorm usual;
+  for (const SampledRow& row : rows) usual.add(row.many.norm, row.area);
   double rays = 0;
   double entries = 0;
   for (const SampledRow& row : rows) {
     taken += row.taken;
-    const double norm = std::max(row.many.norm, usual_norm);
+    const double norm = std::max(row.many.norm, usual.value());
     if (!(norm > 0)) continue;
     const double over = row.many.error / (norm * tolerance);
     // Beyond kMostRays rows are given up, and the tolerance is not kept: then this is too long.

@@ -159,7 +159,7 @@ FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene, const RayEs
   balance(result);
   accountForBacks(mesh, scene.order(), result.matrix.area(), seen_backs, result);
   report.rays.seconds_close = clockSeconds() - closing;
-  report.rays.seconds_prepare = scene.seconds();
+  report.rays.seconds_prepare = estimate.seconds_prepare;
   return result;
 }
 

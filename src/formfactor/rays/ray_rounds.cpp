@@ -6,7 +6,7 @@
 
 #include "base/parallel.h"
 #include "base/processor_clock.h"
-#include "formfactor/rays/ray_factors.h"
+#include "formfactor/rays/ray_scene.h"
 
 namespace radiosity {
 namespace {
@@ -111,20 +111,11 @@ class Rounds {
       before_[k] = now_[k];
       now_[k] = {rows_[k].rays, accuracy.error, accuracy.norm};
     });
-    usual_norm_ = usualNorm();
+    UsualNorm usual;
+    for (std::size_t k = 0; k < now_.size(); ++k) usual.add(now_[k].norm, scene_.area()[k]);
+    usual_norm_ = usual.value();
     progress_.check();
     report_.seconds_merge += clockSeconds() - start;
-  }
-
-  /// Of a row of the matrix: the root mean square, weighted by area.
-  double usualNorm() const {
-    double squares = 0;
-    double areas = 0;
-    for (std::size_t k = 0; k < now_.size(); ++k) {
-      squares += scene_.area()[k] * now_[k].norm * now_[k].norm;
-      areas += scene_.area()[k];
-    }
-    return areas > 0 ? std::sqrt(squares / areas) : 0.0;
   }
 
   double aim(std::size_t k) const { return tolerance_ * std::max(now_[k].norm, usual_norm_); }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -58,6 +59,20 @@ struct RowAccuracy {
   /// What sqrt(sum_j (F_ij - true F_ij)^2) is below in 99% of rows: error squared over its estimate
   /// is distributed like F with as many degrees of freedom above as below.
   double figure() const;
+};
+
+/// The norm of a usual row: the root mean square of those added, weighted by area.
+class UsualNorm {
+ public:
+  void add(double norm, double area) {
+    squares_ += area * norm * norm;
+    areas_ += area;
+  }
+  double value() const { return areas_ > 0 ? std::sqrt(squares_ / areas_) : 0.0; }
+
+ private:
+  double squares_ = 0;
+  double areas_ = 0;
 };
 
 /// `own`: the row itself, for the black backs in it, which nothing estimates from the other end.

@@ -1,11 +1,9 @@
-#include <tbb/enumerable_thread_specific.h>
+#include "formfactor/rays/ray_scene.h"
 
 #include <algorithm>
 #include <optional>
 
-#include "base/processor_clock.h"
 #include "formfactor/patch_seed.h"
-#include "formfactor/rays/ray_factors.h"
 #include "formfactor/row_accounts.h"
 #include "mesh/enclosures.h"
 
@@ -36,8 +34,7 @@ Replicates& emptyCounts(std::size_t items) {
 
 }  // namespace
 
-RayScene::RayScene(const PatchMesh& mesh, std::uint64_t with_seed)
-    : start_(clockSeconds()), caster_(mesh) {
+RayScene::RayScene(const PatchMesh& mesh, std::uint64_t with_seed) : caster_(mesh) {
   UnknownOrder by_identity = unknownOrder(mesh);
   order_ = std::move(by_identity.unknown);
   const std::vector<double> areas = unknownAreas(mesh);
@@ -47,7 +44,6 @@ RayScene::RayScene(const PatchMesh& mesh, std::uint64_t with_seed)
   }
   std::optional<Enclosures> found;
   proved_closed_ = enclosuresOf(mesh, found).proved_closed;
-  seconds_ = clockSeconds() - start_;
 }
 
 void RayScene::cast(std::size_t position, std::uint32_t rays, RayRow& row,

@@ -1,4 +1,4 @@
-// The system between clusters of patches, and back to patches.
+// Values of clusters from those of their patches.
 #pragma once
 
 #include <span>
@@ -8,8 +8,8 @@
 
 namespace radiosity {
 
-/// Rows of `bands` values, one a patch, as means by area over each cluster of a mesh that has
-/// clusters. A mean lies within the values it is of.
+/// Means by area over each cluster of a mesh that has clusters; `values`: N * bands, row-major, a
+/// row a patch; the result: K * bands, none of none. A mean lies within the values it is of.
 std::vector<double> clusterMeans(const PatchMesh& mesh, std::span<const double> values, int bands);
 
 /// The surface of each cluster.

@@ -1,4 +1,4 @@
-#include "solve/clusters.h"
+#include "mesh/cluster_means.h"
 
 #include <algorithm>
 
@@ -7,6 +7,7 @@
 namespace radiosity {
 
 std::vector<double> clusterMeans(const PatchMesh& mesh, std::span<const double> values, int bands) {
+  if (values.empty()) return {};
   const PatchClusters& clusters = made(mesh.clusters);
   const auto width = std::size_t(bands);
   std::vector<double> means(clusters.size() * width, 0.0);

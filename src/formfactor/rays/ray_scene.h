@@ -1,0 +1,43 @@
+// A mesh ready for rays, row by row.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "formfactor/rays/ray_caster.h"
+#include "formfactor/rays/ray_rows.h"
+#include "radiosity/base.h"
+
+namespace radiosity {
+
+/// The caster of a mesh, and its unknowns in the order of the matrix.
+class RayScene {
+ public:
+  /// `mesh` is kept by reference.
+  RayScene(const PatchMesh& mesh, std::uint64_t seed);
+
+  const RayCaster& caster() const { return caster_; }
+  std::size_t size() const { return order_.size(); }
+  /// The unknown at each position.
+  const std::vector<Index>& order() const { return order_; }
+  /// By position, m^2.
+  const std::vector<double>& area() const { return area_; }
+  /// No ray can get out: those that do went through a gap.
+  bool provedClosed() const { return proved_closed_; }
+
+  /// Continues a row, by position, to `rays` rays in each replicate. Returns early, with a row that
+  /// is of no use, when `progress` is cancelled. Thread-safe for different rows.
+  void cast(std::size_t position, std::uint32_t rays, RayRow& row, const Progress& progress) const;
+
+ private:
+  void addCounts(std::array<RayCaster::Counts, kReplicates>& counts, RayRow& row) const;
+
+  RayCaster caster_;
+  std::vector<Index> order_;
+  std::vector<double> area_;
+  std::vector<std::uint64_t> seed_;  ///< by position
+  bool proved_closed_ = false;
+};
+
+}  // namespace radiosity
