@@ -274,6 +274,13 @@ void addGeneralOptions(CLI::App& app, Request& r, Command command) {
   add(app, "General", "--threads", r.threads, "N",
       "Threads (default 0: all cores); results do not depend on it, to the bit")
       ->check(wholeNumber());
+  app.add_option_function<std::string>(
+         "--time-limit",
+         [&r](const std::string& text) { r.time_limit = parseDuration("--time-limit", text); },
+         "Stop the run after this long, keeping stages that are finished; refuse form factors that "
+         "are foreseen to take longer than what is left of it. Seconds, or 90s, 10m, 2h")
+      ->option_text("TIME")
+      ->group("General");
   add(app, "General", "--max-image", r.scene.max_image, "MEGAPIXELS",
       fmt::format("Largest image that is read, in millions of pixels (default {:g}: 8K textures; 1 "
                   "takes up to 30 MB while it is read)",

@@ -5,6 +5,7 @@
 #include "cli/pipeline_report.h"
 #include "cli/report.h"
 #include "cli/request.h"
+#include "cli/time_limit.h"
 #include "radiosity/pipeline.h"
 
 namespace radiosity::cli {
@@ -13,6 +14,7 @@ struct Session {
   const Request& request;
   Report& report;
   Progress& progress;
+  const TimeLimit& limit;
 };
 
 /// The pipeline of one run, whose steps are reported.

@@ -39,7 +39,7 @@ int dispatch(Session& session) {
   return runRender(session);
 }
 
-int run(const Request& request, ConsoleProgress& progress) {
+int run(const Request& request, const TimeLimit& limit, ConsoleProgress& progress) {
   // Claimed and let go: a report that cannot be written is found before the work is done.
   if (!request.report.empty()) AtomicFile(request.report);
   setThreads(request.threads);
@@ -48,7 +48,7 @@ int run(const Request& request, ConsoleProgress& progress) {
   report.fact("command", commandName(request.command));
   report.fact("input", request.input);
   report.fact("arguments", request.arguments);
-  Session session{request, report, progress};
+  Session session{request, report, progress, limit};
   const int code = dispatch(session);
   report.exitCode(code);
   if (!request.report.empty()) report.write(request.report);
@@ -71,9 +71,10 @@ int main(int argc, char** argv) {
     Request request;
     if (const std::optional<int> done = parseCommandLine(argc, argv, request)) return *done;
     ConsoleProgress progress(progressStyle(request.quiet));
-    const SignalGuard guard(progress);
+    const TimeLimit limit(request.time_limit);
+    const SignalGuard guard(progress, limit);
     try {
-      return run(request, progress);
+      return run(request, limit, progress);
     } catch (...) {
       progress.clear();
       // A library that stopped half-way because of the signal may report something else.

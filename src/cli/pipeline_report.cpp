@@ -117,6 +117,13 @@ void PipelineReport::planned(const Pipeline& pipeline, const FormFactorPlan& pla
                            durationText(plan.seconds), bytesText(plan.bytes),
                            writes_results_ ? ", disk at most about " + bytesText(disk) : ""));
   if (!plan.reason.empty()) report_.line("", "because " + plan.reason);
+  const std::optional<double> left = limit_.left();
+  if (left && plan.seconds > *left) {
+    throw RunError(
+        fmt::format("form factors would take about {}, and --time-limit {} leaves {}; {}",
+                    durationText(plan.seconds), durationText(*limit_.seconds()),
+                    durationText(std::max(0.0, *left)), cures(plan, options)));
+  }
   if (plan.seconds > kLongWait) report_.line("", cures(plan, options));
 }
 

@@ -7,6 +7,7 @@
 #include "cli/report.h"
 #include "cli/request.h"
 #include "cli/summaries.h"
+#include "cli/time_limit.h"
 #include "radiosity/pipeline.h"
 
 namespace radiosity::cli {
@@ -14,12 +15,14 @@ namespace radiosity::cli {
 class PipelineReport : public PipelineObserver {
  public:
   /// `writes_results`: the run was asked for a results file.
-  PipelineReport(const Request& request, Report& report, bool writes_results)
-      : request_(request), report_(report), writes_results_(writes_results) {}
+  PipelineReport(const Request& request, Report& report, const TimeLimit& limit,
+                 bool writes_results)
+      : request_(request), report_(report), limit_(limit), writes_results_(writes_results) {}
 
   void opened(const Pipeline& pipeline) override;
   void notes(const Pipeline& pipeline, std::span<const Note> notes) override;
   void notReused(const std::string& path, const std::string& why) override;
+  /// RunError where that takes longer than the time limit leaves.
   void planned(const Pipeline& pipeline, const FormFactorPlan& plan) override;
   void stage(const Pipeline& pipeline, const StageEvent& event) override;
 
@@ -28,6 +31,7 @@ class PipelineReport : public PipelineObserver {
 
   const Request& request_;
   Report& report_;
+  const TimeLimit& limit_;
   bool writes_results_;
 };
 

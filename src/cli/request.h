@@ -72,6 +72,7 @@ struct Request {
   std::string show;
 
   int threads = 0;
+  std::optional<double> time_limit;  ///< seconds
   std::string report;
   bool quiet = false;
 

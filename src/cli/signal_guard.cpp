@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "base/atomic_file.h"
+#include "cli/words.h"
 
 namespace radiosity::cli {
 
@@ -51,10 +52,16 @@ void waitForATick() {
 struct Kept {
   std::mutex mutex;
   std::string text;
+  std::string reason = "interrupted";
 };
 Kept& kept() {
   static Kept it;
   return it;
+}
+
+void sayOutOfTime(double seconds) {
+  const std::lock_guard lock(kept().mutex);
+  kept().reason = fmt::format("stopped after {}, --time-limit", durationText(seconds));
 }
 
 /// For a run that does not come to its end.
@@ -75,14 +82,15 @@ void sayIfInterrupted(const std::string& text) {
 }
 
 std::string interruptedText() {
-  {
-    const std::lock_guard lock(kept().mutex);
-    if (!kept().text.empty()) return "interrupted; " + kept().text;
-  }
-  return committedFiles() == 0 ? Cancelled().what() : "interrupted; what was written is whole";
+  const std::lock_guard lock(kept().mutex);
+  const auto whole = [] {
+    return committedFiles() == 0 ? "nothing was written" : "what was written is whole";
+  };
+  return kept().reason + "; " + (kept().text.empty() ? whole() : kept().text);
 }
 
-SignalGuard::SignalGuard(ConsoleProgress& progress) : progress_(progress) {
+SignalGuard::SignalGuard(ConsoleProgress& progress, const TimeLimit& limit)
+    : progress_(progress), limit_(limit) {
   sem_init(&wake, 0, 0);
   running = &progress;
   watcher_ = std::thread([this] { watch(); });
@@ -113,9 +121,13 @@ void SignalGuard::watch() {
   std::optional<Clock::time_point> interrupted;
   while (!over_) {
     waitForATick();
-    if (!progress_.cancelled()) {
+    if (!progress_.cancelled() && !limit_.passed()) {
       progress_.tick();
       continue;
+    }
+    if (!progress_.cancelled()) {
+      sayOutOfTime(*limit_.seconds());
+      progress_.cancel();
     }
     if (!interrupted) interrupted = Clock::now();
     if (!over_ && Clock::now() - *interrupted >= kGrace) endProcess(progress_);

@@ -25,7 +25,7 @@ void refuseReadingOptions(const Request& request) {
 }  // namespace
 
 Run::Run(Session& session, const std::string& results_output)
-    : said(session.request, session.report, !results_output.empty()),
+    : said(session.request, session.report, session.limit, !results_output.empty()),
       pipeline(session.progress, &said) {
   const Request& request = session.request;
   refuseReadingOptions(request);

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 #include <numbers>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/figure_text.h"
@@ -66,6 +69,22 @@ std::size_t parseBytes(const std::string& option, const std::string& text) {
   }
   throw InputError(fmt::format(
       "{}: '{}' is not a size above 0; write bytes or a number with K, M, G or T, e.g. 512M or 2G",
+      option, text));
+}
+
+double parseDuration(const std::string& option, const std::string& text) {
+  constexpr std::array<std::pair<std::string_view, double>, 5> kUnits{
+      {{"", 1}, {"s", 1}, {"m", 60}, {"min", 60}, {"h", 3600}}};
+  double value = 0;
+  const char* last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), last, value);
+  const std::string_view rest(end, std::size_t(last - end));
+  const auto* const unit = std::ranges::find(kUnits, rest, [](const auto& u) { return u.first; });
+  if (error == std::errc() && unit != kUnits.end() && value > 0 && std::isfinite(value)) {
+    return value * unit->second;
+  }
+  throw InputError(fmt::format(
+      "{}: '{}' is not a time above 0; write seconds or a number with s, m or h, e.g. 90s or 10m",
       option, text));
 }
 

@@ -29,6 +29,9 @@ std::string bandsText(int bands);
 /// "512M", "2G", "1.5GiB", "1000000" (bytes) -> bytes; units are binary. InputError names `option`.
 std::size_t parseBytes(const std::string& option, const std::string& text);
 
+/// Seconds: "90", "90s", "10m", "1.5h" (also "min"). InputError naming `option`.
+double parseDuration(const std::string& option, const std::string& text);
+
 /// The candidate nearest to `word` by edits (insert, delete, replace, swap of neighbours), where
 /// no more than a third of the letters, and at least one, differ.
 std::optional<std::string> nearest(const std::string& word,

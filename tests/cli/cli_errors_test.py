@@ -154,6 +154,27 @@ class FailedRuns(CliTest):
         self.run_program("factors", "box.obj", *SMALL, "--memory-limit", "1G")
 
 
+class TimeLimit(CliTest):
+    def test_form_factors_that_would_take_longer_are_refused_with_a_cure(self):
+        line = self.refuse("factors", "box.obj", *LONG, "--time-limit", "10s", "-o", "f.h5",
+                           "--quiet", code=1)
+        self.assertRegex(line, r"form factors would take about .*, and --time-limit 10 s leaves "
+                               r".* s; for less: ")
+
+    def test_a_run_out_of_time_stops_and_says_what_is_kept(self):
+        line = self.refuse("mesh", "box.obj", "--patches", "1000000", "--time-limit", "0.05", "-o",
+                           "m.h5", "--quiet", code=1)
+        self.assertEqual(line, "radiosity: stopped after 0.05 s, --time-limit; nothing was written")
+
+    def test_enough_time_changes_nothing(self):
+        self.run_program("factors", "box.obj", *SMALL, "--time-limit", "1h", "-o", "f.h5")
+
+    def test_what_is_no_time_is_refused(self):
+        for text in ["0", "-1", "soon", "5x", "inf", "m"]:
+            line = self.refuse("factors", "box.obj", f"--time-limit={text}")
+            self.assertIn(f"--time-limit: '{text}' is not a time above 0", line)
+
+
 class Interrupted(CliTest):
     def interrupt(self, process, number):
         process.send_signal(number)
