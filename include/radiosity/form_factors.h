@@ -36,7 +36,8 @@ struct FormFactorOptions {
   /// hold it, or 1e-5 where it is larger, relative to each value; above kExactTolerance, a tenth of
   /// it. Rays: the error (L2) of a row over its norm, or over the area-weighted root mean square of
   /// all norms where that is larger; so the relative error of the matrix is below it. Empty: what
-  /// the method has by default.
+  /// the method has by default; rays then stop at kMostRaysUnasked, where a row of an open scene,
+  /// which may see next to nothing, would want a thousand times those of a closed one.
   std::optional<double> tolerance;
   ClosureMode closure = ClosureMode::report;  ///< rays: rows are closed unless `off`
   /// Of the stored values; empty: single, double where the tolerance asks for more than 1e-6.
@@ -54,6 +55,8 @@ struct FormFactorOptions {
 
   static constexpr double kExactTolerance = 1e-3;
   static constexpr double kRayTolerance = 1e-2;
+  /// Half a minute or so of two cores.
+  static constexpr double kMostRaysUnasked = 2e8;
 
   void validate() const;
   Precision storedPrecision() const;
@@ -113,7 +116,10 @@ struct RayReport {
   std::size_t lost = 0;    ///< of them not counted: they hit the polygon they left, or ...
   std::size_t leaked = 0;  ///< ... got out of a scene that is proved closed
   int rounds = 0;
-  std::size_t short_rows = 0;     ///< that were given up before they met the tolerance
+  std::size_t short_rows = 0;  ///< that were given up before they met the tolerance
+  /// What rows were cast to where no tolerance was asked for and kMostRaysUnasked did not suffice
+  /// for the default.
+  std::optional<double> loosened_tolerance;
   double largest_row_figure = 0;  ///< largest of FormFactors::error over the norm of its row
   double seconds_prepare = 0;     ///< by the clock, as the others: the tree and the look-up
   double seconds_cast = 0;
@@ -188,7 +194,11 @@ struct FormFactorPlan {
   std::size_t bytes = 0;         ///< held at once, about; options.memory_held included
   std::size_t matrix_bytes = 0;  ///< of these, the matrix
   double seconds = 0;
+  /// What the method works to: as FormFactorOptions::tolerance, looser where rays stop before.
+  double tolerance = 0;
   double refining = 0;  ///< exact: share of the seconds that goes with 1 / tolerance
+  /// Of rays that stop before: seconds for the default tolerance.
+  std::optional<double> seconds_to_tolerance;
   /// Seconds of the other one of exact and rays, where both were looked at.
   std::optional<double> other_seconds;
   /// What was made ready on the way, with the mesh and the options: what the computation starts

@@ -88,6 +88,9 @@ void rayFigures(Report& report, const RayReport& r) {
   report.count("rays_leaked", "  of them leaked out", r.leaked);
   report.count("rounds", "rounds", std::size_t(r.rounds));
   report.count("short_rows", "rows short of the tolerance", r.short_rows);
+  if (r.loosened_tolerance) {
+    report.number("loosened_tolerance", "  which was loosened to", *r.loosened_tolerance);
+  }
   report.seconds("seconds_prepare", "time: preparing", r.seconds_prepare);
   report.seconds("seconds_cast", "time: casting", r.seconds_cast);
   report.seconds("seconds_merge", "time: merging", r.seconds_merge);

@@ -20,19 +20,19 @@ constexpr double kLongWait = 60;
 constexpr double kRaysOrder = 1.6;
 
 /// What shortens a wait, and to what, as far as that is known.
-std::string cures(const FormFactorPlan& plan, const FormFactorOptions& options) {
+std::string cures(const FormFactorPlan& plan) {
   constexpr double kLoosest = 0.1;
   if (plan.method == FormFactorMethod::hemicube) {
     return "for less: fewer --patches, a lower --resolution";
   }
   std::string text = "for less:";
   const bool rays = plan.method == FormFactorMethod::rays;
-  const double tolerance = options.toleranceOf(plan.method);
+  const double tolerance = plan.tolerance;
   const double looser = std::min(kLoosest, (rays ? 3 : 10) * tolerance);
   if (looser > tolerance) {
     const double left = rays ? plan.seconds * std::pow(tolerance / looser, kRaysOrder)
                              : plan.seconds * (1 - plan.refining * (1 - tolerance / looser));
-    text += fmt::format(" --tolerance {} (about {}),", numberText(looser), durationText(left));
+    text += fmt::format(" --tolerance {} (about {}),", numberText(looser, 2), durationText(left));
   }
   text += " fewer --patches";
   if (plan.other_seconds && *plan.other_seconds < plan.seconds) {
@@ -110,21 +110,25 @@ void PipelineReport::planned(const Pipeline& pipeline, const FormFactorPlan& pla
       hemicubes ? fmt::format("{} of {} pixels", plural(patches, "hemicube", "hemicubes"),
                               options.resolution)
                 : fmt::format("{} between {} to {}", nameOf(kMethodNames, plan.method),
-                              plural(patches, "patch", "patches"),
-                              numberText(options.toleranceOf(plan.method)));
+                              plural(patches, "patch", "patches"), numberText(plan.tolerance, 2));
   report_.line("form factors",
                fmt::format("{}{}: about {}, memory about {}{}", what, clusters,
                            durationText(plan.seconds), bytesText(plan.bytes),
                            writes_results_ ? ", disk at most about " + bytesText(disk) : ""));
   if (!plan.reason.empty()) report_.line("", "because " + plan.reason);
+  if (plan.seconds_to_tolerance) {
+    const double tolerance = options.toleranceOf(plan.method);
+    report_.line("", fmt::format("for --tolerance {}: about {}", numberText(tolerance),
+                                 durationText(*plan.seconds_to_tolerance)));
+  }
   const std::optional<double> left = limit_.left();
   if (left && plan.seconds > *left) {
     throw RunError(
         fmt::format("form factors would take about {}, and --time-limit {} leaves {}; {}",
                     durationText(plan.seconds), durationText(*limit_.seconds()),
-                    durationText(std::max(0.0, *left)), cures(plan, options)));
+                    durationText(std::max(0.0, *left)), cures(plan)));
   }
-  if (plan.seconds > kLongWait) report_.line("", cures(plan, options));
+  if (plan.seconds > kLongWait) report_.line("", cures(plan));
 }
 
 void PipelineReport::stage(const Pipeline& pipeline, const StageEvent& event) {

@@ -84,6 +84,7 @@ void planExact(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progres
   addClusters(prepared, true, prepared.estimate);
   const ExactKernels& kernels = prepared.kernels.emplace(scene, options);
   plan.method = FormFactorMethod::exact;
+  plan.tolerance = options.toleranceOf(FormFactorMethod::exact);
   plan.bytes = prepared.estimate.bytes;
   plan.matrix_bytes = prepared.estimate.matrix_bytes;
   plan.seconds = exactSeconds(scene, kernels, sample, options, progress);
@@ -119,6 +120,10 @@ void planRays(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress
   plan.bytes = prepared.ray_estimate.bytes;
   plan.matrix_bytes = prepared.ray_estimate.matrix_bytes;
   plan.seconds = prepared.ray_estimate.seconds;
+  plan.tolerance = prepared.ray_estimate.tolerance;
+  if (plan.tolerance > prepared.options.toleranceOf(FormFactorMethod::rays)) {
+    plan.seconds_to_tolerance = prepared.ray_estimate.seconds_to_tolerance;
+  }
 }
 
 /// Both are looked at, and one is kept.
@@ -131,7 +136,7 @@ void planEither(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progre
   FormFactorPlan exact;
   planExact(prepared, exact, progress);
   const double ray_seconds = plan.seconds;
-  const double ray_tolerance = prepared.options.toleranceOf(FormFactorMethod::rays);
+  const std::string ray_tolerance = fmt::format("{:.2g}", plan.tolerance);
   if (exactIsRight(exact, plan, prepared.options)) {
     prepared.rays.reset();
     plan = std::move(exact);

@@ -189,6 +189,7 @@ void describe(Archive& a, Described<Archive, RayReport>& r) {
   a("leaked", r.leaked);
   a("rounds", r.rounds);
   a("short_rows", r.short_rows);
+  a("loosened_tolerance", r.loosened_tolerance);
   a("largest_row_figure", r.largest_row_figure);
   a("seconds_prepare", r.seconds_prepare);
   a("seconds_cast", r.seconds_cast);

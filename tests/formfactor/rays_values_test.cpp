@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "formfactor/exact_scenes.h"
+#include "formfactor/rays/ray_rounds.h"
+#include "formfactor/rays/ray_scene.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/matrix_functions.h"
 #include "support/mesh_builder.h"
@@ -233,6 +236,39 @@ TEST(Rays, OfClustersAreSumsOverTheirPatches) {
   // What is expected of a row is a root mean square; of all of them together it is good to some
   // per cent.
   EXPECT_LT(std::sqrt(squares / norms), 1.1 * 5e-3);
+}
+
+/// What a tolerance costs whose rays go as its square.
+TEST(RayAim, LoosensToleranceJustEnoughForTheRaysAllowed) {
+  const auto raysAt = [](double loosened) { return 1e6 / (loosened * loosened); };
+  EXPECT_EQ(loosening(1e6, raysAt), 1);
+  const double times = loosening(1e4, raysAt);
+  EXPECT_LE(raysAt(times), 1e4);
+  EXPECT_GE(raysAt(times / 1.01), 1e4);  // it is sought to a hundredth
+}
+
+TEST(RayAim, OnlyTheDefaultToleranceIsLoosened) {
+  FormFactorOptions options;
+  EXPECT_EQ(RayAim(options).most_rays, FormFactorOptions::kMostRaysUnasked);
+  EXPECT_EQ(RayAim(options).tolerance, FormFactorOptions::kRayTolerance);
+  options.tolerance = FormFactorOptions::kRayTolerance;
+  EXPECT_EQ(RayAim(options).most_rays, std::numeric_limits<double>::infinity());
+}
+
+TEST(RayAim, RowsShareTheRaysAllowedAndTheReportSaysWhatTheyReach) {
+  const PatchMesh mesh = test::roomWithBlock(4).build();
+  const RayScene scene(mesh, 1);
+  RayAim aim(byRays(1e-3));
+  aim.most_rays = 1e6;
+  RayReport report;
+  Progress silent;
+  const std::vector<RayRow> rows = castRows(scene, aim, report, silent);
+  EXPECT_GT(report.rays, 5e5);  // rows are cast to the next 2^k or 3 2^k, down to half
+  EXPECT_LE(report.rays, 1e6);
+  ASSERT_TRUE(report.loosened_tolerance);
+  EXPECT_GT(*report.loosened_tolerance, 1e-3);
+  EXPECT_LT(*report.loosened_tolerance, 1e-1);
+  EXPECT_EQ(report.short_rows, mesh.size());
 }
 
 TEST(Rays, CanBeInterrupted) {

@@ -60,6 +60,64 @@ double orderOf(const std::vector<SampledRow>& rows) {
   return std::clamp(std::log(few / many) / std::log(double(kManyRays) / kFewRays), 1.0, 2.0);
 }
 
+/// What sampled rows say of all.
+class Forecast {
+ public:
+  Forecast(const std::vector<SampledRow>& rows, std::size_t all, const RayAim& aim)
+      : rows_(rows), order_(orderOf(rows)), tolerance_(aim.tolerance) {
+    for (const SampledRow& row : rows) {
+      usual_.add(row.many.norm, row.area);
+      taken_ += row.taken;
+    }
+    times_ = rows.empty() ? 0.0 : double(all) / double(rows.size());
+    loosened_ = loosening(aim.most_rays, [&](double times) { return rays(times); });
+  }
+
+  /// How far the tolerance is loosened to keep within the rays allowed.
+  double loosened() const { return loosened_; }
+  /// Of all rows, for a tolerance loosened so many times.
+  double rays(double loosened) const {
+    double sum = 0;
+    for (const SampledRow& row : rows_) sum += raysOf(row, loosened);
+    return kReplicates * kRounding * times_ * sum;
+  }
+  /// Of all rows together, once they have the rays they get.
+  double entries(std::size_t columns) const {
+    // Entries that more rays find: few of those that are not there yet.
+    constexpr double kNewEntries = 0.3;
+    double sum = 0;
+    for (const SampledRow& row : rows_) {
+      const double more = std::max(1.0, raysOf(row, loosened_) / kManyRays);
+      sum += std::min(double(columns), row.entries * std::pow(more, kNewEntries));
+    }
+    return times_ * sum;
+  }
+  /// By the clock, of all threads, at the rate that the sample had.
+  double seconds(double rays, double entries) const {
+    const double sampled = kReplicates * double(kManyRays - kFewRays) * double(rows_.size());
+    const double per_ray = sampled > 0 ? taken_.processor / sampled : 0.0;
+    return taken_.ratio() / double(allowedThreads()) * (rays * per_ray + kEntrySeconds * entries);
+  }
+
+ private:
+  /// In each replicate.
+  double raysOf(const SampledRow& row, double loosened) const {
+    const double norm = std::max(row.many.norm, usual_.value());
+    if (!(norm > 0)) return 0;
+    const double over = row.many.error / (norm * tolerance_ * loosened);
+    // Beyond kMostRays rows are given up, and the tolerance is not kept: then this is too long.
+    return std::max(double(kPilotRays), kManyRays * std::pow(kMerged * over * over, 1 / order_));
+  }
+
+  const std::vector<SampledRow>& rows_;
+  double order_;
+  double tolerance_;
+  UsualNorm usual_;
+  BothClocks taken_;
+  double times_ = 0;  ///< rows there are for one that was sampled
+  double loosened_ = 1;
+};
+
 }  // namespace
 
 RayEstimate estimateRays(const RayScene& scene, const FormFactorOptions& options,
@@ -73,40 +131,19 @@ RayEstimate estimateRays(const RayScene& scene, const FormFactorOptions& options
   });
   progress.check();
   progress.end();
-  const double order = orderOf(rows);
-  const double tolerance = options.toleranceOf(FormFactorMethod::rays);
-  BothClocks taken;
-  UsualNorm usual;
-  for (const SampledRow& row : rows) usual.add(row.many.norm, row.area);
-  double rays = 0;
-  double entries = 0;
-  for (const SampledRow& row : rows) {
-    taken += row.taken;
-    const double norm = std::max(row.many.norm, usual.value());
-    if (!(norm > 0)) continue;
-    const double over = row.many.error / (norm * tolerance);
-    // Beyond kMostRays rows are given up, and the tolerance is not kept: then this is too long.
-    const double needed =
-        std::max(double(kPilotRays), kManyRays * std::pow(kMerged * over * over, 1 / order));
-    rays += needed;
-    // Entries that more rays find: few of those that are not there yet.
-    constexpr double kNewEntries = 0.3;
-    entries +=
-        std::min(double(n), row.entries * std::pow(std::max(1.0, needed / kManyRays), kNewEntries));
-  }
-  const double share = rows.empty() ? 0.0 : 1 / double(rows.size());
-  const double sampled = double(kManyRays - kFewRays) * double(rows.size());
-  const double per_ray = sampled > 0 ? taken.processor / sampled : 0.0;
-  const auto threads = double(allowedThreads());
+  const RayAim aim(options);
+  const Forecast forecast(rows, n, aim);
+  const double entries = forecast.entries(n);
   RayEstimate estimate;
-  estimate.rays = kReplicates * kRounding * share * rays * double(n);
-  const double all_entries = share * entries * double(n);
-  estimate.seconds =
-      taken.ratio() / threads * (0.5 * estimate.rays * per_ray + kEntrySeconds * all_entries);
-  estimate.matrix_bytes = estimateSymmetricBytes(n, share * entries, options.storedPrecision());
+  estimate.rays = forecast.rays(forecast.loosened());
+  estimate.tolerance = aim.tolerance * forecast.loosened();
+  estimate.seconds = forecast.seconds(estimate.rays, entries);
+  estimate.seconds_to_tolerance = forecast.seconds(forecast.rays(1), entries);
+  const double in_a_row = n > 0 ? entries / double(n) : 0.0;
+  estimate.matrix_bytes = estimateSymmetricBytes(n, in_a_row, options.storedPrecision());
   constexpr std::size_t kCountBytes = sizeof(Index) + kReplicates * sizeof(std::uint32_t) + 1;
   estimate.bytes = options.memory_held + scene.caster().bytes() + estimate.matrix_bytes +
-                   std::size_t(all_entries * kCountBytes);
+                   std::size_t(entries * kCountBytes);
   return estimate;
 }
 

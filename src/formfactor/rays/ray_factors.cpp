@@ -1,5 +1,6 @@
 #include "formfactor/rays/ray_factors.h"
 
+#include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
@@ -116,6 +117,17 @@ void balance(FormFactors& result) {
   }
 }
 
+void noteLoosened(const FormFactorOptions& options, FormFactorReport& report) {
+  if (!report.rays.loosened_tolerance) return;
+  const double tolerance = options.toleranceOf(FormFactorMethod::rays);
+  report.notes.push_back(
+      {Severity::info,
+       fmt::format("rays stopped at {} million, where rows are to {:.2g}; --tolerance {} asks for "
+                   "as many as that takes",
+                   std::llround(1e-6 * double(report.rays.rays)), *report.rays.loosened_tolerance,
+                   tolerance)});
+}
+
 bool seesSky(const std::vector<RayRow>& rows) {
   return std::any_of(rows.begin(), rows.end(),
                      [](const RayRow& row) { return row.sky[0] + row.sky[1] > 0; });
@@ -137,8 +149,8 @@ FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene, const RayEs
   report.empty_rows = std::size_t(std::count(area.begin(), area.end(), 0.0));
   report.rays.triangles = scene.caster().triangles();
 
-  std::vector<RayRow> rows =
-      castRows(scene, options.toleranceOf(FormFactorMethod::rays), report.rays, progress);
+  std::vector<RayRow> rows = castRows(scene, RayAim(options), report.rays, progress);
+  noteLoosened(options, report);
   report.closed = scene.provedClosed() || !seesSky(rows);
   result.matrix =
       ExchangeMatrix::symmetric(std::move(area), scene.order(), options.storedPrecision());

@@ -9,9 +9,11 @@
 namespace radiosity {
 
 struct RayEstimate {
-  double rays = 0;  ///< all in all
+  double rays = 0;       ///< all in all
+  double tolerance = 0;  ///< that these reach, where rays stop before the one aimed at
   double seconds = 0;
-  double seconds_prepare = 0;  ///< spent on the RayScene
+  double seconds_to_tolerance = 0;  ///< for the tolerance aimed at
+  double seconds_prepare = 0;       ///< spent on the RayScene
   std::size_t bytes = 0;
   std::size_t matrix_bytes = 0;
 };

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 
 #include "base/parallel.h"
 #include "base/processor_clock.h"
@@ -40,9 +40,9 @@ std::uint32_t raysNeeded(const RowState& before, const RowState& now, double aim
 
 class Rounds {
  public:
-  Rounds(const RayScene& scene, double tolerance, RayReport& report, Progress& progress)
+  Rounds(const RayScene& scene, const RayAim& aim, RayReport& report, Progress& progress)
       : scene_(scene),
-        tolerance_(tolerance),
+        aim_(aim),
         report_(report),
         progress_(progress),
         rows_(scene.size()),
@@ -56,13 +56,11 @@ class Rounds {
     }
     while (cast(rays)) {
       measure(rays);
-      for (std::size_t k = 0; k < rows_.size(); ++k) {
-        rays[k] = 0;
-        if (isGoodEnough(k)) continue;
-        if (report_.rounds < kMostRounds && now_[k].rays < kMostRays) {
-          rays[k] = raysNeeded(before_[k], now_[k], aim(k));
-        }
-      }
+      if (report_.rounds == kMostRounds) break;
+      loosened_ =
+          std::max(loosened_,
+                   loosening(aim_.most_rays, [&](double times) { return raysOf(wishes(times)); }));
+      rays = wishes(loosened_);
     }
     finish();
     return std::move(rows_);
@@ -100,6 +98,23 @@ class Rounds {
     return true;
   }
 
+  /// The rays, in each replicate, that rows need for errors `loosened` times those aimed at.
+  std::vector<std::uint32_t> wishes(double loosened) const {
+    std::vector<std::uint32_t> rays(rows_.size(), 0);
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      const double allowed = loosened * aim(k);
+      if (now_[k].error <= allowed || now_[k].rays >= kMostRays) continue;
+      rays[k] = raysNeeded(before_[k], now_[k], allowed);
+    }
+    return rays;
+  }
+  /// All rays there then are, of both replicates.
+  double raysOf(const std::vector<std::uint32_t>& wished) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < rows_.size(); ++k) sum += std::max(wished[k], rows_[k].rays);
+    return kReplicates * sum;
+  }
+
   /// Rows that were not continued are better now, too: of them, too, others have counted more.
   void measure(const std::vector<std::uint32_t>& rays) {
     const double start = clockSeconds();
@@ -118,10 +133,11 @@ class Rounds {
     report_.seconds_merge += clockSeconds() - start;
   }
 
-  double aim(std::size_t k) const { return tolerance_ * std::max(now_[k].norm, usual_norm_); }
+  double aim(std::size_t k) const { return aim_.tolerance * std::max(now_[k].norm, usual_norm_); }
   bool isGoodEnough(std::size_t k) const { return now_[k].error <= aim(k); }
 
   void finish() {
+    if (loosened_ > 1) report_.loosened_tolerance = loosened_ * aim_.tolerance;
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       const RayRow& row = rows_[k];
       report_.lost += row.lost[0] + row.lost[1];
@@ -131,7 +147,8 @@ class Rounds {
   }
 
   const RayScene& scene_;
-  double tolerance_;
+  RayAim aim_;
+  double loosened_ = 1;
   RayReport& report_;
   Progress& progress_;
   std::vector<RayRow> rows_;
@@ -149,9 +166,27 @@ std::uint32_t roundedRays(double rays) {
   return std::uint32_t(1.5 * power >= rays ? 1.5 * power : 2 * power);
 }
 
-std::vector<RayRow> castRows(const RayScene& scene, double tolerance, RayReport& report,
+RayAim::RayAim(const FormFactorOptions& options)
+    : tolerance(options.toleranceOf(FormFactorMethod::rays)),
+      most_rays(options.tolerance ? std::numeric_limits<double>::infinity()
+                                  : FormFactorOptions::kMostRaysUnasked) {}
+
+double loosening(double most, const std::function<double(double)>& raysAt) {
+  if (raysAt(1) <= most) return 1;
+  constexpr double kLoosest = 1e3;
+  constexpr double kClose = 1.01;
+  double low = 1;
+  double high = kLoosest;
+  while (high > kClose * low) {
+    const double middle = std::sqrt(low * high);
+    (raysAt(middle) <= most ? high : low) = middle;
+  }
+  return high;
+}
+
+std::vector<RayRow> castRows(const RayScene& scene, const RayAim& aim, RayReport& report,
                              Progress& progress) {
-  return Rounds(scene, tolerance, report, progress).run();
+  return Rounds(scene, aim, report, progress).run();
 }
 
 }  // namespace radiosity

@@ -1,6 +1,7 @@
 // Rows cast round after round, each until it is as good as asked for.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "formfactor/rays/ray_rows.h"
@@ -25,8 +26,21 @@ inline constexpr double kUsualOrder = 1.25;
 /// The least number of rays a replicate that is 2^k or 3 2^k and at least `rays`.
 std::uint32_t roundedRays(double rays);
 
+/// What rows are cast to.
+struct RayAim {
+  double tolerance = 0;  ///< error over norm
+  /// Of all rows together; where the tolerance needs more, it is loosened for all alike.
+  double most_rays = 0;
+
+  explicit RayAim(const FormFactorOptions& options);
+};
+
+/// The smallest number from 1 on that raysAt(), the rays that a tolerance loosened so many times
+/// needs, falling with it, brings to `most` or below; within a hundredth.
+double loosening(double most, const std::function<double(double)>& raysAt);
+
 /// All rows, by position. Fills what the report says of rays and rounds.
-std::vector<RayRow> castRows(const RayScene& scene, double tolerance, RayReport& report,
+std::vector<RayRow> castRows(const RayScene& scene, const RayAim& aim, RayReport& report,
                              Progress& progress);
 
 }  // namespace radiosity
