@@ -1,4 +1,4 @@
-// What every room shares: vectors, errors, progress and the thread count.
+// Vectors, errors, progress and the thread count, for every room.
 #pragma once
 
 #include <atomic>

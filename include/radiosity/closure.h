@@ -1,4 +1,4 @@
-// Closure: what the rows of a matrix sum to, made what it should be.
+// Closure: makes the rows of a matrix sum to what they should.
 #pragma once
 
 #include <cstddef>

@@ -13,7 +13,7 @@
 
 namespace [[gnu::visibility("default")]] radiosity {
 
-/// What the numbers of a file mean.
+/// The quantity that the numbers of a file stand for.
 enum class LightUnit {
   radiosity,  ///< B = pi L, W/m^2
   radiance,   ///< L, W/m^2/sr
@@ -93,7 +93,7 @@ struct Comparison {
   double fitted_scale = 1;
   double fitted_l2 = 0;
   BandSums sums;
-  /// Of what does not emit, which a lamp outweighs in `sums`; empty: neither side says what emits,
+  /// Sums without emitters, which outweigh all else in `sums`; empty: neither side says what emits,
   /// or nothing does.
   std::optional<BandSums> without_emitters;
   LargestDifference largest;

@@ -60,14 +60,14 @@ struct FormFactorOptions {
 
   void validate() const;
   Precision storedPrecision() const;
-  /// What a method other than hemicube works to.
+  /// The tolerance of a method other than hemicube.
   double toleranceOf(FormFactorMethod by) const {
     return tolerance.value_or(by == FormFactorMethod::rays ? kRayTolerance : kExactTolerance);
   }
 };
 
-/// What the exact method did and skipped. A pair is an unordered pair of elements (convex pieces of
-/// patches; most patches are one), counted once.
+/// Counts of work done and skipped by the exact method. A pair is an unordered pair of elements
+/// (convex pieces of patches; most patches are one), counted once.
 struct ExactReport {
   std::size_t elements = 0;
   std::size_t black_elements = 0;  ///< pieces of backs that are not patches: they only absorb
@@ -109,12 +109,12 @@ struct ExactReport {
   double seconds_finish = 0;      ///< row sums, error figures, closure
 };
 
-/// What rays did.
+/// Counts and times of rays.
 struct RayReport {
   std::size_t triangles = 0;
   std::size_t rays = 0;    ///< cast, all in all
-  std::size_t lost = 0;    ///< of them not counted: they hit the polygon they left, or ...
-  std::size_t leaked = 0;  ///< ... got out of a scene that is proved closed
+  std::size_t lost = 0;    ///< of them not counted: they hit the polygon they left
+  std::size_t leaked = 0;  ///< nor these: they got out of a scene that is proved closed
   int rounds = 0;
   std::size_t short_rows = 0;  ///< that were given up before they met the tolerance
   /// What rows were cast to where no tolerance was asked for and kMostRaysUnasked did not suffice
@@ -127,7 +127,7 @@ struct RayReport {
   double seconds_close = 0;
 };
 
-/// What the computation did, skipped and found.
+/// The report of a computation: its method, counts, times and errors.
 struct FormFactorReport {
   std::string method_reason;  ///< why this method, where it was chosen automatically
   std::size_t hemicubes = 0;
@@ -146,7 +146,7 @@ struct FormFactorReport {
   double seconds_plan = 0;       ///< of these, finding out what it will take; preparing included
   double estimated_seconds = 0;  ///< the others, as they were announced before the run
   std::size_t matrix_bytes = 0;
-  std::size_t estimated_bytes = 0;  ///< what was announced before the run
+  std::size_t estimated_bytes = 0;  ///< as announced before the run
   double reciprocity_residual = 0;  ///< of the raw rows; 0 by construction in the exact method
   /// max |fronts + backs + sky - 1| over non-empty rows. Exact: raw where the scene is closed; else
   /// how far fronts + backs exceed 1.
@@ -183,11 +183,11 @@ struct FormFactors {
   FormFactorReport report;
 };
 
-/// What a computation will do, found out from a sample of rows before time and memory are spent.
+/// The plan of a computation, made from a sample of rows before time and memory are spent.
 /// Where `automatic` leaves the choice, it rests on the seconds of exact and of rays. Seconds are
-/// by the clock, on the threads allowed, at the rates that the sample had here and now, and from
-/// now on: what the plan itself took is not in them. They are about; on scenes nothing was fitted
-/// to mostly within a factor of 2.
+/// by the clock, on the threads allowed, at the rates that the sample had here and now, without the
+/// time of the plan itself. On scenes that nothing was fitted to they are mostly right within a
+/// factor of 2.
 struct FormFactorPlan {
   FormFactorMethod method = FormFactorMethod::hemicube;  ///< never automatic
   std::string reason;                                    ///< where it was automatic
@@ -201,15 +201,14 @@ struct FormFactorPlan {
   std::optional<double> seconds_to_tolerance;
   /// Seconds of the other one of exact and rays, where both were looked at.
   std::optional<double> other_seconds;
-  /// What was made ready on the way, with the mesh and the options: what the computation starts
-  /// from.
+  /// The mesh, the options and all that the plan prepared: the computation starts from it.
   struct Prepared;
   std::shared_ptr<const Prepared> prepared;
 };
-/// The plan keeps a copy of the mesh (about 160 bytes a patch), ...
+/// The plan keeps a copy of the mesh (about 160 bytes a patch).
 FormFactorPlan planFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
                                Progress& progress);
-/// ... or the mesh itself, which must not change while the plan is there.
+/// The plan shares the mesh, which must not change while the plan is there.
 FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
                                const FormFactorOptions& options, Progress& progress);
 

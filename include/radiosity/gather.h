@@ -39,15 +39,15 @@ struct GatherOptions {
   void validate() const;
 };
 
-/// One pass: what was gathered from the radiosity of the pass before.
+/// One pass: light gathered from the radiosity of the pass before.
 struct GatherPass {
   double seconds = 0;
   double change = 0;  ///< max |B_k - B_(k-1)| / max E, worst band
   /// An upper bound of |B* - B_k|, W/m^2, worst band, B* being what the passes converge to:
   /// (q change + rounding) / (1 - q), q = max rho_i fronts_i. Empty where q is 1 or more.
   std::optional<double> bound;
-  /// Of H_k and the B_(k-1) it was gathered from, each eye weighted with the area its value stands
-  /// for. emitted + from_sky = absorbed + to_sky + on_backs + in_flight + imbalance.
+  /// The account of H_k and the B_(k-1) it was gathered from, each eye weighted with the area its
+  /// value stands for. emitted + from_sky = absorbed + to_sky + on_backs + in_flight + imbalance.
   EnergyAccount energy;
   std::vector<double> in_flight;  ///< W a band, still to be reflected: sum of area (B_k - B_(k-1))
 };
@@ -82,7 +82,7 @@ struct Gathered {
   /// Share of all eyes' view that ends on each surface's back, eyes weighted with their areas; by
   /// surface.
   std::vector<double> backs_by_surface;
-  std::vector<double> area;    ///< L, m^2: what each value stands for; sums to the mesh's area
+  std::vector<double> area;    ///< L, m^2: the area each value stands for; sums to the mesh's area
   std::vector<Vec3> position;  ///< L, of the eyes
   std::vector<Index> eye_of_corner;  ///< at vertices: of every entry of PatchMesh::corners
   GatherSummary summary;

@@ -1,4 +1,4 @@
-// What is computed from whole matrices: norms, reciprocity, sizes.
+// Functions of whole matrices: norms, reciprocity, sizes.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace [[gnu::visibility("default")]] radiosity {
 
-/// sum_ij A_i F_ij^2, m^2: what errors in the area-weighted L2 norm are relative to.
+/// sum_ij A_i F_ij^2, m^2: errors in the area-weighted L2 norm are relative to its root.
 double weightedSquares(const ExchangeMatrix& matrix);
 
 /// sqrt(sum_ij (G_ij - G_ji)^2 / sum_ij G_ij^2): how far the two estimates of each pair differ.
@@ -22,8 +22,8 @@ double reciprocityResidual(const ExchangeMatrix& matrix);
 ExchangeMatrix symmetrized(const ExchangeMatrix& matrix);
 
 /// The matrix between groups of patches: G_IJ = sum of A_i F_ij over i in I and j in J, and
-/// F_IJ = G_IJ / A_I, A_I the area of group I; F_II is what a group sees of itself. What rows sum
-/// to, weighted by area, and reciprocity are kept. Symmetric stays symmetric; else row form, in the
+/// F_IJ = G_IJ / A_I, A_I the area of group I; F_II is what a group sees of itself. Row sums,
+/// weighted by area, and reciprocity are kept. Symmetric stays symmetric; else row form, in the
 /// same precision. `group_of`: N groups below `groups`, else InputError. Throws Cancelled.
 ExchangeMatrix aggregated(const ExchangeMatrix& matrix, std::span<const Index> group_of,
                           std::size_t groups, Progress& progress);

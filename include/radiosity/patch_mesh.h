@@ -44,7 +44,7 @@ struct ClosedSurface {
   bool is_solid = true;  ///< fronts face the unbounded region: a body; else a room
 };
 
-/// What the polygons of a mesh enclose.
+/// Bodies and rooms enclosed by the polygons of a mesh.
 struct Enclosures {
   std::vector<ClosedSurface> surfaces;  ///< bodies and rooms
   std::vector<Index> surface_of;        ///< P, into surfaces; kNone: of none that is proved
@@ -88,8 +88,9 @@ struct PatchMesh {
   std::vector<Index> twin;              ///< N, the patch on the other side, or kNone
   PlanarPolygons polygons;
   std::vector<std::string> surface_names;  ///< as Scene::surfaces, in order
-  /// Of `polygons`. meshScene() finds them; in a mesh from elsewhere they may be absent: whoever
-  /// needs them then finds them anew. Absent again where vertices or polygons are changed by hand.
+  /// Enclosures of `polygons`. meshScene() finds them; in a mesh from elsewhere they may be absent:
+  /// whoever needs them then finds them anew. Absent again where vertices or polygons are changed
+  /// by hand.
   std::optional<Enclosures> enclosures;
   /// Absent: every patch is an unknown of its own.
   std::optional<PatchClusters> clusters;
@@ -129,7 +130,7 @@ struct SurfaceAreas {
                           ///< (within coincidence of an edge; on to: negative)
 };
 
-/// What meshing did; every figure `radiosity mesh` prints.
+/// The report of meshing: every figure that `radiosity mesh` prints.
 struct MeshReport {
   std::vector<SurfaceAreas> surfaces;
   std::size_t welded_vertices = 0;
@@ -151,7 +152,7 @@ struct MeshReport {
   double longest_edge = 0;   ///< metres
   std::size_t clusters = 0;  ///< unknowns that patches share; 0: every patch is one of its own
   double widest_cone = 0;    ///< degrees; the most a patch's normal is off its cluster's mean
-  std::vector<Note> notes;   ///< what was repaired, by name
+  std::vector<Note> notes;   ///< repairs, by name
 };
 
 struct MeshResult {
@@ -187,7 +188,7 @@ struct PatchMaterials {
   void requireSizes(std::size_t patches) const;
 };
 
-/// What the scene says: linear Rec. 709 red, green and blue, textures averaged over the patch's
+/// The scene's materials: linear Rec. 709 red, green and blue, textures averaged over the patch's
 /// area, and Scene::sky.
 PatchMaterials patchMaterials(const Scene& scene, const PatchMesh& mesh);
 

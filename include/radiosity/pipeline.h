@@ -33,7 +33,7 @@ enum class StageAction {
   dropped      ///< not asked for; the results file has one, which no longer fits
 };
 
-/// What became of a stage.
+/// A stage that was reused, made, kept or dropped.
 struct StageEvent {
   Stage stage = Stage::mesh;
   StageAction action = StageAction::computed;
@@ -42,14 +42,14 @@ struct StageEvent {
   std::optional<double> seconds;  ///< by the clock; computed and recomputed
 };
 
-/// What a pipeline says as it goes. All calls come from the thread that called the pipeline, which
-/// holds by then what the call is about; what a call throws ends the step.
+/// Receives the events of a pipeline. All calls come from the thread that called the pipeline,
+/// after the event; an exception that a call throws ends the step.
 class PipelineObserver {
  public:
   virtual ~PipelineObserver() = default;
   /// The scene is there; overrides of one from a results file are applied after this.
   virtual void opened(const Pipeline& /*pipeline*/) {}
-  /// What to know of the scene; of one from a results file, what overrides changed.
+  /// Notes on the scene; for one from a results file, the changes made by overrides.
   virtual void notes(const Pipeline& /*pipeline*/, std::span<const Note> /*notes*/) {}
   /// The results file `path` was named for its stages and cannot be read, for the reason `why`.
   virtual void notReused(const std::string& /*path*/, const std::string& /*why*/) {}
@@ -72,7 +72,7 @@ enum class Quantity {
   irradiance,   ///< the same of H
   form_factor,  ///< F from one patch to each; where patches share unknowns, from its cluster to
                 ///< the cluster of each
-  row_sum       ///< what each patch, or its cluster, sees of fronts
+  row_sum       ///< sum of the row of each patch, or of its cluster: fronts seen
 };
 struct ScalarField {
   std::vector<double> values;  ///< N
@@ -127,7 +127,7 @@ class Pipeline {
   const Solution& solution();
   /// By the gather method; stands on the mesh alone.
   const Gathered& gathered();
-  /// Of the patches of mesh().
+  /// Materials of the patches of mesh().
   const PatchMaterials& materials();
 
   // ---- What to draw.
@@ -151,7 +151,7 @@ class Pipeline {
   void requireLight(const std::function<std::string()>& cure = {}) const;
   /// The stages made, reused or kept so far; form factors perhaps without their matrix.
   const Results& results() const { return results_; }
-  /// What the results file holds and nobody has asked for yet.
+  /// Stages in the results file that nobody has asked for yet.
   const Results& stored() const { return stored_; }
   bool fromResultsFile() const { return from_results_; }
   /// Where factors() computed them: they may be dear, so checkpoint() is worth its time.
@@ -216,7 +216,7 @@ class Pipeline {
   std::string name_;           ///< of the scene, for messages
   std::string source_;         ///< the results file that stages come from
   std::string source_state_;   ///< when it was read
-  std::string saved_;          ///< what save() or checkpoint() wrote
+  std::string saved_;          ///< the last file that save() or checkpoint() wrote
   std::string factors_asked_;  ///< the key that the form factors at hand are known to fit
   bool from_results_ = false;
   bool overridden_ = false;

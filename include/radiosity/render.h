@@ -26,7 +26,7 @@ struct RenderOptions {
   bool smooth = true;       ///< interpolate over vertices; false: constant patches
   double crease = 30;       ///< degrees; values are not shared across sharper edges
   bool show_backs = false;  ///< one-sided patches seen from behind: true black, false transparent
-  /// What is seen where nothing is hit, opaque: a sky. None: transparent.
+  /// Colour where nothing is hit, opaque: a sky. None: transparent.
   std::optional<Vec3> background;
   void validate() const;
 };
@@ -104,7 +104,7 @@ SurfaceLight surfaceLight(std::span<const double> radiosity, const PatchMaterial
 Image renderRadiance(const PatchMesh& mesh, const SurfaceLight& light, const Camera& camera,
                      const RenderOptions& options, Progress& progress);
 
-/// What a picture shows next to nothing of.
+/// A lit scene of which a picture shows next to nothing.
 struct UnlitView {
   double seen = 0;      ///< radiance that more than a hundredth of the picture exceeds, W/m^2/sr
   double lit = 0;       ///< radiance that is typical of what reflects light, W/m^2/sr

@@ -19,8 +19,8 @@
 
 namespace [[gnu::visibility("default")]] radiosity {
 
-/// What a results file holds; an absent stage was not computed or was dropped. Each stage has a
-/// `key`: a text of the options that made it and of the stage before it. A stage is reused only
+/// The contents of a results file; an absent stage was not computed or was dropped. Each stage has
+/// a `key`: a text of the options that made it and of the stage before it. A stage is reused only
 /// where the key matches.
 struct Results {
   std::string version;  ///< of the program that wrote it
@@ -29,7 +29,7 @@ struct Results {
   std::string mesh_key;
   std::optional<FormFactors> factors;
   std::string factors_key;
-  std::optional<PatchMaterials> materials;  ///< what the solution was made with
+  std::optional<PatchMaterials> materials;  ///< of the solution
   std::optional<Solution> solution;
   std::string solution_key;
   std::optional<Gathered> gathered;  ///< by the gather method; needs no form factors

@@ -138,7 +138,7 @@ Scene loadScene(const std::string& path, const SceneOptions& options = {});
 /// own. Unknown names are an InputError that lists the names there are.
 void applyOverrides(Scene& scene, const SceneOptions& options);
 
-/// What `radiosity info` prints about one surface.
+/// One surface as `radiosity info` prints it.
 struct SurfaceInfo {
   std::string name;
   std::string material;
@@ -147,7 +147,7 @@ struct SurfaceInfo {
   Vec3 emitted_power{0};  ///< W per band, both sides where two-sided
 };
 
-/// What was read and what looks wrong, by name.
+/// A summary of the scene that was read, with notes on what looks wrong, by name.
 struct SceneInfo {
   std::vector<SurfaceInfo> surfaces;
   Vec3 lower{0.0};

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Of this process.
+/// Temporary and committed files of this process.
 struct Files {
   std::mutex mutex;
   std::set<std::string> temporaries;

@@ -9,7 +9,7 @@
 
 namespace radiosity {
 
-/// What a unit of each band of linear RGB adds to luminance (Rec. ITU-R BT.709).
+/// Luminance of one unit of each band of linear RGB (Rec. ITU-R BT.709).
 inline constexpr double kLuminanceOfRed = 0.2126;
 inline constexpr double kLuminanceOfGreen = 0.7152;
 inline constexpr double kLuminanceOfBlue = 0.0722;
@@ -25,7 +25,7 @@ inline double brightnessOf(std::span<const double> bands) {
   return std::accumulate(bands.begin(), bands.end(), 0.0);
 }
 
-/// What brightnessOf() makes of so many bands, to stand behind the name of a quantity.
+/// Names the value of brightnessOf() for so many bands, to stand behind the name of a quantity.
 inline std::string brightnessText(int bands) {
   if (bands == 3) return " (Rec. 709 luminance)";
   return bands == 1 ? "" : " (sum of all bands)";

@@ -6,7 +6,7 @@
 
 namespace radiosity {
 
-/// Processor seconds of this thread: what other work on the machine takes is not counted.
+/// Processor seconds of this thread: time that other work on the machine takes is not counted.
 inline double processorSeconds() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
@@ -18,7 +18,7 @@ inline double clockSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// What some work took, both ways: their ratio says how busy the machine is with other things.
+/// Time of some work by both clocks; their ratio says how busy the machine is with other things.
 struct BothClocks {
   double processor = 0;
   double clock = 0;
@@ -31,7 +31,7 @@ struct BothClocks {
   double ratio() const { return clock > processor && processor > 0 ? clock / processor : 1.0; }
 };
 
-/// From its making on, on this thread.
+/// Measures from its construction on, on this thread.
 class BothWatches {
  public:
   BothClocks elapsed() const { return {processorSeconds() - processor_, clockSeconds() - clock_}; }

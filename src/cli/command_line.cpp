@@ -182,7 +182,7 @@ void addGatherOptions(CLI::App& app, Request& r) {
       fmt::format("A vertex looks once per side that bends less (default {})", defaults.crease));
 }
 
-/// What the form factors have too.
+/// Options shared with the form factors.
 void addEyeOptions(CLI::App& app, Request& r) {
   const GatherOptions defaults;
   add(app, "Gather", "--resolution", r.resolution, "PIXELS",
@@ -253,7 +253,7 @@ void addRenderOptions(CLI::App& app, Request& r) {
       ->check(CLI::IsMember({"hide", "show"}));
 }
 
-/// What is drawn of the matrix's stages, and how.
+/// Options that choose the drawn quantity of the matrix's stages, and its colours.
 void addShowOptions(CLI::App& app, Request& r) {
   const RenderOptions defaults;
   add(app, "Picture", "--crease", r.crease, "DEGREES",

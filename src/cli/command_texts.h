@@ -1,4 +1,4 @@
-// What help says of each subcommand.
+// Help texts of the subcommands.
 #pragma once
 
 #include "cli/request.h"

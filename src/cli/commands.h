@@ -40,7 +40,7 @@ int runRender(Session& session);
 OutputSet claimOutputs(const Session& session);
 
 /// Writes the .h5 among `files` with the stages there are: after form factors were computed, and
-/// once more with the solution. What comes after may be interrupted without losing them.
+/// once more with the solution. An interrupt in a later stage does not lose them.
 void keepFactors(Session& session, Pipeline& pipeline, const OutputSet& files);
 void keepSolution(Session& session, Pipeline& pipeline, const OutputSet& files);
 

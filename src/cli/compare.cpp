@@ -23,7 +23,7 @@ namespace {
 struct Side {
   std::string label;  ///< "A" or "B"
   std::string path;
-  std::string light;  ///< in words: what is compared
+  std::string light;  ///< in words: the quantity compared
   LightUnit unit = LightUnit::radiosity;
   std::variant<LightField, ImageFile> content;
   bool isImage() const { return std::holds_alternative<ImageFile>(content); }

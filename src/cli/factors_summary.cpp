@@ -1,4 +1,4 @@
-// What the form factors say of themselves.
+// The summary of the form factors.
 #include <fmt/format.h>
 
 #include <algorithm>

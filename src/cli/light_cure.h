@@ -1,4 +1,4 @@
-// What to do about a scene in which it is dark.
+// Advice for a dark scene.
 #pragma once
 
 #include <string>

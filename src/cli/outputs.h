@@ -20,8 +20,8 @@ struct Output {
   Format format;
 };
 
-/// What -o names for this subcommand. InputError: an extension it cannot write (with the list of
-/// those it can), the same file twice, the scene file itself.
+/// The files that -o names for this subcommand. InputError: an extension it cannot write (with the
+/// list of those it can), the same file twice, the scene file itself.
 std::vector<Output> parseOutputs(const Request& request);
 
 /// Writes under temporary names; commit() renames all. Without commit() nothing stays.

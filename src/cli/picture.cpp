@@ -129,7 +129,7 @@ void writeLitMesh(const PatchMesh& mesh, const SurfaceLight& light, OutputSet& f
 
 namespace {
 
-/// Automatic exposure makes a picture of anything; what is lit may lie elsewhere.
+/// Automatic exposure makes a picture of anything; the lit part may lie elsewhere.
 void warnOfDarkness(Report& report, const PatchMesh& mesh, const SurfaceLight& light,
                     const Image& radiance) {
   const std::optional<UnlitView> view = unlitView(mesh, light, radiance);

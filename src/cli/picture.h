@@ -32,7 +32,7 @@ void framePicture(Picture& picture, const PatchMesh& mesh, bool closed,
 /// The picture's part of the report: camera and size.
 void reportPicture(Report& report, const Picture& picture);
 
-/// What an image file says of itself.
+/// Metadata of an image file.
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 Metadata metadataOf(const Picture& picture, const std::string& quantity, const std::string& unit);
 

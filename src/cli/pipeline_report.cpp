@@ -19,7 +19,7 @@ constexpr double kLongWait = 60;
 /// The time of rays goes with about this power of 1 / tolerance.
 constexpr double kRaysOrder = 1.6;
 
-/// What shortens a wait, and to what, as far as that is known.
+/// Options that shorten a wait, and the shorter time where it is known.
 std::string cures(const FormFactorPlan& plan) {
   constexpr double kLoosest = 0.1;
   if (plan.method == FormFactorMethod::hemicube) {

@@ -1,4 +1,4 @@
-// What a run says of its stages, on a line each, as they are made.
+// Reports the stages of a run, a line each, as they are made.
 #pragma once
 
 #include <span>

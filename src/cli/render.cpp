@@ -16,7 +16,7 @@ namespace radiosity::cli {
 
 namespace {
 
-/// What --show names; no quantity: the lit scene itself.
+/// The quantity that --show names; none: the lit scene itself.
 struct Show {
   std::optional<Quantity> quantity;
   std::size_t patch = 0;
@@ -86,7 +86,7 @@ void drawQuantity(Session& session, Pipeline& pipeline, const Picture& picture, 
   });
 }
 
-/// What can be refused before the work is done.
+/// Refuses impossible outputs before the work is done.
 void checkOutputs(const OutputSet& files, const Show& show) {
   const bool lit = files.has(Format::glb);
   if (!lit && !files.has(Format::png) && !files.has(Format::exr)) {

@@ -1,4 +1,4 @@
-// One place that prints a figure and records it: what stands on the terminal stands in the
+// One place that prints a figure and records it: every figure on the terminal stands in the
 // --report file too, under a stable name.
 #pragma once
 

@@ -1,5 +1,5 @@
-// What the command line asks for. An option that was not given is empty: then a stage that is
-// there stays as it is.
+// The parsed command line. An option that was not given is empty: then a stage that is there stays
+// as it is.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct Request {
   Command command = Command::info;
   std::vector<std::string> arguments;  ///< as typed, for the report
   std::string input;
-  std::string second;  ///< what `compare` sets against the input
+  std::string second;  ///< the file that `compare` compares the input with
   std::vector<std::string> outputs;
 
   SceneOptions scene;

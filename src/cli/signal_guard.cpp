@@ -21,10 +21,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr long kTick = 100'000'000;  // nanoseconds between two looks
-/// What a run may take from the signal to its end by itself; with a tick, below half a second.
+/// Time that a run may take from the signal to its end; with a tick, below half a second.
 constexpr std::chrono::milliseconds kGrace{250};
 
-// What the handler may touch: lock-free atomics, and a semaphore to post.
+// The handler may touch these alone: lock-free atomics, and a semaphore to post.
 std::atomic<Progress*> running{nullptr};
 std::atomic<int> signals{0};
 sem_t wake;
@@ -48,7 +48,7 @@ void waitForATick() {
   sem_timedwait(&wake, &until);
 }
 
-/// What is on disk already; the watching thread reads it.
+/// A text that names the stages on disk; the watching thread reads it.
 struct Kept {
   std::mutex mutex;
   std::string text;

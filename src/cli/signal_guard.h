@@ -36,7 +36,7 @@ class SignalGuard {
 /// anything.
 std::string interruptedText();
 
-/// From now on a run that is interrupted says so in these words.
+/// A run that is interrupted from now on prints this text.
 void sayIfInterrupted(const std::string& text);
 
 }  // namespace radiosity::cli

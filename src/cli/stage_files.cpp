@@ -1,4 +1,4 @@
-// What the subcommands share: the input, and the files that hold stages.
+// The input and the files that hold stages, for all subcommands.
 #include <fmt/format.h>
 
 #include <filesystem>

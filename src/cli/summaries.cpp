@@ -17,7 +17,7 @@ namespace {
 
 // Light lost on backs that is worth a warning, as a share of what is emitted.
 constexpr double kBacksWorthWarning = 1e-3;
-/// Of what is emitted, missing from the account of gathered light or too much in it.
+/// Imbalance of the account of gathered light that is worth a warning, as a share of what comes in.
 constexpr double kImbalanceWorthWarning = 0.05;
 
 std::string triple(const Vec3& v) {
@@ -205,7 +205,7 @@ double sum(const std::vector<double>& bands) {
   return std::accumulate(bands.begin(), bands.end(), 0.0);
 }
 
-/// What comes in: emitted, and from the sky.
+/// Incoming power: emitted, and from the sky.
 double incoming(const EnergyAccount& e) { return sum(e.emitted) + sum(e.from_sky); }
 
 /// Shares of the incoming power are easier to judge than watts.
@@ -328,7 +328,7 @@ void gatherFigures(Report& report, const Gathered& gathered, const GatherOptions
   report.text("message", "in words", oneLine(s.message));
 }
 
-/// What points see stands for areas: where the patches are large, light is lost or made between.
+/// The view from a point stands for an area: where patches are large, light is lost or made.
 void warnOfImbalance(Report& report, const EnergyAccount& e) {
   const double imbalance = sum(e.imbalance);
   if (!(std::abs(imbalance) > kImbalanceWorthWarning * incoming(e))) return;

@@ -1,4 +1,4 @@
-// What each stage says of itself: figures with their units, on the terminal and in the report.
+// A summary of each stage: figures with their units, on the terminal and in the report.
 #pragma once
 
 #include "cli/report.h"
@@ -16,7 +16,7 @@ enum class Detail {
   full    ///< every figure on the terminal
 };
 
-/// A line: what was read.
+/// One line on the file that was read.
 void summarizeScene(Report& report, const Scene& scene, const std::string& from);
 /// All that `radiosity info` says of a scene.
 void describeScene(Report& report, const Scene& scene);

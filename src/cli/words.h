@@ -15,13 +15,13 @@ std::string durationText(double seconds);
 /// Six significant digits, no trailing zeros; "none" for NaN.
 std::string numberText(double value, int digits = 6);
 
-/// Of an angle in radians.
+/// An angle in radians, in degrees.
 double degrees(double radians);
 
 /// "1 patch", "2,034 patches".
 std::string plural(std::size_t count, const std::string& one, const std::string& many);
 
-/// What bands are called: "R", "G", "B", or where there are not three "band 1", "band 2", ...
+/// Names of the bands: "R", "G", "B"; where there are not three, "band 1", "band 2", ...
 std::vector<std::string> bandNames(int bands);
 /// All of them behind a figure: "R G B", "band 1", "bands 1 to 8".
 std::string bandsText(int bands);

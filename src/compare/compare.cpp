@@ -88,7 +88,7 @@ bool emits(const LightField& field, std::size_t t) {
   return !field.emits.empty() && field.emits[field.cell[t]] != 0;
 }
 
-/// What one triangle has found on the other side.
+/// Sums over the part of one triangle that has a counterpart on the other side.
 struct Found {
   double area = 0;      ///< compared
   double clipped = 0;   ///< matched, but one side is clipped there
@@ -97,7 +97,7 @@ struct Found {
   bool emits = false;   ///< on this side or, somewhere, the other
 };
 
-/// What all triangles of one side have found.
+/// The same for all triangles of one side.
 struct AllFound {
   AllFound(std::size_t count, int band_count)
       : bands(std::size_t(band_count)),

@@ -1,9 +1,9 @@
-// What the exact method is foreseen to cost, as ratios of work.
+// The foreseen cost of the exact method, as ratios of work.
 #pragma once
 
 namespace radiosity {
 
-// They are no times: what is announced in seconds comes from a sample that is timed where it runs
+// They are no times: announced seconds come from a sample that is timed where it runs
 // (row_times.h). The unit is a twelfth of a clip, for that makes all others round; the ratios were
 // measured once, on a core with vectors of 512 bits.
 
@@ -13,8 +13,8 @@ inline constexpr double kClipWork = 12;
 /// cluttered scene of 20,000 patches and past the 300 edges of round bodies took from 0.6 to 1.5
 /// times what is foreseen.)
 inline constexpr double kEdgeWork = 0.35;
-/// Of one point no more clips than these count, however many occluders may stand in between: of
-/// most of them no shadow falls on the target.
+/// At most so many clips count for a point, however many occluders may stand in between: the
+/// shadows of most of them miss the target.
 inline constexpr double kMostClips = 4;
 /// Times the work of a point in a cell: one between critical lines, in double precision and with no
 /// other pair to share it.

@@ -122,7 +122,8 @@ PatchGrid::PatchGrid(std::span<const GridPiece> pieces, const Vec3& origin, cons
   moveToCellCentres();
 }
 
-/// From cells that begin at whole coordinates to cells whose centres are whole, as look-ups round.
+/// Moves the cells so that their centres, not their corners, have whole coordinates: look-ups
+/// round.
 void PatchGrid::moveToCellCentres() {
   u_offset_ -= 0.5;
   v_offset_ -= 0.5;

@@ -12,7 +12,7 @@ namespace radiosity {
 /// A convex piece of a patch: corners in the plane, either way round.
 struct GridPiece {
   std::vector<Vec3> corners;
-  std::int32_t item;  ///< what a look-up answers, >= 0
+  std::int32_t item;  ///< the answer of a look-up, >= 0
 };
 
 /// A grid in the plane of one polygon, with axes along the edges of its first patch, so that a
@@ -30,7 +30,7 @@ class PatchGrid {
 
   std::int32_t columns() const { return columns_; }
   std::int32_t rows() const { return rows_; }
-  /// What cell row * columns + column holds: an item if >= 0, else the node ~cell of a tree.
+  /// Cell row * columns + column holds an item if it is >= 0, else the node ~cell of a tree.
   std::span<const std::int32_t> cells() const { return cells_; }
   /// True if some cell holds a tree.
   bool hasTrees() const { return !nodes_.empty(); }

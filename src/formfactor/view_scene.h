@@ -1,4 +1,5 @@
-// The mesh as an eye needs it: what occludes, and what each visible point counts for.
+// The mesh as an eye needs it: the polygons that occlude, and the item that each visible point
+// counts for.
 #pragma once
 
 #include <array>
@@ -13,8 +14,8 @@
 
 namespace radiosity {
 
-/// What a side of a polygon counts for. Items are 0 to N-1: patch; N + s: the black back of surface
-/// s (a side without patches).
+/// The item that a side of a polygon counts for. Items are 0 to N-1: patch; N + s: the black back
+/// of surface s (a side without patches).
 struct PolygonSide {
   std::uint32_t item = kNone;  ///< everywhere, if `grid` is kNone
   Index grid = kNone;          ///< into ViewScene::grids: look the patch up there
@@ -48,8 +49,8 @@ struct ViewScene {
   std::vector<std::uint32_t> corners;      ///< into vertices
   std::vector<ViewPolygon> polygons;
   std::vector<PatchGrid> grids;
-  /// What every numbered cell counts for: cell k < items is item k, the next one is the sky, which
-  /// counts as item `items`; then come the cells of all grids, as PatchGrid::cells() has them.
+  /// The item that each numbered cell counts for: cell k < items is item k, the next one is the
+  /// sky, which counts as item `items`; then come the cells of all grids, as in PatchGrid::cells().
   std::vector<std::int32_t> cells;
   std::vector<std::int32_t> first_cell;  ///< of each grid
   std::int32_t skyCell() const { return std::int32_t(items); }

@@ -20,7 +20,7 @@ using Vector = hn::Vec<Doubles>;
 constexpr int kWidth = int(hn::MaxLanes(Doubles()));
 constexpr std::size_t kVectors = kLanes / std::size_t(kWidth);
 
-/// What the pixels from `first` on are worth, up to a vector of them; 0 beyond the run.
+/// Weights of the pixels from `first` on, up to a vector of them; 0 beyond the run.
 HWY_INLINE Vector worth(const PixelRow& pixels, int first) {
   const Doubles d;
   const double* at = pixels.weights + first;

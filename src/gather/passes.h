@@ -1,4 +1,4 @@
-// What one eye gathers, and the fields the passes work on.
+// Gathering at one eye, and the fields that the passes work on.
 #pragma once
 
 #include <optional>
@@ -66,7 +66,7 @@ class Gatherer {
     double sky = 0;
   };
   Received look(std::size_t eye);
-  /// Of the last look, the share of the view on each surface's back, by surface.
+  /// The share of the last view on each surface's back, by surface.
   std::span<const double> backsBySurface() const;
   const HemicubeCounts& counts() const { return hemicube_.counts(); }
   std::size_t bytes() const { return hemicube_.bytes() + (view_ ? view_->bytes() : 0); }

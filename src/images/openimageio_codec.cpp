@@ -158,7 +158,7 @@ class OpenImageIoCodec final : public ImageCodec {
 
 }  // namespace
 
-/// What imageCodec() asks this library for.
+/// The entry point by which imageCodec() finds the codec of this library.
 extern "C" [[gnu::visibility("default")]] const ImageCodec* radiosityImageCodec() {
   static const OpenImageIoCodec kCodec;
   return &kCodec;

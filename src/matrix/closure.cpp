@@ -26,10 +26,11 @@ constexpr std::size_t kRowGrain = 16;
 /// Newton steps; one where no entry turns negative, else a handful.
 constexpr int kMostRounds = 30;
 constexpr std::size_t kMostSteps = 2000;
-/// Of what rows lack: how well a step is solved. Entries that turn negative spoil a better one
-/// (inexact Newton: Dembo, Eisenstat & Steihaug, SIAM J. Numer. Anal. 19, 1982).
+/// Each step is solved to this share of the rows' shortfall. Entries that turn negative would spoil
+/// a more exact step (inexact Newton: Dembo, Eisenstat & Steihaug, SIAM J. Numer. Anal. 19, 1982).
 constexpr double kForcing = 0.1;
-/// Of a residual's square, <r, (D + W) r> with D scaled to 1: below it r counts as a null vector.
+/// A residual r counts as a null vector where <r, (D + W) r>, with D scaled to 1, is below this
+/// share of its square.
 constexpr double kNull = 1e-10;
 /// Steps within which the residual must at least halve; else the target is out of reach.
 constexpr std::size_t kStagnantSteps = 50;
@@ -61,7 +62,7 @@ class LeastSquaresClosure {
   void findMultipliers(double tolerance);
   /// Changes the matrix as they say.
   void apply();
-  /// What came of it.
+  /// Residuals and moves before and after.
   ClosureReport report(double tolerance) const;
 
  private:
@@ -121,7 +122,7 @@ LeastSquaresClosure::LeastSquaresClosure(ExchangeMatrix& matrix, const Uncertain
   report_.adjustable = uncertain.entries();
   root_ = timesWeights(std::vector<double>(matrix.size(), 1.0));
   for (double& d : root_) d = std::sqrt(d);
-  // What evaluate() would find while nothing is moved.
+  // The shortfall that evaluate() would find while nothing is moved.
   lacking_ = shortfall_;
 }
 
@@ -162,7 +163,7 @@ std::vector<double> LeastSquaresClosure::timesWeights(const std::vector<double>&
   return out;
 }
 
-/// What the multipliers come to: f, what the rows lack, which entries are free and which at 0.
+/// Evaluates the multipliers: f, the shortfall of each row, and which entries are free or at 0.
 void LeastSquaresClosure::evaluate() {
   const std::size_t n = area_.size();
   std::vector<std::size_t> emptied(n, 0);
@@ -234,7 +235,8 @@ std::vector<double> LeastSquaresClosure::newtonStep(double tolerance) {
     return history.size() > kStagnantSteps &&
            history.back() > 0.5 * history[history.size() - 1 - kStagnantSteps];
   };
-  // What is left where rows ask for what cannot be had is a null vector; beyond it there is noise.
+  // Where no matrix has the row sums asked for, the residual ends as a null vector; further steps
+  // would follow rounding.
   const auto ends = [&] { return !(weight > kNull * dot(residual, residual)); };
   while (history.back() > tolerance && !ends() && history.size() < kMostSteps && !stalls()) {
     const double step = weight / dot(of_direction, of_direction);
@@ -256,7 +258,7 @@ std::vector<double> LeastSquaresClosure::newtonStep(double tolerance) {
   return x;
 }
 
-/// Of the rows in which something may move.
+/// The largest shortfall of a row that has a free entry.
 double LeastSquaresClosure::largestLack() const {
   double largest = 0;
   for (std::size_t k = 0; k < area_.size(); ++k) {

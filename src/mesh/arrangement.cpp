@@ -202,7 +202,7 @@ Cover PlaneCutter::stepOver(const Cover& from, Index edge, bool to_left) const {
   std::map<Index, int> counts(from.begin(), from.end());
   for (const EdgeUse& use : edges_[edge].uses) {
     if (sheets_[use.sheet].plane != number_) continue;
-    // Of a sheet that faces down this counts its layers negative.
+    // Layers of a sheet that faces down count negative.
     counts[use.sheet] += to_left ? use.count : -use.count;
   }
   Cover out;
@@ -212,8 +212,8 @@ Cover PlaneCutter::stepOver(const Cover& from, Index edge, bool to_left) const {
   return out;
 }
 
-/// From the outside, where nothing is, over edges into every region. No coordinates are asked, so
-/// no rounding can make a hole or a second layer.
+/// Walks from the outside, where nothing is, over edges into every region. It uses no coordinates,
+/// so no rounding can make a hole or a second layer.
 void PlaneCutter::coverRegions() {
   struct Step {
     Index region;

@@ -40,7 +40,7 @@ struct ImageCrossing {
   Vec3 at{0.0};
 };
 
-/// What the edges in one plane cut it into.
+/// The regions into which the edges in one plane cut it.
 struct PlaneCut {
   bool done = false;  ///< if not, only `unresolved` and `crossings` say something
   std::vector<PlaneCell> cells;

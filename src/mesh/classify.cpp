@@ -122,7 +122,7 @@ bool Classifier::wins(const Layer& a, const Layer& b) const {
   return rank(a) < rank(b);
 }
 
-/// Of several sheets that face alike one is seen. A two-sided winner lies on the one-sided sheets
+/// One of several sheets that face alike is seen. A two-sided winner lies on the one-sided sheets
 /// it covers, so its far side is in contact with them.
 void Classifier::dropOutdone(const PlaneCell& cell, Side side, std::vector<Layer>& layers) {
   Layer* winner = nullptr;

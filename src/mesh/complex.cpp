@@ -69,8 +69,8 @@ std::vector<double> sheetAreas(const InputFaces& input, const std::vector<Plane>
   return out;
 }
 
-/// What welding and splitting moved, by surface; and polygons that cross themselves, of which a
-/// part is turned over: their area is that of all parts.
+/// Adds the area that welding and splitting moved to each surface's report. A polygon that crosses
+/// itself has a part turned over; its area is the sum over all parts.
 void accountForWelding(const InputFaces& input, const std::vector<Plane>& planes,
                        const std::vector<Sheet>& sheets, const EdgeTable& edges,
                        const Arrangement& arrangement, MeshReport& report) {

@@ -109,8 +109,9 @@ std::span<const Index> ContactFinder::edgesAt(Index sheet, const Vec2& q) const 
   return rows->second.at(q.y);
 }
 
-/// Of a sheet with many edges the four corners of its box, as they lie in its plane, tell enough,
-/// unless it is nearly along the other plane: the box reaches a few times as far as the sheet.
+/// For a sheet with many edges the four corners of its box, taken in the sheet's plane, are enough,
+/// unless the sheet is nearly parallel to the other plane: the box reaches a few times as far as
+/// the sheet.
 Sides ContactFinder::sidesOf(Index number, const Plane& plane) const {
   const double eps = input_.coincidence;
   const Sheet& sheet = sheets_[number];

@@ -11,9 +11,10 @@ namespace {
 
 /// Rounds of making edges meet that cross only in the image of a plane: one is the rule, more are
 /// rare. From kRoundsOfSnapping on, a vertex that an edge is to be led through becomes one with the
-/// edge's end if that is as near as a coincidence or two: there are ever fewer vertices then. What
-/// has not ended after kRounds is given up, and so is what grows: where many edges are about as
-/// long as the coincidence, each one made to meet another crosses two more.
+/// edge's end if that is as near as a coincidence or two, so that the number of vertices falls.
+/// Planes that still need repairs after kRounds are given up, and so are planes whose repairs grow
+/// in number: where many edges are about as long as the coincidence, each edge that is made to meet
+/// another crosses two more.
 constexpr int kRoundsOfSnapping = 4;
 constexpr int kRounds = 40;
 constexpr double kGrowth = 2.0;
@@ -109,7 +110,7 @@ void PlaneCuts::cutStale() {
   stale_.assign(planes_.size(), false);
 }
 
-/// What the planes ask for, in their order.
+/// The repairs that the planes ask for, in the planes' order.
 Repairs PlaneCuts::repairs() {
   Repairs out;
   for (PlaneCut& cut : cuts_) {

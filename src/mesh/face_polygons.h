@@ -8,7 +8,7 @@
 
 namespace radiosity {
 
-/// What is known of a face.
+/// Normal, area and flatness of a face.
 struct FaceShape {
   Vec3 normal{0.0};    ///< unit; 0 for a degenerate face
   double area = 0;     ///< 0 for a degenerate face

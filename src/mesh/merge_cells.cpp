@@ -18,7 +18,7 @@ namespace radiosity {
 
 namespace {
 
-/// What two visible cells must agree in to become one polygon.
+/// Two visible cells may become one polygon only if they are equal in all of this.
 struct Kind {
   Index surface = kNone;
   bool up = true;        ///< the polygon's front is above the plane

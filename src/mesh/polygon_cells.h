@@ -13,7 +13,7 @@ namespace radiosity {
 struct CellGroup {
   std::vector<Index> outline;  ///< corners, counter-clockwise
   std::vector<Index> cells;    ///< ascending
-  /// That tile it, corner to corner of the outline; empty: the cells do.
+  /// Tile the patch between corners of the outline; empty: the cells tile it.
   std::vector<std::array<Index, 3>> triangles;
 };
 

@@ -60,7 +60,7 @@ Angle smallestFreeAngle(Face f) {
   return smallest;
 }
 
-/// Of some triangles: the smallest free angle, below all angles where one is turned over.
+/// The smallest free angle of some triangles; below all angles where a triangle is turned over.
 class Worst {
  public:
   void add(Face f) {
@@ -266,7 +266,7 @@ bool RegionMesher::tiles() const {
   return std::abs(double(area)) <= 0x1p-46 * terms;
 }
 
-/// Of the triangles inside.
+/// The worst angle of the triangles inside.
 Worst RegionMesher::worst() const {
   Worst out;
   for (Face f : cdt_.finite_face_handles()) {

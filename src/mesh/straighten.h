@@ -20,15 +20,15 @@ struct EdgeUses {
 };
 
 struct StraightEdges {
-  std::vector<std::array<Index, 2>> edges;  ///< what is left
+  std::vector<std::array<Index, 2>> edges;  ///< the remaining edges
   std::vector<Index> edge_of;               ///< by given edge: the one it became a part of
   std::vector<bool> removed;                ///< by vertex
 };
 
 /// Removes vertices at which exactly two of `edges` meet in a straight line: all that is removed
 /// between two neighbours that stay lies within coincidence of the line between them. Two edges
-/// become one only where `uses` are the same of both: what borders or cuts a polygon along the one
-/// does so along the other. Vertices marked in `keep` stay.
+/// become one only where both have the same `uses`: they border or cut the same polygons. Vertices
+/// marked in `keep` stay.
 StraightEdges straighten(const WeldedPoints& points, double coincidence,
                          const std::vector<std::array<Index, 2>>& edges, const EdgeUses& uses,
                          const std::vector<bool>& keep);

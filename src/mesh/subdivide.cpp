@@ -67,7 +67,7 @@ double outlineOf(const CoarseComplex& complex) {
   return length;
 }
 
-/// Of the box around a polygon, which is at least the polygon's own.
+/// Diameter of the box around a polygon: an upper bound of the polygon's own.
 double diameterOf(const CoarseComplex& complex, const CoarsePolygon& polygon) {
   Box3 box;
   for (const auto& loop : polygon.loops) {

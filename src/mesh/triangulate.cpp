@@ -180,8 +180,8 @@ class LoopTriangulation {
     }
   }
 
-  /// From outside, where nothing is wound around: across an edge the winding changes by how often
-  /// loops run along it.
+  /// Finds the winding of every triangle, starting outside, where it is 0: across an edge it
+  /// changes by the number of loops that run along the edge.
   void wind() {
     for (const auto f : cdt_.all_face_handles()) f->info() = kUnknown;
     std::vector<Cdt::Face_handle> open{cdt_.infinite_face()};
@@ -208,7 +208,7 @@ class LoopTriangulation {
   std::unordered_map<std::uint64_t, int> along_;  ///< loops along a directed edge, less those back
 };
 
-/// Of a quadrilateral, cut along the shorter of its diagonals inside; nothing if neither is.
+/// Cuts a quadrilateral along the shorter of the diagonals inside it; nothing if neither is inside.
 std::optional<Triangles> halves(std::span<const Index> loop, const std::array<Vec2, 4>& p) {
   const bool first = turn(p[0], p[1], p[2]) > 0 && turn(p[0], p[2], p[3]) > 0;
   const bool second = turn(p[0], p[1], p[3]) > 0 && turn(p[1], p[2], p[3]) > 0;

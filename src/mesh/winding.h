@@ -1,4 +1,4 @@
-// What lies on the two sides of every cell.
+// Winding numbers on the two sides of every cell.
 #pragma once
 
 #include <vector>

@@ -73,9 +73,9 @@ class ColourPixel {
   Vec3 sum_{0.0};
 };
 
-/// What the colours stand for: the range asked for, or that of the values in view. A lamp, or the
-/// patch next to the one whose form factors are shown, would leave all else in one dark colour:
-/// where the highest value is more than twice the 99th percentile of the pixels, that is the end.
+/// The range of the colours: the one asked for, or that of the values in view. A lamp, or the patch
+/// next to the one whose form factors are shown, would leave all else in one dark colour: where the
+/// highest value is more than twice the 99th percentile of the pixels, the range ends there.
 std::optional<ColourRange> rangeInView(const FalseColour& asked, const std::vector<InView>& tiles) {
   InView seen;
   for (const InView& tile : tiles) {

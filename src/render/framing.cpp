@@ -30,7 +30,7 @@ constexpr double kStanding = 1.1;   // worth of standing at that height
 constexpr double kEnclosed = 0.75;  // share of all directions that end on fronts within a room
 constexpr double kRoom = 1.5;       // worth of being in a room that has an outside too
 
-/// Of the patches that have an area.
+/// The box around all patches that have an area.
 Box3 boundingBox(const PatchMesh& mesh) {
   Box3 box;
   for (std::size_t i = 0; i < mesh.size(); ++i) {
@@ -62,7 +62,7 @@ struct LitMesh {
   }
 };
 
-/// What a viewpoint sees. Shares of the picture and of the scene, 0 to 1.
+/// The view from one point: shares of the picture and of the scene, 0 to 1.
 struct Glimpse {
   double fronts = 0;  ///< of the picture
   double lit = 0;     ///< mean brightness of the fronts seen
@@ -156,8 +156,7 @@ struct Scored {
   double score = 0;
 };
 
-/// Of the candidates that are allowed, the first whose score no later one beats by 1%; score 0:
-/// none shows anything.
+/// The first allowed candidate whose score no later one beats by 1%; score 0: none shows anything.
 template <class Score, class Allowed>
 Scored best(const std::vector<Candidate>& candidates, const Score& score, const Allowed& allowed) {
   std::vector<double> scores(candidates.size());

@@ -131,7 +131,7 @@ ItemBuffer::Bounds ItemBuffer::boundsOf(const std::array<Index, 3>& piece) const
   clip(polygon, [w](const Vec3& p) { return w * p.z - p.x; });
   clip(polygon, [h](const Vec3& p) { return h * p.z - p.y; });
   if (polygon.empty()) return nothing;
-  // What is left lies in the frustum, where z = 0 only at the eye itself: it fills the picture.
+  // The rest lies in the frustum, where z = 0 only at the eye: then it fills the picture.
   for (const Vec3& p : polygon) {
     if (!(p.z > 0)) return {0, 0, view_.width, view_.height};
   }

@@ -8,7 +8,7 @@
 
 namespace radiosity {
 
-/// What the colours of a picture stand for.
+/// The range of values that the colours of a picture stand for.
 struct ColourRange {
   double low = 0;
   double high = 0;     ///< == low: one colour, the middle of the map

@@ -8,7 +8,7 @@
 
 namespace radiosity {
 
-/// What one sample sees.
+/// The side of a patch that one sample sees.
 enum class Seen { nothing, front, back };
 
 /// Calls pixel(x, y, first sample) ... in tiles on all threads. `Pixel` is a class with

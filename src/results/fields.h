@@ -1,4 +1,4 @@
-// What the results file holds, name by name: the layout is this list. Lengths are N (patches),
+// The names in a results file, one by one: the layout is this list. Lengths are N (patches),
 // units are the attribute `unit` of a dataset; sums and reports are attributes of their group.
 #pragma once
 

@@ -42,7 +42,7 @@ class InputGroup {
   Handle open(const std::string& name, Number number, std::size_t columns, std::size_t& rows) const;
   /// How many columns a dataset of rows has, 1 or more.
   int columns(const std::string& name) const;
-  /// What kind of numbers a dataset holds; nothing if none of ours.
+  /// The type of the numbers in a dataset; nothing if it is none of ours.
   std::optional<Number> numberOfDataset(const std::string& name) const;
   void readAll(const std::string& name, const Handle& dataset, Number number, void* data) const;
   /// Rows [first, first + count) of a dataset of one dimension.

@@ -176,7 +176,7 @@ void OutputGroup::link(const std::string& name, const OutputGroup& target,
   }
 }
 
-// What HDF5 1.10 spends on each thing besides its bytes, measured on files of ours.
+// Bytes that HDF5 1.10 spends on each object besides its data, measured on files of ours.
 // (Object header with its messages; link in the group that holds it.)
 namespace {
 constexpr std::size_t kGroupBytes = 150;

@@ -14,7 +14,7 @@ namespace radiosity {
 /// of a symmetric matrix a panel of rows.
 void writeMatrix(h5::OutputGroup& group, const ExchangeMatrix& matrix, Progress& progress);
 
-/// What writeMatrix() adds to the file.
+/// Counts the bytes that writeMatrix() adds to the file.
 void countMatrix(h5::SizeCounter& group, const ExchangeMatrix& matrix);
 
 /// The same matrix, value for value to the bit.

@@ -154,8 +154,8 @@ void readByRows(const h5::InputGroup& group, const StoredRows& rows, ExchangeMat
   }).readAll();
 }
 
-/// Of a symmetric matrix one of each pair is kept: that of the patch which comes first in the
-/// order. Calls store(k, values from position k on) for every position.
+/// A symmetric matrix keeps one entry of each pair: that in the row of the patch that comes first
+/// in the order. Calls store(k, values from position k on) for every position.
 template <class T, class StoreUpper>
 void readTriangle(const h5::InputGroup& group, const StoredRows& rows, std::span<const Index> order,
                   const StoreUpper& store) {

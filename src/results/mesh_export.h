@@ -1,4 +1,4 @@
-// What the mesh writers share.
+// Parts shared by the mesh writers.
 #pragma once
 
 #include <string>

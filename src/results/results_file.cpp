@@ -95,8 +95,8 @@ class StageWriter {
   std::string geometry_hash_;  ///< empty without a mesh
 };
 
-/// What /form_factors shows of the mesh, so that a reader needs no other group: of what its rows
-/// are, patches or clusters.
+/// Arrays of the mesh that /form_factors links to, so that a reader needs no other group: those of
+/// patches or of clusters, whichever its rows are.
 using MeshLinks = std::span<const std::array<const char*, 2>>;
 constexpr std::array<std::array<const char*, 2>, 4> kPatchLinks = {
     {{"normal", "normal"},

@@ -73,7 +73,7 @@ bool SceneChecks::enclosed() const {
     upper = glm::max(upper, part.upper);
   }
   return std::any_of(parts.begin(), parts.end(), [&](const ConnectedPart& room) {
-    // Of many bodies inside out only one that reaches as far as all of them is looked at closely.
+    // Where many bodies are inside out, only one that reaches as far as all of them is examined.
     return room.closed && room.volume < 0 && room.lower == lower && room.upper == upper &&
            std::all_of(parts.begin(), parts.end(), [&](const ConnectedPart& part) {
              return &part == &room || placeOf(part, room) != Place::outside;

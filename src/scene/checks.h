@@ -1,4 +1,4 @@
-// What looks wrong with a scene, as notes that name surfaces.
+// Checks of a scene: notes on surfaces that look wrong, by name.
 #pragma once
 
 #include <map>

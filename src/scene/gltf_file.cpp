@@ -139,7 +139,7 @@ void parse(const std::string& content, GltfFile& file) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception&) {
-    // Of the standard library as a rule (an index out of range): its words help nobody.
+    // Mostly an error of the standard library (an index out of range), whose text helps nobody.
     file.fail(
         "cannot be read as glTF 2.0 (a size or a number in it is impossible); export the "
         "scene again");

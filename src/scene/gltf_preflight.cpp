@@ -53,7 +53,7 @@ std::string_view jsonChunk(const std::string& path, std::string_view content) {
   return content.substr(kHeader + kChunkHeader, wordAt(content, kHeader));
 }
 
-/// What the JSON says about itself.
+/// Version and required extensions that the JSON names.
 struct Claims {
   bool is_object = false;
   std::string version;

@@ -17,7 +17,7 @@ using Visit = std::function<void(std::span<const JsonStep>, const JsonValue&)>;
 /// glTF needs about ten levels. Libraries use the call stack for each.
 constexpr std::size_t kDeepest = 200;
 
-/// What nlohmann's parser, which keeps no call stack itself, reports.
+/// Receives the events of nlohmann's parser, which keeps no call stack itself.
 class Events : public nlohmann::json_sax<Json> {
  public:
   Events(const std::string& file, std::string_view text, const Visit& visit)

@@ -24,7 +24,7 @@ struct MtlScan {
   std::string text;                    ///< statements, one a line: what the library gets to see
 };
 
-/// What a diffuse solver leaves out goes to `ignored` by material name.
+/// Features that a diffuse solver leaves out go to `ignored`, by material name.
 /// Errors: InputError "FILE:LINE: what is wrong; cure".
 MtlScan scanMtl(const std::string& file, std::string_view text, FeatureNotes& ignored);
 

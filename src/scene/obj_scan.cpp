@@ -163,7 +163,7 @@ void Scanner::corner(std::string_view word) {
   if (parts.size() > 2) index(parts[2], word, normals_);
 }
 
-/// From 0, checked against the end of the file only by finish().
+/// An index that counts from 0; only finish() checks it against the end of the file.
 Index Scanner::index(std::string_view word, std::string_view corner, Referenced& list) {
   const std::optional<long long> value = parseInteger(word);
   if (!value) {

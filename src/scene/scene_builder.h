@@ -1,4 +1,4 @@
-// What both readers share: faces into surfaces, names that are unique, notes that name many at
+// Parts shared by both readers: faces into surfaces, names that are unique, notes that name many at
 // once.
 #pragma once
 

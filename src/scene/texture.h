@@ -16,7 +16,7 @@ struct TextureResult {
   std::string problem;
 };
 
-/// What a texture multiplies.
+/// The quantity that a texture multiplies.
 enum class TextureUse { reflectance, emission };
 
 /// An image that was looked for once, and what came of it.

@@ -15,8 +15,8 @@ namespace radiosity {
 namespace {
 
 /// A node stands for its triangles from this many radii on. The next term of the expansion is then
-/// at most some 1/16 of the node's own, and terms of opposite sides of a part cancel: what is left
-/// is far from the quarter that would change an answer.
+/// at most some 1/16 of the node's own, and terms of opposite sides of a part cancel: the rest is
+/// far from the quarter that would change an answer.
 constexpr double kFar = 4;
 
 }  // namespace

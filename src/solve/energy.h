@@ -7,7 +7,7 @@
 
 namespace radiosity {
 
-/// What comes in: E, and what falls on the patches from the sky; N * bands, row-major, W/m^2.
+/// Incoming light: E, and the irradiance of the patches from the sky; N * bands, row-major, W/m^2.
 struct Incoming {
   std::span<const double> emission;
   std::span<const double> sky;

@@ -1,4 +1,4 @@
-// What the solvers share: the system, the residual, and when to stop.
+// Parts shared by the solvers: the system, the residual, and when to stop.
 #pragma once
 
 #include <Eigen/Core>

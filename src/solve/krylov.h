@@ -16,11 +16,11 @@ class Krylov {
  public:
   explicit Krylov(const Eigen::VectorXd& step);
 
-  /// What L is to be applied to next; 0 once d is known to rounding.
+  /// The vector to which L is to be applied next; 0 once d is known to rounding.
   const Eigen::VectorXd& direction() const { return basis_.back(); }
   /// L times direction().
   void add(const Eigen::VectorXd& image);
-  /// The largest of what is left of s.
+  /// The largest entry of the rest of s.
   double residual() const;
   bool exhausted() const { return exhausted_; }
   /// The d found so far.

@@ -88,8 +88,8 @@ void checkMaterials(std::span<const double> reflectance, std::span<const double>
   }
 }
 
-/// What the sky sends to each patch, N * bands, W/m^2. An exact row's account of the sky may be a
-/// little below 0.
+/// Irradiance of each patch from the sky, N * bands, W/m^2. An exact row's account of the sky may
+/// be a little below 0.
 std::vector<double> skyIrradiance(const FormFactors& factors, std::span<const double> sky,
                                   int bands) {
   std::vector<double> irradiance(factors.sky.size() * std::size_t(bands), 0.0);
@@ -100,7 +100,7 @@ std::vector<double> skyIrradiance(const FormFactors& factors, std::span<const do
   return irradiance;
 }
 
-/// E and what is reflected of the sky.
+/// E plus the reflected irradiance from the sky.
 std::vector<double> sourceOf(std::span<const double> reflectance, std::span<const double> emission,
                              std::span<const double> from_sky) {
   std::vector<double> source(emission.begin(), emission.end());

@@ -21,8 +21,8 @@ class BoxTree {
     search([&](const Box3& other) { return other.meets(box); }, visit);
   }
 
-  /// Calls visit(index) for every box that `meets` is true of, until it returns false. What `meets`
-  /// is false of, it must be false of all parts of.
+  /// Calls visit(index) for every box that `meets` is true of, until it returns false. Where
+  /// `meets` is false of a box, it must be false of every box inside it.
   template <class Meets, class Visit>
   void search(const Meets& meets, const Visit& visit) const {
     if (nodes_.empty()) return;

@@ -22,8 +22,8 @@ inline double signedSolidAngle(const Vec3& a, const Vec3& b, const Vec3& c) {
                     la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
 }
 
-/// The same of a planar polygon with the corners point(0) .. point(count - 1), over a fan: what of
-/// it lies outside a concave polygon cancels.
+/// The same of a planar polygon with the corners point(0) .. point(count - 1), over a fan: parts of
+/// the fan outside a concave polygon cancel.
 template <class PointAt>
 double loopSolidAngle(std::size_t count, const PointAt& point, const Vec3& eye) {
   double angle = 0;

@@ -25,7 +25,7 @@ inline constexpr std::size_t kMostPlanes = 128;
 
 /// Convex polygons, one a lane, structure of arrays. A polygon's corners are given in its own plane
 /// from its middle, and middles from an origin near the eye, so that rounding to T moves a polygon
-/// as a whole and leaves its shape: what a sum of arcs needs, which is far smaller than the arcs.
+/// as a whole and keeps its shape. A sum of arcs needs that: it is far smaller than the arcs.
 template <class T>
 struct TargetLanes {
   const T* middle[3];
@@ -65,10 +65,10 @@ struct ConePlanes {
   static constexpr LaneIndex<T> kNothingInside = 1;
   const T* normal[3];  ///< unit
   const T* offset;
-  const ShapeWord<T>* label;  ///< scrambled: what it adds to a shape it bounds
+  const ShapeWord<T>* label;  ///< scrambled: the number it adds to a shape it bounds
 };
 
-/// What is to be clipped, one a lane: targets, each seen from one of the eyes.
+/// Polygons to clip, one a lane: targets, each seen from one of the eyes.
 template <class T>
 struct ClipItems {
   std::size_t count;  ///< a multiple of kLaneAlignment
@@ -76,11 +76,11 @@ struct ClipItems {
   const LaneIndex<T>* eye;
 };
 
-/// What a cone leaves of each item. `form_factor`: to the part inside all planes, 0 where there
+/// The part of each item inside a cone. `form_factor`: to the part inside all planes, 0 where there
 /// is none, kHiddenWhole where no plane cuts the polygon. `shape`: sum of the labels of the edges
 /// that bound the part, 0 where it is nothing or all. `cut_low` and `cut_high`: a bit for each
-/// plane, of the first and the second 32, that cuts the polygon; the others do nothing to it. (Of
-/// more than 64 planes nothing is said.)
+/// plane, of the first and the second 32, that cuts the polygon; the others do nothing to it.
+/// (There are no bits for planes after the 64th.)
 template <class T>
 struct HiddenParts {
   T* form_factor;
@@ -91,8 +91,8 @@ struct HiddenParts {
 
 inline constexpr int kHiddenWhole = -1;
 
-/// A distance from a plane is a sum of products of vectors rounded to T: by so much, times the
-/// distance from the eye, it may be off. What passes a plane by no more is not cut by it.
+/// A distance from a plane is a sum of products of vectors rounded to T: its error may be this much
+/// times the distance from the eye. A polygon that passes a plane by no more is not cut by it.
 template <class T>
 inline constexpr T kPlaneNoise = 4 * std::numeric_limits<T>::epsilon();
 
@@ -110,15 +110,15 @@ struct ClipFunctions {
   /// Form factor from one eye to each polygon (all of it above the eye's horizon, its front to the
   /// eye).
   void (*whole)(const TargetLanes<T>& targets, const EyePoint<T>& eye, T* form_factor);
-  /// What one cone hides of each item: planes [first_plane, first_plane + plane_count), 1 to
-  /// kMostPlanes of them.
+  /// The part of each item that one cone hides: planes [first_plane, first_plane + plane_count), 1
+  /// to kMostPlanes of them.
   void (*hidden)(const TargetLanes<T>& targets, const EyePoints<T>& eyes,
                  const ConePlanes<T>& planes, const ClipItems<T>& items,
                  const LaneIndex<T>* first_plane, const LaneIndex<T>* plane_count,
                  const HiddenParts<T>& out);
   /// Form factor to the part of each item inside its own planes: own_planes[k][lane] names the
-  /// lane's k-th of plane_count[lane], up to kMostPlanes. Of lanes that share a vector of
-  /// kLaneAlignment all have as many names as the one that has most. 0 also where no plane cuts it.
+  /// lane's k-th of plane_count[lane], up to kMostPlanes. Lanes that share a vector of
+  /// kLaneAlignment all have as many names as the one with most. 0 also where no plane cuts it.
   void (*common)(const TargetLanes<T>& targets, const EyePoints<T>& eyes,
                  const ConePlanes<T>& planes, const ClipItems<T>& items,
                  const LaneIndex<T>* const* own_planes, const LaneIndex<T>* plane_count,

@@ -81,7 +81,7 @@ HWY_INLINE WordVector<T> cutToCone(VectorClip<T>& clip, IndexVector<T> first_pla
   return word;
 }
 
-/// Of a vector's lanes.
+/// The largest plane count among a vector's lanes.
 template <class T>
 HWY_INLINE std::size_t mostPlanes(const LaneIndex<T>* plane_count) {
   return std::size_t(*std::max_element(plane_count, plane_count + hn::Lanes(Tag<T>())));

@@ -1,4 +1,4 @@
-// The sides of a body's cones from several points at once: what blockingCone() finds from one.
+// The sides of a body's cones from several points at once, as blockingCone() finds them from one.
 // Included once for every instruction set: Highway flips HWY_TARGET_TOGGLE in between.
 #if defined(RADIOSITY_FORMFACTOR_EXACT_CONE_KERNELS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RADIOSITY_FORMFACTOR_EXACT_CONE_KERNELS_INL_H
@@ -105,8 +105,8 @@ struct EdgeSides {
 HWY_INLINE EdgeSides sidesOfEdge(const Vec3& from, const Vec3& to, const Vec3* outline,
                                  std::size_t corners, const ConePoints& points) {
   const Tag<double> d;
-  // Of p = corner - from + (from - point) the second part drops out: what is left is the product of
-  // from - point with what is the same for all points.
+  // In p = corner - from + (from - point) the second part drops out. There remains the product of
+  // from - point with a vector that is the same for all points.
   std::array<Vec3, kMostCorners> across;
   for (std::size_t c = 0; c < corners; ++c) {
     const Vec3 a = to - from;

@@ -1,4 +1,4 @@
-// What each pixel of the hemicube is worth: exact delta form factors.
+// Exact delta form factors: the weight of each pixel of the hemicube.
 #pragma once
 
 #include <cstddef>

@@ -20,8 +20,8 @@ struct FacePoint {
   double x, y, w;
 };
 
-/// Of a point (s, t, n) in the eye's frame, the signs of n+s, n-s, n+t, n-t, s+t, s-t, n: every
-/// side plane of every face is one of these, up to sign. Bit k: negative; bit k + 8: positive.
+/// Signs of n+s, n-s, n+t, n-t, s+t, s-t, n for a point (s, t, n) in the eye's frame: every side
+/// plane of every face is one of these, up to sign. Bit k: negative; bit k + 8: positive.
 /// Codes of several points are combined by OR.
 using SignCode = std::uint16_t;
 inline constexpr int kHeightSign = 6;
@@ -50,7 +50,7 @@ class FaceGeometry {
   explicit FaceGeometry(int face) : face_(face) {}
 
   bool isTop() const { return face_ == 0; }
-  /// From the eye's frame; also for directions and normals.
+  /// Projects a point in the eye's frame; also for directions and normals.
   FacePoint project(const Vec3& p) const {
     switch (face_) {
       case 0:

@@ -5,7 +5,7 @@
 namespace radiosity {
 namespace {
 
-/// Of a band: 8 bytes each, together less than half of a first-level cache of 32 KiB or more.
+/// Pixels of a band: 8 bytes each, together less than half of a first-level cache of 32 KiB.
 constexpr int kBandPixels = 2048;
 
 /// The first whole number not less than x, within [begin, end].

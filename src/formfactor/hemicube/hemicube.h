@@ -1,10 +1,10 @@
-// One eye's view through a hemicube: what it sees, weighted, by patch.
+// One eye's view through a hemicube: form factors by patch.
 //
-// Cohen & Greenberg 1985, with two changes. What is drawn into the item buffer are the scene's
-// planar polygons, not its patches; the patch is found afterwards, for the visible pixels only,
-// from the pixel's position in the polygon's plane. So the cost of drawing follows the polygons,
-// and a finer mesh costs only what its look-ups cost. And a row of pixels is summed by runs: a
-// run of one patch is one difference of the delta form factors' running sums.
+// Cohen & Greenberg 1985, with two changes. The item buffer holds the scene's planar polygons, not
+// its patches; the patch is found afterwards, for the visible pixels only, from the pixel's
+// position in the polygon's plane. So the cost of drawing follows the polygons, and a finer mesh
+// costs only more look-ups. And a row of pixels is summed by runs: a run of one patch is one
+// difference of the delta form factors' running sums.
 //
 // Pictures are in pixels, centres at half-integers; x runs from 0 to the resolution, y from 0
 // upwards, on side faces from the horizon to half the resolution. Depths are inverse distances
@@ -27,7 +27,7 @@
 
 namespace radiosity {
 
-/// What was drawn and what was not, summed over hemicubes. See FormFactorReport.
+/// Counts of polygons drawn and skipped, summed over hemicubes. See FormFactorReport.
 struct HemicubeCounts {
   std::size_t hemicubes = 0;
   std::size_t rasterised_polygons = 0;
@@ -40,7 +40,7 @@ struct HemicubeCounts {
   HemicubeCounts& operator+=(const HemicubeCounts& other);
 };
 
-/// What an eye saw: form factors to every item, and their sums by kind, which add up to 1.
+/// Form factors from an eye to every item, and their sums by kind, which add up to 1.
 struct HemicubeView {
   std::span<const double> items;  ///< ViewScene::items values: patches, then black backs by surface
   double fronts = 0;              ///< sum over patches
@@ -83,8 +83,8 @@ class Hemicube {
 
   const HemicubeCounts& counts() const { return counts_; }
 
-  /// What one face of the last view shows, for tests and comparisons: positions in
-  /// scene.polygons, or kNone; rows(face) rows of `resolution` pixels.
+  /// One face of the last view, for tests and comparisons: positions in scene.polygons, or kNone;
+  /// rows(face) rows of `resolution` pixels.
   std::vector<Index> picture(int face);
   /// Draws all faces of the last view again without looking at them, to time drawing alone.
   void redraw();
@@ -102,8 +102,8 @@ class Hemicube {
     Vec3 normal;      ///< in the eye's frame
     double distance;  ///< of the plane: dot(normal, p) = distance
   };
-  /// A candidate as drawn on the current face. Read once a run of pixels: what that needs lies
-  /// together and behind no other pointer.
+  /// A candidate as drawn on the current face. Read once for each run of pixels: the members that
+  /// this needs lie together and behind no other pointer.
   struct Drawn {
     const PatchGrid* grid;  ///< null: one item everywhere
     std::uint32_t item;     ///< that item

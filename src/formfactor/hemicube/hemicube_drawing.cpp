@@ -1,4 +1,4 @@
-// What a hemicube's faces show: polygons found, clipped, scan-converted and filled, nearest first.
+// Draws a hemicube's faces: polygons are found, clipped, scan-converted and filled, nearest first.
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>

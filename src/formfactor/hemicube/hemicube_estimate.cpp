@@ -1,4 +1,4 @@
-// What hemicubes will take: a sample of them is looked through.
+// Foresees time and memory of hemicubes from a sample of them.
 
 #include <algorithm>
 #include <vector>

@@ -10,7 +10,7 @@
 
 namespace radiosity {
 
-/// What all rows share.
+/// The scene as all rows see it.
 struct HemicubeScene {
   /// Keeps `mesh` by reference.
   HemicubeScene(const PatchMesh& mesh, const FormFactorOptions& options);
@@ -18,7 +18,7 @@ struct HemicubeScene {
   std::optional<NearPairs> near_pairs;  ///< where near entries are to be made exact
 };
 
-/// From a sample of rows.
+/// Foreseen from a sample of rows.
 struct HemicubeEstimate {
   std::size_t bytes = 0;         ///< held at once, FormFactorOptions::memory_held included
   std::size_t matrix_bytes = 0;  ///< of these, the matrix

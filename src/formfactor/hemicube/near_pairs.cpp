@@ -88,7 +88,7 @@ NearPairs::Outcome NearPairs::correct(std::size_t patch, PackedRow& row) const {
   for (std::size_t k = 0; k < row.columns.size(); ++k) {
     row.values[k] *= replaced[k] != 0 ? cap : outcome.rest;
   }
-  // An entry may have come to 0: what is not exchanged is not stored.
+  // An entry may have become 0: such entries are not stored.
   std::size_t kept = 0;
   for (std::size_t k = 0; k < row.columns.size(); ++k) {
     if (!(row.values[k] > 0)) continue;

@@ -26,7 +26,7 @@ class NearPairs {
   struct Outcome {
     std::size_t replaced = 0;
     std::size_t capped = 0;  ///< rows whose near entries alone exceed 1: scaled down to 1
-    double rest = 1;         ///< what the rest, backs and sky were multiplied by
+    double rest = 1;         ///< factor of the other entries, backs and sky
   };
   /// `row`: of `patch`, as it was seen. Thread-safe.
   Outcome correct(std::size_t patch, PackedRow& row) const;

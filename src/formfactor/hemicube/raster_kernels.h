@@ -30,7 +30,7 @@ struct Span {
 /// middle of the face.
 struct FillTarget {
   float* depth;          ///< inverse depth, larger is nearer; -infinity in a cleared pixel
-  std::uint32_t* items;  ///< what is seen
+  std::uint32_t* items;  ///< the nearest item so far
   int stride;            ///< pixels from row to row, a multiple of kRowAlignment
   float first_centre;    ///< (1 - resolution) / 2
 };

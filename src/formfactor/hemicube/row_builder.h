@@ -12,7 +12,7 @@
 
 namespace radiosity {
 
-/// What every row of one computation shares; made once, read by all threads.
+/// Builds the rows of one computation; made once, read by all threads.
 class RowBuilder {
  public:
   /// `mesh` is kept by reference.

@@ -12,7 +12,7 @@ namespace {
 /// Rows that are drawn, and pairs of each.
 constexpr std::size_t kRowsDrawn = 500;
 constexpr std::size_t kMostDrawn = 1024;
-/// Of the rows drawn: what so many stay below.
+/// Share of the drawn rows that the figure must cover.
 constexpr double kQuantile = 0.99;
 
 }  // namespace

@@ -7,29 +7,29 @@
 
 namespace radiosity {
 
-/// What is known of the errors of some pairs, all in exchange areas G of ElementSet's units. Sums
-/// of disjoint sets of pairs add up.
+/// Sums of the errors of some pairs, all in exchange areas G of ElementSet's units. Sums of
+/// disjoint sets of pairs add up.
 ///
 /// Errors of a row's pairs have different causes and signs, and add up in squares. For a pair in
 /// closed form err is kRowClosedForms (error_model.h) of the kernel's published accuracy: that is a
 /// bound, which the worst pair comes near, not a row (the box at 1e-5 leaves no more). For a pair
-/// clipped against occluders it is what its embedded rules say, with their margin. The square of
-/// its true error scatters about that: by how much the sum over a row's occluded pairs does goes
-/// with sqrt(sum_j err_ij^4), much where a few pairs carry the row and little where many do. A
-/// row's error figure is
+/// clipped against occluders it is the estimate of its embedded rules, with their margin. The
+/// square of its true error scatters about that. The scatter of the sum over a row's occluded pairs
+/// goes with sqrt(sum_j err_ij^4): it is large where a few pairs carry the row and small where many
+/// do. A row's error figure is
 ///
 ///     sqrt(sum_j err_ij^2 + sqrt(sum_occluded j err_ij^4)).
 ///
 /// Occluded pairs with black backs count in the row's figure as well, though not in the matrix's:
-/// what a row leaves to the sky is only as good as what it sees of them.
+/// a row's account of the sky is only as good as its account of them.
 ///
 /// The rules' margin is fitted to some scenes. In others, of thin bodies or of many pairs that are
 /// alike, it is not enough. So a random subset of the occluded pairs is evaluated again to a
-/// fraction of the tolerance. What they differ by is taken for their error, rows are drawn at
-/// random from these pairs (the bootstrap of Efron 1979), and where the error of the worst
-/// hundredth of those rows, times kRowAlike, exceeds its figure, the figures of all rows are
-/// raised. (Of a cube in a cube, 150 to 480 patches, at 1e-3 to 1e-5, rows exceed up to 1.6 times
-/// what is drawn.)
+/// fraction of the tolerance. The difference is taken for their error, rows are drawn at random
+/// from these pairs (the bootstrap of Efron 1979), and where the error of the worst hundredth of
+/// those rows, times kRowAlike, exceeds its figure, the figures of all rows are raised. (In a cube
+/// in a cube, 150 to 480 patches, at 1e-3 to 1e-5, errors of rows reach 1.6 times those of the
+/// drawn rows.)
 ///
 /// Measured at tolerances from 1e-1 to 1e-5 against rows of truth that are good to 1e-6 of the mean
 /// form factor, in scenes that no constant was fitted to (tools/bench --only figures):
@@ -69,7 +69,7 @@ class ErrorSums {
   }
   /// The same of a row and a black back.
   void addBlackBack(std::size_t row, double error) { black_backs_[row].add(error); }
-  /// An occluded pair evaluated to a stricter tolerance: what it differs by, and the error that was
+  /// An occluded pair evaluated to a stricter tolerance: the difference, and the error that was
   /// stated of it.
   void addRecheck(double difference, double stated) { rechecks_.push_back({difference, stated}); }
 

@@ -19,10 +19,10 @@
 namespace radiosity {
 namespace {
 
-/// About this share of the occluded pairs is evaluated again, ...
+/// About this share of the occluded pairs is evaluated again.
 constexpr double kRecheckShare = 1.0 / 256;
-/// ... and at least so many, as far as there are: at loose tolerances, and in double precision,
-/// where what rules miss is in fewer pairs, and theirs are dearer to begin with.
+/// At least so many pairs are evaluated again, as far as there are. In double precision they are
+/// more: fewer pairs hold the errors that rules miss there, and pairs are dearer to begin with.
 constexpr double kRecheckLeast = 512;
 constexpr double kRecheckLeastTight = 1024;
 /// A row that leaves more than this to the sky needs no eye to tell that the scene is open.
@@ -90,7 +90,7 @@ void reportCounts(const ExactScene& scene, const RowSums& sums, ExactReport& rep
   report.seconds_assembly = sums.seconds_assembly;
 }
 
-/// What a stage could not do for some pairs, so that a simpler one did.
+/// Notes the pairs for which a stage failed, so that a simpler one took its place.
 void noteFallbacks(const OccludedCounts& counts, FormFactorReport& report) {
   const auto add = [&](std::size_t pairs, const char* what) {
     if (pairs == 0) return;

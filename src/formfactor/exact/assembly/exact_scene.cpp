@@ -12,12 +12,13 @@
 namespace radiosity {
 namespace {
 
-/// Closed forms hold this at the default tolerance, and what is asked below it. ...
+/// Closed forms hold this relative error at the default tolerance, and the tolerance itself where
+/// it is tighter than this.
 constexpr double kClosedForm = 1e-5;
-/// ... Where less is asked than that, a share of it: theirs, mostly a tenth of what they are held
-/// to, is then not seen beside the error of what is clipped. ...
+/// At looser tolerances than the default, closed forms hold this share of the tolerance: their true
+/// error, mostly a tenth of that, then disappears beside the error of the clipped pairs.
 constexpr double kClosedFormShare = 0.1;
-/// ... The kernels are published for no more than this.
+/// The loosest accuracy for which the kernels are published.
 constexpr double kLoosest = 1e-2;
 
 double closedFormTolerance(double tolerance) {

@@ -1,4 +1,4 @@
-// What the exact method makes of a mesh before it computes anything, and what that will cost.
+// The mesh prepared for the exact method, and the cost foreseen.
 #pragma once
 
 #include "formfactor/exact/assembly/row_assembly.h"
@@ -24,7 +24,7 @@ struct ExactScene {
   ColumnChunks chunks;
 };
 
-/// What computes values, in closed form and by clipping, to the options' tolerance.
+/// The kernels that compute values, in closed form and by clipping, to the options' tolerance.
 struct ExactKernels {
   /// Keeps `scene` by reference.
   ExactKernels(const ExactScene& scene, const FormFactorOptions& options);
@@ -33,8 +33,8 @@ struct ExactKernels {
   OccludedKernel occluded;
 };
 
-/// From the pairs of a sample of tasks, on the scene and the options alone, never on the machine or
-/// on what else it does.
+/// Foreseen from the pairs of a sample of tasks. It depends on the scene and the options alone,
+/// never on the machine or its load.
 struct ExactEstimate {
   std::size_t bytes = 0;         ///< held at once, FormFactorOptions::memory_held included
   std::size_t matrix_bytes = 0;  ///< of these, the matrix

@@ -44,7 +44,7 @@ struct RowSums {
   double seconds_assembly = 0;
 };
 
-/// What all rows share and where they go.
+/// Inputs that all rows share, and where rows go.
 struct RowContext {
   const ElementSet& elements;
   const PatchOrder& order;

@@ -8,14 +8,14 @@
 namespace radiosity {
 namespace {
 
-/// Of a task, ranges are taken until there are so many rows: what columns share is shared by rows.
+/// A sample takes ranges of a task until there are so many rows: rows share work on their columns.
 constexpr std::size_t kLeastRows = 4;
 /// Facets looked at, and tests made, for one range of rows.
 constexpr std::size_t kMostFacets = 128;
 constexpr std::size_t kMostLargeFacets = 4;
 constexpr std::size_t kMostTests = 12'500;
-/// Tests for each occluder, besides: what may come between two large facets is looked for among
-/// all, and that settles nothing yet. At most so many.
+/// Tests for each occluder, besides: all occluders are tested against the space between two large
+/// facets, and that settles nothing yet. At most so many.
 constexpr std::size_t kTestsAnOccluder = 50;
 constexpr std::size_t kMostTestsAtAll = 200'000;
 /// Occluded pairs of a task whose cost is guessed, evenly among all.
@@ -76,7 +76,7 @@ std::vector<OccludedPair> evenly(const std::vector<OccludedPair>& pairs, std::si
   return some;
 }
 
-/// What the occluded pairs will take.
+/// Foresees the cost of the occluded pairs.
 void costOfPairs(const ExactScene& scene, RecordedPairs recorded, double tolerance,
                  SampledPlace& found) {
   for (const OccludedPair& pair : recorded.occluded_pairs) {
@@ -189,7 +189,7 @@ void addPlaces(const ExactScene& scene, std::span<const ElementRange> ranges, Fa
 }  // namespace
 
 RowSample sampleRows(const ExactScene& scene, double tolerance, Progress& progress) {
-  // What walls see of walls, and small facets of walls, are classes of their own: few of the rows,
+  // Pairs of two walls, and of a wall and a small facet, are classes of their own: few of the rows,
   // and much of the work.
   const std::array<std::vector<ElementRange>, 2> ranges = {rangesOf(scene, FacetSize::large),
                                                            rangesOf(scene, FacetSize::small)};

@@ -5,10 +5,11 @@
 namespace radiosity {
 namespace {
 
-/// A task's rows, dense, take no more than this ...
+/// A task's rows, dense, take no more bytes than this.
 constexpr std::size_t kPanelBytes = std::size_t(1) << 24;
-/// ... and are no more than this: what a cluster is asked once serves all its rows, and clipping
-/// wants pairs by the thousand. Fewer would stay in the second-level cache, but that costs less.
+/// A task has no more rows than this. It has many, because one answer of the descent serves all
+/// rows of a cluster, and clipping is fastest with pairs by the thousand; both gain more than rows
+/// would that stay in the second-level cache.
 constexpr std::size_t kMostRows = 64;
 /// Long enough to fill vectors, short enough that little is computed for nothing.
 constexpr Index kChunk = 32;

@@ -173,8 +173,8 @@ double overallPace(const std::vector<PlaceTime>& times) {
   return all.work > 0 ? all.seconds / all.work : 0.0;
 }
 
-/// Of the pairs of a class, each place at its own pace: where pairs are dear, fewer of them were
-/// clipped.
+/// Seconds of the pairs of a class. Each place counts at its own pace: where pairs are dear, fewer
+/// of them were clipped.
 double occludedSeconds(const RowSample& sample, const std::vector<PlaceTime>& times, Clutter of) {
   double work = 0;
   double paced = 0;  // of this, where pairs were clipped

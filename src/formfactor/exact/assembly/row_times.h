@@ -1,4 +1,4 @@
-// What the work of a sample of the rows takes, here and now.
+// Times the work of a sample of the rows, here and now.
 #pragma once
 
 #include "formfactor/exact/assembly/row_sample.h"

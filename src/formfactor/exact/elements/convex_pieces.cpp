@@ -61,7 +61,7 @@ class Trapezoids {
   Trapezoids(const std::vector<Climb>& climbs, const std::vector<double>& levels)
       : climbs_(climbs), levels_(levels) {}
 
-  /// Of the slab above `level`: pairs of edges with inside between them. Trapezoids between edges
+  /// `edges`: pairs, in the slab above `level`, with inside between them. Trapezoids between edges
   /// that were neighbours in the slab below as well go on; the others end.
   void addSlab(std::size_t level, const std::vector<std::size_t>& edges) {
     std::map<Sides, std::size_t> now;

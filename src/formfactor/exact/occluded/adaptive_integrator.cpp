@@ -19,7 +19,7 @@ double expectedError(double change) { return kPairExpected4 * changeIn(0, change
 
 double VisibleFraction::error() const {
   if (!(whole > 0)) return 0;
-  // What is left out is the same share of the visible part and of the whole where they are one.
+  // The kernel leaves out the same share of the visible part and of the whole where they are one.
   const double seen = fraction();
   return std::hypot(std::sqrt(error2) / whole, 4 * seen * (1 - seen) * far_error);
 }
@@ -82,7 +82,7 @@ void AdaptiveIntegrator<T>::integrate(std::span<const SampledPair> group,
       (fractions[k].refined ? fine : coarse).index.push_back(k);
     }
     cutAtLines(c, fine, fractions);
-    // Of a quadrilateral cut by a plane there may be five corners: a quadrilateral and a triangle.
+    // A quadrilateral cut by a plane may have five corners: a quadrilateral and a triangle.
     for (std::size_t first = 0; first + 2 < c.size(); first += 2) {
       const SampleCell cell = {
           {c[0], c[first + 1], c[first + 2], c[std::min(first + 3, c.size() - 1)]}};
@@ -99,7 +99,7 @@ void AdaptiveIntegrator<T>::integrate(std::span<const SampledPair> group,
 template <class T>
 void AdaptiveIntegrator<T>::cutAtLines(std::span<const Vec3> polygon, Members& members,
                                        std::span<VisibleFraction> out) {
-  // Single precision is not asked for what takes so many points.
+  // Single precision is not used where so many points are needed.
   if constexpr (std::is_same_v<T, double>) {
     std::erase_if(members.index, [&](Index m) {
       const double misses = expectedError(out[m].change) / out[m].allowed;
@@ -112,8 +112,9 @@ void AdaptiveIntegrator<T>::cutAtLines(std::span<const Vec3> polygon, Members& m
   }
 }
 
-/// From the sampled element's nearest point to the target's middle, in the target's radii: far
-/// enough from all of the element for the kernels that expand about that middle, or not. A target
+/// Distance from the sampled element's nearest point to the target's middle, in the target's radii.
+/// It decides whether all of the element is far enough for the kernels that expand about that
+/// middle. A target
 /// that is cut has another middle: never far.
 template <class T>
 double AdaptiveIntegrator<T>::distanceInRadii(const SampledPair& pair) const {

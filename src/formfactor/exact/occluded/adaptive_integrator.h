@@ -15,13 +15,13 @@ namespace radiosity {
 
 /// The visible fraction of one pair.
 struct VisibleFraction {
-  double visible = 0;         ///< integral over the sampled part of the form factor to what is seen
-  double whole = 0;           ///< of the form factor to all of the target
-  double error2 = 0;          ///< sum of squares of the cells' stated errors, in the same unit
-  double allowed = 0;         ///< error of the fraction that is accepted
-  double change = 1;          ///< see SampledPair
-  double far_error = 0;       ///< of a half visible target's fraction: what its kernel leaves out
-  bool near = false;          ///< the target is: rules may agree and all be wrong
+  double visible = 0;    ///< integral over the sampled part of the form factor to the visible part
+  double whole = 0;      ///< of the form factor to all of the target
+  double error2 = 0;     ///< sum of squares of the cells' stated errors, in the same unit
+  double allowed = 0;    ///< error of the fraction that is accepted
+  double change = 1;     ///< see SampledPair
+  double far_error = 0;  ///< error of its kernel in the fraction of a half visible target
+  bool near = false;     ///< the target is: rules may agree and all be wrong
   bool may_cross = false;     ///< see SampledPair
   bool one_occluder = false;  ///< one alone comes between
   std::size_t points = 0;
@@ -31,7 +31,7 @@ struct VisibleFraction {
   double error() const;
 };
 
-/// What a pair may take: points times the occluders looked past from each, a few tenths of a
+/// Most work for a pair: points times the occluders looked past from each, a few tenths of a
 /// second. Steps of shadows that no halving resolves would take hundreds of times that.
 inline constexpr std::size_t kMostLooks = std::size_t(1) << 20;
 /// In single precision: between critical lines, in double precision, what takes more takes fewer.
@@ -59,14 +59,14 @@ class AdaptiveIntegrator {
                  std::span<VisibleFraction> fractions);
 
  private:
-  /// Some members of the group, and what the error of each is measured about: the visible fraction
-  /// that the first rule gave. Empty: not known yet.
+  /// Some members of the group, and the visible fraction about which the error of each is measured:
+  /// that of the first rule. Empty: not known yet.
   struct Members {
     std::vector<Index> index;
     std::vector<double> fraction;
   };
 
-  /// What one rule says of one member in one cell.
+  /// The result of one rule for one member in one cell.
   struct CellSum {
     double visible = 0;
     double whole = 0;

@@ -11,13 +11,13 @@ namespace {
 /// The largest number of shadows on a target that is told from more.
 constexpr std::uint8_t kMostCounted = 254;
 constexpr std::uint64_t kUnknownCut = ~std::uint64_t(0);
-/// What shadows that overlap add to the shape.
+/// Added to the shape where shadows overlap.
 constexpr std::uint32_t kOverlap = 0x9e3779b9U;
-/// Planes that may bound what two shadows have in common.
+/// Planes that may bound the common part of two shadows.
 constexpr std::size_t kMostOwnPlanes = 16;
 
-/// Up to so many targets, cones are not built before it is known that they meet one: of a small
-/// part of an element most occluders of the whole miss the target. More targets share the cones.
+/// Up to so many targets, cones are not built before it is known that they meet one: seen from a
+/// small part of an element, most occluders of the whole miss the target. More targets share cones.
 constexpr std::size_t kFewTargets = 4;
 
 /// Up to so many leave most of a vector empty.
@@ -106,7 +106,7 @@ void BatchVisibility<T>::collectBlockedTargets() {
     const auto outline = std::span(target.corners).first(target.corner_count);
     for (const Blocker& blocker : target.blockers) {
       const std::size_t most_planes = blocker.body->edges.size() + blocker.body->planes.size();
-      // What kernels cannot clip is dear in any group.
+      // A body with too many planes for the kernels is dear in any group.
       const bool look_first = group_.size() <= kFewTargets || most_planes > kMostPlanes;
       if (look_first && cones_.misses(blocker, outline)) continue;
       const auto next = std::uint32_t(group_blockers_.size());
@@ -128,7 +128,8 @@ ClipItems<T> BatchVisibility<T>::items(std::size_t count) const {
   return {count, item_target_.data(), item_eye_.data()};
 }
 
-/// What each occluder hides of each target it concerns, from each point: into form_factor_.
+/// Finds the part that each occluder hides of each target it concerns, from each point: into
+/// form_factor_.
 template <class T>
 void BatchVisibility<T>::castShadows() {
   const std::size_t count = points_.size() * blocked_targets_.size();
@@ -263,7 +264,7 @@ void BatchVisibility<T>::setLane(const Common& common, std::size_t lane, std::si
   for (std::size_t p = common.planes; p < planes; ++p) add(ConePlanes<T>::kAllInside);
 }
 
-/// What is inside two cones, for all of common_: into form_factor_, by lane.
+/// Form factors to the parts inside two cones, for all of common_: into form_factor_, by lane.
 template <class T>
 void BatchVisibility<T>::evaluateCommon() {
   placeCommon();
@@ -368,7 +369,7 @@ void BatchVisibility<T>::unite(std::span<Shadow> shadows) {
   visible_.data()[at] = std::min(formFactorOfPieces(point, lane), whole_.data()[at]);
 }
 
-/// Form factor from a point to what pieces_ hold of a target.
+/// Form factor from a point to the part of a target that pieces_ hold.
 template <class T>
 T BatchVisibility<T>::formFactorOfPieces(std::size_t point, std::size_t lane) {
   std::size_t count = 0;

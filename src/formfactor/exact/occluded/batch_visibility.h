@@ -1,4 +1,4 @@
-// What one surface point after another sees of many targets past many occluders.
+// Visibility of many targets past many occluders from one surface point after another.
 #pragma once
 
 #include <array>
@@ -34,8 +34,8 @@ class BlockerNumbers {
 
 /// Evaluates all points of a cell against all targets of a group. Every occluder's cone is built
 /// once a point; every target, seen from a point past an occluder, is a lane of the vector kernels.
-/// Where the shadows of two occluders fall on one target, what they have in common was subtracted
-/// twice; that is put right by another lane: the part inside two cones is the part inside those of
+/// Where the shadows of two occluders fall on one target, their common part was subtracted twice;
+/// that is put right by another lane: the part inside two cones is the part inside those of
 /// their planes that cut the target. Where more fall on it, they are cut out one after the other
 /// (VisiblePieces). Holds scratch memory: one a thread.
 template <class T>
@@ -51,7 +51,7 @@ class BatchVisibility {
   void look(std::span<const SamplePoint> points, const Vec3& origin, const Vec3& normal,
             std::span<const GroupTarget* const> targets, bool far);
 
-  /// From a point, of all targets: form factors, visible from 0 to whole.
+  /// Form factors from a point to all targets: to the whole target, and to its visible part.
   const T* whole(std::size_t point) const { return whole_.data() + point * targets_.lanes().count; }
   const T* visible(std::size_t point) const {
     return visible_.data() + point * targets_.lanes().count;
@@ -83,10 +83,10 @@ class BatchVisibility {
     LaneIndex<T> first;    ///< plane of its cone
     std::uint32_t planes;  ///< that cut the target
     std::uint64_t cut;     ///< which planes of its cone cut the target
-    T hidden;              ///< form factor to what it hides
+    T hidden;              ///< form factor to the part that it hides
     ShapeWord<T> shape;    ///< of that alone
   };
-  /// What two shadows on one target may have in common.
+  /// Two shadows on one target that may overlap.
   struct Common {
     std::uint32_t first, second;  ///< into shadows_
     std::uint32_t planes;         ///< of both

@@ -8,7 +8,7 @@
 namespace radiosity {
 namespace {
 
-/// Of what is unseen in a flat cell, what is stated.
+/// The share of a flat cell's unseen error that is stated.
 double flatShare(const CellValues& values) {
   const bool four = values.count == 4;
   // Shadows of one shape have their edges where they are; others come and go at the border.

@@ -1,4 +1,4 @@
-// What the values of a cell's points say of the error of their mean.
+// Estimates the error of a cell's mean from the values at its points.
 #pragma once
 
 #include <array>
@@ -8,14 +8,14 @@
 
 namespace radiosity {
 
-/// What the points of a cell saw of a target.
+/// Values of one target at the points of a cell.
 struct CellValues {
   /// Visible minus fraction times whole form factor, by which the visible fraction's error is
   /// measured.
   std::array<double, SamplePoints::kMost> residual;
   std::size_t count = 0;
   double whole = 0;           ///< mean of the whole form factor
-  double fraction = 0;        ///< of that, what is visible
+  double fraction = 0;        ///< visible share of it
   double side = 1;            ///< of the cell, in the sampled element's
   double change = 0;          ///< see changeIn
   bool may_cross = false;     ///< see SampledPair: shadows may end in a step
@@ -23,12 +23,11 @@ struct CellValues {
   bool one_occluder = false;  ///< one alone comes between
 
   /// All points see nearly the same fraction, or all see everything or nothing, however much the
-  /// whole form factor changes next to the target: what there is to be seen of a shadow's edge may
-  /// have slipped between them.
+  /// whole form factor changes next to the target: a shadow's edge may have slipped between them.
   bool flat() const;
-  /// What the values' differences say of the error of their mean, ...
+  /// Error of the mean as far as the values' differences show it.
   double seen() const;
-  /// ... and what may have slipped between the points.
+  /// Error from edges of shadows that may have slipped between the points.
   double unseen() const;
 };
 
@@ -40,16 +39,16 @@ double changeIn(int level, double change);
 
 /// Estimates of the root mean square error of a cell's mean residual, from 4 or 9 points.
 struct CellError {
-  double cautious = 0;  ///< decides whether the cell is cut: what is kept is not looked at again
-  double stated = 0;    ///< what a cell that is kept adds to the error figures
+  double cautious = 0;  ///< decides whether the cell is cut; one that is kept is not seen again
+  double stated = 0;    ///< added to the error figures by a cell that is kept
 };
 
-/// Gauss points see a smooth integrand far better than any tolerance; what they do not see is a
-/// kink, where an edge of a shadow passes a corner of the target. Its size goes with how much the
+/// Gauss points see a smooth integrand far better than any tolerance. They do not see a kink, where
+/// an edge of a shadow passes a corner of the target. Its size goes with how much the
 /// values change from point to point (2 x 2) or how much that changes (3 x 3), and, seen or not,
 /// with how far shadows move across the target.
 ///
-/// The cautious estimate is linear in that. What is stated tells more cells apart. A kink is weak
+/// The cautious estimate is linear in that. The stated one tells more cells apart. A kink is weak
 /// where shadows move little: an edge that reaches a corner turned against the target's sides
 /// changes the slope only while it goes on, so that errors go with something between the movement
 /// and its square. And a cell is flat for two reasons: nothing of a shadow is seen, which may have
@@ -60,13 +59,13 @@ struct CellError {
 /// form factor and better: those of the cautious estimate on the closed Cornell box with 985
 /// patches and a tenth of the curved scene's rows; those of the stated one on both, another
 /// twentieth of the curved scene's rows, the box with 258 and 5,096 patches, a cluttered scene and
-/// two rooms, from 1e-1 to 1e-5: for every kind of cell that carries much of the error, what is
-/// stated and found agree to within a factor of 1.5 in most scenes, of 2 in all. Held against the
+/// two rooms, from 1e-1 to 1e-5: for every kind of cell that carries much of the error, stated and
+/// found errors agree to within a factor of 1.5 in most scenes, of 2 in all. Held against the
 /// box with 20,234 patches and a furnished room, which took no part in that.
 /// tests/bench/error_model.py fits them anew.
 CellError meanError(const CellValues& values);
 
-/// Better estimates than what was `guessed`, once the points near the corners were looked from:
+/// Better estimates than the `guessed` ones, once the points near the corners were looked from:
 /// `residual` is the largest of theirs.
 CellError meanErrorOutside(const CellError& guessed, double residual);
 

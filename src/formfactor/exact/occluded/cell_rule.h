@@ -24,7 +24,7 @@ struct SamplePoints {
   std::span<const SamplePoint> all() const { return {point.data(), count}; }
 };
 
-/// Of the three Gauss-Legendre points on [0, 1].
+/// Weights of the three Gauss-Legendre points on [0, 1].
 inline constexpr std::array<double, 3> kGaussWeight3 = {5.0 / 18, 8.0 / 18, 5.0 / 18};
 
 /// A convex quadrilateral (a triangle: its last two corners are one).
@@ -33,8 +33,8 @@ struct SampleCell {
 
   /// Product Gauss points of the unit square, 2 x 2 or 3 x 3, mapped bilinearly.
   SamplePoints points(std::size_t side) const;
-  /// Four points near the corners, without weight: they see what passes outside the others. Not at
-  /// the corners, which may touch an occluder.
+  /// Four points near the corners, without weight: they see edges that pass outside the others. Not
+  /// at the corners, which may touch an occluder.
   SamplePoints outerPoints() const;
   /// One of four: halves both ways.
   SampleCell child(std::size_t k) const;

@@ -31,7 +31,7 @@ void CriticalLineQuadrature::addPart(const CriticalLines::Part& part) {
   }
 }
 
-/// Around a foot what is seen changes with the direction from it and hardly with the distance.
+/// Around a foot the view changes with the direction from it and hardly with the distance.
 /// Where the foot is the corner to which a side of the square shrinks, these are the square's two
 /// axes, and the integrand is smooth (Duffy 1982). `c` is a foot.
 void CriticalLineQuadrature::addTriangle(const Vec2& a, const Vec2& b, const Vec2& c) {

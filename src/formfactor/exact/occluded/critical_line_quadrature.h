@@ -1,4 +1,4 @@
-// Pairs whose sampled element is cut along the lines where what it sees has kinks.
+// Pairs whose sampled element is cut along the lines where its view has kinks.
 #pragma once
 
 #include <span>
@@ -13,18 +13,19 @@ namespace radiosity {
 
 struct VisibleFraction;
 
-/// Integrates one pair over the parts between its critical lines. There the form factor to what is
-/// seen is smooth, and Gauss points mostly have it right at once, where halving cells towards a
-/// kink takes ten times the points for every digit. (Eight plates with obstacles, 64 patches each:
-/// 20 points a pair from 1e-5 to 1e-7, for 1,700 at 1e-6.) Holds scratch memory: one a thread.
+/// Integrates one pair over the parts between its critical lines. There the form factor to the
+/// visible part is smooth, and Gauss points mostly have it right at once, where halving cells
+/// towards a kink takes ten times the points for every digit. (Eight plates with obstacles, 64
+/// patches each: 20 points a pair from 1e-5 to 1e-7, for 1,700 at 1e-6.) Holds scratch memory: one
+/// a thread.
 class CriticalLineQuadrature {
  public:
   static constexpr std::size_t kMostParts = 64;
 
   explicit CriticalLineQuadrature(BatchVisibility<double>& view) : view_(view) {}
 
-  /// `polygon`: what of the sampled element, of unit normal `normal`, sees the target. Adds to
-  /// `out`, whose `allowed` is set. False, and nothing is added: there are more parts than
+  /// `polygon`: the part of the sampled element, of unit normal `normal`, that sees the target.
+  /// Adds to `out`, whose `allowed` is set. False, and nothing is added: there are more parts than
   /// `most_parts` (up to kMostParts). `far`: see BatchVisibility.
   bool integrate(std::span<const Vec3> polygon, const Vec3& normal, const GroupTarget& target,
                  bool far, double coincidence, std::size_t most_parts, VisibleFraction& out);

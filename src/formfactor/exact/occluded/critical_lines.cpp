@@ -204,8 +204,8 @@ void CriticalLines::cutAlong(const Vec2& on, const Vec2& along, double begin, do
   }
 }
 
-/// Of a corner; 0: on the line, within narrow_. Lines often meet in a corner that another made, and
-/// rounding must not decide whether it is cut off.
+/// The side of a line on which a corner lies; 0: on it, within narrow_. Lines often meet in a
+/// corner that another line made, and rounding must not decide whether it is cut off.
 double CriticalLines::side(const Vec2& corner, const Vec2& on, const Vec2& along) const {
   const double distance = cross2(along, corner - on);
   return std::abs(distance) > narrow_ ? distance : 0.0;

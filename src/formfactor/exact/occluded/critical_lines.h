@@ -1,4 +1,4 @@
-// Where an eye that moves over a plane sees a shadow's edge pass a corner of what it looks at.
+// Lines in a plane on which an eye sees a shadow's edge pass a corner of its target.
 #pragma once
 
 #include <span>
@@ -9,22 +9,22 @@
 
 namespace radiosity {
 
-/// Cuts a polygon along straight lines between which what an eye on it sees of a convex target past
-/// convex bodies changes smoothly. It does not where the eye is in line with a corner of the target
-/// and an edge of a body, a corner of a body and an edge of the target, a corner of one body and an
+/// Cuts a polygon along straight lines. Between them the view of a convex target past convex bodies
+/// changes smoothly. It has a kink where the eye is in line with a corner of the target and an edge
+/// of a body, a corner of a body and an edge of the target, a corner of one body and an
 /// edge of another, or is in the plane of a body's face (Gigus & Malik 1990 have all such events).
 /// Each but the last leaves a segment in the eye's plane, the projection of the edge from the
-/// corner or of the edge through it. What is left are curves, where two bodies' edges seem to cross
-/// on an edge of the target. Holds scratch memory: one a thread.
+/// corner or of the edge through it. The other kinks are on curves, where two bodies' edges seem to
+/// cross on an edge of the target. Holds scratch memory: one a thread.
 class CriticalLines {
  public:
-  /// Of all bodies in between. Every edge may be in line with every corner: of more, looking for
-  /// the lines takes as long as what they save.
+  /// Edges of all bodies in between. Every edge may be in line with every corner: with more of
+  /// them, the search for lines takes as long as the lines save.
   static constexpr std::size_t kMostEdges = 64;
 
   using Part = std::vector<Vec2>;  ///< convex; see lift()
 
-  /// `polygon`: convex, in a plane of unit normal `normal`, with `target` in front of it; what is
+  /// `polygon`: convex, in a plane of unit normal `normal`, with `target` in front of it; a corner
   /// nearer to that plane than `coincidence` touches it. False: there would be more than
   /// `most_parts`, or there is too much in between to look for them.
   bool cut(std::span<const Vec3> polygon, const Vec3& normal, std::span<const Vec3> target,

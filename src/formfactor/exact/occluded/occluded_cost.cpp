@@ -22,7 +22,7 @@ constexpr double kFirst = 4;
 constexpr double kCutFrom = kPointsParts * kPartWorth;
 constexpr double kPartPoints = kPointsParts * 13;
 
-/// From middle to middle, held below what a target that fills the view takes.
+/// The exchange from middle to middle, at most that of a target that fills the view.
 double guessedExchange(const ElementSet& elements, const OccludedPair& pair) {
   const Vec3 way = elements.centroid[pair.column] - elements.centroid[pair.row];
   const double up = glm::dot(way, elements.facets[elements.facet[pair.row]].normal);

@@ -11,8 +11,8 @@
 namespace radiosity {
 namespace {
 
-/// Of one pair from its two ends: the one that resolves it better. What they differ by is shared
-/// out by how badly each resolves it; a half is its error where they are alike.
+/// One pair evaluated from both ends: the result that resolves it better. Its error is a share of
+/// their difference, by how badly each resolves the pair: a half where they are alike.
 OccludedExchange betterResolved(const OccludedExchange& a, const OccludedExchange& b) {
   const double both = a.unresolved + b.unresolved;
   OccludedExchange better = a.unresolved <= b.unresolved ? a : b;

@@ -40,7 +40,7 @@ struct OccludedPair {
 /// size h at distance r to 1e-6 r/h, and meshes of 20,000 patches have r/h near 100.
 inline constexpr double kSinglePrecision = 2.5e-4;
 
-/// Of the tolerance, what rechecks are made to; and what they are made to at most, so that they
+/// Rechecks are made to this share of the tolerance, and to kStricterLoosest at most, so that they
 /// are in double precision.
 inline constexpr double kStricter = 1.0 / 8;
 inline constexpr double kStricterLoosest = kSinglePrecision / 2;
@@ -51,13 +51,13 @@ double allowedError(const ElementSet& elements, const OccludedPair& pair, double
 /// The exact unoccluded value times the visible fraction. The fraction is the quotient of two
 /// quadratures over the points of one element, the one along which shadows move less across the
 /// other: of the visible and of the whole form factor from the point to the other element, each in
-/// closed form. So it lies in [0, 1], is exact where nothing or everything is hidden, and what the
-/// quadrature gets wrong about the elements' nearness cancels.
+/// closed form. So it lies in [0, 1], is exact where nothing or everything is hidden, and errors of
+/// the quadrature from the elements' nearness cancel.
 ///
-/// Unless it gets nearly all of it wrong: of a large element that a sliver touches, no point of a
-/// few lies where the exchange takes place. Pairs of which the points miss the unoccluded value by
-/// more than kPairResolved, and those that single precision would need many points for, are
-/// evaluated again in double precision, from both ends.
+/// They do not cancel where the quadrature is all wrong: if a sliver touches a large element, none
+/// of a few points on that lies where the exchange takes place. Pairs whose points miss the
+/// unoccluded value by more than kPairResolved, and pairs that need many points in single
+/// precision, are evaluated again in double precision, from both ends.
 class OccludedKernel {
  public:
   /// `tolerance`: as FormFactorOptions::tolerance. Elements and occluders are kept by reference.
@@ -72,13 +72,13 @@ class OccludedKernel {
                 std::span<OccludedExchange> out, OccludedCounts& counts,
                 const Progress* progress = nullptr) const;
 
-  /// The same in double precision and to a fraction of the tolerance (kStricter): what it differs
-  /// by is nearly all of the error. For rechecks.
+  /// The same in double precision and to a fraction of the tolerance (kStricter): the difference is
+  /// nearly all of the error. For rechecks.
   void evaluateStrictly(std::span<const OccludedPair> pairs, std::span<const Index> occluder_list,
                         std::span<OccludedExchange> out, const Progress* progress = nullptr) const;
 
  private:
-  /// Some pairs, and what is made of them.
+  /// Some pairs, and where their results go.
   struct Batch {
     double tolerance;
     std::span<const OccludedPair> pairs;

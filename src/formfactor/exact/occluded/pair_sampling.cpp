@@ -19,7 +19,7 @@ constexpr std::size_t kMostDistances = std::size_t(1) << 24;
 /// end is sampled must not depend on how distances, in single precision, are rounded.
 constexpr double kAlike = 1 + 1e-5;
 
-/// Of bodies with more faces than these it is not asked whether they are thin.
+/// Bodies with more faces than these are not tested for being thin.
 constexpr std::size_t kMostThinPlanes = 16;
 
 struct Heights {
@@ -123,8 +123,9 @@ const PairPreparation::Between& PairPreparation::between(Index occluder, Index r
   return found;
 }
 
-/// Of similar triangles with their tips on the occluders' edges. Of an edge that touches the target
-/// no shadow moves, but others of the same occluder may be a target's size away.
+/// From similar triangles with their tips on the occluders' edges. The shadow of an edge that
+/// touches the target does not move, but other edges of the same occluder may be a target's size
+/// away.
 PairPreparation::EdgeDistancesSquared PairPreparation::shadowChanges(double row_size,
                                                                      double column_size) const {
   const double row_size2 = row_size * row_size;

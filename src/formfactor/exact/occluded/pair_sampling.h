@@ -28,10 +28,11 @@ struct SampledPair {
   std::uint32_t blockers_begin, blockers_end;  ///< into PairPreparation::blockers
 };
 
-/// Which end of pairs carries the points. Of several occluders the one whose shadow moves most
-/// counts: a small patch beside one of them and a large one beside another are both far from their
-/// nearest in their own sizes, but from the large one the small is seen or not in a step. (In the
-/// curved scene at 1e-3 the rule halves the error that the distance to the nearest edge leaves.)
+/// Which end of pairs carries the points. Where there are several occluders, the one whose shadow
+/// moves most counts: a small patch beside one of them and a large one beside another are both far
+/// from their nearest in their own sizes, but from the large one the small is seen or not in a
+/// step. (In the curved scene at 1e-3 the rule halves the error that the distance to the nearest
+/// edge leaves.)
 enum class SampledEnd {
   calmer,    ///< from end to end of it shadows move less across the other one: SampledPair::change
   restless,  ///< the other one
@@ -84,7 +85,7 @@ class PairPreparation {
     std::uint64_t key;
     std::uint32_t pair;
   };
-  /// Of both ends of a pair: squares of the distances to the nearest edge of one occluder.
+  /// Squares of the distances from both ends of a pair to the nearest edge of one occluder.
   struct EdgeDistancesSquared {
     double row, column;
   };

@@ -1,4 +1,4 @@
-// What the two rules of a part between critical lines say of the error of the better one.
+// Estimates the error of a part between critical lines from the difference of its two rules.
 #pragma once
 
 #include <array>
@@ -6,7 +6,7 @@
 
 namespace radiosity {
 
-/// What the points of a part saw of the target.
+/// Values of the target at the points of a part.
 struct PartValues {
   static constexpr std::size_t kPoints = 13;  ///< 2 x 2, then 3 x 3
   static constexpr std::size_t kCoarse = 4;   ///< of them the first
@@ -20,9 +20,9 @@ struct PartValues {
 
   /// By 3 x 3 points.
   double integral(const std::array<double, kPoints>& values) const;
-  /// Of the integral of visible minus `fraction` times whole form factor. `near`: see
-  /// VisibleFraction. Decides whether the part is halved; of one that is kept, kPartStated times
-  /// this is stated.
+  /// Error of the integral of visible minus `fraction` times whole form factor. `near`: see
+  /// VisibleFraction. It decides whether the part is halved; a part that is kept states kPartStated
+  /// times this.
   double error(double fraction, bool near) const;
 
  private:

@@ -27,7 +27,7 @@ struct GroupTarget {
 template <class T>
 class TargetRows {
  public:
-  /// One lane a target, middles from `origin`; what is left of the last vector repeats the last
+  /// One lane a target, middles from `origin`; the rest of the last vector repeats the last
   /// target.
   void fill(std::span<const GroupTarget* const> targets, const Vec3& origin);
   /// The first `count` of other lanes once for each of `eyes`, as seen with that eye as the origin:

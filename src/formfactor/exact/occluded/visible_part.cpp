@@ -19,8 +19,8 @@ std::uint64_t scramble(std::uint64_t id, std::uint64_t edge) {
 
 }  // namespace
 
-/// Form factor to what `cone` hides of the target; the part itself ends in clipped_[0]. Negative
-/// where it hides all of it.
+/// Form factor to the part of the target that `cone` hides; the part itself ends in clipped_[0].
+/// Negative where it hides all of it.
 double VisiblePart::clipToCone(const BlockingCone& cone, const Vec3& normal, Index id,
                                PointView& view) {
   const ConvexPolygon* now = &target_;
@@ -49,8 +49,8 @@ void VisiblePart::subtract(const BlockingCone& cone) {
     const std::size_t before = made;
     std::swap(clipped_[0], pieces_[p]);
     bool hidden = true;
-    // What each plane cuts off is visible and convex; what is left at the end is hidden. Copies
-    // are kept in case a later plane shows that nothing is hidden: then the piece stays whole.
+    // Each plane cuts off a visible convex part; the rest at the end is hidden. Copies are kept in
+    // case a later plane shows that nothing is hidden: then the piece stays whole.
     whole_ = clipped_[0];
     for (const ClipPlane& plane : cone.planes) {
       const PlaneSide side = split(clipped_[0], plane, std::uint16_t(0), &clipped_[1], &outside_);
@@ -71,7 +71,7 @@ void VisiblePart::subtract(const BlockingCone& cone) {
   piece_count_ = made;
 }
 
-/// Form factor to what is left of the target, cut into convex pieces, without all shadows.
+/// Form factor to the target without all shadows, cut into convex pieces.
 double VisiblePart::subtractAll(const Vec3& normal) {
   // The largest first: it leaves the least to be cut by the others.
   std::sort(shadows_.begin(), shadows_.begin() + std::ptrdiff_t(shadow_count_),

@@ -20,17 +20,17 @@ struct Blocker {
 
 /// The answer from one point.
 struct PointView {
-  double visible = 0;  ///< form factor to what is seen of the target, 0 to `whole`
+  double visible = 0;  ///< form factor to the visible part of the target, 0 to `whole`
   double whole = 0;    ///< form factor to all of it
-  /// Which edges bound what is hidden. Where it differs between neighbouring points the form
-  /// factor has a kink between them.
+  /// A number for the set of edges that bound the hidden part. Where it differs between
+  /// neighbouring points the form factor has a kink between them.
   std::uint64_t shape = 0;
 };
 
 /// Exact in double precision. Holds scratch memory: one a thread.
 class VisiblePart {
  public:
-  /// From `eye`, on a surface of normal `normal`, to `target`: convex, wholly above the eye's
+  /// Looks from `eye`, on a surface of normal `normal`, at `target`: convex, wholly above the eye's
   /// horizon, its front to the eye.
   PointView look(const Vec3& eye, const Vec3& normal, std::span<const Vec3> target,
                  std::span<const Blocker> blockers);
@@ -52,7 +52,7 @@ class VisiblePart {
   ConvexPolygon whole_;
   std::vector<Shadow> shadows_;  ///< the first shadow_count_ are in use
   std::size_t shadow_count_ = 0;
-  std::vector<ConvexPolygon> pieces_;  ///< of what is visible; the first piece_count_ are in use
+  std::vector<ConvexPolygon> pieces_;  ///< of the visible part; the first piece_count_ are in use
   std::size_t piece_count_ = 0;
   std::vector<ConvexPolygon> next_;
 };

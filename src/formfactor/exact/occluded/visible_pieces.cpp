@@ -74,8 +74,8 @@ VisiblePieces::Piece VisiblePieces::part(const Piece& piece, bool inside) {
   return boxed(first);
 }
 
-/// What each side cuts off is visible and convex; what is left at the end is hidden. False if a
-/// side shows that nothing is: then the piece stays whole.
+/// Each side cuts off a visible convex part; the rest at the end is hidden. False if a side shows
+/// that nothing is hidden: then the piece stays whole.
 bool VisiblePieces::cutOut(Piece piece, double noise) {
   const std::size_t before = cut_off_.size();
   for (const ShadowSide* side : cutting_) {

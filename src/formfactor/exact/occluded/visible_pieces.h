@@ -1,4 +1,4 @@
-// What convex shadows leave of a convex polygon, in its plane.
+// A convex polygon without convex shadows, in its plane.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ struct ShadowSide {
   double a = 0, b = 0, c = 0;
 };
 
-/// Cuts shadows out of a polygon, one after the other; what is left is a list of disjoint convex
+/// Cuts shadows out of a polygon, one after the other; the rest is a list of disjoint convex
 /// pieces. A walk along the border of the shadows' union would make fewer cuts, but each of its
 /// decisions must agree with others. Here, where borders nearly coincide, as those of books side by
 /// side do, either decision moves a sliver. Holds scratch memory.
@@ -23,9 +23,9 @@ class VisiblePieces {
   /// Convex, three corners or more.
   void begin(std::span<const Vec2> polygon);
 
-  /// Takes one shadow away: what is inside all `sides`. What passes a side by no more than `noise`
-  /// is not cut by it. Large shadows first leave the least to be cut by the others. False if all of
-  /// it falls on what is hidden already.
+  /// Takes one shadow away: the part inside all `sides`. A piece that passes a side by no more than
+  /// `noise` is not cut by it. Taking large shadows first leaves the least for the others to cut.
+  /// False if all of the shadow falls on parts that are hidden already.
   bool subtract(std::span<const ShadowSide> sides, double noise);
 
   bool empty() const { return pieces_.empty(); }

@@ -13,7 +13,7 @@
 namespace radiosity {
 namespace {
 
-/// What clipping leaves of the loops; none if a plane shows that there is nothing.
+/// The parts of the loops inside the body; none if a plane shows that there are none.
 std::vector<std::vector<Vec3>> partsInside(const OccluderPolygons& all,
                                            const OccluderPolygon& polygon, const Occluder& body,
                                            double margin) {

@@ -27,7 +27,7 @@ class ConvexGroups {
   /// The first of the polygons joined to this one over edges across which both lie on one plane.
   Index levelWith(Index polygon) const { return level_[polygon]; }
   bool isLarge(Index polygon) const { return size_[group_[polygon]] > kLarge; }
-  /// Of a large group: whether each of its polygons lies behind all others' planes.
+  /// For a polygon of a large group: whether it lies behind all others' planes.
   bool isConvex(Index polygon) const { return convex_[group_[polygon]] != 0; }
 
  private:

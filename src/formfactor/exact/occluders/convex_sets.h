@@ -20,7 +20,7 @@ struct ConvexSet {
   std::vector<Member> members;  ///< by ascending polygon, once the set is grown
   std::vector<Index> vertices;
   std::vector<Occluder::Plane> planes;
-  /// Of Growth::known: planes by ConvexGroups::levelWith().
+  /// With Growth::known: planes by ConvexGroups::levelWith().
   std::map<Index, std::vector<Index>> faces_of_level;
 
   std::vector<Index> polygons() const;

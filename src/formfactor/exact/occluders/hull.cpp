@@ -42,7 +42,7 @@ std::vector<FlatPoint> strictHull(std::vector<FlatPoint> points) {
   return hull;
 }
 
-/// Of fewer points a loop over all of them finds sooner which are near a plane.
+/// With fewer points, a loop over all of them finds those near a plane sooner.
 constexpr std::size_t kManyPoints = 64;
 
 /// Grows a hull face by face.

@@ -1,4 +1,4 @@
-// What can stand between two elements: convex solids and convex pieces of planar polygons.
+// Occluders: convex solids and convex pieces of planar polygons.
 #pragma once
 
 #include <cstdint>

@@ -30,8 +30,8 @@ double depthBehind(const OccluderPolygons& all, Index front) {
     shaft.planes.push_back({out, glm::dot(out, a)});
   }
   double highest = -std::numeric_limits<double>::infinity();
-  // What is wholly outside a plane of the shaft is not in it, and what is not above the highest
-  // found is none the higher.
+  // A box wholly outside a plane of the shaft is not in it, and a box that is not above the highest
+  // point found so far holds no higher one.
   const auto meets = [&](const Box3& box) {
     const Vec3 middle = 0.5 * (box.low + box.high);
     const Vec3 half = 0.5 * (box.high - box.low) + Vec3(all.coincidence);

@@ -1,4 +1,4 @@
-// What lies behind a convex polygon.
+// The prism behind a convex polygon.
 #pragma once
 
 #include <optional>

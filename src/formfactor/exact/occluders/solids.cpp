@@ -24,7 +24,7 @@ using Flags = std::vector<std::uint8_t>;
 /// Groups of polygons that a thread searches at a time.
 constexpr std::size_t kGroupsAtOnce = 8;
 
-/// What is known of a group's polygons while it is searched. Flags go by the place in the group.
+/// The state of a group's polygons while it is searched. Flags go by the place in the group.
 struct GroupMemory {
   explicit GroupMemory(std::size_t size) : taken(size, 0) {
     given_up.fill(Flags(size, 0));
@@ -120,7 +120,7 @@ class SolidSearch {
     std::vector<ConvexSolid> solids;
     GroupMemory memory(group.size());
     for (const bool convex_only : {true, false}) {
-      // What failed with all of them would fail once more.
+      // A search that failed with all of them would fail once more.
       if (!convex_only && solids.empty() && areConvex(group)) break;
       for (const Index seed : group) {
         if (isTaken(seed, memory) || !mayJoin(seed, convex_only)) continue;
@@ -173,7 +173,7 @@ class SolidSearch {
     const bool are_convex = areConvex(group);
     for (const Index p : group) {
       if (opaque_[p] == 0) continue;
-      // From one face of a body its other faces give the same once more; so do convex polygons
+      // The other faces of a body would give the same body once more; so would convex polygons
       // alone where there are no others.
       for (const bool convex_only : {false, true}) {
         if ((convex_only && are_convex) || !mayJoin(p, convex_only) ||
@@ -207,7 +207,7 @@ class SolidSearch {
                                         GroupMemory& memory) const {
     if (isCurved(seed)) return {};
     const bool large = groups_.isLarge(seed);
-    // From one polygon of a curved body its others give the same once more.
+    // The other polygons of a curved body would give the same body once more.
     if (large && std::exchange(memory.tried[convex_only], true)) return {};
     // Several bodies may be in convex position, side by side: then carefully one of them.
     const std::vector<Growth> ways = large ? std::vector<Growth>{Growth::known}
@@ -217,7 +217,7 @@ class SolidSearch {
       if (way == Growth::careful && given_up[place_[seed]] != 0) continue;
       const ConvexSet set = growth_.grow(
           seed, way, [&](Index p) { return !isTaken(p, memory) && mayJoin(p, convex_only); });
-      // From one of them the others give much the same once more, and each takes a hull for every
+      // The other polygons would give much the same once more, and each takes a hull for every
       // polygon that might join.
       if (way == Growth::careful) mark(set, given_up);
       std::vector<Index> key = set.polygons();
@@ -288,7 +288,7 @@ class SolidSearch {
               [](const auto& a, const auto& b) { return a.polygon < b.polygon; });
   }
 
-  /// Of polygons not taken yet.
+  /// Area on the solid's faces of polygons not taken yet.
   double areaOnFaces(const ConvexSolid& solid) const {
     double area = 0;
     for (const ConvexSolid::OnFace& on : solid.on_faces) {

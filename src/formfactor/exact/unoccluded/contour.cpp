@@ -41,7 +41,7 @@ double logAlong(const Segment& segment, const Vec3& offset, double inverse_unit)
   const double u1 = u0 + segment.length;
   const double h = glm::length(glm::cross(offset, segment.direction));
   const double hh = h * h;
-  // Of atan(u1/h) - atan(u0/h): right also at h = 0, where the point lies on the line.
+  // atan(u1/h) - atan(u0/h), right also at h = 0, where the point lies on the line.
   const double angle = std::atan2(h * segment.length, hh + u0 * u1);
   const double scale = inverse_unit * inverse_unit;
   return 0.5 * (xLogY(u1, (u1 * u1 + hh) * scale) - xLogY(u0, (u0 * u0 + hh) * scale)) -
@@ -103,7 +103,7 @@ std::span<const Node> chooseRule(double nodes, double digits) {
   return tanhSinh(level);
 }
 
-/// From `low` to `high` along the outer edge.
+/// The integral from `low` to `high` along the outer edge.
 double skewPiece(const Segment& outer, const Segment& inner, double low, double high,
                  std::span<const Node> rule, double inverse_unit) {
   const Vec3 from_low = outer.origin + low * outer.direction - inner.origin;
@@ -170,7 +170,7 @@ double meetingEdges(const Segment& a, const Segment& b, double from_a, double fr
 /// Sines and cosines below this come of rounding: neglected angles of this size change an
 /// integral by as much, relative.
 constexpr double kRoundingAngle = 1e-13;
-/// Of the tolerance: distance of lines that are taken to meet.
+/// Lines are taken to meet where their distance is below this share of the tolerance.
 constexpr double kNeglected = 1e-4;
 /// Over the sine of the lines' angle: what is lost to cancellation where they meet far away.
 constexpr double kMeetingRounding = 1e-14;

@@ -32,7 +32,7 @@ FlatShape flatShape(std::span<const Vec3> corners, const FacetFrame& frame) {
   shape.cu = glm::dot(shape.centroid, frame.u);
   shape.cv = glm::dot(shape.centroid, frame.v);
 
-  // Of d = mean + s U + t V + s t W, with density 1 + a s + b t.
+  // Moments of d = mean + s U + t V + s t W, with density 1 + a s + b t.
   const Vec2 &m = shape.mean, &u = shape.u, &v = shape.v, &w = shape.w;
   const auto moment = [&](int i, int j) {
     const double square = m[i] * m[j] + (u[i] * u[j] + v[i] * v[j]) / 3 + w[i] * w[j] / 9;

@@ -33,19 +33,19 @@ struct FlatShape {
   double area = 0;
 };
 
-/// What decides between formulas for an element, see far_kernels.h.
+/// Bounds that choose the formula for an element, see far_kernels.h.
 struct FarBounds {
   double series_limit = 0;
   double skew = 0;  ///< 0 to 1
 };
 
-/// Of three or four corners, counter-clockwise.
+/// The shape of a polygon of three or four corners, counter-clockwise.
 FlatShape flatShape(std::span<const Vec3> corners, const FacetFrame& frame);
 
 /// Columns for the vector kernels: one array a quantity.
 enum FarField : std::size_t {
   kCentreUHigh,  // coordinates of the centroid in two parts: differences of nearby elements do not
-  kCentreULow,   // lose what single precision leaves out
+  kCentreULow,   // lose digits to single precision
   kCentreVHigh,
   kCentreVLow,
   kMomentPU,

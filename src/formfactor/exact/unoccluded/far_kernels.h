@@ -11,7 +11,7 @@
 //   e = r M r (sum of both), m = trace M (sum), c_column = n_row M_column r,
 //   c_row = n_column M_row r, x = n_row M_column M_row n_column.
 //
-// What is left out is of fourth order in size over distance (of third where an element is no
+// The terms left out are of fourth order in size over distance (of third where an element is no
 // parallelogram). The sum R of the second-order terms' magnitudes over p q,
 //
 //   R = [(12 e/s + 4 m) + 8 (p |c_row| + q |c_column|)/(p q) + 4 |4 x - 24 c_row c_column/s|/(p
@@ -22,8 +22,8 @@
 // triangle. The series serves where its error, kSeriesError R^2 and kSkewError skew R^(3/2), is
 // below the tolerance (relative); else the first rule (far_rules.h) with kRuleError R^order below
 // it, or for triangles kSkewRuleError R^(order - 1/2), and between the two for little skew; else
-// nothing: the pair is near. The constants (error_model.h) bound what was found on pairs of all
-// shapes and placements; exact_far_kernels_test holds every instruction set to the tolerance.
+// nothing: the pair is near. The constants (error_model.h) bound the errors found on pairs of
+// all shapes and placements; exact_far_kernels_test holds every instruction set to the tolerance.
 #pragma once
 
 #include <array>
@@ -94,7 +94,7 @@ struct FarBatch {
   T* values;
 };
 
-/// What `values` says of a pair that is near.
+/// Marks a near pair in `values`.
 inline constexpr double kNearPair = -1;
 
 template <class T>

@@ -29,7 +29,7 @@ double distanceToEdges(const Vec3& p, std::span<const Vec3> polygon) {
 constexpr int kLeastPoints = 2;
 /// More cost more than contours.
 constexpr int kMostPoints = 8;
-/// Of the square of the pair's extent: what contours lose to cancellation.
+/// Loss of contours to cancellation, as a share of the square of the pair's extent.
 constexpr double kContourRounding = 1e-16;
 
 /// The least n for which n x n points are good for the tolerance: the error is below

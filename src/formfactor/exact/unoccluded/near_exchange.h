@@ -8,7 +8,7 @@
 
 namespace radiosity {
 
-/// A triangle or convex quadrilateral with what its formulas need.
+/// A triangle or convex quadrilateral with the quantities that its formulas need.
 struct PlanarElement {
   std::span<const Vec3> outline;  ///< counter-clockwise about the normal
   Vec3 normal{0.0};               ///< unit

@@ -15,12 +15,12 @@ namespace {
 
 /// Single precision keeps a value to about 1e-6.
 constexpr double kFinestInSinglePrecision = 3e-6;
-/// Columns of a row that are handled at a time: what they need stays in the first-level cache.
+/// Columns of a row that are handled at a time: their data stays in the first-level cache.
 constexpr Index kTile = 256;
 
 enum class Side : std::uint8_t { front, crossing, behind };
 
-/// Where an element lies of a plane; what keeps within coincidence of it is behind.
+/// The side of a plane on which an element lies; within coincidence of the plane counts as behind.
 Side sideOf(const ElementSet& elements, Index element, const FacetFrame& plane) {
   const double middle = glm::dot(plane.normal, elements.centroid[element]) - plane.offset;
   if (middle > elements.radius[element]) return Side::front;
@@ -70,7 +70,8 @@ ElementPart makePart(Index element, std::span<const Vec3> corners, const FacetFr
   return part;
 }
 
-/// The part of an element in front of a plane, as one or two parts; what has no area is left out.
+/// The part of an element in front of a plane, as one or two parts; parts without area are left
+/// out.
 void appendFront(const ElementSet& elements, Index element, const FacetFrame& frame,
                  const FacetFrame& plane, const FarLimits& limits,
                  std::vector<ElementPart>& parts) {
@@ -126,7 +127,7 @@ class UnoccludedKernel::Typed : public UnoccludedKernel::Implementation {
   void block(ElementRange rows, ElementRange columns, double* out, std::size_t stride,
              UnoccludedCounts& counts) const override {
     if (rows.size() == 0 || columns.size() == 0) return;
-    // Blocks may be as small as one pair: what they need is kept from one to the next.
+    // Blocks may be as small as one pair: their arrays are kept from one to the next.
     static thread_local Tile tile;
     const RangePair work{frames_[elements_.facet[rows.first]],
                          frames_[elements_.facet[columns.first]],

@@ -19,7 +19,7 @@ class VisibilityDescent {
   /// All pairs of the clusters' elements with elements of open facets after `facet`, which the
   /// cluster belongs to; of a sample, some of them.
   void run(Index facet, Index cluster);
-  /// Of all runs.
+  /// Counts over all runs.
   const VisibilityOfFacets& ofFacets() const { return of_facets_; }
 
  private:

@@ -35,7 +35,7 @@ void ShadowPlanes::build(const ShapeCorners& light, const Occluder& body, double
   findTangentsAtEdges(body);
 }
 
-/// Which corners of the light are in front of which faces, and what follows from faces alone.
+/// Finds which corners of the light are in front of which faces, and the planes of faces alone.
 void ShadowPlanes::findFaces(const Occluder& body) {
   front_.resize(body.planes.size());
   unsigned in_front_of_any = 0;

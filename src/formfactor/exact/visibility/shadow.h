@@ -1,4 +1,4 @@
-// Planes that tell what a convex body hides from a convex planar shape.
+// Planes that bound the shadow of a convex body, cast by a convex planar shape.
 #pragma once
 
 #include <array>
@@ -40,7 +40,7 @@ class ShadowPlanes {
   using Planes = std::uint64_t;
   static constexpr Planes kAllPlanes = ~Planes(0);
 
-  /// `open`: kAllPlanes, or what was left of it for a shape that holds this one; planes that fail
+  /// `open`: kAllPlanes, or the planes left open by a shape that holds this one; planes that fail
   /// all of this shape are taken out. Not thread-safe: remembers which plane gave the last answer.
   ShadowRelation relation(const VisibilityKernels& kernels, const ShapeCorners& shape,
                           Planes& open);
@@ -56,7 +56,7 @@ class ShadowPlanes {
   ShapeCorners light_{};
   double coincidence_ = 0;
   std::vector<ShadowPlane> outside_;  ///< the body below, the light above
-  std::vector<ShadowPlane> inside_;   ///< what is hidden from the light is below all of them
+  std::vector<ShadowPlane> inside_;   ///< points hidden from the light are below all of them
   std::vector<Index> strictly_;       ///< of inside_: not all of it may be on the plane
   bool may_hide_ = false;
   std::size_t last_outside_ = 0;

@@ -12,7 +12,7 @@
 
 namespace radiosity {
 
-/// What classification did, in pairs of elements (each unordered pair counted once).
+/// Counts of the classification, in pairs of elements (each unordered pair counted once).
 struct VisibilityCounts {
   std::size_t no_exchange = 0;  ///< coplanar, back to back, below each other's horizon
   std::size_t unoccluded = 0;
@@ -27,10 +27,10 @@ struct VisibilityCounts {
   VisibilityCounts& operator+=(const VisibilityCounts& other);
 };
 
-/// What walls see of walls is a large part of the work in few facets: among thousands of small ones
-/// a stride would pass them by, or count them too often. So they are sampled apart.
+/// Pairs of walls are a large part of the work in few facets: among thousands of small facets a
+/// stride would pass them by, or count them too often. So they are sampled apart.
 enum class FacetSize { any, small, large };
-/// Of eight elements or more.
+/// True of facets of eight elements or more.
 inline bool isLarge(const Facet& facet) { return facet.elements.size() >= 8; }
 
 /// Which pairs of some rows a sample looks at, and how long.
@@ -41,10 +41,10 @@ struct VisibilitySample {
   std::size_t most_tests = std::numeric_limits<std::size_t>::max();  ///< then it stops as it is
 };
 
-/// What a sample settled with facets as a whole, which it does first, ...
+/// The result of the first step of a sample, which looks at facets as a whole.
 struct VisibilityOfFacets {
   VisibilityCounts settled;
-  std::size_t left = 0;  ///< ... and pairs of elements that it then looked at more closely
+  std::size_t left = 0;  ///< pairs of elements left to the descent
 };
 
 /// Receives the answers. `rows` are always inside the range asked for; `columns` come from one
@@ -61,9 +61,9 @@ class VisibilitySink {
   virtual void occluded(Index row, Index column, std::span<const Index> occluders) = 0;
 };
 
-/// Classifies pairs of elements by descending two quadtrees at once, the list of what may stand
-/// between two clusters handed down and thinned out on the way. What a whole pair of clusters
-/// shares is settled there: nothing in between, or one convex body that hides all. Every answer
+/// Classifies pairs of elements by descending two quadtrees at once. The list of occluders that may
+/// stand between two clusters is handed down and thinned out on the way. A whole pair of clusters
+/// is settled at once where nothing is in between, or one convex body hides all. Every answer
 /// but `occluded` is proved; touching within the coincidence blocks nothing.
 class Visibility {
  public:
@@ -77,7 +77,7 @@ class Visibility {
   void classify(ElementRange rows, VisibilitySink& sink, VisibilityCounts& counts) const;
 
   /// Classifies the same rows against some of the facets after theirs that are not hidden, to find
-  /// out what that takes; counts only pairs that it settles. Nothing of rows that are
+  /// out how much work that is; counts only pairs that it settles. Does nothing where the rows are
   /// hidden_facets.
   VisibilityOfFacets classifySome(ElementRange rows, const VisibilitySample& sample,
                                   VisibilitySink& sink, VisibilityCounts& counts) const;
