@@ -1,4 +1,4 @@
-"""Runs every command of the program that a README gives, and follows every link."""
+"""Runs every command of the program that a README gives, follows links, measures lines."""
 import os
 import pathlib
 import re
@@ -9,6 +9,7 @@ import unittest
 
 PROGRAM = os.environ["RADIOSITY"]
 ROOT = pathlib.Path(os.environ["RADIOSITY_SOURCE_DIR"])
+WIDTH = 120  # columns of a line, tables too
 READMES = [ROOT / "README.md"] + sorted(
     p for folder in ("data", "src", "tests") for p in (ROOT / folder).rglob("README.md"))
 
@@ -25,6 +26,12 @@ def commands(readme):
         words = shlex.split(line.removeprefix("$ "), comments=True)
         if words and words[0] == "radiosity":
             yield words[1:]
+
+
+def links(readme):
+    """Targets of its links, written in place or named."""
+    text = readme.read_text()
+    return re.findall(r"\]\(([^)\s]+)\)", text) + re.findall(r"^\[[^\]]+\]: (\S+)$", text, re.M)
 
 
 def anchors(readme):
@@ -49,7 +56,7 @@ class Readme(unittest.TestCase):
 
     def test_every_link_leads_somewhere(self):
         for readme in READMES:
-            for target in re.findall(r"\]\(([^)\s]+)\)", readme.read_text()):
+            for target in links(readme):
                 if re.match(r"[a-z]+:", target):
                     continue
                 path, _, anchor = target.partition("#")
@@ -58,6 +65,11 @@ class Readme(unittest.TestCase):
                 self.assertTrue(where.exists(), said)
                 if anchor:
                     self.assertIn(anchor, list(anchors(where)), said)
+
+    def test_every_line_fits(self):
+        for readme in READMES:
+            for number, line in enumerate(readme.read_text().splitlines(), 1):
+                self.assertLessEqual(len(line), WIDTH, f"{readme.relative_to(ROOT)}:{number}")
 
 
 if __name__ == "__main__":
