@@ -63,8 +63,8 @@ std::size_t largerSide(const std::vector<CellPart>& parts, const Line& line) {
 }
 
 /// Splits along the edge of a part whose larger half is smallest; an empty split where no edge
-/// makes both halves smaller than the whole. `thorough`: all edges are tried, also
-/// those that seem no better before slivers are dropped.
+/// makes both halves smaller than the whole. `thorough`: all edges are tried, also those that seem
+/// no better before slivers are dropped.
 std::pair<Line, Split> bestSplit(const std::vector<CellPart>& parts, bool thorough) {
   std::pair<Line, Split> best;
   std::size_t best_size = parts.size();

@@ -114,8 +114,7 @@ void AdaptiveIntegrator<T>::cutAtLines(std::span<const Vec3> polygon, Members& m
 
 /// Distance from the sampled element's nearest point to the target's middle, in the target's radii.
 /// It decides whether all of the element is far enough for the kernels that expand about that
-/// middle. A target
-/// that is cut has another middle: never far.
+/// middle. A target that is cut has another middle: it is never far.
 template <class T>
 double AdaptiveIntegrator<T>::distanceInRadii(const SampledPair& pair) const {
   if (pair.target_cut) return 0;

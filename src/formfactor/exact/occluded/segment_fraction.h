@@ -9,9 +9,8 @@ namespace radiosity {
 
 /// Segments join 9 points of each element, in front of each other's planes. The exchange is the
 /// share of them that no occluder meets, times the unoccluded exchange. A pair is hidden where
-/// occluders meet all of them. The
-/// error is that of as many random segments, and at least that of one. Finite whatever the
-/// geometry.
+/// occluders meet all of them. The error is that of as many random segments, and at least that of
+/// one. Finite whatever the geometry.
 OccludedExchange exchangeBySegments(const ElementSet& elements, const OccluderSet& occluders,
                                     const OccludedPair& pair, std::span<const Index> occluder_list);
 
