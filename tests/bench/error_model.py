@@ -5,7 +5,7 @@
   error_model.py --write [NAME...]                    writes the header
   error_model.py --check                              is the header what --write would write?
 
-PROGRAM is error_samples (cmake --preset release -DRADIOSITY_BENCH=ON; ninja error_samples), which
+PROGRAM is error_samples (cmake --preset release; ninja -C build/release error_samples), which
 samples cells, parts, pairs and rows from inside the library and compares them with values that are
 converged: cells cut into 64 to 256 parts, rows at a tolerance a tenth to a ten-thousandth of theirs,
 formulas for pairs with nothing in between against contour integrals in long double. Constants are

@@ -41,7 +41,7 @@ class TargetLook {
   }
 
  private:
-  ClipKernelSet kernels_ = simdClipKernels();
+  ClipKernelSet kernels_ = clipKernels(true);
   BatchVisibility<double> view_{kernels_.exact};
   const GroupTarget* target_ = nullptr;
   Vec3 normal_{0.0};

@@ -82,7 +82,7 @@ class FarPair {
     return values[0];
   }
 
-  FarKernels kernels_ = scalarFarKernels();
+  FarKernels kernels_ = farKernels(false);
   FacetFrame row_frame_, column_frame_;
   FlatShape row_, column_;
 };
@@ -162,7 +162,7 @@ void printDigits() {
 }  // namespace
 
 void sampleShapes(std::size_t pairs, std::uint64_t seed) {
-  const ClipKernelSet kernels = scalarClipKernels();
+  const ClipKernelSet kernels = clipKernels(false);
   TargetLook look;
   for (const Shape shape : kShapes) {
     ElementPairs random(seed + std::uint64_t(shape));
