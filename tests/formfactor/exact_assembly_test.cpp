@@ -455,7 +455,7 @@ TEST(ErrorSums, FiguresOfKnownErrors) {
   EXPECT_NEAR(figure[1], 0.01 * std::sqrt(2.0), 1e-16);
   // A pair is off by twice the figure of a row that has nothing else: figures are raised to three
   // and a half times what they were.
-  sums.addRecheck(2 * 0.01 * std::sqrt(2.0), 0.01);
+  sums.addRecheck(0, 1, 2 * 0.01 * std::sqrt(2.0), 0.01);
   EXPECT_NEAR(sums.recheckRatio(), 2.0, 1e-12);
   sums.figures(area, 0, figure);
   EXPECT_NEAR(figure[1], 3.5 * 0.01 * std::sqrt(2.0), 1e-15);
@@ -467,15 +467,28 @@ TEST(ErrorSums, FiguresOfKnownErrors) {
   // What is off by less than four sevenths of the figure raises nothing.
   ErrorSums calm(2);
   calm.addOccluded(0, 1, 0.01);
-  calm.addRecheck(-0.008, 0.01);
+  calm.addRecheck(0, 1, -0.008, 0.01);
   calm.figures(area, 0, figure);
   EXPECT_NEAR(figure[1], 0.01 * std::sqrt(2.0), 1e-16);
   // Rows are drawn from all that was rechecked: of pairs of which one in ten is off by ten times
   // what is stated, rows of one pair meet it.
   ErrorSums mixed(2);
   mixed.addOccluded(0, 1, 0.01);
-  for (int k = 0; k < 10; ++k) mixed.addRecheck(k == 0 ? 0.1 : 0.001, 0.01);
+  for (int k = 0; k < 10; ++k) mixed.addRecheck(0, 1, k == 0 ? 0.1 : 0.001, 0.01);
   EXPECT_NEAR(mixed.recheckRatio(), 10 / std::sqrt(2.0), 1e-12);
+  // Rows of small patches have as much of a say as those of large ones: two of four rows, of 16
+  // pairs each, exchange a millionth and are off by ten times what is stated. Of 16 pairs drawn, 8
+  // are theirs on average, and in the worst hundredth of draws 12 to 14: the root of
+  // 100 * 12 / 16 / (1 + 1/4), or more; with all of them, of 80.
+  ErrorSums unequal(4);
+  for (int k = 0; k < 16; ++k) {
+    unequal.addOccluded(0, 1, 0.01);
+    unequal.addOccluded(2, 3, 1e-8);
+    unequal.addRecheck(0, 1, 0.001, 0.01);
+    unequal.addRecheck(2, 3, 1e-7, 1e-8);
+  }
+  EXPECT_GT(unequal.recheckRatio(), std::sqrt(60.0));
+  EXPECT_LE(unequal.recheckRatio(), std::sqrt(80.0) * (1 + 1e-12));
   // What is off of a black back is off of the row's account of backs, not of the matrix.
   ErrorSums black(2);
   black.addBlackBack(1, 0.01);

@@ -9,9 +9,11 @@
 namespace radiosity {
 namespace {
 
-/// Rows that are drawn, and pairs of each.
-constexpr std::size_t kRowsDrawn = 500;
-constexpr std::size_t kMostDrawn = 1024;
+/// Rows that are drawn, and most pairs of each.
+constexpr std::size_t kRowsDrawn = 2000;
+constexpr double kMostDrawn = 1024;
+/// Weights of rechecked pairs are rounded to shares of this many places a pair.
+constexpr std::size_t kPlacesAPair = 8;
 /// Share of the drawn rows that the figure must cover.
 constexpr double kQuantile = 0.99;
 
@@ -20,7 +22,6 @@ constexpr double kQuantile = 0.99;
 ErrorSums::PairErrors& ErrorSums::PairErrors::operator+=(const PairErrors& other) {
   squares += other.squares;
   fourths += other.fourths;
-  pairs += other.pairs;
   return *this;
 }
 
@@ -66,29 +67,48 @@ double ErrorSums::weightedSquares(std::span<const double> area) const {
   return sum;
 }
 
-double ErrorSums::recheckRatio() const {
-  std::size_t pairs = 0;
-  std::size_t rows = 0;
-  for (const PairErrors& row : occluded_) {
-    pairs += row.pairs;
-    rows += row.pairs > 0;
+/// Rechecked pairs by number, each as often as it weighs in the stated errors of its two rows.
+std::vector<std::uint32_t> ErrorSums::recheckedByWeight() const {
+  std::vector<double> until;
+  double all = 0;
+  for (const Recheck& pair : rechecks_) {
+    for (const std::size_t row : {pair.row, pair.column}) {
+      const double squares = occluded_[row].squares;
+      if (squares > 0) all += pair.stated * pair.stated / squares;
+    }
+    until.push_back(all);
   }
-  if (rechecks_.empty() || rows == 0) return 0;
-  const std::size_t drawn = std::clamp<std::size_t>(pairs / rows, 1, kMostDrawn);
+  std::vector<std::uint32_t> numbers;
+  if (!(all > 0)) return numbers;
+  const std::size_t places = kPlacesAPair * rechecks_.size();
+  for (std::uint32_t k = 0; numbers.size() < places; ++k) {
+    const double end = until[k] / all * double(places);
+    while (double(numbers.size()) + 0.5 < end) numbers.push_back(k);
+  }
+  return numbers;
+}
+
+double ErrorSums::recheckRatio() const {
+  // As many equal errors as scatter like a row's.
+  std::vector<double> counts;
+  for (const PairErrors& row : occluded_) {
+    if (row.fourths > 0) counts.push_back(row.squares * row.squares / row.fourths);
+  }
+  const std::vector<std::uint32_t> by_weight = recheckedByWeight();
+  if (counts.empty() || by_weight.empty()) return 0;
   // The same numbers on every machine, unlike those of the library's distributions.
   std::mt19937 random;
   std::vector<double> ratios;
   for (std::size_t r = 0; r < kRowsDrawn; ++r) {
-    PairErrors row;
+    const double count = std::clamp(std::round(counts[random() % counts.size()]), 1.0, kMostDrawn);
     double square = 0;
-    for (std::size_t k = 0; k < drawn; ++k) {
-      const Recheck& pair = rechecks_[random() % rechecks_.size()];
-      square += pair.difference * pair.difference;
-      row.add(pair.stated);
+    for (std::size_t k = 0; k < std::size_t(count); ++k) {
+      const Recheck& pair = rechecks_[by_weight[random() % by_weight.size()]];
+      const double share = pair.difference / pair.stated;
+      square += share * share;
     }
-    if (row.squares > 0) ratios.push_back(square / row.figure());
+    ratios.push_back(square / count / (1 + 1 / std::sqrt(count)));
   }
-  if (ratios.empty()) return 0;
   const auto place = ratios.begin() + std::ptrdiff_t(kQuantile * double(ratios.size() - 1));
   std::nth_element(ratios.begin(), place, ratios.end());
   return std::sqrt(*place);

@@ -178,7 +178,9 @@ void RowAssembly::recheck(RowSums& sums) const {
   context_.occluded.evaluateStrictly(pairs, pairs_.occluder_list, strict, &context_.progress);
   for (std::size_t k = 0; k < which.size(); ++k) {
     const OccludedExchange& found = occluded_[which[k]];
-    sums.error.addRecheck(found.exchange - strict[k].exchange, found.error);
+    const OccludedPair& pair = pairs[k];
+    sums.error.addRecheck(context_.order.rank[pair.row], context_.order.rank[pair.column],
+                          found.exchange - strict[k].exchange, found.error);
   }
 }
 

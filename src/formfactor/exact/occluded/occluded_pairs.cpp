@@ -11,9 +11,11 @@
 namespace radiosity {
 namespace {
 
-/// One pair evaluated from both ends: the result that resolves it better. Its error is a share of
-/// their difference, by how badly each resolves the pair: a half where they are alike.
-OccludedExchange betterResolved(const OccludedExchange& a, const OccludedExchange& b) {
+/// One pair evaluated from both ends. Where both resolve it, and one was cut short: the result of
+/// the smaller error. Else the one that resolves it better; its error is a share of their
+/// difference, by how badly each resolves the pair: a half where they are alike.
+OccludedExchange betterOfBoth(const OccludedExchange& a, const OccludedExchange& b) {
+  if (std::max(a.unresolved, b.unresolved) <= kPairResolved) return a.error <= b.error ? a : b;
   const double both = a.unresolved + b.unresolved;
   OccludedExchange better = a.unresolved <= b.unresolved ? a : b;
   if (better.unresolved > kPairResolved) {
@@ -144,15 +146,16 @@ void OccludedKernel::evaluateAgain(const Batch& batch) const {
     }
     return which.size();
   };
-  const auto unresolved = [](const OccludedExchange& x) { return x.unresolved > kPairResolved; };
-  const auto doubtful = [&](const OccludedExchange& x) { return unresolved(x) || x.cut_short; };
+  const auto doubtful = [](const OccludedExchange& x) {
+    return x.unresolved > kPairResolved || x.cut_short;
+  };
   const auto replaced = [](const OccludedExchange&, const OccludedExchange& found) {
     return found;
   };
   // In double precision this end has been looked from already.
   const bool single = batch.tolerance >= kSinglePrecision;
   if (single) batch.counts.again += again(SampledEnd::calmer, doubtful, replaced);
-  const std::size_t from_both = again(SampledEnd::restless, unresolved, betterResolved);
+  const std::size_t from_both = again(SampledEnd::restless, doubtful, betterOfBoth);
   if (!single) batch.counts.again += from_both;
 }
 
