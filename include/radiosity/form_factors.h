@@ -176,7 +176,7 @@ struct FormFactors {
   /// Area-weighted share of the scene's view that ends on each surface's back, by surface.
   std::vector<double> backs_by_surface;
   /// Exact and rays: N error figures; sqrt(sum_j (F_ij - true F_ij)^2), black backs among the j,
-  /// stays below error[i] in about 99% of rows. Exact: the median of the figures is mostly 4 to 11
+  /// stays below error[i] in about 99% of rows. Exact: the median of the figures is mostly 4 to 14
   /// times the true one. Hemicube: empty.
   std::vector<double> error;
   std::string method = "hemicube";  ///< or "exact", "rays"
