@@ -41,8 +41,10 @@ class Cancelled : public RunError {
 class Progress {
  public:
   virtual ~Progress() = default;
-  /// A stage of `total` equal steps begins.
-  virtual void begin(const std::string& /*stage*/, std::size_t /*total*/) {}
+  /// A stage of `total` about equal steps begins, of which some are `done` already. `steps`: what
+  /// to call them ("rows"); empty: nothing that a person would count.
+  virtual void begin(const std::string& /*stage*/, std::size_t /*total*/,
+                     const std::string& /*steps*/ = {}, std::size_t /*done*/ = 0) {}
   virtual void advance(std::size_t /*steps*/ = 1) {}
   virtual void end() {}
   void cancel() { cancelled_.store(true, std::memory_order_relaxed); }

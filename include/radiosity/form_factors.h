@@ -13,6 +13,7 @@
 #include "radiosity/closure.h"
 #include "radiosity/exchange_matrix.h"
 #include "radiosity/patch_mesh.h"
+#include "radiosity/row_journal.h"
 
 namespace [[gnu::visibility("default")]] radiosity {
 
@@ -218,7 +219,10 @@ FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
 FormFactors computeFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
                                Progress& progress);
 
-/// The same of a plan, which comes from planFormFactors(), as often as you like.
-FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress);
+/// The same of a plan, which comes from planFormFactors(), as often as you like. `journal`: where
+/// rows are kept, and rows of an earlier run of the same are found; none: they are not. The same
+/// bits either way.
+FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress,
+                               RowJournal* journal = nullptr);
 
 }  // namespace radiosity

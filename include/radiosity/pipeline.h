@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -20,6 +21,7 @@
 
 namespace [[gnu::visibility("default")]] radiosity {
 
+class JournalFile;
 class Pipeline;
 class StageKey;
 
@@ -55,7 +57,21 @@ class PipelineObserver {
   virtual void notReused(const std::string& /*path*/, const std::string& /*why*/) {}
   /// Form factors are about to be computed like this.
   virtual void planned(const Pipeline& /*pipeline*/, const FormFactorPlan& /*plan*/) {}
+  /// Until they are in a results file, rows of form factors are kept in the file `path` as they are
+  /// computed: whatever ends the run, the next one goes on from there.
+  virtual void keepsRows(const Pipeline& /*pipeline*/, const std::string& /*path*/) {}
+  /// What became of rows that were kept, and why rows are not: "resumed: 1,234 of 2,000 rows ...".
+  virtual void rows(const Pipeline& /*pipeline*/, const std::string& /*text*/) {}
   virtual void stage(const Pipeline& /*pipeline*/, const StageEvent& /*event*/) {}
+};
+
+/// Rows of form factors are kept in a file as they are computed, for a run that is broken off.
+struct JournalOptions {
+  std::string path;    ///< as a rule beside the file that save() will write; empty: none
+  bool resume = true;  ///< false: rows that are there are not used, but thrown away
+  /// Only where form factors are foreseen to take so many seconds, or where rows of the same are
+  /// there: less is soon computed again.
+  double from_seconds = 10;
 };
 
 /// The options of every stage.
@@ -64,6 +80,7 @@ struct PipelineOptions {
   FormFactorOptions factors;  ///< memory_held 0: what the process holds is taken
   SolveOptions solve;
   GatherOptions gather;
+  JournalOptions journal;
 };
 
 /// A scalar of every patch, to be drawn by renderFalseColour().
@@ -92,6 +109,7 @@ class Pipeline {
   explicit Pipeline(Progress& progress, PipelineObserver* observer = nullptr);
   Pipeline(const Pipeline&) = delete;
   Pipeline& operator=(const Pipeline&) = delete;
+  ~Pipeline();
 
   // ---- One of these comes first, once.
 
@@ -178,6 +196,9 @@ class Pipeline {
   /// Writes what there is before a later step can fail. Light gathered on the same mesh, which the
   /// opened file may hold, stays; nothing is dropped yet.
   void checkpoint(const std::string& path);
+  /// Removes the file of JournalOptions, where there is one for these form factors: they are
+  /// written. save() and checkpoint() do so themselves.
+  void discardKeptRows();
 
  private:
   void openResults(const std::string& path, const SceneOptions& scene);
@@ -193,7 +214,9 @@ class Pipeline {
   bool factorsFit(const FormFactors& factors, const std::string& factors_key, const StageKey& key,
                   std::optional<FormFactorPlan>& plan) const;
   FormFactorPlan planFactors() const;
-  FormFactors computeFactors(std::optional<FormFactorPlan> plan) const;
+  FormFactors computeFactors(std::optional<FormFactorPlan> plan, const StageKey& key);
+  std::optional<FormFactorMethod> methodOfKeptRows(const StageKey& key) const;
+  void openJournal(const FormFactorPlan& plan, const StageKey& key);
   StageKey usedFactorsKey() const;
   bool hasOwnMaterials() const;
   void requireOwnMesh(bool reused) const;
@@ -207,6 +230,7 @@ class Pipeline {
   bool keepGathered();
   void dropEmptySolution();
 
+  std::unique_ptr<JournalFile> journal_;
   Progress& progress_;
   PipelineObserver silent_;
   PipelineObserver& observer_;

@@ -13,6 +13,7 @@
 #include "radiosity/pipeline.h"
 #include "radiosity/render.h"
 #include "radiosity/results.h"
+#include "radiosity/row_journal.h"
 #include "radiosity/scene.h"
 #include "radiosity/solve.h"
 #include "radiosity/version.h"

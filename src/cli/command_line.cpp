@@ -152,6 +152,13 @@ void addFactorOptions(CLI::App& app, Request& r) {
   add(app, "Form factors", "--memory-limit", r.memory_limit, "SIZE",
       "Refuse to start a computation that needs more memory: bytes, or 512M, 2G, ... (default: no "
       "limit)");
+  app.add_flag_function(
+         "--resume,!--no-resume", [&r](std::int64_t count) { r.resume = count > 0; },
+         fmt::format("Keep rows in OUT.h5.rows as they are computed, and go on from those that a "
+                     "run which was broken off has left; --no-resume: begin anew (default: resume, "
+                     "and keep rows where they are foreseen to take {:g} s; given, always)",
+                     JournalOptions().from_seconds))
+      ->group("Form factors");
 }
 
 void addSolveOptions(CLI::App& app, Request& r) {

@@ -7,16 +7,16 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "base/figure_text.h"
+#include "base/process_memory.h"
 #include "cli/words.h"
 
 namespace radiosity::cli {
 
 namespace {
 
-constexpr double kBarInterval = 0.1;    // seconds between two pictures of the bar
-constexpr double kFirstLine = 2.0;      // before the first line of a stage in a pipe
-constexpr double kLineInterval = 10.0;  // and between two of them
-constexpr double kShortStage = 0.5;     // a stage shorter than this leaves no line in a pipe
+constexpr double kBarInterval = 0.1;  // seconds between two pictures of the bar
+constexpr double kShortStage = 0.5;   // a stage shorter than this leaves no line in a pipe
 constexpr std::size_t kBarWidth = 24;
 
 }  // namespace
@@ -32,13 +32,16 @@ double ConsoleProgress::elapsed() const {
   return std::chrono::duration<double>(Clock::now() - start_.load()).count();
 }
 
-void ConsoleProgress::begin(const std::string& stage, std::size_t total) {
+void ConsoleProgress::begin(const std::string& stage, std::size_t total, const std::string& steps,
+                            std::size_t done) {
   const std::lock_guard lock(drawing_);
   stage_ = stage;
+  steps_ = steps;
   total_ = total;
-  done_ = 0;
+  done_before_ = done;
+  done_ = done;
   start_ = Clock::now();
-  next_draw_ = style_ == ProgressStyle::bar ? kBarInterval : kFirstLine;
+  next_draw_ = style_ == ProgressStyle::bar ? kBarInterval : line_times_.first;
   running_ = true;
 }
 
@@ -56,9 +59,12 @@ void ConsoleProgress::tick() {
 
 void ConsoleProgress::draw() {
   const double seconds = elapsed();
-  const double share = total_ > 0 ? std::min(1.0, double(done_) / double(total_)) : 0;
+  const std::size_t done = std::min<std::size_t>(done_, total_);
+  const double share = total_ > 0 ? double(done) / double(total_) : 0;
+  // What was there when the stage began took none of its time.
+  const double here = double(done) - double(done_before_);
   const std::string left =
-      share > 0 ? durationText(seconds * (1 - share) / share) + " left" : "starting";
+      here > 0 ? durationText(seconds * double(total_ - done) / here) + " left" : "starting";
   std::string line;
   if (style_ == ProgressStyle::bar) {
     const auto full = std::size_t(share * double(kBarWidth));
@@ -67,11 +73,24 @@ void ConsoleProgress::draw() {
     drawn_ = true;
     next_draw_ = seconds + kBarInterval;
   } else {
-    line = fmt::format("{}: {:.0f}%, {}\n", stage_, 100 * share, left);
-    next_draw_ = seconds + kLineInterval;
+    line = lineText(done, share, left);
+    next_draw_ = seconds + line_times_.between;
   }
   std::fputs(line.c_str(), stderr);
   std::fflush(stderr);
+}
+
+/// "form factors: 1,234 of 2,000 rows (62%), 34 s left, 312 MiB of memory".
+std::string ConsoleProgress::lineText(std::size_t done, double share,
+                                      const std::string& left) const {
+  std::string line = stage_ + ": ";
+  if (!steps_.empty()) {
+    line += fmt::format("{} of {} {} (", countText(done), countText(total_), steps_);
+  }
+  line += fmt::format("{:.0f}%{}, {}", 100 * share, steps_.empty() ? "" : ")", left);
+  const std::size_t memory = residentBytes();
+  if (memory > 0) line += fmt::format(", {} of memory", bytesText(memory));
+  return line + "\n";
 }
 
 void ConsoleProgress::end() {

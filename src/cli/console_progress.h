@@ -1,4 +1,4 @@
-// Progress on standard error: a bar with the time left on a terminal, quiet lines in a pipe.
+// Progress on standard error: a bar with the time left on a terminal, a line a minute in a pipe.
 #pragma once
 
 #include <atomic>
@@ -17,12 +17,20 @@ ProgressStyle progressStyle(bool quiet);
 
 class ConsoleProgress : public Progress {
  public:
-  explicit ConsoleProgress(ProgressStyle style) : style_(style) {}
+  /// Seconds of a stage before its first line in a pipe, and between two.
+  struct LineTimes {
+    double first = 10;
+    double between = 60;
+  };
+  explicit ConsoleProgress(ProgressStyle style, LineTimes line_times)
+      : style_(style), line_times_(line_times) {}
+  explicit ConsoleProgress(ProgressStyle style) : ConsoleProgress(style, LineTimes()) {}
   ~ConsoleProgress() override { clear(); }
   ConsoleProgress(const ConsoleProgress&) = delete;
   ConsoleProgress& operator=(const ConsoleProgress&) = delete;
 
-  void begin(const std::string& stage, std::size_t total) override;
+  void begin(const std::string& stage, std::size_t total, const std::string& steps = {},
+             std::size_t done = 0) override;
   void advance(std::size_t steps = 1) override;
   void end() override;
   /// Draws anew where that is due, also where a step takes long: from a thread of its own.
@@ -35,11 +43,15 @@ class ConsoleProgress : public Progress {
   using Clock = std::chrono::steady_clock;
   double elapsed() const;
   void draw();
+  std::string lineText(std::size_t done, double share, const std::string& left) const;
 
   ProgressStyle style_;
+  LineTimes line_times_;
   std::string stage_;
+  std::string steps_;     ///< what they are called
   bool running_ = false;  ///< a stage is
   std::size_t total_ = 0;
+  std::size_t done_before_ = 0;  ///< when the stage began
   std::atomic<std::size_t> done_{0};
   std::atomic<Clock::time_point> start_{};
   std::atomic<double> next_draw_{0};  ///< seconds after start_

@@ -8,6 +8,7 @@ int runFactors(Session& session) {
   run.pipeline.factors();
   writeStages(session, run.pipeline, files);
   files.commit(session.report, session.progress);
+  run.pipeline.discardKeptRows();
   return 0;
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/figure_text.h"
 #include "base/made.h"
+#include "cli/signal_guard.h"
 #include "cli/words.h"
 #include "radiosity/names.h"
 
@@ -129,6 +130,15 @@ void PipelineReport::planned(const Pipeline& pipeline, const FormFactorPlan& pla
                     durationText(std::max(0.0, *left)), cures(plan)));
   }
   if (plan.seconds > kLongWait) report_.line("", cures(plan));
+}
+
+void PipelineReport::keepsRows(const Pipeline& /*pipeline*/, const std::string& path) {
+  sayIfInterrupted(fmt::format("{} keeps the rows; the same command goes on from them", path),
+                   path);
+}
+
+void PipelineReport::rows(const Pipeline& /*pipeline*/, const std::string& text) {
+  report_.line("rows", text);
 }
 
 void PipelineReport::stage(const Pipeline& pipeline, const StageEvent& event) {

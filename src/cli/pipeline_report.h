@@ -24,6 +24,8 @@ class PipelineReport : public PipelineObserver {
   void notReused(const std::string& path, const std::string& why) override;
   /// RunError where that takes longer than the time limit leaves.
   void planned(const Pipeline& pipeline, const FormFactorPlan& plan) override;
+  void keepsRows(const Pipeline& pipeline, const std::string& path) override;
+  void rows(const Pipeline& pipeline, const std::string& text) override;
   void stage(const Pipeline& pipeline, const StageEvent& event) override;
 
  private:

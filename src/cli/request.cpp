@@ -89,6 +89,14 @@ GatherOptions Request::apply(GatherOptions options) const {
   return options;
 }
 
+JournalOptions Request::journal(const std::string& results_output) const {
+  JournalOptions options;
+  if (!results_output.empty()) options.path = results_output + ".rows";
+  options.resume = resume.value_or(true);
+  if (resume == true) options.from_seconds = 0;  // asked for: also of a short run
+  return options;
+}
+
 CompareOptions Request::compareOptions() const {
   CompareOptions options;
   options.fit_scale = fit_scale;

@@ -11,6 +11,7 @@
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
 #include "radiosity/patch_mesh.h"
+#include "radiosity/pipeline.h"
 #include "radiosity/render.h"
 #include "radiosity/scene.h"
 #include "radiosity/solve.h"
@@ -44,6 +45,7 @@ struct Request {
   std::optional<bool> symmetrize;
   std::optional<std::string> precision;
   std::string memory_limit;
+  std::optional<bool> resume;
 
   std::optional<std::string> solver;
   std::optional<double> solve_tolerance;
@@ -81,6 +83,8 @@ struct Request {
   FormFactorOptions apply(FormFactorOptions options) const;
   SolveOptions apply(SolveOptions options) const;
   GatherOptions apply(GatherOptions options) const;
+  /// `results_output`: the .h5 that is written; empty: none.
+  JournalOptions journal(const std::string& results_output) const;
   CompareOptions compareOptions() const;
   /// The picture's options as given, without a size where none was given; validated.
   RenderOptions renderOptions() const;

@@ -52,6 +52,7 @@ void waitForATick() {
 struct Kept {
   std::mutex mutex;
   std::string text;
+  std::string path;  ///< of what the text is about
   std::string reason = "interrupted";
 };
 Kept& kept() {
@@ -76,17 +77,19 @@ void sayOutOfTime(double seconds) {
 
 }  // namespace
 
-void sayIfInterrupted(const std::string& text) {
+void sayIfInterrupted(const std::string& text, const std::string& path) {
   const std::lock_guard lock(kept().mutex);
   kept().text = text;
+  kept().path = path;
 }
 
 std::string interruptedText() {
   const std::lock_guard lock(kept().mutex);
-  const auto whole = [] {
-    return committedFiles() == 0 ? "nothing was written" : "what was written is whole";
-  };
-  return kept().reason + "; " + (kept().text.empty() ? whole() : kept().text);
+  if (!kept().text.empty() && access(kept().path.c_str(), F_OK) == 0) {
+    return kept().reason + "; " + kept().text;
+  }
+  return kept().reason +
+         (committedFiles() == 0 ? "; nothing was written" : "; what was written is whole");
 }
 
 SignalGuard::SignalGuard(ConsoleProgress& progress, const TimeLimit& limit)

@@ -36,7 +36,7 @@ class SignalGuard {
 /// anything.
 std::string interruptedText();
 
-/// A run that is interrupted from now on prints this text.
-void sayIfInterrupted(const std::string& text);
+/// A run that is interrupted from now on prints this text, as long as the file `path` is there.
+void sayIfInterrupted(const std::string& text, const std::string& path);
 
 }  // namespace radiosity::cli

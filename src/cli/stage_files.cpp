@@ -35,6 +35,7 @@ Run::Run(Session& session, const std::string& results_output)
   options.factors = request.apply(options.factors);
   options.solve = request.apply(options.solve);
   options.gather = request.apply(options.gather);
+  options.journal = request.journal(results_output);
 }
 
 void requireLight(const Session& session, const Pipeline& pipeline) {
@@ -94,7 +95,7 @@ void keepFactors(Session& session, Pipeline& pipeline, const OutputSet& files) {
   if (path.empty() || !pipeline.factorsComputed()) return;
   announceResults(session, pipeline, path);
   pipeline.checkpoint(path);
-  sayIfInterrupted(path + " keeps the form factors");
+  sayIfInterrupted(path + " keeps the form factors", path);
   session.report.line("kept", "form factors, in " + path);
 }
 
@@ -104,7 +105,7 @@ void keepSolution(Session& session, Pipeline& pipeline, const OutputSet& files) 
   pipeline.keepLaterStages();
   announceResults(session, pipeline, path);
   pipeline.save(path);
-  sayIfInterrupted(path + " keeps the form factors and the solution");
+  sayIfInterrupted(path + " keeps the form factors and the solution", path);
   std::error_code ignored;
   session.report.output(path, std::filesystem::file_size(path, ignored),
                         contents(pipeline.results()));

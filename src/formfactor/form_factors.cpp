@@ -203,21 +203,22 @@ FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
   return plan;
 }
 
-FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress) {
+FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress,
+                               RowJournal* journal) {
   const Clock::time_point start = Clock::now();
   if (!plan.prepared) throw std::logic_error("this plan is not from planFormFactors()");
   const FormFactorPlan::Prepared& prepared = *plan.prepared;
   FormFactors result;
   if (prepared.scene && prepared.kernels) {
     result = exactFactors(prepared.mesh, *prepared.scene, *prepared.kernels, prepared.estimate,
-                          prepared.options, progress);
+                          prepared.options, progress, journal);
     result.report.exact.seconds_prepare += prepared.seconds;
   } else if (prepared.hemicubes) {
     result = hemicubeFactors(prepared.mesh, *prepared.hemicubes, prepared.hemicube_estimate,
-                             prepared.options, progress);
+                             prepared.options, progress, journal);
   } else if (prepared.rays) {
     result = rayFactors(prepared.mesh, *prepared.rays, prepared.ray_estimate, prepared.options,
-                        progress);
+                        progress, journal);
   } else {
     throw std::logic_error("this plan was not prepared");
   }

@@ -10,6 +10,7 @@
 #include "base/figure_text.h"
 #include "base/input_file.h"
 #include "base/made.h"
+#include "pipeline/journal_file.h"
 #include "pipeline/stage_key.h"
 #include "radiosity/version.h"
 
@@ -41,6 +42,8 @@ Pipeline::Pipeline(Progress& progress, PipelineObserver* observer)
     : progress_(progress), observer_(observer != nullptr ? *observer : silent_) {
   results_.version = RADIOSITY_VERSION;
 }
+
+Pipeline::~Pipeline() = default;
 
 const Scene& Pipeline::scene() const { return made(results_.scene); }
 
@@ -88,7 +91,7 @@ void Pipeline::openResults(const std::string& path, const SceneOptions& scene) {
   options_ = {meshOptionsOf(StageKey(stored_.mesh_key)),
               factorOptionsOf(StageKey(stored_.factors_key)),
               solveOptionsOf(StageKey(stored_.solution_key)),
-              gatherOptionsOf(StageKey(stored_.gather_key))};
+              gatherOptionsOf(StageKey(stored_.gather_key)), options_.journal};
   observer_.opened(*this);
   if (overrides(scene)) overrideScene(scene);
 }
@@ -236,6 +239,7 @@ void Pipeline::save(const std::string& path) {
   keepLaterStages();
   loadMatrix();
   writeResults(path, results_, progress_);
+  discardKeptRows();
   saved_ = path;
   changed_ = false;
 }
@@ -250,6 +254,7 @@ void Pipeline::checkpoint(const std::string& path) {
     results_.gather_key = stored_.gather_key;
   }
   writeResults(path, results_, progress_);
+  discardKeptRows();
   if (lend) {
     stored_.gathered = std::exchange(results_.gathered, std::nullopt);
     results_.gather_key.clear();

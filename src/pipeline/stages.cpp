@@ -6,7 +6,8 @@
 #include <utility>
 
 #include "base/made.h"
-#include "pipeline/process_memory.h"
+#include "base/process_memory.h"
+#include "pipeline/journal_file.h"
 #include "pipeline/stage_key.h"
 #include "radiosity/names.h"
 #include "radiosity/pipeline.h"
@@ -133,17 +134,26 @@ bool Pipeline::factorsFit(const FormFactors& factors, const std::string& factors
 FormFactorPlan Pipeline::planFactors() const {
   FormFactorOptions options = options_.factors;
   if (options.memory_held == 0) options.memory_held = residentBytes();
-  FormFactorPlan plan = planFormFactors(made(results_.mesh).mesh, options, progress_);
+  const PatchMesh& patches = made(results_.mesh).mesh;
+  const std::optional<FormFactorMethod> kept = methodOfKeptRows(factorsKey(options, patches));
+  if (kept) options.method = *kept;
+  FormFactorPlan plan = planFormFactors(patches, options, progress_);
+  if (kept) plan.reason = "rows of an earlier run are there";
   // Planning may have tried the exact method, which takes more than hemicubes then do.
   plan.bytes = std::max(plan.bytes, peakBytes());
   return plan;
 }
 
-FormFactors Pipeline::computeFactors(std::optional<FormFactorPlan> plan) const {
+FormFactors Pipeline::computeFactors(std::optional<FormFactorPlan> plan, const StageKey& key) {
   return computedStage("form factors", [&] {
     if (!plan) plan = planFactors();
     observer_.planned(*this, *plan);
-    FormFactors factors = computeFormFactors(*plan, progress_);
+    openJournal(*plan, key);
+    FormFactors factors = computeFormFactors(*plan, progress_, journal_.get());
+    if (journal_ && !journal_->failure().empty()) {
+      observer_.rows(*this, fmt::format("not all rows were kept: {}: {}", journal_->path(),
+                                        journal_->failure()));
+    }
     factors.report.estimated_bytes = plan->bytes;
     return factors;
   });
@@ -165,12 +175,13 @@ const FormFactors& Pipeline::factors() {
     results_.factors = taken(stored_.factors);
     results_.factors_key = stored_.factors_key;
     factors_asked_ = asked;
+    discardKeptRows();
     tell(Stage::form_factors, StageAction::reused, source_);
     return made(results_.factors);
   }
   const std::string reason = why(stored_.factors_key, key);
   const Stopwatch watch;
-  results_.factors = computeFactors(std::move(plan));
+  results_.factors = computeFactors(std::move(plan), key);
   results_.factors_key = asked;
   factors_asked_ = asked;
   stored_.factors.reset();

@@ -205,9 +205,10 @@ class Listener : public Progress {
     std::size_t calls = 0;
     bool ended = false;
   };
-  void begin(const std::string& stage, std::size_t total) override {
+  void begin(const std::string& stage, std::size_t total, const std::string& /*steps*/,
+             std::size_t done) override {
     const std::lock_guard lock(mutex_);
-    stages.push_back({stage, total});
+    stages.push_back({stage, total, done});
   }
   void advance(std::size_t steps) override {
     const std::lock_guard lock(mutex_);

@@ -312,7 +312,9 @@ TEST(SolveEdges, RefusesBadInputByPatchAndSurface) {
 
 TEST(SolveEdges, CancelsBetweenSweeps) {
   struct CancelAtOnce : Progress {
-    void begin(const std::string&, std::size_t) override { cancel(); }
+    void begin(const std::string&, std::size_t, const std::string&, std::size_t) override {
+      cancel();
+    }
   };
   const TwoRooms rooms;
   for (const Solver solver : kSolvers) {

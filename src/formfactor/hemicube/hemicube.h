@@ -15,6 +15,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/aligned_buffer.h"
@@ -82,6 +83,8 @@ class Hemicube {
                            RunVisitor* runs = nullptr);
 
   const HemicubeCounts& counts() const { return counts_; }
+  /// The same, which then start anew.
+  HemicubeCounts takeCounts() { return std::exchange(counts_, {}); }
 
   /// One face of the last view, for tests and comparisons: positions in scene.polygons, or kNone;
   /// rows(face) rows of `resolution` pixels.

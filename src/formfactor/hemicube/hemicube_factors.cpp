@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "formfactor/hemicube/kept_row.h"
 #include "formfactor/hemicube/row_builder.h"
 #include "formfactor/row_accounts.h"
 #include "mesh/canonical_order.h"
@@ -21,21 +22,20 @@ struct Worker {
   Hemicube hemicube;
   std::vector<std::uint8_t> hidden;
   PackedRow row;
-  std::size_t near_pairs = 0;
-  std::size_t capped = 0;
+  HemicubeRowCounts counts;  ///< of all its rows
 };
 
 /// Stores row i as it was seen, or with its near entries put right.
 void storeRow(std::size_t i, const HemicubeView& view, const NearPairs* near_pairs, Worker& worker,
-              FormFactors& result, std::vector<SeenBack>& seen_backs) {
+              FormFactors& result, std::vector<SeenBack>& seen_backs, HemicubeRowCounts& counts) {
   const std::size_t n = result.fronts.size();
   worker.row.pack(view, n);
   result.fronts[i] = view.fronts;
   double rest = 1;
   if (near_pairs != nullptr) {
     const NearPairs::Outcome outcome = near_pairs->correct(i, worker.row);
-    worker.near_pairs += outcome.replaced;
-    worker.capped += outcome.capped;
+    counts.near_pairs += outcome.replaced;
+    counts.capped += outcome.capped;
     rest = outcome.rest;
     const std::vector<double>& values = worker.row.values;
     result.fronts[i] = std::accumulate(values.begin(), values.end(), 0.0);
@@ -48,34 +48,55 @@ void storeRow(std::size_t i, const HemicubeView& view, const NearPairs* near_pai
   }
 }
 
-void fillRows(const HemicubeScene& scene, FormFactors& result,
+/// How many rows need not be made: those that are empty, and those in the journal.
+std::size_t rowsThere(const RowBuilder& rows, std::size_t n, RowJournal* journal) {
+  std::size_t found = 0;
+  std::size_t all = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (rows.isEmpty(i)) continue;
+    ++all;
+    found += journal != nullptr && journal->has(RowBlock::hemicube_row, i) ? 1 : 0;
+  }
+  if (journal != nullptr) journal->found(found, all);
+  return n - all + found;
+}
+
+/// Makes row i and keeps it.
+void makeRow(const HemicubeScene& scene, std::size_t i, RowJournal* journal, Worker& worker,
+             FormFactors& result, std::vector<SeenBack>& seen_backs) {
+  HemicubeRowCounts counts;
+  const HemicubeView& view = scene.rows.look(i, worker.hemicube, worker.hidden);
+  storeRow(i, view, scene.near_pairs ? &*scene.near_pairs : nullptr, worker, result, seen_backs,
+           counts);
+  counts.drawn = worker.hemicube.takeCounts();
+  if (journal != nullptr) keepRow(*journal, i, result, seen_backs, counts);
+  worker.counts += counts;
+}
+
+void fillRows(const HemicubeScene& scene, RowJournal* journal, FormFactors& result,
               std::vector<std::vector<SeenBack>>& seen_backs, Progress& progress) {
   const RowBuilder& rows = scene.rows;
-  const NearPairs* const near_pairs = scene.near_pairs ? &*scene.near_pairs : nullptr;
   const std::size_t n = result.fronts.size();
   tbb::enumerable_thread_specific<Worker> workers([&] {
-    return Worker{rows.makeHemicube(), {}, {}, 0, 0};
+    return Worker{rows.makeHemicube(), {}, {}, {}};
   });
-  progress.begin("form factors", n);
+  progress.begin("form factors", n, "rows", rowsThere(rows, n, journal));
   parallelFor(n, 1, [&](std::size_t i) {
-    if (progress.cancelled()) return;
-    if (!rows.isEmpty(i)) {
-      Worker& worker = workers.local();
-      const HemicubeView& view = rows.look(i, worker.hemicube, worker.hidden);
-      storeRow(i, view, near_pairs, worker, result, seen_backs[i]);
-    }
+    if (progress.cancelled() || rows.isEmpty(i)) return;
+    Worker& worker = workers.local();
+    if (journal != nullptr && takeRow(*journal, i, result, seen_backs[i], worker.counts)) return;
+    makeRow(scene, i, journal, worker, result, seen_backs[i]);
     progress.advance();
   });
   progress.check();
   progress.end();
 
-  HemicubeCounts counts;
+  HemicubeRowCounts all;
+  for (const Worker& worker : workers) all += worker.counts;
+  const HemicubeCounts& counts = all.drawn;
   FormFactorReport& report = result.report;
-  for (const Worker& worker : workers) {
-    counts += worker.hemicube.counts();
-    report.near_pairs += worker.near_pairs;
-    report.capped += worker.capped;
-  }
+  report.near_pairs = all.near_pairs;
+  report.capped = all.capped;
   report.hemicubes = counts.hemicubes;
   report.empty_rows = n - counts.hemicubes;
   report.rasterised_polygons = counts.rasterised_polygons;
@@ -139,7 +160,7 @@ HemicubeScene::HemicubeScene(const PatchMesh& mesh, const FormFactorOptions& opt
 
 FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
                             const HemicubeEstimate& estimate, const FormFactorOptions& options,
-                            Progress& progress) {
+                            Progress& progress, RowJournal* journal) {
   const std::size_t n = mesh.size();
   FormFactors result;
   result.method = "hemicube";
@@ -154,7 +175,7 @@ FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
   result.backs.assign(n, 0.0);
   result.sky.assign(n, 0.0);
   std::vector<std::vector<SeenBack>> seen_backs(n);
-  fillRows(scene, result, seen_backs, progress);
+  fillRows(scene, journal, result, seen_backs, progress);
   constexpr std::size_t kSteps = 2;
   progress.begin("finishing", kSteps);
   const auto step = [&] {

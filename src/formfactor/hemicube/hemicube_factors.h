@@ -28,9 +28,9 @@ HemicubeEstimate estimateHemicubes(const PatchMesh& mesh, const HemicubeScene& s
                                    const FormFactorOptions& options, Progress& progress);
 
 /// Raw rows, as they were seen, unless `symmetrize`. See computeFormFactors(). `scene` is the
-/// mesh's, `estimate` the scene's.
+/// mesh's, `estimate` the scene's; `journal` may be null.
 FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
                             const HemicubeEstimate& estimate, const FormFactorOptions& options,
-                            Progress& progress);
+                            Progress& progress, RowJournal* journal);
 
 }  // namespace radiosity

@@ -136,7 +136,7 @@ bool seesSky(const std::vector<RayRow>& rows) {
 }  // namespace
 
 FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene, const RayEstimate& estimate,
-                       const FormFactorOptions& options, Progress& progress) {
+                       const FormFactorOptions& options, Progress& progress, RowJournal* journal) {
   const std::size_t n = scene.size();
   FormFactors result;
   result.method = "rays";
@@ -149,7 +149,7 @@ FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene, const RayEs
   report.empty_rows = std::size_t(std::count(area.begin(), area.end(), 0.0));
   report.rays.triangles = scene.caster().triangles();
 
-  std::vector<RayRow> rows = castRows(scene, RayAim(options), report.rays, progress);
+  std::vector<RayRow> rows = castRows(scene, RayAim(options), report.rays, progress, journal);
   noteLoosened(options, report);
   report.closed = scene.provedClosed() || !seesSky(rows);
   result.matrix =

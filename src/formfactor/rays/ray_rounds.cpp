@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "base/parallel.h"
 #include "base/processor_clock.h"
 #include "formfactor/rays/ray_scene.h"
+#include "formfactor/rays/round_journal.h"
 
 namespace radiosity {
 namespace {
@@ -19,13 +22,6 @@ constexpr int kMostRounds = 24;
 /// Orders that two rounds may seem to show.
 constexpr double kLeastOrder = 0.9;
 constexpr double kMostOrder = 2.5;
-
-/// What a row has come to.
-struct RowState {
-  std::uint32_t rays = 0;
-  double error = 0;
-  double norm = 0;
-};
 
 /// Rays for an error of `aim`, from what was seen with fewer.
 std::uint32_t raysNeeded(const RowState& before, const RowState& now, double aim) {
@@ -40,11 +36,13 @@ std::uint32_t raysNeeded(const RowState& before, const RowState& now, double aim
 
 class Rounds {
  public:
-  Rounds(const RayScene& scene, const RayAim& aim, RayReport& report, Progress& progress)
+  Rounds(const RayScene& scene, const RayAim& aim, RayReport& report, Progress& progress,
+         RowJournal* journal)
       : scene_(scene),
         aim_(aim),
         report_(report),
         progress_(progress),
+        journal_(journal, scene.size()),
         rows_(scene.size()),
         before_(rows_.size()),
         now_(rows_.size()) {}
@@ -54,6 +52,7 @@ class Rounds {
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       if (scene_.area()[k] > 0) rays[k] = kPilotRays;
     }
+    resume(rays);
     while (cast(rays)) {
       measure(rays);
       if (report_.rounds == kMostRounds) break;
@@ -61,20 +60,73 @@ class Rounds {
           std::max(loosened_,
                    loosening(aim_.most_rays, [&](double times) { return raysOf(wishes(times)); }));
       rays = wishes(loosened_);
+      journal_.keep(report_.rounds, {rays, before_, now_, usual_norm_, loosened_});
     }
     finish();
     return std::move(rows_);
   }
 
  private:
+  /// Goes on where the journal ends: with the last of an unbroken row of rounds, whose targets
+  /// `rays` become. Whoever casts the same rays in the same order counts the same hits.
+  void resume(std::vector<std::uint32_t>& rays) {
+    std::vector<std::vector<std::uint32_t>> targets{rays};
+    while (std::optional<RayRound> round = journal_.take(int(targets.size()))) {
+      targets.push_back(std::move(round->rays));
+      before_ = std::move(round->before);
+      now_ = std::move(round->now);
+      usual_norm_ = round->usual_norm;
+      loosened_ = round->loosened;
+    }
+    rays = std::move(targets.back());
+    targets.pop_back();
+    report_.rounds = int(targets.size());
+    parallelFor(rows_.size(), 16, [&](std::size_t k) { restore(k, targets); });
+    progress_.check();
+    std::size_t found = 0;
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      report_.rays += kReplicates * std::size_t(rows_[k].rays);
+      const bool done = rows_[k].rays > 0 && rays[k] <= rows_[k].rays;
+      found += done || journal_.hasRow(report_.rounds, k) ? 1 : 0;
+    }
+    journal_.found(found);
+  }
+
+  /// A row as it was after rounds with these targets: as the last of them left it, and where that
+  /// is not there, by the rays of those after one that is.
+  void restore(std::size_t k, const std::vector<std::vector<std::uint32_t>>& targets) {
+    std::vector<int> continued;  // rounds that have cast rays of this row
+    std::uint32_t most = 0;
+    for (std::size_t r = 0; r < targets.size(); ++r) {
+      if (targets[r][k] <= most) continue;
+      most = targets[r][k];
+      continued.push_back(int(r));
+    }
+    std::size_t next = continued.size();
+    while (next > 0 && !journal_.takeRow(continued[next - 1], k,
+                                         targets[std::size_t(continued[next - 1])][k], rows_[k])) {
+      --next;
+    }
+    for (; next < continued.size() && !progress_.cancelled(); ++next) {
+      castRow(continued[next], k, targets[std::size_t(continued[next])][k]);
+    }
+  }
+
+  void castRow(int round, std::size_t k, std::uint32_t rays) {
+    scene_.cast(k, rays, rows_[k], progress_);
+    if (!progress_.cancelled()) journal_.keepRow(round, k, rows_[k]);
+  }
+
   /// Continues rows to as many rays as given, where that is more than they have.
   bool cast(const std::vector<std::uint32_t>& rays) {
     std::vector<Index> todo;
     std::size_t all = 0;
+    std::size_t kept = 0;
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       if (rays[k] <= rows_[k].rays) continue;
       todo.push_back(Index(k));
       all += rays[k] - rows_[k].rays;
+      if (journal_.hasRow(report_.rounds, k)) kept += rays[k] - rows_[k].rays;
     }
     if (todo.empty()) return false;
     const double start = clockSeconds();
@@ -82,13 +134,15 @@ class Rounds {
     std::stable_sort(todo.begin(), todo.end(), [&](Index a, Index b) {
       return rays[a] - rows_[a].rays > rays[b] - rows_[b].rays;
     });
-    progress_.begin(report_.rounds == 0 ? "first rays" : "form factors", all);
+    progress_.begin(report_.rounds == 0 ? "first rays" : "form factors", kReplicates * all, "rays",
+                    kReplicates * kept);
     parallelFor(todo.size(), 1, [&](std::size_t t) {
       if (progress_.cancelled()) return;
-      RayRow& row = rows_[todo[t]];
-      const std::uint32_t more = rays[todo[t]] - row.rays;
-      scene_.cast(todo[t], rays[todo[t]], row, progress_);
-      progress_.advance(more);
+      const std::size_t k = todo[t];
+      const std::uint32_t more = rays[k] - rows_[k].rays;
+      if (journal_.takeRow(report_.rounds, k, rays[k], rows_[k])) return;
+      castRow(report_.rounds, k, rays[k]);
+      progress_.advance(kReplicates * more);
     });
     progress_.check();
     progress_.end();
@@ -151,6 +205,7 @@ class Rounds {
   double loosened_ = 1;
   RayReport& report_;
   Progress& progress_;
+  RoundJournal journal_;
   std::vector<RayRow> rows_;
   std::vector<RowState> before_;
   std::vector<RowState> now_;
@@ -185,8 +240,8 @@ double loosening(double most, const std::function<double(double)>& raysAt) {
 }
 
 std::vector<RayRow> castRows(const RayScene& scene, const RayAim& aim, RayReport& report,
-                             Progress& progress) {
-  return Rounds(scene, aim, report, progress).run();
+                             Progress& progress, RowJournal* journal) {
+  return Rounds(scene, aim, report, progress, journal).run();
 }
 
 }  // namespace radiosity

@@ -39,8 +39,9 @@ struct RayAim {
 /// needs, falling with it, brings to `most` or below; within a hundredth.
 double loosening(double most, const std::function<double(double)>& raysAt);
 
-/// All rows, by position. Fills what the report says of rays and rounds.
+/// All rows, by position. Fills what the report says of rays and rounds. `journal`: null where
+/// nothing is kept.
 std::vector<RayRow> castRows(const RayScene& scene, const RayAim& aim, RayReport& report,
-                             Progress& progress);
+                             Progress& progress, RowJournal* journal);
 
 }  // namespace radiosity

@@ -37,6 +37,50 @@ ErrorSums& ErrorSums::operator+=(const ErrorSums& other) {
   return *this;
 }
 
+namespace {
+
+/// The rows from `first` on that have any, with their numbers: most have no occluded pair.
+template <class PairErrors>
+void putPairs(const std::vector<PairErrors>& rows, std::size_t first, ByteWriter& bytes) {
+  const auto has = [](const PairErrors& row) { return row.pairs > 0; };
+  bytes.putVarint(
+      std::size_t(std::count_if(rows.begin() + std::ptrdiff_t(first), rows.end(), has)));
+  for (std::size_t i = first; i < rows.size(); ++i) {
+    if (!has(rows[i])) continue;
+    bytes.putVarint(i);
+    bytes.put(rows[i]);
+  }
+}
+
+template <class PairErrors>
+void takePairs(ByteReader& bytes, std::vector<PairErrors>& rows) {
+  std::size_t count = bytes.getVarint();
+  for (; count > 0 && bytes.left() > 0; --count) {
+    const std::size_t i = bytes.getVarint();
+    const auto row = bytes.get<PairErrors>();
+    if (i < rows.size()) rows[i] = row;
+  }
+}
+
+}  // namespace
+
+void ErrorSums::put(std::size_t first, ByteWriter& bytes) const {
+  bytes.putArray(std::span(squares_).subspan(first));
+  putPairs(occluded_, first, bytes);
+  putPairs(black_backs_, first, bytes);
+  bytes.putArray(std::span(rechecks_));
+}
+
+bool ErrorSums::take(std::size_t first, ByteReader& bytes) {
+  const std::vector<double> squares = bytes.getArray<double>();
+  if (first + squares.size() != squares_.size()) return false;
+  std::copy(squares.begin(), squares.end(), squares_.begin() + std::ptrdiff_t(first));
+  takePairs(bytes, occluded_);
+  takePairs(bytes, black_backs_);
+  rechecks_ = bytes.getArray<Recheck>();
+  return true;
+}
+
 void ErrorSums::addAndScale(std::size_t row, std::span<double> exchange, double inverse_area) {
   // Two passes of independent elements, and one sum in four lanes: the compiler may vectorise all
   // of it without reordering an addition.

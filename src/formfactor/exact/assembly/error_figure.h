@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "base/byte_stream.h"
+
 namespace radiosity {
 
 /// Sums of the errors of some pairs, all in exchange areas G of ElementSet's units. Sums of
@@ -84,6 +86,11 @@ class ErrorSums {
   void addRecheck(std::size_t row, std::size_t column, double difference, double stated) {
     rechecks_.push_back({row, column, difference, stated});
   }
+
+  /// All of it where only rows from `first` on have any sums, and back. Of bytes of another number
+  /// of rows nothing is taken, and false comes back.
+  void put(std::size_t first, ByteWriter& bytes) const;
+  bool take(std::size_t first, ByteReader& bytes);
 
   std::size_t rechecked() const { return rechecks_.size(); }
   /// Error over figure that one in a hundred rows exceeds, of rows drawn from the pairs that were

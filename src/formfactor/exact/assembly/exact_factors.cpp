@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "formfactor/closed_scene.h"
+#include "formfactor/exact/assembly/task_journal.h"
 #include "formfactor/exact/clip_kernels.h"
 #include "formfactor/row_accounts.h"
 #include "mesh/canonical_order.h"
@@ -35,16 +36,21 @@ std::size_t recheckEvery(double occluded_pairs, double tolerance) {
 }
 
 /// All rows, in parallel. Sums are made in a tree that depends on the tasks alone.
-RowSums fillRows(const RowContext& context, const RowTasks& tasks, Progress& progress) {
+RowSums fillRows(const RowContext& context, const RowTasks& tasks, RowJournal* journal,
+                 Progress& progress) {
+  const TaskJournal kept(journal, context, tasks);
   tbb::enumerable_thread_specific<RowAssembly> workers([&] { return RowAssembly(context); });
   using Range = tbb::blocked_range<std::size_t>;
-  progress.begin("form factors", context.order.ranked);
+  progress.begin("form factors", context.order.ranked, "rows", kept.rows());
   RowSums sums = tbb::parallel_deterministic_reduce(
       Range(0, tasks.size(), 1), RowSums(context.order.ranked),
       [&](const Range& range, RowSums part) {
         for (std::size_t t = range.begin(); t != range.end(); ++t) {
+          // A leaf of the tree is one task: `part` holds the sums of no other.
+          if (kept.take(t, part)) continue;
           const auto rows = tasks[t];
           workers.local().run(rows, part);
+          kept.keep(t, part);
           const PatchOrder& order = context.order;
           progress.advance(order.rank[rows.back().end - 1] + 1 - order.rank[rows.front().first]);
         }
@@ -154,7 +160,8 @@ void close(const PatchOrder& order, const UncertainEntries& uncertain, ClosureMo
 
 FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
                          const ExactKernels& kernels, const ExactEstimate& estimate,
-                         const FormFactorOptions& options, Progress& progress) {
+                         const FormFactorOptions& options, Progress& progress,
+                         RowJournal* journal) {
   const std::size_t n = mesh.size();
   FormFactors result;
   result.method = "exact";
@@ -185,7 +192,7 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
       enforces ? &uncertain : nullptr,
       result.backs,
       seen_backs};
-  const RowSums sums = fillRows(context, scene.tasks, progress);
+  const RowSums sums = fillRows(context, scene.tasks, journal, progress);
   using Clock = std::chrono::steady_clock;
   const Clock::time_point finishing = Clock::now();
   reportCounts(scene, sums, report.exact);

@@ -6,9 +6,10 @@
 
 namespace radiosity {
 
-/// See computeFormFactors(). `scene` is the mesh's, `kernels` and `estimate` the scene's.
+/// See computeFormFactors(). `scene` is the mesh's, `kernels` and `estimate` the scene's; `journal`
+/// may be null.
 FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
                          const ExactKernels& kernels, const ExactEstimate& estimate,
-                         const FormFactorOptions& options, Progress& progress);
+                         const FormFactorOptions& options, Progress& progress, RowJournal* journal);
 
 }  // namespace radiosity

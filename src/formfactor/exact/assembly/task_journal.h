@@ -1,0 +1,49 @@
+// Tasks of the exact method in a journal: what they stored, and their sums.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "base/byte_stream.h"
+#include "formfactor/exact/assembly/row_assembly.h"
+#include "formfactor/exact/assembly/row_tasks.h"
+#include "radiosity/row_journal.h"
+
+namespace radiosity {
+
+/// A block a task: its rows as they are stored, which errors its entries have, the black backs that
+/// they see, and what the task adds to the sums over all pairs, without which the error figures
+/// would not be those of a run in one go.
+class TaskJournal {
+ public:
+  /// Keeps all by reference. `journal`: null where nothing is kept. Says how many rows are there.
+  TaskJournal(RowJournal* journal, const RowContext& context, const RowTasks& tasks);
+
+  /// That are there.
+  std::size_t rows() const { return found_; }
+
+  /// Puts the task's rows where RowAssembly would, and its sums into `sums`, which hold nothing
+  /// yet. False where the journal has no such task: then nothing has changed. Thread-safe for
+  /// different tasks.
+  bool take(std::size_t task, RowSums& sums) const;
+  /// After RowAssembly has run the task. `sums`: its own and no others.
+  void keep(std::size_t task, const RowSums& sums) const;
+
+ private:
+  struct Row;
+  struct Ranks {
+    std::size_t first;
+    std::size_t end;
+  };
+  Ranks ranksOf(std::size_t task) const;
+  void putRow(std::size_t rank, ByteWriter& bytes) const;
+  Row takeRow(std::size_t rank, ByteReader& bytes) const;
+  void store(std::size_t rank, Row row) const;
+
+  RowJournal* journal_;
+  const RowContext& context_;
+  const RowTasks& tasks_;
+  std::size_t found_ = 0;
+};
+
+}  // namespace radiosity

@@ -1,0 +1,31 @@
+// A row of hemicubes in a journal.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "formfactor/hemicube/hemicube.h"
+#include "formfactor/row_accounts.h"
+#include "radiosity/form_factors.h"
+#include "radiosity/row_journal.h"
+
+namespace radiosity {
+
+/// What making one row has counted.
+struct HemicubeRowCounts {
+  HemicubeCounts drawn;
+  std::size_t near_pairs = 0;
+  std::size_t capped = 0;
+  HemicubeRowCounts& operator+=(const HemicubeRowCounts& other);
+};
+
+/// Row i of `result`, which has been stored, its black backs and counts, as a block.
+void keepRow(RowJournal& journal, std::size_t i, const FormFactors& result,
+             const std::vector<SeenBack>& seen_backs, const HemicubeRowCounts& counts);
+
+/// Puts a row where it was, and adds its counts. False where the journal has no such row: then
+/// nothing has changed. Thread-safe for different rows and counts.
+bool takeRow(const RowJournal& journal, std::size_t i, FormFactors& result,
+             std::vector<SeenBack>& seen_backs, HemicubeRowCounts& counts);
+
+}  // namespace radiosity

@@ -1,0 +1,84 @@
+#include "formfactor/rays/round_journal.h"
+
+#include <utility>
+
+#include "base/byte_stream.h"
+
+namespace radiosity {
+
+void RoundJournal::keep(int round, const RayRound& decided) const {
+  if (journal_ == nullptr) return;
+  ByteWriter bytes;
+  bytes.putArray(std::span(decided.rays));
+  bytes.putArray(std::span(decided.before));
+  bytes.putArray(std::span(decided.now));
+  bytes.put(decided.usual_norm);
+  bytes.put(decided.loosened);
+  journal_->keep(RowBlock::ray_round, std::uint64_t(round), bytes.bytes());
+}
+
+std::optional<RayRound> RoundJournal::take(int round) const {
+  if (journal_ == nullptr || !journal_->has(RowBlock::ray_round, std::uint64_t(round))) return {};
+  const std::vector<std::byte> block = journal_->kept(RowBlock::ray_round, std::uint64_t(round));
+  ByteReader bytes(block);
+  RayRound decided;
+  decided.rays = bytes.getArray<std::uint32_t>();
+  decided.before = bytes.getArray<RowState>();
+  decided.now = bytes.getArray<RowState>();
+  decided.usual_norm = bytes.get<double>();
+  decided.loosened = bytes.get<double>();
+  const bool fits =
+      decided.rays.size() == rows_ && decided.before.size() == rows_ && decided.now.size() == rows_;
+  if (!bytes.isWhole() || !fits) return {};
+  return decided;
+}
+
+/// Columns as distances from the one before, and all in as few bytes as they need: most counts of
+/// most rows are small.
+void RoundJournal::keepRow(int round, std::size_t position, const RayRow& row) const {
+  if (journal_ == nullptr) return;
+  ByteWriter bytes;
+  bytes.put(row.rays);
+  bytes.put(row.sky);
+  bytes.put(row.lost);
+  bytes.put(row.leaked);
+  bytes.putVarint(row.columns.size());
+  Index before = 0;
+  for (std::size_t e = 0; e < row.columns.size(); ++e) {
+    bytes.putVarint(row.columns[e] - before);
+    for (const std::uint32_t hits : row.hits[e]) bytes.putVarint(hits);
+    before = row.columns[e];
+  }
+  journal_->keep(RowBlock::ray_row, number(round, position), bytes.bytes());
+}
+
+bool RoundJournal::hasRow(int round, std::size_t position) const {
+  return journal_ != nullptr && journal_->has(RowBlock::ray_row, number(round, position));
+}
+
+bool RoundJournal::takeRow(int round, std::size_t position, std::uint32_t rays, RayRow& row) const {
+  if (!hasRow(round, position)) return false;
+  const std::vector<std::byte> block = journal_->kept(RowBlock::ray_row, number(round, position));
+  ByteReader bytes(block);
+  RayRow kept;
+  kept.rays = bytes.get<std::uint32_t>();
+  kept.sky = bytes.get<std::array<std::uint32_t, kReplicates>>();
+  kept.lost = bytes.get<std::array<std::uint32_t, kReplicates>>();
+  kept.leaked = bytes.get<std::uint32_t>();
+  const std::size_t entries = bytes.getVarint();
+  if (entries > bytes.left()) return false;
+  kept.columns.reserve(entries);
+  kept.hits.reserve(entries);
+  Index column = 0;
+  for (std::size_t e = 0; e < entries; ++e) {
+    column += Index(bytes.getVarint());
+    kept.columns.push_back(column);
+    auto& hits = kept.hits.emplace_back();
+    for (std::uint32_t& of_replicate : hits) of_replicate = std::uint32_t(bytes.getVarint());
+  }
+  if (!bytes.isWhole() || kept.rays != rays) return false;
+  row = std::move(kept);
+  return true;
+}
+
+}  // namespace radiosity

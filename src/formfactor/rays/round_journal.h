@@ -1,0 +1,60 @@
+// Rounds of rays in a journal: what each row is to have, and what it has counted.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "formfactor/rays/ray_rows.h"
+#include "radiosity/row_journal.h"
+
+namespace radiosity {
+
+/// What a row has come to.
+struct RowState {
+  std::uint32_t rays = 0;
+  double error = 0;
+  double norm = 0;
+};
+
+/// What is decided when a round begins. All by position.
+struct RayRound {
+  std::vector<std::uint32_t> rays;  ///< each row is to have in each replicate, where it has less
+  std::vector<RowState> before;     ///< by the measurement before the last,
+  std::vector<RowState> now;        ///< and by the last
+  double usual_norm = 0;            ///< of the last
+  double loosened = 1;              ///< times the tolerance aimed at
+};
+
+/// Blocks of all rounds and rows stay. Rows are kept whole, not as what a round adds to them: where
+/// one is damaged the round before still is good.
+class RoundJournal {
+ public:
+  /// Of `rows` rows. `journal`: null where nothing is kept.
+  RoundJournal(RowJournal* journal, std::size_t rows) : journal_(journal), rows_(rows) {}
+
+  void keep(int round, const RayRound& decided) const;
+  std::optional<RayRound> take(int round) const;
+
+  /// A row at the end of a round that has continued it.
+  void keepRow(int round, std::size_t position, const RayRow& row) const;
+  bool hasRow(int round, std::size_t position) const;
+  /// `rays`: what the row must have then. False, with `row` as it was, where it is not there.
+  bool takeRow(int round, std::size_t position, std::uint32_t rays, RayRow& row) const;
+
+  /// See RowJournal::found().
+  void found(std::size_t rows) const {
+    if (journal_ != nullptr) journal_->found(rows, rows_);
+  }
+
+ private:
+  std::uint64_t number(int round, std::size_t position) const {
+    return std::uint64_t(round) * rows_ + position;
+  }
+  RowJournal* journal_;
+  std::size_t rows_;
+};
+
+}  // namespace radiosity

@@ -1,0 +1,90 @@
+// Rows of form factors in a file, from the first that is computed until all are in the results.
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "base/figure_text.h"
+#include "pipeline/journal_file.h"
+#include "pipeline/stage_key.h"
+#include "radiosity/names.h"
+#include "radiosity/pipeline.h"
+#include "radiosity/version.h"
+
+namespace radiosity {
+
+namespace {
+
+/// Of rows by `method`. Another version of the program may compute them otherwise.
+std::string journalKey(const StageKey& factors_key, std::string_view method) {
+  return fmt::format("radiosity={} {}", RADIOSITY_VERSION, usedKey(factors_key, method).text());
+}
+
+std::string resumedText(const JournalFile::Found& at_opening, std::size_t rows, std::size_t of) {
+  std::string text =
+      fmt::format("resumed: {} of {} rows were there", countText(rows), countText(of));
+  if (at_opening.damaged > 0) {
+    text += fmt::format(", {} damaged {} left out", countText(at_opening.damaged),
+                        at_opening.damaged == 1 ? "block" : "blocks");
+  }
+  return text;
+}
+
+}  // namespace
+
+/// `auto` goes on with what an earlier run chose: its choice rests on how fast the machine was.
+std::optional<FormFactorMethod> Pipeline::methodOfKeptRows(const StageKey& key) const {
+  const JournalOptions& journal = options_.journal;
+  if (journal.path.empty() || !journal.resume) return std::nullopt;
+  if (options_.factors.method != FormFactorMethod::automatic) return std::nullopt;
+  const std::optional<std::string> there = JournalFile::keyIn(journal.path);
+  if (!there) return std::nullopt;
+  for (const FormFactorMethod method : {FormFactorMethod::exact, FormFactorMethod::rays}) {
+    if (*there == journalKey(key, nameOf(kMethodNames, method))) return method;
+  }
+  return std::nullopt;
+}
+
+/// Where it cannot be opened, rows are computed without one: they are what was asked for.
+void Pipeline::openJournal(const FormFactorPlan& plan, const StageKey& key) {
+  journal_.reset();
+  const JournalOptions& options = options_.journal;
+  if (options.path.empty()) return;
+  const std::string wanted = journalKey(key, nameOf(kMethodNames, plan.method));
+  const std::optional<std::string> there = JournalFile::keyIn(options.path);
+  if (plan.seconds < options.from_seconds && !there) return;
+  try {
+    journal_ = std::make_unique<JournalFile>(options.path, wanted, options.resume);
+  } catch (const RunError& error) {
+    observer_.rows(*this, fmt::format("are not kept: {}", error.what()));
+    return;
+  }
+  const JournalFile::Found at_opening = journal_->atOpening();
+  if (at_opening.other_key) {
+    observer_.rows(*this, options.path + " held those of other form factors; removed");
+  }
+  journal_->onFound([this, at_opening](std::size_t rows, std::size_t of) {
+    if (at_opening.blocks + at_opening.damaged == 0) return;
+    observer_.rows(*this, resumedText(at_opening, rows, of));
+  });
+  observer_.keepsRows(*this, options.path);
+}
+
+void Pipeline::discardKeptRows() {
+  if (journal_) {
+    journal_->remove();
+    journal_.reset();
+    return;
+  }
+  // Left by a run that was ended between writing the results and removing them.
+  const std::string& path = options_.journal.path;
+  if (path.empty() || !results_.factors) return;
+  const std::string key = journalKey(StageKey(results_.factors_key), results_.factors->method);
+  if (JournalFile::keyIn(path) != key) return;
+  try {
+    JournalFile(path, key, true).remove();
+  } catch (const RunError&) {
+    return;  // another run holds it
+  }
+}
+
+}  // namespace radiosity
