@@ -42,7 +42,7 @@ namespace {
 /// The rows from `first` on that have any, with their numbers: most have no occluded pair.
 template <class PairErrors>
 void putPairs(const std::vector<PairErrors>& rows, std::size_t first, ByteWriter& bytes) {
-  const auto has = [](const PairErrors& row) { return row.pairs > 0; };
+  const auto has = [](const PairErrors& row) { return row.squares > 0; };
   bytes.putVarint(
       std::size_t(std::count_if(rows.begin() + std::ptrdiff_t(first), rows.end(), has)));
   for (std::size_t i = first; i < rows.size(); ++i) {
