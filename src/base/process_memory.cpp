@@ -1,5 +1,6 @@
 #include "base/process_memory.h"
 
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -20,5 +21,7 @@ std::size_t peakBytes() {
   constexpr std::size_t kKibibyte = 1024;
   return getrusage(RUSAGE_SELF, &usage) == 0 ? std::size_t(usage.ru_maxrss) * kKibibyte : 0;
 }
+
+void returnFreedMemory() { malloc_trim(0); }
 
 }  // namespace radiosity

@@ -11,4 +11,7 @@ std::size_t residentBytes();
 /// The most that were, up to now; 0 where it is not known.
 std::size_t peakBytes();
 
+/// Gives memory back that was freed: what comes next then adds to what is held, not to what was.
+void returnFreedMemory();
+
 }  // namespace radiosity

@@ -48,11 +48,12 @@ std::size_t clusterMatrixBytes(const PatchMesh& mesh, bool symmetric, Precision 
                    : estimateRowFormBytes(k, double(k), precision);
 }
 
-std::size_t clusterFactorsBytes(const PatchMesh& mesh, bool symmetric, Precision precision) {
+std::size_t clusterFactorsBytes(const PatchMesh& mesh, bool symmetric, Precision precision,
+                                std::size_t patch_bytes) {
   const std::size_t k = mesh.unknowns();
   // Exchange areas of the symmetric form are summed in 64 bits.
   const std::size_t sums = symmetric ? k * (k + 1) / 2 * sizeof(double) : 0;
-  return sums + clusterMatrixBytes(mesh, symmetric, precision);
+  return sums + std::min(patch_bytes, clusterMatrixBytes(mesh, symmetric, precision));
 }
 
 }  // namespace radiosity

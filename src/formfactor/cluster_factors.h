@@ -22,7 +22,9 @@ FormFactors clusterFactors(const FormFactors& factors, const PatchMesh& mesh, Pr
 
 /// Bytes of the matrix between clusters, at most; `symmetric` or not.
 std::size_t clusterMatrixBytes(const PatchMesh& mesh, bool symmetric, Precision precision);
-/// What clusterFactors() holds at most beside the matrix of the patches, that one included.
-std::size_t clusterFactorsBytes(const PatchMesh& mesh, bool symmetric, Precision precision);
+/// What clusterFactors() holds at most beside the matrix of the patches of `patch_bytes`, that one
+/// included: there are no more pairs of clusters than of their patches.
+std::size_t clusterFactorsBytes(const PatchMesh& mesh, bool symmetric, Precision precision,
+                                std::size_t patch_bytes);
 
 }  // namespace radiosity

@@ -68,7 +68,7 @@ void addClusters(const FormFactorPlan::Prepared& prepared, bool symmetric, Estim
   const PatchMesh& mesh = prepared.mesh;
   if (!mesh.clusters) return;
   const Precision precision = prepared.options.storedPrecision();
-  estimate.bytes += clusterFactorsBytes(mesh, symmetric, precision);
+  estimate.bytes += clusterFactorsBytes(mesh, symmetric, precision, estimate.matrix_bytes);
   estimate.matrix_bytes =
       std::min(estimate.matrix_bytes, clusterMatrixBytes(mesh, symmetric, precision));
 }

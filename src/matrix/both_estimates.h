@@ -11,12 +11,21 @@
 
 namespace radiosity {
 
+/// Columns gathered at once by forBothEstimates().
+inline constexpr std::size_t kColumnsAtOnce = 128;
+
+/// Bytes that it takes of N rows.
+inline std::size_t bothEstimatesBytes(std::size_t n, std::size_t threads) {
+  return (std::min(kColumnsAtOnce, n) + threads) * n * sizeof(double);
+}
+
 /// Calls visit(i, row, column) for every i, row[j] = F_ij and column[j] = F_ji, both N values with
 /// zeros where nothing is stored. Calls run in parallel. Columns are gathered a block at a time, so
-/// that memory beyond the matrix is kBlock * N values, not a transposed copy of it. Row form only.
+/// that memory beyond the matrix is kColumnsAtOnce * N values, not a transposed copy of it. Row
+/// form only.
 template <class Visit>
 void forBothEstimates(const ExchangeMatrix& matrix, const Visit& visit) {
-  constexpr std::size_t kBlock = 128;
+  constexpr std::size_t kBlock = kColumnsAtOnce;
   const std::size_t n = matrix.size();
   std::vector<double> columns(std::min(kBlock, n) * n);
   for (std::size_t begin = 0; begin < n; begin += kBlock) {

@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <limits>
 
+#include "matrix/expected_bytes.h"
 #include "matrix/matrix_row.h"
 #include "matrix/run_row.h"
+#include "matrix/uncertain_row.h"
 #include "radiosity/matrix_functions.h"
 
 namespace radiosity {
@@ -25,6 +27,28 @@ std::size_t estimateSymmetricBytes(std::size_t n, double entries_per_row, Precis
   const double sparse = half * (value + sizeof(Run));
   const double dense = double(n) / 2 * value + dense_runs * sizeof(Run);
   return std::size_t(std::ceil(double(n) * (std::min(sparse, dense) + sizeof(RunRow))));
+}
+
+namespace {
+
+/// Share of a row's places that no entry nearby fills.
+double gapShare(std::size_t n, double entries_per_row) {
+  constexpr double kClose = 1.5;
+  return n == 0 ? 0 : std::max(0.0, 1 - kClose * entries_per_row / double(n));
+}
+
+}  // namespace
+
+std::size_t expectedSymmetricBytes(std::size_t n, double entries_per_row, Precision precision) {
+  const double gaps = gapShare(n, entries_per_row);
+  const double entry = double(valueBytes(precision)) + gaps * gaps * sizeof(Run);
+  return std::size_t(double(n) * (entries_per_row / 2 * entry + sizeof(RunRow) + sizeof(double)));
+}
+
+std::size_t expectedUncertainBytes(std::size_t n, double entries_per_row) {
+  const double gaps = gapShare(n, entries_per_row);
+  const double entry = sizeof(std::uint8_t) + gaps * gaps * gaps * gaps * sizeof(Run);
+  return std::size_t(double(n) * (entries_per_row / 2 * entry + sizeof(UncertainEntries::Row)));
 }
 
 }  // namespace radiosity

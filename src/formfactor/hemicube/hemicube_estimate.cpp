@@ -6,6 +6,10 @@
 #include "base/parallel.h"
 #include "base/processor_clock.h"
 #include "formfactor/hemicube/hemicube_factors.h"
+#include "formfactor/row_accounts.h"
+#include "matrix/both_estimates.h"
+#include "matrix/expected_bytes.h"
+#include "matrix/working_memory.h"
 #include "radiosity/matrix_functions.h"
 
 namespace radiosity {
@@ -71,10 +75,19 @@ HemicubeEstimate estimateHemicubes(const PatchMesh& mesh, const HemicubeScene& s
   HemicubeEstimate estimate;
   estimate.matrix_bytes =
       estimateRowFormBytes(n, share * double(sum.entries), options.storedPrecision());
-  constexpr std::size_t kAccounts = 4 * sizeof(double);  // fronts, backs, sky, area
-  // Merging makes a second matrix beside the first; it and closing its rows take no more than that.
-  estimate.bytes = options.memory_held + (options.symmetrize ? 2 : 1) * estimate.matrix_bytes +
-                   n * kAccounts + scene.rows.sharedBytes() + threads * sum.hemicube_bytes;
+  // Fronts, backs, sky, area; backs seen; columns and values, with the headers of their memory.
+  constexpr std::size_t kAccounts =
+      4 * sizeof(double) + sizeof(std::vector<SeenBack>) + 7 * sizeof(std::size_t) + 2 * 16;
+  // Looking through columns for reciprocity, and writing, come one after the other.
+  const std::size_t finishing = std::max(bothEstimatesBytes(n, threads), kFileChunks);
+  // Merging makes a second matrix beside the first, in which a pair is stored once where one of its
+  // ends or the other has seen it; closing its rows, after that, takes no more than the first.
+  constexpr double kSeenByEither = 1.2;
+  const double merged = std::min(double(n), kSeenByEither * share * double(sum.entries));
+  const std::size_t second =
+      options.symmetrize ? expectedSymmetricBytes(n, merged, options.storedPrecision()) : 0;
+  estimate.bytes = options.memory_held + estimate.matrix_bytes + second + n * kAccounts +
+                   scene.rows.sharedBytes() + threads * sum.hemicube_bytes + finishing;
   estimate.measured = sum.taken.ratio() * share * sum.seconds * double(n) / double(threads);
   return estimate;
 }

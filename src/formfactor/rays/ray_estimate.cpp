@@ -7,7 +7,8 @@
 #include "base/processor_clock.h"
 #include "formfactor/rays/ray_factors.h"
 #include "formfactor/rays/ray_rounds.h"
-#include "radiosity/matrix_functions.h"
+#include "matrix/expected_bytes.h"
+#include "matrix/working_memory.h"
 
 namespace radiosity {
 namespace {
@@ -27,10 +28,24 @@ constexpr double kEntrySeconds = 12e-9;
 struct SampledRow {
   RowAccuracy few;
   RowAccuracy many;
+  double few_entries = 0;
   double entries = 0;
+  double visible = 0;  ///< entries that any number of rays would find, about
   double area = 0;
   BothClocks taken;  ///< by the rays from kFewRays on
 };
+
+/// Of what is seen once and twice, how much there is that was not seen (Chao, "Nonparametric
+/// estimation of the number of classes in a population", Scand. J. Statist. 11, 1984).
+double visibleEntries(const RayRow& row) {
+  double once = 0;
+  double twice = 0;
+  for (const auto& [first, second] : row.hits) {
+    once += first + second == 1 ? 1 : 0;
+    twice += first + second == 2 ? 1 : 0;
+  }
+  return double(row.columns.size()) + once * (once - 1) / (2 * (twice + 1));
+}
 
 SampledRow sampleRow(const RayScene& scene, std::size_t position, const Progress& progress) {
   SampledRow sampled;
@@ -39,11 +54,13 @@ SampledRow sampleRow(const RayScene& scene, std::size_t position, const Progress
   scene.cast(position, kFewRays, row, progress);
   if (row.columns.empty() || progress.cancelled()) return sampled;
   sampled.few = accuracyAlone(row);
+  sampled.few_entries = double(row.columns.size());
   const BothWatches watches;
   scene.cast(position, kManyRays, row, progress);
   sampled.taken = watches.elapsed();
   sampled.many = accuracyAlone(row);
   sampled.entries = double(row.columns.size());
+  sampled.visible = visibleEntries(row);
   return sampled;
 }
 
@@ -58,6 +75,18 @@ double orderOf(const std::vector<SampledRow>& rows) {
   }
   if (!(few > many) || !(many > 0)) return kUsualOrder;
   return std::clamp(std::log(few / many) / std::log(double(kManyRays) / kFewRays), 1.0, 2.0);
+}
+
+/// Few of the entries that are not there yet are found by so many times the rays.
+constexpr double kNewEntries = 0.3;
+
+/// Of a row by so many rays a replicate: as from few to many, and beyond as above, up to all that
+/// are visible.
+double entriesBy(const SampledRow& row, double rays) {
+  if (!(row.few_entries > 0)) return 0;
+  double power = std::log(row.entries / row.few_entries) / std::log(double(kManyRays) / kFewRays);
+  if (rays > kManyRays) power = std::min(power, kNewEntries);
+  return std::min(row.visible, row.entries * std::pow(rays / kManyRays, power));
 }
 
 /// What sampled rows say of all.
@@ -83,12 +112,9 @@ class Forecast {
   }
   /// Of all rows together, once they have the rays they get.
   double entries(std::size_t columns) const {
-    // Entries that more rays find: few of those that are not there yet.
-    constexpr double kNewEntries = 0.3;
     double sum = 0;
     for (const SampledRow& row : rows_) {
-      const double more = std::max(1.0, raysOf(row, loosened_) / kManyRays);
-      sum += std::min(double(columns), row.entries * std::pow(more, kNewEntries));
+      sum += std::min(double(columns), entriesBy(row, kRounding * raysOf(row, loosened_)));
     }
     return times_ * sum;
   }
@@ -118,6 +144,24 @@ class Forecast {
   double loosened_ = 1;
 };
 
+/// What counts, matrix and errors take: first rows are merged, then closed, then written.
+void foreseeBytes(const RayScene& scene, double entries, const FormFactorOptions& options,
+                  RayEstimate& estimate) {
+  const std::size_t n = scene.size();
+  constexpr std::size_t kCountBytes = sizeof(Index) + kReplicates * sizeof(std::uint32_t);
+  constexpr std::size_t kAccounts = 16 * sizeof(double);     // a row: accounts, states, targets
+  constexpr std::size_t kHeaders = 4 * sizeof(std::size_t);  // of two vectors' memory
+  const auto counts = std::size_t(double(n) * entries * kCountBytes);
+  // A pair is stored where one end or the other has seen it: as by twice the rays.
+  const double merged = std::min(double(n), entries * std::exp2(kNewEntries));
+  estimate.matrix_bytes = expectedSymmetricBytes(n, merged, options.storedPrecision());
+  const std::size_t errors = expectedUncertainBytes(n, merged);
+  const std::size_t merging = counts + n * (sizeof(RayRow) + kHeaders) + mergingBytes(n) + errors;
+  const std::size_t working = matrixWorkingMemory(n, allowedThreads());
+  estimate.bytes = options.memory_held + scene.caster().bytes() + estimate.matrix_bytes +
+                   n * kAccounts + std::max({merging, 2 * errors, working});
+}
+
 }  // namespace
 
 RayEstimate estimateRays(const RayScene& scene, const FormFactorOptions& options,
@@ -139,11 +183,7 @@ RayEstimate estimateRays(const RayScene& scene, const FormFactorOptions& options
   estimate.tolerance = aim.tolerance * forecast.loosened();
   estimate.seconds = forecast.seconds(estimate.rays, entries);
   estimate.seconds_to_tolerance = forecast.seconds(forecast.rays(1), entries);
-  const double in_a_row = n > 0 ? entries / double(n) : 0.0;
-  estimate.matrix_bytes = estimateSymmetricBytes(n, in_a_row, options.storedPrecision());
-  constexpr std::size_t kCountBytes = sizeof(Index) + kReplicates * sizeof(std::uint32_t) + 1;
-  estimate.bytes = options.memory_held + scene.caster().bytes() + estimate.matrix_bytes +
-                   std::size_t(entries * kCountBytes);
+  foreseeBytes(scene, n > 0 ? entries / double(n) : 0.0, options, estimate);
   return estimate;
 }
 

@@ -30,6 +30,10 @@ constexpr std::array<std::pair<double, double>, 15> kQuantiles{{{1, 4052},
                                                                 {400, 1.262},
                                                                 {1600, 1.123}}};
 
+std::size_t panelRows(std::size_t rows) {
+  return std::clamp(kPanelBytes / (rows * sizeof(double) * kReplicates), std::size_t(1), rows);
+}
+
 double quantile(double degrees) {
   if (degrees <= kQuantiles.front().first) return kQuantiles.front().second;
   for (std::size_t k = 1; k < kQuantiles.size(); ++k) {
@@ -116,6 +120,11 @@ class Panel {
 
 }  // namespace
 
+std::size_t mergingBytes(std::size_t rows) {
+  if (rows == 0) return 0;
+  return (panelRows(rows) * kReplicates + kReplicates + 1) * rows * sizeof(double);
+}
+
 double RowAccuracy::figure() const { return error * std::sqrt(quantile(degrees)); }
 
 void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
@@ -123,8 +132,7 @@ void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
                    const std::function<void(const MergedRow&)>& visit) {
   const std::size_t n = rows.size();
   if (n == 0) return;
-  const std::size_t most =
-      std::clamp(kPanelBytes / (n * sizeof(double) * kReplicates), std::size_t(1), n);
+  const std::size_t most = panelRows(n);
   std::vector<std::array<double, kReplicates>> density(n);  // rays a square metre
   for (std::size_t k = 0; k < n; ++k) {
     for (int r = 0; r < kReplicates; ++r) {

@@ -49,6 +49,9 @@ void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
                    std::span<const std::uint8_t> wanted,
                    const std::function<void(const MergedRow&)>& visit);
 
+/// Bytes that forMergedRows() takes of `rows` rows.
+std::size_t mergingBytes(std::size_t rows);
+
 /// How far off a row is, from its replicates.
 struct RowAccuracy {
   double norm = 0;   ///< sqrt(sum_j F_ij^2)

@@ -76,14 +76,21 @@ void RayScene::addCounts(std::array<RayCaster::Counts, kReplicates>& counts, Ray
       row.sky[r] += of.sky;
     }
   }
-  row.columns.clear();
-  row.hits.clear();
+  const auto isHit = [&](std::size_t item) {
+    return counts[0].hits[item] != 0 || counts[1].hits[item] != 0;
+  };
+  std::size_t entries = 0;
+  for (std::size_t item = 0; item < caster_.items(); ++item) entries += isHit(item) ? 1 : 0;
+  // New vectors of just that size: of ones that grow, a third would be empty.
+  row.columns = {};
+  row.hits = {};
+  row.columns.reserve(entries);
+  row.hits.reserve(entries);
   for (Index column = 0; column < caster_.items(); ++column) {
     const std::size_t item = column < n ? order_[column] : column;
-    const std::array<std::uint32_t, kReplicates> hits{counts[0].hits[item], counts[1].hits[item]};
-    if (hits[0] + hits[1] == 0) continue;
+    if (!isHit(item)) continue;
     row.columns.push_back(column);
-    row.hits.push_back(hits);
+    row.hits.push_back({counts[0].hits[item], counts[1].hits[item]});
   }
 }
 

@@ -6,6 +6,7 @@
 #include "formfactor/exact/assembly/row_sample.h"
 #include "formfactor/exact/assembly/row_times.h"
 #include "formfactor/foreseen_work.h"
+#include "matrix/expected_bytes.h"
 #include "matrix/working_memory.h"
 #include "radiosity/matrix_functions.h"
 
@@ -72,7 +73,7 @@ ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,
   const std::size_t filling = allowedThreads() * (scene.tasks.panelBytes(scene.elements) +
                                                   row_sums + 2 * sample.task_bytes);
   estimate.matrix_bytes =
-      estimateSymmetricBytes(n, estimate.entries_per_row, options.storedPrecision());
+      expectedSymmetricBytes(n, estimate.entries_per_row, options.storedPrecision());
   estimate.bytes =
       options.memory_held + estimate.matrix_bytes +
       (enforces ? std::size_t(sample.occluded) * kUncertainBytes : 0) + n * kAccounts +
