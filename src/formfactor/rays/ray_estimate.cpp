@@ -18,10 +18,14 @@ constexpr std::size_t kMostRows = 160;
 /// to fall.
 constexpr std::uint32_t kFewRays = kPilotRays;
 constexpr std::uint32_t kManyRays = 8 * kPilotRays;
+/// Orders that the sample may seem to show: of 160 rows it is rough still.
+constexpr double kLeastOrder = 1.1;
+constexpr double kMostOrder = 1.4;
 /// Merging with what the others count takes about half off the square of an error.
 constexpr double kMerged = 0.5;
-/// Rays are cast to the next number that suits the net, and some rows twice.
-constexpr double kRounding = 1.25;
+/// Rays are cast to the next number that suits the net, and what a round says of an error is rough:
+/// with this, thirteen scenes of the kinds that people have take .6 to 1.5 times the rays foreseen.
+constexpr double kRounding = 1.5;
 /// Seconds an entry of the rows takes in counting, merging and closing, beside the rays.
 constexpr double kEntrySeconds = 12e-9;
 
@@ -74,7 +78,8 @@ double orderOf(const std::vector<SampledRow>& rows) {
     many += row.many.error * row.many.error / (row.many.norm * row.many.norm);
   }
   if (!(few > many) || !(many > 0)) return kUsualOrder;
-  return std::clamp(std::log(few / many) / std::log(double(kManyRays) / kFewRays), 1.0, 2.0);
+  return std::clamp(std::log(few / many) / std::log(double(kManyRays) / kFewRays), kLeastOrder,
+                    kMostOrder);
 }
 
 /// Few of the entries that are not there yet are found by so many times the rays.
@@ -118,11 +123,15 @@ class Forecast {
     }
     return times_ * sum;
   }
-  /// By the clock, of all threads, at the rate that the sample had.
-  double seconds(double rays, double entries) const {
-    const double sampled = kReplicates * double(kManyRays - kFewRays) * double(rows_.size());
-    const double per_ray = sampled > 0 ? taken_.processor / sampled : 0.0;
-    return taken_.ratio() / double(allowedThreads()) * (rays * per_ray + kEntrySeconds * entries);
+  /// By the clock, of all threads, each row at the rate that it had: rows that want many rays are
+  /// those that look into corners, where rays take longer than under the sky.
+  double seconds(double loosened, double entries) const {
+    double casting = 0;
+    for (const SampledRow& row : rows_) {
+      casting += raysOf(row, loosened) * row.taken.processor / (kManyRays - kFewRays);
+    }
+    return taken_.ratio() / double(allowedThreads()) *
+           (kRounding * times_ * casting + kEntrySeconds * entries);
   }
 
  private:
@@ -181,8 +190,8 @@ RayEstimate estimateRays(const RayScene& scene, const FormFactorOptions& options
   RayEstimate estimate;
   estimate.rays = forecast.rays(forecast.loosened());
   estimate.tolerance = aim.tolerance * forecast.loosened();
-  estimate.seconds = forecast.seconds(estimate.rays, entries);
-  estimate.seconds_to_tolerance = forecast.seconds(forecast.rays(1), entries);
+  estimate.seconds = forecast.seconds(forecast.loosened(), entries);
+  estimate.seconds_to_tolerance = forecast.seconds(1, entries);
   foreseeBytes(scene, n > 0 ? entries / double(n) : 0.0, options, estimate);
   return estimate;
 }
