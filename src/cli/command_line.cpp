@@ -122,8 +122,10 @@ void addFactorOptions(CLI::App& app, Request& r) {
   const bool compares = app.get_name() == commandName(Command::compare);
   add(app, "Form factors", compares ? "--factor-tolerance" : "--tolerance", r.tolerance, "FRACTION",
       fmt::format("exact: error aimed at for an occluded pair, relative to the mean form factor "
-                  "1/N (default {}); rays: relative error of a row, L2 (default {}); 1e-12 to 0.1",
-                  FormFactorOptions::kExactTolerance, FormFactorOptions::kRayTolerance));
+                  "1/N (default {}); rays: relative error of a row, L2 (default {}, or what {:g} "
+                  "million rays reach); 1e-12 to 0.1",
+                  FormFactorOptions::kExactTolerance, FormFactorOptions::kRayTolerance,
+                  1e-6 * FormFactorOptions::kMostRaysUnasked));
   add(app, "Form factors", "--closure", r.closure, "off|report|enforce",
       "In a closed scene say how far row sums are from 1 (report, default), or make them 1 by the "
       "smallest change to occluded pairs (enforce); rays: rows are closed unless off")
@@ -284,8 +286,8 @@ void addGeneralOptions(CLI::App& app, Request& r, Command command) {
   app.add_option_function<std::string>(
          "--time-limit",
          [&r](const std::string& text) { r.time_limit = parseDuration("--time-limit", text); },
-         "Stop the run after this long, keeping stages that are finished; refuse form factors that "
-         "are foreseen to take longer than what is left of it. Seconds, or 90s, 10m, 2h")
+         "Stop the run after this long, keeping finished stages and rows (--resume); refuse form "
+         "factors that are foreseen to take longer than what is left. Seconds, or 90s, 10m, 2h")
       ->option_text("TIME")
       ->group("General");
   add(app, "General", "--max-image", r.scene.max_image, "MEGAPIXELS",

@@ -37,6 +37,7 @@ COLUMNS = {  # key: title
     "outcome": "outcome",
     "faces": "faces",
     "patches": "patches",
+    "unknowns": "unknowns",
     "method": "method",
     "mesh_s": "mesh s",
     "plan_s": "plan s",
@@ -45,6 +46,7 @@ COLUMNS = {  # key: title
     "all_s": "all s",
     "foreseen_mib": "MiB, foreseen",
     "peak_mib": "true",
+    "error_figure": "error of F",
     "error_median": "row error, median",
     "error_largest": "largest",
     "said": "last words",
@@ -117,11 +119,13 @@ def measured(report):
     row = {
         "faces": report.get("scene", {}).get("faces"),
         "patches": mesh.get("patches"),
+        "unknowns": mesh.get("unknowns"),
         "method": factors.get("method"),
         "mesh_s": report.get("stages", {}).get("mesh", {}).get("seconds"),
         "plan_s": factors.get("seconds_plan"),
         "foreseen_s": factors.get("estimated_seconds"),
         "true_s": factors.get("seconds", 0) - factors.get("seconds_plan", 0) if factors else None,
+        "error_figure": factors.get("error_figure"),
         "error_median": factors.get("row_error_median"),
         "error_largest": factors.get("row_error_largest"),
     }
@@ -213,7 +217,7 @@ def main():
     width = max(map(len, names))
     print_row({**{key: title.split(",")[-1].strip() for key, title in COLUMNS.items()},
                "mesh_s": "mesh s", "plan_s": "plan s", "all_s": "all s",
-               "error_median": "row error"}, width)
+               "error_figure": "of F", "error_median": "of rows"}, width)
     rows = []
     for scene, name in zip(files, names):
         rows.append(run_file(options.program, scene, name, options.limit, extra))

@@ -173,13 +173,14 @@ def draw(folder, rows):
             x = [r["patches_asked"] if along == "unknowns" else r[along] for r in some]
             for key, (label, colour, mark) in STAGES.items():
                 grid[0][column].loglog(x, [max(r[key], 1e-3) for r in some], style, color=colour,
-                                       marker=mark, markersize=4, label=f"{label}, {series}")
+                                       marker=mark, markersize=4, label=label)
             grid[1][column].loglog(x, [r["memory_mib"] for r in some], style, color="#D55E00",
-                                   marker="o", markersize=4, label=series)
+                                   marker="o", markersize=4)
         grid[1][column].set_xlabel(title)
         for line in (0, 1):
             grid[line][column].grid(True, which="major", color="#dddddd", linewidth=0.6)
-            grid[line][column].legend(fontsize=6.5)
+    grid[0][0].set_title("new vertices in the planes of the faces (dashed), out of them", fontsize=9)
+    grid[0][1].legend(fontsize=8)
     grid[0][0].set_ylabel("seconds, two threads")
     grid[1][0].set_ylabel("memory, MiB")
     figure.tight_layout()
