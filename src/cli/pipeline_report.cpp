@@ -122,12 +122,12 @@ void PipelineReport::planned(const Pipeline& pipeline, const FormFactorPlan& pla
     report_.line("", fmt::format("for --tolerance {}: about {}", numberText(tolerance),
                                  durationText(*plan.seconds_to_tolerance)));
   }
-  const std::optional<double> left = limit_.left();
-  if (left && plan.seconds > *left) {
+  const double left = limit_.left();
+  if (plan.seconds > left) {
     throw RunError(
         fmt::format("form factors would take about {}, and --time-limit {} leaves {}; {}",
-                    durationText(plan.seconds), durationText(*limit_.seconds()),
-                    durationText(std::max(0.0, *left)), cures(plan)));
+                    durationText(plan.seconds), durationText(limit_.seconds()),
+                    durationText(std::max(0.0, left)), cures(plan)));
   }
   if (plan.seconds > kLongWait) report_.line("", cures(plan));
 }

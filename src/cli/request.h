@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/time_limit.h"
 #include "radiosity/compare.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
@@ -74,7 +75,7 @@ struct Request {
   std::string show;
 
   int threads = 0;
-  std::optional<double> time_limit;  ///< seconds
+  double time_limit = kNoTimeLimit;  ///< seconds
   std::string report;
   bool quiet = false;
 

@@ -129,7 +129,7 @@ void SignalGuard::watch() {
       continue;
     }
     if (!progress_.cancelled()) {
-      sayOutOfTime(*limit_.seconds());
+      sayOutOfTime(limit_.seconds());
       progress_.cancel();
     }
     if (!interrupted) interrupted = Clock::now();

@@ -18,7 +18,7 @@ namespace radiosity::cli {
 /// closed pipe loses lines, not the run.
 class SignalGuard {
  public:
-  explicit SignalGuard(ConsoleProgress& progress, const TimeLimit& limit = TimeLimit(std::nullopt));
+  explicit SignalGuard(ConsoleProgress& progress, const TimeLimit& limit = TimeLimit(kNoTimeLimit));
   ~SignalGuard();
   SignalGuard(const SignalGuard&) = delete;
   SignalGuard& operator=(const SignalGuard&) = delete;

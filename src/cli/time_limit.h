@@ -2,28 +2,28 @@
 #pragma once
 
 #include <chrono>
-#include <optional>
+#include <limits>
 
 namespace radiosity::cli {
 
-/// From its making on; without a limit it never passes.
+/// Seconds of a run without a limit.
+inline constexpr double kNoTimeLimit = std::numeric_limits<double>::infinity();
+
+/// Counts from its making on.
 class TimeLimit {
  public:
-  explicit TimeLimit(std::optional<double> seconds) : seconds_(seconds) {}
+  explicit TimeLimit(double seconds) : seconds_(seconds) {}
 
-  const std::optional<double>& seconds() const { return seconds_; }
-  bool passed() const { return seconds_ && elapsed() >= *seconds_; }
-  /// Seconds that are left; empty without a limit.
-  std::optional<double> left() const {
-    if (!seconds_) return std::nullopt;
-    return *seconds_ - elapsed();
+  double seconds() const { return seconds_; }
+  double left() const {
+    return seconds_ - std::chrono::duration<double>(Clock::now() - start_).count();
   }
+  bool passed() const { return left() <= 0; }
 
  private:
   using Clock = std::chrono::steady_clock;
-  double elapsed() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
-  std::optional<double> seconds_;
+  double seconds_;
   Clock::time_point start_ = Clock::now();
 };
 

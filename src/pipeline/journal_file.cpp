@@ -113,7 +113,7 @@ const std::array<char, kAlignment> kZeros{};
 class JournalFile::Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() { close(number_); }  // and with it the lock
+  ~Descriptor() { ::close(number_); }  // and with it the lock
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
   int number() const { return number_; }
