@@ -7,6 +7,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string_view>
 #include <utility>
@@ -48,10 +49,21 @@ std::string bandsText(int bands) {
   return bands == 1 ? "band 1" : fmt::format("bands 1 to {}", bands);
 }
 
-std::size_t parseBytes(const std::string& option, const std::string& text) {
+namespace {
+
+/// A number and what follows it; no number: NaN, and all of the text follows.
+std::pair<double, std::string> numberAndUnit(const std::string& text) {
   double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  std::string unit(end, text.data() + text.size());
+  const char* const last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), last, value);
+  if (error != std::errc()) return {std::numeric_limits<double>::quiet_NaN(), text};
+  return {value, std::string(end, last)};
+}
+
+}  // namespace
+
+std::size_t parseBytes(const std::string& option, const std::string& text) {
+  auto [value, unit] = numberAndUnit(text);
   std::transform(unit.begin(), unit.end(), unit.begin(),
                  [](unsigned char c) { return char(std::toupper(c)); });
   constexpr const char* kForms[][4] = {{"", "B", "B", "B"},
@@ -65,7 +77,7 @@ std::size_t parseBytes(const std::string& option, const std::string& text) {
       continue;
     }
     const double bytes = std::ldexp(value, int(10 * power));
-    if (error == std::errc() && bytes >= 1 && bytes < 0x1p63) return std::size_t(bytes);
+    if (bytes >= 1 && bytes < 0x1p63) return std::size_t(bytes);
   }
   throw InputError(fmt::format(
       "{}: '{}' is not a size above 0; write bytes or a number with K, M, G or T, e.g. 512M or 2G",
@@ -75,13 +87,9 @@ std::size_t parseBytes(const std::string& option, const std::string& text) {
 double parseDuration(const std::string& option, const std::string& text) {
   constexpr std::array<std::pair<std::string_view, double>, 5> kUnits{
       {{"", 1}, {"s", 1}, {"m", 60}, {"min", 60}, {"h", 3600}}};
-  double value = 0;
-  const char* last = text.data() + text.size();
-  const auto [end, error] = std::from_chars(text.data(), last, value);
-  const std::string_view rest(end, std::size_t(last - end));
-  const auto* const unit = std::ranges::find(kUnits, rest, [](const auto& u) { return u.first; });
-  if (error == std::errc() && unit != kUnits.end() && value > 0 && std::isfinite(value)) {
-    return value * unit->second;
+  const auto [value, rest] = numberAndUnit(text);
+  for (const auto& [unit, seconds] : kUnits) {
+    if (rest == unit && value > 0 && std::isfinite(value)) return value * seconds;
   }
   throw InputError(fmt::format(
       "{}: '{}' is not a time above 0; write seconds or a number with s, m or h, e.g. 90s or 10m",
