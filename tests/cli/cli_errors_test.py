@@ -180,20 +180,40 @@ class Interrupted(CliTest):
         process.send_signal(number)
         return process.communicate(timeout=120)
 
+    def start(self, *outputs):
+        process = subprocess.Popen(
+            [PROGRAM, "render", "box.obj", *LONG, *outputs, "--report", "r.json"],
+            cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        line = ""
+        while "hemicubes of" not in line:  # printed as the form factors begin
+            line = process.stdout.readline()
+            self.assertTrue(line, "the run ended before it was interrupted")
+        return process
+
     def test_signals_leave_nothing_behind(self):
         before = self.files()
         for number in [signal.SIGINT, signal.SIGTERM]:
-            process = subprocess.Popen(
-                [PROGRAM, "render", "box.obj", *LONG, "-o", "p.png", "-o", "p.h5", "--report",
-                 "r.json"],
-                cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-            line = ""
-            while "hemicubes of" not in line:  # printed as the form factors begin
-                line = process.stdout.readline()
-                self.assertTrue(line, "the run ended before it was interrupted")
+            process = self.start("-o", "p.png", "-o", "p.exr")
             _, err = self.interrupt(process, number)
             self.assertEqual(process.returncode, 1, err)
             self.assertEqual(err.splitlines()[-1], "radiosity: interrupted; nothing was written")
+            self.assertEqual(self.files(), before)
+
+    def test_signals_leave_only_the_rows_of_a_results_file(self):
+        before = self.files()
+        rows = self.folder / "p.h5.rows"
+        for number in [signal.SIGINT, signal.SIGTERM]:
+            process = self.start("-o", "p.png", "-o", "p.h5")
+            deadline = time.monotonic() + 120
+            while not rows.exists() or rows.stat().st_size < 8192:  # more than the header: a row
+                self.assertLess(time.monotonic(), deadline)
+                time.sleep(0.01)
+            _, err = self.interrupt(process, number)
+            self.assertEqual(process.returncode, 1, err)
+            self.assertEqual(err.splitlines()[-1],
+                             "radiosity: interrupted; p.h5.rows keeps the rows; the same command "
+                             "goes on from them")
+            rows.unlink()
             self.assertEqual(self.files(), before)
 
     def test_an_interrupted_update_leaves_the_old_results(self):
