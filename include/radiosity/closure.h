@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -35,12 +36,12 @@ ClosureReport reportClosure(std::span<const double> row_sums,
 class UncertainEntries {
  public:
   UncertainEntries();
-  /// None yet, of N patches.
-  explicit UncertainEntries(std::size_t n);
-  UncertainEntries(const UncertainEntries& other);
+  /// None yet, of N patches. `scratch`: as of an ExchangeMatrix.
+  explicit UncertainEntries(std::size_t n, std::shared_ptr<ScratchMemory> scratch = nullptr);
+  UncertainEntries(const UncertainEntries& other) = delete;
+  UncertainEntries& operator=(const UncertainEntries& other) = delete;
   UncertainEntries(UncertainEntries&& other) noexcept;
-  UncertainEntries& operator=(const UncertainEntries& other);
-  UncertainEntries& operator=(UncertainEntries&& other) noexcept;
+  UncertainEntries& operator=(UncertainEntries&& other) = delete;
   ~UncertainEntries();
 
   /// The entries of row k of the triangle: `later` positions, strictly increasing, each above k and
@@ -53,10 +54,14 @@ class UncertainEntries {
   std::size_t entries() const;
   std::size_t bytes() const;
 
+  /// Where rows are; null: in memory.
+  const std::shared_ptr<ScratchMemory>& scratch() const { return scratch_; }
+
   struct Row;  ///< src/matrix/uncertain_row.h
   const Row& row(std::size_t k) const;
 
  private:
+  std::shared_ptr<ScratchMemory> scratch_;  // outlives the rows
   std::vector<Row> rows_;
 };
 

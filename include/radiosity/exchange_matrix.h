@@ -2,13 +2,16 @@
 // whole matrices is in matrix_functions.h.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "radiosity/base.h"
+#include "radiosity/scratch_memory.h"
 
 namespace [[gnu::visibility("default")]] radiosity {
 
@@ -32,11 +35,14 @@ struct RunRow;
 class ExchangeMatrix {
  public:
   ExchangeMatrix();
-  /// Row form, all rows empty. `area`: N finite values >= 0, m^2, else InputError.
-  ExchangeMatrix(std::vector<double> area, Precision precision);
+  /// Row form, all rows empty. `area`: N finite values >= 0, m^2, else InputError. `scratch`: where
+  /// rows are to be; null: in memory. Copies of the matrix are in memory.
+  ExchangeMatrix(std::vector<double> area, Precision precision,
+                 std::shared_ptr<ScratchMemory> scratch = nullptr);
   /// Symmetric form, all rows empty. `order`: each patch once, else InputError.
   static ExchangeMatrix symmetric(std::vector<double> area, std::vector<Index> order,
-                                  Precision precision);
+                                  Precision precision,
+                                  std::shared_ptr<ScratchMemory> scratch = nullptr);
   ExchangeMatrix(const ExchangeMatrix& other);
   ExchangeMatrix(ExchangeMatrix&& other) noexcept;
   ExchangeMatrix& operator=(const ExchangeMatrix& other);
@@ -58,10 +64,20 @@ class ExchangeMatrix {
   /// patch itself; at most N - k values, the rest are 0. Finite, >= 0, 0 where a patch has no area,
   /// else InputError naming the patches. Threads and setting again: as setRow().
   void setUpperRow(std::size_t k, std::span<const double> factors);
+  /// The same of a row with few values, in O(values): factors[m] is F to the patch at positions[m],
+  /// strictly increasing, from k to below N, else InputError.
+  void setUpperRow(std::size_t k, std::span<const Index> positions,
+                   std::span<const double> factors);
 
   /// Symmetric form: row k's N - k values as they are stored, rounded.
   void upperRow(std::size_t k, std::span<double> factors) const;
-  /// The same without the first, as it is packed (src/matrix/run_row.h), and the first.
+  /// Its entries that are not 0: their positions, from k on, and the values.
+  struct UpperEntries {
+    std::vector<Index> positions;
+    std::vector<double> factors;
+  };
+  UpperEntries upperEntries(std::size_t k) const;
+  /// The row without its first value, as it is packed (src/matrix/run_row.h), and that value.
   const RunRow& upperRuns(std::size_t k) const;
   double diagonal(std::size_t k) const { return diagonal_[k]; }
 
@@ -73,11 +89,15 @@ class ExchangeMatrix {
   template <class Visit>
   void forRow(std::size_t i, std::size_t first, std::size_t last, Visit&& visit) const;
   /// Calls visit(panel), a RowPanel (row_panel.h), for consecutive ranges of rows that together are
-  /// all rows, in order. A panel of the symmetric form holds its rows spread out, at most
-  /// kPanelBytes or one row.
+  /// all rows, in order. A panel of the symmetric form holds its entries, in at most panelBytes()
+  /// or as one row.
   template <class Visit>
   void forPanels(Visit&& visit) const;
-  static constexpr std::size_t kPanelBytes = std::size_t(1) << 25;
+  /// Each panel takes a walk over what is stored: there are at most 50 or so.
+  static std::size_t panelBytes(std::size_t matrix_bytes) {
+    return std::max(kLeastPanelBytes, matrix_bytes / 8);
+  }
+  static constexpr std::size_t kLeastPanelBytes = std::size_t(1) << 25;
 
   /// F_ij, 0 where nothing is stored. O(log n) in a sparse row, O(runs) in the symmetric form.
   double at(std::size_t i, std::size_t j) const;
@@ -100,15 +120,28 @@ class ExchangeMatrix {
   std::vector<double> rowSums() const;    ///< N
   std::size_t bytes() const;              ///< of the stored values and indices
   std::size_t denseRows() const;          ///< row form: how many rows are stored dense
+  /// Where rows are; null: in memory.
+  const std::shared_ptr<ScratchMemory>& scratch() const { return scratch_.memory; }
 
  private:
   friend class RowPanel;
   struct Row;
+  /// Not copied with the rows.
+  struct Scratch {
+    Scratch() = default;
+    Scratch(const Scratch&) {}
+    Scratch(Scratch&&) noexcept = default;
+    Scratch& operator=(const Scratch&) = delete;
+    std::shared_ptr<ScratchMemory> memory;
+  };
   RowView viewOf(std::size_t i) const;  // row form
-  std::size_t panelEnd(std::size_t first) const;
-  /// Row i of `out` (N values each) becomes row first + i of the matrix.
-  void spreadRows(std::size_t first, std::size_t last, std::span<double> out) const;
+  std::pmr::memory_resource* rowMemory() const;
+  /// Where panels end that hold so many entries a row.
+  std::vector<std::size_t> panelEnds() const;
   void checkFactors(std::size_t k, std::span<const double> factors) const;
+  void checkPositions(std::size_t k, std::span<const Index> positions,
+                      std::span<const double> factors) const;
+  void storeUpper(std::size_t k, double itself, RunRow row);
   void symmetricProduct(std::span<const double> x, int bands, std::span<double> y,
                         std::span<const std::uint8_t> wanted) const;
   void symmetricSweep(std::span<double> x, int bands, const Update& update,
@@ -116,6 +149,7 @@ class ExchangeMatrix {
   /// Symmetric form: F between positions k <= later, as stored.
   double storedUpper(std::size_t k, std::size_t later) const;
 
+  Scratch scratch_;  // outlives the rows
   std::vector<double> area_;
   Precision precision_ = Precision::single_precision;
   bool symmetric_ = false;

@@ -51,8 +51,11 @@ struct FormFactorOptions {
   /// fraction that the item buffer tells.
   bool near_exact = false;
   std::size_t memory_limit = 0;  ///< bytes; 0: no limit
-  std::size_t memory_held = 0;   ///< bytes that others hold: they count towards limit and estimate
-  bool simd = true;              ///< false: Highway's scalar target (same bits)
+  /// A folder on a disk. Rows that do not fit within memory_limit are in a file without a name
+  /// there (ScratchMemory), with the same bits. Empty: refused.
+  std::string scratch_folder;
+  std::size_t memory_held = 0;  ///< bytes that others hold: they count towards limit and estimate
+  bool simd = true;             ///< false: Highway's scalar target (same bits)
 
   static constexpr double kExactTolerance = 1e-3;
   static constexpr double kRayTolerance = 1e-2;
@@ -139,6 +142,7 @@ struct FormFactorReport {
   std::size_t skipped_horizon = 0;      ///< behind the eye's horizon
   std::size_t skipped_facing_away = 0;  ///< back faces of closed solids seen from outside
   std::size_t skipped_face = 0;         ///< polygon-face pairs outside the face's pyramid
+  std::size_t skipped_hidden = 0;       ///< behind what is drawn, or between pixels' centres
   std::size_t pixels = 0;               ///< resolved, summed over hemicubes
   std::size_t near_pairs = 0;           ///< entries replaced by area-to-area values
   std::size_t capped = 0;               ///< rows whose near entries were held at a sum of 1
@@ -194,6 +198,8 @@ struct FormFactorPlan {
   std::string reason;                                    ///< where it was automatic
   std::size_t bytes = 0;         ///< held at once, about; options.memory_held included
   std::size_t matrix_bytes = 0;  ///< of these, the matrix
+  /// On the disk in FormFactorOptions::scratch_folder, the matrix among it; 0: all is in memory.
+  std::size_t scratch_bytes = 0;
   double seconds = 0;
   /// What the method works to: as FormFactorOptions::tolerance, looser where rays stop before.
   double tolerance = 0;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "radiosity/base.h"
+#include "radiosity/elements.h"
 #include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
@@ -153,6 +154,10 @@ class Pipeline {
   /// Of solution(), which must have values, and of gathered(). One band is drawn grey; InputError
   /// where there are two, or more than three.
   SurfaceLight solvedLight();
+  /// solvedLight() with elements, which are computed at every call. Errors: as computeElements().
+  /// `wanted`: as there.
+  SurfaceLight elementLight(const ElementOptions& options,
+                            std::span<const std::uint8_t> wanted = {});
   SurfaceLight gatheredLight();
   /// `patch`: of Quantity::form_factor, below N.
   ScalarField field(Quantity quantity, std::size_t patch = 0);
@@ -189,6 +194,7 @@ class Pipeline {
   /// out.
   void keepLaterStages();
   /// Reads the matrix of form factors that are there without it. Errors: as matrix().
+  std::shared_ptr<ScratchMemory> memoryOfStoredMatrix() const;
   void loadMatrix();
   /// Both, then writes results(): the file appears whole or stays what it was. Errors: as
   /// writeResults().

@@ -4,6 +4,7 @@
 #include "radiosity/base.h"
 #include "radiosity/closure.h"
 #include "radiosity/compare.h"
+#include "radiosity/elements.h"
 #include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"

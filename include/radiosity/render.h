@@ -1,12 +1,14 @@
 // Pictures of a lit mesh, and pictures that explain one.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "radiosity/base.h"
+#include "radiosity/elements.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/scene.h"
 
@@ -89,6 +91,11 @@ struct SurfaceLight {
   std::vector<double> corners;
   std::vector<double> reflected;  ///< N: as reflectedLight()
   Vec3 sky{0.0};                  ///< radiance where nothing is hit, W/m^2/sr
+  /// Light at the vertices of elements, drawn instead of the above where an element was evaluated;
+  /// or null.
+  std::shared_ptr<const Elements> elements;
+  std::vector<double> reflectance;  ///< with elements: N * elements->bands, ...
+  std::vector<double> emission;     ///< ... W/m^2
 };
 
 /// N: how bright B - E is, what a patch does not emit itself, at least 0, W/m^2: its luminance, of
@@ -103,6 +110,10 @@ SurfaceLight surfaceLight(std::span<const double> radiosity, const PatchMaterial
 /// The same with the sky, where it shines, behind all.
 Image renderRadiance(const PatchMesh& mesh, const SurfaceLight& light, const Camera& camera,
                      const RenderOptions& options, Progress& progress);
+
+/// N, 1: patches that a picture shows.
+std::vector<std::uint8_t> visiblePatches(const PatchMesh& mesh, const Camera& camera,
+                                         const RenderOptions& options, Progress& progress);
 
 /// A lit scene of which a picture shows next to nothing.
 struct UnlitView {

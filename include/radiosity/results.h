@@ -41,7 +41,9 @@ bool isResultsFile(const std::string& path);
 
 /// Reads all stages. InputError: no such file, not a results file, a damaged or foreign dataset
 /// (named). `with_factors` false: the matrix is left out (its accounts and report are read).
-Results readResults(const std::string& path, bool with_factors = true);
+/// `scratch`: where the matrix is to be; null: in memory.
+Results readResults(const std::string& path, bool with_factors = true,
+                    std::shared_ptr<ScratchMemory> scratch = nullptr);
 
 /// Writes every stage present. HDF5 1.10 or newer reads it, every byte is under a checksum; small
 /// things are attributes, arrays are datasets with their unit as an attribute. Layout:

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "radiosity/exchange_matrix.h"
@@ -44,12 +45,9 @@ struct RowView {
 /// Some consecutive rows of a matrix, for reading.
 class RowPanel {
  public:
-  RowPanel(const ExchangeMatrix& matrix, std::size_t first, std::size_t last)
-      : matrix_(&matrix), first_(first), last_(last) {
-    if (!matrix.isSymmetric()) return;
-    spread_.resize((last - first) * matrix.size());
-    matrix.spreadRows(first, last, spread_);
-  }
+  /// first <= last <= N. Symmetric form: O(N + entries of the triangle), and memory for the entries
+  /// of the rows.
+  RowPanel(const ExchangeMatrix& matrix, std::size_t first, std::size_t last);
   std::size_t first() const { return first_; }
   std::size_t last() const { return last_; }  ///< one beyond
 
@@ -64,17 +62,24 @@ class RowPanel {
       matrix_->viewOf(i).forEntries(first, last, visit);
       return;
     }
-    const double* row = spread_.data() + (i - first_) * matrix_->size();
-    for (std::size_t j = first; j < std::min(last, matrix_->size()); ++j) {
-      if (row[j] != 0) visit(Index(j), row[j]);
+    const auto begin = columns_.begin() + std::ptrdiff_t(starts_[i - first_]);
+    const auto end = columns_.begin() + std::ptrdiff_t(starts_[i - first_ + 1]);
+    for (auto at = std::lower_bound(begin, end, first); at != end && *at < last; ++at) {
+      visit(*at, values_[std::size_t(at - columns_.begin())]);
     }
   }
+
+  /// Bytes that an entry takes in it.
+  static constexpr std::size_t kEntryBytes = sizeof(Index) + sizeof(double);
 
  private:
   const ExchangeMatrix* matrix_;
   std::size_t first_;
   std::size_t last_;
-  std::vector<double> spread_;
+  // Symmetric form: compressed rows, none of them 0.
+  std::vector<std::size_t> starts_;
+  std::vector<Index> columns_;
+  std::vector<double> values_;
 };
 
 template <class Visit>
@@ -90,11 +95,9 @@ void ExchangeMatrix::forRow(std::size_t i, std::size_t first, std::size_t last,
 
 template <class Visit>
 void ExchangeMatrix::forPanels(Visit&& visit) const {
-  for (std::size_t first = 0; first < size();) {
-    const std::size_t last = panelEnd(first);
-    visit(RowPanel(*this, first, last));
-    first = last;
-  }
+  std::size_t first = 0;
+  for (const std::size_t last : panelEnds())
+    visit(RowPanel(*this, std::exchange(first, last), last));
 }
 
 }  // namespace radiosity

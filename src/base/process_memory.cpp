@@ -8,13 +8,28 @@
 
 namespace radiosity {
 
-std::size_t residentBytes() {
-  std::ifstream file("/proc/self/statm");
+namespace {
+
+struct ResidentPages {
   std::size_t all = 0;
-  std::size_t resident = 0;
-  if (!(file >> all >> resident)) return 0;
-  return resident * std::size_t(sysconf(_SC_PAGESIZE));
+  std::size_t of_files = 0;
+};
+
+ResidentPages residentPages() {
+  std::ifstream file("/proc/self/statm");
+  std::size_t mapped = 0;
+  ResidentPages pages;
+  if (!(file >> mapped >> pages.all >> pages.of_files)) return {};
+  return pages;
 }
+
+std::size_t pageBytes() { return std::size_t(sysconf(_SC_PAGESIZE)); }
+
+}  // namespace
+
+std::size_t residentBytes() { return residentPages().all * pageBytes(); }
+
+std::size_t residentFileBytes() { return residentPages().of_files * pageBytes(); }
 
 std::size_t peakBytes() {
   rusage usage{};

@@ -152,8 +152,8 @@ void addFactorOptions(CLI::App& app, Request& r) {
       "always double")
       ->check(CLI::IsMember({"auto", "single", "double"}));
   add(app, "Form factors", "--memory-limit", r.memory_limit, "SIZE",
-      "Refuse to start a computation that needs more memory: bytes, or 512M, 2G, ... (default: no "
-      "limit)");
+      "Keep form factors that need more memory in a nameless file beside the output, and refuse "
+      "those that still do not fit: bytes, or 512M, 2G, ... (default: no limit)");
   app.add_flag_function(
          "--resume,!--no-resume", [&r](std::int64_t count) { r.resume = count > 0; },
          fmt::format("Keep rows in OUT.h5.rows as they are computed, and go on from those that a "
@@ -262,6 +262,19 @@ void addRenderOptions(CLI::App& app, Request& r) {
       ->check(CLI::IsMember({"hide", "show"}));
 }
 
+void addElementOptions(CLI::App& app, Request& r) {
+  const ElementOptions defaults;
+  add(app, "Picture", "--elements", r.elements, "on|off",
+      "on: light is evaluated anew at the vertices of elements, finer than patches where light "
+      "changes (default); off: what the patches have, smoothed")
+      ->check(CLI::IsMember({"on", "off"}));
+  add(app, "Picture", "--element-tolerance", r.element_tolerance, "SHARE",
+      fmt::format(
+          "Elements are cut where interpolation misses by more than this share of the light "
+          "there, 1e-4 to 0.5 (default {})",
+          defaults.tolerance));
+}
+
 /// Options that choose the drawn quantity of the matrix's stages, and its colours.
 void addShowOptions(CLI::App& app, Request& r) {
   const RenderOptions defaults;
@@ -331,6 +344,7 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
   if (compares || command == Command::render) addCameraOptions(*sub, r);
   if (command == Command::render) {
     addRenderOptions(*sub, r);
+    addElementOptions(*sub, r);
     addShowOptions(*sub, r);
   }
   return sub;

@@ -42,6 +42,7 @@ void hemicubeFigures(Report& report, const FormFactorReport& r) {
   report.count("skipped_horizon", "skipped: below horizon", r.skipped_horizon);
   report.count("skipped_facing_away", "skipped: facing away", r.skipped_facing_away);
   report.count("skipped_face", "skipped: outside a face", r.skipped_face);
+  report.count("skipped_hidden", "skipped: hidden", r.skipped_hidden);
   report.count("near_pairs", "near entries made exact", r.near_pairs);
   report.count("capped", "  rows held at 1", r.capped);
 }

@@ -112,10 +112,13 @@ void PipelineReport::planned(const Pipeline& pipeline, const FormFactorPlan& pla
                               options.resolution)
                 : fmt::format("{} between {} to {}", nameOf(kMethodNames, plan.method),
                               plural(patches, "patch", "patches"), numberText(plan.tolerance, 2));
-  report_.line("form factors",
-               fmt::format("{}{}: about {}, memory about {}{}", what, clusters,
-                           durationText(plan.seconds), bytesText(plan.bytes),
-                           writes_results_ ? ", disk at most about " + bytesText(disk) : ""));
+  report_.line(
+      "form factors",
+      fmt::format(
+          "{}{}: about {}, memory about {}{}{}", what, clusters, durationText(plan.seconds),
+          bytesText(plan.bytes),
+          plan.scratch_bytes > 0 ? ", scratch file about " + bytesText(plan.scratch_bytes) : "",
+          writes_results_ ? ", disk at most about " + bytesText(disk) : ""));
   if (!plan.reason.empty()) report_.line("", "because " + plan.reason);
   if (plan.seconds_to_tolerance) {
     const double tolerance = options.toleranceOf(plan.method);

@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/picture.h"
+#include "cli/summaries.h"
 #include "cli/words.h"
 #include "radiosity/pipeline.h"
 #include "radiosity/results.h"
@@ -86,6 +87,16 @@ void drawQuantity(Session& session, Pipeline& pipeline, const Picture& picture, 
   });
 }
 
+/// The light that the picture shows: of elements, unless patches were asked for.
+SurfaceLight litSurfaces(Session& session, Pipeline& pipeline, const Picture& picture) {
+  if (session.request.elements == "off" || !picture.options.smooth) return pipeline.solvedLight();
+  SurfaceLight light = pipeline.elementLight(
+      session.request.elementOptions(),
+      visiblePatches(pipeline.mesh().mesh, picture.camera, picture.options, session.progress));
+  summarizeElements(session.report, *light.elements, pipeline.factors());
+  return light;
+}
+
 /// Refuses impossible outputs before the work is done.
 void checkOutputs(const OutputSet& files, const Show& show) {
   const bool lit = files.has(Format::glb);
@@ -128,11 +139,13 @@ int runRender(Session& session) {
     reflected = reflectedLight(pipeline.solution().radiosity, pipeline.materials());
   }
   framePicture(picture, mesh, factors.report.closed, reflected);
+  SurfaceLight light;
+  if (!show.quantity) light = litSurfaces(session, pipeline, picture);
   reportPicture(session.report, picture);
   if (show.quantity) {
     drawQuantity(session, pipeline, picture, show, *show.quantity, files);
   } else {
-    drawLight(session, mesh, pipeline.solvedLight(), picture, files);
+    drawLight(session, mesh, light, picture, files);
   }
   writeStages(session, pipeline, files);
   files.commit(session.report, session.progress);

@@ -106,6 +106,14 @@ CompareOptions Request::compareOptions() const {
   return options;
 }
 
+ElementOptions Request::elementOptions() const {
+  ElementOptions options;
+  set(options, &ElementOptions::tolerance, element_tolerance, "--element-tolerance");
+  set(options, &ElementOptions::crease, crease, "--crease");
+  options.validate();
+  return options;
+}
+
 RenderOptions Request::renderOptions() const {
   RenderOptions options;
   set(options, &RenderOptions::width, width, "--width");

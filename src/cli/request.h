@@ -70,6 +70,8 @@ struct Request {
   std::string exposure = "auto";
   std::optional<int> samples;
   std::optional<double> crease;
+  std::string elements = "on";
+  std::optional<double> element_tolerance;
   bool flat = false;
   std::string backs = "hide";
   std::string show;
@@ -87,6 +89,7 @@ struct Request {
   /// `results_output`: the .h5 that is written; empty: none.
   JournalOptions journal(const std::string& results_output) const;
   CompareOptions compareOptions() const;
+  ElementOptions elementOptions() const;
   /// The picture's options as given, without a size where none was given; validated.
   RenderOptions renderOptions() const;
 };

@@ -22,6 +22,14 @@ void refuseReadingOptions(const Request& request) {
       request.input, request.reading_options.front()));
 }
 
+/// Where the output goes there is room for what does not fit into memory.
+std::string scratchFolder(const Request& request, const std::string& results_output) {
+  const std::string& output =
+      !results_output.empty() || request.outputs.empty() ? results_output : request.outputs.front();
+  const std::string folder = std::filesystem::path(output).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
+
 }  // namespace
 
 Run::Run(Session& session, const std::string& results_output)
@@ -36,6 +44,7 @@ Run::Run(Session& session, const std::string& results_output)
   options.solve = request.apply(options.solve);
   options.gather = request.apply(options.gather);
   options.journal = request.journal(results_output);
+  options.factors.scratch_folder = scratchFolder(request, results_output);
 }
 
 void requireLight(const Session& session, const Pipeline& pipeline) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cli/report.h"
+#include "radiosity/elements.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
 #include "radiosity/patch_mesh.h"
@@ -25,6 +26,8 @@ void summarizeFactors(Report& report, const FormFactors& factors, const PatchMes
                       Detail detail);
 void summarizeSolution(Report& report, const Solution& solution, const FormFactors& factors,
                        const PatchMesh& mesh, const SolveOptions& options, Detail detail);
+/// Beside the error of the matrix, which of the two dominates.
+void summarizeElements(Report& report, const Elements& elements, const FormFactors& factors);
 void summarizeGathered(Report& report, const Gathered& gathered, const PatchMesh& mesh,
                        const GatherOptions& options, Detail detail);
 

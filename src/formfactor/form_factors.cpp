@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/figure_text.h"
+#include "base/timed_progress.h"
 #include "formfactor/cluster_factors.h"
 #include "formfactor/exact/assembly/exact_factors.h"
 #include "formfactor/exact/assembly/row_sample.h"
@@ -55,11 +56,18 @@ std::string secondsText(double seconds) {
   return fmt::format("about {} s", countText(std::size_t(std::llround(seconds))));
 }
 
-bool exactIsRight(const FormFactorPlan& exact, const FormFactorPlan& rays,
-                  const FormFactorOptions& options) {
-  if (options.memory_limit > 0 && exact.bytes > options.memory_limit) return false;
-  if (options.tolerance) return exact.seconds <= rays.seconds;
-  return exact.seconds <= std::max(kWorthTimes * rays.seconds, kWorthSeconds);
+/// A look at what exact would take may take so much of what that may be, by the clock, so that it
+/// stays small beside the work; and this much at first. What then turns out to take no longer than
+/// a few such looks needs no look at rays.
+constexpr double kLookShare = 0.15;
+constexpr double kFirstLookSeconds = 0.2;
+constexpr double kNoFurtherLookSeconds = 0.5;
+
+/// What exact may take and be the right one. Where patches share unknowns, an error of their light
+/// is larger than that of either's form factors.
+double secondsExactMayTake(const FormFactorPlan::Prepared& prepared, double ray_seconds) {
+  if (prepared.options.tolerance || prepared.mesh.clusters) return ray_seconds;
+  return std::max(kWorthTimes * ray_seconds, kWorthSeconds);
 }
 
 /// Rows of patches are summed over clusters once they are there: what is held then, and what stays.
@@ -68,9 +76,14 @@ void addClusters(const FormFactorPlan::Prepared& prepared, bool symmetric, Estim
   const PatchMesh& mesh = prepared.mesh;
   if (!mesh.clusters) return;
   const Precision precision = prepared.options.storedPrecision();
-  estimate.bytes += clusterFactorsBytes(mesh, symmetric, precision, estimate.matrix_bytes);
+  estimate.memory.bytes += clusterFactorsBytes(mesh, symmetric, precision, estimate.matrix_bytes);
   estimate.matrix_bytes =
       std::min(estimate.matrix_bytes, clusterMatrixBytes(mesh, symmetric, precision));
+}
+
+void takeMemory(const RowMemory& memory, FormFactorPlan& plan) {
+  plan.bytes = memory.bytes;
+  plan.scratch_bytes = memory.scratch_bytes;
 }
 
 void planExact(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {
@@ -85,7 +98,7 @@ void planExact(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progres
   const ExactKernels& kernels = prepared.kernels.emplace(scene, options);
   plan.method = FormFactorMethod::exact;
   plan.tolerance = options.toleranceOf(FormFactorMethod::exact);
-  plan.bytes = prepared.estimate.bytes;
+  takeMemory(prepared.estimate.memory, plan);
   plan.matrix_bytes = prepared.estimate.matrix_bytes;
   plan.seconds = exactSeconds(scene, kernels, sample, options, progress);
   plan.refining =
@@ -100,7 +113,7 @@ void planHemicubes(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Pro
   progress.check();
   prepared.hemicube_estimate = estimateHemicubes(prepared.mesh, scene, prepared.options, progress);
   addClusters(prepared, prepared.options.symmetrize, prepared.hemicube_estimate);
-  plan.bytes = prepared.hemicube_estimate.bytes;
+  takeMemory(prepared.hemicube_estimate.memory, plan);
   plan.matrix_bytes = prepared.hemicube_estimate.matrix_bytes;
   plan.seconds = prepared.hemicube_estimate.measured;
   plan.method = FormFactorMethod::hemicube;
@@ -117,7 +130,7 @@ void planRays(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress
   prepared.ray_estimate = estimateRays(scene, prepared.options, progress);
   prepared.ray_estimate.seconds_prepare = preparing;
   plan.method = FormFactorMethod::rays;
-  plan.bytes = prepared.ray_estimate.bytes;
+  takeMemory(prepared.ray_estimate.memory, plan);
   plan.matrix_bytes = prepared.ray_estimate.matrix_bytes;
   plan.seconds = prepared.ray_estimate.seconds;
   plan.tolerance = prepared.ray_estimate.tolerance;
@@ -126,30 +139,55 @@ void planRays(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress
   }
 }
 
-/// Both are looked at, and one is kept.
+/// What exact would take; nothing where finding out takes longer than `seconds`.
+std::optional<FormFactorPlan> lookAtExact(FormFactorPlan::Prepared& prepared, double seconds,
+                                          Progress& progress) {
+  TimedProgress timed(progress, seconds);
+  FormFactorPlan exact;
+  try {
+    planExact(prepared, exact, timed);
+  } catch (const Cancelled&) {
+    timed.giveUp();
+    return std::nullopt;
+  }
+  return exact;
+}
+
+/// Both are looked at, and one is kept. Where the look at exact takes long beside what rays take,
+/// exact is not the faster one: a look takes a hundredth of the whole or so.
 void planEither(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {
-  planRays(prepared, plan, progress);
-  if (prepared.mesh.clusters) {
-    plan.reason = "patches share unknowns";
+  const std::size_t limit = prepared.options.memory_limit;
+  const auto fits = [&](const FormFactorPlan& exact) { return limit == 0 || exact.bytes <= limit; };
+  std::optional<FormFactorPlan> exact = lookAtExact(prepared, kFirstLookSeconds, progress);
+  if (exact && fits(*exact) && exact->seconds <= kNoFurtherLookSeconds) {
+    plan = std::move(*exact);
+    plan.reason = fmt::format("it takes {}", secondsText(plan.seconds));
     return;
   }
-  FormFactorPlan exact;
-  planExact(prepared, exact, progress);
+  planRays(prepared, plan, progress);
   const double ray_seconds = plan.seconds;
   const std::string ray_tolerance = fmt::format("{:.2g}", plan.tolerance);
-  if (exactIsRight(exact, plan, prepared.options)) {
+  const double most = secondsExactMayTake(prepared, ray_seconds);
+  if (!exact && kLookShare * most > kFirstLookSeconds) {
+    exact = lookAtExact(prepared, kLookShare * most, progress);
+  }
+  if (exact && fits(*exact) && exact->seconds <= most) {
     prepared.rays.reset();
-    plan = std::move(exact);
+    plan = std::move(*exact);
     plan.other_seconds = ray_seconds;
     plan.reason = fmt::format("it takes {}; rays, to {}, would take {}", secondsText(plan.seconds),
                               ray_tolerance, secondsText(ray_seconds));
+    return;
+  }
+  prepared.scene.reset();
+  prepared.kernels.reset();
+  plan.reason =
+      fmt::format("to {} they take {}; exact would take ", ray_tolerance, secondsText(ray_seconds));
+  if (exact) {
+    plan.other_seconds = exact->seconds;
+    plan.reason += fmt::format("{} and {}", secondsText(exact->seconds), bytesText(exact->bytes));
   } else {
-    prepared.scene.reset();
-    prepared.kernels.reset();
-    plan.other_seconds = exact.seconds;
-    plan.reason =
-        fmt::format("to {} they take {}; exact would take {} and {}", ray_tolerance,
-                    secondsText(ray_seconds), secondsText(exact.seconds), bytesText(exact.bytes));
+    plan.reason += "longer, as far as it was looked at";
   }
 }
 

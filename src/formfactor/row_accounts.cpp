@@ -11,7 +11,6 @@
 namespace radiosity {
 namespace {
 
-constexpr double kMebibyte = 1024.0 * 1024.0;
 /// Share of the view on black backs above which normals are suspect.
 constexpr double kSuspectBacks = 1e-3;
 
@@ -65,14 +64,6 @@ void accountForBacks(const PatchMesh& mesh, std::span<const Index> order,
   if (!(all > 0)) return;
   for (double& share : result.backs_by_surface) share /= all;
   noteBacks(mesh, result);
-}
-
-void refuseTooLarge(std::size_t bytes, const FormFactorOptions& options, std::size_t patches) {
-  if (options.memory_limit == 0 || bytes <= options.memory_limit) return;
-  throw RunError(fmt::format(
-      "form factors of {} patches need about {:.0f} MiB, more than the limit of {:.0f} MiB; mesh "
-      "with fewer patches, use single precision or raise the limit",
-      patches, double(bytes) / kMebibyte, double(options.memory_limit) / kMebibyte));
 }
 
 }  // namespace radiosity

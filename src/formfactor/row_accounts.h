@@ -23,9 +23,6 @@ void accountForBacks(const PatchMesh& mesh, std::span<const Index> order,
                      std::span<const double> area,
                      const std::vector<std::vector<SeenBack>>& seen_backs, FormFactors& result);
 
-/// RunError, with the numbers, where `bytes` exceed the limit.
-void refuseTooLarge(std::size_t bytes, const FormFactorOptions& options, std::size_t patches);
-
 /// Unknowns in the order of their first patches in canonicalOrder() (mesh/canonical_order.h), and
 /// these patches.
 struct UnknownOrder {

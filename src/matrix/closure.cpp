@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory_resource>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -68,7 +69,8 @@ class LeastSquaresClosure {
  private:
   template <class Visit>
   void forUncertain(std::size_t k, const Visit& visit) const;
-  std::vector<double> timesWeights(const std::vector<double>& x) const;
+  std::pmr::vector<std::uint8_t>& freeOf(std::size_t k);
+  std::vector<double> timesWeights(const std::vector<double>& x);
   void evaluate();
   double largestLack() const;
   std::vector<double> newtonStep(double tolerance);
@@ -77,12 +79,13 @@ class LeastSquaresClosure {
   const UncertainEntries& uncertain_;
   Progress& progress_;
   TrianglePass pass_;
-  std::array<double, 256> squared_{};            // e^2 by code
-  std::vector<double> area_;                     // in a unit that keeps its squares in range
-  std::vector<std::vector<std::uint8_t>> free_;  // as uncertain_.row(k).codes, 0 where held at 0
-  std::vector<double> goal_;                     // what rows are to sum to
-  std::vector<double> shortfall_;                // goal - row sum before
-  std::vector<double> root_;                     // of D while all are free
+  std::array<double, 256> squared_{};  // e^2 by code
+  std::vector<double> area_;           // in a unit that keeps its squares in range
+  // As uncertain_.row(k).codes, 0 where held at 0:
+  std::vector<std::pmr::vector<std::uint8_t>> free_;
+  std::vector<double> goal_;       // what rows are to sum to
+  std::vector<double> shortfall_;  // goal - row sum before
+  std::vector<double> root_;       // of D while all are free
   std::vector<double> multiplier_;
   // As evaluate() found them for the multipliers:
   std::vector<double> lacking_;  // goal - row sum after
@@ -97,7 +100,6 @@ LeastSquaresClosure::LeastSquaresClosure(ExchangeMatrix& matrix, const Uncertain
       progress_(progress),
       pass_(matrix.size(), 0, [&](std::size_t k) { return uncertain.row(k).codes.size() + 1; }),
       area_(matrix.size()),
-      free_(matrix.size()),
       goal_(matrix.size()),
       shortfall_(matrix.size()),
       multiplier_(matrix.size(), 0.0) {
@@ -111,9 +113,11 @@ LeastSquaresClosure::LeastSquaresClosure(ExchangeMatrix& matrix, const Uncertain
   double largest = 0;
   for (const double a : area) largest = std::max(largest, a);
   const int exponent = largest > 0 ? std::ilogb(largest) : 0;
+  free_.reserve(matrix.size());
   for (std::size_t k = 0; k < matrix.size(); ++k) {
     const Index patch = matrix.order()[k];
-    free_[k] = uncertain.row(k).codes;
+    const auto& codes = uncertain.row(k).codes;
+    free_.emplace_back(codes, codes.get_allocator());
     area_[k] = std::ldexp(area[patch], -exponent);
     // A row that sums to 0 sees nothing or has no area: nothing is asked of it.
     goal_[k] = sums[patch] > 0 ? target[patch] : 0.0;
@@ -132,7 +136,7 @@ void LeastSquaresClosure::forUncertain(std::size_t k, const Visit& visit) const 
   const UncertainEntries::Row& row = uncertain_.row(k);
   RunReader stored(matrix_.upperRuns(k));
   std::size_t index = 0;
-  forRuns(row.runs, row.codes.data(),
+  forRuns(std::span<const Run>(row.runs), row.codes.data(),
           [&](std::size_t offset, const std::uint8_t* codes, std::size_t count) {
             for (std::size_t m = 0; m < count; ++m, ++index) {
               if (codes[m] == 0) continue;
@@ -141,15 +145,20 @@ void LeastSquaresClosure::forUncertain(std::size_t k, const Visit& visit) const 
           });
 }
 
+std::pmr::vector<std::uint8_t>& LeastSquaresClosure::freeOf(std::size_t k) {
+  if (uncertain_.scratch()) uncertain_.scratch()->touched(free_[k].size());
+  return free_[k];
+}
+
 /// W x over the free entries.
-std::vector<double> LeastSquaresClosure::timesWeights(const std::vector<double>& x) const {
+std::vector<double> LeastSquaresClosure::timesWeights(const std::vector<double>& x) {
   std::vector<double> out(x.size());
   const auto row = [&](std::size_t k, double* handed_on, std::size_t) {
     const double squared_area = area_[k] * area_[k];
     const double own = squared_area * x[k];
     const double* later = x.data() + k + 1;
     double gathered = 0;
-    forRuns(uncertain_.row(k).runs, free_[k].data(),
+    forRuns(std::span<const Run>(uncertain_.row(k).runs), freeOf(k).data(),
             [&](std::size_t offset, const std::uint8_t* codes, std::size_t count) {
               for (std::size_t m = 0; m < count; ++m) {
                 const double squared = squared_[codes[m]];
@@ -171,12 +180,13 @@ void LeastSquaresClosure::evaluate() {
   lacking_ = shortfall_;
   const auto row = [&](std::size_t k, double* handed_on, std::size_t) {
     const double area = area_[k];
+    std::pmr::vector<std::uint8_t>& free = freeOf(k);
     forUncertain(k, [&](std::size_t index, std::size_t later, std::uint8_t code, double f) {
       const double sum = multiplier_[k] + multiplier_[later];
       const double slope = area * squared_[code];  // of the change of F
       const bool held = slope * sum < -f;
       const double change = held ? -f : slope * sum;
-      free_[k][index] = held ? std::uint8_t(0) : code;
+      free[index] = held ? std::uint8_t(0) : code;
       emptied[k] += held ? 1 : 0;
       lacking_[k] -= change;
       handed_on[later - k - 1] += area * change;
@@ -299,21 +309,32 @@ void LeastSquaresClosure::apply() {
   std::vector<double> moved(n, 0.0);
   parallelFor(n, kRowGrain, [&](std::size_t k) {
     if (uncertain_.row(k).runs.empty()) return;
-    std::vector<double> values(n - k);
-    matrix_.upperRow(k, values);
+    const ExchangeMatrix::UpperEntries before = matrix_.upperEntries(k);
+    ExchangeMatrix::UpperEntries after;
+    std::size_t next = 0;
+    const auto keepBelow = [&](std::size_t position) {
+      for (; next < before.positions.size() && before.positions[next] < position; ++next) {
+        after.positions.push_back(before.positions[next]);
+        after.factors.push_back(before.factors[next]);
+      }
+    };
     forUncertain(k, [&](std::size_t, std::size_t later, std::uint8_t code, double f) {
+      keepBelow(later);
+      if (f != 0) ++next;
       const double slope = area_[k] * squared_[code];
       const double wanted = f + slope * (multiplier_[k] + multiplier_[later]);
-      double& value = values[later - k];
-      value = std::max(0.0, wanted);
+      double value = std::max(0.0, wanted);
       if (single) value = double(float(value));
+      after.positions.push_back(Index(later));
+      after.factors.push_back(value);
       const double change = value - f;
       if (change == 0) return;
       const double other_end = area_[k] / area_[later];
       largest[k] = std::max(largest[k], std::abs(change) * std::max(1.0, other_end));
       moved[k] += change * change * (1 + other_end);
     });
-    matrix_.setUpperRow(k, values);
+    keepBelow(n);
+    matrix_.setUpperRow(k, after.positions, after.factors);
   });
   double sum = 0;
   for (std::size_t k = 0; k < n; ++k) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <memory>
 #include <numeric>
 #include <utility>
 
@@ -32,17 +33,34 @@ void checkRow(std::size_t i, std::size_t n, std::span<const Index> columns,
   }
 }
 
+template <class Row>
+std::size_t bytesOf(const Row& row) {
+  return row.columns.size() * sizeof(Index) + row.floats.size() * sizeof(float) +
+         row.doubles.size() * sizeof(double);
+}
+
 }  // namespace
 
 ExchangeMatrix::ExchangeMatrix() = default;
 ExchangeMatrix::ExchangeMatrix(const ExchangeMatrix&) = default;
 ExchangeMatrix::ExchangeMatrix(ExchangeMatrix&&) noexcept = default;
-ExchangeMatrix& ExchangeMatrix::operator=(const ExchangeMatrix&) = default;
-ExchangeMatrix& ExchangeMatrix::operator=(ExchangeMatrix&&) noexcept = default;
+ExchangeMatrix& ExchangeMatrix::operator=(const ExchangeMatrix& other) {
+  return *this = ExchangeMatrix(other);
+}
+ExchangeMatrix& ExchangeMatrix::operator=(ExchangeMatrix&& other) noexcept {
+  // Rows end before the scratch memory that they are in: as they do when a matrix ends.
+  if (this == &other) return *this;
+  std::destroy_at(this);
+  return *std::construct_at(this, std::move(other));
+}
 ExchangeMatrix::~ExchangeMatrix() = default;
 
-ExchangeMatrix::ExchangeMatrix(std::vector<double> area, Precision precision)
-    : area_(std::move(area)), precision_(precision), rows_(area_.size()) {
+ExchangeMatrix::ExchangeMatrix(std::vector<double> area, Precision precision,
+                               std::shared_ptr<ScratchMemory> scratch)
+    : area_(std::move(area)), precision_(precision) {
+  scratch_.memory = std::move(scratch);
+  rows_.reserve(area_.size());
+  for (std::size_t i = 0; i < area_.size(); ++i) rows_.emplace_back(rowMemory());
   for (std::size_t i = 0; i < area_.size(); ++i) {
     if (!(area_[i] >= 0) || !std::isfinite(area_[i])) {
       throw InputError(fmt::format("exchange matrix: {} is not the area of patch {}", area_[i], i));
@@ -55,7 +73,7 @@ void ExchangeMatrix::setRow(std::size_t i, std::span<const Index> columns,
   if (symmetric_) throw InputError("exchange matrix: a symmetric one is set by upper rows");
   checkRow(i, size(), columns, values);
   const std::size_t value_bytes = valueBytes(precision_);
-  Row row;
+  Row row(rowMemory());
   row.dense = size() * value_bytes < columns.size() * (value_bytes + sizeof(Index));
   const auto fill = [&](auto& stored) {
     using Value = typename std::remove_reference_t<decltype(stored)>::value_type;
@@ -73,8 +91,13 @@ void ExchangeMatrix::setRow(std::size_t i, std::span<const Index> columns,
   rows_[i] = std::move(row);
 }
 
+std::pmr::memory_resource* ExchangeMatrix::rowMemory() const {
+  return scratch_.memory ? scratch_.memory.get() : std::pmr::get_default_resource();
+}
+
 RowView ExchangeMatrix::viewOf(std::size_t i) const {
   const Row& row = rows_[i];
+  if (scratch_.memory) scratch_.memory->touched(bytesOf(row));
   return {row.columns, row.floats, row.doubles, row.dense};
 }
 
@@ -96,7 +119,7 @@ std::vector<Index> ExchangeMatrix::rowEntries() const {
   }
   for (std::size_t k = 0; k < upper_.size(); ++k) {
     Index own = diagonal_[k] != 0 ? 1 : 0;
-    forRuns(upper_[k], [&](std::size_t offset, const auto* values, std::size_t length) {
+    forRuns(upperRuns(k), [&](std::size_t offset, const auto* values, std::size_t length) {
       const Index* later = &order_[k] + 1 + offset;
       for (std::size_t m = 0; m < length; ++m) {
         const Index stored = values[m] != 0 ? 1 : 0;
@@ -116,10 +139,7 @@ std::size_t ExchangeMatrix::nonZeros() const {
 
 std::size_t ExchangeMatrix::bytes() const {
   std::size_t total = 0;
-  for (const Row& row : rows_) {
-    total += row.columns.size() * sizeof(Index) + row.floats.size() * sizeof(float) +
-             row.doubles.size() * sizeof(double);
-  }
+  for (const Row& row : rows_) total += bytesOf(row);
   for (const RunRow& row : upper_) total += bytesOf(row);
   return total + diagonal_.size() * sizeof(double);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory_resource>
 #include <vector>
 
 #include "radiosity/exchange_matrix.h"
@@ -14,9 +15,12 @@ inline std::size_t valueBytes(Precision precision) {
 
 /// The values are in `floats` or in `doubles`, by precision.
 struct ExchangeMatrix::Row {
-  std::vector<Index> columns;  ///< empty for a dense row
-  std::vector<float> floats;
-  std::vector<double> doubles;
+  explicit Row(std::pmr::memory_resource* memory)
+      : columns(memory), floats(memory), doubles(memory) {}
+
+  std::pmr::vector<Index> columns;  ///< empty for a dense row
+  std::pmr::vector<float> floats;
+  std::pmr::vector<double> doubles;
   bool dense = false;
 };
 

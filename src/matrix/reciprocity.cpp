@@ -44,8 +44,8 @@ ExchangeMatrix symmetrized(const ExchangeMatrix& matrix) {
   const std::span<const double> area = matrix.area();
   std::vector<Index> order(matrix.size());
   std::iota(order.begin(), order.end(), Index(0));
-  auto merged =
-      ExchangeMatrix::symmetric({area.begin(), area.end()}, std::move(order), matrix.precision());
+  auto merged = ExchangeMatrix::symmetric({area.begin(), area.end()}, std::move(order),
+                                          matrix.precision(), matrix.scratch());
   forBothEstimates(matrix, [&](std::size_t i, auto row, auto column) {
     std::vector<double> factors(row.size() - i, 0.0);
     for (std::size_t j = i; j < row.size(); ++j) {

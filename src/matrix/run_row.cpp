@@ -6,7 +6,6 @@
 #include <limits>
 #include <memory>
 #include <type_traits>
-#include <vector>
 
 #include "matrix/triangle_kernels.h"
 
@@ -39,7 +38,7 @@ struct Block {
 };
 
 template <class Value>
-std::vector<Run> findRuns(const Value* values, std::size_t n) {
+std::pmr::vector<Run> findRuns(const Value* values, std::size_t n) {
   RunFinder finder(sizeof(Value));
   for (std::size_t first = 0;;) {
     while (first + kBlock <= n && Block(values + first).allZero()) first += kBlock;
@@ -56,7 +55,8 @@ std::vector<Run> findRuns(const Value* values, std::size_t n) {
 
 /// Rounds before it looks for zeros: what rounds to 0 is 0.
 template <class Value>
-void pack(std::span<const double> values, std::vector<Run>& runs, std::vector<Value>& stored) {
+void pack(std::span<const double> values, std::pmr::vector<Run>& runs,
+          std::pmr::vector<Value>& stored) {
   const std::size_t n = values.size();
   const auto rounded = std::make_unique_for_overwrite<Value[]>(n);
   for (std::size_t m = 0; m < n; ++m) rounded[m] = Value(values[m]);
@@ -74,6 +74,28 @@ void pack(std::span<const double> values, std::vector<Run>& runs, std::vector<Va
   stored.resize(total + kOverrun, Value(0));
 }
 
+/// The same of the values at some places.
+template <class Value>
+void pack(std::span<const Index> places, std::size_t first, std::span<const double> values,
+          std::pmr::vector<Run>& runs, std::pmr::vector<Value>& stored) {
+  RunFinder finder(sizeof(Value));
+  for (std::size_t m = 0; m < values.size(); ++m) {
+    if (Value(values[m]) != 0) finder.add(places[m] - first, places[m] - first + 1);
+  }
+  runs = finder.take();
+  std::size_t total = 0;
+  for (const Run run : runs) total += run.count;
+  if (total == 0) return;
+  stored.resize(total + kOverrun, Value(0));
+  std::size_t m = 0;
+  forRuns(std::span<const Run>(runs), stored.data(),
+          [&](std::size_t offset, Value* run, std::size_t count) {
+            for (; m < values.size() && places[m] - first < offset + count; ++m) {
+              if (places[m] - first >= offset) run[places[m] - first - offset] = Value(values[m]);
+            }
+          });
+}
+
 }  // namespace
 
 void RunFinder::add(std::size_t first, std::size_t last) {
@@ -86,7 +108,7 @@ void RunFinder::add(std::size_t first, std::size_t last) {
   end_ = last;
 }
 
-std::vector<Run> RunFinder::take() {
+std::pmr::vector<Run> RunFinder::take() {
   runs_.shrink_to_fit();
   return std::move(runs_);
 }
@@ -111,6 +133,17 @@ RunRow packRuns(std::span<const double> values, Precision precision) {
     pack(values, row.runs, row.floats);
   } else {
     pack(values, row.runs, row.doubles);
+  }
+  return row;
+}
+
+RunRow packRuns(std::span<const Index> places, std::size_t first, std::span<const double> values,
+                Precision precision) {
+  RunRow row;
+  if (precision == Precision::single_precision) {
+    pack(places, first, values, row.runs, row.floats);
+  } else {
+    pack(places, first, values, row.runs, row.doubles);
   }
   return row;
 }

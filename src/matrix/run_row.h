@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -19,14 +20,24 @@ struct Run {
 
 /// One row of a triangle as runs. The values are in `floats` or in `doubles`, by precision.
 struct RunRow {
-  std::vector<Run> runs;
-  std::vector<float> floats;
-  std::vector<double> doubles;
+  RunRow() = default;
+  /// Its memory stays `memory`'s, whatever is assigned to it.
+  explicit RunRow(std::pmr::memory_resource* memory)
+      : runs(memory), floats(memory), doubles(memory) {}
+
+  std::pmr::vector<Run> runs;
+  std::pmr::vector<float> floats;
+  std::pmr::vector<double> doubles;
 };
 
 /// The smallest RunRow of `values`: zeros between two stored values are stored only where that is
 /// no longer than a new run. kOverrun zeros follow the values (triangle_kernels.h).
 RunRow packRuns(std::span<const double> values, Precision precision);
+
+/// The same of a row whose values stand at `places`, strictly increasing and counted from `first`
+/// on; all others are 0. O(values).
+RunRow packRuns(std::span<const Index> places, std::size_t first, std::span<const double> values,
+                Precision precision);
 
 /// Collects the stretches of values to store, in order, as the shortest list of runs.
 class RunFinder {
@@ -35,7 +46,7 @@ class RunFinder {
   explicit RunFinder(std::size_t value_bytes) : bridge_(sizeof(Run) / value_bytes) {}
   /// Values [first, last) are to be stored, those since the last call are 0.
   void add(std::size_t first, std::size_t last);
-  std::vector<Run> take();
+  std::pmr::vector<Run> take();
 
  private:
   void skip(std::size_t zeros);
@@ -43,12 +54,12 @@ class RunFinder {
 
   std::size_t bridge_;
   std::size_t end_ = 0;  // one beyond the last value that is stored
-  std::vector<Run> runs_;
+  std::pmr::vector<Run> runs_;
 };
 
 /// Calls visit(offset, values, count) for every run with stored values.
 template <class Value, class Visit>
-void forRuns(const std::vector<Run>& runs, Value* values, Visit&& visit) {
+void forRuns(std::span<const Run> runs, Value* values, Visit&& visit) {
   std::size_t offset = 0;
   for (const Run run : runs) {
     offset += run.skip;
@@ -62,9 +73,9 @@ void forRuns(const std::vector<Run>& runs, Value* values, Visit&& visit) {
 template <class Visit>
 void forRuns(const RunRow& row, Visit&& visit) {
   if (row.doubles.empty()) {
-    forRuns(row.runs, row.floats.data(), visit);
+    forRuns(std::span(row.runs), row.floats.data(), visit);
   } else {
-    forRuns(row.runs, row.doubles.data(), visit);
+    forRuns(std::span(row.runs), row.doubles.data(), visit);
   }
 }
 
@@ -76,7 +87,7 @@ class RunReader {
   }
   /// 0 where nothing is stored.
   double at(std::size_t offset) {
-    const std::vector<Run>& runs = row_->runs;
+    const std::pmr::vector<Run>& runs = row_->runs;
     while (run_ < runs.size() && offset >= begin_ + runs[run_].count) {
       stored_ += runs[run_].count;
       begin_ += runs[run_].count;

@@ -8,7 +8,6 @@
 #include <limits>
 #include <utility>
 
-#include "base/parallel.h"
 #include "matrix/matrix_row.h"
 #include "matrix/run_row.h"
 #include "radiosity/exchange_matrix.h"
@@ -17,16 +16,15 @@ namespace radiosity {
 
 namespace {
 
-constexpr std::size_t kRowGrain = 16;
-
 /// Largest stored value, so that a sum of N of them cannot overflow.
 constexpr double kLargest = 1e30;
 
 }  // namespace
 
 ExchangeMatrix ExchangeMatrix::symmetric(std::vector<double> area, std::vector<Index> order,
-                                         Precision precision) {
-  ExchangeMatrix matrix(std::move(area), precision);
+                                         Precision precision,
+                                         std::shared_ptr<ScratchMemory> scratch) {
+  ExchangeMatrix matrix(std::move(area), precision, std::move(scratch));
   const std::size_t n = matrix.size();
   matrix.symmetric_ = true;
   matrix.rows_ = {};
@@ -44,7 +42,8 @@ ExchangeMatrix ExchangeMatrix::symmetric(std::vector<double> area, std::vector<I
     if (matrix.area_[order[k]] == 0) matrix.without_area_.push_back(Index(k));
   }
   matrix.order_ = std::move(order);
-  matrix.upper_.resize(n);
+  matrix.upper_.reserve(n);
+  for (std::size_t k = 0; k < n; ++k) matrix.upper_.emplace_back(matrix.rowMemory());
   matrix.diagonal_.assign(n, 0.0);
   return matrix;
 }
@@ -80,62 +79,79 @@ void ExchangeMatrix::checkFactors(std::size_t k, std::span<const double> factors
   }
 }
 
+void ExchangeMatrix::checkPositions(std::size_t k, std::span<const Index> positions,
+                                    std::span<const double> factors) const {
+  if (!symmetric_ || k >= size() || positions.size() != factors.size()) {
+    throw InputError(
+        fmt::format("exchange matrix: {} positions and {} factors for row {} of the upper triangle "
+                    "of {}",
+                    positions.size(), factors.size(), k, symmetric_ ? size() : 0));
+  }
+  for (std::size_t m = 0; m < positions.size(); ++m) {
+    const Index position = positions[m];
+    if (position < k || position >= size() || (m > 0 && position <= positions[m - 1])) {
+      throw InputError(
+          fmt::format("exchange matrix, row {} of the upper triangle: position {} is "
+                      "out of order or not from {} to {}",
+                      k, position, k, size()));
+    }
+    const bool exchanges = area_[order_[k]] > 0 && area_[order_[position]] > 0;
+    if (factors[m] >= 0 && factors[m] <= (exchanges ? kLargest : 0.0)) continue;
+    throw InputError(fmt::format("exchange matrix: {} is no form factor from patch {} to patch {}",
+                                 factors[m], order_[k], order_[position]));
+  }
+}
+
 void ExchangeMatrix::setUpperRow(std::size_t k, std::span<const double> factors) {
   checkFactors(k, factors);
-  if (factors.empty()) {
-    upper_[k] = {};
-    diagonal_[k] = 0;
-    return;
-  }
-  upper_[k] = packRuns(factors.subspan(1), precision_);
-  diagonal_[k] = precision_ == Precision::single_precision ? double(float(factors[0])) : factors[0];
+  if (factors.empty()) return storeUpper(k, 0, {});
+  storeUpper(k, factors[0], packRuns(factors.subspan(1), precision_));
+}
+
+void ExchangeMatrix::setUpperRow(std::size_t k, std::span<const Index> positions,
+                                 std::span<const double> factors) {
+  checkPositions(k, positions, factors);
+  const bool itself = !positions.empty() && positions[0] == k;
+  const std::size_t later = itself ? 1 : 0;
+  storeUpper(k, itself ? factors[0] : 0.0,
+             packRuns(positions.subspan(later), k + 1, factors.subspan(later), precision_));
+}
+
+void ExchangeMatrix::storeUpper(std::size_t k, double itself, RunRow row) {
+  upper_[k] = std::move(row);
+  if (scratch_.memory) scratch_.memory->touched(bytesOf(upper_[k]));
+  diagonal_[k] = precision_ == Precision::single_precision ? double(float(itself)) : itself;
 }
 
 void ExchangeMatrix::upperRow(std::size_t k, std::span<double> factors) const {
   std::fill(factors.begin(), factors.end(), 0.0);
   factors[0] = diagonal_[k];
-  forRuns(upper_[k], [&](std::size_t offset, const auto* values, std::size_t count) {
+  forRuns(upperRuns(k), [&](std::size_t offset, const auto* values, std::size_t count) {
     std::copy(values, values + count, factors.begin() + std::ptrdiff_t(1 + offset));
   });
 }
 
-const RunRow& ExchangeMatrix::upperRuns(std::size_t k) const { return upper_[k]; }
+ExchangeMatrix::UpperEntries ExchangeMatrix::upperEntries(std::size_t k) const {
+  UpperEntries entries;
+  const auto add = [&](std::size_t position, double factor) {
+    if (factor == 0) return;
+    entries.positions.push_back(Index(position));
+    entries.factors.push_back(factor);
+  };
+  add(k, diagonal_[k]);
+  forRuns(upperRuns(k), [&](std::size_t offset, const auto* values, std::size_t count) {
+    for (std::size_t m = 0; m < count; ++m) add(k + 1 + offset + m, values[m]);
+  });
+  return entries;
+}
+
+const RunRow& ExchangeMatrix::upperRuns(std::size_t k) const {
+  if (scratch_.memory) scratch_.memory->touched(bytesOf(upper_[k]));
+  return upper_[k];
+}
 
 double ExchangeMatrix::storedUpper(std::size_t k, std::size_t later) const {
   return k == later ? diagonal_[k] : RunReader(upper_[k]).at(later - k - 1);
-}
-
-std::size_t ExchangeMatrix::panelEnd(std::size_t first) const {
-  const std::size_t rows = kPanelBytes / (sizeof(double) * size());
-  return std::min(size(), first + std::max<std::size_t>(rows, 1));
-}
-
-// Row i of F holds what row position(i) of the triangle stores, and, from every row k before it,
-// the one value at its own position. The second part touches all rows of the triangle above: all
-// rows of a panel are served while such a row is at hand, found in one walk along its runs.
-void ExchangeMatrix::spreadRows(std::size_t first, std::size_t last, std::span<double> out) const {
-  const std::size_t n = size();
-  std::vector<std::pair<Index, Index>> wanted;  // position, row of the panel
-  for (std::size_t i = first; i < last; ++i) wanted.emplace_back(position_[i], Index(i - first));
-  std::sort(wanted.begin(), wanted.end());
-  parallelFor(wanted.size(), 1, [&](std::size_t w) {
-    const std::size_t k = wanted[w].first;
-    std::vector<double> stored(n - k);
-    upperRow(k, stored);
-    double* spread = &out[wanted[w].second * n];
-    for (std::size_t m = 0; m < stored.size(); ++m) spread[order_[k + m]] = stored[m];
-  });
-  parallelFor(wanted.empty() ? 0 : wanted.back().first, kRowGrain, [&](std::size_t k) {
-    const Index patch = order_[k];
-    RunReader stored(upper_[k]);
-    auto next = std::upper_bound(wanted.begin(), wanted.end(), std::pair(Index(k), kNone));
-    for (; next != wanted.end(); ++next) {
-      const double value = stored.at(next->first - k - 1);
-      // The area of a patch that exchanges nothing may be 0.
-      out[next->second * n + patch] =
-          value == 0 ? 0 : value * area_[patch] / area_[order_[next->first]];
-    }
-  });
 }
 
 }  // namespace radiosity

@@ -69,11 +69,11 @@ void ExchangeMatrix::symmetricProduct(std::span<const double> x, int bands, std:
       const bool hands_on = std::any_of(factor, factor + planes, [](double f) { return f != 0; });
       double sums[kMaxBands] = {};
       if (gathers && hands_on) {
-        kernels.gather_and_hand_on(upper_[k], operands, factor, sums);
+        kernels.gather_and_hand_on(upperRuns(k), operands, factor, sums);
       } else if (gathers) {
-        kernels.gather(upper_[k], operands, sums);
+        kernels.gather(upperRuns(k), operands, sums);
       } else if (hands_on) {
-        kernels.hand_on(upper_[k], operands, factor);
+        kernels.hand_on(upperRuns(k), operands, factor);
       }
       for (std::size_t b = 0; b < planes; ++b) gathered[b * n + k] = sums[b];
     };
@@ -114,7 +114,7 @@ void ExchangeMatrix::symmetricSweep(std::span<double> x, int bands, const Update
   };
   const auto gather = [&](std::size_t k) {
     for (int b = 0; b < bands; b += kMaxBands) {
-      kernels.gather(upper_[k], operands(k, b), &sums[std::size_t(b)]);
+      kernels.gather(upperRuns(k), operands(k, b), &sums[std::size_t(b)]);
     }
   };
   for (std::size_t k = 0; k < n; ++k) {
@@ -132,7 +132,7 @@ void ExchangeMatrix::symmetricSweep(std::span<double> x, int bands, const Update
     for (std::size_t b = 0; b < width; ++b) factor[b] = now.values[b * stride + k] * area;
     if (std::all_of(factor.begin(), factor.end(), [](double f) { return f == 0; })) continue;
     for (int b = 0; b < bands; b += kMaxBands) {
-      kernels.hand_on(upper_[k], operands(k, b), &factor[std::size_t(b)]);
+      kernels.hand_on(upperRuns(k), operands(k, b), &factor[std::size_t(b)]);
     }
   }
 }

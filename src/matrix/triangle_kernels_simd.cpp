@@ -29,7 +29,7 @@ Vector load(const float* values) {
 /// One walk along the runs. Everything is a local variable: through members the compiler would have
 /// to expect that writing z changes them.
 template <int kBands, bool kGather, bool kHandOn, class Value>
-void walkRuns(const std::vector<Run>& runs, const Value* HWY_RESTRICT values,
+void walkRuns(std::span<const Run> runs, const Value* HWY_RESTRICT values,
               const RowOperands& operands, const double* factor, double* sums) {
   const Doubles d;
   Vector scale[kBands];

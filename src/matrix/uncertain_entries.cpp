@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "matrix/uncertain_row.h"
 
@@ -30,6 +31,10 @@ std::uint8_t codeOf(double error) {
 
 }  // namespace
 
+std::size_t bytesOf(const UncertainEntries::Row& row) {
+  return row.codes.size() + row.runs.size() * sizeof(Run);
+}
+
 double errorOfCode(std::uint8_t code) {
   static const std::array<double, 256> table = [] {
     std::array<double, 256> errors{};
@@ -42,15 +47,21 @@ double errorOfCode(std::uint8_t code) {
 }
 
 UncertainEntries::UncertainEntries() = default;
-UncertainEntries::UncertainEntries(std::size_t n) : rows_(n) {}
-UncertainEntries::UncertainEntries(const UncertainEntries&) = default;
+UncertainEntries::UncertainEntries(std::size_t n, std::shared_ptr<ScratchMemory> scratch)
+    : scratch_(std::move(scratch)) {
+  rows_.reserve(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    scratch_ ? rows_.emplace_back(scratch_.get()) : rows_.emplace_back();
+  }
+}
 UncertainEntries::UncertainEntries(UncertainEntries&&) noexcept = default;
-UncertainEntries& UncertainEntries::operator=(const UncertainEntries&) = default;
-UncertainEntries& UncertainEntries::operator=(UncertainEntries&&) noexcept = default;
 UncertainEntries::~UncertainEntries() = default;
 
 std::size_t UncertainEntries::size() const { return rows_.size(); }
-const UncertainEntries::Row& UncertainEntries::row(std::size_t k) const { return rows_[k]; }
+const UncertainEntries::Row& UncertainEntries::row(std::size_t k) const {
+  if (scratch_) scratch_->touched(bytesOf(rows_[k]));
+  return rows_[k];
+}
 
 void UncertainEntries::setRow(std::size_t k, std::span<const Index> later,
                               std::span<const double> errors) {
@@ -73,13 +84,14 @@ void UncertainEntries::setRow(std::size_t k, std::span<const Index> later,
   for (const Run run : row.runs) stored += run.count;
   row.codes.assign(stored, 0);
   std::size_t m = 0;
-  forRuns(row.runs, row.codes.data(),
+  forRuns(std::span<const Run>(row.runs), row.codes.data(),
           [&](std::size_t offset, std::uint8_t* codes, std::size_t count) {
             for (; m < later.size() && later[m] - k - 1 < offset + count; ++m) {
               codes[later[m] - k - 1 - offset] = codeOf(errors[m]);
             }
           });
   rows_[k] = std::move(row);
+  if (scratch_) scratch_->touched(bytesOf(rows_[k]));
 }
 
 std::size_t UncertainEntries::entries() const {
@@ -93,7 +105,7 @@ std::size_t UncertainEntries::entries() const {
 
 std::size_t UncertainEntries::bytes() const {
   std::size_t total = 0;
-  for (const Row& row : rows_) total += row.codes.size() + row.runs.size() * sizeof(Run);
+  for (const Row& row : rows_) total += bytesOf(row);
   return total;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory_resource>
 #include <vector>
 
 #include "matrix/run_row.h"
@@ -10,9 +11,14 @@
 namespace radiosity {
 
 struct UncertainEntries::Row {
-  std::vector<Run> runs;            ///< from position k + 1 on
-  std::vector<std::uint8_t> codes;  ///< of the error; 0: known
+  Row() = default;
+  explicit Row(std::pmr::memory_resource* memory) : runs(memory), codes(memory) {}
+
+  std::pmr::vector<Run> runs;            ///< from position k + 1 on
+  std::pmr::vector<std::uint8_t> codes;  ///< of the error; 0: known
 };
+
+std::size_t bytesOf(const UncertainEntries::Row& row);
 
 /// The error a code stands for, rounded.
 double errorOfCode(std::uint8_t code);

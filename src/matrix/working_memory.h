@@ -13,16 +13,15 @@ namespace radiosity {
 inline constexpr std::size_t kFileChunks = std::size_t(4) << 20;
 
 /// The most bytes that writing a symmetric matrix of N rows or solving in three bands takes at
-/// once.
+/// once, beside the panels of rows (ExchangeMatrix::panelBytes()).
 inline std::size_t matrixWorkingMemory(std::size_t n, std::size_t threads) {
   constexpr std::size_t kBands = 3;
   const std::size_t row = n * sizeof(double);
   const std::size_t all = n * row;
-  const std::size_t panel = std::min(all, std::max(ExchangeMatrix::kPanelBytes, row));
   const std::size_t chunks = std::min(2 * all, kFileChunks);
   const std::size_t starts = 2 * row;           // where rows start in the file, how long they are
   const std::size_t fields = 8 * kBands * row;  // B, H, E, reflectance, and by position
-  return std::max(panel + threads * row + starts + chunks, TrianglePass::bytes(n, kBands) + fields);
+  return std::max(threads * row + starts + chunks, TrianglePass::bytes(n, kBands) + fields);
 }
 
 }  // namespace radiosity

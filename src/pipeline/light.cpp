@@ -44,6 +44,17 @@ SurfaceLight Pipeline::solvedLight() {
   return surfaceLight(light.radiosity, materialsOfMesh());
 }
 
+SurfaceLight Pipeline::elementLight(const ElementOptions& options,
+                                    std::span<const std::uint8_t> wanted) {
+  SurfaceLight light = solvedLight();
+  const PatchMaterials& materials = materialsOfMesh();
+  light.elements = std::make_shared<const Elements>(computeElements(
+      made(results_.mesh).mesh, materials, solution().irradiance, options, wanted, progress_));
+  light.reflectance = materials.reflectance;
+  light.emission = materials.emission;
+  return light;
+}
+
 SurfaceLight Pipeline::gatheredLight() {
   const Gathered& light = gathered();
   const PatchMesh& patches = made(results_.mesh).mesh;

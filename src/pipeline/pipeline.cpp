@@ -10,6 +10,10 @@
 #include "base/figure_text.h"
 #include "base/input_file.h"
 #include "base/made.h"
+#include "base/parallel.h"
+#include "base/process_memory.h"
+#include "formfactor/row_memory.h"
+#include "matrix/working_memory.h"
 #include "pipeline/journal_file.h"
 #include "pipeline/stage_key.h"
 #include "radiosity/version.h"
@@ -160,17 +164,26 @@ bool Pipeline::isUpToDate(const std::string& path) const {
   return !changed_ && (path == source_ || path == saved_);
 }
 
+/// Null where it fits into memory.
+std::shared_ptr<ScratchMemory> Pipeline::memoryOfStoredMatrix() const {
+  const FormFactorOptions& options = options_.factors;
+  const std::size_t n = made(results_.factors).fronts.size();
+  const std::size_t bytes = made(results_.factors).report.matrix_bytes;
+  const std::size_t beside = residentBytes() + matrixWorkingMemory(n, allowedThreads());
+  const RowMemory memory = planRowMemory(beside + bytes, beside, bytes, options);
+  if (options.memory_limit > 0 && memory.bytes > options.memory_limit) {
+    throw RunError(fmt::format("{}: its form factors take {} of memory, --memory-limit allows {}",
+                               source_, bytesText(memory.bytes), bytesText(options.memory_limit)));
+  }
+  return makeRowMemory(memory, options, n);
+}
+
 void Pipeline::loadMatrix() {
   if (!results_.factors || results_.factors->matrix.size() == results_.factors->fronts.size()) {
     return;
   }
-  const std::size_t bytes = results_.factors->report.matrix_bytes;
-  const std::size_t limit = options_.factors.memory_limit;
-  if (limit > 0 && bytes > limit) {
-    throw RunError(fmt::format("{}: its form factors take {} of memory, --memory-limit allows {}",
-                               source_, bytesText(bytes), bytesText(limit)));
-  }
-  std::optional<FormFactors> factors = std::move(readResults(source_, true).factors);
+  std::optional<FormFactors> factors =
+      std::move(readResults(source_, true, memoryOfStoredMatrix()).factors);
   // Another run may have replaced the file since: its matrix belongs to another mesh.
   if (!factors || fileState(source_) != source_state_) {
     throw RunError(source_ + ": was replaced by another run meanwhile; run this one again");

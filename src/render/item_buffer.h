@@ -49,6 +49,7 @@ class ItemBuffer {
  public:
   ItemBuffer(const PatchMesh& mesh, const View& view, int samples, bool show_backs);
 
+  const View& view() const { return view_; }
   int tileCount() const { return tiles_x_ * tiles_y_; }
   /// Resolves one tile. Different tiles may be resolved by different threads at once; `items` is
   /// scratch memory that may come from any tile before.

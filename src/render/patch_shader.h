@@ -4,16 +4,30 @@
 #include <array>
 #include <vector>
 
+#include "radiosity/elements.h"
 #include "radiosity/patch_mesh.h"
 #include "render/item_buffer.h"
 
 namespace radiosity {
 
-/// A field over the patches: constant on each, or interpolated from values at the corners.
+/// Elements as they are drawn: what leaves a point is emission + reflectance times irradiance
+/// there, in bands that are red, green and blue, or one in grey. All but the lookup by reference.
+struct ShadedElements {
+  const Elements& elements;
+  ElementLookup lookup;
+  std::span<const double> reflectance;  ///< N * bands
+  std::span<const double> emission;     ///< N * bands
+  double factor = 1;                    ///< that the result is multiplied by
+};
+
+/// A field over the patches: constant on each, or interpolated from values at the corners; or,
+/// where there are elements, from theirs.
 struct PatchField {
   std::span<const double> values;  ///< N * bands, row-major
   std::vector<double> corners;     ///< mesh.corners.size() * bands, or empty: constant patches
   int bands = 1;                   ///< 1 to 3
+  /// Shared by the threads; null: none. Of 3 bands.
+  const ShadedElements* elements = nullptr;
 };
 
 /// Interpolates with Wachspress' coordinates (Wachspress, "A Rational Finite Element Basis", 1975;
@@ -41,9 +55,16 @@ class PatchShader {
   bool convexQuad(Index patch);
   void setTriangle(Index patch, Index piece);
 
+  void setElement(Index patch, Index piece);
+  std::array<double, 3> elementAt(double x, double y) const;
+
   const PatchMesh& mesh_;
   const ItemBuffer& items_;
   const PatchField& field_;
+  std::size_t root_ = kNone;  ///< of elements; kNone: the patch has none
+  Vec3 normal_{0.0};          ///< of the patch
+  double height_ = 0;         ///< of its plane, seen from the eye
+  Index patch_ = 0;
   int corners_ = 0;               ///< 0: constant, else 3 or 4
   std::array<Vec3, 4> edge_{};    ///< edge functions, >= 0 inside; edge k: corner k to k + 1
   std::array<double, 4> area_{};  ///< C_i

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -193,10 +194,44 @@ SurfaceLight surfaceLight(std::span<const double> radiosity, const PatchMaterial
   return light;
 }
 
+std::vector<std::uint8_t> visiblePatches(const PatchMesh& mesh, const Camera& camera,
+                                         const RenderOptions& options, Progress& progress) {
+  options.validate();
+  const View view = makeView(camera, options.width, options.height);
+  const ItemBuffer items(mesh, view, options.samples, options.show_backs);
+  std::vector<std::atomic<std::uint8_t>> seen(mesh.size());
+  parallelFor(std::size_t(items.tileCount()), 1, [&](std::size_t tile) {
+    if (progress.cancelled()) return;
+    thread_local TileItems samples;
+    items.resolve(int(tile), samples);
+    Index last = kNone;
+    for (const Index piece : samples.piece) {
+      if (piece == last || piece == kNone) continue;
+      last = piece;
+      if (!items.seenFromBehind(piece)) {
+        seen[items.patchOf(piece)].store(1, std::memory_order_relaxed);
+      }
+    }
+  });
+  progress.check();
+  return {seen.begin(), seen.end()};
+}
+
 Image renderRadiance(const PatchMesh& mesh, const SurfaceLight& light, const Camera& camera,
                      const RenderOptions& options, Progress& progress) {
   RenderOptions with_sky = options;
   if (light.sky != Vec3(0.0)) with_sky.background = light.sky;
+  if (light.elements && options.smooth) {
+    with_sky.validate();
+    std::vector<double> radiance(light.patches);
+    for (double& value : radiance) value *= std::numbers::inv_pi;
+    requireColours(mesh, radiance);
+    PatchField field = makeField(mesh, radiance, 3, with_sky);
+    const ShadedElements shaded{*light.elements, ElementLookup(mesh, light.elements->roots),
+                                light.reflectance, light.emission, std::numbers::inv_pi};
+    field.elements = &shaded;
+    return draw(mesh, field, camera, with_sky, progress);
+  }
   return renderRadiance(mesh, light.patches, light.corners, camera, with_sky, progress);
 }
 

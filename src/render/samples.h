@@ -11,6 +11,26 @@ namespace radiosity {
 /// The side of a patch that one sample sees.
 enum class Seen { nothing, front, back };
 
+/// Whether all samples of a pixel see one patch with elements: four then do for its light, which
+/// costs more than what a patch's corners have. (Samples are for edges of what is seen.)
+inline bool shadesWhole(const ItemBuffer& items, const PatchField& field, const TileItems& seen,
+                        int x, int y) {
+  const int count = seen.samples * seen.samples;
+  if (field.elements == nullptr || count <= 4) return false;
+  const Index first = seen.piece[seen.at(x, y, 0)];
+  if (first == kNone || items.seenFromBehind(first)) return false;
+  const Index patch = items.patchOf(first);
+  // Pieces of a triangulated patch are roots of their own.
+  const ElementRoots& roots = field.elements->elements.roots;
+  const bool one_root = roots.of_patch[patch + 1] - roots.of_patch[patch] == 1;
+  for (int s = 1; s < count; ++s) {
+    const Index piece = seen.piece[seen.at(x, y, s)];
+    if (piece == first) continue;
+    if (!one_root || piece == kNone || items.patchOf(piece) != patch) return false;
+  }
+  return true;
+}
+
 /// Calls pixel(x, y, first sample) ... in tiles on all threads. `Pixel` is a class with
 ///   void begin();                                        a new pixel
 ///   void sample(Seen, const std::array<double, 3>&);     S^2 times; values for Seen::front only
@@ -30,6 +50,16 @@ void forSamples(const PatchMesh& mesh, const ItemBuffer& items, const PatchField
     for (int y = seen.y; y < seen.y + seen.height; ++y) {
       for (int x = seen.x; x < seen.x + seen.width; ++x) {
         pixel.begin();
+        if (shadesWhole(items, field, seen, x, y)) {
+          const Index hit = seen.piece[seen.at(x, y, 0)];
+          if (hit != piece) shader.setPiece(piece = hit);
+          for (int s = 0; s < 4; ++s) {
+            const Vec2 offset = sampleOffset(s, 2);
+            pixel.sample(Seen::front, shader.at(x + offset.x, y + offset.y));
+          }
+          pixel.end(x, y);
+          continue;
+        }
         for (int s = 0; s < count; ++s) {
           const Index hit = seen.piece[seen.at(x, y, s)];
           if (hit == kNone || items.seenFromBehind(hit)) {

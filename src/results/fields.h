@@ -208,6 +208,7 @@ void describe(Archive& a, Described<Archive, FormFactorReport>& r) {
   a("skipped_horizon", r.skipped_horizon);
   a("skipped_facing_away", r.skipped_facing_away);
   a("skipped_face", r.skipped_face);
+  a("skipped_hidden", r.skipped_hidden);
   a("pixels", r.pixels);
   a("near_pairs", r.near_pairs);
   a("capped", r.capped);

@@ -17,7 +17,7 @@ void writeMatrix(h5::OutputGroup& group, const ExchangeMatrix& matrix, Progress&
 /// Counts the bytes that writeMatrix() adds to the file.
 void countMatrix(h5::SizeCounter& group, const ExchangeMatrix& matrix);
 
-/// The same matrix, value for value to the bit.
-ExchangeMatrix readMatrix(const h5::InputGroup& group);
+/// The same matrix, value for value to the bit. `scratch`: where it is to be; null: in memory.
+ExchangeMatrix readMatrix(const h5::InputGroup& group, std::shared_ptr<ScratchMemory> scratch);
 
 }  // namespace radiosity

@@ -1,5 +1,6 @@
 // Reading the matrix: everything is checked before it is believed.
 #include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <atomic>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "matrix/sort_entries.h"
 #include "results/matrix_blocks.h"
 
 namespace radiosity {
@@ -155,24 +157,29 @@ void readByRows(const h5::InputGroup& group, const StoredRows& rows, ExchangeMat
 }
 
 /// A symmetric matrix keeps one entry of each pair: that in the row of the patch that comes first
-/// in the order. Calls store(k, values from position k on) for every position.
+/// in the order. Calls store(k, positions, values) for every position k.
 template <class T, class StoreUpper>
 void readTriangle(const h5::InputGroup& group, const StoredRows& rows, std::span<const Index> order,
                   const StoreUpper& store) {
   std::vector<Index> position(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) position[order[k]] = Index(k);
+  tbb::enumerable_thread_specific<EntrySorter> sorters;
   std::atomic<std::ptrdiff_t> surplus = 0;  // entries to later patches less those to earlier ones
   const auto keepUpper = [&](std::size_t i, std::span<const std::int32_t> columns,
                              std::span<const T> values) {
     const Index k = position[i];
-    std::vector<double> upper(order.size() - k, 0.0);
+    std::vector<Index> later;
+    std::vector<double> factors;
     std::ptrdiff_t more = 0;
     for (std::size_t m = 0; m < columns.size(); ++m) {
-      const Index later = position[std::size_t(columns[m])];
-      if (later >= k) upper[later - k] = values[m];
-      if (later != k) more += later > k ? 1 : -1;
+      const Index other = position[std::size_t(columns[m])];
+      if (other != k) more += other > k ? 1 : -1;
+      if (other < k) continue;
+      later.push_back(other);
+      factors.push_back(values[m]);
     }
-    store(k, upper);
+    sorters.local().sort(later, factors, order.size());
+    store(k, later, factors);
     surplus.fetch_add(more, std::memory_order_relaxed);
   };
   BlockReader<T>(group, rows.indptr, keepUpper).readAll();
@@ -181,19 +188,20 @@ void readTriangle(const h5::InputGroup& group, const StoredRows& rows, std::span
 
 template <class T>
 void readSymmetric(const h5::InputGroup& group, const StoredRows& rows, ExchangeMatrix& matrix) {
-  readTriangle<T>(group, rows, matrix.order(),
-                  [&](std::size_t k, const std::vector<double>& upper) {
-                    try {
-                      matrix.setUpperRow(k, upper);
-                    } catch (const InputError& error) {
-                      group.fail("data", fmt::format("does not fit: {}", error.what()));
-                    }
-                  });
+  const auto store = [&](std::size_t k, std::span<const Index> positions,
+                         std::span<const double> factors) {
+    try {
+      matrix.setUpperRow(k, positions, factors);
+    } catch (const InputError& error) {
+      group.fail("data", fmt::format("does not fit: {}", error.what()));
+    }
+  };
+  readTriangle<T>(group, rows, matrix.order(), store);
 }
 
 }  // namespace
 
-ExchangeMatrix readMatrix(const h5::InputGroup& group) {
+ExchangeMatrix readMatrix(const h5::InputGroup& group, std::shared_ptr<ScratchMemory> scratch) {
   std::size_t n = 0;
   const h5::Handle area_set = group.open("area", Number::f64, 0, n);
   std::vector<double> area(n);
@@ -205,11 +213,12 @@ ExchangeMatrix readMatrix(const h5::InputGroup& group) {
   const bool single = rows.number == Number::f32;
   const Precision precision = single ? Precision::single_precision : Precision::double_precision;
   if (group.has("order")) {
-    auto matrix = ExchangeMatrix::symmetric(std::move(area), readOrder(group, n), precision);
+    auto matrix = ExchangeMatrix::symmetric(std::move(area), readOrder(group, n), precision,
+                                            std::move(scratch));
     single ? readSymmetric<float>(group, rows, matrix) : readSymmetric<double>(group, rows, matrix);
     return matrix;
   }
-  ExchangeMatrix matrix(std::move(area), precision);
+  ExchangeMatrix matrix(std::move(area), precision, std::move(scratch));
   single ? readByRows<float>(group, rows, matrix) : readByRows<double>(group, rows, matrix);
   return matrix;
 }

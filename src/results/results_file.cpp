@@ -30,7 +30,7 @@ using h5::SizeCounter;
 
 constexpr const char* kFormat = "radiosity results";
 /// Raised whenever an older program could misread the file.
-constexpr std::int32_t kFormatVersion = 5;
+constexpr std::int32_t kFormatVersion = 6;
 
 /// Everything but the matrix and the links, into a group or a counter.
 template <class Sink>
@@ -142,12 +142,13 @@ void checkHead(const h5::InputFile& file, const InputGroup& root) {
   }
 }
 
-FormFactors readFactors(const InputGroup& group, bool with_matrix) {
+FormFactors readFactors(const InputGroup& group, bool with_matrix,
+                        std::shared_ptr<ScratchMemory> scratch) {
   FormFactors factors;
   FieldReader fields(group);
   describe(fields, factors);
   if (!with_matrix) return factors;
-  factors.matrix = readMatrix(group);
+  factors.matrix = readMatrix(group, std::move(scratch));
   if (factors.matrix.size() != factors.fronts.size()) {
     group.fail("area", fmt::format("has {} patches, fronts has {}", factors.matrix.size(),
                                    factors.fronts.size()));
@@ -155,7 +156,8 @@ FormFactors readFactors(const InputGroup& group, bool with_matrix) {
   return factors;
 }
 
-void readStages(const InputGroup& root, bool with_factors, Results& results) {
+void readStages(const InputGroup& root, bool with_factors, std::shared_ptr<ScratchMemory> scratch,
+                Results& results) {
   results.version = root.text("version");
   if (root.has("scene")) {
     const InputGroup group = root.group("scene");
@@ -177,7 +179,7 @@ void readStages(const InputGroup& root, bool with_factors, Results& results) {
     if (results.mesh && group.text("geometry_hash") != mesh_hash) {
       group.fail("geometry_hash", "is not that of /mesh: these form factors are of another mesh");
     }
-    results.factors = readFactors(group, with_factors);
+    results.factors = readFactors(group, with_factors, std::move(scratch));
   }
   if (root.has("solution")) {
     const InputGroup group = root.group("solution");
@@ -206,13 +208,14 @@ bool isResultsFile(const std::string& path) {
   return file.read(start.data(), start.size()) && start == kSignature;
 }
 
-Results readResults(const std::string& path, bool with_factors) {
+Results readResults(const std::string& path, bool with_factors,
+                    std::shared_ptr<ScratchMemory> scratch) {
   const h5::InputFile file(path);
   const InputGroup root(file);
   checkHead(file, root);
   Results results;
   try {
-    readStages(root, with_factors, results);
+    readStages(root, with_factors, std::move(scratch), results);
   } catch (const std::bad_alloc&) {
     throw RunError(fmt::format("{}: does not fit into memory; use a larger machine", path));
   }

@@ -10,42 +10,16 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "formfactor/rays/patch_irradiance.h"
-#include "mesh/cluster_means.h"
 #include "solve/certificate.h"
+#include "solve/cluster_solve.h"
 #include "solve/energy.h"
 #include "solve/iteration.h"
 #include "solve/singular.h"
+#include "solve/solve_rows.h"
 
 namespace radiosity {
 
 namespace {
-
-/// How messages call patches: by surface where surfaces are known.
-struct PatchNames {
-  std::span<const Index> group;
-  std::span<const std::string> names;
-
-  std::string of(std::size_t i) const {
-    if (group.empty()) return fmt::format("patch {}", i);
-    return fmt::format("patch {} of surface \"{}\"", i, names[group[i]]);
-  }
-
-  /// The surfaces of some patches (else the patches), each once, at most kListed of them.
-  std::string list(std::span<const std::size_t> patches) const {
-    constexpr std::size_t kListed = 20;
-    std::set<Index> seen;
-    std::string text;
-    for (const std::size_t i : patches) {
-      if (!seen.insert(group.empty() ? Index(i) : group[i]).second) continue;
-      if (seen.size() > kListed) continue;
-      if (!text.empty()) text += ", ";
-      text += group.empty() ? fmt::format("patch {}", i) : names[group[i]];
-    }
-    if (seen.size() > kListed) text += fmt::format(" and {} more", seen.size() - kListed);
-    return text;
-  }
-};
 
 void checkSizes(const FormFactors& factors, std::span<const double> reflectance,
                 std::span<const double> emission, std::span<const double> sky, int bands,
@@ -73,21 +47,6 @@ void checkSizes(const FormFactors& factors, std::span<const double> reflectance,
   }
 }
 
-void checkMaterials(std::span<const double> reflectance, std::span<const double> emission,
-                    int bands, const PatchNames& names) {
-  for (std::size_t k = 0; k < reflectance.size(); ++k) {
-    const std::size_t i = k / std::size_t(bands);
-    if (!(reflectance[k] >= 0 && reflectance[k] <= 1)) {
-      throw InputError(fmt::format("solve: {}: reflectance {} is not within 0 and 1", names.of(i),
-                                   reflectance[k]));
-    }
-    if (!(emission[k] >= 0) || !std::isfinite(emission[k])) {
-      throw InputError(fmt::format("solve: {}: emission {} is not a finite number >= 0",
-                                   names.of(i), emission[k]));
-    }
-  }
-}
-
 /// Irradiance of each patch from the sky, N * bands, W/m^2. An exact row's account of the sky may
 /// be a little below 0.
 std::vector<double> skyIrradiance(const FormFactors& factors, std::span<const double> sky,
@@ -100,11 +59,11 @@ std::vector<double> skyIrradiance(const FormFactors& factors, std::span<const do
   return irradiance;
 }
 
-/// E plus the reflected irradiance from the sky.
+/// E plus the reflected irradiance that is given.
 std::vector<double> sourceOf(std::span<const double> reflectance, std::span<const double> emission,
-                             std::span<const double> from_sky) {
+                             std::span<const double> given) {
   std::vector<double> source(emission.begin(), emission.end());
-  for (std::size_t k = 0; k < source.size(); ++k) source[k] += reflectance[k] * from_sky[k];
+  for (std::size_t k = 0; k < source.size(); ++k) source[k] += reflectance[k] * given[k];
   return source;
 }
 
@@ -246,26 +205,22 @@ void nameDarkness(const std::vector<double>& from_sky, SolveSummary& summary) {
           : "no light: no patch emits, so everything is dark; usable, but black";
 }
 
-/// Between clusters; then B = E + rho H of every patch, with an irradiance of its own.
-Solution solveClusters(const FormFactors& factors, const PatchMaterials& materials,
-                       const PatchMesh& mesh, const SolveOptions& options, Progress& progress) {
-  const int bands = materials.bands;
-  checkMaterials(materials.reflectance, materials.emission, bands,
-                 {mesh.surface, mesh.surface_names});
-  Solution solution = solve(factors, clusterMeans(mesh, materials.reflectance, bands),
-                            clusterMeans(mesh, materials.emission, bands), bands, options, progress,
-                            clusterSurfaces(mesh), mesh.surface_names, materials.sky);
-  if (solution.irradiance.empty()) return solution;  // singular
-  solution.irradiance = patchIrradiance(mesh, solution.radiosity, solution.irradiance, bands,
-                                        materials.sky, progress);
-  solution.radiosity = materials.emission;
-  for (std::size_t k = 0; k < solution.radiosity.size(); ++k) {
-    solution.radiosity[k] += materials.reflectance[k] * solution.irradiance[k];
-  }
-  return solution;
-}
-
 }  // namespace
+
+void checkMaterials(std::span<const double> reflectance, std::span<const double> emission,
+                    int bands, const PatchNames& names) {
+  for (std::size_t k = 0; k < reflectance.size(); ++k) {
+    const std::size_t i = k / std::size_t(bands);
+    if (!(reflectance[k] >= 0 && reflectance[k] <= 1)) {
+      throw InputError(fmt::format("solve: {}: reflectance {} is not within 0 and 1", names.of(i),
+                                   reflectance[k]));
+    }
+    if (!(emission[k] >= 0) || !std::isfinite(emission[k])) {
+      throw InputError(fmt::format("solve: {}: emission {} is not a finite number >= 0",
+                                   names.of(i), emission[k]));
+    }
+  }
+}
 
 void SolveOptions::validate() const {
   if (!(tolerance > 0 && tolerance < 1)) {
@@ -276,12 +231,11 @@ void SolveOptions::validate() const {
   }
 }
 
-Solution solve(const FormFactors& factors, std::span<const double> reflectance,
-               std::span<const double> emission, int bands, const SolveOptions& options,
-               Progress& progress, std::span<const Index> group,
-               std::span<const std::string> group_names, std::span<const double> sky) {
+Solution solveRows(const FormFactors& factors, std::span<const double> reflectance,
+                   std::span<const double> emission, int bands, const SolveOptions& options,
+                   Progress& progress, const PatchNames& names, std::span<const double> sky,
+                   std::span<const double> more) {
   const auto start = std::chrono::steady_clock::now();
-  const PatchNames names{group, group_names};
   options.validate();
   checkSizes(factors, reflectance, emission, sky, bands, names);
   checkMaterials(reflectance, emission, bands, names);
@@ -290,7 +244,9 @@ Solution solve(const FormFactors& factors, std::span<const double> reflectance,
   solution.bands = bands;
   SolveSummary& summary = solution.summary;
   const std::vector<double> from_sky = skyIrradiance(factors, sky, bands);
-  const std::vector<double> source = sourceOf(reflectance, emission, from_sky);
+  std::vector<double> given = from_sky;
+  for (std::size_t k = 0; k < more.size(); ++k) given[k] += more[k];
+  const std::vector<double> source = sourceOf(reflectance, emission, given);
   const BandPlan plan(reflectance, source, bands);
   const System system(factors.matrix, int(plan.solved().size()), plan.pick(reflectance),
                       plan.pick(source));
@@ -314,17 +270,25 @@ Solution solve(const FormFactors& factors, std::span<const double> reflectance,
     solution.radiosity = plan.spread(fields.radiosity);
     solution.irradiance = plan.spread(fields.irradiance);
   }
-  for (std::size_t k = 0; k < from_sky.size(); ++k) solution.irradiance[k] += from_sky[k];
+  for (std::size_t k = 0; k < given.size(); ++k) solution.irradiance[k] += given[k];
   summary.energy = energyAccount(factors, reflectance, {emission, from_sky}, solution.radiosity,
                                  solution.irradiance, bands);
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return solution;
 }
 
+Solution solve(const FormFactors& factors, std::span<const double> reflectance,
+               std::span<const double> emission, int bands, const SolveOptions& options,
+               Progress& progress, std::span<const Index> group,
+               std::span<const std::string> group_names, std::span<const double> sky) {
+  return solveRows(factors, reflectance, emission, bands, options, progress, {group, group_names},
+                   sky, {});
+}
+
 Solution solve(const FormFactors& factors, const PatchMaterials& materials, const PatchMesh& mesh,
                const SolveOptions& options, Progress& progress) {
   materials.requireSizes(mesh.size());
-  if (mesh.clusters) return solveClusters(factors, materials, mesh, options, progress);
+  if (mesh.clusters) return ClusterSolve(factors, materials, mesh, options, progress).run();
   return solve(factors, materials.reflectance, materials.emission, materials.bands, options,
                progress, mesh.surface, mesh.surface_names, materials.sky);
 }

@@ -21,6 +21,8 @@ CASES = [
     ("formfactor/hemicube/hemicube.cpp", "formfactor/exact/elements/elements.h",
      ["radiosity/gather.h"]),
     ("solve/solve.cpp", "radiosity/form_factors.h", ["radiosity/gather.h", "radiosity/render.h"]),
+    ("elements/field_builder.cpp", "formfactor/rays/point_rays.h",
+     ["radiosity/solve.h", "radiosity/render.h"]),
     ("gather/gather.cpp", "formfactor/hemicube/hemicube.h",
      ["formfactor/form_factors.cpp", "radiosity/results.h"]),
     ("render/legend.cpp", "radiosity/patch_mesh.h", ["radiosity/solve.h", "matrix/run_row.h"]),

@@ -14,7 +14,6 @@ results file is read back: nothing in it may be NaN or infinite.
 Exit code 1 where a file was not finished in time, failed, or holds what is no number.
 """
 import argparse
-import csv
 import json
 import math
 import os
@@ -27,6 +26,7 @@ import tempfile
 import time
 
 from scene_files import SCENES, scene_files
+from tables import write_table
 
 MEBIBYTE = 1024.0 * 1024.0
 GRACE = 10  # seconds between an interruption and the end
@@ -54,7 +54,8 @@ COLUMNS = {  # key: title
 
 
 class Finished:
-    """A run that ended: exit code (negative: signal), seconds, peak memory, and what was printed."""
+    """A run that ended: exit code (negative: signal), seconds by the clock and of the processor, peak
+    memory, and what was printed."""
 
     def __init__(self, command, folder, limit):
         out, err = folder / "out", folder / "err"
@@ -69,6 +70,7 @@ class Finished:
                 raise
         self.seconds = time.monotonic() - start
         self.peak_bytes = usage.ru_maxrss * 1024
+        self.processor_seconds = usage.ru_utime + usage.ru_stime
         self.out = out.read_text(errors="replace")
         self.err = err.read_text(errors="replace")
 
@@ -164,18 +166,6 @@ def text(key, value):
     return f"{value:,}" if isinstance(value, int) else str(value)
 
 
-def write(folder, rows):
-    with open(folder / "corpus.csv", "w", newline="") as out:
-        table = csv.DictWriter(out, list(COLUMNS))
-        table.writeheader()
-        table.writerows(rows)
-    with open(folder / "corpus.md", "w") as out:
-        out.write("| " + " | ".join(COLUMNS.values()) + " |\n" + "|---" * len(COLUMNS) + "|\n")
-        for row in rows:
-            cells = (text(key, row[key]).replace("|", "\\|") for key in COLUMNS)
-            out.write("| " + " | ".join(cells) + " |\n")
-
-
 def print_row(values, width):
     numeric = list(COLUMNS)[2:-1]
     cells = [f"{v:>9}" if key in numeric else f"{v:<{width if key == 'file' else 12}}"
@@ -222,7 +212,7 @@ def main():
     for scene, name in zip(files, names):
         rows.append(run_file(options.program, scene, name, options.limit, extra))
         print_row({key: text(key, rows[-1][key]) for key in COLUMNS}, width)
-        write(options.out, rows)
+        write_table(options.out, "corpus", COLUMNS, rows, text)
     done = sum(row["outcome"] == "done" for row in rows)
     print(f"\n{done} of {len(rows)} files done; table in {options.out}/corpus.md and .csv")
     print_ratios(rows, "foreseen_s", "true_s", "time of form factors")

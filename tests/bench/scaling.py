@@ -14,7 +14,6 @@ where every face stays a polygon of its own. Default scene: data/furnished-room.
 Exit code 1 where a run failed for another reason than its time.
 """
 import argparse
-import csv
 import json
 import math
 import pathlib
@@ -28,6 +27,8 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
+from tables import write_table
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MEBIBYTE = 1024.0 * 1024.0
 TOLERANCE = "1e-2"
@@ -36,8 +37,9 @@ PATCHES = (1000, 2000, 5000, 10000, 20000)
 STAGES = {"all_s": ("all", "#000000", "o"), "mesh_s": ("meshing", "#E69F00", "s"),
           "prepare_s": ("preparing and planning", "#009E73", "^"),
           "factors_s": ("form factors", "#0072B2", "D")}
-COLUMNS = ["series", "faces", "patches_asked", "polygons", "patches", "unknowns", "method",
-           *STAGES, "memory_mib", "error"]
+COLUMNS = {key: key.replace("_", " ") for key in (
+    "series", "faces", "patches_asked", "polygons", "patches", "unknowns", "method", *STAGES,
+    "memory_mib", "error")}
 
 
 class Triangles:
@@ -127,7 +129,7 @@ def run(arguments, scene, patches, series):
             return None, "--time-limit" in child.stderr
         row = {"series": series, "patches_asked": patches, **json.loads(child.stdout),
                **measured(json.loads(report.read_text()))}
-    print("  ".join(f"{key} {text(row[key])}" for key in COLUMNS), flush=True)
+    print("  ".join(f"{key} {text(key, row[key])}" for key in COLUMNS), flush=True)
     return row, True
 
 
@@ -142,22 +144,10 @@ def measure(command):
     return child.returncode
 
 
-def text(value):
+def text(_, value):
     if isinstance(value, float):
         return f"{value:.2g}" if value < 10 else f"{value:,.0f}"
     return f"{value:,}" if isinstance(value, int) else str(value)
-
-
-def write(folder, rows):
-    with open(folder / "scaling.csv", "w", newline="") as out:
-        table = csv.DictWriter(out, COLUMNS)
-        table.writeheader()
-        table.writerows(rows)
-    with open(folder / "scaling.md", "w") as out:
-        out.write("| " + " | ".join(COLUMNS).replace("_", " ") + " |\n")
-        out.write("|---" * len(COLUMNS) + "|\n")
-        for row in rows:
-            out.write("| " + " | ".join(text(row[key]) for key in COLUMNS) + " |\n")
 
 
 def draw(folder, rows):
@@ -210,7 +200,7 @@ def main():
         good = good and timely
         if row:
             rows.append(row)
-            write(arguments.out, rows)
+            write_table(arguments.out, "scaling", COLUMNS, rows, text)
 
     with tempfile.TemporaryDirectory(prefix="scaling-") as folder:
         scene = pathlib.Path(folder) / "scene.obj"

@@ -40,6 +40,7 @@ RayCheck checkAgainstRays(const PatchMesh& mesh, const TruthRows& truth) {
   for (std::size_t r = 0; r < rows; ++r) {
     const std::size_t k = (2 * r + 1) * truth.index.size() / (2 * rows);
     std::array<RayCaster::Counts, kReplicates> counts;
+    for (RayCaster::Counts& of : counts) of.clear(caster.items());
     caster.cast(caster.origins(truth.index[k]), truth.index[k] * kReplicates, 0,
                 kRays / kReplicates, counts);
     std::vector<std::uint32_t>& hits = counts[0].hits;

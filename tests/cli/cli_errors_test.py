@@ -150,7 +150,7 @@ class FailedRuns(CliTest):
     def test_memory_limit(self):
         line = self.refuse("factors", "box.obj", "--patches", "3000", "--memory-limit", "1M", "-o",
                            "f.h5", code=1)
-        self.assertRegex(line, r"need about \d+ MiB.*limit of 1 MiB")
+        self.assertRegex(line, r"need about \d+ MiB beside the rows.*limit of 1\.0 MiB")
         self.run_program("factors", "box.obj", *SMALL, "--memory-limit", "1G")
 
 

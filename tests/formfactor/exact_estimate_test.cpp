@@ -152,9 +152,9 @@ TEST(Auto, PicksExactWhereLittleIsOccluded) {
     options.tolerance = tolerance;
     const FormFactorPlan plan = planFormFactors(mesh, options, silent);
     EXPECT_EQ(plan.method, FormFactorMethod::exact);
-    // Rays need some hundred times as long.
-    ASSERT_TRUE(plan.other_seconds.has_value());
-    EXPECT_GT(*plan.other_seconds, plan.seconds);
+    // Rays need some hundred times as long. Where exact takes next to nothing they are not looked
+    // at.
+    EXPECT_GT(plan.other_seconds.value_or(HUGE_VAL), plan.seconds);
   }
 }
 

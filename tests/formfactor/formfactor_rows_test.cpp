@@ -22,7 +22,7 @@ FormFactorOptions hemicubes() {
   return options;
 }
 
-FormFactors compute(const PatchMesh& mesh, FormFactorOptions options = hemicubes()) {
+FormFactors compute(const PatchMesh& mesh, const FormFactorOptions& options = hemicubes()) {
   Progress silent;
   return computeFormFactors(mesh, options, silent);
 }

@@ -13,6 +13,20 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
+/// Of patches whose clusters have these, K * bands.
+std::vector<double> patchIrradiance(const PatchMesh& mesh, std::span<const double> radiosity,
+                                    std::span<const double> irradiance, int bands,
+                                    std::span<const double> sky, Progress& progress) {
+  PatchIrradiance within(mesh, bands, sky);
+  std::vector<double> of_patches;
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    const auto first = radiosity.begin() + std::ptrdiff_t(mesh.unknownOf(i)) * bands;
+    of_patches.insert(of_patches.end(), first, first + bands);
+  }
+  within.look(of_patches, progress);
+  return within.around(irradiance);
+}
+
 /// One unknown for the patches of the first surface, one for each other patch.
 void shareFirstSurface(PatchMesh& mesh) {
   PatchClusters clusters;

@@ -228,6 +228,7 @@ inline FormFactors factors(const PatchMesh& m, Precision precision) {
   r.skipped_horizon = 6;
   r.skipped_facing_away = 7;
   r.skipped_face = 8;
+  r.skipped_hidden = 14;
   r.pixels = 9000000000;
   r.simd_target = "AVX3";
   r.seconds = 0.123;
@@ -409,9 +410,9 @@ inline auto members(const RayReport& s) {
 }
 inline auto members(const FormFactorReport& s) {
   const auto& [v0, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13, v14, v15, v16, v17, v18,
-               v19, v20, v21, v22, v23, v24, v25, v26, v27] = s;
+               v19, v20, v21, v22, v23, v24, v25, v26, v27, v28] = s;
   return std::tie(v0, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13, v14, v15, v16, v17,
-                  v18, v19, v20, v21, v22, v23, v24, v25, v26, v27);
+                  v18, v19, v20, v21, v22, v23, v24, v25, v26, v27, v28);
 }
 inline auto members(const FormFactors& s) {
   const auto& [a, b, c, d, e, f, g, h] = s;

@@ -33,7 +33,7 @@ void BoxTree::build(Index node, Index first, Index count, Index below,
                     const std::vector<Box3>& boxes) {
   Box3 bound = boxes[order_[first]];
   for (Index k = first; k < first + count; ++k) bound.add(boxes[order_[k]]);
-  nodes_[node] = {bound, first, count};
+  nodes_[node] = {bound, first, count, count};
   if (count <= kLeaf) return;
   const Vec3 extent = bound.high - bound.low;
   const int axis =

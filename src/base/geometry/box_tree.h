@@ -45,12 +45,22 @@ class BoxTree {
 
   const Box3& bound() const { return nodes_.front().bound; }
 
- private:
   struct Node {
     Box3 bound;
-    Index first = 0;  ///< child (the second follows it), or into order_
+    Index first = 0;  ///< child (the second follows it), or of a leaf its first place in order()
     Index count = 0;  ///< of a leaf; 0: inner node
+    Index below = 0;  ///< boxes in it
   };
+  /// For walks that search() does not do: the root comes first. Empty without boxes.
+  const std::vector<Node>& nodes() const { return nodes_; }
+  /// Leaf by leaf, the boxes and their indices.
+  const std::vector<Box3>& boxes() const { return boxes_; }
+  const std::vector<Index>& order() const { return order_; }
+  std::size_t bytes() const {
+    return boxes_.size() * (sizeof(Box3) + sizeof(Index)) + nodes_.size() * sizeof(Node);
+  }
+
+ private:
   /// Halves are halved until few are left: more levels than an index has bits there are not, and a
   /// search leaves one node a level for later.
   static constexpr std::size_t kDepth = 34;

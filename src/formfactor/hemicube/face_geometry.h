@@ -6,6 +6,7 @@
 // near plane and nothing with a length in it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -49,6 +50,7 @@ class FaceGeometry {
  public:
   explicit FaceGeometry(int face) : face_(face) {}
 
+  std::size_t index() const { return std::size_t(face_); }
   bool isTop() const { return face_ == 0; }
   /// Projects a point in the eye's frame; also for directions and normals.
   FacePoint project(const Vec3& p) const {
@@ -82,6 +84,13 @@ class FaceGeometry {
   SignCode outsideBit(SidePlane plane) const { return SignCode(1u << bits()[int(plane)]); }
   /// Bit that says some point lies strictly inside the plane.
   SignCode insideBit(SidePlane plane) const { return SignCode(1u << (bits()[int(plane)] ^ 8u)); }
+  /// Projects a box along the axes of the eye's frame, low and high corner in place.
+  void project(const Vec3& low, const Vec3& high, FacePoint& from, FacePoint& to) const {
+    const FacePoint a = project(low);
+    const FacePoint b = project(high);
+    from = {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.w, b.w)};
+    to = {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.w, b.w)};
+  }
   /// False where all points lie on or outside one plane: no pixel can be covered.
   bool mayCover(SignCode combined) const {
     unsigned inside = 0;

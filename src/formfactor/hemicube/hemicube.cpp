@@ -27,21 +27,22 @@ HemicubeCounts& HemicubeCounts::operator+=(const HemicubeCounts& other) {
   skipped_horizon += other.skipped_horizon;
   skipped_facing_away += other.skipped_facing_away;
   skipped_face += other.skipped_face;
+  skipped_hidden += other.skipped_hidden;
   pixels += other.pixels;
   sky_pixels += other.sky_pixels;
   return *this;
 }
 
 Hemicube::Hemicube(const ViewScene& scene, const DeltaFormFactors& weights,
-                   const RasterKernels& kernels)
+                   const RasterKernels& kernels, const PolygonTree* tree)
     : scene_(scene),
       weights_(weights),
       kernels_(kernels),
       resolution_(weights.resolution()),
       stride_(roundUp(weights.resolution(), kRowAlignment)),
       band_rows_(std::max(1, kBandPixels / stride_)),
-      eye_vertices_(scene.vertices.size()),
-      codes_(scene.vertices.size()),
+      tree_(tree),
+      loop_offset_(tree == nullptr ? scene.loop_offset : tree->loop_offset),
       scan_(kernels) {
   sums_.resize(scene.items + 1);
   view_.items = std::span(sums_).first(scene.items);
@@ -53,12 +54,19 @@ Hemicube::Hemicube(const ViewScene& scene, const DeltaFormFactors& weights,
   polygon_runs_.reserve(row);
   cells_.reserve(row);
   cell_starts_.reserve(row);
+  if (tree_ == nullptr) return;
+  for (int face = 0; face < kFaces; ++face) {
+    faces_.emplace_back(resolution_, rowCount(FaceGeometry(face)));
+  }
+  place_.resize(scene.polygons.size());
 }
 
 std::size_t Hemicube::bytes() const {
-  return (depth_.size() + buffer_.size()) * 4 + sums_.size() * sizeof(double) +
-         scene_.vertices.size() * (sizeof(Vec3) + sizeof(SignCode)) +
-         scene_.polygons.size() * (sizeof(Candidate) + sizeof(Drawn));
+  std::size_t sum = (depth_.size() + buffer_.size()) * 4 + sums_.size() * sizeof(double) +
+                    eye_corners_.capacity() * sizeof(Vec3);
+  for (const FaceBuffer& face : faces_) sum += face.bytes();
+  for (const std::vector<Drawn>& drawn : drawn_) sum += drawn.capacity() * sizeof(Drawn);
+  return sum + place_.size() * sizeof(Index) + candidates_.capacity() * sizeof(Candidate);
 }
 
 class Hemicube::ItemSums {
@@ -91,10 +99,11 @@ class Hemicube::VisitedRuns {
 const HemicubeView& Hemicube::look(const EyeFrame& frame, Index own, const std::uint8_t* hidden,
                                    RunVisitor* runs) {
   frame_ = frame;
+  own_ = own;
+  hidden_ = hidden;
   std::fill(sums_.begin(), sums_.end(), 0.0);
   view_.fronts = view_.backs = view_.sky = 0;
-  transformVertices(frame);
-  collectCandidates(frame, own, hidden);
+  tree_ != nullptr ? drawFrontToBack() : collectCandidates();
   for (int index = 0; index < kFaces; ++index) {
     const FaceGeometry face(index);
     drawFace(face, [&](int y, const std::uint32_t* row) {
@@ -111,10 +120,15 @@ const HemicubeView& Hemicube::look(const EyeFrame& frame, Index own, const std::
 
 template <class Visit>
 void Hemicube::drawFace(const FaceGeometry& face, const Visit& visit) {
-  prepareFace(face);
   const int rows = rowCount(face);
+  if (tree_ != nullptr) {
+    placeDrawn(face);
+    for (int y = 0; y < rows; ++y) visit(y, faces_[face.index()].row(y));
+    return;
+  }
+  prepareFace(face);
   for (int y = 0; y < rows; y += band_rows_) {
-    drawBand(y / band_rows_);
+    drawBand(face, y / band_rows_);
     for (int k = 0; k < std::min(band_rows_, rows - y); ++k) {
       visit(y + k, buffer_.data() + std::size_t(k) * std::size_t(stride_));
     }
@@ -122,16 +136,18 @@ void Hemicube::drawFace(const FaceGeometry& face, const Visit& visit) {
 }
 
 void Hemicube::redraw() {
+  if (tree_ != nullptr) return drawFrontToBack();
   for (int face = 0; face < kFaces; ++face) {
     drawFace(FaceGeometry(face), [](int, const std::uint32_t*) {});
   }
 }
 
-std::vector<Index> Hemicube::picture(int face) {
+std::vector<Index> Hemicube::picture(int index) {
+  const FaceGeometry face(index);
   std::vector<Index> polygons;
-  drawFace(FaceGeometry(face), [&](int, const std::uint32_t* row) {
+  drawFace(face, [&](int, const std::uint32_t* row) {
     for (int x = 0; x < resolution_; ++x) {
-      polygons.push_back(row[x] == kSky ? kNone : drawn_[row[x]].polygon);
+      polygons.push_back(row[x] == kSky ? kNone : drawnAs(face, row[x]).polygon);
     }
   });
   return polygons;
@@ -158,7 +174,7 @@ void Hemicube::sumRow(const FaceGeometry& face, int y, const std::uint32_t* row,
       append(begin, scene_.skyCell());
       continue;
     }
-    Drawn& drawn = drawn_[row[begin]];
+    Drawn& drawn = drawnAs(face, row[begin]);
     if (drawn.grid != nullptr) {
       view_.fronts += weight;
       locatePatches(drawn, rowHeight(face, y), begin, end, weights, sink);

@@ -11,17 +11,28 @@
 // along the face's axis, linear in the pixel coordinates, so the plane of a polygon needs no
 // division per pixel. A face is drawn and summed in bands of rows that stay in the first-level
 // cache: clearing, depth tests and sums are then bound by arithmetic, not by memory.
+//
+// Where most polygons are hidden, whole faces are drawn, polygons front to back, and what lies
+// behind them is left out by boxes (front_to_back.cpp): the same pixels, and a cost that follows
+// what is seen.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "base/aligned_buffer.h"
+#include "base/geometry/box.h"
+#include "base/geometry/box_tree.h"
+#include "formfactor/hemicube/box_on_face.h"
 #include "formfactor/hemicube/delta_form_factors.h"
 #include "formfactor/hemicube/eye_frame.h"
+#include "formfactor/hemicube/face_buffer.h"
 #include "formfactor/hemicube/face_geometry.h"
+#include "formfactor/hemicube/polygon_tree.h"
 #include "formfactor/hemicube/raster_kernels.h"
 #include "formfactor/hemicube/scan_conversion.h"
 #include "formfactor/view_scene.h"
@@ -36,6 +47,7 @@ struct HemicubeCounts {
   std::size_t skipped_horizon = 0;
   std::size_t skipped_facing_away = 0;
   std::size_t skipped_face = 0;
+  std::size_t skipped_hidden = 0;
   std::size_t pixels = 0;
   std::size_t sky_pixels = 0;
   HemicubeCounts& operator+=(const HemicubeCounts& other);
@@ -72,8 +84,11 @@ class RunVisitor {
 /// Draws hemicubes of one scene, one after the other. Holds its own scratch memory: one a thread.
 class Hemicube {
  public:
-  /// The arguments are kept by reference (except `kernels`) and must outlive the hemicube.
-  Hemicube(const ViewScene& scene, const DeltaFormFactors& weights, const RasterKernels& kernels);
+  /// The arguments are kept by reference (except `kernels`) and must outlive the hemicube. `tree`:
+  /// of the scene; its polygons are then drawn front to back, and what is hidden is left out. Null:
+  /// all are drawn. Both see the same.
+  Hemicube(const ViewScene& scene, const DeltaFormFactors& weights, const RasterKernels& kernels,
+           const PolygonTree* tree = nullptr);
 
   /// Looks from `frame` (in the scene's scaled coordinates). `own`: position in scene.polygons of
   /// the polygon the eye lies in, never drawn; kNone for an eye in free space. `hidden[p]` != 0
@@ -100,7 +115,9 @@ class Hemicube {
   /// A polygon that may be seen, in the eye's frame.
   struct Candidate {
     Index polygon;
-    SignCode code;  ///< of all its corners
+    const ViewPolygon* shape;
+    std::uint32_t first_corner;  ///< into eye_corners_
+    SignCode code;               ///< of all its corners
     const PolygonSide* side;
     Vec3 normal;      ///< in the eye's frame
     double distance;  ///< of the plane: dot(normal, p) = distance
@@ -130,13 +147,50 @@ class Hemicube {
     RowLinear u, v, w;
   };
 
-  void transformVertices(const EyeFrame& frame);
-  void collectCandidates(const EyeFrame& frame, Index own, const std::uint8_t* hidden);
+  /// A node of the tree that is still to be looked at, and the faces (bits) on which it is known
+  /// to be out of sight.
+  struct Pending {
+    double squared_distance;  ///< of its nearest place
+    Index node;
+    unsigned outside, hidden;
+    unsigned settled() const { return outside | hidden; }
+    /// In a heap, the nearest is the largest.
+    bool operator<(const Pending& other) const {
+      return std::tie(other.squared_distance, other.node) < std::tie(squared_distance, node);
+    }
+  };
+  /// Of what scan() has projected, in pixels, and the least distance along the face's axis.
+  struct Extent {
+    Box2 pixels;
+    double least_w;
+  };
+
+  void collectCandidates();
+  Vec3 cornerAt(std::uint32_t c) const {
+    return tree_ != nullptr ? tree_->corners[c] : scene_.vertices[scene_.corners[c]];
+  }
+  bool findCandidate(Index p, const ViewPolygon& shape, Candidate& candidate);
   void prepareFace(const FaceGeometry& face);
   bool scan(const Candidate& candidate, const FaceGeometry& face);
   void queueSpans(const Candidate& candidate, const FaceGeometry& face);
+  Vec3 inverseDepth(const Candidate& candidate, const FaceGeometry& face) const;
   Drawn prepare(const Candidate& candidate, const FaceGeometry& face) const;
-  void drawBand(int band);
+  void drawBand(const FaceGeometry& face, int band);
+
+  void drawFrontToBack();
+  bool isOffHorizon(const Box3& box, std::size_t polygons);
+  bool isSettled(const Box3& box, std::size_t polygons, Pending& pending);
+  void lookAtFaces(const Box3& box, Pending& pending);
+  void pushChildren(const Pending& pending);
+  void countUnseen(const Pending& pending, std::size_t polygons);
+  void drawLeaf(const BoxTree::Node& leaf, const Pending& pending);
+  void drawPolygon(Index place, Pending pending);
+  bool drawOnFace(const Candidate& candidate, const FaceGeometry& face);
+  void placeDrawn(const FaceGeometry& face);
+  Drawn& drawnAs(const FaceGeometry& face, std::uint32_t value) {
+    std::vector<Drawn>& drawn = drawn_[face.index()];
+    return drawn[tree_ == nullptr ? value : place_[value]];
+  }
   /// Draws a face band by band and calls visit(y, row of drawn polygons) for its rows, ascending.
   template <class Visit>
   void drawFace(const FaceGeometry& face, const Visit& visit);
@@ -171,21 +225,31 @@ class Hemicube {
   int resolution_;
   int stride_;
   int band_rows_;  ///< rows drawn at a time: a band stays in the first-level cache
+  const PolygonTree* tree_;
+  const std::vector<std::uint32_t>& loop_offset_;  ///< of the tree or the scene
   EyeFrame frame_;
+  BoxesFromEye from_eye_{frame_};
+  Index own_ = kNone;
+  const std::uint8_t* hidden_ = nullptr;
   HemicubeView view_;
   HemicubeCounts counts_;
-  std::vector<Vec3> eye_vertices_;
-  std::vector<SignCode> codes_;
+  std::vector<Vec3> eye_corners_;  ///< of the candidates, in the eye's frame
   std::vector<Candidate> candidates_;
-  std::vector<Drawn> drawn_;
+  std::array<std::vector<Drawn>, kFaces> drawn_;
   std::vector<FacePoint> loop_;
   std::vector<FacePoint> clipped_;
   std::vector<ScanConversion::Point> pixels_;
+  Extent extent_{};
   ScanConversion scan_;
   std::vector<Span> spans_;
   std::vector<std::vector<BandSpans>> bands_;
   AlignedBuffer<float> depth_;           ///< of one band
   AlignedBuffer<std::uint32_t> buffer_;  ///< of one band: positions in drawn_
+  /// Front to back: buffers of whole faces, of positions in scene_.polygons; of each of these that
+  /// is drawn its position in drawn_; a heap of nodes still to be looked at.
+  std::vector<FaceBuffer> faces_;
+  std::vector<Index> place_;
+  std::vector<Pending> pending_;
   AlignedBuffer<std::int32_t> polygon_runs_;
   /// Runs of one cell in one row, `cell_count_` of them: where each starts, and in which cell.
   AlignedBuffer<std::int32_t> cell_starts_;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 
 #include "formfactor/hemicube/clip.h"
 #include "formfactor/hemicube/hemicube.h"
@@ -14,42 +15,62 @@ namespace {
 /// rounding error of the distance itself.
 constexpr double kEdgeOn = 1e-30;
 
-}  // namespace
-
-void Hemicube::transformVertices(const EyeFrame& frame) {
-  for (std::size_t v = 0; v < scene_.vertices.size(); ++v) {
-    const Vec3 p = frame.toEye(scene_.vertices[v]);
-    const bool off_plane = std::abs(p.z) > scene_.coincidence;
-    eye_vertices_[v] = p;
-    codes_[v] = SignCode(signCode(p) | (off_plane ? kOffPlane : 0u));
-  }
+/// Coefficients of (x, y, 1), pixels from the middle of the face, of a dot product with a ray.
+Vec3 perPixel(const FacePoint& p, int resolution) {
+  const double pixel = 2.0 / resolution;
+  return {p.x * pixel, p.y * pixel, p.w};
 }
 
-void Hemicube::collectCandidates(const EyeFrame& frame, Index own, const std::uint8_t* hidden) {
+}  // namespace
+
+/// False, and counted, for what the eye does not see on any face.
+bool Hemicube::findCandidate(Index p, const ViewPolygon& shape, Candidate& candidate) {
+  const auto first_corner = std::uint32_t(eye_corners_.size());
+  unsigned code = 0;
+  for (std::uint32_t c = loop_offset_[shape.loop_begin]; c < loop_offset_[shape.loop_end]; ++c) {
+    const Vec3 corner = frame_.toEye(cornerAt(c));
+    code |= signCode(corner) | (std::abs(corner.z) > scene_.coincidence ? kOffPlane : 0u);
+    eye_corners_.push_back(corner);
+  }
+  const double distance = glm::dot(shape.normal, shape.origin - frame_.eye);
+  if (p == own_ || !(code & kOffPlane) || !(std::abs(distance) > kEdgeOn)) {
+    ++counts_.skipped_own_plane;
+    return false;
+  }
+  if (!(code & kAboveHorizon)) {
+    ++counts_.skipped_horizon;
+    return false;
+  }
+  if (distance > 0 && hidden_ && hidden_[p]) {
+    ++counts_.skipped_facing_away;
+    return false;
+  }
+  candidate = {p,
+               &shape,
+               first_corner,
+               SignCode(code),
+               &shape.side[distance > 0],
+               shape.normal * frame_.axes,
+               distance};
+  return true;
+}
+
+void Hemicube::collectCandidates() {
   candidates_.clear();
+  eye_corners_.clear();
+  Candidate candidate{};
   for (Index p = 0; p < scene_.polygons.size(); ++p) {
-    const ViewPolygon& polygon = scene_.polygons[p];
-    unsigned code = 0;
-    for (std::uint32_t c = scene_.loop_offset[polygon.loop_begin];
-         c < scene_.loop_offset[polygon.loop_end]; ++c) {
-      code |= codes_[scene_.corners[c]];
-    }
-    const double distance = glm::dot(polygon.normal, polygon.origin - frame.eye);
-    if (p == own || !(code & kOffPlane) || !(std::abs(distance) > kEdgeOn)) {
-      ++counts_.skipped_own_plane;
-    } else if (!(code & kAboveHorizon)) {
-      ++counts_.skipped_horizon;
-    } else if (distance > 0 && hidden && hidden[p]) {
-      ++counts_.skipped_facing_away;
+    const std::size_t corners = eye_corners_.size();
+    if (findCandidate(p, scene_.polygons[p], candidate)) {
+      candidates_.push_back(candidate);
     } else {
-      candidates_.push_back(
-          {p, SignCode(code), &polygon.side[distance > 0], polygon.normal * frame.axes, distance});
+      eye_corners_.resize(corners);
     }
   }
 }
 
 void Hemicube::prepareFace(const FaceGeometry& face) {
-  drawn_.clear();
+  drawn_[face.index()].clear();
   spans_.clear();
   for (std::vector<BandSpans>& band : bands_) band.clear();
   for (const Candidate& candidate : candidates_) {
@@ -61,26 +82,28 @@ void Hemicube::prepareFace(const FaceGeometry& face) {
   }
 }
 
-void Hemicube::drawBand(int band) {
+void Hemicube::drawBand(const FaceGeometry& face, int band) {
   const std::size_t pixels = std::size_t(band_rows_) * std::size_t(stride_);
   kernels_.clear(depth_.data(), buffer_.data(), pixels);
   const FillTarget target{depth_.data(), buffer_.data(), stride_, 0.5F * float(1 - resolution_)};
   for (const BandSpans& part : bands_[std::size_t(band)]) {
     kernels_.fill(target, spans_.data() + part.begin, part.end - part.begin,
-                  float(drawn_[part.drawn].inverse_depth.x), part.drawn);
+                  float(drawn_[face.index()][part.drawn].inverse_depth.x), part.drawn);
   }
 }
 
 /// Clips and scan-converts; false if no pixel centre is inside.
 bool Hemicube::scan(const Candidate& candidate, const FaceGeometry& face) {
-  const ViewPolygon& polygon = scene_.polygons[candidate.polygon];
+  const ViewPolygon& shape = *candidate.shape;
   const double half = 0.5 * resolution_;
   const double bottom = face.isTop() ? half : 0.0;
-  scan_.begin(resolution_, face.isTop() ? resolution_ : resolution_ / 2);
-  for (std::uint32_t l = polygon.loop_begin; l < polygon.loop_end; ++l) {
+  scan_.begin(resolution_, rowCount(face));
+  extent_ = {{}, std::numeric_limits<double>::infinity()};
+  const Vec3* corner = eye_corners_.data() + candidate.first_corner;
+  for (std::uint32_t l = shape.loop_begin; l < shape.loop_end; ++l) {
     loop_.clear();
-    for (std::uint32_t c = scene_.loop_offset[l]; c < scene_.loop_offset[l + 1]; ++c) {
-      loop_.push_back(face.project(eye_vertices_[scene_.corners[c]]));
+    for (std::uint32_t c = loop_offset_[l]; c < loop_offset_[l + 1]; ++c) {
+      loop_.push_back(face.project(*corner++));
     }
     for (const SidePlane plane : kSidePlanes) {
       if (!(candidate.code & face.outsideBit(plane))) continue;
@@ -93,19 +116,26 @@ bool Hemicube::scan(const Candidate& candidate, const FaceGeometry& face) {
       // Only the eye itself has w = 0 inside the pyramid: the polygon passes through the eye to
       // within rounding and is seen edge-on.
       if (!(p.w > 0)) return false;
-      pixels_.push_back({half + half * (p.x / p.w), bottom + half * (p.y / p.w)});
+      const double x = half + half * (p.x / p.w);
+      const double y = bottom + half * (p.y / p.w);
+      pixels_.push_back({x, y});
+      extent_.pixels.add({x, y});
+      extent_.least_w = std::min(extent_.least_w, p.w);
     }
     scan_.addLoop(pixels_);
   }
   return true;
 }
 
+/// See prepare().
+Vec3 Hemicube::inverseDepth(const Candidate& candidate, const FaceGeometry& face) const {
+  return perPixel(face.project(candidate.normal), resolution_) / candidate.distance;
+}
+
 Hemicube::Drawn Hemicube::prepare(const Candidate& candidate, const FaceGeometry& face) const {
   // A pixel's ray is r = (X, Y, 1), with X and Y in units of half the face; it meets the plane at
   // w r with w = distance / dot(normal, r). A linear function of the point, dot(a, w r) + k, is
   // therefore (dot(a, r) + k / w) / (1 / w): a ratio of functions linear in the pixel.
-  const double pixel = 2.0 / resolution_;
-  const auto perPixel = [&](const FacePoint& p) { return Vec3(p.x * pixel, p.y * pixel, p.w); };
   const bool uniform = candidate.side->grid == kNone;
   Drawn drawn{uniform ? nullptr : &scene_.grids[candidate.side->grid],
               candidate.side->item,
@@ -114,12 +144,12 @@ Hemicube::Drawn Hemicube::prepare(const Candidate& candidate, const FaceGeometry
               Vec3(0.0),
               Vec3(0.0),
               Vec3(0.0)};
-  drawn.inverse_depth = perPixel(face.project(candidate.normal)) / candidate.distance;
+  drawn.inverse_depth = inverseDepth(candidate, face);
   if (!uniform) {
     const PatchGrid& grid = *drawn.grid;
-    const Vec3 eye = frame_.eye - scene_.polygons[candidate.polygon].origin;
+    const Vec3 eye = frame_.eye - candidate.shape->origin;
     const auto numerator = [&](const Vec3& axis, double offset) {
-      return perPixel(face.project(axis * frame_.axes)) +
+      return perPixel(face.project(axis * frame_.axes), resolution_) +
              (glm::dot(axis, eye) + offset) * drawn.inverse_depth;
     };
     drawn.u = numerator(grid.uAxis(), grid.uOffset());
@@ -141,9 +171,10 @@ void Hemicube::queueSpans(const Candidate& candidate, const FaceGeometry& face) 
   const std::vector<PixelRun>& runs = scan_.finish();
   ++counts_.rasterised_polygons;
   if (runs.empty()) return;
-  drawn_.push_back(prepare(candidate, face));
-  const auto drawn = std::uint32_t(drawn_.size() - 1);
-  const Vec3& plane = drawn_.back().inverse_depth;
+  std::vector<Drawn>& all = drawn_[face.index()];
+  all.push_back(prepare(candidate, face));
+  const auto drawn = std::uint32_t(all.size() - 1);
+  const Vec3& plane = all.back().inverse_depth;
   int band = -1;
   for (const PixelRun& run : runs) {
     if (run.y / band_rows_ != band) {

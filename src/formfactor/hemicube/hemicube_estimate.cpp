@@ -86,8 +86,10 @@ HemicubeEstimate estimateHemicubes(const PatchMesh& mesh, const HemicubeScene& s
   const double merged = std::min(double(n), kSeenByEither * share * double(sum.entries));
   const std::size_t second =
       options.symmetrize ? expectedSymmetricBytes(n, merged, options.storedPrecision()) : 0;
-  estimate.bytes = options.memory_held + estimate.matrix_bytes + second + n * kAccounts +
-                   scene.rows.sharedBytes() + threads * sum.hemicube_bytes + finishing;
+  const std::size_t beside = options.memory_held + n * kAccounts + scene.rows.sharedBytes() +
+                             threads * sum.hemicube_bytes + finishing;
+  const std::size_t matrices = estimate.matrix_bytes + second;
+  estimate.memory = planRowMemory(beside + matrices, beside, matrices, options);
   estimate.measured = sum.taken.ratio() * share * sum.seconds * double(n) / double(threads);
   return estimate;
 }

@@ -104,6 +104,7 @@ void fillRows(const HemicubeScene& scene, RowJournal* journal, FormFactors& resu
   report.skipped_horizon = counts.skipped_horizon;
   report.skipped_facing_away = counts.skipped_facing_away;
   report.skipped_face = counts.skipped_face;
+  report.skipped_hidden = counts.skipped_hidden;
   report.pixels = counts.pixels;
   report.closed = counts.hemicubes > 0 && counts.sky_pixels == 0;
 }
@@ -115,7 +116,7 @@ UncertainEntries uncertainEntries(const ExchangeMatrix& matrix) {
   const std::size_t n = matrix.size();
   double smallest = std::numeric_limits<double>::infinity();
   for (const double a : matrix.area()) smallest = a > 0 ? std::min(smallest, a) : smallest;
-  UncertainEntries uncertain(n);
+  UncertainEntries uncertain(n, matrix.scratch());
   parallelFor(n, 1, [&](std::size_t k) {
     std::vector<double> values(n - k);
     matrix.upperRow(k, values);
@@ -167,10 +168,9 @@ FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
   FormFactorReport& report = result.report;
   report.polygons = mesh.polygons.size();
   report.simd_target = scene.rows.kernels().target;
-  report.estimated_bytes = estimate.bytes;
-  refuseTooLarge(report.estimated_bytes, options, n);
-
-  result.matrix = ExchangeMatrix(mesh.area, options.storedPrecision());
+  report.estimated_bytes = estimate.memory.bytes;
+  result.matrix = ExchangeMatrix(mesh.area, options.storedPrecision(),
+                                 makeRowMemory(estimate.memory, options, n));
   result.fronts.assign(n, 0.0);
   result.backs.assign(n, 0.0);
   result.sky.assign(n, 0.0);

@@ -6,6 +6,7 @@
 
 #include "formfactor/hemicube/near_pairs.h"
 #include "formfactor/hemicube/row_builder.h"
+#include "formfactor/row_memory.h"
 #include "radiosity/form_factors.h"
 
 namespace radiosity {
@@ -20,7 +21,7 @@ struct HemicubeScene {
 
 /// Foreseen from a sample of rows.
 struct HemicubeEstimate {
-  std::size_t bytes = 0;         ///< held at once, FormFactorOptions::memory_held included
+  RowMemory memory;
   std::size_t matrix_bytes = 0;  ///< of these, the matrix
   double measured = 0;  ///< seconds by the clock on the threads allowed, at the sample's rates
 };

@@ -73,6 +73,9 @@ struct RasterKernels {
   /// one. Strictly, so that of equals the first drawn stays.
   void (*fill)(const FillTarget& target, const Span* spans, std::size_t count, float slope,
                std::uint32_t item);
+  /// The same for polygons drawn in any order: of equals the lower item stays.
+  void (*fillAnyOrder)(const FillTarget& target, const Span* spans, std::size_t count, float slope,
+                       std::uint32_t item);
   /// Writes the positions p in [0, count) where values[p] differs from values[p - 1] (0 always),
   /// ascending, then `count`; returns how many runs there are, `count` not counted. `starts` has
   /// room for count + kRowAlignment.

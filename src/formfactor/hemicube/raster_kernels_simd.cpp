@@ -57,20 +57,26 @@ void clear(float* depth, std::uint32_t* items, std::size_t count) {
 }
 
 /// Pixels x to x + lanes of one row; only those of `inside`.
-template <class Mask>
+template <bool kAnyOrder, class Mask>
 HWY_INLINE void fillVector(hn::Vec<Floats> depth, hn::Vec<Words> item, Mask inside, float* depth_at,
                            std::uint32_t* item_at) {
   const Floats df;
   const Words dw;
   const auto old_depth = hn::Load(df, depth_at);
-  const auto nearer = hn::And(hn::Gt(depth, old_depth), inside);
-  hn::Store(hn::IfThenElse(nearer, depth, old_depth), df, depth_at);
   const auto old_item = hn::Load(dw, item_at);
+  auto nearer = hn::Gt(depth, old_depth);
+  if constexpr (kAnyOrder) {
+    const auto lower = hn::RebindMask(df, hn::Lt(item, old_item));
+    nearer = hn::Or(nearer, hn::And(hn::Eq(depth, old_depth), lower));
+  }
+  nearer = hn::And(nearer, inside);
+  hn::Store(hn::IfThenElse(nearer, depth, old_depth), df, depth_at);
   hn::Store(hn::IfThenElse(hn::RebindMask(dw, nearer), item, old_item), dw, item_at);
 }
 
-void fill(const FillTarget& target, const Span* spans, std::size_t count, float slope,
-          std::uint32_t item) {
+template <bool kAnyOrder>
+void fillSpans(const FillTarget& target, const Span* spans, std::size_t count, float slope,
+               std::uint32_t item) {
   const Floats df;
   const int lanes = int(hn::Lanes(df));
   const auto slopes = hn::Set(df, slope);
@@ -91,18 +97,19 @@ void fill(const FillTarget& target, const Span* spans, std::size_t count, float 
     const auto left_out = hn::FirstN(df, std::size_t(span.begin - x));
     if (x + lanes >= span.end) {
       const auto inside = hn::AndNot(left_out, hn::FirstN(df, std::size_t(span.end - x)));
-      fillVector(depths(), items, inside, depth + x, ids + x);
+      fillVector<kAnyOrder>(depths(), items, inside, depth + x, ids + x);
       continue;
     }
-    fillVector(depths(), items, hn::AndNot(left_out, all), depth + x, ids + x);
+    fillVector<kAnyOrder>(depths(), items, hn::AndNot(left_out, all), depth + x, ids + x);
     x += lanes;
     centre = hn::Add(centre, step);
     for (; x + lanes <= span.end; x += lanes) {
-      fillVector(depths(), items, all, depth + x, ids + x);
+      fillVector<kAnyOrder>(depths(), items, all, depth + x, ids + x);
       centre = hn::Add(centre, step);
     }
     if (x < span.end) {
-      fillVector(depths(), items, hn::FirstN(df, std::size_t(span.end - x)), depth + x, ids + x);
+      fillVector<kAnyOrder>(depths(), items, hn::FirstN(df, std::size_t(span.end - x)), depth + x,
+                            ids + x);
     }
   }
 }
@@ -194,7 +201,13 @@ std::size_t locate(const RowMap& map, int begin, int end, std::int32_t* starts,
 }
 
 RasterKernels kernels() {
-  return {hwy::TargetName(HWY_TARGET), cross, clear, fill, findRuns, locate};
+  return {hwy::TargetName(HWY_TARGET),
+          cross,
+          clear,
+          fillSpans<false>,
+          fillSpans<true>,
+          findRuns,
+          locate};
 }
 
 }  // namespace

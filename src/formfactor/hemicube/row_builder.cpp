@@ -1,6 +1,19 @@
 #include "formfactor/hemicube/row_builder.h"
 
 namespace radiosity {
+namespace {
+
+/// Where there are fewer, next to nothing is hidden.
+constexpr std::size_t kLeastPolygons = 100;
+constexpr std::size_t kEyes = 8;
+/// What drawing a polygon front to back takes, the boxes above it included, and what a pixel of
+/// buffers of whole faces takes, which lie in the second-level cache: in drawings of a polygon band
+/// by band. Measured, rounded: in scenes of 700 to 117,000 polygons 2.4 to 3.7, and 1 in 500 to
+/// 800.
+constexpr double kDrawnTimes = 3;
+constexpr double kPolygonsAPixel = 1.0 / 600;
+
+}  // namespace
 
 RowBuilder::RowBuilder(const PatchMesh& mesh, const FormFactorOptions& options)
     : mesh_(mesh),
@@ -12,6 +25,26 @@ RowBuilder::RowBuilder(const PatchMesh& mesh, const FormFactorOptions& options)
       kernels_(rasterKernels(options.simd)),
       polygon_place_(mesh.polygons.size()) {
   for (Index p = 0; p < scene_.polygons.size(); ++p) polygon_place_[scene_.polygons[p].source] = p;
+  if (scene_.polygons.size() < kLeastPolygons) return;
+  tree_.emplace(scene_);
+  if (!leavingOutPays()) tree_.reset();
+}
+
+/// Whether hemicubes take less time front to back: foreseen from what some eyes draw both ways, not
+/// from clocks, so that counts are the same in every run.
+bool RowBuilder::leavingOutPays() const {
+  Hemicube all(scene_, weights_, kernels_);
+  Hemicube nearest = makeHemicube();
+  std::vector<std::uint8_t> hidden;
+  for (std::size_t k = 0; k < kEyes; ++k) {
+    const std::size_t patch = (2 * k + 1) * mesh_.size() / (2 * kEyes);
+    if (patch >= mesh_.size() || isEmpty(patch)) continue;
+    look(patch, all, hidden);
+    look(patch, nearest, hidden);
+  }
+  return double(all.counts().rasterised_polygons) >
+         kDrawnTimes * double(nearest.counts().rasterised_polygons) +
+             kPolygonsAPixel * double(all.counts().pixels);
 }
 
 bool RowBuilder::isEmpty(std::size_t patch) const {

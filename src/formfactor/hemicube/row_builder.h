@@ -20,7 +20,7 @@ class RowBuilder {
 
   const ViewScene& scene() const { return scene_; }
   const RasterKernels& kernels() const { return kernels_; }
-  Hemicube makeHemicube() const { return {scene_, weights_, kernels_}; }
+  Hemicube makeHemicube() const { return {scene_, weights_, kernels_, tree_ ? &*tree_ : nullptr}; }
   bool isEmpty(std::size_t patch) const;
   /// The view from a patch that is not empty. `hidden`: scratch.
   const HemicubeView& look(std::size_t patch, Hemicube& hemicube,
@@ -33,15 +33,23 @@ class RowBuilder {
                                RunVisitor* runs = nullptr) const;
 
   /// Bytes held by all rows and by one thread, without the matrix.
-  std::size_t sharedBytes() const { return scene_.bytes() + weights_.bytes(); }
+  std::size_t sharedBytes() const {
+    return scene_.bytes() + weights_.bytes() + (tree_ ? tree_->bytes() : 0);
+  }
+
+  /// Whether hemicubes are drawn front to back, what is hidden left out.
+  bool leavesOutHidden() const { return tree_.has_value(); }
 
  private:
+  bool leavingOutPays() const;
+
   const PatchMesh& mesh_;
   std::uint64_t seed_;
   bool random_turns_;
   ViewScene scene_;
   HiddenBacks hidden_backs_;
   DeltaFormFactors weights_;
+  std::optional<PolygonTree> tree_;  ///< where leaving out what is hidden pays
   RasterKernels kernels_;
   std::vector<Index> polygon_place_;  ///< position in scene_.polygons of each polygon of the mesh
 };

@@ -4,6 +4,7 @@
 #include <tbb/task_arena.h>
 #include <xmmintrin.h>
 
+#include <algorithm>
 #include <glm/common.hpp>
 #include <optional>
 
@@ -12,6 +13,17 @@
 
 namespace radiosity {
 namespace {
+
+/// Of two hits no farther apart than this, in scenes of size 1, single precision cannot tell which
+/// is first.
+constexpr float kTie = 2e-6F;
+/// An intersection filter of a single ray.
+void refuseBacks(const RTCFilterFunctionNArguments* hit) {
+  const float along = RTCHitN_Ng_x(hit->hit, 1, 0) * RTCRayN_dir_x(hit->ray, 1, 0) +
+                      RTCHitN_Ng_y(hit->hit, 1, 0) * RTCRayN_dir_y(hit->ray, 1, 0) +
+                      RTCHitN_Ng_z(hit->hit, 1, 0) * RTCRayN_dir_z(hit->ray, 1, 0);
+  if (along >= 0) hit->valid[0] = 0;
+}
 
 Vec3 middleOf(const std::vector<Vec3>& vertices) {
   if (vertices.empty()) return Vec3(0.0);
@@ -90,6 +102,26 @@ void EmbreeScene::addTiles(const ViewScene& scene, const PatchMesh& mesh,
       polygon_of_.push_back(place[polygon]);
     }
   }
+}
+
+RTCHit EmbreeScene::frontAt(const RTCRayHit16& packet, int k) const {
+  RTCRayHit ray{};
+  ray.ray.org_x = packet.ray.org_x[k];
+  ray.ray.org_y = packet.ray.org_y[k];
+  ray.ray.org_z = packet.ray.org_z[k];
+  ray.ray.dir_x = packet.ray.dir_x[k];
+  ray.ray.dir_y = packet.ray.dir_y[k];
+  ray.ray.dir_z = packet.ray.dir_z[k];
+  ray.ray.tnear = std::max(0.0F, packet.ray.tfar[k] - kTie);
+  ray.ray.tfar = packet.ray.tfar[k] + kTie;
+  ray.ray.mask = 0xffffffffu;
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.filter = refuseBacks;
+  rtcIntersect1(scene_, &context, &ray);
+  return ray.hit;
 }
 
 EmbreeScene::~EmbreeScene() {

@@ -28,6 +28,10 @@ class EmbreeScene {
   /// of the scene, so that none is lost far from the origin.
   const Vec3& middle() const { return middle_; }
   glm::vec3 place(const Vec3& vertex) const { return {vertex - middle_}; }
+  /// The front that covers the back which lane k of a packet has hit: of a plate without thickness,
+  /// two polygons back to back, the front covers the back, but in depth they are a tie. Its geomID
+  /// is RTC_INVALID_GEOMETRY_ID where there is none.
+  RTCHit frontAt(const RTCRayHit16& packet, int k) const;
   /// In the coordinates of the ViewScene: its vertices, and those of such tiles.
   const std::vector<Vec3>& vertices() const { return vertices_; }
   /// Corners in vertices().

@@ -8,12 +8,11 @@
 #include "base/made.h"
 #include "base/parallel.h"
 #include "formfactor/patch_seed.h"
-#include "formfactor/rays/ray_caster.h"
+#include "mesh/cluster_means.h"
 
 namespace radiosity {
 namespace {
 
-/// Place and normal.
 constexpr int kFeatures = 6;
 using Features = Eigen::Matrix<double, kFeatures, 1>;
 using Square = Eigen::Matrix<double, kFeatures, kFeatures>;
@@ -32,8 +31,12 @@ Features featuresOf(const glm::vec3& place, const glm::vec3& normal, double size
   return f;
 }
 
+double sizeOf(const RayOrigins& origins) { return std::max(origins.size(), 1e-12); }
+
+}  // namespace
+
 /// Sums over rays.
-struct Fit {
+struct PatchIrradiance::Fit {
   explicit Fit(int bands)
       : values(Eigen::VectorXd::Zero(bands)),
         squares(Eigen::VectorXd::Zero(bands)),
@@ -45,8 +48,9 @@ struct Fit {
   Eigen::VectorXd values;
   Eigen::VectorXd squares;
   Eigen::MatrixXd products;
+  Eigen::VectorXd beyond = Eigen::VectorXd::Zero(values.size());  ///< of the means of clusters
 
-  void add(const Features& features, const double* value) {
+  void add(const Features& features, const double* value, const double* beyond_mean) {
     rays += 1;
     sum += features;
     moments += features * features.transpose();
@@ -54,6 +58,7 @@ struct Fit {
       values[b] += value[b];
       squares[b] += value[b] * value[b];
       products.col(b) += value[b] * features;
+      beyond[b] += beyond_mean[b];
     }
   }
 
@@ -77,91 +82,103 @@ struct Fit {
   }
 };
 
-class Gradients {
- public:
-  Gradients(const PatchMesh& mesh, std::span<const double> radiosity,
-            std::span<const double> irradiance, int bands, std::span<const double> sky)
-      : mesh_(mesh),
-        caster_(mesh),
-        irradiance_(irradiance),
-        bands_(std::size_t(bands)),
-        of_item_(radiosity.begin(), radiosity.end()) {
-    of_item_.resize((caster_.items() + 1) * bands_, 0.0);  // backs are black; the last is the sky
-    for (std::size_t b = 0; b < sky.size(); ++b) {
-      of_item_[caster_.items() * bands_ + b] = std::numbers::pi * sky[b];
-    }
-    const double rays = kAllRays / (kReplicates * double(mesh.unknowns()));
-    rays_ = std::bit_floor(std::uint32_t(std::clamp(rays, kFewestRays, kMostRays)));
-  }
-
-  void run(std::size_t cluster, std::vector<double>& out) const {
-    const std::span<const Index> patches = made(mesh_.clusters).patchesOf(cluster);
-    const double* mean = irradiance_.data() + cluster * bands_;
-    for (const Index i : patches) std::copy_n(mean, bands_, out.data() + i * bands_);
-    if (patches.size() < 2) return;
-    const RayOrigins origins = caster_.origins(cluster);
-    if (origins.empty()) return;
-    const double size = std::max(origins.size(), 1e-12);
-    Fit fit{int(bands_)};
-    caster_.visitEnds(origins, patchSeed(mesh_, patches[0], 0), rays_,
-                      [&](const glm::vec3& from, const glm::vec3& normal, std::uint32_t item) {
-                        fit.add(featuresOf(from, normal, size), of_item_.data() + item * bands_);
-                      });
-    apply(patches, fit.slopes(), size, out);
-  }
-
- private:
-  void apply(std::span<const Index> patches, const Eigen::MatrixXd& slopes, double size,
-             std::vector<double>& out) const {
-    const auto features = [&](Index i) {
-      return featuresOf(caster_.place(mesh_.centroid[i]), glm::vec3(mesh_.normal[i]), size);
-    };
-    double area = 0;
-    Features middle = Features::Zero();
-    for (const Index i : patches) {
-      area += mesh_.area[i];
-      middle += mesh_.area[i] * features(i);
-    }
-    if (!(area > 0)) return;
-    middle /= area;
-    for (std::size_t b = 0; b < bands_; ++b) {
-      const double mean = out[patches[0] * bands_ + b];
-      double sum = 0;
-      for (const Index i : patches) {
-        double& value = out[i * bands_ + b];
-        value = std::max(0.0, mean + slopes.col(Eigen::Index(b)).dot(features(i) - middle));
-        sum += mesh_.area[i] * value;
-      }
-      // What was cut off at 0 has raised the mean.
-      if (!(sum > 0)) continue;
-      for (const Index i : patches) out[i * bands_ + b] *= mean * area / sum;
-    }
-  }
-
-  const PatchMesh& mesh_;
-  RayCaster caster_;
-  std::span<const double> irradiance_;
-  std::size_t bands_;
-  std::vector<double> of_item_;  ///< radiosity, a row an item, then that of the sky
-  std::uint32_t rays_ = 0;
+/// What rays find, a row an item, then that of the sky.
+struct PatchIrradiance::View {
+  std::vector<double> radiosity;
+  std::vector<double> beyond;  ///< its cluster's mean
 };
 
-}  // namespace
+PatchIrradiance::PatchIrradiance(const PatchMesh& mesh, int bands, std::span<const double> sky)
+    : mesh_(mesh),
+      caster_(mesh, RayItems::patches),
+      bands_(std::size_t(bands)),
+      sky_(bands_, 0.0),
+      slopes_(slopesOf(mesh.unknowns()), 0.0),
+      beyond_(mesh.unknowns() * bands_, 0.0) {
+  for (std::size_t b = 0; b < sky.size(); ++b) sky_[b] = std::numbers::pi * sky[b];
+  const double rays = kAllRays / (kReplicates * double(mesh.unknowns()));
+  rays_ = std::bit_floor(std::uint32_t(std::clamp(rays, kFewestRays, kMostRays)));
+}
 
-std::vector<double> patchIrradiance(const PatchMesh& mesh, std::span<const double> radiosity,
-                                    std::span<const double> irradiance, int bands,
-                                    std::span<const double> sky, Progress& progress) {
-  const Gradients gradients(mesh, radiosity, irradiance, bands, sky);
-  std::vector<double> out(mesh.size() * std::size_t(bands), 0.0);
-  progress.begin("irradiance of patches", mesh.unknowns());
-  parallelFor(mesh.unknowns(), 1, [&](std::size_t cluster) {
+void PatchIrradiance::look(std::span<const double> radiosity, Progress& progress) {
+  View view{{radiosity.begin(), radiosity.end()}, {radiosity.begin(), radiosity.end()}};
+  const std::vector<double> means = clusterMeans(mesh_, radiosity, int(bands_));
+  for (std::size_t k = 0; k < radiosity.size(); ++k) {
+    view.beyond[k] -= means[mesh_.unknownOf(k / bands_) * bands_ + k % bands_];
+  }
+  for (std::vector<double>* of_item : {&view.radiosity, &view.beyond}) {
+    of_item->resize((caster_.items() + 1) * bands_, 0.0);  // backs are black
+  }
+  std::copy(sky_.begin(), sky_.end(), view.radiosity.end() - std::ptrdiff_t(bands_));
+  progress.begin("light within clusters", mesh_.unknowns());
+  parallelFor(mesh_.unknowns(), 1, [&](std::size_t cluster) {
     if (progress.cancelled()) return;
-    gradients.run(cluster, out);
+    lookFrom(cluster, view);
     progress.advance();
   });
   progress.check();
   progress.end();
+}
+
+void PatchIrradiance::lookFrom(std::size_t cluster, const View& view) {
+  const std::span<const Index> patches = made(mesh_.clusters).patchesOf(cluster);
+  const RayOrigins origins = caster_.origins(cluster);
+  if (origins.empty()) return;
+  const double size = sizeOf(origins);
+  Fit fit{int(bands_)};
+  caster_.visitEnds(origins, patchSeed(mesh_, patches[0], 0), rays_,
+                    [&](const glm::vec3& from, const glm::vec3& normal, std::uint32_t item) {
+                      fit.add(featuresOf(from, normal, size), &view.radiosity[item * bands_],
+                              &view.beyond[item * bands_]);
+                    });
+  if (fit.rays == 0) return;
+  for (std::size_t b = 0; b < bands_; ++b) {
+    beyond_[cluster * bands_ + b] = fit.beyond[Eigen::Index(b)] / fit.rays;
+  }
+  if (patches.size() < 2) return;
+  const Eigen::MatrixXd slopes = fit.slopes();
+  std::copy_n(slopes.data(), slopes.size(), &slopes_[slopesOf(cluster)]);
+}
+
+std::vector<double> PatchIrradiance::around(std::span<const double> irradiance) const {
+  std::vector<double> out(mesh_.size() * bands_);
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    out[k] = irradiance[mesh_.unknownOf(k / bands_) * bands_ + k % bands_];
+  }
+  parallelFor(mesh_.unknowns(), 16, [&](std::size_t cluster) { addSlopes(cluster, out); });
   return out;
+}
+
+/// Where a cluster's patches have its mean so far.
+void PatchIrradiance::addSlopes(std::size_t cluster, std::vector<double>& irradiance) const {
+  const std::span<const Index> patches = made(mesh_.clusters).patchesOf(cluster);
+  const RayOrigins origins = caster_.origins(cluster);
+  if (patches.size() < 2 || origins.empty()) return;
+  const double size = sizeOf(origins);
+  const auto features = [&](Index i) {
+    return featuresOf(caster_.place(mesh_.centroid[i]), glm::vec3(mesh_.normal[i]), size);
+  };
+  double area = 0;
+  Features middle = Features::Zero();
+  for (const Index i : patches) {
+    area += mesh_.area[i];
+    middle += mesh_.area[i] * features(i);
+  }
+  if (!(area > 0)) return;
+  middle /= area;
+  for (std::size_t b = 0; b < bands_; ++b) {
+    const Eigen::Map<const Features> slopes(&slopes_[slopesOf(cluster) + b * kFeatures]);
+    const double mean = irradiance[patches[0] * bands_ + b];
+    double sum = 0;
+    for (const Index i : patches) {
+      double& value = irradiance[i * bands_ + b];
+      value = std::max(0.0, mean + slopes.dot(features(i) - middle));
+      sum += mesh_.area[i] * value;
+    }
+    // What was cut off at 0 has raised the mean.
+    if (!(sum > 0)) continue;
+    for (const Index i : patches) irradiance[i * bands_ + b] *= mean * area / sum;
+  }
 }
 
 }  // namespace radiosity

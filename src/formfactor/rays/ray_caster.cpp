@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "formfactor/rays/disc.h"
 
 namespace radiosity {
 namespace {
@@ -19,46 +20,11 @@ constexpr float kLift = 2e-7F;
 /// What a ray may end on beside items.
 constexpr std::uint32_t kSky = kNone - 1;
 constexpr std::uint32_t kLost = kNone - 2;
-/// Of two hits no farther apart than this, in scenes of size 1, single precision cannot tell which
-/// is first.
-constexpr float kTie = 2e-6F;
 /// Rays that are sorted together, at most: their batch fits the second-level cache.
 constexpr std::size_t kBatch = 16384;
 /// Directions are sorted into this many cells along each of two dimensions: kBatch points then put
 /// about one packet into each.
 constexpr std::uint32_t kCells = 32;
-
-/// An intersection filter of a single ray.
-void refuseBacks(const RTCFilterFunctionNArguments* hit) {
-  const float along = RTCHitN_Ng_x(hit->hit, 1, 0) * RTCRayN_dir_x(hit->ray, 1, 0) +
-                      RTCHitN_Ng_y(hit->hit, 1, 0) * RTCRayN_dir_y(hit->ray, 1, 0) +
-                      RTCHitN_Ng_z(hit->hit, 1, 0) * RTCRayN_dir_z(hit->ray, 1, 0);
-  if (along >= 0) hit->valid[0] = 0;
-}
-
-/// cos and sin of angles up to pi / 4, to 1e-7.
-float smallCos(float x) {
-  const float y = x * x;
-  return 1 + y * (-0.5F + y * (1.0F / 24 + y * (-1.0F / 720 + y * (1.0F / 40320))));
-}
-float smallSin(float x) {
-  const float y = x * x;
-  return x * (1 + y * (-1.0F / 6 + y * (1.0F / 120 + y * (-1.0F / 5040))));
-}
-
-/// A point of the unit disc (Shirley and Chiu 1997, concentric), which keeps neighbours together.
-void toDisc(float x, float y, float& u, float& v) {
-  const float a = 2 * x - 1;
-  const float b = 2 * y - 1;
-  const bool wide = std::abs(a) > std::abs(b);
-  const float radius = wide ? a : b;
-  const float other = wide ? b : a;
-  const float angle = radius == 0 ? 0 : 0.785398163F * (other / radius);
-  const float along = radius * smallCos(angle);
-  const float across = radius * smallSin(angle);
-  u = wide ? along : across;
-  v = wide ? across : along;
-}
 
 /// The bits of a number below kCells with a 0 before each.
 std::uint32_t spread(std::uint32_t x) {
@@ -70,12 +36,6 @@ std::uint32_t spread(std::uint32_t x) {
 /// The place of cell (x, y), each below kCells, along a Z curve.
 std::uint16_t zCurve(std::uint32_t x, std::uint32_t y) {
   return std::uint16_t(spread(x) | (spread(y) << 1));
-}
-
-/// The cell of a grid at a coordinate: cells are centred on whole numbers.
-std::int32_t cellAt(float x, std::int32_t cells) {
-  constexpr float kHalf = 0.5;
-  return std::clamp(std::int32_t(x + kHalf), 0, cells - 1);
 }
 
 std::uint32_t cellOf(float x) { return std::min(std::uint32_t(x * float(kCells)), kCells - 1); }
@@ -160,7 +120,8 @@ struct RayCaster::Batch {
   }
 };
 
-RayCaster::RayCaster(const PatchMesh& mesh) : mesh_(mesh), scene_(mesh), embree_(scene_, mesh) {
+RayCaster::RayCaster(const PatchMesh& mesh, RayItems items)
+    : mesh_(mesh), items_(items), scene_(mesh), embree_(scene_, mesh) {
   setTargets();
 }
 
@@ -170,23 +131,24 @@ std::size_t RayCaster::bytes() const {
   return scene_.bytes() + targets_.size() * (sizeof(targets_[0]) + sizeof(Index) + kTreeBytes);
 }
 
-std::uint32_t RayCaster::unknownItem(std::uint32_t item) const {
+/// Of an item of the ViewScene.
+std::uint32_t RayCaster::rayItem(std::uint32_t item) const {
   const std::size_t patches = scene_.patches;
-  if (item < patches) return std::uint32_t(mesh_.unknownOf(item));
-  return std::uint32_t(mesh_.unknowns() + (item - patches));
+  if (item < patches) return frontOf(item);
+  return std::uint32_t(fronts() + (item - patches));
 }
 
 void RayCaster::setTargets() {
-  // Where all patches of a side are of one unknown, there is nothing to look up.
+  // Where all patches of a side count for one item, there is nothing to look up.
   std::vector<std::array<std::uint32_t, 2>> only(mesh_.polygons.size(), {kNone, kNone});
   std::vector<std::array<std::uint8_t, 2>> several(mesh_.polygons.size(), {0, 0});
   for (std::size_t i = 0; i < mesh_.size(); ++i) {
     if (mesh_.polygon[i] == kNone) continue;
     const std::size_t side = mesh_.side[i] != 0;
-    std::uint32_t& unknown = only[mesh_.polygon[i]][side];
-    const auto own = std::uint32_t(mesh_.unknownOf(i));
-    several[mesh_.polygon[i]][side] |= std::uint8_t(unknown != kNone && unknown != own);
-    unknown = own;
+    std::uint32_t& front = only[mesh_.polygon[i]][side];
+    const std::uint32_t own = frontOf(i);
+    several[mesh_.polygon[i]][side] |= std::uint8_t(front != kNone && front != own);
+    front = own;
   }
   targets_.resize(embree_.triangles().size());
   source_.resize(targets_.size());
@@ -199,34 +161,16 @@ void RayCaster::setTargets() {
     const Vec3 ab = vertices[corners[1]] - a;
     const Vec3 ac = vertices[corners[2]] - a;
     for (std::size_t side = 0; side < 2; ++side) {
-      Target& target = targets_[t][side];
-      target.item = unknownItem(polygon.side[side].item);
+      RayTarget& target = targets_[t][side];
+      target.item = rayItem(polygon.side[side].item);
       if (several[polygon.source][side] == 0) continue;
-      const PatchGrid& grid = scene_.grids[polygon.side[side].grid];
-      const Vec3 from = a - polygon.origin;
-      target.grid = &grid;
-      target.u = {float(glm::dot(grid.uAxis(), from) + grid.uOffset()),
-                  float(glm::dot(grid.uAxis(), ab)), float(glm::dot(grid.uAxis(), ac))};
-      target.v = {float(glm::dot(grid.vAxis(), from) + grid.vOffset()),
-                  float(glm::dot(grid.vAxis(), ab)), float(glm::dot(grid.vAxis(), ac))};
+      target.place(scene_.grids[polygon.side[side].grid], a - polygon.origin, ab, ac);
     }
   });
 }
 
-std::uint32_t RayCaster::itemAt(const Target& target, float s, float t) const {
-  if (target.grid == nullptr) return target.item;
-  const PatchGrid& grid = *target.grid;
-  const float gu = target.u[0] + s * target.u[1] + t * target.u[2];
-  const float gv = target.v[0] + s * target.v[1] + t * target.v[2];
-  const std::int32_t column = cellAt(gu, grid.columns());
-  const std::int32_t row = cellAt(gv, grid.rows());
-  std::int32_t entry =
-      grid.cells()[std::size_t(row) * std::size_t(grid.columns()) + std::size_t(column)];
-  while (entry < 0) {
-    const CellNode& node = grid.node(~entry);
-    entry = node.a * gu + node.b * gv + node.c >= 0 ? node.inside : node.outside;
-  }
-  return unknownItem(std::uint32_t(entry));
+std::uint32_t RayCaster::itemAt(const RayTarget& target, float s, float t) const {
+  return target.grid == nullptr ? target.item : rayItem(target.itemAt(s, t));
 }
 
 /// What the ray in lane k has hit.
@@ -236,31 +180,15 @@ std::uint32_t RayCaster::itemOf(const RTCRayHit16& packet, int k) const {
   const float along = packet.hit.Ng_x[k] * packet.ray.dir_x[k] +
                       packet.hit.Ng_y[k] * packet.ray.dir_y[k] +
                       packet.hit.Ng_z[k] * packet.ray.dir_z[k];
-  const Target& target = targets_[packet.hit.primID[k]][along < 0 ? 0 : 1];
+  const RayTarget& target = targets_[packet.hit.primID[k]][along < 0 ? 0 : 1];
   return itemAt(target, packet.hit.u[k], packet.hit.v[k]);
 }
 
-/// What shows its front where a ray has hit a back: of a plate without thickness, two polygons back
-/// to back, the front covers the back, but in depth they are a tie. kNone: nothing.
+/// What shows its front where a ray has hit a back (EmbreeScene::frontAt()); kNone: nothing.
 std::uint32_t RayCaster::frontAt(const RTCRayHit16& packet, int k) const {
-  RTCRayHit ray{};
-  ray.ray.org_x = packet.ray.org_x[k];
-  ray.ray.org_y = packet.ray.org_y[k];
-  ray.ray.org_z = packet.ray.org_z[k];
-  ray.ray.dir_x = packet.ray.dir_x[k];
-  ray.ray.dir_y = packet.ray.dir_y[k];
-  ray.ray.dir_z = packet.ray.dir_z[k];
-  ray.ray.tnear = std::max(0.0F, packet.ray.tfar[k] - kTie);
-  ray.ray.tfar = packet.ray.tfar[k] + kTie;
-  ray.ray.mask = 0xffffffffu;
-  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.filter = refuseBacks;
-  rtcIntersect1(embree_.handle(), &context, &ray);
-  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return kNone;
-  return itemAt(targets_[ray.hit.primID][0], ray.hit.u, ray.hit.v);
+  const RTCHit front = embree_.frontAt(packet, k);
+  if (front.geomID == RTC_INVALID_GEOMETRY_ID) return kNone;
+  return itemAt(targets_[front.primID][0], front.u, front.v);
 }
 
 /// Calls visit(ray, item), the ray's place in the batch; the item is kSky or kLost where it is
@@ -302,7 +230,7 @@ void RayCaster::tracePacket(const Batch& batch, const std::uint16_t* order, int 
       continue;
     }
     std::uint32_t item = itemOf(packet, k);
-    if (item >= unknowns()) {
+    if (item >= fronts()) {
       const std::uint32_t front = frontAt(packet, k);
       if (front != kNone) item = front;
     }
@@ -332,7 +260,6 @@ void RayCaster::trace(const RayOrigins& origins, std::uint64_t seed, std::uint32
 
 void RayCaster::cast(const RayOrigins& origins, std::uint64_t seed, std::uint32_t first,
                      std::uint32_t last, std::array<Counts, kReplicates>& of_replicate) const {
-  for (Counts& of : of_replicate) of.hits.resize(items(), 0);
   if (origins.empty()) return;
   trace(origins, seed, first, last, [&](const Batch& batch, std::size_t ray, std::uint32_t item) {
     Counts& counts = of_replicate[ray < batch.each ? 0 : 1];
@@ -341,7 +268,7 @@ void RayCaster::cast(const RayOrigins& origins, std::uint64_t seed, std::uint32_
     } else if (item == kLost) {
       ++counts.own;
     } else {
-      ++counts.hits[item];
+      counts.add(item, 1);
     }
   });
 }

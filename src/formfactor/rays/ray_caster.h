@@ -10,11 +10,15 @@
 #include "formfactor/rays/embree_scene.h"
 #include "formfactor/rays/ray_origins.h"
 #include "formfactor/rays/ray_rows.h"
+#include "formfactor/rays/ray_target.h"
 #include "formfactor/rays/sobol.h"
 #include "formfactor/view_scene.h"
 #include "radiosity/patch_mesh.h"
 
 namespace radiosity {
+
+/// What rays count for.
+enum class RayItems { unknowns, patches };
 
 /// The share of rays from random points of i, in cosine-distributed directions, that ends on j is
 /// an unbiased estimate of F_ij, area to area. (Malley's method: points of a disc, raised to the
@@ -27,14 +31,29 @@ namespace radiosity {
 class RayCaster {
  public:
   /// `mesh` is kept by reference.
-  explicit RayCaster(const PatchMesh& mesh);
+  explicit RayCaster(const PatchMesh& mesh, RayItems items = RayItems::unknowns);
 
   /// Where rays ended, added to what was there. Items: 0 to K-1 an unknown (PatchMesh::unknowns()),
-  /// K + s the black back of surface s.
+  /// or a patch, K + s the black back of surface s.
   struct Counts {
     std::vector<std::uint32_t> hits;  ///< items() values
+    std::vector<std::uint32_t> hit;   ///< the items with any, in the order they were met
     std::uint32_t sky = 0;
     std::uint32_t own = 0;  ///< on the polygon they left: rounding at grazing angles, no true hit
+
+    void add(std::uint32_t item, std::uint32_t more) {
+      if (more == 0) return;
+      if (hits[item] == 0) hit.push_back(item);
+      hits[item] += more;
+    }
+    /// As new, in the time that the items with hits take.
+    void clear(std::size_t items) {
+      if (hits.size() != items) hits.assign(items, 0);
+      for (const std::uint32_t item : hit) hits[item] = 0;
+      hit.clear();
+      sky = 0;
+      own = 0;
+    }
   };
   /// Rays `first` to `last` of each of the sequences of points that `seed` and the number after it
   /// stand for. Thread-safe.
@@ -53,26 +72,24 @@ class RayCaster {
   RayOrigins origins(std::size_t unknown) const {
     return {mesh_, unknown, scene_.scale, embree_.middle()};
   }
-  std::size_t unknowns() const { return mesh_.unknowns(); }
-  std::size_t items() const { return mesh_.unknowns() + mesh_.surface_names.size(); }
+  /// K, of the items that are fronts.
+  std::size_t fronts() const {
+    return items_ == RayItems::unknowns ? mesh_.unknowns() : mesh_.size();
+  }
+  std::size_t items() const { return fronts() + mesh_.surface_names.size(); }
   std::size_t triangles() const { return embree_.triangles().size(); }
   /// Held by this, about.
   std::size_t bytes() const;
 
  private:
-  /// What one side of a triangle counts for, and how a hit's position (Embree's s and t) maps to
-  /// the grid of its polygon: u[0] + u[1] s + u[2] t.
-  struct Target {
-    const PatchGrid* grid = nullptr;  ///< null: `item` everywhere
-    std::array<float, 3> u{};
-    std::array<float, 3> v{};
-    std::uint32_t item = 0;
-  };
   struct Batch;
 
   void setTargets();
-  std::uint32_t unknownItem(std::uint32_t item) const;
-  std::uint32_t itemAt(const Target& target, float s, float t) const;
+  std::uint32_t frontOf(std::size_t patch) const {
+    return std::uint32_t(items_ == RayItems::unknowns ? mesh_.unknownOf(patch) : patch);
+  }
+  std::uint32_t rayItem(std::uint32_t item) const;
+  std::uint32_t itemAt(const RayTarget& target, float s, float t) const;
   std::uint32_t itemOf(const RTCRayHit16& packet, int k) const;
   std::uint32_t frontAt(const RTCRayHit16& packet, int k) const;
   template <class Visit>
@@ -83,11 +100,12 @@ class RayCaster {
                    const Visit& visit) const;
 
   const PatchMesh& mesh_;
+  RayItems items_;
   ViewScene scene_;
   EmbreeScene embree_;
   SobolPoints sobol_;
-  std::vector<std::array<Target, 2>> targets_;  ///< by triangle; front, back
-  std::vector<Index> source_;                   ///< the mesh's polygon of each triangle
+  std::vector<std::array<RayTarget, 2>> targets_;  ///< by triangle; front, back
+  std::vector<Index> source_;                      ///< the mesh's polygon of each triangle
 };
 
 }  // namespace radiosity

@@ -165,10 +165,15 @@ void foreseeBytes(const RayScene& scene, double entries, const FormFactorOptions
   const double merged = std::min(double(n), entries * std::exp2(kNewEntries));
   estimate.matrix_bytes = expectedSymmetricBytes(n, merged, options.storedPrecision());
   const std::size_t errors = expectedUncertainBytes(n, merged);
-  const std::size_t merging = counts + n * (sizeof(RayRow) + kHeaders) + mergingBytes(n) + errors;
+  const std::size_t merging =
+      n * (sizeof(RayRow) + kHeaders) + mergingBytes(n, double(n) * entries);
   const std::size_t working = matrixWorkingMemory(n, allowedThreads());
-  estimate.bytes = options.memory_held + scene.caster().bytes() + estimate.matrix_bytes +
-                   n * kAccounts + std::max({merging, 2 * errors, working});
+  const std::size_t panels = panelsOf(estimate.matrix_bytes, options.storedPrecision());
+  const std::size_t always = options.memory_held + scene.caster().bytes() + n * kAccounts;
+  const std::size_t whole = always + estimate.matrix_bytes +
+                            std::max({merging + counts + errors, 2 * errors, working + panels});
+  const std::size_t rows = estimate.matrix_bytes + std::max(counts + errors, 2 * errors);
+  estimate.memory = planRowMemory(whole, always + std::max(merging, working), rows, options);
 }
 
 }  // namespace

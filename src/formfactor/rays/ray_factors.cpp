@@ -19,11 +19,12 @@ namespace {
 constexpr double kClosureTolerance = 1e-9;
 
 /// What a row saw of fronts, backs and sky, by its own rays alone.
-void setAccounts(const RayScene& scene, const std::vector<RayRow>& rows, FormFactors& result,
-                 std::vector<std::vector<SeenBack>>& seen_backs) {
+void setAccounts(const RayScene& scene, const std::vector<RayRow>& rows, ScratchMemory* scratch,
+                 FormFactors& result, std::vector<std::vector<SeenBack>>& seen_backs) {
   const std::size_t n = rows.size();
   parallelFor(n, 64, [&](std::size_t k) {
     const RayRow& row = rows[k];
+    if (scratch != nullptr) scratch->touched(row.bytes());
     const Index i = scene.order()[k];
     const double counted = row.counted();
     if (!(counted > 0)) return;
@@ -43,39 +44,42 @@ void setAccounts(const RayScene& scene, const std::vector<RayRow>& rows, FormFac
 }
 
 /// The matrix, its error figures and how far off each entry may be.
-void store(const RayScene& scene, const std::vector<RayRow>& rows, FormFactors& result,
-           UncertainEntries& uncertain) {
+void store(const RayScene& scene, const std::vector<RayRow>& rows, ScratchMemory* scratch,
+           FormFactors& result, UncertainEntries& uncertain) {
   const std::size_t n = rows.size();
   std::vector<double> density(n);
   for (std::size_t k = 0; k < n; ++k) {
     density[k] = scene.area()[k] > 0 ? rows[k].counted() / scene.area()[k] : 0.0;
   }
   std::vector<RowAccuracy> accuracy(n);
-  struct Scratch {
+  struct Upper {
+    std::vector<Index> positions;
     std::vector<double> factors;
-    std::vector<Index> later;
     std::vector<double> errors;
   };
-  tbb::enumerable_thread_specific<Scratch> scratches;
-  forMergedRows(rows, scene.area(), {}, [&](const MergedRow& merged) {
+  tbb::enumerable_thread_specific<Upper> uppers;
+  forMergedRows(rows, scene.area(), {}, scratch, [&](const MergedRow& merged) {
     const std::size_t k = merged.position;
-    Scratch& s = scratches.local();
-    s.factors.assign(n - k, 0.0);
-    s.later.clear();
-    s.errors.clear();
+    Upper& upper = uppers.local();
+    upper.positions.clear();
+    upper.factors.clear();
+    upper.errors.clear();
     accuracy[k] = accuracyOf(merged, rows[k]);
-    for (std::size_t j = k; j < n; ++j) {
-      const double value = 0.5 * (merged.factors[j][0] + merged.factors[j][1]);
-      if (value == 0) continue;
-      s.factors[j - k] = value;
-      if (j == k) continue;
-      s.later.push_back(Index(j));
+    const auto& columns = merged.columns;
+    const auto from = std::lower_bound(columns.begin(), columns.end(), k);
+    for (std::size_t e = std::size_t(from - columns.begin()); e < columns.size(); ++e) {
+      const Index j = columns[e];
+      const double value = 0.5 * (merged.factors[e][0] + merged.factors[e][1]);
+      upper.positions.push_back(j);
+      upper.factors.push_back(value);
       // Of independent rays: more than the true one, but it weighs entries all the same.
       const double variance = value / ((density[k] + density[j]) * scene.area()[k]);
-      s.errors.push_back(std::min(1.0, std::sqrt(variance)));
+      upper.errors.push_back(std::min(1.0, std::sqrt(variance)));
     }
-    result.matrix.setUpperRow(k, s.factors);
-    uncertain.setRow(k, s.later, s.errors);
+    result.matrix.setUpperRow(k, upper.positions, upper.factors);
+    const std::size_t itself = !upper.positions.empty() && upper.positions[0] == k ? 1 : 0;
+    uncertain.setRow(k, std::span(upper.positions).subspan(itself),
+                     std::span(upper.errors).subspan(itself));
   });
   double squares = 0;
   double norms = 0;
@@ -142,27 +146,28 @@ FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene, const RayEs
   result.method = "rays";
   FormFactorReport& report = result.report;
   report.polygons = mesh.polygons.size();
-  report.estimated_bytes = estimate.bytes;
-  refuseTooLarge(estimate.bytes, options, n);
+  report.estimated_bytes = estimate.memory.bytes;
+  const std::shared_ptr<ScratchMemory> scratch = makeRowMemory(estimate.memory, options, n);
   std::vector<double> area(n);
   for (std::size_t k = 0; k < n; ++k) area[scene.order()[k]] = scene.area()[k];
   report.empty_rows = std::size_t(std::count(area.begin(), area.end(), 0.0));
   report.rays.triangles = scene.caster().triangles();
 
-  std::vector<RayRow> rows = castRows(scene, RayAim(options), report.rays, progress, journal);
+  std::vector<RayRow> rows =
+      castRows(scene, RayAim(options), report.rays, progress, journal, scratch.get());
   noteLoosened(options, report);
   report.closed = scene.provedClosed() || !seesSky(rows);
   result.matrix =
-      ExchangeMatrix::symmetric(std::move(area), scene.order(), options.storedPrecision());
+      ExchangeMatrix::symmetric(std::move(area), scene.order(), options.storedPrecision(), scratch);
   result.fronts.assign(n, 0.0);
   result.backs.assign(n, 0.0);
   result.sky.assign(n, 0.0);
   result.error.assign(n, 0.0);
   std::vector<std::vector<SeenBack>> seen_backs(n);
-  UncertainEntries uncertain(n);
+  UncertainEntries uncertain(n, scratch);
   const double storing = clockSeconds();
-  setAccounts(scene, rows, result, seen_backs);
-  store(scene, rows, result, uncertain);
+  setAccounts(scene, rows, scratch.get(), result, seen_backs);
+  store(scene, rows, scratch.get(), result, uncertain);
   rows = {};
   progress.check();
   const double closing = clockSeconds();

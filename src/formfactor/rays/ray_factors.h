@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "formfactor/rays/ray_scene.h"
+#include "formfactor/row_memory.h"
 #include "radiosity/form_factors.h"
 
 namespace radiosity {
@@ -14,7 +15,7 @@ struct RayEstimate {
   double seconds = 0;
   double seconds_to_tolerance = 0;  ///< for the tolerance aimed at
   double seconds_prepare = 0;       ///< spent on the RayScene
-  std::size_t bytes = 0;
+  RowMemory memory;
   std::size_t matrix_bytes = 0;
 };
 

@@ -37,15 +37,20 @@ std::uint32_t raysNeeded(const RowState& before, const RowState& now, double aim
 class Rounds {
  public:
   Rounds(const RayScene& scene, const RayAim& aim, RayReport& report, Progress& progress,
-         RowJournal* journal)
+         RowJournal* journal, ScratchMemory* scratch)
       : scene_(scene),
         aim_(aim),
         report_(report),
         progress_(progress),
         journal_(journal, scene.size()),
-        rows_(scene.size()),
-        before_(rows_.size()),
-        now_(rows_.size()) {}
+        scratch_(scratch),
+        before_(scene.size()),
+        now_(scene.size()) {
+    rows_.reserve(scene.size());
+    for (std::size_t k = 0; k < scene.size(); ++k) {
+      scratch != nullptr ? rows_.emplace_back(scratch) : rows_.emplace_back();
+    }
+  }
 
   std::vector<RayRow> run() {
     std::vector<std::uint32_t> rays(rows_.size(), 0);
@@ -114,6 +119,7 @@ class Rounds {
 
   void castRow(int round, std::size_t k, std::uint32_t rays) {
     scene_.cast(k, rays, rows_[k], progress_);
+    if (scratch_ != nullptr) scratch_->touched(rows_[k].bytes());
     if (!progress_.cancelled()) journal_.keepRow(round, k, rows_[k]);
   }
 
@@ -174,7 +180,7 @@ class Rounds {
     const double start = clockSeconds();
     std::vector<std::uint8_t> wanted(rows_.size());
     for (std::size_t k = 0; k < rows_.size(); ++k) wanted[k] = rays[k] > 0;
-    forMergedRows(rows_, scene_.area(), wanted, [&](const MergedRow& merged) {
+    forMergedRows(rows_, scene_.area(), wanted, scratch_, [&](const MergedRow& merged) {
       const std::size_t k = merged.position;
       const RowAccuracy accuracy = accuracyOf(merged, rows_[k]);
       before_[k] = now_[k];
@@ -206,6 +212,7 @@ class Rounds {
   RayReport& report_;
   Progress& progress_;
   RoundJournal journal_;
+  ScratchMemory* scratch_;
   std::vector<RayRow> rows_;
   std::vector<RowState> before_;
   std::vector<RowState> now_;
@@ -240,8 +247,8 @@ double loosening(double most, const std::function<double(double)>& raysAt) {
 }
 
 std::vector<RayRow> castRows(const RayScene& scene, const RayAim& aim, RayReport& report,
-                             Progress& progress, RowJournal* journal) {
-  return Rounds(scene, aim, report, progress, journal).run();
+                             Progress& progress, RowJournal* journal, ScratchMemory* scratch) {
+  return Rounds(scene, aim, report, progress, journal, scratch).run();
 }
 
 }  // namespace radiosity

@@ -40,8 +40,8 @@ struct RayAim {
 double loosening(double most, const std::function<double(double)>& raysAt);
 
 /// All rows, by position. Fills what the report says of rays and rounds. `journal`: null where
-/// nothing is kept.
+/// nothing is kept. `scratch`: where the rows' entries are to be; null: in memory.
 std::vector<RayRow> castRows(const RayScene& scene, const RayAim& aim, RayReport& report,
-                             Progress& progress, RowJournal* journal);
+                             Progress& progress, RowJournal* journal, ScratchMemory* scratch);
 
 }  // namespace radiosity

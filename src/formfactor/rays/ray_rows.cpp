@@ -1,7 +1,10 @@
 #include "formfactor/rays/ray_rows.h"
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/parallel.h"
 
@@ -9,7 +12,7 @@ namespace radiosity {
 
 namespace {
 
-/// Of the rows that are merged at once.
+/// Of what is handed on to the rows that are merged at once.
 constexpr std::size_t kPanelBytes = std::size_t(1) << 25;
 
 /// The 99% quantile of F(nu, nu), by nu (Abramowitz & Stegun, "Handbook of Mathematical Functions",
@@ -29,10 +32,6 @@ constexpr std::array<std::pair<double, double>, 15> kQuantiles{{{1, 4052},
                                                                 {120, 1.53},
                                                                 {400, 1.262},
                                                                 {1600, 1.123}}};
-
-std::size_t panelRows(std::size_t rows) {
-  return std::clamp(kPanelBytes / (rows * sizeof(double) * kReplicates), std::size_t(1), rows);
-}
 
 double quantile(double degrees) {
   if (degrees <= kQuantiles.front().first) return kQuantiles.front().second;
@@ -75,98 +74,183 @@ class ReplicateSums {
   double fourths_ = 0;
 };
 
-/// Rows [first, last) spread out: of each, K sums of counts, their own and those of the others.
-class Panel {
+using Hits = std::array<std::uint32_t, kReplicates>;
+
+/// Bytes of an entry that another row hands on.
+constexpr std::size_t kHandedBytes = sizeof(Index) + sizeof(Hits);
+/// Blocks of rows that are looked through side by side.
+constexpr std::size_t kBlocks = 32;
+
+/// What all other rows have counted of some rows: their columns, transposed.
+class Transposed {
  public:
-  Panel(std::span<const RayRow> rows, std::size_t most)
-      : rows_(rows), counts_(most * rows.size()), read_(rows.size(), 0) {}
-
-  void fill(std::size_t first, std::size_t last) {
-    const std::size_t n = rows_.size();
-    first_ = first;
-    std::fill_n(counts_.begin(), (last - first) * n, std::array<double, kReplicates>{});
-    parallelFor(last - first, 1, [&](std::size_t k) { addOwn(first + k); });
-    // The rest is by column: other rows write to other places.
-    parallelFor(n, 64, [&](std::size_t j) { addReceived(j, last); });
-  }
-  std::span<std::array<double, kReplicates>> row(std::size_t position) {
-    return std::span(counts_).subspan((position - first_) * rows_.size(), rows_.size());
-  }
-
- private:
-  void addOwn(std::size_t position) {
-    const RayRow& row = rows_[position];
-    const auto out = this->row(position);
-    for (std::size_t e = 0; e < row.columns.size() && row.columns[e] < rows_.size(); ++e) {
-      for (std::size_t r = 0; r < kReplicates; ++r) out[row.columns[e]][r] += row.hits[e][r];
-    }
-  }
-  void addReceived(std::size_t j, std::size_t last) {
-    const RayRow& row = rows_[j];
-    std::size_t& e = read_[j];
-    for (; e < row.columns.size() && row.columns[e] < last; ++e) {
-      if (row.columns[e] == j) continue;  // seen from one end alone: it is the same end
-      for (std::size_t r = 0; r < kReplicates; ++r) {
-        counts_[(row.columns[e] - first_) * rows_.size() + j][r] += row.hits[e][r];
+  explicit Transposed(std::span<const RayRow> rows, ScratchMemory* scratch)
+      : rows_(rows), scratch_(scratch), read_(rows.size(), 0), handed_(rows.size(), 0) {
+    for (std::size_t j = 0; j < rows.size(); ++j) {
+      touch(rows[j].columns.size() * sizeof(Index));
+      for (const Index column : rows[j].columns) {
+        if (column < rows.size() && column != j) ++handed_[column];
       }
     }
   }
 
+  /// The end of the next panel of rows: as many as fit, one at least.
+  std::size_t panelEnd(std::size_t first) const {
+    std::size_t bytes = 0;
+    std::size_t last = first;
+    while (last < rows_.size()) {
+      bytes += handed_[last] * kHandedBytes;
+      if (last > first && bytes > kPanelBytes) break;
+      ++last;
+    }
+    return last;
+  }
+
+  /// Panels come in order, from row 0 on.
+  void fill(std::size_t first, std::size_t last) {
+    first_ = first;
+    starts_.assign(1, 0);
+    for (std::size_t k = first; k < last; ++k) starts_.push_back(starts_.back() + handed_[k]);
+    columns_.resize(starts_.back());
+    hits_.resize(starts_.back());
+    // Where each block of rows puts what it hands on: in the order of the rows, sorted.
+    const std::size_t n = rows_.size();
+    const std::size_t blocks = std::min(n, kBlocks);
+    const std::size_t width = last - first;
+    std::vector<std::size_t> next(blocks * width, 0);
+    const auto forBlocks = [&](const auto& visit) {
+      parallelFor(blocks, 1, [&](std::size_t b) {
+        for (std::size_t j = b * n / blocks; j < (b + 1) * n / blocks; ++j) visit(b, j);
+      });
+    };
+    forBlocks([&](std::size_t b, std::size_t j) {
+      forHanded(j, last, [&](std::size_t k, const Hits&) { ++next[b * width + k - first]; });
+    });
+    for (std::size_t m = 0; m < width; ++m) {
+      std::size_t at = starts_[m];
+      for (std::size_t b = 0; b < blocks; ++b) at += std::exchange(next[b * width + m], at);
+    }
+    forBlocks([&](std::size_t b, std::size_t j) {
+      read_[j] = forHanded(j, last, [&](std::size_t k, const Hits& hits) {
+        const std::size_t at = next[b * width + k - first]++;
+        columns_[at] = Index(j);
+        hits_[at] = hits;
+      });
+    });
+  }
+
+  std::span<const Index> columns(std::size_t k) const { return part(columns_, k); }
+  std::span<const Hits> hits(std::size_t k) const { return part(hits_, k); }
+
+ private:
+  /// Calls visit(k, hits) for the entries of row j, not yet read, in rows before `last`. Returns
+  /// where it ended.
+  template <class Visit>
+  std::size_t forHanded(std::size_t j, std::size_t last, const Visit& visit) const {
+    const RayRow& row = rows_[j];
+    std::size_t e = read_[j];
+    for (; e < row.columns.size() && row.columns[e] < last; ++e) {
+      if (row.columns[e] != j) visit(row.columns[e], row.hits[e]);  // itself: it is the same end
+    }
+    touch((e - read_[j]) * kHandedBytes);
+    return e;
+  }
+  template <class Value>
+  std::span<const Value> part(const std::vector<Value>& values, std::size_t k) const {
+    const std::size_t from = starts_[k - first_];
+    return std::span(values).subspan(from, starts_[k - first_ + 1] - from);
+  }
+  void touch(std::size_t bytes) const {
+    if (scratch_ != nullptr) scratch_->touched(bytes);
+  }
+
   std::span<const RayRow> rows_;
-  std::vector<std::array<double, kReplicates>> counts_;
-  std::vector<std::size_t> read_;  ///< of each row, entries before the panel
+  ScratchMemory* scratch_;
+  std::vector<std::size_t> read_;    ///< of each row, entries before the panel
+  std::vector<std::size_t> handed_;  ///< to each row, entries
+  // Of the panel:
   std::size_t first_ = 0;
+  std::vector<std::size_t> starts_;
+  std::vector<Index> columns_;
+  std::vector<Hits> hits_;
+};
+
+/// Calls visit(column, hits of its own, hits handed on) for every column below `n` that has any.
+template <class Visit>
+void forBothEnds(const RayRow& own, std::span<const Index> columns, std::span<const Hits> handed,
+                 std::size_t n, const Visit& visit) {
+  constexpr Hits kNoHits{};
+  std::size_t e = 0;
+  std::size_t h = 0;
+  for (;;) {
+    const Index here = e < own.columns.size() && own.columns[e] < n ? own.columns[e] : kNone;
+    const Index there = h < columns.size() ? columns[h] : kNone;
+    const Index column = std::min(here, there);
+    if (column == kNone) return;
+    visit(column, here == column ? own.hits[e++] : kNoHits,
+          there == column ? handed[h++] : kNoHits);
+  }
+}
+
+/// The storage of a MergedRow.
+struct Merging {
+  std::vector<Index> columns;
+  std::vector<std::array<double, kReplicates>> factors;
 };
 
 }  // namespace
 
-std::size_t mergingBytes(std::size_t rows) {
-  if (rows == 0) return 0;
-  return (panelRows(rows) * kReplicates + kReplicates + 1) * rows * sizeof(double);
+std::size_t mergingBytes(std::size_t rows, double entries) {
+  constexpr std::size_t kRowBytes = (kReplicates + 4 + kBlocks) * sizeof(double);
+  return rows * kRowBytes +
+         std::size_t(std::min(double(kPanelBytes), entries * double(kHandedBytes)));
 }
 
 double RowAccuracy::figure() const { return error * std::sqrt(quantile(degrees)); }
 
 void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
-                   std::span<const std::uint8_t> wanted,
+                   std::span<const std::uint8_t> wanted, ScratchMemory* scratch,
                    const std::function<void(const MergedRow&)>& visit) {
   const std::size_t n = rows.size();
-  if (n == 0) return;
-  const std::size_t most = panelRows(n);
   std::vector<std::array<double, kReplicates>> density(n);  // rays a square metre
   for (std::size_t k = 0; k < n; ++k) {
     for (int r = 0; r < kReplicates; ++r) {
       density[k][std::size_t(r)] = area[k] > 0 ? rows[k].counted(r) / area[k] : 0.0;
     }
   }
-  Panel panel(rows, most);
-  for (std::size_t first = 0; first < n; first += most) {
-    const std::size_t last = std::min(n, first + most);
-    panel.fill(first, last);
+  tbb::enumerable_thread_specific<Merging> mergings;
+  Transposed handed(rows, scratch);
+  for (std::size_t first = 0; first < n;) {
+    const std::size_t last = handed.panelEnd(first);
+    handed.fill(first, last);
     parallelFor(last - first, 1, [&](std::size_t m) {
       const std::size_t k = first + m;
       if (!wanted.empty() && wanted[k] == 0) return;
-      const auto factors = panel.row(k);
-      for (std::size_t j = 0; j < n; ++j) {
+      Merging& merging = mergings.local();
+      merging.columns.clear();
+      merging.factors.clear();
+      const auto merge = [&](Index j, const Hits& own, const Hits& of_j) {
+        merging.columns.push_back(j);
+        std::array<double, kReplicates>& factor = merging.factors.emplace_back();
         for (std::size_t r = 0; r < kReplicates; ++r) {
-          double& value = factors[j][r];
-          if (value == 0) continue;
+          const double hits = double(own[r]) + double(of_j[r]);
+          if (hits == 0) continue;
           const double from_j = j == k ? 0.0 : density[j][r];
-          value /= (density[k][r] + from_j) * area[k];
+          factor[r] = hits / ((density[k][r] + from_j) * area[k]);
         }
-      }
-      visit({k, factors});
+      };
+      forBothEnds(rows[k], handed.columns(k), handed.hits(k), n, merge);
+      visit({k, n, merging.columns, merging.factors});
     });
+    first = last;
   }
 }
 
 RowAccuracy accuracyOf(const MergedRow& merged, const RayRow& own) {
   ReplicateSums sums;
-  for (const auto& [first, second] : merged.factors) {
-    if (first != 0 || second != 0) sums.add(first, second);
-  }
+  for (const auto& [first, second] : merged.factors) sums.add(first, second);
   for (std::size_t e = own.columns.size(); e-- > 0;) {
-    if (own.columns[e] < merged.factors.size()) break;
+    if (own.columns[e] < merged.unknowns) break;
     sums.add(own.hits[e][0] / own.counted(0), own.hits[e][1] / own.counted(1));
   }
   return sums.accuracy();

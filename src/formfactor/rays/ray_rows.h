@@ -5,10 +5,12 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
 #include "radiosity/base.h"
+#include "radiosity/scratch_memory.h"
 
 namespace radiosity {
 
@@ -23,9 +25,17 @@ struct RayRow {
   std::array<std::uint32_t, kReplicates> sky{};
   std::array<std::uint32_t, kReplicates> lost{};  ///< no true hits: they do not count
   std::uint32_t leaked = 0;                       ///< of these, out of a closed scene; of both
-  std::vector<Index> columns;
-  std::vector<std::array<std::uint32_t, kReplicates>> hits;
+  std::pmr::vector<Index> columns;
+  std::pmr::vector<std::array<std::uint32_t, kReplicates>> hits;
 
+  RayRow() = default;
+  /// Its entries stay in `memory`, whatever is assigned to it.
+  explicit RayRow(std::pmr::memory_resource* memory) : columns(memory), hits(memory) {}
+
+  /// Of the entries.
+  std::size_t bytes() const {
+    return columns.size() * sizeof(Index) + hits.size() * sizeof(hits[0]);
+  }
   /// That count in one replicate, ...
   double counted(int replicate) const {
     return double(rays) - double(lost[std::size_t(replicate)]);
@@ -39,18 +49,21 @@ struct RayRow {
 /// independent rays would have, A_i G_ij / n_i. Of each replicate.
 struct MergedRow {
   std::size_t position = 0;
-  /// F from this row's unknown to the ones at all positions, by the first and the second replicate.
+  std::size_t unknowns = 0;        ///< K
+  std::span<const Index> columns;  ///< positions that one end or the other has hit, increasing
+  /// F from this row's unknown to those, by the first and the second replicate.
   std::span<const std::array<double, kReplicates>> factors;
 };
 
 /// Calls visit(row) for the rows with `wanted` (by position; empty: all), several at once from
-/// different threads. `area`: K, by position. O(entries), in panels of memory.
+/// different threads. `area`: K, by position. `scratch`: where the rows' entries are; null: in
+/// memory. O(K + entries), in panels of memory.
 void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
-                   std::span<const std::uint8_t> wanted,
+                   std::span<const std::uint8_t> wanted, ScratchMemory* scratch,
                    const std::function<void(const MergedRow&)>& visit);
 
-/// Bytes that forMergedRows() takes of `rows` rows.
-std::size_t mergingBytes(std::size_t rows);
+/// Bytes that forMergedRows() takes of `rows` rows with `entries` of their own, all together.
+std::size_t mergingBytes(std::size_t rows, double entries);
 
 /// How far off a row is, from its replicates.
 struct RowAccuracy {

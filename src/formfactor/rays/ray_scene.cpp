@@ -24,11 +24,7 @@ std::vector<double> unknownAreas(const PatchMesh& mesh) {
 using Replicates = std::array<RayCaster::Counts, kReplicates>;
 Replicates& emptyCounts(std::size_t items) {
   thread_local Replicates counts;
-  for (RayCaster::Counts& of : counts) {
-    of.hits.assign(items, 0);
-    of.sky = 0;
-    of.own = 0;
-  }
+  for (RayCaster::Counts& of : counts) of.clear(items);
   return counts;
 }
 
@@ -37,6 +33,8 @@ Replicates& emptyCounts(std::size_t items) {
 RayScene::RayScene(const PatchMesh& mesh, std::uint64_t with_seed) : caster_(mesh) {
   UnknownOrder by_identity = unknownOrder(mesh);
   order_ = std::move(by_identity.unknown);
+  position_.resize(order_.size());
+  for (std::size_t k = 0; k < order_.size(); ++k) position_[order_[k]] = Index(k);
   const std::vector<double> areas = unknownAreas(mesh);
   for (std::size_t k = 0; k < order_.size(); ++k) {
     area_.push_back(areas[order_[k]]);
@@ -66,7 +64,7 @@ void RayScene::addCounts(std::array<RayCaster::Counts, kReplicates>& counts, Ray
     RayCaster::Counts& of = counts[r];
     for (std::size_t e = 0; e < row.columns.size(); ++e) {
       const Index column = row.columns[e];
-      of.hits[column < n ? order_[column] : column] += row.hits[e][r];
+      of.add(column < n ? order_[column] : column, row.hits[e][r]);
     }
     row.lost[r] += of.own;
     if (proved_closed_) {
@@ -76,19 +74,19 @@ void RayScene::addCounts(std::array<RayCaster::Counts, kReplicates>& counts, Ray
       row.sky[r] += of.sky;
     }
   }
-  const auto isHit = [&](std::size_t item) {
-    return counts[0].hits[item] != 0 || counts[1].hits[item] != 0;
-  };
-  std::size_t entries = 0;
-  for (std::size_t item = 0; item < caster_.items(); ++item) entries += isHit(item) ? 1 : 0;
+  std::vector<Index> columns;
+  for (const RayCaster::Counts& of : counts) {
+    for (const std::uint32_t item : of.hit) columns.push_back(item < n ? position_[item] : item);
+  }
+  std::sort(columns.begin(), columns.end());
+  columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
   // New vectors of just that size: of ones that grow, a third would be empty.
-  row.columns = {};
-  row.hits = {};
-  row.columns.reserve(entries);
-  row.hits.reserve(entries);
-  for (Index column = 0; column < caster_.items(); ++column) {
+  row.columns.clear();
+  row.hits.clear();
+  row.columns.reserve(columns.size());
+  row.hits.reserve(columns.size());
+  for (const Index column : columns) {
     const std::size_t item = column < n ? order_[column] : column;
-    if (!isHit(item)) continue;
     row.columns.push_back(column);
     row.hits.push_back({counts[0].hits[item], counts[1].hits[item]});
   }

@@ -35,6 +35,7 @@ class RayScene {
 
   RayCaster caster_;
   std::vector<Index> order_;
+  std::vector<Index> position_;  ///< of each unknown in it
   std::vector<double> area_;
   std::vector<std::uint64_t> seed_;  ///< by position
   bool proved_closed_ = false;

@@ -169,16 +169,16 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   report.polygons = mesh.polygons.size();
   report.simd_target = clipKernels(options.simd).target;
   report.empty_rows = n - scene.order.ranked;
-  report.estimated_bytes = estimate.bytes;
-  refuseTooLarge(estimate.bytes, options, n);
+  report.estimated_bytes = estimate.memory.bytes;
+  const std::shared_ptr<ScratchMemory> scratch = makeRowMemory(estimate.memory, options, n);
 
   result.matrix =
-      ExchangeMatrix::symmetric(mesh.area, scene.order.patch, options.storedPrecision());
+      ExchangeMatrix::symmetric(mesh.area, scene.order.patch, options.storedPrecision(), scratch);
   result.backs.assign(n, 0.0);
   result.sky.assign(n, 0.0);
   std::vector<std::vector<SeenBack>> seen_backs(n);
   const bool enforces = options.closure == ClosureMode::enforce;
-  UncertainEntries uncertain(enforces ? n : 0);
+  UncertainEntries uncertain(enforces ? n : 0, scratch);
   const RowContext context{
       scene.elements,
       scene.order,

@@ -74,11 +74,15 @@ ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,
                                                   row_sums + 2 * sample.task_bytes);
   estimate.matrix_bytes =
       expectedSymmetricBytes(n, estimate.entries_per_row, options.storedPrecision());
-  estimate.bytes =
-      options.memory_held + estimate.matrix_bytes +
-      (enforces ? std::size_t(sample.occluded) * kUncertainBytes : 0) + n * kAccounts +
-      scene.elements.size() * kElementBytes +
-      std::max(filling, matrixWorkingMemory(n, allowedThreads()));  // one after the other
+  const std::size_t rows =
+      estimate.matrix_bytes + (enforces ? std::size_t(sample.occluded) * kUncertainBytes : 0);
+  const std::size_t always =
+      options.memory_held + n * kAccounts + scene.elements.size() * kElementBytes;
+  // Filling and writing come one after the other.
+  const std::size_t working = matrixWorkingMemory(n, allowedThreads());
+  const std::size_t panels = panelsOf(estimate.matrix_bytes, options.storedPrecision());
+  estimate.memory = planRowMemory(always + rows + std::max(filling, working + panels),
+                                  always + std::max(filling, working), rows, options);
 
   estimate.work =
       kUnoccludedWork * sample.unoccluded + kShaftTestWork * sample.shaft_tests + sample.cost.work;

@@ -8,6 +8,7 @@
 #include "formfactor/exact/occluders/occluders.h"
 #include "formfactor/exact/unoccluded/unoccluded.h"
 #include "formfactor/exact/visibility/visibility.h"
+#include "formfactor/row_memory.h"
 #include "radiosity/form_factors.h"
 
 namespace radiosity {
@@ -36,7 +37,7 @@ struct ExactKernels {
 /// Foreseen from the pairs of a sample of tasks. It depends on the scene and the options alone,
 /// never on the machine or its load.
 struct ExactEstimate {
-  std::size_t bytes = 0;         ///< held at once, FormFactorOptions::memory_held included
+  RowMemory memory;
   std::size_t matrix_bytes = 0;  ///< of these, the matrix
   double entries_per_row = 0;    ///< at most
   double occluded_pairs = 0;

@@ -19,7 +19,8 @@ struct TaskJournal::Row {
 namespace {
 
 template <class Value>
-void putRuns(const std::vector<Run>& runs, const std::vector<Value>& values, ByteWriter& bytes) {
+void putRuns(const std::pmr::vector<Run>& runs, const std::pmr::vector<Value>& values,
+             ByteWriter& bytes) {
   std::size_t stored = 0;
   for (const Run run : runs) stored += run.count;
   bytes.putArray(std::span(runs));

@@ -1,0 +1,63 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/summaries.h"
+
+namespace radiosity::cli {
+namespace {
+
+const char* directText(DirectLight direct) {
+  switch (direct) {
+    case DirectLight::none:
+      return "none: nothing shines but, maybe, the sky";
+    case DirectLight::exact:
+      return "clipped exactly";
+    case DirectLight::partly:
+      return "clipped exactly, by rays where too much is in between";
+    case DirectLight::rays:
+      return "by rays to the emitters, which are many";
+    case DirectLight::hemispheres:
+      break;
+  }
+  return "with the indirect: there are too many emitters to aim at";
+}
+
+/// Which error is the largest, and what makes it smaller.
+std::string largestError(const ElementReport& r, double of_matrix) {
+  const double most = std::max({r.interpolation_error, r.ray_error, of_matrix});
+  if (most <= 0) return "none";
+  if (most == of_matrix) return "the matrix (lower --tolerance)";
+  if (most == r.ray_error) return "the rays of the indirect light";
+  return "interpolation (lower --element-tolerance)";
+}
+
+}  // namespace
+
+void summarizeElements(Report& report, const Elements& elements, const FormFactors& factors) {
+  const ElementReport& r = elements.report;
+  report.section("elements", "Elements");
+  report.text("direct", "direct light", directText(r.direct));
+  report.count("emitters", "emitters", r.emitters);
+  report.count("direct_vertices", "vertices evaluated, direct", r.direct_vertices);
+  report.count("direct_by_rays", "  of them by rays", r.direct_by_rays);
+  report.count("indirect_vertices", "vertices evaluated, indirect", r.indirect_vertices);
+  report.number("uniform_vertices", "a uniform grid as fine", std::round(r.uniform_vertices));
+  report.count("unrefined", "left coarse at the cap", r.unrefined);
+  report.number("shortest_edge_m", "shortest edge", r.edge, "m");
+  report.count("rays_a_vertex", "rays a vertex, indirect", std::size_t(r.rays_a_vertex));
+  report.number("interpolation_error", "error of interpolation", r.interpolation_error);
+  report.number("ray_error", "error of rays", r.ray_error);
+  if (factors.error.empty()) {
+    report.text("matrix_error", "error of the matrix", "not known of hemicubes");
+  } else {
+    report.number("matrix_error", "error of the matrix", factors.report.error_figure);
+  }
+  report.text("largest_error", "largest error",
+              largestError(r, factors.error.empty() ? 0 : factors.report.error_figure));
+  report.seconds("seconds_direct", "time, direct", r.seconds_direct);
+  report.seconds("seconds_indirect", "time, indirect", r.seconds_indirect);
+}
+
+}  // namespace radiosity::cli

@@ -1,0 +1,342 @@
+#include "elements/direct_light.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <unordered_map>
+
+#include "formfactor/exact/flat_polygon.h"
+#include "formfactor/exact/point_to_polygon.h"
+#include "formfactor/rays/sobol.h"
+
+namespace radiosity {
+namespace {
+
+/// Rays to emitters from a point.
+constexpr std::size_t kLooks = 64;
+/// An element is clipped for where emitters and what is in between are no more than this together:
+/// a point then takes some 50 us, what its rays would take.
+constexpr std::size_t kMostClips = 64;
+/// Longer lists than this are not thinned out: that would take longer than the rays. The element
+/// and all below it are lit by rays.
+constexpr std::size_t kMostThinned = 160;
+/// Farther than this many radii the form factor is taken at the emitter's centre: to 1%, which only
+/// says where rays go.
+constexpr double kFar = 6;
+
+const std::vector<Occluder>& bodiesOf(const OccluderSet* occluders) {
+  static const std::vector<Occluder> kNoBodies;
+  return occluders == nullptr ? kNoBodies : occluders->occluders;
+}
+
+/// The part of an emitter above a point's horizon.
+FlatPolygon aboveHorizon(const Emitter& emitter, const Vec3& normal, double offset) {
+  return clipToFront(emitter.outline, normal, offset);
+}
+
+}  // namespace
+
+/// The emitters that an element may see, and what may be in between.
+struct EmitterLight::Lights : ElementLights {
+  struct Seen {
+    Index emitter;
+    Index first, end;  ///< into candidates
+  };
+  std::vector<Seen> seen;
+  std::vector<Candidate> candidates;
+
+  void judge() {
+    kind = seen.empty() ? Kind::dark : candidates.empty() ? Kind::plain : Kind::partial;
+    if (seen.size() + candidates.size() > kMostClips) kind = Kind::dear;
+  }
+};
+
+EmitterLight::EmitterLight(const PatchMesh& mesh, const PatchMaterials& materials,
+                           const ElementSurface& surface, const ElementSet& elements,
+                           const OccluderSet* occluders, const std::vector<Emitter>& emitters,
+                           const PointRays& rays)
+    : materials_(materials),
+      surface_(surface),
+      elements_(elements),
+      occluders_(occluders),
+      emitters_(emitters),
+      rays_(rays),
+      tree_(bodiesOf(occluders)),
+      kernels_(visibilityKernels(true)),
+      facet_of_patch_(mesh.size(), kNone),
+      own_(elements.facets.size()) {
+  for (std::size_t e = 0; e < elements.patch_elements; ++e) {
+    facet_of_patch_[elements.patch[e]] = elements.facet[e];
+  }
+  const std::vector<Occluder>& bodies = bodiesOf(occluders);
+  for (Index o = 0; o < bodies.size(); ++o) {
+    for (const Index f : bodies[o].facets) own_[f].push_back(o);
+  }
+  std::array<std::array<float, kLooks>, kDimensions> points;
+  PointArrays out{};
+  for (std::size_t d = 0; d < kDimensions; ++d) out[d] = points[d].data();
+  SobolPoints().points(0, kLooks, 0, out);
+  for (std::size_t k = 0; k < kLooks; ++k) {
+    aims_.push_back({points[0][k], points[1][k], points[2][k], points[3][k]});
+  }
+  std::sort(aims_.begin(), aims_.end());
+}
+
+std::shared_ptr<const ElementLights> EmitterLight::lightsOf(const ElementShape& shape,
+                                                            const ElementLights* parent) const {
+  if (occluders_ == nullptr) return nullptr;
+  auto lights = std::make_shared<Lights>();
+  if (parent != nullptr) {
+    thinOut(shape, static_cast<const Lights&>(*parent), *lights);
+    lights->judge();
+  } else if (findAll(shape, *lights)) {
+    lights->judge();
+  } else {
+    lights->kind = ElementLights::Kind::dear;
+    lights->settled = true;
+  }
+  return lights;
+}
+
+/// All emitters in front of a root that face it, with what the tree of occluders has in between.
+/// False, with the emitters alone, where that is more than can be thinned out.
+bool EmitterLight::findAll(const ElementShape& shape, Lights& lights) const {
+  const Index facet = facet_of_patch_[surface_.roots.patch[shape.root]];
+  if (facet == kNone || occluders_->hidden_facets[facet] != 0) return true;
+  const Facet& own = elements_.facets[facet];
+  const double touching = elements_.coincidence;
+  // The horizons of smooth corners are not the root's own.
+  const bool curved = surface_.curved[shape.root] != 0;
+  const HalfSpace front =
+      curved ? HalfSpace{{0.0, 0.0, 0.0}, -1.0} : HalfSpace{own.normal, own.offset + touching};
+  std::array<Vec3, 4> corners;
+  Sphere ball;
+  for (std::size_t k = 0; k < 4; ++k) {
+    corners[k] = scaled(shape.corners[k]);
+    ball.centre += 0.25 * corners[k];
+  }
+  for (const Vec3& c : corners) ball.radius = std::max(ball.radius, glm::distance(c, ball.centre));
+  Lights all;
+  std::size_t tests = 0;
+  std::vector<Index> found;
+  for (Index e = 0; e < emitters_.size(); ++e) {
+    const Emitter& emitter = emitters_[e];
+    const auto before = [&](const Vec3& c) {
+      return glm::dot(emitter.normal, c) > emitter.offset + touching;
+    };
+    const auto above = [&](const Vec3& c) { return glm::dot(front.normal, c) > front.offset; };
+    if (std::none_of(corners.begin(), corners.end(), before)) continue;
+    if (std::none_of(emitter.outline.begin(), emitter.outline.end(), above)) continue;
+    found.clear();
+    if (all.candidates.size() > kMostThinned) {
+      all.seen.push_back({e, 0, 0});
+      continue;
+    }
+    tree_.query(ball, {emitter.centre, emitter.radius}, front,
+                {emitter.normal, emitter.offset + touching}, found, tests);
+    std::sort(found.begin(), found.end());
+    const auto first = Index(all.candidates.size());
+    for (const Index o : found) {
+      const std::vector<Index>& mine = own_[facet];
+      const std::vector<Index>& its = own_[emitter.facet];
+      if (std::binary_search(mine.begin(), mine.end(), o)) continue;
+      if (std::binary_search(its.begin(), its.end(), o)) continue;
+      const Occluder& body = occluders_->occluders[o];
+      const bool cuts = std::any_of(body.corners.begin(), body.corners.end(), [&](const Vec3& c) {
+        return glm::dot(emitter.normal, c) < emitter.offset - touching;
+      });
+      all.candidates.push_back({o, cuts});
+    }
+    all.seen.push_back({e, first, Index(all.candidates.size())});
+  }
+  if (all.candidates.size() > kMostThinned) {
+    lights.seen = std::move(all.seen);
+    return false;
+  }
+  thinOut(shape, all, lights);
+  return true;
+}
+
+/// What of the lists concerns an element.
+void EmitterLight::thinOut(const ElementShape& shape, const Lights& from, Lights& lights) const {
+  ShapeCorners corners{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Vec3 c = scaled(shape.corners[k]);
+    corners.x[k] = c.x;
+    corners.y[k] = c.y;
+    corners.z[k] = c.z;
+  }
+  std::unordered_map<Index, ShadowPlanes> shadows;
+  for (const Lights::Seen& seen : from.seen) {
+    const auto first = Index(lights.candidates.size());
+    bool hidden = false;
+    for (Index k = seen.first; k < seen.end && !hidden; ++k) {
+      const Candidate& candidate = from.candidates[k];
+      const auto [shadow, fresh] = shadows.try_emplace(candidate.occluder);
+      if (fresh) {
+        shadow->second.build(corners, occluders_->occluders[candidate.occluder],
+                             elements_.coincidence);
+      }
+      ShadowPlanes::Planes open = ShadowPlanes::kAllPlanes;
+      const ShadowRelation relation =
+          shadow->second.relation(kernels_, emitters_[seen.emitter].shape, open);
+      hidden = relation == ShadowRelation::kInside;
+      if (relation == ShadowRelation::kUnclear) lights.candidates.push_back(candidate);
+    }
+    if (hidden) {
+      lights.candidates.resize(first);
+      continue;
+    }
+    lights.seen.push_back({seen.emitter, first, Index(lights.candidates.size())});
+  }
+}
+
+double EmitterLight::irradiance(const SurfacePoint& point, const ElementLights* lights,
+                                std::span<double> out) const {
+  const auto* of = static_cast<const Lights*>(lights);
+  if (of == nullptr || of->kind == ElementLights::Kind::dear) return aimed(point, of, out);
+  return clipped(point, *of, out);
+}
+
+/// Whether an occluder lies on one of several facets that meet smoothly in a point.
+bool EmitterLight::ownsOccluder(Index owners, Index occluder) const {
+  const std::vector<Index>& polygons = surface_.owners[owners];
+  const std::vector<Index>& facets = occluders_->occluders[occluder].facets;
+  return std::any_of(facets.begin(), facets.end(), [&](Index f) {
+    return std::binary_search(polygons.begin(), polygons.end(), elements_.facets[f].polygon);
+  });
+}
+
+double EmitterLight::clipped(const SurfacePoint& point, const Lights& lights,
+                             std::span<double> out) const {
+  thread_local VisiblePart part;
+  thread_local std::vector<Blocker> blockers;
+  const Vec3 eye = scaled(point.position);
+  const double horizon = glm::dot(point.normal, eye);
+  const bool shared = surface_.owners[point.owners].size() > 1;
+  for (const Lights::Seen& seen : lights.seen) {
+    const Emitter& emitter = emitters_[seen.emitter];
+    if (!(glm::dot(emitter.normal, eye) > emitter.offset)) continue;
+    const FlatPolygon target = aboveHorizon(emitter, point.normal, horizon);
+    if (target.count < 3) continue;
+    double factor = 0;
+    if (seen.first == seen.end) {
+      factor = std::max(0.0, pointToPolygon(eye, point.normal, target.outline()));
+    } else {
+      blockers.clear();
+      for (Index k = seen.first; k < seen.end; ++k) {
+        const Candidate& c = lights.candidates[k];
+        if (shared && ownsOccluder(point.owners, c.occluder)) continue;
+        blockers.push_back({&occluders_->occluders[c.occluder], c.occluder, c.cuts_emitter});
+      }
+      factor = part.look(eye, point.normal, target.outline(), blockers).visible;
+    }
+    const double* exitance = materials_.emission.data() + emitter.patch * out.size();
+    for (std::size_t b = 0; b < out.size(); ++b) out[b] += factor * exitance[b];
+  }
+  return 0;
+}
+
+double EmitterLight::aimed(const SurfacePoint& point, const Lights* lights,
+                           std::span<double> out) const {
+  ++by_rays_;
+  struct Aim {
+    Index emitter;
+    double end;  ///< of its share
+  };
+  thread_local std::vector<Aim> shares;
+  shares.clear();
+  const Vec3 eye = scaled(point.position);
+  const double horizon = glm::dot(point.normal, eye);
+  std::vector<double> whole(out.size(), 0.0);
+  double sum = 0;
+  const auto add = [&](Index e) {
+    const Emitter& emitter = emitters_[e];
+    if (!(glm::dot(emitter.normal, eye) > emitter.offset)) return;
+    double factor = 0;
+    const Vec3 to = emitter.centre - eye;
+    const double square = glm::dot(to, to);
+    if (square > kFar * kFar * emitter.radius * emitter.radius) {
+      factor = -glm::dot(to, point.normal) * glm::dot(to, emitter.normal) * emitter.area /
+               (std::numbers::pi * square * square);
+    } else {
+      const FlatPolygon target = aboveHorizon(emitter, point.normal, horizon);
+      if (target.count >= 3) factor = pointToPolygon(eye, point.normal, target.outline());
+    }
+    if (!(factor > 0)) return;
+    const double* exitance = materials_.emission.data() + emitter.patch * out.size();
+    double light = 0;
+    for (std::size_t b = 0; b < out.size(); ++b) {
+      whole[b] += factor * exitance[b];
+      light += factor * exitance[b];
+    }
+    shares.push_back({e, sum += light});
+  };
+  if (lights == nullptr) {
+    for (Index e = 0; e < emitters_.size(); ++e) add(e);
+  } else {
+    for (const Lights::Seen& seen : lights->seen) add(seen.emitter);
+  }
+  if (!(sum > 0)) return 0;
+  // Rays go to emitters by what these give; each stands for as much light.
+  std::array<Vec3, kLooks> to;
+  std::array<Index, kLooks> polygon;
+  std::array<Index, kLooks> emitter_of;
+  std::array<std::uint8_t, kLooks> seen;
+  std::size_t at = 0;
+  for (std::size_t k = 0; k < kLooks; ++k) {
+    while (at + 1 < shares.size() && double(aims_[k][0]) * sum >= shares[at].end) ++at;
+    const Emitter& emitter = emitters_[shares[at].emitter];
+    const auto& o = emitter.outline;
+    double u = aims_[k][1];
+    double v = aims_[k][2];
+    Vec3 place(0.0);
+    if (o.size() == 4) {
+      place = (1 - v) * ((1 - u) * o[0] + u * o[1]) + v * ((1 - u) * o[3] + u * o[2]);
+    } else {
+      if (u + v > 1) {
+        u = 1 - u;
+        v = 1 - v;
+      }
+      place = o[0] + u * (o[1] - o[0]) + v * (o[2] - o[0]);
+    }
+    to[k] = place / elements_.scale + elements_.middle;
+    polygon[k] = elements_.facets[emitter.facet].polygon;
+    emitter_of[k] = shares[at].emitter;
+  }
+  rays_.see({point.position, point.normal, surface_.owners[point.owners]}, to, polygon, seen);
+  std::vector<double> half(out.size(), 0.0);
+  std::size_t above = 0;
+  std::size_t visible = 0;
+  std::size_t odd_above = 0;
+  std::size_t odd_visible = 0;
+  std::vector<double> given(out.size(), 0.0);
+  std::vector<double> all(out.size(), 0.0);
+  for (std::size_t k = 0; k < kLooks; ++k) {
+    if (!(glm::dot(point.normal, scaled(to[k])) > horizon)) continue;
+    const double* exitance =
+        materials_.emission.data() + emitters_[emitter_of[k]].patch * out.size();
+    double light = 0;
+    for (std::size_t b = 0; b < out.size(); ++b) light += exitance[b];
+    for (std::size_t b = 0; b < out.size(); ++b) {
+      all[b] += exitance[b] / light;
+      if (seen[k] != 0) given[b] += exitance[b] / light;
+    }
+    ++above;
+    visible += seen[k];
+    if (k % 2 == 1) {
+      ++odd_above;
+      odd_visible += seen[k];
+    }
+  }
+  if (above == 0) return 0;
+  for (std::size_t b = 0; b < out.size(); ++b) {
+    if (all[b] > 0) out[b] += whole[b] * given[b] / all[b];
+  }
+  if (odd_above == 0 || odd_above == above) return sum * sum;
+  const double off =
+      sum * (double(visible) / double(above) - double(odd_visible) / double(odd_above));
+  return off * off;
+}
+
+}  // namespace radiosity

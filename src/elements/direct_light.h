@@ -1,0 +1,77 @@
+// Light of the emitters at points, by exact clipping or by rays to points of them.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <vector>
+
+#include "elements/emitters.h"
+#include "elements/field_builder.h"
+#include "formfactor/exact/clip_kernels.h"
+#include "formfactor/exact/elements/elements.h"
+#include "formfactor/exact/occluded/visible_part.h"
+#include "formfactor/exact/occluders/occluders.h"
+#include "formfactor/exact/visibility/kernels.h"
+#include "formfactor/exact/visibility/tree.h"
+#include "formfactor/rays/point_rays.h"
+#include "radiosity/elements.h"
+
+namespace radiosity {
+
+/// More emitters than this are not clipped, but aimed at by rays; ...
+inline constexpr std::size_t kMostClippedEmitters = 128;
+/// ... and of more than this, none is aimed at: a look at each would take longer than rays all over
+/// the hemisphere, which then bring their light.
+inline constexpr std::size_t kMostAimedEmitters = 8192;
+
+/// The point sees each emitter whole, or past a list of occluders; the list is found for the root
+/// and thinned out for the elements below it, with the proofs that Visibility uses. What is proved
+/// hidden is not looked at again. Where too much is in between for clipping, kLooks rays go to
+/// points of the emitters, spread by what each would give with nothing in between, so that only
+/// visibility is sampled. All vertices aim at the same points: their errors vary as smoothly as
+/// light does.
+class EmitterLight : public FieldLight {
+ public:
+  /// All are kept by reference. `occluders`: null: rays alone, for as many emitters as that takes.
+  EmitterLight(const PatchMesh& mesh, const PatchMaterials& materials,
+               const ElementSurface& surface, const ElementSet& elements,
+               const OccluderSet* occluders, const std::vector<Emitter>& emitters,
+               const PointRays& rays);
+
+  std::shared_ptr<const ElementLights> lightsOf(const ElementShape& shape,
+                                                const ElementLights* parent) const override;
+  double irradiance(const SurfacePoint& point, const ElementLights* lights,
+                    std::span<double> out) const override;
+
+  /// Points that rays were cast from.
+  std::size_t byRays() const { return by_rays_; }
+
+ private:
+  struct Lights;
+  struct Candidate {
+    Index occluder;
+    bool cuts_emitter;  ///< reaches behind its plane
+  };
+
+  Vec3 scaled(const Vec3& at) const { return (at - elements_.middle) * elements_.scale; }
+  bool findAll(const ElementShape& shape, Lights& lights) const;
+  void thinOut(const ElementShape& shape, const Lights& from, Lights& lights) const;
+  bool ownsOccluder(Index owners, Index occluder) const;
+  double clipped(const SurfacePoint& point, const Lights& lights, std::span<double> out) const;
+  double aimed(const SurfacePoint& point, const Lights* lights, std::span<double> out) const;
+
+  const PatchMaterials& materials_;
+  const ElementSurface& surface_;
+  const ElementSet& elements_;
+  const OccluderSet* occluders_;
+  const std::vector<Emitter>& emitters_;
+  const PointRays& rays_;
+  OccluderTree tree_;
+  VisibilityKernels kernels_;
+  std::vector<Index> facet_of_patch_;       ///< N; kNone
+  std::vector<std::vector<Index>> own_;     ///< of a facet: occluders that it lies on
+  std::vector<std::array<float, 4>> aims_;  ///< of the rays, in [0, 1)
+  mutable std::atomic<std::size_t> by_rays_ = 0;
+};
+
+}  // namespace radiosity

@@ -1,0 +1,448 @@
+#include "elements/field_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numeric>
+
+#include "base/parallel.h"
+
+namespace radiosity {
+namespace {
+
+using Lights = std::shared_ptr<const ElementLights>;
+
+/// Where an edge's two halves have values, light between a tested element's points is off by about
+/// a quarter of what it was off by over the whole edge: errors of linear interpolation fall with
+/// the square of the length. At kinks they fall with the length alone; those are cut, as a rule.
+constexpr double kHalvedError = 0.25;
+
+/// An element at work.
+struct Node {
+  Index element = 0;
+  Index root = 0;
+  std::array<Index, 4> vertex{};
+  std::array<Index, 4> tag{};  ///< of its edges
+  Lights lights;
+  double error = 0;  ///< of interpolation over all of it, over the light there
+  bool tested = false;
+  bool wants_cut = false;
+  bool forced = false;
+
+  std::size_t corners() const { return vertex[3] == kNone ? 3 : 4; }
+};
+
+class FieldBuilder {
+ public:
+  FieldBuilder(const PatchMesh& mesh, const ElementSurface& surface, const FieldLight& light,
+               const RefinementRule& rule, int bands, Progress& progress)
+      : mesh_(mesh),
+        surface_(surface),
+        light_(light),
+        rule_(rule),
+        bands_(std::size_t(bands)),
+        progress_(progress),
+        points_(surface.points),
+        edges_(surface.edges) {}
+
+  FieldSummary build() {
+    std::vector<Node> nodes = roots();
+    evaluateCorners(nodes);
+    while (!nodes.empty()) {
+      progress_.check();
+      addTests(nodes);
+      evaluateNew();
+      judge(nodes);
+      limit(nodes);
+      nodes = cut(nodes);
+    }
+    conform();
+    measure();
+    out_.field.vertices = points_.size();
+    return std::move(out_);
+  }
+
+ private:
+  const SurfacePoint& point(Index v) const { return points_[v]; }
+  double* value(Index v) { return out_.field.values.data() + v * bands_; }
+
+  bool isWanted(Index root) const { return rule_.wanted.empty() || rule_.wanted[root] != 0; }
+  bool isLeftOut(Index root) const { return !isWanted(root) && std::isinf(rule_.unwanted_edge); }
+
+  double edgeOf(const Node& node) const {
+    double longest = 0;
+    const std::size_t n = node.corners();
+    for (std::size_t k = 0; k < n; ++k) {
+      longest = std::max(longest, glm::distance(point(node.vertex[k]).place,
+                                                point(node.vertex[(k + 1) % n]).place));
+    }
+    return longest;
+  }
+
+  ElementShape shapeOf(const Node& node) const {
+    ElementShape shape;
+    shape.root = node.root;
+    for (std::size_t k = 0; k < 4; ++k) {
+      shape.corners[k] = point(node.vertex[std::min(k, node.corners() - 1)]).place;
+    }
+    return shape;
+  }
+
+  std::vector<Node> roots() {
+    const std::size_t count = surface_.roots.size();
+    std::vector<Node> nodes(count);
+    out_.field.elements.resize(count);
+    root_of_.resize(count);
+    std::iota(root_of_.begin(), root_of_.end(), Index(0));
+    parallelFor(count, 16, [&](std::size_t r) {
+      Node& node = nodes[r];
+      node.element = node.root = Index(r);
+      if (progress_.cancelled() || isLeftOut(node.root)) return;
+      node.vertex = surface_.vertex[r];
+      node.tag = surface_.tag[r];
+      node.lights = light_.lightsOf(shapeOf(node), nullptr);
+    });
+    progress_.check();
+    std::erase_if(nodes, [&](const Node& node) { return isLeftOut(node.root); });
+    return nodes;
+  }
+
+  /// Each by the first root that has it.
+  void evaluateCorners(const std::vector<Node>& nodes) {
+    pending_.assign(points_.size(), {});
+    for (const Node& node : nodes) {
+      for (std::size_t k = 0; k < node.corners(); ++k) {
+        if (pending_[node.vertex[k]].vertex == kNone) {
+          pending_[node.vertex[k]] = {node.vertex[k], node.root, node.lights};
+        }
+      }
+    }
+    std::erase_if(pending_, [](const Pending& p) { return p.vertex == kNone; });
+    evaluateNew();
+  }
+
+  void evaluateNew() {
+    out_.field.values.resize(points_.size() * bands_, 0.0);
+    noise_.resize(points_.size(), 0.0);
+    out_.evaluated += pending_.size();
+    parallelFor(pending_.size(), 16, [&](std::size_t k) {
+      if (progress_.cancelled()) return;
+      const auto& [v, root, lights] = pending_[k];
+      if (lights && lights->kind == ElementLights::Kind::dark) return;
+      const double noise = light_.irradiance(points_[v], lights.get(), {value(v), bands_});
+      noise_[v] = std::max(0.0, noise);
+      if (noise >= 0 || rule_.patch_light.empty()) return;
+      const std::size_t patch = surface_.roots.patch[root];
+      std::copy_n(rule_.patch_light.data() + patch * bands_, bands_, value(v));
+    });
+    pending_.clear();
+    progress_.check();
+    progress_.advance();
+  }
+
+  bool isDear(const Node& node) const {
+    return node.lights && node.lights->kind == ElementLights::Kind::dear;
+  }
+  bool isDark(const Node& node) const {
+    return node.lights && node.lights->kind == ElementLights::Kind::dark;
+  }
+
+  double brightness(Index v) {
+    double sum = 0;
+    for (std::size_t b = 0; b < bands_; ++b) sum += std::abs(value(v)[b]);
+    return sum;
+  }
+
+  /// How far the corners are apart, over the light there.
+  double spreadOf(const Node& node) {
+    double low = brightness(node.vertex[0]);
+    double high = low;
+    for (std::size_t k = 1; k < node.corners(); ++k) {
+      low = std::min(low, brightness(node.vertex[k]));
+      high = std::max(high, brightness(node.vertex[k]));
+    }
+    return (high - low) / lightAt(node, high);
+  }
+
+  double lightAt(const Node& node, double own) const {
+    return std::max(own + rule_.other_light[surface_.roots.patch[node.root]], rule_.least_light);
+  }
+
+  /// Writes the elements' points, with vertices in the middle of those that are tested.
+  void addTests(std::vector<Node>& nodes) {
+    for (Node& node : nodes) {
+      Element& element = out_.field.elements[node.element];
+      const std::size_t n = node.corners();
+      element.corners = std::uint8_t(n);
+      element.first_point = Index(out_.field.points.size());
+      const double edge = edgeOf(node);
+      const bool partial = node.lights && node.lights->kind == ElementLights::Kind::partial;
+      node.forced = edge > rule_.longest_edge || (partial && edge > rule_.partial_edge);
+      double smallest = isWanted(node.root) ? rule_.smallest_edge : rule_.unwanted_edge;
+      if (isDear(node)) smallest = std::max(smallest, rule_.dear_edge);
+      const double spread =
+          rule_.least_spread * (surface_.curved[node.root] != 0 ? rule_.curved_spread : 1);
+      const double found = spreadOf(node);
+      const bool steep = found > rule_.steep_spread && isWanted(node.root) &&
+                         edge > rule_.steep_fraction * smallest;
+      node.tested =
+          !isDark(node) && ((edge > smallest && (node.forced || found >= spread)) || steep);
+      if (node.tested && points_.size() + 5 > rule_.most_vertices) {
+        node.tested = false;
+        ++out_.unrefined;
+      }
+      element.tested = node.tested ? 1 : 0;
+      for (std::size_t k = 0; k < n; ++k) out_.field.points.push_back(node.vertex[k]);
+      if (!node.tested) continue;
+      for (std::size_t k = 0; k < n; ++k) out_.field.points.push_back(middleOf(node, k));
+      if (n == 4) out_.field.points.push_back(centreOf(node));
+    }
+  }
+
+  Index addPoint(const SurfacePoint& fresh, const Node& node) {
+    points_.push_back(fresh);
+    const auto v = Index(points_.size() - 1);
+    pending_.push_back({v, node.root, node.lights});
+    return v;
+  }
+
+  Vec3 normalBetween(const Vec3& sum, const Node& node) const {
+    const double length = glm::length(sum);
+    return length > 0 ? sum / length : mesh_.normal[surface_.roots.patch[node.root]];
+  }
+
+  Index middleOf(const Node& node, std::size_t k) {
+    const Index a = node.vertex[k];
+    const Index b = node.vertex[(k + 1) % node.corners()];
+    SurfaceEdge inner;
+    inner.owners = mesh_.polygon[surface_.roots.patch[node.root]];
+    SurfaceEdge& edge = edges_.edge(a, b, node.tag[k], inner);
+    if (edge.middle != kNone) return edge.middle;
+    SurfacePoint middle;
+    middle.place = 0.5 * (points_[a].place + points_[b].place);
+    middle.position = middle.place + edge.inset;
+    middle.normal = points_[a].normal == points_[b].normal
+                        ? points_[a].normal
+                        : normalBetween(points_[a].normal + points_[b].normal, node);
+    middle.owners = edge.owners;
+    const Index v = edge.middle = addPoint(middle, node);
+    const SurfaceEdge half{kNone, edge.owners, edge.inset};
+    edges_.edge(a, v, 0, half);
+    edges_.edge(v, b, 0, half);
+    return v;
+  }
+
+  Index centreOf(const Node& node) {
+    SurfacePoint centre;
+    Vec3 normal(0.0);
+    for (const Index v : node.vertex) {
+      centre.place += 0.25 * points_[v].place;
+      normal += points_[v].normal;
+    }
+    centre.position = centre.place;
+    centre.normal = normalBetween(normal, node);
+    centre.owners = mesh_.polygon[surface_.roots.patch[node.root]];
+    return addPoint(centre, node);
+  }
+
+  /// The largest error of interpolation between the corners at the points in between, over the
+  /// light there.
+  void judge(std::vector<Node>& nodes) {
+    parallelFor(nodes.size(), 64, [&](std::size_t i) {
+      Node& node = nodes[i];
+      node.error = 0;
+      node.wants_cut = false;
+      if (!node.tested) return;
+      const Element& element = out_.field.elements[node.element];
+      const Index* p = out_.field.points.data() + element.first_point;
+      const std::size_t n = node.corners();
+      double own = 0;
+      for (std::size_t k = 0; k < 2 * n + (n == 4 ? 1 : 0); ++k) {
+        own = std::max(own, brightness(p[k]));
+      }
+      const double light = lightAt(node, own);
+      for (std::size_t k = 0; k < n; ++k) {
+        double off = 0;
+        for (std::size_t b = 0; b < bands_; ++b) {
+          off += std::abs(value(p[n + k])[b] - 0.5 * (value(p[k])[b] + value(p[(k + 1) % n])[b]));
+        }
+        node.error = std::max(node.error, off / light);
+      }
+      if (n == 4) {
+        double off = 0;
+        for (std::size_t b = 0; b < bands_; ++b) {
+          off += std::abs(value(p[8])[b] - 0.25 * (value(p[0])[b] + value(p[1])[b] +
+                                                   value(p[2])[b] + value(p[3])[b]));
+        }
+        node.error = std::max(node.error, off / light);
+      }
+      const double most = isDear(node) ? rule_.dear_tolerance : rule_.tolerance;
+      node.wants_cut = node.forced || node.error > rule_.steep_spread ||
+                       node.error * edgeOf(node) / rule_.reference_edge > most;
+    });
+  }
+
+  /// Where cutting all would take more vertices than allowed, those that promise most are cut.
+  void limit(std::vector<Node>& nodes) {
+    constexpr std::size_t kNewVertices = 16;  // of four tested children, at most
+    std::vector<Index> wanting;
+    for (Index k = 0; k < nodes.size(); ++k) {
+      if (nodes[k].wants_cut) wanting.push_back(k);
+    }
+    const std::size_t left =
+        rule_.most_vertices > points_.size() ? rule_.most_vertices - points_.size() : 0;
+    const std::size_t most = left / kNewVertices;
+    if (wanting.size() <= most) return;
+    std::sort(wanting.begin(), wanting.end(), [&](Index a, Index b) {
+      const double first = nodes[a].error * edgeOf(nodes[a]);
+      const double second = nodes[b].error * edgeOf(nodes[b]);
+      return first != second ? first > second : a < b;
+    });
+    for (std::size_t k = most; k < wanting.size(); ++k) nodes[wanting[k]].wants_cut = false;
+    out_.unrefined += wanting.size() - most;
+  }
+
+  std::vector<Node> cut(const std::vector<Node>& nodes) {
+    std::vector<Node> children;
+    std::vector<Lights> parents;
+    for (const Node& node : nodes) {
+      if (!node.wants_cut) continue;
+      const Index* p = out_.field.points.data() + out_.field.elements[node.element].first_point;
+      out_.field.elements[node.element].first_child = Index(out_.field.elements.size());
+      const auto add = [&](std::array<Index, 4> vertex) {
+        Node child;
+        child.element = Index(out_.field.elements.size());
+        child.root = node.root;
+        child.vertex = vertex;
+        out_.field.elements.emplace_back();
+        root_of_.push_back(node.root);
+        children.push_back(std::move(child));
+        parents.push_back(node.lights);
+      };
+      if (node.corners() == 4) {
+        add({p[0], p[4], p[8], p[7]});
+        add({p[4], p[1], p[5], p[8]});
+        add({p[8], p[5], p[2], p[6]});
+        add({p[7], p[8], p[6], p[3]});
+      } else {
+        add({p[0], p[3], p[5], kNone});
+        add({p[3], p[1], p[4], kNone});
+        add({p[5], p[4], p[2], kNone});
+        add({p[4], p[5], p[3], kNone});
+      }
+    }
+    parallelFor(children.size(), 16, [&](std::size_t k) {
+      if (progress_.cancelled()) return;
+      Node& child = children[k];
+      const bool settled =
+          parents[k] && (parents[k]->settled || parents[k]->kind == ElementLights::Kind::dark ||
+                         parents[k]->kind == ElementLights::Kind::plain);
+      child.lights = settled ? parents[k] : light_.lightsOf(shapeOf(child), parents[k].get());
+    });
+    progress_.check();
+    return children;
+  }
+
+  /// Vertices between a and b get the values of the straight line.
+  void straighten(Index a, Index b, Index tag) {
+    const SurfaceEdge* edge = edges_.find(a, b, tag);
+    if (edge == nullptr || edge->middle == kNone) return;
+    const Index middle = edge->middle;
+    for (std::size_t k = 0; k < bands_; ++k) {
+      value(middle)[k] = 0.5 * (value(a)[k] + value(b)[k]);
+    }
+    straighten(a, middle, 0);
+    straighten(middle, b, 0);
+  }
+
+  /// Coarse elements come first: what they set their finer neighbours to stays.
+  void conform() {
+    for (std::size_t e = 0; e < out_.field.elements.size(); ++e) {
+      const Element& element = out_.field.elements[e];
+      if (element.first_child != kNone || element.corners == 0 || !isWanted(root_of_[e])) continue;
+      const Index* p = out_.field.points.data() + element.first_point;
+      const std::size_t n = element.corners;
+      const bool root = e < surface_.roots.size();
+      for (std::size_t k = 0; k < n; ++k) {
+        const Index a = p[k];
+        const Index b = p[(k + 1) % n];
+        if (element.tested == 0) {
+          straighten(a, b, root ? surface_.tag[e][k] : 0);
+        } else {
+          straighten(a, p[n + k], 0);
+          straighten(p[n + k], b, 0);
+        }
+      }
+    }
+  }
+
+  /// Errors over all leaves.
+  void measure() {
+    out_.shortest_edge = surface_.diagonal;
+    for (Index e = 0; e < out_.field.elements.size(); ++e) {
+      const Element& element = out_.field.elements[e];
+      if (element.first_child == kNone && element.corners != 0 && isWanted(root_of_[e])) {
+        measureLeaf(element, root_of_[e]);
+      }
+    }
+  }
+
+  void measureLeaf(const Element& element, Index root) {
+    const Index* p = out_.field.points.data() + element.first_point;
+    const std::size_t n = element.corners;
+    const Vec3 a = points_[p[0]].place;
+    double area = 0.5 * glm::length(glm::cross(points_[p[1]].place - a, points_[p[2]].place - a));
+    if (n == 4) {
+      area += 0.5 * glm::length(glm::cross(points_[p[2]].place - a, points_[p[3]].place - a));
+    }
+    double own = 0;
+    double noise = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      own += brightness(p[k]) / double(n);
+      noise += noise_[p[k]] / double(n);
+      const double edge = glm::distance(points_[p[k]].place, points_[p[(k + 1) % n]].place);
+      out_.shortest_edge = std::min(out_.shortest_edge, edge / (element.tested != 0 ? 2 : 1));
+    }
+    double off = 0;
+    if (element.tested != 0) {
+      for (std::size_t k = 0; k < n; ++k) {
+        const double straight = 0.5 * (brightness(p[k]) + brightness(p[(k + 1) % n]));
+        off = std::max(off, std::abs(brightness(p[n + k]) - straight));
+      }
+    }
+    const double light = own + rule_.other_light[surface_.roots.patch[root]];
+    out_.interpolation_square += area * kHalvedError * kHalvedError * off * off;
+    out_.noise_square += area * noise;
+    out_.light_square += area * light * light;
+    out_.area += area;
+  }
+
+  const PatchMesh& mesh_;
+  const ElementSurface& surface_;
+  const FieldLight& light_;
+  const RefinementRule& rule_;
+  std::size_t bands_;
+  Progress& progress_;
+  std::vector<SurfacePoint> points_;
+  EdgeMap edges_;
+  std::vector<Index> root_of_;  ///< of each element
+  std::vector<double> noise_;   ///< V
+  /// A vertex to evaluate.
+  struct Pending {
+    Index vertex = kNone;
+    Index root = 0;
+    Lights lights;
+  };
+  std::vector<Pending> pending_;
+  FieldSummary out_;
+};
+
+}  // namespace
+
+FieldSummary buildField(const PatchMesh& mesh, const ElementSurface& surface,
+                        const FieldLight& light, const RefinementRule& rule, int bands,
+                        Progress& progress) {
+  return FieldBuilder(mesh, surface, light, rule, bands, progress).build();
+}
+
+}  // namespace radiosity

@@ -1,0 +1,271 @@
+#include "elements/surface_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <tuple>
+
+namespace radiosity {
+namespace {
+
+/// Inset of what is curved, of the diagonal.
+constexpr double kLeast = 1e-5;
+
+double diagonalOf(const PatchMesh& mesh) {
+  if (mesh.vertices.empty()) return 0;
+  Vec3 lower = mesh.vertices.front();
+  Vec3 upper = lower;
+  for (const Vec3& v : mesh.vertices) {
+    lower = glm::min(lower, v);
+    upper = glm::max(upper, v);
+  }
+  return glm::distance(lower, upper);
+}
+
+bool isConvexQuad(const PatchMesh& mesh, std::size_t patch) {
+  const auto outline = mesh.outline(patch);
+  if (outline.size() != 4) return false;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Vec3& a = mesh.vertices[outline[(k + 3) % 4]];
+    const Vec3& b = mesh.vertices[outline[k]];
+    const Vec3& c = mesh.vertices[outline[(k + 1) % 4]];
+    // A corner in line with its neighbours would put the map's fold on an edge.
+    const double turn = glm::dot(glm::cross(b - a, c - b), mesh.normal[patch]);
+    if (!(turn > 1e-3 * glm::distance(a, b) * glm::distance(b, c))) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+/// A root's edge between two vertices of the mesh, sorted so that those of one edge come together.
+struct ElementSurface::RootEdge {
+  Index low, high;
+  Index root;
+  Index number;
+  bool forward;  ///< from low to high
+};
+
+ElementSurface::ElementSurface(const PatchMesh& mesh, double crease, const Inset& inset)
+    : diagonal(diagonalOf(mesh)), inset_(inset) {
+  addRoots(mesh);
+  for (Index p = 0; p < mesh.polygons.size(); ++p) owners.push_back({p});
+  addVertices(mesh, cornerGroups(mesh, crease));
+  addEdges(mesh, crease);
+  insetCorners(mesh);
+}
+
+void ElementSurface::addRoots(const PatchMesh& mesh) {
+  roots.of_patch.push_back(0);
+  for (Index i = 0; i < mesh.size(); ++i) {
+    if (mesh.area[i] > 0 && mesh.polygon[i] != kNone) {
+      const auto outline = mesh.outline(i);
+      if (isConvexQuad(mesh, i)) {
+        roots.patch.push_back(i);
+        roots.corner.push_back({outline[0], outline[1], outline[2], outline[3]});
+      } else {
+        for (std::size_t t = mesh.piece_offset[i]; t < mesh.piece_offset[i + 1]; ++t) {
+          const auto& piece = mesh.pieces[t];
+          roots.patch.push_back(i);
+          roots.corner.push_back({piece[0], piece[1], piece[2], kNone});
+        }
+      }
+    }
+    roots.of_patch.push_back(roots.size());
+  }
+}
+
+Index ElementSurface::ownersOf(std::vector<Index> polygons) {
+  std::sort(polygons.begin(), polygons.end());
+  polygons.erase(std::unique(polygons.begin(), polygons.end()), polygons.end());
+  if (polygons.size() == 1) return polygons[0];
+  owners.push_back(std::move(polygons));
+  return Index(owners.size() - 1);
+}
+
+/// One vertex a corner group, then those inside patches.
+void ElementSurface::addVertices(const PatchMesh& mesh, const CornerGroups& groups) {
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    SurfacePoint point;
+    point.place = mesh.vertices[mesh.corners[groups.cornersOf(g)[0]]];
+    std::vector<Index> polygons;
+    Vec3 normal(0.0);
+    for (const Index i : groups.patchesOf(g)) {
+      normal += mesh.area[i] * mesh.normal[i];
+      if (mesh.polygon[i] != kNone) polygons.push_back(mesh.polygon[i]);
+    }
+    if (!polygons.empty()) point.owners = ownersOf(std::move(polygons));
+    const Index first = groups.patchesOf(g)[0];
+    const bool planar = point.owners < mesh.polygons.size();
+    const double length = glm::length(normal);
+    point.normal = planar || !(length > 0) ? mesh.normal[first] : normal / length;
+    points.push_back(point);
+  }
+  vertex.resize(roots.size());
+  curved.assign(roots.size(), 0);
+  for (std::size_t r = 0; r < roots.size(); ++r) {
+    const Index patch = roots.patch[r];
+    const auto outline = mesh.outline(patch);
+    for (std::size_t k = 0; k < roots.cornerCount(r); ++k) {
+      const Index v = roots.corner[r][k];
+      const auto at = std::find(outline.begin(), outline.end(), v);
+      if (at != outline.end()) {
+        const std::size_t corner = mesh.corner_offset[patch] + std::size_t(at - outline.begin());
+        vertex[r][k] = groups.of_corner[corner];
+        if (points[vertex[r][k]].owners >= mesh.polygons.size()) curved[r] = 1;
+        continue;
+      }
+      // Inside the patch: the roots of one patch stand side by side.
+      vertex[r][k] = kNone;
+      for (std::size_t other = roots.of_patch[patch]; other < r; ++other) {
+        for (std::size_t j = 0; j < 3; ++j) {
+          if (roots.corner[other][j] == v) vertex[r][k] = vertex[other][j];
+        }
+      }
+      if (vertex[r][k] != kNone) continue;
+      vertex[r][k] = Index(points.size());
+      points.push_back(
+          {mesh.vertices[v], mesh.vertices[v], mesh.normal[patch], mesh.polygon[patch]});
+    }
+    if (roots.cornerCount(r) == 3) vertex[r][3] = kNone;
+  }
+}
+
+/// The edge across which the root of `of` goes on: the one other that runs against it on the same
+/// smooth side, if nothing else stands there.
+const ElementSurface::RootEdge* ElementSurface::partner(const PatchMesh& mesh,
+                                                        std::span<const RootEdge> run,
+                                                        const RootEdge& of, double cosine) const {
+  const Index a = roots.patch[of.root];
+  const auto goesOn = [&](const RootEdge& edge) {
+    const Index b = roots.patch[edge.root];
+    if (edge.root == of.root || edge.forward == of.forward) return false;
+    if (a == b) return true;
+    if (mesh.surface[a] != mesh.surface[b] || mesh.twin[a] == b) return false;
+    if (mesh.polygon[a] != mesh.polygon[b] && glm::dot(mesh.normal[a], mesh.normal[b]) < cosine) {
+      return false;
+    }
+    const auto& mine = vertex[of.root];
+    const auto& its = vertex[edge.root];
+    const std::size_t n = roots.cornerCount(of.root);
+    const std::size_t m = roots.cornerCount(edge.root);
+    return mine[of.number] == its[(edge.number + 1) % m] &&
+           mine[(of.number + 1) % n] == its[edge.number];
+  };
+  const RootEdge* found = nullptr;
+  for (const RootEdge& edge : run) {
+    if (!goesOn(edge)) continue;
+    if (found != nullptr) return nullptr;
+    found = &edge;
+  }
+  if (found == nullptr) return nullptr;
+  const Index b = roots.patch[found->root];
+  for (const RootEdge& edge : run) {
+    const Index c = roots.patch[edge.root];
+    if (c != a && c != b && mesh.twin[a] != c && mesh.twin[b] != c) return nullptr;
+  }
+  return found;
+}
+
+double ElementSurface::insetOf(const PatchMesh& mesh, std::size_t root) const {
+  const std::size_t n = roots.cornerCount(root);
+  double longest = 0;
+  Vec3 twice(0.0);
+  const Vec3 base = mesh.vertices[roots.corner[root][0]];
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vec3 a = mesh.vertices[roots.corner[root][k]];
+    const Vec3 b = mesh.vertices[roots.corner[root][(k + 1) % n]];
+    longest = std::max(longest, glm::distance(a, b));
+    twice += glm::cross(a - base, b - base);
+  }
+  if (!(longest > 0)) return 0;
+  return std::min(inset_.of_diagonal * diagonal, inset_.of_height * glm::length(twice) / longest);
+}
+
+void ElementSurface::addEdges(const PatchMesh& mesh, double crease) {
+  std::vector<RootEdge> all;
+  for (Index r = 0; r < roots.size(); ++r) {
+    const auto n = Index(roots.cornerCount(r));
+    for (Index k = 0; k < n; ++k) {
+      const Index from = roots.corner[r][k];
+      const Index to = roots.corner[r][(k + 1) % n];
+      all.push_back({std::min(from, to), std::max(from, to), r, k, from < to});
+    }
+  }
+  std::sort(all.begin(), all.end(), [](const RootEdge& a, const RootEdge& b) {
+    return std::tie(a.low, a.high, a.root, a.number) < std::tie(b.low, b.high, b.root, b.number);
+  });
+  tag.resize(roots.size());
+  const double cosine = std::cos(crease * std::numbers::pi / 180);
+  for (std::size_t first = 0; first < all.size();) {
+    std::size_t end = first + 1;
+    while (end < all.size() && all[end].low == all[first].low && all[end].high == all[first].high) {
+      ++end;
+    }
+    const auto run = std::span<const RootEdge>(all).subspan(first, end - first);
+    for (const RootEdge& edge : run) {
+      const auto n = Index(roots.cornerCount(edge.root));
+      const Index a = vertex[edge.root][edge.number];
+      const Index b = vertex[edge.root][(edge.number + 1) % n];
+      const Index patch = roots.patch[edge.root];
+      const RootEdge* across = partner(mesh, run, edge, cosine);
+      SurfaceEdge fresh;
+      if (across != nullptr) {
+        tag[edge.root][edge.number] = 0;
+        const Index other = mesh.polygon[roots.patch[across->root]];
+        fresh.owners = edges.find(a, b) != nullptr ? edges.find(a, b)->owners
+                                                   : ownersOf({mesh.polygon[patch], other});
+      } else {
+        tag[edge.root][edge.number] = edge.root + 1;
+        fresh.owners = mesh.polygon[patch];
+        const Vec3 along = points[b].place - points[a].place;
+        const double length = glm::length(along);
+        if (length > 0) {
+          fresh.inset = glm::cross(mesh.normal[patch], along / length) * insetOf(mesh, edge.root);
+        }
+      }
+      edges.edge(a, b, tag[edge.root][edge.number], fresh);
+    }
+    first = end;
+  }
+}
+
+/// Corners on borders move to the inner side of all of them.
+void ElementSurface::insetCorners(const PatchMesh& mesh) {
+  std::vector<Vec3> inward(points.size(), Vec3(0.0));
+  std::vector<double> most(points.size(), inset_.of_diagonal * diagonal);  // distance
+  std::vector<std::uint8_t> border(points.size(), 0);
+  for (Index r = 0; r < roots.size(); ++r) {
+    const auto n = Index(roots.cornerCount(r));
+    const double inset = insetOf(mesh, r);
+    for (Index k = 0; k < n; ++k) {
+      most[vertex[r][k]] = std::min(most[vertex[r][k]], inset);
+      if (tag[r][k] == 0) continue;
+      for (const Index v : {vertex[r][k], vertex[r][(k + 1) % n]}) {
+        inward[v] += edges.find(vertex[r][k], vertex[r][(k + 1) % n], tag[r][k])->inset;
+        border[v] = 1;
+      }
+    }
+  }
+  // Where borders face each other, as around the end of a wall, any root's middle will do.
+  const double least = 1e-3 * inset_.of_diagonal * diagonal;
+  for (Index r = 0; r < roots.size(); ++r) {
+    for (std::size_t k = 0; k < roots.cornerCount(r); ++k) {
+      const Index v = vertex[r][k];
+      if (border[v] != 0 && glm::length(inward[v]) < least) {
+        inward[v] = mesh.centroid[roots.patch[r]] - points[v].place;
+      }
+    }
+  }
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    const double length = glm::length(inward[v]);
+    points[v].position = points[v].place;
+    // Where facets meet smoothly, one's plane soon leaves the other's surface.
+    if (points[v].owners >= mesh.polygons.size()) most[v] = std::min(most[v], kLeast * diagonal);
+    if (length > 0) points[v].position += inward[v] * (most[v] / length);
+  }
+}
+
+}  // namespace radiosity

@@ -1,0 +1,95 @@
+// The points at which light is evaluated: where they lie, which way they face, and who shares them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "radiosity/elements.h"
+#include "radiosity/patch_mesh.h"
+
+namespace radiosity {
+
+/// How far inside borders, creases and contacts light is evaluated; on them, what it sees would be
+/// decided by rounding.
+struct Inset {
+  double of_diagonal;  ///< of the scene, ...
+  double of_height;    ///< ... but at most of a root's least height: a sliver's vertices stay on it
+};
+
+/// A vertex of elements.
+struct SurfacePoint {
+  Vec3 place{0.0};     ///< of the element's corner
+  Vec3 position{0.0};  ///< where light is evaluated
+  Vec3 normal{0.0};    ///< unit; where facets meet smoothly, the mean of theirs
+  Index owners = 0;    ///< into ElementSurface::owners
+};
+
+/// An edge of elements that has a middle, or may get one.
+struct SurfaceEdge {
+  Index middle = kNone;  ///< vertex
+  Index owners = 0;
+  Vec3 inset{0.0};
+};
+
+/// The edges of one field's elements by their ends. Roots on either side of a border or a crease
+/// may have both ends in common, but not the edge: such an edge has a tag of its own.
+class EdgeMap {
+ public:
+  SurfaceEdge* find(Index a, Index b, Index tag = 0) {
+    const auto at = edges_.find(key(a, b, tag));
+    return at == edges_.end() ? nullptr : &at->second;
+  }
+  SurfaceEdge& edge(Index a, Index b, Index tag, const SurfaceEdge& fresh) {
+    return edges_.try_emplace(key(a, b, tag), fresh).first->second;
+  }
+
+ private:
+  struct Key {
+    std::uint64_t ends;
+    Index tag;
+    bool operator==(const Key&) const = default;
+  };
+  struct KeyHash {
+    std::size_t operator()(const Key& k) const {
+      std::uint64_t x = (k.ends ^ (std::uint64_t(k.tag) << 17)) * 0x9e3779b97f4a7c15ull;
+      return std::size_t(x ^ (x >> 32));
+    }
+  };
+  static Key key(Index a, Index b, Index tag) {
+    return {a < b ? std::uint64_t(a) << 32 | b : std::uint64_t(b) << 32 | a, tag};
+  }
+  std::unordered_map<Key, SurfaceEdge, KeyHash> edges_;
+};
+
+/// The roots of elements over a mesh, and the vertices at their corners. Neighbours share a vertex
+/// where they are a smooth side (cornerGroups()), and an edge where nothing else stands on it.
+struct ElementSurface {
+  ElementSurface(const PatchMesh& mesh, double crease, const Inset& inset);
+
+  double diagonal = 0;  ///< metres
+  ElementRoots roots;
+  std::vector<std::array<Index, 4>> vertex;  ///< R, of each root's corners, into points
+  std::vector<std::array<Index, 4>> tag;     ///< R, of each root's edges
+  std::vector<SurfacePoint> points;
+  EdgeMap edges;                           ///< of the roots
+  std::vector<std::vector<Index>> owners;  ///< polygons; set p < P is polygon p alone
+  std::vector<std::uint8_t> curved;        ///< R, 1: some corner's normal is not the root's own
+
+ private:
+  struct Corner;
+  struct RootEdge;
+  void addRoots(const PatchMesh& mesh);
+  void addVertices(const PatchMesh& mesh, const CornerGroups& groups);
+  void addEdges(const PatchMesh& mesh, double crease);
+  double insetOf(const PatchMesh& mesh, std::size_t root) const;
+  void insetCorners(const PatchMesh& mesh);
+  const RootEdge* partner(const PatchMesh& mesh, std::span<const RootEdge> run, const RootEdge& of,
+                          double cosine) const;
+  Inset inset_;
+  Index ownersOf(std::vector<Index> polygons);
+};
+
+}  // namespace radiosity

@@ -1,0 +1,185 @@
+#include "formfactor/rays/point_rays.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numeric>
+
+#include "base/geometry/plane_frame.h"
+#include "base/parallel.h"
+#include "formfactor/rays/disc.h"
+#include "formfactor/rays/sobol.h"
+
+namespace radiosity {
+namespace {
+
+constexpr int kLanes = 16;
+/// Rays start this far in front of their point, in scenes of size 1: as RayCaster's.
+constexpr float kLift = 2e-7F;
+/// Rays to a point end this much of their length before it.
+constexpr float kShort = 1e-5F;
+constexpr int kCells = 8;  ///< along each side of the disc's square: a packet a cell of 1,024 rays
+
+/// Cells row by row, to and fro, so that neighbours in the order are neighbours on the disc.
+int cellOf(float x, float y) {
+  const int row = std::min(int(y * kCells), kCells - 1);
+  const int column = std::min(int(x * kCells), kCells - 1);
+  return row * kCells + (row % 2 == 0 ? column : kCells - 1 - column);
+}
+
+/// What a ray to a point must not be stopped by; handed through Embree's context.
+struct SightContext {
+  RTCIntersectContext context;  // first: Embree gives back a pointer to it
+  const Index* source;
+  std::span<const Index> own;
+  Index there;
+};
+
+/// An intersection filter of a single ray: what either end lies on stops nothing.
+void passEnds(const RTCFilterFunctionNArguments* hit) {
+  const auto* sight = reinterpret_cast<const SightContext*>(hit->context);
+  const Index polygon = sight->source[RTCHitN_primID(hit->hit, 1, 0)];
+  const bool own = std::find(sight->own.begin(), sight->own.end(), polygon) != sight->own.end();
+  if (own || polygon == sight->there) hit->valid[0] = 0;
+}
+
+}  // namespace
+
+HemisphereSet::HemisphereSet(std::size_t rays, std::uint64_t seed) : rays_(rays) {
+  const SobolPoints sobol;
+  std::array<std::vector<float>, kDimensions> points;
+  PointArrays out{};
+  for (std::size_t d = 0; d < kDimensions; ++d) {
+    points[d].resize(rays);
+    out[d] = points[d].data();
+  }
+  std::vector<std::size_t> order(rays);
+  for (std::size_t set = 0; set < kSets; ++set) {
+    sobol.points(0, rays, seed + set, out);
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return cellOf(points[0][a], points[1][a]) < cellOf(points[0][b], points[1][b]);
+    });
+    for (const std::size_t k : order) {
+      float u = 0;
+      float v = 0;
+      toDisc(points[0][k], points[1][k], u, v);
+      directions_.emplace_back(u, v, std::sqrt(std::max(0.0F, 1 - u * u - v * v)));
+      first_.push_back(k < rays / 2 ? 1 : 0);
+    }
+  }
+}
+
+PointRays::PointRays(const PatchMesh& mesh) : scene_(mesh), embree_(scene_, mesh) {
+  targets_.resize(embree_.triangles().size());
+  source_.resize(targets_.size());
+  parallelFor(targets_.size(), 1024, [&](std::size_t t) {
+    const ViewPolygon& polygon = scene_.polygons[embree_.polygonOf()[t]];
+    source_[t] = polygon.source;
+    const auto& corners = embree_.triangles()[t];
+    const std::vector<Vec3>& vertices = embree_.vertices();
+    const Vec3 a = vertices[corners[0]];
+    for (std::size_t side = 0; side < 2; ++side) {
+      RayTarget& target = targets_[t][side];
+      target.item = polygon.side[side].item;
+      if (polygon.side[side].grid == kNone) continue;
+      target.place(scene_.grids[polygon.side[side].grid], a - polygon.origin,
+                   vertices[corners[1]] - a, vertices[corners[2]] - a);
+    }
+  });
+}
+
+glm::vec3 PointRays::lifted(const RaySource& from) const {
+  return embree_.place(from.position * scene_.scale) + kLift * glm::vec3(from.normal);
+}
+
+RayEnd PointRays::endOf(const RTCRayHit16& packet, int k, std::span<const Index> own) const {
+  RayEnd end;
+  if (packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) return end;
+  const std::uint32_t triangle = packet.hit.primID[k];
+  const Index polygon = source_[triangle];
+  if (std::find(own.begin(), own.end(), polygon) != own.end()) {
+    end.patch = RayEnd::kOwn;
+    return end;
+  }
+  const glm::vec3 along(packet.ray.dir_x[k], packet.ray.dir_y[k], packet.ray.dir_z[k]);
+  const glm::vec3 normal(packet.hit.Ng_x[k], packet.hit.Ng_y[k], packet.hit.Ng_z[k]);
+  std::uint32_t item = targets_[triangle][glm::dot(normal, along) < 0 ? 0 : 1].itemAt(
+      packet.hit.u[k], packet.hit.v[k]);
+  if (item >= scene_.patches) {
+    const RTCHit front = embree_.frontAt(packet, k);
+    if (front.geomID != RTC_INVALID_GEOMETRY_ID) {
+      item = targets_[front.primID][0].itemAt(front.u, front.v);
+    }
+  }
+  end.patch = item < scene_.patches ? item : RayEnd::kBlack;
+  const glm::vec3 from(packet.ray.org_x[k], packet.ray.org_y[k], packet.ray.org_z[k]);
+  end.at = (Vec3(from + packet.ray.tfar[k] * along) + embree_.middle()) / scene_.scale;
+  return end;
+}
+
+void PointRays::look(const RaySource& from, const HemisphereSet& set, std::size_t number,
+                     double turn, std::span<RayEnd> ends) const {
+  const FlushDenormals flush;
+  const PlaneFrame frame = makeFrame(from.position, from.normal, axisAcross(from.normal));
+  const double c = std::cos(turn);
+  const double s = std::sin(turn);
+  const glm::vec3 x(c * frame.u + s * frame.v);
+  const glm::vec3 y(c * frame.v - s * frame.u);
+  const glm::vec3 z(frame.n);
+  const glm::vec3 start = lifted(from);
+  alignas(64) std::array<int, kLanes> valid;
+  valid.fill(-1);
+  RTCRayHit16 packet;
+  for (std::size_t first = 0; first < set.rays(); first += kLanes) {
+    for (int k = 0; k < kLanes; ++k) {
+      const glm::vec3& d = set.direction(number, first + std::size_t(k));
+      const glm::vec3 along = d.x * x + d.y * y + d.z * z;
+      packet.ray.org_x[k] = start.x;
+      packet.ray.org_y[k] = start.y;
+      packet.ray.org_z[k] = start.z;
+      packet.ray.dir_x[k] = along.x;
+      packet.ray.dir_y[k] = along.y;
+      packet.ray.dir_z[k] = along.z;
+      packet.ray.tnear[k] = 0;
+      packet.ray.tfar[k] = std::numeric_limits<float>::infinity();
+      packet.ray.time[k] = 0;
+      packet.ray.mask[k] = 0xffffffffu;
+      packet.ray.flags[k] = 0;
+      packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+      packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+    }
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect16(valid.data(), embree_.handle(), &context, &packet);
+    for (int k = 0; k < kLanes; ++k) ends[first + std::size_t(k)] = endOf(packet, k, from.own);
+  }
+}
+
+void PointRays::see(const RaySource& from, std::span<const Vec3> to, std::span<const Index> there,
+                    std::span<std::uint8_t> seen) const {
+  const FlushDenormals flush;
+  const glm::vec3 start = lifted(from);
+  for (std::size_t k = 0; k < to.size(); ++k) {
+    SightContext sight{{}, source_.data(), from.own, there[k]};
+    rtcInitIntersectContext(&sight.context);
+    sight.context.filter = passEnds;
+    const glm::vec3 along = embree_.place(to[k] * scene_.scale) - start;
+    RTCRay ray{};
+    ray.org_x = start.x;
+    ray.org_y = start.y;
+    ray.org_z = start.z;
+    ray.dir_x = along.x;
+    ray.dir_y = along.y;
+    ray.dir_z = along.z;
+    ray.tfar = 1 - kShort;
+    ray.mask = 0xffffffffu;
+    rtcOccluded1(embree_.handle(), &sight.context, &ray);
+    seen[k] = ray.tfar < 0 ? 0 : 1;
+  }
+}
+
+}  // namespace radiosity

@@ -1,0 +1,81 @@
+// Rays from one point of a surface: what it sees, and whether it sees another point.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "formfactor/rays/embree_scene.h"
+#include "formfactor/rays/ray_target.h"
+#include "formfactor/view_scene.h"
+#include "radiosity/patch_mesh.h"
+
+namespace radiosity {
+
+/// Where a ray ended.
+struct RayEnd {
+  static constexpr std::uint32_t kSky = kNone - 1;
+  static constexpr std::uint32_t kBlack = kNone - 2;  ///< a back without patches
+  static constexpr std::uint32_t kOwn = kNone - 3;    ///< what it left from: no true hit
+  std::uint32_t patch = kSky;
+  Vec3 at{0.0};  ///< metres; of a patch
+};
+
+/// A point of a surface; `own`: the polygons that it lies on, which no ray from it ends on.
+struct RaySource {
+  Vec3 position{0.0};
+  Vec3 normal{0.0};  ///< unit
+  std::span<const Index> own;
+};
+
+/// The first 2^k points of some scrambled Sobol sequences, raised from the disc to
+/// cosine-distributed directions (Malley's method, as RayCaster) and sorted so that packets of 16
+/// leave in nearly one direction. A point takes one of the sets and turns it about its normal.
+class HemisphereSet {
+ public:
+  /// `rays`: a power of two, 16 to kMostPoints.
+  HemisphereSet(std::size_t rays, std::uint64_t seed);
+  std::size_t rays() const { return rays_; }
+  static constexpr std::size_t kSets = 16;
+  /// Direction k of a set about the axis z. Those with isFirst(k) are the first half of the
+  /// sequence: a set of its own, as is the rest.
+  const glm::vec3& direction(std::size_t set, std::size_t k) const {
+    return directions_[set * rays_ + k];
+  }
+  bool isFirst(std::size_t set, std::size_t k) const { return first_[set * rays_ + k] != 0; }
+
+ private:
+  std::size_t rays_;
+  std::vector<glm::vec3> directions_;
+  std::vector<std::uint8_t> first_;
+};
+
+/// All calls but the constructor are thread-safe.
+class PointRays {
+ public:
+  /// `mesh` is kept by reference.
+  explicit PointRays(const PatchMesh& mesh);
+
+  /// Where the rays of one of the sets end, turned about the normal by `turn` radians. `ends` has
+  /// set.rays() places.
+  void look(const RaySource& from, const HemisphereSet& set, std::size_t number, double turn,
+            std::span<RayEnd> ends) const;
+
+  /// seen[k]: nothing stands between the point and `to[k]`. What lies on `there`, a polygon, and on
+  /// the source's own polygons does not count.
+  void see(const RaySource& from, std::span<const Vec3> to, std::span<const Index> there,
+           std::span<std::uint8_t> seen) const;
+
+ private:
+  glm::vec3 lifted(const RaySource& from) const;
+  RayEnd endOf(const RTCRayHit16& packet, int k, std::span<const Index> own) const;
+
+  ViewScene scene_;
+  EmbreeScene embree_;
+  std::vector<std::array<RayTarget, 2>> targets_;  ///< by triangle; front, back
+  std::vector<Index> source_;                      ///< the mesh's polygon of each triangle
+};
+
+}  // namespace radiosity

@@ -1,0 +1,54 @@
+// Which patch a ray has hit, from where on a triangle it ended.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <glm/geometric.hpp>
+
+#include "formfactor/patch_grid.h"
+
+namespace radiosity {
+
+/// What one side of a triangle counts for, and how a hit's position (Embree's s and t) maps to the
+/// grid of its polygon: u[0] + u[1] s + u[2] t.
+struct RayTarget {
+  const PatchGrid* grid = nullptr;  ///< null: `item` everywhere
+  std::array<float, 3> u{};
+  std::array<float, 3> v{};
+  std::uint32_t item = 0;
+
+  /// The triangle's first corner from the polygon's origin, and its edges from there.
+  void place(const PatchGrid& of, const Vec3& from, const Vec3& ab, const Vec3& ac) {
+    grid = &of;
+    u = {float(glm::dot(of.uAxis(), from) + of.uOffset()), float(glm::dot(of.uAxis(), ab)),
+         float(glm::dot(of.uAxis(), ac))};
+    v = {float(glm::dot(of.vAxis(), from) + of.vOffset()), float(glm::dot(of.vAxis(), ab)),
+         float(glm::dot(of.vAxis(), ac))};
+  }
+
+  /// As PolygonSide::item.
+  std::uint32_t itemAt(float s, float t) const {
+    if (grid == nullptr) return item;
+    const float gu = u[0] + s * u[1] + t * u[2];
+    const float gv = v[0] + s * v[1] + t * v[2];
+    const std::int32_t column = cellAt(gu, grid->columns());
+    const std::int32_t row = cellAt(gv, grid->rows());
+    std::int32_t entry =
+        grid->cells()[std::size_t(row) * std::size_t(grid->columns()) + std::size_t(column)];
+    while (entry < 0) {
+      const CellNode& node = grid->node(~entry);
+      entry = node.a * gu + node.b * gv + node.c >= 0 ? node.inside : node.outside;
+    }
+    return std::uint32_t(entry);
+  }
+
+ private:
+  /// The cell of a grid at a coordinate: cells are centred on whole numbers.
+  static std::int32_t cellAt(float x, std::int32_t cells) {
+    constexpr float kHalf = 0.5;
+    return std::clamp(std::int32_t(x + kHalf), 0, cells - 1);
+  }
+};
+
+}  // namespace radiosity

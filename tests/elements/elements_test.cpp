@@ -1,0 +1,308 @@
+// Light at the vertices of elements: against closed forms, and what any field must keep.
+#include "radiosity/elements.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <random>
+
+#include "radiosity/form_factors.h"
+#include "radiosity/solve.h"
+#include "support/scene_builder.h"
+
+namespace radiosity {
+namespace {
+
+using test::SceneBuilder;
+
+/// From a point on a level surface to a level rectangle with a corner straight above it, at height
+/// h (Howell's catalogue, B-3).
+double cornerFactor(double x, double y, double h) {
+  const double a = std::hypot(x, h);
+  const double b = std::hypot(y, h);
+  return (x / a * std::atan(y / a) + y / b * std::atan(x / b)) / (2 * std::numbers::pi);
+}
+
+/// From the origin to [x0, x1] x [y0, y1] at height h: B-3 is odd in both lengths, so the four
+/// corners add up to it.
+double rectangleFactor(double x0, double x1, double y0, double y1, double h) {
+  if (!(x1 > x0)) return 0;
+  return cornerFactor(x1, y1, h) - cornerFactor(x0, y1, h) - cornerFactor(x1, y0, h) +
+         cornerFactor(x0, y0, h);
+}
+
+struct Lit {
+  explicit Lit(const Scene& scene, std::size_t patches, const ElementOptions& options = {})
+      : Lit(scene, patches, options, [](const PatchMesh& of, const PatchMaterials& with) {
+          return std::vector<double>(of.size() * std::size_t(with.bands), 0.0);
+        }) {}
+
+  using Irradiance = std::function<std::vector<double>(const PatchMesh&, const PatchMaterials&)>;
+  Lit(const Scene& scene, std::size_t patches, const ElementOptions& options,
+      const Irradiance& irradiance)
+      : mesh(meshScene(scene, {.patches = patches}, quiet).mesh),
+        materials(patchMaterials(scene, mesh)),
+        elements(computeElements(mesh, materials, irradiance(mesh, materials), options, {}, quiet)),
+        lookup(mesh, elements.roots) {}
+
+  /// Light of one field, of the first band, at a point of a patch.
+  double at(const ElementField& field, std::size_t patch, const Vec3& point) const {
+    std::vector<double> sum(std::size_t(elements.bands), 0.0);
+    const std::size_t root = lookup.rootAt(patch, point);
+    EXPECT_TRUE(lookup.add(field, root, lookup.place(root, point), sum));
+    return sum[0];
+  }
+
+  /// The patch of a level surface that holds (x, y).
+  std::size_t patchAt(const std::string& surface, double x, double y) const {
+    for (std::size_t i = 0; i < mesh.size(); ++i) {
+      if (mesh.surface_names[mesh.surface[i]] != surface) continue;
+      const auto outline = mesh.outline(i);
+      bool inside = true;
+      for (std::size_t k = 0; k < outline.size(); ++k) {
+        const Vec3 a = mesh.vertices[outline[k]];
+        const Vec3 e = mesh.vertices[outline[(k + 1) % outline.size()]] - a;
+        inside = inside && glm::dot(glm::cross(e, Vec3(x, y, a.z) - a), mesh.normal[i]) >= 0;
+      }
+      if (inside) return i;
+    }
+    ADD_FAILURE() << "no patch of " << surface << " at " << x << ", " << y;
+    return 0;
+  }
+
+  Progress quiet;
+  PatchMesh mesh;
+  PatchMaterials materials;
+  Elements elements;
+  ElementLookup lookup;
+};
+
+/// A floor, and a lamp 2 m above it that shines down with an exitance of 1.
+SceneBuilder lampOverFloor() {
+  SceneBuilder builder;
+  builder.level(builder.surface("floor", 0.0), -2, -2, 2, 2, 0);
+  builder.level(builder.surface("lamp", 0.0, 1.0), -0.5, -1, 0.5, 1, 2, false);
+  return builder;
+}
+
+/// Where there is less than a tenth of the mean light, errors count as if there were so much: so
+/// they are looked at over the light straight below the lamp, ten times that at the floor's
+/// corners.
+TEST(Elements, AnUnoccludedLampIsItsClosedForm) {
+  const double below = rectangleFactor(-0.5, 0.5, -1, 1, 2);
+  for (const double tolerance : {0.01, 0.001}) {
+    const Lit lit(lampOverFloor().scene(), 200, {.tolerance = tolerance});
+    EXPECT_EQ(lit.elements.report.direct, DirectLight::exact);
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> place(-1.99, 1.99);
+    for (int k = 0; k < 500; ++k) {
+      const double x = place(random);
+      const double y = place(random);
+      const double truth = rectangleFactor(-0.5 - x, 0.5 - x, -1 - y, 1 - y, 2);
+      const double found = lit.at(lit.elements.direct, lit.patchAt("floor/floor", x, y), {x, y, 0});
+      ASSERT_NEAR(found, truth, tolerance * below) << x << ", " << y;
+    }
+  }
+}
+
+/// A sheet half-way up, from x = -.1 to .1 and long in y, takes a strip off the lamp that moves
+/// against the point: x from -.2 - x0 to .2 - x0.
+double pastTheBar(double x, double y) {
+  const double from = std::clamp(-0.2 - x, -0.5, 0.5);
+  const double to = std::clamp(0.2 - x, -0.5, 0.5);
+  return rectangleFactor(-0.5 - x, from - x, -1 - y, 1 - y, 2) +
+         rectangleFactor(to - x, 0.5 - x, -1 - y, 1 - y, 2);
+}
+
+Scene lampBehindBar() {
+  SceneBuilder builder = lampOverFloor();
+  builder.level(builder.surface("bar", 0.0), -0.1, -3, 0.1, 3, 1, false);
+  return builder.scene();
+}
+
+TEST(Elements, ThePenumbraOfALampBehindABarIsItsClosedForm) {
+  const double below = rectangleFactor(-0.5, 0.5, -1, 1, 2);
+  for (const double tolerance : {0.02, 0.005}) {
+    const Lit lit(lampBehindBar(), 200, {.tolerance = tolerance});
+    const auto error = [&](double x, double y) {
+      return lit.at(lit.elements.direct, lit.patchAt("floor/floor", x, y), {x, y, 0}) -
+             pastTheBar(x, y);
+    };
+    for (double x = -1.2; x < 1.2; x += 0.0037) {
+      ASSERT_NEAR(error(x, 0.3), 0, tolerance * below) << x;
+      // Mach bands: the second difference differs from that of the true light by no more than two
+      // such errors.
+      const double bend = error(x - 0.02, 0.3) - 2 * error(x, 0.3) + error(x + 0.02, 0.3);
+      ASSERT_LT(std::abs(bend), 2 * tolerance * below) << x;
+    }
+  }
+}
+
+/// rho = .5 and E = 1 all around: B = 2, of the irradiance 1 is direct and 1 is not. The mesh's
+/// closed forms make direct light exact; sources are stored in single precision.
+TEST(Elements, AFurnaceIsConstant) {
+  SceneBuilder builder;
+  builder.box(builder.surface("wall", 0.5, 1.0), Vec3(0), Vec3(1), false);
+  const Lit lit(builder.scene(), 150, {}, [](const PatchMesh& mesh, const PatchMaterials& with) {
+    return std::vector<double>(mesh.size() * std::size_t(with.bands), 2.0);
+  });
+  for (const double value : lit.elements.direct.values) ASSERT_NEAR(value, 1, 1e-6);
+  for (const double value : lit.elements.indirect.values) ASSERT_NEAR(value, 1, 1e-6);
+}
+
+Scene boxOnFloor() {
+  SceneBuilder builder = lampOverFloor();
+  builder.box(builder.surface("block", 0.5), {0.8, -0.4, 0}, {1.4, 0.4, 0.5});
+  builder.scene().materials[0].reflectance = Vec3(0.5);
+  return builder.scene();
+}
+
+/// The floor behind the block is dark up to the very contact, and lit before it.
+TEST(Elements, NoLightReachesUnderAContact) {
+  const Lit lit(boxOnFloor(), 300);
+  for (const double y : {-0.31, 0.003, 0.3}) {
+    for (const double d : {1e-6, 1e-4, 1e-3, 1e-2}) {
+      const double x = 1.4 + d;
+      EXPECT_EQ(lit.at(lit.elements.direct, lit.patchAt("floor/floor", x, y), {x, y, 0}), 0) << d;
+      const double before = 0.8 - d;
+      const double whole = rectangleFactor(-0.5 - before, 0.5 - before, -1 - y, 1 - y, 2);
+      EXPECT_NEAR(
+          lit.at(lit.elements.direct, lit.patchAt("floor/floor", before, y), {before, y, 0}), whole,
+          0.01 * whole);
+    }
+  }
+}
+
+/// On edges that patches of a polygon share, either side has the same light: whatever is cut more
+/// finely there follows the coarser.
+TEST(Elements, FieldsAreContinuousAcrossPatches) {
+  const Lit lit(boxOnFloor(), 300);
+  std::size_t shared = 0;
+  for (std::size_t i = 0; i < lit.mesh.size(); ++i) {
+    const auto mine = lit.mesh.outline(i);
+    for (std::size_t j = 0; j < i; ++j) {
+      if (lit.mesh.polygon[j] != lit.mesh.polygon[i] || lit.mesh.side[i] != lit.mesh.side[j]) {
+        continue;
+      }
+      const auto its = lit.mesh.outline(j);
+      for (std::size_t k = 0; k < mine.size(); ++k) {
+        const Index a = mine[k];
+        const Index b = mine[(k + 1) % mine.size()];
+        for (std::size_t l = 0; l < its.size(); ++l) {
+          if (its[l] != b || its[(l + 1) % its.size()] != a) continue;
+          ++shared;
+          for (const double t : {0.0, 0.13, 0.5, 0.77, 1.0}) {
+            const Vec3 p = (1 - t) * lit.mesh.vertices[a] + t * lit.mesh.vertices[b];
+            ASSERT_NEAR(lit.at(lit.elements.direct, i, p), lit.at(lit.elements.direct, j, p), 1e-9);
+            ASSERT_NEAR(lit.at(lit.elements.indirect, i, p), lit.at(lit.elements.indirect, j, p),
+                        1e-9);
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(shared, 100u);
+}
+
+Scene smallRoom() {
+  SceneBuilder builder;
+  builder.box(builder.surface("wall", 0.6), Vec3(0), {2, 3, 2}, false);
+  builder.level(builder.surface("lamp", 0.0, 10.0), 0.7, 1.2, 1.3, 1.8, 1.99, false);
+  builder.box(builder.surface("block", 0.7), {0.3, 0.5, 0}, {0.8, 1, 0.9});
+  return builder.scene();
+}
+
+std::vector<double> solved(const PatchMesh& mesh, const PatchMaterials& materials) {
+  Progress quiet;
+  FormFactorOptions options;
+  options.method = FormFactorMethod::exact;
+  const FormFactors factors = computeFormFactors(mesh, options, quiet);
+  return solve(factors, materials, mesh, {}, quiet).irradiance;
+}
+
+/// Where all light ends, what elements receive is what patches receive. The matrix takes light as
+/// constant on each patch, which 2,000 of them make good to a few times 1e-4 of the energy;
+/// interpolation is low by .1% in the mean.
+TEST(Elements, EnergyIsThatOfThePatches) {
+  std::vector<double> irradiance;
+  const Lit lit(smallRoom(), 2000, {}, [&](const PatchMesh& mesh, const PatchMaterials& with) {
+    return irradiance = solved(mesh, with);
+  });
+  double of_patches = 0;
+  double of_elements = 0;
+  for (std::size_t i = 0; i < lit.mesh.size(); ++i) {
+    of_patches += lit.mesh.area[i] * irradiance[3 * i];
+    for (std::size_t r = lit.elements.roots.of_patch[i]; r < lit.elements.roots.of_patch[i + 1];
+         ++r) {
+      ASSERT_EQ(lit.elements.roots.cornerCount(r), 4u);  // rectangles all
+      constexpr int kSide = 16;
+      for (int k = 0; k < kSide * kSide; ++k) {
+        std::array<double, 3> sum{};
+        const int row = k / kSide;
+        const Vec2 at{(k % kSide + 0.5) / kSide, (row + 0.5) / kSide};
+        lit.lookup.add(lit.elements.direct, r, at, sum);
+        lit.lookup.add(lit.elements.indirect, r, at, sum);
+        of_elements += sum[0] * lit.mesh.area[i] / (kSide * kSide);
+      }
+    }
+  }
+  EXPECT_NEAR(of_elements / of_patches, 1, 1e-3);
+}
+
+TEST(Elements, AnyNumberOfThreadsGivesTheSameBits) {
+  const auto withThreads = [](int threads) {
+    setThreads(threads);
+    Lit lit(smallRoom(), 300, {}, solved);
+    setThreads(0);
+    return lit.elements;
+  };
+  const Elements one = withThreads(1);
+  const Elements two = withThreads(2);
+  EXPECT_EQ(one.direct.values, two.direct.values);
+  EXPECT_EQ(one.indirect.values, two.indirect.values);
+  EXPECT_EQ(one.direct.points, two.direct.points);
+}
+
+/// Patches that are not wanted have no elements of indirect light, and change nothing for others
+/// but where these end.
+TEST(Elements, WhatIsNotWantedIsLeftOut) {
+  const Scene scene = smallRoom();
+  const Lit all(scene, 300, {}, solved);
+  std::vector<std::uint8_t> wanted(all.mesh.size());
+  for (std::size_t i = 0; i < wanted.size(); ++i) wanted[i] = all.mesh.normal[i].z > 0.5 ? 1 : 0;
+  Progress quiet;
+  const std::vector<double> irradiance = solved(all.mesh, all.materials);
+  const Elements some = computeElements(all.mesh, all.materials, irradiance, {}, wanted, quiet);
+  EXPECT_LT(some.report.indirect_vertices, all.elements.report.indirect_vertices);
+  for (std::size_t r = 0; r < some.roots.size(); ++r) {
+    EXPECT_EQ(some.indirect.elements[r].corners != 0, wanted[some.roots.patch[r]] != 0);
+  }
+}
+
+TEST(Elements, VerticesAreBounded) {
+  const Lit lit(lampBehindBar(), 200, {.tolerance = 0.001, .most_vertices = 2000});
+  EXPECT_LE(lit.elements.direct.vertices, 2000u);
+  EXPECT_GT(lit.elements.report.unrefined, 0u);
+}
+
+TEST(Elements, OptionsOutOfRangeAreRefusedByName) {
+  const auto refused = [](const ElementOptions& options, const char* name) {
+    try {
+      options.validate();
+      ADD_FAILURE() << name;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
+    }
+  };
+  refused({.tolerance = 0}, "tolerance");
+  refused({.smallest_edge = 1}, "smallest_edge");
+  refused({.rays = 1000}, "rays");
+  refused({.crease = 200}, "crease");
+  EXPECT_NO_THROW(ElementOptions().validate());
+}
+
+}  // namespace
+}  // namespace radiosity

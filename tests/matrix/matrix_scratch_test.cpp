@@ -1,0 +1,126 @@
+// Matrices whose rows are in scratch memory.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <numeric>
+
+#include "radiosity/closure.h"
+#include "radiosity/exchange_matrix.h"
+
+namespace radiosity {
+namespace {
+
+constexpr std::size_t kSize = 300;
+
+double factor(std::size_t k, std::size_t later) {
+  return (k + later) % 3 == 0 ? double(1 + (k * later) % 7) / (8.0 * kSize) : 0.0;
+}
+
+ExchangeMatrix filled(std::shared_ptr<ScratchMemory> scratch) {
+  std::vector<Index> order(kSize);
+  std::iota(order.begin(), order.end(), Index(0));
+  auto matrix = ExchangeMatrix::symmetric(std::vector<double>(kSize, 2.0), order,
+                                          Precision::single_precision, std::move(scratch));
+  for (std::size_t k = 0; k < kSize; ++k) {
+    std::vector<double> row;
+    for (std::size_t later = k; later < kSize; ++later) row.push_back(factor(k, later));
+    matrix.setUpperRow(k, row);
+  }
+  return matrix;
+}
+
+UncertainEntries uncertainOf(const ExchangeMatrix& matrix, std::shared_ptr<ScratchMemory> scratch) {
+  UncertainEntries uncertain(kSize, std::move(scratch));
+  for (std::size_t k = 0; k < kSize; ++k) {
+    std::vector<Index> later;
+    for (const Index position : matrix.upperEntries(k).positions) {
+      if (position > k) later.push_back(position);
+    }
+    uncertain.setRow(k, later, std::vector<double>(later.size(), 1e-3));
+  }
+  return uncertain;
+}
+
+std::shared_ptr<ScratchMemory> scratchIn(const std::string& folder) {
+  // Nothing may stay in memory: all is let go of at every look.
+  return std::make_shared<ScratchMemory>(folder, 0);
+}
+
+TEST(ScratchMemory, HoldsTheSameMatrixToTheBit) {
+  const auto scratch = scratchIn(testing::TempDir());
+  const ExchangeMatrix there = filled(scratch);
+  const ExchangeMatrix here = filled(nullptr);
+  EXPECT_GT(scratch->fileBytes(), there.bytes());
+  std::vector<double> x(kSize);
+  std::iota(x.begin(), x.end(), 1.0);
+  std::vector<double> in_scratch(kSize);
+  std::vector<double> in_memory(kSize);
+  there.product(x, 1, in_scratch);
+  here.product(x, 1, in_memory);
+  EXPECT_EQ(in_scratch, in_memory);
+  there.forPanels([&](const RowPanel& panel) {
+    for (std::size_t i = panel.first(); i < panel.last(); ++i) {
+      panel.forRow(i, [&](Index j, double value) { EXPECT_EQ(value, here.at(i, j)); });
+    }
+  });
+}
+
+TEST(ScratchMemory, RowsAreClosedToTheSameBits) {
+  const auto scratch = scratchIn(testing::TempDir());
+  ExchangeMatrix there = filled(scratch);
+  ExchangeMatrix here = filled(nullptr);
+  std::vector<double> target = here.rowSums();
+  for (double& sum : target) sum *= 1.01;
+  Progress silent;
+  closeRows(there, uncertainOf(there, scratch), target, silent);
+  const ClosureReport report = closeRows(here, uncertainOf(here, nullptr), target, silent);
+  EXPECT_TRUE(report.reached);
+  EXPECT_EQ(there.rowSums(), here.rowSums());
+}
+
+TEST(ScratchMemory, AMatrixOutlivesTheOneItIsMovedOverAndCopiesAreInMemory) {
+  ExchangeMatrix matrix = filled(scratchIn(testing::TempDir()));
+  const std::vector<double> sums = matrix.rowSums();
+  const ExchangeMatrix copy = matrix;
+  EXPECT_EQ(copy.scratch(), nullptr);
+  matrix = filled(nullptr);
+  EXPECT_EQ(matrix.rowSums(), sums);
+  matrix = filled(scratchIn(testing::TempDir()));
+  EXPECT_EQ(matrix.rowSums(), sums);
+  EXPECT_EQ(copy.rowSums(), sums);
+}
+
+TEST(ScratchMemory, LeavesNoFileAndNamesAFolderThatIsNotThere) {
+  const std::string folder = testing::TempDir() + "/scratch_memory";
+  std::filesystem::create_directory(folder);
+  const ExchangeMatrix matrix = filled(scratchIn(folder));
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+  std::filesystem::remove(folder);
+  try {
+    scratchIn(folder);
+    FAIL() << "no error";
+  } catch (const RunError& error) {
+    EXPECT_NE(std::string(error.what()).find(folder), std::string::npos) << error.what();
+  }
+}
+
+TEST(SymmetricForm, RowsWithFewValuesAreSetByTheirPositions) {
+  const ExchangeMatrix dense = filled(nullptr);
+  ExchangeMatrix sparse = filled(nullptr);
+  for (std::size_t k = 0; k < kSize; ++k) {
+    const ExchangeMatrix::UpperEntries entries = dense.upperEntries(k);
+    sparse.setUpperRow(k, {});
+    sparse.setUpperRow(k, entries.positions, entries.factors);
+  }
+  EXPECT_EQ(sparse.bytes(), dense.bytes());
+  EXPECT_EQ(sparse.rowSums(), dense.rowSums());
+  const std::vector<Index> early{3};
+  const std::vector<Index> twice{7, 7};
+  EXPECT_THROW(sparse.setUpperRow(5, early, std::vector<double>{0.1}), InputError);
+  EXPECT_THROW(sparse.setUpperRow(5, twice, std::vector<double>{0.1, 0.1}), InputError);
+  EXPECT_THROW(sparse.setUpperRow(5, twice, std::vector<double>{0.1}), InputError);
+  EXPECT_THROW(sparse.setUpperRow(5, {&twice[0], 1}, std::vector<double>{-0.1}), InputError);
+}
+
+}  // namespace
+}  // namespace radiosity
