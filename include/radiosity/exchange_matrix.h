@@ -135,7 +135,6 @@ class ExchangeMatrix {
     std::shared_ptr<ScratchMemory> memory;
   };
   RowView viewOf(std::size_t i) const;  // row form
-  std::pmr::memory_resource* rowMemory() const;
   /// Where panels end that hold so many entries a row.
   std::vector<std::size_t> panelEnds() const;
   void checkFactors(std::size_t k, std::span<const double> factors) const;

@@ -193,8 +193,9 @@ class Pipeline {
   /// where they still fit, else dropped; a solution without values (of a singular system) is taken
   /// out.
   void keepLaterStages();
-  /// Reads the matrix of form factors that are there without it. Errors: as matrix().
+  /// Where a matrix that is to be read from the file goes; null: in memory.
   std::shared_ptr<ScratchMemory> memoryOfStoredMatrix() const;
+  /// Reads the matrix of form factors that are there without it. Errors: as matrix().
   void loadMatrix();
   /// Both, then writes results(): the file appears whole or stays what it was. Errors: as
   /// writeResults().

@@ -35,7 +35,7 @@ constexpr double kReferenceEdge = 0.05;
 constexpr double kPartialEdge = 0.0125;
 /// Direct light that only serves as a source is not refined below this.
 constexpr double kSourceEdge = 0.005;
-/// Nor any roots than this.
+/// Every root with longer edges is cut.
 constexpr double kLongestEdge = 0.04;
 /// Of indirect light: no element with shorter edges is cut.
 constexpr double kIndirectEdge = 0.015;
@@ -76,8 +76,8 @@ double brightness(std::span<const double> values, std::size_t patch, std::size_t
   return sum;
 }
 
-/// Means of a field over patches, N * bands: over each root's 3 x 3 points by Simpson's rule, or
-/// what a triangle has of them.
+/// Means of a field over patches, N * bands: over 8 x 8 points of each root; in a
+/// triangle those past its longest side count at their mirror images.
 std::vector<double> patchMeans(const PatchMesh& mesh, const ElementRoots& roots,
                                const ElementLookup& lookup, const ElementField& field,
                                std::size_t bands) {

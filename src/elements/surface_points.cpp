@@ -2,27 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <tuple>
+
+#include "base/geometry/box.h"
 
 namespace radiosity {
 namespace {
 
 /// Inset of what is curved, of the diagonal.
 constexpr double kLeast = 1e-5;
-
-double diagonalOf(const PatchMesh& mesh) {
-  if (mesh.vertices.empty()) return 0;
-  Vec3 lower = mesh.vertices.front();
-  Vec3 upper = lower;
-  for (const Vec3& v : mesh.vertices) {
-    lower = glm::min(lower, v);
-    upper = glm::max(upper, v);
-  }
-  return glm::distance(lower, upper);
-}
 
 bool isConvexQuad(const PatchMesh& mesh, std::size_t patch) {
   const auto outline = mesh.outline(patch);
@@ -49,7 +39,7 @@ struct ElementSurface::RootEdge {
 };
 
 ElementSurface::ElementSurface(const PatchMesh& mesh, double crease, const Inset& inset)
-    : diagonal(diagonalOf(mesh)), inset_(inset) {
+    : diagonal(boxOf(mesh.vertices).diagonal()), inset_(inset) {
   addRoots(mesh);
   for (Index p = 0; p < mesh.polygons.size(); ++p) owners.push_back({p});
   addVertices(mesh, cornerGroups(mesh, crease));

@@ -9,22 +9,12 @@
 #include <tuple>
 #include <utility>
 
+#include "base/geometry/box.h"
 #include "base/parallel.h"
 #include "mesh/triangulate.h"
 
 namespace radiosity {
 namespace {
-
-double diagonal(const PatchMesh& mesh) {
-  if (mesh.vertices.empty()) return 0;
-  Vec3 lower = mesh.vertices.front();
-  Vec3 upper = lower;
-  for (const Vec3& vertex : mesh.vertices) {
-    lower = glm::min(lower, vertex);
-    upper = glm::max(upper, vertex);
-  }
-  return glm::distance(lower, upper);
-}
 
 /// 2^-k with 2^k about the length; 1 for an empty scene.
 double powerOfTwoBelow(double length) {
@@ -73,8 +63,8 @@ void appendPieces(const PatchMesh& mesh, std::size_t patch, double scale,
 ViewScene::ViewScene(const PatchMesh& mesh)
     : patches(mesh.size()),
       items(mesh.size() + mesh.surface_names.size()),
-      scale(powerOfTwoBelow(diagonal(mesh))),
-      coincidence(MeshOptions().weld * diagonal(mesh) * scale) {
+      scale(powerOfTwoBelow(boxOf(mesh.vertices).diagonal())),
+      coincidence(MeshOptions().weld * boxOf(mesh.vertices).diagonal() * scale) {
   addPolygons(mesh);
   addSides(mesh);
   numberCells();

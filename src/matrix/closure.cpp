@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/scratch_rows.h"
 #include "matrix/residual_progress.h"
 #include "matrix/run_row.h"
 #include "matrix/triangle_pass.h"
@@ -146,7 +147,7 @@ void LeastSquaresClosure::forUncertain(std::size_t k, const Visit& visit) const 
 }
 
 std::pmr::vector<std::uint8_t>& LeastSquaresClosure::freeOf(std::size_t k) {
-  if (uncertain_.scratch()) uncertain_.scratch()->touched(free_[k].size());
+  touchRows(uncertain_.scratch().get(), free_[k].size());
   return free_[k];
 }
 

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/scratch_rows.h"
 #include "matrix/matrix_row.h"
 #include "matrix/run_row.h"
 
@@ -60,7 +61,8 @@ ExchangeMatrix::ExchangeMatrix(std::vector<double> area, Precision precision,
     : area_(std::move(area)), precision_(precision) {
   scratch_.memory = std::move(scratch);
   rows_.reserve(area_.size());
-  for (std::size_t i = 0; i < area_.size(); ++i) rows_.emplace_back(rowMemory());
+  std::pmr::memory_resource* const memory = rowMemory(scratch_.memory.get());
+  for (std::size_t i = 0; i < area_.size(); ++i) rows_.emplace_back(memory);
   for (std::size_t i = 0; i < area_.size(); ++i) {
     if (!(area_[i] >= 0) || !std::isfinite(area_[i])) {
       throw InputError(fmt::format("exchange matrix: {} is not the area of patch {}", area_[i], i));
@@ -73,7 +75,7 @@ void ExchangeMatrix::setRow(std::size_t i, std::span<const Index> columns,
   if (symmetric_) throw InputError("exchange matrix: a symmetric one is set by upper rows");
   checkRow(i, size(), columns, values);
   const std::size_t value_bytes = valueBytes(precision_);
-  Row row(rowMemory());
+  Row row(rowMemory(scratch_.memory.get()));
   row.dense = size() * value_bytes < columns.size() * (value_bytes + sizeof(Index));
   const auto fill = [&](auto& stored) {
     using Value = typename std::remove_reference_t<decltype(stored)>::value_type;
@@ -91,13 +93,9 @@ void ExchangeMatrix::setRow(std::size_t i, std::span<const Index> columns,
   rows_[i] = std::move(row);
 }
 
-std::pmr::memory_resource* ExchangeMatrix::rowMemory() const {
-  return scratch_.memory ? scratch_.memory.get() : std::pmr::get_default_resource();
-}
-
 RowView ExchangeMatrix::viewOf(std::size_t i) const {
   const Row& row = rows_[i];
-  if (scratch_.memory) scratch_.memory->touched(bytesOf(row));
+  touchRows(scratch_.memory.get(), bytesOf(row));
   return {row.columns, row.floats, row.doubles, row.dense};
 }
 

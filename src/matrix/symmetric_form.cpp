@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/scratch_rows.h"
 #include "matrix/matrix_row.h"
 #include "matrix/run_row.h"
 #include "radiosity/exchange_matrix.h"
@@ -43,7 +44,8 @@ ExchangeMatrix ExchangeMatrix::symmetric(std::vector<double> area, std::vector<I
   }
   matrix.order_ = std::move(order);
   matrix.upper_.reserve(n);
-  for (std::size_t k = 0; k < n; ++k) matrix.upper_.emplace_back(matrix.rowMemory());
+  std::pmr::memory_resource* const memory = rowMemory(matrix.scratch_.memory.get());
+  for (std::size_t k = 0; k < n; ++k) matrix.upper_.emplace_back(memory);
   matrix.diagonal_.assign(n, 0.0);
   return matrix;
 }
@@ -119,7 +121,7 @@ void ExchangeMatrix::setUpperRow(std::size_t k, std::span<const Index> positions
 
 void ExchangeMatrix::storeUpper(std::size_t k, double itself, RunRow row) {
   upper_[k] = std::move(row);
-  if (scratch_.memory) scratch_.memory->touched(bytesOf(upper_[k]));
+  touchRows(scratch_.memory.get(), bytesOf(upper_[k]));
   diagonal_[k] = precision_ == Precision::single_precision ? double(float(itself)) : itself;
 }
 
@@ -146,7 +148,7 @@ ExchangeMatrix::UpperEntries ExchangeMatrix::upperEntries(std::size_t k) const {
 }
 
 const RunRow& ExchangeMatrix::upperRuns(std::size_t k) const {
-  if (scratch_.memory) scratch_.memory->touched(bytesOf(upper_[k]));
+  touchRows(scratch_.memory.get(), bytesOf(upper_[k]));
   return upper_[k];
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/scratch_rows.h"
 #include "matrix/uncertain_row.h"
 
 namespace radiosity {
@@ -51,7 +52,7 @@ UncertainEntries::UncertainEntries(std::size_t n, std::shared_ptr<ScratchMemory>
     : scratch_(std::move(scratch)) {
   rows_.reserve(n);
   for (std::size_t k = 0; k < n; ++k) {
-    scratch_ ? rows_.emplace_back(scratch_.get()) : rows_.emplace_back();
+    rows_.emplace_back(rowMemory(scratch_.get()));
   }
 }
 UncertainEntries::UncertainEntries(UncertainEntries&&) noexcept = default;
@@ -59,7 +60,7 @@ UncertainEntries::~UncertainEntries() = default;
 
 std::size_t UncertainEntries::size() const { return rows_.size(); }
 const UncertainEntries::Row& UncertainEntries::row(std::size_t k) const {
-  if (scratch_) scratch_->touched(bytesOf(rows_[k]));
+  touchRows(scratch_.get(), bytesOf(rows_[k]));
   return rows_[k];
 }
 
@@ -91,7 +92,7 @@ void UncertainEntries::setRow(std::size_t k, std::span<const Index> later,
             }
           });
   rows_[k] = std::move(row);
-  if (scratch_) scratch_->touched(bytesOf(rows_[k]));
+  touchRows(scratch_.get(), bytesOf(rows_[k]));
 }
 
 std::size_t UncertainEntries::entries() const {

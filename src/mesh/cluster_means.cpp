@@ -32,6 +32,16 @@ std::vector<double> clusterMeans(const PatchMesh& mesh, std::span<const double> 
   return means;
 }
 
+std::vector<double> patchValues(const PatchMesh& mesh, std::span<const double> of_clusters,
+                                int bands) {
+  const auto width = std::size_t(bands);
+  std::vector<double> values(mesh.size() * width);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    values[k] = of_clusters[mesh.unknownOf(k / width) * width + k % width];
+  }
+  return values;
+}
+
 std::vector<Index> clusterSurfaces(const PatchMesh& mesh) {
   const PatchClusters& clusters = made(mesh.clusters);
   std::vector<Index> surfaces;

@@ -12,6 +12,10 @@ namespace radiosity {
 /// row a patch; the result: K * bands, none of none. A mean lies within the values it is of.
 std::vector<double> clusterMeans(const PatchMesh& mesh, std::span<const double> values, int bands);
 
+/// Of each patch the value of its cluster: K * bands to N * bands.
+std::vector<double> patchValues(const PatchMesh& mesh, std::span<const double> of_clusters,
+                                int bands);
+
 /// The surface of each cluster.
 std::vector<Index> clusterSurfaces(const PatchMesh& mesh);
 

@@ -35,7 +35,7 @@ Solution ClusterSolve::run() const {
   Solution means = between({});
   if (means.irradiance.empty()) return means;  // singular
   PatchIrradiance within(mesh_, materials_.bands, materials_.sky);
-  within.look(spread(means.radiosity), progress_);
+  within.look(patchValues(mesh_, means.radiosity, materials_.bands), progress_);
   within.look(radiosityOf(within.around(means.irradiance)), progress_);
   const std::vector<double> more = balanced(within.beyondMeans(), means.irradiance);
   Solution solution = between(more);
@@ -49,14 +49,6 @@ Solution ClusterSolve::run() const {
 Solution ClusterSolve::between(std::span<const double> more) const {
   return solveRows(factors_, reflectance_, emission_, materials_.bands, options_, progress_,
                    {surface_, mesh_.surface_names}, materials_.sky, more);
-}
-
-std::vector<double> ClusterSolve::spread(std::span<const double> of_clusters) const {
-  std::vector<double> out(mesh_.size() * bands_);
-  for (std::size_t k = 0; k < out.size(); ++k) {
-    out[k] = of_clusters[mesh_.unknownOf(k / bands_) * bands_ + k % bands_];
-  }
-  return out;
 }
 
 /// Of patches.

@@ -28,7 +28,6 @@ class ClusterSolve {
 
  private:
   Solution between(std::span<const double> more) const;
-  std::vector<double> spread(std::span<const double> of_clusters) const;
   std::vector<double> radiosityOf(std::span<const double> irradiance) const;
   std::vector<double> balanced(std::span<const double> more,
                                std::span<const double> irradiance) const;

@@ -3,6 +3,7 @@
 
 #include <glm/geometric.hpp>
 #include <limits>
+#include <span>
 
 #include "radiosity/base.h"
 
@@ -44,5 +45,13 @@ struct BoxOf {
 
 using Box2 = BoxOf<Vec2>;
 using Box3 = BoxOf<Vec3>;
+
+/// The box of some points; where there are none, the origin's.
+inline Box3 boxOf(std::span<const Vec3> points) {
+  if (points.empty()) return {Vec3(0.0), Vec3(0.0)};
+  Box3 box;
+  for (const Vec3& p : points) box.add(p);
+  return box;
+}
 
 }  // namespace radiosity

@@ -118,15 +118,14 @@ UncertainEntries uncertainEntries(const ExchangeMatrix& matrix) {
   for (const double a : matrix.area()) smallest = a > 0 ? std::min(smallest, a) : smallest;
   UncertainEntries uncertain(n, matrix.scratch());
   parallelFor(n, 1, [&](std::size_t k) {
-    std::vector<double> values(n - k);
-    matrix.upperRow(k, values);
+    const ExchangeMatrix::UpperEntries upper = matrix.upperEntries(k);
     const double share = smallest / matrix.area()[matrix.order()[k]];
     std::vector<Index> later;
     std::vector<double> errors;
-    for (std::size_t m = 1; m < values.size(); ++m) {
-      if (values[m] == 0) continue;
-      later.push_back(Index(k + m));
-      errors.push_back(std::sqrt(values[m] * share));
+    for (std::size_t m = 0; m < upper.positions.size(); ++m) {
+      if (upper.positions[m] == k) continue;
+      later.push_back(upper.positions[m]);
+      errors.push_back(std::sqrt(upper.factors[m] * share));
     }
     uncertain.setRow(k, later, errors);
   });

@@ -5,9 +5,9 @@
 #include <xmmintrin.h>
 
 #include <algorithm>
-#include <glm/common.hpp>
 #include <optional>
 
+#include "base/geometry/box.h"
 #include "base/parallel.h"
 #include "radiosity/base.h"
 
@@ -17,23 +17,13 @@ namespace {
 /// Of two hits no farther apart than this, in scenes of size 1, single precision cannot tell which
 /// is first.
 constexpr float kTie = 2e-6F;
+
 /// An intersection filter of a single ray.
 void refuseBacks(const RTCFilterFunctionNArguments* hit) {
   const float along = RTCHitN_Ng_x(hit->hit, 1, 0) * RTCRayN_dir_x(hit->ray, 1, 0) +
                       RTCHitN_Ng_y(hit->hit, 1, 0) * RTCRayN_dir_y(hit->ray, 1, 0) +
                       RTCHitN_Ng_z(hit->hit, 1, 0) * RTCRayN_dir_z(hit->ray, 1, 0);
   if (along >= 0) hit->valid[0] = 0;
-}
-
-Vec3 middleOf(const std::vector<Vec3>& vertices) {
-  if (vertices.empty()) return Vec3(0.0);
-  Vec3 lower = vertices.front();
-  Vec3 upper = lower;
-  for (const Vec3& v : vertices) {
-    lower = glm::min(lower, v);
-    upper = glm::max(upper, v);
-  }
-  return 0.5 * (lower + upper);
 }
 
 RTCDevice newDevice() {
@@ -45,7 +35,7 @@ RTCDevice newDevice() {
 }  // namespace
 
 EmbreeScene::EmbreeScene(const ViewScene& scene, const PatchMesh& mesh)
-    : middle_(middleOf(scene.vertices)),
+    : middle_(boxOf(scene.vertices).centre()),
       device_(newDevice()),
       scene_(rtcNewScene(device_)),
       vertices_(scene.vertices) {
@@ -102,6 +92,15 @@ void EmbreeScene::addTiles(const ViewScene& scene, const PatchMesh& mesh,
       polygon_of_.push_back(place[polygon]);
     }
   }
+}
+
+void EmbreeScene::trace(RTCRayHit16& packet, int lanes) const {
+  alignas(64) std::array<int, kRayLanes> valid;
+  for (int k = 0; k < kRayLanes; ++k) valid[std::size_t(k)] = k < lanes ? -1 : 0;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect16(valid.data(), scene_, &context, &packet);
 }
 
 RTCHit EmbreeScene::frontAt(const RTCRayHit16& packet, int k) const {

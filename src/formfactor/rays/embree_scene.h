@@ -6,11 +6,35 @@
 #include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <vector>
 
 #include "formfactor/view_scene.h"
 
 namespace radiosity {
+
+/// Rays that are traced at once.
+constexpr int kRayLanes = 16;
+/// Rays start this far in front of their surface, in scenes of size 1: a few roundings of single
+/// precision, so that few hit their own polygon and next to none miss a wall that it touches.
+constexpr float kRayLift = 2e-7F;
+
+/// Puts a ray into lane k of a packet; `along`: a unit vector.
+inline void setRay(RTCRayHit16& packet, int k, const glm::vec3& from, const glm::vec3& along) {
+  packet.ray.org_x[k] = from.x;
+  packet.ray.org_y[k] = from.y;
+  packet.ray.org_z[k] = from.z;
+  packet.ray.dir_x[k] = along.x;
+  packet.ray.dir_y[k] = along.y;
+  packet.ray.dir_z[k] = along.z;
+  packet.ray.tnear[k] = 0;
+  packet.ray.tfar[k] = std::numeric_limits<float>::infinity();
+  packet.ray.time[k] = 0;
+  packet.ray.mask[k] = 0xffffffffu;
+  packet.ray.flags[k] = 0;
+  packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+  packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+}
 
 /// Edges are watertight: neighbouring polygons share their vertices, and Embree's robust mode lets
 /// no ray through between triangles that do.
@@ -28,6 +52,8 @@ class EmbreeScene {
   /// of the scene, so that none is lost far from the origin.
   const Vec3& middle() const { return middle_; }
   glm::vec3 place(const Vec3& vertex) const { return {vertex - middle_}; }
+  /// Traces the first `lanes` rays of a packet, which leave in similar directions.
+  void trace(RTCRayHit16& packet, int lanes) const;
   /// The front that covers the back which lane k of a packet has hit: of a plate without thickness,
   /// two polygons back to back, the front covers the back, but in depth they are a tie. Its geomID
   /// is RTC_INVALID_GEOMETRY_ID where there is none.

@@ -102,10 +102,9 @@ PatchIrradiance::PatchIrradiance(const PatchMesh& mesh, int bands, std::span<con
 
 void PatchIrradiance::look(std::span<const double> radiosity, Progress& progress) {
   View view{{radiosity.begin(), radiosity.end()}, {radiosity.begin(), radiosity.end()}};
-  const std::vector<double> means = clusterMeans(mesh_, radiosity, int(bands_));
-  for (std::size_t k = 0; k < radiosity.size(); ++k) {
-    view.beyond[k] -= means[mesh_.unknownOf(k / bands_) * bands_ + k % bands_];
-  }
+  const std::vector<double> means =
+      patchValues(mesh_, clusterMeans(mesh_, radiosity, int(bands_)), int(bands_));
+  for (std::size_t k = 0; k < means.size(); ++k) view.beyond[k] -= means[k];
   for (std::vector<double>* of_item : {&view.radiosity, &view.beyond}) {
     of_item->resize((caster_.items() + 1) * bands_, 0.0);  // backs are black
   }
@@ -141,10 +140,7 @@ void PatchIrradiance::lookFrom(std::size_t cluster, const View& view) {
 }
 
 std::vector<double> PatchIrradiance::around(std::span<const double> irradiance) const {
-  std::vector<double> out(mesh_.size() * bands_);
-  for (std::size_t k = 0; k < out.size(); ++k) {
-    out[k] = irradiance[mesh_.unknownOf(k / bands_) * bands_ + k % bands_];
-  }
+  std::vector<double> out = patchValues(mesh_, irradiance, int(bands_));
   parallelFor(mesh_.unknowns(), 16, [&](std::size_t cluster) { addSlopes(cluster, out); });
   return out;
 }

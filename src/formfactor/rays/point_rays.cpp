@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <numeric>
 
 #include "base/geometry/plane_frame.h"
@@ -15,9 +14,6 @@
 namespace radiosity {
 namespace {
 
-constexpr int kLanes = 16;
-/// Rays start this far in front of their point, in scenes of size 1: as RayCaster's.
-constexpr float kLift = 2e-7F;
 /// Rays to a point end this much of their length before it.
 constexpr float kShort = 1e-5F;
 constexpr int kCells = 8;  ///< along each side of the disc's square: a packet a cell of 1,024 rays
@@ -92,7 +88,7 @@ PointRays::PointRays(const PatchMesh& mesh) : scene_(mesh), embree_(scene_, mesh
 }
 
 glm::vec3 PointRays::lifted(const RaySource& from) const {
-  return embree_.place(from.position * scene_.scale) + kLift * glm::vec3(from.normal);
+  return embree_.place(from.position * scene_.scale) + kRayLift * glm::vec3(from.normal);
 }
 
 RayEnd PointRays::endOf(const RTCRayHit16& packet, int k, std::span<const Index> own) const {
@@ -130,32 +126,14 @@ void PointRays::look(const RaySource& from, const HemisphereSet& set, std::size_
   const glm::vec3 y(c * frame.v - s * frame.u);
   const glm::vec3 z(frame.n);
   const glm::vec3 start = lifted(from);
-  alignas(64) std::array<int, kLanes> valid;
-  valid.fill(-1);
   RTCRayHit16 packet;
-  for (std::size_t first = 0; first < set.rays(); first += kLanes) {
-    for (int k = 0; k < kLanes; ++k) {
+  for (std::size_t first = 0; first < set.rays(); first += kRayLanes) {
+    for (int k = 0; k < kRayLanes; ++k) {
       const glm::vec3& d = set.direction(number, first + std::size_t(k));
-      const glm::vec3 along = d.x * x + d.y * y + d.z * z;
-      packet.ray.org_x[k] = start.x;
-      packet.ray.org_y[k] = start.y;
-      packet.ray.org_z[k] = start.z;
-      packet.ray.dir_x[k] = along.x;
-      packet.ray.dir_y[k] = along.y;
-      packet.ray.dir_z[k] = along.z;
-      packet.ray.tnear[k] = 0;
-      packet.ray.tfar[k] = std::numeric_limits<float>::infinity();
-      packet.ray.time[k] = 0;
-      packet.ray.mask[k] = 0xffffffffu;
-      packet.ray.flags[k] = 0;
-      packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-      packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+      setRay(packet, k, start, d.x * x + d.y * y + d.z * z);
     }
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    rtcIntersect16(valid.data(), embree_.handle(), &context, &packet);
-    for (int k = 0; k < kLanes; ++k) ends[first + std::size_t(k)] = endOf(packet, k, from.own);
+    embree_.trace(packet, kRayLanes);
+    for (int k = 0; k < kRayLanes; ++k) ends[first + std::size_t(k)] = endOf(packet, k, from.own);
   }
 }
 

@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <limits>
 
 #include "base/parallel.h"
 #include "formfactor/rays/disc.h"
@@ -12,11 +11,6 @@
 namespace radiosity {
 namespace {
 
-constexpr int kLanes = 16;
-/// Rays start this far in front of their patch, in scenes of size 1: a few roundings of single
-/// precision, so that few hit their own polygon and next to none miss a wall that the patch
-/// touches.
-constexpr float kLift = 2e-7F;
 /// What a ray may end on beside items.
 constexpr std::uint32_t kSky = kNone - 1;
 constexpr std::uint32_t kLost = kNone - 2;
@@ -93,7 +87,7 @@ struct RayCaster::Batch {
       float x = 0;
       const RayOrigins::Part& part = origins.part(origins.partAt(points[0][k], x));
       const RayFrame& axes = origins.frame(part.frame);
-      const glm::vec3 from = RayOrigins::pointAt(part, x, points[1][k]) + kLift * axes.z;
+      const glm::vec3 from = RayOrigins::pointAt(part, x, points[1][k]) + kRayLift * axes.z;
       const float u = disc[0][k];
       const float v = disc[1][k];
       const float w = std::sqrt(std::max(0.0F, 1 - u * u - v * v));
@@ -196,29 +190,13 @@ std::uint32_t RayCaster::frontAt(const RTCRayHit16& packet, int k) const {
 template <class Visit>
 void RayCaster::tracePacket(const Batch& batch, const std::uint16_t* order, int lanes,
                             const Visit& visit) const {
-  alignas(64) std::array<int, kLanes> valid;
   RTCRayHit16 packet;
-  for (int k = 0; k < kLanes; ++k) {
-    valid[std::size_t(k)] = k < lanes ? -1 : 0;
+  for (int k = 0; k < kRayLanes; ++k) {
     const std::size_t from = order[k < lanes ? k : 0];
-    packet.ray.org_x[k] = batch.origin[0][from];
-    packet.ray.org_y[k] = batch.origin[1][from];
-    packet.ray.org_z[k] = batch.origin[2][from];
-    packet.ray.dir_x[k] = batch.direction[0][from];
-    packet.ray.dir_y[k] = batch.direction[1][from];
-    packet.ray.dir_z[k] = batch.direction[2][from];
-    packet.ray.tnear[k] = 0;
-    packet.ray.tfar[k] = std::numeric_limits<float>::infinity();
-    packet.ray.time[k] = 0;
-    packet.ray.mask[k] = 0xffffffffu;
-    packet.ray.flags[k] = 0;
-    packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-    packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+    setRay(packet, k, {batch.origin[0][from], batch.origin[1][from], batch.origin[2][from]},
+           {batch.direction[0][from], batch.direction[1][from], batch.direction[2][from]});
   }
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect16(valid.data(), embree_.handle(), &context, &packet);
+  embree_.trace(packet, lanes);
   for (int k = 0; k < lanes; ++k) {
     if (packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) {
       visit(order[k], kSky);
@@ -249,8 +227,8 @@ void RayCaster::trace(const RayOrigins& origins, std::uint64_t seed, std::uint32
     batch->place(sobol_, seed, first);
     batch->aim(origins);
     batch->sort();
-    for (std::size_t k = 0; k < batch->size(); k += kLanes) {
-      const int lanes = int(std::min<std::size_t>(batch->size() - k, kLanes));
+    for (std::size_t k = 0; k < batch->size(); k += kRayLanes) {
+      const int lanes = int(std::min<std::size_t>(batch->size() - k, kRayLanes));
       tracePacket(*batch, batch->order.data() + k, lanes,
                   [&](std::size_t ray, std::uint32_t item) { visit(*batch, ray, item); });
     }

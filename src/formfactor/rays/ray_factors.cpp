@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/processor_clock.h"
+#include "base/scratch_rows.h"
 #include "formfactor/rays/ray_rounds.h"
 #include "formfactor/row_accounts.h"
 #include "radiosity/closure.h"
@@ -24,7 +25,7 @@ void setAccounts(const RayScene& scene, const std::vector<RayRow>& rows, Scratch
   const std::size_t n = rows.size();
   parallelFor(n, 64, [&](std::size_t k) {
     const RayRow& row = rows[k];
-    if (scratch != nullptr) scratch->touched(row.bytes());
+    touchRows(scratch, row.bytes());
     const Index i = scene.order()[k];
     const double counted = row.counted();
     if (!(counted > 0)) return;

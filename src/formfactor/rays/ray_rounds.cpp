@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/processor_clock.h"
+#include "base/scratch_rows.h"
 #include "formfactor/rays/ray_scene.h"
 #include "formfactor/rays/round_journal.h"
 
@@ -48,7 +49,7 @@ class Rounds {
         now_(scene.size()) {
     rows_.reserve(scene.size());
     for (std::size_t k = 0; k < scene.size(); ++k) {
-      scratch != nullptr ? rows_.emplace_back(scratch) : rows_.emplace_back();
+      rows_.emplace_back(rowMemory(scratch));
     }
   }
 
@@ -119,7 +120,7 @@ class Rounds {
 
   void castRow(int round, std::size_t k, std::uint32_t rays) {
     scene_.cast(k, rays, rows_[k], progress_);
-    if (scratch_ != nullptr) scratch_->touched(rows_[k].bytes());
+    touchRows(scratch_, rows_[k].bytes());
     if (!progress_.cancelled()) journal_.keepRow(round, k, rows_[k]);
   }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/scratch_rows.h"
 
 namespace radiosity {
 
@@ -87,7 +88,7 @@ class Transposed {
   explicit Transposed(std::span<const RayRow> rows, ScratchMemory* scratch)
       : rows_(rows), scratch_(scratch), read_(rows.size(), 0), handed_(rows.size(), 0) {
     for (std::size_t j = 0; j < rows.size(); ++j) {
-      touch(rows[j].columns.size() * sizeof(Index));
+      touchRows(scratch_, rows[j].columns.size() * sizeof(Index));
       for (const Index column : rows[j].columns) {
         if (column < rows.size() && column != j) ++handed_[column];
       }
@@ -152,16 +153,13 @@ class Transposed {
     for (; e < row.columns.size() && row.columns[e] < last; ++e) {
       if (row.columns[e] != j) visit(row.columns[e], row.hits[e]);  // itself: it is the same end
     }
-    touch((e - read_[j]) * kHandedBytes);
+    touchRows(scratch_, (e - read_[j]) * kHandedBytes);
     return e;
   }
   template <class Value>
   std::span<const Value> part(const std::vector<Value>& values, std::size_t k) const {
     const std::size_t from = starts_[k - first_];
     return std::span(values).subspan(from, starts_[k - first_ + 1] - from);
-  }
-  void touch(std::size_t bytes) const {
-    if (scratch_ != nullptr) scratch_->touched(bytes);
   }
 
   std::span<const RayRow> rows_;
@@ -239,6 +237,7 @@ void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
           factor[r] = hits / ((density[k][r] + from_j) * area[k]);
         }
       };
+      touchRows(scratch, rows[k].bytes());
       forBothEnds(rows[k], handed.columns(k), handed.hits(k), n, merge);
       visit({k, n, merging.columns, merging.factors});
     });

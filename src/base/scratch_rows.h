@@ -1,0 +1,19 @@
+// Rows that are in memory, or in scratch memory where there is some.
+#pragma once
+
+#include "radiosity/scratch_memory.h"
+
+namespace radiosity {
+
+/// What the storage of a row comes from. `scratch` may be null.
+inline std::pmr::memory_resource* rowMemory(ScratchMemory* scratch) {
+  if (scratch != nullptr) return scratch;
+  return std::pmr::get_default_resource();
+}
+
+/// So many bytes of rows are being read or written. `scratch` may be null.
+inline void touchRows(ScratchMemory* scratch, std::size_t bytes) {
+  if (scratch != nullptr) scratch->touched(bytes);
+}
+
+}  // namespace radiosity
