@@ -221,7 +221,7 @@ template <class Visit>
 void RayCaster::trace(const RayOrigins& origins, std::uint64_t seed, std::uint32_t first,
                       std::uint32_t last, const Visit& visit) const {
   const FlushDenormals flush;
-  const auto batch = std::make_unique<Batch>();
+  const auto batch = std::make_unique_for_overwrite<Batch>();
   while (first < last) {
     batch->each = std::min<std::size_t>(last - first, kBatch / kReplicates);
     batch->place(sobol_, seed, first);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "base/parallel.h"
@@ -93,6 +94,16 @@ class Transposed {
         if (column < rows.size() && column != j) ++handed_[column];
       }
     }
+    // As much as the largest panel takes, once: growing would hold two panels.
+    std::size_t most = 0;
+    for (std::size_t first = 0; first < rows.size();) {
+      const std::size_t last = panelEnd(first);
+      most = std::max(most, std::reduce(handed_.begin() + std::ptrdiff_t(first),
+                                        handed_.begin() + std::ptrdiff_t(last)));
+      first = last;
+    }
+    columns_.reserve(most);
+    hits_.reserve(most);
   }
 
   /// The end of the next panel of rows: as many as fit, one at least.
