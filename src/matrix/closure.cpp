@@ -16,6 +16,7 @@
 #include "base/scratch_rows.h"
 #include "matrix/residual_progress.h"
 #include "matrix/run_row.h"
+#include "matrix/strong_pairs.h"
 #include "matrix/triangle_pass.h"
 #include "matrix/uncertain_row.h"
 #include "radiosity/matrix_functions.h"
@@ -28,8 +29,9 @@ constexpr std::size_t kRowGrain = 16;
 /// Newton steps; one where no entry turns negative, else a handful.
 constexpr int kMostRounds = 30;
 constexpr std::size_t kMostSteps = 2000;
-/// Each step is solved to this share of the rows' shortfall. Entries that turn negative would spoil
-/// a more exact step (inexact Newton: Dembo, Eisenstat & Steihaug, SIAM J. Numer. Anal. 19, 1982).
+/// Each step is solved to this share of the rows' shortfall while entries reach 0 or leave it: they
+/// would spoil a more exact step (inexact Newton: Dembo, Eisenstat & Steihaug, SIAM J. Numer. Anal.
+/// 19, 1982). Where the last step held and freed none, the next is solved to the end.
 constexpr double kForcing = 0.1;
 /// A residual r counts as a null vector where <r, (D + W) r>, with D scaled to 1, is below this
 /// share of its square.
@@ -72,6 +74,7 @@ class LeastSquaresClosure {
   void forUncertain(std::size_t k, const Visit& visit) const;
   std::pmr::vector<std::uint8_t>& freeOf(std::size_t k);
   std::vector<double> timesWeights(const std::vector<double>& x);
+  StrongPairs strongPairs(const std::vector<double>& own);
   void evaluate();
   double largestLack() const;
   std::vector<double> newtonStep(double tolerance);
@@ -91,6 +94,7 @@ class LeastSquaresClosure {
   // As evaluate() found them for the multipliers:
   std::vector<double> lacking_;  // goal - row sum after
   double dual_ = 0;              // f
+  std::size_t turned_ = 0;       // entries that were held or freed
   ClosureReport report_;
 };
 
@@ -173,10 +177,36 @@ std::vector<double> LeastSquaresClosure::timesWeights(const std::vector<double>&
   return out;
 }
 
+/// Of D + W, scaled by the root of D; `own`: its diagonal.
+StrongPairs LeastSquaresClosure::strongPairs(const std::vector<double>& own) {
+  std::vector<std::vector<StrongPairs::Pair>> of_row(own.size());
+  std::vector<double> diagonal = own;
+  parallelFor(own.size(), kRowGrain, [&](std::size_t k) {
+    if (!(root_[k] > 0)) {
+      diagonal[k] = 1;
+      return;
+    }
+    const double scale = area_[k] * area_[k] / root_[k];
+    forRuns(std::span<const Run>(uncertain_.row(k).runs), freeOf(k).data(),
+            [&](std::size_t offset, const std::uint8_t* codes, std::size_t count) {
+              for (std::size_t m = 0; m < count; ++m) {
+                const std::size_t later = k + 1 + offset + m;
+                const double value = scale * squared_[codes[m]];
+                if (value <= 0 || value < StrongPairs::kStrong * root_[later]) continue;
+                of_row[k].push_back({Index(k), Index(later), value / root_[later]});
+              }
+            });
+  });
+  std::vector<StrongPairs::Pair> pairs;
+  for (const auto& row : of_row) pairs.insert(pairs.end(), row.begin(), row.end());
+  return {diagonal, pairs};
+}
+
 /// Evaluates the multipliers: f, the shortfall of each row, and which entries are free or at 0.
 void LeastSquaresClosure::evaluate() {
   const std::size_t n = area_.size();
   std::vector<std::size_t> emptied(n, 0);
+  std::vector<std::size_t> turned(n, 0);
   std::vector<double> value(n, 0.0);
   lacking_ = shortfall_;
   const auto row = [&](std::size_t k, double* handed_on, std::size_t) {
@@ -187,6 +217,7 @@ void LeastSquaresClosure::evaluate() {
       const double slope = area * squared_[code];  // of the change of F
       const bool held = slope * sum < -f;
       const double change = held ? -f : slope * sum;
+      turned[k] += held != (free[index] == 0) ? 1 : 0;
       free[index] = held ? std::uint8_t(0) : code;
       emptied[k] += held ? 1 : 0;
       lacking_[k] -= change;
@@ -199,13 +230,14 @@ void LeastSquaresClosure::evaluate() {
     if (area_[k] > 0) lacking_[k] -= handed[0] / area_[k];
   });
   report_.emptied = std::accumulate(emptied.begin(), emptied.end(), std::size_t(0));
+  turned_ = std::accumulate(turned.begin(), turned.end(), std::size_t(0));
   dual_ = std::accumulate(value.begin(), value.end(), 0.0);
 }
 
-/// Conjugate residuals (Stiefel 1955) on the system scaled by the root of D from both sides. It
-/// costs what conjugate gradients do, and its residual falls in every step also where the rows ask
-/// for what cannot be had (the matrix is singular where a set of rows shares uncertain entries only
-/// with another set).
+/// Conjugate residuals (Stiefel 1955) on the system scaled by the root of D from both sides, with
+/// strong pairs solved directly. It costs what conjugate gradients do, and its residual falls in
+/// every step also where the rows ask for what cannot be had (the matrix is singular where a set of
+/// rows shares uncertain entries only with another set).
 std::vector<double> LeastSquaresClosure::newtonStep(double tolerance) {
   const std::size_t n = area_.size();
   const double damping = report_.emptied > 0 ? kDamping * largestLack() : 0;
@@ -237,10 +269,12 @@ std::vector<double> LeastSquaresClosure::newtonStep(double tolerance) {
     }
     return most;
   };
-  std::vector<double> direction = residual;
-  std::vector<double> of_residual = multiply(residual);
-  std::vector<double> of_direction = of_residual;
-  double weight = dot(residual, of_residual);
+  const StrongPairs strong = strongPairs(own);
+  std::vector<double> corrected = strong.solve(residual);
+  std::vector<double> of_corrected = multiply(corrected);
+  std::vector<double> direction = corrected;
+  std::vector<double> of_direction = of_corrected;
+  double weight = dot(corrected, of_corrected);
   std::vector<double> history{largest()};
   const auto stalls = [&] {
     return history.size() > kStagnantSteps &&
@@ -248,19 +282,21 @@ std::vector<double> LeastSquaresClosure::newtonStep(double tolerance) {
   };
   // Where no matrix has the row sums asked for, the residual ends as a null vector; further steps
   // would follow rounding.
-  const auto ends = [&] { return !(weight > kNull * dot(residual, residual)); };
+  const auto ends = [&] { return !(weight > kNull * dot(residual, corrected)); };
   while (history.back() > tolerance && !ends() && history.size() < kMostSteps && !stalls()) {
-    const double step = weight / dot(of_direction, of_direction);
+    const std::vector<double> moved = strong.solve(of_direction);
+    const double step = weight / dot(of_direction, moved);
     for (std::size_t k = 0; k < n; ++k) {
       x[k] += step * direction[k];
       residual[k] -= step * of_direction[k];
+      corrected[k] -= step * moved[k];
     }
     progress_.check();
-    of_residual = multiply(residual);
-    const double last = std::exchange(weight, dot(residual, of_residual));
+    of_corrected = multiply(corrected);
+    const double last = std::exchange(weight, dot(corrected, of_corrected));
     for (std::size_t k = 0; k < n; ++k) {
-      direction[k] = residual[k] + weight / last * direction[k];
-      of_direction[k] = of_residual[k] + weight / last * of_direction[k];
+      direction[k] = corrected[k] + weight / last * direction[k];
+      of_direction[k] = of_corrected[k] + weight / last * of_direction[k];
     }
     history.push_back(largest());
     ++report_.iterations;
@@ -282,7 +318,9 @@ void LeastSquaresClosure::findMultipliers(double tolerance) {
   ResidualProgress shown(progress_, "closure", largestLack(), tolerance);
   for (int round = 0; round < kMostRounds && largestLack() > tolerance; ++round) {
     shown.at(largestLack());
-    const std::vector<double> step = newtonStep(std::max(tolerance, kForcing * largestLack()));
+    const bool settled = round > 0 && turned_ == 0;
+    const std::vector<double> step =
+        newtonStep(settled ? tolerance : std::max(tolerance, kForcing * largestLack()));
     const std::vector<double> start = multiplier_;
     const double dual = dual_;
     const double lack = largestLack();
