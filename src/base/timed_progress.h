@@ -2,27 +2,29 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
 
 #include "radiosity/base.h"
 
 namespace radiosity {
 
 /// Shows its stages by another progress, and is cancelled with it, or by itself after so many
-/// seconds by the clock. It looks at the clock at every step.
+/// seconds by the clock, wherever the work is.
 class TimedProgress : public Progress {
  public:
   TimedProgress(Progress& outer, double seconds)
-      : outer_(outer), end_(Clock::now() + std::chrono::duration<double>(seconds)) {}
+      : outer_(outer), watch_([this, seconds](const std::stop_token& over) {
+          watch(over, Clock::now() + std::chrono::duration<double>(seconds));
+        }) {}
 
   void begin(const std::string& stage, std::size_t total, const std::string& steps = {},
              std::size_t done = 0) override {
     is_open_ = true;
     outer_.begin(stage, total, steps, done);
   }
-  void advance(std::size_t steps = 1) override {
-    outer_.advance(steps);
-    if (outer_.cancelled() || Clock::now() > end_) cancel();
-  }
+  void advance(std::size_t steps = 1) override { outer_.advance(steps); }
   void end() override {
     is_open_ = false;
     outer_.end();
@@ -36,9 +38,23 @@ class TimedProgress : public Progress {
 
  private:
   using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds kBetweenLooks{10};
+
+  void watch(const std::stop_token& over,
+             std::chrono::time_point<Clock, std::chrono::duration<double>> end) {
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    std::condition_variable_any waiting;
+    while (!outer_.cancelled() && Clock::now() < end) {
+      waiting.wait_for(lock, over, kBetweenLooks, [] { return false; });
+      if (over.stop_requested()) return;
+    }
+    cancel();
+  }
+
   Progress& outer_;
-  std::chrono::time_point<Clock, std::chrono::duration<double>> end_;
   bool is_open_ = false;
+  std::jthread watch_;  // ends before what it looks at
 };
 
 }  // namespace radiosity

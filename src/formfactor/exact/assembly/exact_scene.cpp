@@ -39,7 +39,7 @@ auto part(Progress& progress, const Make& make) {
 }  // namespace
 
 ExactScene::ExactScene(const PatchMesh& mesh, Progress& progress)
-    : elements(part(progress, [&] { return ElementSet(mesh); })),
+    : elements(part(progress, [&] { return ElementSet(mesh, progress); })),
       occluders(part(progress, [&] { return OccluderSet(mesh, elements, progress); })),
       visibility(elements, occluders),
       order(mesh, elements),

@@ -71,18 +71,21 @@ bool isConvex(const std::vector<Vec3>& outline, const Vec3& normal, double coinc
 /// Fills an ElementSet facet by facet.
 class ElementBuilder {
  public:
-  ElementBuilder(const PatchMesh& mesh, ElementSet& set) : mesh_(mesh), set_(set) {}
+  ElementBuilder(const PatchMesh& mesh, ElementSet& set, const Progress& progress)
+      : mesh_(mesh), set_(set), progress_(progress) {}
 
   void build() {
     normalise();
     const std::vector<Index> order = polygonOrder();
     const std::vector<std::array<std::vector<Index>, 2>> patches = patchesOfSides();
     for (const Index p : order) {
+      progress_.check();
       for (std::size_t side = 0; side < 2; ++side) addSide(p, side == 1, patches[p][side]);
     }
     set_.patch_elements = set_.size();
     const std::vector<std::uint8_t> hidden = backsHiddenFromAll(mesh_);
     for (const Index p : order) {
+      progress_.check();
       for (std::size_t side = 0; side < 2; ++side) {
         if (patches[p][side].empty() && !(side == 1 && hidden[p])) addBlackSide(p, side == 1);
       }
@@ -264,8 +267,13 @@ class ElementBuilder {
 
   const PatchMesh& mesh_;
   ElementSet& set_;
+  const Progress& progress_;
 };
 
-ElementSet::ElementSet(const PatchMesh& mesh) { ElementBuilder(mesh, *this).build(); }
+ElementSet::ElementSet(const PatchMesh& mesh) : ElementSet(mesh, Progress()) {}
+
+ElementSet::ElementSet(const PatchMesh& mesh, const Progress& progress) {
+  ElementBuilder(mesh, *this, progress).build();
+}
 
 }  // namespace radiosity

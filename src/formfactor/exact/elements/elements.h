@@ -56,6 +56,8 @@ struct Facet {
 /// nothing depends on how patches are numbered.
 struct ElementSet {
   explicit ElementSet(const PatchMesh& mesh);
+  /// Throws Cancelled.
+  ElementSet(const PatchMesh& mesh, const Progress& progress);
 
   std::size_t size() const { return patch.size(); }
   std::span<const Vec3> outline(std::size_t e) const {

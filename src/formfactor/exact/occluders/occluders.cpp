@@ -70,6 +70,7 @@ OccluderSet::OccluderSet(const PatchMesh& mesh, const ElementSet& elements, Prog
     if (!taken[p] && isCoveredBySolids(all, polygon, occluders, places)) taken[p] = 1;
   }
   for (Index f = 0; f < elements.facets.size(); ++f) {
+    progress.check();
     const Facet& facet = elements.facets[f];
     if (all.allBehind(facet.normal, facet.offset, elements.coincidence)) hidden_facets[f] = 1;
   }
