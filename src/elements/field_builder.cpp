@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "elements/element_parts.h"
 
 namespace radiosity {
 namespace {
@@ -257,7 +258,7 @@ class FieldBuilder {
       const Index* p = out_.field.points.data() + element.first_point;
       const std::size_t n = node.corners();
       double own = 0;
-      for (std::size_t k = 0; k < 2 * n + (n == 4 ? 1 : 0); ++k) {
+      for (std::size_t k = 0; k < pointCount(n, true); ++k) {
         own = std::max(own, brightness(p[k]));
       }
       const double light = lightAt(node, own);
@@ -309,26 +310,17 @@ class FieldBuilder {
       if (!node.wants_cut) continue;
       const Index* p = out_.field.points.data() + out_.field.elements[node.element].first_point;
       out_.field.elements[node.element].first_child = Index(out_.field.elements.size());
-      const auto add = [&](std::array<Index, 4> vertex) {
+      for (const PartCorners& part : partsOf(node.corners())) {
         Node child;
         child.element = Index(out_.field.elements.size());
         child.root = node.root;
-        child.vertex = vertex;
+        for (std::size_t k = 0; k < 4; ++k) {
+          child.vertex[k] = k < node.corners() ? p[part[k]] : kNone;
+        }
         out_.field.elements.emplace_back();
         root_of_.push_back(node.root);
         children.push_back(std::move(child));
         parents.push_back(node.lights);
-      };
-      if (node.corners() == 4) {
-        add({p[0], p[4], p[8], p[7]});
-        add({p[4], p[1], p[5], p[8]});
-        add({p[8], p[5], p[2], p[6]});
-        add({p[7], p[8], p[6], p[3]});
-      } else {
-        add({p[0], p[3], p[5], kNone});
-        add({p[3], p[1], p[4], kNone});
-        add({p[5], p[4], p[2], kNone});
-        add({p[4], p[5], p[3], kNone});
       }
     }
     parallelFor(children.size(), 16, [&](std::size_t k) {

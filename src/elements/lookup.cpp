@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/parallel.h"
+#include "elements/element_parts.h"
 #include "radiosity/elements.h"
 
 namespace radiosity {
@@ -43,17 +44,14 @@ struct Weights {
   std::size_t count;
 };
 
-Weights inSquare(const std::array<Index, 4>& corner, double u, double v) {
-  return {corner, {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v}, 4};
-}
-
-Weights inTriangle(const std::array<Index, 3>& corner, double b, double c) {
-  return {{corner[0], corner[1], corner[2], corner[2]}, {1 - b - c, b, c, 0}, 3};
+Weights weightsIn(const std::array<Index, 4>& corner, std::size_t corners, double u, double v) {
+  if (corners == 4) return {corner, {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v}, 4};
+  return {corner, {1 - u - v, u, v, 0}, 3};
 }
 
 /// The part of a triangle that (b, c) lies in: 0 to 2 at that corner, 3 in the middle; (b, c)
 /// become the place in it.
-int partOf(double& b, double& c) {
+int triangleAt(double& b, double& c) {
   const double a = 1 - b - c;
   if (a > 0.5) {
     b *= 2;
@@ -86,32 +84,16 @@ int quarterOf(double& u, double& v) {
   return right ? 1 : 0;
 }
 
+/// The part of an element that (u, v) lies in; (u, v) become the place in it.
+int partAt(std::size_t corners, double& u, double& v) {
+  return corners == 4 ? quarterOf(u, v) : triangleAt(u, v);
+}
+
 Weights weightsOf(const ElementField& field, const Element& leaf, double u, double v) {
   const Index* p = field.points.data() + leaf.first_point;
-  if (leaf.corners == 4) {
-    if (leaf.tested == 0) return inSquare({p[0], p[1], p[2], p[3]}, u, v);
-    switch (quarterOf(u, v)) {
-      case 0:
-        return inSquare({p[0], p[4], p[8], p[7]}, u, v);
-      case 1:
-        return inSquare({p[4], p[1], p[5], p[8]}, u, v);
-      case 2:
-        return inSquare({p[8], p[5], p[2], p[6]}, u, v);
-      default:
-        return inSquare({p[7], p[8], p[6], p[3]}, u, v);
-    }
-  }
-  if (leaf.tested == 0) return inTriangle({p[0], p[1], p[2]}, u, v);
-  switch (partOf(u, v)) {
-    case 0:
-      return inTriangle({p[0], p[3], p[5]}, u, v);
-    case 1:
-      return inTriangle({p[3], p[1], p[4]}, u, v);
-    case 2:
-      return inTriangle({p[5], p[4], p[2]}, u, v);
-    default:
-      return inTriangle({p[4], p[5], p[3]}, u, v);
-  }
+  PartCorners part = {0, 1, 2, std::uint8_t(leaf.corners - 1)};
+  if (leaf.tested != 0) part = partsOf(leaf.corners)[std::size_t(partAt(leaf.corners, u, v))];
+  return weightsIn({p[part[0]], p[part[1]], p[part[2]], p[part[3]]}, leaf.corners, u, v);
 }
 
 }  // namespace
@@ -172,7 +154,7 @@ bool ElementLookup::add(const ElementField& field, std::size_t root, Vec2 place,
   double u = place.x;
   double v = place.y;
   while (element->first_child != kNone) {
-    const int child = element->corners == 4 ? quarterOf(u, v) : partOf(u, v);
+    const int child = partAt(element->corners, u, v);
     element = field.elements.data() + element->first_child + child;
   }
   const Weights w = weightsOf(field, *element, u, v);

@@ -81,7 +81,6 @@ struct ElementSurface {
  private:
   struct Corner;
   struct RootEdge;
-  void addRoots(const PatchMesh& mesh);
   void addVertices(const PatchMesh& mesh, const CornerGroups& groups);
   void addEdges(const PatchMesh& mesh, double crease);
   double insetOf(const PatchMesh& mesh, std::size_t root) const;
