@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "radiosity/elements.h"
 #include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
@@ -41,6 +42,12 @@ inline constexpr NameTable<SolveStatus, 4> kSolveStatusNames{
      {SolveStatus::no_convergence, "no_convergence"},
      {SolveStatus::no_light, "no_light"},
      {SolveStatus::singular, "singular"}}};
+inline constexpr NameTable<DirectLight, 5> kDirectLightNames{
+    {{DirectLight::none, "none"},
+     {DirectLight::exact, "exact"},
+     {DirectLight::partly, "partly"},
+     {DirectLight::rays, "rays"},
+     {DirectLight::hemispheres, "hemispheres"}}};
 inline constexpr NameTable<GatherAt, 2> kGatherAtNames{
     {{GatherAt::vertices, "vertices"}, {GatherAt::patches, "patches"}}};
 

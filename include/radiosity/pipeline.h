@@ -26,7 +26,7 @@ class JournalFile;
 class Pipeline;
 class StageKey;
 
-enum class Stage { mesh, form_factors, solution, gather };
+enum class Stage { mesh, form_factors, solution, gather, elements };
 
 enum class StageAction {
   reused,      ///< taken from a results file
@@ -81,6 +81,7 @@ struct PipelineOptions {
   FormFactorOptions factors;  ///< memory_held 0: what the process holds is taken
   SolveOptions solve;
   GatherOptions gather;
+  ElementOptions elements;
   JournalOptions journal;
 };
 
@@ -97,13 +98,13 @@ struct ScalarField {
   FalseColour legend;          ///< title and unit
 };
 
-/// Scene -> mesh -> form factors -> solution, and scene -> mesh -> gathered light.
+/// Scene -> mesh -> form factors -> solution -> elements, and scene -> mesh -> gathered light.
 ///
-/// mesh(), factors(), solution() and gathered() first make what they stand on. Each stage has a
-/// key, a text of its options and of what it was made from. One with the same key is reused: from
-/// this object where it was made before, else from a results file; otherwise it is computed, and
-/// what stands on the one before is discarded. So options() may be changed between calls.
-/// References that a call returned hold until the stage is made again.
+/// mesh(), factors(), solution(), elements() and gathered() first make what they stand on. Each
+/// stage has a key, a text of its options and of what it was made from. One with the same key is
+/// reused: from this object where it was made before, else from a results file; otherwise it is
+/// computed, and what stands on the one before is discarded. So options() may be changed between
+/// calls. References that a call returned hold until the stage is made again.
 class Pipeline {
  public:
   /// Both must outlive it; no observer: nobody is told.
@@ -144,6 +145,8 @@ class Pipeline {
   const ExchangeMatrix& matrix();
   /// Not converging is data: look at its summary.
   const Solution& solution();
+  /// Light at points after solution(), which must have values; of all patches.
+  const Elements& elements();
   /// By the gather method; stands on the mesh alone.
   const Gathered& gathered();
   /// Materials of the patches of mesh().
@@ -154,10 +157,9 @@ class Pipeline {
   /// Of solution(), which must have values, and of gathered(). One band is drawn grey; InputError
   /// where there are two, or more than three.
   SurfaceLight solvedLight();
-  /// solvedLight() with elements, which are computed at every call. Errors: as computeElements().
-  /// `wanted`: as there.
-  SurfaceLight elementLight(const ElementOptions& options,
-                            std::span<const std::uint8_t> wanted = {});
+  /// solvedLight() with elements: those of elements(), or, where there are none that fit, of the
+  /// patches `wanted` (as computeElements()) alone, which are computed at every call and not kept.
+  SurfaceLight elementLight(std::span<const std::uint8_t> wanted = {});
   SurfaceLight gatheredLight();
   /// `patch`: of Quantity::form_factor, below N.
   ScalarField field(Quantity quantity, std::size_t patch = 0);
@@ -234,6 +236,9 @@ class Pipeline {
             const StageKey& key, bool there = true);
   bool keepFactors();
   bool keepSolution();
+  StageKey elementsKeyNow() const;
+  Elements elementsOf(std::span<const std::uint8_t> wanted, const StageKey& key);
+  bool keepElements();
   bool keepGathered();
   void dropEmptySolution();
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "radiosity/elements.h"
 #include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
@@ -32,6 +33,8 @@ struct Results {
   std::optional<PatchMaterials> materials;  ///< of the solution
   std::optional<Solution> solution;
   std::string solution_key;
+  std::optional<Elements> elements;  ///< light after the solution, of all patches
+  std::string elements_key;
   std::optional<Gathered> gathered;  ///< by the gather method; needs no form factors
   std::string gather_key;
 };
@@ -59,6 +62,9 @@ Results readResults(const std::string& path, bool with_factors = true,
 ///                  of clusters; method, key, geometry_hash, report/
 ///   /solution      radiosity, irradiance, reflectance, emission (N x bands), sky (an attribute of
 ///                  bands numbers; none: dark), summary/, key
+///   /elements      bands, key, report/; roots/ as ElementRoots: patch, corner (R x 4), of_patch;
+///                  direct/ and indirect/ as ElementField: elements/ (a row an element, the first R
+///                  the roots), points, vertices, values (V x bands, W/m^2)
 ///   /gather        radiosity, irradiance (L x bands, f32; L eyes), backs, sky, area, position;
 ///                  backs_by_surface;
 ///                  eye_of_corner (at vertices: the eye of every entry of /mesh/corners); at, key,
@@ -90,6 +96,12 @@ void writeLitGlb(const std::string& path, const PatchMesh& mesh, std::span<const
 /// The same from radiosities at the corners (mesh.corners.size() * 3).
 void writeLitGlb(const std::string& path, const PatchMesh& mesh, std::span<const double> radiosity,
                  std::span<const double> corners, double ev);
+/// The same of light as pictures show it: of elements, where `light` has some that were evaluated.
+/// Each that neither of their fields cuts further is cut into triangles, with B = E + rho * H at
+/// its corners and linear in between; one whose edges its neighbours cut has corners there, too, so
+/// that triangles meet corner to corner. Returns how many triangles the file has.
+std::size_t writeLitGlb(const std::string& path, const PatchMesh& mesh, const SurfaceLight& light,
+                        double ev, double crease);
 
 /// .exr: 32-bit floats, linear, colours multiplied by alpha as the format asks (a pixel is then
 /// what reaches it; a miss is 0,0,0,0). .png: 8 bits, colours not multiplied; linear images get the

@@ -264,11 +264,15 @@ void addRenderOptions(CLI::App& app, Request& r) {
 
 void addElementOptions(CLI::App& app, Request& r) {
   const ElementOptions defaults;
-  add(app, "Picture", "--elements", r.elements, "on|off",
-      "on: light is evaluated anew at the vertices of elements, finer than patches where light "
-      "changes (default); off: what the patches have, smoothed")
+  app.add_option_function<std::string>(
+         "--elements", [&r](const std::string& text) { r.elements = text == "on"; },
+         "on: light is evaluated anew at the vertices of elements, finer than patches where light "
+         "changes (default of pictures and lit meshes); a results file keeps those of a lit mesh, "
+         "and others where on is given; off: what the patches have, smoothed")
+      ->group("Elements")
+      ->option_text("on|off")
       ->check(CLI::IsMember({"on", "off"}));
-  add(app, "Picture", "--element-tolerance", r.element_tolerance, "SHARE",
+  add(app, "Elements", "--element-tolerance", r.element_tolerance, "SHARE",
       fmt::format(
           "Elements are cut where interpolation misses by more than this share of the light "
           "there, 1e-4 to 0.5 (default {})",
@@ -342,9 +346,9 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
     bindToGather(*sub);
   }
   if (compares || command == Command::render) addCameraOptions(*sub, r);
+  if (command == Command::solve || command == Command::render) addElementOptions(*sub, r);
   if (command == Command::render) {
     addRenderOptions(*sub, r);
-    addElementOptions(*sub, r);
     addShowOptions(*sub, r);
   }
   return sub;

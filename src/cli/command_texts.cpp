@@ -46,9 +46,13 @@ const char* examplesOf(Command command) {
     case Command::solve:
       return "Files (-o): .h5 (results), .glb (lit mesh), .mtx (MatrixMarket). A results file "
              "given\n"
-             "as input is updated in place where no -o is given; its form factors are reused.\n\n"
+             "as input is updated in place where no -o is given; its form factors are reused.\n"
+             "The lit mesh shows light at elements, finer than patches; a results file, which is "
+             "for\n"
+             "the matrix, keeps them beside a lit mesh or with --elements on.\n\n"
              "Examples:\n"
              "  radiosity solve data/cornell-box.obj -o cornell.h5\n"
+             "  radiosity solve cornell.h5 -o lit.glb\n"
              "  radiosity solve cornell.h5 --set white.reflectance=.9";
     case Command::gather:
       return "Files (-o): .h5 (results), .png (exposed, sRGB), .exr (radiance, W/m^2/sr, linear),\n"

@@ -17,6 +17,7 @@ void describeStages(Session& session, const Pipeline& pipeline) {
   if (stored.mesh) report.text("mesh_key", "mesh", stored.mesh_key);
   if (stored.factors) report.text("factors_key", "form factors", stored.factors_key);
   if (stored.solution) report.text("solution_key", "solution", stored.solution_key);
+  if (stored.elements) report.text("elements_key", "elements", stored.elements_key);
   if (stored.gathered) report.text("gather_key", "gather", stored.gather_key);
   if (!stored.mesh) return;
   summarizeMesh(report, *stored.mesh, Detail::brief);
@@ -27,6 +28,7 @@ void describeStages(Session& session, const Pipeline& pipeline) {
     summarizeSolution(report, *stored.solution, made(stored.factors), stored.mesh->mesh,
                       pipeline.options().solve, Detail::brief);
   }
+  if (stored.elements) summarizeElements(report, *stored.elements, made(stored.factors));
   if (stored.gathered) {
     summarizeGathered(report, *stored.gathered, stored.mesh->mesh, pipeline.options().gather,
                       Detail::brief);

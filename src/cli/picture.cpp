@@ -115,16 +115,17 @@ Metadata metadataOf(const Picture& picture, const std::string& quantity, const s
           {"camera", cameraText(picture.camera)}};
 }
 
-void writeLitMesh(const PatchMesh& mesh, const SurfaceLight& light, OutputSet& files, double ev,
-                  double crease) {
-  files.write(Format::glb, fmt::format("lit mesh, EV {:.2f}", ev),
+void writeLitMesh(Report& report, const PatchMesh& mesh, const SurfaceLight& light,
+                  OutputSet& files, double ev, double crease) {
+  if (!files.has(Format::glb)) return;
+  std::size_t triangles = 0;
+  files.write(Format::glb,
+              fmt::format("lit mesh of {}, EV {:.2f}", light.elements ? "elements" : "patches", ev),
               [&](const std::string& temporary) {
-                if (light.corners.empty()) {
-                  writeLitGlb(temporary, mesh, light.patches, ev, crease);
-                } else {
-                  writeLitGlb(temporary, mesh, light.patches, light.corners, ev);
-                }
+                triangles = writeLitGlb(temporary, mesh, light, ev, crease);
               });
+  report.section("lit_mesh", "Lit mesh");
+  report.count("triangles", "triangles", triangles);
 }
 
 namespace {
@@ -164,7 +165,7 @@ void drawLight(Session& session, const PatchMesh& mesh, const SurfaceLight& ligh
   files.write(Format::exr, "radiance, W/m^2/sr, linear", [&](const std::string& temporary) {
     writeImage(temporary, radiance, false, metadataOf(picture, "radiance", "W/m^2/sr"));
   });
-  writeLitMesh(mesh, light, files, ev, picture.options.crease);
+  writeLitMesh(session.report, mesh, light, files, ev, picture.options.crease);
 }
 
 double exposureOf(const Request& request, const Image& radiance) {

@@ -40,9 +40,9 @@ Metadata metadataOf(const Picture& picture, const std::string& quantity, const s
 void drawLight(Session& session, const PatchMesh& mesh, const SurfaceLight& light,
                const Picture& picture, OutputSet& files);
 
-/// Writes the .glb among `files` as a lit mesh.
-void writeLitMesh(const PatchMesh& mesh, const SurfaceLight& light, OutputSet& files, double ev,
-                  double crease);
+/// Writes the .glb among `files` as a lit mesh, and reports how many triangles it has.
+void writeLitMesh(Report& report, const PatchMesh& mesh, const SurfaceLight& light,
+                  OutputSet& files, double ev, double crease);
 
 /// The EV of --exposure: the number, or what suits the picture.
 double exposureOf(const Request& request, const Image& radiance);

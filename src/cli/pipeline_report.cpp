@@ -58,6 +58,8 @@ StageWords wordsOf(Stage stage) {
       return {Command::factors, "form_factors", "form factors", "they still fit"};
     case Stage::solution:
       return {Command::solve, "solution", "solution", "it still fits"};
+    case Stage::elements:
+      return {Command::render, "elements", "elements", "they still fit"};
     case Stage::gather:
       break;
   }
@@ -171,6 +173,8 @@ void PipelineReport::summarize(const Pipeline& pipeline, const StageEvent& event
                                options.solve, light);
     case Stage::gather:
       return summarizeGathered(report_, made(results.gathered), mesh, options.gather, light);
+    case Stage::elements:
+      return;  // by those who show them: a picture may have some of them alone
   }
 }
 

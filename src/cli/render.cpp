@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "cli/commands.h"
+#include "cli/element_use.h"
 #include "cli/picture.h"
 #include "cli/summaries.h"
 #include "cli/words.h"
@@ -88,11 +89,13 @@ void drawQuantity(Session& session, Pipeline& pipeline, const Picture& picture, 
 }
 
 /// The light that the picture shows: of elements, unless patches were asked for.
-SurfaceLight litSurfaces(Session& session, Pipeline& pipeline, const Picture& picture) {
-  if (session.request.elements == "off" || !picture.options.smooth) return pipeline.solvedLight();
-  SurfaceLight light = pipeline.elementLight(
-      session.request.elementOptions(),
-      visiblePatches(pipeline.mesh().mesh, picture.camera, picture.options, session.progress));
+SurfaceLight litSurfaces(Session& session, Pipeline& pipeline, const Picture& picture,
+                         const ElementUse& elements) {
+  if (!elements.shown) return pipeline.solvedLight();
+  SurfaceLight light =
+      elements.all ? pipeline.elementLight()
+                   : pipeline.elementLight(visiblePatches(pipeline.mesh().mesh, picture.camera,
+                                                          picture.options, session.progress));
   summarizeElements(session.report, *light.elements, pipeline.factors());
   return light;
 }
@@ -116,6 +119,7 @@ int runRender(Session& session) {
   OutputSet files = claimOutputs(session);
   const Show show = parseShow(request.show);
   checkOutputs(files, show);
+  const ElementUse elements = elementUse(request, files);
   Run run(session, files.path(Format::results));
   Pipeline& pipeline = run.pipeline;
   Picture picture = choosePicture(request, pipeline.scene());
@@ -140,7 +144,7 @@ int runRender(Session& session) {
   }
   framePicture(picture, mesh, factors.report.closed, reflected);
   SurfaceLight light;
-  if (!show.quantity) light = litSurfaces(session, pipeline, picture);
+  if (!show.quantity) light = litSurfaces(session, pipeline, picture, elements);
   reportPicture(session.report, picture);
   if (show.quantity) {
     drawQuantity(session, pipeline, picture, show, *show.quantity, files);

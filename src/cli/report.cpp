@@ -219,7 +219,15 @@ void Report::notes(std::span<const Note> notes) {
 }
 
 void Report::output(const std::string& path, std::size_t bytes, const std::string& what) {
-  (*root_)["outputs"].push_back({{"path", path}, {"bytes", bytes}, {"what", what}});
+  const json written = {{"path", path}, {"bytes", bytes}, {"what", what}};
+  json& outputs = (*root_)["outputs"];
+  const auto before = std::find_if(outputs.begin(), outputs.end(),
+                                   [&](const json& output) { return output["path"] == path; });
+  if (before != outputs.end()) {
+    *before = written;
+  } else {
+    outputs.push_back(written);
+  }
   line("wrote", fmt::format("{}  ({}, {})", path, what, bytesText(bytes)));
 }
 

@@ -56,6 +56,7 @@ class Report {
   void line(const std::string& label, const std::string& text);
   /// Loud ones and warnings go to standard error, worst first; many alike are grouped.
   void notes(std::span<const Note> notes);
+  /// A file written again replaces what was recorded of it.
   void output(const std::string& path, std::size_t bytes, const std::string& what);
 
   /// Recorded but not printed while muted.

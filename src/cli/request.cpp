@@ -106,8 +106,7 @@ CompareOptions Request::compareOptions() const {
   return options;
 }
 
-ElementOptions Request::elementOptions() const {
-  ElementOptions options;
+ElementOptions Request::apply(ElementOptions options) const {
   set(options, &ElementOptions::tolerance, element_tolerance, "--element-tolerance");
   set(options, &ElementOptions::crease, crease, "--crease");
   options.validate();

@@ -70,7 +70,7 @@ struct Request {
   std::string exposure = "auto";
   std::optional<int> samples;
   std::optional<double> crease;
-  std::string elements = "on";
+  std::optional<bool> elements;
   std::optional<double> element_tolerance;
   bool flat = false;
   std::string backs = "hide";
@@ -86,10 +86,10 @@ struct Request {
   FormFactorOptions apply(FormFactorOptions options) const;
   SolveOptions apply(SolveOptions options) const;
   GatherOptions apply(GatherOptions options) const;
+  ElementOptions apply(ElementOptions options) const;
   /// `results_output`: the .h5 that is written; empty: none.
   JournalOptions journal(const std::string& results_output) const;
   CompareOptions compareOptions() const;
-  ElementOptions elementOptions() const;
   /// The picture's options as given, without a size where none was given; validated.
   RenderOptions renderOptions() const;
 };

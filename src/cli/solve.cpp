@@ -1,28 +1,42 @@
 #include "cli/commands.h"
+#include "cli/element_use.h"
 #include "cli/picture.h"
+#include "cli/summaries.h"
 
 namespace radiosity::cli {
 
+namespace {
+
+/// Writes the lit mesh, exposed as the picture of the same light is.
+void writeLit(Session& session, Pipeline& pipeline, bool elements, OutputSet& files) {
+  Picture picture = choosePicture(session.request, pipeline.scene());
+  const PatchMesh& mesh = pipeline.mesh().mesh;
+  const SurfaceLight light = elements ? pipeline.elementLight() : pipeline.solvedLight();
+  framePicture(picture, mesh, pipeline.factors().report.closed, light.reflected);
+  const Image radiance =
+      renderRadiance(mesh, light, picture.camera, picture.options, session.progress);
+  const double ev = exposureOf(session.request, radiance);
+  writeLitMesh(session.report, mesh, light, files, ev, picture.options.crease);
+}
+
+}  // namespace
+
 int runSolve(Session& session) {
   OutputSet files = claimOutputs(session);
+  const ElementUse elements = elementUse(session.request, files);
   Run run(session, files.path(Format::results));
   Pipeline& pipeline = run.pipeline;
   requireColours(pipeline, session.request, files);
-  const FormFactors& factors = pipeline.factors();
+  pipeline.factors();
   keepFactors(session, pipeline, files);
   const int code = judgeSolution(session, pipeline);
   const bool singular = pipeline.solution().summary.status == SolveStatus::singular;
-  writeStages(session, pipeline, files);
-  if (files.has(Format::glb) && !singular) {
-    Picture picture = choosePicture(session.request, pipeline.scene());
-    const PatchMesh& mesh = pipeline.mesh().mesh;
-    const SurfaceLight light = pipeline.solvedLight();
-    framePicture(picture, mesh, factors.report.closed, light.reflected);
-    const Image radiance =
-        renderRadiance(mesh, light, picture.camera, picture.options, session.progress);
-    const double ev = exposureOf(session.request, radiance);
-    writeLitMesh(mesh, light, files, ev, picture.options.crease);
+  if (elements.all && !singular) {
+    keepSolution(session, pipeline, files);
+    summarizeElements(session.report, pipeline.elements(), pipeline.factors());
   }
+  writeStages(session, pipeline, files);
+  if (files.has(Format::glb) && !singular) writeLit(session, pipeline, elements.shown, files);
   files.commit(session.report, session.progress);
   return code;
 }

@@ -43,6 +43,7 @@ Run::Run(Session& session, const std::string& results_output)
   options.factors = request.apply(options.factors);
   options.solve = request.apply(options.solve);
   options.gather = request.apply(options.gather);
+  options.elements = request.apply(options.elements);
   options.journal = request.journal(results_output);
   options.factors.scratch_folder = scratchFolder(request, results_output);
 }
@@ -72,6 +73,7 @@ std::string contents(const Results& results) {
   std::string list = "results: scene, mesh";
   if (results.factors) list += ", form factors";
   if (results.solution) list += ", solution";
+  if (results.elements) list += ", elements";
   if (results.gathered) list += ", gathered light";
   return list;
 }

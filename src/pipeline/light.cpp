@@ -3,6 +3,7 @@
 
 #include "base/luminance.h"
 #include "base/made.h"
+#include "pipeline/stage_key.h"
 #include "radiosity/pipeline.h"
 
 namespace radiosity {
@@ -44,12 +45,14 @@ SurfaceLight Pipeline::solvedLight() {
   return surfaceLight(light.radiosity, materialsOfMesh());
 }
 
-SurfaceLight Pipeline::elementLight(const ElementOptions& options,
-                                    std::span<const std::uint8_t> wanted) {
+SurfaceLight Pipeline::elementLight(std::span<const std::uint8_t> wanted) {
   SurfaceLight light = solvedLight();
   const PatchMaterials& materials = materialsOfMesh();
-  light.elements = std::make_shared<const Elements>(computeElements(
-      made(results_.mesh).mesh, materials, solution().irradiance, options, wanted, progress_));
+  const StageKey key = elementsKeyNow();
+  const bool there = (results_.elements && results_.elements_key == key.text()) ||
+                     (stored_.elements && stored_.elements_key == key.text());
+  light.elements = std::make_shared<const Elements>(
+      wanted.empty() || there ? elements() : elementsOf(wanted, key));
   light.reflectance = materials.reflectance;
   light.emission = materials.emission;
   return light;

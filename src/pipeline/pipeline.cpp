@@ -95,7 +95,9 @@ void Pipeline::openResults(const std::string& path, const SceneOptions& scene) {
   options_ = {meshOptionsOf(StageKey(stored_.mesh_key)),
               factorOptionsOf(StageKey(stored_.factors_key)),
               solveOptionsOf(StageKey(stored_.solution_key)),
-              gatherOptionsOf(StageKey(stored_.gather_key)), options_.journal};
+              gatherOptionsOf(StageKey(stored_.gather_key)),
+              elementOptionsOf(StageKey(stored_.elements_key)),
+              options_.journal};
   observer_.opened(*this);
   if (overrides(scene)) overrideScene(scene);
 }
@@ -223,6 +225,14 @@ bool Pipeline::keepSolution() {
               results_.factors.has_value());
 }
 
+bool Pipeline::keepElements() {
+  if (results_.elements || !stored_.elements) return false;
+  const StageKey key =
+      elementsKey(elementOptionsOf(StageKey(stored_.elements_key)), results_.solution_key);
+  return keep(Stage::elements, &Results::elements, &Results::elements_key, key,
+              results_.solution.has_value());
+}
+
 bool Pipeline::keepGathered() {
   if (results_.gathered || !stored_.gathered) return false;
   const StageKey key = gatherKey(gatherOptionsOf(StageKey(stored_.gather_key)), materialsOfMesh(),
@@ -239,9 +249,10 @@ void Pipeline::dropEmptySolution() {
 void Pipeline::keepLaterStages() {
   if (!results_.mesh) mesh();
   dropEmptySolution();
-  // In this order: a solution stands on its form factors.
+  // In this order: a solution stands on its form factors, elements on their solution.
   bool dropped = keepFactors();
   dropped = keepSolution() || dropped;
+  dropped = keepElements() || dropped;
   dropped = keepGathered() || dropped;
   const bool needed = results_.solution || results_.gathered || hasOwnMaterials();
   if (!needed) results_.materials.reset();

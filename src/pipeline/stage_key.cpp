@@ -18,7 +18,8 @@ constexpr std::pair<std::string_view, std::string_view> kIdentities[] = {
     {"scene", "geometry changed"},
     {"mesh", "mesh changed"},
     {"materials", "materials changed"},
-    {"factors", "form factors changed"}};
+    {"factors", "form factors changed"},
+    {"solution", "solution changed"}};
 
 std::string onOff(bool value) { return value ? "on" : "off"; }
 
@@ -195,6 +196,21 @@ StageKey solutionKey(const SolveOptions& options, const PatchMaterials& material
   return key;
 }
 
+StageKey elementsKey(const ElementOptions& options, const std::string& solution_key) {
+  Hash solution;
+  solution.text(solution_key);
+  StageKey key;
+  key.add("element-tolerance", fmt::format("{}", options.tolerance));
+  key.add("smallest-edge", fmt::format("{}", options.smallest_edge));
+  key.add("most-vertices", fmt::format("{}", options.most_vertices));
+  key.add("rays", fmt::format("{}", options.rays));
+  key.add("most-rays", fmt::format("{}", options.most_rays));
+  key.add("crease", fmt::format("{}", options.crease));
+  key.add("seed", fmt::format("{}", options.seed));
+  key.add("solution", solution.hex());
+  return key;
+}
+
 StageKey gatherKey(const GatherOptions& options, const PatchMaterials& materials,
                    const PatchMesh& mesh) {
   StageKey key;
@@ -242,6 +258,18 @@ SolveOptions solveOptionsOf(const StageKey& key) {
   readNamed(key, "solver", kSolverNames, options.solver);
   read(key, "solve-tolerance", options.tolerance);
   read(key, "max-iterations", options.max_iterations);
+  return options;
+}
+
+ElementOptions elementOptionsOf(const StageKey& key) {
+  ElementOptions options;
+  read(key, "element-tolerance", options.tolerance);
+  read(key, "smallest-edge", options.smallest_edge);
+  read(key, "most-vertices", options.most_vertices);
+  read(key, "rays", options.rays);
+  read(key, "most-rays", options.most_rays);
+  read(key, "crease", options.crease);
+  read(key, "seed", options.seed);
   return options;
 }
 

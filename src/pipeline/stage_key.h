@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "radiosity/elements.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
 #include "radiosity/patch_mesh.h"
@@ -43,6 +44,9 @@ StageKey usedKey(const StageKey& factors_key, std::string_view method);
 StageKey solutionKey(const SolveOptions& options, const PatchMaterials& materials,
                      const StageKey& factors_key);
 
+/// `solution_key`: of the solution that they refine.
+StageKey elementsKey(const ElementOptions& options, const std::string& solution_key);
+
 StageKey gatherKey(const GatherOptions& options, const PatchMaterials& materials,
                    const PatchMesh& mesh);
 
@@ -50,6 +54,7 @@ StageKey gatherKey(const GatherOptions& options, const PatchMaterials& materials
 MeshOptions meshOptionsOf(const StageKey& key);
 FormFactorOptions factorOptionsOf(const StageKey& key);
 SolveOptions solveOptionsOf(const StageKey& key);
+ElementOptions elementOptionsOf(const StageKey& key);
 GatherOptions gatherOptionsOf(const StageKey& key);
 
 }  // namespace radiosity

@@ -86,7 +86,9 @@ void Pipeline::discardFrom(Stage first) {
   if (all || first == Stage::gather) {
     discard(results_.gathered, results_.gather_key, stored_.gather_key);
   }
-  if (first != Stage::gather) {
+  if (first == Stage::gather) return;
+  discard(results_.elements, results_.elements_key, stored_.elements_key);
+  if (first != Stage::elements) {
     discard(results_.solution, results_.solution_key, stored_.solution_key);
   }
 }
@@ -241,6 +243,49 @@ const Solution& Pipeline::solution() {
   stored_.solution.reset();
   computed(Stage::solution, reason, watch.seconds());
   return made(results_.solution);
+}
+
+/// After solution(): the key that elements must have now.
+StageKey Pipeline::elementsKeyNow() const {
+  options_.elements.validate();
+  return elementsKey(options_.elements, results_.solution_key);
+}
+
+/// Elements of some patches, which are not kept. Those in the file are of no use then; it is said
+/// why.
+Elements Pipeline::elementsOf(std::span<const std::uint8_t> wanted, const StageKey& key) {
+  const Stopwatch watch;
+  Elements some =
+      computeElements(made(results_.mesh).mesh, made(results_.materials),
+                      made(results_.solution).irradiance, options_.elements, wanted, progress_);
+  if (!stored_.elements_key.empty()) {
+    observer_.stage(*this, {Stage::elements, StageAction::recomputed,
+                            why(stored_.elements_key, key), watch.seconds()});
+  }
+  return some;
+}
+
+const Elements& Pipeline::elements() {
+  solution();
+  const StageKey key = elementsKeyNow();
+  if (results_.elements && results_.elements_key == key.text()) return made(results_.elements);
+  discardFrom(Stage::elements);
+  if (stored_.elements && stored_.elements_key == key.text()) {
+    results_.elements = taken(stored_.elements);
+    results_.elements_key = key.text();
+    tell(Stage::elements, StageAction::reused, source_);
+    return made(results_.elements);
+  }
+  const std::string reason = why(stored_.elements_key, key);
+  const Stopwatch watch;
+  results_.elements = computedStage("elements", [&] {
+    return computeElements(made(results_.mesh).mesh, made(results_.materials),
+                           made(results_.solution).irradiance, options_.elements, {}, progress_);
+  });
+  results_.elements_key = key.text();
+  stored_.elements.reset();
+  computed(Stage::elements, reason, watch.seconds());
+  return made(results_.elements);
 }
 
 const Gathered& Pipeline::gathered() {

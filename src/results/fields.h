@@ -276,6 +276,52 @@ void describe(Archive& a, Described<Archive, Solution>& s) {
 }
 
 template <class Archive>
+void describe(Archive& a, Described<Archive, ElementField>& f, std::size_t bands) {
+  a.table("elements", f.elements, [](auto& column) {
+    column("first_child", &Element::first_child);
+    column("first_point", &Element::first_point);
+    column("corners", &Element::corners);
+    column("tested", &Element::tested);
+  });
+  a("points", f.points);
+  a("vertices", f.vertices);
+  a.rows("values", f.values, bands, "W/m^2");
+}
+
+template <class Archive>
+void describe(Archive& a, Described<Archive, ElementReport>& r) {
+  a.choice("direct", r.direct, kDirectLightNames);
+  a("roots", r.roots);
+  a("emitters", r.emitters);
+  a("direct_vertices", r.direct_vertices);
+  a("direct_by_rays", r.direct_by_rays);
+  a("indirect_vertices", r.indirect_vertices);
+  a("uniform_vertices", r.uniform_vertices);
+  a("unrefined", r.unrefined);
+  a("rays", r.rays);
+  a("rays_a_vertex", r.rays_a_vertex);
+  a("edge", r.edge);
+  a("interpolation_error", r.interpolation_error);
+  a("ray_error", r.ray_error);
+  a("seconds_direct", r.seconds_direct);
+  a("seconds_indirect", r.seconds_indirect);
+}
+
+template <class Archive>
+void describe(Archive& a, Described<Archive, Elements>& e) {
+  a("bands", e.bands);
+  const auto bands = std::size_t(std::max(e.bands, 1));  // results_check.cpp refuses others
+  a.group("roots", [&](auto& roots) {
+    roots("patch", e.roots.patch);
+    roots("corner", e.roots.corner);
+    roots("of_patch", e.roots.of_patch);
+  });
+  a.group("direct", [&](auto& field) { describe(field, e.direct, bands); });
+  a.group("indirect", [&](auto& field) { describe(field, e.indirect, bands); });
+  a.group("report", [&](auto& report) { describe(report, e.report); });
+}
+
+template <class Archive>
 void describe(Archive& a, Described<Archive, PatchMaterials>& m) {
   if constexpr (Archive::kReading) m.bands = a.columns("reflectance");
   const auto bands = std::size_t(m.bands);

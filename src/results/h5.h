@@ -117,10 +117,10 @@ struct Element<Vec3> {
   using Scalar = double;
   static constexpr std::size_t kColumns = 3;
 };
-template <>
-struct Element<std::array<Index, 3>> {
+template <std::size_t N>
+struct Element<std::array<Index, N>> {
   using Scalar = Index;
-  static constexpr std::size_t kColumns = 3;
+  static constexpr std::size_t kColumns = N;
 };
 
 template <class T>

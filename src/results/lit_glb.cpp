@@ -8,6 +8,7 @@
 
 #include "radiosity/results.h"
 #include "results/glb.h"
+#include "results/lit_triangles.h"
 #include "results/mesh_export.h"
 
 namespace radiosity {
@@ -16,21 +17,17 @@ namespace {
 
 using Triple = std::array<float, 3>;
 
-/// The triangles of one surface and side. Corners that meet at a vertex with the same radiosity
-/// are one vertex of the file; where the values part (at a crease) there are as many as values.
+/// The triangles of one surface and side. Corners that meet at a point with the same radiosity are
+/// one vertex of the file; where the values part (at a crease) there are as many as values.
 class LitPrimitive {
  public:
-  LitPrimitive(const GlbWriter& glb, const PatchMesh& mesh, std::span<const double> radiosity,
-               std::span<const double> corner_radiosity, double scale)
-      : glb_(glb),
-        mesh_(mesh),
-        radiosity_(radiosity),
-        corner_radiosity_(corner_radiosity),
-        scale_(scale) {}
+  LitPrimitive(const GlbWriter& glb, double scale) : glb_(glb), scale_(scale) {}
 
-  void add(Index patch) {
-    for (std::size_t t = mesh_.piece_offset[patch]; t < mesh_.piece_offset[patch + 1]; ++t) {
-      for (const Index v : mesh_.pieces[t]) triangles.push_back(vertexOf(v, valueAt(patch, v)));
+  void add(const LitTriangles& from, std::span<const LitCorner> corners) {
+    for (const LitCorner& corner : corners) {
+      const Vec3& b = corner.radiosity;
+      triangles.push_back(vertexOf(corner.point, from.position(corner.point),
+                                   {float(b.x), float(b.y), float(b.z)}));
     }
   }
 
@@ -38,25 +35,14 @@ class LitPrimitive {
   std::vector<Index> triangles;
 
  private:
-  Triple valueAt(Index patch, Index vertex) const {
-    const auto outline = mesh_.outline(patch);
-    const auto found = std::find(outline.begin(), outline.end(), vertex);
-    // A piece may have a vertex inside the patch; there the patch's own value stands.
-    const double* value = found == outline.end()
-                              ? &radiosity_[3 * std::size_t(patch)]
-                              : &corner_radiosity_[3 * (mesh_.corner_offset[patch] +
-                                                        std::size_t(found - outline.begin()))];
-    return {float(value[0]), float(value[1]), float(value[2])};
-  }
-
-  Index vertexOf(Index vertex, const Triple& value) {
-    std::vector<Index>& known = at_vertex_[vertex];
+  Index vertexOf(Index point, const Vec3& position, const Triple& value) {
+    std::vector<Index>& known = at_point_[point];
     for (const Index k : known) {
       if (vertices.radiosity[k] == value) return k;
     }
     const auto added = Index(vertices.count());
     known.push_back(added);
-    glb_.addPosition(vertices, mesh_.vertices[vertex]);
+    glb_.addPosition(vertices, position);
     vertices.radiosity.push_back(value);
     Triple colour{};
     for (std::size_t b = 0; b < 3; ++b) {
@@ -67,11 +53,8 @@ class LitPrimitive {
   }
 
   const GlbWriter& glb_;
-  const PatchMesh& mesh_;
-  std::span<const double> radiosity_;
-  std::span<const double> corner_radiosity_;
   double scale_;
-  std::unordered_map<Index, std::vector<Index>> at_vertex_;
+  std::unordered_map<Index, std::vector<Index>> at_point_;
 };
 
 void checkArguments(const std::string& path, const PatchMesh& mesh,
@@ -105,18 +88,21 @@ void checkCorners(const std::string& path, const PatchMesh& mesh, std::span<cons
   }
 }
 
-}  // namespace
-
-void writeLitGlb(const std::string& path, const PatchMesh& mesh, std::span<const double> radiosity,
-                 double ev, double crease) {
-  checkArguments(path, mesh, radiosity, ev);
-  writeLitGlb(path, mesh, radiosity, cornerValues(mesh, radiosity, 3, crease), ev);
+void checkFinite(const std::string& path, const PatchMesh& mesh, Index patch,
+                 std::span<const LitCorner> corners) {
+  for (const LitCorner& corner : corners) {
+    const Vec3& b = corner.radiosity;
+    if (std::isfinite(b.x + b.y + b.z)) continue;
+    throw RunError(
+        fmt::format("{}: the light of an element of patch {} of {} is not finite; solve "
+                    "again",
+                    path, patch, mesh.surface_names[mesh.surface[patch]]));
+  }
 }
 
-void writeLitGlb(const std::string& path, const PatchMesh& mesh, std::span<const double> radiosity,
-                 std::span<const double> corners, double ev) {
-  checkArguments(path, mesh, radiosity, ev);
-  checkCorners(path, mesh, corners);
+/// Returns how many triangles.
+std::size_t writeTriangles(const std::string& path, const PatchMesh& mesh, LitTriangles& lit,
+                           double ev) {
   GlbWriter glb(floatOrigin(mesh));
   glb.useExtension("KHR_materials_unlit");
   glb.setExtras({{"exposure_ev", ev},
@@ -137,17 +123,52 @@ void writeLitGlb(const std::string& path, const PatchMesh& mesh, std::span<const
     by_side[std::size_t(side)] =
         patchesBySurface(mesh, [&](std::size_t i) { return mesh.side[i] == side; });
   }
+  std::size_t count = 0;
+  std::vector<LitCorner> corners;
   for (std::size_t s = 0; s < mesh.surface_names.size(); ++s) {
     std::vector<GlbWriter::Json> primitives;
     for (const auto& patches : by_side) {
-      LitPrimitive primitive(glb, mesh, radiosity, corners, scale);
-      for (const Index i : patches[s]) primitive.add(i);
+      LitPrimitive primitive(glb, scale);
+      for (const Index i : patches[s]) {
+        corners.clear();
+        lit.append(i, corners);
+        checkFinite(path, mesh, i, corners);
+        primitive.add(lit, corners);
+      }
       if (primitive.triangles.empty()) continue;
+      count += primitive.triangles.size() / 3;
       primitives.push_back(glb.addPrimitive(primitive.vertices, primitive.triangles, material));
     }
     if (!primitives.empty()) glb.addNode(mesh.surface_names[s], std::move(primitives));
   }
   glb.write(path);
+  return count;
+}
+
+}  // namespace
+
+void writeLitGlb(const std::string& path, const PatchMesh& mesh, std::span<const double> radiosity,
+                 double ev, double crease) {
+  checkArguments(path, mesh, radiosity, ev);
+  writeLitGlb(path, mesh, radiosity, cornerValues(mesh, radiosity, 3, crease), ev);
+}
+
+void writeLitGlb(const std::string& path, const PatchMesh& mesh, std::span<const double> radiosity,
+                 std::span<const double> corners, double ev) {
+  checkArguments(path, mesh, radiosity, ev);
+  checkCorners(path, mesh, corners);
+  LitTriangles lit(mesh, radiosity, corners);
+  writeTriangles(path, mesh, lit, ev);
+}
+
+std::size_t writeLitGlb(const std::string& path, const PatchMesh& mesh, const SurfaceLight& light,
+                        double ev, double crease) {
+  checkArguments(path, mesh, light.patches, ev);
+  const std::vector<double> corners =
+      light.corners.empty() ? cornerValues(mesh, light.patches, 3, crease) : light.corners;
+  checkCorners(path, mesh, corners);
+  LitTriangles lit(mesh, light.patches, corners, light.elements ? &light : nullptr);
+  return writeTriangles(path, mesh, lit, ev);
 }
 
 }  // namespace radiosity

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 
 #include "base/made.h"
+#include "elements/element_parts.h"
+#include "elements/element_roots.h"
 
 namespace radiosity {
 
@@ -128,6 +131,77 @@ void checkSolution(const Checker& check, const Solution& s) {
   check.length(s.irradiance, empty ? 0 : s.radiosity.size(), "/solution/irradiance");
 }
 
+/// A row of /elements/direct/elements or its like: its points are there, and those of its parts are
+/// its own.
+void checkElement(const Checker& check, const ElementField& field, std::size_t e,
+                  const std::string& object) {
+  const Element& element = field.elements[e];
+  const std::size_t n = element.corners;
+  check.require(n == 0 || n == 3 || n == 4, object, "has elements of other than 3 or 4 corners");
+  check.require(element.tested <= 1 && (n != 0 || element.tested == 0), object,
+                "has elements that are tested as none can be");
+  const std::size_t points = pointCount(n, element.tested != 0);
+  check.require(points <= field.points.size() &&
+                    (n == 0 || element.first_point <= field.points.size() - points),
+                object, "points beyond its points");
+  if (element.first_child == kNone) return;
+  check.require(element.tested == 1 && element.first_child > e &&
+                    element.first_child < field.elements.size() &&
+                    field.elements.size() - element.first_child >= 4,
+                object, "has elements whose parts are not four others after them");
+  const Index* own = field.points.data() + element.first_point;
+  for (std::size_t part = 0; part < 4; ++part) {
+    const Element& child = field.elements[element.first_child + part];
+    bool fits = child.corners == n && std::size_t(child.first_point) + n <= field.points.size();
+    for (std::size_t k = 0; k < n && fits; ++k) {
+      fits = field.points[child.first_point + k] == own[partsOf(n)[part][k]];
+    }
+    check.require(fits, object, "has a part whose corners are not its element's points");
+  }
+}
+
+/// A forest over `roots`: every other element is a part of exactly one.
+void checkField(const Checker& check, const ElementField& field, const Elements& all,
+                const std::string& object) {
+  const std::string elements = object + "/elements";
+  const std::size_t roots = all.roots.size();
+  check.require(field.elements.size() >= roots, elements, "has fewer elements than roots");
+  check.length(field.values, field.vertices * std::size_t(all.bands), object + "/values");
+  check.indices(field.points, field.vertices, false, object + "/points");
+  check.require(std::ranges::all_of(field.values, [](double v) { return std::isfinite(v); }),
+                object + "/values", "holds a value that is not finite");
+  std::vector<std::uint8_t> parents(field.elements.size(), 0);
+  for (std::size_t e = 0; e < field.elements.size(); ++e) {
+    const Element& element = field.elements[e];
+    check.require(e >= roots || element.corners == 0 || element.corners == all.roots.cornerCount(e),
+                  elements, "has a root with other corners than /elements/roots");
+    check.require(e < roots || element.corners != 0, elements, "has a part without corners");
+    checkElement(check, field, e, elements);
+    if (element.first_child == kNone) continue;
+    for (std::size_t part = 0; part < 4; ++part) {
+      const std::size_t child = element.first_child + part;
+      check.require(child >= roots && parents[child]++ == 0, elements,
+                    "has parts of two elements, or of none");
+    }
+  }
+  check.require(std::count(parents.begin() + std::ptrdiff_t(roots), parents.end(), 0) == 0,
+                elements, "has parts of two elements, or of none");
+}
+
+void checkElements(const Checker& check, const Elements& e, const Results& results) {
+  check.require(e.bands >= 1, "/elements/bands", "is not 1 or more");
+  check.require(results.mesh && results.solution, "/elements", "comes without mesh and solution");
+  check.require(e.bands == made(results.solution).bands, "/elements/bands",
+                "is not that of /solution");
+  // The mesh says where its roots are.
+  const ElementRoots roots = elementRoots(made(results.mesh).mesh);
+  check.require(e.roots.patch == roots.patch && e.roots.corner == roots.corner &&
+                    e.roots.of_patch == roots.of_patch,
+                "/elements/roots", "is not of the patches of /mesh");
+  checkField(check, e.direct, e, "/elements/direct");
+  checkField(check, e.indirect, e, "/elements/indirect");
+}
+
 void checkGathered(const Checker& check, const Gathered& g, const PatchMesh& mesh) {
   const std::size_t eyes = g.area.size();
   check.require(g.bands >= 1, "/gather/bands", "is not 1 or more");
@@ -167,6 +241,7 @@ void checkResults(const std::string& path, const Results& results) {
   if (results.scene) checkScene(check, *results.scene);
   if (results.mesh) checkMesh(check, results.mesh->mesh);
   if (results.solution) checkSolution(check, *results.solution);
+  if (results.elements) checkElements(check, *results.elements, results);
 
   if (results.gathered) {
     check.require(results.mesh.has_value(), "/gather", "comes without /mesh");

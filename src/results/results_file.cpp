@@ -81,6 +81,13 @@ class StageWriter {
     group.text("key", results_.solution_key);
     describe(fields, *results_.solution);
   }
+  void elements() {
+    if (!results_.elements) return;
+    Sink group = root_.group("elements");
+    group.text("key", results_.elements_key);
+    FieldWriter<Sink> fields(group);
+    describe(fields, *results_.elements);
+  }
   void gathered() {
     if (!results_.gathered) return;
     Sink group = root_.group("gather");
@@ -190,6 +197,12 @@ void readStages(const InputGroup& root, bool with_factors, std::shared_ptr<Scrat
       describe(fields, results.solution.emplace());
     }
   }
+  if (root.has("elements")) {
+    const InputGroup group = root.group("elements");
+    results.elements_key = group.text("key");
+    FieldReader fields(group);
+    describe(fields, results.elements.emplace());
+  }
   if (root.has("gather")) {
     const InputGroup group = root.group("gather");
     results.gather_key = group.text("key");
@@ -245,6 +258,7 @@ void writeResults(const std::string& path, const Results& results, Progress& pro
       writeMatrix(factors, results.factors->matrix, progress);
     }
     stages.solution();
+    stages.elements();
     stages.gathered();
   }
   file.close();
@@ -252,8 +266,8 @@ void writeResults(const std::string& path, const Results& results, Progress& pro
 }
 
 std::size_t estimateResultsBytes(const Results& results) {
-  // The superblock, the root and what is left over of the blocks HDF5 takes for metadata.
-  std::size_t bytes = 512;
+  // The superblock, the root and what is left over of the blocks of 2 KiB HDF5 takes for metadata.
+  std::size_t bytes = 2048;
   SizeCounter root(bytes);
   StageWriter<SizeCounter> stages(root, results);
   stages.head();
@@ -265,6 +279,7 @@ std::size_t estimateResultsBytes(const Results& results) {
     countMatrix(factors, results.factors->matrix);
   }
   stages.solution();
+  stages.elements();
   stages.gathered();
   return bytes;
 }

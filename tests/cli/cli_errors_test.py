@@ -67,6 +67,28 @@ class BadArguments(CliTest):
         self.refuse("render", "box.obj", *SMALL, "-o", "p.png", "--show", "form-factor:999999",
                     words=["999999", "0 to "])
 
+    def test_elements_that_no_output_has(self):
+        for arguments, words in [
+                (["solve", "box.obj", "--elements", "on"], ["nothing is written", "-o FILE.glb"]),
+                (["solve", "box.obj", "--elements", "on", "-o", "f.mtx"],
+                 ["--elements on: f.mtx holds no light at points", "-o FILE.h5"]),
+                (["render", "box.obj", "--elements", "on", "--show", "row-sum", "-o", "p.png"],
+                 ["--elements on: --show"]),
+                (["render", "box.obj", "--elements", "on", "--flat", "-o", "p.png"],
+                 ["--elements on: --flat"]),
+                (["render", "box.obj", "--elements", "on", "--flat", "-o", "p.png", "-o", "p.h5"],
+                 ["--elements on: --flat", "leave one of the two out"]),
+                (["solve", "box.obj", "--element-tolerance", ".1", "-o", "f.h5"],
+                 ["--element-tolerance", "add --elements on"]),
+                (["render", "box.obj", "--element-tolerance", ".1", "--elements", "off", "-o",
+                  "p.png"], ["--element-tolerance", "leave out --elements off"]),
+                (["solve", "box.obj", "--elements", "maybe"], ["--elements", "maybe"]),
+                (["solve", "box.obj", "--element-tolerance", "2", "-o", "p.glb"],
+                 ["--element-tolerance", "0.5"]),
+                (["factors", "box.obj", "--elements", "on"], ["--elements"])]:
+            with self.subTest(arguments=arguments):
+                self.refuse(*arguments, "--quiet", words=words)
+
     def test_outputs(self):
         self.refuse("render", "box.obj", "-o", "p.jpg", words=["p.jpg", ".png", ".exr", ".h5"])
         self.refuse("mesh", "box.obj", "-o", "p.png", words=["p.png", ".obj", ".glb"])

@@ -118,6 +118,37 @@ class Subcommands(CliTest):
         self.assertNotEqual((self.folder / "on.png").read_bytes(),
                             (self.folder / "off.png").read_bytes())
 
+    def test_lit_meshes_show_elements_unless_patches_are_asked_for(self):
+        self.run_program("solve", "box.obj", *SMALL, "-o", "e.h5")
+        fine = self.report("solve", "e.h5", "-o", "on.glb")
+        coarse = self.report("solve", "e.h5", "--elements", "off", "-o", "off.glb")
+        self.assertNotIn("elements", coarse)
+        self.assertGreater(fine["lit_mesh"]["triangles"], 2 * coarse["lit_mesh"]["triangles"])
+        # Both are the same light: a hemicube of 32 pixels is good to some percent.
+        gap = self.report("compare", "on.glb", "off.glb")["comparison"]
+        self.assertLess(gap["relative_l2"], 0.1)
+        self.assertEqual((gap["matched_a"], gap["matched_b"]), ("100.00%", "100.00%"))
+        drawn = self.report("render", "e.h5", "--width", "40", "-o", "r.glb")
+        self.assertEqual(drawn["lit_mesh"], fine["lit_mesh"])
+
+    def test_a_results_file_keeps_elements_where_asked_for(self):
+        self.assertNotIn("elements", self.report("solve", "box.obj", *SMALL, "-o", "e.h5"))
+        self.report("solve", "e.h5", "--elements", "on")
+        with h5py.File(self.folder / "e.h5") as file:
+            field = file["elements/direct"]
+            values, points = field["values"][()], field["points"][()]
+            self.assertEqual(len(values), field.attrs["vertices"])
+            self.assertLess(points.max(), len(values))
+        for command, output in [("solve", "kept.glb"), ("render", "kept.png")]:
+            run = self.run_program(command, "e.h5", "-o", output).out
+            self.assertRegex(run, r"(?m)^elements +reused from e.h5$")
+        stale = self.run_program("render", "e.h5", "--set", "wall.reflectance=.2", "-o", "x.png")
+        self.assertRegex(stale.out, r"(?m)^elements +recomputed: solution changed$")
+        dropped = self.report("solve", "e.h5", "--set", "wall.reflectance=.2")
+        self.assertEqual(actions(dropped)["elements"], "dropped")
+        with h5py.File(self.folder / "e.h5") as file:
+            self.assertNotIn("elements", file)
+
     def test_false_colour(self):
         self.run_program("solve", "box.obj", *SMALL, "-o", "s.h5")
         for quantity in ["radiosity", "irradiance", "row-sum", "form-factor:3"]:

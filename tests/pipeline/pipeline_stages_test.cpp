@@ -35,7 +35,7 @@ class Recorder : public PipelineObserver {
     events.emplace_back("plan");
   }
   void stage(const Pipeline& /*pipeline*/, const StageEvent& event) override {
-    constexpr std::array kStages = {"mesh", "factors", "solution", "gather"};
+    constexpr std::array kStages = {"mesh", "factors", "solution", "gather", "elements"};
     constexpr std::array kActions = {"reused", "computed", "recomputed", "kept", "dropped"};
     std::string text = std::string(kStages.at(std::size_t(event.stage))) + " " +
                        kActions.at(std::size_t(event.action));
@@ -194,6 +194,79 @@ TEST_F(PipelineStages, NewMaterialsCostNoFormFactors) {
                                   "solution recomputed: materials changed",
                                   "gather recomputed: materials changed"}));
   EXPECT_FALSE(pipeline.isUpToDate(file));
+}
+
+/// A light file of the box with elements, few rays each.
+std::string savedElements(const std::string& file, Progress& progress) {
+  Pipeline pipeline(progress);
+  pipeline.open(kBox);
+  makeCoarse(pipeline.options());
+  pipeline.options().elements.rays = 64;
+  pipeline.elements();
+  pipeline.save(file);
+  return file;
+}
+
+TEST_F(PipelineStages, ElementsOfTheSameSolutionAreReused) {
+  const std::string file = savedElements(path("box.h5"), progress_);
+  Pipeline pipeline(progress_, &told_);
+  pipeline.open(file);
+  EXPECT_EQ(pipeline.options().elements.rays, 64) << "as the file has them";
+  const Events made = {"mesh reused: " + file, "factors reused: " + file,
+                       "solution reused: " + file, "elements reused: " + file};
+  // For a picture of one patch those of all are taken, since they are there.
+  std::vector<std::uint8_t> wanted(pipeline.mesh().mesh.size(), 0);
+  wanted[0] = 1;
+  const SurfaceLight light = pipeline.elementLight(wanted);
+  EXPECT_EQ(told_.take(), made);
+  EXPECT_TRUE(std::ranges::all_of(
+      std::span(light.elements->indirect.elements).first(light.elements->roots.size()),
+      [](const Element& root) { return root.corners != 0; }));
+  EXPECT_TRUE(pipeline.isUpToDate(file));
+  Pipeline keeps(progress_, &told_);
+  keeps.open(file);
+  keeps.solution();
+  told_.take();
+  keeps.keepLaterStages();
+  EXPECT_EQ(told_.take(), Events{"elements kept"});
+}
+
+TEST_F(PipelineStages, ElementsThatNoLongerFitAreNotUsed) {
+  const std::string file = savedElements(path("box.h5"), progress_);
+  SceneOptions brighter;
+  brighter.set = {"white.reflectance=0.9"};
+  const struct {
+    SceneOptions scene;
+    double tolerance;
+    std::string why;
+  } cases[] = {{brighter, 0.01, "solution changed"}, {{}, 0.05, "element-tolerance 0.01 -> 0.05"}};
+  for (const auto& c : cases) {
+    Pipeline pipeline(progress_, &told_);
+    pipeline.open(file, c.scene);
+    pipeline.options().elements.tolerance = c.tolerance;
+    pipeline.solution();
+    told_.take();
+    const Elements& found = pipeline.elements();
+    EXPECT_EQ(told_.take(), Events{"elements recomputed: " + c.why});
+    EXPECT_NE(found.indirect.values, readResults(file).elements->indirect.values);
+
+    Pipeline some(progress_, &told_);
+    some.open(file, c.scene);
+    some.options().elements.tolerance = c.tolerance;
+    std::vector<std::uint8_t> wanted(some.mesh().mesh.size(), 0);
+    wanted[0] = 1;
+    some.solution();
+    told_.take();
+    some.elementLight(wanted);
+    EXPECT_EQ(told_.take(), Events{"elements recomputed: " + c.why});
+    EXPECT_FALSE(some.results().elements) << "a part is not kept";
+  }
+  Pipeline dropped(progress_, &told_);
+  dropped.open(file, brighter);
+  dropped.solution();
+  told_.take();
+  dropped.keepLaterStages();
+  EXPECT_EQ(told_.take(), Events{"elements dropped: solution changed"});
 }
 
 TEST_F(PipelineStages, OptionsMayChangeBetweenCalls) {

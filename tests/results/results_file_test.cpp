@@ -65,10 +65,12 @@ TEST_F(ResultsFile, GivesBackClustersWithARowForEach) {
 
 TEST_F(ResultsFile, GivesBackWhateverStagesThereAre) {
   const Results full = sample::results(3, Precision::single_precision);
-  for (int stages = 0; stages < 64; ++stages) {
+  for (int stages = 0; stages < 128; ++stages) {
     Results some = full;
     // What was gathered belongs to a mesh and is not stored without it.
     if ((stages & 34) != 34) some.gathered.reset(), some.gather_key.clear();
+    // Elements belong to a mesh and a solution.
+    if ((stages & 82) != 82) some.elements.reset(), some.elements_key.clear();
     if ((stages & 1) == 0) some.scene.reset();
     if ((stages & 2) == 0) some.mesh.reset(), some.mesh_key.clear();
     if ((stages & 4) == 0) some.factors.reset(), some.factors_key.clear();
@@ -84,6 +86,8 @@ TEST_F(ResultsFile, BandsAreThoseOfTheRows) {
   Results spectral = sample::results(3, Precision::single_precision, 8);
   spectral.solution.reset();
   spectral.solution_key.clear();
+  spectral.elements.reset();
+  spectral.elements_key.clear();
   spectral.materials->sky.clear();
   write(spectral);
   const Results read = readResults(file());
@@ -332,6 +336,63 @@ TEST_F(ResultsFile, NamesClustersThatAnotherProgramChanged) {
   write(short_of_rows);
   expectInputError("/form_factors/fronts has 10 values, not " +
                    std::to_string(good.mesh->mesh.unknowns()));
+}
+
+TEST_F(ResultsFile, NamesElementsThatAnotherProgramChanged) {
+  const Results good = sample::results(3, Precision::single_precision);
+  const Elements& e = *good.elements;
+  const hsize_t roots = e.roots.size();
+  const auto expectAfter = [&](const auto& change, const std::string& part) {
+    write(good);
+    {
+      Edit edit(file());
+      change(edit);
+    }
+    SCOPED_TRACE(part);
+    expectInputError(part);
+  };
+  const auto set = [&](const char* column, hid_t type, hsize_t at, auto value) {
+    return [=](Edit& edit) {
+      const std::string dataset = std::string("/elements/direct/") + column;
+      edit.element(dataset.c_str(), type, at, value);
+    };
+  };
+  const hid_t byte = H5T_NATIVE_UCHAR;
+  const hid_t index = H5T_NATIVE_UINT;
+  using Byte = unsigned char;
+  expectAfter([](Edit& edit) { edit.attribute("/elements", "bands", H5T_NATIVE_INT, 0); },
+              "/elements/direct/values is not");
+  expectAfter([](Edit& edit) { edit.remove("/elements/roots"); }, "/elements/roots is missing");
+  expectAfter([](Edit& edit) { edit.element("/elements/roots/patch", H5T_NATIVE_UINT, 0, 3U); },
+              "/elements/roots is not of the patches of /mesh");
+  expectAfter(
+      [](Edit& edit) { edit.element("/elements/roots/of_patch", H5T_NATIVE_ULONG, 1, 9UL); },
+      "/elements/roots is not of the patches of /mesh");
+  expectAfter(set("points", index, 3, Index(e.direct.vertices)),
+              "/elements/direct/points points beyond");
+  const std::string rows = "/elements/direct/elements ";
+  expectAfter(set("elements/corners", byte, 0, Byte(5)), rows + "has a root with other corners");
+  expectAfter(set("elements/corners", byte, roots, Byte(0)), rows + "has a part");
+  expectAfter(set("elements/corners", byte, roots + 1, Byte(3)), rows + "has a part");
+  expectAfter(set("elements/tested", byte, 1, Byte(2)), rows + "has elements that are tested");
+  expectAfter(set("elements/tested", byte, 0, Byte(0)), rows + "has elements whose parts");
+  expectAfter(set("elements/first_point", index, 1, Index(e.direct.points.size() - 8)),
+              rows + "points beyond");
+  expectAfter(set("elements/first_child", index, 0, Index(roots + 1)),
+              rows + "has elements whose parts");
+  expectAfter(set("elements/first_child", index, 0, Index(0)), rows + "has elements whose parts");
+  expectAfter(set("elements/first_child", index, 0, kNone), rows + "has parts of two elements");
+  expectAfter(set("elements/first_child", index, 1, Index(roots)), rows + "has a part whose");
+  expectAfter(set("elements/first_point", index, roots, Index(0) + 1), rows + "has a part whose");
+  Results odd = good;
+  odd.elements->indirect.values[7] = NAN;
+  write(odd);
+  expectInputError("/elements/indirect/values holds a value that is not finite");
+  Results alone = good;
+  alone.solution.reset();
+  alone.solution_key.clear();
+  write(alone);
+  expectInputError("/elements comes without mesh and solution");
 }
 
 TEST_F(ResultsFile, TruncationIsAnInputError) {

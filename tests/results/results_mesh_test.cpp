@@ -305,7 +305,7 @@ TEST_F(MeshFile, ErrorsNameTheFile) {
                           [&] { writeMesh(path("no/x.obj"), mesh); });
   expectError<InputError>(path("x.glb"), "no triangle", [&] { writeMesh(path("x.glb"), {}); });
   expectError<InputError>(path("x.glb"), "needs 12 values",
-                          [&] { writeLitGlb(path("x.glb"), mesh, {}, 0, 30); });
+                          [&] { writeLitGlb(path("x.glb"), mesh, std::vector<double>(), 0, 30); });
   expectError<InputError>(path("x.glb"), "exposure",
                           [&] { writeLitGlb(path("x.glb"), mesh, b, NAN, 30); });
   b[4] = NAN;

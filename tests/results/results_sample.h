@@ -10,6 +10,8 @@
 #include <tuple>
 #include <vector>
 
+#include "elements/element_parts.h"
+#include "elements/element_roots.h"
 #include "radiosity/results.h"
 
 namespace radiosity::sample {
@@ -285,6 +287,65 @@ inline PatchMaterials materials(std::size_t n, int bands) {
   return m;
 }
 
+/// A field whose first root is cut in four, its second one tested, its third left out.
+inline ElementField elementField(const ElementRoots& roots, int bands, double scale) {
+  ElementField f;
+  f.elements.resize(roots.size());
+  const auto place = [&](std::size_t e, std::size_t corners, const std::vector<Index>& points) {
+    f.elements[e].corners = std::uint8_t(corners);
+    f.elements[e].first_point = Index(f.points.size());
+    f.elements[e].tested = points.size() > corners ? 1 : 0;
+    f.points.insert(f.points.end(), points.begin(), points.end());
+  };
+  const auto fresh = [&](std::size_t count) {
+    std::vector<Index> points;
+    while (points.size() < count) points.push_back(Index(f.vertices++));
+    return points;
+  };
+  for (std::size_t r = 0; r < roots.size(); ++r) {
+    const std::size_t n = roots.cornerCount(r);
+    if (r != 2) place(r, n, fresh(pointCount(n, r < 2)));
+  }
+  if (roots.size() == 0) return f;
+  f.elements[0].first_child = Index(f.elements.size());
+  const std::size_t n = f.elements[0].corners;
+  for (const PartCorners& part : partsOf(n)) {
+    std::vector<Index> points;
+    for (std::size_t k = 0; k < n; ++k) points.push_back(f.points[part[k]]);
+    f.elements.emplace_back();
+    place(f.elements.size() - 1, n, points);
+  }
+  for (std::size_t k = 0; k < f.vertices * std::size_t(bands); ++k) {
+    f.values.push_back(scale * std::sqrt(double(k + 2)));
+  }
+  return f;
+}
+
+inline Elements elements(const PatchMesh& mesh, int bands) {
+  Elements e;
+  e.bands = bands;
+  e.roots = elementRoots(mesh);
+  e.direct = elementField(e.roots, bands, 1e-200);
+  e.indirect = elementField(e.roots, bands, 1.0 / 3);
+  ElementReport& r = e.report;
+  r.direct = DirectLight::partly;
+  r.roots = 71;
+  r.emitters = 72;
+  r.direct_vertices = 73;
+  r.direct_by_rays = 74;
+  r.indirect_vertices = 75;
+  r.uniform_vertices = 1e12;
+  r.unrefined = 76;
+  r.rays = 7e10;
+  r.rays_a_vertex = 512;
+  r.edge = 0.77;
+  r.interpolation_error = 0.78;
+  r.ray_error = 0.79;
+  r.seconds_direct = 8.1;
+  r.seconds_indirect = 8.2;
+  return e;
+}
+
 inline Gathered gathered(const PatchMesh& mesh, GatherAt at, int bands) {
   Gathered g;
   g.at = at;
@@ -334,6 +395,8 @@ inline Results results(Index side, Precision precision, int bands = 3) {
   r.materials = materials(n, bands);
   r.solution = solution(n, bands);
   r.solution_key = "tolerance=1e-6";
+  r.elements = elements(r.mesh->mesh, bands);
+  r.elements_key = "element-tolerance=0.01";
   // Of both kinds, one in each sample.
   r.gathered = gathered(
       r.mesh->mesh,
@@ -446,13 +509,33 @@ inline auto members(const GatherSummary& s) {
   const auto& [a, b, c, d, e, f, g, h, i] = s;
   return std::tie(a, b, c, d, e, f, g, h, i);
 }
+inline auto members(const ElementRoots& s) {
+  const auto& [a, b, c] = s;
+  return std::tie(a, b, c);
+}
+inline auto members(const Element& s) {
+  const auto& [a, b, c, d] = s;
+  return std::tie(a, b, c, d);
+}
+inline auto members(const ElementField& s) {
+  const auto& [a, b, c, d] = s;
+  return std::tie(a, b, c, d);
+}
+inline auto members(const ElementReport& s) {
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o);
+}
+inline auto members(const Elements& s) {
+  const auto& [a, b, c, d, e] = s;
+  return std::tie(a, b, c, d, e);
+}
 inline auto members(const Gathered& s) {
   const auto& [a, b, c, d, e, f, g, h, i, j, k] = s;
   return std::tie(a, b, c, d, e, f, g, h, i, j, k);
 }
 inline auto members(const Results& s) {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k);
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m);
 }
 
 template <class T>

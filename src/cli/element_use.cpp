@@ -1,0 +1,46 @@
+#include "cli/element_use.h"
+
+#include <fmt/format.h>
+
+namespace radiosity::cli {
+
+namespace {
+
+bool drawsLight(const OutputSet& files) {
+  return files.has(Format::glb) || files.has(Format::png) || files.has(Format::exr);
+}
+
+/// Why no output has elements, and what to do.
+std::string whyNone(const Request& request, const OutputSet& files) {
+  if (!request.show.empty()) return "--show draws what patches have; leave one of the two out";
+  if (request.flat) return "--flat draws one colour a patch; leave one of the two out";
+  const std::string none = files.all().empty()
+                               ? "nothing is written"
+                               : files.all().front().path + " holds no light at points";
+  return none + "; name a lit mesh (-o FILE.glb) or a results file (-o FILE.h5)";
+}
+
+const char* toleranceCure(const Request& request, const OutputSet& files) {
+  if (request.elements) return "leave out --elements off";
+  return files.has(Format::results) ? "add --elements on" : "leave it out";
+}
+
+}  // namespace
+
+ElementUse elementUse(const Request& request, const OutputSet& files) {
+  const bool asked = request.elements.value_or(false);
+  const bool of_light = request.show.empty() && !request.flat;
+  ElementUse use;
+  use.shown = request.elements.value_or(true) && of_light && drawsLight(files);
+  use.all =
+      of_light && ((use.shown && files.has(Format::glb)) || (asked && files.has(Format::results)));
+  if (use.shown || use.all) return use;
+  if (asked) throw InputError("--elements on: " + whyNone(request, files));
+  if (request.element_tolerance) {
+    throw InputError(fmt::format("--element-tolerance: no elements are evaluated here; {}",
+                                 toleranceCure(request, files)));
+  }
+  return use;
+}
+
+}  // namespace radiosity::cli
