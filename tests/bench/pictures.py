@@ -6,11 +6,14 @@ thread: patches alone (--elements off), more and more of them; elements, to fine
 tolerances; a path tracer, with more and more paths a pixel. The error is relL2 of linear radiance
 over means of 8 x 8 pixels, of blocks that see neither lamp nor background. Truth is an independent
 path tracer's, TRACER, in every seventh block, with independent sets of points that tell its own
-standard error; it is kept in the folder.
+standard error; it is kept in the folder. Then the penumbra of a lamp behind a bar along a line of
+points, whose truth is a closed form.
+
   --quick        fewer settings, and truth of fewer paths: a few minutes
   --scene NAME   this one alone
   --paths N      of truth, a block; default 262144, with --quick 32768
-  --out DIR      where pictures.csv, .md, .svg, .png and the truth go; default out/bench
+  --out DIR      where pictures.* and penumbra.* (.csv, .md, .svg, .png) and the truth go; default
+                 out/bench
 
 Exit code 1 where a run failed.
 """
@@ -28,6 +31,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
+import penumbra
 from corpus import Finished
 from tables import write_table
 
@@ -48,6 +52,7 @@ SETTINGS = {
     PATHS: (1, 4, 16, 64, 256),
 }
 QUICK = {PATCHES: (1000, 5000), ELEMENTS: (0.03, 0.01), PATHS: (1, 16)}
+PENUMBRA = {"patches, 2,000": ("--elements", "off"), "elements": ()}
 STYLES = {PATCHES: ("#0072B2", "s"), ELEMENTS: ("#D55E00", "o"),
           FEW: ("#CC79A7", "v"), PATHS: ("#666666", "^")}
 STAGES = {"mesh_s": "mesh", "factors_s": "factors", "solve_s": "solve", "elements_s": "elements",
@@ -144,6 +149,19 @@ class Bench:
             return None
         return row, read_blocks(blocks)
 
+    def draw_penumbra(self):
+        scene, picture = penumbra.write_scene(self.folder), self.folder / "p.exr"
+        blocks, lines = self.folder / "blocks.csv", {}
+        for name, options in PENUMBRA.items():
+            if (self.run([self.program, "render", scene, "-o", picture, "--width", penumbra.WIDTH,
+                          "--height", penumbra.HEIGHT, *options])
+                    and self.run([self.tracer, "blocks", picture, "--block", 1, "--blocks",
+                                  blocks])):
+                lines[name] = penumbra.line_of(read_blocks(blocks))
+        if lines:
+            for name, error in penumbra.draw(self.out, lines).items():
+                print(f"penumbra, {name}: off by {100 * error:.2g}% of the light at most")
+
     def measure(self, scene, way, setting):
         if way == PATHS:
             return self.traced(scene, setting)
@@ -237,6 +255,7 @@ def main():
                                  **errors(blocks, truth)})
                     print("  ".join(f"{k} {text(k, rows[-1].get(k))}" for k in COLUMNS), flush=True)
                     write_table(options.out, "pictures", COLUMNS, rows, text)
+        bench.draw_penumbra()
     if rows:
         draw(options.out, rows)
     return 0 if bench.good else 1
