@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -115,6 +116,36 @@ Elements computeElements(const PatchMesh& mesh, const PatchMaterials& materials,
                          std::span<const double> irradiance, const ElementOptions& options,
                          std::span<const std::uint8_t> wanted, Progress& progress);
 
+/// Irradiance at single points, without interpolation: what elements have at their vertices, and
+/// the limit of what more of them would show. The mesh and the materials are kept by reference. All
+/// calls but the constructor may come from several threads.
+class LightAtPoints {
+ public:
+  /// Arguments and errors as of computeElements(). Direct light is found fastest on `wanted`.
+  LightAtPoints(const PatchMesh& mesh, const PatchMaterials& materials,
+                std::span<const double> irradiance, const ElementOptions& options,
+                std::span<const std::uint8_t> wanted, Progress& progress);
+  ~LightAtPoints();
+  LightAtPoints(const LightAtPoints&) = delete;
+  LightAtPoints& operator=(const LightAtPoints&) = delete;
+
+  static constexpr int kFewestRays = 16;
+  static constexpr int kMostRays = 4096;
+
+  int bands() const;
+  const ElementRoots& roots() const;
+  /// Of the sources alone; nothing of it is said of the points.
+  const ElementReport& report() const;
+  /// Adds the irradiance (bands values, W/m^2) at a point of a root. Indirect light takes `rays`
+  /// rays, a power of two, kFewestRays to kMostRays; which, the point decides. Returns the square
+  /// of the standard error, summed over the bands.
+  double add(std::size_t root, const Vec3& at, int rays, std::span<double> sum) const;
+
+ private:
+  struct Inside;
+  std::unique_ptr<Inside> inside_;
+};
+
 /// Finds values of a field at points of patches. All are kept by reference.
 class ElementLookup {
  public:
@@ -125,6 +156,8 @@ class ElementLookup {
   /// Where the point lies in the root: (u, v) of a quadrilateral, along the edges that leave
   /// corner 0; of a triangle, the weights of corners 1 and 2. Points a little outside are moved in.
   Vec2 place(std::size_t root, const Vec3& at) const;
+  /// The leaf of a field there; kNone where the root was not evaluated.
+  Index leafAt(const ElementField& field, std::size_t root, Vec2 place) const;
   /// Adds the field's value there to `sum` (bands). False, and nothing is added, where the root was
   /// not evaluated. C0 along edges that roots share.
   bool add(const ElementField& field, std::size_t root, Vec2 place, std::span<double> sum) const;

@@ -160,6 +160,9 @@ class Pipeline {
   /// solvedLight() with elements: those of elements(), or, where there are none that fit, of the
   /// patches `wanted` (as computeElements()) alone, which are computed at every call and not kept.
   SurfaceLight elementLight(std::span<const std::uint8_t> wanted = {});
+  /// solvedLight() with light at points of the patches `wanted`, for gatherRadiance(). Errors: as
+  /// computeElements().
+  SurfaceLight pointLight(std::span<const std::uint8_t> wanted = {});
   SurfaceLight gatheredLight();
   /// `patch`: of Quantity::form_factor, below N.
   ScalarField field(Quantity quantity, std::size_t patch = 0);

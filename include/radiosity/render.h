@@ -94,8 +94,9 @@ struct SurfaceLight {
   /// Light at the vertices of elements, drawn instead of the above where an element was evaluated;
   /// or null.
   std::shared_ptr<const Elements> elements;
-  std::vector<double> reflectance;  ///< with elements: N * elements->bands, ...
-  std::vector<double> emission;     ///< ... W/m^2
+  std::shared_ptr<const LightAtPoints> points;  ///< for gatherRadiance(); or null
+  std::vector<double> reflectance;              ///< with either of them: N * bands, ...
+  std::vector<double> emission;                 ///< ... W/m^2
 };
 
 /// N: how bright B - E is, what a patch does not emit itself, at least 0, W/m^2: its luminance, of
@@ -110,6 +111,44 @@ SurfaceLight surfaceLight(std::span<const double> radiosity, const PatchMaterial
 /// The same with the sky, where it shines, behind all.
 Image renderRadiance(const PatchMesh& mesh, const SurfaceLight& light, const Camera& camera,
                      const RenderOptions& options, Progress& progress);
+
+/// Light that is gathered for every pixel.
+struct PixelGatherOptions {
+  /// 64 to 65536: rays of indirect light, which the pixel's samples share; each of them has a power
+  /// of two, 16 to 4096.
+  int rays = 1024;
+  /// 1 or more, of the picture: where it would take more, pixels have fewer rays, but at least 64.
+  double most_rays = 2e9;
+  void validate() const;
+};
+
+struct PixelGatherReport {
+  std::size_t points = 0;  ///< at which light was evaluated
+  double rays = 0;         ///< of indirect light
+  int rays_a_pixel = 0;    ///< at most
+  /// Of the rays: root mean square of the pixels' standard errors, over that of their light.
+  double ray_error = 0;
+  double seconds = 0;  ///< by the clock
+};
+
+struct PixelGather {
+  Image radiance;
+  PixelGatherReport report;
+};
+
+/// The picture of `light.points`, evaluated where samples of pixels see a patch: four of a pixel
+/// that sees one patch alone, all of others. What renderRadiance() shows of elements is an
+/// interpolation of the same. The same bits for any number of threads. Errors: as render(), and
+/// InputError for options out of range. Throws Cancelled.
+PixelGather gatherRadiance(const PatchMesh& mesh, const SurfaceLight& light, const Camera& camera,
+                           const RenderOptions& options, const PixelGatherOptions& gather,
+                           Progress& progress);
+
+/// What gatherRadiance() will take, from one pixel in each 16 x 16 of them: points, rays and
+/// seconds.
+PixelGatherReport foreseeGather(const PatchMesh& mesh, const SurfaceLight& light,
+                                const Camera& camera, const RenderOptions& options,
+                                const PixelGatherOptions& gather, Progress& progress);
 
 /// N, 1: patches that a picture shows.
 std::vector<std::uint8_t> visiblePatches(const PatchMesh& mesh, const Camera& camera,

@@ -277,6 +277,12 @@ void addElementOptions(CLI::App& app, Request& r) {
           "Elements are cut where interpolation misses by more than this share of the light "
           "there, 1e-4 to 0.5 (default {})",
           defaults.tolerance));
+  app.add_flag(
+         "--final-gather", r.final_gather,
+         fmt::format("Evaluate light at every pixel, not at the vertices of elements: {} rays "
+                     "a pixel, many times slower, without interpolation",
+                     PixelGatherOptions().rays))
+      ->group("Picture");
 }
 
 /// Options that choose the drawn quantity of the matrix's stages, and its colours.

@@ -33,6 +33,14 @@ std::string largestError(const ElementReport& r, double of_matrix) {
   return "interpolation (lower --element-tolerance)";
 }
 
+void reportMatrixError(Report& report, const FormFactors& factors) {
+  if (factors.error.empty()) {
+    report.text("matrix_error", "error of the matrix", "not known of hemicubes");
+  } else {
+    report.number("matrix_error", "error of the matrix", factors.report.error_figure);
+  }
+}
+
 }  // namespace
 
 void summarizeElements(Report& report, const Elements& elements, const FormFactors& factors) {
@@ -49,15 +57,26 @@ void summarizeElements(Report& report, const Elements& elements, const FormFacto
   report.count("rays_a_vertex", "rays a vertex, indirect", std::size_t(r.rays_a_vertex));
   report.number("interpolation_error", "error of interpolation", r.interpolation_error);
   report.number("ray_error", "error of rays", r.ray_error);
-  if (factors.error.empty()) {
-    report.text("matrix_error", "error of the matrix", "not known of hemicubes");
-  } else {
-    report.number("matrix_error", "error of the matrix", factors.report.error_figure);
-  }
+  reportMatrixError(report, factors);
   report.text("largest_error", "largest error",
               largestError(r, factors.error.empty() ? 0 : factors.report.error_figure));
   report.seconds("seconds_direct", "time, direct", r.seconds_direct);
   report.seconds("seconds_indirect", "time, indirect", r.seconds_indirect);
+}
+
+void summarizeFinalGather(Report& report, const ElementReport& sources,
+                          const PixelGatherReport& gathered, const FormFactors& factors) {
+  report.section("final_gather", "Final gather");
+  report.text("direct", "direct light", directText(sources.direct));
+  report.count("emitters", "emitters", sources.emitters);
+  report.count("points", "points evaluated", gathered.points);
+  report.count("rays_a_pixel", "rays a pixel, at most", std::size_t(gathered.rays_a_pixel));
+  report.number("rays", "rays of indirect light", std::round(gathered.rays));
+  report.number("ray_error", "error of rays, of pixels", gathered.ray_error);
+  reportMatrixError(report, factors);
+  report.seconds("seconds_sources", "time, sources",
+                 sources.seconds_direct + sources.seconds_indirect);
+  report.seconds("seconds", "time, pixels", gathered.seconds);
 }
 
 }  // namespace radiosity::cli

@@ -34,7 +34,9 @@ int runGather(Session& session) {
     const SurfaceLight light = pipeline.gatheredLight();
     framePicture(picture, mesh, summary.closed, light.reflected);
     reportPicture(session.report, picture);
-    drawLight(session, mesh, light, picture, files);
+    const Image radiance =
+        renderRadiance(mesh, light, picture.camera, picture.options, session.progress);
+    writeLight(session, mesh, light, radiance, picture, files);
   }
   writeStages(session, pipeline, files);
   files.commit(session.report, session.progress);

@@ -148,10 +148,8 @@ void warnOfDarkness(Report& report, const PatchMesh& mesh, const SurfaceLight& l
 
 }  // namespace
 
-void drawLight(Session& session, const PatchMesh& mesh, const SurfaceLight& light,
-               const Picture& picture, OutputSet& files) {
-  const Image radiance =
-      renderRadiance(mesh, light, picture.camera, picture.options, session.progress);
+void writeLight(Session& session, const PatchMesh& mesh, const SurfaceLight& light,
+                const Image& radiance, const Picture& picture, OutputSet& files) {
   const double ev = exposureOf(session.request, radiance);
   if (session.request.exposure == "auto") warnOfDarkness(session.report, mesh, light, radiance);
   session.report.number("exposure_ev", "exposure", ev,

@@ -36,9 +36,10 @@ void reportPicture(Report& report, const Picture& picture);
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 Metadata metadataOf(const Picture& picture, const std::string& quantity, const std::string& unit);
 
-/// Draws the .png and .exr among `files`, writes the .glb, and reports the exposure.
-void drawLight(Session& session, const PatchMesh& mesh, const SurfaceLight& light,
-               const Picture& picture, OutputSet& files);
+/// Writes a picture's radiance to the .png and .exr among `files`, the light of the patches to the
+/// .glb, and reports the exposure.
+void writeLight(Session& session, const PatchMesh& mesh, const SurfaceLight& light,
+                const Image& radiance, const Picture& picture, OutputSet& files);
 
 /// Writes the .glb among `files` as a lit mesh, and reports how many triangles it has.
 void writeLitMesh(Report& report, const PatchMesh& mesh, const SurfaceLight& light,

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <optional>
 
+#include "base/figure_text.h"
 #include "cli/commands.h"
 #include "cli/element_use.h"
 #include "cli/picture.h"
@@ -88,16 +89,66 @@ void drawQuantity(Session& session, Pipeline& pipeline, const Picture& picture, 
   });
 }
 
-/// The light that the picture shows: of elements, unless patches were asked for.
+/// The light that the picture shows: of elements or at points, unless patches were asked for.
 SurfaceLight litSurfaces(Session& session, Pipeline& pipeline, const Picture& picture,
                          const ElementUse& elements) {
   if (!elements.shown) return pipeline.solvedLight();
-  SurfaceLight light =
-      elements.all ? pipeline.elementLight()
-                   : pipeline.elementLight(visiblePatches(pipeline.mesh().mesh, picture.camera,
-                                                          picture.options, session.progress));
+  std::vector<std::uint8_t> wanted;  // all
+  if (!elements.all) {
+    wanted =
+        visiblePatches(pipeline.mesh().mesh, picture.camera, picture.options, session.progress);
+  }
+  if (session.request.final_gather) return pipeline.pointLight(wanted);
+  SurfaceLight light = pipeline.elementLight(wanted);
   summarizeElements(session.report, *light.elements, pipeline.factors());
   return light;
+}
+
+/// Long ones are said before they start.
+void foretellGather(Session& session, const PatchMesh& mesh, const SurfaceLight& light,
+                    const Picture& picture) {
+  constexpr double kWorthSaying = 60;  // seconds
+  const PixelGatherReport foreseen =
+      foreseeGather(mesh, light, picture.camera, picture.options, {}, session.progress);
+  if (foreseen.seconds < kWorthSaying) return;
+  const Note note{
+      Severity::info,
+      fmt::format("--final-gather: light at {} points by {:.2g} rays: about {}; "
+                  "elements, without it, take a fraction of that",
+                  countText(foreseen.points), foreseen.rays, durationText(foreseen.seconds))};
+  session.report.notes({&note, 1});
+}
+
+Image radianceOfPicture(Session& session, Pipeline& pipeline, const SurfaceLight& light,
+                        const Picture& picture) {
+  const PatchMesh& mesh = pipeline.mesh().mesh;
+  if (!light.points) {
+    return renderRadiance(mesh, light, picture.camera, picture.options, session.progress);
+  }
+  foretellGather(session, mesh, light, picture);
+  PixelGather gathered =
+      gatherRadiance(mesh, light, picture.camera, picture.options, {}, session.progress);
+  summarizeFinalGather(session.report, light.points->report(), gathered.report, pipeline.factors());
+  return std::move(gathered.radiance);
+}
+
+/// Refuses options that contradict each other before the work is done.
+void checkFinalGather(const Request& request, const Show& show, const OutputSet& files) {
+  if (!request.final_gather) return;
+  if (files.has(Format::glb)) {
+    throw InputError(files.path(Format::glb) +
+                     ": a lit mesh has no pixels; write it without --final-gather");
+  }
+  if (request.elements.value_or(false)) {
+    throw InputError("--final-gather: it takes the place of elements; leave out --elements on");
+  }
+  const char* other = request.elements ? "--elements off"
+                      : request.flat   ? "--flat"
+                      : show.quantity  ? "--show"
+                                       : nullptr;
+  if (other == nullptr) return;
+  throw InputError(
+      fmt::format("--final-gather: {} shows what the patches have; leave one of them out", other));
 }
 
 /// Refuses impossible outputs before the work is done.
@@ -119,6 +170,7 @@ int runRender(Session& session) {
   OutputSet files = claimOutputs(session);
   const Show show = parseShow(request.show);
   checkOutputs(files, show);
+  checkFinalGather(request, show, files);
   const ElementUse elements = elementUse(request, files);
   Run run(session, files.path(Format::results));
   Pipeline& pipeline = run.pipeline;
@@ -149,7 +201,8 @@ int runRender(Session& session) {
   if (show.quantity) {
     drawQuantity(session, pipeline, picture, show, *show.quantity, files);
   } else {
-    drawLight(session, mesh, light, picture, files);
+    const Image radiance = radianceOfPicture(session, pipeline, light, picture);
+    writeLight(session, mesh, light, radiance, picture, files);
   }
   writeStages(session, pipeline, files);
   files.commit(session.report, session.progress);

@@ -72,6 +72,7 @@ struct Request {
   std::optional<double> crease;
   std::optional<bool> elements;
   std::optional<double> element_tolerance;
+  bool final_gather = false;
   bool flat = false;
   std::string backs = "hide";
   std::string show;

@@ -6,6 +6,7 @@
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
 #include "radiosity/patch_mesh.h"
+#include "radiosity/render.h"
 #include "radiosity/scene.h"
 #include "radiosity/solve.h"
 
@@ -28,6 +29,9 @@ void summarizeSolution(Report& report, const Solution& solution, const FormFacto
                        const PatchMesh& mesh, const SolveOptions& options, Detail detail);
 /// Beside the error of the matrix, which of the two dominates.
 void summarizeElements(Report& report, const Elements& elements, const FormFactors& factors);
+/// `sources`: what the light at points was made from.
+void summarizeFinalGather(Report& report, const ElementReport& sources,
+                          const PixelGatherReport& gathered, const FormFactors& factors);
 void summarizeGathered(Report& report, const Gathered& gathered, const PatchMesh& mesh,
                        const GatherOptions& options, Detail detail);
 

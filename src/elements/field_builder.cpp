@@ -55,6 +55,7 @@ class FieldBuilder {
       evaluateNew();
       judge(nodes);
       limit(nodes);
+      if (rule_.keep_lights) keepLights(nodes);
       nodes = cut(nodes);
     }
     conform();
@@ -301,6 +302,13 @@ class FieldBuilder {
     });
     for (std::size_t k = most; k < wanting.size(); ++k) nodes[wanting[k]].wants_cut = false;
     out_.unrefined += wanting.size() - most;
+  }
+
+  void keepLights(const std::vector<Node>& nodes) {
+    out_.lights.resize(out_.field.elements.size());
+    for (const Node& node : nodes) {
+      if (!node.wants_cut) out_.lights[node.element] = node.lights;
+    }
   }
 
   std::vector<Node> cut(const std::vector<Node>& nodes) {

@@ -78,11 +78,13 @@ struct RefinementRule {
   double unwanted_edge = 0;
   /// A root with longer edges is cut whatever its values.
   double longest_edge = 0;
+  bool keep_lights = false;  ///< FieldSummary::lights are wanted
 };
 
 /// What came of it.
 struct FieldSummary {
   ElementField field;
+  std::vector<std::shared_ptr<const ElementLights>> lights;  ///< of each leaf, or none
   std::size_t evaluated = 0;
   std::size_t unrefined = 0;
   double shortest_edge = 0;

@@ -89,6 +89,16 @@ int partAt(std::size_t corners, double& u, double& v) {
   return corners == 4 ? quarterOf(u, v) : triangleAt(u, v);
 }
 
+/// The leaf at a place of a root, which becomes the place in the leaf.
+Index leafOf(const ElementField& field, std::size_t root, Vec2& place) {
+  auto leaf = Index(root);
+  while (field.elements[leaf].first_child != kNone) {
+    const Element& element = field.elements[leaf];
+    leaf = element.first_child + Index(partAt(element.corners, place.x, place.y));
+  }
+  return leaf;
+}
+
 Weights weightsOf(const ElementField& field, const Element& leaf, double u, double v) {
   const Index* p = field.points.data() + leaf.first_point;
   PartCorners part = {0, 1, 2, std::uint8_t(leaf.corners - 1)};
@@ -147,17 +157,15 @@ std::size_t ElementLookup::rootAt(std::size_t patch, const Vec3& at) const {
   return best;
 }
 
+Index ElementLookup::leafAt(const ElementField& field, std::size_t root, Vec2 place) const {
+  return field.elements[root].corners == 0 ? kNone : leafOf(field, root, place);
+}
+
 bool ElementLookup::add(const ElementField& field, std::size_t root, Vec2 place,
                         std::span<double> sum) const {
-  const Element* element = field.elements.data() + root;
-  if (element->corners == 0) return false;
-  double u = place.x;
-  double v = place.y;
-  while (element->first_child != kNone) {
-    const int child = partAt(element->corners, u, v);
-    element = field.elements.data() + element->first_child + child;
-  }
-  const Weights w = weightsOf(field, *element, u, v);
+  if (field.elements[root].corners == 0) return false;
+  const Index leaf = leafOf(field, root, place);
+  const Weights w = weightsOf(field, field.elements[leaf], place.x, place.y);
   const std::size_t bands = sum.size();
   for (std::size_t k = 0; k < w.count; ++k) {
     const double* value = field.values.data() + w.point[k] * bands;

@@ -58,6 +58,17 @@ SurfaceLight Pipeline::elementLight(std::span<const std::uint8_t> wanted) {
   return light;
 }
 
+SurfaceLight Pipeline::pointLight(std::span<const std::uint8_t> wanted) {
+  SurfaceLight light = solvedLight();
+  const PatchMaterials& materials = materialsOfMesh();
+  light.points = std::make_shared<const LightAtPoints>(made(results_.mesh).mesh, materials,
+                                                       solution().irradiance, options_.elements,
+                                                       wanted, progress_);
+  light.reflectance = materials.reflectance;
+  light.emission = materials.emission;
+  return light;
+}
+
 SurfaceLight Pipeline::gatheredLight() {
   const Gathered& light = gathered();
   const PatchMesh& patches = made(results_.mesh).mesh;

@@ -1,6 +1,7 @@
 #include "render/patch_shader.h"
 
 #include <algorithm>
+#include <bit>
 #include <glm/geometric.hpp>
 
 namespace radiosity {
@@ -11,7 +12,7 @@ PatchShader::PatchShader(const PatchMesh& mesh, const ItemBuffer& items, const P
 void PatchShader::setPiece(Index piece) {
   const Index patch = items_.patchOf(piece);
   corners_ = 0;
-  setElement(patch, piece);
+  setRoot(patch, piece);
   if (root_ != kNone) return;
   if (field_.corners.empty()) {
     for (int b = 0; b < field_.bands; ++b) {
@@ -26,32 +27,51 @@ void PatchShader::setPiece(Index piece) {
   }
 }
 
-void PatchShader::setElement(Index patch, Index piece) {
+void PatchShader::setSamples(int samples) { samples_ = samples; }
+
+void PatchShader::setRoot(Index patch, Index piece) {
   root_ = kNone;
-  if (field_.elements == nullptr) return;
-  const ElementRoots& roots = field_.elements->elements.roots;
+  if (field_.roots == nullptr) return;
+  const ElementRoots& roots = field_.roots->roots;
   const std::size_t first = roots.of_patch[patch];
   const std::size_t count = roots.of_patch[patch + 1] - first;
   if (count == 0) return;
   // A patch of several roots has one a piece.
   const std::size_t root = count == 1 ? first : first + (piece - mesh_.piece_offset[patch]);
-  if (field_.elements->elements.indirect.elements[root].corners == 0) return;
+  const Elements* elements = field_.roots->elements;
+  if (elements != nullptr && elements->indirect.elements[root].corners == 0) return;
   root_ = root;
   patch_ = patch;
   normal_ = mesh_.normal[patch];
   height_ = glm::dot(normal_, mesh_.vertices[roots.corner[root][0]] - items_.view().eye);
 }
 
-std::array<double, 3> PatchShader::elementAt(double x, double y) const {
-  const ShadedElements& shaded = *field_.elements;
+void PatchShader::irradiance(const Vec3& at, std::span<double> sum) {
+  const ShadedRoots& shaded = *field_.roots;
+  if (shaded.points == nullptr) {
+    const Vec2 place = shaded.lookup->place(root_, at);
+    shaded.lookup->add(shaded.elements->direct, root_, place, sum);
+    shaded.lookup->add(shaded.elements->indirect, root_, place, sum);
+    return;
+  }
+  const int rays = int(std::bit_floor(unsigned(
+      std::clamp(shaded.rays / samples_, LightAtPoints::kFewestRays, LightAtPoints::kMostRays))));
+  const double noise = shaded.points->add(root_, at, rays, sum);
+  double light = 0;
+  for (const double value : sum) light += value;
+  ++sums_.points;
+  sums_.rays += rays;
+  sums_.noise_square += noise / (samples_ * samples_);
+  sums_.light_square += light * light / samples_;
+}
+
+std::array<double, 3> PatchShader::rootAt(double x, double y) {
+  const ShadedRoots& shaded = *field_.roots;
   const Vec3 ray = items_.view().rayThrough(x, y);
   const Vec3 at = items_.view().eye + ray * (height_ / glm::dot(normal_, ray));
-  const Vec2 place = shaded.lookup.place(root_, at);
   std::array<double, 3> light{};
-  const auto bands = std::size_t(shaded.elements.bands);
-  const auto sum = std::span(light).first(bands);
-  shaded.lookup.add(shaded.elements.direct, root_, place, sum);
-  shaded.lookup.add(shaded.elements.indirect, root_, place, sum);
+  const auto bands = std::size_t(shaded.bands);
+  irradiance(at, std::span(light).first(bands));
   for (std::size_t b = 0; b < bands; ++b) {
     const std::size_t k = patch_ * bands + b;
     light[b] = shaded.factor * (shaded.emission[k] + shaded.reflectance[k] * light[b]);
@@ -108,8 +128,8 @@ void PatchShader::setTriangle(Index patch, Index piece) {
   }
 }
 
-std::array<double, 3> PatchShader::at(double x, double y) const {
-  if (root_ != kNone) return elementAt(x, y);
+std::array<double, 3> PatchShader::at(double x, double y) {
+  if (root_ != kNone) return rootAt(x, y);
   std::array<double, 3> value = base_;
   if (corners_ == 0) return value;
   std::array<double, 4> a{};

@@ -10,14 +10,31 @@
 
 namespace radiosity {
 
-/// Elements as they are drawn: what leaves a point is emission + reflectance times irradiance
-/// there, in bands that are red, green and blue, or one in grey. All but the lookup by reference.
-struct ShadedElements {
-  const Elements& elements;
-  ElementLookup lookup;
+/// What the evaluation of light at points took.
+struct PointSums {
+  std::size_t points = 0;
+  double rays = 0;
+  double noise_square = 0;  ///< of pixels: of the standard error of their mean
+  double light_square = 0;  ///< of pixels, likewise over all bands
+  double seconds = 0;       ///< of the thread's
+};
+
+/// Irradiance on roots, as it is drawn: what leaves a point is emission + reflectance times
+/// irradiance there, in bands that are red, green and blue, or one in grey.
+struct ShadedRoots {
+  const ElementRoots& roots;
+  int bands;
   std::span<const double> reflectance;  ///< N * bands
   std::span<const double> emission;     ///< N * bands
   double factor = 1;                    ///< that the result is multiplied by
+  /// Elements, with their lookup; ...
+  const Elements* elements = nullptr;
+  const ElementLookup* lookup = nullptr;
+  /// ... or light at every sample's own point.
+  const LightAtPoints* points = nullptr;
+  int rays = 0;                     ///< of a pixel
+  int every = 1;                    ///< one pixel in so many, across and down, is drawn
+  std::span<PointSums> tiles = {};  ///< of each tile of the item buffer
 };
 
 /// A field over the patches: constant on each, or interpolated from values at the corners; or,
@@ -27,7 +44,7 @@ struct PatchField {
   std::vector<double> corners;     ///< mesh.corners.size() * bands, or empty: constant patches
   int bands = 1;                   ///< 1 to 3
   /// Shared by the threads; null: none. Of 3 bands.
-  const ShadedElements* elements = nullptr;
+  const ShadedRoots* roots = nullptr;
 };
 
 /// Interpolates with Wachspress' coordinates (Wachspress, "A Rational Finite Element Basis", 1975;
@@ -45,23 +62,30 @@ class PatchShader {
  public:
   PatchShader(const PatchMesh& mesh, const ItemBuffer& items, const PatchField& field);
 
+  /// A new pixel, of so many samples.
+  void setSamples(int samples);
+  /// With light at points: what was evaluated so far.
+  PointSums sums() const { return sums_; }
   /// The patch and piece the next samples lie on.
   void setPiece(Index piece);
   /// `field.bands` values at pixel position (x, y), inside the piece.
-  std::array<double, 3> at(double x, double y) const;
+  std::array<double, 3> at(double x, double y);
 
  private:
   void setConvexQuad(Index patch);
   bool convexQuad(Index patch);
   void setTriangle(Index patch, Index piece);
 
-  void setElement(Index patch, Index piece);
-  std::array<double, 3> elementAt(double x, double y) const;
+  void setRoot(Index patch, Index piece);
+  std::array<double, 3> rootAt(double x, double y);
+  void irradiance(const Vec3& at, std::span<double> sum);
 
   const PatchMesh& mesh_;
   const ItemBuffer& items_;
   const PatchField& field_;
-  std::size_t root_ = kNone;  ///< of elements; kNone: the patch has none
+  int samples_ = 1;  ///< of the pixel
+  PointSums sums_;
+  std::size_t root_ = kNone;  ///< kNone: the patch has none, or none with light
   Vec3 normal_{0.0};          ///< of the patch
   double height_ = 0;         ///< of its plane, seen from the eye
   Index patch_ = 0;

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "base/luminance.h"
-#include "render/samples.h"
+#include "render/draw.h"
 
 namespace radiosity {
 namespace {
@@ -60,14 +60,7 @@ Image draw(const PatchMesh& mesh, const PatchField& field, const Camera& camera,
            const RenderOptions& options, Progress& progress) {
   const View view = makeView(camera, options.width, options.height);
   const ItemBuffer items(mesh, view, options.samples, options.show_backs);
-  Image image{options.width, options.height, {}};
-  image.rgba.assign(std::size_t(image.width) * image.height * 4, 0.0f);
-  progress.begin("picture", items.tileCount());
-  forSamples(
-      mesh, items, field, [&](std::size_t) { return RgbPixel(image, options.background); },
-      progress);
-  progress.end();
-  return image;
+  return drawField(mesh, field, items, options, "picture", progress);
 }
 
 void requireColours(const PatchMesh& mesh, std::span<const double> values) {
@@ -98,6 +91,24 @@ void checkRange(const char* option, Number value, Number low, Number high, const
 }
 
 }  // namespace
+
+Image drawField(const PatchMesh& mesh, const PatchField& field, const ItemBuffer& items,
+                const RenderOptions& options, const std::string& stage, Progress& progress) {
+  Image image{options.width, options.height, {}};
+  image.rgba.assign(std::size_t(image.width) * image.height * 4, 0.0f);
+  progress.begin(stage, items.tileCount());
+  forSamples(
+      mesh, items, field, [&](std::size_t) { return RgbPixel(image, options.background); },
+      progress);
+  progress.end();
+  return image;
+}
+
+std::vector<double> radianceOf(std::span<const double> exitance) {
+  std::vector<double> out(exitance.begin(), exitance.end());
+  for (double& value : out) value *= std::numbers::inv_pi;
+  return out;
+}
 
 void RenderOptions::validate() const {
   checkRange("width", width, 1, 16384, " pixels");
@@ -161,13 +172,8 @@ Image render(const PatchMesh& mesh, std::span<const double> values, std::span<co
 Image renderRadiance(const PatchMesh& mesh, std::span<const double> radiosity,
                      std::span<const double> corners, const Camera& camera,
                      const RenderOptions& options, Progress& progress) {
-  const auto radiance = [](std::span<const double> exitance) {
-    std::vector<double> out(exitance.begin(), exitance.end());
-    for (double& value : out) value *= std::numbers::inv_pi;
-    return out;
-  };
-  if (corners.empty()) return render(mesh, radiance(radiosity), camera, options, progress);
-  return render(mesh, radiance(radiosity), radiance(corners), camera, options, progress);
+  if (corners.empty()) return render(mesh, radianceOf(radiosity), camera, options, progress);
+  return render(mesh, radianceOf(radiosity), radianceOf(corners), camera, options, progress);
 }
 
 std::vector<double> reflectedLight(std::span<const double> radiosity,
@@ -223,13 +229,15 @@ Image renderRadiance(const PatchMesh& mesh, const SurfaceLight& light, const Cam
   if (light.sky != Vec3(0.0)) with_sky.background = light.sky;
   if (light.elements && options.smooth) {
     with_sky.validate();
-    std::vector<double> radiance(light.patches);
-    for (double& value : radiance) value *= std::numbers::inv_pi;
+    const std::vector<double> radiance = radianceOf(light.patches);
     requireColours(mesh, radiance);
     PatchField field = makeField(mesh, radiance, 3, with_sky);
-    const ShadedElements shaded{*light.elements, ElementLookup(mesh, light.elements->roots),
-                                light.reflectance, light.emission, std::numbers::inv_pi};
-    field.elements = &shaded;
+    const ElementLookup lookup(mesh, light.elements->roots);
+    ShadedRoots shaded{light.elements->roots, light.elements->bands, light.reflectance,
+                       light.emission, std::numbers::inv_pi};
+    shaded.elements = light.elements.get();
+    shaded.lookup = &lookup;
+    field.roots = &shaded;
     return draw(mesh, field, camera, with_sky, progress);
   }
   return renderRadiance(mesh, light.patches, light.corners, camera, with_sky, progress);

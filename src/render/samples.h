@@ -1,6 +1,8 @@
 // The loop over tiles, pixels and samples that every picture shares.
 #pragma once
 
+#include <chrono>
+
 #include "base/parallel.h"
 #include "radiosity/render.h"
 #include "render/item_buffer.h"
@@ -11,17 +13,17 @@ namespace radiosity {
 /// The side of a patch that one sample sees.
 enum class Seen { nothing, front, back };
 
-/// Whether all samples of a pixel see one patch with elements: four then do for its light, which
+/// Whether all samples of a pixel see one patch with roots: four then do for its light, which
 /// costs more than what a patch's corners have. (Samples are for edges of what is seen.)
 inline bool shadesWhole(const ItemBuffer& items, const PatchField& field, const TileItems& seen,
                         int x, int y) {
   const int count = seen.samples * seen.samples;
-  if (field.elements == nullptr || count <= 4) return false;
+  if (field.roots == nullptr || count <= 4) return false;
   const Index first = seen.piece[seen.at(x, y, 0)];
   if (first == kNone || items.seenFromBehind(first)) return false;
   const Index patch = items.patchOf(first);
   // Pieces of a triangulated patch are roots of their own.
-  const ElementRoots& roots = field.elements->elements.roots;
+  const ElementRoots& roots = field.roots->roots;
   const bool one_root = roots.of_patch[patch + 1] - roots.of_patch[patch] == 1;
   for (int s = 1; s < count; ++s) {
     const Index piece = seen.piece[seen.at(x, y, s)];
@@ -47,10 +49,16 @@ void forSamples(const PatchMesh& mesh, const ItemBuffer& items, const PatchField
     PatchShader shader(mesh, items, field);
     Index piece = kNone;
     const int count = seen.samples * seen.samples;
+    const int every = field.roots != nullptr ? field.roots->every : 1;
+    const auto start = std::chrono::steady_clock::now();
     for (int y = seen.y; y < seen.y + seen.height; ++y) {
+      progress.check();
       for (int x = seen.x; x < seen.x + seen.width; ++x) {
+        if (x % every != 0 || y % every != 0) continue;
         pixel.begin();
-        if (shadesWhole(items, field, seen, x, y)) {
+        const bool whole = shadesWhole(items, field, seen, x, y);
+        shader.setSamples(whole ? 4 : count);
+        if (whole) {
           const Index hit = seen.piece[seen.at(x, y, 0)];
           if (hit != piece) shader.setPiece(piece = hit);
           for (int s = 0; s < 4; ++s) {
@@ -72,6 +80,12 @@ void forSamples(const PatchMesh& mesh, const ItemBuffer& items, const PatchField
         }
         pixel.end(x, y);
       }
+    }
+    if (field.roots != nullptr && !field.roots->tiles.empty()) {
+      PointSums& sums = field.roots->tiles[tile];
+      sums = shader.sums();
+      sums.seconds =
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
     progress.advance();
   });

@@ -3,11 +3,11 @@
 
 Pictures of 256 x 256 pixels by the cameras of scenes of data/, from scene file to picture on one
 thread: patches alone (--elements off), more and more of them; elements, to finer and finer
-tolerances; a path tracer, with more and more paths a pixel. The error is relL2 of linear radiance
-over means of 8 x 8 pixels, of blocks that see neither lamp nor background. Truth is an independent
-path tracer's, TRACER, in every seventh block, with independent sets of points that tell its own
-standard error; it is kept in the folder. Then the penumbra of a lamp behind a bar along a line of
-points, whose truth is a closed form.
+tolerances; light at every pixel (--final-gather); a path tracer, with more and more paths a pixel.
+The error is relL2 of linear radiance over means of 8 x 8 pixels, of blocks that see neither lamp
+nor background. Truth is an independent path tracer's, TRACER, in every seventh block, with
+independent sets of points that tell its own standard error; it is kept in the folder. Then the
+penumbra of a lamp behind a bar along a line of points, whose truth is a closed form.
 
   --quick        fewer settings, and truth of fewer paths: a few minutes
   --scene NAME   this one alone
@@ -44,17 +44,20 @@ LIMIT = 3600  # seconds of a run
 PATCHES = "patches"
 ELEMENTS = "elements"
 FEW = "elements of 1,000 patches"
+GATHER = "final gather"
 PATHS = "path tracer"
 SETTINGS = {
     PATCHES: (1000, 2000, 5000, 10000, 20000),
     ELEMENTS: (0.1, 0.03, 0.01, 0.003),
     FEW: (0.1, 0.03, 0.01),
+    GATHER: (1000, 2000),  # patches
     PATHS: (1, 4, 16, 64, 256),
 }
-QUICK = {PATCHES: (1000, 5000), ELEMENTS: (0.03, 0.01), PATHS: (1, 16)}
-PENUMBRA = {"patches, 2,000": ("--elements", "off"), "elements": ()}
+QUICK = {PATCHES: (1000, 5000), ELEMENTS: (0.03, 0.01), GATHER: (1000,), PATHS: (1, 16)}
+PENUMBRA = {"patches, 2,000": ("--elements", "off"), "elements": (),
+            "final gather": ("--final-gather",)}
 STYLES = {PATCHES: ("#0072B2", "s"), ELEMENTS: ("#D55E00", "o"),
-          FEW: ("#CC79A7", "v"), PATHS: ("#666666", "^")}
+          FEW: ("#CC79A7", "v"), GATHER: ("#009E73", "D"), PATHS: ("#666666", "^")}
 STAGES = {"mesh_s": "mesh", "factors_s": "factors", "solve_s": "solve", "elements_s": "elements",
           "rest_s": "picture and rest"}
 COLUMNS = {"scene": "scene", "way": "way", "setting": "setting", "patches": "patches",
@@ -135,10 +138,13 @@ class Bench:
             return None
         said = json.loads(report.read_text())
         stages, elements = said["stages"], said.get("elements", {})
+        gather = said.get("final_gather", {})
         row = {"processor_s": run.processor_seconds, "patches": said["mesh"]["patches"],
                "mesh_s": stages["mesh"]["seconds"], "factors_s": stages["form_factors"]["seconds"],
                "solve_s": stages["solution"]["seconds"],
-               "elements_s": elements.get("seconds_direct", 0) + elements.get("seconds_indirect", 0)}
+               "elements_s": sum(of.get(key, 0) for of, key in (
+                   (elements, "seconds_direct"), (elements, "seconds_indirect"),
+                   (gather, "seconds_sources"), (gather, "seconds")))}
         # Stages are timed by the clock, which also runs while others have the processor.
         share = run.processor_seconds / run.seconds
         for key in ("mesh_s", "factors_s", "solve_s", "elements_s"):
@@ -167,6 +173,8 @@ class Bench:
             return self.traced(scene, setting)
         if way == PATCHES:
             return self.rendered(scene, "--elements", "off", "--patches", setting)
+        if way == GATHER:
+            return self.rendered(scene, "--final-gather", "--patches", setting)
         few = ("--patches", 1000) if way == FEW else ()
         return self.rendered(scene, "--element-tolerance", setting, *few)
 

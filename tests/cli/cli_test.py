@@ -149,6 +149,19 @@ class Subcommands(CliTest):
         with h5py.File(self.folder / "e.h5") as file:
             self.assertNotIn("elements", file)
 
+    def test_light_is_gathered_at_every_pixel_on_demand(self):
+        self.run_program("solve", "box.obj", *SMALL, "-o", "g.h5")
+        drawn = ["render", "g.h5", "--width", "24", "--samples", "1", "-o", "g.png",
+                 "--final-gather"]
+        report = self.report(*drawn)
+        self.assertNotIn("elements", report)
+        gathered = report["final_gather"]
+        self.assertGreater(gathered["points"], 0)
+        self.assertLessEqual(gathered["rays"], 24 * 24 * gathered["rays_a_pixel"])
+        for other in (["--elements", "off"], ["--flat"], ["--show", "radiosity"]):
+            said = self.run_program(*drawn, *other, code=2).err
+            self.assertIn("--final-gather: " + " ".join(other)[:6], said)
+
     def test_false_colour(self):
         self.run_program("solve", "box.obj", *SMALL, "-o", "s.h5")
         for quantity in ["radiosity", "irradiance", "row-sum", "form-factor:3"]:

@@ -148,6 +148,23 @@ TEST(Elements, ThePenumbraOfALampBehindABarIsItsClosedForm) {
   }
 }
 
+/// Without interpolation only rounding is left, of coordinates that are scaled.
+TEST(Elements, DirectLightAtPointsIsItsClosedForm) {
+  const double below = rectangleFactor(-0.5, 0.5, -1, 1, 2);
+  for (const double half : {0.1, 0.4}) {
+    const Lit lit(lampBehindBar(half), 200);
+    Progress quiet;
+    const std::vector<double> dark(3 * lit.mesh.size(), 0.0);
+    const LightAtPoints light(lit.mesh, lit.materials, dark, {}, {}, quiet);
+    for (double x = -1.6; x < 1.6; x += 0.0037) {
+      const std::size_t patch = lit.patchAt("floor/floor", x, 0.3);
+      std::array<double, 3> sum{};
+      light.add(lit.lookup.rootAt(patch, {x, 0.3, 0}), {x, 0.3, 0}, 16, sum);
+      ASSERT_NEAR(sum[0], pastTheBar(x, 0.3, half), 1e-9 * below) << half << ": " << x;
+    }
+  }
+}
+
 /// rho = .5 and E = 1 all around: B = 2, of the irradiance 1 is direct and 1 is not. The mesh's
 /// closed forms make direct light exact; sources are stored in single precision.
 TEST(Elements, AFurnaceIsConstant) {

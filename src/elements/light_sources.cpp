@@ -1,0 +1,313 @@
+#include "elements/light_sources.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "base/parallel.h"
+#include "elements/indirect_light.h"
+
+namespace radiosity {
+namespace {
+
+// Lengths are shares of the scene's diagonal.
+
+/// Direct light changes in steps where bodies touch.
+constexpr Inset kDirectInset{1e-5, 0.1};
+/// Indirect light falls steeply towards creases. There, and all over what is smaller than elements
+/// get, vertices on the very creases would make lines between them too low; vertices at Gauss'
+/// points of the outermost elements make their means right.
+constexpr Inset kIndirectInset{0.0015, 0.21};
+/// That the tolerance is said of.
+constexpr double kReferenceEdge = 0.05;
+/// Elements that something may shade are no longer than this.
+constexpr double kPartialEdge = 0.0125;
+/// Direct light that only serves as a source is not refined below this.
+constexpr double kSourceEdge = 0.005;
+/// Every root with longer edges is cut.
+constexpr double kLongestEdge = 0.04;
+/// Of indirect light: no element with shorter edges is cut.
+constexpr double kIndirectEdge = 0.015;
+/// Of indirect light: the tolerance over the noise of the rays, which it would else chase.
+constexpr double kOverNoise = 3;
+/// Corners that differ by so many tolerances have light between them looked at.
+constexpr double kTestedSpread = 2;
+/// On facets of curved bodies, so many times that.
+constexpr double kCurvedSpread = 4;
+/// Where corners differ by more than this, edges may be this much shorter.
+constexpr double kSteepSpread = 0.5;
+constexpr double kSteepFraction = 0.125;
+/// Direct light by rays is not refined below this.
+constexpr double kDearEdge = 0.015;
+/// Where there is less light than this share of the mean, errors count as if there were so much.
+constexpr double kLeastLight = 0.1;
+/// most_rays is shared out as if the first pass took half of it, and the second pass had this many
+/// vertices for each corner of a root.
+constexpr double kFirstShare = 2;
+constexpr double kTestedShare = 3;
+/// Direct light by rays: its steps are not refined below this.
+constexpr double kAimedTolerance = 0.02;
+
+double since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double brightness(std::span<const double> values, std::size_t patch, std::size_t bands) {
+  double sum = 0;
+  for (std::size_t b = 0; b < bands; ++b) sum += values[patch * bands + b];
+  return sum;
+}
+
+/// Means of a field over patches, N * bands: over 8 x 8 points of each root; in a
+/// triangle those past its longest side count at their mirror images.
+std::vector<double> patchMeans(const PatchMesh& mesh, const ElementRoots& roots,
+                               const ElementLookup& lookup, const ElementField& field,
+                               std::size_t bands) {
+  std::vector<double> means(mesh.size() * bands, 0.0);
+  constexpr int kSide = 8;
+  parallelFor(mesh.size(), 64, [&](std::size_t i) {
+    double whole = 0;
+    std::vector<double> sum(bands, 0.0);
+    for (std::size_t r = roots.of_patch[i]; r < roots.of_patch[i + 1]; ++r) {
+      const bool quad = roots.cornerCount(r) == 4;
+      const auto& c = roots.corner[r];
+      const Vec3 a = mesh.vertices[c[0]];
+      const Vec3 ab = mesh.vertices[c[1]] - a;
+      const Vec3 ad = mesh.vertices[c[quad ? 3 : 2]] - a;
+      const Vec3 fold = quad ? mesh.vertices[c[2]] - a - ab - ad : Vec3(0.0);
+      std::vector<double> light(bands);
+      for (int y = 0; y < kSide; ++y) {
+        for (int x = 0; x < kSide; ++x) {
+          Vec2 at{(x + 0.5) / kSide, (y + 0.5) / kSide};
+          const double weight = glm::length(glm::cross(ab + at.y * fold, ad + at.x * fold));
+          if (!quad && at.x + at.y > 1) at = Vec2(1.0) - at;
+          std::fill(light.begin(), light.end(), 0.0);
+          lookup.add(field, r, at, light);
+          whole += weight * (quad ? 1 : 0.5);
+          for (std::size_t b = 0; b < bands; ++b) {
+            sum[b] += weight * (quad ? 1 : 0.5) * light[b];
+          }
+        }
+      }
+    }
+    for (std::size_t b = 0; b < bands && whole > 0; ++b) means[i * bands + b] = sum[b] / whole;
+  });
+  return means;
+}
+
+}  // namespace
+
+void requireSizes(const PatchMesh& mesh, const PatchMaterials& materials,
+                  std::span<const double> irradiance, std::span<const std::uint8_t> wanted) {
+  materials.requireSizes(mesh.size());
+  const std::size_t needed = mesh.size() * std::size_t(materials.bands);
+  if (irradiance.size() != needed) {
+    throw InputError(fmt::format("elements: {} values of irradiance are needed, {} were given",
+                                 needed, irradiance.size()));
+  }
+  if (!wanted.empty() && wanted.size() != mesh.size()) {
+    throw InputError(fmt::format("elements: {} flags of wanted patches are needed, {} were given",
+                                 mesh.size(), wanted.size()));
+  }
+}
+
+LightSources::LightSources(const PatchMesh& mesh, const PatchMaterials& materials,
+                           std::span<const double> irradiance, const ElementOptions& options,
+                           std::span<const std::uint8_t> wanted, bool keep_lights,
+                           Progress& progress)
+    : mesh_(mesh),
+      materials_(materials),
+      irradiance_(irradiance),
+      options_(options),
+      progress_(progress),
+      bands_(std::size_t(materials.bands)),
+      surface_(mesh, options.crease, kDirectInset),
+      indirect_surface_(mesh, options.crease, kIndirectInset),
+      lookup_(mesh, surface_.roots),
+      rays_(mesh),
+      elements_(mesh) {
+  double sum = 0;
+  double area = 0;
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    light_of_patch_.push_back(brightness(irradiance, i, bands_));
+    sum += mesh.area[i] * light_of_patch_.back();
+    area += mesh.area[i];
+  }
+  mean_light_ = area > 0 ? sum / area : 0;
+  for (const Index patch : surface_.roots.patch) {
+    if (!wanted.empty()) wanted_.push_back(wanted[patch]);
+  }
+  report_.roots = surface_.roots.size();
+  const double edge = 0.5 * options_.smallest_edge * surface_.diagonal;
+  report_.uniform_vertices = edge > 0 ? area / (edge * edge) : 0;
+  const auto start = std::chrono::steady_clock::now();
+  findDirect(keep_lights);
+  report_.seconds_direct = since(start);
+  const auto then = std::chrono::steady_clock::now();
+  findSources();
+  report_.seconds_indirect = since(then);
+}
+
+RefinementRule LightSources::rule(double tolerance, double smallest) const {
+  RefinementRule rule;
+  rule.tolerance = tolerance;
+  rule.smallest_edge = smallest * surface_.diagonal;
+  rule.steep_spread = kSteepSpread;
+  rule.steep_fraction = kSteepFraction;
+  rule.dear_tolerance = std::max(tolerance, kAimedTolerance);
+  rule.dear_edge = kDearEdge * surface_.diagonal;
+  rule.partial_edge = kPartialEdge * surface_.diagonal;
+  rule.longest_edge = kLongestEdge * surface_.diagonal;
+  rule.reference_edge = kReferenceEdge * surface_.diagonal;
+  rule.least_light = kLeastLight * mean_light_;
+  rule.most_vertices = options_.most_vertices;
+  rule.wanted = wanted_;
+  rule.unwanted_edge = kSourceEdge * surface_.diagonal;
+  return rule;
+}
+
+void LightSources::take(const FieldSummary& field) {
+  ElementReport& report = report_;
+  report.unrefined += field.unrefined;
+  report.edge = report.edge > 0 ? std::min(report.edge, field.shortest_edge) : field.shortest_edge;
+  if (!(field.light_square > 0)) return;
+  report.interpolation_error = std::hypot(
+      report.interpolation_error, std::sqrt(field.interpolation_square / field.light_square));
+  report.ray_error =
+      std::hypot(report.ray_error, std::sqrt(field.noise_square / field.light_square));
+}
+
+void LightSources::findDirect(bool keep_lights) {
+  emitters_ = findEmitters(mesh_, elements_, materials_);
+  report_.emitters = emitters_.size();
+  if (emitters_.empty() || emitters_.size() > kMostAimedEmitters) {
+    if (!emitters_.empty()) report_.direct = DirectLight::hemispheres;
+    direct_.field.elements.resize(surface_.roots.size());
+    return;
+  }
+  const bool clip = emitters_.size() <= kMostClippedEmitters;
+  if (clip) occluders_ = std::make_unique<OccluderSet>(mesh_, elements_, progress_);
+  emitter_light_ = std::make_unique<EmitterLight>(mesh_, materials_, surface_, elements_,
+                                                  occluders_.get(), emitters_, rays_);
+  RefinementRule how = rule(options_.tolerance, options_.smallest_edge);
+  if (!clip) {
+    how.tolerance = how.dear_tolerance;
+    how.smallest_edge = std::max(how.smallest_edge, how.dear_edge);
+  }
+  how.other_light = light_of_patch_;
+  how.keep_lights = keep_lights;
+  progress_.begin("direct light", 0);
+  direct_ = buildField(mesh_, surface_, *emitter_light_, how, int(bands_), progress_);
+  progress_.end();
+  take(direct_);
+  report_.direct_vertices = direct_.evaluated;
+  report_.direct_by_rays = emitter_light_->byRays();
+  report_.direct = !clip                          ? DirectLight::rays
+                   : emitter_light_->byRays() > 0 ? DirectLight::partly
+                                                  : DirectLight::exact;
+}
+
+/// Rays a vertex, of so many vertices, that most_rays leaves.
+int LightSources::raysFor(double vertices, int wanted) const {
+  const double most = options_.most_rays / std::max(1.0, vertices);
+  constexpr double kFewest = 16;
+  return std::min(wanted, int(std::bit_floor(unsigned(std::clamp(most, kFewest, 4096.0)))));
+}
+
+void LightSources::findSources() {
+  const std::vector<double> direct =
+      patchMeans(mesh_, surface_.roots, lookup_, direct_.field, bands_);
+  // What the patches have beside their direct light; the field's mean stands for that of the
+  // matrix, which may have found it less well.
+  indirect_.assign(irradiance_.begin(), irradiance_.end());
+  for (std::size_t k = 0; k < indirect_.size(); ++k) {
+    indirect_[k] = std::max(0.0, indirect_[k] - direct[k]);
+  }
+  for (std::size_t i = 0; i < mesh_.size(); ++i) {
+    direct_of_patch_.push_back(brightness(direct, i, bands_));
+  }
+  const bool emission = report_.direct == DirectLight::hemispheres;
+  const auto direct_at = [&](std::size_t root, Vec2 at, std::span<double> sum) {
+    lookup_.add(direct_.field, root, at, sum);
+  };
+  progress_.begin("sources of indirect light", 0);
+  const int first_rays =
+      raysFor(kFirstShare * double(surface_.points.size()), std::max(16, options_.rays / 4));
+  FieldSummary first;
+  {
+    const SourceMap sources(surface_, lookup_, materials_, emission,
+                            [&](std::size_t root, Vec2 at, std::span<double> sum) {
+                              direct_at(root, at, sum);
+                              const std::size_t k = surface_.roots.patch[root] * bands_;
+                              for (std::size_t b = 0; b < bands_; ++b) sum[b] += indirect_[k + b];
+                            });
+    first = onePass(sources, first_rays, 1e9, false);
+  }
+  report_.rays += double(first.evaluated) * first_rays;
+  report_.indirect_vertices = first.evaluated;
+  // The first pass has the shape of light within a patch; its mean, which lines between so few
+  // vertices make too low, is the solution's.
+  std::vector<double> lift = patchMeans(mesh_, surface_.roots, lookup_, first.field, bands_);
+  for (std::size_t k = 0; k < lift.size(); ++k) lift[k] = indirect_[k] - lift[k];
+  sources_ = std::make_unique<SourceMap>(surface_, lookup_, materials_, emission,
+                                         [&](std::size_t root, Vec2 at, std::span<double> sum) {
+                                           direct_at(root, at, sum);
+                                           lookup_.add(first.field, root, at, sum);
+                                           const std::size_t k =
+                                               surface_.roots.patch[root] * bands_;
+                                           for (std::size_t b = 0; b < bands_; ++b)
+                                             sum[b] += lift[k + b];
+                                         });
+  progress_.end();
+}
+
+ElementField LightSources::indirectField() {
+  const auto start = std::chrono::steady_clock::now();
+  progress_.begin("indirect light", 0);
+  const int rays = raysFor(kTestedShare * wantedCorners(), options_.rays);
+  // Owen-scrambled points: 1,024 rays have about 1% of error.
+  const double noise = 0.01 * std::pow(1024.0 / rays, 0.75);
+  FieldSummary second =
+      onePass(*sources_, rays, std::max(options_.tolerance, kOverNoise * noise), true);
+  progress_.end();
+  take(second);
+  report_.rays += double(second.evaluated) * rays;
+  report_.rays_a_vertex = rays;
+  report_.indirect_vertices += second.evaluated;
+  report_.seconds_indirect += since(start);
+  return std::move(second.field);
+}
+
+/// Vertices at corners of wanted roots.
+double LightSources::wantedCorners() const {
+  if (wanted_.empty()) return double(surface_.points.size());
+  std::vector<std::uint8_t> counted(surface_.points.size(), 0);
+  for (std::size_t r = 0; r < wanted_.size(); ++r) {
+    if (wanted_[r] == 0) continue;
+    for (const Index v : surface_.vertex[r]) {
+      if (v != kNone) counted[v] = 1;
+    }
+  }
+  return double(std::count(counted.begin(), counted.end(), 1));
+}
+
+FieldSummary LightSources::onePass(const SourceMap& sources, int rays, double tolerance,
+                                   bool wanted_only) {
+  const HemisphereSet set(std::size_t(rays), options_.seed);
+  const ReflectedLight light(indirect_surface_, rays_, set, sources, materials_.sky, options_.seed);
+  RefinementRule how = rule(tolerance, kIndirectEdge);
+  how.least_spread = kTestedSpread * tolerance;
+  how.curved_spread = kCurvedSpread;
+  if (!wanted_only) how.steep_fraction = 1;
+  if (wanted_only) how.unwanted_edge = std::numeric_limits<double>::infinity();
+  how.other_light = direct_of_patch_;
+  how.patch_light = indirect_;
+  return buildField(mesh_, indirect_surface_, light, how, int(bands_), progress_);
+}
+
+}  // namespace radiosity

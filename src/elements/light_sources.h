@@ -1,0 +1,91 @@
+// What lights the points of a solved scene: emitters, and what leaves every surface.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "elements/direct_light.h"
+#include "elements/emitters.h"
+#include "elements/field_builder.h"
+#include "elements/source_map.h"
+#include "elements/surface_points.h"
+#include "formfactor/exact/elements/elements.h"
+#include "formfactor/exact/occluders/occluders.h"
+#include "formfactor/rays/point_rays.h"
+#include "radiosity/elements.h"
+
+namespace radiosity {
+
+/// Errors: InputError where sizes do not fit, as computeElements() says.
+void requireSizes(const PatchMesh& mesh, const PatchMaterials& materials,
+                  std::span<const double> irradiance, std::span<const std::uint8_t> wanted);
+
+/// Direct light on elements, and the sources of all other light: patches, with their direct light
+/// replaced by that of the elements, and the shape of the rest by a first pass of rays.
+class LightSources {
+ public:
+  /// Arguments as computeElements(), which are kept by reference. `keep_lights`: emitterLight() is
+  /// wanted at points. Fills the report but for the second pass. Throws Cancelled.
+  LightSources(const PatchMesh& mesh, const PatchMaterials& materials,
+               std::span<const double> irradiance, const ElementOptions& options,
+               std::span<const std::uint8_t> wanted, bool keep_lights, Progress& progress);
+  LightSources(const LightSources&) = delete;
+  LightSources& operator=(const LightSources&) = delete;
+
+  /// Indirect light on the elements that are wanted: the second pass.
+  ElementField indirectField();
+
+  const ElementSurface& surface() const { return surface_; }
+  const ElementLookup& lookup() const { return lookup_; }
+  const PointRays& rays() const { return rays_; }
+  const SourceMap& sources() const { return *sources_; }
+  const ElementField& direct() const { return direct_.field; }
+  /// Of each leaf of direct(), with `keep_lights`.
+  std::span<const std::shared_ptr<const ElementLights>> directLights() const {
+    return direct_.lights;
+  }
+  /// Null: there is no direct light, or it comes with the indirect.
+  const EmitterLight* emitterLight() const { return emitter_light_.get(); }
+  /// N * bands: what the patches have beside direct light.
+  std::span<const double> indirectOfPatches() const { return indirect_; }
+  const ElementReport& report() const { return report_; }
+
+  /// Both end what can be asked of this.
+  ElementField takeDirect() { return std::move(direct_.field); }
+  ElementRoots takeRoots() { return std::move(surface_.roots); }
+
+ private:
+  RefinementRule rule(double tolerance, double smallest) const;
+  void take(const FieldSummary& field);
+  void findDirect(bool keep_lights);
+  void findSources();
+  int raysFor(double vertices, int wanted) const;
+  double wantedCorners() const;
+  FieldSummary onePass(const SourceMap& sources, int rays, double tolerance, bool wanted_only);
+
+  const PatchMesh& mesh_;
+  const PatchMaterials& materials_;
+  std::span<const double> irradiance_;
+  const ElementOptions& options_;
+  Progress& progress_;
+  std::size_t bands_;
+  ElementSurface surface_;
+  ElementSurface indirect_surface_;  ///< the same roots
+  ElementLookup lookup_;
+  PointRays rays_;
+  std::vector<std::uint8_t> wanted_;  ///< R, or empty
+  std::vector<double> light_of_patch_;
+  double mean_light_ = 0;
+  ElementSet elements_;
+  std::vector<Emitter> emitters_;
+  std::unique_ptr<OccluderSet> occluders_;
+  std::unique_ptr<EmitterLight> emitter_light_;
+  FieldSummary direct_;
+  std::vector<double> direct_of_patch_;  ///< N, over all bands
+  std::vector<double> indirect_;
+  std::unique_ptr<SourceMap> sources_;
+  ElementReport report_;
+};
+
+}  // namespace radiosity

@@ -1,0 +1,17 @@
+// What pictures of radiance have in common.
+#pragma once
+
+#include <string>
+
+#include "render/samples.h"
+
+namespace radiosity {
+
+/// The picture of a field of three bands: every pixel the mean of the samples that hit something.
+Image drawField(const PatchMesh& mesh, const PatchField& field, const ItemBuffer& items,
+                const RenderOptions& options, const std::string& stage, Progress& progress);
+
+/// Of values of exitance: B / pi.
+std::vector<double> radianceOf(std::span<const double> exitance);
+
+}  // namespace radiosity
