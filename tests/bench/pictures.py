@@ -218,7 +218,7 @@ def draw(folder, rows):
             some = [r for r in rows if r["scene"] == scene and r["way"] == way]
             axes.loglog([r["processor_s"] for r in some], [100 * r["error"] for r in some],
                         color=colour, marker=mark, markersize=4, label=way)
-            for row in some:
+            for row in some[:1] + some[1:][-1:]:
                 axes.annotate(f"{row['setting']:,}" if row["setting"] >= 1 else
                               f"{row['setting']:g}", (row["processor_s"], 100 * row["error"]),
                               textcoords="offset points", xytext=(4, 3), fontsize=6.5, color=colour)

@@ -128,7 +128,7 @@ TEST(PixelGather, AnyNumberOfThreadsGivesTheSameBits) {
   const Scene scene = cornellBox();
   const auto withThreads = [&](int threads) {
     setThreads(threads);
-    const PixelGather found = Solved(scene, scene.cameras.at(0), 200).gather(66, {.rays = 64});
+    PixelGather found = Solved(scene, scene.cameras.at(0), 200).gather(66, {.rays = 64});
     setThreads(0);
     return found;
   };
