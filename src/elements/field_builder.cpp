@@ -1,5 +1,7 @@
 #include "elements/field_builder.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -36,12 +38,13 @@ struct Node {
 class FieldBuilder {
  public:
   FieldBuilder(const PatchMesh& mesh, const ElementSurface& surface, const FieldLight& light,
-               const RefinementRule& rule, int bands, Progress& progress)
+               const RefinementRule& rule, int bands, const std::string& stage, Progress& progress)
       : mesh_(mesh),
         surface_(surface),
         light_(light),
         rule_(rule),
         bands_(std::size_t(bands)),
+        stage_(stage),
         progress_(progress),
         points_(surface.points),
         edges_(surface.edges) {}
@@ -127,8 +130,10 @@ class FieldBuilder {
     out_.field.values.resize(points_.size() * bands_, 0.0);
     noise_.resize(points_.size(), 0.0);
     out_.evaluated += pending_.size();
+    progress_.begin(fmt::format("{}, round {}", stage_, ++round_), pending_.size(), "points");
     parallelFor(pending_.size(), 16, [&](std::size_t k) {
       if (progress_.cancelled()) return;
+      progress_.advance();
       const auto& [v, root, lights] = pending_[k];
       if (lights && lights->kind == ElementLights::Kind::dark) return;
       const double noise = light_.irradiance(points_[v], lights.get(), {value(v), bands_});
@@ -139,7 +144,7 @@ class FieldBuilder {
     });
     pending_.clear();
     progress_.check();
-    progress_.advance();
+    progress_.end();
   }
 
   bool isDear(const Node& node) const {
@@ -422,6 +427,8 @@ class FieldBuilder {
   const FieldLight& light_;
   const RefinementRule& rule_;
   std::size_t bands_;
+  const std::string& stage_;
+  std::size_t round_ = 0;
   Progress& progress_;
   std::vector<SurfacePoint> points_;
   EdgeMap edges_;
@@ -441,8 +448,8 @@ class FieldBuilder {
 
 FieldSummary buildField(const PatchMesh& mesh, const ElementSurface& surface,
                         const FieldLight& light, const RefinementRule& rule, int bands,
-                        Progress& progress) {
-  return FieldBuilder(mesh, surface, light, rule, bands, progress).build();
+                        const std::string& stage, Progress& progress) {
+  return FieldBuilder(mesh, surface, light, rule, bands, stage, progress).build();
 }
 
 }  // namespace radiosity

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "elements/surface_points.h"
@@ -96,9 +97,10 @@ struct FieldSummary {
 
 /// Elements are cut breadth first: vertices of a round are numbered one after the other and
 /// evaluated side by side, so that nothing depends on threads. Values on an edge that a coarser
-/// neighbour shares are set to the neighbour's: the field is continuous. Throws Cancelled.
+/// neighbour shares are set to the neighbour's: the field is continuous. `stage`: what to call each
+/// round, a stage of progress. Throws Cancelled.
 FieldSummary buildField(const PatchMesh& mesh, const ElementSurface& surface,
                         const FieldLight& light, const RefinementRule& rule, int bands,
-                        Progress& progress);
+                        const std::string& stage, Progress& progress);
 
 }  // namespace radiosity

@@ -201,9 +201,8 @@ void LightSources::findDirect(bool keep_lights) {
   }
   how.other_light = light_of_patch_;
   how.keep_lights = keep_lights;
-  progress_.begin("direct light", 0);
-  direct_ = buildField(mesh_, surface_, *emitter_light_, how, int(bands_), progress_);
-  progress_.end();
+  direct_ =
+      buildField(mesh_, surface_, *emitter_light_, how, int(bands_), "direct light", progress_);
   take(direct_);
   report_.direct_vertices = direct_.evaluated;
   report_.direct_by_rays = emitter_light_->byRays();
@@ -235,7 +234,6 @@ void LightSources::findSources() {
   const auto direct_at = [&](std::size_t root, Vec2 at, std::span<double> sum) {
     lookup_.add(direct_.field, root, at, sum);
   };
-  progress_.begin("sources of indirect light", 0);
   const int first_rays =
       raysFor(kFirstShare * double(surface_.points.size()), std::max(16, options_.rays / 4));
   FieldSummary first;
@@ -263,18 +261,15 @@ void LightSources::findSources() {
                                            for (std::size_t b = 0; b < bands_; ++b)
                                              sum[b] += lift[k + b];
                                          });
-  progress_.end();
 }
 
 ElementField LightSources::indirectField() {
   const auto start = std::chrono::steady_clock::now();
-  progress_.begin("indirect light", 0);
   const int rays = raysFor(kTestedShare * wantedCorners(), options_.rays);
   // Owen-scrambled points: 1,024 rays have about 1% of error.
   const double noise = 0.01 * std::pow(1024.0 / rays, 0.75);
   FieldSummary second =
       onePass(*sources_, rays, std::max(options_.tolerance, kOverNoise * noise), true);
-  progress_.end();
   take(second);
   report_.rays += double(second.evaluated) * rays;
   report_.rays_a_vertex = rays;
@@ -307,7 +302,8 @@ FieldSummary LightSources::onePass(const SourceMap& sources, int rays, double to
   if (wanted_only) how.unwanted_edge = std::numeric_limits<double>::infinity();
   how.other_light = direct_of_patch_;
   how.patch_light = indirect_;
-  return buildField(mesh_, indirect_surface_, light, how, int(bands_), progress_);
+  return buildField(mesh_, indirect_surface_, light, how, int(bands_),
+                    wanted_only ? "indirect light" : "sources of indirect light", progress_);
 }
 
 }  // namespace radiosity
