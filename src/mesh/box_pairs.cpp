@@ -11,16 +11,16 @@ namespace {
 
 using Pairs = std::vector<std::pair<Index, Index>>;
 
-constexpr std::size_t kBoxesAtATime = 512;  // a task of a thread
+constexpr std::size_t kAtATime = 256;  // a task of a thread
 
-/// Pairs that visit(i, found) appends for each of `count` boxes, box by box.
+/// Pairs that visit(k, found) appends for each k below `count`, in ascending order.
 template <class Visit>
 Pairs pairsOf(std::size_t count, const Progress* progress, const Visit& visit) {
-  std::vector<Pairs> found((count + kBoxesAtATime - 1) / kBoxesAtATime);
+  std::vector<Pairs> found((count + kAtATime - 1) / kAtATime);
   parallelFor(found.size(), 1, [&](std::size_t block) {
     if (progress != nullptr && progress->cancelled()) return;
-    const std::size_t end = std::min(count, (block + 1) * kBoxesAtATime);
-    for (std::size_t i = block * kBoxesAtATime; i < end; ++i) visit(Index(i), found[block]);
+    const std::size_t end = std::min(count, (block + 1) * kAtATime);
+    for (std::size_t k = block * kAtATime; k < end; ++k) visit(Index(k), found[block]);
   });
   if (progress != nullptr) progress->check();
   std::size_t total = 0;
@@ -31,7 +31,39 @@ Pairs pairsOf(std::size_t count, const Progress* progress, const Visit& visit) {
     out.insert(out.end(), some.begin(), some.end());
     some = {};
   }
+  parallelSort(out);
   return out;
+}
+
+/// Calls visit(i, j) for the boxes i of a leaf and j that overlap, where j comes after i in the
+/// tree's order: every pair is met in one leaf.
+template <class Visit>
+void forPairsOfLeaf(const BoxTree& tree, const BoxTree::Node& leaf, const Visit& visit) {
+  struct Place {
+    Index node;
+    Index first;  // of the tree's order
+  };
+  std::vector<Place> stack;
+  stack.reserve(64);
+  stack.push_back({0, 0});
+  const auto& boxes = tree.boxes();
+  while (!stack.empty()) {
+    const auto [at, first] = stack.back();
+    stack.pop_back();
+    const BoxTree::Node& node = tree.nodes()[at];
+    if (first + node.below <= leaf.first || !node.bound.meets(leaf.bound)) continue;
+    if (node.count == 0) {
+      const Index left = node.first;
+      stack.push_back({left + 1, first + tree.nodes()[left].below});
+      stack.push_back({left, first});
+      continue;
+    }
+    for (Index a = leaf.first; a < leaf.first + leaf.count; ++a) {
+      for (Index b = std::max(node.first, a + 1); b < node.first + node.count; ++b) {
+        if (boxes[a].meets(boxes[b])) visit(tree.order()[a], tree.order()[b]);
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -39,13 +71,12 @@ Pairs pairsOf(std::size_t count, const Progress* progress, const Visit& visit) {
 Pairs overlappingPairs(const std::vector<Box3>& boxes, const Progress* progress,
                        const PairFilter& wanted) {
   const BoxTree tree(boxes);
-  return pairsOf(boxes.size(), progress, [&](Index i, Pairs& found) {
-    const auto begin = std::ptrdiff_t(found.size());
-    tree.query(boxes[i], [&](Index j) {
-      if (i < j && (!wanted || wanted(i, j))) found.emplace_back(i, j);
-      return true;
+  return pairsOf(tree.nodes().size(), progress, [&](Index node, Pairs& found) {
+    if (tree.nodes()[node].count == 0) return;
+    forPairsOfLeaf(tree, tree.nodes()[node], [&](Index i, Index j) {
+      const auto [low, high] = std::minmax(i, j);
+      if (!wanted || wanted(low, high)) found.emplace_back(low, high);
     });
-    std::sort(found.begin() + begin, found.end());
   });
 }
 
@@ -60,7 +91,7 @@ Pairs overlappingPairs(const std::vector<Box3>& boxes, const std::vector<Index>&
     is_some[i] = 1;
   }
   const BoxTree tree(some_boxes);
-  Pairs pairs = pairsOf(boxes.size(), progress, [&](Index i, Pairs& found) {
+  return pairsOf(boxes.size(), progress, [&](Index i, Pairs& found) {
     tree.query(boxes[i], [&](Index k) {
       const Index j = some[k];
       if (i == j || (is_some[i] != 0 && j < i)) return true;
@@ -69,8 +100,6 @@ Pairs overlappingPairs(const std::vector<Box3>& boxes, const std::vector<Index>&
       return true;
     });
   });
-  parallelSort(pairs);
-  return pairs;
 }
 
 }  // namespace radiosity
