@@ -36,8 +36,8 @@ void reportPicture(Report& report, const Picture& picture);
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 Metadata metadataOf(const Picture& picture, const std::string& quantity, const std::string& unit);
 
-/// Writes a picture's radiance to the .png and .exr among `files`, the light of the patches to the
-/// .glb, and reports the exposure.
+/// Writes a picture's radiance to the .png and .exr among `files`, the light of elements, or else
+/// of patches, to the .glb, and reports the exposure.
 void writeLight(Session& session, const PatchMesh& mesh, const SurfaceLight& light,
                 const Image& radiance, const Picture& picture, OutputSet& files);
 

@@ -74,15 +74,11 @@ PointRays::PointRays(const PatchMesh& mesh) : scene_(mesh), embree_(scene_, mesh
   parallelFor(targets_.size(), 1024, [&](std::size_t t) {
     const ViewPolygon& polygon = scene_.polygons[embree_.polygonOf()[t]];
     source_[t] = polygon.source;
-    const auto& corners = embree_.triangles()[t];
-    const std::vector<Vec3>& vertices = embree_.vertices();
-    const Vec3 a = vertices[corners[0]];
     for (std::size_t side = 0; side < 2; ++side) {
       RayTarget& target = targets_[t][side];
       target.item = polygon.side[side].item;
       if (polygon.side[side].grid == kNone) continue;
-      target.place(scene_.grids[polygon.side[side].grid], a - polygon.origin,
-                   vertices[corners[1]] - a, vertices[corners[2]] - a);
+      target.place(scene_.grids[polygon.side[side].grid], embree_, t, polygon.origin);
     }
   });
 }

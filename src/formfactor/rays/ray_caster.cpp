@@ -149,16 +149,11 @@ void RayCaster::setTargets() {
   parallelFor(targets_.size(), 1024, [&](std::size_t t) {
     const ViewPolygon& polygon = scene_.polygons[embree_.polygonOf()[t]];
     source_[t] = polygon.source;
-    const auto& corners = embree_.triangles()[t];
-    const std::vector<Vec3>& vertices = embree_.vertices();
-    const Vec3 a = vertices[corners[0]];
-    const Vec3 ab = vertices[corners[1]] - a;
-    const Vec3 ac = vertices[corners[2]] - a;
     for (std::size_t side = 0; side < 2; ++side) {
       RayTarget& target = targets_[t][side];
       target.item = rayItem(polygon.side[side].item);
       if (several[polygon.source][side] == 0) continue;
-      target.place(scene_.grids[polygon.side[side].grid], a - polygon.origin, ab, ac);
+      target.place(scene_.grids[polygon.side[side].grid], embree_, t, polygon.origin);
     }
   });
 }

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <glm/geometric.hpp>
 
-#include "formfactor/patch_grid.h"
+#include "formfactor/rays/embree_scene.h"
 
 namespace radiosity {
 
@@ -18,8 +18,13 @@ struct RayTarget {
   std::array<float, 3> v{};
   std::uint32_t item = 0;
 
-  /// The triangle's first corner from the polygon's origin, and its edges from there.
-  void place(const PatchGrid& of, const Vec3& from, const Vec3& ab, const Vec3& ac) {
+  /// Looks items up in a grid of triangle `t`'s polygon.
+  void place(const PatchGrid& of, const EmbreeScene& embree, std::size_t t, const Vec3& origin) {
+    const auto& corners = embree.triangles()[t];
+    const Vec3 a = embree.vertices()[corners[0]];
+    const Vec3 ab = embree.vertices()[corners[1]] - a;
+    const Vec3 ac = embree.vertices()[corners[2]] - a;
+    const Vec3 from = a - origin;
     grid = &of;
     u = {float(glm::dot(of.uAxis(), from) + of.uOffset()), float(glm::dot(of.uAxis(), ab)),
          float(glm::dot(of.uAxis(), ac))};
