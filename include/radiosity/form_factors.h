@@ -40,6 +40,10 @@ struct FormFactorOptions {
   /// the method has by default; rays then stop at kMostRaysUnasked, where a row of an open scene,
   /// which may see next to nothing, would want a thousand times those of a closed one.
   std::optional<double> tolerance;
+  /// The matrix only says how bright sources are from which light is gathered anew (elements):
+  /// empty means kSourceTolerance, which leaves the error of pictures what it is to .02% of light
+  /// (tests/bench/README.md).
+  bool sources_only = false;
   ClosureMode closure = ClosureMode::report;  ///< rays: rows are closed unless `off`
   /// Of the stored values; empty: single, double where the tolerance asks for more than 1e-6.
   std::optional<Precision> precision;
@@ -59,6 +63,7 @@ struct FormFactorOptions {
 
   static constexpr double kExactTolerance = 1e-3;
   static constexpr double kRayTolerance = 1e-2;
+  static constexpr double kSourceTolerance = 3e-2;
   /// Half a minute or so of two cores.
   static constexpr double kMostRaysUnasked = 2e8;
 
@@ -66,7 +71,9 @@ struct FormFactorOptions {
   Precision storedPrecision() const;
   /// The tolerance of a method other than hemicube.
   double toleranceOf(FormFactorMethod by) const {
-    return tolerance.value_or(by == FormFactorMethod::rays ? kRayTolerance : kExactTolerance);
+    if (tolerance) return *tolerance;
+    if (sources_only) return kSourceTolerance;
+    return by == FormFactorMethod::rays ? kRayTolerance : kExactTolerance;
   }
 };
 

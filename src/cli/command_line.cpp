@@ -120,12 +120,17 @@ void addFactorOptions(CLI::App& app, Request& r) {
       ->check(CLI::IsMember(namesIn(kMethodNames)));
   // Where results are compared, --tolerance is about the difference.
   const bool compares = app.get_name() == commandName(Command::compare);
+  const std::string of_pictures =
+      app.get_name() != commandName(Command::render)
+          ? ""
+          : fmt::format("; where elements are shown and no form factors are written, {} by default",
+                        FormFactorOptions::kSourceTolerance);
   add(app, "Form factors", compares ? "--factor-tolerance" : "--tolerance", r.tolerance, "FRACTION",
       fmt::format("exact: error aimed at for an occluded pair, relative to the mean form factor "
                   "1/N (default {}); rays: relative error of a row, L2 (default {}, or what {:g} "
-                  "million rays reach); 1e-12 to 0.1",
+                  "million rays reach); 1e-12 to 0.1{}",
                   FormFactorOptions::kExactTolerance, FormFactorOptions::kRayTolerance,
-                  1e-6 * FormFactorOptions::kMostRaysUnasked));
+                  1e-6 * FormFactorOptions::kMostRaysUnasked, of_pictures));
   add(app, "Form factors", "--closure", r.closure, "off|report|enforce",
       "In a closed scene say how far row sums are from 1 (report, default), or make them 1 by the "
       "smallest change to occluded pairs (enforce); rays: rows are closed unless off")

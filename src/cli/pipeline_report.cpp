@@ -122,6 +122,9 @@ void PipelineReport::planned(const Pipeline& pipeline, const FormFactorPlan& pla
           plan.scratch_bytes > 0 ? ", scratch file about " + bytesText(plan.scratch_bytes) : "",
           writes_results_ ? ", disk at most about " + bytesText(disk) : ""));
   if (!plan.reason.empty()) report_.line("", "because " + plan.reason);
+  if (options.sources_only && !options.tolerance && !hemicubes) {
+    report_.line("", "only as sources of the light that elements gather; --tolerance for more");
+  }
   if (plan.seconds_to_tolerance) {
     const double tolerance = options.toleranceOf(plan.method);
     report_.line("", fmt::format("for --tolerance {}: about {}", numberText(tolerance),

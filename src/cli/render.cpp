@@ -104,6 +104,12 @@ SurfaceLight litSurfaces(Session& session, Pipeline& pipeline, const Picture& pi
   return light;
 }
 
+/// Whether form factors serve elements alone, and are not kept.
+bool onlySources(const Pipeline& pipeline, const ElementUse& elements, const OutputSet& files) {
+  return elements.shown && !pipeline.fromResultsFile() && !files.has(Format::results) &&
+         !files.has(Format::matrix_market);
+}
+
 /// Long ones are said before they start.
 void foretellGather(Session& session, const PatchMesh& mesh, const SurfaceLight& light,
                     const Picture& picture) {
@@ -174,6 +180,7 @@ int runRender(Session& session) {
   const ElementUse elements = elementUse(request, files);
   Run run(session, files.path(Format::results));
   Pipeline& pipeline = run.pipeline;
+  pipeline.options().factors.sources_only |= onlySources(pipeline, elements, files);
   Picture picture = choosePicture(request, pipeline.scene());
   if (!show.quantity) requireColours(pipeline, request, files);
   if (show.needsLight()) requireLight(session, pipeline);

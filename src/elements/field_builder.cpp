@@ -9,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "elements/element_parts.h"
+#include "elements/mean_lift.h"
 
 namespace radiosity {
 namespace {
@@ -61,6 +62,7 @@ class FieldBuilder {
       if (rule_.keep_lights) keepLights(nodes);
       nodes = cut(nodes);
     }
+    liftToMeans(out_.field, points_, lightAtVertices(), bands_);
     conform();
     measure();
     out_.field.vertices = points_.size();
@@ -173,6 +175,20 @@ class FieldBuilder {
 
   double lightAt(const Node& node, double own) const {
     return std::max(own + rule_.other_light[surface_.roots.patch[node.root]], rule_.least_light);
+  }
+
+  /// Of both fields, over all bands.
+  std::vector<double> lightAtVertices() {
+    std::vector<double> light(points_.size(), 0.0);
+    for (std::size_t e = 0; e < out_.field.elements.size(); ++e) {
+      const Element& element = out_.field.elements[e];
+      const Index* p = out_.field.points.data() + element.first_point;
+      const double other = rule_.other_light[surface_.roots.patch[root_of_[e]]];
+      for (std::size_t k = 0; k < pointCount(element.corners, element.tested != 0); ++k) {
+        light[p[k]] = std::max(other + brightness(p[k]), rule_.least_light);
+      }
+    }
+    return light;
   }
 
   /// Writes the elements' points, with vertices in the middle of those that are tested.

@@ -64,6 +64,9 @@ void readNamed(const StageKey& key, std::string_view name, const Table& table, E
 /// the keys in older files stay what they are.
 bool isNamedIfSet(std::string_view name) { return name == "random-turns" || name == "inset"; }
 
+/// The tolerance of form factors that are only sources, where none was asked for.
+constexpr const char* kOfSources = "sources";
+
 void addTurns(StageKey& key, bool random_turns) {
   if (!random_turns) key.add("random-turns", onOff(random_turns));
 }
@@ -155,7 +158,8 @@ StageKey factorsKeyOf(const FormFactorOptions& options, const std::string& mesh_
   key.add("method", nameOf(kMethodNames, options.method));
   const bool any = options.method == FormFactorMethod::automatic;
   if (options.method != FormFactorMethod::hemicube) {
-    key.add("tolerance", options.tolerance ? fmt::format("{}", *options.tolerance) : "default");
+    const char* unasked = options.sources_only ? kOfSources : "default";
+    key.add("tolerance", options.tolerance ? fmt::format("{}", *options.tolerance) : unasked);
     key.add("closure", nameOf(kClosureNames, options.closure));
   }
   if (options.method != FormFactorMethod::exact) key.add("seed", fmt::format("{}", options.seed));
@@ -243,6 +247,7 @@ FormFactorOptions factorOptionsOf(const StageKey& key) {
   double tolerance = 0;
   read(key, "tolerance", tolerance);
   if (tolerance > 0) options.tolerance = tolerance;
+  options.sources_only = key.get("tolerance") == kOfSources;
   readNamed(key, "closure", kClosureNames, options.closure);
   options.near_exact = key.get("near") == "exact";
   read(key, "resolution", options.resolution);

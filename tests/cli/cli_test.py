@@ -118,6 +118,16 @@ class Subcommands(CliTest):
         self.assertNotEqual((self.folder / "on.png").read_bytes(),
                             (self.folder / "off.png").read_bytes())
 
+    def test_form_factors_that_only_elements_use_are_coarse(self):
+        drawn = ["render", "box.obj", "--patches", "60", "--method", "exact", "--width", "40",
+                 "--samples", "1", "-o", "p.png"]
+        said = "form factors   exact between"
+        for words, tolerance in [([], "0.03"), (["-o", "p.h5"], "0.001"),
+                                 (["--elements", "off"], "0.001"), (["--tolerance", ".01"], "0.01")]:
+            plan = next(line for line in self.run_program(*drawn, *words).out.splitlines()
+                        if line.startswith(said))
+            self.assertIn(f" to {tolerance}:", plan)
+
     def test_lit_meshes_show_elements_unless_patches_are_asked_for(self):
         self.run_program("solve", "box.obj", *SMALL, "-o", "e.h5")
         fine = self.report("solve", "e.h5", "-o", "on.glb")

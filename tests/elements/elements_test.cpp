@@ -247,12 +247,21 @@ std::vector<double> solved(const PatchMesh& mesh, const PatchMaterials& material
   return solve(factors, materials, mesh, {}, quiet).irradiance;
 }
 
-/// Where all light ends, what elements receive is what patches receive. The matrix takes light as
-/// constant on each patch, which 2,000 of them make good to a few times 1e-4 of the energy;
-/// interpolation is low by .1% in the mean.
+/// A lamp in the middle of a room, without the black back that a flat one has: all light stays.
+Scene roomWithoutBacks() {
+  SceneBuilder builder;
+  builder.box(builder.surface("wall", 0.6), Vec3(0), {2, 3, 2}, false);
+  builder.box(builder.surface("lamp", 0.0, 10.0), {0.7, 1.2, 1.4}, {1.3, 1.8, 1.6});
+  builder.box(builder.surface("block", 0.7), {0.3, 0.5, 0}, {0.8, 1, 0.9});
+  return builder.scene();
+}
+
+/// Where no light is lost, elements receive what patches receive. Without liftToMeans(), lines
+/// between points of what bends downwards are low by 9e-4; with it by 4e-4, which is what outermost
+/// elements and kinks leave.
 TEST(Elements, EnergyIsThatOfThePatches) {
   std::vector<double> irradiance;
-  const Lit lit(smallRoom(), 2000, {}, [&](const PatchMesh& mesh, const PatchMaterials& with) {
+  const Lit lit(roomWithoutBacks(), 2000, {}, [&](const PatchMesh& mesh, const PatchMaterials& with) {
     return irradiance = solved(mesh, with);
   });
   double of_patches = 0;
@@ -273,7 +282,7 @@ TEST(Elements, EnergyIsThatOfThePatches) {
       }
     }
   }
-  EXPECT_NEAR(of_elements / of_patches, 1, 1e-3);
+  EXPECT_NEAR(of_elements / of_patches, 1, 5e-4);
 }
 
 TEST(Elements, AnyNumberOfThreadsGivesTheSameBits) {

@@ -231,6 +231,27 @@ TEST_F(PipelineStages, ElementsOfTheSameSolutionAreReused) {
   EXPECT_EQ(told_.take(), Events{"elements kept"});
 }
 
+TEST_F(PipelineStages, FormFactorsThatAreOnlySourcesAreSoInTheFileToo) {
+  const std::string file = path("sources.h5");
+  Pipeline first(progress_);
+  first.open(kBox);
+  first.options().mesh.patches = 60;
+  first.options().factors.method = FormFactorMethod::exact;
+  first.options().factors.sources_only = true;
+  first.factors();
+  first.save(file);
+
+  Pipeline again(progress_, &told_);
+  again.open(file);
+  EXPECT_TRUE(again.options().factors.sources_only);
+  told_.take();
+  again.factors();
+  EXPECT_EQ(told_.take(), (Events{"mesh reused: " + file, "factors reused: " + file}));
+  again.options().factors.sources_only = false;
+  again.factors();
+  EXPECT_EQ(told_.take(), (Events{"plan", "factors recomputed: tolerance sources -> default"}));
+}
+
 TEST_F(PipelineStages, ElementsThatNoLongerFitAreNotUsed) {
   const std::string file = savedElements(path("box.h5"), progress_);
   SceneOptions brighter;
