@@ -98,8 +98,8 @@ struct FieldSummary {
 /// Elements are cut breadth first: vertices of a round are numbered one after the other and
 /// evaluated side by side, so that nothing depends on threads. Values in
 /// the end are such that lines between them have light's means (mean_lift.h); on an edge that a
-/// coarser neighbour shares they are set to the neighbour's: the field is continuous. `stage`: what to call each
-/// round, a stage of progress. Throws Cancelled.
+/// coarser neighbour shares they are set to the neighbour's: the field is continuous. `stage`: what
+/// to call each round, a stage of progress. Throws Cancelled.
 FieldSummary buildField(const PatchMesh& mesh, const ElementSurface& surface,
                         const FieldLight& light, const RefinementRule& rule, int bands,
                         const std::string& stage, Progress& progress);

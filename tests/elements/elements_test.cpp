@@ -261,9 +261,10 @@ Scene roomWithoutBacks() {
 /// elements and kinks leave.
 TEST(Elements, EnergyIsThatOfThePatches) {
   std::vector<double> irradiance;
-  const Lit lit(roomWithoutBacks(), 2000, {}, [&](const PatchMesh& mesh, const PatchMaterials& with) {
-    return irradiance = solved(mesh, with);
-  });
+  const Lit lit(roomWithoutBacks(), 2000, {},
+                [&](const PatchMesh& mesh, const PatchMaterials& with) {
+                  return irradiance = solved(mesh, with);
+                });
   double of_patches = 0;
   double of_elements = 0;
   for (std::size_t i = 0; i < lit.mesh.size(); ++i) {
