@@ -100,6 +100,10 @@ std::vector<double> patchMeans(const PatchMesh& mesh, const ElementRoots& roots,
   return means;
 }
 
+bool sharesUnknown(const PatchMesh& mesh, std::size_t patch) {
+  return mesh.clusters && mesh.clusters->patchesOf(mesh.clusters->of_patch[patch]).size() > 1;
+}
+
 }  // namespace
 
 void requireSizes(const PatchMesh& mesh, const PatchMaterials& materials,
@@ -249,9 +253,12 @@ void LightSources::findSources() {
   report_.rays += double(first.evaluated) * first_rays;
   report_.indirect_vertices = first.evaluated;
   // The first pass has the shape of light within a patch; its mean, which lines between so few
-  // vertices make too low, is the solution's.
+  // vertices make too low, is the solution's. Of a patch that shares its unknown with others the
+  // solution has a fit alone, and the first pass knows better.
   std::vector<double> lift = patchMeans(mesh_, surface_.roots, lookup_, first.field, bands_);
-  for (std::size_t k = 0; k < lift.size(); ++k) lift[k] = indirect_[k] - lift[k];
+  for (std::size_t k = 0; k < lift.size(); ++k) {
+    lift[k] = sharesUnknown(mesh_, k / bands_) ? 0.0 : indirect_[k] - lift[k];
+  }
   sources_ = std::make_unique<SourceMap>(surface_, lookup_, materials_, emission,
                                          [&](std::size_t root, Vec2 at, std::span<double> sum) {
                                            direct_at(root, at, sum);
