@@ -10,6 +10,7 @@
 #include "radiosity/gather.h"
 #include "radiosity/matrix_functions.h"
 #include "radiosity/names.h"
+#include "radiosity/page.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/pipeline.h"
 #include "radiosity/render.h"

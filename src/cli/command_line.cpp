@@ -20,9 +20,9 @@ namespace radiosity::cli {
 
 namespace {
 
-constexpr std::array kCommands = {Command::info,  Command::mesh,   Command::factors,
-                                  Command::solve, Command::gather, Command::compare,
-                                  Command::render};
+constexpr std::array kCommands = {Command::info,   Command::mesh,   Command::factors,
+                                  Command::solve,  Command::gather, Command::compare,
+                                  Command::render, Command::view};
 
 // Each helper names the value as help shows it, and gives it one argument a time, so that
 // "-o a.png scene.obj" does not take the scene for an output.
@@ -244,21 +244,34 @@ void bindToGather(CLI::App& app) {
   }
 }
 
-void addCameraOptions(CLI::App& app, Request& r) {
-  const RenderOptions defaults;
+void addCameraOption(CLI::App& app, Request& r) {
   add(app, "Picture", "--camera", r.camera, "CAMERA",
       "Name of a camera in the scene, or eye=X,Y,Z;target=X,Y,Z[;up=X,Y,Z][;fov=DEGREES], metres "
       "(default: the scene's first, else one in a room at eye height, or from outside where there "
       "is none, aimed at lit surfaces)");
+}
+
+void addCameraOptions(CLI::App& app, Request& r) {
+  addCameraOption(app, r);
+  const RenderOptions defaults;
   add(app, "Picture", "--width", r.width, "PIXELS", fmt::format("Default {}", defaults.width));
   add(app, "Picture", "--height", r.height, "PIXELS",
       "Default: from the width and the camera's aspect ratio; the width, where it has none");
 }
 
+void addExposureOption(CLI::App& app, Request& r, const char* shown_in) {
+  add(app, "Picture", "--exposure", r.exposure, "auto|EV",
+      fmt::format("{} radiance times 2^EV (default auto; the EV is printed)", shown_in));
+}
+
+void addCreaseOption(CLI::App& app, Request& r) {
+  add(app, "Picture", "--crease", r.crease, "DEGREES",
+      fmt::format("Interpolate across edges that bend less (default {})", RenderOptions().crease));
+}
+
 void addRenderOptions(CLI::App& app, Request& r) {
   const RenderOptions defaults;
-  add(app, "Picture", "--exposure", r.exposure, "auto|EV",
-      "The .png and .glb show radiance times 2^EV (default auto; the EV is printed)");
+  addExposureOption(app, r, "The .png and .glb show");
   add(app, "Picture", "--samples", r.samples, "N",
       fmt::format("N x N samples a pixel, 1 to 16 (default {})", defaults.samples));
   app.add_flag("--flat", r.flat, "One colour a patch, not interpolated")->group("Picture");
@@ -282,6 +295,9 @@ void addElementOptions(CLI::App& app, Request& r) {
           "Elements are cut where interpolation misses by more than this share of the light "
           "there, 1e-4 to 0.5 (default {})",
           defaults.tolerance));
+}
+
+void addFinalGatherOption(CLI::App& app, Request& r) {
   app.add_flag(
          "--final-gather", r.final_gather,
          fmt::format("Evaluate light at every pixel, not at the vertices of elements: {} rays "
@@ -292,9 +308,7 @@ void addElementOptions(CLI::App& app, Request& r) {
 
 /// Options that choose the drawn quantity of the matrix's stages, and its colours.
 void addShowOptions(CLI::App& app, Request& r) {
-  const RenderOptions defaults;
-  add(app, "Picture", "--crease", r.crease, "DEGREES",
-      fmt::format("Interpolate across edges that bend less (default {})", defaults.crease));
+  addCreaseOption(app, r);
   add(app, "Picture", "--show", r.show, "QUANTITY",
       fmt::format(
           "False colour with a legend: radiosity or irradiance (W/m^2, Rec. 709 luminance weights "
@@ -357,10 +371,16 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
     bindToGather(*sub);
   }
   if (compares || command == Command::render) addCameraOptions(*sub, r);
-  if (command == Command::solve || command == Command::render) addElementOptions(*sub, r);
+  if (command == Command::view) addCameraOption(*sub, r);
+  if (!compares) addElementOptions(*sub, r);
   if (command == Command::render) {
+    addFinalGatherOption(*sub, r);
     addRenderOptions(*sub, r);
     addShowOptions(*sub, r);
+  }
+  if (command == Command::view) {
+    addExposureOption(*sub, r, "The page first shows");
+    addCreaseOption(*sub, r);
   }
   return sub;
 }
@@ -369,7 +389,7 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
 void checkCommandWord(int argc, char** argv) {
   std::array<std::string, kCommands.size()> names;
   std::transform(kCommands.begin(), kCommands.end(), names.begin(), commandName);
-  const std::string list = "info, mesh, factors, solve, gather, compare or render";
+  const std::string list = "info, mesh, factors, solve, gather, compare, render or view";
   if (argc < 2) {
     throw InputError(
         fmt::format("a subcommand is missing: {}; e.g. radiosity render SCENE -o "

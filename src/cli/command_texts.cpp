@@ -17,9 +17,11 @@ const char* descriptionOf(Command command) {
     case Command::compare:
       return "Measure how far apart two lightings of one scene are, and where";
     case Command::render:
+      return "Draw the lit scene, running missing stages first";
+    case Command::view:
       break;
   }
-  return "Draw the lit scene, running missing stages first";
+  return "Write a page that shows the lit scene in a browser, running missing stages first";
 }
 
 const char* examplesOf(Command command) {
@@ -79,15 +81,29 @@ const char* examplesOf(Command command) {
              "  radiosity compare cornell.h5 data/cornell-box-cycles.ply --b-is radiance\n"
              "  radiosity compare new.exr old.exr --tolerance 1e-3 -o difference.png";
     case Command::render:
+      return "Files (-o): .png (exposed, sRGB), .exr (radiance, W/m^2/sr, linear), .glb (lit "
+             "mesh),\n"
+             ".h5 (results), .mtx (MatrixMarket). With --show an .exr holds the quantity "
+             "itself.\n\n"
+             "Examples:\n"
+             "  radiosity render data/cornell-box.obj -o cornell.png\n"
+             "  radiosity render cornell.h5 --exposure 2.5 --width 1024 --height 1024 -o "
+             "cornell.exr\n"
+             "  radiosity render cornell.h5 --show form-factor:12 -o seen-from-12.png\n"
+             "  radiosity render room.glb --camera 'eye=1,1.6,3;target=0,1,0' -o room.png -o "
+             "room.h5";
+    case Command::view:
       break;
   }
-  return "Files (-o): .png (exposed, sRGB), .exr (radiance, W/m^2/sr, linear), .glb (lit mesh),\n"
-         ".h5 (results), .mtx (MatrixMarket). With --show an .exr holds the quantity itself.\n\n"
+  return "Files (-o): .html (the page: one file, which needs no server and no network), .h5\n"
+         "(results). Where no .html is named it is the scene's name in this folder, and opens in "
+         "the\n"
+         "browser where there is a desktop. The page holds at most 8,000 unknowns, whose form\n"
+         "factors it keeps in 16 bits each: the report says how large their error is.\n\n"
          "Examples:\n"
-         "  radiosity render data/cornell-box.obj -o cornell.png\n"
-         "  radiosity render cornell.h5 --exposure 2.5 --width 1024 --height 1024 -o cornell.exr\n"
-         "  radiosity render cornell.h5 --show form-factor:12 -o seen-from-12.png\n"
-         "  radiosity render room.glb --camera 'eye=1,1.6,3;target=0,1,0' -o room.png -o room.h5";
+         "  radiosity view data/cornell-box.obj\n"
+         "  radiosity view cornell.h5 -o cornell.html\n"
+         "  radiosity view data/furnished-room.obj --patches 4000 -o room.html -o room.h5";
 }
 
 }  // namespace radiosity::cli

@@ -34,6 +34,7 @@ int runSolve(Session& session);
 int runGather(Session& session);
 int runCompare(Session& session);
 int runRender(Session& session);
+int runView(Session& session);
 
 /// The files -o names; a results file that came in is updated where none is named and the
 /// subcommand is factors, solve or gather.

@@ -7,7 +7,13 @@ namespace radiosity::cli {
 namespace {
 
 bool drawsLight(const OutputSet& files) {
-  return files.has(Format::glb) || files.has(Format::png) || files.has(Format::exr);
+  return files.has(Format::glb) || files.has(Format::png) || files.has(Format::exr) ||
+         files.has(Format::page);
+}
+
+/// Seen from anywhere: a picture has those that it shows.
+bool showsAllLight(const OutputSet& files) {
+  return files.has(Format::glb) || files.has(Format::page);
 }
 
 /// Why no output has elements, and what to do.
@@ -33,7 +39,7 @@ ElementUse elementUse(const Request& request, const OutputSet& files) {
   ElementUse use;
   use.shown = request.elements.value_or(true) && of_light && drawsLight(files);
   use.all =
-      of_light && ((use.shown && files.has(Format::glb)) || (asked && files.has(Format::results)));
+      of_light && ((use.shown && showsAllLight(files)) || (asked && files.has(Format::results)));
   if (use.shown || use.all) return use;
   if (asked) throw InputError("--elements on: " + whyNone(request, files));
   if (request.element_tolerance) {

@@ -9,10 +9,10 @@ namespace radiosity::cli {
 /// What --elements asks for, with the outputs there are.
 struct ElementUse {
   bool shown = false;  ///< pictures and lit meshes show elements, not patches
-  bool all = false;    ///< elements of all patches are needed: for a lit mesh, or to be kept
+  bool all = false;    ///< elements of all patches are needed: for a lit mesh or a page, or to be kept
 };
 
-/// Of solve and render. Shown by default; a results file alone keeps them where asked for. Errors:
+/// Of solve, render and view. Shown by default; a results file alone keeps them where asked for. Errors:
 /// InputError where they were asked for, or their tolerance was, and no output has them.
 ElementUse elementUse(const Request& request, const OutputSet& files);
 

@@ -34,9 +34,11 @@ int dispatch(Session& session) {
     case Command::compare:
       return runCompare(session);
     case Command::render:
+      return runRender(session);
+    case Command::view:
       break;
   }
-  return runRender(session);
+  return runView(session);
 }
 
 int run(const Request& request, const TimeLimit& limit, ConsoleProgress& progress) {

@@ -13,7 +13,7 @@
 
 namespace radiosity::cli {
 
-enum class Format { results, matrix_market, png, exr, glb, obj };
+enum class Format { results, matrix_market, png, exr, glb, obj, page };
 
 struct Output {
   std::string path;

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "cli/words.h"
 #include "radiosity/results.h"
@@ -84,7 +85,7 @@ void framePicture(Picture& picture, const PatchMesh& mesh, bool closed,
 void requireColours(const Pipeline& pipeline, const Request& request, const OutputSet& files) {
   const int bands = pipeline.bands();
   if (bands == 1 || bands == 3) return;
-  for (const Format format : {Format::png, Format::exr, Format::glb}) {
+  for (const Format format : {Format::png, Format::exr, Format::glb, Format::page}) {
     if (!files.has(format)) continue;
     throw InputError(fmt::format(
         "{}: draws three bands (red, green, blue), or one in grey, and {} has {}; keep the numbers "
@@ -164,6 +165,16 @@ void writeLight(Session& session, const PatchMesh& mesh, const SurfaceLight& lig
     writeImage(temporary, radiance, false, metadataOf(picture, "radiance", "W/m^2/sr"));
   });
   writeLitMesh(session.report, mesh, light, files, ev, picture.options.crease);
+}
+
+ExposedPicture exposePicture(Session& session, Pipeline& pipeline, const SurfaceLight& light) {
+  Picture picture = choosePicture(session.request, pipeline.scene());
+  const PatchMesh& mesh = pipeline.mesh().mesh;
+  framePicture(picture, mesh, pipeline.factors().report.closed, light.reflected);
+  const Image radiance =
+      renderRadiance(mesh, light, picture.camera, picture.options, session.progress);
+  const double ev = exposureOf(session.request, radiance);
+  return {std::move(picture), ev};
 }
 
 double exposureOf(const Request& request, const Image& radiance) {

@@ -45,6 +45,14 @@ void writeLight(Session& session, const PatchMesh& mesh, const SurfaceLight& lig
 void writeLitMesh(Report& report, const PatchMesh& mesh, const SurfaceLight& light,
                   OutputSet& files, double ev, double crease);
 
+/// The picture that `render` draws of light where no more is said, and the EV that it has.
+struct ExposedPicture {
+  Picture picture;
+  double ev = 0;
+};
+/// Draws it, to find its EV.
+ExposedPicture exposePicture(Session& session, Pipeline& pipeline, const SurfaceLight& light);
+
 /// The EV of --exposure: the number, or what suits the picture.
 double exposureOf(const Request& request, const Image& radiance);
 

@@ -20,9 +20,11 @@ const char* commandName(Command command) {
     case Command::compare:
       return "compare";
     case Command::render:
+      return "render";
+    case Command::view:
       break;
   }
-  return "render";
+  return "view";
 }
 
 namespace {

@@ -19,7 +19,7 @@
 
 namespace radiosity::cli {
 
-enum class Command { info, mesh, factors, solve, gather, compare, render };
+enum class Command { info, mesh, factors, solve, gather, compare, render, view };
 
 struct Request {
   Command command = Command::info;

@@ -9,14 +9,10 @@ namespace {
 
 /// Writes the lit mesh, exposed as the picture of the same light is.
 void writeLit(Session& session, Pipeline& pipeline, bool elements, OutputSet& files) {
-  Picture picture = choosePicture(session.request, pipeline.scene());
-  const PatchMesh& mesh = pipeline.mesh().mesh;
   const SurfaceLight light = elements ? pipeline.elementLight() : pipeline.solvedLight();
-  framePicture(picture, mesh, pipeline.factors().report.closed, light.reflected);
-  const Image radiance =
-      renderRadiance(mesh, light, picture.camera, picture.options, session.progress);
-  const double ev = exposureOf(session.request, radiance);
-  writeLitMesh(session.report, mesh, light, files, ev, picture.options.crease);
+  const ExposedPicture shown = exposePicture(session, pipeline, light);
+  writeLitMesh(session.report, pipeline.mesh().mesh, light, files, shown.ev,
+               shown.picture.options.crease);
 }
 
 }  // namespace

@@ -4,30 +4,26 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <unordered_map>
 
 #include "radiosity/results.h"
 #include "results/glb.h"
-#include "results/lit_triangles.h"
+#include "results/lit_vertices.h"
 #include "results/mesh_export.h"
 
 namespace radiosity {
 
 namespace {
 
-using Triple = std::array<float, 3>;
-
-/// The triangles of one surface and side. Corners that meet at a point with the same radiosity are
-/// one vertex of the file; where the values part (at a crease) there are as many as values.
+/// The triangles of one surface and side.
 class LitPrimitive {
  public:
   LitPrimitive(const GlbWriter& glb, double scale) : glb_(glb), scale_(scale) {}
 
   void add(const LitTriangles& from, std::span<const LitCorner> corners) {
     for (const LitCorner& corner : corners) {
-      const Vec3& b = corner.radiosity;
-      triangles.push_back(vertexOf(corner.point, from.position(corner.point),
-                                   {float(b.x), float(b.y), float(b.z)}));
+      const auto [vertex, is_new] = lit_.of(corner);
+      triangles.push_back(vertex);
+      if (is_new) appendVertex(from.position(corner.point), lit_.radiosity().back());
     }
   }
 
@@ -35,26 +31,19 @@ class LitPrimitive {
   std::vector<Index> triangles;
 
  private:
-  Index vertexOf(Index point, const Vec3& position, const Triple& value) {
-    std::vector<Index>& known = at_point_[point];
-    for (const Index k : known) {
-      if (vertices.radiosity[k] == value) return k;
-    }
-    const auto added = Index(vertices.count());
-    known.push_back(added);
+  void appendVertex(const Vec3& position, const LitVertices::Triple& value) {
     glb_.addPosition(vertices, position);
     vertices.radiosity.push_back(value);
-    Triple colour{};
+    LitVertices::Triple colour{};
     for (std::size_t b = 0; b < 3; ++b) {
       colour[b] = float(std::clamp(double(value[b]) * scale_, 0.0, 1.0));
     }
     vertices.colour.push_back(colour);
-    return added;
   }
 
   const GlbWriter& glb_;
   double scale_;
-  std::unordered_map<Index, std::vector<Index>> at_point_;
+  LitVertices lit_;
 };
 
 void checkArguments(const std::string& path, const PatchMesh& mesh,

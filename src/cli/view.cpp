@@ -1,0 +1,115 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "cli/commands.h"
+#include "cli/desktop.h"
+#include "cli/element_use.h"
+#include "cli/picture.h"
+#include "cli/summaries.h"
+#include "radiosity/page.h"
+
+namespace radiosity::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void requirePages() {
+  if (canWritePages()) return;
+  throw InputError(
+      "view: this program was built without node and npm, which make pages; install both "
+      "(tools/setup does), then configure and build again");
+}
+
+bool isPage(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  return text.find("id=\"radiosity-data\"") != std::string::npos;
+}
+
+/// In the folder at hand; nobody named it, so that what it replaces must be a page, too.
+std::string defaultPage(const std::string& input) {
+  std::string name = fs::path(input).stem().string() + ".html";
+  std::error_code ignored;
+  if (fs::exists(name, ignored) && !isPage(name)) {
+    throw InputError(
+        fmt::format("{}: is there and is no page of this program; name the page with -o", name));
+  }
+  return name;
+}
+
+/// Found before the work is done.
+void requireOneEstimate(const Request& request, const FormFactorOptions& options) {
+  if (options.method != FormFactorMethod::hemicube || options.symmetrize) return;
+  throw InputError(request.input +
+                   ": a page keeps one form factor a pair, and hemicubes give two estimates of "
+                   "each; add --symmetrize, or --method exact or rays");
+}
+
+void summarizePage(Report& report, const Picture& picture, double ev, const PageReport& page) {
+  const FactorQuantisation& q = page.quantisation;
+  report.section("page", "Page");
+  report.text("camera", "camera", picture.camera_from);
+  report.number("exposure_ev", "exposure", ev, "EV");
+  report.count("form_factors", "form factors, one a pair", page.pairs);
+  report.number("largest_relative_error", "their error by 16 bits, at most",
+                q.largest_relative_error);
+  report.number("largest_row_error", "  of a row, summed, at most", q.largest_row_error);
+  report.count("left_out", "  pairs too small to be kept", q.left_out);
+  report.count("element_triangles", "triangles of elements", page.element_triangles);
+  report.bytes("data_bytes", "data, unpacked", page.bytes);
+  report.bytes("packed_bytes", "data in the file", page.packed_bytes);
+}
+
+void writePages(Session& session, Pipeline& pipeline, bool elements, OutputSet& files) {
+  const SurfaceLight light = elements ? pipeline.elementLight() : pipeline.solvedLight();
+  const ExposedPicture shown = exposePicture(session, pipeline, light);
+  const PageOptions options{fs::path(session.request.input).stem().string(), shown.picture.camera,
+                            shown.ev, shown.picture.options.crease};
+  PageReport page;
+  files.write(Format::page, "page, opens in a browser", [&](const std::string& temporary) {
+    page = writePage(temporary, pipeline, light, options, session.progress);
+  });
+  summarizePage(session.report, shown.picture, shown.ev, page);
+}
+
+}  // namespace
+
+int runView(Session& session) {
+  const Request& request = session.request;
+  requirePages();
+  OutputSet files = claimOutputs(session);
+  const bool is_named = files.has(Format::page);
+  if (!is_named) files.add({defaultPage(request.input), Format::page});
+  const ElementUse elements = elementUse(request, files);
+  Run run(session, files.path(Format::results));
+  Pipeline& pipeline = run.pipeline;
+  requireColours(pipeline, request, files);
+  requireOneEstimate(request, pipeline.options().factors);
+  requireLight(session, pipeline);
+  requirePageFits(request.input, pipeline.mesh().mesh);
+  if (!files.has(Format::results) && pipeline.onlyAdds()) {
+    files.add({request.input, Format::results});
+  }
+  pipeline.factors();
+  keepFactors(session, pipeline, files);
+  const int code = judgeSolution(session, pipeline);
+  if (pipeline.solution().summary.status == SolveStatus::singular) {
+    throw RunError("no page: the system is singular");
+  }
+  keepSolution(session, pipeline, files);
+  if (elements.all) summarizeElements(session.report, pipeline.elements(), pipeline.factors());
+  writePages(session, pipeline, elements.shown, files);
+  writeStages(session, pipeline, files);
+  files.commit(session.report, session.progress);
+  noteUnsaved(session, pipeline, files);
+  if (!is_named && openInDesktop(files.path(Format::page))) {
+    session.report.line("page", "opens in the browser");
+  }
+  return code;
+}
+
+}  // namespace radiosity::cli

@@ -1,0 +1,16 @@
+// A pipeline's stages as the data of a page.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "radiosity/page.h"
+
+namespace radiosity::page {
+
+/// The container (src/page/README.md). `report` gets all but the packed size. Errors: as
+/// writePage(), but for those of the file.
+std::vector<std::byte> pageData(Pipeline& pipeline, const SurfaceLight& light,
+                                const PageOptions& options, Progress& progress, PageReport& report);
+
+}  // namespace radiosity::page

@@ -1,0 +1,40 @@
+// Corners of lit triangles as numbered vertices.
+#pragma once
+
+#include <array>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "results/lit_triangles.h"
+
+namespace radiosity {
+
+/// Corners that meet at a point with the same radiosity are one vertex; where the values part (at a
+/// crease) there are as many as values.
+class LitVertices {
+ public:
+  using Triple = std::array<float, 3>;
+
+  /// The corner's vertex, and whether it is a new one: then it is the last.
+  std::pair<Index, bool> of(const LitCorner& corner) {
+    const Vec3& b = corner.radiosity;
+    const Triple value = {float(b.x), float(b.y), float(b.z)};
+    std::vector<Index>& known = at_point_[corner.point];
+    for (const Index k : known) {
+      if (radiosity_[k] == value) return {k, false};
+    }
+    const auto added = Index(radiosity_.size());
+    known.push_back(added);
+    radiosity_.push_back(value);
+    return {added, true};
+  }
+
+  const std::vector<Triple>& radiosity() const { return radiosity_; }  ///< W/m^2
+
+ private:
+  std::vector<Triple> radiosity_;
+  std::unordered_map<Index, std::vector<Index>> at_point_;
+};
+
+}  // namespace radiosity
