@@ -1,0 +1,453 @@
+// The data of a page read back: they are the mesh, the materials, the matrix and the light that
+// went in, within what single precision and 16 bits leave.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "page/page.h"
+#include "page/surfaces.h"
+#include "page_reader.h"
+#include "radiosity/pipeline.h"
+#include "support/results_folder.h"
+#include "support/scene_builder.h"
+
+namespace radiosity {
+namespace {
+
+using test::PageReader;
+using test::SceneBuilder;
+
+/// A double in single precision, relative: half a unit in the last place.
+constexpr double kSingle = 6e-8;
+
+Vec3 point(std::span<const float> values, std::size_t k) {
+  return {values[3 * k], values[3 * k + 1], values[3 * k + 2]};
+}
+
+/// A cube seen from inside whose ceiling shines, with a two-sided plate half-way.
+Scene roomWithPlate() {
+  SceneBuilder builder;
+  const Index wall = builder.surface("wall", 0.5);
+  builder.box(wall, {0, 0, 0}, {1, 1, 1}, false);
+  builder.level(builder.surface("lamp", 0.1, 5), 0.3, 0.3, 0.7, 0.7, 0.99, false);
+  builder.level(builder.surface("plate", 0.8, 0, true), 0.2, 0.2, 0.8, 0.7, 0.5);
+  return builder.scene();
+}
+
+Scene dataScene(const char* name) {
+  return loadScene(std::string(RADIOSITY_SOURCE_DIR "/data/") + name);
+}
+
+/// A page's data beside what they were made from.
+struct Made {
+  Made(Scene scene, std::size_t patches, bool elements = false,
+       const std::function<void(PipelineOptions&)>& change = {})
+      : pipeline(progress) {
+    pipeline.open(std::move(scene));
+    pipeline.options().mesh.patches = patches;
+    if (change) change(pipeline.options());
+    light = elements ? pipeline.elementLight() : pipeline.solvedLight();
+    options.title = "a title";
+    options.exposure = 1.5;
+    options.camera.vertical_fov = std::numbers::pi / 4;
+    reader.emplace(page::pageData(pipeline, light, options, progress, report));
+  }
+  const PatchMesh& mesh() { return pipeline.mesh().mesh; }
+  const PageReader& page() const { return *reader; }
+
+  Progress progress;
+  Pipeline pipeline;
+  PageOptions options;
+  SurfaceLight light;
+  PageReport report;
+  std::optional<PageReader> reader;
+};
+
+void expectShapes(Made& made) {
+  const PatchMesh& mesh = made.mesh();
+  const PageReader& page = made.page();
+  const auto position = page.floats("position");
+  const auto triangle = page.indices("patch_triangle");
+  const auto patch = page.indices("triangle_patch");
+  const auto normal = page.floats("normal");
+  const auto centroid = page.floats("centroid");
+  const auto area = page.floats("area");
+  const auto origin = page.header["origin"].get<std::vector<double>>();
+  const Vec3 shift(origin[0], origin[1], origin[2]);
+  const double diagonal = page.header["diagonal"];
+  ASSERT_EQ(position.size(), 3 * mesh.vertices.size());
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    ASSERT_LE(glm::distance(point(position, v) + shift, mesh.vertices[v]), kSingle * diagonal);
+  }
+  // Triangles tile each patch and turn about its normal.
+  std::vector<double> tiled(mesh.size(), 0.0);
+  for (std::size_t t = 0; t < patch.size(); ++t) {
+    const auto p = [&](std::size_t k) { return point(position, triangle[3 * t + k]); };
+    const Vec3 cross = glm::cross(p(1) - p(0), p(2) - p(0));
+    ASSERT_GE(glm::dot(cross, point(normal, patch[t])), -1e-12) << t;
+    tiled[patch[t]] += glm::length(cross) / 2;
+  }
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    // Cross products of rounded positions: an edge is some 1e-2 of the diagonal.
+    ASSERT_NEAR(tiled[i], mesh.area[i], 1e-4 * mesh.area[i] + 1e-12) << i;
+    ASSERT_NEAR(area[i], mesh.area[i], kSingle * mesh.area[i]);
+    ASSERT_LE(glm::distance(point(normal, i), mesh.normal[i]), 2 * kSingle);
+    ASSERT_LE(glm::distance(point(centroid, i) + shift, mesh.centroid[i]), kSingle * diagonal);
+  }
+  EXPECT_EQ(page.indices("surface"), mesh.surface);
+  EXPECT_EQ(page.array<std::uint8_t>("side"), mesh.side);
+}
+
+void expectMaterials(Made& made) {
+  const Scene& scene = made.pipeline.scene();
+  const PatchMesh& mesh = made.mesh();
+  const PageReader& page = made.page();
+  const auto reflectance = page.floats("reflectance");
+  const auto emission = page.floats("emission");
+  const auto irradiance = page.floats("irradiance");
+  const Solution& light = made.pipeline.solution();
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    const auto& surface = page.header["surfaces"][mesh.surface[i]];
+    EXPECT_EQ(surface["name"], mesh.surface_names[mesh.surface[i]]);
+    const Material& m = scene.materials[surface["material"].get<std::size_t>()];
+    const auto& said = page.header["materials"][surface["material"].get<std::size_t>()];
+    EXPECT_EQ(said["name"], m.name);
+    EXPECT_FALSE(said["textured"]);
+    for (std::size_t b = 0; b < 3; ++b) {
+      const auto band = glm::length_t(b);
+      EXPECT_EQ(said["reflectance"][b], m.reflectance[band]);
+      EXPECT_EQ(said["emission"][b], m.emission[band]);
+      EXPECT_EQ(reflectance[3 * i + b], float(m.reflectance[band]));
+      EXPECT_EQ(emission[3 * i + b], float(m.emission[band]));
+      // B = E + rho H, as solved.
+      const double b_page =
+          emission[3 * i + b] + double(reflectance[3 * i + b]) * double(irradiance[3 * i + b]);
+      const double solved = light.radiosity[3 * i + b];
+      ASSERT_NEAR(b_page, solved, 3 * kSingle * solved + 1e-5 * made.options.exposure);
+    }
+  }
+}
+
+/// Every form factor, both ways; and what the header says of its error.
+void expectFactors(Made& made, bool dense) {
+  const PageReader& page = made.page();
+  const ExchangeMatrix& matrix = made.pipeline.matrix();
+  const std::size_t n = matrix.size();
+  EXPECT_EQ(page.indices("factor_column").empty(), dense);
+  const std::vector<double> f = page.factors();
+  const FactorQuantisation& q = made.report.quantisation;
+  EXPECT_LE(q.largest_relative_error, 2.5e-4);  // 30 in ln F over 65,534 steps, halved
+  double largest_row_error = 0;
+  std::size_t pairs = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    double row_error = 0;
+    for (std::size_t j = 0; j < n; ++j) {
+      const double truth = matrix.at(i, j);
+      row_error += std::abs(f[i * n + j] - truth);
+      if (j >= i && f[i * n + j] > 0) ++pairs;
+      if (f[i * n + j] == 0) {
+        ASSERT_LT(truth, 1e-9 / double(n));
+      } else {
+        // Areas in single precision come in below the diagonal.
+        ASSERT_NEAR(f[i * n + j], truth, (q.largest_relative_error + 3 * kSingle) * truth);
+      }
+    }
+    largest_row_error = std::max(largest_row_error, row_error);
+  }
+  EXPECT_EQ(pairs, made.report.pairs);
+  EXPECT_NEAR(q.largest_row_error, largest_row_error, 3 * kSingle);
+  EXPECT_EQ(page.header["quantisation"]["largest_row_error"], q.largest_row_error);
+  EXPECT_LT(q.largest_row_error, q.largest_relative_error);  // of rows that sum to at most 1
+  const auto row_sum = page.floats("row_sum");
+  const FormFactors& factors = made.pipeline.factors();
+  for (std::size_t i = 0; i < n; ++i) {
+    ASSERT_EQ(row_sum[i], float(factors.fronts[i]));
+    ASSERT_EQ(page.floats("row_sky")[i], float(factors.sky[i]));
+  }
+}
+
+TEST(PageData, AClosedRoomHasDenseRows) {
+  Made made(roomWithPlate(), 150);
+  expectShapes(made);
+  expectMaterials(made);
+  expectFactors(made, true);
+  const nlohmann::json& header = made.page().header;
+  EXPECT_EQ(header["title"], "a title");
+  EXPECT_EQ(header["exposure"], 1.5);
+  EXPECT_EQ(header["closed"], true);
+  EXPECT_EQ(header["method"], "exact");
+  EXPECT_EQ(header["tolerance"], 1e-3);
+  EXPECT_EQ(header["patches"], made.mesh().size());
+  EXPECT_EQ(header["unknowns"], made.mesh().size());
+  EXPECT_NEAR(header["camera"]["fov"].get<double>(), 45, 1e-12);
+  EXPECT_NEAR(header["diagonal"].get<double>(), std::sqrt(3.0), 1e-12);
+  const SolveSummary& summary = made.pipeline.solution().summary;
+  EXPECT_EQ(header["solver"]["history"].get<std::vector<double>>(), summary.residual_history);
+  EXPECT_EQ(header["solver"]["iterations"], summary.iterations);
+}
+
+TEST(PageData, RoomsApartHaveSparseRows) {
+  SceneBuilder builder;
+  builder.box(builder.surface("near", 0.5, 1), {0, 0, 0}, {1, 1, 1}, false);
+  builder.box(builder.surface("far", 0.3), {2, 0, 0}, {3, 1, 2}, false);
+  Made made(builder.scene(), 150);
+  expectShapes(made);
+  expectFactors(made, false);
+}
+
+TEST(PageData, AnOpenSceneSeesTheSky) {
+  Scene scene = dataScene("cornell-box.obj");
+  scene.sky = Vec3(1, 2, 3);
+  Made made(std::move(scene), 80);
+  EXPECT_EQ(made.page().header["sky"], (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(made.page().header["closed"], false);
+  const auto sky = made.page().floats("row_sky");
+  EXPECT_GT(*std::max_element(sky.begin(), sky.end()), 0.1f);
+}
+
+TEST(PageData, BothSidesOfAPlateArePatches) {
+  Made made(roomWithPlate(), 80);
+  const PatchMesh& mesh = made.mesh();
+  const auto side = made.page().array<std::uint8_t>("side");
+  EXPECT_GT(std::count(side.begin(), side.end(), 1), 0);
+  const auto normal = made.page().floats("normal");
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    if (mesh.twin[i] == kNone) continue;
+    EXPECT_EQ(point(normal, i), -point(normal, mesh.twin[i]));
+  }
+}
+
+TEST(PageData, PatchesThatShareUnknownsHaveLightOfTheirOwn) {
+  Made made(dataScene("curved.obj"), 120, false, [](PipelineOptions& options) {
+    options.factors.method = FormFactorMethod::rays;
+    options.factors.tolerance = 0.1;
+  });
+  const PatchMesh& mesh = made.mesh();
+  ASSERT_TRUE(mesh.clusters);
+  expectShapes(made);
+  const PageReader& page = made.page();
+  EXPECT_EQ(page.header["patches"], mesh.size());
+  EXPECT_EQ(page.header["unknowns"], mesh.unknowns());
+  EXPECT_LT(mesh.unknowns(), mesh.size());
+  EXPECT_EQ(page.indices("unknown"), mesh.clusters->of_patch);
+  const auto unknown_area = page.floats("unknown_area");
+  std::vector<double> area(mesh.unknowns(), 0.0);
+  for (std::size_t i = 0; i < mesh.size(); ++i) area[mesh.unknownOf(i)] += mesh.area[i];
+  for (std::size_t k = 0; k < area.size(); ++k)
+    ASSERT_NEAR(unknown_area[k], area[k], 1e-6 * area[k]);
+  const auto irradiance = page.floats("irradiance");
+  const Solution& solution = made.pipeline.solution();
+  for (std::size_t k = 0; k < irradiance.size(); ++k) {
+    ASSERT_EQ(irradiance[k], float(solution.irradiance[k]));
+  }
+  EXPECT_EQ(page.header["method"], "rays");
+  EXPECT_EQ(page.header["tolerance"], 0.1);
+  expectFactors(made, page.indices("factor_column").empty());
+}
+
+/// The header's bound of what 16 bits do to light: |(F' - F) B| <= largest_row_error max B.
+TEST(PageData, LightIsOffByNoMoreThanThePageSays) {
+  Made made(dataScene("cornell-box-closed.obj"), 200);
+  const std::vector<double> f = made.page().factors();
+  const Solution& solution = made.pipeline.solution();
+  const std::size_t n = made.mesh().size();
+  double largest = 0;
+  for (const double b : solution.radiosity) largest = std::max(largest, b);
+  double off = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t b = 0; b < 3; ++b) {
+      double gathered = 0;
+      for (std::size_t j = 0; j < n; ++j) gathered += f[i * n + j] * solution.radiosity[3 * j + b];
+      off = std::max(off, std::abs(gathered - solution.irradiance[3 * i + b]));
+    }
+  }
+  // What the solver left of its residual comes on top: 1e-6 of the largest emission.
+  EXPECT_LE(off, (made.report.quantisation.largest_row_error + 1e-6) * largest);
+  EXPECT_GT(off, 0);
+}
+
+TEST(PageData, SmoothShadingIsThatOfPictures) {
+  for (const char* name : {"cornell-box.obj", "curved.obj"}) {
+    Progress progress;
+    const PatchMesh mesh = meshScene(dataScene(name), {.patches = 300}, progress).mesh;
+    const double crease = 30;
+    std::vector<double> values(mesh.size());
+    for (std::size_t i = 0; i < mesh.size(); ++i) values[i] = 1 + double(i % 17);
+    const std::vector<double> expected = cornerValues(mesh, values, 1, crease);
+    const page::ShadingVertices shading = page::shadingVertices(mesh, crease);
+    std::vector<double> shown(shading.begin.size() - 1, 0.0);
+    for (std::size_t s = 0; s < shown.size(); ++s) {
+      double sum = 0;
+      for (std::size_t k = shading.begin[s]; k < shading.begin[s + 1]; ++k) {
+        shown[s] += double(shading.weight[k]) * values[shading.patch[k]];
+        sum += double(shading.weight[k]);
+      }
+      ASSERT_NEAR(sum, 1, 1e-6);
+    }
+    ASSERT_EQ(shading.corner.size(), 3 * mesh.pieces.size());
+    for (std::size_t i = 0; i < mesh.size(); ++i) {
+      const auto outline = mesh.outline(i);
+      for (std::size_t t = mesh.piece_offset[i]; t < mesh.piece_offset[i + 1]; ++t) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          const auto found = std::find(outline.begin(), outline.end(), mesh.pieces[t][k]);
+          const std::size_t corner = mesh.corner_offset[i] + std::size_t(found - outline.begin());
+          const double value = found == outline.end() ? values[i] : expected[corner];
+          ASSERT_NEAR(shown[shading.corner[3 * t + k]], value, 18 * kSingle * 4);
+        }
+      }
+    }
+  }
+}
+
+TEST(PageData, EveryOutlineEdgeIsThereOnce) {
+  Progress progress;
+  const PatchMesh mesh = meshScene(roomWithPlate(), {.patches = 100}, progress).mesh;
+  const auto edges = page::outlineEdges(mesh);
+  std::set<std::pair<Index, Index>> found;
+  for (std::size_t k = 0; k < edges.size(); k += 2) {
+    EXPECT_TRUE(found.emplace(edges[k], edges[k + 1]).second);
+  }
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    const auto outline = mesh.outline(i);
+    for (std::size_t k = 0; k < outline.size(); ++k) {
+      const auto [a, b] = std::minmax(outline[k], outline[(k + 1) % outline.size()]);
+      EXPECT_EQ(found.count({a, b}), 1u);
+    }
+  }
+}
+
+TEST(PageData, FarFromTheOriginPositionsStayExact) {
+  Made made(test::moved(roomWithPlate(), {5e6, -3e6, 100}), 60);
+  expectShapes(made);
+}
+
+TEST(PageData, AMaterialWhosePatchesDifferIsTheMeanOfThem) {
+  Scene scene = roomWithPlate();
+  // Two texels, black and white, over a face whose coordinates go from 0 to 1.
+  scene.textures.push_back({"stripes", 2, 1, {0, 0, 0, 1, 1, 1}, false});
+  scene.materials[0].texture = 0;
+  scene.texcoords.assign(scene.corners.size(), Vec2(0.0));
+  for (std::size_t f = 0; f < scene.faceCount(); ++f) {
+    const Vec2 square[] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    for (std::size_t k = 0; k < 4; ++k) scene.texcoords[scene.face_offset[f] + k] = square[k];
+  }
+  Made made(std::move(scene), 150);
+  const auto& wall = made.page().header["materials"][0];
+  EXPECT_TRUE(wall["textured"]);
+  EXPECT_FALSE(made.page().header["materials"][1]["textured"]);
+  // Half of the texture is white, of a reflectance of 0.5.
+  EXPECT_NEAR(wall["reflectance"][0].get<double>(), 0.25, 1e-6);
+}
+
+class PageElements : public FolderTest {};
+
+TEST_F(PageElements, AreThoseOfTheLitMesh) {
+  Made made(dataScene("cornell-box.obj"), 100, true);
+  const PageReader& page = made.page();
+  const auto position = page.floats("element_position");
+  const auto triangle = page.indices("element_triangle");
+  const auto light = page.floats("element_light");
+  ASSERT_EQ(light.size(), position.size());
+  const std::size_t count =
+      writeLitGlb(path("lit.glb"), made.mesh(), made.light, made.options.exposure, 30);
+  EXPECT_EQ(triangle.size(), 3 * count);
+  EXPECT_EQ(made.report.element_triangles, count);
+  const LitMesh lit = readLitMesh(path("lit.glb"));
+  // Triangles stand in another order: each as the sum of its corners' places and lights.
+  const auto key = [](const Vec3& place, const Vec3& value) {
+    const auto round = [](double x) { return std::llround(x * 1e5); };
+    return std::array{round(place.x), round(place.y), round(place.z),
+                      round(value.x), round(value.y), round(value.z)};
+  };
+  std::multiset<std::array<long long, 6>> here;
+  std::multiset<std::array<long long, 6>> there;
+  for (std::size_t t = 0; t < count; ++t) {
+    Vec3 place(0.0);
+    Vec3 value(0.0);
+    Vec3 glb_place(0.0);
+    Vec3 glb_value(0.0);
+    for (std::size_t k = 0; k < 3; ++k) {
+      place += point(position, triangle[3 * t + k]);
+      value += point(light, triangle[3 * t + k]);
+      glb_place += lit.vertices[lit.triangles[t][k]];
+      glb_value += lit.colours[t][k];
+    }
+    here.insert(key(place, value));
+    there.insert(key(glb_place, glb_value));
+  }
+  EXPECT_EQ(here, there);
+}
+
+TEST(PageData, WithoutElementsTheirArraysAreEmpty) {
+  const Made made(roomWithPlate(), 60);
+  EXPECT_TRUE(made.page().floats("element_light").empty());
+  EXPECT_EQ(made.report.element_triangles, 0u);
+}
+
+/// What an action is refused with.
+template <class Action>
+std::string refusal(const Action& action) {
+  try {
+    action();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "not refused";
+}
+
+TEST(PageData, WhatIsTooLargeIsRefusedWithNumberAndCure) {
+  PatchMesh mesh;
+  mesh.area.resize(kMostPageUnknowns);
+  EXPECT_NO_THROW(requirePageFits("s.obj", mesh));
+  mesh.area.resize(kMostPageUnknowns + 1);
+  EXPECT_EQ(refusal([&] { requirePageFits("s.obj", mesh); }),
+            "s.obj: 8,001 unknowns, and a page holds the form factors of at most 8,000; use fewer "
+            "--patches, e.g. --patches 4000");
+  mesh.area.resize(kMostPagePatches + 1);
+  mesh.clusters.emplace();
+  mesh.clusters->begin.resize(10);
+  EXPECT_EQ(refusal([&] { requirePageFits("s.obj", mesh); }),
+            "s.obj: 100,001 patches, and a page holds at most 100,000; each planar piece is at "
+            "least one patch: leave out parts of the scene");
+  mesh.area.resize(kMostPagePatches);
+  EXPECT_NO_THROW(requirePageFits("s.obj", mesh));
+}
+
+void useHemicubes(PipelineOptions& options) {
+  options.factors.method = FormFactorMethod::hemicube;
+  options.factors.resolution = 32;
+}
+
+TEST(PageData, TwoEstimatesAPairAreRefused) {
+  const std::string why = refusal([] { Made(roomWithPlate(), 60, false, useHemicubes); });
+  EXPECT_NE(why.find("--symmetrize"), std::string::npos) << why;
+}
+
+TEST(PageData, HemicubesHaveNoErrorFigures) {
+  Made made(roomWithPlate(), 60, false, [](PipelineOptions& options) {
+    useHemicubes(options);
+    options.factors.symmetrize = true;
+  });
+  expectFactors(made, true);
+  EXPECT_TRUE(made.page().floats("row_error").empty());
+  EXPECT_TRUE(made.page().header["tolerance"].is_null());
+}
+
+TEST(PageData, ANameThatIsNoUtf8IsReplaced) {
+  Scene scene = roomWithPlate();
+  scene.surfaces[0].name = "w\xe4nd";
+  const Made made(std::move(scene), 60);
+  EXPECT_EQ(made.page().header["surfaces"][0]["name"], "w\xef\xbf\xbdnd");
+}
+
+}  // namespace
+}  // namespace radiosity
