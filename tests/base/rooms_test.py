@@ -27,7 +27,8 @@ CASES = [
      ["formfactor/form_factors.cpp", "radiosity/results.h"]),
     ("render/legend.cpp", "radiosity/patch_mesh.h", ["radiosity/solve.h", "matrix/run_row.h"]),
     ("results/results_file.cpp", "radiosity/gather.h", ["radiosity/compare.h"]),
-    ("pipeline/stages.cpp", "radiosity/results.h", ["radiosity/compare.h"]),
+    ("pipeline/stages.cpp", "radiosity/results.h", ["radiosity/compare.h", "radiosity/page.h"]),
+    ("page/header.cpp", "results/lit_vertices.h", ["radiosity/compare.h"]),
     ("cli/words.cpp", "base/figure_text.h", ["mesh/winding.h", "scene/text.h"]),
 ]
 

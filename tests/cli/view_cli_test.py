@@ -1,0 +1,229 @@
+"""Pages: what `radiosity view` writes, read back by other programs; when it opens one."""
+
+import base64
+import gzip
+import json
+import os
+import pty
+import re
+import subprocess
+import time
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy as np
+import scipy.sparse
+
+from cli_runner import DATA, PROGRAM, CliTest
+
+# Where the program was built with node and npm there is a template.
+HAS_PAGES = (Path(os.environ["RADIOSITY_BUILD_DIR"]) / "page/template.html").exists()
+BOX = ["--patches", "60"]
+TYPES = {"f32": np.float32, "u32": np.uint32, "u16": np.uint16, "u8": np.uint8}
+
+
+class Page:
+    """A page's header and arrays."""
+
+    def __init__(self, path):
+        text = path.read_text()
+        found = re.findall(r'<script id="radiosity-data" type="application/octet-stream">([^<]*)</script>',
+                           text)
+        assert len(found) == 1
+        assert "<!--radiosity-data-->" not in text
+        data = gzip.decompress(base64.b64decode(found[0], validate=True))
+        assert data[:8] == b"RADPAGE1"
+        length = int.from_bytes(data[8:12], "little")
+        self.header = json.loads(data[16:16 + length])
+        self.arrays = {name: np.frombuffer(data, TYPES[a["type"]], a["length"], a["offset"])
+                       for name, a in self.header["arrays"].items()}
+
+    def __getitem__(self, name):
+        return self.arrays[name]
+
+    def rows(self, name):
+        return self.arrays[name].reshape(-1, 3).astype(float)
+
+    def factors(self):
+        """F between unknowns, dense."""
+        n, q = self.header["unknowns"], self.header["quantisation"]
+        begin, column = self["factor_begin"], self["factor_column"]
+        code = self["factor_code"].astype(float)
+        value = np.where(code == 0, 0, np.exp(q["lowest"] + q["step"] * code))
+        upper = np.zeros((n, n))
+        for i in range(n):
+            part = slice(begin[i], begin[i + 1])
+            upper[i, column[part] if column.size else np.s_[i:]] = value[part]
+        area = self["unknown_area"].astype(float)
+        lower = np.triu(upper, 1) * area[:, None] / area[None, :]
+        return upper + lower.T
+
+    def solved(self, reflectance):
+        """Radiosity where every patch is an unknown, band by band."""
+        e, f = self.rows("emission"), self.factors()
+        return np.stack([np.linalg.solve(np.eye(len(f)) - reflectance[:, [b]] * f, e[:, b])
+                         for b in range(3)], axis=1)
+
+
+def actions(report):
+    return {stage: event["action"] for stage, event in report["stages"].items()}
+
+
+@unittest.skipIf(HAS_PAGES, "the program was built with node and npm")
+class WithoutNode(CliTest):
+    def test_the_error_says_what_to_install(self):
+        self.refuse("view", "box.obj", words=["node", "npm", "tools/setup"])
+
+
+@unittest.skipUnless(HAS_PAGES, "the program was built without node and npm")
+class Pages(CliTest):
+    def page(self, name):
+        return Page(self.folder / name)
+
+    def test_it_holds_what_the_results_file_holds(self):
+        self.run_program("view", DATA / "cornell-box.obj", "--patches", "300", "-o", "p.html",
+                         "-o", "p.h5")
+        page = self.page("p.html")
+        self.assertEqual(page.header["title"], "cornell-box")
+        with h5py.File(self.folder / "p.h5") as file:
+            light, mesh, f = file["solution"], file["mesh"], file["form_factors"]
+            for name in ("reflectance", "emission", "irradiance"):
+                # Single precision.
+                np.testing.assert_allclose(page.rows(name), light[name][()], rtol=1e-7)
+            np.testing.assert_allclose(page["area"], mesh["area"][()], rtol=1e-7)
+            np.testing.assert_allclose(page["row_error"], f["error"][()], rtol=1e-7)
+            full = scipy.sparse.csr_matrix((f["data"], f["indices"], f["indptr"]),
+                                           f["shape"][()]).toarray()
+        error = page.header["quantisation"]["largest_relative_error"]
+        self.assertLess(error, 2.5e-4)
+        # Areas are in single precision.
+        np.testing.assert_allclose(page.factors(), full, rtol=error + 2e-7, atol=1e-9 / 300)
+
+    def test_light_solved_again_from_it_is_that_of_solve(self):
+        self.run_program("view", DATA / "cornell-box.obj", "--patches", "300", "-o", "p.html",
+                         "-o", "p.h5", "--elements", "off")
+        page = self.page("p.html")
+        self.assertEqual(page["element_light"].size, 0)
+        self.run_program("solve", "p.h5", "--set", "white.reflectance=.95", "--solve-tolerance",
+                         "1e-9")
+        white = [m["name"] for m in page.header["materials"]].index("white")
+        material = np.array([s["material"] for s in page.header["surfaces"]])[page["surface"]]
+        reflectance = page.rows("reflectance")
+        reflectance[material == white] = .95
+        with h5py.File(self.folder / "p.h5") as file:
+            expected = file["solution/radiosity"][()]
+        # What a page may differ by from the program.
+        self.assertLess(abs(page.solved(reflectance) - expected).max(), 1e-3 * expected.max())
+
+    def test_a_results_file_gives_all_stages(self):
+        self.run_program("solve", "box.obj", *BOX, "-o", "s.h5")
+        first = self.report("view", "s.h5", "-o", "a.html", "-o", "s.h5")
+        self.assertEqual(actions(first), {"mesh": "reused", "form_factors": "reused",
+                                          "solution": "reused", "elements": "computed"})
+        again = self.report("view", "s.h5", "-o", "b.html")
+        self.assertEqual(set(actions(again).values()), {"reused"})
+        self.assertEqual((self.folder / "a.html").read_bytes(), (self.folder / "b.html").read_bytes())
+        self.assertEqual(again["page"]["element_triangles"],
+                         self.page("b.html")["element_triangle"].size / 3)
+
+    def test_camera_and_exposure_are_those_of_render(self):
+        self.run_program("solve", "box.obj", *BOX, "-o", "s.h5", "-o", "lit.glb")
+        picture = self.report("render", "s.h5", "-o", "p.png")["picture"]
+        self.run_program("view", "s.h5", "-o", "p.html")
+        header = self.page("p.html").header
+        self.assertEqual(header["camera"]["eye"], picture["eye_m"])
+        self.assertEqual(header["camera"]["target"], picture["target_m"])
+        self.assertEqual(header["exposure"], picture["exposure_ev"])
+        self.run_program("view", "s.h5", "-o", "p.html", "--exposure", "-1", "--camera",
+                         "eye=.1,.5,.5;target=1,.5,.5;fov=50")
+        header = self.page("p.html").header
+        self.assertEqual(header["exposure"], -1)
+        self.assertEqual(header["camera"]["eye"], [.1, .5, .5])
+        self.assertAlmostEqual(header["camera"]["fov"], 50)
+
+    def test_one_band_is_grey(self):
+        self.run_program("solve", "box.obj", *BOX, "-o", "s.h5")
+        with h5py.File(self.folder / "s.h5", "r+") as file:
+            for name in ("reflectance", "emission"):
+                values = file["solution"][name][()][:, :1]
+                del file["solution"][name]
+                file["solution"][name] = values
+            file["solution"].attrs["sky"] = np.zeros(1)
+        self.run_program("view", "s.h5", "-o", "p.html")
+        page = self.page("p.html")
+        self.assertEqual(page.header["bands"], 1)
+        light = page.rows("irradiance")
+        np.testing.assert_array_equal(light[:, 0], light[:, 2])
+
+    def test_what_it_refuses(self):
+        for arguments, words in [
+                (["-o", "p.png"], ["p.png: view writes .h5, .html"]),
+                (["-o", "p.html", "--method", "hemicube"], ["box.obj", "--symmetrize"]),
+                (["-o", "p.html", "--set", "lamp.radiance=0"], ["--set"]),
+                (["-o", "p.html", "--patches", "9000", "--quiet"],
+                 ["box.obj: 9,", "at most 8,000", "--patches 4000"]),
+                (["-o", "nowhere/p.html"], ["nowhere"])]:
+            with self.subTest(arguments=arguments):
+                self.refuse("view", "box.obj", *arguments, words=words)
+
+    def test_a_page_nobody_named_replaces_pages_alone(self):
+        self.write("box.html", "<p>mine</p>")
+        self.refuse("view", "box.obj", *BOX, words=["box.html", "-o"])
+        (self.folder / "box.html").unlink()
+        self.run_program("view", "box.obj", *BOX, "--elements", "off")
+        run = self.run_program("view", "box.obj", *BOX, "--elements", "off")
+        self.assertRegex(run.out, r"(?m)^wrote +box.html ")
+        self.assertEqual(self.files(), ["box.html", "box.mtl", "box.obj"])
+
+
+@unittest.skipUnless(HAS_PAGES, "the program was built without node and npm")
+class Desktop(CliTest):
+    """With an xdg-open that writes down what it is asked to open."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("xdg-open", f'#!/bin/sh\necho "$1" > {self.folder}/opened\n')
+        (self.folder / "xdg-open").chmod(0o755)
+        self.environment = {k: v for k, v in os.environ.items()
+                            if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
+        self.environment["PATH"] = f"{self.folder}:{os.environ['PATH']}"
+
+    def view(self, *arguments, terminal=True, **environment):
+        """What was opened, or None."""
+        ours, theirs = pty.openpty()
+        try:
+            subprocess.run([PROGRAM, "view", "box.obj", *BOX, "--elements", "off", "--quiet", *arguments],
+                           cwd=self.folder, env=self.environment | environment, timeout=60,
+                           check=True, stdout=theirs if terminal else subprocess.DEVNULL)
+        finally:
+            os.close(ours)
+            os.close(theirs)
+        opened = self.folder / "opened"
+        # It is not waited for; where it ought to come it comes within this.
+        until = time.monotonic() + (10 if terminal and environment and not arguments else 0.3)
+        while time.monotonic() < until and not (opened.exists() and opened.read_text()):
+            time.sleep(0.02)
+        if not opened.exists():
+            return None
+        text = opened.read_text().strip()
+        opened.unlink()
+        return text
+
+    def test_a_page_nobody_named_opens_on_a_desktop(self):
+        self.assertEqual(self.view(DISPLAY=":0"), "box.html")
+        self.assertEqual(self.view(WAYLAND_DISPLAY="wayland-0"), "box.html")
+
+    def test_elsewhere_nothing_opens(self):
+        self.assertIsNone(self.view())
+        self.assertIsNone(self.view("-o", "p.html", DISPLAY=":0"))
+        self.assertIsNone(self.view(terminal=False, DISPLAY=":0"))
+
+    def test_without_xdg_open_nothing_happens(self):
+        (self.folder / "xdg-open").unlink()
+        self.environment["PATH"] = str(self.folder)
+        self.assertIsNone(self.view("--report", "r.json", DISPLAY=":0"))
+
+
+if __name__ == "__main__":
+    unittest.main()
