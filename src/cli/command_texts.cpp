@@ -21,7 +21,7 @@ const char* descriptionOf(Command command) {
     case Command::view:
       break;
   }
-  return "Write a page that shows the lit scene in a browser, running missing stages first";
+  return "Write a page that shows the lit scene in a browser";
 }
 
 const char* examplesOf(Command command) {

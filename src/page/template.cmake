@@ -15,7 +15,7 @@ if(EXISTS ${installed})
   file(SHA256 ${lock} wanted)
   file(SHA256 ${installed} have)
 endif()
-if(NOT EXISTS ${installed} OR NOT wanted STREQUAL have)
+if(NOT EXISTS ${installed} OR NOT EXISTS ${FOLDER}/node_modules OR NOT wanted STREQUAL have)
   file(REMOVE ${installed})
   message(STATUS "page: npm ci")
   execute_process(COMMAND ${NPM} ci --no-audit --no-fund --loglevel=error
