@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/figure_text.h"
 #include "page/container.h"
 #include "page/factor_codes.h"
@@ -39,11 +41,19 @@ void addPatches(const PatchMesh& mesh, const PatchColours& colours, const Vec3& 
   container.add("irradiance", floats(colours.irradiance));
 }
 
+/// As solve() takes them: an exact row's account of the sky may be a little below 0.
+std::vector<float> skyShares(const FormFactors& factors) {
+  std::vector<float> shares;
+  shares.reserve(factors.sky.size());
+  for (const double share : factors.sky) shares.push_back(float(std::max(0.0, share)));
+  return shares;
+}
+
 void addFactors(const FormFactors& factors, const ExchangeMatrix& matrix, const FactorCodes& codes,
                 Container& container) {
   container.add("unknown_area", floats(matrix.area()));
   container.add("row_sum", floats(factors.fronts));
-  container.add("row_sky", floats(factors.sky));
+  container.add("row_sky", skyShares(factors));
   container.add("row_error", floats(factors.error));
   container.add("factor_begin", codes.begin);
   container.add("factor_column", codes.column);

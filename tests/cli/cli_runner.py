@@ -9,6 +9,8 @@ from pathlib import Path
 
 PROGRAM = os.environ["RADIOSITY"]
 DATA = Path(os.environ["RADIOSITY_SOURCE_DIR"]) / "data"
+# Built with node and npm: `view` can write pages.
+HAS_PAGES = os.environ["RADIOSITY_PAGES"] == "1"
 
 # Small enough for a run to take a fraction of a second.
 SMALL = ["--patches", "60", "--method", "hemicube", "--resolution", "32"]

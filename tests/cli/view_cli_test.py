@@ -9,16 +9,13 @@ import re
 import subprocess
 import time
 import unittest
-from pathlib import Path
 
 import h5py
 import numpy as np
 import scipy.sparse
 
-from cli_runner import DATA, PROGRAM, CliTest
+from cli_runner import DATA, HAS_PAGES, PROGRAM, CliTest
 
-# Where the program was built with node and npm there is a template.
-HAS_PAGES = (Path(os.environ["RADIOSITY_BUILD_DIR"]) / "page/template.html").exists()
 BOX = ["--patches", "60"]
 TYPES = {"f32": np.float32, "u32": np.uint32, "u16": np.uint16, "u8": np.uint8}
 
