@@ -88,6 +88,57 @@ SceneBuilder lampOverFloor() {
   return builder;
 }
 
+/// Where along a line of the floor the slope of direct light changes, and by how much.
+struct Bend {
+  double x;
+  double jump;  ///< W/m^2 a metre
+};
+
+std::vector<Bend> bendsAlong(const Lit& lit, double y) {
+  constexpr double kStep = 1.0 / 1024;
+  const auto light = [&](int k) {
+    const double x = k * kStep;
+    return lit.at(lit.elements.direct, lit.patchAt("floor/floor", x, y), {x, y, 0});
+  };
+  std::vector<Bend> bends;
+  for (int k = -1900; k <= 1900; ++k) {
+    const double jump = (light(k - 1) - 2 * light(k) + light(k + 1)) / kStep;
+    if (std::abs(jump) < 1e-9) continue;
+    // A bend between two steps shows at both.
+    if (!bends.empty() && k * kStep - bends.back().x < 1.5 * kStep) {
+      bends.back().jump += jump;
+    } else {
+      bends.push_back({k * kStep, jump});
+    }
+  }
+  return bends;
+}
+
+/// Mach bands: the eye sees where slopes change. Light that bends by f'' is off by e = (2 c)^2 f''
+/// / 8 in the middle of an element whose tested halves are c long, which the tolerance bounds at
+/// the reference edge over 2 c; and its slope changes by c f'' from one half to the next: by no
+/// more than tolerance * light * reference / c^2. Returns the largest change over light * reference
+/// / c^2.
+double largestBend(double tolerance) {
+  constexpr double kReference = 0.05 * 6;  // of the diagonal of 4 by 4 by 2 metres
+  const double below = rectangleFactor(-0.5, 0.5, -1, 1, 2);
+  const Lit lit(lampOverFloor().scene(), 200, {.tolerance = tolerance});
+  const std::vector<Bend> bends = bendsAlong(lit, 0.31);
+  EXPECT_GT(bends.size(), 10u);
+  double largest = 0;
+  for (std::size_t k = 1; k + 1 < bends.size(); ++k) {
+    const double cell = 0.5 * (bends[k + 1].x - bends[k - 1].x);
+    largest = std::max(largest, std::abs(bends[k].jump) * cell * cell / (below * kReference));
+  }
+  return largest;
+}
+
+TEST(Elements, SlopesChangeAtBordersByNoMoreThanTheToleranceAllows) {
+  EXPECT_LT(largestBend(0.01), 0.01);
+  EXPECT_LT(largestBend(0.001), 0.001);
+  EXPECT_GT(largestBend(0.1), 0.001) << "where coarser elements suffice, slopes change more";
+}
+
 /// Where there is less than a tenth of the mean light, errors count as if there were so much: so
 /// they are looked at over the light straight below the lamp, ten times that at the floor's
 /// corners.
