@@ -11,7 +11,7 @@
 #include "base/geometry/box.h"
 #include "base/parallel.h"
 #include "compare/differences.h"
-#include "compare/surface_index.h"
+#include "base/geometry/surface_index.h"
 
 namespace radiosity {
 namespace {

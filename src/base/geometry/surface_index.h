@@ -10,11 +10,15 @@
 
 namespace radiosity {
 
-struct SurfacePoint {
+struct NearestPoint {
   std::size_t triangle = 0;
   Vec3 weights{0.0};  ///< barycentric
   double distance = 0;
 };
+
+/// Barycentric weights of the point of triangle abc nearest to p, by the region of the plane p
+/// projects into (Ericson, "Real-Time Collision Detection", 2005, section 5.1.5).
+Vec3 nearestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// A tree of boxes over triangles (median splits).
 class SurfaceIndex {
@@ -22,9 +26,12 @@ class SurfaceIndex {
   /// Both are kept by reference.
   SurfaceIndex(std::span<const Vec3> vertices, std::span<const std::array<Index, 3>> triangles);
 
-  /// Nearest point of a triangle whose normal is within 60 degrees of `normal`, not farther than
-  /// `reach`; of equals the first triangle's.
-  std::optional<SurfacePoint> nearest(const Vec3& point, const Vec3& normal, double reach) const;
+  static constexpr double kFacingAlike = 0.5;  ///< the cosine of 60 degrees
+
+  /// Nearest point of a triangle whose normal's cosine with `normal` is `least_cosine` or more, not
+  /// farther than `reach`; of equals the first triangle's.
+  std::optional<NearestPoint> nearest(const Vec3& point, const Vec3& normal, double reach,
+                                      double least_cosine = kFacingAlike) const;
 
  private:
   struct Node {

@@ -1,4 +1,4 @@
-#include "compare/surface_index.h"
+#include "base/geometry/surface_index.h"
 
 #include <algorithm>
 #include <glm/common.hpp>
@@ -9,10 +9,9 @@ namespace radiosity {
 namespace {
 
 constexpr std::size_t kLeaf = 4;
-constexpr double kFacingAlike = 0.5;  // cosine of 60 degrees
 
-/// Barycentric weights of the point of triangle abc nearest to p, by the region of the plane p
-/// projects into (Ericson, "Real-Time Collision Detection", 2005, section 5.1.5).
+}  // namespace
+
 Vec3 nearestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a;
   const Vec3 ac = c - a;
@@ -43,8 +42,6 @@ Vec3 nearestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& 
   const double sum = va + vb + vc;
   return {1 - vb / sum - vc / sum, vb / sum, vc / sum};
 }
-
-}  // namespace
 
 SurfaceIndex::SurfaceIndex(std::span<const Vec3> vertices,
                            std::span<const std::array<Index, 3>> triangles)
@@ -105,9 +102,9 @@ double SurfaceIndex::distance2(const Node& node, const Vec3& point) const {
   return glm::dot(outside, outside);
 }
 
-std::optional<SurfacePoint> SurfaceIndex::nearest(const Vec3& point, const Vec3& normal,
-                                                  double reach) const {
-  std::optional<SurfacePoint> best;
+std::optional<NearestPoint> SurfaceIndex::nearest(const Vec3& point, const Vec3& normal,
+                                                  double reach, double least_cosine) const {
+  std::optional<NearestPoint> best;
   double least = reach * reach;
   std::vector<std::size_t> waiting;
   if (!nodes_.empty()) waiting.push_back(0);
@@ -123,14 +120,14 @@ std::optional<SurfacePoint> SurfaceIndex::nearest(const Vec3& point, const Vec3&
     }
     for (std::size_t k = node.begin; k < node.begin + node.count; ++k) {
       const std::size_t t = order_[k];
-      if (!(glm::dot(normal_[t], normal) >= kFacingAlike)) continue;
+      if (!(glm::dot(normal_[t], normal) >= least_cosine)) continue;
       const auto [a, b, c] = cornersOf(t);
       const Vec3 w = nearestOnTriangle(point, a, b, c);
       const Vec3 apart = a * w.x + b * w.y + c * w.z - point;
       const double d2 = glm::dot(apart, apart);
       if (d2 > least || (best && d2 == least && best->triangle < t)) continue;
       least = d2;
-      best = SurfacePoint{t, w, std::sqrt(d2)};
+      best = NearestPoint{t, w, std::sqrt(d2)};
     }
   }
   return best;
