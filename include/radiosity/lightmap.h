@@ -37,11 +37,11 @@ struct LightmapOptions {
 
 /// A triangle of one side of a face. Faces with more corners are cut into triangles.
 struct LightmapTriangle {
-  Index face = 0;                   ///< of the scene
-  std::uint8_t side = 0;            ///< 0 front, 1 back
-  std::array<Index, 3> corner{};    ///< of the face, from 0; counter-clockwise seen from the side
-  Index chart = kNone;              ///< two triangles of one chart agree where they share a vertex
-  std::array<Vec2, 3> texcoord{};   ///< (0, 0) is the top left of the first texel, v downwards
+  Index face = 0;                  ///< of the scene
+  std::uint8_t side = 0;           ///< 0 front, 1 back
+  std::array<Index, 3> corner{};   ///< of the face, from 0; counter-clockwise seen from the side
+  Index chart = kNone;             ///< two triangles of one chart agree where they share a vertex
+  std::array<Vec2, 3> texcoord{};  ///< (0, 0) is the top left of the first texel, v downwards
 };
 
 struct LightmapReport {
@@ -77,4 +77,4 @@ inline constexpr int kLightmapPadding = 2;
 Lightmap makeLightmap(const Scene& scene, const PatchMesh& mesh, const SurfaceLight& light,
                       const LightmapOptions& options, Progress& progress);
 
-}  // namespace radiosity
+}  // namespace gnu::visibility("default")]]radiosity

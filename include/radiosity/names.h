@@ -14,6 +14,7 @@
 #include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
+#include "radiosity/lightmap.h"
 #include "radiosity/scene.h"
 #include "radiosity/solve.h"
 
@@ -51,6 +52,8 @@ inline constexpr NameTable<DirectLight, 5> kDirectLightNames{
 inline constexpr NameTable<GatherAt, 2> kGatherAtNames{
     {{GatherAt::vertices, "vertices"}, {GatherAt::patches, "patches"}}};
 
+inline constexpr NameTable<LightmapShows, 2> kLightmapShowsNames{
+    {{LightmapShows::irradiance, "irradiance"}, {LightmapShows::radiosity, "radiosity"}}};
 inline constexpr NameTable<GatherStatus, 3> kGatherStatusNames{
     {{GatherStatus::converged, "converged"},
      {GatherStatus::pass_limit, "pass_limit"},

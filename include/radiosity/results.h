@@ -13,6 +13,7 @@
 #include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
+#include "radiosity/lightmap.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/render.h"
 #include "radiosity/scene.h"
@@ -103,6 +104,24 @@ void writeLitGlb(const std::string& path, const PatchMesh& mesh, std::span<const
 std::size_t writeLitGlb(const std::string& path, const PatchMesh& mesh, const SurfaceLight& light,
                         double ev, double crease);
 
+/// What a mesh says of its lightmap.
+struct LightmapFile {
+  std::string image;   ///< the name of the map's file
+  double ev = 0;       ///< exposure that suits a picture of the scene
+  std::string source;  ///< the glTF file that the scene was read from; empty: another kind of file
+};
+
+/// The scene's own mesh with the map's texture coordinates, glTF 2.0 binary. Of a glTF file: that
+/// file, whose nodes, names, materials, textures, normals, coordinates and extras stay; all is in
+/// one file. A mesh that several nodes have becomes one of each, a vertex between charts several,
+/// a primitive whose backs have charts two, of a one-sided copy of its material. Of other files:
+/// flat triangles, a node a surface, with base colours and emission. The scene's `extras` have
+/// `lightmap`: file, texCoord, shows, unit, radiance (how to make it of a texel), exposure_ev.
+/// Returns the set, TEXCOORD_n: 1, or the first that the file does not have. Errors: InputError for
+/// a source that has changed since, RunError where the file cannot be written.
+int writeLightmapGlb(const std::string& path, const Scene& scene, const Lightmap& map,
+                     const LightmapFile& file);
+
 /// .exr: 32-bit floats, linear, colours multiplied by alpha as the format asks (a pixel is then
 /// what reaches it; a miss is 0,0,0,0). .png: 8 bits, colours not multiplied; linear images get the
 /// sRGB curve, display-referred ones are stored as they are. `metadata`: name, value pairs.
@@ -141,4 +160,4 @@ struct LitMesh {
 /// (`v x y z r g b`). Errors: InputError for a file without colours (with the cure), a damaged one.
 LitMesh readLitMesh(const std::string& path);
 
-}  // namespace radiosity
+}  // namespace gnu::visibility("default")]]radiosity

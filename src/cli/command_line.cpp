@@ -280,6 +280,21 @@ void addRenderOptions(CLI::App& app, Request& r) {
       ->check(CLI::IsMember({"hide", "show"}));
 }
 
+void addLightmapOptions(CLI::App& app, Request& r) {
+  const LightmapOptions defaults;
+  add(app, "Lightmap", "--lightmap", r.lightmap, "FILE.exr",
+      "Write light as an image, and the scene's own mesh, with coordinates for it, as the .glb of "
+      "-o "
+      "(of a glTF file with its nodes, names, materials, textures and normals)");
+  add(app, "Lightmap", "--lightmap-size", r.lightmap_size, "TEXELS",
+      fmt::format("Width and height, {} to {} (default {})", LightmapOptions::kSmallest,
+                  LightmapOptions::kLargest, defaults.size));
+  add(app, "Lightmap", "--lightmap-shows", r.lightmap_shows, "QUANTITY",
+      "irradiance (default): what arrives, for viewers that multiply it by material and texture; "
+      "radiosity: what leaves, textures averaged over patches; W/m^2")
+      ->check(CLI::IsMember(namesIn(kLightmapShowsNames)));
+}
+
 void addElementOptions(CLI::App& app, Request& r) {
   const ElementOptions defaults;
   app.add_option_function<std::string>(
@@ -373,6 +388,7 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
   if (compares || command == Command::render) addCameraOptions(*sub, r);
   if (command == Command::view) addCameraOption(*sub, r);
   if (!compares) addElementOptions(*sub, r);
+  if (command == Command::solve || command == Command::render) addLightmapOptions(*sub, r);
   if (command == Command::render) {
     addFinalGatherOption(*sub, r);
     addRenderOptions(*sub, r);

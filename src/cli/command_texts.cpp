@@ -55,6 +55,7 @@ const char* examplesOf(Command command) {
              "Examples:\n"
              "  radiosity solve data/cornell-box.obj -o cornell.h5\n"
              "  radiosity solve cornell.h5 -o lit.glb\n"
+             "  radiosity solve room.glb -o baked.glb --lightmap baked.exr --lightmap-size 2048\n"
              "  radiosity solve cornell.h5 --set white.reflectance=.9";
     case Command::gather:
       return "Files (-o): .h5 (results), .png (exposed, sRGB), .exr (radiance, W/m^2/sr, linear),\n"

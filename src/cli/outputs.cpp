@@ -41,9 +41,7 @@ bool contains(const std::vector<Command>& commands, Command command) {
 }
 
 Format formatOf(const std::string& path, Command command) {
-  std::string extension = fs::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return char(std::tolower(c)); });
+  const std::string extension = extensionOf(path);
   std::string list;
   for (const Extension& known : extensions()) {
     if (!contains(known.commands, command)) continue;
@@ -60,15 +58,35 @@ bool sameFile(const std::string& a, const std::string& b) {
          fs::equivalent(a, b, ignored);
 }
 
+/// The map of --lightmap: 8 bits would not do for W/m^2.
+Output lightmapOutput(const std::string& path) {
+  if (extensionOf(path) != ".exr") {
+    throw InputError(path + ": --lightmap writes .exr; end the name in it");
+  }
+  return {path, Format::lightmap};
+}
+
 }  // namespace
+
+std::string extensionOf(const std::string& path) {
+  std::string extension = fs::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  return extension;
+}
 
 std::vector<Output> parseOutputs(const Request& request) {
   std::vector<Output> outputs;
+  std::vector<Output> asked;
   for (const std::string& path : request.outputs) {
-    const Output output{path, formatOf(path, request.command)};
+    asked.push_back({path, formatOf(path, request.command)});
+  }
+  if (!request.lightmap.empty()) asked.push_back(lightmapOutput(request.lightmap));
+  for (const Output& output : asked) {
+    const std::string& path = output.path;
     for (const Output& other : outputs) {
       if (sameFile(path, other.path))
-        throw InputError(path + ": named twice with -o; once is enough");
+        throw InputError(path + ": named twice as an output; once is enough");
     }
     if (output.format != Format::results && sameFile(path, request.input)) {
       throw InputError(path + ": is the input itself; write to another name");

@@ -13,14 +13,17 @@
 
 namespace radiosity::cli {
 
-enum class Format { results, matrix_market, png, exr, glb, obj, page };
+enum class Format { results, matrix_market, png, exr, glb, obj, page, lightmap };
 
 struct Output {
   std::string path;
   Format format;
 };
 
-/// The files that -o names for this subcommand. InputError: an extension it cannot write (with the
+/// ".png" of "a/B.PNG": formats go by it.
+std::string extensionOf(const std::string& path);
+
+/// The files that -o names for this subcommand, and that of --lightmap. InputError: an extension it cannot write (with the
 /// list of those it can), the same file twice, the scene file itself.
 std::vector<Output> parseOutputs(const Request& request);
 

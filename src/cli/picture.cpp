@@ -118,7 +118,6 @@ Metadata metadataOf(const Picture& picture, const std::string& quantity, const s
 
 void writeLitMesh(Report& report, const PatchMesh& mesh, const SurfaceLight& light,
                   OutputSet& files, double ev, double crease) {
-  if (!files.has(Format::glb)) return;
   std::size_t triangles = 0;
   files.write(Format::glb,
               fmt::format("lit mesh of {}, EV {:.2f}", light.elements ? "elements" : "patches", ev),
@@ -164,7 +163,9 @@ void writeLight(Session& session, const PatchMesh& mesh, const SurfaceLight& lig
   files.write(Format::exr, "radiance, W/m^2/sr, linear", [&](const std::string& temporary) {
     writeImage(temporary, radiance, false, metadataOf(picture, "radiance", "W/m^2/sr"));
   });
-  writeLitMesh(session.report, mesh, light, files, ev, picture.options.crease);
+  if (files.has(Format::glb) && session.request.lightmap.empty()) {
+    writeLitMesh(session.report, mesh, light, files, ev, picture.options.crease);
+  }
 }
 
 ExposedPicture exposePicture(Session& session, Pipeline& pipeline, const SurfaceLight& light) {

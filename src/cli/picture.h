@@ -37,7 +37,7 @@ using Metadata = std::vector<std::pair<std::string, std::string>>;
 Metadata metadataOf(const Picture& picture, const std::string& quantity, const std::string& unit);
 
 /// Writes a picture's radiance to the .png and .exr among `files`, the light of elements, or else
-/// of patches, to the .glb, and reports the exposure.
+/// of patches, to the .glb (without --lightmap), and reports the exposure.
 void writeLight(Session& session, const PatchMesh& mesh, const SurfaceLight& light,
                 const Image& radiance, const Picture& picture, OutputSet& files);
 

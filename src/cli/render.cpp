@@ -9,6 +9,7 @@
 #include "base/figure_text.h"
 #include "cli/commands.h"
 #include "cli/element_use.h"
+#include "cli/lightmap.h"
 #include "cli/picture.h"
 #include "cli/summaries.h"
 #include "cli/words.h"
@@ -178,6 +179,7 @@ int runRender(Session& session) {
   checkOutputs(files, show);
   checkFinalGather(request, show, files);
   const ElementUse elements = elementUse(request, files);
+  checkLightmap(request, elements, files);
   Run run(session, files.path(Format::results));
   Pipeline& pipeline = run.pipeline;
   pipeline.options().factors.sources_only |= onlySources(pipeline, elements, files);
@@ -210,6 +212,10 @@ int runRender(Session& session) {
   } else {
     const Image radiance = radianceOfPicture(session, pipeline, light, picture);
     writeLight(session, mesh, light, radiance, picture, files);
+    if (!request.lightmap.empty()) {
+      const double ev = exposureOf(request, radiance);
+      writeLightmap(session, pipeline.scene(), mesh, light, ev, files);
+    }
   }
   writeStages(session, pipeline, files);
   files.commit(session.report, session.progress);

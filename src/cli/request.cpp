@@ -91,6 +91,14 @@ GatherOptions Request::apply(GatherOptions options) const {
   return options;
 }
 
+LightmapOptions Request::lightmapOptions() const {
+  LightmapOptions options;
+  set(options, &LightmapOptions::size, lightmap_size, "--lightmap-size");
+  set(options, &LightmapOptions::crease, crease, "--crease");
+  setNamed(options.shows, kLightmapShowsNames, lightmap_shows);
+  return options;
+}
+
 JournalOptions Request::journal(const std::string& results_output) const {
   JournalOptions options;
   if (!results_output.empty()) options.path = results_output + ".rows";

@@ -11,6 +11,7 @@
 #include "radiosity/compare.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
+#include "radiosity/lightmap.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/pipeline.h"
 #include "radiosity/render.h"
@@ -72,6 +73,9 @@ struct Request {
   std::optional<double> crease;
   std::optional<bool> elements;
   std::optional<double> element_tolerance;
+  std::string lightmap;  ///< the .exr; empty: none
+  std::optional<int> lightmap_size;
+  std::optional<std::string> lightmap_shows;
   bool final_gather = false;
   bool flat = false;
   std::string backs = "hide";
@@ -88,6 +92,7 @@ struct Request {
   SolveOptions apply(SolveOptions options) const;
   GatherOptions apply(GatherOptions options) const;
   ElementOptions apply(ElementOptions options) const;
+  LightmapOptions lightmapOptions() const;
   /// `results_output`: the .h5 that is written; empty: none.
   JournalOptions journal(const std::string& results_output) const;
   CompareOptions compareOptions() const;

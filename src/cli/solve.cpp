@@ -1,5 +1,6 @@
 #include "cli/commands.h"
 #include "cli/element_use.h"
+#include "cli/lightmap.h"
 #include "cli/picture.h"
 #include "cli/summaries.h"
 
@@ -7,12 +8,16 @@ namespace radiosity::cli {
 
 namespace {
 
-/// Writes the lit mesh, exposed as the picture of the same light is.
+/// Writes the lit mesh, or the one with a lightmap, exposed as the picture of the same light is.
 void writeLit(Session& session, Pipeline& pipeline, bool elements, OutputSet& files) {
   const SurfaceLight light = elements ? pipeline.elementLight() : pipeline.solvedLight();
   const ExposedPicture shown = exposePicture(session, pipeline, light);
-  writeLitMesh(session.report, pipeline.mesh().mesh, light, files, shown.ev,
-               shown.picture.options.crease);
+  const PatchMesh& mesh = pipeline.mesh().mesh;
+  if (session.request.lightmap.empty()) {
+    writeLitMesh(session.report, mesh, light, files, shown.ev, shown.picture.options.crease);
+  } else {
+    writeLightmap(session, pipeline.scene(), mesh, light, shown.ev, files);
+  }
 }
 
 }  // namespace
@@ -20,6 +25,7 @@ void writeLit(Session& session, Pipeline& pipeline, bool elements, OutputSet& fi
 int runSolve(Session& session) {
   OutputSet files = claimOutputs(session);
   const ElementUse elements = elementUse(session.request, files);
+  checkLightmap(session.request, elements, files);
   Run run(session, files.path(Format::results));
   Pipeline& pipeline = run.pipeline;
   requireColours(pipeline, session.request, files);

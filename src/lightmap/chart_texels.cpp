@@ -56,8 +56,7 @@ class TexelGrid {
   void draw(Index triangle, const std::array<Vec3, 3>& p) {
     const auto [low, high] = std::minmax({p[0].y, p[1].y, p[2].y});
     const int first = std::max(place_.y, int(std::floor(low - kReach - 0.5)));
-    const int last =
-        std::min(place_.y + place_.height - 1, int(std::ceil(high + kReach - 0.5)));
+    const int last = std::min(place_.y + place_.height - 1, int(std::ceil(high + kReach - 0.5)));
     for (int y = first; y <= last; ++y) {
       const Span span = spanBetween(p, y + 0.5 - kReach, y + 0.5 + kReach);
       if (!(span.low <= span.high)) continue;

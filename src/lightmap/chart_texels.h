@@ -12,9 +12,9 @@ namespace radiosity {
 struct ChartTexel {
   int x = 0;
   int y = 0;
-  Index triangle = 0;  ///< the nearest
-  bool inside = false; ///< its centre is in the chart
-  Vec3 position{0.0};  ///< the point of the triangle that is nearest to the centre
+  Index triangle = 0;   ///< the nearest
+  bool inside = false;  ///< its centre is in the chart
+  Vec3 position{0.0};   ///< the point of the triangle that is nearest to the centre
 };
 
 /// Where a point of a chart lies in the map, in texels from its top left.

@@ -16,8 +16,7 @@ namespace {
 /// The triangles of a face, as corners of it.
 std::vector<std::array<Index, 3>> cut(const Scene& scene, std::span<const Index> face) {
   if (face.size() == 3) return {{0, 1, 2}};
-  const Vec3 area =
-      vectorArea(face.size(), [&](std::size_t k) { return scene.vertices[face[k]]; });
+  const Vec3 area = vectorArea(face.size(), [&](std::size_t k) { return scene.vertices[face[k]]; });
   if (!(glm::length(area) > 0)) return {};
   const Vec3 normal = glm::normalize(area);
   const PlaneFrame frame = makeFrame(scene.vertices[face[0]], normal, axisAcross(normal));
@@ -84,8 +83,8 @@ void findNeighbours(std::vector<FaceTriangle>& triangles, double weld) {
       const Index from = at[k];
       const Index to = at[(k + 1) % 3];
       if (from == to) continue;
-      edges.push_back({std::min(from, to), std::max(from, to), Index(t), std::uint8_t(k),
-                       from < to});
+      edges.push_back(
+          {std::min(from, to), std::max(from, to), Index(t), std::uint8_t(k), from < to});
     }
   }
   std::sort(edges.begin(), edges.end());

@@ -20,8 +20,8 @@ std::size_t LightmapOptions::bytes() const {
 
 void LightmapOptions::validate() const {
   if (size < kSmallest || size > kLargest) {
-    throw InputError(fmt::format("lightmap size {} is not within {} to {} texels", size, kSmallest,
-                                 kLargest));
+    throw InputError(
+        fmt::format("lightmap size {} is not within {} to {} texels", size, kSmallest, kLargest));
   }
   if (!(crease >= 0 && crease <= 180)) {
     throw InputError(fmt::format("crease {} is not within 0 to 180 degrees", crease));
@@ -119,8 +119,7 @@ void LightmapMaker::pack() {
   if (!packing) {
     const int least = leastMapSize(all.size());
     throw InputError(fmt::format(
-        "a lightmap of {0} x {0} texels has no room for {1} charts; {2}", options_.size,
-        all.size(),
+        "a lightmap of {0} x {0} texels has no room for {1} charts; {2}", options_.size, all.size(),
         least <= LightmapOptions::kLargest
             ? fmt::format("{} would do", least)
             : fmt::format("nor has the largest, {}: split the scene", LightmapOptions::kLargest)));

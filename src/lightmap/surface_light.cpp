@@ -18,8 +18,7 @@ LightOnSurfaces::LightOnSurfaces(const PatchMesh& mesh, const SurfaceLight& ligh
                                  LightmapShows shows)
     : mesh_(mesh), light_(light), shows_(shows), lookup_(mesh, light.elements->roots) {
   const Elements& elements = *light.elements;
-  std::map<std::pair<Index, int>,
-           std::pair<std::vector<std::array<Index, 3>>, std::vector<Index>>>
+  std::map<std::pair<Index, int>, std::pair<std::vector<std::array<Index, 3>>, std::vector<Index>>>
       found;
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     const std::size_t root = elements.roots.of_patch[i];
@@ -33,9 +32,9 @@ LightOnSurfaces::LightOnSurfaces(const PatchMesh& mesh, const SurfaceLight& ligh
     }
   }
   for (auto& [of_side, pieces] : found) {
-    patches_.emplace(std::piecewise_construct, std::forward_as_tuple(of_side),
-                     std::forward_as_tuple(mesh, std::move(pieces.first),
-                                           std::move(pieces.second)));
+    patches_.emplace(
+        std::piecewise_construct, std::forward_as_tuple(of_side),
+        std::forward_as_tuple(mesh, std::move(pieces.first), std::move(pieces.second)));
   }
 }
 
@@ -67,8 +66,7 @@ bool LightOnSurfaces::at(Index surface, int side, const Vec3& point, const Vec3&
   value = Vec3(0.0);
   const Patches* patches = of(surface, side);
   if (patches == nullptr) return false;
-  std::optional<NearestPoint> nearest =
-      patches->index.nearest(point, normal, HUGE_VAL, kSameFace);
+  std::optional<NearestPoint> nearest = patches->index.nearest(point, normal, HUGE_VAL, kSameFace);
   if (!nearest) nearest = patches->index.nearest(point, normal, HUGE_VAL);
   if (!nearest) return false;
   const auto& corner = patches->triangles[nearest->triangle];

@@ -3,39 +3,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <utility>
 
+#include "base/geometry/box.h"
 #include "results/checked_file.h"
 
 namespace radiosity {
 
 namespace {
 
-// Numbers of the specification (glTF 2.0, 3.6.2 and 4.4).
-constexpr int kFloat = 5126;
-constexpr int kUnsignedInt = 5125;
-constexpr int kArrayBuffer = 34962;
-constexpr int kElementArrayBuffer = 34963;
+// Numbers of the specification (glTF 2.0, 4.4).
 constexpr std::uint32_t kMagic = 0x46546C67;
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
 constexpr std::uint32_t kBinaryChunk = 0x004E4942;
 
-constexpr std::size_t paddedTo4(std::size_t size) { return (size + 3) / 4 * 4; }
-
 }  // namespace
 
-Vec3 floatOrigin(const PatchMesh& mesh) {
-  if (mesh.vertices.empty()) return Vec3(0.0);
-  Vec3 lower = mesh.vertices[0];
-  Vec3 upper = lower;
-  for (const Vec3& v : mesh.vertices) {
-    lower = glm::min(lower, v);
-    upper = glm::max(upper, v);
-  }
-  const Vec3 centre = lower + (upper - lower) * 0.5;
-  return glm::length(centre) > glm::length(upper - lower) ? centre : Vec3(0.0);
+Vec3 floatOrigin(std::span<const Vec3> vertices) {
+  const Box3 box = boxOf(vertices);
+  return glm::length(box.centre()) > box.diagonal() ? box.centre() : Vec3(0.0);
 }
 
 GlbWriter::GlbWriter(const Vec3& origin) : origin_(origin) {
@@ -74,8 +62,8 @@ int GlbWriter::addAccessor(const void* data, std::size_t bytes, std::size_t coun
 }
 
 int GlbWriter::addVectors(const std::vector<std::array<float, 3>>& values) {
-  return addAccessor(values.data(), values.size() * sizeof values[0], values.size(), "VEC3", kFloat,
-                     kArrayBuffer);
+  return addAccessor(values.data(), values.size() * sizeof values[0], values.size(), "VEC3",
+                     kGltfFloat, kGltfArrayBuffer);
 }
 
 GlbWriter::Json GlbWriter::addPrimitive(const GlbVertices& vertices,
@@ -94,8 +82,15 @@ GlbWriter::Json GlbWriter::addPrimitive(const GlbVertices& vertices,
   Json attributes = {{"POSITION", position}};
   if (!vertices.colour.empty()) attributes["COLOR_0"] = addVectors(vertices.colour);
   if (!vertices.radiosity.empty()) attributes["_RADIOSITY"] = addVectors(vertices.radiosity);
+  if (!vertices.lightmap.empty()) {
+    const int texcoords = addAccessor(
+        vertices.lightmap.data(), vertices.lightmap.size() * sizeof vertices.lightmap[0],
+        vertices.lightmap.size(), "VEC2", kGltfFloat, kGltfArrayBuffer);
+    attributes["TEXCOORD_0"] = texcoords;
+    attributes["TEXCOORD_1"] = texcoords;
+  }
   const int indices = addAccessor(triangles.data(), triangles.size_bytes(), triangles.size(),
-                                  "SCALAR", kUnsignedInt, kElementArrayBuffer);
+                                  "SCALAR", kGltfUnsignedInt, kGltfElementArrayBuffer);
   return {{"attributes", std::move(attributes)}, {"indices", indices}, {"material", material}};
 }
 
@@ -111,24 +106,29 @@ void GlbWriter::write(const std::string& path) const {
   if (document_["nodes"].empty()) {
     throw InputError(fmt::format("{}: the mesh has no triangle to write", path));
   }
-  Json document = document_;
-  document["buffers"] = Json::array({{{"byteLength", binary_.size()}}});
+  writeGlb(path, document_, binary_);
+}
+
+void writeGlb(const std::string& path, nlohmann::ordered_json document,
+              std::span<const char> binary) {
+  using Json = nlohmann::ordered_json;
+  document["buffers"] = Json::array({{{"byteLength", binary.size()}}});
   // A name need not be valid UTF-8 in an OBJ; JSON must be.
   std::string json = document.dump(-1, ' ', false, Json::error_handler_t::replace);
   json.resize(paddedTo4(json.size()), ' ');
-  const std::size_t total = 12 + 8 + json.size() + 8 + binary_.size();
+  const std::size_t total = 12 + 8 + json.size() + 8 + binary.size();
   if (total > std::numeric_limits<std::uint32_t>::max()) {
-    throw RunError(fmt::format(
-        "{}: would take {} bytes, glTF binary holds 4 GiB; use fewer patches", path, total));
+    throw RunError(
+        fmt::format("{}: would take {} bytes, glTF binary holds 4 GiB; write less", path, total));
   }
   const std::array<std::uint32_t, 5> head = {kMagic, 2, std::uint32_t(total),
                                              std::uint32_t(json.size()), kJsonChunk};
-  const std::array<std::uint32_t, 2> binary_head = {std::uint32_t(binary_.size()), kBinaryChunk};
+  const std::array<std::uint32_t, 2> binary_head = {std::uint32_t(binary.size()), kBinaryChunk};
   CheckedFile file(path);
   file.write(head.data(), sizeof head);
   file.write(json);
   file.write(binary_head.data(), sizeof binary_head);
-  file.write(binary_.data(), binary_.size());
+  file.write(binary.data(), binary.size());
   file.commit();
 }
 

@@ -7,20 +7,35 @@
 #include <string>
 #include <vector>
 
-#include "radiosity/patch_mesh.h"
+#include "radiosity/base.h"
 
 namespace radiosity {
 
-/// Where the file's coordinates start: 0, or the middle of the mesh where that is farther from 0
-/// than the mesh is long. Positions are 32-bit floats; the rest goes into node translations, which
+/// Where the file's coordinates start: 0, or the middle of the vertices where that is farther from
+/// 0 than they are apart. Positions are 32-bit floats; the rest goes into node translations, which
 /// are 64-bit numbers.
-Vec3 floatOrigin(const PatchMesh& mesh);
+Vec3 floatOrigin(std::span<const Vec3> vertices);
 
-/// Attributes of the vertices of one primitive; colour and value are empty or as many.
+/// A binary file of a glTF document and its buffer, which becomes the document's only one. Errors:
+/// RunError where it cannot be written or passes 4 GiB.
+void writeGlb(const std::string& path, nlohmann::ordered_json document,
+              std::span<const char> binary);
+
+// Numbers of the specification (glTF 2.0, 3.6.2).
+inline constexpr int kGltfFloat = 5126;
+inline constexpr int kGltfUnsignedInt = 5125;
+inline constexpr int kGltfArrayBuffer = 34962;
+inline constexpr int kGltfElementArrayBuffer = 34963;
+
+/// The next multiple of 4: where chunks end and attributes begin.
+constexpr std::size_t paddedTo4(std::size_t size) { return (size + 3) / 4 * 4; }
+
+/// Attributes of the vertices of one primitive; those after the position are empty or as many.
 struct GlbVertices {
   std::vector<std::array<float, 3>> position;
   std::vector<std::array<float, 3>> colour;     ///< COLOR_0, linear
   std::vector<std::array<float, 3>> radiosity;  ///< _RADIOSITY, W/m^2
+  std::vector<std::array<float, 2>> lightmap;   ///< TEXCOORD_1, and 0: sets begin with that
   std::size_t count() const { return position.size(); }
 };
 
@@ -38,7 +53,7 @@ class GlbWriter {
   Json addPrimitive(const GlbVertices& vertices, std::span<const Index> triangles, int material);
   /// A node with a mesh of these primitives.
   void addNode(const std::string& name, std::vector<Json> primitives);
-  /// Errors: InputError for an empty file, RunError where it cannot be written or passes 4 GiB.
+  /// Errors: InputError for an empty file, and those of writeGlb().
   void write(const std::string& path) const;
 
  private:

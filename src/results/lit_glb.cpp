@@ -92,7 +92,7 @@ void checkFinite(const std::string& path, const PatchMesh& mesh, Index patch,
 /// Returns how many triangles.
 std::size_t writeTriangles(const std::string& path, const PatchMesh& mesh, LitTriangles& lit,
                            double ev) {
-  GlbWriter glb(floatOrigin(mesh));
+  GlbWriter glb(floatOrigin(mesh.vertices));
   glb.useExtension("KHR_materials_unlit");
   glb.setExtras({{"exposure_ev", ev},
                  {"COLOR_0", "min(1, B / pi * 2^exposure_ev), linear Rec. 709"},

@@ -64,7 +64,7 @@ void writeObj(const std::string& path, const PatchMesh& mesh) {
 }
 
 void writePlainGlb(const std::string& path, const PatchMesh& mesh) {
-  GlbWriter glb(floatOrigin(mesh));
+  GlbWriter glb(floatOrigin(mesh.vertices));
   // Without normals a reader shades flat, as the specification asks (glTF 2.0, 3.7.2.1).
   std::array<int, 2> materials{};
   for (const bool two_sided : {false, true}) {

@@ -27,7 +27,7 @@ std::uint32_t wordAt(std::string_view content, std::size_t at) {
   return word;
 }
 
-/// The JSON chunk of a .glb whose chunks lie within the file.
+/// The JSON chunk of a .glb, whose chunks must lie within the file.
 std::string_view jsonChunk(const std::string& path, std::string_view content) {
   const auto fail = [&](const std::string& what) {
     throw InputError(fmt::format("{}: {}; export the scene again", path, what));
@@ -75,6 +75,10 @@ Claims readClaims(const std::string& path, std::string_view json) {
 
 bool isGlb(std::string_view content) { return content.starts_with("glTF"); }
 
+std::string_view gltfJson(const std::string& path, std::string_view content) {
+  return isGlb(content) ? jsonChunk(path, content) : content;
+}
+
 void checkGltf(const std::string& path, std::string_view content) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   std::string_view start = content.substr(0, 64);
@@ -82,7 +86,7 @@ void checkGltf(const std::string& path, std::string_view content) {
   if (!isGlb(content) && !trimmed(start).starts_with('{')) {
     throw InputError(path + ": is neither binary glTF nor JSON; export the scene again");
   }
-  const Claims claims = readClaims(path, isGlb(content) ? jsonChunk(path, content) : content);
+  const Claims claims = readClaims(path, gltfJson(path, content));
   if (!claims.is_object || claims.version.empty()) {
     throw InputError(path + ": is not glTF (no asset version); export it as glTF 2.0");
   }

@@ -9,6 +9,9 @@ namespace radiosity {
 /// True for a binary file, whatever its name ends in.
 bool isGlb(std::string_view content);
 
+/// The JSON of a .gltf or, once checkGltf() has seen it, of a .glb.
+std::string_view gltfJson(const std::string& path, std::string_view content);
+
 /// Checks the chunks of a .glb (glTF 2.0, 4.4), the nesting of the JSON, the version and the
 /// required extensions. Errors: InputError "PATH: what is wrong; cure".
 void checkGltf(const std::string& path, std::string_view content);
