@@ -26,6 +26,7 @@ CASES = [
     ("gather/gather.cpp", "formfactor/hemicube/hemicube.h",
      ["formfactor/form_factors.cpp", "radiosity/results.h"]),
     ("render/legend.cpp", "radiosity/patch_mesh.h", ["radiosity/solve.h", "matrix/run_row.h"]),
+    ("lightmap/charts.cpp", "radiosity/render.h", ["results/glb.h", "radiosity/gather.h"]),
     ("results/results_file.cpp", "radiosity/gather.h", ["radiosity/compare.h"]),
     ("pipeline/stages.cpp", "radiosity/results.h", ["radiosity/compare.h", "radiosity/page.h"]),
     ("page/header.cpp", "results/lit_vertices.h", ["radiosity/compare.h"]),

@@ -1,0 +1,49 @@
+"""--lightmap on the command line: files, report, and what is refused."""
+
+import unittest
+
+from cli_runner import DATA, SMALL, CliTest
+
+MAP = ["--lightmap", "map.exr", "--lightmap-size", "64"]
+
+
+class LightmapCli(CliTest):
+    def test_both_files_and_the_report(self):
+        report = self.report("solve", DATA / "blender-room.glb", *SMALL, *MAP, "-o", "baked.glb")
+        self.assertEqual(self.files(), ["baked.glb", "box.mtl", "box.obj", "map.exr", "run.json"])
+        lightmap = report["lightmap"]
+        self.assertEqual(lightmap["texcoords"], "TEXCOORD_1")
+        self.assertAlmostEqual(lightmap["inside"] + lightmap["padding"] + lightmap["unused"], 1)
+        self.assertIn("Drum/Blue paint", self.run_program("info", "baked.glb").out)
+
+    def test_beside_a_picture_and_from_a_results_file(self):
+        self.run_program("solve", "box.obj", *SMALL, "-o", "box.h5")
+        run = self.run_program("render", "box.h5", *MAP, "-o", "p.png", "-o", "baked.glb", "--width",
+                               "32", "--lightmap-shows", "radiosity")
+        self.assertIn("for a glTF file's own mesh give that file, with -o box.h5", run.out + run.err)
+        self.assertIn("lightmap, radiosity, W/m^2", run.out)
+        self.assertTrue((self.folder / "p.png").exists())
+
+    def test_refused_before_the_work(self):
+        solve = ["solve", "box.obj", *SMALL]
+        glb = ["-o", "baked.glb"]
+        self.refuse(*solve, *MAP, words=["--lightmap map.exr", "add -o FILE.glb"])
+        self.refuse(*solve, *glb, "--lightmap", "map.png", words=["map.png", "writes .exr"])
+        self.refuse(*solve, *MAP, *glb, "--elements", "off", words=["leave out --elements off"])
+        self.refuse(*solve, *glb, "--lightmap-size", "64", words=["add --lightmap FILE.exr"])
+        self.refuse(*solve, *glb, "--lightmap", "map.exr", "--lightmap-size", "9999",
+                    words=["--lightmap-size: lightmap size 9999 is not within 16 to 4096 texels"])
+        self.refuse(*solve, *MAP, *glb, "--memory-limit", "100k",
+                    words=["--lightmap-size 64: the map takes", "--memory-limit allows"])
+        self.refuse("render", "box.obj", "--lightmap", "p.exr", "-o", "p.exr", *glb,
+                    words=["p.exr: named twice"])
+        self.refuse("render", "box.obj", "--flat", *MAP, *glb, words=["leave out --flat"])
+
+    def test_too_many_charts(self):
+        self.refuse("solve", DATA / "cornell-box.obj", *SMALL, "--element-tolerance", "0.5", "--lightmap",
+                    "map.exr", "--lightmap-size", "16", "-o", "baked.glb",
+                    words=["a lightmap of 16 x 16 texels has no room for", "would do"])
+
+
+if __name__ == "__main__":
+    unittest.main()
