@@ -23,7 +23,7 @@ LightOnSurfaces::LightOnSurfaces(const PatchMesh& mesh, const SurfaceLight& ligh
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     const std::size_t root = elements.roots.of_patch[i];
     // All roots of a patch were evaluated, or none.
-    if (root == elements.roots.of_patch[i + 1] || elements.direct.elements[root].corners == 0)
+    if (root == elements.roots.of_patch[i + 1] || elements.indirect.elements[root].corners == 0)
       continue;
     auto& [triangles, patches] = found[{mesh.surface[i], int(mesh.side[i])}];
     for (std::size_t t = mesh.piece_offset[i]; t < mesh.piece_offset[i + 1]; ++t) {
