@@ -77,4 +77,4 @@ inline constexpr int kLightmapPadding = 2;
 Lightmap makeLightmap(const Scene& scene, const PatchMesh& mesh, const SurfaceLight& light,
                       const LightmapOptions& options, Progress& progress);
 
-}  // namespace gnu::visibility("default")]]radiosity
+}  // namespace radiosity

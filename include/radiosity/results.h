@@ -160,4 +160,4 @@ struct LitMesh {
 /// (`v x y z r g b`). Errors: InputError for a file without colours (with the cure), a damaged one.
 LitMesh readLitMesh(const std::string& path);
 
-}  // namespace gnu::visibility("default")]]radiosity
+}  // namespace radiosity

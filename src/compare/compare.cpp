@@ -9,9 +9,9 @@
 #include <glm/geometric.hpp>
 
 #include "base/geometry/box.h"
+#include "base/geometry/surface_index.h"
 #include "base/parallel.h"
 #include "compare/differences.h"
-#include "base/geometry/surface_index.h"
 
 namespace radiosity {
 namespace {
