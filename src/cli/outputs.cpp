@@ -78,6 +78,7 @@ std::string extensionOf(const std::string& path) {
 std::vector<Output> parseOutputs(const Request& request) {
   std::vector<Output> outputs;
   std::vector<Output> asked;
+  asked.reserve(request.outputs.size() + 1);
   for (const std::string& path : request.outputs) {
     asked.push_back({path, formatOf(path, request.command)});
   }
