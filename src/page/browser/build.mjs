@@ -1,0 +1,65 @@
+// node build.mjs OUT.html: the page without its data, one file: index.html with style sheet, program
+// and worker inside. `radiosity view` replaces the text <!--radiosity-data--> in it.
+import { readFile, rename, writeFile } from "node:fs/promises";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { build } from "esbuild";
+
+const here = dirname(fileURLToPath(import.meta.url));
+const out = process.argv[2];
+if (!out || process.argv.length > 3) {
+  console.error("usage: node build.mjs OUT.html");
+  process.exit(2);
+}
+
+const common = {
+  bundle: true,
+  minify: true,
+  write: false,
+  format: "iife",
+  target: "es2022",
+  charset: "utf8",
+  legalComments: "none",
+  logLevel: "warning",
+};
+
+async function bundled(entry, more = {}) {
+  const result = await build({ ...common, entryPoints: [join(here, entry)], ...more });
+  return result.outputFiles[0].text;
+}
+
+/** Imports of "worker:FILE" are the bundled program of FILE, as a text. */
+const workers = {
+  name: "workers",
+  setup(setup) {
+    setup.onResolve({ filter: /^worker:/ }, (found) => ({
+      path: found.path.slice("worker:".length),
+      namespace: "worker",
+    }));
+    setup.onLoad({ filter: /.*/, namespace: "worker" }, async (found) => ({
+      contents: await bundled(found.path),
+      loader: "text",
+    }));
+  },
+};
+
+/** Text that may stand in a script element: it does not end it. */
+const inScript = (text) => text.replace(/<\/(script)/gi, "<\\/$1").replace(/<!--/g, "<\\!--");
+
+/** Puts `text` in place of `mark`, which must stand there once. */
+function put(page, mark, text) {
+  if (page.split(mark).length !== 2) throw new Error(`index.html needs ${mark} once`);
+  return page.replace(mark, () => text);
+}
+
+const style = await bundled("style.css", { loader: { ".css": "css" } });
+const program = await bundled("main.ts", { plugins: [workers] });
+const licence = (await readFile(join(here, "THREE-LICENSE.txt"), "utf8")).trim();
+let page = await readFile(join(here, "index.html"), "utf8");
+page = put(page, "<!--style-->", `<style>${style.trim()}</style>`);
+page = put(page, "<!--program-->", `<script>\n/* three.js: ${licence} */\n${inScript(program)}</script>`);
+if (page.split("<!--radiosity-data-->").length !== 2) {
+  throw new Error("the page needs <!--radiosity-data--> once");
+}
+await writeFile(`${out}.new`, page);
+await rename(`${out}.new`, out);

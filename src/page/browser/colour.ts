@@ -1,0 +1,43 @@
+// Colour: the sRGB curve, and viridis as the program's own false-colour pictures have it.
+import type { Rgb } from "./container";
+
+/** Every 16th of viridis' 256 published colours, and the last (sRGB); ../../render/colour_map.cpp. */
+const VIRIDIS = [
+  0x440154, 0x48186a, 0x472d7b, 0x424086, 0x3b528b, 0x33638d, 0x2c728e, 0x26828e, 0x21918c, 0x1fa088,
+  0x28ae80, 0x3fbc73, 0x5ec962, 0x84d44b, 0xaddc30, 0xd8e219, 0xfde725];
+
+const channels = (hex: number): Rgb => [(hex >> 16) & 255, (hex >> 8) & 255, hex & 255];
+
+/** sRGB, 0 to 255. `t` 0 to 1. */
+export function viridis(t: number): Rgb {
+  const at = (Math.min(1, Math.max(0, t)) * 255) / 16;
+  const k = Math.min(Math.floor(at), VIRIDIS.length - 2);
+  const end = k + 2 === VIRIDIS.length ? 255 / 16 : k + 1;
+  const share = (at - k) / (end - k);
+  const low = channels(VIRIDIS[k]!), high = channels(VIRIDIS[k + 1]!);
+  return low.map((x, c) => x + share * (high[c]! - x)) as Rgb;
+}
+
+/** RGBA bytes of 256 steps. */
+export function viridisTable(): Uint8Array {
+  const table = new Uint8Array(256 * 4);
+  for (let k = 0; k < 256; ++k) table.set([...viridis(k / 255).map(Math.round), 255], k * 4);
+  return table;
+}
+
+export const toSrgb = (x: number): number => (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055);
+export const fromSrgb = (x: number): number => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
+
+/** "#rrggbb" of a linear colour whose largest channel is taken as 1. */
+export function hexOf(linear: Rgb): string {
+  const most = Math.max(...linear);
+  const byte = (x: number) => Math.round(255 * toSrgb(most > 0 ? Math.max(0, x / most) : 1));
+  return `#${linear.map((x) => byte(x).toString(16).padStart(2, "0")).join("")}`;
+}
+
+/** The linear colour of "#rrggbb", its largest channel 1 (black: grey). */
+export function chromaOf(hex: string): Rgb {
+  const linear = channels(parseInt(hex.slice(1), 16)).map((x) => fromSrgb(x / 255)) as Rgb;
+  const most = Math.max(...linear);
+  return most > 0 ? (linear.map((x) => x / most) as Rgb) : [1, 1, 1];
+}

@@ -1,0 +1,194 @@
+// Reads the container that `radiosity view` embeds: a JSON header and typed arrays (the format is in
+// ../README.md). Every array is checked for its length, so that a damaged page says what is damaged
+// instead of drawing nonsense.
+
+export type Rgb = [number, number, number];
+
+export interface SurfaceInfo {
+  name: string;
+  material: number;
+}
+
+export interface MaterialInfo {
+  name: string;
+  reflectance: Rgb;
+  emission: Rgb; // exitance, W/m^2
+  textured: boolean;
+}
+
+export interface Header {
+  title: string;
+  program: string;
+  bands: number;
+  patches: number;
+  unknowns: number;
+  method: string;
+  tolerance: number;
+  closed: boolean;
+  exposure: number; // pictures show radiance * 2^exposure
+  sky: Rgb; // radiance
+  camera: { eye: Rgb; target: Rgb; up: Rgb; fov: number };
+  origin: Rgb; // added to every position
+  diagonal: number; // metres
+  surfaces: SurfaceInfo[];
+  materials: MaterialInfo[];
+  solver: { name: string; iterations: number; residual: number; tolerance: number; history: number[] };
+  quantisation: {
+    lowest: number;
+    step: number;
+    largest_relative_error: number;
+    largest_row_error: number;
+  };
+  arrays: Record<string, { type: string; offset: number; length: number }>;
+}
+
+/** All of a page's data; N patches, K unknowns, T triangles, S shading vertices. */
+export interface PageData {
+  header: Header;
+  position: Float32Array; // P*3
+  patchTriangle: Uint32Array; // T*3, into position
+  trianglePatch: Uint32Array; // T
+  triangleCorner: Uint32Array; // T*3, shading vertices
+  shadingBegin: Uint32Array; // S+1
+  shadingPatch: Uint32Array;
+  shadingWeight: Float32Array;
+  edge: Uint32Array; // pairs of positions
+  normal: Float32Array; // N*3
+  centroid: Float32Array; // N*3
+  area: Float32Array; // N, m^2
+  surface: Uint32Array; // N
+  side: Uint8Array; // N; 0 front, 1 back
+  unknown: Uint32Array; // N
+  emission: Float32Array; // N*3, W/m^2
+  reflectance: Float32Array; // N*3
+  irradiance: Float32Array; // N*3, W/m^2
+  unknownArea: Float32Array; // K
+  rowSum: Float32Array; // K
+  rowError: Float32Array; // K
+  factorBegin: Uint32Array; // K+1
+  factorColumn: Uint32Array; // empty: rows hold every column from the diagonal on
+  factorCode: Uint16Array;
+  order: Uint32Array | null; // K: in which order the program's Gauss-Seidel takes unknowns
+  elementPosition: Float32Array;
+  elementTriangle: Uint32Array;
+  elementLight: Float32Array; // radiosity at each element vertex
+}
+
+const MAGIC = "RADPAGE1";
+const ALIGNMENT = 8;
+
+class ContainerError extends Error {
+  constructor(message: string) {
+    super(`${message}; write the page again with radiosity view`);
+  }
+}
+
+type Views = { f32: Float32Array; u32: Uint32Array; u16: Uint16Array; u8: Uint8Array };
+const bytesOf = { f32: 4, u32: 4, u16: 2, u8: 1 };
+
+function view<T extends keyof Views>(buffer: ArrayBuffer, header: Header, name: string, type: T): Views[T] {
+  const entry = header.arrays[name];
+  if (!entry) throw new ContainerError(`The page's data lack the array '${name}'`);
+  if (entry.type !== type) {
+    throw new ContainerError(`The array '${name}' is of type ${entry.type}, ${type} is needed`);
+  }
+  const end = entry.offset + entry.length * bytesOf[type];
+  if (entry.offset % ALIGNMENT !== 0 || end > buffer.byteLength) {
+    throw new ContainerError(`The array '${name}' lies beyond the end of the page's data`);
+  }
+  const types = { f32: Float32Array, u32: Uint32Array, u16: Uint16Array, u8: Uint8Array };
+  return new types[type](buffer, entry.offset, entry.length) as Views[T];
+}
+
+function readHeader(buffer: ArrayBuffer): Header {
+  const start = new Uint8Array(buffer, 0, Math.min(16, buffer.byteLength));
+  if (start.length < 16 || new TextDecoder().decode(start.subarray(0, 8)) !== MAGIC) {
+    throw new ContainerError("The page's data do not begin with RADPAGE1");
+  }
+  const length = new DataView(buffer).getUint32(8, true);
+  if (16 + length > buffer.byteLength) throw new ContainerError("The page's data end within their header");
+  return JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 16, length))) as Header;
+}
+
+function requireLength(name: string, array: ArrayLike<number>, length: number): void {
+  if (array.length !== length) {
+    throw new ContainerError(`The array '${name}' has ${array.length} values, ${length} are needed`);
+  }
+}
+
+function requireBelow(name: string, indices: ArrayLike<number>, limit: number): void {
+  for (let k = 0; k < indices.length; ++k) {
+    if (indices[k]! >= limit) {
+      throw new ContainerError(`The array '${name}' points at ${indices[k]}, of ${limit}`);
+    }
+  }
+}
+
+function check(data: PageData): void {
+  const { patches: n, unknowns: k } = data.header;
+  const triangles = data.trianglePatch.length;
+  const vertices = data.shadingBegin.length - 1;
+  requireLength("patch_triangle", data.patchTriangle, triangles * 3);
+  requireLength("triangle_corner", data.triangleCorner, triangles * 3);
+  for (const name of ["normal", "centroid", "emission", "reflectance", "irradiance"] as const) {
+    requireLength(name, data[name], n * 3);
+  }
+  for (const name of ["area", "surface", "side", "unknown"] as const) requireLength(name, data[name], n);
+  for (const name of ["unknownArea", "rowSum", "rowError"] as const) requireLength(name, data[name], k);
+  requireLength("factor_begin", data.factorBegin, k + 1);
+  requireLength("factor_code", data.factorCode, data.factorBegin[k]!);
+  if (data.factorColumn.length > 0) requireLength("factor_column", data.factorColumn, data.factorBegin[k]!);
+  if (data.order) requireLength("order", data.order, k);
+  requireLength("shading_patch", data.shadingPatch, data.shadingBegin[vertices]!);
+  requireLength("shading_weight", data.shadingWeight, data.shadingPatch.length);
+  requireLength("element_light", data.elementLight, data.elementPosition.length);
+  requireBelow("patch_triangle", data.patchTriangle, data.position.length / 3);
+  requireBelow("triangle_patch", data.trianglePatch, n);
+  requireBelow("triangle_corner", data.triangleCorner, vertices);
+  requireBelow("shading_patch", data.shadingPatch, n);
+  requireBelow("edge", data.edge, data.position.length / 3);
+  requireBelow("surface", data.surface, data.header.surfaces.length);
+  requireBelow("unknown", data.unknown, k);
+  requireBelow("factor_column", data.factorColumn, k);
+  if (data.order) requireBelow("order", data.order, k);
+  requireBelow("element_triangle", data.elementTriangle, data.elementPosition.length / 3);
+}
+
+/** The arrays are views of `buffer`. Throws an Error with one clear line where the data are damaged. */
+export function readContainer(buffer: ArrayBuffer): PageData {
+  const header = readHeader(buffer);
+  const f32 = (name: string) => view(buffer, header, name, "f32");
+  const u32 = (name: string) => view(buffer, header, name, "u32");
+  const data: PageData = {
+    header,
+    position: f32("position"),
+    patchTriangle: u32("patch_triangle"),
+    trianglePatch: u32("triangle_patch"),
+    triangleCorner: u32("triangle_corner"),
+    shadingBegin: u32("shading_begin"),
+    shadingPatch: u32("shading_patch"),
+    shadingWeight: f32("shading_weight"),
+    edge: u32("edge"),
+    normal: f32("normal"),
+    centroid: f32("centroid"),
+    area: f32("area"),
+    surface: u32("surface"),
+    side: view(buffer, header, "side", "u8"),
+    unknown: u32("unknown"),
+    emission: f32("emission"),
+    reflectance: f32("reflectance"),
+    irradiance: f32("irradiance"),
+    unknownArea: f32("unknown_area"),
+    rowSum: f32("row_sum"),
+    rowError: f32("row_error"),
+    factorBegin: u32("factor_begin"),
+    factorColumn: u32("factor_column"),
+    factorCode: view(buffer, header, "factor_code", "u16"),
+    order: "order" in header.arrays ? u32("order") : null,
+    elementPosition: f32("element_position"),
+    elementTriangle: u32("element_triangle"),
+    elementLight: f32("element_light"),
+  };
+  check(data);
+  return data;
+}

@@ -1,0 +1,90 @@
+// Form factors between unknowns: 16-bit codes of one triangle of the matrix -> rows of both.
+
+/** Rows of F, columns increasing: F[i,j] is the fraction of what leaves i that reaches j. */
+export interface Factors {
+  size: number;
+  begin: Uint32Array; // K+1
+  column: Uint16Array | Uint32Array;
+  value: Float32Array;
+  diagonal: Float32Array; // K
+  area: Float32Array; // K, m^2
+}
+
+/** One triangle of F, the diagonal included, as the page stores it. */
+export interface StoredFactors {
+  area: Float32Array; // K
+  begin: Uint32Array; // K+1
+  column: Uint32Array; // empty: row i holds every column from i on
+  code: Uint16Array; // 0: F is 0; else exp(lowest + step * code)
+  lowest: number;
+  step: number;
+}
+
+const LARGEST_SHORT = 1 << 16;
+
+/** What each code means. */
+export function codeTable(lowest: number, step: number): Float32Array {
+  const table = new Float32Array(LARGEST_SHORT);
+  for (let code = 1; code < LARGEST_SHORT; ++code) table[code] = Math.exp(lowest + step * code);
+  return table;
+}
+
+/** How many entries each row of the whole matrix has, as begins. */
+function beginsOfBoth(stored: StoredFactors): Uint32Array {
+  const size = stored.area.length;
+  const dense = stored.column.length === 0;
+  const begin = new Uint32Array(size + 1);
+  for (let i = 0; i < size; ++i) {
+    for (let k = stored.begin[i]!; k < stored.begin[i + 1]!; ++k) {
+      if (stored.code[k] === 0) continue;
+      const j = dense ? i + k - stored.begin[i]! : stored.column[k]!;
+      ++begin[i + 1]!;
+      if (j !== i) ++begin[j + 1]!;
+    }
+  }
+  for (let i = 0; i < size; ++i) begin[i + 1]! += begin[i]!;
+  return begin;
+}
+
+/**
+ * Both triangles: F_ji = F_ij A_i / A_j. Rows are filled in order, so that row j has its columns below
+ * j, from rows before it, in increasing order before its own.
+ */
+export function expand(stored: StoredFactors): Factors {
+  const size = stored.area.length;
+  const dense = stored.column.length === 0;
+  const table = codeTable(stored.lowest, stored.step);
+  const begin = beginsOfBoth(stored);
+  const entries = begin[size]!;
+  const column = size <= LARGEST_SHORT ? new Uint16Array(entries) : new Uint32Array(entries);
+  const value = new Float32Array(entries);
+  const diagonal = new Float32Array(size);
+  const next = begin.slice(0, size);
+  for (let i = 0; i < size; ++i) {
+    const areaOfRow = stored.area[i]!;
+    for (let k = stored.begin[i]!; k < stored.begin[i + 1]!; ++k) {
+      const code = stored.code[k]!;
+      if (code === 0) continue;
+      const j = dense ? i + k - stored.begin[i]! : stored.column[k]!;
+      const factor = table[code]!;
+      const own = next[i]!++;
+      column[own] = j;
+      value[own] = factor;
+      if (j === i) {
+        diagonal[i] = factor;
+        continue;
+      }
+      const other = next[j]!++;
+      column[other] = i;
+      value[other] = stored.area[j]! > 0 ? (factor * areaOfRow) / stored.area[j]! : 0;
+    }
+  }
+  return { size, begin, column, value, diagonal, area: stored.area };
+}
+
+/** Row i with its zeros. */
+export function denseRow(factors: Factors, i: number): Float32Array {
+  const row = new Float32Array(factors.size);
+  for (let k = factors.begin[i]!; k < factors.begin[i + 1]!; ++k) row[factors.column[k]!] = factors.value[k]!;
+  return row;
+}

@@ -1,0 +1,47 @@
+// What the page and its solver worker say to each other. Values of unknowns: K * 3, row-major.
+import type { StoredFactors } from "./factors";
+
+export type Method = "jacobi" | "gauss-seidel" | "southwell";
+
+/** Light as the page was given it, and what the viewer changed: all of unknowns. */
+export interface Materials {
+  emission: Float32Array; // W/m^2
+  reflectance: Float32Array;
+  sky: [number, number, number]; // factors on the sky's light
+}
+
+/** What the worker is given once. */
+export interface Load {
+  stored: StoredFactors;
+  order: Uint32Array | null; // of Gauss-Seidel's sweeps over unknowns; null: as numbered
+  materials: Materials;
+  irradiance: Float32Array; // as stored
+  sky: boolean; // the sky shines
+  shared: boolean; // patches share unknowns
+}
+
+export type Request =
+  | ({ kind: "load" } & Load)
+  | { kind: "rows"; ticket: number; unknowns: number[] }
+  | { kind: "relight"; ticket: number; materials: Materials; milliseconds: number }
+  | { kind: "start"; run: number; method: Method; materials: Materials }
+  | { kind: "step"; run: number };
+
+/** A moment of a run: iterate `rows` of the matrix (over K) from the start. */
+export interface Frame {
+  run: number;
+  index: number; // 0: B = E
+  irradiance: Float32Array;
+  rows: number;
+  residual: number; // true residual over the brightest source; Southwell: of what was sent
+  change: number; // Gauss-Seidel: the largest of the sweep, over the brightest source; else NaN
+  finished: boolean; // nothing is left to do, or all precision is used
+}
+
+export type Reply =
+  | { kind: "loaded"; entries: number; agreement: number; reference: Float32Array | null }
+  | { kind: "rows"; ticket: number; rows: Float32Array[] }
+  | { kind: "relit"; ticket: number; irradiance: Float32Array; sweeps: number; change: number;
+      converged: boolean; milliseconds: number }
+  | ({ kind: "frame" } & Frame)
+  | { kind: "failed"; message: string };

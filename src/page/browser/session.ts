@@ -1,0 +1,141 @@
+// What the solver worker remembers between messages: the matrix, the light it last solved for, and a
+// run that is watched. It knows nothing of workers, so that tests call it as they are.
+import { type Factors, denseRow, expand } from "./factors";
+import type { Frame, Load, Materials, Method, Reply } from "./protocol";
+import * as solver from "./solver";
+import type { Iterate, System } from "./solver";
+
+/** Relighting is done when a sweep changes less than this share of the mean irradiance. */
+export const RELIGHT_TOLERANCE = 2e-5;
+/** The reference light of clusters is solved at most this long. */
+const REFERENCE_MS = 5000;
+/** Below this a residual is the rounding of 32-bit form factors. */
+const ROUNDING = 1e-7;
+
+interface Run {
+  id: number;
+  method: Method;
+  system: System;
+  iterate: Iterate;
+  southwell: solver.Southwell | null;
+  index: number;
+}
+
+export class Session {
+  private factors: Factors;
+  private skyIrradiance: Float32Array; // as stored
+  private order: Uint32Array | undefined;
+  private lit: { irradiance: Float64Array; source: Float64Array };
+  private run: Run | null = null;
+  readonly loaded: Reply & { kind: "loaded" };
+
+  /**
+   * Light from the sky is what the stored irradiance has beyond F B. Where patches share unknowns the
+   * stored light is not the solution of the matrix alone, and a reference is solved for.
+   */
+  constructor(request: Load) {
+    this.factors = expand(request.stored);
+    this.order = request.order ?? undefined;
+    const { materials, irradiance } = request;
+    const stored = Float64Array.from(irradiance);
+    this.skyIrradiance = new Float32Array(stored.length);
+    const radiosity = stored.map((h, k) => materials.emission[k]! + materials.reflectance[k]! * h);
+    const gathered = solver.irradianceOf(this.system(materials), radiosity);
+    if (request.sky) {
+      this.skyIrradiance = Float32Array.from(stored, (h, k) => Math.max(0, h - gathered[k]!));
+    }
+    this.lit = { irradiance: stored, source: solver.source(this.system(materials)) };
+    const reference = request.shared ? this.reference(materials) : null;
+    this.loaded = {
+      kind: "loaded",
+      entries: this.factors.value.length,
+      agreement: request.sky ? NaN : relativeDifference(gathered, stored, this.factors.area),
+      reference,
+    };
+  }
+
+  rows(unknowns: number[]): Float32Array[] {
+    return unknowns.map((i) => denseRow(this.factors, i));
+  }
+
+  /** Sweeps from the last light for at most so long; asked again with the same, it goes on. */
+  relight(materials: Materials, milliseconds: number): Omit<Reply & { kind: "relit" }, "ticket"> {
+    const began = performance.now();
+    const system = this.system(materials);
+    const iterate = solver.warmStart(system, this.lit.irradiance, this.lit.source);
+    const expired = () => performance.now() - began > milliseconds;
+    const done = solver.relight(system, iterate, RELIGHT_TOLERANCE, expired, this.order);
+    this.lit = { irradiance: iterate.irradiance, source: solver.source(system) };
+    return { kind: "relit", irradiance: Float32Array.from(iterate.irradiance), ...done,
+             milliseconds: performance.now() - began };
+  }
+
+  start(id: number, method: Method, materials: Materials): Frame {
+    const system = this.system(materials);
+    const southwell = method === "southwell" ? solver.southwellStart(system) : null;
+    const iterate = southwell ? southwell.iterate : solver.fromEmission(system);
+    this.run = { id, method, system, iterate, southwell, index: 0 };
+    return this.frame(this.run, solver.irradianceOf(system, iterate.radiosity), NaN);
+  }
+
+  /** The next frame of the run; null where another was started since. */
+  step(id: number): Frame | null {
+    const run = this.run;
+    if (!run || run.id !== id) return null;
+    ++run.index;
+    if (run.southwell) return this.shots(run, run.southwell);
+    if (run.method === "jacobi") {
+      run.iterate = solver.jacobiSweep(run.system, run.iterate);
+      return this.frame(run, solver.irradianceOf(run.system, run.iterate.radiosity), NaN);
+    }
+    const scale = solver.scales(solver.source(run.system));
+    const change = solver.gaussSeidelSweep(run.system, run.iterate, scale, this.order);
+    return this.frame(run, solver.irradianceOf(run.system, run.iterate.radiosity), change);
+  }
+
+  /** A tenth more shots than there were: the first ones are seen one by one. */
+  private shots(run: Run, southwell: solver.Southwell): Frame {
+    const before = Math.round(run.iterate.rows * this.factors.size);
+    let left = true;
+    for (let n = Math.max(1, Math.ceil(before / 10)); n > 0 && left; --n) {
+      left = solver.southwellShot(run.system, southwell);
+    }
+    return this.frame(run, null, NaN, !left);
+  }
+
+  /** `gathered`: F B + more of the iterate's B; null: Southwell, which keeps its residual. */
+  private frame(run: Run, gathered: Float64Array | null, change: number, exhausted = false): Frame {
+    const residual = gathered
+      ? solver.residual(run.system, run.iterate.radiosity, gathered)
+      : solver.southwellResidual(run.system, run.southwell!);
+    return {
+      run: run.id,
+      index: run.index,
+      irradiance: Float32Array.from(run.iterate.irradiance),
+      rows: run.iterate.rows,
+      residual,
+      change,
+      finished: exhausted || !(residual > ROUNDING),
+    };
+  }
+
+  private system(materials: Materials): System {
+    const more = this.skyIrradiance.map((h, k) => h * materials.sky[k % solver.BANDS]!);
+    return { factors: this.factors, emission: materials.emission, reflectance: materials.reflectance, more };
+  }
+
+  private reference(materials: Materials): Float32Array {
+    return this.relight(materials, REFERENCE_MS).irradiance;
+  }
+}
+
+/** Root mean square by area, all bands together. */
+function relativeDifference(a: Float64Array, b: Float64Array, area: Float32Array): number {
+  let difference = 0, size = 0;
+  for (let k = 0; k < a.length; ++k) {
+    const weight = area[Math.floor(k / solver.BANDS)]!;
+    difference += weight * (a[k]! - b[k]!) ** 2;
+    size += weight * b[k]! ** 2;
+  }
+  return size > 0 ? Math.sqrt(difference / size) : 0;
+}

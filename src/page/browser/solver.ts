@@ -1,0 +1,227 @@
+// B = E + rho H, H = F B + more, for three bands at once: Jacobi, Gauss-Seidel, Southwell. Pure
+// functions of arrays; the worker and the tests call them. Values are K * 3, row-major.
+//
+// What is kept is the irradiance H of an iterate; its radiosity is E + rho H. That way a patch that
+// reflects nothing shows its light too.
+import type { Factors } from "./factors";
+
+export const BANDS = 3;
+
+export interface System {
+  factors: Factors;
+  emission: Float32Array; // W/m^2
+  reflectance: Float32Array;
+  more: Float32Array; // irradiance from beyond the matrix (a sky), W/m^2
+}
+
+/** An iterate. `rows`: rows of the matrix that were multiplied to get there, over K. */
+export interface Iterate {
+  irradiance: Float64Array;
+  radiosity: Float64Array;
+  rows: number;
+}
+
+/** E + rho * more in each band: what B starts from, and what residuals are relative to. */
+export function source(system: System): Float64Array {
+  return Float64Array.from(system.emission, (e, k) => e + system.reflectance[k]! * system.more[k]!);
+}
+
+/** The largest of each band; 1 where a band is dark, so that it may divide. */
+export function scales(values: ArrayLike<number>): Float64Array {
+  const most = new Float64Array(BANDS);
+  for (let k = 0; k < values.length; ++k) most[k % BANDS] = Math.max(most[k % BANDS]!, values[k]!);
+  return most.map((value) => (value > 0 ? value : 1));
+}
+
+/** B = E (with the sky's share), no light on its way yet. */
+export function fromEmission(system: System): Iterate {
+  return { irradiance: Float64Array.from(system.more), radiosity: source(system), rows: 0 };
+}
+
+/** H = F B + more. */
+export function irradianceOf(system: System, radiosity: Float64Array): Float64Array {
+  const { begin, column, value, size } = system.factors;
+  const result = new Float64Array(size * BANDS);
+  for (let i = 0; i < size; ++i) {
+    let r = 0, g = 0, b = 0;
+    for (let k = begin[i]!; k < begin[i + 1]!; ++k) {
+      const at = column[k]! * BANDS;
+      const f = value[k]!;
+      r += f * radiosity[at]!;
+      g += f * radiosity[at + 1]!;
+      b += f * radiosity[at + 2]!;
+    }
+    const at = i * BANDS;
+    result[at] = r + system.more[at]!;
+    result[at + 1] = g + system.more[at + 1]!;
+    result[at + 2] = b + system.more[at + 2]!;
+  }
+  return result;
+}
+
+/** max |E + rho H - B| / max (E + rho more), worst band, of H that belongs to B. */
+export function residual(system: System, radiosity: Float64Array, irradiance: Float64Array): number {
+  const scale = scales(source(system));
+  let worst = 0;
+  for (let k = 0; k < radiosity.length; ++k) {
+    const left = system.emission[k]! + system.reflectance[k]! * irradiance[k]! - radiosity[k]!;
+    worst = Math.max(worst, Math.abs(left) / scale[k % BANDS]!);
+  }
+  return worst;
+}
+
+/**
+ * One bounce everywhere (Goral, Torrance, Greenberg & Battaile 1984). `next` is F B + more of this
+ * iterate where it is known already, since the residual needs it.
+ */
+export function jacobiSweep(system: System, iterate: Iterate, next?: Float64Array): Iterate {
+  const irradiance = next ?? irradianceOf(system, iterate.radiosity);
+  const radiosity = irradiance.map((h, k) => system.emission[k]! + system.reflectance[k]! * h);
+  return { irradiance, radiosity, rows: iterate.rows + 1 };
+}
+
+/**
+ * B_i <- (E_i + rho_i (sum_{j != i} F_ij B_j + more_i)) / (1 - rho_i F_ii), one after another, each
+ * with the new values of those before it (Cohen & Greenberg 1985). In place. `order`: which row comes
+ * when; `scale`: as scales(). Returns the largest change, relative to `scale`.
+ */
+export function gaussSeidelSweep(
+  system: System, iterate: Iterate, scale: Float64Array, order?: Uint32Array): number {
+  const { begin, column, value, size, diagonal } = system.factors;
+  const { emission, reflectance, more } = system;
+  const { irradiance, radiosity } = iterate;
+  const overR = 1 / scale[0]!, overG = 1 / scale[1]!, overB = 1 / scale[2]!;
+  let largest = 0;
+  for (let row = 0; row < size; ++row) {
+    const i = order ? order[row]! : row;
+    let r = 0, g = 0, b = 0;
+    for (let k = begin[i]!, end = begin[i + 1]!; k < end; ++k) {
+      const at = column[k]! * BANDS;
+      const f = value[k]!;
+      r += f * radiosity[at]!;
+      g += f * radiosity[at + 1]!;
+      b += f * radiosity[at + 2]!;
+    }
+    const at = i * BANDS;
+    const self = diagonal[i]!;
+    for (let band = 0; band < BANDS; ++band) {
+      const k = at + band;
+      const before = radiosity[k]!;
+      const others = (band === 0 ? r : band === 1 ? g : b) - self * before + more[k]!;
+      const after = (emission[k]! + reflectance[k]! * others) / (1 - reflectance[k]! * self);
+      irradiance[k] = others + self * after;
+      radiosity[k] = after;
+      const change = Math.abs(after - before) * (band === 0 ? overR : band === 1 ? overG : overB);
+      if (change > largest) largest = change;
+    }
+  }
+  iterate.rows += 1;
+  return largest;
+}
+
+/**
+ * Southwell's relaxation, "progressive refinement" (Cohen, Chen, Wallace & Greenberg 1988): the unknown
+ * with the most power that was not sent out yet sends it, one row of F at a time. `iterate.radiosity`
+ * is all light that arrived so far, E + rho H; `sent` is the part of it that was sent.
+ */
+export interface Southwell {
+  iterate: Iterate;
+  sent: Float64Array;
+}
+
+export function southwellStart(system: System): Southwell {
+  const iterate = fromEmission(system);
+  return { iterate, sent: new Float64Array(iterate.radiosity.length) };
+}
+
+function brightestUnsent(system: System, { iterate, sent }: Southwell): number {
+  let best = -1, most = 0;
+  for (let i = 0; i < system.factors.size; ++i) {
+    const at = i * BANDS;
+    const unsent = iterate.radiosity[at]! + iterate.radiosity[at + 1]! + iterate.radiosity[at + 2]! -
+      sent[at]! - sent[at + 1]! - sent[at + 2]!;
+    const power = unsent * system.factors.area[i]!;
+    if (power > most) {
+      most = power;
+      best = i;
+    }
+  }
+  return best;
+}
+
+/** False where nothing is left to send. */
+export function southwellShot(system: System, state: Southwell): boolean {
+  const i = brightestUnsent(system, state);
+  if (i < 0) return false;
+  const { begin, column, value, area } = system.factors;
+  const { irradiance, radiosity } = state.iterate;
+  for (let band = 0; band < BANDS; ++band) {
+    const own = i * BANDS + band;
+    const unsent = radiosity[own]! - state.sent[own]!;
+    state.sent[own] = radiosity[own]!;
+    const power = unsent * area[i]!;
+    if (power === 0) continue;
+    for (let k = begin[i]!; k < begin[i + 1]!; ++k) {
+      const j = column[k]!;
+      const at = j * BANDS + band;
+      const arriving = (value[k]! * power) / area[j]!; // F_ji = F_ij A_i / A_j
+      irradiance[at] = irradiance[at]! + arriving;
+      radiosity[at] = radiosity[at]! + system.reflectance[at]! * arriving;
+    }
+  }
+  state.iterate.rows += 1 / system.factors.size;
+  return true;
+}
+
+/** The residual of what was sent: the largest that waits to be sent. */
+export function southwellResidual(system: System, { iterate, sent }: Southwell): number {
+  const scale = scales(source(system));
+  let worst = 0;
+  for (let k = 0; k < sent.length; ++k) {
+    worst = Math.max(worst, Math.abs(iterate.radiosity[k]! - sent[k]!) / scale[k % BANDS]!);
+  }
+  return worst;
+}
+
+/** The area-weighted mean of each band, 1 where it is dark. */
+export function typical(values: ArrayLike<number>, area: Float32Array): Float64Array {
+  const sum = new Float64Array(BANDS);
+  let total = 0;
+  for (let i = 0; i < area.length; ++i) {
+    total += area[i]!;
+    for (let b = 0; b < BANDS; ++b) sum[b] = sum[b]! + area[i]! * values[i * BANDS + b]!;
+  }
+  return sum.map((value) => (value > 0 ? value / total : 1));
+}
+
+/**
+ * A start for `system` from the irradiance of another light: scaled by the power that each band is
+ * given now and was given then (`before`: its source()). Exact where only the one lamp changed.
+ */
+export function warmStart(system: System, irradiance: Float64Array, before: Float64Array): Iterate {
+  const now = typical(source(system), system.factors.area);
+  const then = typical(before, system.factors.area);
+  const scaled = irradiance.map((h, k) => (h * now[k % BANDS]!) / then[k % BANDS]!);
+  const radiosity = scaled.map((h, k) => system.emission[k]! + system.reflectance[k]! * h);
+  return { irradiance: scaled, radiosity, rows: 0 };
+}
+
+export interface Relit {
+  sweeps: number;
+  change: number; // largest of the last sweep, over the mean irradiance of its band
+  converged: boolean;
+}
+
+/**
+ * Gauss-Seidel from where `iterate` stands, until a sweep changes no radiosity by more than `tolerance`
+ * of the mean irradiance, or until `expired()` says that time is up.
+ */
+export function relight(system: System, iterate: Iterate, tolerance: number,
+                        expired: () => boolean, order?: Uint32Array): Relit {
+  let sweeps = 0, change = Infinity;
+  while (change > tolerance && (sweeps === 0 || !expired())) {
+    change = gaussSeidelSweep(system, iterate, typical(iterate.irradiance, system.factors.area), order);
+    ++sweeps;
+  }
+  return { sweeps, change, converged: change <= tolerance };
+}

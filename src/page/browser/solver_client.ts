@@ -1,0 +1,118 @@
+// The page's side of the solver worker: one question at a time of a kind, the newest wins.
+import type { Frame, Load, Materials, Method, Reply, Request } from "./protocol";
+import workerProgram from "worker:worker.ts";
+
+/** A relight is sent back unfinished after this long, shown, and then gone on with. */
+const RELIGHT_SLICE_MS = 60;
+/** What did not converge by then is left as it is, and said to be so. */
+const RELIGHT_LIMIT_MS = 20_000;
+
+type Loaded = Reply & { kind: "loaded" };
+type Relit = Reply & { kind: "relit" };
+
+export interface Relighting {
+  irradiance: Float32Array; // of unknowns, K * 3
+  sweeps: number; // since the change
+  milliseconds: number; // since the change, solver alone
+  change: number;
+  converged: boolean;
+  finished: boolean; // converged, or given up
+}
+
+export class SolverClient {
+  onRelit: (light: Relighting) => void = () => {};
+  onFrame: (frame: Frame) => void = () => {};
+  onFailure: (message: string) => void = () => {};
+
+  private readonly worker: Worker;
+  private loaded: ((reply: Loaded) => void) | null = null;
+  private readonly rowTickets = new Map<number, (rows: Float32Array[]) => void>();
+  private tickets = 0;
+  private wanted: Materials | null = null; // changed since the relight under way was asked for
+  private current: Materials | null = null; // what the relight under way is for
+  private sweeps = 0;
+  private milliseconds = 0;
+
+  constructor() {
+    const address = URL.createObjectURL(new Blob([workerProgram], { type: "text/javascript" }));
+    this.worker = new Worker(address);
+    URL.revokeObjectURL(address);
+    this.worker.onmessage = (event: MessageEvent<Reply>) => this.take(event.data);
+    this.worker.onerror = (event) => this.onFailure(event.message);
+  }
+
+  load(load: Load): Promise<Loaded> {
+    return new Promise((resolve) => {
+      this.loaded = resolve;
+      this.send({ kind: "load", ...load });
+    });
+  }
+
+  /** Rows of F, zeros included. */
+  rows(unknowns: number[]): Promise<Float32Array[]> {
+    const ticket = ++this.tickets;
+    return new Promise((resolve) => {
+      this.rowTickets.set(ticket, resolve);
+      this.send({ kind: "rows", ticket, unknowns });
+    });
+  }
+
+  relight(materials: Materials): void {
+    this.wanted = materials;
+    if (!this.current) this.nextRelight();
+  }
+
+  start(run: number, method: Method, materials: Materials): void {
+    this.send({ kind: "start", run, method, materials });
+  }
+
+  step(run: number): void {
+    this.send({ kind: "step", run });
+  }
+
+  private send(request: Request): void {
+    this.worker.postMessage(request);
+  }
+
+  private nextRelight(): void {
+    if (this.wanted) {
+      this.current = this.wanted;
+      this.wanted = null;
+      this.sweeps = 0;
+      this.milliseconds = 0;
+    }
+    if (!this.current) return;
+    this.send({ kind: "relight", ticket: ++this.tickets, materials: this.current,
+                milliseconds: RELIGHT_SLICE_MS });
+  }
+
+  private takeRelit(reply: Relit): void {
+    this.sweeps += reply.sweeps;
+    this.milliseconds += reply.milliseconds;
+    const { irradiance, change, converged } = reply;
+    const hopeless = !Number.isFinite(change) || this.milliseconds > RELIGHT_LIMIT_MS;
+    if ((converged || hopeless) && !this.wanted) this.current = null;
+    const finished = !this.current;
+    this.onRelit({ irradiance, change, converged, finished, sweeps: this.sweeps,
+                   milliseconds: this.milliseconds });
+    if (!finished) this.nextRelight();
+  }
+
+  private take(reply: Reply): void {
+    switch (reply.kind) {
+      case "loaded":
+        return this.loaded?.(reply);
+      case "rows": {
+        this.rowTickets.get(reply.ticket)?.(reply.rows);
+        this.rowTickets.delete(reply.ticket);
+        return;
+      }
+      case "relit":
+        return this.takeRelit(reply);
+      case "frame":
+        return this.onFrame(reply);
+      case "failed":
+        return this.onFailure(reply.message);
+    }
+  }
+}
