@@ -23,7 +23,7 @@ export interface Header {
   patches: number;
   unknowns: number;
   method: string;
-  tolerance: number;
+  tolerance: number | null; // hemicubes have none
   closed: boolean;
   exposure: number; // pictures show radiance * 2^exposure
   sky: Rgb; // radiance
@@ -32,7 +32,7 @@ export interface Header {
   diagonal: number; // metres
   surfaces: SurfaceInfo[];
   materials: MaterialInfo[];
-  solver: { name: string; iterations: number; residual: number; tolerance: number; history: number[] };
+  solver: { name: string; status: string; iterations: number; residual: number; tolerance: number; history: number[] };
   quantisation: {
     lowest: number;
     step: number;
@@ -64,7 +64,8 @@ export interface PageData {
   irradiance: Float32Array; // N*3, W/m^2
   unknownArea: Float32Array; // K
   rowSum: Float32Array; // K
-  rowError: Float32Array; // K
+  rowSky: Float32Array; // K, the share of the view that is sky
+  rowError: Float32Array; // K; empty: the method knows none
   factorBegin: Uint32Array; // K+1
   factorColumn: Uint32Array; // empty: rows hold every column from the diagonal on
   factorCode: Uint16Array;
@@ -134,7 +135,8 @@ function check(data: PageData): void {
     requireLength(name, data[name], n * 3);
   }
   for (const name of ["area", "surface", "side", "unknown"] as const) requireLength(name, data[name], n);
-  for (const name of ["unknownArea", "rowSum", "rowError"] as const) requireLength(name, data[name], k);
+  for (const name of ["unknownArea", "rowSum", "rowSky"] as const) requireLength(name, data[name], k);
+  if (data.rowError.length > 0) requireLength("row_error", data.rowError, k);
   requireLength("factor_begin", data.factorBegin, k + 1);
   requireLength("factor_code", data.factorCode, data.factorBegin[k]!);
   if (data.factorColumn.length > 0) requireLength("factor_column", data.factorColumn, data.factorBegin[k]!);
@@ -180,6 +182,7 @@ export function readContainer(buffer: ArrayBuffer): PageData {
     irradiance: f32("irradiance"),
     unknownArea: f32("unknown_area"),
     rowSum: f32("row_sum"),
+    rowSky: f32("row_sky"),
     rowError: f32("row_error"),
     factorBegin: u32("factor_begin"),
     factorColumn: u32("factor_column"),

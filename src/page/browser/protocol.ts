@@ -16,7 +16,7 @@ export interface Load {
   order: Uint32Array | null; // of Gauss-Seidel's sweeps over unknowns; null: as numbered
   materials: Materials;
   irradiance: Float32Array; // as stored
-  sky: boolean; // the sky shines
+  sky: Float32Array; // irradiance from the sky as stored, K * 3
   shared: boolean; // patches share unknowns
 }
 

@@ -30,27 +30,22 @@ export class Session {
   readonly loaded: Reply & { kind: "loaded" };
 
   /**
-   * Light from the sky is what the stored irradiance has beyond F B. Where patches share unknowns the
-   * stored light is not the solution of the matrix alone, and a reference is solved for.
+   * Where patches share unknowns the stored light is not the solution of the matrix alone, and a
+   * reference is solved for.
    */
-  constructor(request: Load) {
-    this.factors = expand(request.stored);
-    this.order = request.order ?? undefined;
-    const { materials, irradiance } = request;
-    const stored = Float64Array.from(irradiance);
-    this.skyIrradiance = new Float32Array(stored.length);
-    const radiosity = stored.map((h, k) => materials.emission[k]! + materials.reflectance[k]! * h);
-    const gathered = solver.irradianceOf(this.system(materials), radiosity);
-    if (request.sky) {
-      this.skyIrradiance = Float32Array.from(stored, (h, k) => Math.max(0, h - gathered[k]!));
-    }
-    this.lit = { irradiance: stored, source: solver.source(this.system(materials)) };
-    const reference = request.shared ? this.reference(materials) : null;
+  constructor(load: Load) {
+    this.factors = expand(load.stored);
+    this.order = load.order ?? undefined;
+    this.skyIrradiance = load.sky;
+    const stored = Float64Array.from(load.irradiance);
+    const system = this.system(load.materials);
+    const radiosity = stored.map((h, k) => system.emission[k]! + system.reflectance[k]! * h);
+    this.lit = { irradiance: stored, source: solver.source(system) };
     this.loaded = {
       kind: "loaded",
       entries: this.factors.value.length,
-      agreement: request.sky ? NaN : relativeDifference(gathered, stored, this.factors.area),
-      reference,
+      agreement: relativeDifference(solver.irradianceOf(system, radiosity), stored, this.factors.area),
+      reference: load.shared ? this.relight(load.materials, REFERENCE_MS).irradiance : null,
     };
   }
 
@@ -122,10 +117,6 @@ export class Session {
   private system(materials: Materials): System {
     const more = this.skyIrradiance.map((h, k) => h * materials.sky[k % solver.BANDS]!);
     return { factors: this.factors, emission: materials.emission, reflectance: materials.reflectance, more };
-  }
-
-  private reference(materials: Materials): Float32Array {
-    return this.relight(materials, REFERENCE_MS).irradiance;
   }
 }
 

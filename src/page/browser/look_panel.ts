@@ -1,0 +1,140 @@
+// How the scene is shown: exposure, tone mapping, surfaces, false colour with its legend, before and
+// after.
+import { toSrgb, viridis } from "./colour";
+import { toneIndex, type Tone } from "./shading";
+import type { Surfaces } from "./scene";
+import { element, input, make, on, onChoice, select, short } from "./ui";
+import type { Show, Viewer } from "./viewer";
+
+const TITLES: Record<Show, string> = {
+  "light": "Light",
+  "radiosity": "Radiosity B (luminance), W/m²",
+  "irradiance": "Irradiance H (luminance), W/m²",
+  "row-sum": "Row sum of form factors",
+  "row-error": "Error figure of the row",
+  "factors": "Form factor from the picked patch",
+};
+const EXPOSURE_STOPS = 8;
+
+function showLegend(viewer: Viewer): void {
+  const shown = viewer.shown();
+  element("legend").hidden = shown === "light";
+  element("range-rows").hidden = shown === "light";
+  if (shown === "light") return;
+  const low = viewer.uniforms.low.value, high = viewer.uniforms.high.value;
+  const logarithmic = viewer.uniforms.logarithmic.value;
+  element("legend-title").textContent =
+    TITLES[shown] + (shown === "factors" && !viewer.picks.first ? ": pick a patch" : "");
+  const stops = Array.from({ length: 17 }, (_, k) => `rgb(${viridis(k / 16).map(Math.round).join(" ")})`);
+  element("legend-bar").style.background = `linear-gradient(to right, ${stops.join(",")})`;
+  element("legend-bar").setAttribute("aria-label", `Colours from ${short(low)} to ${short(high)}`);
+  const at = (t: number) => (logarithmic ? low * (high / low) ** t : low + t * (high - low));
+  element("legend-ticks").replaceChildren(...[0, 0.25, 0.5, 0.75, 1].map((t) => make("span", {}, short(at(t)))));
+  if (!viewer.range) {
+    input("range-low").value = short(low);
+    input("range-high").value = short(high);
+  }
+}
+
+/** The sky is seen where nothing stands. */
+function showSky(viewer: Viewer): void {
+  const sky = viewer.data.header.sky.map((x, b) => x * viewer.sky[b]! * 2 ** viewer.uniforms.exposure.value);
+  if (!viewer.data.header.sky.some((x) => x > 0)) return;
+  const bytes = sky.map((x) => Math.round(255 * toSrgb(Math.min(1, Math.max(0, x)))));
+  element("stage").style.background = `rgb(${bytes.join(" ")})`;
+}
+
+function setUpExposure(viewer: Viewer): void {
+  const slider = input("exposure");
+  const middle = viewer.data.header.exposure;
+  slider.min = String(middle - EXPOSURE_STOPS);
+  slider.max = String(middle + EXPOSURE_STOPS);
+  slider.value = String(middle);
+  const say = () => { element("exposure-text").textContent = `${Number(slider.value).toFixed(2)} EV`; };
+  on("exposure", "input", () => {
+    viewer.uniforms.exposure.value = Number(slider.value);
+    say();
+    viewer.refreshView();
+  });
+  say();
+}
+
+function setUpRange(viewer: Viewer): void {
+  const given = () => {
+    const low = Number(input("range-low").value), high = Number(input("range-high").value);
+    const positive = !viewer.uniforms.logarithmic.value || low > 0;
+    const wrong = !(high > low) || !positive;
+    input("range-high").setCustomValidity(wrong ? "The range must rise, above 0 on a logarithmic scale" : "");
+    if (wrong) return void input("range-high").reportValidity();
+    viewer.range = { low, high };
+    viewer.refreshView();
+  };
+  on("range-low", "change", given);
+  on("range-high", "change", given);
+  on("range-auto", "click", () => {
+    viewer.range = null;
+    viewer.refreshView();
+  });
+  on("logarithmic", "change", () => {
+    viewer.uniforms.logarithmic.value = input("logarithmic").checked;
+    viewer.range = null;
+    viewer.refreshView();
+  });
+}
+
+function setUpSplit(viewer: Viewer): void {
+  const apply = () => {
+    const share = Number(input("split").value) / 100;
+    const wanted = input("before-after").checked;
+    viewer.stage.split = wanted ? share : null;
+    element("split-frame").hidden = !wanted;
+    element("split-line").style.left = `${100 * share}%`;
+    viewer.stage.draw();
+  };
+  on("before-after", "change", apply);
+  on("split", "input", apply);
+}
+
+/** Form factors span decades: their colours start logarithmic, others linear. */
+function scaleFor(viewer: Viewer, shown: Show): void {
+  const logarithmic = shown === "factors";
+  viewer.uniforms.logarithmic.value = logarithmic;
+  input("logarithmic").checked = logarithmic;
+  viewer.range = null;
+}
+
+export function setUpLook(viewer: Viewer): void {
+  setUpExposure(viewer);
+  setUpRange(viewer);
+  setUpSplit(viewer);
+  let last: Show = "light";
+  viewer.listen("view", () => {
+    const shown = viewer.shown();
+    if (shown !== last) {
+      last = shown;
+      scaleFor(viewer, shown);
+      return viewer.refreshView();
+    }
+    showLegend(viewer);
+    showSky(viewer);
+  });
+  on("show", "change", () => {
+    viewer.show = select("show").value as Show;
+    viewer.refreshValues();
+  });
+  on("tone", "change", () => {
+    viewer.uniforms.tone.value = toneIndex(select("tone").value as Tone);
+    viewer.refreshView();
+  });
+  onChoice("surfaces", (value) => viewer.setSurfaces(value as Surfaces));
+  on("outlines", "change", () => {
+    viewer.meshes.outlines = input("outlines").checked;
+    viewer.refreshView();
+  });
+  element("elements-row").hidden = !viewer.meshes.hasElements;
+  on("elements", "change", () => {
+    viewer.elements = input("elements").checked;
+    viewer.refreshView();
+  });
+  if (viewer.data.rowError.length === 0) select("show").querySelector('[value="row-error"]')?.remove();
+}

@@ -1,0 +1,127 @@
+// The page from its text to what a viewer can use: unpack, check, draw, give the solver its matrix.
+import { readContainer, type PageData } from "./container";
+import { ConvergePanel } from "./converge_panel";
+import { setUpKeys } from "./keys";
+import { unpack } from "./load";
+import { setUpLook } from "./look_panel";
+import { pickAt, setUpPatch } from "./patch_panel";
+import { RelightPanel } from "./relight_panel";
+import { copy, counted, element, make, on, onChoice, short } from "./ui";
+import { Viewer } from "./viewer";
+
+const NARROW = "(max-width: 760px)";
+
+/** The loading bar: a share of all the work, and what is done now. */
+async function loading(share: number, text: string): Promise<void> {
+  element<HTMLProgressElement>("loading-bar").value = share;
+  element("loading-text").textContent = text;
+  await new Promise((resume) => setTimeout(resume)); // lets it be drawn
+}
+
+function fail(error: unknown): void {
+  element("app").hidden = true;
+  element("loading").hidden = false;
+  element("loading").classList.add("failed");
+  element("loading").setAttribute("role", "alert");
+  element("loading-text").textContent = error instanceof Error ? error.message : String(error);
+}
+
+async function readPage(): Promise<PageData> {
+  const script = document.getElementById("radiosity-data");
+  if (!script?.textContent) throw new Error("This page holds no scene: write one with radiosity view");
+  const buffer = await unpack(script.textContent, (share) => void loading(0.5 * share, "Unpacking…"));
+  script.remove(); // megabytes of text that are not needed any more
+  return readContainer(buffer);
+}
+
+const percent = (x: number): string => `${short(100 * x)}%`;
+
+function sayAbout(viewer: Viewer): void {
+  const { header } = viewer.data;
+  const { quantisation: q, solver } = header;
+  const rows: [string, string][] = [
+    ["Written by", header.program],
+    ["Patches", counted(header.patches)],
+    ["Unknowns", counted(header.unknowns)],
+    ["Form factors by", header.method + (header.tolerance === null ? "" : `, tolerance ${short(header.tolerance)}`)],
+    ["Scene", header.closed ? "closed" : "open"],
+    ["Solved by", `${solver.name}, ${solver.iterations} iterations`],
+    ["Residual", short(solver.residual)],
+    ["16-bit form factors: error of each, at most", percent(q.largest_relative_error)],
+    ["…of a row, at most", short(q.largest_row_error)],
+  ];
+  const shared = header.unknowns !== header.patches;
+  if (!shared) rows.push(["Stored light against these form factors", percent(viewer.agreement)]);
+  element("about").replaceChildren(...rows.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]));
+  if (shared) {
+    element("about").after(make("p", { class: "note" },
+      "Patches share unknowns. Light is solved between unknowns; each patch's stored irradiance changes as its unknown's does."));
+  }
+}
+
+function sayTitle({ header }: PageData): void {
+  document.title = `${header.title} – radiosity`;
+  element("title").textContent = header.title;
+  element("loading-title").textContent = header.title;
+  element("subtitle").textContent = `${counted(header.patches)} patches, ` +
+    (header.unknowns === header.patches ? "" : `${counted(header.unknowns)} unknowns, `) +
+    `form factors by ${header.method}`;
+}
+
+function setUpCamera(viewer: Viewer): void {
+  const say = () => { element("camera-text").textContent = viewer.control.text(); };
+  const draw = viewer.control.onMove;
+  viewer.control.onMove = () => {
+    draw();
+    say();
+  };
+  say();
+  onChoice("move", (value) => { viewer.control.walking = value === "walk"; });
+  on("reset-view", "click", () => viewer.resetView());
+  on("copy-camera", "click", () => void copy(viewer.control.text(), element("copy-camera")));
+}
+
+function setUpPanels(viewer: Viewer): void {
+  setUpLook(viewer);
+  setUpPatch(viewer);
+  const converge = new ConvergePanel(viewer);
+  const relight = new RelightPanel(viewer, () => converge.forget());
+  setUpCamera(viewer);
+  setUpKeys(viewer, converge);
+  viewer.control.onTap = (x, y, second) => pickAt(viewer, x, y, second);
+  on("open-help", "click", () => element<HTMLDialogElement>("help").showModal());
+  on("to-stored", "click", () => {
+    converge.forget();
+    relight.reset();
+  });
+  viewer.listen("light", () => {
+    const words = { stored: "Light as stored", relit: "Relit", run: "A moment of the solver" };
+    element("source").textContent = words[viewer.source];
+    element("to-stored").hidden = viewer.source === "stored";
+  });
+  if (window.matchMedia(NARROW).matches) {
+    for (const panel of document.querySelectorAll("details")) panel.open = false;
+  }
+}
+
+async function begin(): Promise<void> {
+  const data = await readPage();
+  sayTitle(data);
+  await loading(0.6, "Setting up the picture…");
+  element("app").hidden = false; // the canvas needs its size
+  const viewer = new Viewer(data, element<HTMLCanvasElement>("picture"));
+  viewer.solver.onFailure = (message) => fail(new Error(`The solver stopped: ${message}`));
+  await loading(0.8, "Decoding form factors…");
+  await viewer.start();
+  setUpPanels(viewer);
+  sayAbout(viewer);
+  viewer.refreshTheme();
+  viewer.toStored();
+  for (const query of ["(prefers-color-scheme: dark)", "(prefers-contrast: more)"]) {
+    window.matchMedia(query).addEventListener("change", () => viewer.refreshTheme());
+  }
+  element("loading").hidden = true;
+  document.documentElement.dataset["ready"] = String(Math.round(performance.now())); // ms, tests wait for it
+}
+
+begin().catch(fail);

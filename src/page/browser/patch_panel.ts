@@ -1,0 +1,95 @@
+// What the picked patches are, and what they exchange.
+import { radiosityOf } from "./light";
+import type { MarkName } from "./stage";
+import { element, input, make, number, on } from "./ui";
+import type { Picked, Viewer } from "./viewer";
+
+const NAMES: MarkName[] = ["first", "second"];
+
+function list(rows: [string, Node | string][]): HTMLElement {
+  const items = rows.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]);
+  return make("dl", {}, ...items);
+}
+
+function bandTable(viewer: Viewer, patch: number): HTMLElement {
+  const { light } = viewer;
+  const radiosity = radiosityOf(light);
+  const rows: [string, string, Float32Array][] = [
+    ["emission", "E, W/m²", light.emission], ["reflectance", "ρ", light.reflectance],
+    ["irradiance", "H, W/m²", light.irradiance], ["radiosity", "B, W/m²", radiosity]];
+  const heads = ["", "red", "green", "blue"].map((text) => make("th", { scope: "col" }, text));
+  const body = rows.map(([key, label, values]) => make("tr", { "data-row": key }, make("th", { scope: "row" }, label),
+    ...[0, 1, 2].map((band) => make("td", {}, number(values[patch * 3 + band]!)))));
+  return make("table", {}, make("thead", {}, make("tr", {}, ...heads)), make("tbody", {}, ...body));
+}
+
+function facts(viewer: Viewer, name: MarkName, { patch }: Picked): HTMLElement {
+  const { data } = viewer;
+  const surface = data.header.surfaces[data.surface[patch]!]!;
+  const unknown = data.unknown[patch]!;
+  const rows: [string, Node | string][] = [
+    ["Surface", surface.name],
+    ["Material", data.header.materials[surface.material]?.name ?? "none"],
+    ["Side", data.side[patch] === 1 ? "back" : "front"],
+    ["Area, m²", number(data.area[patch]!)],
+    ["Row sum", number(data.rowSum[unknown]!)],
+  ];
+  if (data.rowError.length > 0) rows.push(["Error figure of the row", number(data.rowError[unknown]!)]);
+  if (data.header.unknowns !== data.header.patches) rows.push(["Shares unknown", number(unknown)]);
+  return make("section", { "data-pick": name }, make("h3", { class: name }, `Patch ${patch}`), list(rows),
+    bandTable(viewer, patch));
+}
+
+function pair(viewer: Viewer): HTMLElement | string {
+  const { first, second } = viewer.picks;
+  if (!first?.row || !second?.row) return "";
+  const { unknown, unknownArea } = viewer.data;
+  const i = unknown[first.patch]!, j = unknown[second.patch]!;
+  const there = first.row[j]!, back = second.row[i]!;
+  const power = unknownArea[i]! * there, powerBack = unknownArea[j]! * back;
+  const apart = power > 0 ? Math.abs(power - powerBack) / power : 0;
+  return make("section", { "data-pick": "pair" }, make("h3", {}, "What they exchange"), list([
+    [`F from ${first.patch} to ${second.patch}`, number(there)],
+    [`F from ${second.patch} to ${first.patch}`, number(back)],
+    ["A F there, m²", number(power)],
+    ["A F back, m²", number(powerBack)],
+    ["Reciprocity, difference", number(apart)],
+  ]), make("p", { class: "note" }, "One of each pair is stored; the other follows from A₁F₁₂ = A₂F₂₁."));
+}
+
+export function setUpPatch(viewer: Viewer): void {
+  const refresh = () => {
+    const picked = NAMES.filter((name) => viewer.picks[name]);
+    element("pick-facts").replaceChildren(...picked.map((name) => facts(viewer, name, viewer.picks[name]!)));
+    element("pick-pair").replaceChildren(pair(viewer));
+    element("pick-clear").hidden = picked.length === 0;
+  };
+  const showPicks = () => {
+    for (const name of NAMES) input(`pick-${name}`).value = String(viewer.picks[name]?.patch ?? "");
+    refresh();
+  };
+  viewer.listen("picks", showPicks);
+  viewer.listen("light", refresh);
+  for (const name of NAMES) {
+    const field = input(`pick-${name}`);
+    field.max = String(viewer.data.header.patches - 1);
+    field.addEventListener("change", () => {
+      if (field.reportValidity()) viewer.pick(name, field.value === "" ? null : Number(field.value));
+    });
+  }
+  on("paint", "change", () => {
+    viewer.paint = input("paint").checked;
+    viewer.refreshValues();
+  });
+  on("pick-clear", "click", () => clearPicks(viewer));
+}
+
+export function clearPicks(viewer: Viewer): void {
+  for (const name of NAMES) viewer.pick(name, null);
+}
+
+/** Picks what is at a pixel; nothing there: clears the pick. */
+export function pickAt(viewer: Viewer, x: number, y: number, second: boolean): void {
+  viewer.pick(second ? "second" : "first", viewer.patchAt(x, y));
+  element<HTMLDetailsElement>("patch-panel").open = true;
+}

@@ -1,0 +1,123 @@
+// The scene's triangles and lines as the graphics library draws them: patches, elements, outlines.
+import {
+  BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, Group, LineSegments, Mesh,
+} from "three";
+import type { PageData } from "./container";
+import { cornerValues } from "./light";
+import { elementMaterial, lineMaterial, patchMaterial, type Uniforms } from "./shading";
+
+export type Surfaces = "smooth" | "flat" | "wireframe";
+
+function dynamic(length: number, size: number): BufferAttribute {
+  return new BufferAttribute(new Float32Array(length * size), size).setUsage(DynamicDrawUsage);
+}
+
+export class SceneMeshes {
+  readonly group = new Group();
+  surfaces: Surfaces = "smooth";
+  outlines = false;
+  readonly hasElements: boolean;
+
+  private readonly patches: Mesh<BufferGeometry>;
+  private readonly elements: Mesh;
+  private readonly lines: LineSegments;
+  private readonly lineUniforms;
+  private light: { now: Float32Array; stored: Float32Array };
+  private values: { now: Float32Array; stored: Float32Array; smooth: boolean };
+
+  constructor(private readonly data: PageData, uniforms: Uniforms) {
+    const none = new Float32Array(0);
+    this.light = { now: none, stored: none };
+    this.values = { now: none, stored: none, smooth: false };
+    this.patches = new Mesh(this.patchGeometry(), patchMaterial(uniforms));
+    this.elements = new Mesh(this.elementGeometry(), elementMaterial(uniforms));
+    this.hasElements = data.elementTriangle.length > 0;
+    const lines = lineMaterial(new Color(0, 0, 0), 0.55);
+    this.lineUniforms = lines.uniforms;
+    this.lines = new LineSegments(this.lineGeometry(), lines);
+    this.group.add(this.patches, this.elements, this.lines);
+  }
+
+  /** Radiosity of patches, N*3, now and as stored. */
+  setLight(now: Float32Array, stored: Float32Array): void {
+    this.light = { now, stored };
+    this.fill("light", now, 3, this.surfaces === "smooth");
+    this.fill("storedLight", stored, 3, this.surfaces === "smooth");
+  }
+
+  /** What false colour shows, N, now and as stored; `smooth`: it may be interpolated. */
+  setValues(now: Float32Array, stored: Float32Array, smooth: boolean): void {
+    this.values = { now, stored, smooth };
+    const interpolated = smooth && this.surfaces === "smooth";
+    this.fill("value", now, 1, interpolated);
+    this.fill("storedValue", stored, 1, interpolated);
+  }
+
+  setSurfaces(surfaces: Surfaces): void {
+    this.surfaces = surfaces;
+    if (this.light.now.length > 0) this.setLight(this.light.now, this.light.stored);
+    if (this.values.now.length > 0) this.setValues(this.values.now, this.values.stored, this.values.smooth);
+  }
+
+  setLineColour(colour: Color): void {
+    this.lineUniforms["colour"]!.value = colour;
+  }
+
+  /** What is drawn next. `elements`: the finer mesh may stand for the patches. */
+  arrange(elements: boolean): void {
+    const wireframe = this.surfaces === "wireframe";
+    const fine = elements && this.hasElements && this.surfaces === "smooth";
+    this.elements.visible = fine;
+    this.patches.visible = !fine && !wireframe;
+    this.lines.visible = this.outlines || wireframe;
+    this.lineUniforms["opacity"]!.value = wireframe ? 0.9 : 0.45;
+  }
+
+  /** Outlines of a patch: the edges of its triangles that no other of its triangles has. */
+  outlineOf(patch: number): Float32Array {
+    const { trianglePatch, patchTriangle, position } = this.data;
+    const edges = new Map<string, [number, number]>();
+    for (let t = 0; t < trianglePatch.length; ++t) {
+      if (trianglePatch[t] !== patch) continue;
+      for (let c = 0; c < 3; ++c) {
+        const a = patchTriangle[t * 3 + c]!, b = patchTriangle[t * 3 + ((c + 1) % 3)]!;
+        const key = a < b ? `${a} ${b}` : `${b} ${a}`;
+        if (!edges.delete(key)) edges.set(key, [a, b]);
+      }
+    }
+    const at = (vertex: number) => position.subarray(vertex * 3, vertex * 3 + 3);
+    return Float32Array.from([...edges.values()].flatMap(([a, b]) => [...at(a), ...at(b)]));
+  }
+
+  private fill(name: string, values: Float32Array, bands: number, smooth: boolean): void {
+    const attribute = this.patches.geometry.getAttribute(name) as BufferAttribute;
+    cornerValues(this.data, values, bands, smooth, attribute.array as Float32Array);
+    attribute.needsUpdate = true;
+  }
+
+  private patchGeometry(): BufferGeometry {
+    const { patchTriangle, position } = this.data;
+    const corners = new Float32Array(patchTriangle.length * 3);
+    patchTriangle.forEach((vertex, k) => corners.set(position.subarray(vertex * 3, vertex * 3 + 3), k * 3));
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(corners, 3));
+    for (const name of ["light", "storedLight"]) geometry.setAttribute(name, dynamic(patchTriangle.length, 3));
+    for (const name of ["value", "storedValue"]) geometry.setAttribute(name, dynamic(patchTriangle.length, 1));
+    return geometry;
+  }
+
+  private elementGeometry(): BufferGeometry {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(this.data.elementPosition, 3));
+    geometry.setAttribute("light", new BufferAttribute(this.data.elementLight, 3));
+    geometry.setIndex(new BufferAttribute(this.data.elementTriangle, 1));
+    return geometry;
+  }
+
+  private lineGeometry(): BufferGeometry {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(this.data.position, 3));
+    geometry.setIndex(new BufferAttribute(this.data.edge, 1));
+    return geometry;
+  }
+}

@@ -1,0 +1,125 @@
+// How colours come about on the screen: exposure, tone mapping, false colour. Nothing is lit by the
+// graphics library; the light is the radiosity at the corners of triangles.
+import {
+  ClampToEdgeWrapping, Color, DataTexture, LinearFilter, RGBAFormat, ShaderMaterial, type IUniform,
+} from "three";
+import { viridisTable } from "./colour";
+
+export type Tone = "linear" | "reinhard" | "filmic";
+const TONES: Tone[] = ["linear", "reinhard", "filmic"];
+
+/** A value that is not there; drawn in grey. */
+export const NO_VALUE = -1e30;
+
+export interface Uniforms {
+  [name: string]: IUniform;
+  exposure: IUniform<number>; // EV
+  tone: IUniform<number>;
+  showValue: IUniform<boolean>; // false colour
+  logarithmic: IUniform<boolean>;
+  low: IUniform<number>;
+  high: IUniform<number>;
+  map: IUniform<DataTexture>;
+  stored: IUniform<boolean>; // the light as stored, not as it is now
+}
+
+export function makeUniforms(): Uniforms {
+  const map = new DataTexture(viridisTable(), 256, 1, RGBAFormat);
+  map.magFilter = map.minFilter = LinearFilter;
+  map.wrapS = ClampToEdgeWrapping;
+  map.needsUpdate = true;
+  return {
+    exposure: { value: 0 }, tone: { value: 0 }, showValue: { value: false }, logarithmic: { value: false },
+    low: { value: 0 }, high: { value: 1 }, map: { value: map }, stored: { value: false },
+  };
+}
+
+export const toneIndex = (tone: Tone): number => TONES.indexOf(tone);
+
+// Radiosity -> what the display is sent. `linear` is what the program's PNG files show.
+const DISPLAY = /* glsl */ `
+  uniform float exposure;
+  uniform int tone;
+  vec3 filmic(vec3 x) {  // ACES, fitted by Narkowicz 2015
+    return clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
+  }
+  vec3 display(vec3 radiosity) {
+    vec3 x = max(radiosity, 0.0) / 3.14159265358979 * exp2(exposure);
+    if (tone == 1) x /= 1.0 + dot(x, vec3(0.2126, 0.7152, 0.0722));  // Reinhard et al. 2002
+    if (tone == 2) x = filmic(x);
+    x = clamp(x, 0.0, 1.0);
+    return mix(12.92 * x, 1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, x));
+  }
+`;
+
+/** Triangles of patches; attributes light, storedLight (vec3, W/m^2), value, storedValue. */
+export function patchMaterial(uniforms: Uniforms): ShaderMaterial {
+  return new ShaderMaterial({
+    uniforms,
+    toneMapped: false,
+    polygonOffset: true, // outlines lie on top
+    polygonOffsetFactor: 1,
+    polygonOffsetUnits: 1,
+    vertexShader: /* glsl */ `
+      attribute vec3 light, storedLight;
+      attribute float value, storedValue;
+      uniform bool stored;
+      varying vec3 vLight;
+      varying float vValue;
+      void main() {
+        vLight = stored ? storedLight : light;
+        vValue = stored ? storedValue : value;
+        gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+      }`,
+    fragmentShader: /* glsl */ `
+      ${DISPLAY}
+      uniform bool showValue, logarithmic;
+      uniform float low, high;
+      uniform sampler2D map;
+      varying vec3 vLight;
+      varying float vValue;
+      vec3 falseColour() {
+        if (vValue < -1e29) return vec3(0.45);
+        float t = logarithmic ? log(max(vValue, 1e-30) / low) / log(high / low) : (vValue - low) / (high - low);
+        return texture2D(map, vec2(clamp(t, 0.0, 1.0) * 255.0 / 256.0 + 0.5 / 256.0, 0.5)).rgb;
+      }
+      void main() { gl_FragColor = vec4(showValue ? falseColour() : display(vLight), 1.0); }`,
+  });
+}
+
+/** The mesh of elements; attribute light. */
+export function elementMaterial(uniforms: Uniforms): ShaderMaterial {
+  return new ShaderMaterial({
+    uniforms,
+    toneMapped: false,
+    polygonOffset: true,
+    polygonOffsetFactor: 1,
+    polygonOffsetUnits: 1,
+    vertexShader: /* glsl */ `
+      attribute vec3 light;
+      varying vec3 vLight;
+      void main() {
+        vLight = light;
+        gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+      }`,
+    fragmentShader: /* glsl */ `
+      ${DISPLAY}
+      varying vec3 vLight;
+      void main() { gl_FragColor = vec4(display(vLight), 1.0); }`,
+  });
+}
+
+/** Lines in one colour as given (sRGB). */
+export function lineMaterial(colour: Color, opacity: number): ShaderMaterial {
+  return new ShaderMaterial({
+    uniforms: { colour: { value: colour }, opacity: { value: opacity } },
+    transparent: true,
+    toneMapped: false,
+    depthWrite: false,
+    vertexShader: `void main() { gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
+    fragmentShader: `
+      uniform vec3 colour;
+      uniform float opacity;
+      void main() { gl_FragColor = vec4(colour, opacity); }`,
+  });
+}

@@ -1,0 +1,288 @@
+// The state of the page: which light is shown, how, and which patches are picked. Panels change it
+// and are told of changes; it knows no panel.
+import { Color, Vector3 } from "three";
+import { TriangleTree } from "./bvh";
+import { CameraControl } from "./camera";
+import type { PageData, Rgb } from "./container";
+import {
+  luminance, materialsOfUnknowns, patchIrradiance, radiosityOf, withMaterials, unknownMeans,
+  type MaterialState, type PatchLight,
+} from "./light";
+import type { Frame, Materials, Method } from "./protocol";
+import { SceneMeshes, type Surfaces } from "./scene";
+import { makeUniforms, NO_VALUE } from "./shading";
+import { SolverClient, type Relighting } from "./solver_client";
+import { type MarkName, Stage } from "./stage";
+
+export type Show = "light" | "radiosity" | "irradiance" | "row-sum" | "row-error" | "factors";
+/** Where the light shown comes from. */
+export type Source = "stored" | "relit" | "run";
+
+export interface Picked {
+  patch: number;
+  row: Float32Array | null; // of its unknown; null: not here yet
+}
+
+const BANDS = 3;
+
+export class Viewer {
+  readonly uniforms = makeUniforms();
+  readonly meshes: SceneMeshes;
+  readonly control: CameraControl;
+  readonly stage: Stage;
+  readonly solver = new SolverClient();
+  readonly stored: PatchLight;
+  agreement = NaN; // of the stored light with the page's own form factors
+  light: PatchLight;
+  source: Source = "stored";
+  show: Show = "light";
+  paint = true;
+  elements = true;
+  range: { low: number; high: number } | null = null; // null: what the values span
+  sky: Rgb = [1, 1, 1];
+  states: MaterialState[];
+  limited = 0; // patches held at a reflectance of 1
+  readonly picks: Record<MarkName, Picked | null> = { first: null, second: null };
+
+  private readonly tree: TriangleTree;
+  private reference: Float32Array | null = null;
+  private materials: Materials;
+  private runs = 0;
+  private readonly listeners: Record<string, (() => void)[]> = {};
+  private relitListener: (light: Relighting) => void = () => {};
+  private frameListener: (frame: Frame) => void = () => {};
+
+  constructor(readonly data: PageData, canvas: HTMLCanvasElement) {
+    this.stored = { emission: data.emission, reflectance: data.reflectance, irradiance: data.irradiance };
+    this.light = this.stored;
+    this.states = this.storedStates();
+    this.materials = materialsOfUnknowns(data, this.stored, this.sky);
+    this.meshes = new SceneMeshes(data, this.uniforms);
+    this.control = new CameraControl(canvas, data.header);
+    this.stage = new Stage(canvas, this.meshes, this.control, this.uniforms);
+    this.tree = new TriangleTree(data.position, data.patchTriangle);
+    this.uniforms.exposure.value = data.header.exposure;
+    this.pivotOnScene();
+    this.refreshLight();
+  }
+
+  /** `event`: "light", "view" (how it is shown), "picks". */
+  listen(event: string, act: () => void): void {
+    (this.listeners[event] ??= []).push(act);
+  }
+  onRelit(act: (light: Relighting) => void): void { this.relitListener = act; }
+  onFrame(act: (frame: Frame) => void): void { this.frameListener = act; }
+
+  storedStates(): MaterialState[] {
+    return this.data.header.materials.map(({ reflectance, emission }) =>
+      ({ reflectance: [...reflectance], emission: [...emission] }));
+  }
+
+  async start(): Promise<void> {
+    const { data } = this;
+    const { lowest, step } = data.header.quantisation;
+    const sky = Float32Array.from({ length: data.header.unknowns * BANDS }, (_, k) =>
+      Math.PI * data.header.sky[k % BANDS]! * data.rowSky[Math.floor(k / BANDS)]!);
+    const loaded = await this.solver.load({
+      stored: { area: data.unknownArea, begin: data.factorBegin, column: data.factorColumn,
+                code: data.factorCode, lowest, step },
+      order: data.order,
+      materials: this.materials,
+      irradiance: unknownMeans(data, data.irradiance),
+      sky,
+      shared: data.header.unknowns !== data.header.patches,
+    });
+    this.agreement = loaded.agreement;
+    this.reference = loaded.reference;
+    this.solver.onRelit = (light) => {
+      if (this.source === "relit") this.take(light.irradiance);
+      this.relitListener(light);
+    };
+    this.solver.onFrame = (frame) => {
+      if (frame.run === this.runs) this.frameListener(frame);
+    };
+  }
+
+  /** Solves again with `states` and `sky`. */
+  relight(): void {
+    this.materialsChanged();
+    this.source = "relit";
+    this.take(null);
+    this.solver.relight(this.materials);
+  }
+
+  toStored(): void {
+    ++this.runs;
+    this.source = "stored";
+    this.light = this.stored;
+    this.refreshLight();
+  }
+
+  startRun(method: Method): void {
+    this.materialsChanged();
+    this.solver.start(++this.runs, method, this.materials);
+  }
+  stepRun(): void { this.solver.step(this.runs); }
+
+  showFrame(frame: Frame): void {
+    this.source = "run";
+    this.take(frame.irradiance);
+  }
+
+  pick(name: MarkName, patch: number | null): void {
+    const picked = patch === null ? null : { patch, row: null as Float32Array | null };
+    this.picks[name] = picked;
+    this.mark(name);
+    this.refreshValues();
+    this.tell("picks");
+    if (!picked) return;
+    void this.solver.rows([this.data.unknown[picked.patch]!]).then(([row]) => {
+      picked.row = row!;
+      if (this.picks[name] !== picked) return;
+      this.refreshValues();
+      this.tell("picks");
+    });
+  }
+
+  /** The patch under a pixel of the canvas, or null. */
+  patchAt(x: number, y: number): number | null {
+    const { from, direction } = this.control.ray(x, y);
+    const hit = this.tree.cast(from.toArray(), direction.toArray());
+    return hit ? this.data.trianglePatch[hit.triangle]! : null;
+  }
+
+  focusPick(): void {
+    const picked = this.picks.first;
+    if (!picked) return;
+    const centre = new Vector3(...this.data.centroid.subarray(picked.patch * 3, picked.patch * 3 + 3));
+    this.control.focus(centre, 8 * Math.sqrt(this.data.area[picked.patch]!));
+  }
+
+  resetView(): void {
+    this.control.reset();
+    this.pivotOnScene();
+  }
+
+  /** What is shown now: a picked patch's form factors stand for the light where that is wanted. */
+  shown(): Show {
+    if (this.show === "light" && this.paint && this.picks.first?.row) return "factors";
+    return this.show;
+  }
+
+  setSurfaces(surfaces: Surfaces): void {
+    this.meshes.setSurfaces(surfaces);
+    this.refreshView();
+  }
+
+  /** Colours of lines and marks follow the page's theme. */
+  refreshTheme(): void {
+    this.meshes.setLineColour(new Color().setStyle(themed("--wire"), ""));
+    this.mark("first");
+    this.mark("second");
+  }
+
+  refreshView(): void {
+    const shown = this.shown();
+    const falseColour = shown !== "light";
+    this.uniforms.showValue.value = falseColour;
+    this.stage.elements = this.elements && this.source === "stored";
+    if (falseColour) {
+      const { low, high } = this.range ?? this.span();
+      this.uniforms.low.value = low;
+      this.uniforms.high.value = high > low ? high : low + Math.max(Math.abs(low), 1) * 1e-6;
+    }
+    this.stage.draw();
+    this.tell("view");
+  }
+
+  refreshValues(): void {
+    const now = this.values(this.shown(), this.light);
+    const stored = this.values(this.shown(), this.stored);
+    const smooth = this.shown() === "radiosity" || this.shown() === "irradiance";
+    this.meshes.setValues(now, stored, smooth);
+    this.refreshView();
+  }
+
+  /** One value a patch. */
+  values(show: Show, light: PatchLight): Float32Array {
+    const { data } = this;
+    const ofUnknown = (values: Float32Array | null) => Float32Array.from(data.unknown, (k) =>
+      values && values.length > 0 ? values[k]! : NO_VALUE);
+    switch (show) {
+      case "light":
+      case "radiosity": return luminance(radiosityOf(light));
+      case "irradiance": return luminance(light.irradiance);
+      case "row-sum": return ofUnknown(data.rowSum);
+      case "row-error": return ofUnknown(data.rowError);
+      case "factors": return ofUnknown(this.picks.first?.row ?? null);
+    }
+  }
+
+  private materialsChanged(): void {
+    const { emission, reflectance, limited } = withMaterials(this.data, this.states);
+    this.limited = limited;
+    this.light = { emission, reflectance, irradiance: this.light.irradiance };
+    this.materials = materialsOfUnknowns(this.data, this.light, this.sky);
+  }
+
+  /** Irradiance of unknowns; null: as it was. */
+  private take(irradiance: Float32Array | null): void {
+    if (irradiance) {
+      this.light = { ...this.light, irradiance: patchIrradiance(this.data, irradiance, this.reference) };
+    }
+    this.refreshLight();
+  }
+
+  private refreshLight(): void {
+    this.meshes.setLight(radiosityOf(this.light), radiosityOf(this.stored));
+    this.refreshValues();
+    this.tell("light");
+  }
+
+  /** The range of what is shown; a few very bright patches (lamps) do not set its end. */
+  private span(): { low: number; high: number } {
+    const all = this.values(this.shown(), this.light).filter((value) => value !== NO_VALUE).sort();
+    if (all.length === 0) return { low: 0, high: 1 };
+    const highest = all[all.length - 1]!;
+    const most = all[Math.floor(0.99 * (all.length - 1))]!;
+    const high = highest > 2 * most && most > 0 ? most : highest;
+    if (this.uniforms.logarithmic.value) {
+      const least = all.find((value) => value > 0) ?? 1e-6;
+      return { low: Math.max(least, high * 1e-4), high };
+    }
+    const around = this.shown() === "row-sum";
+    return { low: around ? all[0]! : Math.min(0, all[0]!), high };
+  }
+
+  private mark(name: MarkName): void {
+    const picked = this.picks[name];
+    this.stage.mark(name, picked ? this.meshes.outlineOf(picked.patch) : null, themed(`--${name}`));
+  }
+
+  /** The viewer turns around what is in the middle of the picture, or around the scene's middle. */
+  private pivotOnScene(): void {
+    const { eye, target } = this.data.header.camera;
+    const origin = this.data.header.origin;
+    const middle = boxMiddle(this.data.position);
+    const from = new Vector3(...eye).sub(new Vector3(...origin));
+    const along = middle.sub(from).dot(this.control.forward());
+    this.control.pivotAt(along > 0 ? along : new Vector3(...target).distanceTo(new Vector3(...eye)));
+  }
+
+  private tell(event: string): void {
+    for (const act of this.listeners[event] ?? []) act();
+  }
+}
+
+function boxMiddle(position: Float32Array): Vector3 {
+  const low = new Vector3(Infinity, Infinity, Infinity), high = low.clone().negate(), point = new Vector3();
+  for (let k = 0; k < position.length; k += 3) {
+    point.fromArray(position, k);
+    low.min(point);
+    high.max(point);
+  }
+  return low.add(high).multiplyScalar(0.5);
+}
+
+/** A colour of the page's theme. */
+const themed = (name: string): string => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
