@@ -8,6 +8,8 @@ import type { Viewer } from "./viewer";
 const MOST_FRAMES = 500;
 const UNITS: Record<Method, string> = { "jacobi": "bounce", "gauss-seidel": "sweep", "southwell": "frame" };
 
+const NAMES: Record<Method, string> = { "jacobi": "Jacobi", "gauss-seidel": "Gauss-Seidel", "southwell": "Southwell" };
+
 export class ConvergePanel {
   private frames: Frame[] = [];
   private shown = 0;
@@ -40,6 +42,12 @@ export class ConvergePanel {
     this.shown = 0;
     this.waiting = this.wantsNext = false;
     this.draw();
+  }
+
+  /** Which moment is shown. */
+  moment(): string {
+    const frame = this.frames[this.shown];
+    return `${NAMES[this.method]}, ${UNITS[this.method]} ${frame?.index ?? 0}`;
   }
 
   toggle(): void {

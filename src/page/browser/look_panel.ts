@@ -24,7 +24,7 @@ function showLegend(viewer: Viewer): void {
   const low = viewer.uniforms.low.value, high = viewer.uniforms.high.value;
   const logarithmic = viewer.uniforms.logarithmic.value;
   element("legend-title").textContent =
-    TITLES[shown] + (shown === "factors" && !viewer.picks.first ? ": pick a patch" : "");
+    TITLES[shown] + (shown === "factors" && !viewer.picks.first ? ": pick a patch" : logarithmic ? " (grey: 0)" : "");
   const stops = Array.from({ length: 17 }, (_, k) => `rgb(${viridis(k / 16).map(Math.round).join(" ")})`);
   element("legend-bar").style.background = `linear-gradient(to right, ${stops.join(",")})`;
   element("legend-bar").setAttribute("aria-label", `Colours from ${short(low)} to ${short(high)}`);

@@ -9,6 +9,8 @@ import { RelightPanel } from "./relight_panel";
 import { copy, counted, element, make, on, onChoice, short } from "./ui";
 import { Viewer } from "./viewer";
 
+/** As the program calls its methods, in a sentence. */
+const METHODS: Record<string, string> = { rays: "ray-traced" };
 const NARROW = "(max-width: 760px)";
 
 /** The loading bar: a share of all the work, and what is done now. */
@@ -65,7 +67,7 @@ function sayTitle({ header }: PageData): void {
   element("loading-title").textContent = header.title;
   element("subtitle").textContent = `${counted(header.patches)} patches, ` +
     (header.unknowns === header.patches ? "" : `${counted(header.unknowns)} unknowns, `) +
-    `form factors by ${header.method}`;
+    `${METHODS[header.method] ?? header.method} form factors`;
 }
 
 function setUpCamera(viewer: Viewer): void {
@@ -95,7 +97,7 @@ function setUpPanels(viewer: Viewer): void {
     relight.reset();
   });
   viewer.listen("light", () => {
-    const words = { stored: "Light as stored", relit: "Relit", run: "A moment of the solver" };
+    const words = { stored: "Light as stored", relit: "Relit", run: converge.moment() };
     element("source").textContent = words[viewer.source];
     element("to-stored").hidden = viewer.source === "stored";
   });

@@ -6,7 +6,7 @@ import * as solver from "./solver";
 import type { Iterate, System } from "./solver";
 
 /** Relighting is done when a sweep changes less than this share of the mean irradiance. */
-export const RELIGHT_TOLERANCE = 2e-5;
+export const RELIGHT_TOLERANCE = 5e-5;
 /** The reference light of clusters is solved at most this long. */
 const REFERENCE_MS = 5000;
 /** Below this a residual is the rounding of 32-bit form factors. */

@@ -80,6 +80,7 @@ export function patchMaterial(uniforms: Uniforms): ShaderMaterial {
       varying float vValue;
       vec3 falseColour() {
         if (vValue < -1e29) return vec3(0.45);
+        if (logarithmic && vValue <= 0.0) return vec3(0.2);
         float t = logarithmic ? log(max(vValue, 1e-30) / low) / log(high / low) : (vValue - low) / (high - low);
         return texture2D(map, vec2(clamp(t, 0.0, 1.0) * 255.0 / 256.0 + 0.5 / 256.0, 0.5)).rgb;
       }

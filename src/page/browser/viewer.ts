@@ -163,9 +163,9 @@ export class Viewer {
     this.pivotOnScene();
   }
 
-  /** What is shown now: a picked patch's form factors stand for the light where that is wanted. */
+  /** What is shown now: a picked patch's form factors stand for the light, unless a run is watched. */
   shown(): Show {
-    if (this.show === "light" && this.paint && this.picks.first?.row) return "factors";
+    if (this.show === "light" && this.source !== "run" && this.paint && this.picks.first?.row) return "factors";
     return this.show;
   }
 
@@ -256,7 +256,7 @@ export class Viewer {
 
   private mark(name: MarkName): void {
     const picked = this.picks[name];
-    this.stage.mark(name, picked ? this.meshes.outlineOf(picked.patch) : null, themed(`--${name}`));
+    this.stage.mark(name, picked ? this.meshes.outlineOf(picked.patch) : null, themed(`--mark-${name}`));
   }
 
   /** The viewer turns around what is in the middle of the picture, or around the scene's middle. */
