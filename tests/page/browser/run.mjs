@@ -1,0 +1,58 @@
+// node run.mjs FOLDER RADIOSITY: the tests of the page's browser half. FOLDER: everything is written there; packages are
+// fetched once. RADIOSITY: the program. CHROMIUM (environment): the browser, else the first that is found.
+import { execFileSync, spawnSync } from "node:child_process";
+import { cpSync, existsSync, mkdirSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
+import { dirname, join, resolve } from "node:path";
+import { fileURLToPath } from "node:url";
+
+const here = dirname(fileURLToPath(import.meta.url));
+const root = resolve(here, "../../..");
+const [folder, program] = process.argv.slice(2).map((path) => resolve(path));
+if (!program) {
+  console.error("usage: node run.mjs FOLDER RADIOSITY");
+  process.exit(2);
+}
+const sources = join(folder, "source");
+const tests = join(folder, "tests");
+const pages = join(folder, "pages");
+
+function run(command, args, options = {}) {
+  return execFileSync(command, args, { encoding: "utf8", stdio: ["ignore", "pipe", "inherit"], maxBuffer: 1 << 28, ...options });
+}
+
+/** A copy of `from` with its packages. */
+function install(from, to) {
+  mkdirSync(to, { recursive: true });
+  const lock = readFileSync(join(from, "package-lock.json"), "utf8");
+  const stamp = join(to, "installed-lock.json");
+  cpSync(from, to, { recursive: true });
+  if (existsSync(stamp) && readFileSync(stamp, "utf8") === lock) return;
+  run("npm", ["ci", "--no-audit", "--no-fund", "--loglevel=error"], { cwd: to });
+  writeFileSync(stamp, lock);
+}
+
+/** The page of a scene: data of the program under test, in the template of these sources. */
+function makePage(template, name, scene, options) {
+  const results = join(pages, `${name}.h5`), made = join(pages, `${name}.made.html`);
+  run(program, ["solve", join(root, "data", scene), "-o", results, "--quiet", ...options]);
+  run(program, ["view", results, "-o", made, "--quiet"]);
+  const data = readFileSync(made, "utf8").match(/<script id="radiosity-data"[^]*?<\/script>/)[0];
+  writeFileSync(join(pages, `${name}.html`), template.replace("<!--radiosity-data-->", () => data));
+}
+
+install(join(root, "src/page/browser"), sources);
+install(here, tests);
+mkdirSync(pages, { recursive: true });
+run("npx", ["tsc", "--noEmit"], { cwd: sources, stdio: "inherit" });
+run("node", ["build.mjs", join(folder, "template.html")], { cwd: sources });
+run("npx", ["esbuild", ...["factors", "solver", "session", "container", "light", "load", "bvh"].map((name) => `${name}.ts`), "--bundle",
+  "--format=esm", "--out-extension:.js=.mjs", `--outdir=${join(folder, "modules")}`, "--log-level=warning"], { cwd: sources });
+const template = readFileSync(join(folder, "template.html"), "utf8");
+makePage(template, "cornell", "cornell-box.obj", []);
+makePage(template, "small", "cornell-box.obj", ["--patches", "400", "--solver", "jacobi"]);
+writeFileSync(join(pages, "empty.html"), template);
+
+const files = readdirSync(tests).filter((name) => name.endsWith(".test.mjs")).map((name) => join(tests, name));
+const done = spawnSync("node", ["--test", ...files],
+  { stdio: "inherit", env: { ...process.env, PAGE_FOLDER: folder, RADIOSITY: program, PAGE_ROOT: root } });
+process.exit(done.status ?? 1);

@@ -1,0 +1,163 @@
+// The solvers and the decoding of form factors, against LAPACK and closed forms.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { module, pageData, relativeError, results } from "./support.mjs";
+
+const { expand, denseRow } = await module("factors");
+const solver = await module("solver");
+const { Session } = await module("session");
+const { withMaterials, unknownMeans, radiosityOf } = await module("light");
+const { TriangleTree } = await module("bvh");
+const { readContainer } = await module("container");
+
+const data = await pageData("small.html");
+const truth = results("small.h5", "--dense");
+const { lowest, step, largest_relative_error: quantised } = data.header.quantisation;
+const stored = { area: data.unknownArea, begin: data.factorBegin, column: data.factorColumn, code: data.factorCode, lowest, step };
+const factors = expand(stored);
+const dark = new Float32Array(factors.size * 3);
+const system = { factors, emission: data.emission, reflectance: data.reflectance, more: dark };
+
+// 16 bits: the page states how far a form factor may be off; 1e-6 is for areas and values in 32 bits.
+test("both triangles are the matrix of the results file, to the error the page states", () => {
+  for (let i = 0; i < factors.size; ++i) {
+    const row = denseRow(factors, i);
+    truth.factors[i].forEach((f, j) => {
+      assert.ok(Math.abs(row[j] - f) <= (quantised + 1e-6) * f + 1e-9 / factors.size, `F[${i},${j}] = ${row[j]}, not ${f}`);
+    });
+    for (let k = factors.begin[i] + 1; k < factors.begin[i + 1]; ++k) {
+      assert.ok(factors.column[k] > factors.column[k - 1], `columns of row ${i} must increase`);
+    }
+  }
+});
+
+test("rows of all columns decode like rows with columns", () => {
+  const size = 3, code = Uint16Array.from([0, 10, 20, 0, 30, 5]);
+  const area = Float32Array.from([1, 2, 4]);
+  const dense = expand({ area, begin: Uint32Array.from([0, 3, 5, 6]), column: new Uint32Array(0), code, lowest: -5, step: 0.1 });
+  const sparse = expand({ area, begin: Uint32Array.from([0, 2, 3, 4]), column: Uint32Array.from([1, 2, 2, 2]),
+    code: Uint16Array.from([10, 20, 30, 5]), lowest: -5, step: 0.1 });
+  for (let i = 0; i < size; ++i) assert.deepEqual(denseRow(dense, i), denseRow(sparse, i));
+  assert.equal(denseRow(dense, 1)[0], Math.fround(Math.fround(Math.exp(-4)) / 2)); // F_10 = F_01 A_0 / A_1
+  assert.equal(dense.diagonal[2], Math.fround(Math.exp(-4.5)));
+});
+
+/** Iterates until nothing changes in 64 bits but rounding. */
+function solve(method, sys = system) {
+  if (method === "southwell") {
+    const state = solver.southwellStart(sys);
+    for (let n = 0; n < 40 * sys.factors.size && solver.southwellShot(sys, state); ++n);
+    return state.iterate.radiosity;
+  }
+  let iterate = solver.fromEmission(sys);
+  const scale = solver.scales(solver.source(sys));
+  for (let n = 0; n < 60; ++n) {
+    if (method === "jacobi") iterate = solver.jacobiSweep(sys, iterate);
+    else solver.gaussSeidelSweep(sys, iterate, scale);
+  }
+  return iterate.radiosity;
+}
+
+// The solution by LAPACK is of the matrix before its 16 bits: those weigh 2e-4 a factor at most, with either sign, and every
+// bounce weighs less. Half of it holds with room; a wrong triangle or band is off by per cents.
+for (const method of ["jacobi", "gauss-seidel", "southwell"]) {
+  test(`${method} finds what LAPACK finds`, () => {
+    const error = relativeError(solve(method), truth.solved);
+    assert.ok(error < 0.5 * quantised, `off by ${error}`);
+  });
+}
+
+// A closed room of K patches that see each other alike, F_ij = 1/K with itself: B = E / (1 - rho), whatever F.
+test("the furnace: B = E / (1 - rho) by every solver", () => {
+  const size = 12, area = new Float32Array(size).fill(2);
+  const begin = Uint32Array.from({ length: size + 1 }, (_, i) => i * size);
+  const column = Uint16Array.from({ length: size * size }, (_, k) => k % size);
+  const furnace = {
+    factors: { size, begin, column, value: new Float32Array(size * size).fill(1 / size), diagonal: new Float32Array(size).fill(1 / size), area },
+    emission: Float32Array.from({ length: size * 3 }, (_, k) => 1 + (k % 3)),
+    reflectance: new Float32Array(size * 3).fill(0.5),
+    more: new Float32Array(size * 3),
+  };
+  for (const method of ["jacobi", "gauss-seidel", "southwell"]) {
+    solve(method, furnace).forEach((b, k) => {
+      // 1/12 in 32 bits sums to 1 within 12 roundings, doubled by the bounces; Southwell stops with what is left unsent.
+      assert.ok(Math.abs(b - 2 * (1 + (k % 3))) < 1e-5, `${method}: B = ${b}`);
+    });
+  }
+});
+
+test("Jacobi's residuals are the history of the program", () => {
+  let iterate = solver.fromEmission(system);
+  truth.history.slice(0, 8).forEach((told, n) => {
+    const gathered = solver.irradianceOf(system, iterate.radiosity);
+    const residual = solver.residual(system, iterate.radiosity, gathered);
+    assert.ok(Math.abs(residual - told) < 5 * quantised * told, `sweep ${n}: ${residual}, the program ${told}`);
+    iterate = solver.jacobiSweep(system, iterate, gathered);
+  });
+});
+
+test("Southwell's first shot is the lamp's light, and what waits is its residual", () => {
+  const state = solver.southwellStart(system);
+  const lamp = data.emission.indexOf(Math.max(...data.emission));
+  assert.ok(solver.southwellShot(system, state));
+  assert.ok(state.sent[lamp] > 0 && state.sent.filter((x) => x > 0).length === 3);
+  const gathered = solver.irradianceOf(system, state.sent);
+  const residual = solver.residual(system, state.sent, gathered);
+  // Two ways to the same number: kept as shots are made, and a product of the whole matrix.
+  assert.ok(Math.abs(solver.southwellResidual(system, state) - residual) < 1e-9);
+});
+
+function session() {
+  const materials = { emission: data.emission, reflectance: data.reflectance, sky: [1, 1, 1] };
+  const load = { stored, order: null, materials, irradiance: unknownMeans(data, data.irradiance), sky: dark, shared: false };
+  return new Session(load);
+}
+
+test("the stored light is that of the stored form factors", () => {
+  assert.ok(session().loaded.agreement < quantised);
+});
+
+test("a lamp of twice the power is solved for at once; new reflectances to 1e-3", () => {
+  const states = data.header.materials.map(({ reflectance, emission }) => ({ reflectance, emission: emission.map((x) => 2 * x) }));
+  const doubled = withMaterials(data, states);
+  const lamp = session().relight({ ...doubled, sky: [1, 1, 1] }, 1000);
+  assert.ok(lamp.sweeps <= 2, `${lamp.sweeps} sweeps`); // the start is right but for the 16 bits
+  assert.ok(relativeError(lamp.irradiance, truth.irradiance.map((x) => 2 * x)) < quantised);
+
+  const reflectance = Float32Array.from(data.reflectance, (x) => 0.6 * x);
+  const relit = session().relight({ emission: data.emission, reflectance, sky: [1, 1, 1] }, 1000);
+  const expected = solve("gauss-seidel", { ...system, reflectance });
+  const radiosity = radiosityOf({ emission: data.emission, reflectance, irradiance: relit.irradiance });
+  assert.ok(relit.converged);
+  for (let k = 0; k < expected.length; ++k) {
+    assert.ok(Math.abs(radiosity[k] - expected[k]) <= 1e-3 * expected[k], `B[${k}] = ${radiosity[k]}, not ${expected[k]}`);
+  }
+});
+
+test("a ray finds the triangle that a search of all of them finds", () => {
+  const tree = new TriangleTree(data.position, data.patchTriangle);
+  const alone = Array.from({ length: data.trianglePatch.length }, (_, t) =>
+    new TriangleTree(data.position, data.patchTriangle.subarray(3 * t, 3 * t + 3)));
+  const middle = [0, 1, 2].map((axis) => {
+    const along = data.position.filter((_, k) => k % 3 === axis);
+    return (Math.min(...along) + Math.max(...along)) / 2;
+  });
+  let hits = 0;
+  for (let n = 0; n < 60; ++n) {
+    const direction = [Math.sin(n), Math.cos(1.7 * n), Math.sin(2.3 * n + 1)]; // all about
+    const from = middle.map((x, axis) => x + 0.2 * Math.sin(5 * n + axis));
+    const nearest = Math.min(...alone.map((one) => one.cast(from, direction)?.distance ?? Infinity));
+    const hit = tree.cast(from, direction);
+    assert.equal(hit?.distance ?? Infinity, nearest);
+    if (hit) ++hits;
+  }
+  assert.ok(hits > 20);
+});
+
+test("damaged data are refused with a line that says what", () => {
+  assert.throws(() => readContainer(new ArrayBuffer(40)), /do not begin with RADPAGE1.*radiosity view/);
+  const header = JSON.stringify({ patches: 1, unknowns: 1, arrays: { position: { type: "u8", offset: 0, length: 4 } } });
+  const bytes = new TextEncoder().encode(`RADPAGE1\0\0\0\0\0\0\0\0${header}`);
+  new DataView(bytes.buffer).setUint32(8, header.length, true);
+  assert.throws(() => readContainer(bytes.buffer), /'position' is of type u8, f32 is needed/);
+});
