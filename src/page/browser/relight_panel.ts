@@ -131,6 +131,7 @@ export class RelightPanel {
   private changed(): void {
     this.onChange();
     this.sayCommand();
+    element("relight-facts").dataset["state"] = "solving";
     this.viewer.relight();
   }
 
@@ -158,9 +159,10 @@ export class RelightPanel {
   private sayRelit(light: Relighting): void {
     const facts = element("relight-facts");
     const work = `${light.sweeps} sweep${light.sweeps === 1 ? "" : "s"} in ${Math.ceil(light.milliseconds)} ms`;
-    const words = light.converged ? `Solved: ${work}; the last changed less than ${light.change.toExponential(1)} of the mean.`
+    const solved = light.finished && light.converged;
+    const words = solved ? `Solved: ${work}; the last changed less than ${light.change.toExponential(1)} of the mean.`
       : light.finished ? `Not converged after ${work}: this room keeps nearly all its light.` : `Solving: ${work}.`;
-    facts.dataset["state"] = light.converged ? "solved" : light.finished ? "failed" : "solving";
+    facts.dataset["state"] = solved ? "solved" : light.finished ? "failed" : "solving";
     facts.dataset["milliseconds"] = String(light.milliseconds);
     const { limited } = this.viewer;
     facts.textContent = limited > 0 ? `${words} ${limited} textured patches are held at a reflectance of 1.` : words;
