@@ -147,7 +147,8 @@ export class ConvergePanel {
     const frame = this.frames[this.shown];
     const unit = UNITS[this.method];
     element("iteration-text").textContent = frame ? `${unit} ${frame.index}` : "–";
-    slider.setAttribute("aria-valuetext", frame ? `${unit} ${frame.index}, residual ${frame.residual.toExponential(2)}` : "no run yet");
+    slider.setAttribute("aria-valuetext",
+      frame ? `${unit} ${frame.index}, residual ${frame.residual.toExponential(2)}` : "no run yet");
     const told = this.told();
     drawPlot(element("plot"), this.frames.map((f) => ({ x: f.rows, y: f.residual })), told, this.shown,
              "rows of the matrix used, over their number");

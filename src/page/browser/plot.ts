@@ -26,14 +26,16 @@ export function drawPlot(into: HTMLElement, run: Point[], told: Point[], now: nu
     TOP + ((high - Math.log10(Math.max(v, 10 ** low))) / (high - low)) * (HEIGHT - TOP - BOTTOM);
   const last = run[run.length - 1];
   const svg = shape("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img",
-    "aria-label": `Residual against ${axis}` + (last ? `: now ${last.y.toExponential(1)} after ${last.x.toFixed(1)}` : "") });
+    "aria-label": `Residual against ${axis}` +
+      (last ? `: now ${last.y.toExponential(1)} after ${last.x.toFixed(1)}` : "") });
   const every = Math.ceil((high - low) / 5);
   for (let d = high; d >= low; d -= every) {
     svg.append(shape("line", { class: "grid", x1: LEFT, x2: WIDTH - RIGHT, y1: y(10 ** d), y2: y(10 ** d) }),
       shape("text", { x: LEFT - 5, y: y(10 ** d) + 4, "text-anchor": "end" }, d === 0 ? "1" : `1e${d}`));
   }
   svg.append(shape("text", { x: LEFT, y: HEIGHT - BOTTOM + 14 }, "0"),
-    shape("text", { x: WIDTH - RIGHT, y: HEIGHT - BOTTOM + 14, "text-anchor": "end" }, String(Math.round(most * 10) / 10)),
+    shape("text", { x: WIDTH - RIGHT, y: HEIGHT - BOTTOM + 14, "text-anchor": "end" },
+      String(Math.round(most * 10) / 10)),
     shape("text", { x: (LEFT + WIDTH) / 2, y: HEIGHT - 4, "text-anchor": "middle" }, axis),
     shape("polyline", { class: "run", points: run.map((p) => `${x(p.x)},${y(p.y)}`).join(" ") }));
   for (const p of told) svg.append(shape("circle", { class: "told", cx: x(p.x), cy: y(p.y), r: 3.5 }));

@@ -15,7 +15,8 @@ export function on(id: string, event: string, act: () => void): void {
 }
 
 /** An element with attributes and children; texts are never read as markup. */
-export function make(tag: string, attributes: Record<string, string> = {}, ...children: (Node | string)[]): HTMLElement {
+export function make(
+  tag: string, attributes: Record<string, string> = {}, ...children: (Node | string)[]): HTMLElement {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
   made.append(...children);
