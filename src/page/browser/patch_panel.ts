@@ -70,6 +70,7 @@ export function setUpPatch(viewer: Viewer): void {
   };
   viewer.listen("picks", showPicks);
   viewer.listen("light", refresh);
+  viewer.listen("rows", refresh); // and not the fields: a number may be being typed
   for (const name of NAMES) {
     const field = input(`pick-${name}`);
     field.max = String(viewer.data.header.patches - 1);

@@ -66,7 +66,7 @@ export class Viewer {
     this.refreshLight();
   }
 
-  /** `event`: "light", "view" (how it is shown), "picks". */
+  /** `event`: "light", "view" (how it is shown), "picks", "rows" (of picks, which come later). */
   listen(event: string, act: () => void): void {
     (this.listeners[event] ??= []).push(act);
   }
@@ -140,7 +140,7 @@ export class Viewer {
       picked.row = row!;
       if (this.picks[name] !== picked) return;
       this.refreshValues();
-      this.tell("picks");
+      this.tell("rows");
     });
   }
 
