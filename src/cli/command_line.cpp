@@ -321,6 +321,12 @@ void addFinalGatherOption(CLI::App& app, Request& r) {
       ->group("Picture");
 }
 
+void addVisibleOnlyOption(CLI::App& app, Request& r) {
+  app.add_flag("--visible-only", r.visible_only,
+               "A lit mesh has elements where the camera sees it; elsewhere what the patches have")
+      ->group("Elements");
+}
+
 /// Options that choose the drawn quantity of the matrix's stages, and its colours.
 void addShowOptions(CLI::App& app, Request& r) {
   addCreaseOption(app, r);
@@ -391,6 +397,7 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
   if (command == Command::solve || command == Command::render) addLightmapOptions(*sub, r);
   if (command == Command::render) {
     addFinalGatherOption(*sub, r);
+    addVisibleOnlyOption(*sub, r);
     addRenderOptions(*sub, r);
     addShowOptions(*sub, r);
   }

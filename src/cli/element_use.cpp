@@ -31,6 +31,22 @@ const char* toleranceCure(const Request& request, const OutputSet& files) {
   return files.has(Format::results) ? "add --elements on" : "leave it out";
 }
 
+/// A picture has elements of what it shows in any case.
+void checkVisibleOnly(const Request& request, const ElementUse& use, const OutputSet& files) {
+  if (!request.visible_only) return;
+  const char* why = nullptr;
+  if (!files.has(Format::glb)) {
+    why = "it is about a lit mesh; name one with -o FILE.glb, or leave it out";
+  } else if (!use.shown) {
+    why = "no elements are evaluated here; leave one of the options out";
+  } else if (!request.lightmap.empty()) {
+    why = "a lightmap has light everywhere; leave one of the two out";
+  } else if (request.elements.value_or(false) && files.has(Format::results)) {
+    why = "a results file keeps elements of all patches; leave out --elements on";
+  }
+  if (why != nullptr) throw InputError(fmt::format("--visible-only: {}", why));
+}
+
 }  // namespace
 
 ElementUse elementUse(const Request& request, const OutputSet& files) {
@@ -40,6 +56,8 @@ ElementUse elementUse(const Request& request, const OutputSet& files) {
   use.shown = request.elements.value_or(true) && of_light && drawsLight(files);
   use.all =
       of_light && ((use.shown && showsAllLight(files)) || (asked && files.has(Format::results)));
+  checkVisibleOnly(request, use, files);
+  if (request.visible_only) use.all = false;
   if (use.shown || use.all) return use;
   if (asked) throw InputError("--elements on: " + whyNone(request, files));
   if (request.element_tolerance) {

@@ -77,6 +77,7 @@ struct Request {
   std::optional<int> lightmap_size;
   std::optional<std::string> lightmap_shows;
   bool final_gather = false;
+  bool visible_only = false;
   bool flat = false;
   std::string backs = "hide";
   std::string show;

@@ -81,7 +81,7 @@ std::vector<std::byte> pageData(Pipeline& pipeline, const SurfaceLight& light,
   const FormFactors& factors = pipeline.factors();
   const PatchColours colours = patchColours(pipeline.materials(), solution);
   const FactorCodes codes = encodeFactors(matrix, progress);
-  const Vec3 origin = floatOrigin(mesh);
+  const Vec3 origin = floatOrigin(mesh.vertices);
   Container container;
   describeScene(container.header(), scene, mesh, colours, options);
   container.header()["origin"] = {origin.x, origin.y, origin.z};

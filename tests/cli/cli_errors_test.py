@@ -85,6 +85,12 @@ class BadArguments(CliTest):
                 (["solve", "box.obj", "--elements", "maybe"], ["--elements", "maybe"]),
                 (["solve", "box.obj", "--element-tolerance", "2", "-o", "p.glb"],
                  ["--element-tolerance", "0.5"]),
+                (["render", "box.obj", "--visible-only", "-o", "p.png"],
+                 ["--visible-only", "-o FILE.glb"]),
+                (["render", "box.obj", "--visible-only", "--elements", "off", "-o", "p.glb"],
+                 ["--visible-only", "no elements"]),
+                (["render", "box.obj", "--visible-only", "--elements", "on", "-o", "p.glb", "-o",
+                  "p.h5"], ["--visible-only", "leave out --elements on"]),
                 (["factors", "box.obj", "--elements", "on"], ["--elements"])]:
             with self.subTest(arguments=arguments):
                 self.refuse(*arguments, "--quiet", words=words)

@@ -141,6 +141,18 @@ class Subcommands(CliTest):
         drawn = self.report("render", "e.h5", "--width", "40", "-o", "r.glb")
         self.assertEqual(drawn["lit_mesh"], fine["lit_mesh"])
 
+    def test_a_lit_mesh_may_have_elements_only_where_the_camera_sees_it(self):
+        self.run_program("solve", "box.obj", *SMALL, "-o", "e.h5")
+        seen = ["render", "e.h5", "--width", "40", "--samples", "1", "--camera",
+                "eye=.5,.5,.9;target=.5,.5,0"]
+        whole = self.report(*seen, "-o", "all.glb")
+        part = self.report(*seen, "--visible-only", "-o", "seen.glb", "-o", "seen.png")
+        self.assertLess(part["elements"]["direct_vertices"], whole["elements"]["direct_vertices"])
+        self.assertLess(part["lit_mesh"]["triangles"], whole["lit_mesh"]["triangles"])
+        self.run_program(*seen, "-o", "picture.png")
+        self.assertEqual((self.folder / "seen.png").read_bytes(),
+                         (self.folder / "picture.png").read_bytes())
+
     def test_a_results_file_keeps_elements_where_asked_for(self):
         self.assertNotIn("elements", self.report("solve", "box.obj", *SMALL, "-o", "e.h5"))
         self.report("solve", "e.h5", "--elements", "on")
