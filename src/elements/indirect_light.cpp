@@ -1,7 +1,9 @@
 #include "elements/indirect_light.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "base/hash.h"
 
@@ -19,6 +21,10 @@ std::uint64_t placeSeed(const Vec3& at, std::uint64_t seed) {
   return bits ^ (bits >> 31);
 }
 
+double total(std::span<const double> values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
 }  // namespace
 
 void ReflectedLight::addSource(const RayEnd& end, std::span<double> sum) const {
@@ -31,25 +37,41 @@ void ReflectedLight::addSource(const RayEnd& end, std::span<double> sum) const {
 
 double ReflectedLight::irradiance(const SurfacePoint& point, const ElementLights* /*lights*/,
                                   std::span<double> out) const {
+  double spread = 0;
+  const double error = look(point, set_, out, spread);
+  if (more_ == nullptr || error < 0 || spread <= uneven_) return error;
+  ++repeated_;
+  std::fill(out.begin(), out.end(), 0.0);
+  return look(point, *more_, out, spread);
+}
+
+/// `spread`: the standard error of as many random rays over their mean.
+double ReflectedLight::look(const SurfacePoint& point, const HemisphereSet& set,
+                            std::span<double> out, double& spread) const {
   thread_local std::vector<RayEnd> ends;
   thread_local std::vector<double> first;
-  ends.resize(set_.rays());
+  ends.resize(set.rays());
   first.assign(out.size(), 0.0);
   const std::uint64_t bits = placeSeed(point.place + point.normal, seed_);
   const std::size_t number = bits % HemisphereSet::kSets;
   const double turn = 2 * std::numbers::pi * double(bits >> 11) * 0x1p-53;
-  rays_.look({point.position, point.normal, surface_.owners[point.owners]}, set_, number, turn,
+  rays_.look({point.position, point.normal, surface_.owners[point.owners]}, set, number, turn,
              ends);
   std::size_t counted = 0;
   std::size_t counted_first = 0;
   std::size_t behind = 0;
+  double squares = 0;
   for (std::size_t k = 0; k < ends.size(); ++k) {
     if (ends[k].patch == RayEnd::kBlack) ++behind;
     if (ends[k].patch == RayEnd::kOwn) continue;
-    const bool in_first = set_.isFirst(number, k);
+    const bool in_first = set.isFirst(number, k);
     ++counted;
     counted_first += in_first ? 1 : 0;
-    addSource(ends[k], in_first ? std::span<double>(first) : out);
+    const std::span<double> sum = in_first ? std::span<double>(first) : out;
+    const double before = total(sum);
+    addSource(ends[k], sum);
+    const double brought = total(sum) - before;
+    squares += brought * brought;
   }
   if (counted == 0 || 2 * behind > ends.size()) return -1;
   double error = 0;
@@ -62,6 +84,10 @@ double ReflectedLight::irradiance(const SurfacePoint& point, const ElementLights
     }
     out[b] = mean;
   }
+  const double mean = total(out);
+  spread = mean > 0 ? std::sqrt(std::max(0.0, squares / double(counted) / (mean * mean) - 1) /
+                                double(counted))
+                    : 0.0;
   return error * error;
 }
 

@@ -1,6 +1,8 @@
 // Light that surfaces reflect, and that of the sky, at points, by rays.
 #pragma once
 
+#include <atomic>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -13,12 +15,20 @@ namespace radiosity {
 
 /// The mean over cosine-distributed rays of what leaves the surfaces where they end. Rays that end
 /// on what they left do not count. A point more than half of whose rays end on black backs lies
-/// behind something.
+/// behind something. Where few rays bring most of the light, as through a door, it is found anew by
+/// more of them.
 class ReflectedLight : public FieldLight {
  public:
+  /// All are kept by reference.
   ReflectedLight(const ElementSurface& surface, const PointRays& rays, const HemisphereSet& set,
                  const SourceMap& sources, std::span<const double> sky, std::uint64_t seed)
       : surface_(surface), rays_(rays), set_(set), sources_(sources), sky_(sky), seed_(seed) {}
+  /// Takes `more` rays, kept by reference, where the standard error that as many random rays would
+  /// have is more than `uneven` of their mean.
+  void repeat(const HemisphereSet& more, double uneven) {
+    more_ = &more;
+    uneven_ = uneven;
+  }
 
   std::shared_ptr<const ElementLights> lightsOf(const ElementShape& /*shape*/,
                                                 const ElementLights* /*parent*/) const override {
@@ -27,15 +37,23 @@ class ReflectedLight : public FieldLight {
   double irradiance(const SurfacePoint& point, const ElementLights* lights,
                     std::span<double> out) const override;
 
+  /// Points at which there were more rays.
+  std::size_t repeated() const { return repeated_; }
+
  private:
   void addSource(const RayEnd& end, std::span<double> sum) const;
+  double look(const SurfacePoint& point, const HemisphereSet& set, std::span<double> out,
+              double& spread) const;
 
   const ElementSurface& surface_;
   const PointRays& rays_;
   const HemisphereSet& set_;
+  const HemisphereSet* more_ = nullptr;
+  double uneven_ = 0;
   const SourceMap& sources_;
   std::span<const double> sky_;  ///< radiance a band, or empty
   std::uint64_t seed_;
+  mutable std::atomic<std::size_t> repeated_ = 0;
 };
 
 }  // namespace radiosity
