@@ -308,7 +308,8 @@ void addElementOptions(CLI::App& app, Request& r) {
   add(app, "Elements", "--element-tolerance", r.element_tolerance, "SHARE",
       fmt::format(
           "Elements are cut where interpolation misses by more than this share of the light "
-          "there, 1e-4 to 0.5 (default {})",
+          "there, and have more rays where those of indirect light are spread by seven times that; "
+          "1e-4 to 0.5 (default {})",
           defaults.tolerance));
 }
 
