@@ -1,0 +1,45 @@
+// The options of the command line, a group each: what is typed goes into the request.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "cli/request.h"
+
+namespace radiosity::cli {
+
+// Each helper names the value as help shows it, and gives it one argument a time, so that
+// "-o a.png scene.obj" does not take the scene for an output.
+template <class Value>
+CLI::Option* add(CLI::App& app, const char* group, const std::string& names, Value& value,
+                 const char* placeholder, const std::string& description) {
+  CLI::Option* option = app.add_option(names, value, description);
+  option->group(group)->option_text(placeholder)->allow_extra_args(false);
+  return option;
+}
+
+// stage_options.cpp
+void addSceneOptions(CLI::App& app, Request& r);
+void addMeshOptions(CLI::App& app, Request& r);
+void addFactorOptions(CLI::App& app, Request& r);
+void addSolveOptions(CLI::App& app, Request& r);
+void addGatherOptions(CLI::App& app, Request& r);
+/// Options shared with the form factors.
+void addEyeOptions(CLI::App& app, Request& r);
+
+// picture_options.cpp
+void addCameraOption(CLI::App& app, Request& r);
+/// With the picture's size.
+void addCameraOptions(CLI::App& app, Request& r);
+/// `shown_in`: a sentence's begin, "The page first shows".
+void addExposureOption(CLI::App& app, Request& r, const char* shown_in);
+void addCreaseOption(CLI::App& app, Request& r);
+void addRenderOptions(CLI::App& app, Request& r);
+void addLightmapOptions(CLI::App& app, Request& r);
+void addElementOptions(CLI::App& app, Request& r);
+void addFinalGatherOption(CLI::App& app, Request& r);
+void addVisibleOnlyOption(CLI::App& app, Request& r);
+/// Options that choose the drawn quantity of the matrix's stages, and its colours.
+void addShowOptions(CLI::App& app, Request& r);
+
+}  // namespace radiosity::cli

@@ -1,0 +1,184 @@
+// Options of the stages, from the scene to gathered light.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/options.h"
+#include "cli/validators.h"
+#include "radiosity/names.h"
+
+namespace radiosity::cli {
+
+void addSceneOptions(CLI::App& app, Request& r) {
+  const SceneOptions defaults;
+  const auto reading = [&app, &r](const std::string& name, auto assign, const char* placeholder,
+                                  const std::string& description) {
+    return app
+        .add_option_function<std::string>(
+            name,
+            [&r, name, assign](const std::string& text) {
+              assign(text);
+              nameOption(name, [&r] { r.scene.validate(); });
+              r.reading_options.push_back(name);
+            },
+            description)
+        ->group("Scene")
+        ->option_text(placeholder);
+  };
+  reading(
+      "--unit", [&r](const std::string& t) { r.scene.unit = t; }, "UNIT",
+      "Unit of the scene file: mm, cm, m, in or ft (default m)")
+      ->check(CLI::IsMember({"mm", "cm", "m", "in", "ft"}));
+  reading(
+      "--kd-is", [&r](const std::string& t) { r.scene.kd_is_srgb = t == "srgb"; }, "SPACE",
+      "How Kd and base colours are written: linear or srgb (default linear)")
+      ->check(CLI::IsMember({"linear", "srgb"}));
+  reading(
+      "--default-reflectance",
+      [&r](const std::string& t) { r.scene.default_reflectance = std::stod(t); }, "RHO",
+      fmt::format("Reflectance of faces without a material, 0 to 1 (default {})",
+                  defaults.default_reflectance))
+      ->check(CLI::Number);
+  reading(
+      "--textures", [&r](const std::string& t) { r.scene.textures = t == "on"; }, "on|off",
+      "Average textures over each patch (on, default) or use the material's factor alone")
+      ->check(CLI::IsMember({"on", "off"}));
+  add(app, "Scene", "--set", r.scene.set, "NAME.PROPERTY=VALUE",
+      "Override a surface, material or object: reflectance (0 to 1), emission (exitance, W/m^2) "
+      "or radiance (W/m^2/sr), which replace a texture, or tint, which keeps it and multiplies; "
+      "one "
+      "number or three (R,G,B). May be repeated");
+  app.add_option_function<std::string>(
+         "--sky", [&r](const std::string& text) { r.scene.sky = parseSky(text); },
+         "Light an open scene from every direction in which nothing stands, also from below: "
+         "radiance, W/m^2/sr; one number or R,G,B (default 0). Pictures show it, opaque, where "
+         "nothing is hit")
+      ->group("Scene")
+      ->option_text("RADIANCE");
+  add(app, "Scene", "--materials", r.scene.materials_file, "FILE.json",
+      R"(Overrides from a file: {"NAME": {"reflectance": [R,G,B], "emission": [R,G,B]}})");
+  add(app, "Scene", "--one-sided", r.scene.one_sided, "NAME|all",
+      "Make surfaces one-sided: black from behind, but they block. May be repeated");
+  add(app, "Scene", "--two-sided", r.scene.two_sided, "NAME|all",
+      "Make surfaces two-sided (applied after --one-sided). May be repeated");
+}
+
+void addMeshOptions(CLI::App& app, Request& r) {
+  const MeshOptions defaults;
+  CLI::Option* patches = add(app, "Mesh", "--patches", r.patches, "N",
+                             fmt::format("About how many patches (default {}); where a scene has "
+                                         "more planar pieces than that, they share as many "
+                                         "unknowns",
+                                         defaults.patches))
+                             ->check(wholeNumber());
+  CLI::Option* max_edge = add(app, "Mesh", "--max-edge", r.max_edge, "METRES",
+                              "Longest edge of a patch (default: derived from --patches)");
+  add(app, "Mesh", "--weld", r.weld, "FRACTION",
+      fmt::format("Points closer than this fraction of the scene's diagonal are one; 0 to 0.01 "
+                  "(default {})",
+                  defaults.weld));
+  CLI::Option* faces = app.add_flag_function(
+                              "--faces-as-patches,!--no-faces-as-patches",
+                              [&r](std::int64_t count) { r.faces_as_patches = count > 0; },
+                              "Patch k is face k of the file: nothing is welded, cut or re-ordered")
+                           ->group("Mesh");
+  patches->excludes(max_edge)->excludes(faces);
+  max_edge->excludes(faces);
+}
+
+void addFactorOptions(CLI::App& app, Request& r) {
+  const FormFactorOptions defaults;
+  add(app, "Form factors", "--method", r.method, "METHOD",
+      "exact (area to area, hidden parts clipped off), rays (area to area, by counting rays), "
+      "hemicube (seen from one point a patch), or auto (default): exact or rays, by what a sample "
+      "of rows takes; the report says why")
+      ->check(CLI::IsMember(namesIn(kMethodNames)));
+  // Where results are compared, --tolerance is about the difference.
+  const bool compares = app.get_name() == commandName(Command::compare);
+  const std::string of_pictures =
+      app.get_name() != commandName(Command::render)
+          ? ""
+          : fmt::format("; where elements are shown and no form factors are written, {} by default",
+                        FormFactorOptions::kSourceTolerance);
+  add(app, "Form factors", compares ? "--factor-tolerance" : "--tolerance", r.tolerance, "FRACTION",
+      fmt::format("exact: error aimed at for an occluded pair, relative to the mean form factor "
+                  "1/N (default {}); rays: relative error of a row, L2 (default {}, or what {:g} "
+                  "million rays reach); 1e-12 to 0.1{}",
+                  FormFactorOptions::kExactTolerance, FormFactorOptions::kRayTolerance,
+                  1e-6 * FormFactorOptions::kMostRaysUnasked, of_pictures));
+  add(app, "Form factors", "--closure", r.closure, "off|report|enforce",
+      "In a closed scene say how far row sums are from 1 (report, default), or make them 1 by the "
+      "smallest change to occluded pairs (enforce); rays: rows are closed unless off")
+      ->check(CLI::IsMember(namesIn(kClosureNames)));
+  add(app, "Form factors", "--resolution", r.resolution, "PIXELS",
+      fmt::format("hemicube: edge of the top face; even, 16 to 4096 (default {})",
+                  defaults.resolution));
+  add(app, "Form factors", "--seed", r.seed, "N",
+      fmt::format("rays: seed of their directions; hemicube: of the random turns (default {})",
+                  defaults.seed))
+      ->check(wholeNumber());
+  app.add_flag_function(
+         "--symmetrize,!--no-symmetrize", [&r](std::int64_t count) { r.symmetrize = count > 0; },
+         "hemicube: merge both estimates of each pair (A_i F_ij = A_j F_ji), then restore the row "
+         "sums")
+      ->group("Form factors");
+  add(app, "Form factors", "--near", r.near_pairs, "exact|off",
+      "hemicube: area-to-area values times the visible fraction for pairs closer than about two "
+      "patch sizes (default: off)")
+      ->check(CLI::IsMember({"exact", "off"}));
+  add(app, "Form factors", "--precision", r.precision, "auto|single|double",
+      "Of the stored form factors (default auto: single unless --tolerance is below 1e-6); sums "
+      "are "
+      "always double")
+      ->check(CLI::IsMember({"auto", "single", "double"}));
+  add(app, "Form factors", "--memory-limit", r.memory_limit, "SIZE",
+      "Keep form factors that need more memory in a nameless file beside the output, and refuse "
+      "those that still do not fit: bytes, or 512M, 2G, ... (default: no limit)");
+  app.add_flag_function(
+         "--resume,!--no-resume", [&r](std::int64_t count) { r.resume = count > 0; },
+         fmt::format("Keep rows in OUT.h5.rows as they are computed, and go on from those that a "
+                     "run which was broken off has left; --no-resume: begin anew (default: resume, "
+                     "and keep rows where they are foreseen to take {:g} s; given, always)",
+                     JournalOptions().from_seconds))
+      ->group("Form factors");
+}
+
+void addSolveOptions(CLI::App& app, Request& r) {
+  const SolveOptions defaults;
+  add(app, "Solve", "--solver", r.solver, "NAME", "gauss-seidel (default) or jacobi")
+      ->check(CLI::IsMember(namesIn(kSolverNames)));
+  add(app, "Solve", "--solve-tolerance", r.solve_tolerance, "RATIO",
+      fmt::format("Stop when the largest residual is at most this times the largest emission "
+                  "(default {})",
+                  defaults.tolerance));
+  add(app, "Solve", "--max-iterations", r.max_iterations, "N",
+      fmt::format("Sweeps at most; then exit code 1 (default {})", defaults.max_iterations));
+}
+
+void addGatherOptions(CLI::App& app, Request& r) {
+  const GatherOptions defaults;
+  add(app, "Gather", "--at", r.gather_at, "vertices|patches",
+      "Where the eyes stand: at vertices (default), one for each smooth side, so that radiosity is "
+      "interpolated over patches; or at the centres of patches, one radiosity each")
+      ->check(CLI::IsMember(namesIn(kGatherAtNames)));
+  add(app, "Gather", "--passes", r.passes, "K",
+      fmt::format("Passes at most: pass k adds the k-th bounce (default {})", defaults.passes));
+  add(app, "Gather", "--gather-tolerance", r.gather_tolerance, "RATIO",
+      fmt::format("Stop when further passes add at most this times the largest emission (default "
+                  "{})",
+                  defaults.tolerance));
+  add(app, "Gather", "--crease", r.crease, "DEGREES",
+      fmt::format("A vertex looks once per side that bends less (default {})", defaults.crease));
+}
+
+void addEyeOptions(CLI::App& app, Request& r) {
+  const GatherOptions defaults;
+  add(app, "Gather", "--resolution", r.resolution, "PIXELS",
+      fmt::format("Edge of the hemicube's top face; even, 16 to 4096 (default {})",
+                  defaults.resolution));
+  add(app, "Gather", "--seed", r.seed, "N",
+      fmt::format("Seed of each hemicube's random turn (default {})", defaults.seed))
+      ->check(wholeNumber());
+}
+
+}  // namespace radiosity::cli
