@@ -307,9 +307,10 @@ double LightSources::wantedCorners() const {
 FieldSummary LightSources::onePass(const SourceMap& sources, int rays, double tolerance,
                                    bool wanted_only) {
   const HemisphereSet set(std::size_t(rays), options_.seed);
-  // Only of what is shown, and where all points might have so many.
+  // Only of what is shown, and so many that all points might have them for a fourth of most_rays.
   const int more_rays =
-      wanted_only ? raysFor(kTestedShare * wantedCorners(), std::min(kMoreRays * rays, 4096)) : 0;
+      wanted_only ? raysFor(4 * kTestedShare * wantedCorners(), std::min(kMoreRays * rays, 4096))
+                  : 0;
   std::optional<HemisphereSet> more;
   ReflectedLight light(indirect_surface_, rays_, set, sources, materials_.sky, options_.seed);
   if (more_rays > rays) {
