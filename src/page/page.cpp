@@ -6,6 +6,7 @@
 
 #include "base/figure_text.h"
 #include "page/container.h"
+#include "page/eyes.h"
 #include "page/factor_codes.h"
 #include "page/header.h"
 #include "page/html.h"
@@ -88,6 +89,7 @@ std::vector<std::byte> pageData(Pipeline& pipeline, const SurfaceLight& light,
   describeSolution(container.header(), factors, solution, pipeline.options());
   describe(container.header(), codes.quantisation);
   addSurfaces(mesh, options.crease, origin, container);
+  addEyes(mesh, options.crease, origin, container);
   addPatches(mesh, colours, origin, container);
   addFactors(factors, matrix, codes, container);
   report.element_triangles = addElements(mesh, light, options.crease, origin, container);

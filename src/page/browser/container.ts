@@ -53,6 +53,9 @@ export interface PageData {
   shadingPatch: Uint32Array;
   shadingWeight: Float32Array;
   edge: Uint32Array; // pairs of positions
+  eyePosition: Float32Array; // G*3: eyes of gathering, the first G shading vertices; empty: none
+  eyeNormal: Float32Array; // G*3; 0: does not look
+  eyeAxis: Float32Array; // G*3, along its hemicube's first side
   normal: Float32Array; // N*3
   centroid: Float32Array; // N*3
   area: Float32Array; // N, m^2
@@ -143,6 +146,8 @@ function check(data: PageData): void {
   if (data.order) requireLength("order", data.order, k);
   requireLength("shading_patch", data.shadingPatch, data.shadingBegin[vertices]!);
   requireLength("shading_weight", data.shadingWeight, data.shadingPatch.length);
+  if (data.eyePosition.length > 3 * vertices) requireLength("eye_position", data.eyePosition, 3 * vertices);
+  for (const name of ["eyeNormal", "eyeAxis"] as const) requireLength(name, data[name], data.eyePosition.length);
   requireLength("element_light", data.elementLight, data.elementPosition.length);
   requireBelow("patch_triangle", data.patchTriangle, data.position.length / 3);
   requireBelow("triangle_patch", data.trianglePatch, n);
@@ -161,6 +166,7 @@ export function readContainer(buffer: ArrayBuffer): PageData {
   const header = readHeader(buffer);
   const f32 = (name: string) => view(buffer, header, name, "f32");
   const u32 = (name: string) => view(buffer, header, name, "u32");
+  const optional = (name: string) => (name in header.arrays ? f32(name) : new Float32Array(0));
   const data: PageData = {
     header,
     position: f32("position"),
@@ -171,6 +177,9 @@ export function readContainer(buffer: ArrayBuffer): PageData {
     shadingPatch: u32("shading_patch"),
     shadingWeight: f32("shading_weight"),
     edge: u32("edge"),
+    eyePosition: optional("eye_position"),
+    eyeNormal: optional("eye_normal"),
+    eyeAxis: optional("eye_axis"),
     normal: f32("normal"),
     centroid: f32("centroid"),
     area: f32("area"),

@@ -1,11 +1,12 @@
 // Keys of the whole page. Single characters act only while the picture, or nothing, has the focus, so
 // that they do not get in the way of typing.
 import type { ConvergePanel } from "./converge_panel";
+import type { GatherPanel } from "./gather_panel";
 import { clearPicks, pickAt } from "./patch_panel";
 import { choose, element, input } from "./ui";
 import type { Viewer } from "./viewer";
 
-export function setUpKeys(viewer: Viewer, converge: ConvergePanel): void {
+export function setUpKeys(viewer: Viewer, converge: ConvergePanel, gather: GatherPanel): void {
   const canvas = element<HTMLCanvasElement>("picture");
   const expose = (by: number) => {
     input("exposure").value = String(Number(input("exposure").value) + by);
@@ -24,6 +25,7 @@ export function setUpKeys(viewer: Viewer, converge: ConvergePanel): void {
     "f": () => viewer.focusPick(),
     " ": () => converge.toggle(),
     ",": () => converge.step(-1),
+    "g": () => gather.toggle(),
     ".": () => converge.step(1),
     "?": () => element<HTMLDialogElement>("help").showModal(),
     "escape": () => clearPicks(viewer),

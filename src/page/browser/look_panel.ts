@@ -13,6 +13,7 @@ const TITLES: Record<Show, string> = {
   "row-sum": "Row sum of form factors",
   "row-error": "Error figure of the row",
   "factors": "Form factor from the picked patch",
+  "difference": "B less the matrix solution's (luminance), W/m²",
 };
 const EXPOSURE_STOPS = 8;
 

@@ -1,6 +1,7 @@
 // The page from its text to what a viewer can use: unpack, check, draw, give the solver its matrix.
 import { readContainer, type PageData } from "./container";
 import { ConvergePanel } from "./converge_panel";
+import { GatherPanel } from "./gather_panel";
 import { setUpKeys } from "./keys";
 import { unpack } from "./load";
 import { setUpLook } from "./look_panel";
@@ -90,15 +91,17 @@ function setUpPanels(viewer: Viewer): void {
   const converge = new ConvergePanel(viewer);
   const relight = new RelightPanel(viewer, () => converge.forget());
   setUpCamera(viewer);
-  setUpKeys(viewer, converge);
+  const gather = new GatherPanel(viewer);
+  setUpKeys(viewer, converge, gather);
   viewer.control.onTap = (x, y, second) => pickAt(viewer, x, y, second);
   on("open-help", "click", () => element<HTMLDialogElement>("help").showModal());
   on("to-stored", "click", () => {
+    gather.forget();
     converge.forget();
     relight.reset();
   });
   viewer.listen("light", () => {
-    const words = { stored: "Light as stored", relit: "Relit", run: converge.moment() };
+    const words = { stored: "Light as stored", relit: "Relit", run: converge.moment(), gathered: gather.moment() };
     element("source").textContent = words[viewer.source];
     element("to-stored").hidden = viewer.source === "stored";
   });

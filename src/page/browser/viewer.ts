@@ -14,9 +14,9 @@ import { makeUniforms, NO_VALUE } from "./shading";
 import { SolverClient, type Relighting } from "./solver_client";
 import { type MarkName, Stage } from "./stage";
 
-export type Show = "light" | "radiosity" | "irradiance" | "row-sum" | "row-error" | "factors";
+export type Show = "light" | "radiosity" | "irradiance" | "row-sum" | "row-error" | "factors" | "difference";
 /** Where the light shown comes from. */
-export type Source = "stored" | "relit" | "run";
+export type Source = "stored" | "relit" | "run" | "gathered";
 
 export interface Picked {
   patch: number;
@@ -46,6 +46,7 @@ export class Viewer {
 
   private readonly tree: TriangleTree;
   private reference: Float32Array | null = null;
+  private solved: PatchLight; // by the matrix: what gathered light is compared with
   private materials: Materials;
   private runs = 0;
   private readonly listeners: Record<string, (() => void)[]> = {};
@@ -54,7 +55,7 @@ export class Viewer {
 
   constructor(readonly data: PageData, canvas: HTMLCanvasElement) {
     this.stored = { emission: data.emission, reflectance: data.reflectance, irradiance: data.irradiance };
-    this.light = this.stored;
+    this.light = this.solved = this.stored;
     this.states = this.storedStates();
     this.materials = materialsOfUnknowns(data, this.stored, this.sky);
     this.meshes = new SceneMeshes(data, this.uniforms);
@@ -129,6 +130,21 @@ export class Viewer {
     this.take(frame.irradiance);
   }
 
+  /** Irradiance of patches, gathered with the materials of `solved`, the matrix solution it is compared with. */
+  showGathered(irradiance: Float32Array, solved: PatchLight): void {
+    this.solved = solved;
+    this.source = "gathered";
+    this.light = { ...solved, irradiance };
+    this.refreshLight();
+  }
+
+  /** Back from gathered light to the matrix solution. */
+  showSolved(solved: PatchLight): void {
+    this.source = solved === this.stored ? "stored" : "relit";
+    this.light = solved;
+    this.refreshLight();
+  }
+
   pick(name: MarkName, patch: number | null): void {
     const picked = patch === null ? null : { patch, row: null as Float32Array | null };
     this.picks[name] = picked;
@@ -198,7 +214,7 @@ export class Viewer {
   refreshValues(): void {
     const now = this.values(this.shown(), this.light);
     const stored = this.values(this.shown(), this.stored);
-    const smooth = this.shown() === "radiosity" || this.shown() === "irradiance";
+    const smooth = ["radiosity", "irradiance", "difference"].includes(this.shown());
     this.meshes.setValues(now, stored, smooth);
     this.refreshView();
   }
@@ -215,6 +231,10 @@ export class Viewer {
       case "row-sum": return ofUnknown(data.rowSum);
       case "row-error": return ofUnknown(data.rowError);
       case "factors": return ofUnknown(this.picks.first?.row ?? null);
+      case "difference": {
+        const solved = luminance(radiosityOf(this.source === "gathered" ? this.solved : this.stored));
+        return luminance(radiosityOf(light)).map((value, i) => value - solved[i]!);
+      }
     }
   }
 
@@ -250,7 +270,7 @@ export class Viewer {
       const least = all.find((value) => value > 0) ?? 1e-6;
       return { low: Math.max(least, high * 1e-4), high };
     }
-    const around = this.shown() === "row-sum";
+    const around = this.shown() === "row-sum" || this.shown() === "difference";
     return { low: around ? all[0]! : Math.min(0, all[0]!), high };
   }
 

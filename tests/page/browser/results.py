@@ -27,6 +27,10 @@ def dense_solution(matrix, emission, reflectance):
 
 def main():
     with h5py.File(sys.argv[1]) as file:
+        if "gather" in file:
+            light = file["gather"]
+            json.dump({"gathered": {name: light[name][()].ravel().tolist() for name in ("irradiance", "position")}}, sys.stdout)
+            return
         light = file["solution"]
         out = {name: light[name][()].ravel().tolist()
                for name in ("emission", "reflectance", "irradiance", "radiosity")}

@@ -45,7 +45,7 @@ install(here, tests);
 mkdirSync(pages, { recursive: true });
 run("npx", ["tsc", "--noEmit"], { cwd: sources, stdio: "inherit" });
 run("node", ["build.mjs", join(folder, "template.html")], { cwd: sources });
-run("npx", ["esbuild", ...["factors", "solver", "session", "container", "light", "load", "bvh"].map((name) => `${name}.ts`), "--bundle",
+run("npx", ["esbuild", ...["factors", "solver", "session", "container", "light", "load", "bvh", "gather_weights", "gather_eyes"].map((name) => `${name}.ts`), "--bundle",
   "--format=esm", "--out-extension:.js=.mjs", `--outdir=${join(folder, "modules")}`, "--log-level=warning"], { cwd: sources });
 const template = readFileSync(join(folder, "template.html"), "utf8");
 makePage(template, "cornell", "cornell-box.obj", []);

@@ -1,0 +1,98 @@
+// Gathering, pass after pass: every eye looks at the scene in its present light; then B = E + rho H, and again. Pass k adds
+// the k-th bounce.
+import type { PageData, Rgb } from "./container";
+import { Eyes, type EyeMaterials } from "./gather_eyes";
+import { GatherGpu } from "./gather_gpu";
+import type { PatchLight } from "./light";
+
+const BANDS = 3;
+const BATCH_MS = 16; // of a frame of 33 ms; the picture and the panels need the rest
+
+export interface GatherState {
+  pass: number; // passes that are complete
+  eyes: number; // looked in the pass that is on
+}
+
+export class Gather {
+  readonly eyes: Eyes;
+  readonly gpu: GatherGpu;
+  state: GatherState = { pass: 0, eyes: 0 };
+  weight = NaN; // the sum of all weights at an eye, farthest from 1
+  /** `irradiance` of patches, N*3, after each pass. */
+  onPass: (irradiance: Float32Array) => void = () => {};
+  onProgress: () => void = () => {};
+  onFailure: (error: Error) => void = () => {};
+
+  private readonly materials: EyeMaterials;
+  private readonly sky: Rgb;
+  private batch = 1;
+  private running = false;
+  private working = false;
+  private closed = false;
+
+  /** Throws an Error with one sentence where the browser cannot do it. */
+  constructor(data: PageData, light: PatchLight, tint: Rgb, resolution: number) {
+    this.eyes = new Eyes(data);
+    this.gpu = new GatherGpu(data, this.eyes, resolution);
+    this.materials = this.eyes.materials(light);
+    this.sky = data.header.sky.map((x, b) => x * tint[b]!) as Rgb;
+    this.gpu.setLight(this.eyes.corners(this.materials.emission));
+  }
+
+  start(): void {
+    this.running = true;
+    if (!this.working) void this.work();
+  }
+  pause(): void { this.running = false; }
+  close(): void {
+    this.pause();
+    this.closed = true;
+    this.gpu.dispose();
+  }
+
+  private async work(): Promise<void> {
+    this.working = true;
+    try {
+      while (this.running) {
+        await new Promise(requestAnimationFrame);
+        if (!this.running) break;
+        await this.someEyes();
+      }
+    } catch (error) {
+      if (!this.closed) this.onFailure(error as Error);
+    }
+    this.working = false;
+  }
+
+  /** As many eyes as a frame has time for. */
+  private async someEyes(): Promise<void> {
+    const begin = performance.now();
+    const looks = this.gpu.look(this.state.eyes, this.batch, this.sky);
+    await this.gpu.done();
+    const took = performance.now() - begin;
+    if (looks === this.batch || took > BATCH_MS) { // a batch that a row's end cut short tells less
+      const wanted = Math.round((looks * BATCH_MS) / Math.max(took, 1));
+      this.batch = Math.max(1, Math.min(wanted, 2 * this.batch, this.gpu.capacity));
+    }
+    this.state.eyes += looks;
+    if (this.state.eyes === this.eyes.count) await this.endPass();
+    if (!this.closed) this.onProgress();
+  }
+
+  private async endPass(): Promise<void> {
+    const received = await this.gpu.read();
+    if (this.closed) return;
+    const irradiance = new Float32Array(this.eyes.count * BANDS);
+    this.weight = 1;
+    for (let eye = 0; eye < this.eyes.count; ++eye) {
+      if (Math.hypot(...this.eyes.normal(eye)) === 0) continue;
+      const weight = received[4 * eye + 3]!;
+      if (Math.abs(weight - 1) > Math.abs(this.weight - 1)) this.weight = weight;
+      irradiance.set(received.subarray(4 * eye, 4 * eye + BANDS), eye * BANDS);
+    }
+    const { emission, reflectance } = this.materials;
+    this.gpu.setLight(this.eyes.corners(emission.map((e, k) => e + reflectance[k]! * irradiance[k]!)));
+    this.state = { pass: this.state.pass + 1, eyes: 0 };
+    this.onPass(this.eyes.patches(irradiance));
+  }
+}

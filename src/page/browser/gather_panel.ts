@@ -1,0 +1,101 @@
+// Gathering, live: started, paused, forgotten; each pass beside the matrix solution.
+import { Gather } from "./gather";
+import { reflectedDifference } from "./gather_eyes";
+import { isSoftware } from "./gather_gpu";
+import type { PatchLight } from "./light";
+import { counted, element, make, on, select, short } from "./ui";
+import type { Viewer } from "./viewer";
+
+export class GatherPanel {
+  private gather: Gather | null = null;
+  private base: PatchLight | null = null; // the matrix solution it is compared with
+  private running = false;
+
+  constructor(private readonly viewer: Viewer) {
+    on("gather-start", "click", () => this.toggle());
+    on("gather-reset", "click", () => {
+      const shown = this.viewer.source === "gathered";
+      const base = this.base;
+      this.forget();
+      if (shown && base) this.viewer.showSolved(base);
+    });
+    on("gather-resolution", "change", () => this.forget());
+    viewer.listen("light", () => {
+      if (this.base && viewer.source !== "gathered" && viewer.light !== this.base) this.forget(); // relit meanwhile
+    });
+    if (viewer.data.eyePosition.length === 0) {
+      this.refuse("This page was written without eyes; write it again with radiosity view.");
+    }
+    this.say();
+  }
+
+  moment(): string { return `Gathered, pass ${this.gather?.state.pass ?? 0}`; }
+
+  toggle(): void {
+    if (element<HTMLButtonElement>("gather-start").disabled) return;
+    if (!this.gather) this.begin();
+    if (!this.gather) return;
+    this.running = !this.running;
+    if (this.running) this.gather.start();
+    else this.gather.pause();
+    this.say();
+  }
+
+  forget(): void {
+    this.gather?.close();
+    this.gather = null;
+    this.base = null;
+    this.running = false;
+    element("gather-passes").replaceChildren();
+    this.say();
+  }
+
+  private begin(): void {
+    const { viewer } = this;
+    if (viewer.source === "run") element("to-stored").click(); // an iterate is no solution to compare with
+    try {
+      this.gather = new Gather(viewer.data, viewer.light, viewer.sky, Number(select("gather-resolution").value));
+    } catch (error) {
+      this.refuse((error as Error).message);
+      return;
+    }
+    this.base = viewer.light;
+    this.gather.onPass = (irradiance) => this.take(irradiance);
+    this.gather.onProgress = () => this.say();
+    this.gather.onFailure = (error) => {
+      this.forget();
+      element("gather-facts").textContent = error.message;
+    };
+  }
+
+  private take(irradiance: Float32Array): void {
+    const difference = reflectedDifference(this.viewer.data, irradiance, this.base!);
+    this.viewer.showGathered(irradiance, this.base!);
+    const pass = this.gather!.state.pass;
+    element("gather-passes").prepend(make("tr", { "data-pass": String(pass) }, make("th", { scope: "row" }, `Pass ${pass}`),
+      make("td", {}, make("data", { value: String(difference) }, `${short(100 * difference)}%`))));
+  }
+
+  private refuse(sentence: string): void {
+    element<HTMLButtonElement>("gather-start").disabled = true;
+    element("gather-device").textContent = sentence;
+  }
+
+  private say(): void {
+    element("gather-start").textContent = this.running ? "Pause" : "Start";
+    element("gather-start").setAttribute("aria-pressed", String(this.running));
+    element<HTMLButtonElement>("gather-reset").disabled = !this.gather;
+    element("gather-table").hidden = (this.gather?.state.pass ?? 0) === 0;
+    const facts = element("gather-facts");
+    facts.dataset["pass"] = String(this.gather?.state.pass ?? 0);
+    facts.dataset["weight"] = String(this.gather?.weight ?? NaN);
+    if (!this.gather) {
+      facts.textContent = "Each vertex looks at the scene through a hemicube, drawn by this computer's GPU; no matrix is used.";
+      return;
+    }
+    const { pass, eyes } = this.gather.state;
+    facts.textContent = `Pass ${pass + 1}: ${counted(eyes)} of ${counted(this.gather.eyes.count)} eyes.`;
+    element("gather-device").textContent = isSoftware(this.gather.gpu.renderer)
+      ? "WebGL in software: no GPU draws here, so a pass takes longer." : "";
+  }
+}

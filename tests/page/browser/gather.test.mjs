@@ -1,0 +1,109 @@
+// Gathering in the browser against `radiosity gather`, and its delta form factors against closed forms.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { folder, launch, module, open, pageData, program, relativeError, results } from "./support.mjs";
+
+let browser;
+before(async () => { browser = await launch(); });
+after(() => browser?.close());
+
+test("delta form factors sum to 1, faces to their closed forms", async () => {
+  const { deltaFormFactors } = await module("gather_weights");
+  for (const resolution of [2, 32, 64, 256]) {
+    const weights = deltaFormFactors(resolution);
+    const sum = (from, to) => weights.subarray(from * resolution, to * resolution).reduce((total, x) => total + x, 0);
+    assert.ok(Math.abs(sum(0, 3 * resolution) - 1) < 1e-6, `${resolution}: ${sum(0, 3 * resolution)}`);
+    // From a point to a square of edge 2 at height 1 above it: four quarters of configuration factor B-3 of Howell's catalogue.
+    const top = (4 / Math.PI) * Math.SQRT1_2 * Math.atan(Math.SQRT1_2);
+    assert.ok(Math.abs(sum(0, resolution) - top) < 1e-6);
+    for (let side = 0; side < 4; ++side) {
+      const first = resolution + (side * resolution) / 2;
+      assert.ok(Math.abs(sum(first, first + resolution / 2) - (1 - top) / 4) < 1e-6);
+    }
+    // At a pixel's middle the integrand is the mean over it, but for the square of its size.
+    const at = (x, y) => weights[y * resolution + x] / (2 / resolution) ** 2;
+    const centre = (k) => -1 + (2 * k + 1) / resolution;
+    const [x, y] = [Math.floor(resolution / 3), Math.floor(resolution / 5)];
+    const integrand = 1 / (Math.PI * (1 + centre(x) ** 2 + centre(y) ** 2) ** 2);
+    if (resolution > 2) assert.ok(Math.abs(at(x, y) / integrand - 1) < 4 / resolution ** 2);
+  }
+});
+
+async function gathered(page, passes) {
+  await page.waitForFunction((wanted) => Number(document.getElementById("gather-facts").dataset.pass) >= wanted, passes, { timeout: 240000 });
+}
+
+/** Irradiance of patches as the page shows it. */
+async function irradiance(page, patches) {
+  const shown = [];
+  for (const patch of patches) {
+    await page.locator("#pick-first").fill(String(patch));
+    await page.locator("#pick-first").press("Enter");
+    const row = await page.locator('[data-pick="first"] tr[data-row] data').evaluateAll((cells) => cells.map((c) => Number(c.value)));
+    shown.push(...row.slice(6, 9));
+  }
+  return shown;
+}
+
+test("three passes, started by the keyboard, give the light of radiosity gather", async () => {
+  const { page, said } = await open(browser, "small.html");
+  await page.evaluate(() => { for (const id of ["gather-panel", "patch-panel"]) document.getElementById(id).open = true; });
+  await page.locator("#gather-start").focus();
+  await page.keyboard.press("Enter");
+  assert.equal(await page.locator("#gather-start").textContent(), "Pause");
+  await gathered(page, 3);
+  await page.locator("#picture").focus();
+  await page.keyboard.press("g");
+  assert.equal(await page.locator("#gather-start").textContent(), "Start");
+  const passes = Number(await page.locator("#gather-facts").getAttribute("data-pass"));
+  assert.ok(Math.abs(Number(await page.locator("#gather-facts").getAttribute("data-weight")) - 1) < 1e-5);
+  assert.match(await page.locator("#gather-device").textContent(), /WebGL in software/);
+  const differences = await page.locator("#gather-passes data").evaluateAll((cells) => cells.map((c) => Number(c.value)).reverse());
+  assert.equal(differences.length, passes);
+  assert.ok(differences[0] > differences[1] && differences[1] > differences[2], `${differences}`);
+
+  const file = join(folder, "pages/gathered.h5");
+  execFileSync(program, ["gather", join(process.env.PAGE_ROOT, "data/cornell-box.obj"), "--patches", "400", "--passes", String(passes),
+    "--resolution", "64", "-o", file, "--quiet"]);
+  const data = await pageData("small.html");
+  const { Eyes } = await module("gather_eyes");
+  const eyes = new Eyes(data);
+  const truth = results("gathered.h5").gathered;
+  assert.equal(eyes.count * 3, truth.irradiance.length);
+  // The same eyes: positions are floats relative to the page's origin.
+  truth.position.forEach((x, k) => assert.ok(Math.abs(x - data.eyePosition[k] - data.header.origin[k % 3]) < 1e-6 * data.header.diagonal));
+  const expected = eyes.patches(Float32Array.from(truth.irradiance));
+  const patches = Array.from({ length: 40 }, (_, k) => Math.floor((k * data.header.patches) / 40));
+  const shown = await irradiance(page, patches);
+  const error = relativeError(shown, patches.flatMap((patch) => [...expected.subarray(3 * patch, 3 * patch + 3)]));
+  assert.ok(error < 0.01, `relative L2 ${error}`);
+
+  await page.locator("#show").selectOption("difference");
+  await page.locator("#picture").focus();
+  await page.keyboard.press("b");
+  assert.match(await page.locator("#legend-title").textContent(), /less the matrix solution/);
+  assert.match(await page.locator("#source").textContent(), /Gathered, pass/);
+  await page.locator("#gather-reset").click();
+  assert.equal(await page.locator("#source").textContent(), "Light as stored");
+  assert.deepEqual(said, []);
+  await page.close();
+});
+
+test("where WebGL 2 cannot draw floats a sentence says so, and the rest of the page works", async () => {
+  const page = await browser.newPage();
+  await page.addInitScript(() => {
+    const get = WebGL2RenderingContext.prototype.getExtension;
+    WebGL2RenderingContext.prototype.getExtension = function (name) { return name === "EXT_color_buffer_float" ? null : get.call(this, name); };
+  });
+  await page.goto(`file://${join(folder, "pages/small.html")}`);
+  await page.waitForFunction(() => document.documentElement.dataset.ready);
+  await page.locator("#picture").focus();
+  await page.keyboard.press("g");
+  assert.match(await page.locator("#gather-device").textContent(), /Gathering needs pictures of 32-bit floats/);
+  assert.equal(await page.locator("#gather-start").isDisabled(), true);
+  await page.keyboard.press(".");
+  await page.waitForFunction(() => /Gauss-Seidel/.test(document.getElementById("source").textContent));
+  await page.close();
+});
