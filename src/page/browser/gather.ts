@@ -1,5 +1,5 @@
-// Gathering, pass after pass: every eye looks at the scene in its present light; then B = E + rho H, and again. Pass k adds
-// the k-th bounce.
+// Gathering, pass after pass: every eye looks at the scene in its present light; then B = E + rho H, and
+// again. Pass k adds the k-th bounce.
 import type { PageData, Rgb } from "./container";
 import { Eyes, type EyeMaterials } from "./gather_eyes";
 import { GatherGpu } from "./gather_gpu";

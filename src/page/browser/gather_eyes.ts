@@ -1,4 +1,5 @@
-// The eyes of gathering, one a vertex and smooth side, and how their values become those of corners and patches.
+// The eyes of gathering, one a vertex and smooth side, and how their values become those of corners and
+// patches.
 import type { PageData } from "./container";
 import { shadingValues, type PatchLight } from "./light";
 
@@ -22,7 +23,8 @@ export class Eyes {
   constructor(private readonly data: PageData) {
     this.count = data.eyePosition.length / 3;
     this.triangleArea = Float64Array.from(data.trianglePatch, (_, t) => {
-      const [a, b, c] = [0, 1, 2].map((k) => this.at(data.position, data.patchTriangle[3 * t + k]!)) as [Vec, Vec, Vec];
+      const corner = (k: number) => this.at(data.position, data.patchTriangle[3 * t + k]!);
+      const [a, b, c] = [corner(0), corner(1), corner(2)];
       return 0.5 * Math.hypot(...cross(sub(b, a), sub(c, a)));
     });
     this.findInner();
@@ -35,7 +37,8 @@ export class Eyes {
 
   /** Means by area over the patches of each eye. */
   materials(light: PatchLight): EyeMaterials {
-    const of = (values: Float32Array) => shadingValues(this.data, values, BANDS).slice(0, this.count * BANDS);
+    const length = this.count * BANDS;
+    const of = (values: Float32Array) => shadingValues(this.data, values, BANDS).slice(0, length);
     return { emission: of(light.emission), reflectance: of(light.reflectance) };
   }
 
@@ -96,8 +99,8 @@ export class Eyes {
 }
 
 /**
- * Root of the sum of squared differences by area, over that of the reference: of light that is reflected, since the lamps'
- * own is the same by any method.
+ * Root of the sum of squared differences by area, over that of the reference: of light that is reflected,
+ * since the lamps' own is the same by any method.
  */
 export function reflectedDifference(data: PageData, irradiance: Float32Array, reference: PatchLight): number {
   let difference = 0, size = 0;

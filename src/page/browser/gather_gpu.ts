@@ -1,5 +1,5 @@
-// Hemicubes on the viewer's GPU: a strip of five faces for each of many eyes in one picture of floats, multiplied by delta
-// form factors and summed to one texel an eye. WebGL 2 with EXT_color_buffer_float.
+// Hemicubes on the viewer's GPU: a strip of five faces for each of many eyes in one picture of floats,
+// multiplied by delta form factors and summed to one texel an eye. WebGL 2 with EXT_color_buffer_float.
 import type { PageData } from "./container";
 import type { Eyes } from "./gather_eyes";
 import { ADD, DRAW, ROWS, WHOLE } from "./gather_shaders";
@@ -7,8 +7,9 @@ import { deltaFormFactors, stripRows } from "./gather_weights";
 
 const ATLAS_WIDTH = 2048, ATLAS_HEIGHT = 1536; // pixels; 63 MB with its depths
 const RESULT_WIDTH = 256; // eyes a row of the texture that collects a pass
-// In diagonals of the scene. Positions are floats, off by up to 1e-7: an eye stands a lift above its own plane, which it so
-// does not see; backs lie behind fronts by more than that, so that of a plate without thickness the front is seen.
+// In diagonals of the scene. Positions are floats, off by up to 1e-7: an eye stands a lift above its own
+// plane, which it so does not see; backs lie behind fronts by more than that, so that of a plate without
+// thickness the front is seen.
 const LIFT = 1e-6, NEAR = 1e-6, BACK = 4e-6;
 type Vec = [number, number, number];
 
@@ -57,7 +58,8 @@ export class GatherGpu {
     const gl = document.createElement("canvas").getContext("webgl2", { antialias: false, depth: false, alpha: false });
     if (!gl) throw new Error("Gathering needs WebGL 2, which this browser does not offer.");
     if (!gl.getExtension("EXT_color_buffer_float")) {
-      throw new Error("Gathering needs pictures of 32-bit floats (EXT_color_buffer_float), which this GPU does not draw.");
+      throw new Error(
+        "Gathering needs pictures of 32-bit floats (EXT_color_buffer_float), which this GPU does not draw.");
     }
     this.gl = gl;
     this.renderer = rendererOf(gl);
@@ -88,7 +90,7 @@ export class GatherGpu {
     this.brightest = corners.reduce((most, value) => Math.max(most, value), 0);
   }
 
-  /** Starts the looks of `count` eyes from `first` on; returns how many (fewer at the end of a row of the result). */
+  /** Starts the looks of `count` eyes from `first` on; returns of how many: fewer at the end of a row of the result. */
   look(first: number, count: number, sky: Vec): number {
     const column = first % RESULT_WIDTH;
     const looks = Math.min(count, this.capacity, RESULT_WIDTH - column, this.eyes.count - first);
@@ -96,10 +98,11 @@ export class GatherGpu {
     const { gl } = this;
     gl.disable(gl.DEPTH_TEST);
     gl.bindVertexArray(this.none);
-    this.reduce(this.reduceRows, this.sums, [0, 0, looks, this.rows], { atlas: this.atlas.texture, weights: this.weights },
+    this.reduce(this.reduceRows, this.sums, [0, 0, looks, this.rows],
+                { atlas: this.atlas.texture, weights: this.weights },
                 { resolution: this.resolution, columns: this.columns });
-    this.reduce(this.add, this.result, [column, Math.floor(first / RESULT_WIDTH), looks, 1], { sums: this.sums.texture },
-                { rows: this.rows, first: column });
+    this.reduce(this.add, this.result, [column, Math.floor(first / RESULT_WIDTH), looks, 1],
+                { sums: this.sums.texture }, { rows: this.rows, first: column });
     return looks;
   }
 
@@ -213,7 +216,9 @@ export class GatherGpu {
     const texture = gl.createTexture();
     gl.bindTexture(gl.TEXTURE_2D, texture);
     gl.texStorage2D(gl.TEXTURE_2D, 1, format, width, height);
-    for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
+    for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
+      gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
+    }
     return texture;
   }
 

@@ -72,8 +72,9 @@ export class GatherPanel {
     const difference = reflectedDifference(this.viewer.data, irradiance, this.base!);
     this.viewer.showGathered(irradiance, this.base!);
     const pass = this.gather!.state.pass;
-    element("gather-passes").prepend(make("tr", { "data-pass": String(pass) }, make("th", { scope: "row" }, `Pass ${pass}`),
-      make("td", {}, make("data", { value: String(difference) }, `${short(100 * difference)}%`))));
+    const figure = make("data", { value: String(difference) }, `${short(100 * difference)}%`);
+    element("gather-passes").prepend(
+      make("tr", {}, make("th", { scope: "row" }, `Pass ${pass}`), make("td", {}, figure)));
   }
 
   private refuse(sentence: string): void {
@@ -90,7 +91,8 @@ export class GatherPanel {
     facts.dataset["pass"] = String(this.gather?.state.pass ?? 0);
     facts.dataset["weight"] = String(this.gather?.weight ?? NaN);
     if (!this.gather) {
-      facts.textContent = "Each vertex looks at the scene through a hemicube, drawn by this computer's GPU; no matrix is used.";
+      facts.textContent =
+        "Each vertex looks at the scene through a hemicube, drawn by this computer's GPU; no matrix is used.";
       return;
     }
     const { pass, eyes } = this.gather.state;

@@ -116,6 +116,7 @@ async function begin(): Promise<void> {
   await loading(0.6, "Setting up the picture…");
   element("app").hidden = false; // the canvas needs its size
   const viewer = new Viewer(data, element<HTMLCanvasElement>("picture"));
+  element("no-picture").hidden = viewer.stage.draws;
   viewer.solver.onFailure = (message) => fail(new Error(`The solver stopped: ${message}`));
   await loading(0.8, "Decoding form factors…");
   await viewer.start();

@@ -45,16 +45,17 @@ export class Stage {
   /** What the finer mesh may stand for: both halves, or none of them. */
   elements = true;
 
-  private readonly renderer: WebGLRenderer;
+  private readonly renderer: WebGLRenderer | null; // null: the browser has no WebGL 2
   private readonly scene = new Scene();
   private readonly marks: Record<MarkName, Mark>;
   private wanted = false;
 
   constructor(private readonly canvas: HTMLCanvasElement, private readonly meshes: SceneMeshes,
               private readonly control: CameraControl, private readonly uniforms: Uniforms) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
-    this.renderer.setClearColor(0x000000, 0);
-    this.renderer.autoClear = false;
+    const able = document.createElement("canvas").getContext("webgl2") !== null;
+    this.renderer = able ? new WebGLRenderer({ canvas, antialias: true, alpha: true }) : null;
+    this.renderer?.setClearColor(0x000000, 0);
+    if (this.renderer) this.renderer.autoClear = false;
     this.scene.add(meshes.group);
     this.marks = { first: new Mark(this.scene), second: new Mark(this.scene) };
     control.onMove = () => this.draw();
@@ -78,29 +79,33 @@ export class Stage {
     });
   }
 
+  /** False: there is no picture, for want of WebGL 2. */
+  get draws(): boolean { return this.renderer !== null; }
+
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (width === 0 || height === 0) return;
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
-    this.renderer.setSize(width, height, false);
+    this.renderer?.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.renderer?.setSize(width, height, false);
     this.control.setAspect(width / height);
     this.drawNow(); // a resized canvas is empty until it is drawn
   }
 
   private drawNow(): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (!this.renderer) return;
     this.renderer.setScissorTest(false);
     this.renderer.clear();
     const left = this.split === null ? 0 : Math.round(width * this.split);
     this.renderer.setScissorTest(true);
-    if (left > 0) this.half(0, left, height, true);
-    if (left < width) this.half(left, width - left, height, false);
+    if (left > 0) this.half(this.renderer, 0, left, height, true);
+    if (left < width) this.half(this.renderer, left, width - left, height, false);
   }
 
-  private half(left: number, width: number, height: number, stored: boolean): void {
-    this.renderer.setScissor(left, 0, width, height);
+  private half(renderer: WebGLRenderer, left: number, width: number, height: number, stored: boolean): void {
+    renderer.setScissor(left, 0, width, height);
     this.uniforms.stored.value = stored;
     this.meshes.arrange(this.elements && !this.uniforms.showValue.value);
-    this.renderer.render(this.scene, this.control.camera);
+    renderer.render(this.scene, this.control.camera);
   }
 }
