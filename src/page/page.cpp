@@ -53,6 +53,7 @@ std::vector<float> skyShares(const FormFactors& factors) {
 void addFactors(const FormFactors& factors, const ExchangeMatrix& matrix, const FactorCodes& codes,
                 Container& container) {
   container.add("unknown_area", floats(matrix.area()));
+  container.add("order", matrix.order());
   container.add("row_sum", floats(factors.fronts));
   container.add("row_sky", skyShares(factors));
   container.add("row_error", floats(factors.error));

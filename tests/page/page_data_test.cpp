@@ -167,6 +167,8 @@ void expectFactors(Made& made, bool dense) {
   EXPECT_NEAR(q.largest_row_error, largest_row_error, 3 * kSingle);
   EXPECT_EQ(page.header["quantisation"]["largest_row_error"], q.largest_row_error);
   EXPECT_LT(q.largest_row_error, q.largest_relative_error);  // of rows that sum to at most 1
+  const auto order = made.pipeline.matrix().order();
+  EXPECT_EQ(page.indices("order"), std::vector<Index>(order.begin(), order.end()));
   const auto row_sum = page.floats("row_sum");
   const auto row_sky = page.floats("row_sky");
   const FormFactors& factors = made.pipeline.factors();
