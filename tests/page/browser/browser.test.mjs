@@ -14,16 +14,21 @@ before(async () => {
 after(() => browser?.close());
 
 const text = (id) => page.locator(`#${id}`).textContent();
-const unfold = (id) => page.evaluate((panel) => { document.getElementById(panel).open = true; }, id);
-const range = (locator, value) => locator.evaluate((slider, to) => {
-  slider.value = String(to);
-  slider.dispatchEvent(new Event("input", { bubbles: true }));
-}, value);
+const unfold = (id) =>
+  page.evaluate((panel) => {
+    document.getElementById(panel).open = true;
+  }, id);
+const range = (locator, value) =>
+  locator.evaluate((slider, to) => {
+    slider.value = String(to);
+    slider.dispatchEvent(new Event("input", { bubbles: true }));
+  }, value);
 const press = async (...keys) => {
   await page.locator("#picture").focus();
   for (const key of keys) await page.keyboard.press(key);
 };
-const picked = (name) => page.locator(`[data-pick="${name}"] tr[data-row] data`).evaluateAll((cells) => cells.map((c) => Number(c.value)));
+const picked = (name) =>
+  page.locator(`[data-pick="${name}"] tr[data-row] data`).evaluateAll((cells) => cells.map((c) => Number(c.value)));
 const ofPatch = (values, patch) => values.slice(3 * patch, 3 * patch + 3);
 
 /** Colours of a grid of points of the picture, sRGB 0 to 255; the browser itself decodes the screenshot. */
@@ -37,7 +42,8 @@ async function colours(where = page) {
     context.drawImage(image, 0, 0);
     const points = [];
     for (let y = 0.05; y < 1; y += 0.1) {
-      for (let x = 0.05; x < 1; x += 0.1) points.push(...context.getImageData(x * image.width, y * image.height, 1, 1).data.slice(0, 3));
+      for (let x = 0.05; x < 1; x += 0.1)
+        points.push(...context.getImageData(x * image.width, y * image.height, 1, 1).data.slice(0, 3));
     }
     return points;
   }, png);
@@ -47,8 +53,15 @@ const apart = (a, b) => Math.sqrt(a.reduce((sum, x, k) => sum + (x - b[k]) ** 2,
 test("the template is below 1 MB and the page below 8 MB; nothing is fetched", async () => {
   assert.ok(statSync(join(folder, "template.html")).size < 1e6);
   assert.ok(statSync(join(folder, "pages/cornell.html")).size < 8e6);
-  assert.deepEqual(await page.evaluate(() => performance.getEntriesByType("resource")
-    .map((entry) => entry.name).filter((name) => !/^(data|blob):/.test(name))), []);
+  assert.deepEqual(
+    await page.evaluate(() =>
+      performance
+        .getEntriesByType("resource")
+        .map((entry) => entry.name)
+        .filter((name) => !/^(data|blob):/.test(name)),
+    ),
+    [],
+  );
   assert.equal(await page.title(), "cornell – radiosity");
 });
 
@@ -66,10 +79,17 @@ test("picked values are those of the results file", async () => {
     await page.locator("#pick-first").press("Enter");
     await page.locator('[data-pick="first"]').waitFor();
     const shown = await picked("first");
-    const expected = ["emission", "reflectance", "irradiance", "radiosity"].flatMap((name) => ofPatch(truth[name], patch));
+    const expected = ["emission", "reflectance", "irradiance", "radiosity"].flatMap((name) =>
+      ofPatch(truth[name], patch),
+    );
     // The page has them in 32 bits, and makes B of E, rho and H: the program's B is that but for its residual.
     const left = truth.history.at(-1) * Math.max(...truth.emission);
-    shown.forEach((x, k) => assert.ok(Math.abs(x - expected[k]) <= 3e-7 * Math.abs(expected[k]) + left, `patch ${patch}: ${x}, not ${expected[k]}`));
+    shown.forEach((x, k) =>
+      assert.ok(
+        Math.abs(x - expected[k]) <= 3e-7 * Math.abs(expected[k]) + left,
+        `patch ${patch}: ${x}, not ${expected[k]}`,
+      ),
+    );
     const [surface] = truth.surface.slice(patch, patch + 1);
     assert.equal(await page.locator('[data-pick="first"] dd').first().textContent(), surface);
   }
@@ -85,7 +105,9 @@ test("a click picks the patch under it, two picks are reciprocal, the row is pai
   await page.mouse.click(box.x + box.width * 0.2, box.y + box.height * 0.3);
   await page.keyboard.up("Shift");
   await page.locator('[data-pick="pair"]').waitFor();
-  const values = await page.locator('[data-pick="pair"] data').evaluateAll((cells) => cells.map((c) => Number(c.value)));
+  const values = await page
+    .locator('[data-pick="pair"] data')
+    .evaluateAll((cells) => cells.map((c) => Number(c.value)));
   assert.ok(values[0] > 0 && values[1] > 0);
   assert.ok(Math.abs(values[2] - values[3]) <= 1e-6 * values[2]); // A F both ways, in 32 bits
   assert.equal(await page.locator("#legend").isVisible(), true);
@@ -117,17 +139,32 @@ test("each look changes the picture, and back", async () => {
 // of 8 bits; edges fall on few of the points. 6 of 255 by root mean square is a tenth of what one stop of exposure does.
 test("the picture is that of radiosity render", async () => {
   const size = 740;
-  const { page: square } = await open(browser, "cornell.html", { viewport: { width: size + 340, height: size + 58 } });
+  const { page: square } = await open(browser, "cornell.html", {
+    viewport: { width: size + 340, height: size + 58 },
+  });
   const box = await square.locator("#picture").boundingBox();
   const file = join(folder, "pages/render.png");
-  execFileSync(program, ["render", join(folder, "pages/cornell.h5"), "-o", file, "--width", String(Math.round(box.width)), "--height", String(Math.round(box.height)), "--quiet"]);
+  execFileSync(program, [
+    "render",
+    join(folder, "pages/cornell.h5"),
+    "-o",
+    file,
+    "--width",
+    String(Math.round(box.width)),
+    "--height",
+    String(Math.round(box.height)),
+    "--quiet",
+  ]);
   const mine = await colours(square);
-  const script = "import sys,json\nfrom PIL import Image\ni=Image.open(sys.argv[1]).convert('RGBA');b=Image.new('RGBA',i.size,(0,0,0,0));b.alpha_composite(i)\n" +
+  const script =
+    "import sys,json\nfrom PIL import Image\ni=Image.open(sys.argv[1]).convert('RGBA');b=Image.new('RGBA',i.size,(0,0,0,0));b.alpha_composite(i)\n" +
     "print(json.dumps([list(b.getpixel((int((.05+.1*x)*i.width),int((.05+.1*y)*i.height)))) for y in range(10) for x in range(10)]))";
   const theirs = JSON.parse(execFileSync("/usr/bin/python3", ["-c", script, file]));
   const pairs = theirs.map((p, k) => [p, mine.slice(3 * k, 3 * k + 3)]).filter(([p]) => p[3] === 255);
   assert.ok(pairs.length > 80);
-  const difference = Math.sqrt(pairs.reduce((sum, [p, m]) => sum + m.reduce((s, x, b) => s + (x - p[b]) ** 2, 0), 0) / pairs.length / 3);
+  const difference = Math.sqrt(
+    pairs.reduce((sum, [p, m]) => sum + m.reduce((s, x, b) => s + (x - p[b]) ** 2, 0), 0) / pairs.length / 3,
+  );
   assert.ok(difference < 6, `root mean square ${difference} of 255`);
   await square.close();
 });
@@ -142,17 +179,31 @@ test("sliders give the light of radiosity solve --set", async () => {
   await page.waitForFunction(() => document.getElementById("relight-facts").dataset.state === "solved");
   const options = (await text("command")).split(" ").slice(3);
   assert.equal(options.filter((word) => word === "--set").length, 3);
-  execFileSync(program, ["solve", join(folder, "pages/cornell.h5"), ...options, "-o", join(folder, "pages/relit.h5"), "--quiet"]);
+  execFileSync(program, [
+    "solve",
+    join(folder, "pages/cornell.h5"),
+    ...options,
+    "-o",
+    join(folder, "pages/relit.h5"),
+    "--quiet",
+  ]);
   const truth = results("relit.h5");
-  const shown = [], expected = [];
+  const shown = [],
+    expected = [];
   for (let patch = 3; patch < 1981; patch += 157) {
     await page.locator("#pick-first").fill(String(patch));
     await page.locator("#pick-first").press("Enter");
-    shown.push(...await picked("first"));
-    expected.push(...["emission", "reflectance", "irradiance", "radiosity"].flatMap((name) => ofPatch(truth[name], patch)));
+    shown.push(...(await picked("first")));
+    expected.push(
+      ...["emission", "reflectance", "irradiance", "radiosity"].flatMap((name) => ofPatch(truth[name], patch)),
+    );
   }
-  shown.forEach((x, k) => assert.ok(Math.abs(x - expected[k]) <= 1e-3 * Math.abs(expected[k]) + 1e-9,
-    `${options}: value ${k} is ${x}, not ${expected[k]}`));
+  shown.forEach((x, k) =>
+    assert.ok(
+      Math.abs(x - expected[k]) <= 1e-3 * Math.abs(expected[k]) + 1e-9,
+      `${options}: value ${k} is ${x}, not ${expected[k]}`,
+    ),
+  );
   await press("Escape");
 });
 
@@ -160,7 +211,7 @@ test("before and after stand side by side; stored light comes back", async () =>
   const relit = await colours();
   await press("b");
   const both = await colours();
-  const half = (values, left) => values.filter((_, k) => (Math.floor(k / 3) % 10 < 5) === left);
+  const half = (values, left) => values.filter((_, k) => Math.floor(k / 3) % 10 < 5 === left);
   assert.ok(apart(half(relit, true), half(both, true)) > 5, "the left half must be the stored light");
   assert.ok(apart(half(relit, false), half(both, false)) < 0.5, "the right half must be the light now");
   await page.locator("#split").focus();
@@ -175,18 +226,27 @@ test("before and after stand side by side; stored light comes back", async () =>
 test("the slider through the iterations has the residuals of the program", async () => {
   const { page: small, said: words } = await open(browser, "small.html");
   const { history } = results("small.h5");
-  await small.evaluate(() => { document.getElementById("converge-panel").open = true; });
+  await small.evaluate(() => {
+    document.getElementById("converge-panel").open = true;
+  });
   await small.locator("#method").selectOption("jacobi");
   await range(small.locator("#speed"), 6);
   await small.locator("#play").click();
-  await small.waitForFunction(() => document.getElementById("play").textContent === "Play" && Number(document.getElementById("iteration").max) > 3,
-    null, { timeout: 30000 });
+  await small.waitForFunction(
+    () =>
+      document.getElementById("play").textContent === "Play" && Number(document.getElementById("iteration").max) > 3,
+    null,
+    { timeout: 30000 },
+  );
   const last = Number(await small.locator("#iteration").getAttribute("max"));
   assert.ok(Math.abs(last + 1 - history.length) <= 1, `${last + 1} residuals, the program has ${history.length}`);
   for (const at of [0, 1, 4, Math.floor(last / 2)]) {
     await range(small.locator("#iteration"), at);
     const residual = Number(await small.locator("#run-facts").getAttribute("data-residual"));
-    assert.ok(Math.abs(residual - history[at]) < 2e-3 * history[at], `iteration ${at}: ${residual}, the program ${history[at]}`);
+    assert.ok(
+      Math.abs(residual - history[at]) < 2e-3 * history[at],
+      `iteration ${at}: ${residual}, the program ${history[at]}`,
+    );
   }
   assert.match(await small.locator("#source").textContent(), /Jacobi, bounce/);
   for (const method of ["gauss-seidel", "southwell"]) {
@@ -228,16 +288,32 @@ test("keys and mouse move the camera; R brings it back", async () => {
 });
 
 test("every control has a name and is reached by Tab", async () => {
-  await page.evaluate(() => { for (const panel of document.querySelectorAll("details")) panel.open = true; });
-  const visible = (selector) => page.locator(selector).evaluateAll((all) => all.filter((e) => e.checkVisibility() && !e.disabled).map((e) => e.id || e.getAttribute("aria-label") || e.name));
+  await page.evaluate(() => {
+    for (const panel of document.querySelectorAll("details")) panel.open = true;
+  });
+  const visible = (selector) =>
+    page
+      .locator(selector)
+      .evaluateAll((all) =>
+        all
+          .filter((e) => e.checkVisibility() && !e.disabled)
+          .map((e) => e.id || e.getAttribute("aria-label") || e.name),
+      );
   const wanted = new Set(await visible("#app button, #app input:not([type=radio]), #app select, #app canvas"));
-  const nameless = await page.locator("#app button, #app input, #app select").evaluateAll((all) =>
-    all.filter((e) => !(e.textContent.trim() || e.getAttribute("aria-label") || e.labels?.length)).map((e) => e.outerHTML));
+  const nameless = await page
+    .locator("#app button, #app input, #app select")
+    .evaluateAll((all) =>
+      all
+        .filter((e) => !(e.textContent.trim() || e.getAttribute("aria-label") || e.labels?.length))
+        .map((e) => e.outerHTML),
+    );
   assert.deepEqual(nameless, []);
   await page.evaluate(() => document.activeElement.blur());
   for (let k = 0; k < 120 && wanted.size > 0; ++k) {
     await page.keyboard.press("Tab");
-    wanted.delete(await page.evaluate(() => document.activeElement.id || document.activeElement.getAttribute("aria-label") || ""));
+    wanted.delete(
+      await page.evaluate(() => document.activeElement.id || document.activeElement.getAttribute("aria-label") || ""),
+    );
   }
   assert.deepEqual([...wanted], []);
   await press("?");
@@ -248,22 +324,39 @@ test("every control has a name and is reached by Tab", async () => {
 
 test("390 pixels: panels fold, nothing is wider than the screen, a touch picks", async () => {
   for (const colorScheme of ["light", "dark"]) {
-    const { page: narrow, said: words } = await open(browser, "cornell.html", { viewport: { width: 390, height: 844 }, hasTouch: true, colorScheme });
+    const { page: narrow, said: words } = await open(browser, "cornell.html", {
+      viewport: { width: 390, height: 844 },
+      hasTouch: true,
+      colorScheme,
+    });
     assert.equal(await narrow.locator("details[open]").count(), 0);
     const box = await narrow.locator("#picture").boundingBox();
     assert.ok(box.width === 390 && box.height > 300);
     await narrow.touchscreen.tap(box.x + 195, box.y + 120);
     await narrow.locator('[data-pick="first"]').waitFor();
-    await narrow.evaluate(() => { for (const panel of document.querySelectorAll("details")) panel.open = true; });
-    assert.ok(await narrow.evaluate(() => [document.documentElement, document.getElementById("panels")].every((e) => e.scrollWidth <= 390)));
+    await narrow.evaluate(() => {
+      for (const panel of document.querySelectorAll("details")) panel.open = true;
+    });
+    assert.ok(
+      await narrow.evaluate(() =>
+        [document.documentElement, document.getElementById("panels")].every((e) => e.scrollWidth <= 390),
+      ),
+    );
     assert.deepEqual(words, []);
     await narrow.close();
   }
 });
 
 test("high contrast and forced colours are followed", async () => {
-  const { page: contrast, said: words } = await open(browser, "small.html", { contrast: "more", colorScheme: "dark", forcedColors: "active" });
-  assert.equal(await contrast.evaluate(() => getComputedStyle(document.documentElement).getPropertyValue("--line").trim()), "#fff");
+  const { page: contrast, said: words } = await open(browser, "small.html", {
+    contrast: "more",
+    colorScheme: "dark",
+    forcedColors: "active",
+  });
+  assert.equal(
+    await contrast.evaluate(() => getComputedStyle(document.documentElement).getPropertyValue("--line").trim()),
+    "#fff",
+  );
   assert.deepEqual(words, []);
   await contrast.close();
 });

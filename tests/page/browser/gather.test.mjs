@@ -6,7 +6,9 @@ import { after, before, test } from "node:test";
 import { folder, launch, module, open, pageData, program, relativeError, results } from "./support.mjs";
 
 let browser;
-before(async () => { browser = await launch(); });
+before(async () => {
+  browser = await launch();
+});
 after(() => browser?.close());
 
 test("delta form factors sum to 1, faces to their closed forms", async () => {
@@ -32,7 +34,11 @@ test("delta form factors sum to 1, faces to their closed forms", async () => {
 });
 
 async function gathered(page, passes) {
-  await page.waitForFunction((wanted) => Number(document.getElementById("gather-facts").dataset.pass) >= wanted, passes, { timeout: 240000 });
+  await page.waitForFunction(
+    (wanted) => Number(document.getElementById("gather-facts").dataset.pass) >= wanted,
+    passes,
+    { timeout: 240000 },
+  );
 }
 
 /** Irradiance of patches as the page shows it. */
@@ -41,7 +47,9 @@ async function irradiance(page, patches) {
   for (const patch of patches) {
     await page.locator("#pick-first").fill(String(patch));
     await page.locator("#pick-first").press("Enter");
-    const row = await page.locator('[data-pick="first"] tr[data-row] data').evaluateAll((cells) => cells.map((c) => Number(c.value)));
+    const row = await page
+      .locator('[data-pick="first"] tr[data-row] data')
+      .evaluateAll((cells) => cells.map((c) => Number(c.value)));
     shown.push(...row.slice(6, 9));
   }
   return shown;
@@ -49,7 +57,9 @@ async function irradiance(page, patches) {
 
 test("three passes, started by the keyboard, give the light of radiosity gather", async () => {
   const { page, said } = await open(browser, "small.html");
-  await page.evaluate(() => { for (const id of ["gather-panel", "patch-panel"]) document.getElementById(id).open = true; });
+  await page.evaluate(() => {
+    for (const id of ["gather-panel", "patch-panel"]) document.getElementById(id).open = true;
+  });
   await page.locator("#gather-resolution").selectOption("128");
   await page.locator("#gather-start").focus();
   await page.keyboard.press("Enter");
@@ -61,24 +71,42 @@ test("three passes, started by the keyboard, give the light of radiosity gather"
   const passes = Number(await page.locator("#gather-facts").getAttribute("data-pass"));
   assert.ok(Math.abs(Number(await page.locator("#gather-facts").getAttribute("data-weight")) - 1) < 1e-5);
   assert.match(await page.locator("#gather-device").textContent(), /WebGL in software/);
-  const differences = await page.locator("#gather-passes data").evaluateAll((cells) => cells.map((c) => Number(c.value)).reverse());
+  const differences = await page
+    .locator("#gather-passes data")
+    .evaluateAll((cells) => cells.map((c) => Number(c.value)).reverse());
   assert.equal(differences.length, passes);
   assert.ok(differences[0] > differences[1] && differences[1] > differences[2], `${differences}`);
 
   const file = join(folder, "pages/gathered.h5");
-  execFileSync(program, ["gather", join(process.env.PAGE_ROOT, "data/cornell-box.obj"), "--patches", "400", "--passes", String(passes),
-    "--resolution", "128", "-o", file, "--quiet"]);
+  execFileSync(program, [
+    "gather",
+    join(process.env.PAGE_ROOT, "data/cornell-box.obj"),
+    "--patches",
+    "400",
+    "--passes",
+    String(passes),
+    "--resolution",
+    "128",
+    "-o",
+    file,
+    "--quiet",
+  ]);
   const data = await pageData("small.html");
   const { Eyes } = await module("gather_eyes");
   const eyes = new Eyes(data);
   const truth = results("gathered.h5").gathered;
   assert.equal(eyes.count * 3, truth.irradiance.length);
   // The same eyes: positions are floats relative to the page's origin.
-  truth.position.forEach((x, k) => assert.ok(Math.abs(x - data.eyePosition[k] - data.header.origin[k % 3]) < 1e-6 * data.header.diagonal));
+  truth.position.forEach((x, k) =>
+    assert.ok(Math.abs(x - data.eyePosition[k] - data.header.origin[k % 3]) < 1e-6 * data.header.diagonal),
+  );
   const expected = eyes.patches(Float32Array.from(truth.irradiance));
   const patches = Array.from({ length: 40 }, (_, k) => Math.floor((k * data.header.patches) / 40));
   const shown = await irradiance(page, patches);
-  const error = relativeError(shown, patches.flatMap((patch) => [...expected.subarray(3 * patch, 3 * patch + 3)]));
+  const error = relativeError(
+    shown,
+    patches.flatMap((patch) => [...expected.subarray(3 * patch, 3 * patch + 3)]),
+  );
   // Graphics snap corners to a part of a pixel, so edges gain and lose pixels: 0.9% at 64 pixels an edge, 0.4% at 128.
   assert.ok(error < 0.01, `relative L2 ${error}`);
 
@@ -97,7 +125,9 @@ test("where WebGL 2 cannot draw floats a sentence says so, and the rest of the p
   const page = await browser.newPage();
   await page.addInitScript(() => {
     const get = WebGL2RenderingContext.prototype.getExtension;
-    WebGL2RenderingContext.prototype.getExtension = function (name) { return name === "EXT_color_buffer_float" ? null : get.call(this, name); };
+    WebGL2RenderingContext.prototype.getExtension = function (name) {
+      return name === "EXT_color_buffer_float" ? null : get.call(this, name);
+    };
   });
   await page.goto(`file://${join(folder, "pages/small.html")}`);
   await page.waitForFunction(() => document.documentElement.dataset.ready);
@@ -115,7 +145,9 @@ test("without WebGL 2 a sentence stands for the picture; solver and form factors
   const said = [];
   page.on("console", (message) => said.push(message.text()));
   page.on("pageerror", (error) => said.push(error.message));
-  await page.addInitScript(() => { HTMLCanvasElement.prototype.getContext = () => null; });
+  await page.addInitScript(() => {
+    HTMLCanvasElement.prototype.getContext = () => null;
+  });
   await page.goto(`file://${join(folder, "pages/small.html")}`);
   await page.waitForFunction(() => document.documentElement.dataset.ready);
   assert.match(await page.locator("#no-picture").textContent(), /offers no WebGL 2/);
@@ -123,7 +155,9 @@ test("without WebGL 2 a sentence stands for the picture; solver and form factors
   await page.locator("#picture").focus();
   await page.keyboard.press("g");
   assert.match(await page.locator("#gather-device").textContent(), /Gathering needs WebGL 2/);
-  await page.evaluate(() => { document.getElementById("patch-panel").open = true; });
+  await page.evaluate(() => {
+    document.getElementById("patch-panel").open = true;
+  });
   await page.locator("#pick-first").fill("7");
   await page.locator("#pick-first").press("Enter");
   await page.locator('[data-pick="first"]').waitFor();

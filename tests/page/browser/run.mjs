@@ -17,7 +17,12 @@ const tests = join(folder, "tests");
 const pages = join(folder, "pages");
 
 function run(command, args, options = {}) {
-  return execFileSync(command, args, { encoding: "utf8", stdio: ["ignore", "pipe", "inherit"], maxBuffer: 1 << 28, ...options });
+  return execFileSync(command, args, {
+    encoding: "utf8",
+    stdio: ["ignore", "pipe", "inherit"],
+    maxBuffer: 1 << 28,
+    ...options,
+  });
 }
 
 /** A copy of `from` with its packages. */
@@ -33,11 +38,15 @@ function install(from, to) {
 
 /** The page of a scene: data of the program under test, in the template of these sources. */
 function makePage(template, name, scene, options) {
-  const results = join(pages, `${name}.h5`), made = join(pages, `${name}.made.html`);
+  const results = join(pages, `${name}.h5`),
+    made = join(pages, `${name}.made.html`);
   run(program, ["solve", join(root, "data", scene), "-o", results, "--quiet", ...options]);
   run(program, ["view", results, "-o", made, "--quiet"]);
   const data = readFileSync(made, "utf8").match(/<script id="radiosity-data"[^]*?<\/script>/)[0];
-  writeFileSync(join(pages, `${name}.html`), template.replace("<!--radiosity-data-->", () => data));
+  writeFileSync(
+    join(pages, `${name}.html`),
+    template.replace("<!--radiosity-data-->", () => data),
+  );
 }
 
 install(join(root, "src/page/browser"), sources);
@@ -45,14 +54,31 @@ install(here, tests);
 mkdirSync(pages, { recursive: true });
 run("npx", ["tsc", "--noEmit"], { cwd: sources, stdio: "inherit" });
 run("node", ["build.mjs", join(folder, "template.html")], { cwd: sources });
-run("npx", ["esbuild", ...["factors", "solver", "session", "container", "light", "load", "bvh", "gather_weights", "gather_eyes"].map((name) => `${name}.ts`), "--bundle",
-  "--format=esm", "--out-extension:.js=.mjs", `--outdir=${join(folder, "modules")}`, "--log-level=warning"], { cwd: sources });
+run(
+  "npx",
+  [
+    "esbuild",
+    ...["factors", "solver", "session", "container", "light", "load", "bvh", "gather_weights", "gather_eyes"].map(
+      (name) => `${name}.ts`,
+    ),
+    "--bundle",
+    "--format=esm",
+    "--out-extension:.js=.mjs",
+    `--outdir=${join(folder, "modules")}`,
+    "--log-level=warning",
+  ],
+  { cwd: sources },
+);
 const template = readFileSync(join(folder, "template.html"), "utf8");
 makePage(template, "cornell", "cornell-box.obj", []);
 makePage(template, "small", "cornell-box.obj", ["--patches", "400", "--solver", "jacobi"]);
 writeFileSync(join(pages, "empty.html"), template);
 
-const files = readdirSync(tests).filter((name) => name.endsWith(".test.mjs")).map((name) => join(tests, name));
-const done = spawnSync("node", ["--test", ...files],
-  { stdio: "inherit", env: { ...process.env, PAGE_FOLDER: folder, RADIOSITY: program, PAGE_ROOT: root } });
+const files = readdirSync(tests)
+  .filter((name) => name.endsWith(".test.mjs"))
+  .map((name) => join(tests, name));
+const done = spawnSync("node", ["--test", ...files], {
+  stdio: "inherit",
+  env: { ...process.env, PAGE_FOLDER: folder, RADIOSITY: program, PAGE_ROOT: root },
+});
 process.exit(done.status ?? 1);

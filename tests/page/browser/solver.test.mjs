@@ -13,7 +13,14 @@ const { readContainer } = await module("container");
 const data = await pageData("small.html");
 const truth = results("small.h5", "--dense");
 const { lowest, step, largest_relative_error: quantised } = data.header.quantisation;
-const stored = { area: data.unknownArea, begin: data.factorBegin, column: data.factorColumn, code: data.factorCode, lowest, step };
+const stored = {
+  area: data.unknownArea,
+  begin: data.factorBegin,
+  column: data.factorColumn,
+  code: data.factorCode,
+  lowest,
+  step,
+};
 const factors = expand(stored);
 const dark = new Float32Array(factors.size * 3);
 const system = { factors, emission: data.emission, reflectance: data.reflectance, more: dark };
@@ -23,7 +30,10 @@ test("both triangles are the matrix of the results file, to the error the page s
   for (let i = 0; i < factors.size; ++i) {
     const row = denseRow(factors, i);
     truth.factors[i].forEach((f, j) => {
-      assert.ok(Math.abs(row[j] - f) <= (quantised + 1e-6) * f + 1e-9 / factors.size, `F[${i},${j}] = ${row[j]}, not ${f}`);
+      assert.ok(
+        Math.abs(row[j] - f) <= (quantised + 1e-6) * f + 1e-9 / factors.size,
+        `F[${i},${j}] = ${row[j]}, not ${f}`,
+      );
     });
     for (let k = factors.begin[i] + 1; k < factors.begin[i + 1]; ++k) {
       assert.ok(factors.column[k] > factors.column[k - 1], `columns of row ${i} must increase`);
@@ -32,11 +42,25 @@ test("both triangles are the matrix of the results file, to the error the page s
 });
 
 test("rows of all columns decode like rows with columns", () => {
-  const size = 3, code = Uint16Array.from([0, 10, 20, 0, 30, 5]);
+  const size = 3,
+    code = Uint16Array.from([0, 10, 20, 0, 30, 5]);
   const area = Float32Array.from([1, 2, 4]);
-  const dense = expand({ area, begin: Uint32Array.from([0, 3, 5, 6]), column: new Uint32Array(0), code, lowest: -5, step: 0.1 });
-  const sparse = expand({ area, begin: Uint32Array.from([0, 2, 3, 4]), column: Uint32Array.from([1, 2, 2, 2]),
-    code: Uint16Array.from([10, 20, 30, 5]), lowest: -5, step: 0.1 });
+  const dense = expand({
+    area,
+    begin: Uint32Array.from([0, 3, 5, 6]),
+    column: new Uint32Array(0),
+    code,
+    lowest: -5,
+    step: 0.1,
+  });
+  const sparse = expand({
+    area,
+    begin: Uint32Array.from([0, 2, 3, 4]),
+    column: Uint32Array.from([1, 2, 2, 2]),
+    code: Uint16Array.from([10, 20, 30, 5]),
+    lowest: -5,
+    step: 0.1,
+  });
   for (let i = 0; i < size; ++i) assert.deepEqual(denseRow(dense, i), denseRow(sparse, i));
   assert.equal(denseRow(dense, 1)[0], Math.fround(Math.fround(Math.exp(-4)) / 2)); // F_10 = F_01 A_0 / A_1
   assert.equal(dense.diagonal[2], Math.fround(Math.exp(-4.5)));
@@ -69,11 +93,19 @@ for (const method of ["jacobi", "gauss-seidel", "southwell"]) {
 
 // A closed room of K patches that see each other alike, F_ij = 1/K with itself: B = E / (1 - rho), whatever F.
 test("the furnace: B = E / (1 - rho) by every solver", () => {
-  const size = 12, area = new Float32Array(size).fill(2);
+  const size = 12,
+    area = new Float32Array(size).fill(2);
   const begin = Uint32Array.from({ length: size + 1 }, (_, i) => i * size);
   const column = Uint16Array.from({ length: size * size }, (_, k) => k % size);
   const furnace = {
-    factors: { size, begin, column, value: new Float32Array(size * size).fill(1 / size), diagonal: new Float32Array(size).fill(1 / size), area },
+    factors: {
+      size,
+      begin,
+      column,
+      value: new Float32Array(size * size).fill(1 / size),
+      diagonal: new Float32Array(size).fill(1 / size),
+      area,
+    },
     emission: Float32Array.from({ length: size * 3 }, (_, k) => 1 + (k % 3)),
     reflectance: new Float32Array(size * 3).fill(0.5),
     more: new Float32Array(size * 3),
@@ -109,7 +141,14 @@ test("Southwell's first shot is the lamp's light, and what waits is its residual
 
 function session() {
   const materials = { emission: data.emission, reflectance: data.reflectance, sky: [1, 1, 1] };
-  const load = { stored, order: null, materials, irradiance: unknownMeans(data, data.irradiance), sky: dark, shared: false };
+  const load = {
+    stored,
+    order: null,
+    materials,
+    irradiance: unknownMeans(data, data.irradiance),
+    sky: dark,
+    shared: false,
+  };
   return new Session(load);
 }
 
@@ -118,11 +157,19 @@ test("the stored light is that of the stored form factors", () => {
 });
 
 test("a lamp of twice the power is solved for at once; new reflectances to 1e-3", () => {
-  const states = data.header.materials.map(({ reflectance, emission }) => ({ reflectance, emission: emission.map((x) => 2 * x) }));
+  const states = data.header.materials.map(({ reflectance, emission }) => ({
+    reflectance,
+    emission: emission.map((x) => 2 * x),
+  }));
   const doubled = withMaterials(data, states);
   const lamp = session().relight({ ...doubled, sky: [1, 1, 1] }, 1000);
   assert.ok(lamp.sweeps <= 2, `${lamp.sweeps} sweeps`); // the start is right but for the 16 bits
-  assert.ok(relativeError(lamp.irradiance, truth.irradiance.map((x) => 2 * x)) < quantised);
+  assert.ok(
+    relativeError(
+      lamp.irradiance,
+      truth.irradiance.map((x) => 2 * x),
+    ) < quantised,
+  );
 
   const reflectance = Float32Array.from(data.reflectance, (x) => 0.6 * x);
   const relit = session().relight({ emission: data.emission, reflectance, sky: [1, 1, 1] }, 1000);
@@ -130,14 +177,19 @@ test("a lamp of twice the power is solved for at once; new reflectances to 1e-3"
   const radiosity = radiosityOf({ emission: data.emission, reflectance, irradiance: relit.irradiance });
   assert.ok(relit.converged);
   for (let k = 0; k < expected.length; ++k) {
-    assert.ok(Math.abs(radiosity[k] - expected[k]) <= 1e-3 * expected[k], `B[${k}] = ${radiosity[k]}, not ${expected[k]}`);
+    assert.ok(
+      Math.abs(radiosity[k] - expected[k]) <= 1e-3 * expected[k],
+      `B[${k}] = ${radiosity[k]}, not ${expected[k]}`,
+    );
   }
 });
 
 test("a ray finds the triangle that a search of all of them finds", () => {
   const tree = new TriangleTree(data.position, data.patchTriangle);
-  const alone = Array.from({ length: data.trianglePatch.length }, (_, t) =>
-    new TriangleTree(data.position, data.patchTriangle.subarray(3 * t, 3 * t + 3)));
+  const alone = Array.from(
+    { length: data.trianglePatch.length },
+    (_, t) => new TriangleTree(data.position, data.patchTriangle.subarray(3 * t, 3 * t + 3)),
+  );
   const middle = [0, 1, 2].map((axis) => {
     const along = data.position.filter((_, k) => k % 3 === axis);
     return (Math.min(...along) + Math.max(...along)) / 2;
@@ -156,7 +208,11 @@ test("a ray finds the triangle that a search of all of them finds", () => {
 
 test("damaged data are refused with a line that says what", () => {
   assert.throws(() => readContainer(new ArrayBuffer(40)), /do not begin with RADPAGE1.*radiosity view/);
-  const header = JSON.stringify({ patches: 1, unknowns: 1, arrays: { position: { type: "u8", offset: 0, length: 4 } } });
+  const header = JSON.stringify({
+    patches: 1,
+    unknowns: 1,
+    arrays: { position: { type: "u8", offset: 0, length: 4 } },
+  });
   const bytes = new TextEncoder().encode(`RADPAGE1\0\0\0\0\0\0\0\0${header}`);
   new DataView(bytes.buffer).setUint32(8, header.length, true);
   assert.throws(() => readContainer(bytes.buffer), /'position' is of type u8, f32 is needed/);

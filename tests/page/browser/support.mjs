@@ -9,7 +9,9 @@ export const program = process.env.RADIOSITY;
 
 export function results(name, ...options) {
   const script = join(process.env.PAGE_ROOT, "tests/page/browser/results.py");
-  return JSON.parse(execFileSync("/usr/bin/python3", [script, join(folder, "pages", name), ...options], { maxBuffer: 1 << 30 }));
+  return JSON.parse(
+    execFileSync("/usr/bin/python3", [script, join(folder, "pages", name), ...options], { maxBuffer: 1 << 30 }),
+  );
 }
 
 export const module = (name) => import(join(folder, "modules", `${name}.mjs`));
@@ -18,14 +20,21 @@ export const module = (name) => import(join(folder, "modules", `${name}.mjs`));
 export async function pageData(name) {
   const { unpack } = await module("load");
   const { readContainer } = await module("container");
-  const text = readFileSync(join(folder, "pages", name), "utf8").match(/<script id="radiosity-data"[^>]*>([^]*?)<\/script>/)[1];
+  const text = readFileSync(join(folder, "pages", name), "utf8").match(
+    /<script id="radiosity-data"[^>]*>([^]*?)<\/script>/,
+  )[1];
   return readContainer(await unpack(text, () => {}));
 }
 
 export function launch() {
-  const browser = [process.env.CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser"].find((path) => path && existsSync(path));
+  const browser = [process.env.CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser"].find(
+    (path) => path && existsSync(path),
+  );
   if (!browser) throw new Error("The tests of the page need Debian's package chromium");
-  return chromium.launch({ executablePath: browser, args: ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"] });
+  return chromium.launch({
+    executablePath: browser,
+    args: ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"],
+  });
 }
 
 /** A page that was loaded, and what its console said. */
@@ -35,14 +44,18 @@ export async function open(browser, name, options = {}) {
   page.on("console", (message) => said.push(`${message.type()}: ${message.text()}`));
   page.on("pageerror", (error) => said.push(`error: ${error.message}`));
   await page.goto(`file://${join(folder, "pages", name)}`);
-  await page.waitForFunction(() => document.documentElement.dataset.ready || document.querySelector("#loading.failed"), null,
-    { timeout: 60000 });
+  await page.waitForFunction(
+    () => document.documentElement.dataset.ready || document.querySelector("#loading.failed"),
+    null,
+    { timeout: 60000 },
+  );
   return { page, said };
 }
 
 /** Root of the sum of squared differences, over that of the second. */
 export function relativeError(values, truth) {
-  let difference = 0, size = 0;
+  let difference = 0,
+    size = 0;
   truth.forEach((x, k) => {
     difference += (values[k] - x) ** 2;
     size += x * x;
