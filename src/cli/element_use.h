@@ -9,11 +9,11 @@ namespace radiosity::cli {
 /// What --elements asks for, with the outputs there are.
 struct ElementUse {
   bool shown = false;  ///< pictures and lit meshes show elements, not patches
-  bool all = false;    ///< elements of all patches are needed: for a lit mesh or a page, or to be kept
+  bool all = false;    ///< of all patches: for a lit mesh or a page, or to be kept
 };
 
-/// Of solve, render and view. Shown by default; a results file alone keeps them where asked for. Errors:
-/// InputError where they were asked for, or their tolerance was, and no output has them.
+/// Of solve, render and view. Shown by default; a results file alone keeps them where asked for.
+/// Errors: InputError where they were asked for, or their tolerance was, and no output has them.
 ElementUse elementUse(const Request& request, const OutputSet& files);
 
 }  // namespace radiosity::cli
