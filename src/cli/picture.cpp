@@ -148,8 +148,8 @@ void warnOfDarkness(Report& report, const PatchMesh& mesh, const SurfaceLight& l
 
 }  // namespace
 
-void writeLight(Session& session, const PatchMesh& mesh, const SurfaceLight& light,
-                const Image& radiance, const Picture& picture, OutputSet& files) {
+double writeLight(Session& session, const PatchMesh& mesh, const SurfaceLight& light,
+                  const Image& radiance, const Picture& picture, OutputSet& files) {
   const double ev = exposureOf(session.request, radiance);
   if (session.request.exposure == "auto") warnOfDarkness(session.report, mesh, light, radiance);
   session.report.number("exposure_ev", "exposure", ev,
@@ -166,6 +166,7 @@ void writeLight(Session& session, const PatchMesh& mesh, const SurfaceLight& lig
   if (files.has(Format::glb) && session.request.lightmap.empty()) {
     writeLitMesh(session.report, mesh, light, files, ev, picture.options.crease);
   }
+  return ev;
 }
 
 ExposedPicture exposePicture(Session& session, Pipeline& pipeline, const SurfaceLight& light) {

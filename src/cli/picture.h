@@ -37,9 +37,10 @@ using Metadata = std::vector<std::pair<std::string, std::string>>;
 Metadata metadataOf(const Picture& picture, const std::string& quantity, const std::string& unit);
 
 /// Writes a picture's radiance to the .png and .exr among `files`, the light of elements, or else
-/// of patches, to the .glb (without --lightmap), and reports the exposure.
-void writeLight(Session& session, const PatchMesh& mesh, const SurfaceLight& light,
-                const Image& radiance, const Picture& picture, OutputSet& files);
+/// of patches, to the .glb (without --lightmap), and reports the exposure, which it
+/// returns.
+double writeLight(Session& session, const PatchMesh& mesh, const SurfaceLight& light,
+                  const Image& radiance, const Picture& picture, OutputSet& files);
 
 /// Writes the .glb among `files` as a lit mesh, and reports how many triangles it has.
 void writeLitMesh(Report& report, const PatchMesh& mesh, const SurfaceLight& light,

@@ -211,9 +211,8 @@ int runRender(Session& session) {
     drawQuantity(session, pipeline, picture, show, *show.quantity, files);
   } else {
     const Image radiance = radianceOfPicture(session, pipeline, light, picture);
-    writeLight(session, mesh, light, radiance, picture, files);
+    const double ev = writeLight(session, mesh, light, radiance, picture, files);
     if (!request.lightmap.empty()) {
-      const double ev = exposureOf(request, radiance);
       writeLightmap(session, pipeline.scene(), mesh, light, ev, files);
     }
   }

@@ -7,8 +7,8 @@
 #include <functional>
 #include <numbers>
 
-#include "compare_error.h"
 #include "radiosity/compare.h"
+#include "support/error_of.h"
 #include "support/quad_mesh.h"
 
 namespace radiosity {

@@ -6,10 +6,10 @@
 #include <cstring>
 #include <numeric>
 
-#include "compare_error.h"
 #include "gather/gather_scenes.h"
 #include "radiosity/compare.h"
 #include "radiosity/results.h"
+#include "support/error_of.h"
 #include "support/results_folder.h"
 
 namespace radiosity {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "compare_error.h"
 #include "radiosity/compare.h"
+#include "support/error_of.h"
 
 namespace radiosity {
 namespace {

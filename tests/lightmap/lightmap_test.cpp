@@ -12,6 +12,7 @@
 
 #include "base/geometry/surface_index.h"
 #include "lightmap/charts.h"
+#include "support/error_of.h"
 #include "support/lit_scene.h"
 #include "support/scene_builder.h"
 
@@ -309,24 +310,14 @@ TEST(Lightmap, SmoothFacesShareCharts) {
   EXPECT_EQ(mapOf(lit, {.size = 256, .crease = 1}).report.charts, 66u);
 }
 
-template <class Action>
-std::string errorOf(const Action& action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return {};
-}
-
 TEST(Lightmap, Errors) {
   EXPECT_NO_THROW(LightmapOptions().validate());
   LitScene lit(dataScene("curved.obj"), 60, kCoarse);
-  EXPECT_EQ(errorOf([&] { mapOf(lit, {.size = 5000}); }),
+  EXPECT_EQ(test::errorOf([&] { mapOf(lit, {.size = 5000}); }),
             "lightmap size 5000 is not within 16 to 4096 texels");
-  EXPECT_EQ(errorOf([&] { mapOf(lit, {.crease = -1}); }),
+  EXPECT_EQ(test::errorOf([&] { mapOf(lit, {.crease = -1}); }),
             "crease -1 is not within 0 to 180 degrees");
-  const std::string small = errorOf([&] { mapOf(lit, {.size = 16}); });
+  const std::string small = test::errorOf([&] { mapOf(lit, {.size = 16}); });
   EXPECT_NE(small.find("a lightmap of 16 x 16 texels has no room for "), std::string::npos)
       << small;
   const int would_do = std::stoi(small.substr(small.find("; ") + 2));
@@ -335,7 +326,7 @@ TEST(Lightmap, Errors) {
   stopped.cancel();
   EXPECT_THROW(makeLightmap(lit.scene, lit.mesh, lit.light, {}, stopped), Cancelled);
   lit.light.elements = nullptr;
-  EXPECT_NE(errorOf([&] { mapOf(lit, {}); }).find("there are none"), std::string::npos);
+  EXPECT_NE(test::errorOf([&] { mapOf(lit, {}); }).find("there are none"), std::string::npos);
 }
 
 }  // namespace

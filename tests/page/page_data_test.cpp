@@ -17,6 +17,7 @@
 #include "page/surfaces.h"
 #include "page_reader.h"
 #include "radiosity/pipeline.h"
+#include "support/error_of.h"
 #include "support/results_folder.h"
 #include "support/scene_builder.h"
 
@@ -392,29 +393,18 @@ TEST(PageData, WithoutElementsTheirArraysAreEmpty) {
   EXPECT_EQ(made.report.element_triangles, 0u);
 }
 
-/// What an action is refused with.
-template <class Action>
-std::string refusal(const Action& action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "not refused";
-}
-
 TEST(PageData, WhatIsTooLargeIsRefusedWithNumberAndCure) {
   PatchMesh mesh;
   mesh.area.resize(kMostPageUnknowns);
   EXPECT_NO_THROW(requirePageFits("s.obj", mesh));
   mesh.area.resize(kMostPageUnknowns + 1);
-  EXPECT_EQ(refusal([&] { requirePageFits("s.obj", mesh); }),
+  EXPECT_EQ(test::errorOf([&] { requirePageFits("s.obj", mesh); }),
             "s.obj: 8,001 unknowns, and a page holds the form factors of at most 8,000; use fewer "
             "--patches, e.g. --patches 4000");
   mesh.area.resize(kMostPagePatches + 1);
   mesh.clusters.emplace();
   mesh.clusters->begin.resize(10);
-  EXPECT_EQ(refusal([&] { requirePageFits("s.obj", mesh); }),
+  EXPECT_EQ(test::errorOf([&] { requirePageFits("s.obj", mesh); }),
             "s.obj: 100,001 patches, and a page holds at most 100,000; each planar piece is at "
             "least one patch: leave out parts of the scene");
   mesh.area.resize(kMostPagePatches);
@@ -427,7 +417,7 @@ void useHemicubes(PipelineOptions& options) {
 }
 
 TEST(PageData, TwoEstimatesAPairAreRefused) {
-  const std::string why = refusal([] { Made(roomWithPlate(), 60, false, useHemicubes); });
+  const std::string why = test::errorOf([] { Made(roomWithPlate(), 60, false, useHemicubes); });
   EXPECT_NE(why.find("--symmetrize"), std::string::npos) << why;
 }
 

@@ -38,23 +38,30 @@ export function fromEmission(system: System): Iterate {
   return { irradiance: Float64Array.from(system.more), radiosity: source(system), rows: 0 };
 }
 
+/** sum_j F_ij B_j of row i, all bands, into `sum`. */
+function gatherRow(factors: Factors, radiosity: Float64Array, i: number, sum: Float64Array): void {
+  const { begin, column, value } = factors;
+  let r = 0, g = 0, b = 0;
+  for (let k = begin[i]!, end = begin[i + 1]!; k < end; ++k) {
+    const at = column[k]! * BANDS;
+    const f = value[k]!;
+    r += f * radiosity[at]!;
+    g += f * radiosity[at + 1]!;
+    b += f * radiosity[at + 2]!;
+  }
+  sum[0] = r;
+  sum[1] = g;
+  sum[2] = b;
+}
+
 /** H = F B + more. */
 export function irradianceOf(system: System, radiosity: Float64Array): Float64Array {
-  const { begin, column, value, size } = system.factors;
+  const { size } = system.factors;
   const result = new Float64Array(size * BANDS);
+  const sum = new Float64Array(BANDS);
   for (let i = 0; i < size; ++i) {
-    let r = 0, g = 0, b = 0;
-    for (let k = begin[i]!; k < begin[i + 1]!; ++k) {
-      const at = column[k]! * BANDS;
-      const f = value[k]!;
-      r += f * radiosity[at]!;
-      g += f * radiosity[at + 1]!;
-      b += f * radiosity[at + 2]!;
-    }
-    const at = i * BANDS;
-    result[at] = r + system.more[at]!;
-    result[at + 1] = g + system.more[at + 1]!;
-    result[at + 2] = b + system.more[at + 2]!;
+    gatherRow(system.factors, radiosity, i, sum);
+    for (let band = 0; band < BANDS; ++band) result[i * BANDS + band] = sum[band]! + system.more[i * BANDS + band]!;
   }
   return result;
 }
@@ -87,31 +94,25 @@ export function jacobiSweep(system: System, iterate: Iterate, next?: Float64Arra
  */
 export function gaussSeidelSweep(
   system: System, iterate: Iterate, scale: Float64Array, order?: Uint32Array): number {
-  const { begin, column, value, size, diagonal } = system.factors;
+  const { size, diagonal } = system.factors;
   const { emission, reflectance, more } = system;
   const { irradiance, radiosity } = iterate;
-  const overR = 1 / scale[0]!, overG = 1 / scale[1]!, overB = 1 / scale[2]!;
+  const over = scale.map((most) => 1 / most);
+  const sum = new Float64Array(BANDS);
   let largest = 0;
   for (let row = 0; row < size; ++row) {
     const i = order ? order[row]! : row;
-    let r = 0, g = 0, b = 0;
-    for (let k = begin[i]!, end = begin[i + 1]!; k < end; ++k) {
-      const at = column[k]! * BANDS;
-      const f = value[k]!;
-      r += f * radiosity[at]!;
-      g += f * radiosity[at + 1]!;
-      b += f * radiosity[at + 2]!;
-    }
+    gatherRow(system.factors, radiosity, i, sum);
     const at = i * BANDS;
     const self = diagonal[i]!;
     for (let band = 0; band < BANDS; ++band) {
       const k = at + band;
       const before = radiosity[k]!;
-      const others = (band === 0 ? r : band === 1 ? g : b) - self * before + more[k]!;
+      const others = sum[band]! - self * before + more[k]!;
       const after = (emission[k]! + reflectance[k]! * others) / (1 - reflectance[k]! * self);
       irradiance[k] = others + self * after;
       radiosity[k] = after;
-      const change = Math.abs(after - before) * (band === 0 ? overR : band === 1 ? overG : overB);
+      const change = Math.abs(after - before) * over[band]!;
       if (change > largest) largest = change;
     }
   }
