@@ -54,6 +54,11 @@ struct FormFactorOptions {
   /// Hemicube: pairs nearer than two patch sizes get the area-to-area value times the visible
   /// fraction that the item buffer tells.
   bool near_exact = false;
+  /// Rays: unknowns (patches, or clusters where there are any), ascending, whose exchange with all
+  /// others is exact: those that emit (emittingUnknowns()), since the light of all others rests on
+  /// them. They are left to rays, and the report says so, where exact rows would take more than half
+  /// as long as all rays and more than some seconds, or have more than a million pairs.
+  std::vector<Index> exact_rows;
   std::size_t memory_limit = 0;  ///< bytes; 0: no limit
   /// A folder on a disk. Rows that do not fit within memory_limit are in a file without a name
   /// there (ScratchMemory), with the same bits. Empty: refused.
@@ -126,13 +131,16 @@ struct RayReport {
   std::size_t rays = 0;    ///< cast, all in all
   std::size_t lost = 0;    ///< of them not counted: they hit the polygon they left
   std::size_t leaked = 0;  ///< nor these: they got out of a scene that is proved closed
+  /// Rows that are exact, not estimated; empty where FormFactorOptions::exact_rows asked for none.
+  std::optional<std::size_t> exact_rows;
   int rounds = 0;
   std::size_t short_rows = 0;  ///< that were given up before they met the tolerance
   /// What rows were cast to where no tolerance was asked for and kMostRaysUnasked did not suffice
   /// for the default.
   std::optional<double> loosened_tolerance;
   double largest_row_figure = 0;  ///< largest of FormFactors::error over the norm of its row
-  double seconds_prepare = 0;     ///< by the clock, as the others: the tree and the look-up
+  /// By the clock, as the others: the tree, the look-up and the exact rows.
+  double seconds_prepare = 0;
   double seconds_cast = 0;
   double seconds_merge = 0;
   double seconds_close = 0;

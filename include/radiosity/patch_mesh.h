@@ -192,6 +192,9 @@ struct PatchMaterials {
 /// area, and Scene::sky.
 PatchMaterials patchMaterials(const Scene& scene, const PatchMesh& mesh);
 
+/// The unknowns, ascending, with a patch that emits in some band. Errors as requireSizes().
+std::vector<Index> emittingUnknowns(const PatchMesh& mesh, const PatchMaterials& materials);
+
 /// Corners of patches that share one value where a field is smooth: at every vertex those whose
 /// patches bend less than `crease` degrees and are reached through such neighbours on the same
 /// side. Neighbours share a surface and an edge on which nothing else stands.

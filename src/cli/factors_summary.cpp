@@ -87,6 +87,7 @@ void rayFigures(Report& report, const RayReport& r) {
   report.number("million_rays_per_second", "  a second, millions", rate);
   report.count("rays_lost", "  not counted", r.lost);
   report.count("rays_leaked", "  of them leaked out", r.leaked);
+  if (r.exact_rows) report.count("exact_rows", "exact rows, of emitters", *r.exact_rows);
   report.count("rounds", "rounds", std::size_t(r.rounds));
   report.count("short_rows", "rows short of the tolerance", r.short_rows);
   if (r.loosened_tolerance) {

@@ -42,6 +42,12 @@ std::vector<double> patchValues(const PatchMesh& mesh, std::span<const double> o
   return values;
 }
 
+std::vector<double> unknownAreas(const PatchMesh& mesh) {
+  std::vector<double> area(mesh.unknowns(), 0.0);
+  for (std::size_t i = 0; i < mesh.size(); ++i) area[mesh.unknownOf(i)] += mesh.area[i];
+  return area;
+}
+
 std::vector<Index> clusterSurfaces(const PatchMesh& mesh) {
   const PatchClusters& clusters = made(mesh.clusters);
   std::vector<Index> surfaces;

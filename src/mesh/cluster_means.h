@@ -16,6 +16,9 @@ std::vector<double> clusterMeans(const PatchMesh& mesh, std::span<const double> 
 std::vector<double> patchValues(const PatchMesh& mesh, std::span<const double> of_clusters,
                                 int bands);
 
+/// K, m^2: of the unknowns of any mesh, clusters or patches.
+std::vector<double> unknownAreas(const PatchMesh& mesh);
+
 /// The surface of each cluster.
 std::vector<Index> clusterSurfaces(const PatchMesh& mesh);
 

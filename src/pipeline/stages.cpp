@@ -142,6 +142,10 @@ FormFactorPlan Pipeline::planFactors() const {
   returnFreedMemory();
   if (options.memory_held == 0) options.memory_held = residentBytes() + kLoadedLater;
   const PatchMesh& patches = made(results_.mesh).mesh;
+  if (!options.sources_only) {
+    options.exact_rows = emittingUnknowns(
+        patches, results_.materials ? *results_.materials : patchMaterials(scene(), patches));
+  }
   const std::optional<FormFactorMethod> kept = methodOfKeptRows(factorsKey(options, patches));
   if (kept) options.method = *kept;
   FormFactorPlan plan = planFormFactors(patches, options, progress_);

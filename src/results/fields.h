@@ -190,6 +190,7 @@ void describe(Archive& a, Described<Archive, RayReport>& r) {
   a("rounds", r.rounds);
   a("short_rows", r.short_rows);
   a("loosened_tolerance", r.loosened_tolerance);
+  a("exact_rows", r.exact_rows);
   a("largest_row_figure", r.largest_row_figure);
   a("seconds_prepare", r.seconds_prepare);
   a("seconds_cast", r.seconds_cast);

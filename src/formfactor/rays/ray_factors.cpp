@@ -19,34 +19,60 @@ namespace {
 /// As good as single precision can restore rows.
 constexpr double kClosureTolerance = 1e-9;
 
-/// What a row saw of fronts, backs and sky, by its own rays alone.
-void setAccounts(const RayScene& scene, const std::vector<RayRow>& rows, ScratchMemory* scratch,
-                 FormFactors& result, std::vector<std::vector<SeenBack>>& seen_backs) {
+/// The account of a row that rests on no rays. In a closed scene fronts are what backs leave.
+void setKnownAccount(const KnownEntries& known, std::size_t k, Index i, double area,
+                     FormFactors& result, std::vector<SeenBack>& seen_backs) {
+  for (const KnownEntries::Entry& entry : known.at(k)) result.fronts[i] += entry.exchange / area;
+  seen_backs = known.rowAt(k)->backs;
+  for (const SeenBack& back : seen_backs) result.backs[i] += back.share;
+  const double rest = std::max(0.0, 1 - result.backs[i]);
+  result.fronts[i] = result.report.closed ? rest : std::min(rest, result.fronts[i]);
+  result.sky[i] = rest - result.fronts[i];
+}
+
+/// What a row saw of fronts, backs and sky, by its own rays alone. What is known takes the place of
+/// the rays that ended there; all others count for what that leaves.
+void setAccounts(const RayScene& scene, const KnownEntries& known, const std::vector<RayRow>& rows,
+                 ScratchMemory* scratch, FormFactors& result,
+                 std::vector<std::vector<SeenBack>>& seen_backs) {
   const std::size_t n = rows.size();
   parallelFor(n, 64, [&](std::size_t k) {
     const RayRow& row = rows[k];
     touchRows(scratch, row.bytes());
     const Index i = scene.order()[k];
-    const double counted = row.counted();
-    if (!(counted > 0)) return;
-    double fronts = 0;
+    if (!(row.counted() > 0)) return;
+    if (known.rowAt(k) != nullptr) {
+      setKnownAccount(known, k, i, scene.area()[k], result, seen_backs[i]);
+      return;
+    }
+    double known_share = 0;
+    for (const KnownEntries::Entry& entry : known.at(k)) {
+      known_share += entry.exchange / scene.area()[k];
+    }
+    double counted = row.counted();
+    for (std::size_t e = 0; e < row.columns.size() && row.columns[e] < n; ++e) {
+      if (known.rowAt(row.columns[e]) == nullptr) continue;
+      counted -= double(row.hits[e][0]) + double(row.hits[e][1]);
+    }
+    const double each = counted > 0 ? std::max(0.0, 1 - known_share) / counted : 0.0;
+    double fronts = known_share;
     for (std::size_t e = 0; e < row.columns.size(); ++e) {
-      const double share = (double(row.hits[e][0]) + double(row.hits[e][1])) / counted;
-      if (row.columns[e] < n) {
-        fronts += share;
-      } else {
+      const double share = (double(row.hits[e][0]) + double(row.hits[e][1])) * each;
+      if (row.columns[e] >= n) {
         result.backs[i] += share;
         seen_backs[i].push_back({Index(row.columns[e] - n), share});
+      } else if (known.rowAt(row.columns[e]) == nullptr) {
+        fronts += share;
       }
     }
     result.fronts[i] = fronts;
-    result.sky[i] = (double(row.sky[0]) + double(row.sky[1])) / counted;
+    result.sky[i] = (double(row.sky[0]) + double(row.sky[1])) * each;
   });
 }
 
 /// The matrix, its error figures and how far off each entry may be.
-void store(const RayScene& scene, const std::vector<RayRow>& rows, ScratchMemory* scratch,
-           FormFactors& result, UncertainEntries& uncertain) {
+void store(const RayScene& scene, const KnownEntries& known, const std::vector<RayRow>& rows,
+           ScratchMemory* scratch, FormFactors& result, UncertainEntries& uncertain) {
   const std::size_t n = rows.size();
   std::vector<double> density(n);
   for (std::size_t k = 0; k < n; ++k) {
@@ -59,20 +85,26 @@ void store(const RayScene& scene, const std::vector<RayRow>& rows, ScratchMemory
     std::vector<double> errors;
   };
   tbb::enumerable_thread_specific<Upper> uppers;
-  forMergedRows(rows, scene.area(), {}, scratch, [&](const MergedRow& merged) {
+  forMergedRows(rows, scene.area(), known, {}, scratch, [&](const MergedRow& merged) {
     const std::size_t k = merged.position;
     Upper& upper = uppers.local();
     upper.positions.clear();
     upper.factors.clear();
     upper.errors.clear();
-    accuracy[k] = accuracyOf(merged, rows[k]);
+    accuracy[k] = accuracyOf(merged, rows[k], scene.area()[k]);
     const auto& columns = merged.columns;
     const auto from = std::lower_bound(columns.begin(), columns.end(), k);
+    auto next_known = merged.known.begin();
     for (std::size_t e = std::size_t(from - columns.begin()); e < columns.size(); ++e) {
       const Index j = columns[e];
       const double value = 0.5 * (merged.factors[e][0] + merged.factors[e][1]);
       upper.positions.push_back(j);
       upper.factors.push_back(value);
+      while (next_known != merged.known.end() && next_known->position < j) ++next_known;
+      if (next_known != merged.known.end() && next_known->position == j) {
+        upper.errors.push_back(std::min(1.0, next_known->error / scene.area()[k]));
+        continue;
+      }
       // Of independent rays: more than the true one, but it weighs entries all the same.
       const double variance = value / ((density[k] + density[j]) * scene.area()[k]);
       upper.errors.push_back(std::min(1.0, std::sqrt(variance)));
@@ -88,7 +120,7 @@ void store(const RayScene& scene, const std::vector<RayRow>& rows, ScratchMemory
     const RowAccuracy& row = accuracy[k];
     const double figure = row.figure();
     result.error[scene.order()[k]] = figure;
-    squares += scene.area()[k] * row.error * row.error;
+    squares += scene.area()[k] * (row.error * row.error + row.known_error * row.known_error);
     norms += scene.area()[k] * row.norm * row.norm;
     if (row.norm > 0) {
       double& largest = result.report.rays.largest_row_figure;
@@ -140,7 +172,8 @@ bool seesSky(const std::vector<RayRow>& rows) {
 
 }  // namespace
 
-FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene, const RayEstimate& estimate,
+FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene,
+                       std::vector<KnownRow> rows_known, const RayEstimate& estimate,
                        const FormFactorOptions& options, Progress& progress, RowJournal* journal) {
   const std::size_t n = scene.size();
   FormFactors result;
@@ -153,9 +186,11 @@ FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene, const RayEs
   for (std::size_t k = 0; k < n; ++k) area[scene.order()[k]] = scene.area()[k];
   report.empty_rows = std::size_t(std::count(area.begin(), area.end(), 0.0));
   report.rays.triangles = scene.caster().triangles();
+  if (!options.exact_rows.empty()) report.rays.exact_rows = rows_known.size();
+  const KnownEntries known(std::move(rows_known), scene.position());
 
   std::vector<RayRow> rows =
-      castRows(scene, RayAim(options), report.rays, progress, journal, scratch.get());
+      castRows(scene, known, RayAim(options), report.rays, progress, journal, scratch.get());
   noteLoosened(options, report);
   report.closed = scene.provedClosed() || !seesSky(rows);
   result.matrix =
@@ -167,8 +202,8 @@ FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene, const RayEs
   std::vector<std::vector<SeenBack>> seen_backs(n);
   UncertainEntries uncertain(n, scratch);
   const double storing = clockSeconds();
-  setAccounts(scene, rows, scratch.get(), result, seen_backs);
-  store(scene, rows, scratch.get(), result, uncertain);
+  setAccounts(scene, known, rows, scratch.get(), result, seen_backs);
+  store(scene, known, rows, scratch.get(), result, uncertain);
   rows = {};
   progress.check();
   const double closing = clockSeconds();

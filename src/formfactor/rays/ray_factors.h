@@ -26,9 +26,10 @@ RayEstimate estimateRays(const RayScene& scene, const FormFactorOptions& options
 /// Rows are cast in rounds: each is continued until the error expected of it, merged with what the
 /// others count, is below options.toleranceOf(rays) times its norm, or times that of a usual row
 /// where it sees less: what little an open body sees of itself is not worth a thousand times the
-/// rays of the rest. `journal` may be null. Errors: RunError where the estimate exceeds
-/// options.memory_limit.
-FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene, const RayEstimate& estimate,
-                       const FormFactorOptions& options, Progress& progress, RowJournal* journal);
+/// rays of the rest. `known`: rows that need none. `journal` may be null. Errors: RunError where
+/// the estimate exceeds options.memory_limit.
+FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene, std::vector<KnownRow> known,
+                       const RayEstimate& estimate, const FormFactorOptions& options,
+                       Progress& progress, RowJournal* journal);
 
 }  // namespace radiosity

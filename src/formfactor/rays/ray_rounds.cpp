@@ -37,13 +37,14 @@ std::uint32_t raysNeeded(const RowState& before, const RowState& now, double aim
 
 class Rounds {
  public:
-  Rounds(const RayScene& scene, const RayAim& aim, RayReport& report, Progress& progress,
-         RowJournal* journal, ScratchMemory* scratch)
+  Rounds(const RayScene& scene, const KnownEntries& known, const RayAim& aim, RayReport& report,
+         Progress& progress, RowJournal* journal, ScratchMemory* scratch)
       : scene_(scene),
+        known_(known),
         aim_(aim),
         report_(report),
         progress_(progress),
-        journal_(journal, scene.size()),
+        journal_(journal, scene.size(), known.identity()),
         scratch_(scratch),
         before_(scene.size()),
         now_(scene.size()) {
@@ -181,9 +182,9 @@ class Rounds {
     const double start = clockSeconds();
     std::vector<std::uint8_t> wanted(rows_.size());
     for (std::size_t k = 0; k < rows_.size(); ++k) wanted[k] = rays[k] > 0;
-    forMergedRows(rows_, scene_.area(), wanted, scratch_, [&](const MergedRow& merged) {
+    forMergedRows(rows_, scene_.area(), known_, wanted, scratch_, [&](const MergedRow& merged) {
       const std::size_t k = merged.position;
-      const RowAccuracy accuracy = accuracyOf(merged, rows_[k]);
+      const RowAccuracy accuracy = accuracyOf(merged, rows_[k], scene_.area()[k]);
       before_[k] = now_[k];
       now_[k] = {rows_[k].rays, accuracy.error, accuracy.norm};
     });
@@ -208,6 +209,7 @@ class Rounds {
   }
 
   const RayScene& scene_;
+  const KnownEntries& known_;
   RayAim aim_;
   double loosened_ = 1;
   RayReport& report_;
@@ -247,9 +249,10 @@ double loosening(double most, const std::function<double(double)>& raysAt) {
   return high;
 }
 
-std::vector<RayRow> castRows(const RayScene& scene, const RayAim& aim, RayReport& report,
-                             Progress& progress, RowJournal* journal, ScratchMemory* scratch) {
-  return Rounds(scene, aim, report, progress, journal, scratch).run();
+std::vector<RayRow> castRows(const RayScene& scene, const KnownEntries& known, const RayAim& aim,
+                             RayReport& report, Progress& progress, RowJournal* journal,
+                             ScratchMemory* scratch) {
+  return Rounds(scene, known, aim, report, progress, journal, scratch).run();
 }
 
 }  // namespace radiosity

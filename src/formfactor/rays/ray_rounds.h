@@ -39,9 +39,11 @@ struct RayAim {
 /// needs, falling with it, brings to `most` or below; within a hundredth.
 double loosening(double most, const std::function<double(double)>& raysAt);
 
-/// All rows, by position. Fills what the report says of rays and rounds. `journal`: null where
-/// nothing is kept. `scratch`: where the rows' entries are to be; null: in memory.
-std::vector<RayRow> castRows(const RayScene& scene, const RayAim& aim, RayReport& report,
-                             Progress& progress, RowJournal* journal, ScratchMemory* scratch);
+/// All rows, by position. `known`: entries that are not estimated. Fills what the report says of
+/// rays and rounds. `journal`: null where nothing is kept. `scratch`: where the rows' entries are
+/// to be; null: in memory.
+std::vector<RayRow> castRows(const RayScene& scene, const KnownEntries& known, const RayAim& aim,
+                             RayReport& report, Progress& progress, RowJournal* journal,
+                             ScratchMemory* scratch);
 
 }  // namespace radiosity

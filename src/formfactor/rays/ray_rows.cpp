@@ -215,11 +215,13 @@ std::size_t mergingBytes(std::size_t rows, double entries) {
          std::size_t(std::min(double(kPanelBytes), entries * double(kHandedBytes)));
 }
 
-double RowAccuracy::figure() const { return error * std::sqrt(quantile(degrees)); }
+double RowAccuracy::figure() const {
+  return std::hypot(error * std::sqrt(quantile(degrees)), known_error);
+}
 
 void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
-                   std::span<const std::uint8_t> wanted, ScratchMemory* scratch,
-                   const std::function<void(const MergedRow&)>& visit) {
+                   const KnownEntries& known, std::span<const std::uint8_t> wanted,
+                   ScratchMemory* scratch, const std::function<void(const MergedRow&)>& visit) {
   const std::size_t n = rows.size();
   std::vector<std::array<double, kReplicates>> density(n);  // rays a square metre
   for (std::size_t k = 0; k < n; ++k) {
@@ -238,7 +240,19 @@ void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
       Merging& merging = mergings.local();
       merging.columns.clear();
       merging.factors.clear();
+      const std::span<const KnownEntries::Entry> entries = known.at(k);
+      const bool all_known = known.rowAt(k) != nullptr;
+      std::size_t next = 0;  // of these
+      const auto addKnownBefore = [&](std::size_t end) {
+        for (; next < entries.size() && entries[next].position < end; ++next) {
+          const double factor = entries[next].exchange / area[k];
+          merging.columns.push_back(entries[next].position);
+          merging.factors.push_back({factor, factor});
+        }
+      };
       const auto merge = [&](Index j, const Hits& own, const Hits& of_j) {
+        if (all_known || known.rowAt(j) != nullptr) return;
+        addKnownBefore(j);
         merging.columns.push_back(j);
         std::array<double, kReplicates>& factor = merging.factors.emplace_back();
         for (std::size_t r = 0; r < kReplicates; ++r) {
@@ -250,20 +264,30 @@ void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
       };
       touchRows(scratch, rows[k].bytes());
       forBothEnds(rows[k], handed.columns(k), handed.hits(k), n, merge);
-      visit({k, n, merging.columns, merging.factors});
+      addKnownBefore(n);
+      visit({k, n, merging.columns, merging.factors, entries, all_known});
     });
     first = last;
   }
 }
 
-RowAccuracy accuracyOf(const MergedRow& merged, const RayRow& own) {
+RowAccuracy accuracyOf(const MergedRow& merged, const RayRow& own, double area) {
   ReplicateSums sums;
   for (const auto& [first, second] : merged.factors) sums.add(first, second);
-  for (std::size_t e = own.columns.size(); e-- > 0;) {
+  for (std::size_t e = merged.all_known ? 0 : own.columns.size(); e-- > 0;) {
     if (own.columns[e] < merged.unknowns) break;
     sums.add(own.hits[e][0] / own.counted(0), own.hits[e][1] / own.counted(1));
   }
-  return sums.accuracy();
+  RowAccuracy accuracy = sums.accuracy();
+  double squares = 0;
+  double fourths = 0;
+  for (const KnownEntries::Entry& entry : merged.known) {
+    const double square = (entry.error / area) * (entry.error / area);
+    squares += square;
+    fourths += square * square;
+  }
+  accuracy.known_error = std::sqrt(squares + std::sqrt(fourths));  // as ErrorSums
+  return accuracy;
 }
 
 RowAccuracy accuracyAlone(const RayRow& row) {

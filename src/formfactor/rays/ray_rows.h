@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "formfactor/rays/known_entries.h"
 #include "radiosity/base.h"
 #include "radiosity/scratch_memory.h"
 
@@ -51,16 +52,19 @@ struct MergedRow {
   std::size_t position = 0;
   std::size_t unknowns = 0;        ///< K
   std::span<const Index> columns;  ///< positions that one end or the other has hit, increasing
-  /// F from this row's unknown to those, by the first and the second replicate.
+  /// F from this row's unknown to those, by the first and the second replicate; twice the same
+  /// where it is known.
   std::span<const std::array<double, kReplicates>> factors;
+  std::span<const KnownEntries::Entry> known;  ///< those among them that are known
+  bool all_known = false;                      ///< the row rests on no rays
 };
 
 /// Calls visit(row) for the rows with `wanted` (by position; empty: all), several at once from
 /// different threads. `area`: K, by position. `scratch`: where the rows' entries are; null: in
-/// memory. O(K + entries), in panels of memory.
+/// memory. What is known takes the place of what rays counted. O(K + entries), in panels of memory.
 void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
-                   std::span<const std::uint8_t> wanted, ScratchMemory* scratch,
-                   const std::function<void(const MergedRow&)>& visit);
+                   const KnownEntries& known, std::span<const std::uint8_t> wanted,
+                   ScratchMemory* scratch, const std::function<void(const MergedRow&)>& visit);
 
 /// Bytes that forMergedRows() takes of `rows` rows with `entries` of their own, all together.
 std::size_t mergingBytes(std::size_t rows, double entries);
@@ -71,6 +75,7 @@ struct RowAccuracy {
   double error = 0;  ///< root mean square expected of sqrt(sum_j (F_ij - true F_ij)^2)
   /// About: of how many independent terms the squared error is the sum.
   double degrees = 1;
+  double known_error = 0;  ///< stated, of the entries that are known; not in `error`
 
   /// What sqrt(sum_j (F_ij - true F_ij)^2) is below in 99% of rows: error squared over its estimate
   /// is distributed like F with as many degrees of freedom above as below.
@@ -91,8 +96,9 @@ class UsualNorm {
   double areas_ = 0;
 };
 
-/// `own`: the row itself, for the black backs in it, which nothing estimates from the other end.
-RowAccuracy accuracyOf(const MergedRow& merged, const RayRow& own);
+/// `own`: the row itself, for the black backs in it, which nothing estimates from the other end;
+/// `area`: its, m^2.
+RowAccuracy accuracyOf(const MergedRow& merged, const RayRow& own, double area);
 
 /// The same of a row by itself, before it is merged with what the others count.
 RowAccuracy accuracyAlone(const RayRow& row);

@@ -5,6 +5,7 @@
 
 #include "formfactor/patch_seed.h"
 #include "formfactor/row_accounts.h"
+#include "mesh/cluster_means.h"
 #include "mesh/enclosures.h"
 
 namespace radiosity {
@@ -13,12 +14,6 @@ namespace {
 
 /// Rays between two looks at whether to go on: some milliseconds.
 constexpr std::uint32_t kSlice = 1u << 16;
-
-std::vector<double> unknownAreas(const PatchMesh& mesh) {
-  std::vector<double> area(mesh.unknowns(), 0.0);
-  for (std::size_t i = 0; i < mesh.size(); ++i) area[mesh.unknownOf(i)] += mesh.area[i];
-  return area;
-}
 
 /// Counts of this thread, all 0.
 using Replicates = std::array<RayCaster::Counts, kReplicates>;

@@ -21,6 +21,8 @@ class RayScene {
   std::size_t size() const { return order_.size(); }
   /// The unknown at each position.
   const std::vector<Index>& order() const { return order_; }
+  /// The position of each unknown.
+  const std::vector<Index>& position() const { return position_; }
   /// By position, m^2.
   const std::vector<double>& area() const { return area_; }
   /// No ray can get out: those that do went through a gap.

@@ -9,6 +9,7 @@ namespace radiosity {
 void RoundJournal::keep(int round, const RayRound& decided) const {
   if (journal_ == nullptr) return;
   ByteWriter bytes;
+  bytes.put(known_);
   bytes.putArray(std::span(decided.rays));
   bytes.putArray(std::span(decided.before));
   bytes.putArray(std::span(decided.now));
@@ -21,6 +22,7 @@ std::optional<RayRound> RoundJournal::take(int round) const {
   if (journal_ == nullptr || !journal_->has(RowBlock::ray_round, std::uint64_t(round))) return {};
   const std::vector<std::byte> block = journal_->kept(RowBlock::ray_round, std::uint64_t(round));
   ByteReader bytes(block);
+  if (bytes.get<std::uint64_t>() != known_) return {};
   RayRound decided;
   decided.rays = bytes.getArray<std::uint32_t>();
   decided.before = bytes.getArray<RowState>();

@@ -32,8 +32,10 @@ struct RayRound {
 /// one is damaged the round before still is good.
 class RoundJournal {
  public:
-  /// Of `rows` rows. `journal`: null where nothing is kept.
-  RoundJournal(RowJournal* journal, std::size_t rows) : journal_(journal), rows_(rows) {}
+  /// Of `rows` rows. `journal`: null where nothing is kept. `known`: tells what is known of them,
+  /// which rounds rest on and rays do not.
+  RoundJournal(RowJournal* journal, std::size_t rows, std::uint64_t known)
+      : journal_(journal), rows_(rows), known_(known) {}
 
   void keep(int round, const RayRound& decided) const;
   std::optional<RayRound> take(int round) const;
@@ -55,6 +57,7 @@ class RoundJournal {
   }
   RowJournal* journal_;
   std::size_t rows_;
+  std::uint64_t known_;
 };
 
 }  // namespace radiosity

@@ -38,14 +38,21 @@ auto part(Progress& progress, const Make& make) {
 
 }  // namespace
 
-ExactScene::ExactScene(const PatchMesh& mesh, Progress& progress)
-    : elements(part(progress, [&] { return ElementSet(mesh, progress); })),
+ExactScene::ExactScene(const PatchMesh& mesh, Progress& progress,
+                       std::span<const std::uint8_t> leading)
+    : elements(part(progress, [&] { return ElementSet(mesh, progress, leading); })),
       occluders(part(progress, [&] { return OccluderSet(mesh, elements, progress); })),
       visibility(elements, occluders),
       order(mesh, elements),
       tasks(elements),
       chunks(elements) {
   progress.advance();
+}
+
+std::size_t ExactScene::leadingTasks() const {
+  std::size_t count = 0;
+  while (count < tasks.size() && tasks[count].front().first < elements.leading_elements) ++count;
+  return count;
 }
 
 ExactKernels::ExactKernels(const ExactScene& scene, const FormFactorOptions& options)

@@ -14,9 +14,11 @@
 namespace radiosity {
 
 struct ExactScene {
-  /// Steps `progress` by kSteps. Throws Cancelled.
+  /// `leading`: see ElementSet. Steps `progress` by kSteps. Throws Cancelled.
   static constexpr std::size_t kSteps = 3;
-  ExactScene(const PatchMesh& mesh, Progress& progress);
+  ExactScene(const PatchMesh& mesh, Progress& progress, std::span<const std::uint8_t> leading = {});
+  /// The first tasks, which hold all elements that lead.
+  std::size_t leadingTasks() const;
   ElementSet elements;
   OccluderSet occluders;
   Visibility visibility;

@@ -140,10 +140,10 @@ void sumUp(double task_rows, RowSample& sum) {
   sum.cost = sum.cost * sum.all_places;
 }
 
-/// All ranges of rows of large facets, or of small ones.
-std::vector<ElementRange> rangesOf(const ExactScene& scene, FacetSize size) {
+/// All ranges of rows of the first tasks, of large facets or of small ones.
+std::vector<ElementRange> rangesOf(const ExactScene& scene, std::size_t tasks, FacetSize size) {
   std::vector<ElementRange> ranges;
-  for (std::size_t t = 0; t < scene.tasks.size(); ++t) {
+  for (std::size_t t = 0; t < tasks; ++t) {
     for (const ElementRange& range : scene.tasks[t]) {
       const Facet& facet = scene.elements.facets[scene.elements.facet[range.first]];
       if (isLarge(facet) == (size == FacetSize::large)) ranges.push_back(range);
@@ -189,10 +189,15 @@ void addPlaces(const ExactScene& scene, std::span<const ElementRange> ranges, Fa
 }  // namespace
 
 RowSample sampleRows(const ExactScene& scene, double tolerance, Progress& progress) {
+  return sampleRows(scene, scene.tasks.size(), tolerance, progress);
+}
+
+RowSample sampleRows(const ExactScene& scene, std::size_t tasks, double tolerance,
+                     Progress& progress) {
   // Pairs of two walls, and of a wall and a small facet, are classes of their own: few of the rows,
   // and much of the work.
-  const std::array<std::vector<ElementRange>, 2> ranges = {rangesOf(scene, FacetSize::large),
-                                                           rangesOf(scene, FacetSize::small)};
+  const std::array<std::vector<ElementRange>, 2> ranges = {
+      rangesOf(scene, tasks, FacetSize::large), rangesOf(scene, tasks, FacetSize::small)};
   std::vector<SampledRanges> places;
   const std::size_t row_classes = (ranges[0].empty() ? 0U : 1U) + (ranges[1].empty() ? 0U : 1U);
   for (const std::vector<ElementRange>& rows : ranges) {
@@ -211,8 +216,8 @@ RowSample sampleRows(const ExactScene& scene, double tolerance, Progress& progre
   });
   progress.check();
   progress.end();
-  const std::size_t tasks = scene.tasks.size();
-  sumUp(tasks > 0 ? double(scene.elements.patch_elements) / double(tasks) : 0, sample);
+  const double rows = tasks > 0 ? double(scene.tasks[tasks - 1].back().end) : 0.0;
+  sumUp(tasks > 0 ? rows / double(tasks) : 0, sample);
   return sample;
 }
 

@@ -68,5 +68,8 @@ inline constexpr std::size_t kSampleSteps = 96;
 /// in every run. (0.05 to 0.8 s on two threads of a 2.7 GHz Xeon, from a spotted cow to a couch
 /// among cushions.) Steps `progress`; calls its check().
 RowSample sampleRows(const ExactScene& scene, double tolerance, Progress& progress);
+/// The same of the rows of the first tasks alone.
+RowSample sampleRows(const ExactScene& scene, std::size_t tasks, double tolerance,
+                     Progress& progress);
 
 }  // namespace radiosity

@@ -71,8 +71,13 @@ bool isConvex(const std::vector<Vec3>& outline, const Vec3& normal, double coinc
 /// Fills an ElementSet facet by facet.
 class ElementBuilder {
  public:
-  ElementBuilder(const PatchMesh& mesh, ElementSet& set, const Progress& progress)
-      : mesh_(mesh), set_(set), progress_(progress) {}
+  ElementBuilder(const PatchMesh& mesh, ElementSet& set, const Progress& progress,
+                 std::span<const std::uint8_t> leading)
+      : mesh_(mesh), set_(set), progress_(progress), leads_(mesh.polygons.size(), 0) {
+    for (std::size_t i = 0; i < leading.size(); ++i) {
+      if (leading[i] != 0 && mesh.polygon[i] != kNone) leads_[mesh.polygon[i]] = 1;
+    }
+  }
 
   void build() {
     normalise();
@@ -81,6 +86,7 @@ class ElementBuilder {
     for (const Index p : order) {
       progress_.check();
       for (std::size_t side = 0; side < 2; ++side) addSide(p, side == 1, patches[p][side]);
+      if (leads_[p] != 0) set_.leading_elements = set_.size();
     }
     set_.patch_elements = set_.size();
     const std::vector<std::uint8_t> hidden = backsHiddenFromAll(mesh_);
@@ -117,6 +123,7 @@ class ElementBuilder {
     std::vector<Index> order(polygons.size());
     std::iota(order.begin(), order.end(), Index(0));
     std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+      if (leads_[a] != leads_[b]) return leads_[a] > leads_[b];
       return std::tie(mesh_.surface_names[polygons.surface[a]], polygons.index_in_surface[a]) <
              std::tie(mesh_.surface_names[polygons.surface[b]], polygons.index_in_surface[b]);
     });
@@ -268,12 +275,14 @@ class ElementBuilder {
   const PatchMesh& mesh_;
   ElementSet& set_;
   const Progress& progress_;
+  std::vector<std::uint8_t> leads_;  ///< of polygons
 };
 
 ElementSet::ElementSet(const PatchMesh& mesh) : ElementSet(mesh, Progress()) {}
 
-ElementSet::ElementSet(const PatchMesh& mesh, const Progress& progress) {
-  ElementBuilder(mesh, *this, progress).build();
+ElementSet::ElementSet(const PatchMesh& mesh, const Progress& progress,
+                       std::span<const std::uint8_t> leading) {
+  ElementBuilder(mesh, *this, progress, leading).build();
 }
 
 }  // namespace radiosity

@@ -56,8 +56,10 @@ struct Facet {
 /// nothing depends on how patches are numbered.
 struct ElementSet {
   explicit ElementSet(const PatchMesh& mesh);
-  /// Throws Cancelled.
-  ElementSet(const PatchMesh& mesh, const Progress& progress);
+  /// `leading`: N flags, or none; polygons with such patches come before all others. Throws
+  /// Cancelled.
+  ElementSet(const PatchMesh& mesh, const Progress& progress,
+             std::span<const std::uint8_t> leading = {});
 
   std::size_t size() const { return patch.size(); }
   std::span<const Vec3> outline(std::size_t e) const {
@@ -80,6 +82,7 @@ struct ElementSet {
   std::vector<Cluster> clusters;
   std::size_t patch_elements =
       0;  ///< elements [0, patch_elements) belong to patches, the rest are black
+  std::size_t leading_elements = 0;  ///< of these, the first ones, of polygons that lead
 };
 
 }  // namespace radiosity

@@ -1,0 +1,207 @@
+#include "formfactor/exact/assembly/leading_rows.h"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/parallel.h"
+#include "formfactor/exact/assembly/row_assembly.h"
+#include "formfactor/exact/assembly/row_sample.h"
+#include "formfactor/exact/error_model.h"
+#include "matrix/run_row.h"
+#include "matrix/uncertain_row.h"
+#include "mesh/cluster_means.h"
+
+namespace radiosity {
+
+/// Rows of the triangle between patches.
+struct LeadingRows::Triangle {
+  Triangle(const PatchMesh& mesh, const PatchOrder& order)
+      : matrix(ExchangeMatrix::symmetric(mesh.area, order.patch, Precision::double_precision)),
+        uncertain(mesh.size()),
+        backs(mesh.size(), 0.0),
+        seen_backs(mesh.size()) {}
+
+  ExchangeMatrix matrix;
+  UncertainEntries uncertain;
+  std::vector<double> backs;
+  std::vector<std::vector<SeenBack>> seen_backs;
+};
+
+namespace {
+
+std::vector<std::uint8_t> patchesOf(const PatchMesh& mesh, std::span<const Index> wanted) {
+  std::vector<std::uint8_t> flags(mesh.size(), 0);
+  for (Index i = 0; i < mesh.size(); ++i) {
+    flags[i] = std::binary_search(wanted.begin(), wanted.end(), mesh.unknownOf(i)) ? 1 : 0;
+  }
+  return flags;
+}
+
+/// Errors of F of a row's occluded pairs, by position; 0 elsewhere.
+void readErrors(const UncertainEntries& uncertain, std::size_t k, std::vector<double>& errors) {
+  std::fill(errors.begin(), errors.end(), 0.0);
+  const UncertainEntries::Row& row = uncertain.row(k);
+  forRuns(std::span(row.runs), row.codes.data(),
+          [&](std::size_t offset, const std::uint8_t* codes, std::size_t count) {
+            for (std::size_t m = 0; m < count; ++m) {
+              errors[k + 1 + offset + m] = errorOfCode(codes[m]);
+            }
+          });
+}
+
+/// The rows of some unknowns, summed over patches.
+class UnknownRows {
+ public:
+  UnknownRows(const PatchMesh& mesh, std::span<const Index> wanted)
+      : mesh_(mesh),
+        which_(mesh.unknowns(), kNone),
+        exchange_(wanted.size() * mesh.unknowns(), 0.0),
+        squares_(exchange_.size(), 0.0),
+        rows_(wanted.size()),
+        area_(unknownAreas(mesh)) {
+    for (Index w = 0; w < wanted.size(); ++w) {
+      which_[wanted[w]] = w;
+      rows_[w].unknown = wanted[w];
+    }
+  }
+
+  /// A pair of patches, once.
+  void add(Index a, Index b, double exchange, double error) {
+    addFrom(mesh_.unknownOf(a), mesh_.unknownOf(b), exchange, error);
+    addFrom(mesh_.unknownOf(b), mesh_.unknownOf(a), exchange, error);
+  }
+
+  /// What a patch sees of backs.
+  void addBacks(Index patch, std::span<const SeenBack> seen) {
+    const Index unknown = mesh_.unknownOf(patch);
+    if (which_[unknown] == kNone) return;
+    std::vector<SeenBack>& backs = rows_[which_[unknown]].backs;
+    for (const auto& [surface, of_patch] : seen) {
+      const double share = of_patch * mesh_.area[patch] / area_[unknown];
+      const auto same =
+          std::find_if(backs.begin(), backs.end(),
+                       [&, s = surface](const SeenBack& back) { return back.surface == s; });
+      if (same == backs.end()) {
+        backs.push_back({surface, share});
+      } else {
+        same->share += share;
+      }
+    }
+  }
+
+  std::vector<KnownRow> take() {
+    const std::size_t unknowns = mesh_.unknowns();
+    for (std::size_t w = 0; w < rows_.size(); ++w) {
+      for (Index u = 0; u < unknowns; ++u) {
+        const double exchange = exchange_[w * unknowns + u];
+        if (!(exchange > 0)) continue;
+        rows_[w].entries.push_back({u, exchange, std::sqrt(squares_[w * unknowns + u])});
+      }
+    }
+    return std::move(rows_);
+  }
+
+ private:
+  void addFrom(Index from, Index to, double exchange, double error) {
+    if (which_[from] == kNone) return;
+    const std::size_t k = which_[from] * mesh_.unknowns() + to;
+    exchange_[k] += exchange;
+    squares_[k] += error * error;
+  }
+
+  const PatchMesh& mesh_;
+  std::vector<Index> which_;      ///< K: among those wanted, or kNone
+  std::vector<double> exchange_;  ///< wanted * K, m^2
+  std::vector<double> squares_;   ///< of its error
+  std::vector<KnownRow> rows_;
+  std::vector<double> area_;
+};
+
+}  // namespace
+
+LeadingRows::LeadingRows(const PatchMesh& mesh, std::vector<Index> wanted,
+                         const FormFactorOptions& options, Progress& progress)
+    : mesh_(mesh),
+      wanted_(std::move(wanted)),
+      options_(options),
+      scene_(mesh, progress, patchesOf(mesh, wanted_)) {}
+
+double LeadingRows::work(Progress& progress) const {
+  const double tolerance = options_.toleranceOf(FormFactorMethod::exact);
+  const RowSample sample = sampleRows(scene_, scene_.leadingTasks(), tolerance, progress);
+  return estimateExact(scene_, sample, options_).work;
+}
+
+std::size_t LeadingRows::bytes() const {
+  constexpr std::size_t kElementBytes = 512;  // as estimateExact()
+  return scene_.elements.size() * kElementBytes +
+         2 * sizeof(double) * wanted_.size() * mesh_.unknowns() +
+         allowedThreads() * scene_.tasks.panelBytes(scene_.elements);
+}
+
+void LeadingRows::fill(Triangle& triangle, const ExactKernels& kernels, Progress& progress) const {
+  const RowContext context{scene_.elements,
+                           scene_.order,
+                           scene_.chunks,
+                           scene_.visibility,
+                           kernels.unoccluded,
+                           kernels.occluded,
+                           progress,
+                           std::numeric_limits<std::size_t>::max(),  // none is evaluated again
+                           triangle.matrix,
+                           &triangle.uncertain,
+                           triangle.backs,
+                           triangle.seen_backs};
+  struct Worker {
+    RowAssembly assembly;
+    RowSums sums;  // of no use: errors are those of each pair
+  };
+  tbb::enumerable_thread_specific<Worker> workers([&] {
+    return Worker{RowAssembly(context), RowSums(scene_.order.ranked)};
+  });
+  const std::size_t tasks = scene_.leadingTasks();
+  progress.begin("form factors of emitters", tasks);
+  parallelFor(tasks, 1, [&](std::size_t t) {
+    if (progress.cancelled()) return;
+    Worker& worker = workers.local();
+    worker.assembly.run(scene_.tasks[t], worker.sums);
+    progress.advance();
+  });
+  progress.check();
+  progress.end();
+}
+
+std::vector<KnownRow> LeadingRows::compute(Progress& progress) const {
+  const std::size_t tasks = scene_.leadingTasks();
+  if (tasks == 0) return {};
+  const ExactKernels kernels(scene_, options_);
+  const PatchOrder& order = scene_.order;
+  Triangle triangle(mesh_, order);
+  fill(triangle, kernels, progress);
+  UnknownRows rows(mesh_, wanted_);
+  const double closed_forms = kRowClosedForms * kernels.closed_form;
+  std::vector<double> errors(mesh_.size());
+  const std::size_t last = order.rank[scene_.tasks[tasks - 1].back().end - 1];
+  for (std::size_t k = 0; k <= last; ++k) {
+    const Index patch = order.patch[k];
+    const double area = mesh_.area[patch];
+    readErrors(triangle.uncertain, k, errors);
+    forRuns(triangle.matrix.upperRuns(k),
+            [&](std::size_t offset, const auto* values, std::size_t count) {
+              for (std::size_t m = 0; m < count; ++m) {
+                const std::size_t other = k + 1 + offset + m;
+                const double factor = double(values[m]);
+                const double error = errors[other] > 0 ? errors[other] : closed_forms * factor;
+                rows.add(patch, order.patch[other], area * factor, area * error);
+              }
+            });
+    rows.addBacks(patch, triangle.seen_backs[patch]);
+  }
+  return rows.take();
+}
+
+}  // namespace radiosity

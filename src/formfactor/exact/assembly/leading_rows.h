@@ -1,0 +1,45 @@
+// The exact rows of a few unknowns, without those of all others.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "formfactor/exact/assembly/exact_scene.h"
+#include "formfactor/known_rows.h"
+#include "radiosity/form_factors.h"
+
+namespace radiosity {
+
+/// A mesh prepared for the exact rows of some unknowns: their polygons lead, so that their rows of
+/// the triangle hold every pair that they are an end of.
+class LeadingRows {
+ public:
+  /// `wanted`: unknowns, ascending, each once. `mesh` is kept by reference. Steps `progress` by
+  /// ExactScene::kSteps. Throws Cancelled.
+  LeadingRows(const PatchMesh& mesh, std::vector<Index> wanted, const FormFactorOptions& options,
+              Progress& progress);
+
+  /// FormFactorOptions::tolerance of compute(), before that of the options.
+  void setTolerance(double tolerance) { options_.tolerance = tolerance; }
+  /// What compute() takes, foreseen from a sample as ExactEstimate::work: the same in every run.
+  double work(Progress& progress) const;
+  /// Held by compute() beside this, about.
+  std::size_t bytes() const;
+
+  /// A row for each that is wanted; none where none has elements. The same bits for any number of
+  /// threads. Throws Cancelled.
+  std::vector<KnownRow> compute(Progress& progress) const;
+
+ private:
+  struct Triangle;
+  /// The rows that lead, and others of the same tasks.
+  void fill(Triangle& triangle, const ExactKernels& kernels, Progress& progress) const;
+
+  const PatchMesh& mesh_;
+  std::vector<Index> wanted_;
+  FormFactorOptions options_;
+  ExactScene scene_;
+};
+
+}  // namespace radiosity

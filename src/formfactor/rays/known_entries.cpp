@@ -1,0 +1,41 @@
+#include "formfactor/rays/known_entries.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/hash.h"
+
+namespace radiosity {
+
+KnownEntries::KnownEntries(std::vector<KnownRow> rows, std::span<const Index> position)
+    : rows_(std::move(rows)) {
+  if (rows_.empty()) return;
+  row_at_.assign(position.size(), kNone);
+  entries_.resize(position.size());
+  for (Index r = 0; r < rows_.size(); ++r) row_at_[position[rows_[r].unknown]] = r;
+  for (const KnownRow& row : rows_) {
+    const Index own = position[row.unknown];
+    for (const auto& [unknown, exchange, error] : row.entries) {
+      const Index other = position[unknown];
+      entries_[own].push_back({other, exchange, error});
+      if (row_at_[other] == kNone) entries_[other].push_back({own, exchange, error});
+    }
+  }
+  for (std::vector<Entry>& entries : entries_) {
+    std::sort(entries.begin(), entries.end(),
+              [](const Entry& a, const Entry& b) { return a.position < b.position; });
+  }
+}
+
+std::uint64_t KnownEntries::identity() const {
+  Hash hash;
+  for (const KnownRow& row : rows_) {
+    hash.bytes(&row.unknown, sizeof row.unknown);
+    for (const KnownExchange& entry : row.entries) {
+      hash.bytes(&entry.exchange, sizeof entry.exchange);
+    }
+  }
+  return hash.value();
+}
+
+}  // namespace radiosity

@@ -1,0 +1,172 @@
+// Rows that are exact beside rays: those of emitters.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "formfactor/exact_scenes.h"
+#include "radiosity/form_factors.h"
+#include "support/mesh_builder.h"
+
+namespace radiosity {
+namespace {
+
+FormFactors computed(const PatchMesh& mesh, const FormFactorOptions& options) {
+  Progress silent;
+  return computeFormFactors(mesh, options, silent);
+}
+
+FormFactors exactOf(const PatchMesh& mesh) {
+  FormFactorOptions options;
+  options.method = FormFactorMethod::exact;
+  options.tolerance = 1e-4;
+  return computed(mesh, options);
+}
+
+FormFactors byRays(const PatchMesh& mesh, const std::vector<Index>& exact_rows, double tolerance) {
+  FormFactorOptions options;
+  options.method = FormFactorMethod::rays;
+  options.tolerance = tolerance;
+  options.exact_rows = exact_rows;
+  return computed(mesh, options);
+}
+
+/// What each patch sees of some, over what it truly sees of them: the largest difference, of
+/// patches that see a tenth of the mean or more.
+double worstShare(const FormFactors& found, const FormFactors& truth,
+                  const std::vector<Index>& seen) {
+  const std::size_t n = truth.matrix.size();
+  const auto sumOf = [&](const FormFactors& of, std::size_t i) {
+    double sum = 0;
+    for (const Index e : seen) sum += of.matrix.at(i, e);
+    return sum;
+  };
+  double mean = 0;
+  for (std::size_t i = 0; i < n; ++i) mean += sumOf(truth, i) / double(n);
+  double worst = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double is = sumOf(truth, i);
+    if (is >= 0.1 * mean) worst = std::max(worst, std::abs(sumOf(found, i) / is - 1));
+  }
+  return worst;
+}
+
+class ExactRows : public testing::TestWithParam<const char*> {};
+
+TEST_P(ExactRows, GiveDirectLightThatRaysAloneMiss) {
+  const Scene scene = test::dataScene(GetParam());
+  const PatchMesh mesh = test::meshOf(scene, 300);
+  const std::vector<Index> emitters = emittingUnknowns(mesh, patchMaterials(scene, mesh));
+  ASSERT_FALSE(emitters.empty());
+  const FormFactors truth = exactOf(mesh);
+  constexpr double kTolerance = 5e-2;
+  const FormFactors rays = byRays(mesh, {}, kTolerance);
+  const FormFactors both = byRays(mesh, emitters, kTolerance);
+  EXPECT_FALSE(rays.report.rays.exact_rows);
+  EXPECT_EQ(both.report.rays.exact_rows, emitters.size());
+  // No patch's direct light is to be off by more than this, whatever the tolerance.
+  EXPECT_GT(worstShare(rays, truth, emitters), 0.05);
+  EXPECT_LT(worstShare(both, truth, emitters), 0.05);
+  EXPECT_LT(both.report.error_figure, kTolerance);
+  for (const Index e : emitters) {
+    double square = 0;
+    for (std::size_t j = 0; j < mesh.size(); ++j) {
+      square += std::pow(both.matrix.at(e, j) - truth.matrix.at(e, j), 2);
+    }
+    // The truth has a figure, too; single precision rounds to 6e-8.
+    EXPECT_LE(std::sqrt(square), both.error[e] + truth.error[e] + 1e-7);
+    EXPECT_LT(both.error[e], 0.2 * rays.error[e]);
+  }
+}
+
+TEST_P(ExactRows, KeepClosureAndReciprocity) {
+  const Scene scene = test::dataScene(GetParam());
+  const PatchMesh mesh = test::meshOf(scene, 300);
+  const FormFactors f = byRays(mesh, emittingUnknowns(mesh, patchMaterials(scene, mesh)), 2e-2);
+  EXPECT_TRUE(f.matrix.isSymmetric());
+  const std::vector<double> sums = f.matrix.rowSums();
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    if (!(mesh.area[i] > 0)) continue;
+    EXPECT_NEAR(f.fronts[i] + f.backs[i] + f.sky[i], 1, 1e-12);
+    EXPECT_NEAR(sums[i], f.fronts[i], 1e-7);  // single precision: 6e-8 of each value
+    if (f.report.closed) {
+      EXPECT_NEAR(sums[i] + f.backs[i], 1, 1e-7);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, ExactRows,
+                         testing::Values("cornell-box-closed", "two-rooms", "cornell-box"));
+
+TEST(ExactRowsOfClusters, AreSumsOverTheirPatches) {
+  PatchMesh mesh = test::roomWithBlock(4).build();
+  const FormFactors truth = exactOf(mesh);
+  PatchClusters clusters;  // three patches each, whatever surface they are of
+  for (Index i = 0; i < mesh.size(); ++i) {
+    if (i % 3 == 0) clusters.begin.push_back(clusters.patches.size());
+    clusters.patches.push_back(i);
+    clusters.of_patch.push_back(Index(clusters.begin.size() - 1));
+  }
+  clusters.begin.push_back(clusters.patches.size());
+  mesh.clusters = clusters;
+  const std::vector<Index> wanted = {1, 7, Index(clusters.size() - 1)};
+  const FormFactors f = byRays(mesh, wanted, 5e-2);
+  for (const Index w : wanted) {
+    double area = 0;
+    std::vector<double> row(clusters.size(), 0.0);
+    for (const Index i : clusters.patchesOf(w)) {
+      area += mesh.area[i];
+      truth.matrix.forRow(
+          i, [&](Index j, double value) { row[clusters.of_patch[j]] += mesh.area[i] * value; });
+    }
+    double square = 0;
+    for (std::size_t l = 0; l < row.size(); ++l) {
+      square += std::pow(f.matrix.at(w, l) - row[l] / area, 2);
+    }
+    // The truth is good to 1e-4 of the mean form factor a pair; patches are 3 a cluster.
+    EXPECT_LT(std::sqrt(square), f.error[w] + 3e-4 / std::sqrt(double(mesh.size())));
+    EXPECT_LT(f.error[w], 0.1 * 5e-2);  // of rays it would be 5e-2 of the norm, .3 or so
+  }
+}
+
+TEST(ExactRowsOfTheOpen, TellSkyAndBacksFromFronts) {
+  // A floor below a smaller plate that turns its black back down, in the open.
+  test::MeshBuilder builder;
+  builder.grid("floor", {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, 2);
+  builder.grid("plate", {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, 1, 1);
+  const PatchMesh mesh = builder.build();
+  const FormFactors f = byRays(mesh, {0, 1, 2, 3}, 1e-1);
+  double backs = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(f.fronts[i], 0);
+    EXPECT_NEAR(f.backs[i] + f.sky[i], 1, 1e-12);
+    backs += f.backs[i] / 4;
+  }
+  // Two unit squares one apart, as the faces of a cube (Howell, "A Catalog of Radiation
+  // Configuration Factors", C-11); closed forms hold 1e-5.
+  EXPECT_NEAR(backs, 0.199824895698, 1e-5 * 0.2);
+}
+
+TEST(ExactRowsOfARoom, HaveTheSameBitsForAnyNumberOfThreads) {
+  const PatchMesh mesh = test::roomWithBlock(3).build();
+  setThreads(1);
+  const FormFactors one = byRays(mesh, {0, 5, 11}, 5e-2);
+  setThreads(0);
+  const FormFactors all = byRays(mesh, {0, 5, 11}, 5e-2);
+  EXPECT_EQ(one.error, all.error);
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    for (std::size_t j = 0; j < mesh.size(); ++j) {
+      ASSERT_EQ(one.matrix.at(i, j), all.matrix.at(i, j));
+    }
+  }
+}
+
+TEST(ExactRowsOptions, AreRefusedWhereTheyAreNoUnknownsInOrder) {
+  const PatchMesh mesh = test::roomWithBlock(2).build();
+  EXPECT_THROW(byRays(mesh, {Index(mesh.size())}, 5e-2), InputError);
+  EXPECT_THROW(byRays(mesh, {3, 3}, 5e-2), InputError);
+}
+
+}  // namespace
+}  // namespace radiosity
