@@ -12,20 +12,36 @@
 
 namespace [[gnu::visibility("default")]] radiosity {
 
-enum class Solver { jacobi, gauss_seidel };
+enum class Solver {
+  automatic,     ///< direct for few unknowns, else cg where the matrix is symmetric, else gmres
+  jacobi,        ///< B <- E + rho F B: a sweep adds a bounce
+  gauss_seidel,  ///< the same row by row, with the new values of the rows before; on one thread
+  cg,            ///< conjugate gradients; needs a matrix in the symmetric form
+  gmres,         ///< for any matrix; keeps up to 30 vectors a band
+  direct         ///< Cholesky or LU; O(N^2) memory and O(N^3) time, N at most kMostDirectUnknowns
+};
+
+/// Up to so many unknowns Solver::automatic is direct: factoring takes no longer than a dozen
+/// products then, and leaves only rounding.
+inline constexpr std::size_t kFewUnknowns = 256;
+/// Beyond this the direct solver refuses: a dense matrix of 128 MB a band, factored in seconds.
+inline constexpr std::size_t kMostDirectUnknowns = 4000;
 
 struct SolveOptions {
-  Solver solver = Solver::gauss_seidel;
+  Solver solver = Solver::automatic;
   /// Stop when max_i |r_i| <= tolerance * max_i |E_i| in every band, r the true residual, E what a
   /// patch emits and what it reflects of the sky. Between 0 and 1; below about 1e-14 rounding keeps
   /// it from being reached.
   double tolerance = 1e-6;
-  int max_iterations = 10000;  ///< 1 or more
+  int max_iterations = 10000;  ///< products or sweeps over the matrix; 1 or more
   void validate() const;
 };
 
 enum class SolveStatus {
-  converged,       ///< |E + rho F B - B|_inf <= tolerance |E|_inf in every band; usable
+  /// |r|_inf <= tolerance |E|_inf in every band, r = E + rho F B - B; usable. Of solvers that are
+  /// accurate in a norm alone (cg, gmres, direct) also |r_i| <= 100 tolerance (E_i + rho_i H_i) for
+  /// every patch, where no E is negative: so rooms that little light reaches are right, too.
+  converged,
   no_convergence,  ///< the iteration limit came first; B is the last iterate, not usable as it is
   no_light,        ///< nothing emits, no sky shines in: B = 0; usable, but dark
   singular,        ///< rho = 1 all over a closed room that is lit: no solution; B is empty
@@ -52,7 +68,9 @@ struct SolveSkips {
 
 struct SolveSummary {
   SolveStatus status = SolveStatus::no_convergence;
-  int iterations = 0;    ///< sweeps over the matrix; products that only check are not counted
+  Solver solver = Solver::automatic;  ///< the one that ran; automatic: there was nothing to solve
+  /// Sweeps of Gauss-Seidel, products with the matrix of the others, those that check included.
+  int iterations = 0;
   std::size_t rows = 0;  ///< rows of the matrix multiplied in them, each for all bands solved
   SolveSkips skipped;
   double residual = 0;  ///< max |E + rho F B - B| / max |E|, true, worst band
@@ -62,9 +80,10 @@ struct SolveSummary {
   std::optional<double> error_bound;
   EnergyAccount energy;
   double seconds = 0;
-  /// Relative, one a sweep. Jacobi: the true residual. Gauss-Seidel: the largest change that the
-  /// sweeps so far, combined, leave to a further one; the true residual where that is within
-  /// tolerance, and in the last entry always.
+  /// Relative, one an iteration; the last entry is always the true residual. Before that, Jacobi
+  /// and direct: the true residual. Gauss-Seidel: the largest change of the sweep; the true
+  /// residual where that is within tolerance. cg, gmres: the residual that their recurrence
+  /// foresees; the true one where they begin anew.
   std::vector<double> residual_history;
   std::string message;  ///< plain words, with numbers; says if B is usable
   bool usable() const {

@@ -30,6 +30,17 @@ std::string scratchFolder(const Request& request, const std::string& results_out
   return folder.empty() ? "." : folder;
 }
 
+/// Refuses a solver that cannot solve with the form factors to come before they are computed.
+void requireSolver(const PipelineOptions& options) {
+  const FormFactorOptions& factors = options.factors;
+  const bool raw_rows = factors.method == FormFactorMethod::hemicube && !factors.symmetrize;
+  if (options.solve.solver != Solver::cg || !raw_rows) return;
+  throw InputError(
+      "--solver cg: conjugate gradients need symmetric form factors, and rows of hemicubes are "
+      "not; "
+      "use --solver gmres or auto, or merge the rows with --symmetrize");
+}
+
 }  // namespace
 
 Run::Run(Session& session, const std::string& results_output)
@@ -42,6 +53,7 @@ Run::Run(Session& session, const std::string& results_output)
   options.mesh = request.apply(options.mesh);
   options.factors = request.apply(options.factors);
   options.solve = request.apply(options.solve);
+  requireSolver(options);
   options.gather = request.apply(options.gather);
   options.elements = request.apply(options.elements);
   options.journal = request.journal(results_output);

@@ -145,14 +145,20 @@ void addFactorOptions(CLI::App& app, Request& r) {
 
 void addSolveOptions(CLI::App& app, Request& r) {
   const SolveOptions defaults;
-  add(app, "Solve", "--solver", r.solver, "NAME", "gauss-seidel (default) or jacobi")
+  add(app, "Solve", "--solver", r.solver, "NAME",
+      fmt::format("auto (default): direct for up to {} unknowns, else cg, or gmres where form "
+                  "factors are raw hemicube rows; cg: conjugate gradients; gmres: for any matrix; "
+                  "direct: factors it, up to {} unknowns; gauss-seidel and jacobi: the classic "
+                  "sweeps, slow in bright rooms",
+                  kFewUnknowns, kMostDirectUnknowns))
       ->check(CLI::IsMember(namesIn(kSolverNames)));
   add(app, "Solve", "--solve-tolerance", r.solve_tolerance, "RATIO",
       fmt::format("Stop when the largest residual is at most this times the largest emission "
                   "(default {})",
                   defaults.tolerance));
   add(app, "Solve", "--max-iterations", r.max_iterations, "N",
-      fmt::format("Sweeps at most; then exit code 1 (default {})", defaults.max_iterations));
+      fmt::format("Sweeps or products at most; then exit code 1 (default {})",
+                  defaults.max_iterations));
 }
 
 void addGatherOptions(CLI::App& app, Request& r) {

@@ -256,7 +256,10 @@ void summarizeSolution(Report& report, const Solution& solution, const FormFacto
   {
     const Section section(report, detail, "solution", "Solution");
     report.text("status", "status", nameOf(kSolveStatusNames, s.status));
-    report.text("solver", "solver", nameOf(kSolverNames, options.solver));
+    // Files of older programs do not say which solver ran: it was the one asked for.
+    const Solver ran = s.solver == Solver::automatic ? options.solver : s.solver;
+    report.text("solver", "solver", nameOf(kSolverNames, ran));
+    report.text("solver_asked_for", "  asked for", nameOf(kSolverNames, options.solver));
     report.count("iterations", "iterations", std::size_t(s.iterations));
     report.count("rows", "rows multiplied", s.rows);
     report.count("skipped_black_patches", "skipped: rows of black patches",

@@ -127,12 +127,11 @@ void describeSolution(Json& header, const FormFactors& factors, const Solution& 
   header["tolerance"] = toleranceOf(factors, options.factors);
   header["closed"] = factors.report.closed;
   const SolveSummary& summary = solution.summary;
-  header["solver"] = {{"name", nameOf(kSolverNames, options.solve.solver)},
-                      {"status", nameOf(kSolveStatusNames, summary.status)},
-                      {"iterations", summary.iterations},
-                      {"residual", summary.residual},
-                      {"tolerance", options.solve.tolerance},
-                      {"history", summary.residual_history}};
+  const Solver ran = summary.solver == Solver::automatic ? options.solve.solver : summary.solver;
+  header["solver"] = {
+      {"name", nameOf(kSolverNames, ran)},    {"status", nameOf(kSolveStatusNames, summary.status)},
+      {"iterations", summary.iterations},     {"residual", summary.residual},
+      {"tolerance", options.solve.tolerance}, {"history", summary.residual_history}};
 }
 
 void describe(Json& header, const FactorQuantisation& quantisation) {

@@ -11,6 +11,7 @@
 #include "pipeline/stage_key.h"
 #include "radiosity/names.h"
 #include "radiosity/pipeline.h"
+#include "solve/linear_solve.h"
 
 namespace radiosity {
 
@@ -238,6 +239,7 @@ const Solution& Pipeline::solution() {
   }
   const std::string reason = why(stored_.solution_key, key);
   loadMatrix();
+  requireSolver(options_.solve.solver, made(results_.factors).matrix);
   const Stopwatch watch;
   results_.solution = computedStage("solution", [&] {
     return solve(made(results_.factors), made(results_.materials), made(results_.mesh).mesh,

@@ -74,6 +74,11 @@ class FieldWriter {
   void choice(const char* name, const Enum& value, const NameTable<Enum, N>& names) {
     sink_->text(name, nameOf(names, value));
   }
+  /// One that older files lack: reading, it stays as it is there.
+  template <class Enum, std::size_t N>
+  void laterChoice(const char* name, const Enum& value, const NameTable<Enum, N>& names) {
+    choice(name, value, names);
+  }
   /// Whether there is a group of what may be absent; reading, it is made where there is.
   template <class T>
   bool present(const char* /*name*/, const std::optional<T>& value) {
@@ -172,6 +177,10 @@ class FieldReader {
   template <class Enum, std::size_t N>
   void choice(const char* name, Enum& value, const NameTable<Enum, N>& names) {
     value = parse(name, source_->text(name), names);
+  }
+  template <class Enum, std::size_t N>
+  void laterChoice(const char* name, Enum& value, const NameTable<Enum, N>& names) {
+    if (source_->hasAttribute(name)) choice(name, value, names);
   }
   template <class T>
   bool present(const char* name, std::optional<T>& value) {

@@ -246,6 +246,7 @@ void describe(Archive& a, Described<Archive, FormFactors>& f) {
 template <class Archive>
 void describe(Archive& a, Described<Archive, SolveSummary>& s) {
   a.choice("status", s.status, kSolveStatusNames);
+  a.laterChoice("solver", s.solver, kSolverNames);
   a("iterations", s.iterations);
   a("rows", s.rows);
   a.group("skipped", [&](auto& skipped) {

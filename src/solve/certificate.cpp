@@ -33,7 +33,8 @@ std::optional<double> boundFrom(const System& system, const Fields& fields, cons
   const BandArray w_reflected = rho * asArray(trial.irradiance, system.bands);
   const BandArray v = (w - w_reflected) - unit * (w + w_reflected);
   if (!(w.minCoeff() > 0) || !(v.minCoeff() > 0)) return std::nullopt;
-  const BandArray r = (emission + reflected - b).abs() + unit * (emission + reflected + b.abs());
+  const BandArray r =
+      (emission + reflected - b).abs() + unit * (emission.abs() + reflected.abs() + b.abs());
   const double bound =
       ((r / v).colwise().maxCoeff() * w.colwise().maxCoeff()).maxCoeff() * (1 + unit);
   return std::isfinite(bound) ? std::optional(bound) : std::nullopt;
@@ -52,7 +53,7 @@ std::optional<double> certifiedErrorBound(const System& system, const Fields& fi
   if (const auto bound = boundFrom(system, fields, trial)) return bound;
   if (max_sweeps < 3) return std::nullopt;
   Convergence convergence(kRoughTolerance, max_sweeps - 2, "bounding the error", progress);
-  trial = gaussSeidel(System(system.matrix, system.bands, system.reflectance, ones), convergence);
+  trial = krylovSolve(System(system.matrix, system.bands, system.reflectance, ones), convergence);
   return boundFrom(system, fields, trial);
 }
 

@@ -18,6 +18,8 @@ constexpr double kDivergedResidual = 1e6;
 
 System::System(const ExchangeMatrix& f, int count, std::vector<double> rho, std::vector<double> e)
     : matrix(f), bands(count), reflectance(std::move(rho)), emission(std::move(e)) {
+  nonnegative =
+      std::all_of(emission.begin(), emission.end(), [](double value) { return value >= 0; });
   const auto width = std::size_t(bands);
   if (width == 0) return;
   reflecting.resize(matrix.size());
@@ -37,13 +39,37 @@ void blackIrradiance(const System& system, Fields& fields) {
   system.matrix.product(fields.radiosity, system.bands, fields.irradiance, wanted);
 }
 
+void multiply(const System& system, Fields& fields, Convergence& convergence) {
+  system.matrix.product(fields.radiosity, system.bands, fields.irradiance, system.reflecting);
+  convergence.countRows(system.matrix.size() - system.black);
+}
+
+Fields krylovSolve(const System& system, Convergence& convergence) {
+  return system.matrix.isSymmetric() ? conjugateGradients(system, convergence)
+                                     : gmres(system, convergence);
+}
+
+Eigen::ArrayXd largestEmission(const System& system) {
+  return asArray(system.emission, system.bands).abs().colwise().maxCoeff();
+}
+
 double relativeResidual(const System& system, const std::vector<double>& radiosity,
                         const std::vector<double>& irradiance) {
   const auto emission = asArray(system.emission, system.bands);
   const auto residual =
       emission + asArray(system.reflectance, system.bands) * asArray(irradiance, system.bands) -
       asArray(radiosity, system.bands);
-  return (residual.abs().colwise().maxCoeff() / emission.colwise().maxCoeff()).maxCoeff();
+  return (residual.abs().colwise().maxCoeff() / emission.abs().colwise().maxCoeff()).maxCoeff();
+}
+
+bool smallEverywhere(const System& system, const std::vector<double>& radiosity,
+                     const std::vector<double>& irradiance, double tolerance) {
+  if (!system.nonnegative) return true;
+  for (std::size_t k = 0; k < radiosity.size(); ++k) {
+    const double own = system.emission[k] + system.reflectance[k] * irradiance[k];
+    if (!(std::abs(own - radiosity[k]) <= kOwnShare * tolerance * own)) return false;
+  }
+  return true;
 }
 
 Convergence::Convergence(double tolerance, int max_sweeps, const std::string& stage,
@@ -54,8 +80,9 @@ Convergence::Convergence(double tolerance, int max_sweeps, const std::string& st
 
 Convergence::~Convergence() { progress_.end(); }
 
-void Convergence::record(double residual) {
+void Convergence::record(double residual, bool everywhere) {
   history_.push_back(residual);
+  everywhere_ = everywhere;
   const double way = residual > 0 ? std::log(residual) / std::log(tolerance_) : 1.0;
   const auto steps = std::size_t(kProgressSteps * std::clamp(way, 0.0, 1.0));
   if (steps > reported_) {
@@ -63,6 +90,11 @@ void Convergence::record(double residual) {
     reported_ = steps;
   }
   progress_.check();
+}
+
+GaveUp Convergence::gaveUp() const {
+  if (!history_.empty() && outOfBounds(history_.back())) return GaveUp::grows;
+  return gave_up_;
 }
 
 bool Convergence::outOfBounds(double residual) {

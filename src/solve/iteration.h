@@ -10,7 +10,8 @@
 
 namespace radiosity {
 
-/// B = E + rho F B for some bands at once. Only bands that carry light: max E > 0 in each.
+/// B = E + rho F B for some bands at once. Only bands that carry light: max |E| > 0 in each. E may
+/// be negative: what rays find beyond the means of clusters, a heat flux that is taken out.
 struct System {
   System(const ExchangeMatrix& f, int count, std::vector<double> rho, std::vector<double> e);
 
@@ -18,6 +19,7 @@ struct System {
   int bands = 0;
   std::vector<double> reflectance;  ///< N * bands, row-major, 0 to 1
   std::vector<double> emission;     ///< N * bands, W/m^2
+  bool nonnegative = true;          ///< no E is below 0: then neither is any B - E
   /// N flags: patches that reflect in some band. The others are black, B = E: their rows of the
   /// matrix are not needed to find B. Empty where every patch reflects.
   std::vector<std::uint8_t> reflecting;
@@ -34,10 +36,31 @@ inline Eigen::Map<const BandArray> asArray(const std::vector<double>& values, in
   return {values.data(), Eigen::Index(values.size()) / bands, bands};
 }
 
-/// max_i |E + rho H - B|_i / max_i E_i in the worst band. It is the true residual of B where H = F
-/// B.
+/// max_i |E_i| of each band.
+Eigen::ArrayXd largestEmission(const System& system);
+
+/// max_i |E + rho H - B|_i / max_i |E_i| in the worst band. It is the true residual of B where H =
+/// F B.
 double relativeResidual(const System& system, const std::vector<double>& radiosity,
                         const std::vector<double>& irradiance);
+
+/// How much of its own light a patch's residual may be, in tolerances, where a solver is accurate
+/// in a norm alone.
+inline constexpr double kOwnShare = 100;
+
+/// Whether |r_i| <= kOwnShare tolerance (E_i + rho_i H_i) for every patch and band. Jacobi's and
+/// Gauss-Seidel's residuals are small where little light comes; those of solvers that minimise a
+/// norm are spread evenly, and leave a room behind a pinhole wrong. True where some E is negative:
+/// E and rho H may cancel then, and there is no such scale.
+bool smallEverywhere(const System& system, const std::vector<double>& radiosity,
+                     const std::vector<double>& irradiance, double tolerance);
+
+/// Why an iteration ends before it converged or reached its limit.
+enum class GaveUp {
+  no,
+  grows,    ///< the spectral radius of rho F is 1 or above
+  rounding  ///< the tolerance is below what rounding lets anyone reach
+};
 
 /// Counts sweeps and says when to stop; tells `progress`, whose steps are hundredths of the way
 /// from a residual of 1 to the tolerance on a logarithmic scale (convergence is linear there).
@@ -48,16 +71,22 @@ class Convergence {
   Convergence(const Convergence&) = delete;
   Convergence& operator=(const Convergence&) = delete;
 
-  /// A sweep ended with this relative residual. Throws Cancelled.
-  void record(double residual);
+  /// A sweep ended with this relative residual; `everywhere`: and smallEverywhere(), where that is
+  /// asked for. Throws Cancelled.
+  void record(double residual, bool everywhere = true);
+  void giveUp(GaveUp why) { gave_up_ = why; }
+  void check() const { progress_.check(); }
 
   double tolerance() const { return tolerance_; }
-  bool converged() const { return !history_.empty() && history_.back() <= tolerance_; }
-  /// The residual left all bounds: the spectral radius of rho F is above 1.
-  bool diverged() const { return !history_.empty() && outOfBounds(history_.back()); }
+  bool converged() const {
+    return !history_.empty() && history_.back() <= tolerance_ && everywhere_;
+  }
+  /// Within the tolerance, but for patches that little light reaches.
+  bool darkLeft() const { return !everywhere_; }
+  GaveUp gaveUp() const;
   static bool outOfBounds(double residual);
   bool lastSweep() const { return sweeps() + 1 >= max_sweeps_; }
-  bool finished() const { return converged() || diverged() || sweeps() >= max_sweeps_; }
+  bool finished() const { return converged() || gaveUp() != GaveUp::no || sweeps() >= max_sweeps_; }
   int sweeps() const { return int(history_.size()); }
   /// Rows of the matrix that were multiplied in a sweep.
   void countRows(std::size_t rows) { rows_ += rows; }
@@ -70,6 +99,8 @@ class Convergence {
   Progress& progress_;
   std::size_t reported_ = 0;
   std::size_t rows_ = 0;
+  bool everywhere_ = true;
+  GaveUp gave_up_ = GaveUp::no;
   std::vector<double> history_;
 };
 
@@ -80,9 +111,21 @@ struct Fields {
   std::vector<double> irradiance;
 };
 
-/// Runs until `convergence` is finished; its last residual is the true one of the fields returned.
+/// H <- F B of the fields, on the rows of patches that reflect, which are counted.
+void multiply(const System& system, Fields& fields, Convergence& convergence);
+
+// Each runs until `convergence` is finished; its last residual is the true one of the fields
+// returned.
 Fields jacobi(const System& system, Convergence& convergence);
 Fields gaussSeidel(const System& system, Convergence& convergence);
+/// The matrix must be in the symmetric form.
+Fields conjugateGradients(const System& system, Convergence& convergence);
+Fields gmres(const System& system, Convergence& convergence);
+/// O(N^2) memory, O(N^3) time a band.
+Fields direct(const System& system, Convergence& convergence);
+
+/// conjugateGradients() where the matrix is symmetric, else gmres().
+Fields krylovSolve(const System& system, Convergence& convergence);
 
 /// H of the patches whose rows the solvers passed over.
 void blackIrradiance(const System& system, Fields& fields);

@@ -14,8 +14,7 @@ Fields jacobi(const System& system, Convergence& convergence) {
   const auto emission = asArray(system.emission, system.bands);
   const auto reflectance = asArray(system.reflectance, system.bands);
   for (;;) {
-    system.matrix.product(fields.radiosity, system.bands, fields.irradiance, system.reflecting);
-    convergence.countRows(system.matrix.size() - system.black);
+    multiply(system, fields, convergence);
     convergence.record(relativeResidual(system, fields.radiosity, fields.irradiance));
     if (convergence.finished()) return fields;
     radiosity = emission + reflectance * irradiance;

@@ -49,8 +49,8 @@ Eigen::VectorXd Krylov::leastSquares() const {
   return hessenberg.colPivHouseholderQr().solve(target);
 }
 
-double Krylov::residual() const {
-  if (columns_.empty()) return (norm_ * basis_.front()).cwiseAbs().maxCoeff();
+Eigen::VectorXd Krylov::residual() const {
+  if (columns_.empty()) return norm_ * basis_.front();
   const Eigen::VectorXd weights = leastSquares();
   Eigen::VectorXd along = Eigen::VectorXd::Zero(Eigen::Index(basis_.size()));  // of what is left
   along[0] = norm_;
@@ -59,7 +59,7 @@ double Krylov::residual() const {
   }
   Eigen::VectorXd left = Eigen::VectorXd::Zero(basis_.front().size());
   for (std::size_t j = 0; j < basis_.size(); ++j) left += along[Eigen::Index(j)] * basis_[j];
-  return left.cwiseAbs().maxCoeff();
+  return left;
 }
 
 Eigen::VectorXd Krylov::correction() const {

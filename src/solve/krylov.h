@@ -20,8 +20,8 @@ class Krylov {
   const Eigen::VectorXd& direction() const { return basis_.back(); }
   /// L times direction().
   void add(const Eigen::VectorXd& image);
-  /// The largest entry of the rest of s.
-  double residual() const;
+  /// The rest of s.
+  Eigen::VectorXd residual() const;
   bool exhausted() const { return exhausted_; }
   /// The d found so far.
   Eigen::VectorXd correction() const;

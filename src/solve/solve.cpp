@@ -6,14 +6,12 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
-#include <set>
-#include <stdexcept>
 #include <string_view>
 
-#include "solve/certificate.h"
+#include "solve/band_plan.h"
 #include "solve/cluster_solve.h"
 #include "solve/energy.h"
-#include "solve/iteration.h"
+#include "solve/linear_solve.h"
 #include "solve/singular.h"
 #include "solve/solve_rows.h"
 
@@ -67,135 +65,6 @@ std::vector<double> sourceOf(std::span<const double> reflectance, std::span<cons
   return source;
 }
 
-/// Which bands are solved, and where each band's values come from.
-class BandPlan {
- public:
-  BandPlan(std::span<const double> reflectance, std::span<const double> emission, int bands)
-      : bands_(std::size_t(bands)) {
-    for (std::size_t b = 0; b < bands_; ++b) {
-      const auto same = std::find_if(solved_.begin(), solved_.end(), [&](std::size_t earlier) {
-        return equal(reflectance, b, earlier) && equal(emission, b, earlier);
-      });
-      if (!emits(emission, b)) {
-        source_.push_back(kDark);
-        continue;
-      }
-      source_.push_back(std::size_t(same - solved_.begin()));
-      if (same == solved_.end()) solved_.push_back(b);
-    }
-  }
-  std::span<const std::size_t> solved() const { return solved_; }
-  int dark() const { return int(std::count(source_.begin(), source_.end(), kDark)); }
-  int repeated() const { return int(bands_) - dark() - int(solved_.size()); }
-
-  /// The bands to solve of N * bands values.
-  std::vector<double> pick(std::span<const double> values) const {
-    std::vector<double> out;
-    out.reserve(values.size() / bands_ * solved_.size());
-    for (std::size_t row = 0; row < values.size(); row += bands_) {
-      for (const std::size_t b : solved_) out.push_back(values[row + b]);
-    }
-    return out;
-  }
-  /// All bands from those solved; dark ones are 0.
-  std::vector<double> spread(std::span<const double> values) const {
-    const std::size_t width = solved_.size();
-    std::vector<double> out;
-    out.reserve(values.size() / width * bands_);
-    for (std::size_t row = 0; row < values.size(); row += width) {
-      for (const std::size_t from : source_) {
-        out.push_back(from == kDark ? 0.0 : values[row + from]);
-      }
-    }
-    return out;
-  }
-
- private:
-  static constexpr std::size_t kDark = std::size_t(-1);
-
-  bool emits(std::span<const double> emission, std::size_t b) const {
-    bool any = false;
-    for (std::size_t k = b; k < emission.size(); k += bands_) any = any || emission[k] > 0;
-    return any;
-  }
-  bool equal(std::span<const double> values, std::size_t a, std::size_t b) const {
-    bool all = true;
-    for (std::size_t row = 0; row < values.size(); row += bands_) {
-      all = all && values[row + a] == values[row + b];
-    }
-    return all;
-  }
-
-  std::size_t bands_;
-  std::vector<std::size_t> solved_;  // bands
-  std::vector<std::size_t> source_;  // by band: an index into solved_, or kDark
-};
-
-std::string_view titleOf(Solver solver) {
-  switch (solver) {
-    case Solver::jacobi:
-      return "Jacobi";
-    case Solver::gauss_seidel:
-      return "Gauss-Seidel";
-  }
-  return "";
-}
-
-Fields run(Solver solver, const System& system, Convergence& convergence) {
-  switch (solver) {
-    case Solver::jacobi:
-      return jacobi(system, convergence);
-    case Solver::gauss_seidel:
-      return gaussSeidel(system, convergence);
-  }
-  throw std::logic_error("a solver without an iteration");
-}
-
-std::string convergenceMessage(const SolveSummary& summary, const SolveOptions& options,
-                               bool diverged) {
-  const std::string numbers =
-      fmt::format("{} {} sweeps, residual {:.2e} (asked for {:.2e})", summary.iterations,
-                  titleOf(options.solver), summary.residual, options.tolerance);
-  const std::string bound =
-      summary.error_bound
-          ? fmt::format("the error against this matrix's solution is below {:.2e} W/m^2",
-                        *summary.error_bound)
-          : std::string(
-                "no certificate: the error could not be bounded in the time that the "
-                "solution took");
-  if (summary.status == SolveStatus::converged) {
-    return fmt::format("converged: {}; {}; usable", numbers, bound);
-  }
-  const std::string_view cure =
-      diverged ? "it grows: reflectance times row sum is above 1 over much of a room, so restore "
-                 "closure or use the raw rows"
-               : "reflectances near 1 in a closed room need many sweeps: allow more";
-  return fmt::format("no convergence: {}; {}; not usable as it is; {}", numbers, bound, cure);
-}
-
-/// Iterates, then bounds the error; fills in the summary except for energy and time.
-Fields iterate(const System& system, const SolveOptions& options, Progress& progress,
-               SolveSummary& summary) {
-  Fields fields;
-  bool diverged = false;
-  {
-    Convergence convergence(options.tolerance, options.max_iterations, "solving", progress);
-    fields = run(options.solver, system, convergence);
-    diverged = convergence.diverged();
-    summary.status = convergence.converged() ? SolveStatus::converged : SolveStatus::no_convergence;
-    summary.iterations = convergence.sweeps();
-    summary.rows = convergence.rows();
-    summary.residual_history = convergence.history();
-  }
-  summary.residual = summary.residual_history.back();
-  if (!diverged) {
-    summary.error_bound = certifiedErrorBound(system, fields, summary.iterations, progress);
-  }
-  summary.message = convergenceMessage(summary, options, diverged);
-  blackIrradiance(system, fields);
-  return fields;
-}
-
 /// Nothing leaves any patch.
 void nameDarkness(const std::vector<double>& from_sky, SolveSummary& summary) {
   const bool sky = std::any_of(from_sky.begin(), from_sky.end(), [](double h) { return h > 0; });
@@ -239,6 +108,7 @@ Solution solveRows(const FormFactors& factors, std::span<const double> reflectan
   options.validate();
   checkSizes(factors, reflectance, emission, sky, bands, names);
   checkMaterials(reflectance, emission, bands, names);
+  requireSolver(options.solver, factors.matrix);
 
   Solution solution;
   solution.bands = bands;
@@ -266,7 +136,7 @@ Solution solveRows(const FormFactors& factors, std::span<const double> reflectan
         plan.solved()[std::size_t(room.band)], names.list(room.patches));
     return solution;
   } else {
-    const Fields fields = iterate(system, options, progress, summary);
+    const Fields fields = solveSystem(system, options, progress, summary);
     solution.radiosity = plan.spread(fields.radiosity);
     solution.irradiance = plan.spread(fields.irradiance);
   }

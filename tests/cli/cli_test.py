@@ -255,7 +255,7 @@ class Reuse(CliTest):
     def test_solver_changed(self):
         report = self.report("solve", "s.h5", "--solver", "jacobi")
         self.assertEqual(actions(report)["form_factors"], "reused")
-        self.assertEqual(report["stages"]["solution"]["detail"], "solver gauss-seidel -> jacobi")
+        self.assertEqual(report["stages"]["solution"]["detail"], "solver auto -> jacobi")
 
     def test_resolution_changed(self):
         report = self.report("solve", "s.h5", "--resolution", "64")

@@ -113,7 +113,7 @@ class KeptStages(CliTest):
                                "-o", "p.h5"], after="kept ")
         self.assertEqual(line, "radiosity: interrupted; p.h5 keeps the form factors")
         self.assertEqual(self.files(), ["box.mtl", "box.obj", "p.h5"])
-        report = self.report("solve", "p.h5", "--solver", "gauss-seidel", "--max-iterations", "1000")
+        report = self.report("solve", "p.h5", "--solver", "auto", "--max-iterations", "1000")
         self.assertEqual(report["stages"]["form_factors"]["action"], "reused")
         self.assertEqual(report["solution"]["status"], "converged")
 

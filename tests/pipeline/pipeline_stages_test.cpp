@@ -298,7 +298,7 @@ TEST_F(PipelineStages, OptionsMayChangeBetweenCalls) {
   told_.take();
   pipeline.options().solve.solver = Solver::jacobi;
   makeAll(pipeline);
-  EXPECT_EQ(told_.take(), Events{"solution recomputed: solver gauss-seidel -> jacobi"});
+  EXPECT_EQ(told_.take(), Events{"solution recomputed: solver auto -> jacobi"});
   pipeline.options().factors.seed = 2;
   pipeline.factors();
   EXPECT_FALSE(pipeline.results().solution) << "it stood on other form factors";
@@ -496,7 +496,7 @@ TEST_F(PipelineStages, KeysKeepTheirText) {
       results.factors_key,
       "method=hemicube seed=1 resolution=32 symmetrize=off near=off precision=single mesh=" + hash);
   expectKey(results.solution_key,
-            "solver=gauss-seidel solve-tolerance=1e-06 max-iterations=10000 "
+            "solver=auto solve-tolerance=1e-06 max-iterations=10000 "
             "materials=" +
                 hash + " sky=0 factors=" + hash);
   expectKey(results.gather_key,

@@ -29,7 +29,7 @@ TEST(Certificate, BoundsTheTrueError) {
       for (double& e : emission) e *= 1e-9;
     }
     const double tolerance = std::pow(10.0, -random(1, 14));
-    const auto solver = kSolvers[seed / 2 % 2];
+    const auto solver = kSolvers[seed / 2 % std::size(kSolvers)];
     Progress quiet;
     const Solution s = solve(factors, rho, emission, 2, test::options(solver, tolerance), quiet);
     ASSERT_EQ(s.summary.status, SolveStatus::converged) << seed << ": " << s.summary.message;
@@ -57,7 +57,7 @@ TEST(Certificate, CoversRounding) {
     const auto rho = random.vector(n, 0.5, 0.9);
     const auto emission = random.vector(n, 0.0, 1.0);
     Progress quiet;
-    const auto options = test::options(kSolvers[seed % 2], 1e-300, 500);
+    const auto options = test::options(kSolvers[seed % std::size(kSolvers)], 1e-300, 500);
     const Solution s = solve(factors, rho, emission, 1, options, quiet);
     EXPECT_LT(s.summary.residual, 1e-14);
     const double bound = s.summary.error_bound.value_or(0.0);
@@ -113,7 +113,7 @@ TEST(Certificate, AnUnconvergedSolutionIsStillBounded) {
   const std::vector<double> rho(6, 0.9);
   const std::vector<double> emission{1, 0, 0, 0, 0, 0};
   const auto expected = test::direct(test::cube(), rho, emission, 1);
-  for (const Solver solver : kSolvers) {
+  for (const Solver solver : test::kIterations) {
     Progress quiet;
     const Solution s = solve(factors, rho, emission, 1, test::options(solver, 1e-9, 3), quiet);
     EXPECT_EQ(s.summary.status, SolveStatus::no_convergence);

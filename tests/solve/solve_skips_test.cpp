@@ -8,8 +8,6 @@
 namespace radiosity {
 namespace {
 
-using test::kSolvers;
-
 constexpr std::size_t kPatches = 150;
 
 /// A reciprocal room in both storage forms; every third patch is to be black.
@@ -41,7 +39,7 @@ TEST(SolveSkips, BlackPatchesNeedNoRow) {
     wide_emission[2 * i] = room.emission[i];
   }
   for (const FormFactors& factors : room.forms) {
-    for (const Solver solver : kSolvers) {
+    for (const Solver solver : test::iterationsOf(factors)) {
       Progress quiet;
       const auto skipping = solve(factors, room.rho, room.emission, 1, sweeps(solver, 7), quiet);
       const auto full = solve(factors, wide_rho, wide_emission, 2, sweeps(solver, 7), quiet);
@@ -89,7 +87,7 @@ TEST(SolveSkips, EqualBandsAreSolvedOnceAndDarkOnesNot) {
   emission[4] *= 2;  // so that band 4 is not band 1
   emission[5 * 7 + 4] += 1;
   for (const FormFactors& factors : room.forms) {
-    for (const Solver solver : kSolvers) {
+    for (const Solver solver : test::iterationsOf(factors)) {
       Progress quiet;
       const auto alone = solve(factors, room.rho, room.emission, 1, sweeps(solver, 6), quiet);
       const auto all = solve(factors, rho, emission, 5, sweeps(solver, 6), quiet);
@@ -124,7 +122,7 @@ TEST(SolveSkips, NothingIsSkippedInTheDark) {
 TEST(SolveSkips, ThreadsDoNotChangeABit) {
   const Room room;
   for (const FormFactors& factors : room.forms) {
-    for (const Solver solver : kSolvers) {
+    for (const Solver solver : test::iterationsOf(factors)) {
       Progress quiet;
       const auto reference = solve(factors, room.rho, room.emission, 1, {.solver = solver}, quiet);
       for (const int threads : {1, 2, 4}) {

@@ -164,6 +164,22 @@ inline SolveOptions options(Solver solver, double tolerance, int max_iterations 
   return options;
 }
 
-inline constexpr Solver kSolvers[] = {Solver::jacobi, Solver::gauss_seidel};
+/// Those that go step by step, for any matrix.
+inline constexpr Solver kIterations[] = {Solver::jacobi, Solver::gauss_seidel, Solver::gmres};
+/// All that solve with any matrix.
+inline constexpr Solver kSolvers[] = {Solver::jacobi, Solver::gauss_seidel, Solver::gmres,
+                                      Solver::direct};
+
+/// Those, and for a symmetric matrix conjugate gradients.
+inline std::vector<Solver> solversOf(const FormFactors& factors) {
+  std::vector<Solver> solvers(std::begin(kSolvers), std::end(kSolvers));
+  if (factors.matrix.isSymmetric()) solvers.push_back(Solver::cg);
+  return solvers;
+}
+inline std::vector<Solver> iterationsOf(const FormFactors& factors) {
+  std::vector<Solver> solvers(std::begin(kIterations), std::end(kIterations));
+  if (factors.matrix.isSymmetric()) solvers.push_back(Solver::cg);
+  return solvers;
+}
 
 }  // namespace radiosity::test

@@ -84,7 +84,7 @@ TEST(Solve, SphereInteriorAndItsTransposeWithUnequalAreas) {
   }
 }
 
-TEST(Solve, JacobiGaussSeidelAndLuAgree) {
+TEST(Solve, AllSolversAgreeWithLu) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     test::Random random(seed);
     const auto n = std::size_t(random(1, 90));
@@ -115,7 +115,7 @@ TEST(Solve, BothStorageFormsAgreeWithLu) {
     for (const bool symmetric : {false, true}) {
       const auto factors =
           symmetric ? test::symmetricFactorsFrom(f, area, 0.3) : test::factorsFrom(f, area, 0.3);
-      for (const Solver solver : kSolvers) {
+      for (const Solver solver : test::solversOf(factors)) {
         Progress quiet;
         const Solution s = solve(factors, rho, emission, 3, test::options(solver, 1e-13), quiet);
         ASSERT_EQ(s.summary.status, SolveStatus::converged) << seed << ": " << s.summary.message;
@@ -135,7 +135,7 @@ double spectralRadius(const Matrix& m) {
 
 // Jacobi's iteration matrix is R F, Gauss-Seidel's inv(I - L) U with R F = L + U, L strictly lower
 // (the diagonal of F is 0 here). Residuals shrink by its spectral radius a sweep in the long run,
-// and Jacobi's sweeps are those that this predicts. Gauss-Seidel's are combined and take fewer.
+// and the sweeps of both are those that this predicts.
 TEST(Solve, ContractsByTheSpectralRadius) {
   test::Random random(5);
   const Eigen::Index n = 60;
@@ -170,10 +170,11 @@ TEST(Solve, ContractsByTheSpectralRadius) {
   const double plain = predicted(spectralRadius((identity - lower).partialPivLu().solve(upper)),
                                  seidel.residual_history);
   ASSERT_EQ(seidel.residual_history.size(), std::size_t(seidel.iterations));
-  EXPECT_LT(seidel.iterations, 0.75 * plain);
+  ASSERT_GT(seidel.iterations, 10);
+  EXPECT_NEAR(seidel.iterations, plain, 0.15 * plain + 2);
 }
 
-TEST(Solve, GaussSeidelTakesLessThanHalfTheSweeps) {
+TEST(Solve, GaussSeidelTakesAboutHalfTheSweeps) {
   const auto factors = test::factorsFrom(test::cube(), std::vector<double>(6, 1.0));
   const std::vector<double> rho(6, 0.9);
   const std::vector<double> emission{1, 0, 0, 0, 0, 0};
@@ -183,18 +184,18 @@ TEST(Solve, GaussSeidelTakesLessThanHalfTheSweeps) {
   const int seidel =
       solve(factors, rho, emission, 1, test::options(Solver::gauss_seidel, 1e-8), quiet)
           .summary.iterations;
-  // Plain sweeps take half for consistently ordered matrices (Young 1954); combined ones fewer.
-  EXPECT_LT(seidel, 0.5 * jacobi);
+  // Half for consistently ordered matrices (Young 1954); this one nearly is.
+  EXPECT_NEAR(seidel, 0.5 * jacobi, 0.1 * jacobi);
 }
 
 TEST(SolveEnergy, ClosesWhereFIsReciprocal) {
   test::Random random(9);
   const std::size_t n = 70;
   const auto [f, area] = test::reciprocal(n, random);
-  const auto factors = test::factorsFrom(f, area, 0.25);
+  const auto factors = test::symmetricFactorsFrom(f, area, 0.25);
   const auto rho = random.vector(n * 2, 0.1, 0.9);
   const auto emission = random.vector(n * 2, 0.0, 3.0);
-  for (const Solver solver : kSolvers) {
+  for (const Solver solver : test::solversOf(factors)) {
     Progress quiet;
     const Solution s = solve(factors, rho, emission, 2, test::options(solver, 1e-14), quiet);
     ASSERT_TRUE(s.summary.usable()) << s.summary.message;
@@ -216,10 +217,10 @@ TEST(SolveEnergy, ImbalanceIsTheResidualsPower) {
   test::Random random(10);
   const std::size_t n = 40;
   const auto [f, area] = test::reciprocal(n, random);
-  const auto factors = test::factorsFrom(f, area);
+  const auto factors = test::symmetricFactorsFrom(f, area);
   const auto rho = random.vector(n, 0.1, 0.9);
   const auto emission = random.vector(n, 0.0, 3.0);
-  for (const Solver solver : kSolvers) {
+  for (const Solver solver : test::iterationsOf(factors)) {
     Progress quiet;
     const Solution s = solve(factors, rho, emission, 1, test::options(solver, 1e-9, 2), quiet);
     EXPECT_EQ(s.summary.status, SolveStatus::no_convergence);

@@ -1,0 +1,168 @@
+#include "solve/linear_solve.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "solve/band_plan.h"
+#include "solve/certificate.h"
+
+namespace radiosity {
+
+namespace {
+
+/// How messages tell of a solver's iterations: "12 products of conjugate gradients".
+std::string_view workOf(Solver solver) {
+  switch (solver) {
+    case Solver::automatic:
+      break;
+    case Solver::jacobi:
+      return "Jacobi sweeps";
+    case Solver::gauss_seidel:
+      return "Gauss-Seidel sweeps";
+    case Solver::cg:
+      return "products of conjugate gradients";
+    case Solver::gmres:
+      return "products of GMRES";
+    case Solver::direct:
+      return "products of the direct solver";
+  }
+  throw std::logic_error("a solver without a name");
+}
+
+Fields run(Solver solver, const System& system, Convergence& convergence) {
+  switch (solver) {
+    case Solver::automatic:
+      break;
+    case Solver::jacobi:
+      return jacobi(system, convergence);
+    case Solver::gauss_seidel:
+      return gaussSeidel(system, convergence);
+    case Solver::cg:
+      return conjugateGradients(system, convergence);
+    case Solver::gmres:
+      return gmres(system, convergence);
+    case Solver::direct:
+      return direct(system, convergence);
+  }
+  throw std::logic_error("a solver without an iteration");
+}
+
+struct Choice {
+  Solver solver = Solver::automatic;
+  std::string why;  ///< empty: it was asked for
+};
+
+Choice choose(Solver asked, const ExchangeMatrix& matrix) {
+  if (asked != Solver::automatic) return {asked, ""};
+  if (matrix.size() <= kFewUnknowns) return {Solver::direct, "few unknowns"};
+  if (matrix.isSymmetric()) return {Solver::cg, "the matrix is symmetric"};
+  return {Solver::gmres, "the matrix is not symmetric"};
+}
+
+std::string_view cureOf(GaveUp why, bool dark_left) {
+  switch (why) {
+    case GaveUp::grows:
+      return "it grows: reflectance times row sum is above 1 over much of a room, so restore "
+             "closure or use the raw rows";
+    case GaveUp::rounding:
+      return "rounding keeps it from coming closer: ask for less";
+    case GaveUp::no:
+      break;
+  }
+  return dark_left ? "patches that little light reaches are not settled yet: allow more"
+                   : "reflectances near 1 in a closed room need many sweeps: allow more, or use "
+                     "the solver auto";
+}
+
+std::string convergenceMessage(const SolveSummary& summary, const Choice& choice, double tolerance,
+                               std::string_view cure) {
+  const std::string why = choice.why.empty() ? "" : fmt::format(" (auto: {})", choice.why);
+  const std::string numbers =
+      fmt::format("{} {}{}, residual {:.2e} (asked for {:.2e})", summary.iterations,
+                  workOf(choice.solver), why, summary.residual, tolerance);
+  const std::string bound =
+      summary.error_bound
+          ? fmt::format("the error against this matrix's solution is below {:.2e} W/m^2",
+                        *summary.error_bound)
+          : std::string(
+                "no certificate: the error could not be bounded in the time that the "
+                "solution took");
+  if (summary.status == SolveStatus::converged) {
+    return fmt::format("converged: {}; {}; usable", numbers, bound);
+  }
+  return fmt::format("no convergence: {}; {}; not usable as it is; {}", numbers, bound, cure);
+}
+
+/// The bound may take as many sweeps as the solution. Factoring is worth more than its two.
+constexpr int kFactoringSweeps = 16;
+
+}  // namespace
+
+Fields solveSystem(const System& system, const SolveOptions& options, Progress& progress,
+                   SolveSummary& summary) {
+  const Choice choice = choose(options.solver, system.matrix);
+  summary.solver = choice.solver;
+  Fields fields;
+  std::string_view cure;
+  GaveUp gave_up = GaveUp::no;
+  {
+    Convergence convergence(options.tolerance, options.max_iterations, "solving", progress);
+    fields = run(choice.solver, system, convergence);
+    gave_up = convergence.gaveUp();
+    cure = cureOf(gave_up, convergence.darkLeft());
+    summary.status = convergence.converged() ? SolveStatus::converged : SolveStatus::no_convergence;
+    summary.iterations = convergence.sweeps();
+    summary.rows = convergence.rows();
+    summary.residual_history = convergence.history();
+  }
+  summary.residual = summary.residual_history.back();
+  if (gave_up != GaveUp::grows) {
+    const int factoring = choice.solver == Solver::direct ? kFactoringSweeps : 0;
+    summary.error_bound =
+        certifiedErrorBound(system, fields, summary.iterations + factoring, progress);
+  }
+  summary.message = convergenceMessage(summary, choice, options.tolerance, cure);
+  blackIrradiance(system, fields);
+  return fields;
+}
+
+void requireSolver(Solver solver, const ExchangeMatrix& matrix) {
+  if (solver == Solver::cg && !matrix.isSymmetric()) {
+    throw InputError(
+        "solver cg: conjugate gradients need a symmetric matrix, and rows of hemicubes are not "
+        "(A_i "
+        "F_ij = A_j F_ji does not hold); use gmres or auto, or merge the rows (--symmetrize)");
+  }
+  if (solver == Solver::direct && matrix.size() > kMostDirectUnknowns) {
+    throw InputError(fmt::format(
+        "solver direct: {} unknowns are too many for a dense matrix, {} are the most; use auto",
+        matrix.size(), kMostDirectUnknowns));
+  }
+}
+
+LinearSolution solveLinear(const ExchangeMatrix& matrix, std::span<const double> reflectance,
+                           std::span<const double> source, int bands, const SolveOptions& options,
+                           Progress& progress) {
+  options.validate();
+  requireSolver(options.solver, matrix);
+  const BandPlan plan(reflectance, source, bands);
+  LinearSolution solution;
+  if (plan.solved().empty()) {
+    solution.radiosity.assign(source.size(), 0.0);
+    solution.irradiance.assign(source.size(), 0.0);
+    solution.summary.status = SolveStatus::no_light;
+    solution.summary.error_bound = 0.0;
+    solution.summary.message = "nothing to solve: no source";
+    return solution;
+  }
+  const System system(matrix, int(plan.solved().size()), plan.pick(reflectance), plan.pick(source));
+  const Fields fields = solveSystem(system, options, progress, solution.summary);
+  solution.radiosity = plan.spread(fields.radiosity);
+  solution.irradiance = plan.spread(fields.irradiance);
+  return solution;
+}
+
+}  // namespace radiosity
