@@ -19,9 +19,6 @@ inline constexpr std::string_view kDataMark = "<!--radiosity-data-->";
 /// gzip (RFC 1952), the same bytes for the same data. Throws Cancelled.
 std::string gzipped(std::span<const std::byte> data, Progress& progress);
 
-/// RFC 4648, padded.
-std::string base64(std::string_view bytes);
-
 /// Writes `before` the mark, the data in a script element of its own, and what is after it. Returns
 /// how many bytes the data takes. Errors: RunError where the template lacks the mark and as
 /// CheckedFile; Cancelled.

@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "base/base64.h"
 #include "page/html.h"
 #include "support/results_folder.h"
 
 namespace radiosity {
 namespace {
 
-using page::base64;
 using page::gzipped;
 using page::writeHtml;
 
