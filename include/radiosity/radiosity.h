@@ -20,3 +20,4 @@
 #include "radiosity/scene.h"
 #include "radiosity/solve.h"
 #include "radiosity/version.h"
+#include "radiosity/vtk.h"

@@ -32,29 +32,30 @@ const char* examplesOf(Command command) {
              "  radiosity info house.glb --set lamp.radiance=100\n"
              "  radiosity info cornell.h5";
     case Command::mesh:
-      return "Files (-o): .obj (outlines), .glb (triangles), .h5 (results).\n\n"
+      return "Files (-o): .obj (outlines), .glb (triangles), .vtp (ParaView), .h5 (results).\n\n"
              "Examples:\n"
              "  radiosity mesh data/cornell-box.obj --patches 5000 -o patches.obj\n"
              "  radiosity mesh plan.obj --unit mm --max-edge 0.25 -o patches.glb";
     case Command::factors:
-      return "Files (-o): .h5 (results), .mtx (MatrixMarket, F as stored). A results file given "
-             "as\n"
-             "input is updated in place where no -o is given.\n\n"
+      return "Files (-o): .h5 (results), .mtx (MatrixMarket, F as stored), .vtp (patches with the\n"
+             "accounts of their rows, for ParaView). A results file given as input is updated in\n"
+             "place where no -o is given.\n\n"
              "Examples:\n"
              "  radiosity factors data/cornell-box.obj -o cornell.h5\n"
              "  radiosity factors plates.obj --faces-as-patches --tolerance 1e-11 -o plates.h5\n"
              "  radiosity factors data/cornell-box.obj --method hemicube --resolution 512\n"
              "  radiosity factors cornell.h5 -o cornell.mtx";
     case Command::solve:
-      return "Files (-o): .h5 (results), .glb (lit mesh), .mtx (MatrixMarket). A results file "
-             "given\n"
-             "as input is updated in place where no -o is given; its form factors are reused.\n"
+      return "Files (-o): .h5 (results), .glb (lit mesh), .vtp (patches with B, H and net flux, "
+             "for\n"
+             "ParaView), .mtx (MatrixMarket). A results file given as input is updated in place\n"
+             "where no -o is given; its form factors are reused.\n"
              "The lit mesh shows light at elements, finer than patches; a results file, which is "
              "for\n"
              "the matrix, keeps them beside a lit mesh or with --elements on.\n\n"
              "Examples:\n"
              "  radiosity solve data/cornell-box.obj -o cornell.h5\n"
-             "  radiosity solve cornell.h5 -o lit.glb\n"
+             "  radiosity solve cornell.h5 -o lit.glb -o cornell.vtp\n"
              "  radiosity solve room.glb -o baked.glb --lightmap baked.exr --lightmap-size 2048\n"
              "  radiosity solve cornell.h5 --set white.reflectance=.9";
     case Command::gather:

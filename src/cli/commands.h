@@ -49,6 +49,9 @@ void keepSolution(Session& session, Pipeline& pipeline, const OutputSet& files);
 /// that would not change is left alone.
 void writeStages(Session& session, Pipeline& pipeline, OutputSet& files);
 
+/// Writes the .vtp among `files`, with what the subcommand knows of each patch.
+void writeCells(Session& session, Pipeline& pipeline, OutputSet& files);
+
 /// InputError, with the cure as a command line to paste, where nothing in the scene emits.
 void requireLight(const Session& session, const Pipeline& pipeline);
 

@@ -6,6 +6,7 @@ int runFactors(Session& session) {
   OutputSet files = claimOutputs(session);
   Run run(session, files.path(Format::results));
   run.pipeline.factors();
+  writeCells(session, run.pipeline, files);
   writeStages(session, run.pipeline, files);
   files.commit(session.report, session.progress);
   run.pipeline.discardKeptRows();

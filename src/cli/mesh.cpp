@@ -10,6 +10,7 @@ int runMesh(Session& session) {
   const auto write = [&](const std::string& temporary) { writeMesh(temporary, mesh); };
   files.write(Format::obj, "patches, one group a surface", write);
   files.write(Format::glb, "patches, not lit", write);
+  writeCells(session, run.pipeline, files);
   writeStages(session, run.pipeline, files);
   files.commit(session.report, session.progress);
   return 0;

@@ -29,6 +29,7 @@ const std::vector<Extension>& extensions() {
       {".exr", Format::exr, {gather, render}},
       {".glb", Format::glb, {mesh, solve, gather, render}},
       {".obj", Format::obj, {mesh}},
+      {".vtp", Format::vtp, {mesh, factors, solve}},
       {".h5", Format::results, {mesh, factors, solve, gather, compare, render, view}},
       {".mtx", Format::matrix_market, {factors, solve, render}},
       {".html", Format::page, {view}},

@@ -13,7 +13,7 @@
 
 namespace radiosity::cli {
 
-enum class Format { results, matrix_market, png, exr, glb, obj, page, lightmap };
+enum class Format { results, matrix_market, png, exr, glb, obj, vtp, page, lightmap };
 
 struct Output {
   std::string path;

@@ -39,6 +39,7 @@ int runSolve(Session& session) {
   }
   writeStages(session, pipeline, files);
   if (files.has(Format::glb) && !singular) writeLit(session, pipeline, elements.shown, files);
+  writeCells(session, pipeline, files);
   files.commit(session.report, session.progress);
   return code;
 }

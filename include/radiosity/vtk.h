@@ -1,0 +1,40 @@
+// Patches with what is known of each, for ParaView and other readers of VTK's files.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "radiosity/form_factors.h"
+#include "radiosity/patch_mesh.h"
+#include "radiosity/solve.h"
+
+namespace [[gnu::visibility("default")]] radiosity {
+
+/// A quantity of every patch, under the name that readers show.
+struct CellField {
+  std::string name;            ///< "net_flux"
+  std::string unit;            ///< "W/m^2"; empty: a pure number
+  int components = 1;          ///< 1 or more: bands
+  std::vector<double> values;  ///< N * components, row-major
+};
+
+/// reflectance, and emission (exitance, W/m^2), by band.
+std::vector<CellField> materialFields(const PatchMaterials& materials);
+
+/// row_sum, backs and sky, the three accounts of a row; and error, its figure, where the method has
+/// one. Patches that share an unknown have the row of that.
+std::vector<CellField> factorFields(const PatchMesh& mesh, const FormFactors& factors);
+
+/// By band, W/m^2: radiosity B, irradiance H, and net_flux q = B - H = E - (1 - rho) H, what a
+/// surface gives off beyond what it takes in: above 0 for a lamp, below 0 for what absorbs.
+std::vector<CellField> lightFields(const Solution& solution);
+
+/// VTK's XML PolyData (.vtp): polygon k is patch k, backs too (the front's corners in reverse);
+/// points in metres, 64 bits. Cell data: patch (its number, from 0), surface (its name), surface_id
+/// (into the field data surface_names), side (0 front, 1 back), unknown (the row of the matrix,
+/// where patches share them), area (m^2), then `fields`, each with its unit. Errors: InputError for
+/// a field of another size, without components, or of a name that there is already; as CheckedFile.
+void writeVtp(const std::string& path, const PatchMesh& mesh, std::span<const CellField> fields);
+
+}  // namespace radiosity

@@ -1,0 +1,26 @@
+// Patches with their quantities, for ParaView.
+#include "cli/commands.h"
+#include "radiosity/vtk.h"
+
+namespace radiosity::cli {
+
+void writeCells(Session& session, Pipeline& pipeline, OutputSet& files) {
+  if (!files.has(Format::vtp)) return;
+  const PatchMesh& mesh = pipeline.mesh().mesh;
+  std::vector<CellField> fields = materialFields(pipeline.materials());
+  std::string what = "patches for ParaView: materials";
+  const auto append = [&](std::vector<CellField> more, const char* name) {
+    std::move(more.begin(), more.end(), std::back_inserter(fields));
+    what += name;
+  };
+  const Command command = session.request.command;
+  if (command != Command::mesh)
+    append(factorFields(mesh, pipeline.factors()), ", accounts of rows");
+  if (command == Command::solve && !pipeline.solution().radiosity.empty()) {
+    append(lightFields(pipeline.solution()), ", light");
+  }
+  files.write(Format::vtp, what,
+              [&](const std::string& temporary) { writeVtp(temporary, mesh, fields); });
+}
+
+}  // namespace radiosity::cli

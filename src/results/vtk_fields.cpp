@@ -1,0 +1,34 @@
+#include "radiosity/vtk.h"
+
+namespace radiosity {
+
+std::vector<CellField> materialFields(const PatchMaterials& materials) {
+  return {{"reflectance", "", materials.bands, materials.reflectance},
+          {"emission", "W/m^2", materials.bands, materials.emission}};
+}
+
+std::vector<CellField> factorFields(const PatchMesh& mesh, const FormFactors& factors) {
+  std::vector<CellField> fields;
+  const auto add = [&](const char* name, const std::vector<double>& rows) {
+    std::vector<double> values(mesh.size());
+    for (std::size_t i = 0; i < mesh.size(); ++i) values[i] = rows[mesh.unknownOf(i)];
+    fields.push_back({name, "", 1, std::move(values)});
+  };
+  add("row_sum", factors.fronts);
+  add("backs", factors.backs);
+  add("sky", factors.sky);
+  if (!factors.error.empty()) add("error", factors.error);
+  return fields;
+}
+
+std::vector<CellField> lightFields(const Solution& solution) {
+  std::vector<double> net(solution.radiosity.size());
+  for (std::size_t k = 0; k < net.size(); ++k) {
+    net[k] = solution.radiosity[k] - solution.irradiance[k];
+  }
+  return {{"radiosity", "W/m^2", solution.bands, solution.radiosity},
+          {"irradiance", "W/m^2", solution.bands, solution.irradiance},
+          {"net_flux", "W/m^2", solution.bands, std::move(net)}};
+}
+
+}  // namespace radiosity
