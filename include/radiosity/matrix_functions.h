@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "radiosity/exchange_matrix.h"
@@ -24,9 +25,11 @@ ExchangeMatrix symmetrized(const ExchangeMatrix& matrix);
 /// The matrix between groups of patches: G_IJ = sum of A_i F_ij over i in I and j in J, and
 /// F_IJ = G_IJ / A_I, A_I the area of group I; F_II is what a group sees of itself. Row sums,
 /// weighted by area, and reciprocity are kept. Symmetric stays symmetric; else row form, in the
-/// same precision. `group_of`: N groups below `groups`, else InputError. Throws Cancelled.
+/// same precision but where `stored` says another. `group_of`: N groups below `groups`, else
+/// InputError. Throws Cancelled.
 ExchangeMatrix aggregated(const ExchangeMatrix& matrix, std::span<const Index> group_of,
-                          std::size_t groups, Progress& progress);
+                          std::size_t groups, Progress& progress,
+                          std::optional<Precision> stored = {});
 
 /// Bytes that N rows with `entries_per_row` entries take in row form.
 std::size_t estimateRowFormBytes(std::size_t n, double entries_per_row, Precision precision);

@@ -19,5 +19,6 @@
 #include "radiosity/row_journal.h"
 #include "radiosity/scene.h"
 #include "radiosity/solve.h"
+#include "radiosity/tables.h"
 #include "radiosity/version.h"
 #include "radiosity/vtk.h"

@@ -107,7 +107,10 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
     return sub;
   }
   addFactorOptions(*sub, r);
-  if (command == Command::factors) return sub;
+  if (command == Command::factors) {
+    addTableOptions(*sub, r);
+    return sub;
+  }
   addSolveOptions(*sub, r);
   if (compares) {
     addGatherOptions(*sub, r);

@@ -22,6 +22,7 @@ CLI::Option* add(CLI::App& app, const char* group, const std::string& names, Val
 void addSceneOptions(CLI::App& app, Request& r);
 void addMeshOptions(CLI::App& app, Request& r);
 void addFactorOptions(CLI::App& app, Request& r);
+void addTableOptions(CLI::App& app, Request& r);
 void addSolveOptions(CLI::App& app, Request& r);
 void addGatherOptions(CLI::App& app, Request& r);
 /// Options shared with the form factors.

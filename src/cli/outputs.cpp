@@ -32,6 +32,13 @@ const std::vector<Extension>& extensions() {
       {".vtp", Format::vtp, {mesh, factors, solve}},
       {".h5", Format::results, {mesh, factors, solve, gather, compare, render, view}},
       {".mtx", Format::matrix_market, {factors, solve, render}},
+      {".csv", Format::csv, {factors}},
+      {".json", Format::json, {factors}},
+      {".md", Format::markdown, {factors}},
+      {".idf", Format::idf, {factors}},
+      {".vf", Format::view3d, {factors}},
+      {".txt", Format::triplets, {factors}},
+      {".hdf5", Format::hdf5, {factors}},
       {".html", Format::page, {view}},
   };
   return kAll;

@@ -13,7 +13,24 @@
 
 namespace radiosity::cli {
 
-enum class Format { results, matrix_market, png, exr, glb, obj, vtp, page, lightmap };
+enum class Format {
+  results,
+  matrix_market,
+  png,
+  exr,
+  glb,
+  obj,
+  vtp,
+  csv,
+  json,
+  markdown,
+  idf,
+  view3d,
+  triplets,
+  hdf5,
+  page,
+  lightmap
+};
 
 struct Output {
   std::string path;

@@ -49,6 +49,12 @@ struct Request {
   std::string memory_limit;
   std::optional<bool> resume;
 
+  std::string between;              ///< surfaces, groups or patches; empty: as the output has it
+  std::vector<std::string> groups;  ///< "NAME=PATTERN"
+  std::string layout;               ///< wide or long; empty: wide
+  std::string sky_name = "sky";
+  std::string zone;  ///< of EnergyPlus; empty: the input's name
+
   std::optional<std::string> solver;
   std::optional<double> solve_tolerance;
   std::optional<int> max_iterations;

@@ -143,6 +143,24 @@ void addFactorOptions(CLI::App& app, Request& r) {
       ->group("Form factors");
 }
 
+void addTableOptions(CLI::App& app, Request& r) {
+  add(app, "Tables", "--between", r.between, "groups|surfaces|patches",
+      "Print the form factors between surfaces, joined by --group (groups; without any the "
+      "surfaces), each on its own (surfaces), or between patches; and write these (default: .txt "
+      "and .hdf5 patches, others groups)")
+      ->check(CLI::IsMember({"groups", "surfaces", "patches"}));
+  add(app, "Tables", "--group", r.groups, "NAME=PATTERN",
+      "Join surfaces under one name in tables; * and ? stand for any text and any character, the "
+      "first group that matches has the surface. Patches and form factors stay. May be repeated");
+  add(app, "Tables", "--layout", r.layout, "wide|long",
+      "A row a surface and a column a receiver (wide, default), or a row a pair (long)")
+      ->check(CLI::IsMember({"wide", "long"}));
+  add(app, "Tables", "--sky-name", r.sky_name, "NAME",
+      "What the sky is called among the receivers (default sky)");
+  add(app, "Tables", "--zone", r.zone, "NAME",
+      "EnergyPlus (.idf): the zone, zone list or enclosure (default: the input's name)");
+}
+
 void addSolveOptions(CLI::App& app, Request& r) {
   const SolveOptions defaults;
   add(app, "Solve", "--solver", r.solver, "NAME",

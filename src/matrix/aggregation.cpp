@@ -44,10 +44,10 @@ std::vector<std::vector<Index>> patchesOf(std::span<const Index> group_of, std::
 }
 
 ExchangeMatrix aggregatedRows(const ExchangeMatrix& matrix, std::span<const Index> group_of,
-                              std::vector<double> area, Progress& progress) {
+                              std::vector<double> area, Precision stored, Progress& progress) {
   const std::size_t groups = area.size();
   const std::vector<std::vector<Index>> patches = patchesOf(group_of, groups);
-  ExchangeMatrix result(std::move(area), matrix.precision());
+  ExchangeMatrix result(std::move(area), stored);
   parallelFor(groups, 1, [&](std::size_t group) {
     if (progress.cancelled()) return;
     std::vector<double> exchange(groups, 0.0);
@@ -127,7 +127,7 @@ Triangle exchangeOfGroups(const ExchangeMatrix& matrix, std::span<const Index> p
 }
 
 ExchangeMatrix aggregatedTriangle(const ExchangeMatrix& matrix, std::span<const Index> group_of,
-                                  std::vector<double> area, Progress& progress) {
+                                  std::vector<double> area, Precision stored, Progress& progress) {
   const std::size_t groups = area.size();
   std::vector<Index> order = orderOfGroups(matrix.order(), group_of, groups);
   std::vector<Index> place_of(groups);
@@ -136,8 +136,7 @@ ExchangeMatrix aggregatedTriangle(const ExchangeMatrix& matrix, std::span<const 
   place.reserve(group_of.size());
   for (const Index i : matrix.order()) place.push_back(place_of[group_of[i]]);
   Triangle exchange = exchangeOfGroups(matrix, place, groups, progress);
-  ExchangeMatrix result =
-      ExchangeMatrix::symmetric(std::move(area), std::move(order), matrix.precision());
+  ExchangeMatrix result = ExchangeMatrix::symmetric(std::move(area), std::move(order), stored);
   parallelFor(groups, 16, [&](std::size_t k) {
     const std::span<double> row = exchange.row(k);
     const double inverse = inverseOf(result.area()[result.order()[k]]);
@@ -150,13 +149,15 @@ ExchangeMatrix aggregatedTriangle(const ExchangeMatrix& matrix, std::span<const 
 }  // namespace
 
 ExchangeMatrix aggregated(const ExchangeMatrix& matrix, std::span<const Index> group_of,
-                          std::size_t groups, Progress& progress) {
+                          std::size_t groups, Progress& progress, std::optional<Precision> stored) {
   requireGroups(matrix, group_of, groups);
+  const Precision precision = stored.value_or(matrix.precision());
   std::vector<double> area = areasOf(matrix, group_of, groups);
   progress.begin("summing over clusters", matrix.size());
-  ExchangeMatrix result = matrix.isSymmetric()
-                              ? aggregatedTriangle(matrix, group_of, std::move(area), progress)
-                              : aggregatedRows(matrix, group_of, std::move(area), progress);
+  ExchangeMatrix result =
+      matrix.isSymmetric()
+          ? aggregatedTriangle(matrix, group_of, std::move(area), precision, progress)
+          : aggregatedRows(matrix, group_of, std::move(area), precision, progress);
   progress.end();
   return result;
 }

@@ -2,46 +2,16 @@
 #include <algorithm>
 #include <vector>
 
+#include "results/column_writer.h"
 #include "results/matrix_blocks.h"
 
 namespace radiosity {
 
+using h5::ColumnWriter;
 using h5::Number;
 using h5::Shape;
 
 namespace {
-
-/// Fills a dataset of one dimension in order, a chunk at a time: HDF5 makes the checksum of each
-/// chunk once and reads none back.
-template <class T>
-class ColumnWriter {
- public:
-  ColumnWriter(h5::OutputGroup& group, const char* name, std::size_t count)
-      : group_(&group), name_(name) {
-    const Shape shape{h5::numberOf<T>(), count, 0};
-    dataset_ = group.create(name, shape, "");
-    chunk_ = h5::chunkRows(shape);
-    buffer_.reserve(std::min(chunk_, count));
-  }
-  void push(T value) {
-    buffer_.push_back(value);
-    if (buffer_.size() == chunk_) flush();
-  }
-  void flush() {
-    if (buffer_.empty()) return;
-    group_->writeRows(name_, dataset_, h5::numberOf<T>(), written_, buffer_.size(), buffer_.data());
-    written_ += buffer_.size();
-    buffer_.clear();
-  }
-
- private:
-  h5::OutputGroup* group_;
-  const char* name_;
-  h5::Handle dataset_;
-  std::size_t chunk_ = 0;
-  std::size_t written_ = 0;
-  std::vector<T> buffer_;
-};
 
 std::vector<std::int64_t> rowStarts(const ExchangeMatrix& matrix) {
   std::vector<std::int64_t> indptr(matrix.size() + 1, 0);

@@ -28,6 +28,7 @@ CASES = [
     ("render/legend.cpp", "radiosity/patch_mesh.h", ["radiosity/solve.h", "matrix/run_row.h"]),
     ("lightmap/charts.cpp", "radiosity/render.h", ["results/glb.h", "radiosity/gather.h"]),
     ("results/results_file.cpp", "radiosity/gather.h", ["radiosity/compare.h"]),
+    ("tables/csv.cpp", "results/checked_file.h", ["radiosity/compare.h", "radiosity/pipeline.h"]),
     ("pipeline/stages.cpp", "radiosity/results.h", ["radiosity/compare.h", "radiosity/page.h"]),
     ("page/header.cpp", "results/lit_vertices.h", ["radiosity/compare.h"]),
     ("cli/words.cpp", "base/figure_text.h", ["mesh/winding.h", "scene/text.h"]),

@@ -1,0 +1,226 @@
+#include "cli/tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "cli/words.h"
+#include "radiosity/tables.h"
+
+namespace radiosity::cli {
+
+namespace {
+
+/// Columns of a terminal that a table may take.
+constexpr std::size_t kTerminalWidth = 120;
+constexpr std::size_t kTerminalRows = 40;
+/// Digits on the terminal; files have all.
+constexpr int kTerminalDigits = 4;
+
+constexpr std::array kTables = {Format::csv,    Format::json,     Format::markdown, Format::idf,
+                                Format::view3d, Format::triplets, Format::hdf5};
+
+/// These are for programs that take the matrix itself.
+bool isOfPatches(Format format) { return format == Format::triplets || format == Format::hdf5; }
+
+bool printsTable(const Request& request) {
+  return !request.between.empty() || !request.groups.empty();
+}
+
+/// The tables of one run: each is made once.
+class Tables {
+ public:
+  Tables(Session& session, Pipeline& pipeline) : session_(session), pipeline_(pipeline) {
+    pipeline.loadMatrix();
+  }
+
+  const NamedFactors& get(const std::string& between) {
+    std::optional<NamedFactors>& made = between == "patches" ? patches_ : surfaces_;
+    if (made) return *made;
+    const PatchMesh& mesh = pipeline_.mesh().mesh;
+    const FormFactors& factors = pipeline_.factors();
+    if (between == "patches") {
+      made = factorsOfUnknowns(mesh, factors);
+    } else {
+      const SurfaceGroups groups =
+          groupSurfaces(mesh.surface_names, between == "surfaces" ? std::vector<std::string>()
+                                                                  : session_.request.groups);
+      session_.report.notes(groups.notes);
+      made = factorsBetween(mesh, factors, groups, session_.progress);
+    }
+    made->sky_name = session_.request.sky_name;
+    return *made;
+  }
+
+  /// What --between says, else what the format is for.
+  const NamedFactors& of(Format format) {
+    const std::string& asked = session_.request.between;
+    return get(!asked.empty() ? asked : isOfPatches(format) ? "patches" : "groups");
+  }
+
+  std::vector<double> emissivity(const NamedFactors& factors) {
+    return emissivities(factors, pipeline_.mesh().mesh, pipeline_.materials());
+  }
+
+ private:
+  Session& session_;
+  Pipeline& pipeline_;
+  std::optional<NamedFactors> surfaces_;
+  std::optional<NamedFactors> patches_;
+};
+
+TableLayout layoutOf(const Request& request) {
+  return request.layout == "long" ? TableLayout::tall : TableLayout::wide;
+}
+
+/// Every pair goes to the report file, those that fit to the terminal.
+void recordPairs(Report& report, const NamedFactors& factors) {
+  std::vector<std::vector<std::string>> rows;
+  const auto add = [&](std::size_t a, const std::string& to, double value, double error) {
+    rows.push_back({factors.names[a], to, fmt::format("{}", value), fmt::format("{}", error)});
+  };
+  for (std::size_t a = 0; a < factors.size(); ++a) {
+    for (std::size_t b = 0; b < factors.size(); ++b) {
+      add(a, factors.names[b], factors.matrix->at(a, b), factors.entryError(a, b));
+    }
+    add(a, factors.sky_name, factors.sky[a], std::nan(""));
+    add(a, "backs", factors.backs[a], std::nan(""));
+  }
+  report.mute(true);
+  report.table(
+      "pairs",
+      {{"from", "from", false}, {"to", "to", false}, {"form_factor", "F"}, {"error", "error"}},
+      rows);
+  report.mute(false);
+}
+
+void print(Session& session, const NamedFactors& factors, const std::string& between) {
+  Report& report = session.report;
+  const std::string rows = between == "patches" ? "patches" : "surfaces";
+  report.section("table", fmt::format("Form factors between {}, from row to column", rows));
+  if (!factors.numbered) recordPairs(report, factors);
+  double residual = 0;
+  for (std::size_t a = 0; !factors.numbered && a < factors.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      residual = std::max(residual, factors.reciprocityResidual(a, b));
+    }
+  }
+  if (!report.muted()) {
+    const bool tall = session.request.layout == "long" || factors.numbered;
+    std::string text =
+        tall ? "" : factorsMarkdown(factors, TableLayout::wide, kTerminalDigits, kTerminalRows);
+    if (tall || (session.request.layout.empty() && text.find('\n') > kTerminalWidth)) {
+      text = factorsMarkdown(factors, TableLayout::tall, kTerminalDigits, kTerminalRows);
+    }
+    std::fputs(("\n" + text + "\n").c_str(), stdout);
+  }
+  if (!factors.numbered) {
+    report.number("reciprocity_m2", "largest |A_a F_ab - A_b F_ba|", residual, "m^2");
+  }
+  if (!factors.error.empty()) {
+    report.text(
+        "error_is", "error",
+        "of a row: bound on its 2-norm, of a pair (long): on F; both from the rows' figures");
+  }
+}
+
+std::string zoneOf(const Session& session) {
+  if (!session.request.zone.empty()) return session.request.zone;
+  return std::filesystem::path(session.request.input).stem().string();
+}
+
+void writeTable(Session& session, Tables& tables, Format format, OutputSet& files) {
+  if (!files.has(format)) return;
+  const NamedFactors& factors = tables.of(format);
+  const TableLayout layout = layoutOf(session.request);
+  Progress& progress = session.progress;
+  const std::string what = fmt::format(
+      "form factors between {}", plural(factors.size(), factors.numbered ? "unknown" : "surface",
+                                        factors.numbered ? "unknowns" : "surfaces"));
+  const auto write = [&](const std::string& text, auto&& writer) {
+    files.write(format, what + text, writer);
+  };
+  using Path = const std::string&;
+  switch (format) {
+    case Format::csv:
+      return write("", [&](Path path) { writeFactorsCsv(path, factors, layout, progress); });
+    case Format::json:
+      return write("", [&](Path path) { writeFactorsJson(path, factors, layout, progress); });
+    case Format::markdown:
+      return write("", [&](Path path) { writeFactorsMarkdown(path, factors, layout); });
+    case Format::idf:
+      return write(", EnergyPlus, zone " + zoneOf(session),
+                   [&](Path path) { writeEnergyPlus(path, factors, zoneOf(session), progress); });
+    case Format::view3d:
+      return write(", View3D", [&](Path path) {
+        writeView3d(path, factors, tables.emissivity(factors), progress);
+      });
+    case Format::triplets:
+      return write(", triplets", [&](Path path) { writeTriplets(path, factors, progress); });
+    default:
+      return write(", HDF5", [&](Path path) { writeTripletsHdf5(path, factors, progress); });
+  }
+}
+
+/// What an open scene loses has no place in a zone, which EnergyPlus takes to be closed.
+void noteOpenZone(Session& session, const NamedFactors& factors) {
+  double lost = 0;
+  std::size_t worst = 0;
+  for (std::size_t a = 0; a < factors.size(); ++a) {
+    const double rest = factors.sky[a] + factors.backs[a];
+    if (rest > lost) worst = a;
+    lost = std::max(lost, rest);
+  }
+  if (lost < 1e-3) return;
+  const Note note{
+      Severity::warning,
+      fmt::format("EnergyPlus takes the zone to be closed, but {} of what leaves {} goes "
+                  "to the sky or to black backs: close the scene, or it is missing",
+                  numberText(lost, 3), factors.names[worst])};
+  session.report.notes({&note, 1});
+}
+
+}  // namespace
+
+void checkTableOptions(const Request& request, const OutputSet& files) {
+  const bool any =
+      printsTable(request) ||
+      std::any_of(kTables.begin(), kTables.end(), [&](Format format) { return files.has(format); });
+  const auto require = [](bool used, bool given, const char* option, const char* cure) {
+    if (given && !used) throw InputError(fmt::format("{}: {}, or leave it out", option, cure));
+  };
+  require(any, !request.layout.empty(), "--layout",
+          "is about tables; add --between or a table to write (-o FILE.csv)");
+  require(any, request.sky_name != Request().sky_name, "--sky-name",
+          "is about tables; add --between or a table to write (-o FILE.csv)");
+  require(files.has(Format::idf), !request.zone.empty(), "--zone",
+          "is about EnergyPlus; name a file for it (-o FILE.idf)");
+  require(request.between.empty() || request.between == "groups", !request.groups.empty(),
+          "--group", "joins surfaces, and --between asks for others; use --between groups");
+}
+
+void checkGroups(const Request& request, const Scene& scene) {
+  std::vector<std::string> names;
+  for (const Surface& surface : scene.surfaces) names.push_back(surface.name);
+  groupSurfaces(names, request.groups);
+}
+
+void writeTables(Session& session, Pipeline& pipeline, OutputSet& files) {
+  const Request& request = session.request;
+  const bool writes =
+      std::any_of(kTables.begin(), kTables.end(), [&](Format format) { return files.has(format); });
+  if (!writes && !printsTable(request)) return;
+  Tables tables(session, pipeline);
+  if (printsTable(request)) {
+    const std::string between = request.between.empty() ? "groups" : request.between;
+    print(session, tables.get(between), between);
+  }
+  for (const Format format : kTables) writeTable(session, tables, format, files);
+  if (files.has(Format::idf)) noteOpenZone(session, tables.of(Format::idf));
+}
+
+}  // namespace radiosity::cli

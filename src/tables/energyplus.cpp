@@ -1,0 +1,76 @@
+// EnergyPlus, Input Output Reference, "ZoneProperty:UserViewFactors:BySurfaceName".
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <iterator>
+#include <map>
+
+#include "results/checked_file.h"
+#include "tables/table_rows.h"
+
+namespace radiosity {
+
+namespace {
+
+/// Of names of EnergyPlus objects.
+constexpr std::size_t kLongestName = 100;
+
+void requireName(const std::string& path, const std::string& name) {
+  const bool plain = std::none_of(name.begin(), name.end(), [](unsigned char c) {
+    return c == ',' || c == ';' || c == '!' || c < 0x20;
+  });
+  if (plain && !name.empty() && name.size() <= kLongestName) return;
+  throw InputError(fmt::format(
+      "{}: '{}' is no name for EnergyPlus: 1 to {} characters without comma, semicolon and "
+      "exclamation mark; rename it (--group NEW=OLD)",
+      path, name, kLongestName));
+}
+
+/// EnergyPlus compares names without regard to case.
+void requireNames(const std::string& path, const NamedFactors& factors) {
+  if (factors.numbered) {
+    throw InputError(path +
+                     ": EnergyPlus has view factors between surfaces; leave out --between patches");
+  }
+  std::map<std::string, std::string> seen;
+  for (const std::string& name : factors.names) {
+    requireName(path, name);
+    std::string lower = name;
+    std::transform(lower.begin(), lower.end(), lower.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    const auto [other, added] = seen.emplace(lower, name);
+    if (added) continue;
+    throw InputError(fmt::format(
+        "{}: {} and {} are one name for EnergyPlus, which ignores case; rename one (--group "
+        "NEW=OLD)",
+        path, other->second, name));
+  }
+}
+
+}  // namespace
+
+void writeEnergyPlus(const std::string& path, const NamedFactors& factors, const std::string& zone,
+                     Progress& progress) {
+  requireNames(path, factors);
+  requireName(path, zone);
+  CheckedFile file(path);
+  file.write(fmt::format(
+      "! Form factors by radiosity: from surface, to surface, F. EnergyPlus takes the zone to be\n"
+      "! closed: what goes to the sky or to black backs is missing from the rows.\n"
+      "ZoneProperty:UserViewFactors:BySurfaceName,\n  {}",
+      zone));
+  forDenseRows(factors, "writing the table", progress,
+               [&](std::size_t a, const std::vector<double>& row) {
+                 fmt::memory_buffer lines;
+                 for (std::size_t b = 0; b < row.size(); ++b) {
+                   fmt::format_to(std::back_inserter(lines), ",\n  {},{},{}", factors.names[a],
+                                  factors.names[b], row[b]);
+                 }
+                 file.write(lines.data(), lines.size());
+               });
+  file.write(";\n");
+  file.commit();
+}
+
+}  // namespace radiosity

@@ -1,0 +1,109 @@
+// Form factors between groups of surfaces, from those between patches.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "radiosity/matrix_functions.h"
+#include "radiosity/tables.h"
+
+namespace radiosity {
+
+namespace {
+
+/// Each unknown's surface: clusters are of one.
+std::vector<Index> surfaceOfUnknowns(const PatchMesh& mesh) {
+  std::vector<Index> surface(mesh.unknowns(), 0);
+  for (std::size_t i = 0; i < mesh.size(); ++i) surface[mesh.unknownOf(i)] = mesh.surface[i];
+  return surface;
+}
+
+/// A value of each unknown, as its rows' means by area.
+std::vector<double> meansOfRows(std::span<const double> values, std::span<const double> area,
+                                const NamedFactors& rows) {
+  std::vector<double> means(rows.size(), 0.0);
+  if (values.empty()) return {};
+  for (std::size_t u = 0; u < values.size(); ++u) means[rows.row_of[u]] += area[u] * values[u];
+  for (std::size_t a = 0; a < means.size(); ++a) {
+    const double total = rows.matrix->area()[a];
+    means[a] = total > 0 ? means[a] / total : 0.0;
+  }
+  return means;
+}
+
+}  // namespace
+
+double NamedFactors::entryError(std::size_t a, std::size_t b) const {
+  if (error.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const double forward = std::sqrt(double(members[b])) * error[a];
+  const double area = matrix->area()[a];
+  if (!matrix->isSymmetric() || !(area > 0)) return forward;
+  const double backward = std::sqrt(double(members[a])) * error[b] * matrix->area()[b] / area;
+  return std::min(forward, backward);
+}
+
+double NamedFactors::reciprocityResidual(std::size_t a, std::size_t b) const {
+  if (matrix->isSymmetric() || a == b) return 0;
+  const std::span<const double> area = matrix->area();
+  return std::abs(area[a] * matrix->at(a, b) - area[b] * matrix->at(b, a));
+}
+
+NamedFactors factorsBetween(const PatchMesh& mesh, const FormFactors& factors,
+                            const SurfaceGroups& groups, Progress& progress) {
+  if (groups.of_surface.size() != mesh.surface_names.size()) {
+    throw InputError(fmt::format("groups of {} surfaces are given for a mesh of {}",
+                                 groups.of_surface.size(), mesh.surface_names.size()));
+  }
+  NamedFactors result;
+  result.names = groups.names;
+  result.row_of = surfaceOfUnknowns(mesh);
+  for (Index& row : result.row_of) row = groups.of_surface[row];
+  result.members.assign(result.size(), 0);
+  for (const Index row : result.row_of) ++result.members[row];
+  result.matrix = std::make_shared<const ExchangeMatrix>(aggregated(
+      factors.matrix, result.row_of, result.size(), progress, Precision::double_precision));
+  const std::span<const double> area = factors.matrix.area();
+  result.sky = meansOfRows(factors.sky, area, result);
+  result.backs = meansOfRows(factors.backs, area, result);
+  result.error = meansOfRows(factors.error, area, result);
+  result.closed = factors.report.closed;
+  return result;
+}
+
+NamedFactors factorsOfUnknowns(const PatchMesh& mesh, const FormFactors& factors) {
+  NamedFactors result;
+  result.numbered = true;
+  for (const Index surface : surfaceOfUnknowns(mesh)) {
+    result.names.push_back(mesh.surface_names[surface]);
+  }
+  result.matrix =
+      std::shared_ptr<const ExchangeMatrix>(std::shared_ptr<const void>(), &factors.matrix);
+  result.sky = factors.sky;
+  result.backs = factors.backs;
+  result.error = factors.error;
+  result.members.assign(result.size(), 1);
+  for (std::size_t u = 0; u < result.size(); ++u) result.row_of.push_back(Index(u));
+  result.closed = factors.report.closed;
+  return result;
+}
+
+std::vector<double> emissivities(const NamedFactors& factors, const PatchMesh& mesh,
+                                 const PatchMaterials& materials) {
+  materials.requireSizes(mesh.size());
+  const auto bands = std::size_t(materials.bands);
+  std::vector<double> absorbed(factors.size(), 0.0);
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    double reflected = 0;
+    for (std::size_t b = 0; b < bands; ++b) reflected += materials.reflectance[i * bands + b];
+    const double share = 1 - reflected / double(bands);
+    absorbed[factors.row_of[mesh.unknownOf(i)]] += mesh.area[i] * share;
+  }
+  for (std::size_t a = 0; a < absorbed.size(); ++a) {
+    const double area = factors.matrix->area()[a];
+    absorbed[a] = area > 0 ? absorbed[a] / area : 0.0;
+  }
+  return absorbed;
+}
+
+}  // namespace radiosity

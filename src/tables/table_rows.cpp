@@ -1,0 +1,33 @@
+#include "tables/table_rows.h"
+
+#include <fmt/format.h>
+
+#include <set>
+
+namespace radiosity {
+
+void requireDistinctNames(const std::string& path, const NamedFactors& factors) {
+  std::set<std::string> names;
+  if (!factors.numbered) names.insert(factors.names.begin(), factors.names.end());
+  if (names.contains(factors.sky_name) || factors.sky_name == "backs") {
+    throw InputError(fmt::format(
+        "{}: the sky is called {}, as another receiver is; give it another name (--sky-name)", path,
+        factors.sky_name));
+  }
+  if (names.contains("backs")) {
+    throw InputError(fmt::format(
+        "{}: a surface is called backs, as the column of black backs is; rename it (--group "
+        "NAME=backs)",
+        path));
+  }
+}
+
+void requireTableSize(const std::string& path, const NamedFactors& factors) {
+  if (!factors.numbered || factors.size() * factors.size() <= kMostTableValues) return;
+  throw InputError(
+      fmt::format("{}: a table of {} rows has {} values; write .mtx, .txt or .hdf5, or a table "
+                  "between surfaces",
+                  path, factors.size(), factors.size() * factors.size()));
+}
+
+}  // namespace radiosity

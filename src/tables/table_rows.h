@@ -1,0 +1,40 @@
+// Rows of named form factors, one after the other.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "radiosity/tables.h"
+
+namespace radiosity {
+
+/// What a row is called in a file: its name, or its number.
+inline std::string labelOf(const NamedFactors& factors, std::size_t a) {
+  return factors.numbered ? std::to_string(a) : factors.names[a];
+}
+
+/// InputError where a receiver would have another one's name.
+void requireDistinctNames(const std::string& path, const NamedFactors& factors);
+/// InputError where a matrix of numbered rows has more values than kMostTableValues.
+void requireTableSize(const std::string& path, const NamedFactors& factors);
+
+/// Calls visit(a, row) with all N values of each row in order. `stage`: for the progress.
+template <class Visit>
+void forDenseRows(const NamedFactors& factors, const std::string& stage, Progress& progress,
+                  Visit&& visit) {
+  std::vector<double> row(factors.size());
+  progress.begin(stage, factors.size());
+  factors.matrix->forPanels([&](const RowPanel& rows) {
+    for (std::size_t a = rows.first(); a < rows.last(); ++a) {
+      progress.check();
+      std::fill(row.begin(), row.end(), 0.0);
+      rows.forRow(a, [&](Index b, double value) { row[b] = value; });
+      visit(a, row);
+      progress.advance();
+    }
+  });
+  progress.end();
+}
+
+}  // namespace radiosity
