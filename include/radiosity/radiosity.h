@@ -9,6 +9,7 @@
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
 #include "radiosity/lightmap.h"
+#include "radiosity/matrix_files.h"
 #include "radiosity/matrix_functions.h"
 #include "radiosity/names.h"
 #include "radiosity/page.h"

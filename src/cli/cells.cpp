@@ -1,5 +1,6 @@
-// Patches with their quantities, for ParaView.
+// Patches with their quantities: for ParaView, and as a table.
 #include "cli/commands.h"
+#include "radiosity/matrix_files.h"
 #include "radiosity/vtk.h"
 
 namespace radiosity::cli {
@@ -21,6 +22,16 @@ void writeCells(Session& session, Pipeline& pipeline, OutputSet& files) {
   }
   files.write(Format::vtp, what,
               [&](const std::string& temporary) { writeVtp(temporary, mesh, fields); });
+}
+
+void writeLightTable(Pipeline& pipeline, OutputSet& files) {
+  if (!files.has(Format::light_csv)) return;
+  const PatchMesh& mesh = pipeline.mesh().mesh;
+  std::vector<std::string> names;
+  for (const Index surface : mesh.surface) names.push_back(mesh.surface_names[surface]);
+  files.write(Format::light_csv, "light by patch", [&](const std::string& temporary) {
+    writeLightCsv(temporary, names, mesh.area, pipeline.solution());
+  });
 }
 
 }  // namespace radiosity::cli

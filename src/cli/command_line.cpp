@@ -44,6 +44,11 @@ void addCompareOptions(CLI::App& app, Request& r) {
   add(app, "Compare", "--match", r.match, "FRACTION",
       fmt::format("How far apart points of one surface may be, of A's diagonal (default {})",
                   defaults.match));
+  app.add_flag("--form-factors", r.compare_factors,
+               "Compare the form factors of results files, not their light; files of form factors "
+               "alone (.mtx, .vf) need no option")
+      ->group("Compare");
+  addAreasOption(app, r, "Compare");
   add(app, "Compare", "--tolerance", r.compare_tolerance, "RATIO",
       "Exit with 1 where the relative L2 difference is above it (default: exit with 0)")
       ->check(nonNegative());
@@ -112,6 +117,7 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
     return sub;
   }
   addSolveOptions(*sub, r);
+  if (command == Command::solve) addMatrixOptions(*sub, r);
   if (compares) {
     addGatherOptions(*sub, r);
     bindToGather(*sub);

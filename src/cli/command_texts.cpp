@@ -49,16 +49,20 @@ const char* examplesOf(Command command) {
              "  radiosity factors data/cornell-box.obj --method hemicube --resolution 512\n"
              "  radiosity factors cornell.h5 -o cornell.mtx";
     case Command::solve:
-      return "Files (-o): .h5 (results), .glb (lit mesh), .vtp (patches with B, H and net\n"
-             "flux, for ParaView), .mtx (MatrixMarket). A results file given as input is updated\n"
-             "in place where no -o is given; its form factors are reused.\n"
+      return "Files (-o): .h5 (results), .glb (lit mesh), .csv (B, H and net flux by patch), .vtp\n"
+             "(the same for ParaView), .mtx (MatrixMarket). A results file given as input is\n"
+             "updated in place where no -o is given; its form factors are reused.\n"
              "The lit mesh shows light at elements, finer than patches; a results file, which is\n"
-             "for the matrix, keeps them beside a lit mesh or with --elements on.\n\n"
+             "for the matrix, keeps them beside a lit mesh or with --elements on.\n"
+             "SCENE may be a matrix of any program, .mtx (MatrixMarket) or .vf (View3D): --rows "
+             "says\n"
+             "what its rows reflect and emit, and the light goes to a .csv.\n\n"
              "Examples:\n"
              "  radiosity solve data/cornell-box.obj -o cornell.h5\n"
              "  radiosity solve cornell.h5 -o lit.glb -o cornell.vtp\n"
              "  radiosity solve room.glb -o baked.glb --lightmap baked.exr --lightmap-size 2048\n"
-             "  radiosity solve cornell.h5 --set white.reflectance=.9";
+             "  radiosity solve cornell.h5 --set white.reflectance=.9\n"
+             "  radiosity solve plates.mtx --areas areas.txt --rows rows.csv -o light.csv";
     case Command::gather:
       return "Files (-o): .h5 (results), .png (exposed, sRGB), .exr (radiance, W/m^2/sr, linear),\n"
              ".glb (lit mesh). A results file given as input is updated in place where no -o is "
@@ -75,14 +79,18 @@ const char* examplesOf(Command command) {
              ".obj), both; or two pictures. Meshes may differ: a point's counterpart is the "
              "nearest\n"
              "one of the other side that faces alike; means over A's cells are compared, W/m^2.\n"
-             "Options of scene, mesh, form factors, solution and gathering go with --gather.\n"
+             "Or form factors, row for row: .mtx (MatrixMarket), .vf (View3D), with "
+             "--form-factors\n"
+             "results files. Options of scene, mesh, form factors, solution and gathering go with\n"
+             "--gather.\n"
              "Files (-o): .png (the difference in false colour); with --gather also .h5 "
              "(results).\n"
              "Exit code 1: the difference is above --tolerance.\n\n"
              "Examples:\n"
              "  radiosity compare cornell.h5 --gather -o gap.png\n"
              "  radiosity compare cornell.h5 data/cornell-box-cycles.ply --b-is radiance\n"
-             "  radiosity compare new.exr old.exr --tolerance 1e-3 -o difference.png";
+             "  radiosity compare new.exr old.exr --tolerance 1e-3 -o difference.png\n"
+             "  radiosity compare cornell.h5 cornell.vf --tolerance 1e-4";
     case Command::render:
       return "Files (-o): .png (exposed, sRGB), .exr (radiance, W/m^2/sr, linear), .glb (lit "
              "mesh),\n"

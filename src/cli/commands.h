@@ -49,6 +49,8 @@ void keepSolution(Session& session, Pipeline& pipeline, const OutputSet& files);
 /// that would not change is left alone.
 void writeStages(Session& session, Pipeline& pipeline, OutputSet& files);
 
+/// Writes the .csv of light by patch among `files`.
+void writeLightTable(Pipeline& pipeline, OutputSet& files);
 /// Writes the .vtp among `files`, with what the subcommand knows of each patch.
 void writeCells(Session& session, Pipeline& pipeline, OutputSet& files);
 

@@ -11,6 +11,7 @@
 #include "base/input_file.h"
 #include "base/luminance.h"
 #include "cli/commands.h"
+#include "cli/matrix_commands.h"
 #include "cli/picture.h"
 #include "cli/words.h"
 #include "radiosity/results.h"
@@ -398,6 +399,7 @@ int compareWithGather(Session& session, OutputSet& files) {
 
 int runCompare(Session& session) {
   OutputSet files = claimOutputs(session);
+  if (comparesMatrices(session.request)) return compareMatrixFiles(session, files);
   requirePicture(files, session.request);
   return session.request.with_gather ? compareWithGather(session, files)
                                      : compareFiles(session, files);

@@ -22,6 +22,10 @@ CLI::Option* add(CLI::App& app, const char* group, const std::string& names, Val
 void addSceneOptions(CLI::App& app, Request& r);
 void addMeshOptions(CLI::App& app, Request& r);
 void addFactorOptions(CLI::App& app, Request& r);
+/// Areas of the rows of a matrix from a file.
+void addAreasOption(CLI::App& app, Request& r, const char* group);
+/// Options of a matrix from a file that is solved.
+void addMatrixOptions(CLI::App& app, Request& r);
 void addTableOptions(CLI::App& app, Request& r);
 void addSolveOptions(CLI::App& app, Request& r);
 void addGatherOptions(CLI::App& app, Request& r);

@@ -33,6 +33,7 @@ const std::vector<Extension>& extensions() {
       {".h5", Format::results, {mesh, factors, solve, gather, compare, render, view}},
       {".mtx", Format::matrix_market, {factors, solve, render}},
       {".csv", Format::csv, {factors}},
+      {".csv", Format::light_csv, {solve}},
       {".json", Format::json, {factors}},
       {".md", Format::markdown, {factors}},
       {".idf", Format::idf, {factors}},

@@ -22,6 +22,7 @@ enum class Format {
   obj,
   vtp,
   csv,
+  light_csv,
   json,
   markdown,
   idf,

@@ -70,6 +70,9 @@ struct Request {
   bool partial = false;
   std::optional<double> match;
   std::optional<double> compare_tolerance;
+  bool compare_factors = false;
+  std::string areas;  ///< of the rows of a matrix: a file
+  std::string rows;   ///< what they reflect and emit: a file
 
   std::string camera;
   std::optional<int> width;

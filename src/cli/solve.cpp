@@ -1,6 +1,7 @@
 #include "cli/commands.h"
 #include "cli/element_use.h"
 #include "cli/lightmap.h"
+#include "cli/matrix_commands.h"
 #include "cli/picture.h"
 #include "cli/summaries.h"
 
@@ -24,6 +25,7 @@ void writeLit(Session& session, Pipeline& pipeline, bool elements, OutputSet& fi
 
 int runSolve(Session& session) {
   OutputSet files = claimOutputs(session);
+  if (solvesMatrixFile(session.request)) return solveMatrixFile(session, files);
   const ElementUse elements = elementUse(session.request, files);
   checkLightmap(session.request, elements, files);
   Run run(session, files.path(Format::results));
@@ -39,6 +41,7 @@ int runSolve(Session& session) {
   }
   writeStages(session, pipeline, files);
   if (files.has(Format::glb) && !singular) writeLit(session, pipeline, elements.shown, files);
+  if (!singular) writeLightTable(pipeline, files);
   writeCells(session, pipeline, files);
   files.commit(session.report, session.progress);
   return code;

@@ -8,6 +8,7 @@
 #include "cli/light_cure.h"
 #include "cli/signal_guard.h"
 #include "cli/words.h"
+#include "radiosity/matrix_files.h"
 #include "radiosity/results.h"
 
 namespace radiosity::cli {
@@ -74,7 +75,9 @@ OutputSet claimOutputs(const Session& session) {
   if (std::filesystem::is_regular_file(request.input, ignored) && isResultsFile(request.input)) {
     files.add({request.input, Format::results});
   } else {
-    session.report.line("note", "nothing will be written; add -o FILE.h5 to keep the result");
+    const char* kept_in = isMatrixFile(request.input) ? "FILE.csv" : "FILE.h5";
+    session.report.line(
+        "note", fmt::format("nothing will be written; add -o {} to keep the result", kept_in));
   }
   return files;
 }
@@ -143,10 +146,11 @@ void writeStages(Session& session, Pipeline& pipeline, OutputSet& files) {
   const std::string path = files.path(Format::matrix_market);
   session.report.line("matrix", fmt::format("{}: at most {} to write", path, bytesText(bytes)));
   requireDiskSpace(path, bytes);
-  files.write(Format::matrix_market, "form factors, MatrixMarket",
-              [&](const std::string& temporary) {
-                writeMatrixMarket(temporary, matrix, session.progress);
-              });
+  files.write(
+      Format::matrix_market, "form factors, MatrixMarket", [&](const std::string& temporary) {
+        writeMatrixMarket(temporary, factorsOfUnknowns(pipeline.mesh().mesh, pipeline.factors()),
+                          session.progress);
+      });
 }
 
 int judgeSolution(Session& session, Pipeline& pipeline) {

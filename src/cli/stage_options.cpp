@@ -143,6 +143,19 @@ void addFactorOptions(CLI::App& app, Request& r) {
       ->group("Form factors");
 }
 
+void addAreasOption(CLI::App& app, Request& r, const char* group) {
+  add(app, group, "--areas", r.areas, "FILE",
+      "Areas of the rows of a matrix from a file (.mtx, .vf), m^2: a number a line, or a .csv with "
+      "a column area_m2 (default: those in the file)");
+}
+
+void addMatrixOptions(CLI::App& app, Request& r) {
+  addAreasOption(app, r, "Matrix");
+  add(app, "Matrix", "--rows", r.rows, "FILE.csv",
+      "What the rows of a matrix from a file reflect and emit: columns row (from 1) or name (* for "
+      "all others), reflectance, emission (exitance, W/m^2); of several bands reflectance_1, ...");
+}
+
 void addTableOptions(CLI::App& app, Request& r) {
   add(app, "Tables", "--between", r.between, "groups|surfaces|patches",
       "Print the form factors between surfaces, joined by --group (groups; without any the "

@@ -1,4 +1,6 @@
 // The NIST Matrix Market exchange format (Boisvert, Pozo & Remington 1996, NISTIR 5935).
+#include "results/matrix_market.h"
+
 #include <fmt/format.h>
 
 #include <iterator>
@@ -61,6 +63,11 @@ std::size_t writeBatch(CheckedFile& file, const RowPanel& rows, bool single, std
 }  // namespace
 
 void writeMatrixMarket(const std::string& path, const ExchangeMatrix& matrix, Progress& progress) {
+  writeMatrixMarket(path, matrix, {}, progress);
+}
+
+void writeMatrixMarket(const std::string& path, const ExchangeMatrix& matrix,
+                       const CommentOfRow& comment, Progress& progress) {
   CheckedFile file(path);
   const std::size_t n = matrix.size();
   const bool single = matrix.precision() == Precision::single_precision;
@@ -69,9 +76,10 @@ void writeMatrixMarket(const std::string& path, const ExchangeMatrix& matrix, Pr
       "% Form factors by radiosity: row i, column j holds F[i,j], the fraction of what\n"
       "% leaves patch i that reaches patch j; no unit. Patches are numbered from 1; where\n"
       "% patches share unknowns, rows and columns are their clusters.\n"
-      "% The values as stored, {} bits, in 17 digits.\n"
-      "{} {} {}\n",
-      single ? 32 : 64, n, n, matrix.nonZeros()));
+      "% The values as stored, {} bits, in 17 digits.\n",
+      single ? 32 : 64));
+  for (std::size_t i = 0; comment && i < n; ++i) file.write(fmt::format("% {}\n", comment(i)));
+  file.write(fmt::format("{} {} {}\n", n, n, matrix.nonZeros()));
   progress.begin("writing MatrixMarket", n);
   std::vector<fmt::memory_buffer> texts(kTasks);
   matrix.forPanels([&](const RowPanel& rows) {

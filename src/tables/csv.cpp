@@ -1,4 +1,6 @@
 // Comma-separated values (RFC 4180).
+#include "base/csv.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,15 +14,6 @@ namespace radiosity {
 
 namespace {
 
-/// In quotes where the text has what separates.
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string out(1, '"');
-  for (const char c : text) out.append(c == '"' ? 2 : 1, c);
-  out.push_back('"');
-  return out;
-}
-
 double largestResidual(const NamedFactors& factors, std::size_t a) {
   double largest = 0;
   for (std::size_t b = 0; b < factors.size(); ++b) {
@@ -33,15 +26,15 @@ void writeWide(CheckedFile& file, const NamedFactors& factors, Progress& progres
   const bool has_error = !factors.error.empty();
   std::string header = "name,area_m2";
   for (std::size_t b = 0; b < factors.size(); ++b) {
-    header += fmt::format(",{}", quoted(labelOf(factors, b)));
+    header += fmt::format(",{}", csvField(labelOf(factors, b)));
   }
-  file.write(fmt::format("{},{},backs,sum{},reciprocity_m2\n", header, quoted(factors.sky_name),
+  file.write(fmt::format("{},{},backs,sum{},reciprocity_m2\n", header, csvField(factors.sky_name),
                          has_error ? ",error" : ""));
   forDenseRows(
       factors, "writing the table", progress, [&](std::size_t a, const std::vector<double>& row) {
         fmt::memory_buffer line;
         const auto out = std::back_inserter(line);
-        fmt::format_to(out, "{},{}", quoted(labelOf(factors, a)), factors.matrix->area()[a]);
+        fmt::format_to(out, "{},{}", csvField(labelOf(factors, a)), factors.matrix->area()[a]);
         for (const double value : row) fmt::format_to(out, ",{}", value);
         const double sum =
             std::accumulate(row.begin(), row.end(), 0.0) + factors.sky[a] + factors.backs[a];
@@ -55,23 +48,23 @@ void writeWide(CheckedFile& file, const NamedFactors& factors, Progress& progres
 void writeTall(CheckedFile& file, const NamedFactors& factors, Progress& progress) {
   const bool has_error = !factors.error.empty();
   file.write(fmt::format("from,to,form_factor{},reciprocity_m2\n", has_error ? ",error" : ""));
-  forDenseRows(factors, "writing the table", progress,
-               [&](std::size_t a, const std::vector<double>& row) {
-                 fmt::memory_buffer lines;
-                 const auto out = std::back_inserter(lines);
-                 const std::string from = quoted(labelOf(factors, a));
-                 for (std::size_t b = 0; b < row.size(); ++b) {
-                   if (factors.numbered && row[b] == 0) continue;
-                   fmt::format_to(out, "{},{},{}", from, quoted(labelOf(factors, b)), row[b]);
-                   if (has_error) fmt::format_to(out, ",{}", factors.entryError(a, b));
-                   fmt::format_to(out, ",{}\n", factors.reciprocityResidual(a, b));
-                 }
-                 // Neither gives anything back: no residual, and no figure of their own.
-                 const char* rest = has_error ? ",," : ",";
-                 fmt::format_to(out, "{},{},{}{}\n{},backs,{}{}\n", from, quoted(factors.sky_name),
-                                factors.sky[a], rest, from, factors.backs[a], rest);
-                 file.write(lines.data(), lines.size());
-               });
+  forDenseRows(
+      factors, "writing the table", progress, [&](std::size_t a, const std::vector<double>& row) {
+        fmt::memory_buffer lines;
+        const auto out = std::back_inserter(lines);
+        const std::string from = csvField(labelOf(factors, a));
+        for (std::size_t b = 0; b < row.size(); ++b) {
+          if (factors.numbered && row[b] == 0) continue;
+          fmt::format_to(out, "{},{},{}", from, csvField(labelOf(factors, b)), row[b]);
+          if (has_error) fmt::format_to(out, ",{}", factors.entryError(a, b));
+          fmt::format_to(out, ",{}\n", factors.reciprocityResidual(a, b));
+        }
+        // Neither gives anything back: no residual, and no figure of their own.
+        const char* rest = has_error ? ",," : ",";
+        fmt::format_to(out, "{},{},{}{}\n{},backs,{}{}\n", from, csvField(factors.sky_name),
+                       factors.sky[a], rest, from, factors.backs[a], rest);
+        file.write(lines.data(), lines.size());
+      });
 }
 
 }  // namespace

@@ -1,0 +1,128 @@
+#include "base/csv.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "base/input_file.h"
+#include "radiosity/base.h"
+
+namespace radiosity {
+
+namespace {
+
+std::string withoutBlanks(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of(" \t");
+  if (begin == std::string::npos) return {};
+  return text.substr(begin, text.find_last_not_of(" \t") + 1 - begin);
+}
+
+/// Takes a record at a time; one in quotes may go over several lines.
+class CsvReader {
+ public:
+  CsvReader(std::string path, std::string_view text) : path_(std::move(path)), text_(text) {
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // spreadsheets write it
+    if (text_.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
+  }
+
+  /// False at the end.
+  bool next(CsvTable::Row& row) {
+    while (at_ < text_.size()) {
+      row = {line_, {}};
+      const bool is_comment = text_[at_] == '#';
+      readRecord(row.fields);
+      const bool is_empty = row.fields.size() == 1 && row.fields.front().empty();
+      if (!is_comment && !is_empty) return true;
+    }
+    return false;
+  }
+
+  [[noreturn]] void fail(std::size_t line, const std::string& what) const {
+    throw InputError(fmt::format("{}:{}: {}", path_, line, what));
+  }
+
+ private:
+  void readRecord(std::vector<std::string>& fields) {
+    fields.emplace_back();
+    while (at_ < text_.size()) {
+      const char c = text_[at_++];
+      if (c == '"' && fields.back().empty()) {
+        readQuoted(fields.back());
+      } else if (c == ',') {
+        fields.emplace_back();
+      } else if (c == '\n') {
+        ++line_;
+        return;
+      } else if (c != '\r') {
+        fields.back() += c;
+      }
+    }
+  }
+
+  void readQuoted(std::string& field) {
+    const std::size_t first = line_;
+    for (; at_ < text_.size(); ++at_) {
+      const char c = text_[at_];
+      if (c == '\n') ++line_;
+      if (c != '"') {
+        field += c;
+      } else if (at_ + 1 < text_.size() && text_[at_ + 1] == '"') {
+        field += text_[++at_];
+      } else {
+        ++at_;
+        return;
+      }
+    }
+    fail(first, "a quote is opened and not closed; close it with \"");
+  }
+
+  std::string path_;
+  std::string_view text_;
+  std::size_t at_ = 0;
+  std::size_t line_ = 1;
+};
+
+}  // namespace
+
+std::string csvField(std::string_view text) {
+  const std::string plain(text);
+  if (plain.find_first_of(",\"\r\n") == std::string::npos) return plain;
+  std::string out(1, '"');
+  for (const char c : plain) out.append(c == '"' ? 2 : 1, c);
+  out.push_back('"');
+  return out;
+}
+
+std::optional<std::size_t> CsvTable::column(std::string_view name) const {
+  const auto found = std::find(header.begin(), header.end(), name);
+  if (found == header.end()) return std::nullopt;
+  return std::size_t(found - header.begin());
+}
+
+CsvTable readCsv(const std::string& path) {
+  const std::string text = readWholeFile(path);
+  CsvReader reader(path, text);
+  CsvTable table;
+  table.path = path;
+  CsvTable::Row row;
+  if (!reader.next(row)) reader.fail(1, "there is no header line; name the columns in the first");
+  for (const std::string& name : row.fields) {
+    table.header.push_back(withoutBlanks(name));
+    if (std::count(table.header.begin(), table.header.end(), table.header.back()) > 1) {
+      reader.fail(row.line, fmt::format("there are two columns '{}'; name each differently",
+                                        table.header.back()));
+    }
+  }
+  while (reader.next(row)) {
+    if (row.fields.size() != table.header.size()) {
+      reader.fail(row.line, fmt::format("{} fields, and the header has {}; give one a column",
+                                        row.fields.size(), table.header.size()));
+    }
+    for (std::string& field : row.fields) field = withoutBlanks(field);
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+}  // namespace radiosity

@@ -1,0 +1,33 @@
+// Tables as comma-separated text (RFC 4180).
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace radiosity {
+
+/// `text` as a field: in quotes where it has what separates.
+std::string csvField(std::string_view text);
+
+/// A table with a header line. Lines that are empty or begin with # are passed over.
+struct CsvTable {
+  struct Row {
+    std::size_t line = 0;  ///< of the file, from 1
+    std::vector<std::string> fields;
+  };
+  std::string path;
+  std::vector<std::string> header;  ///< without blanks at their ends
+  std::vector<Row> rows;            ///< each of as many fields as the header
+
+  /// The place of a column.
+  std::optional<std::size_t> column(std::string_view name) const;
+};
+
+/// Errors: InputError that names file and line: no header, a column twice, a row of another number
+/// of fields, quotes that do not end; as readWholeFile().
+CsvTable readCsv(const std::string& path);
+
+}  // namespace radiosity

@@ -1,0 +1,116 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "base/input_file.h"
+#include "radiosity/results.h"
+#include "results/matrix_market.h"
+#include "tables/matrix_readers.h"
+#include "tables/row_comments.h"
+
+namespace radiosity {
+
+namespace {
+
+/// Below this a row of a file loses nothing to the sky: what text in six digits leaves.
+constexpr double kClosedWithin = 1e-5;
+
+std::string firstLine(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string line(64, '\0');
+  file.read(line.data(), std::streamsize(line.size()));
+  line.resize(std::size_t(file.gcount()));
+  return line.substr(0, line.find_first_of("\r\n"));
+}
+
+MatrixFile readOfResults(const std::string& path) {
+  auto results = std::make_shared<Results>(readResults(path));
+  if (!results->mesh || !results->factors) {
+    throw InputError(path + ": holds no form factors; run radiosity factors on it");
+  }
+  MatrixFile file;
+  file.path = path;
+  file.factors = factorsOfUnknowns(results->mesh->mesh, *results->factors);
+  // The matrix lives as long as the results that it is part of.
+  file.factors.matrix = std::shared_ptr<const ExchangeMatrix>(results, &results->factors->matrix);
+  return file;
+}
+
+}  // namespace
+
+void setDefaultAccounts(NamedFactors& factors) {
+  const std::vector<double> sums = factors.matrix->rowSums();
+  const std::size_t n = sums.size();
+  factors.backs.assign(n, 0.0);
+  factors.sky.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    factors.sky[i] = factors.matrix->area()[i] > 0 ? 1 - sums[i] : 0.0;
+  }
+}
+
+std::vector<double> chosenAreas(const std::string& path, std::span<const double> area,
+                                std::vector<double> of_file) {
+  if (area.empty()) return of_file;
+  if (area.size() != of_file.size()) {
+    throw InputError(fmt::format("{}: has {} rows, and {} areas are given; give one a row", path,
+                                 of_file.size(), area.size()));
+  }
+  return {area.begin(), area.end()};
+}
+
+bool isMatrixFile(const std::string& path) {
+  if (!whyNotAFile(path).empty()) return false;
+  const std::string line = firstLine(path);
+  return line.starts_with(kMatrixMarketMark) || parseView3dHeader(line).has_value();
+}
+
+MatrixFile readMatrixFile(const std::string& path, Progress& progress,
+                          std::span<const double> areas) {
+  requireFile(path);
+  MatrixFile file;
+  if (isResultsFile(path)) {
+    if (!areas.empty()) {
+      throw InputError(path + ": a results file has areas of its own; leave --areas out");
+    }
+    return readOfResults(path);
+  }
+  const std::string line = firstLine(path);
+  if (line.starts_with(kMatrixMarketMark)) {
+    file = readMatrixMarket(path, areas, progress);
+  } else if (parseView3dHeader(line)) {
+    file = readView3d(path, areas);
+  } else {
+    throw InputError(path +
+                     ": is no matrix of form factors; what is read: results (.h5), MatrixMarket "
+                     "(.mtx), View3D (.vf)");
+  }
+  NamedFactors& factors = file.factors;
+  file.path = path;
+  factors.numbered = true;
+  factors.members.assign(factors.size(), 1);
+  for (std::size_t i = 0; i < factors.size(); ++i) factors.row_of.push_back(Index(i));
+  if (!file.has_accounts) setDefaultAccounts(factors);
+  factors.closed = true;
+  for (const double sky : factors.sky) factors.closed &= std::abs(sky) < kClosedWithin;
+  return file;
+}
+
+void writeMatrixMarket(const std::string& path, const NamedFactors& factors, Progress& progress) {
+  writeMatrixMarket(
+      path, *factors.matrix, [&](std::size_t i) { return rowComment(factors, i); }, progress);
+}
+
+FormFactors factorsOfFile(const MatrixFile& file) {
+  FormFactors factors;
+  factors.matrix = *file.factors.matrix;
+  factors.fronts = factors.matrix.rowSums();
+  factors.backs = file.factors.backs;
+  factors.sky = file.factors.sky;
+  factors.error = file.factors.error;
+  factors.report.closed = file.factors.closed;
+  factors.method = "file";
+  return factors;
+}
+
+}  // namespace radiosity

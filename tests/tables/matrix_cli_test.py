@@ -1,0 +1,109 @@
+"""Form factors as files: compared with each other, and solved without their scene."""
+import csv
+import sys
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy
+import scipy.io
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "cli"))
+from cli_runner import CliTest  # noqa: E402
+
+BOX = ["box.obj", "--patches", 60, "--method", "exact"]
+
+# Two plates that see only each other: B1 = E1 + r1 B2, B2 = r2 B1.
+PLATES = "%%MatrixMarket matrix coordinate real general\n2 2 2\n1 2 1\n2 1 1\n"
+
+
+class Matrices(CliTest):
+    def light(self, name):
+        with (self.folder / name).open(newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_matrices_of_one_run_are_the_same_in_every_file(self):
+        self.run_program("factors", *BOX, "--between", "patches", "-o", "f.h5", "-o", "f.mtx", "-o",
+                         "f.vf")
+        for a, b in [("f.h5", "f.mtx"), ("f.mtx", "f.vf"), ("f.vf", "f.h5")]:
+            c = self.report("compare", a, b, "--tolerance", "1e-6")["comparison"]
+            # The far side of a pair is rounded to 32 bits in the .mtx.
+            self.assertLess(c["relative_l2"], 6e-8)
+            self.assertLess(c["reciprocity_a"], 6e-8)
+            self.assertEqual(c["area_difference"], 0)
+            self.assertAlmostEqual(c["row_sum_a"], 1, delta=1e-6)
+        read = scipy.io.mmread(self.folder / "f.mtx").toarray()
+        with h5py.File(self.folder / "f.h5") as file:
+            self.assertEqual(numpy.count_nonzero(read), len(file["form_factors/data"]))
+
+    def test_the_largest_difference_is_named(self):
+        self.run_program("factors", *BOX, "-o", "f.mtx")
+        lines = (self.folder / "f.mtx").read_text().splitlines()
+        row, column, value = lines[-1].split()
+        lines[-1] = f"{row} {column} {float(value) + 0.5}"
+        self.write("g.mtx", "\n".join(lines) + "\n")
+        c = self.report("compare", "f.mtx", "g.mtx", "--tolerance", "1e-3", code=1)["comparison"]
+        self.assertAlmostEqual(c["largest"], 0.5)
+        name = next(line.split("name ")[1] for line in lines if line.startswith(f"% row {row} "))
+        self.assertEqual(c["largest_from"], f"row {row} ({name})")
+        self.assertEqual(c["rows_by_name"][0]["name"], name)
+        self.assertEqual(c["verdict"], "above the tolerance of 0.001")
+
+    def test_results_files_are_compared_by_form_factors_where_that_is_asked(self):
+        self.run_program("solve", *BOX, "-o", "a.h5")
+        self.run_program("solve", *BOX, "--tolerance", "1e-2", "-o", "b.h5")
+        report = self.report("compare", "a.h5", "b.h5", "--form-factors")
+        self.assertIn("reciprocity_a", report["comparison"])
+        self.assertNotIn("reciprocity_a", self.report("compare", "a.h5", "b.h5")["comparison"])
+
+    def test_a_matrix_from_elsewhere_is_solved(self):
+        self.write("plates.mtx", PLATES)
+        self.write("areas.txt", "2\n2\n")
+        self.write("rows.csv", "row,reflectance,emission\n1,.5,3\n2,.8,0\n")
+        report = self.report("solve", "plates.mtx", "--areas", "areas.txt", "--rows", "rows.csv",
+                             "--solve-tolerance", "1e-12", "-o", "light.csv")
+        first, second = self.light("light.csv")
+        b1 = 3 / (1 - .5 * .8)
+        # What the residual of 1e-12 times 3 W/m^2 can leave, over 1 - rho.
+        self.assertAlmostEqual(float(first["radiosity"]), b1, delta=1e-11)
+        self.assertAlmostEqual(float(second["radiosity"]), .8 * b1, delta=1e-11)
+        self.assertAlmostEqual(float(first["irradiance"]), .8 * b1, delta=1e-11)
+        self.assertAlmostEqual(float(second["net_flux"]), -.2 * b1, delta=1e-11)
+        self.assertEqual(first["area_m2"], "2")
+        self.assertAlmostEqual(report["solution"]["emitted_W"][0], 6)
+
+    def test_light_of_the_matrix_is_that_of_the_scene(self):
+        self.run_program("solve", *BOX, "--solve-tolerance", "1e-10", "-o", "s.csv", "-o", "s.h5",
+                         "-o", "s.mtx")
+        pi = numpy.pi
+        self.write("rows.csv", "name,reflectance_1,reflectance_2,reflectance_3,"
+                   "emission_1,emission_2,emission_3\n"
+                   f"ceiling/lamp,.2,.2,.2,{5 * pi},{4 * pi},{3 * pi}\n*,.5,.6,.7,0,0,0\n")
+        self.run_program("solve", "s.mtx", "--rows", "rows.csv", "--solve-tolerance", "1e-10", "-o",
+                         "m.csv")
+        columns = [f"{q}_{b}" for q in ("radiosity", "irradiance", "net_flux") for b in (1, 2, 3)]
+        of_scene, of_matrix = [numpy.array([[float(row[c]) for c in columns] for row in
+                                            self.light(name)]) for name in ("s.csv", "m.csv")]
+        # Values are rounded to 32 bits in the .mtx; radiosities are up to 20 W/m^2.
+        numpy.testing.assert_allclose(of_matrix, of_scene, atol=2e-6)
+        with h5py.File(self.folder / "s.h5") as file:
+            numpy.testing.assert_array_equal(of_scene[:, :3], file["solution/radiosity"][()])
+
+    def test_what_is_refused(self):
+        self.write("plates.mtx", PLATES)
+        self.write("rows.csv", "row,reflectance,emission\n1,.5,3\n2,.8,0\n")
+        self.run_program("factors", *BOX, "-o", "f.h5")
+        solve = ["solve", "plates.mtx", "--rows", "rows.csv"]
+        self.refuse("solve", "plates.mtx", words=["plates.mtx", "--rows"])
+        self.refuse(*solve, "-o", "x.h5", words=["x.h5", ".csv"])
+        self.refuse(*solve, "--patches", 9, words=["--patches", "is a matrix"])
+        self.refuse(*solve, "--unit", "mm", words=["--unit", "is a matrix"])
+        self.refuse("solve", "box.obj", "--rows", "rows.csv", words=["--rows", "box.obj"])
+        self.refuse("compare", "plates.mtx", "f.h5", words=["has 2 rows", "f.h5"])
+        self.refuse("compare", "plates.mtx", "plates.mtx", "--gather", words=["--gather"])
+        self.refuse("compare", "plates.mtx", "box.obj", words=["box.obj", "MatrixMarket"])
+        self.refuse("compare", "plates.mtx", "plates.mtx", "-o", "x.png", words=["x.png"])
+
+
+if __name__ == "__main__":
+    unittest.main()
