@@ -99,10 +99,10 @@ std::string factorsMarkdown(const NamedFactors& factors, TableLayout layout, int
 void writeFactorsMarkdown(const std::string& path, const NamedFactors& factors, TableLayout layout);
 
 /// The object ZoneProperty:UserViewFactors:BySurfaceName of an EnergyPlus input file: N^2 entries
-/// from, to, F. Names are surfaces' there: without commas, semicolons, exclamation marks and line
-/// breaks, at most 100 characters, different also in one case, else InputError. What goes to sky
-/// and backs has no place in it: EnergyPlus takes a zone to be closed. `zone`: a Zone, ZoneList or
-/// enclosure.
+/// from, to, F in twelve digits, at most 1 (its dictionary's limit). Names are surfaces' there:
+/// without commas, semicolons, exclamation marks and line breaks, at most 100 characters, different
+/// also in one case, else InputError. What goes to sky and backs has no place in it: EnergyPlus
+/// takes a zone to be closed. `zone`: a Zone, ZoneList or enclosure.
 void writeEnergyPlus(const std::string& path, const NamedFactors& factors, const std::string& zone,
                      Progress& progress);
 

@@ -153,7 +153,7 @@ ExchangeMatrix aggregated(const ExchangeMatrix& matrix, std::span<const Index> g
   requireGroups(matrix, group_of, groups);
   const Precision precision = stored.value_or(matrix.precision());
   std::vector<double> area = areasOf(matrix, group_of, groups);
-  progress.begin("summing over clusters", matrix.size());
+  progress.begin("summing over groups of patches", matrix.size());
   ExchangeMatrix result =
       matrix.isSymmetric()
           ? aggregatedTriangle(matrix, group_of, std::move(area), precision, progress)

@@ -27,6 +27,19 @@ void requireName(const std::string& path, const std::string& name) {
       path, name, kLongestName));
 }
 
+/// The most that EnergyPlus takes (IDD: \maximum 1.0), but for the digits that are not written.
+constexpr double kMostFactor = 1 + 5e-12;
+
+void requireFactor(const std::string& path, const NamedFactors& factors, std::size_t a,
+                   std::size_t b, double value) {
+  if (value < kMostFactor) return;
+  throw InputError(
+      fmt::format("{}: F from {} to {} is {}, and EnergyPlus takes 1 at most; ask for a smaller "
+                  "--tolerance, or "
+                  "for --closure enforce",
+                  path, factors.names[a], factors.names[b], value));
+}
+
 /// EnergyPlus compares names without regard to case.
 void requireNames(const std::string& path, const NamedFactors& factors) {
   if (factors.numbered) {
@@ -64,7 +77,8 @@ void writeEnergyPlus(const std::string& path, const NamedFactors& factors, const
                [&](std::size_t a, const std::vector<double>& row) {
                  fmt::memory_buffer lines;
                  for (std::size_t b = 0; b < row.size(); ++b) {
-                   fmt::format_to(std::back_inserter(lines), ",\n  {},{},{}", factors.names[a],
+                   requireFactor(path, factors, a, b, row[b]);
+                   fmt::format_to(std::back_inserter(lines), ",\n  {},{},{:.12g}", factors.names[a],
                                   factors.names[b], row[b]);
                  }
                  file.write(lines.data(), lines.size());

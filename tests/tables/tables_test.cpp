@@ -210,6 +210,14 @@ TEST_F(Tables, PartnersGetNamesAndAreasTheyCanRead) {
   expectError<InputError>(path("x.idf"), "'a, b' is no name for EnergyPlus", idf("a, b=a", "z"));
   expectError<InputError>(path("x.idf"), "ignores case", idf("B=a", "z"));
   expectError<InputError>(path("x.idf"), "'' is no name", idf("c=a", ""));
+  FormFactors above = sample.factors;
+  for (std::size_t u = 0; u < above.matrix.size(); ++u) {
+    if (sample.mesh.surface_names[sample.mesh.surface[2 * u]] != "b") continue;
+    above.matrix.setRow(u, std::vector<Index>{0}, std::vector<double>{1 + 1e-6});
+  }
+  expectError<InputError>(path("x.idf"), "F from b to a is 1.000001", [&] {
+    writeEnergyPlus(path("x.idf"), between(sample.mesh, above), "z", progress_);
+  });
   FormFactors flat = sample.factors;
   std::vector<double> area(flat.matrix.area().begin(), flat.matrix.area().end());
   area.back() = 0;  // the last cluster: of the sheet's backs
