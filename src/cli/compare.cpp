@@ -91,7 +91,8 @@ void readResultsSide(Side& side, const std::string& said) {
                 results.gathered->bands, side.path, emissionOf(results, results.gathered->bands));
   } else {
     throw InputError(side.path +
-                     ": holds no light yet; run radiosity solve or radiosity gather on it");
+                     ": holds no light yet; run radiosity solve or radiosity gather on it, or "
+                     "compare its --form-factors");
   }
 }
 

@@ -77,7 +77,7 @@ TableLayout layoutOf(const Request& request) {
   return request.layout == "long" ? TableLayout::tall : TableLayout::wide;
 }
 
-/// Every pair goes to the report file, those that fit to the terminal.
+/// For the report file.
 void recordPairs(Report& report, const NamedFactors& factors) {
   std::vector<std::vector<std::string>> rows;
   const auto add = [&](std::size_t a, const std::string& to, double value, double error) {
@@ -102,7 +102,7 @@ void print(Session& session, const NamedFactors& factors, const std::string& bet
   Report& report = session.report;
   const std::string rows = between == "patches" ? "patches" : "surfaces";
   report.section("table", fmt::format("Form factors between {}, from row to column", rows));
-  if (!factors.numbered) recordPairs(report, factors);
+  if (!factors.numbered && !session.request.report.empty()) recordPairs(report, factors);
   double residual = 0;
   for (std::size_t a = 0; !factors.numbered && a < factors.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {

@@ -122,6 +122,7 @@ class Comparison {
     result_.account_b = accountOf(b_);
     if (of_names_.size() == 1 && of_names_.begin()->first.empty()) return std::move(result_);
     std::vector<std::pair<double, MatrixComparison::OfName>> names;
+    names.reserve(of_names_.size());
     for (const auto& [name, sums] : of_names_) {
       names.push_back({sums.difference, {name, sums.rows, sums.relative(), sums.largest}});
     }

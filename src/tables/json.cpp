@@ -55,7 +55,7 @@ void writeTall(CheckedFile& file, const NamedFactors& factors, Progress& progres
   };
   file.write(",\n\"pairs\": [");
   bool first = true;
-  const auto write = [&](nlohmann::ordered_json pair) {
+  const auto write = [&](const nlohmann::ordered_json& pair) {
     file.write(first ? "\n" : ",\n");
     first = false;
     file.write(pair.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
@@ -68,7 +68,7 @@ void writeTall(CheckedFile& file, const NamedFactors& factors, Progress& progres
               {"from", label(a)}, {"to", label(b)}, {"form_factor", row[b]}};
           if (!factors.error.empty()) pair["error"] = factors.entryError(a, b);
           pair["reciprocity_m2"] = factors.reciprocityResidual(a, b);
-          write(std::move(pair));
+          write(pair);
         }
         write({{"from", label(a)}, {"to", factors.sky_name}, {"form_factor", factors.sky[a]}});
         write({{"from", label(a)}, {"to", "backs"}, {"form_factor", factors.backs[a]}});

@@ -72,6 +72,14 @@ class Matrices(CliTest):
         self.assertEqual(first["area_m2"], "2")
         self.assertAlmostEqual(report["solution"]["emitted_W"][0], 6)
 
+    def test_a_closed_matrix_that_absorbs_nothing_has_no_light_to_write(self):
+        self.write("plates.mtx", PLATES)
+        self.write("rows.csv", "row,reflectance,emission\n1,1,3\n2,1,0\n")
+        run = self.run_program("solve", "plates.mtx", "--rows", "rows.csv", "-o", "light.csv",
+                               code=1)
+        self.assertIn("singular", run.err + run.out)
+        self.assertNotIn("light.csv", self.files())
+
     def test_light_of_the_matrix_is_that_of_the_scene(self):
         self.run_program("solve", *BOX, "--solve-tolerance", "1e-10", "-o", "s.csv", "-o", "s.h5",
                          "-o", "s.mtx")

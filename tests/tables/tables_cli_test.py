@@ -186,6 +186,20 @@ class Tables(CliTest):
         self.assertEqual(len(entries), truth.patches.nnz)
         self.assertEqual(len(rows), truth.patches.nnz + 2 * n)
 
+    def test_hemicubes_have_residuals_of_reciprocity_and_no_error(self):
+        self.run_program("factors", DATA / "cornell-box.obj", "--patches", 60, "--method",
+                         "hemicube", "--resolution", 32, "-o", "t.csv", "-o", "t.h5")
+        truth = Truth(self.folder / "t.h5")
+        header, rows = read_csv(self.folder / "t.csv")
+        self.assertNotIn("error", header)
+        exchange = truth.area[:, None] * truth.factors
+        self.assert_close([float(row[-1]) for row in rows],
+                          abs(exchange - exchange.T).max(axis=1))
+        self.run_program("factors", "t.h5", "--layout", "long", "-o", "t.csv", "-o", "t.json")
+        header, rows = read_csv(self.folder / "t.csv")
+        self.assertEqual(header, ["from", "to", "form_factor", "reciprocity_m2"])
+        self.assertTrue(all(len(row) == 4 for row in rows))
+
     def test_names_that_separate_are_quoted(self):
         self.run_program("factors", "box.obj", "--patches", 30, "--group", 'a, "b"=room*', "-o",
                          "t.csv")
