@@ -28,6 +28,7 @@ void writeLightTable(Pipeline& pipeline, OutputSet& files) {
   if (!files.has(Format::light_csv)) return;
   const PatchMesh& mesh = pipeline.mesh().mesh;
   std::vector<std::string> names;
+  names.reserve(mesh.size());
   for (const Index surface : mesh.surface) names.push_back(mesh.surface_names[surface]);
   files.write(Format::light_csv, "light by patch", [&](const std::string& temporary) {
     writeLightCsv(temporary, names, mesh.area, pipeline.solution());

@@ -205,6 +205,7 @@ void checkTableOptions(const Request& request, const OutputSet& files) {
 
 void checkGroups(const Request& request, const Scene& scene) {
   std::vector<std::string> names;
+  names.reserve(scene.surfaces.size());
   for (const Surface& surface : scene.surfaces) names.push_back(surface.name);
   groupSurfaces(names, request.groups);
 }

@@ -128,6 +128,7 @@ class Comparison {
     }
     std::stable_sort(names.begin(), names.end(),
                      [](const auto& x, const auto& y) { return x.first > y.first; });
+    result_.names.reserve(names.size());
     for (auto& [share, name] : names) result_.names.push_back(std::move(name));
     return std::move(result_);
   }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <numeric>
 
 #include "base/input_file.h"
 #include "radiosity/results.h"
@@ -89,7 +90,8 @@ MatrixFile readMatrixFile(const std::string& path, Progress& progress,
   file.path = path;
   factors.numbered = true;
   factors.members.assign(factors.size(), 1);
-  for (std::size_t i = 0; i < factors.size(); ++i) factors.row_of.push_back(Index(i));
+  factors.row_of.resize(factors.size());
+  std::iota(factors.row_of.begin(), factors.row_of.end(), Index(0));
   if (!file.has_accounts) setDefaultAccounts(factors);
   factors.closed = true;
   for (const double sky : factors.sky) factors.closed &= std::abs(sky) < kClosedWithin;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "radiosity/matrix_functions.h"
 #include "radiosity/tables.h"
@@ -74,6 +75,7 @@ NamedFactors factorsBetween(const PatchMesh& mesh, const FormFactors& factors,
 NamedFactors factorsOfUnknowns(const PatchMesh& mesh, const FormFactors& factors) {
   NamedFactors result;
   result.numbered = true;
+  result.names.reserve(mesh.unknowns());
   for (const Index surface : surfaceOfUnknowns(mesh)) {
     result.names.push_back(mesh.surface_names[surface]);
   }
@@ -83,7 +85,8 @@ NamedFactors factorsOfUnknowns(const PatchMesh& mesh, const FormFactors& factors
   result.backs = factors.backs;
   result.error = factors.error;
   result.members.assign(result.size(), 1);
-  for (std::size_t u = 0; u < result.size(); ++u) result.row_of.push_back(Index(u));
+  result.row_of.resize(result.size());
+  std::iota(result.row_of.begin(), result.row_of.end(), Index(0));
   result.closed = factors.report.closed;
   return result;
 }

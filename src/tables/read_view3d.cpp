@@ -65,7 +65,9 @@ std::vector<double> readNumbers(const std::string& path, const std::string& byte
 
 std::optional<View3dHeader> parseView3dHeader(std::string_view line) {
   const std::vector<std::string_view> words = splitWords(line.substr(0, line.find('\n')));
-  if (words.size() != 6) return std::nullopt;
+  // Other files begin with a letter and numbers.
+  constexpr std::size_t kShortestProgram = 3;
+  if (words.size() != 6 || words[0].size() < kShortestProgram) return std::nullopt;
   std::array<long long, 4> numbers{};
   for (std::size_t k = 0; k < 4; ++k) {
     const std::optional<long long> value = parseInteger(words[2 + k]);

@@ -188,6 +188,7 @@ std::vector<double> readAreas(const std::string& path) {
   const CsvTable table = readCsv(path);
   const std::optional<std::size_t> named = table.column("area_m2");
   std::vector<double> areas;
+  areas.reserve(table.rows.size() + 1);
   // Without a header the first number stands where it would be.
   if (!named && table.header.size() > 1) {
     throw InputError(path + ": has no column area_m2; name it so, or give one number a line");
