@@ -8,6 +8,7 @@
 #include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
+#include "radiosity/heat.h"
 #include "radiosity/lightmap.h"
 #include "radiosity/matrix_files.h"
 #include "radiosity/matrix_functions.h"

@@ -12,6 +12,7 @@
 #include "base/parse.h"
 #include "scene/json_scan.h"
 #include "scene/scene_builder.h"
+#include "scene/surface_names.h"
 #include "scene/text.h"
 
 namespace radiosity {
@@ -25,18 +26,6 @@ struct Origin {
     throw InputError(fmt::format("{}: {}", text, what));
   }
 };
-
-std::vector<std::string> knownNames(const Scene& scene) {
-  std::vector<std::string> names;
-  std::set<std::string> seen;
-  const auto add = [&](const std::string& name) {
-    if (seen.insert(name).second) names.push_back(name);
-  };
-  for (const Material& material : scene.materials) add(material.name);
-  for (const Surface& surface : scene.surfaces) add(surface.object);
-  for (const Surface& surface : scene.surfaces) add(surface.name);
-  return names;
-}
 
 class Overrides {
  public:

@@ -1,0 +1,117 @@
+#include "heat/conditions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace radiosity {
+
+namespace {
+
+/// How far the shares of bands may be from 1 in sum: a handful of rounded decimals.
+constexpr double kSharesTolerance = 1e-9;
+
+void require(bool good, const std::string& name, const std::string& what) {
+  if (!good) throw InputError(fmt::format("{}: {}", name, what));
+}
+
+bool isTemperature(double t) { return t >= 0 && std::isfinite(t); }
+
+void checkEmissivity(const std::string& name, const Emissivity& e) {
+  const std::size_t wanted = e.temperatures.empty() ? 1 : e.temperatures.size();
+  require(e.values.size() == wanted, name,
+          fmt::format("emissivity has {} values for {} temperatures", e.values.size(),
+                      e.temperatures.size()));
+  for (const double value : e.values) {
+    require(value >= 0 && value <= 1, name,
+            fmt::format("emissivity {} is not within 0 and 1", value));
+  }
+  for (std::size_t k = 0; k < e.temperatures.size(); ++k) {
+    require(isTemperature(e.temperatures[k]), name,
+            fmt::format("emissivity at {} K: give temperatures in kelvin, 0 or more",
+                        e.temperatures[k]));
+    require(k == 0 || e.temperatures[k] > e.temperatures[k - 1], name,
+            "temperatures of the table of emissivity do not increase");
+  }
+}
+
+void checkCondition(const HeatCondition& c, int bands) {
+  require(c.emissivity.size() == 1 || c.emissivity.size() == std::size_t(bands), c.name,
+          fmt::format("has {} emissivities for {} bands; give one, or one a band",
+                      c.emissivity.size(), bands));
+  for (const Emissivity& e : c.emissivity) checkEmissivity(c.name, e);
+  const int given =
+      int(c.temperature.has_value()) + int(c.flux.has_value()) + int(c.power.has_value());
+  require(given <= 1, c.name, "has more than one of temperature, flux and power; give one");
+  if (c.temperature) {
+    require(isTemperature(*c.temperature), c.name,
+            fmt::format("temperature {} is not one in kelvin, 0 or more", *c.temperature));
+  }
+  if (c.flux) require(std::isfinite(*c.flux), c.name, "flux is not finite");
+  if (c.power) require(std::isfinite(*c.power), c.name, "power is not finite");
+  require(c.convection >= 0 && std::isfinite(c.convection), c.name,
+          fmt::format("convection {} W/m^2/K is not a finite number >= 0", c.convection));
+  require(isTemperature(c.ambient), c.name,
+          fmt::format("ambient {} is not a temperature in kelvin, 0 or more", c.ambient));
+}
+
+}  // namespace
+
+double Emissivity::at(double temperature) const {
+  if (temperatures.empty() || !(temperature > temperatures.front())) return values.front();
+  const auto above = std::upper_bound(temperatures.begin(), temperatures.end(), temperature);
+  if (above == temperatures.end()) return values.back();
+  const auto k = std::size_t(above - temperatures.begin());
+  const double part = (temperature - temperatures[k - 1]) / (temperatures[k] - temperatures[k - 1]);
+  return std::lerp(values[k - 1], values[k], part);
+}
+
+int HeatBands::count() const {
+  return fractions.empty() ? int(edges.size()) + 1 : int(fractions.size());
+}
+
+void HeatBands::validate() const {
+  if (!edges.empty() && !fractions.empty()) {
+    throw InputError("bands have edges and fractions; give one of them");
+  }
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    if (!(edges[k] > 0) || !std::isfinite(edges[k]) || (k > 0 && !(edges[k] > edges[k - 1]))) {
+      throw InputError(
+          fmt::format("edge {} um of a band: give wavelengths above 0 that increase", edges[k]));
+    }
+  }
+  for (const double fraction : fractions) {
+    if (!(fraction >= 0 && fraction <= 1)) {
+      throw InputError(fmt::format("fraction {} of a band is not within 0 and 1", fraction));
+    }
+  }
+  const double sum = std::accumulate(fractions.begin(), fractions.end(), 0.0);
+  if (!fractions.empty() && std::abs(sum - 1) > kSharesTolerance) {
+    throw InputError(fmt::format("fractions of the bands sum to {}, not to 1", sum));
+  }
+}
+
+void HeatOptions::validate() const {
+  bands.validate();
+  if (!isTemperature(sky_temperature)) {
+    throw InputError(
+        fmt::format("sky temperature {} is not one in kelvin, 0 or more", sky_temperature));
+  }
+  if (!(tolerance > 0 && tolerance < 1)) {
+    throw InputError(fmt::format("tolerance {} is not between 0 and 1", tolerance));
+  }
+  if (max_iterations < 1) {
+    throw InputError(fmt::format("max_iterations {} is not 1 or more", max_iterations));
+  }
+  if (!(sigma > 0) || !std::isfinite(sigma)) {
+    throw InputError(fmt::format("sigma {} is not a finite number above 0", sigma));
+  }
+}
+
+void validate(std::span<const HeatCondition> conditions, int bands) {
+  for (const HeatCondition& condition : conditions) checkCondition(condition, bands);
+}
+
+}  // namespace radiosity

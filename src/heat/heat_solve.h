@@ -1,0 +1,82 @@
+// Newton's method for temperatures, around the linear system.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "heat/blackbody.h"
+#include "heat/linear_system.h"
+#include "heat/nodes.h"
+#include "radiosity/heat.h"
+
+namespace radiosity {
+
+/// The balance of a node in x = sigma T^4, and J of its rows:
+///
+///   supplied + h A (T_inf - T) = sum over rows i and bands k of A_i eps_ik (E_k(T) - H_ik)
+///   J_ik = eps_ik E_k(T) + (1 - eps_ik) H_ik
+///
+/// Around a temperature, with emissivities taken at it, E_k(T) = E_k + E_k' y and T = T + T' y for
+/// a step y in x, so that
+///
+///   y = [supplied + h A (T_inf - T) - sum A eps (E_k - H_ik)] / [sum A eps E_k' + h A T'].
+///
+/// Put into J this leaves a linear system in H, which couples the rows and bands of a node. Without
+/// convection, edges of bands and tables of emissivity one step is exact, and y needs no start.
+class HeatSolve {
+ public:
+  /// All are kept by reference. Errors: as solveHeat().
+  HeatSolve(const FormFactors& factors, const HeatRows& rows, const HeatOptions& options,
+            Progress& progress);
+  HeatSolution run();
+
+ private:
+  struct Residuals {
+    double radiosity = 0;
+    double balance = 0;
+    double worst() const { return radiosity > balance ? radiosity : balance; }
+  };
+
+  void requireEmitters() const;
+  void requireTables() const;
+  void findDark();
+  bool markNode(const HeatNode& node, std::vector<double>& marks) const;
+  [[noreturn]] void refuseClosed(const std::vector<double>& lost, double supplied) const;
+  [[noreturn]] void refuseCold(std::size_t n) const;
+  void start();
+  void placeAt(double temperature, std::size_t row);
+  void place();
+  double heatWithoutLight(std::size_t n) const;
+  HeatSystem system();
+  void linearize(std::size_t n, HeatSystem& s);
+  void step(const HeatSystem& s, const HeatFields& fields);
+  Residuals residuals(HeatFields& fields) const;
+  HeatSolution solutionOf(HeatFields fields) const;
+  HeatBalance balanceOf(const HeatSolution& solution) const;
+  bool isLinear() const;
+  const HeatCondition& conditionOf(std::size_t row) const {
+    return rows_.conditions[rows_.of_row[row]];
+  }
+  std::string namesOf(const std::vector<double>& marks) const;
+
+  const FormFactors& factors_;
+  const HeatRows& rows_;
+  const HeatOptions& options_;
+  Progress& progress_;
+  BlackBands black_;
+  std::size_t n_;
+  std::size_t width_;  ///< bands
+  std::span<const double> area_;
+  HeatNodes nodes_;
+  std::vector<double> x_;            ///< of each node
+  std::vector<double> temperature_;  ///< of each row
+  std::vector<double> emissivity_;   ///< N * bands, at it
+  std::vector<double> emitted_;      ///< N * bands: eps E(T)
+  std::vector<double> falling_;      ///< N * bands, from the sky
+  std::vector<std::uint8_t> dark_;   ///< N * bands: nothing emits there
+  // Of each node in the step at hand: what divides y, and its part without H.
+  std::vector<double> gain_;
+  std::vector<double> lack_;
+};
+
+}  // namespace radiosity
