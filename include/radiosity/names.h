@@ -14,6 +14,7 @@
 #include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
+#include "radiosity/heat.h"
 #include "radiosity/lightmap.h"
 #include "radiosity/scene.h"
 #include "radiosity/solve.h"
@@ -47,6 +48,8 @@ inline constexpr NameTable<SolveStatus, 4> kSolveStatusNames{
      {SolveStatus::no_convergence, "no_convergence"},
      {SolveStatus::no_light, "no_light"},
      {SolveStatus::singular, "singular"}}};
+inline constexpr NameTable<HeatStatus, 2> kHeatStatusNames{
+    {{HeatStatus::converged, "converged"}, {HeatStatus::no_convergence, "no_convergence"}}};
 inline constexpr NameTable<DirectLight, 5> kDirectLightNames{
     {{DirectLight::none, "none"},
      {DirectLight::exact, "exact"},

@@ -14,6 +14,7 @@
 #include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
+#include "radiosity/heat.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/render.h"
 #include "radiosity/results.h"
@@ -26,7 +27,7 @@ class JournalFile;
 class Pipeline;
 class StageKey;
 
-enum class Stage { mesh, form_factors, solution, gather, elements };
+enum class Stage { mesh, form_factors, solution, gather, elements, heat };
 
 enum class StageAction {
   reused,      ///< taken from a results file
@@ -82,6 +83,8 @@ struct PipelineOptions {
   SolveOptions solve;
   GatherOptions gather;
   ElementOptions elements;
+  HeatOptions heat;
+  HeatConditions heat_conditions;  ///< of the scene's surfaces: readHeatConditions()
   JournalOptions journal;
 };
 
@@ -98,9 +101,10 @@ struct ScalarField {
   FalseColour legend;          ///< title and unit
 };
 
-/// Scene -> mesh -> form factors -> solution -> elements, and scene -> mesh -> gathered light.
+/// Scene -> mesh -> form factors -> solution -> elements; scene -> mesh -> gathered light; and mesh
+/// -> form factors -> radiative heat exchange.
 ///
-/// mesh(), factors(), solution(), elements() and gathered() first make what they stand on. Each
+/// mesh(), factors(), solution(), elements(), gathered() and heat() first make what they stand on. Each
 /// stage has a key, a text of its options and of what it was made from. One with the same key is
 /// reused: from this object where it was made before, else from a results file; otherwise it is
 /// computed, and what stands on the one before is discarded. So options() may be changed between
@@ -149,6 +153,9 @@ class Pipeline {
   const Elements& elements();
   /// By the gather method; stands on the mesh alone.
   const Gathered& gathered();
+  /// Radiative heat exchange; stands on form factors, and on options() alone beside them. Errors: as
+  /// solveHeat().
+  const HeatSolution& heat();
   /// Materials of the patches of mesh().
   const PatchMaterials& materials();
 
@@ -243,6 +250,7 @@ class Pipeline {
   Elements elementsOf(std::span<const std::uint8_t> wanted, const StageKey& key);
   bool keepElements();
   bool keepGathered();
+  bool keepHeat();
   void dropEmptySolution();
 
   std::unique_ptr<JournalFile> journal_;

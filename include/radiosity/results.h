@@ -13,6 +13,7 @@
 #include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
+#include "radiosity/heat.h"
 #include "radiosity/lightmap.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/render.h"
@@ -38,6 +39,8 @@ struct Results {
   std::string elements_key;
   std::optional<Gathered> gathered;  ///< by the gather method; needs no form factors
   std::string gather_key;
+  std::optional<HeatSolution> heat;  ///< radiative exchange; needs form factors
+  std::string heat_key;
 };
 
 /// True for a file that starts with the HDF5 signature (whatever its name).
@@ -70,6 +73,8 @@ Results readResults(const std::string& path, bool with_factors = true,
 ///                  backs_by_surface;
 ///                  eye_of_corner (at vertices: the eye of every entry of /mesh/corners); at, key,
 ///                  summary/ with passes/ (a row a pass; bound is NaN where there is none)
+///   /heat          temperature (N), net_flux, convection (N), radiosity, irradiance (N x bands), as
+///                  HeatSolution; key, summary/ with balance_W/
 /// Bands are as many as rows have columns: three from scene files, any number from a program.
 /// The matrix is written row by row, never copied. Errors: RunError (disk full), Cancelled, those
 /// of PatchMaterials::requireSizes(); `path` then is what it was.
@@ -159,5 +164,11 @@ struct LitMesh {
 /// .glb, .gltf (_RADIOSITY, else COLOR_0), .ply (red, green, blue; ASCII and binary) and .obj
 /// (`v x y z r g b`). Errors: InputError for a file without colours (with the cure), a damaged one.
 LitMesh readLitMesh(const std::string& path);
+
+/// Heat exchange by surface: a header with units in its names, then a line a surface, all digits;
+/// cells of what is not known are empty. Errors: as the others.
+void writeHeatTable(const std::string& path, std::span<const SurfaceHeat> surfaces);
+/// The same by patch, with its centroid; radiosity and irradiance a column a band.
+void writeHeatPatches(const std::string& path, const HeatSolution& heat, const PatchMesh& mesh);
 
 }  // namespace radiosity

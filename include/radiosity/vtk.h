@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "radiosity/form_factors.h"
+#include "radiosity/heat.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/solve.h"
 
@@ -29,6 +30,9 @@ std::vector<CellField> factorFields(const PatchMesh& mesh, const FormFactors& fa
 /// By band, W/m^2: radiosity B, irradiance H, and net_flux q = B - H = E - (1 - rho) H, what a
 /// surface gives off beyond what it takes in: above 0 for a lamp, below 0 for what absorbs.
 std::vector<CellField> lightFields(const Solution& solution);
+
+/// temperature, K; radiosity J and irradiance H by band, net_flux and convection, W/m^2.
+std::vector<CellField> heatFields(const HeatSolution& heat);
 
 /// VTK's XML PolyData (.vtp): polygon k is patch k, backs too (the front's corners in reverse);
 /// points in metres, 64 bits. Cell data: patch (its number, from 0), surface (its name), surface_id

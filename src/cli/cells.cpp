@@ -8,13 +8,15 @@ namespace radiosity::cli {
 void writeCells(Session& session, Pipeline& pipeline, OutputSet& files) {
   if (!files.has(Format::vtp)) return;
   const PatchMesh& mesh = pipeline.mesh().mesh;
-  std::vector<CellField> fields = materialFields(pipeline.materials());
-  std::string what = "patches for ParaView: materials";
+  const Command command = session.request.command;
+  const bool heat = command == Command::heat;
+  std::vector<CellField> fields =
+      heat ? heatFields(pipeline.heat()) : materialFields(pipeline.materials());
+  std::string what = heat ? "patches for ParaView: heat" : "patches for ParaView: materials";
   const auto append = [&](std::vector<CellField> more, const char* name) {
     std::move(more.begin(), more.end(), std::back_inserter(fields));
     what += name;
   };
-  const Command command = session.request.command;
   if (command != Command::mesh)
     append(factorFields(mesh, pipeline.factors()), ", accounts of rows");
   if (command == Command::solve && !pipeline.solution().radiosity.empty()) {

@@ -19,9 +19,9 @@ namespace radiosity::cli {
 
 namespace {
 
-constexpr std::array kCommands = {Command::info,   Command::mesh,   Command::factors,
-                                  Command::solve,  Command::gather, Command::compare,
-                                  Command::render, Command::view};
+constexpr std::array kCommands = {Command::info,    Command::mesh,   Command::factors,
+                                  Command::solve,   Command::gather, Command::heat,
+                                  Command::compare, Command::render, Command::view};
 
 void addCompareOptions(CLI::App& app, Request& r) {
   const CompareOptions defaults;
@@ -116,6 +116,10 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
     addTableOptions(*sub, r);
     return sub;
   }
+  if (command == Command::heat) {
+    addHeatOptions(*sub, r);
+    return sub;
+  }
   addSolveOptions(*sub, r);
   if (command == Command::solve) addMatrixOptions(*sub, r);
   if (compares) {
@@ -143,7 +147,7 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
 void checkCommandWord(int argc, char** argv) {
   std::array<std::string, kCommands.size()> names;
   std::transform(kCommands.begin(), kCommands.end(), names.begin(), commandName);
-  const std::string list = "info, mesh, factors, solve, gather, compare, render or view";
+  const std::string list = "info, mesh, factors, solve, gather, heat, compare, render or view";
   if (argc < 2) {
     throw InputError(
         fmt::format("a subcommand is missing: {}; e.g. radiosity render SCENE -o "

@@ -14,6 +14,8 @@ const char* descriptionOf(Command command) {
       return "Solve B = E + rho F B for the radiosity of every patch";
     case Command::gather:
       return "Gather light through hemicubes, pass by pass, without a matrix";
+    case Command::heat:
+      return "Exchange heat by radiation: temperatures and net fluxes of surfaces";
     case Command::compare:
       return "Measure how far apart two lightings of one scene are, and where";
     case Command::render:
@@ -73,6 +75,19 @@ const char* examplesOf(Command command) {
              "Examples:\n"
              "  radiosity gather data/cornell-box.obj --passes 8 -o gathered.h5 -o gathered.png\n"
              "  radiosity gather cornell.h5 --at patches --resolution 128";
+    case Command::heat:
+      return "Files (-o): .csv (by surface), .h5 (results), .vtp (patches, for ParaView). A results "
+             "file\n"
+             "given as input is updated in place where no -o is given; its form factors are "
+             "reused.\n"
+             "Every surface needs an emissivity and a condition: a temperature, a net flux or "
+             "power,\n"
+             "or convection. Net flux is above 0 where a surface gives off heat.\n\n"
+             "Examples:\n"
+             "  radiosity heat oven.obj --thermal oven.csv -o oven.h5 -o surfaces.csv\n"
+             "  radiosity heat oven.h5 --thermal oven.csv --condition heater.power=900\n"
+             "  radiosity heat plate.stl --condition '*.emissivity=0.9' --condition '*.flux=100'\n"
+             "             --sky-temperature 255 -o plate.vtp";
     case Command::compare:
       return "A and B: results files (.h5), meshes with vertex colours of any program (.glb, "
              ".ply,\n"

@@ -32,12 +32,13 @@ int runMesh(Session& session);
 int runFactors(Session& session);
 int runSolve(Session& session);
 int runGather(Session& session);
+int runHeat(Session& session);
 int runCompare(Session& session);
 int runRender(Session& session);
 int runView(Session& session);
 
 /// The files -o names; a results file that came in is updated where none is named and the
-/// subcommand is factors, solve or gather.
+/// subcommand is factors, solve, gather or heat.
 OutputSet claimOutputs(const Session& session);
 
 /// Writes the .h5 among `files` with the stages there are: after form factors were computed, and

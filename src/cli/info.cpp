@@ -19,6 +19,7 @@ void describeStages(Session& session, const Pipeline& pipeline) {
   if (stored.solution) report.text("solution_key", "solution", stored.solution_key);
   if (stored.elements) report.text("elements_key", "elements", stored.elements_key);
   if (stored.gathered) report.text("gather_key", "gather", stored.gather_key);
+  if (stored.heat) report.text("heat_key", "heat exchange", stored.heat_key);
   if (!stored.mesh) return;
   summarizeMesh(report, *stored.mesh, Detail::brief);
   if (stored.factors) {
@@ -32,6 +33,10 @@ void describeStages(Session& session, const Pipeline& pipeline) {
   if (stored.gathered) {
     summarizeGathered(report, *stored.gathered, stored.mesh->mesh, pipeline.options().gather,
                       Detail::brief);
+  }
+  if (stored.heat) {
+    summarizeHeat(report, *stored.heat, made(stored.factors), stored.mesh->mesh,
+                  pipeline.options().heat, Detail::brief);
   }
 }
 

@@ -31,6 +31,8 @@ int dispatch(Session& session) {
       return runSolve(session);
     case Command::gather:
       return runGather(session);
+    case Command::heat:
+      return runHeat(session);
     case Command::compare:
       return runCompare(session);
     case Command::render:

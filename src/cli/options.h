@@ -32,6 +32,9 @@ void addGatherOptions(CLI::App& app, Request& r);
 /// Options shared with the form factors.
 void addEyeOptions(CLI::App& app, Request& r);
 
+// heat_options.cpp
+void addHeatOptions(CLI::App& app, Request& r);
+
 // picture_options.cpp
 void addCameraOption(CLI::App& app, Request& r);
 /// With the picture's size.

@@ -29,8 +29,9 @@ const std::vector<Extension>& extensions() {
       {".exr", Format::exr, {gather, render}},
       {".glb", Format::glb, {mesh, solve, gather, render}},
       {".obj", Format::obj, {mesh}},
-      {".vtp", Format::vtp, {mesh, factors, solve}},
-      {".h5", Format::results, {mesh, factors, solve, gather, compare, render, view}},
+      {".vtp", Format::vtp, {mesh, factors, solve, heat}},
+      {".csv", Format::surface_table, {heat}},
+      {".h5", Format::results, {mesh, factors, solve, gather, heat, compare, render, view}},
       {".mtx", Format::matrix_market, {factors, solve, render}},
       {".csv", Format::csv, {factors}},
       {".csv", Format::light_csv, {solve}},
@@ -75,6 +76,14 @@ Output lightmapOutput(const std::string& path) {
   return {path, Format::lightmap};
 }
 
+/// The table of --patch-table.
+Output patchTableOutput(const std::string& path) {
+  if (extensionOf(path) != ".csv") {
+    throw InputError(path + ": --patch-table writes .csv; end the name in it");
+  }
+  return {path, Format::patch_table};
+}
+
 }  // namespace
 
 std::string extensionOf(const std::string& path) {
@@ -87,11 +96,12 @@ std::string extensionOf(const std::string& path) {
 std::vector<Output> parseOutputs(const Request& request) {
   std::vector<Output> outputs;
   std::vector<Output> asked;
-  asked.reserve(request.outputs.size() + 1);
+  asked.reserve(request.outputs.size() + 2);
   for (const std::string& path : request.outputs) {
     asked.push_back({path, formatOf(path, request.command)});
   }
   if (!request.lightmap.empty()) asked.push_back(lightmapOutput(request.lightmap));
+  if (!request.patch_table.empty()) asked.push_back(patchTableOutput(request.patch_table));
   for (const Output& output : asked) {
     const std::string& path = output.path;
     for (const Output& other : outputs) {

@@ -30,7 +30,9 @@ enum class Format {
   triplets,
   hdf5,
   page,
-  lightmap
+  lightmap,
+  surface_table,
+  patch_table
 };
 
 struct Output {
@@ -41,8 +43,9 @@ struct Output {
 /// ".png" of "a/B.PNG": formats go by it.
 std::string extensionOf(const std::string& path);
 
-/// The files that -o names for this subcommand, and that of --lightmap. InputError: an extension it
-/// cannot write (with the list of those it can), the same file twice, the scene file itself.
+/// The files that -o names for this subcommand, those of --lightmap and --patch-table. InputError:
+/// an extension it cannot write (with the list of those it can), the same file twice, the scene
+/// file itself.
 std::vector<Output> parseOutputs(const Request& request);
 
 /// Writes under temporary names; commit() renames all. Without commit() nothing stays.

@@ -60,6 +60,8 @@ StageWords wordsOf(Stage stage) {
       return {Command::solve, "solution", "solution", "it still fits"};
     case Stage::elements:
       return {Command::render, "elements", "elements", "they still fit"};
+    case Stage::heat:
+      return {Command::heat, "heat", "heat exchange", "it still fits"};
     case Stage::gather:
       break;
   }
@@ -176,6 +178,9 @@ void PipelineReport::summarize(const Pipeline& pipeline, const StageEvent& event
                                options.solve, light);
     case Stage::gather:
       return summarizeGathered(report_, made(results.gathered), mesh, options.gather, light);
+    case Stage::heat:
+      return summarizeHeat(report_, made(results.heat), made(results.factors), mesh, options.heat,
+                           light);
     case Stage::elements:
       return;  // by those who show them: a picture may have some of them alone
   }

@@ -1,5 +1,8 @@
 #include "cli/request.h"
 
+#include <fmt/format.h>
+
+#include "base/parse.h"
 #include "cli/words.h"
 #include "radiosity/names.h"
 
@@ -17,6 +20,8 @@ const char* commandName(Command command) {
       return "solve";
     case Command::gather:
       return "gather";
+    case Command::heat:
+      return "heat";
     case Command::compare:
       return "compare";
     case Command::render:
@@ -119,6 +124,39 @@ CompareOptions Request::compareOptions() const {
 ElementOptions Request::apply(ElementOptions options) const {
   set(options, &ElementOptions::tolerance, element_tolerance, "--element-tolerance");
   set(options, &ElementOptions::crease, crease, "--crease");
+  options.validate();
+  return options;
+}
+
+namespace {
+
+std::vector<double> numbersIn(const std::string& option, const std::string& text) {
+  std::vector<double> numbers;
+  for (const std::string_view word : splitAt(text, ',')) {
+    const std::optional<double> number = parseNumber(word);
+    if (!number) {
+      throw InputError(fmt::format("{} {}: `{}` is not a number; separate them by commas alone",
+                                   option, text, word));
+    }
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+}  // namespace
+
+HeatOptions Request::apply(HeatOptions options) const {
+  set(options, &HeatOptions::sky_temperature, sky_temperature, "--sky-temperature");
+  set(options, &HeatOptions::tolerance, heat_tolerance, "--heat-tolerance");
+  set(options, &HeatOptions::max_iterations, heat_iterations, "--heat-iterations");
+  if (!band_edges.empty()) {
+    options.bands = {numbersIn("--band-edges", band_edges), {}};
+    nameOption("--band-edges", [&] { options.validate(); });
+  }
+  if (!band_fractions.empty()) {
+    options.bands = {{}, numbersIn("--band-fractions", band_fractions)};
+    nameOption("--band-fractions", [&] { options.validate(); });
+  }
   options.validate();
   return options;
 }

@@ -11,6 +11,7 @@
 #include "radiosity/compare.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
+#include "radiosity/heat.h"
 #include "radiosity/lightmap.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/pipeline.h"
@@ -20,7 +21,7 @@
 
 namespace radiosity::cli {
 
-enum class Command { info, mesh, factors, solve, gather, compare, render, view };
+enum class Command { info, mesh, factors, solve, gather, heat, compare, render, view };
 
 struct Request {
   Command command = Command::info;
@@ -63,6 +64,15 @@ struct Request {
   std::optional<int> passes;
   std::optional<double> gather_tolerance;
 
+  std::string thermal;  ///< a table of conditions
+  std::vector<std::string> conditions;
+  std::optional<double> sky_temperature;
+  std::string band_edges;
+  std::string band_fractions;
+  std::optional<double> heat_tolerance;
+  std::optional<int> heat_iterations;
+  std::string patch_table;  ///< the .csv; empty: none
+
   std::string a_is;  ///< radiosity, radiance or srgb8; empty: as the file says
   std::string b_is;
   bool with_gather = false;
@@ -102,6 +112,7 @@ struct Request {
   SolveOptions apply(SolveOptions options) const;
   GatherOptions apply(GatherOptions options) const;
   ElementOptions apply(ElementOptions options) const;
+  HeatOptions apply(HeatOptions options) const;
   LightmapOptions lightmapOptions() const;
   /// `results_output`: the .h5 that is written; empty: none.
   JournalOptions journal(const std::string& results_output) const;

@@ -57,6 +57,7 @@ Run::Run(Session& session, const std::string& results_output)
   requireSolver(options);
   options.gather = request.apply(options.gather);
   options.elements = request.apply(options.elements);
+  options.heat = request.apply(options.heat);
   options.journal = request.journal(results_output);
   options.factors.scratch_folder = scratchFolder(request, results_output);
 }
@@ -69,7 +70,8 @@ OutputSet claimOutputs(const Session& session) {
   const Request& request = session.request;
   OutputSet files(parseOutputs(request));
   const bool keeps_stages = request.command == Command::factors ||
-                            request.command == Command::solve || request.command == Command::gather;
+                            request.command == Command::solve || request.command == Command::gather ||
+                            request.command == Command::heat;
   if (!keeps_stages || !files.all().empty()) return files;
   std::error_code ignored;
   if (std::filesystem::is_regular_file(request.input, ignored) && isResultsFile(request.input)) {
@@ -90,6 +92,7 @@ std::string contents(const Results& results) {
   if (results.solution) list += ", solution";
   if (results.elements) list += ", elements";
   if (results.gathered) list += ", gathered light";
+  if (results.heat) list += ", heat exchange";
   return list;
 }
 

@@ -5,6 +5,7 @@
 #include "radiosity/elements.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
+#include "radiosity/heat.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/render.h"
 #include "radiosity/scene.h"
@@ -32,6 +33,9 @@ void summarizeElements(Report& report, const Elements& elements, const FormFacto
 /// `sources`: what the light at points was made from.
 void summarizeFinalGather(Report& report, const ElementReport& sources,
                           const PixelGatherReport& gathered, const FormFactors& factors);
+/// heat_summary.cpp
+void summarizeHeat(Report& report, const HeatSolution& heat, const FormFactors& factors,
+                   const PatchMesh& mesh, const HeatOptions& options, Detail detail);
 void summarizeGathered(Report& report, const Gathered& gathered, const PatchMesh& mesh,
                        const GatherOptions& options, Detail detail);
 

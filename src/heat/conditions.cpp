@@ -114,4 +114,9 @@ void validate(std::span<const HeatCondition> conditions, int bands) {
   for (const HeatCondition& condition : conditions) checkCondition(condition, bands);
 }
 
+void validate(const HeatConditions& conditions, const HeatOptions& options) {
+  options.validate();
+  validate(conditions.conditions, options.bands.count());
+}
+
 }  // namespace radiosity

@@ -97,6 +97,8 @@ void Pipeline::openResults(const std::string& path, const SceneOptions& scene) {
               solveOptionsOf(StageKey(stored_.solution_key)),
               gatherOptionsOf(StageKey(stored_.gather_key)),
               elementOptionsOf(StageKey(stored_.elements_key)),
+              heatOptionsOf(StageKey(stored_.heat_key)),
+              {},
               options_.journal};
   observer_.opened(*this);
   if (overrides(scene)) overrideScene(scene);
@@ -240,6 +242,21 @@ bool Pipeline::keepGathered() {
   return keep(Stage::gather, &Results::gathered, &Results::gather_key, key);
 }
 
+bool Pipeline::keepHeat() {
+  if (results_.heat || !stored_.heat) return false;
+  const StageKey stored(stored_.heat_key);
+  const bool fits = results_.factors && isHeatOf(stored, usedFactorsKey());
+  std::optional<HeatSolution> found = std::exchange(stored_.heat, std::nullopt);
+  if (!fits) {
+    tell(Stage::heat, StageAction::dropped, "form factors changed");
+    return true;
+  }
+  results_.heat = std::move(found);
+  results_.heat_key = stored_.heat_key;
+  tell(Stage::heat, StageAction::kept);
+  return false;
+}
+
 void Pipeline::dropEmptySolution() {
   if (!results_.solution || !results_.solution->radiosity.empty()) return;
   results_.solution.reset();
@@ -254,6 +271,7 @@ void Pipeline::keepLaterStages() {
   dropped = keepSolution() || dropped;
   dropped = keepElements() || dropped;
   dropped = keepGathered() || dropped;
+  dropped = keepHeat() || dropped;
   const bool needed = results_.solution || results_.gathered || hasOwnMaterials();
   if (!needed) results_.materials.reset();
   changed_ = changed_ || dropped;

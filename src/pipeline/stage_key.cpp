@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "base/hash.h"
+#include "base/parse.h"
 #include "radiosity/names.h"
 
 namespace radiosity {
@@ -15,11 +16,9 @@ namespace {
 
 // Names whose values are identities, and how a change of one reads.
 constexpr std::pair<std::string_view, std::string_view> kIdentities[] = {
-    {"scene", "geometry changed"},
-    {"mesh", "mesh changed"},
-    {"materials", "materials changed"},
-    {"factors", "form factors changed"},
-    {"solution", "solution changed"}};
+    {"scene", "geometry changed"},      {"mesh", "mesh changed"},
+    {"materials", "materials changed"}, {"factors", "form factors changed"},
+    {"solution", "solution changed"},   {"conditions", "conditions changed"}};
 
 std::string onOff(bool value) { return value ? "on" : "off"; }
 
@@ -69,6 +68,12 @@ constexpr const char* kOfSources = "sources";
 
 void addTurns(StageKey& key, bool random_turns) {
   if (!random_turns) key.add("random-turns", onOff(random_turns));
+}
+
+std::string factorsHash(const StageKey& factors_key) {
+  Hash hash;
+  hash.text(factors_key.text());
+  return hash.hex();
 }
 
 std::string sceneHash(const Scene& scene) {
@@ -188,15 +193,13 @@ StageKey usedKey(const StageKey& factors_key, std::string_view method) {
 
 StageKey solutionKey(const SolveOptions& options, const PatchMaterials& materials,
                      const StageKey& factors_key) {
-  Hash factors;
-  factors.text(factors_key.text());
   StageKey key;
   key.add("solver", nameOf(kSolverNames, options.solver));
   key.add("solve-tolerance", fmt::format("{}", options.tolerance));
   key.add("max-iterations", fmt::format("{}", options.max_iterations));
   key.add("materials", materialsHash(materials));
   key.add("sky", skyText(materials.sky));
-  key.add("factors", factors.hex());
+  key.add("factors", factorsHash(factors_key));
   return key;
 }
 
@@ -230,6 +233,60 @@ StageKey gatherKey(const GatherOptions& options, const PatchMaterials& materials
   key.add("sky", skyText(materials.sky));
   key.add("mesh", geometryHash(mesh));
   return key;
+}
+
+namespace {
+
+std::string listText(const std::vector<double>& values) {
+  return values.empty() ? "none" : fmt::format("{}", fmt::join(values, ","));
+}
+
+void readList(const StageKey& key, std::string_view name, std::vector<double>& values) {
+  for (const std::string_view word : splitAt(key.get(name).value_or("none"), ',')) {
+    if (const std::optional<double> value = parseNumber(word)) values.push_back(*value);
+  }
+}
+
+/// Of what is given and of what is left out.
+void addOptional(const std::optional<double>& value, Hash& hash) {
+  hash.array(value ? std::vector<double>{*value} : std::vector<double>{});
+}
+
+std::string conditionsHash(const HeatConditions& conditions) {
+  Hash hash;
+  hash.array(conditions.of_surface);
+  for (const HeatCondition& c : conditions.conditions) {
+    for (const Emissivity& e : c.emissivity) {
+      hash.array(e.temperatures);
+      hash.array(e.values);
+    }
+    addOptional(c.temperature, hash);
+    addOptional(c.flux, hash);
+    addOptional(c.power, hash);
+    hash.array(std::vector<double>{c.convection, c.ambient});
+    hash.text(onOff(c.isothermal));
+  }
+  return hash.hex();
+}
+
+}  // namespace
+
+StageKey heatKey(const HeatOptions& options, const HeatConditions& conditions,
+                 const StageKey& factors_key) {
+  StageKey key;
+  key.add("sky-temperature", fmt::format("{}", options.sky_temperature));
+  key.add("band-edges", listText(options.bands.edges));
+  key.add("band-fractions", listText(options.bands.fractions));
+  key.add("heat-tolerance", fmt::format("{}", options.tolerance));
+  key.add("heat-iterations", fmt::format("{}", options.max_iterations));
+  if (options.sigma != kStefanBoltzmann) key.add("sigma", fmt::format("{}", options.sigma));
+  key.add("conditions", conditionsHash(conditions));
+  key.add("factors", factorsHash(factors_key));
+  return key;
+}
+
+bool isHeatOf(const StageKey& heat_key, const StageKey& factors_key) {
+  return heat_key.get("factors") == factorsHash(factors_key);
 }
 
 MeshOptions meshOptionsOf(const StageKey& key) {
@@ -288,6 +345,17 @@ GatherOptions gatherOptionsOf(const StageKey& key) {
   read(key, "crease", options.crease);
   read(key, "random-turns", options.random_turns);
   read(key, "inset", options.inset);
+  return options;
+}
+
+HeatOptions heatOptionsOf(const StageKey& key) {
+  HeatOptions options;
+  read(key, "sky-temperature", options.sky_temperature);
+  readList(key, "band-edges", options.bands.edges);
+  readList(key, "band-fractions", options.bands.fractions);
+  read(key, "heat-tolerance", options.tolerance);
+  read(key, "heat-iterations", options.max_iterations);
+  read(key, "sigma", options.sigma);
   return options;
 }
 

@@ -11,6 +11,7 @@
 #include "radiosity/elements.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
+#include "radiosity/heat.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/scene.h"
 #include "radiosity/solve.h"
@@ -50,11 +51,18 @@ StageKey elementsKey(const ElementOptions& options, const std::string& solution_
 StageKey gatherKey(const GatherOptions& options, const PatchMaterials& materials,
                    const PatchMesh& mesh);
 
+/// `factors_key`: as used.
+StageKey heatKey(const HeatOptions& options, const HeatConditions& conditions,
+                 const StageKey& factors_key);
+/// Whether heat with that key was exchanged by these form factors, as used.
+bool isHeatOf(const StageKey& heat_key, const StageKey& factors_key);
+
 /// The options in a key; defaults where it says nothing.
 MeshOptions meshOptionsOf(const StageKey& key);
 FormFactorOptions factorOptionsOf(const StageKey& key);
 SolveOptions solveOptionsOf(const StageKey& key);
 ElementOptions elementOptionsOf(const StageKey& key);
 GatherOptions gatherOptionsOf(const StageKey& key);
+HeatOptions heatOptionsOf(const StageKey& key);
 
 }  // namespace radiosity

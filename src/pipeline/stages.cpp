@@ -84,10 +84,13 @@ void Pipeline::discardFrom(Stage first) {
   if (all || first == Stage::form_factors) {
     discard(results_.factors, results_.factors_key, stored_.factors_key);
   }
+  if (all || first == Stage::form_factors || first == Stage::heat) {
+    discard(results_.heat, results_.heat_key, stored_.heat_key);
+  }
   if (all || first == Stage::gather) {
     discard(results_.gathered, results_.gather_key, stored_.gather_key);
   }
-  if (first == Stage::gather) return;
+  if (first == Stage::gather || first == Stage::heat) return;
   discard(results_.elements, results_.elements_key, stored_.elements_key);
   if (first != Stage::elements) {
     discard(results_.solution, results_.solution_key, stored_.solution_key);
@@ -315,6 +318,30 @@ const Gathered& Pipeline::gathered() {
   stored_.gathered.reset();
   computed(Stage::gather, reason, watch.seconds());
   return made(results_.gathered);
+}
+
+/// What is refused is wrong with the conditions: an error of input.
+const HeatSolution& Pipeline::heat() {
+  factors();
+  options_.heat.validate();
+  const StageKey key = heatKey(options_.heat, options_.heat_conditions, usedFactorsKey());
+  if (results_.heat && results_.heat_key == key.text()) return made(results_.heat);
+  discardFrom(Stage::heat);
+  if (stored_.heat && stored_.heat_key == key.text()) {
+    results_.heat = taken(stored_.heat);
+    results_.heat_key = key.text();
+    tell(Stage::heat, StageAction::reused, source_);
+    return made(results_.heat);
+  }
+  const std::string reason = why(stored_.heat_key, key);
+  loadMatrix();
+  const Stopwatch watch;
+  results_.heat = solveHeat(made(results_.factors), options_.heat_conditions,
+                            made(results_.mesh).mesh, options_.heat, progress_);
+  results_.heat_key = key.text();
+  stored_.heat.reset();
+  computed(Stage::heat, reason, watch.seconds());
+  return made(results_.heat);
 }
 
 }  // namespace radiosity

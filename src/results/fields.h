@@ -332,6 +332,38 @@ void describe(Archive& a, Described<Archive, PatchMaterials>& m) {
   a.numbers("sky", m.sky, bands);
 }
 
+template <class Archive>
+void describe(Archive& a, Described<Archive, HeatSummary>& s) {
+  a.choice("status", s.status, kHeatStatusNames);
+  a("iterations", s.iterations);
+  a("linear_steps", s.linear_steps);
+  a("residual", s.residual);
+  a("balance_residual", s.balance_residual);
+  a("undetermined", s.undetermined);
+  a("seconds", s.seconds);
+  a("message", s.message);
+  a.group("balance_W", [&](auto& balance) {
+    balance("radiated", s.balance.radiated);
+    balance("to_sky", s.balance.to_sky);
+    balance("on_backs", s.balance.on_backs);
+    balance("imbalance", s.balance.imbalance);
+    balance("convected", s.balance.convected);
+    balance("throughput", s.balance.throughput);
+  });
+}
+
+template <class Archive>
+void describe(Archive& a, Described<Archive, HeatSolution>& h) {
+  a("bands", h.bands);
+  const auto bands = std::size_t(std::max(h.bands, 1));  // results_check.cpp refuses others
+  a.rows("radiosity", h.radiosity, bands, "W/m^2");
+  a.rows("irradiance", h.irradiance, bands, "W/m^2");
+  a("net_flux", h.net_flux, "W/m^2");
+  a("convection", h.convection, "W/m^2");
+  a("temperature", h.temperature, "K");
+  a.group("summary", [&](auto& summary) { describe(summary, h.summary); });
+}
+
 /// Passes as they are stored: a row each.
 struct PassColumns {
   std::size_t bands;

@@ -220,6 +220,15 @@ void checkGathered(const Checker& check, const Gathered& g, const PatchMesh& mes
   }
 }
 
+void checkHeat(const Checker& check, const HeatSolution& heat, std::size_t patches) {
+  check.require(heat.bands >= 1, "/heat/bands", "is not 1 or more");
+  check.length(heat.radiosity, std::size_t(heat.bands) * patches, "/heat/radiosity");
+  check.length(heat.irradiance, std::size_t(heat.bands) * patches, "/heat/irradiance");
+  check.length(heat.net_flux, patches, "/heat/net_flux");
+  check.length(heat.convection, patches, "/heat/convection");
+  check.length(heat.temperature, patches, "/heat/temperature");
+}
+
 /// A row an unknown.
 void checkFactors(const Checker& check, const FormFactors& factors, const Results& results) {
   const std::size_t rows = results.mesh ? unknownsOf(results.mesh->mesh) : factors.fronts.size();
@@ -246,6 +255,10 @@ void checkResults(const std::string& path, const Results& results) {
   if (results.gathered) {
     check.require(results.mesh.has_value(), "/gather", "comes without /mesh");
     if (results.mesh) checkGathered(check, *results.gathered, results.mesh->mesh);
+  }
+  if (results.heat) {
+    check.require(results.mesh.has_value(), "/heat", "comes without /mesh");
+    if (results.mesh) checkHeat(check, *results.heat, results.mesh->mesh.size());
   }
 
   // All stages are about the same N patches.

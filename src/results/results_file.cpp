@@ -95,6 +95,13 @@ class StageWriter {
     FieldWriter<Sink> fields(group);
     describe(fields, *results_.gathered);
   }
+  void heat() {
+    if (!results_.heat) return;
+    Sink group = root_.group("heat");
+    group.text("key", results_.heat_key);
+    FieldWriter<Sink> fields(group);
+    describe(fields, *results_.heat);
+  }
 
  private:
   Sink& root_;
@@ -209,6 +216,12 @@ void readStages(const InputGroup& root, bool with_factors, std::shared_ptr<Scrat
     FieldReader fields(group);
     describe(fields, results.gathered.emplace());
   }
+  if (root.has("heat")) {
+    const InputGroup group = root.group("heat");
+    results.heat_key = group.text("key");
+    FieldReader fields(group);
+    describe(fields, results.heat.emplace());
+  }
 }
 
 }  // namespace
@@ -260,6 +273,7 @@ void writeResults(const std::string& path, const Results& results, Progress& pro
     stages.solution();
     stages.elements();
     stages.gathered();
+    stages.heat();
   }
   file.close();
   target.commit();
@@ -281,6 +295,7 @@ std::size_t estimateResultsBytes(const Results& results) {
   stages.solution();
   stages.elements();
   stages.gathered();
+  stages.heat();
   return bytes;
 }
 

@@ -31,4 +31,12 @@ std::vector<CellField> lightFields(const Solution& solution) {
           {"net_flux", "W/m^2", solution.bands, std::move(net)}};
 }
 
+std::vector<CellField> heatFields(const HeatSolution& heat) {
+  return {{"temperature", "K", 1, heat.temperature},
+          {"radiosity", "W/m^2", heat.bands, heat.radiosity},
+          {"irradiance", "W/m^2", heat.bands, heat.irradiance},
+          {"net_flux", "W/m^2", 1, heat.net_flux},
+          {"convection", "W/m^2", 1, heat.convection}};
+}
+
 }  // namespace radiosity

@@ -1,0 +1,42 @@
+// Options of radiative heat exchange.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/options.h"
+#include "cli/validators.h"
+
+namespace radiosity::cli {
+
+void addHeatOptions(CLI::App& app, Request& r) {
+  const HeatOptions defaults;
+  add(app, "Heat", "--thermal", r.thermal, "FILE.csv",
+      "Conditions by surface, material or object name; * stands for all others. Columns: surface, "
+      "emissivity, temperature_K, flux_W_per_m2 (0: adiabatic), power_W, convection_W_per_m2_K, "
+      "ambient_K, isothermal (yes: one temperature)");
+  add(app, "Heat", "--condition", r.conditions, "NAME.PROPERTY=VALUE",
+      "Replace what the table says, or do without one: emissivity (one number; one a band, 0.8; "
+      "0.3; or against temperature, 300:0.1 800:0.25), temperature, flux, power, convection, "
+      "ambient, isothermal. May be repeated");
+  add(app, "Heat", "--sky-temperature", r.sky_temperature, "K",
+      fmt::format("Temperature of the black sky wherever rays leave the scene (default {:g})",
+                  defaults.sky_temperature));
+  CLI::Option* edges = add(app, "Heat", "--band-edges", r.band_edges, "UM,UM,...",
+                           "Cut the spectrum into bands at these wavelengths, micrometres "
+                           "(default: one grey band)");
+  CLI::Option* fractions = add(app, "Heat", "--band-fractions", r.band_fractions, "F,F,...",
+                               "Bands with these shares of sigma T^4 at any temperature; they sum "
+                               "to 1");
+  edges->excludes(fractions);
+  add(app, "Heat", "--heat-tolerance", r.heat_tolerance, "RATIO",
+      fmt::format("Stop when no radiosity and no heat balance is off by more than this times the "
+                  "largest radiosity (default {})",
+                  defaults.tolerance));
+  add(app, "Heat", "--heat-iterations", r.heat_iterations, "N",
+      fmt::format("Steps of Newton's method at most; then exit code 1 (default {})",
+                  defaults.max_iterations));
+  add(app, "Heat", "--patch-table", r.patch_table, "FILE.csv",
+      "Write the figures of every patch, beside those of surfaces in -o FILE.csv");
+}
+
+}  // namespace radiosity::cli

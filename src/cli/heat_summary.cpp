@@ -1,0 +1,125 @@
+// What is said of radiative heat exchange.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/section.h"
+#include "cli/words.h"
+#include "radiosity/names.h"
+
+namespace radiosity::cli {
+
+namespace {
+
+/// Heat that is lost on backs, or not accounted for, is worth a warning from this share on.
+constexpr double kWorthWarning = 1e-3;
+
+void surfaceTable(Report& report, const std::vector<SurfaceHeat>& surfaces) {
+  std::vector<std::vector<std::string>> rows;
+  for (const SurfaceHeat& s : surfaces) {
+    rows.push_back({s.name, numberText(s.area), numberText(s.temperature), numberText(s.lowest),
+                    numberText(s.highest), numberText(s.radiosity), numberText(s.irradiance),
+                    s.irradiance_error ? numberText(*s.irradiance_error, 2) : "unknown",
+                    numberText(s.net_flux), numberText(s.radiated), numberText(s.convected)});
+  }
+  report.table("surfaces",
+               {{"name", "surface", false},
+                {"area_m2", "area m^2"},
+                {"temperature_K", "mean K"},
+                {"lowest_K", "from K"},
+                {"highest_K", "to K"},
+                {"radiosity_W_per_m2", "J W/m^2"},
+                {"irradiance_W_per_m2", "H W/m^2"},
+                {"irradiance_error_W_per_m2", "H +-"},
+                {"net_flux_W_per_m2", "J - H"},
+                {"radiated_W", "radiated W"},
+                {"convected_W", "convected W"}},
+               rows);
+}
+
+void balanceFigures(Report& report, const HeatBalance& b) {
+  const auto watts = [&](const char* key, const char* label, double value) {
+    const bool share = b.throughput > 0;
+    report.number(key, label, value,
+                  share ? fmt::format("W  ({:.3g}%)", 100 * value / b.throughput) : "W");
+  };
+  report.number("throughput_W", "net powers above 0, summed", b.throughput, "W");
+  watts("radiated_W", "radiated by all surfaces, net", b.radiated);
+  watts("to_sky_W", "  of it to the sky, net", b.to_sky);
+  watts("on_backs_W", "  lost on backs", b.on_backs);
+  watts("imbalance_W", "  imbalance", b.imbalance);
+  watts("convected_W", "convected to the air", b.convected);
+}
+
+/// How good the form factors are, beside what they lead to.
+void factorError(Report& report, const FormFactors& factors) {
+  if (factors.error.empty()) {
+    report.text("factor_error", "error of the form factors",
+                "unknown by " + factors.method + "; --method exact or rays says it");
+    return;
+  }
+  report.number("factor_error", "error of the form factors (relative L2)",
+                factors.report.error_figure);
+  report.number("largest_row_error", "  largest figure of a row",
+                *std::max_element(factors.error.begin(), factors.error.end()));
+}
+
+void warnings(Report& report, const HeatSolution& heat) {
+  const HeatSummary& s = heat.summary;
+  const HeatBalance& b = s.balance;
+  std::vector<Note> notes;
+  const auto above = [&](double watts) { return std::abs(watts) > kWorthWarning * b.throughput; };
+  if (b.throughput > 0 && above(b.on_backs)) {
+    notes.push_back(
+        {Severity::warning,
+         fmt::format("{:.2g}% of the heat is lost on surfaces seen from behind, which are "
+                     "black and at 0 K: flipped? turn them round or use --two-sided NAME",
+                     100 * b.on_backs / b.throughput)});
+  }
+  if (b.throughput > 0 && above(b.imbalance)) {
+    notes.push_back(
+        {Severity::warning,
+         fmt::format("{:.2g}% of the heat is not accounted for: rows of form factors do "
+                     "not sum to 1; give --closure enforce, or a smaller --tolerance",
+                     100 * std::abs(b.imbalance) / b.throughput)});
+  }
+  if (s.undetermined > 0) {
+    notes.push_back(
+        {Severity::warning,
+         fmt::format("{} no temperature: emissivity 0 and no convection, so any would do",
+                     s.undetermined == 1 ? "1 unknown has"
+                                         : fmt::format("{} unknowns have", s.undetermined))});
+  }
+  report.notes(notes);
+}
+
+}  // namespace
+
+void summarizeHeat(Report& report, const HeatSolution& heat, const FormFactors& factors,
+                   const PatchMesh& mesh, const HeatOptions& options, Detail detail) {
+  const HeatSummary& s = heat.summary;
+  if (detail == Detail::brief) report.line("", oneLine(s.message));
+  {
+    const Section section(report, detail, "heat", "Heat exchange");
+    report.text("status", "status", nameOf(kHeatStatusNames, s.status));
+    report.count("bands", "bands", std::size_t(heat.bands));
+    report.number("sky_temperature_K", "sky", options.sky_temperature, "K");
+    report.count("iterations", "steps of Newton's method", std::size_t(s.iterations));
+    report.text("linear_solver", "linear systems",
+                s.linear_steps == 0 ? "solved directly"
+                                    : fmt::format("GMRES, {} products", s.linear_steps));
+    report.number("residual", "residual (relative)", s.residual);
+    report.number("balance_residual", "heat balance of patches (relative)", s.balance_residual);
+    report.number("tolerance", "  asked for", options.tolerance);
+    report.seconds("seconds", "time", s.seconds);
+    factorError(report, factors);
+    balanceFigures(report, s.balance);
+    surfaceTable(report, heatBySurface(heat, mesh, factors));
+    report.text("message", "in words", oneLine(s.message));
+    report.yesNo("usable", "usable", s.usable());
+  }
+  warnings(report, heat);
+}
+
+}  // namespace radiosity::cli

@@ -1,0 +1,71 @@
+// Heat exchange as tables with commas (RFC 4180), for spreadsheets and other programs.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "radiosity/results.h"
+#include "results/checked_file.h"
+
+namespace radiosity {
+
+namespace {
+
+/// All digits of a number; nothing where there is none.
+std::string cell(double value) {
+  return std::isnan(value) ? std::string() : fmt::format("{}", value);
+}
+
+std::string quoted(const std::string& name) {
+  if (name.find_first_of(",\"\n\r") == std::string::npos) return name;
+  std::string out;
+  for (const char c : name) out.append(c == '"' ? 2 : 1, c);
+  return fmt::format("\"{}\"", out);
+}
+
+std::string bandColumns(const char* name, int bands) {
+  if (bands == 1) return fmt::format(",{}_W_per_m2", name);
+  std::string columns;
+  for (int b = 1; b <= bands; ++b) columns += fmt::format(",{}_{}_W_per_m2", name, b);
+  return columns;
+}
+
+}  // namespace
+
+void writeHeatTable(const std::string& path, std::span<const SurfaceHeat> surfaces) {
+  CheckedFile file(path);
+  file.write(
+      "surface,area_m2,temperature_K,lowest_K,highest_K,radiosity_W_per_m2,irradiance_W_per_m2,"
+      "irradiance_error_W_per_m2,net_flux_W_per_m2,radiated_W,convected_W\n");
+  for (const SurfaceHeat& s : surfaces) {
+    file.write(fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", quoted(s.name), cell(s.area),
+                           cell(s.temperature), cell(s.lowest), cell(s.highest), cell(s.radiosity),
+                           cell(s.irradiance), cell(s.irradiance_error.value_or(NAN)),
+                           cell(s.net_flux), cell(s.radiated), cell(s.convected)));
+  }
+  file.commit();
+}
+
+void writeHeatPatches(const std::string& path, const HeatSolution& heat, const PatchMesh& mesh) {
+  CheckedFile file(path);
+  const auto bands = std::size_t(heat.bands);
+  file.write(fmt::format(
+      "patch,surface,side,x_m,y_m,z_m,area_m2,temperature_K,net_flux_W_per_m2,convection_W_per_m2"
+      "{}{}\n",
+      bandColumns("radiosity", heat.bands), bandColumns("irradiance", heat.bands)));
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    const Vec3& at = mesh.centroid[i];
+    std::string line =
+        fmt::format("{},{},{},{},{},{},{},{},{},{}", i, quoted(mesh.surface_names[mesh.surface[i]]),
+                    mesh.side[i] == 0 ? "front" : "back", at.x, at.y, at.z, mesh.area[i],
+                    cell(heat.temperature[i]), cell(heat.net_flux[i]), cell(heat.convection[i]));
+    for (const std::vector<double>* values : {&heat.radiosity, &heat.irradiance}) {
+      for (std::size_t b = 0; b < bands; ++b)
+        line.append(",").append(cell((*values)[i * bands + b]));
+    }
+    file.write(line.append("\n"));
+  }
+  file.commit();
+}
+
+}  // namespace radiosity
