@@ -40,6 +40,7 @@ int runHeat(Session& session) {
   writeTables(pipeline, files);
   writeCells(session, pipeline, files);
   files.commit(session.report, session.progress);
+  noteUnsaved(session, pipeline, files);
   return summary.usable() ? 0 : 1;
 }
 

@@ -44,7 +44,7 @@ void balanceFigures(Report& report, const HeatBalance& b) {
     report.number(key, label, value,
                   share ? fmt::format("W  ({:.3g}%)", 100 * value / b.throughput) : "W");
   };
-  report.number("throughput_W", "net powers above 0, summed", b.throughput, "W");
+  report.number("throughput_W", "net powers above 0", b.throughput, "W");
   watts("radiated_W", "radiated by all surfaces, net", b.radiated);
   watts("to_sky_W", "  of it to the sky, net", b.to_sky);
   watts("on_backs_W", "  lost on backs", b.on_backs);
@@ -55,11 +55,11 @@ void balanceFigures(Report& report, const HeatBalance& b) {
 /// How good the form factors are, beside what they lead to.
 void factorError(Report& report, const FormFactors& factors) {
   if (factors.error.empty()) {
-    report.text("factor_error", "error of the form factors",
+    report.text("factor_error", "error of form factors",
                 "unknown by " + factors.method + "; --method exact or rays says it");
     return;
   }
-  report.number("factor_error", "error of the form factors (relative L2)",
+  report.number("factor_error", "error of form factors",
                 factors.report.error_figure);
   report.number("largest_row_error", "  largest figure of a row",
                 *std::max_element(factors.error.begin(), factors.error.end()));
@@ -110,7 +110,7 @@ void summarizeHeat(Report& report, const HeatSolution& heat, const FormFactors& 
                 s.linear_steps == 0 ? "solved directly"
                                     : fmt::format("GMRES, {} products", s.linear_steps));
     report.number("residual", "residual (relative)", s.residual);
-    report.number("balance_residual", "heat balance of patches (relative)", s.balance_residual);
+    report.number("balance_residual", "heat balance (relative)", s.balance_residual);
     report.number("tolerance", "  asked for", options.tolerance);
     report.seconds("seconds", "time", s.seconds);
     factorError(report, factors);

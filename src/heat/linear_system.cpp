@@ -11,8 +11,12 @@ namespace radiosity {
 
 namespace {
 
-/// Vectors of GMRES between two restarts, each of N * bands.
-constexpr int kMostSteps = 60;
+/// Steps of GMRES between two restarts, as many as its vectors have room for: a chain of n rooms,
+/// or of n sheets, needs n of them.
+int mostSteps(std::size_t unknowns) {
+  constexpr std::size_t kNumbers = std::size_t(1) << 25;  // 256 MiB
+  return int(std::clamp<std::size_t>(kNumbers / std::max<std::size_t>(unknowns, 1), 30, 300));
+}
 /// Restarts; a round that does not halve the residual ends them: rounding is all there is.
 constexpr int kMostRounds = 50;
 
@@ -106,10 +110,11 @@ class Gmres {
       : matrix_(matrix),
         system_(system),
         constant_(constantOf(matrix, system)),
+        most_steps_(mostSteps(constant_.size())),
         progress_(progress) {}
 
   void improve(std::vector<double>& irradiance, double tolerance) {
-    Convergence shown(tolerance, kMostSteps * kMostRounds, "heat exchange", progress_);
+    Convergence shown(tolerance, most_steps_ * kMostRounds, "heat exchange", progress_);
     double last = INFINITY;
     for (int round = 0; round < kMostRounds; ++round) {
       const Eigen::VectorXd step = stepFrom(irradiance);
@@ -137,7 +142,7 @@ class Gmres {
 
   Eigen::VectorXd correction(const Eigen::VectorXd& step, double scale, Convergence& shown) {
     Krylov krylov(step);
-    for (int k = 0; k < kMostSteps && !krylov.exhausted(); ++k) {
+    for (int k = 0; k < most_steps_ && !krylov.exhausted(); ++k) {
       const Eigen::VectorXd& d = krylov.direction();
       const std::vector<double> image = applied({d.data(), d.data() + d.size()});
       krylov.add(asVector(image));
@@ -155,6 +160,7 @@ class Gmres {
   const ExchangeMatrix& matrix_;
   const HeatSystem& system_;
   std::vector<double> constant_;
+  int most_steps_;
   Progress& progress_;
   std::size_t products_ = 0;
 };

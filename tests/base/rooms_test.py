@@ -21,6 +21,7 @@ CASES = [
     ("formfactor/hemicube/hemicube.cpp", "formfactor/exact/elements/elements.h",
      ["radiosity/gather.h"]),
     ("solve/solve.cpp", "radiosity/form_factors.h", ["radiosity/gather.h", "radiosity/render.h"]),
+    ("heat/nodes.cpp", "radiosity/form_factors.h", ["radiosity/gather.h", "radiosity/results.h"]),
     ("elements/field_builder.cpp", "formfactor/rays/point_rays.h",
      ["radiosity/solve.h", "radiosity/render.h"]),
     ("gather/gather.cpp", "formfactor/hemicube/hemicube.h",

@@ -182,6 +182,32 @@ TEST(Heat, ShieldsDivideTheFlux) {
   }
 }
 
+// GMRES has a step for each of a hundred sheets, which only see their neighbours.
+TEST(Heat, IterationReachesThroughAHundredSheets) {
+  const std::size_t n = 202;
+  Matrix f = Matrix::Zero(Eigen::Index(n), Eigen::Index(n));
+  for (Eigen::Index k = 0; k < f.rows(); k += 2) f(k, k + 1) = f(k + 1, k) = 1;
+  const FormFactors factors = test::factorsFrom(f, std::vector<double>(n, 1.0));
+  HeatSystem system;
+  system.source.assign(n, 0.0);
+  system.source.front() = 1;
+  system.falling.assign(n, 0.0);
+  system.reflected.assign(n, .7);
+  system.reflected.front() = system.reflected.back() = 0;
+  system.emits.assign(n, .5);
+  system.emits.front() = system.emits.back() = 0;
+  system.absorbs.assign(n, .3);
+  system.node.assign(n, kNone);
+  system.nodes = 100;
+  for (Index i = 1; i + 1 < n; ++i) system.node[i] = (i - 1) / 2;
+  Progress quiet;
+  const auto direct = solveSystem(factors.matrix, system, {}, 1e-12, quiet, LinearMethod::direct);
+  const auto steps = solveSystem(factors.matrix, system, {}, 1e-12, quiet, LinearMethod::iterative);
+  // The residual, 1e-12, over the least eigenvalue, which is above 1/n^2 of .3.
+  EXPECT_LT(test::largestDifference(direct.irradiance, steps.irradiance), 1e-7);
+  EXPECT_LT(steps.products, 250u);
+}
+
 // One wall of the unit cube has a temperature, all others are adiabatic.
 TEST(Heat, AdiabaticRoomIsIsothermal) {
   std::vector<HeatCondition> conditions(6, fluxed("wall", .4, 0));

@@ -1,0 +1,202 @@
+"""`radiosity heat`: conditions from a table and by name, what is written, what is refused."""
+
+import csv
+import math
+import unittest
+
+import h5py
+import numpy as np
+
+from cli_runner import SMALL, CliTest
+
+SIGMA = 5.67037441918443e-8
+
+# Two unit squares one above the other, seen from between them.
+PLATES = """v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0
+v 0 0 1
+v 1 0 1
+v 1 1 1
+v 0 1 1
+o lower
+f 1 2 3 4
+o upper
+f 8 7 6 5
+"""
+
+TABLE = """# a comment
+surface,emissivity,temperature_K,flux_W_per_m2,power_W,convection_W_per_m2_K,ambient_K,isothermal
+*,0.8,,0,,,,
+ceiling,0.9,700,,,,,
+"""
+
+
+class Heat(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.write("walls.csv", TABLE)
+        self.write("plates.obj", PLATES)
+
+    def heat(self, *arguments, code=0):
+        return self.report("heat", *arguments, code=code)["heat"]
+
+    def rows(self, name):
+        with open(self.folder / name, newline="") as file:
+            return list(csv.DictReader(file))
+
+    # F = 0.199824895698387 between the plates (Howell C-11), one row each: two equations by hand.
+    def test_plates_under_the_sky(self):
+        f, sky = 0.199824895698387, SIGMA * 250 ** 4
+        report = self.heat("plates.obj", "--faces-as-patches", "--tolerance", "1e-9",
+                           "--precision", "double", "--condition", "*.emissivity=0.7",
+                           "--condition", "lower.temperature=500", "--condition", "upper.flux=40",
+                           "--sky-temperature", "250")
+        lower, upper = report["surfaces"]
+        # J1 = e sigma T^4 + (1 - e) (F J2 + (1 - F) S); J2 = F J1 + (1 - F) S + q.
+        e, falls = 0.7, (1 - f) * sky
+        a = np.array([[1, -(1 - e) * f], [-f, 1]])
+        j = np.linalg.solve(a, [e * SIGMA * 500 ** 4 + (1 - e) * falls, falls + 40])
+        # Six digits are printed.
+        self.assertAlmostEqual(lower["radiosity_W_per_m2"] / j[0], 1, delta=1e-5)
+        self.assertAlmostEqual(upper["radiosity_W_per_m2"] / j[1], 1, delta=1e-5)
+        h = f * j[0] + falls
+        t = ((j[1] - (1 - e) * h) / (e * SIGMA)) ** 0.25
+        self.assertAlmostEqual(upper["temperature_K"] / t, 1, delta=1e-5)
+        self.assertAlmostEqual(report["imbalance_W"], 0, delta=1e-6)
+        self.assertEqual(report["linear_solver"], "solved directly")
+
+    def test_an_adiabatic_room_has_the_temperature_of_its_one_warm_wall(self):
+        report = self.heat("box.obj", "--thermal", "walls.csv", "--patches", "60", "--closure",
+                           "enforce", "--precision", "double")
+        for surface in report["surfaces"]:
+            self.assertAlmostEqual(surface["temperature_K"], 700, delta=0.01)  # closure to 1e-6
+
+    def test_all_files_say_the_same(self):
+        run = self.run_program("heat", "box.obj", *SMALL, "--thermal", "walls.csv", "--condition",
+                               "wall.convection=5", "--condition", "wall.ambient=290",
+                               "-o", "x.h5", "-o", "x.csv", "-o", "x.vtp", "--patch-table", "p.csv")
+        self.assertIn("unknown by hemicube", run.out)
+        surfaces = {row["surface"]: row for row in self.rows("x.csv")}
+        patches = self.rows("p.csv")
+        with h5py.File(self.folder / "x.h5") as file:
+            heat, area = file["heat"], file["mesh/area"][()]
+            names = file["mesh/surface_names"][()]
+            surface = file["mesh/surface"][()]
+            np.testing.assert_allclose([float(p["temperature_K"]) for p in patches],
+                                       heat["temperature"][()], rtol=1e-15)
+            self.assertEqual(heat["temperature"].attrs["unit"], b"K")
+            for s, name in enumerate(names):
+                mine = surface == s
+                row = surfaces[name.decode()]
+                self.assertAlmostEqual(
+                    float(row["radiated_W"]) / np.sum((area * heat["net_flux"][()])[mine]), 1,
+                    delta=1e-9)
+                self.assertAlmostEqual(
+                    float(row["temperature_K"]),
+                    np.average(heat["temperature"][()][mine], weights=area[mine]), delta=1e-6)
+            balance = heat["summary/balance_W"].attrs
+            self.assertAlmostEqual(balance["radiated"],
+                                   balance["to_sky"] + balance["on_backs"] + balance["imbalance"])
+        self.assertIn("temperature", (self.folder / "x.vtp").read_text(errors="replace"))
+        self.assertEqual(surfaces["ceiling/lamp"]["convected_W"], "0")
+
+    def test_form_factors_and_heat_are_reused(self):
+        self.run_program("factors", "box.obj", *SMALL, "-o", "x.h5")
+        first = self.report("heat", "x.h5", "--thermal", "walls.csv")
+        self.assertEqual(first["stages"]["form_factors"]["action"], "reused")
+        again = self.report("heat", "x.h5", "--thermal", "walls.csv")
+        self.assertEqual(again["stages"]["heat"]["action"], "reused")
+        self.assertEqual(again["heat"], first["heat"])
+        # A solution leaves the heat where it is; other form factors take it away.
+        other = self.report("solve", "x.h5")
+        self.assertEqual(other["stages"]["heat"]["action"], "kept")
+        run = self.run_program("heat", "x.h5", "--thermal", "walls.csv", "--condition",
+                               "ceiling.temperature=710")
+        self.assertIn("recomputed: conditions changed", run.out)
+        self.assertIn("heat exchange", self.run_program("info", "x.h5").out)
+        dropped = self.report("factors", "x.h5", "--resolution", "64")
+        self.assertEqual(dropped["stages"]["heat"]["action"], "dropped")
+        with h5py.File(self.folder / "x.h5") as file:
+            self.assertNotIn("heat", file)
+
+    def test_bands_of_one_emissivity_are_grey(self):
+        common = ["box.obj", *SMALL, "--thermal", "walls.csv", "--condition", "wall.flux=100"]
+        grey = self.heat(*common)
+        for option in (("--band-edges", "2,5"), ("--band-fractions", "0.25,0.75")):
+            banded = self.heat(*common, *option)
+            self.assertGreater(banded["bands"], 1)
+            for a, b in zip(grey["surfaces"], banded["surfaces"]):
+                self.assertAlmostEqual(a["temperature_K"], b["temperature_K"], delta=2e-3)
+
+    def test_threads_leave_every_bit(self):
+        for threads in ("1", "2"):
+            self.run_program("heat", "box.obj", "--patches", "2000", "--method", "hemicube",
+                             "--resolution", "32", "--thermal", "walls.csv", "--condition",
+                             "wall.flux=20", "--threads", threads, "--patch-table",
+                             f"{threads}.csv")
+        self.assertEqual((self.folder / "1.csv").read_bytes(), (self.folder / "2.csv").read_bytes())
+
+    def test_what_is_wrong_is_refused_in_one_line(self):
+        def refuse(*arguments, words):
+            self.refuse("heat", "box.obj", *SMALL, *arguments, words=words)
+
+        def table(text, *words):
+            self.write("bad.csv", text)
+            refuse("--thermal", "bad.csv", words=words)
+
+        refuse(words=["no conditions are given", "--thermal FILE.csv"])
+        refuse("--thermal", "none.csv", words=["none.csv", "no such file"])
+        refuse("--thermal", "walls.csv", "--condition", "door.flux=1",
+               words=["door", "there are: ", "ceiling", "wall"])
+        refuse("--thermal", "walls.csv", "--condition", "ceiling.flux=5",
+               words=["have no level", "ceiling"])
+        refuse("--thermal", "walls.csv", "--condition", "ceiling.emissivity=.5;.6",
+               words=["ceiling", "2 emissivities for 1 bands"])
+        refuse("--thermal", "walls.csv", "--condition", "wall.flux=-1e6",
+               words=["wall", "more heat is taken out"])
+        refuse("--thermal", "walls.csv", "--sky-temperature", "-4", words=["--sky-temperature"])
+        refuse("--thermal", "walls.csv", "--band-edges", "3,2", words=["--band-edges", "increase"])
+        refuse("--thermal", "walls.csv", "--band-edges", "3,x", words=["--band-edges", "`x`"])
+        refuse("--thermal", "walls.csv", "--band-fractions", ".5,.6", words=["sum to 1.1"])
+        refuse("--thermal", "walls.csv", "--patch-table", "x.txt", words=["--patch-table writes .csv"])
+        refuse("--thermal", "walls.csv", "-o", "x.png", words=["heat writes", ".csv"])
+        table("surface,emissivity\n", "bad.csv: holds no conditions")
+        table("", "bad.csv", "empty")
+        table("surface,epsilon\nwall,1\n", "bad.csv:1", "column `epsilon` is unknown", "emissivity")
+        table("emissivity,flux_W_per_m2\n.5,0\n", "bad.csv:1", "names no column `surface`")
+        table("surface,emissivity,temperature_K\n*,.5,300\nwall,.5\n", "bad.csv:3", "has 2 cells")
+        table("surface,emissivity,temperature_K\nwall,high,300\n", "bad.csv:2: wall", "`high`")
+        table("surface,emissivity,temperature_K,flux_W_per_m2\n*,.5,300,4\n", "bad.csv:2",
+              "more than one of temperature, flux and power")
+        table("surface,emissivity,temperature_K\nroom,.5,300\nwall,.5,300\nceiling,1,3\n",
+              "bad.csv:3", "named here and in bad.csv:2")
+        table("surface,emissivity,temperature_K\nwall,.5,300\n", "no condition for ceiling/lamp")
+        table("surface,emissivity,temperature_K\n*,.5,300\nwall,300:.1 400:.2,500\n",
+              "wall", "reaches 500 K", "300 to 400 K")
+
+    def test_a_damaged_stage_is_named(self):
+        self.run_program("heat", "box.obj", *SMALL, "--thermal", "walls.csv", "-o", "x.h5")
+        with h5py.File(self.folder / "x.h5", "r+") as file:
+            values = file["heat/temperature"][()]
+            del file["heat/temperature"]
+            file["heat/temperature"] = values[1:]
+        self.refuse("info", "x.h5", words=["/heat/temperature", f"not {len(values)}"])
+
+    def test_not_converging_is_said(self):
+        run = self.run_program("heat", "box.obj", *SMALL, "--thermal", "walls.csv", "--condition",
+                               "wall.convection=5", "--condition", "wall.ambient=290",
+                               "--heat-iterations", "1", code=1)
+        self.assertIn("not converged after 1 iterations", run.err)
+
+    def test_names_with_commas_and_quotes(self):
+        self.write("plates.obj", PLATES.replace("o lower", 'o the "low", plate'))
+        self.write("q.csv", 'surface,emissivity,temperature_K\n"the ""low"", plate",.5,300\n*,.5,400\n')
+        self.run_program("heat", "plates.obj", "--patches", "8", "--thermal", "q.csv", "-o", "s.csv")
+        self.assertTrue(self.rows("s.csv")[0]["surface"].startswith('the "low", plate'))
+        self.assertTrue(math.isclose(float(self.rows("s.csv")[0]["temperature_K"]), 300))
+
+
+if __name__ == "__main__":
+    unittest.main()
