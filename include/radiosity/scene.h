@@ -72,8 +72,9 @@ struct Scene {
   std::vector<Vec2> texcoords;            ///< one per corner, or empty; (0,0) is the top left of
                                           ///< the first texel, v grows downwards (as in glTF)
   std::vector<Index> face_surface;        ///< F
-  std::vector<std::size_t> face_element;  ///< F: line in an OBJ or ASCII STL; running face of the
-                                          ///< primitive in a glTF, of the file in a binary STL
+  std::vector<std::size_t> face_element;  ///< F: line in an OBJ, ASCII STL or View3D file; number
+                                          ///< of the element in a .msh or .inp; else running face
+                                          ///< or cell, of the primitive in a glTF, of the file
   std::vector<Surface> surfaces;
   std::vector<Material> materials;
   std::vector<Texture> textures;
@@ -121,8 +122,15 @@ struct SceneOptions {
   void validate() const;
 };
 
-/// Reads .obj (+ .mtl), .gltf, .glb or .stl (by extension) and applies the overrides. Face f of the
-/// scene is face f of the file. An OBJ has no cameras of its own; a comment line
+/// The extensions of the files that loadScene() reads: ".obj, .gltf, ...".
+std::string sceneExtensions();
+
+/// Reads a scene, its format told by the extension, and applies the overrides: .obj (+ .mtl), .gltf,
+/// .glb, .stl; View3D's .vs3 and .v3d; Gmsh's .msh (2.2 and 4.1); .inp of CalculiX and Abaqus; .ply;
+/// VTK's .vtk, .vtp and .vtu. Groups with names (solids, physical groups, element sets, arrays of
+/// cells) are surfaces of these names. Face f of the scene is face f of the file; a View3D surface
+/// is one face, or several where subsurfaces are cut out of it, a strip one face a triangle, and what
+/// has no area (volumes, lines, points) is left out. An OBJ has no cameras of its own; a comment line
 /// `# camera eye=x,y,z target=x,y,z up=x,y,z fov=DEGREES` (file units, vertical field of view) is
 /// read as one.
 /// Errors: InputError, one line with file, element and cure; RunError where the scene does not fit

@@ -95,7 +95,7 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
   const bool compares = command == Command::compare;
   sub->add_option(compares ? "A" : "SCENE", r.input,
                   compares ? "The reference: results file, lit mesh or picture"
-                           : "Scene (.obj, .gltf, .glb, .stl) or results file (.h5)")
+                           : fmt::format("Scene ({}) or results file (.h5)", sceneExtensions()))
       ->required()
       ->option_text(" ");
   if (compares) addCompareOptions(*sub, r);
@@ -195,8 +195,8 @@ std::string explain(const CLI::ParseError& error, const CLI::App& sub) {
     if (sub.get_name() == commandName(Command::compare)) {
       return "compare: A and B are missing: radiosity compare A B, or radiosity compare A --gather";
     }
-    return fmt::format("{}: the scene (.obj, .gltf, .glb, .stl) or results file (.h5) is missing",
-                       command);
+    return fmt::format("{}: the scene ({}) or results file (.h5) is missing", command,
+                       sceneExtensions());
   }
   std::string message = oneLine(error.what());
   const std::string not_converted = "Could not convert: ";

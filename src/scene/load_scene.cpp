@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <glm/common.hpp>
@@ -12,29 +12,32 @@
 
 #include "base/input_file.h"
 #include "scene/readers.h"
+#include "scene/text.h"
 
 namespace radiosity {
 
 namespace {
 
-std::string lowerExtension(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return char(std::tolower(c)); });
-  return extension;
-}
+struct Format {
+  const char* extension;
+  Scene (*load)(const std::string&, const SceneOptions&);
+};
+
+constexpr std::array kFormats = {
+    Format{".obj", loadObj}, Format{".gltf", loadGltf},  Format{".glb", loadGltf},
+    Format{".stl", loadStl}, Format{".vs3", loadView3d}, Format{".v3d", loadView3d},
+};
 
 Scene readByExtension(const std::string& path, const SceneOptions& options) {
   requireFile(path);
-  const std::string extension = lowerExtension(path);
-  if (extension == ".stl") return loadStl(path, options);
-  if (extension == ".obj") return loadObj(path, options);
-  if (extension == ".gltf" || extension == ".glb") {
-    return loadGltf(path, options);
+  const std::string extension = lowerCase(std::filesystem::path(path).extension().string());
+  for (const Format& format : kFormats) {
+    if (extension == format.extension) return format.load(path, options);
   }
   throw InputError(fmt::format(
-      "{}: {} is not a scene format this program reads; export it as .obj, .gltf, .glb or .stl",
-      path, extension.empty() ? "a file without an extension" : extension));
+      "{}: {} is not a scene format this program reads; export it as one "
+      "of {}",
+      path, extension.empty() ? "a file without an extension" : extension, sceneExtensions()));
 }
 
 void convertToMetres(Scene& scene, const std::string& unit) {
@@ -81,6 +84,15 @@ Scene readScene(const std::string& path, const SceneOptions& options) {
 }
 
 }  // namespace
+
+std::string sceneExtensions() {
+  std::string list;
+  for (const Format& format : kFormats) {
+    if (!list.empty()) list += ", ";
+    list += format.extension;
+  }
+  return list;
+}
 
 Scene loadScene(const std::string& path, const SceneOptions& options) {
   options.validate();

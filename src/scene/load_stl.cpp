@@ -4,7 +4,6 @@
 
 #include <array>
 #include <bit>
-#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -15,8 +14,8 @@
 #include "base/hash.h"
 #include "base/input_file.h"
 #include "base/parse.h"
+#include "scene/grouped_faces.h"
 #include "scene/readers.h"
-#include "scene/scene_builder.h"
 #include "scene/text.h"
 
 namespace radiosity {
@@ -34,12 +33,6 @@ std::size_t claimedTriangles(std::string_view content) {
   return count;
 }
 
-std::string lowerCase(std::string_view word) {
-  std::string lower(word);
-  for (char& c : lower) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return lower;
-}
-
 /// Exporters begin binary files with "solid", too: what has exactly the size that a binary header
 /// claims is binary, and so is what holds a zero byte.
 bool isBinary(std::string_view content) {
@@ -54,33 +47,24 @@ bool isBinary(std::string_view content) {
 /// Triangles into a scene; corners at equal places become one vertex.
 class StlBuilder {
  public:
-  StlBuilder(Scene& scene, const SceneOptions& options) : scene_(scene), builder_(scene) {
-    scene.materials.push_back(defaultMaterial("default", options));
-  }
+  explicit StlBuilder(GroupedFaces& faces) : faces_(faces) {}
 
   void add(const std::array<Vec3, 3>& corners, const Vec3& normal, const std::string& solid,
            std::size_t element) {
     std::array<Index, 3> face{};
     for (std::size_t k = 0; k < 3; ++k) face[k] = vertexAt(corners[k]);
-    builder_.addFace(face, {}, builder_.surface(solid, 0), element);
+    faces_.addFace(face, solid, element);
     const Vec3 wound = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
     if (glm::dot(wound, normal) < 0) ++against_;
   }
 
-  void finish(const SceneOptions& options) {
-    std::vector<std::string> solids;
-    solids.reserve(scene_.surfaces.size());
-    for (const Surface& surface : scene_.surfaces) solids.push_back(surface.object);
-    scene_.notes.push_back(
-        {Severity::warning, fmt::format("no material, reflectance {}: {}",
-                                        options.default_reflectance, joinNames(solids))});
-    if (against_ > 0) {
-      scene_.notes.push_back(
-          {Severity::warning,
-           fmt::format("{} of {} normals point against the order of the corners; the order counts",
-                       against_, scene_.faceCount())});
-    }
-    builder_.finish();
+  void noteNormals() {
+    if (against_ == 0) return;
+    Scene& scene = faces_.scene();
+    scene.notes.push_back(
+        {Severity::warning,
+         fmt::format("{} of {} normals point against the order of the corners; the order counts",
+                     against_, scene.faceCount())});
   }
 
  private:
@@ -93,13 +77,12 @@ class StlBuilder {
   };
   Index vertexAt(const Vec3& p) {
     const Vec3 place = p + Vec3(0.0);  // -0 and 0 are one place
-    const auto [found, is_new] = vertex_of_.try_emplace(place, Index(scene_.vertices.size()));
-    if (is_new) scene_.vertices.push_back(place);
+    const auto [found, is_new] = vertex_of_.try_emplace(place, kNone);
+    if (is_new) found->second = faces_.addVertex(place);
     return found->second;
   }
 
-  Scene& scene_;
-  SceneBuilder builder_;
+  GroupedFaces& faces_;
   std::unordered_map<Vec3, Index, PlaceHash> vertex_of_;
   std::size_t against_ = 0;  ///< normals that disagree with the winding
 };
@@ -201,7 +184,7 @@ class AsciiReader {
 };
 
 void readBinary(const std::string& file, std::string_view content, const std::string& solid,
-                Scene& scene, StlBuilder& builder) {
+                std::vector<Note>& notes, StlBuilder& builder) {
   const auto fail = [&](const std::string& what) {
     throw InputError(fmt::format("{}: {}; export it again", file, what));
   };
@@ -228,11 +211,11 @@ void readBinary(const std::string& file, std::string_view content, const std::st
   }
   const std::size_t rest = content.size() - kHeader - kRecord * count;
   if (rest > 0) {
-    scene.notes.push_back(
+    notes.push_back(
         {Severity::warning, fmt::format("{} bytes after the last triangle are left out", rest)});
   }
   if (coloured) {
-    scene.notes.push_back({Severity::info, "colours of triangles (attribute bytes) are not used"});
+    notes.push_back({Severity::info, "colours of triangles (attribute bytes) are not used"});
   }
 }
 
@@ -241,19 +224,15 @@ void readBinary(const std::string& file, std::string_view content, const std::st
 Scene loadStl(const std::string& path, const SceneOptions& options) {
   const std::string content = readWholeFile(path);
   const std::string stem = std::filesystem::path(path).stem().string();
-  Scene scene;
-  scene.file = path;
-  StlBuilder builder(scene, options);
+  GroupedFaces faces(path, options);
+  StlBuilder builder(faces);
   if (isBinary(content)) {
-    readBinary(path, content, stem, scene, builder);
+    readBinary(path, content, stem, faces.scene().notes, builder);
   } else {
     AsciiReader(path, stem, builder).read(content);
   }
-  if (scene.faceCount() == 0) {
-    throw InputError(path + ": no triangles; export the scene with its meshes");
-  }
-  builder.finish(options);
-  return scene;
+  builder.noteNormals();
+  return faces.finish("export the scene with its meshes");
 }
 
 }  // namespace radiosity

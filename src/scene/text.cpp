@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 namespace radiosity {
 
@@ -33,6 +34,12 @@ std::vector<std::string_view> splitWords(std::string_view text) {
     begin = text.find_first_not_of(kBlanks, end);
   }
   return words;
+}
+
+std::string lowerCase(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return lower;
 }
 
 std::string joinNames(std::span<const std::string> names, std::size_t limit) {

@@ -19,6 +19,9 @@ std::string onOneLine(std::string_view text);
 /// Words between blanks (space, tab, carriage return).
 std::vector<std::string_view> splitWords(std::string_view text);
 
+/// ASCII letters as small ones.
+std::string lowerCase(std::string_view text);
+
 /// "a, b, c", and where there are more than `limit` names "... and 5 more".
 std::string joinNames(std::span<const std::string> names, std::size_t limit = 12);
 

@@ -37,7 +37,7 @@ class Stl(CliTest):
     def test_named_solids_are_surfaces_and_corners_are_welded(self):
         self.put(tetrahedron([("floor slab", FACES[:1]), ("walls", FACES[1:])]))
         scene = self.scene()
-        self.assertEqual([s["name"] for s in scene["surfaces"]], ["floor slab/default", "walls/default"])
+        self.assertEqual([s["name"] for s in scene["surfaces"]], ["floor slab", "walls"])
         self.assertEqual([scene["faces"], scene["vertices"], scene["closed"]], [4, 4, True])
 
     def test_text_and_binary_are_the_same_scene(self):
@@ -89,7 +89,7 @@ class Stl(CliTest):
             with self.subTest(new=new):
                 self.assertIn(old, text)
                 self.says(line, text.replace(old, new))
-        self.says(": no triangles; export the scene with its meshes", "solid nothing\nendsolid\n")
+        self.says(": no faces; export the scene with its meshes", "solid nothing\nendsolid\n")
 
     def test_broken_binary(self):
         whole = input_files.binary_stl(3)
@@ -100,7 +100,7 @@ class Stl(CliTest):
         self.says(": is cut off or no STL: it claims 3 triangles and holds 2; export it again",
                   input_files.binary_stl(3, header=b"solid made by hand")[:-1])
         self.says(": is no STL: neither text that begins with solid nor binary; export it again", "hello")
-        self.says(": no triangles; export the scene with its meshes", input_files.binary_stl(0))
+        self.says(": no faces; export the scene with its meshes", input_files.binary_stl(0))
         endless = bytearray(whole)
         endless[84 + 50 + 12:84 + 50 + 16] = struct.pack("<f", float("inf"))
         self.says(": triangle 1 has a coordinate that is not finite; export it again", bytes(endless))

@@ -152,7 +152,7 @@ TEST_F(SceneObj, RefusesFilesThatAreNoScene) {
   EXPECT_CONTAINS(inputErrorOf([&] { loadScene(path("folder.obj")); }), "is a folder");
   const std::string blend = write("scene.blend", "BLENDER");
   EXPECT_CONTAINS(inputErrorOf([&] { loadScene(blend); }),
-                  "export it as .obj, .gltf, .glb or .stl");
+                  "export it as one of .obj, .gltf, .glb, .stl");
   EXPECT_CONTAINS(errorOf(""), "is empty");
   EXPECT_CONTAINS(errorOf("# nothing\n"), "no faces");
   EXPECT_CONTAINS(errorOf(kSquare + "l 1 2\n"), "no faces");

@@ -1,0 +1,76 @@
+#include "scene/grouped_faces.h"
+
+#include <fmt/format.h>
+
+#include "scene/text.h"
+
+namespace radiosity {
+
+GroupedFaces::GroupedFaces(const std::string& path, const SceneOptions& options)
+    : options_(options), builder_(scene_) {
+  scene_.file = path;
+}
+
+Index GroupedFaces::addVertex(const Vec3& place) {
+  if (scene_.vertices.size() >= kNone) {
+    throw InputError(fmt::format("{}: more than {} vertices; split the scene", scene_.file, kNone));
+  }
+  scene_.vertices.push_back(place);
+  return Index(scene_.vertices.size() - 1);
+}
+
+void GroupedFaces::addFace(std::span<const Index> corners, const std::string& group,
+                           std::size_t element) {
+  const auto [place, is_new] = surface_of_.try_emplace(group, kNone);
+  if (is_new) {
+    scene_.materials.push_back(defaultMaterial(group, options_));
+    place->second = builder_.surface(group, Index(scene_.materials.size() - 1));
+  }
+  builder_.addFace(corners, {}, place->second, element);
+}
+
+void GroupedFaces::addElement(const ElementShape& shape, std::span<const Index> nodes,
+                              const std::string& group, std::size_t element) {
+  if (shape.dimension > 2) {
+    ++volumes_;
+  } else if (shape.dimension < 2) {
+    ++lines_;
+  } else if (shape.nodes == 0) {
+    addFace(nodes, group, element);
+  } else {
+    if (shape.nodes > shape.corners) ++curved_;
+    addFace(nodes.first(std::size_t(shape.corners)), group, element);
+  }
+}
+
+void GroupedFaces::noteElements() {
+  const auto note = [&](std::size_t count, Severity severity, const char* one, const char* many) {
+    if (count == 0) return;
+    scene_.notes.push_back({severity, fmt::format("{} {}", count, count == 1 ? one : many)});
+  };
+  note(curved_, Severity::warning,
+       "element has nodes between its corners: it is read as flat, by its corners",
+       "elements have nodes between their corners: they are read as flat, by their corners");
+  note(volumes_, Severity::warning, "volume element is left out: its faces are no surfaces here",
+       "volume elements are left out: their faces are no surfaces here");
+  note(lines_, Severity::info, "line or point has no area and is left out",
+       "lines and points have no area and are left out");
+}
+
+Scene GroupedFaces::finish(const std::string& cure) {
+  if (scene_.faceCount() == 0) {
+    const char* what = volumes_ > 0 ? "no faces, volume elements alone" : "no faces";
+    throw InputError(fmt::format("{}: {}; {}", scene_.file, what, cure));
+  }
+  std::vector<std::string> groups;
+  groups.reserve(scene_.surfaces.size());
+  for (const Surface& surface : scene_.surfaces) groups.push_back(surface.object);
+  scene_.notes.push_back(
+      {Severity::warning, fmt::format("no material, reflectance {}: {}",
+                                      options_.default_reflectance, joinNames(groups))});
+  noteElements();
+  builder_.finish();
+  return std::move(scene_);
+}
+
+}  // namespace radiosity

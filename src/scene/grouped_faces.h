@@ -1,0 +1,72 @@
+// Meshes without materials: faces by the names of their groups, elements of analysis programs.
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "radiosity/scene.h"
+#include "scene/scene_builder.h"
+
+namespace radiosity {
+
+/// What an element of a mesh is; the first `corners` of its nodes are its corners, in order.
+struct ElementShape {
+  int dimension;  ///< 0 point, 1 line, 2 face, 3 volume
+  int corners;    ///< of a face
+  int nodes;      ///< 0: any number, and all are corners
+};
+
+/// Makes a scene of faces with names. Each name is a surface with a material of the same name and
+/// the default reflectance, so that a surface is called in the program as it is in its file.
+class GroupedFaces {
+ public:
+  /// `options` must outlive it.
+  GroupedFaces(const std::string& path, const SceneOptions& options);
+
+  /// The scene so far, for notes and cameras.
+  Scene& scene() { return scene_; }
+
+  /// Adds a vertex of finite coordinates, in file units. InputError beyond what an Index counts.
+  Index addVertex(const Vec3& place);
+  /// `element`: how the file calls the face, for Scene::face_element.
+  void addFace(std::span<const Index> corners, const std::string& group, std::size_t element);
+  /// The same for an element of any shape: volumes, lines and points are left out, of curved faces
+  /// the corners count; finish() says so.
+  void addElement(const ElementShape& shape, std::span<const Index> nodes, const std::string& group,
+                  std::size_t element);
+
+  /// InputError, with `cure`, where there are no faces.
+  Scene finish(const std::string& cure);
+
+ private:
+  void noteElements();
+
+  const SceneOptions& options_;
+  Scene scene_;
+  SceneBuilder builder_;
+  std::map<std::string, Index> surface_of_;
+  std::size_t curved_ = 0;
+  std::size_t volumes_ = 0;
+  std::size_t lines_ = 0;
+};
+
+/// Nodes by their numbers, which need not be consecutive.
+class NodeNumbers {
+ public:
+  /// False where there is a node of that number already.
+  bool add(long long number, Index vertex) { return vertex_of_.emplace(number, vertex).second; }
+  /// kNone where there is none.
+  Index find(long long number) const {
+    const auto found = vertex_of_.find(number);
+    return found == vertex_of_.end() ? kNone : found->second;
+  }
+
+ private:
+  std::unordered_map<long long, Index> vertex_of_;
+};
+
+}  // namespace radiosity
