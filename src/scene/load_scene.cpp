@@ -24,8 +24,9 @@ struct Format {
 };
 
 constexpr std::array kFormats = {
-    Format{".obj", loadObj}, Format{".gltf", loadGltf},  Format{".glb", loadGltf},
-    Format{".stl", loadStl}, Format{".vs3", loadView3d}, Format{".v3d", loadView3d},
+    Format{".obj", loadObj},  Format{".gltf", loadGltf},  Format{".glb", loadGltf},
+    Format{".stl", loadStl},  Format{".vs3", loadView3d}, Format{".v3d", loadView3d},
+    Format{".msh", loadGmsh}, Format{".inp", loadInp},
 };
 
 Scene readByExtension(const std::string& path, const SceneOptions& options) {

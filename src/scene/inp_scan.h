@@ -1,0 +1,51 @@
+// Reads input of CalculiX and Abaqus (Dhondt, "CalculiX CrunchiX User's Manual", keywords *NODE,
+// *ELEMENT, *ELSET and *INCLUDE) line by line.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "radiosity/base.h"
+#include "scene/grouped_faces.h"
+
+namespace radiosity {
+
+struct InpNode {
+  long long number;
+  Vec3 place;
+  std::string where;  ///< "FILE:LINE", for errors
+};
+
+/// A shell or another element that is a face.
+struct InpElement {
+  long long number;
+  ElementShape shape;
+  std::vector<long long> nodes;  ///< numbers of all its nodes
+  std::string where;
+};
+
+/// Numbers first, first + step, ... up to last.
+struct InpRange {
+  long long first;
+  long long last;
+  long long step;
+};
+
+struct InpSet {
+  std::string name;  ///< as it is first written; case does not count
+  std::vector<InpRange> members;
+  bool chosen = false;  ///< by *ELSET, not on the line *ELEMENT
+};
+
+struct InpScan {
+  std::vector<InpNode> nodes;
+  std::vector<InpElement> elements;
+  std::vector<InpSet> sets;  ///< of elements, in the order they come
+  std::vector<Note> notes;
+};
+
+/// Reads the file and those that it includes. Errors: InputError "FILE:LINE: what is wrong; cure".
+InpScan scanInp(const std::string& path);
+
+}  // namespace radiosity

@@ -1,0 +1,80 @@
+// Reads mesh files from begin to end: words and numbers of text, or the same numbers from bytes.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "radiosity/base.h"
+
+namespace radiosity {
+
+/// How numbers stand in a file.
+enum class Encoding { text, little, big };
+
+enum class NumberType { i8, u8, i16, u16, i32, u32, i64, u64, f32, f64 };
+
+/// Bytes of a number in a binary file.
+std::size_t sizeOf(NumberType type);
+
+/// A place in a mesh file. All errors are InputErrors "FILE:LINE: what; cure", and behind the first
+/// binary number "FILE: byte N: what; cure".
+class MeshCursor {
+ public:
+  /// `content` must outlive the cursor. Numbers are text until setEncoding().
+  MeshCursor(std::string file, std::string_view content) : file_(std::move(file)), all_(content) {}
+
+  [[noreturn]] void fail(const std::string& what) const;
+
+  /// Whether nothing but blanks is left.
+  bool atEnd();
+  /// What stands between blanks, across line ends. Fails at the end of the file.
+  std::string_view word();
+  /// The rest of this line, without blanks at its ends; the next read begins behind it.
+  std::string_view restOfLine();
+  /// The next line that is not blank, without blanks at its ends; empty at the end of the file.
+  std::string_view nextLine();
+
+  void setEncoding(Encoding encoding) { encoding_ = encoding; }
+  Encoding encoding() const { return encoding_; }
+  /// The next number; of text a word that is one. `what` names it in the error. A number that is
+  /// not finite is an error.
+  double number(NumberType type, const char* what);
+  /// The same for whole numbers, of an integer type.
+  long long integer(NumberType type, const char* what);
+  /// How many `what` follow, each of `numbers` numbers: from 0 to what the rest of the file can
+  /// hold, so that a forged count reserves no memory.
+  std::size_t count(NumberType type, const char* what, NumberType of, std::size_t numbers = 1);
+  /// The same where the number is a line of text in a binary file, too, and numbers follow it.
+  std::size_t textCount(const char* what, NumberType of, std::size_t numbers = 1);
+  /// Three coordinates.
+  Vec3 place(NumberType type);
+  /// Fails unless the rest of the file can hold so many numbers.
+  void require(std::size_t count, const char* what, NumberType of, std::size_t numbers = 1) const;
+  /// Passes over numbers, whatever they are.
+  void skip(NumberType type, std::size_t count);
+  /// Moves behind the next line that begins with `text`. False, and stays, where there is none.
+  bool passBehind(std::string_view text);
+  /// Raw bytes. Fails where there are fewer.
+  std::string_view bytes(std::size_t count);
+
+  /// Of the word or line read last, counted from 1.
+  std::size_t line() const { return line_; }
+  std::size_t position() const { return at_; }
+
+ private:
+  void skipBlanks();
+  void passLineEnd();
+  template <class Value>
+  Value value();
+  double binaryNumber(NumberType type);
+
+  std::string file_;
+  std::string_view all_;
+  std::size_t at_ = 0;
+  std::size_t line_ = 1;
+  bool was_binary_ = false;
+  Encoding encoding_ = Encoding::text;
+};
+
+}  // namespace radiosity

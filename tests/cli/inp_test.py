@@ -1,0 +1,117 @@
+"""CalculiX and Abaqus input as scenes: shells, sets, includes, and each broken file with its line."""
+
+import sys
+import unittest
+
+from cli_runner import CliTest
+
+HEAD = """*HEADING
+ a plate of two squares
+** a comment
+*NODE, NSET=Nall
+1, 0., 0., 0.
+2, 1., 0.
+3, 1.D0, 1., 0.
+4, 0., 1., 0.
+5, 2., 0., 0.
+6, 2., 1., 0.
+"""
+TWO = "*ELEMENT, TYPE=S4, ELSET=Surface1\n1, 1,2,3,4\n2, 2,5,6,3\n"
+
+
+class Inp(CliTest):
+    def put(self, text, name="a.inp"):
+        return self.write(name, text)
+
+    def surfaces(self, text):
+        self.put(text)
+        return {s["name"]: s["area_m2"] for s in self.report("info", "a.inp")["scene"]["surfaces"]}
+
+    def says(self, line, text):
+        self.assertEqual(self.refuse("info", self.put(text)), "radiosity: a.inp" + line)
+
+    def test_shells_of_every_order(self):
+        mid = "".join(f"{k}, {x}, {y}, 0.\n" for k, x, y in
+                      [(11, .5, 0), (12, 1, .5), (13, .5, 1), (14, 0, .5), (15, .5, .5)])
+        for kind, nodes, area in [("S3", "1,2,3", .5), ("stri65", "1,2,3,11,12,15", .5), ("S6", "1,2,3,11,12,15", .5),
+                                  ("S4R", "1,2,3,4", 1), ("M3D4", "1,2,3,4", 1), ("CPS4", "1,2,3,4", 1),
+                                  ("S8R", "1,2,3,4,11,12,13,14", 1), ("DS8", "1,2,3,4,\n11,12,13,\n14", 1),
+                                  ("S9R5", "1,2,3,4,11,12,13,14,15", 1)]:
+            with self.subTest(kind=kind):
+                self.assertEqual(self.surfaces(f"{HEAD}{mid}*Element, type={kind}, Elset=Plate\n7, {nodes}\n"),
+                                 {"Plate": area})
+
+    def test_sets_are_surfaces(self):
+        # The set that a mesher makes for all and for each part yields to those of *ELSET.
+        text = HEAD + TWO + "*ELSET, ELSET=Eall\n1, 2\n"
+        self.assertEqual(self.surfaces(text), {"Surface1": 2})  # both have all: the first
+        self.assertEqual(self.surfaces(text + "*elset, elset=LEFT\n1,\n*ELSET, ELSET=right, GENERATE\n2, 2, 1\n"),
+                         {"LEFT": 1, "right": 1})
+        self.assertEqual(self.surfaces(text + "*ELSET, ELSET=left\n1\n"), {"left": 1, "Surface1": 1})
+        self.assertIn("and leave these to them: Surface1, Eall", self.run_program("info", "a.inp").out)
+        # A set of a set, and one whose name is written in two ways.
+        self.assertEqual(self.surfaces(text + "*ELSET, ELSET=a\n1\n*ELSET, ELSET=b\nA\n*ELSET,ELSET=B\n"),
+                         {"a": 1, "Surface1": 1})
+        self.assertEqual(self.surfaces(HEAD + TWO.replace(", ELSET=Surface1", "")), {"unnamed": 2})
+
+    def test_what_is_no_face_is_left_out(self):
+        text = HEAD + TWO + "*ELEMENT, TYPE=C3D4, ELSET=body\n3, 1,2,3,4\n*ELEMENT, TYPE=B31\n4, 1, 2\n*STEP\n1, 2, junk\n"
+        self.assertEqual(self.surfaces(text), {"Surface1": 2})
+        self.assertIn("elements that are no faces (volumes, beams, ...) are left out, of type: C3D4, B31",
+                      self.run_program("info", "a.inp").err)
+
+    def test_included_files_are_read(self):
+        (self.folder / "parts").mkdir()
+        self.put(HEAD + "*INCLUDE, INPUT=more.msh\n", "parts/nodes.inc")
+        self.put(TWO, "parts/more.msh")
+        text = "*INCLUDE, INPUT=parts/nodes.inc\n*ELSET, ELSET=left\n1\n"
+        self.assertEqual(self.surfaces(text), {"left": 1, "Surface1": 1})
+        self.put(TWO.replace("6,3", "9,3"), "parts/more.msh")
+        self.assertEqual(self.refuse("info", self.put(text)), "radiosity: parts/more.msh:3: node 9 of element 2 "
+                         "does not exist; correct it")
+        self.says(":1: *INCLUDE of gone.inp: no such file; check the name and the folder",
+                  "*INCLUDE, INPUT=gone.inp\n")
+        self.says(":1: more than 16 files include one another; write them into one", "*INCLUDE, INPUT=a.inp\n")
+
+    def test_broken_files(self):
+        text = HEAD + TWO
+        for old, new, line in [
+                ("2, 1., 0.", "2, 1., nan", ":6: coordinate `nan` is not a finite number; write it as 1.5 with a "
+                                            "decimal point"),
+                ("2, 1., 0.", "1, 1., 0.", ":6: node 1 is there twice; number nodes anew"),
+                ("2, 1., 0.", "two, 1., 0.", ":6: node number `two` is not a whole number; correct it"),
+                ("1, 1,2,3,4", "2, 1,2,3,4", ":13: element 2 is there twice; number elements anew"),
+                ("1, 1,2,3,4", "1, 1,2,3,99999999999", ":12: node 99999999999 of element 1 does not exist; correct it"),
+                ("1, 1,2,3,4", "1, 1,2,3,4,5", ":12: element 1 has 5 nodes, its type has 4; correct it"),
+                ("2, 2,5,6,3\n", "2, 2,5,6\n", ":13: the last element has too few nodes; correct it, or the file is "
+                                               "cut off"),
+                ("2, 2,5,6,3\n", "2, 2,5,6\n*STEP\n", ":14: the element before it has too few nodes; correct it"),
+                ("TYPE=S4, ", "", ":11: *ELEMENT names no type; add TYPE=S3 or another"),
+                ("*HEADING\n", "*INSTANCE, NAME=a, PART=b\n", ":1: parts and instances are not read; write the input "
+                 "without them (in Abaqus/CAE: Model, Edit Attributes, Do not use parts and assemblies in input "
+                 "files)"),
+                ("*HEADING\n", "*NGEN\n", ":1: *ngen makes or moves nodes and is not read; write out nodes and "
+                                          "elements where they lie"),
+                (", NSET=Nall", ", SYSTEM=C", ":4: cylindrical and spherical coordinates are not read; write x, y, z"),
+                (", NSET=Nall", ", INPUT=x", ":4: *node from another file is not read; use *INCLUDE"),
+        ]:
+            with self.subTest(new=new):
+                self.assertIn(old, text)
+                self.says(line, text.replace(old, new))
+        self.says(":14: *ELSET names no set; add ELSET=NAME", text + "*ELSET\n1\n")
+        self.says(":15: `none` is neither an element nor a set that came before; correct it",
+                  text + "*ELSET, ELSET=a\nnone\n")
+        self.says(":15: the last element is not less than the first, and the step is 1 or more; correct the line",
+                  text + "*ELSET, ELSET=a, GENERATE\n1, 9, 0\n")
+        self.says(": no faces; write the surfaces as shells (TYPE=S3, S4, S6, S8)", HEAD)
+
+    def test_sets_of_sets_do_not_fill_the_memory(self):
+        text = HEAD + TWO + "*ELSET, ELSET=s0\n1, 1\n"
+        for k in range(1, 60):
+            text += f"*ELSET, ELSET=s{k}\ns{k - 1}, s{k - 1}\n"
+        self.refuse("info", self.put(text), words=["element sets have more than 16777216 members"])
+        self.surfaces(HEAD + TWO + "*ELSET, ELSET=s, GENERATE\n1, 9000000000000000000, 1\n")
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())
