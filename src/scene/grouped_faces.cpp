@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+
 #include "scene/text.h"
 
 namespace radiosity {
@@ -71,6 +74,20 @@ Scene GroupedFaces::finish(const std::string& cure) {
   noteElements();
   builder_.finish();
   return std::move(scene_);
+}
+
+bool namesGroups(std::string_view array) {
+  static constexpr std::array<std::string_view, 15> kWords = {
+      "surface", "group", "region", "physical",   "gmshphysical", "part",  "material", "object",
+      "label",   "zone",  "patch",  "cellentity", "entity",       "solid", "component"};
+  std::string word;
+  for (const char c : lowerCase(array)) {
+    if (c >= 'a' && c <= 'z') word += c;
+  }
+  for (const std::string_view ending : {"s", "id", "index", "tag", "name"}) {
+    if (word.ends_with(ending)) word.resize(word.size() - ending.size());
+  }
+  return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
 }
 
 }  // namespace radiosity

@@ -54,6 +54,10 @@ class GroupedFaces {
   std::size_t lines_ = 0;
 };
 
+/// Whether an array of numbers or names of faces, called `array`, says which part of the scene they
+/// belong to: "group", "RegionId", "PhysicalIds", "material_index" and the like.
+bool namesGroups(std::string_view array);
+
 /// Nodes by their numbers, which need not be consecutive.
 class NodeNumbers {
  public:

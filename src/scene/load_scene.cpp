@@ -26,7 +26,8 @@ struct Format {
 constexpr std::array kFormats = {
     Format{".obj", loadObj},  Format{".gltf", loadGltf},  Format{".glb", loadGltf},
     Format{".stl", loadStl},  Format{".vs3", loadView3d}, Format{".v3d", loadView3d},
-    Format{".msh", loadGmsh}, Format{".inp", loadInp},
+    Format{".msh", loadGmsh}, Format{".inp", loadInp},    Format{".ply", loadPly},
+    Format{".vtk", loadVtk},  Format{".vtp", loadVtkXml}, Format{".vtu", loadVtkXml},
 };
 
 Scene readByExtension(const std::string& path, const SceneOptions& options) {

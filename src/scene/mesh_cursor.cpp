@@ -150,11 +150,16 @@ std::size_t MeshCursor::count(NumberType type, const char* what, NumberType of,
   return std::size_t(found);
 }
 
-std::size_t MeshCursor::textCount(const char* what, NumberType of, std::size_t numbers) {
+std::size_t MeshCursor::textNumber(const char* what) {
   const Encoding encoding = std::exchange(encoding_, Encoding::text);
-  const std::size_t found = count(of, what, of, 0);
-  if (encoding != Encoding::text) restOfLine();
+  const std::size_t found = count(NumberType::u64, what, NumberType::u8, 0);
   encoding_ = encoding;
+  return found;
+}
+
+std::size_t MeshCursor::textCount(const char* what, NumberType of, std::size_t numbers) {
+  const std::size_t found = textNumber(what);
+  if (encoding_ != Encoding::text) restOfLine();
   require(found, what, of, numbers);
   return found;
 }

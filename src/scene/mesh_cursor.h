@@ -47,6 +47,10 @@ class MeshCursor {
   std::size_t count(NumberType type, const char* what, NumberType of, std::size_t numbers = 1);
   /// The same where the number is a line of text in a binary file, too, and numbers follow it.
   std::size_t textCount(const char* what, NumberType of, std::size_t numbers = 1);
+  /// A number of 0 or more that is text in a binary file, too.
+  std::size_t textNumber(const char* what);
+  /// Whether these characters come next.
+  bool startsWith(std::string_view text) const { return all_.substr(at_).starts_with(text); }
   /// Three coordinates.
   Vec3 place(NumberType type);
   /// Fails unless the rest of the file can hold so many numbers.

@@ -1,0 +1,260 @@
+// PLY (Turk, "The PLY Polygon File Format", 1994): ASCII, binary of both byte orders. Faces are one
+// surface, or one for each value of a property such as `group` or `material_index`.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+
+#include "base/input_file.h"
+#include "base/parse.h"
+#include "scene/grouped_faces.h"
+#include "scene/mesh_cursor.h"
+#include "scene/readers.h"
+#include "scene/text.h"
+
+namespace radiosity {
+
+namespace {
+
+struct Property {
+  std::string name;
+  NumberType type;
+  std::optional<NumberType> count;  ///< type of the length of a list
+};
+
+struct Element {
+  std::string name;
+  std::size_t count = 0;
+  std::vector<Property> properties;
+};
+
+std::optional<NumberType> typeOf(std::string_view name) {
+  using enum NumberType;
+  constexpr std::pair<std::string_view, NumberType> kTypes[] = {
+      {"char", i8},   {"int8", i8},     {"uchar", u8},   {"uint8", u8},
+      {"short", i16}, {"int16", i16},   {"ushort", u16}, {"uint16", u16},
+      {"int", i32},   {"int32", i32},   {"uint", u32},   {"uint32", u32},
+      {"float", f32}, {"float32", f32}, {"double", f64}, {"float64", f64}};
+  for (const auto& [known, type] : kTypes) {
+    if (known == name) return type;
+  }
+  return std::nullopt;
+}
+
+bool isFraction(NumberType type) { return type == NumberType::f32 || type == NumberType::f64; }
+
+class PlyReader {
+ public:
+  PlyReader(const std::string& path, std::string_view content, const SceneOptions& options)
+      : cursor_(path, content),
+        faces_(path, options),
+        stem_(std::filesystem::path(path).stem().string()) {}
+
+  Scene read() {
+    header();
+    for (const Element& element : elements_) {
+      if (element.name == "vertex") {
+        vertices(element);
+      } else if (element.name == "face") {
+        faces(element);
+      } else {
+        passElement(element);
+      }
+    }
+    if (!cursor_.atEnd()) {
+      faces_.scene().notes.push_back(
+          {Severity::warning, "what stands after the last element of the file is left out"});
+    }
+    return faces_.finish("export the scene with its faces");
+  }
+
+ private:
+  void header();
+  void headerLine(const std::vector<std::string_view>& words);
+  void property(const std::vector<std::string_view>& words);
+  void requireRoom(const Element& element) const;
+  void vertices(const Element& element);
+  void faces(const Element& element);
+  void face(std::size_t number, const Element& element);
+  void passElement(const Element& element);
+  void pass(const Property& property);
+  void noteColours();
+
+  MeshCursor cursor_;
+  GroupedFaces faces_;
+  std::string stem_;
+  std::vector<Element> elements_;
+  std::optional<Encoding> encoding_;
+  std::vector<Index> corners_;  ///< of the face at hand
+};
+
+void PlyReader::header() {
+  if (cursor_.nextLine() != "ply") cursor_.fail("is no PLY file, which begins with ply; export it");
+  for (;;) {
+    const std::string_view line = cursor_.nextLine();
+    if (line.empty()) cursor_.fail("the header has no end; export the file again");
+    if (line == "end_header") break;
+    headerLine(splitWords(line));
+  }
+  cursor_.restOfLine();
+  if (!encoding_) cursor_.fail("no line says the format; export the file again");
+  cursor_.setEncoding(*encoding_);
+  noteColours();
+}
+
+void PlyReader::headerLine(const std::vector<std::string_view>& words) {
+  const std::string_view keyword = words[0];
+  if (keyword == "comment" || keyword == "obj_info") return;
+  if (keyword == "format" && words.size() == 3) {
+    if (words[1] == "ascii") encoding_ = Encoding::text;
+    if (words[1] == "binary_little_endian") encoding_ = Encoding::little;
+    if (words[1] == "binary_big_endian") encoding_ = Encoding::big;
+    if (!encoding_) cursor_.fail(fmt::format("format {} is not read; export it again", words[1]));
+  } else if (keyword == "element" && words.size() == 3) {
+    const std::optional<long long> count = parseInteger(words[2]);
+    if (!count || *count < 0) {
+      cursor_.fail(fmt::format("`{}` is not a whole number of 0 or more; correct it", words[2]));
+    }
+    if (words[1] == "tristrips") {
+      cursor_.fail("strips of triangles are not read; export the faces one by one");
+    }
+    elements_.push_back({std::string(words[1]), std::size_t(*count), {}});
+  } else if (keyword == "property" && words.size() >= 3 && !elements_.empty()) {
+    property(words);
+  } else {
+    cursor_.fail(
+        fmt::format("`{}` does not belong in the header of a PLY file like this; export it "
+                    "again",
+                    keyword));
+  }
+}
+
+void PlyReader::property(const std::vector<std::string_view>& words) {
+  const bool is_list = words[1] == "list";
+  if (words.size() != (is_list ? 5U : 3U)) {
+    cursor_.fail("a property is `TYPE NAME` or `list TYPE TYPE NAME`; export the file again");
+  }
+  for (std::size_t k = is_list ? 2 : 1; k + 1 < words.size(); ++k) {
+    if (typeOf(words[k])) continue;
+    cursor_.fail(fmt::format("`{}` is no type of a PLY file; export it again", words[k]));
+  }
+  Property property{std::string(words.back()), *typeOf(words[words.size() - 2]), std::nullopt};
+  if (is_list) property.count = *typeOf(words[2]);
+  if (is_list && isFraction(*property.count)) {
+    cursor_.fail("the length of a list is a whole number; export the file again");
+  }
+  elements_.back().properties.push_back(std::move(property));
+}
+
+/// Vertex colours may be light, paint or labels, linear or not: nobody can tell.
+void PlyReader::noteColours() {
+  for (const Element& element : elements_) {
+    for (const Property& property : element.properties) {
+      const std::string name = lowerCase(property.name);
+      if (name != "red" && name != "diffuse_red" && name != "r") continue;
+      faces_.scene().notes.push_back(
+          {Severity::info,
+           fmt::format("colours of each {} are not used: the format does not say what they mean; "
+                       "--set NAME.reflectance=R,G,B does",
+                       element.name)});
+    }
+  }
+}
+
+/// So that a forged count makes no long loop.
+void PlyReader::requireRoom(const Element& element) const {
+  std::size_t bytes = 0;
+  for (const Property& property : element.properties)
+    bytes += sizeOf(property.count.value_or(property.type));
+  const bool is_text = cursor_.encoding() == Encoding::text;
+  cursor_.require(element.count, ("element " + element.name).c_str(), NumberType::u8,
+                  std::max<std::size_t>(1, is_text ? element.properties.size() : bytes));
+}
+
+void PlyReader::vertices(const Element& element) {
+  requireRoom(element);
+  for (const char* axis : {"x", "y", "z"}) {
+    const bool found = std::any_of(element.properties.begin(), element.properties.end(),
+                                   [&](const Property& p) { return p.name == axis && !p.count; });
+    if (!found) cursor_.fail(fmt::format("vertices have no {}; export the file again", axis));
+  }
+  for (std::size_t k = 0; k < element.count; ++k) {
+    Vec3 place(0.0);
+    for (const Property& property : element.properties) {
+      const std::size_t axis = property.name.size() == 1
+                                   ? std::string_view("xyz").find(property.name)
+                                   : std::string_view::npos;
+      if (axis == std::string_view::npos || property.count) {
+        pass(property);
+      } else {
+        place[int(axis)] = cursor_.number(property.type, "coordinate");
+      }
+    }
+    faces_.addVertex(place);
+  }
+}
+
+void PlyReader::faces(const Element& element) {
+  requireRoom(element);
+  const bool found =
+      std::any_of(element.properties.begin(), element.properties.end(), [](const Property& p) {
+        return p.count && (p.name == "vertex_indices" || p.name == "vertex_index");
+      });
+  if (!found) cursor_.fail("faces have no list vertex_indices; export the file again");
+  for (std::size_t k = 0; k < element.count; ++k) face(k, element);
+}
+
+void PlyReader::face(std::size_t number, const Element& element) {
+  std::string group = stem_;
+  bool grouped = false;
+  for (const Property& property : element.properties) {
+    if (property.count && (property.name == "vertex_indices" || property.name == "vertex_index")) {
+      const std::size_t count = cursor_.count(*property.count, "number of corners", property.type);
+      corners_.clear();
+      for (std::size_t k = 0; k < count; ++k) {
+        const long long vertex = cursor_.integer(property.type, "vertex");
+        if (vertex < 0 || std::size_t(vertex) >= faces_.scene().vertices.size()) {
+          cursor_.fail(
+              fmt::format("vertex {} of face {} does not exist, there are {} (from 0); "
+                          "correct it",
+                          vertex, number, faces_.scene().vertices.size()));
+        }
+        corners_.push_back(Index(vertex));
+      }
+    } else if (!grouped && !property.count && !isFraction(property.type) &&
+               namesGroups(property.name)) {
+      group = fmt::format("{} {}", property.name, cursor_.integer(property.type, "group"));
+      grouped = true;
+    } else {
+      pass(property);
+    }
+  }
+  if (corners_.size() < 3) {
+    cursor_.fail(fmt::format("face {} has {} corners, it needs 3 or more; correct or remove it",
+                             number, corners_.size()));
+  }
+  faces_.addFace(corners_, group, number);
+}
+
+void PlyReader::pass(const Property& property) {
+  const std::size_t count =
+      property.count ? cursor_.count(*property.count, "length of a list", property.type) : 1;
+  cursor_.skip(property.type, count);
+}
+
+void PlyReader::passElement(const Element& element) {
+  if (element.properties.empty()) return;
+  requireRoom(element);
+  for (std::size_t k = 0; k < element.count; ++k) {
+    for (const Property& property : element.properties) pass(property);
+  }
+}
+
+}  // namespace
+
+Scene loadPly(const std::string& path, const SceneOptions& options) {
+  return PlyReader(path, readWholeFile(path), options).read();
+}
+
+}  // namespace radiosity

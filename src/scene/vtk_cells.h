@@ -1,0 +1,36 @@
+// Cells of VTK files, legacy or XML, as faces (Schroeder, Martin & Lorensen, "The Visualization
+// Toolkit", file formats).
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/grouped_faces.h"
+
+namespace radiosity {
+
+/// Cells and what they stand on. Cell k has the points connectivity[end[k - 1]] up to end[k].
+struct VtkCells {
+  std::vector<Index> points;            ///< vertices of the scene, by the number of the point
+  std::vector<long long> connectivity;  ///< numbers of points, from 0
+  std::vector<long long> ends;
+  std::vector<long long> types;     ///< VTK's numbers of cell types
+  std::vector<std::string> groups;  ///< names of cells, one each, or none at all
+};
+
+/// VTK's types of the four kinds of cells of POLYDATA, in the order of their data.
+inline constexpr long long kVtkPolyVertex = 2;
+inline constexpr long long kVtkPolyLine = 4;
+inline constexpr long long kVtkPolygon = 7;
+inline constexpr long long kVtkStrip = 6;
+
+/// "group 3": the name of an integer group.
+std::string vtkGroupName(const std::string& array, long long value);
+
+/// Adds the faces of `cells`, as part of the surface `name` where they have no groups. InputError
+/// "FILE: cell N: what; cure". `first`: cells of the pieces before it.
+void addVtkCells(const VtkCells& cells, const std::string& file, const std::string& name,
+                 std::size_t first, GroupedFaces& faces);
+
+}  // namespace radiosity
