@@ -1,0 +1,137 @@
+"""VTK files as scenes, legacy and XML: cells of every kind, groups, and each broken file with its line."""
+
+import base64
+import re
+import struct
+import sys
+import unittest
+
+import mesh_files
+from cli_runner import CliTest
+
+MESH = mesh_files.Mesh([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], {"plate": [[0, 1, 2], [0, 2, 3]]})
+POINTS = "POINTS 6 float\n0 0 0 1 0 0 0 1 0 1 1 0 0 2 0 1 2 0\n"
+LEGACY = "# vtk DataFile Version 3.0\n\nASCII\nDATASET "
+
+
+class Vtk(CliTest):
+    def put(self, content, name="a.vtk"):
+        (self.folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+        return name
+
+    def areas(self, name="a.vtk"):
+        return {s["name"]: s["area_m2"] for s in self.report("info", name)["scene"]["surfaces"]}
+
+    def says(self, line, content, name="a.vtk"):
+        self.assertEqual(self.refuse("info", self.put(content, name)), f"radiosity: {name}{line}")
+
+    def test_strips_and_polygons(self):
+        self.put(LEGACY + "POLYDATA\n" + POINTS + "LINES 1 3\n2 0 1\nTRIANGLE_STRIPS 1 7\n6 0 1 2 3 4 5\n"
+                 "POLYGONS 1 7\n6 0 1 3 5 4 2\nCELL_DATA 3\nSCALARS Region int\nLOOKUP_TABLE default\n9 1 2\n")
+        # Cell data stand in the order lines, polygons, strips, whatever the order in the file.
+        self.assertEqual(self.areas(), {"Region 1": 2, "Region 2": 2})
+        # All four triangles of the strip face as the polygon does: a lamp of 1 W/m^2 above sees both.
+        scene = self.report("info", "a.vtk")["scene"]
+        self.assertEqual([s["faces"] for s in scene["surfaces"]], [1, 4])
+        self.assertNotIn("flipped", self.run_program("info", "a.vtk").err)
+
+    def test_pixels_and_curved_cells(self):
+        cells = "4 0 1 2 3\n6 0 1 3 4 5 2\n4 2 3 4 5\n4 0 1 2 4\n2 0 1\n"
+        self.put(LEGACY + "UNSTRUCTURED_GRID\n" + POINTS + f"CELLS 5 25\n{cells}CELL_TYPES 5\n8 22 8 10 3\n")
+        self.assertEqual(self.areas(), {"a": 2.5})
+        run = self.run_program("info", "a.vtk")
+        for words in ["1 element has nodes between its corners: it is read as flat, by its corners",
+                      "1 volume element is left out: its faces are no surfaces here"]:
+            self.assertIn(words, run.err)
+
+    def test_arrays_that_are_no_groups_are_passed_over(self):
+        data = ("POINT_DATA 6\nSCALARS group int 1\nLOOKUP_TABLE own\n1 2 3 4 5 6\nLOOKUP_TABLE own 1\n0 0 0 1\n"
+                "NORMALS n float\n" + "0 0 1 " * 6 + "\nCELL_DATA 2\nFIELD FieldData 4\ntemperature 1 2 float\n300 nan\n"
+                "METADATA\nINFORMATION 0\n\ngroup 2 2 int\n1 2 3 4\ngroup 1 2 float\n.1 .2\n"
+                "part%20name 1 2 string\nnorth%20wall\nlamp\n")
+        self.put(LEGACY + "POLYDATA\n" + POINTS + "POLYGONS 2 10\n4 0 1 3 2\n4 2 3 5 4\n" + data)
+        self.assertEqual(self.areas(), {"north wall": 1, "lamp": 1})
+
+    def test_words_name_groups_in_xml(self):
+        text = mesh_files.to_vtk_xml(MESH).decode()
+        codes = " ".join(str(b) for name in ["floor", ""] for b in name.encode() + b"\0")
+        text = re.sub(r'<DataArray type="Int32" Name="group".*?</DataArray>',
+                      f'<DataArray type="String" Name="Names of parts" format="ascii">1</DataArray>'
+                      f'<DataArray type="String" Name="PartName" format="ascii">{codes}</DataArray>', text)
+        self.put(text, "a.vtp")
+        self.assertEqual(self.areas("a.vtp"), {"floor": .5, "unnamed": .5})
+
+    def test_broken_legacy_files(self):
+        text = LEGACY + "POLYDATA\n" + POINTS + "POLYGONS 1 4\n3 0 1 2\n"
+        for old, new, line in [
+                ("# vtk", "# vkt", ":1: is no VTK file, which begins with `# vtk DataFile Version`; export it again"),
+                ("ASCII", "UTF-8", ":3: the third line is ASCII or BINARY; export the file again"),
+                ("POLYDATA", "STRUCTURED_GRID", ":4: DATASET structured_grid is not read; save its surface as POLYDATA "
+                                                "(in ParaView: Extract Surface)"),
+                ("POINTS 6", "POINTS 60000", ":6: number of points 60000: the file is too short for so many; it is cut "
+                                             "off or damaged, export it again"),
+                ("0 0 0 1", "0 0 nan 1", ":6: coordinate `nan` is not a finite number; write it as 1.5 with a decimal "
+                                         "point"),
+                ("3 0 1 2", "3 0 1 6", ": cell 0: point 6 does not exist, there are 6 (from 0); correct it"),
+                ("3 0 1 2", "3 0 1 -2", ": cell 0: point -2 does not exist, there are 6 (from 0); correct it"),
+                ("3 0 1 2", "4 0 1 2", ":8: cell 0 goes beyond the size of its list; export the file again"),
+                ("3 0 1 2", "2 0 1 2", ": cell 0: a face of 2 points has too few; correct or remove it"),
+                ("POLYGONS", "POLYGON", ":7: `polygon` is no part of a VTK file that is read; export it again"),
+                ("float", "half", ":5: numbers of type `half` are not read; save as ASCII"),
+        ]:
+            with self.subTest(new=new):
+                self.assertIn(old, text)
+                self.says(line, text.replace(old, new))
+        self.says(": cells have no CELL_TYPES; export it again",
+                  text.replace("POLYDATA", "UNSTRUCTURED_GRID").replace("POLYGONS", "CELLS"))
+        self.says(": cell 0: cells of type 99 are not read; export polygons",
+                  text.replace("POLYDATA", "UNSTRUCTURED_GRID").replace("POLYGONS", "CELLS") + "CELL_TYPES 1\n99\n")
+
+    def test_broken_xml_files(self):
+        text = mesh_files.to_vtk_xml(MESH).decode()
+        for old, new, line in [
+                ("</Polys>", "", ": is no sound XML (byte 637: Start-end tags mismatch); export it again"),
+                ("VTKFile", "VTK", ": has no element VTKFile; export it again"),
+                ("PolyData", "ImageData", ": type `ImageData` is not read; save its surface as PolyData (in ParaView: "
+                                          "Extract Surface)"),
+                ('"offsets"', '"ends"', ": Polys has no DataArray offsets; export it again"),
+                (">3 6<", ">3 7<", ": Polys: offset 7 goes beyond its points; export it again"),
+                (">3 6<", ">3 2<", ": cell 1: its points end before they begin, or beyond the last; export the file "
+                                   "again"),
+                (">0 1 2 0 2 3<", ">0 1 2 0 2 4<", ": cell 1: point 4 does not exist, there are 4 (from 0); correct it"),
+                (">0.0 ", ">nan ", ": DataArray Points:1: coordinate `nan` is not a finite number; write it as 1.5 with "
+                                   "a decimal point"),
+                (">1 1<", ">1<", ": DataArray group has 1 values for 2 cells; export it again"),
+                ("Float64", "Float80", ": DataArray Points: type `Float80` is not read; export the file again"),
+                ('byte_order', 'compressor="vtkLZ4DataCompressor" byte_order', ": compressor vtkLZ4DataCompressor is not "
+                 "read; save with zlib or without one"),
+        ]:
+            with self.subTest(new=new):
+                self.assertIn(old, text)
+                self.says(line, text.replace(old, new), "a.vtp")
+
+    def test_broken_coded_data(self):
+        packed = mesh_files.to_vtk_xml(MESH, form="binary", compressed=True).decode()
+        plain = mesh_files.to_vtk_xml(MESH, form="binary").decode()
+        raw = mesh_files.to_vtk_xml(MESH, form="appended", encoding="raw")
+        first = re.search(r'format="binary">\s*(\S+)', plain).group(1)
+        cases = [(plain.replace(first, "!" + first[1:]), "its base64 is damaged"),
+                 (plain.replace(first, first[:-8]), "it ends too early"),
+                 (plain.replace(first, "////////" + first[8:]), "it ends too early"),
+                 (raw.replace(b'offset="0"', b'offset="99999"'), "its offset is beyond the appended data"),
+                 (raw.replace(b"</AppendedData>", b""), "its appended data is cut off")]
+        # Behind each other: how many blocks, their size, that of the last one, that when packed.
+        first = re.search(r'format="binary">\s*(\S+)', packed).group(1)
+        for numbers, words in [((2**60, 1000, 96, 40), "it has too many blocks"),
+                               ((1, 1000, 2**50, 40), "a block's size is wrong"),
+                               ((1, 1000, 96, 2**50), "a block's size is wrong"),
+                               ((1, 1000, 97, 12), "a block cannot be unpacked")]:
+            head = base64.b64encode(struct.pack("<4Q", *numbers)).decode()
+            cases.append((packed.replace(first, head + first[len(head):]), words))
+        for content, words in cases:
+            with self.subTest(words=words):
+                self.refuse("info", self.put(content, "a.vtp"), words=["a.vtp: ", words])
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())
