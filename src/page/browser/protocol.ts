@@ -23,7 +23,7 @@ export interface Load {
 export type Request =
   | ({ kind: "load" } & Load)
   | { kind: "rows"; ticket: number; unknowns: number[] }
-  | { kind: "relight"; ticket: number; materials: Materials; milliseconds: number }
+  | { kind: "relight"; ticket: number; materials: Materials | null; milliseconds: number } // null: go on
   | { kind: "start"; run: number; method: Method; materials: Materials }
   | { kind: "step"; run: number };
 
@@ -41,7 +41,7 @@ export interface Frame {
 export type Reply =
   | { kind: "loaded"; entries: number; agreement: number; reference: Float32Array | null }
   | { kind: "rows"; ticket: number; rows: Float32Array[] }
-  | { kind: "relit"; ticket: number; irradiance: Float32Array; sweeps: number; change: number;
+  | { kind: "relit"; ticket: number; irradiance: Float32Array; products: number; residual: number;
       converged: boolean; milliseconds: number }
   | ({ kind: "frame" } & Frame)
   | { kind: "failed"; message: string };

@@ -2,7 +2,7 @@
 import { chromaOf, hexOf } from "./colour";
 import type { Rgb } from "./container";
 import type { Relighting } from "./solver_client";
-import { copy, element, make, on, short } from "./ui";
+import { copy, counted, element, make, on, short } from "./ui";
 import type { Viewer } from "./viewer";
 
 const STRONGEST = 4; // times what it was
@@ -158,9 +158,10 @@ export class RelightPanel {
 
   private sayRelit(light: Relighting): void {
     const facts = element("relight-facts");
-    const work = `${light.sweeps} sweep${light.sweeps === 1 ? "" : "s"} in ${Math.ceil(light.milliseconds)} ms`;
+    const products = light.products === 1 ? "1 product" : `${counted(light.products)} products`;
+    const work = `${products} with the matrix in ${Math.ceil(light.milliseconds)} ms`;
     const solved = light.finished && light.converged;
-    const words = solved ? `Solved: ${work}; the last changed less than ${light.change.toExponential(1)} of the mean.`
+    const words = solved ? `Solved: ${work}; the residual is ${light.residual.toExponential(1)} of the mean irradiance.`
       : light.finished ? `Not converged after ${work}: this room keeps nearly all its light.` : `Solving: ${work}.`;
     facts.dataset["state"] = solved ? "solved" : light.finished ? "failed" : "solving";
     facts.dataset["milliseconds"] = String(light.milliseconds);

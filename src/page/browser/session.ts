@@ -2,10 +2,11 @@
 // run that is watched. It knows nothing of workers, so that tests call it as they are.
 import { type Factors, denseRow, expand } from "./factors";
 import type { Frame, Load, Materials, Method, Reply } from "./protocol";
+import { type Lit, Relight } from "./relight";
 import * as solver from "./solver";
 import type { Iterate, System } from "./solver";
 
-/** Relighting is done when a sweep changes less than this share of the mean irradiance. */
+/** Relighting is done when the residual is within this share of the mean irradiance. */
 export const RELIGHT_TOLERANCE = 5e-5;
 /** The reference light of clusters is solved at most this long. */
 const REFERENCE_MS = 5000;
@@ -25,7 +26,8 @@ export class Session {
   private factors: Factors;
   private skyIrradiance: Float32Array; // as stored
   private order: Uint32Array | undefined;
-  private lit: { irradiance: Float64Array; source: Float64Array };
+  private lit: Lit;
+  private relighting: Relight | null = null;
   private run: Run | null = null;
   readonly loaded: Reply & { kind: "loaded" };
 
@@ -53,16 +55,23 @@ export class Session {
     return unknowns.map((i) => denseRow(this.factors, i));
   }
 
-  /** Sweeps from the last light for at most so long; asked again with the same, it goes on. */
-  relight(materials: Materials, milliseconds: number): Omit<Reply & { kind: "relit" }, "ticket"> {
+  /** Goes from the last light to that of `materials` for about so long; null: goes on where it stood. */
+  relight(materials: Materials | null, milliseconds: number): Omit<Reply & { kind: "relit" }, "ticket"> {
     const began = performance.now();
-    const system = this.system(materials);
-    const iterate = solver.warmStart(system, this.lit.irradiance, this.lit.source);
-    const expired = () => performance.now() - began > milliseconds;
-    const done = solver.relight(system, iterate, RELIGHT_TOLERANCE, expired, this.order);
-    this.lit = { irradiance: iterate.irradiance, source: solver.source(system) };
-    return { kind: "relit", irradiance: Float32Array.from(iterate.irradiance), ...done,
-             milliseconds: performance.now() - began };
+    if (materials) this.relighting = new Relight(this.system(materials), this.lit);
+    const relight = this.relighting!;
+    const before = materials ? 0 : relight.products;
+    relight.run(RELIGHT_TOLERANCE, () => performance.now() - began > milliseconds);
+    const irradiance = relight.irradiance();
+    if (Number.isFinite(relight.residual)) this.lit = { irradiance, source: solver.source(relight.system) };
+    return {
+      kind: "relit",
+      irradiance: Float32Array.from(irradiance),
+      products: relight.products - before,
+      residual: relight.residual,
+      converged: relight.residual <= RELIGHT_TOLERANCE,
+      milliseconds: performance.now() - began,
+    };
   }
 
   start(id: number, method: Method, materials: Materials): Frame {

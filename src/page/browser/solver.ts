@@ -54,15 +54,21 @@ function gatherRow(factors: Factors, radiosity: Float64Array, i: number, sum: Fl
   sum[2] = b;
 }
 
+/** F B. */
+export function product(factors: Factors, radiosity: Float64Array): Float64Array {
+  const result = new Float64Array(factors.size * BANDS);
+  const sum = new Float64Array(BANDS);
+  for (let i = 0; i < factors.size; ++i) {
+    gatherRow(factors, radiosity, i, sum);
+    result.set(sum, i * BANDS);
+  }
+  return result;
+}
+
 /** H = F B + more. */
 export function irradianceOf(system: System, radiosity: Float64Array): Float64Array {
-  const { size } = system.factors;
-  const result = new Float64Array(size * BANDS);
-  const sum = new Float64Array(BANDS);
-  for (let i = 0; i < size; ++i) {
-    gatherRow(system.factors, radiosity, i, sum);
-    for (let band = 0; band < BANDS; ++band) result[i * BANDS + band] = sum[band]! + system.more[i * BANDS + band]!;
-  }
+  const result = product(system.factors, radiosity);
+  for (let k = 0; k < result.length; ++k) result[k] = result[k]! + system.more[k]!;
   return result;
 }
 
@@ -182,47 +188,4 @@ export function southwellResidual(system: System, { iterate, sent }: Southwell):
     worst = Math.max(worst, Math.abs(iterate.radiosity[k]! - sent[k]!) / scale[k % BANDS]!);
   }
   return worst;
-}
-
-/** The area-weighted mean of each band, 1 where it is dark. */
-export function typical(values: ArrayLike<number>, area: Float32Array): Float64Array {
-  const sum = new Float64Array(BANDS);
-  let total = 0;
-  for (let i = 0; i < area.length; ++i) {
-    total += area[i]!;
-    for (let b = 0; b < BANDS; ++b) sum[b] = sum[b]! + area[i]! * values[i * BANDS + b]!;
-  }
-  return sum.map((value) => (value > 0 ? value / total : 1));
-}
-
-/**
- * A start for `system` from the irradiance of another light: scaled by the power that each band is
- * given now and was given then (`before`: its source()). Exact where only the one lamp changed.
- */
-export function warmStart(system: System, irradiance: Float64Array, before: Float64Array): Iterate {
-  const now = typical(source(system), system.factors.area);
-  const then = typical(before, system.factors.area);
-  const scaled = irradiance.map((h, k) => (h * now[k % BANDS]!) / then[k % BANDS]!);
-  const radiosity = scaled.map((h, k) => system.emission[k]! + system.reflectance[k]! * h);
-  return { irradiance: scaled, radiosity, rows: 0 };
-}
-
-export interface Relit {
-  sweeps: number;
-  change: number; // largest of the last sweep, over the mean irradiance of its band
-  converged: boolean;
-}
-
-/**
- * Gauss-Seidel from where `iterate` stands, until a sweep changes no radiosity by more than `tolerance`
- * of the mean irradiance, or until `expired()` says that time is up.
- */
-export function relight(system: System, iterate: Iterate, tolerance: number,
-                        expired: () => boolean, order?: Uint32Array): Relit {
-  let sweeps = 0, change = Infinity;
-  while (change > tolerance && (sweeps === 0 || !expired())) {
-    change = gaussSeidelSweep(system, iterate, typical(iterate.irradiance, system.factors.area), order);
-    ++sweeps;
-  }
-  return { sweeps, change, converged: change <= tolerance };
 }

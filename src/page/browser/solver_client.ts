@@ -12,9 +12,9 @@ type Relit = Reply & { kind: "relit" };
 
 export interface Relighting {
   irradiance: Float32Array; // of unknowns, K * 3
-  sweeps: number; // since the change
+  products: number; // with the matrix, since the change
   milliseconds: number; // since the change, solver alone
-  change: number;
+  residual: number; // over the mean irradiance
   converged: boolean;
   finished: boolean; // converged, or given up
 }
@@ -29,8 +29,8 @@ export class SolverClient {
   private readonly rowTickets = new Map<number, (rows: Float32Array[]) => void>();
   private tickets = 0;
   private wanted: Materials | null = null; // changed since the relight under way was asked for
-  private current: Materials | null = null; // what the relight under way is for
-  private sweeps = 0;
+  private relighting = false;
+  private products = 0;
   private milliseconds = 0;
 
   constructor() {
@@ -59,7 +59,7 @@ export class SolverClient {
 
   relight(materials: Materials): void {
     this.wanted = materials;
-    if (!this.current) this.nextRelight();
+    if (!this.relighting) this.nextRelight();
   }
 
   start(run: number, method: Method, materials: Materials): void {
@@ -75,25 +75,26 @@ export class SolverClient {
   }
 
   private nextRelight(): void {
-    if (this.wanted) {
-      this.current = this.wanted;
+    const materials = this.wanted;
+    if (materials) {
       this.wanted = null;
-      this.sweeps = 0;
+      this.relighting = true;
+      this.products = 0;
       this.milliseconds = 0;
     }
-    if (!this.current) return;
-    this.send({ kind: "relight", ticket: ++this.tickets, materials: this.current,
-                milliseconds: RELIGHT_SLICE_MS });
+    if (this.relighting) {
+      this.send({ kind: "relight", ticket: ++this.tickets, materials, milliseconds: RELIGHT_SLICE_MS });
+    }
   }
 
   private takeRelit(reply: Relit): void {
-    this.sweeps += reply.sweeps;
+    this.products += reply.products;
     this.milliseconds += reply.milliseconds;
-    const { irradiance, change, converged } = reply;
-    const hopeless = !Number.isFinite(change) || this.milliseconds > RELIGHT_LIMIT_MS;
-    if ((converged || hopeless) && !this.wanted) this.current = null;
-    const finished = !this.current;
-    this.onRelit({ irradiance, change, converged, finished, sweeps: this.sweeps,
+    const { irradiance, residual, converged } = reply;
+    const hopeless = !Number.isFinite(residual) || this.milliseconds > RELIGHT_LIMIT_MS;
+    if ((converged || hopeless) && !this.wanted) this.relighting = false;
+    const finished = !this.relighting;
+    this.onRelit({ irradiance, residual, converged, finished, products: this.products,
                    milliseconds: this.milliseconds });
     if (!finished) this.nextRelight();
   }

@@ -58,9 +58,8 @@ run(
   "npx",
   [
     "esbuild",
-    ...["factors", "solver", "session", "container", "light", "load", "bvh", "gather_weights", "gather_eyes"].map(
-      (name) => `${name}.ts`,
-    ),
+    ...["factors", "solver", "relight", "session", "container", "light", "load", "bvh"].map((name) => `${name}.ts`),
+    ...["gather_weights", "gather_eyes"].map((name) => `${name}.ts`),
     "--bundle",
     "--format=esm",
     "--out-extension:.js=.mjs",

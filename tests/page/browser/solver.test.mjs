@@ -5,6 +5,7 @@ import { module, pageData, relativeError, results } from "./support.mjs";
 
 const { expand, denseRow } = await module("factors");
 const solver = await module("solver");
+const { Relight } = await module("relight");
 const { Session } = await module("session");
 const { withMaterials, unknownMeans, radiosityOf } = await module("light");
 const { TriangleTree } = await module("bvh");
@@ -67,7 +68,14 @@ test("rows of all columns decode like rows with columns", () => {
 });
 
 /** Iterates until nothing changes in 64 bits but rounding. */
-function solve(method, sys = system) {
+function solve(method, sys = system, sweeps = 60) {
+  if (method === "relight") {
+    // From no light at all; the source is only for its scale.
+    const dark = { irradiance: new Float64Array(3 * sys.factors.size), source: solver.source(sys) };
+    const relight = new Relight(sys, dark);
+    relight.run(1e-9, () => relight.products > 40);
+    return radiosityOf({ ...sys, irradiance: relight.irradiance() });
+  }
   if (method === "southwell") {
     const state = solver.southwellStart(sys);
     for (let n = 0; n < 40 * sys.factors.size && solver.southwellShot(sys, state); ++n);
@@ -75,7 +83,7 @@ function solve(method, sys = system) {
   }
   let iterate = solver.fromEmission(sys);
   const scale = solver.scales(solver.source(sys));
-  for (let n = 0; n < 60; ++n) {
+  for (let n = 0; n < sweeps; ++n) {
     if (method === "jacobi") iterate = solver.jacobiSweep(sys, iterate);
     else solver.gaussSeidelSweep(sys, iterate, scale);
   }
@@ -84,7 +92,7 @@ function solve(method, sys = system) {
 
 // The solution by LAPACK is of the matrix before its 16 bits: those weigh 2e-4 a factor at most, with either sign, and every
 // bounce weighs less. Half of it holds with room; a wrong triangle or band is off by per cents.
-for (const method of ["jacobi", "gauss-seidel", "southwell"]) {
+for (const method of ["jacobi", "gauss-seidel", "southwell", "relight"]) {
   test(`${method} finds what LAPACK finds`, () => {
     const error = relativeError(solve(method), truth.solved);
     assert.ok(error < 0.5 * quantised, `off by ${error}`);
@@ -92,26 +100,26 @@ for (const method of ["jacobi", "gauss-seidel", "southwell"]) {
 }
 
 // A closed room of K patches that see each other alike, F_ij = 1/K with itself: B = E / (1 - rho), whatever F.
-test("the furnace: B = E / (1 - rho) by every solver", () => {
-  const size = 12,
-    area = new Float32Array(size).fill(2);
-  const begin = Uint32Array.from({ length: size + 1 }, (_, i) => i * size);
-  const column = Uint16Array.from({ length: size * size }, (_, k) => k % size);
-  const furnace = {
+function furnace() {
+  const size = 12;
+  return {
     factors: {
       size,
-      begin,
-      column,
+      begin: Uint32Array.from({ length: size + 1 }, (_, i) => i * size),
+      column: Uint16Array.from({ length: size * size }, (_, k) => k % size),
       value: new Float32Array(size * size).fill(1 / size),
       diagonal: new Float32Array(size).fill(1 / size),
-      area,
+      area: new Float32Array(size).fill(2),
     },
     emission: Float32Array.from({ length: size * 3 }, (_, k) => 1 + (k % 3)),
     reflectance: new Float32Array(size * 3).fill(0.5),
     more: new Float32Array(size * 3),
   };
-  for (const method of ["jacobi", "gauss-seidel", "southwell"]) {
-    solve(method, furnace).forEach((b, k) => {
+}
+
+test("the furnace: B = E / (1 - rho) by every solver", () => {
+  for (const method of ["jacobi", "gauss-seidel", "southwell", "relight"]) {
+    solve(method, furnace()).forEach((b, k) => {
       // 1/12 in 32 bits sums to 1 within 12 roundings, doubled by the bounces; Southwell stops with what is left unsent.
       assert.ok(Math.abs(b - 2 * (1 + (k % 3))) < 1e-5, `${method}: B = ${b}`);
     });
@@ -163,7 +171,7 @@ test("a lamp of twice the power is solved for at once; new reflectances to 1e-3"
   }));
   const doubled = withMaterials(data, states);
   const lamp = session().relight({ ...doubled, sky: [1, 1, 1] }, 1000);
-  assert.ok(lamp.sweeps <= 2, `${lamp.sweeps} sweeps`); // the start is right but for the 16 bits
+  assert.ok(lamp.products <= 2, `${lamp.products} products`); // the start is right but for the 16 bits
   assert.ok(
     relativeError(
       lamp.irradiance,
@@ -171,17 +179,42 @@ test("a lamp of twice the power is solved for at once; new reflectances to 1e-3"
     ) < quantised,
   );
 
-  const reflectance = Float32Array.from(data.reflectance, (x) => 0.6 * x);
-  const relit = session().relight({ emission: data.emission, reflectance, sky: [1, 1, 1] }, 1000);
-  const expected = solve("gauss-seidel", { ...system, reflectance });
-  const radiosity = radiosityOf({ emission: data.emission, reflectance, irradiance: relit.irradiance });
-  assert.ok(relit.converged);
-  for (let k = 0; k < expected.length; ++k) {
-    assert.ok(
-      Math.abs(radiosity[k] - expected[k]) <= 1e-3 * expected[k],
-      `B[${k}] = ${radiosity[k]}, not ${expected[k]}`,
-    );
+  // Darker, and as bright as it gets: there sweeps, which the expected light is made of, take hundreds.
+  for (const turn of [(x) => 0.6 * x, () => 0.95]) {
+    const reflectance = data.reflectance.map(turn);
+    const relit = session().relight({ emission: data.emission, reflectance, sky: [1, 1, 1] }, 10000);
+    const expected = solve("gauss-seidel", { ...system, reflectance }, 400);
+    const radiosity = radiosityOf({ emission: data.emission, reflectance, irradiance: relit.irradiance });
+    assert.ok(relit.converged);
+    assert.ok(relit.products <= 15, `${relit.products} products`);
+    for (let k = 0; k < expected.length; ++k) {
+      assert.ok(
+        Math.abs(radiosity[k] - expected[k]) <= 1e-3 * expected[k],
+        `B[${k}] = ${radiosity[k]}, not ${expected[k]}`,
+      );
+    }
   }
+});
+
+test("a relight that is cut short goes on to the same light", () => {
+  const materials = { emission: data.emission, reflectance: data.reflectance.map((x) => 0.6 * x), sky: [1, 1, 1] };
+  const whole = session().relight(materials, 10000);
+  const cut = session();
+  let part = cut.relight(materials, 0),
+    products = part.products;
+  while (!part.converged) {
+    part = cut.relight(null, 0);
+    products += part.products;
+  }
+  assert.equal(products, whole.products);
+  assert.deepEqual(part.irradiance, whole.irradiance);
+});
+
+test("a room that keeps all its light has no solution, and is said to have none", () => {
+  const lossless = { ...furnace(), reflectance: new Float32Array(12 * 3).fill(1) };
+  const relight = new Relight(lossless, { irradiance: new Float64Array(36), source: solver.source(lossless) });
+  relight.run(1e-6, () => relight.products > 100);
+  assert.ok(!(relight.residual <= 1e-6));
 });
 
 test("a ray finds the triangle that a search of all of them finds", () => {

@@ -1,0 +1,108 @@
+// Relighting: conjugate gradients (Hestenes & Stiefel 1952) for the irradiance, from the last light on.
+//
+// H = F (E + rho H) + more, so (I - F rho) H = F E + more. A_i rho_i F_ij rho_j is the same for i, j as
+// for j, i (reciprocity), so I - F rho is self-adjoint in <x, y> = sum_i A_i rho_i x_i y_i, and positive
+// definite where light dies out: what the method needs. Where rho = 0 the product says nothing of x_i; no
+// light comes from there, and the residual's share of H_i is known all the same. Bands are systems of
+// their own that share each pass over the matrix.
+import { BANDS, irradianceOf, product, source, type System } from "./solver";
+
+/** The area-weighted mean of each band, 1 where it is dark. */
+export function typical(values: ArrayLike<number>, area: Float32Array): Float64Array {
+  const sum = new Float64Array(BANDS);
+  let total = 0;
+  for (let i = 0; i < area.length; ++i) {
+    total += area[i]!;
+    for (let b = 0; b < BANDS; ++b) sum[b] = sum[b]! + area[i]! * values[i * BANDS + b]!;
+  }
+  return sum.map((value) => (value > 0 ? value / total : 1));
+}
+
+/** A light that was solved for, or nearly: its irradiance and its source(). */
+export interface Lit {
+  irradiance: Float64Array;
+  source: Float64Array;
+}
+
+/**
+ * A start for `system` from another light: scaled by the power that each band is given now and was given
+ * then. Exact where only the one lamp changed.
+ */
+function start(system: System, lit: Lit): Float64Array {
+  const now = typical(source(system), system.factors.area);
+  const then = typical(lit.source, system.factors.area);
+  return lit.irradiance.map((h, k) => (h * now[k % BANDS]!) / then[k % BANDS]!);
+}
+
+export class Relight {
+  /** With the matrix, so far. */
+  products = 0;
+  /** max |E + rho H - B| over the mean irradiance, worst band; infinite where light does not die out. */
+  residual = Infinity;
+
+  private readonly weight: Float64Array; // A rho
+  private readonly h: Float64Array;
+  private readonly left: Float64Array; // F (E + rho h) + more - h
+  private readonly direction: Float64Array;
+  private size: Float64Array; // <left, left>
+
+  constructor(readonly system: System, lit: Lit) {
+    const { area } = system.factors;
+    this.weight = Float64Array.from(system.reflectance, (rho, k) => rho * area[Math.floor(k / BANDS)]!);
+    this.h = start(system, lit);
+    const radiosity = this.h.map((h, k) => system.emission[k]! + system.reflectance[k]! * h);
+    this.left = irradianceOf(system, radiosity).map((h, k) => h - this.h[k]!);
+    this.direction = this.left.slice();
+    this.size = this.inner(this.left, this.left);
+    this.products = 1;
+    this.measure();
+  }
+
+  /** F B + more of the B that was reached; never below 0, since light is not. */
+  irradiance(): Float64Array { return this.h.map((h, k) => Math.max(0, h + this.left[k]!)); }
+
+  /** Steps until the residual is within `tolerance`, or until `expired()` says that time is up. */
+  run(tolerance: number, expired: () => boolean): void {
+    while (this.residual > tolerance && Number.isFinite(this.residual)) {
+      this.step();
+      if (expired()) return;
+    }
+  }
+
+  private step(): void {
+    const { h, left, direction } = this;
+    const image = product(this.system.factors, direction.map((x, k) => this.system.reflectance[k]! * x));
+    ++this.products;
+    for (let k = 0; k < image.length; ++k) image[k] = direction[k]! - image[k]!; // (I - F rho) direction
+    const curvature = this.inner(direction, image);
+    if (curvature.some((value, b) => this.size[b]! > 0 && !(value > 0))) {
+      this.residual = Infinity;
+      return;
+    }
+    const along = this.size.map((value, b) => (value > 0 ? value / curvature[b]! : 0));
+    for (let k = 0; k < h.length; ++k) {
+      h[k] = h[k]! + along[k % BANDS]! * direction[k]!;
+      left[k] = left[k]! - along[k % BANDS]! * image[k]!;
+    }
+    const size = this.inner(left, left);
+    const keep = size.map((value, b) => (value > 0 ? value / this.size[b]! : 0));
+    for (let k = 0; k < h.length; ++k) direction[k] = left[k]! + keep[k % BANDS]! * direction[k]!;
+    this.size = size;
+    this.measure();
+  }
+
+  private measure(): void {
+    const mean = typical(this.h, this.system.factors.area);
+    this.residual = 0;
+    for (let k = 0; k < this.left.length; ++k) {
+      const share = (this.system.reflectance[k]! * Math.abs(this.left[k]!)) / mean[k % BANDS]!;
+      if (!(share <= this.residual)) this.residual = share;
+    }
+  }
+
+  private inner(x: Float64Array, y: Float64Array): Float64Array {
+    const sum = new Float64Array(BANDS);
+    for (let k = 0; k < x.length; ++k) sum[k % BANDS] = sum[k % BANDS]! + this.weight[k]! * x[k]! * y[k]!;
+    return sum;
+  }
+}
