@@ -4,6 +4,7 @@ import { readFile, rename, writeFile } from "node:fs/promises";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
+import { assembled } from "./assemble.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const out = process.argv[2];
@@ -28,6 +29,21 @@ async function bundled(entry, more = {}) {
   return result.outputFiles[0].text;
 }
 
+/** Imports of "wat:FILE" are the assembled program of FILE, as bytes. */
+const kernels = {
+  name: "kernels",
+  setup(setup) {
+    setup.onResolve({ filter: /^wat:/ }, (found) => ({
+      path: found.path.slice("wat:".length),
+      namespace: "wat",
+    }));
+    setup.onLoad({ filter: /.*/, namespace: "wat" }, async (found) => ({
+      contents: await assembled(join(here, found.path)),
+      loader: "binary",
+    }));
+  },
+};
+
 /** Imports of "worker:FILE" are the bundled program of FILE, as a text. */
 const workers = {
   name: "workers",
@@ -37,7 +53,7 @@ const workers = {
       namespace: "worker",
     }));
     setup.onLoad({ filter: /.*/, namespace: "worker" }, async (found) => ({
-      contents: await bundled(found.path),
+      contents: await bundled(found.path, { plugins: [kernels] }),
       loader: "text",
     }));
   },

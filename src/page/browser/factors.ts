@@ -4,7 +4,7 @@
 export interface Factors {
   size: number;
   begin: Uint32Array; // K+1
-  column: Uint16Array | Uint32Array;
+  column: Uint16Array;
   value: Float32Array;
   diagonal: Float32Array; // K
   area: Float32Array; // K, m^2
@@ -20,7 +20,7 @@ export interface StoredFactors {
   step: number;
 }
 
-const LARGEST_SHORT = 1 << 16;
+const LARGEST_SHORT = 1 << 16; // a page holds at most 8,000 unknowns: 16 bits do for columns
 
 /** What each code means. */
 export function codeTable(lowest: number, step: number): Float32Array {
@@ -46,18 +46,31 @@ function beginsOfBoth(stored: StoredFactors): Uint32Array {
   return begin;
 }
 
+const ALIGNED = 16; // bytes: what vectors are loaded from
+const aligned = (bytes: number): number => Math.ceil(bytes / ALIGNED) * ALIGNED;
+
+/** Rows to fill, in one buffer of `room`, which is given the bytes that they need. */
+function emptyRows(begins: Uint32Array, room: (bytes: number) => ArrayBuffer) {
+  const size = begins.length - 1;
+  const entries = begins[size]!;
+  const columns = aligned(4 * begins.length), values = columns + aligned(2 * entries);
+  const buffer = room(values + aligned(4 * entries));
+  const begin = new Uint32Array(buffer, 0, begins.length);
+  begin.set(begins);
+  return { begin, column: new Uint16Array(buffer, columns, entries), value: new Float32Array(buffer, values, entries) };
+}
+
 /**
  * Both triangles: F_ji = F_ij A_i / A_j. Rows are filled in order, so that row j has its columns below
- * j, from rows before it, in increasing order before its own.
+ * j, from rows before it, in increasing order before its own. They lie in one buffer, of `room`.
  */
-export function expand(stored: StoredFactors): Factors {
+export function expand(
+  stored: StoredFactors, room = (bytes: number): ArrayBuffer => new ArrayBuffer(bytes)): Factors {
   const size = stored.area.length;
+  if (size > LARGEST_SHORT) throw new Error(`${size} unknowns are more than a page holds`);
   const dense = stored.column.length === 0;
   const table = codeTable(stored.lowest, stored.step);
-  const begin = beginsOfBoth(stored);
-  const entries = begin[size]!;
-  const column = size <= LARGEST_SHORT ? new Uint16Array(entries) : new Uint32Array(entries);
-  const value = new Float32Array(entries);
+  const { begin, column, value } = emptyRows(beginsOfBoth(stored), room);
   const diagonal = new Float32Array(size);
   const next = begin.slice(0, size);
   for (let i = 0; i < size; ++i) {

@@ -5,7 +5,7 @@
 // definite where light dies out: what the method needs. Where rho = 0 the product says nothing of x_i; no
 // light comes from there, and the residual's share of H_i is known all the same. Bands are systems of
 // their own that share each pass over the matrix.
-import { BANDS, irradianceOf, product, source, type System } from "./solver";
+import { BANDS, source, type System } from "./solver";
 
 /** The area-weighted mean of each band, 1 where it is dark. */
 export function typical(values: ArrayLike<number>, area: Float32Array): Float64Array {
@@ -46,12 +46,13 @@ export class Relight {
   private readonly direction: Float64Array;
   private size: Float64Array; // <left, left>
 
-  constructor(readonly system: System, lit: Lit) {
+  /** `multiply`: F x. */
+  constructor(readonly system: System, lit: Lit, private readonly multiply: (x: Float64Array) => Float64Array) {
     const { area } = system.factors;
     this.weight = Float64Array.from(system.reflectance, (rho, k) => rho * area[Math.floor(k / BANDS)]!);
     this.h = start(system, lit);
     const radiosity = this.h.map((h, k) => system.emission[k]! + system.reflectance[k]! * h);
-    this.left = irradianceOf(system, radiosity).map((h, k) => h - this.h[k]!);
+    this.left = multiply(radiosity).map((gathered, k) => gathered + system.more[k]! - this.h[k]!);
     this.direction = this.left.slice();
     this.size = this.inner(this.left, this.left);
     this.products = 1;
@@ -71,7 +72,7 @@ export class Relight {
 
   private step(): void {
     const { h, left, direction } = this;
-    const image = product(this.system.factors, direction.map((x, k) => this.system.reflectance[k]! * x));
+    const image = this.multiply(direction.map((x, k) => this.system.reflectance[k]! * x));
     ++this.products;
     for (let k = 0; k < image.length; ++k) image[k] = direction[k]! - image[k]!; // (I - F rho) direction
     const curvature = this.inner(direction, image);

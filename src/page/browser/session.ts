@@ -5,6 +5,7 @@ import type { Frame, Load, Materials, Method, Reply } from "./protocol";
 import { type Lit, Relight } from "./relight";
 import * as solver from "./solver";
 import type { Iterate, System } from "./solver";
+import { VectorProduct } from "./vector_product";
 
 /** Relighting is done when the residual is within this share of the mean irradiance. */
 export const RELIGHT_TOLERANCE = 5e-5;
@@ -23,7 +24,8 @@ interface Run {
 }
 
 export class Session {
-  private factors: Factors;
+  private readonly vectors: VectorProduct | null;
+  private readonly factors: Factors;
   private skyIrradiance: Float32Array; // as stored
   private order: Uint32Array | undefined;
   private lit: Lit;
@@ -33,10 +35,11 @@ export class Session {
 
   /**
    * Where patches share unknowns the stored light is not the solution of the matrix alone, and a
-   * reference is solved for.
+   * reference is solved for. `kernel`: of VectorProduct; without it, sums are plain.
    */
-  constructor(load: Load) {
-    this.factors = expand(load.stored);
+  constructor(load: Load, kernel: Uint8Array<ArrayBuffer> | null) {
+    this.vectors = kernel && WebAssembly.validate(kernel) ? new VectorProduct(load.stored, kernel) : null;
+    this.factors = this.vectors?.factors ?? expand(load.stored);
     this.order = load.order ?? undefined;
     this.skyIrradiance = load.sky;
     const stored = Float64Array.from(load.irradiance);
@@ -58,7 +61,10 @@ export class Session {
   /** Goes from the last light to that of `materials` for about so long; null: goes on where it stood. */
   relight(materials: Materials | null, milliseconds: number): Omit<Reply & { kind: "relit" }, "ticket"> {
     const began = performance.now();
-    if (materials) this.relighting = new Relight(this.system(materials), this.lit);
+    if (materials) {
+      this.relighting = new Relight(this.system(materials), this.lit, (x) =>
+        this.vectors?.multiply(x) ?? solver.product(this.factors, x));
+    }
     const relight = this.relighting!;
     const before = materials ? 0 : relight.products;
     relight.run(RELIGHT_TOLERANCE, () => performance.now() - began > milliseconds);

@@ -1,6 +1,7 @@
 // The solver in a thread of its own, so that the picture moves while it works.
 import type { Reply, Request } from "./protocol";
 import { Session } from "./session";
+import kernel from "wat:product.wat";
 
 /** What of a worker's global scope is used here; the DOM's types know only windows. */
 interface Scope {
@@ -12,7 +13,7 @@ let session: Session | null = null;
 
 function answer(request: Request): Reply | null {
   if (request.kind === "load") {
-    session = new Session(request);
+    session = new Session(request, kernel);
     return session.loaded;
   }
   if (!session) throw new Error("The solver was asked before it had the form factors");

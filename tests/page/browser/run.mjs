@@ -58,8 +58,8 @@ run(
   "npx",
   [
     "esbuild",
-    ...["factors", "solver", "relight", "session", "container", "light", "load", "bvh"].map((name) => `${name}.ts`),
-    ...["gather_weights", "gather_eyes"].map((name) => `${name}.ts`),
+    ...["factors", "solver", "relight", "vector_product", "session"].map((name) => `${name}.ts`),
+    ...["container", "light", "load", "bvh", "gather_weights", "gather_eyes"].map((name) => `${name}.ts`),
     "--bundle",
     "--format=esm",
     "--out-extension:.js=.mjs",
@@ -68,6 +68,8 @@ run(
   ],
   { cwd: sources },
 );
+const { assembled } = await import(join(sources, "assemble.mjs"));
+writeFileSync(join(folder, "modules/product.wasm"), await assembled(join(sources, "product.wat")));
 const template = readFileSync(join(folder, "template.html"), "utf8");
 makePage(template, "cornell", "cornell-box.obj", []);
 makePage(template, "small", "cornell-box.obj", ["--patches", "400", "--solver", "jacobi"]);

@@ -1,0 +1,44 @@
+// F x by the processor's vectors, where the browser has them (WebAssembly with SIMD): product.wat over rows
+// that lie in its memory. In 32 bits: each value is off by a few units of 1e-7, which relighting does not
+// see; watched runs use the plain sums of solver.ts.
+import { expand, type Factors, type StoredFactors } from "./factors";
+
+const BANDS = 3;
+const LANES = 4;
+const PAGE = 65536; // bytes, of WebAssembly's memory
+
+/** The same kernel as a function of addresses; product.wat says of which. */
+type Kernel = (rows: number, begin: number, column: number, value: number, x: number, out: number) => void;
+
+export class VectorProduct {
+  readonly factors: Factors;
+  private readonly x: Float32Array;
+  private readonly out: Float32Array;
+  private readonly kernel: Kernel;
+
+  /** `program`: product.wat, assembled; WebAssembly.validate() says whether the browser takes it. */
+  constructor(stored: StoredFactors, program: Uint8Array<ArrayBuffer>) {
+    const length = stored.area.length * LANES;
+    const bytes = length * Float32Array.BYTES_PER_ELEMENT;
+    const memory = new WebAssembly.Memory({ initial: 0 });
+    this.factors = expand(stored, (needed) => {
+      memory.grow(Math.ceil((needed + 2 * bytes) / PAGE));
+      return memory.buffer;
+    });
+    const end = memory.buffer.byteLength;
+    this.x = new Float32Array(memory.buffer, end - 2 * bytes, length);
+    this.out = new Float32Array(memory.buffer, end - bytes, length);
+    const made = new WebAssembly.Instance(new WebAssembly.Module(program), { page: { memory } });
+    this.kernel = made.exports["product"] as Kernel;
+  }
+
+  /** F x; K * 3 values, as those of x. */
+  multiply(x: Float64Array): Float64Array {
+    const { size, begin, column, value } = this.factors;
+    for (let i = 0; i < size; ++i) {
+      for (let b = 0; b < BANDS; ++b) this.x[i * LANES + b] = x[i * BANDS + b]!;
+    }
+    this.kernel(size, begin.byteOffset, column.byteOffset, value.byteOffset, this.x.byteOffset, this.out.byteOffset);
+    return Float64Array.from(x, (_, k) => this.out[Math.floor(k / BANDS) * LANES + (k % BANDS)]!);
+  }
+}
