@@ -7,6 +7,10 @@ import type { PatchLight } from "./light";
 
 const BANDS = 3;
 const BATCH_MS = 16; // of a frame of 33 ms; the picture and the panels need the rest
+// In software a frame of the page costs what ten eyes cost: none is drawn but where something changes, and
+// a batch is what it then waits for.
+const SOFTWARE_BATCH_MS = 60;
+const SOFTWARE_PROGRESS_MS = 500;
 
 export interface GatherState {
   pass: number; // passes that are complete
@@ -26,6 +30,7 @@ export class Gather {
   private readonly materials: EyeMaterials;
   private readonly sky: Rgb;
   private batch = 1;
+  private told = 0; // when progress was
   private running = false;
   private working = false;
   private closed = false;
@@ -54,7 +59,7 @@ export class Gather {
     this.working = true;
     try {
       while (this.running) {
-        await new Promise(requestAnimationFrame);
+        await (this.gpu.software ? new Promise((resume) => setTimeout(resume)) : new Promise(requestAnimationFrame));
         if (!this.running) break;
         await this.someEyes();
       }
@@ -66,17 +71,23 @@ export class Gather {
 
   /** As many eyes as a frame has time for. */
   private async someEyes(): Promise<void> {
+    const budget = this.gpu.software ? SOFTWARE_BATCH_MS : BATCH_MS;
     const begin = performance.now();
     const looks = this.gpu.look(this.state.eyes, this.batch, this.sky);
     await this.gpu.done();
     const took = performance.now() - begin;
-    if (looks === this.batch || took > BATCH_MS) { // a batch that a row's end cut short tells less
-      const wanted = Math.round((looks * BATCH_MS) / Math.max(took, 1));
+    if (looks === this.batch || took > budget) { // a batch that a row's end cut short tells less
+      const wanted = Math.round((looks * budget) / Math.max(took, 1));
       this.batch = Math.max(1, Math.min(wanted, 2 * this.batch, this.gpu.capacity));
     }
     this.state.eyes += looks;
-    if (this.state.eyes === this.eyes.count) await this.endPass();
-    if (!this.closed) this.onProgress();
+    const ended = this.state.eyes === this.eyes.count;
+    if (ended) await this.endPass();
+    const now = performance.now();
+    const due = ended || !this.gpu.software || now - this.told > SOFTWARE_PROGRESS_MS;
+    if (this.closed || !due) return;
+    this.told = now;
+    this.onProgress();
   }
 
   private async endPass(): Promise<void> {

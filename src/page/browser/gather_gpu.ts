@@ -1,11 +1,13 @@
 // Hemicubes on the viewer's GPU: a strip of five faces for each of many eyes in one picture of floats,
 // multiplied by delta form factors and summed to one texel an eye. WebGL 2 with EXT_color_buffer_float.
 import type { PageData } from "./container";
+import { Chunks } from "./gather_chunks";
 import type { Eyes } from "./gather_eyes";
 import { ADD, DRAW, ROWS, WHOLE } from "./gather_shaders";
 import { deltaFormFactors, stripRows } from "./gather_weights";
 
 const ATLAS_WIDTH = 2048, ATLAS_HEIGHT = 1536; // pixels; 63 MB with its depths
+const CHUNK = 16; // triangles, in software: more draws cost what fewer vertices save
 const RESULT_WIDTH = 256; // eyes a row of the texture that collects a pass
 // In diagonals of the scene. Positions are floats, off by up to 1e-7: an eye stands a lift above its own
 // plane, which it so does not see; backs lie behind fronts by more than that, so that of a plate without
@@ -31,10 +33,11 @@ function rendererOf(gl: WebGL2RenderingContext): string {
 }
 
 /** Drawing is done by the CPU: slower. */
-export const isSoftware = (renderer: string): boolean => /swiftshader|llvmpipe|software|basic render/i.test(renderer);
+const isSoftware = (renderer: string): boolean => /swiftshader|llvmpipe|software|basic render/i.test(renderer);
 
 export class GatherGpu {
-  readonly renderer: string;
+  /** No GPU draws. */
+  readonly software: boolean;
   readonly capacity: number; // eyes a batch, at most
   private readonly gl: WebGL2RenderingContext;
   private readonly columns: number;
@@ -50,7 +53,7 @@ export class GatherGpu {
   private readonly none: WebGLVertexArrayObject;
   private readonly light: WebGLBuffer;
   private readonly resultRows: number;
-  private readonly vertices: number;
+  private readonly chunks: Chunks;
   private brightest = 0;
 
   /** Throws an Error with one sentence where the browser cannot do it. */
@@ -62,12 +65,12 @@ export class GatherGpu {
         "Gathering needs pictures of 32-bit floats (EXT_color_buffer_float), which this GPU does not draw.");
     }
     this.gl = gl;
-    this.renderer = rendererOf(gl);
+    this.software = isSoftware(rendererOf(gl));
+    this.chunks = new Chunks(data, this.software ? CHUNK : Infinity);
     this.rows = stripRows(resolution);
     this.columns = ATLAS_WIDTH / resolution;
     this.capacity = this.columns * Math.floor(ATLAS_HEIGHT / this.rows);
     this.resultRows = Math.ceil(eyes.count / RESULT_WIDTH);
-    this.vertices = data.patchTriangle.length;
     this.draw = this.program(DRAW.vertex, DRAW.fragment);
     this.reduceRows = this.program(WHOLE, ROWS);
     this.add = this.program(WHOLE, ADD);
@@ -165,12 +168,13 @@ export class GatherGpu {
       const faces: [Vec, Vec, Vec][] =
         [[s, t, normal], [t, normal, s], [minus(s), normal, t], [minus(t), normal, minus(s)], [s, normal, minus(t)]];
       const left = (k % columns) * resolution, bottom = Math.floor(k / columns) * rows;
-      faces.forEach((axes, face) => {
-        axes.forEach((axis, d) => gl.uniform3f(at[d + 1]!, ...axis));
+      faces.forEach(([across, up, along], face) => {
+        [across, up, along].forEach((axis, d) => gl.uniform3f(at[d + 1]!, ...axis));
         gl.uniform1i(half, face > 0 ? 1 : 0);
         gl.viewport(left, bottom + (face > 0 ? resolution + ((face - 1) * resolution) / 2 : 0), resolution,
                     face > 0 ? resolution / 2 : resolution);
-        gl.drawArrays(gl.TRIANGLES, 0, this.vertices);
+        this.chunks.seen(eye, { across, up, along, half: face > 0 },
+                         (first, count) => gl.drawArrays(gl.TRIANGLES, first, count));
       });
     }
   }

@@ -1,7 +1,6 @@
 // Gathering, live: started, paused, forgotten; each pass beside the matrix solution.
 import { Gather } from "./gather";
 import { reflectedDifference } from "./gather_eyes";
-import { isSoftware } from "./gather_gpu";
 import type { PatchLight } from "./light";
 import { counted, element, make, on, select, short } from "./ui";
 import type { Viewer } from "./viewer";
@@ -97,7 +96,7 @@ export class GatherPanel {
     }
     const { pass, eyes } = this.gather.state;
     facts.textContent = `Pass ${pass + 1}: ${counted(eyes)} of ${counted(this.gather.eyes.count)} eyes.`;
-    element("gather-device").textContent = isSoftware(this.gather.gpu.renderer)
+    element("gather-device").textContent = this.gather.gpu.software
       ? "WebGL in software: no GPU draws here, so a pass takes longer." : "";
   }
 }

@@ -33,6 +33,47 @@ test("delta form factors sum to 1, faces to their closed forms", async () => {
   }
 });
 
+// Points all over each triangle, against the definition of a face's pyramid.
+test("what a face of a hemicube sees is among the triangles that are drawn for it, and they are not all", async () => {
+  const { Chunks } = await module("gather_chunks");
+  const data = await pageData("small.html");
+  const chunks = new Chunks(data, 4);
+  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  const at = (values, k) => [...values.subarray(3 * k, 3 * k + 3)];
+  const points = [];
+  for (let a = 0.5; a < 12; ++a) for (let b = 0.5; a + b < 12; ++b) points.push([a / 12, b / 12, 1 - (a + b) / 12]);
+  let drawn = 0,
+    all = 0;
+  for (let eye = 0; eye < data.eyePosition.length / 3; eye += 17) {
+    const [position, n, s] = [data.eyePosition, data.eyeNormal, data.eyeAxis].map((values) => at(values, eye));
+    const t = [n[1] * s[2] - n[2] * s[1], n[2] * s[0] - n[0] * s[2], n[0] * s[1] - n[1] * s[0]];
+    for (const face of [
+      { across: s, up: t, along: n, half: false },
+      { across: t, up: n, along: s, half: true },
+    ]) {
+      const seen = new Set();
+      chunks.seen(position, face, (first, count) => {
+        for (let k = first; k < first + count; k += 3) seen.add(k / 3);
+      });
+      drawn += seen.size;
+      all += data.trianglePatch.length;
+      for (let triangle = 0; triangle < data.trianglePatch.length; ++triangle) {
+        if (seen.has(triangle)) continue;
+        const corners = [0, 1, 2].map((k) => at(data.position, data.patchTriangle[3 * triangle + k]));
+        for (const share of points) {
+          const to = [0, 1, 2].map((d) => share.reduce((sum, x, k) => sum + x * corners[k][d], 0) - position[d]);
+          const [x, y, w] = [face.across, face.up, face.along].map((axis) => dot(to, axis));
+          const low = face.half ? 0 : -w;
+          // 1e-6: corners are 32-bit floats, and the eye's own plane lies on the border.
+          const inside = Math.min(w - Math.abs(x), w - y, y - low) > 1e-6 * data.header.diagonal;
+          assert.ok(!inside, `eye ${eye} sees triangle ${triangle}, which is not drawn`);
+        }
+      }
+    }
+  }
+  assert.ok(drawn < 0.5 * all, `${drawn} of ${all}`);
+});
+
 async function gathered(page, passes) {
   await page.waitForFunction(
     (wanted) => Number(document.getElementById("gather-facts").dataset.pass) >= wanted,

@@ -59,7 +59,7 @@ run(
   [
     "esbuild",
     ...["factors", "solver", "relight", "vector_product", "session"].map((name) => `${name}.ts`),
-    ...["container", "light", "load", "bvh", "gather_weights", "gather_eyes"].map((name) => `${name}.ts`),
+    ...["container", "light", "load", "bvh", "gather_weights", "gather_eyes", "gather_chunks"].map((name) => `${name}.ts`),
     "--bundle",
     "--format=esm",
     "--out-extension:.js=.mjs",
