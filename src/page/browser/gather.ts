@@ -11,6 +11,7 @@ const BATCH_MS = 16; // of a frame of 33 ms; the picture and the panels need the
 // a batch is what it then waits for.
 const SOFTWARE_BATCH_MS = 60;
 const SOFTWARE_PROGRESS_MS = 500;
+const MOVING_MS = 150; // after a picture, the next one may follow
 
 export interface GatherState {
   pass: number; // passes that are complete
@@ -26,6 +27,8 @@ export class Gather {
   onPass: (irradiance: Float32Array) => void = () => {};
   onProgress: () => void = () => {};
   onFailure: (error: Error) => void = () => {};
+  /** When the page drew a picture last: in software, gathering waits while pictures follow each other. */
+  drawnAt: () => number = () => -Infinity;
 
   private readonly materials: EyeMaterials;
   private readonly sky: Rgb;
@@ -59,9 +62,8 @@ export class Gather {
     this.working = true;
     try {
       while (this.running) {
-        await (this.gpu.software ? new Promise((resume) => setTimeout(resume)) : new Promise(requestAnimationFrame));
-        if (!this.running) break;
-        await this.someEyes();
+        await this.turn();
+        if (this.running) await this.someEyes();
       }
     } catch (error) {
       if (!this.closed) this.onFailure(error as Error);
@@ -69,7 +71,14 @@ export class Gather {
     this.working = false;
   }
 
-  /** As many eyes as a frame has time for. */
+  /** Waits for the time of a batch. */
+  private async turn(): Promise<void> {
+    if (!this.gpu.software) return void (await new Promise(requestAnimationFrame));
+    do await new Promise((resume) => setTimeout(resume, 1));
+    while (this.running && performance.now() - this.drawnAt() < MOVING_MS);
+  }
+
+  /** As many eyes as a batch has time for. */
   private async someEyes(): Promise<void> {
     const budget = this.gpu.software ? SOFTWARE_BATCH_MS : BATCH_MS;
     const begin = performance.now();

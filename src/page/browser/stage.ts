@@ -44,6 +44,8 @@ export class Stage {
   split: number | null = null;
   /** What the finer mesh may stand for: both halves, or none of them. */
   elements = true;
+  /** When a picture was drawn last, as performance.now(). */
+  drawnAt = -Infinity;
 
   private readonly renderer: WebGLRenderer | null; // null: the browser has no WebGL 2
   private readonly scene = new Scene();
@@ -94,6 +96,7 @@ export class Stage {
   private drawNow(): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (!this.renderer) return;
+    this.drawnAt = performance.now();
     this.renderer.setScissorTest(false);
     this.renderer.clear();
     const left = this.split === null ? 0 : Math.round(width * this.split);
