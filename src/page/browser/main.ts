@@ -53,7 +53,7 @@ function sayAbout(viewer: Viewer): void {
     ["16-bit form factors: error of each, at most", percent(q.largest_relative_error)],
     ["…of a row, at most", short(q.largest_row_error)],
   ];
-  const shared = header.unknowns !== header.patches;
+  const { shared } = viewer;
   if (!shared) rows.push(["Stored light against these form factors", percent(viewer.agreement)]);
   element("about").replaceChildren(...rows.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]));
   if (shared) {

@@ -165,7 +165,12 @@ export class RelightPanel {
       : light.finished ? `Not converged after ${work}: this room keeps nearly all its light.` : `Solving: ${work}.`;
     facts.dataset["state"] = solved ? "solved" : light.finished ? "failed" : "solving";
     facts.dataset["milliseconds"] = String(light.milliseconds);
-    const { limited } = this.viewer;
-    facts.textContent = limited > 0 ? `${words} ${limited} textured patches are held at a reflectance of 1.` : words;
+    const more = this.viewer.limited > 0
+      ? [`${counted(this.viewer.limited)} textured patches are held at a reflectance of 1.`] : [];
+    if (this.viewer.shared) {
+      more.push("Patches share unknowns here, and light keeps its spread within each: an estimate. " +
+                "The command below finds that anew, too.");
+    }
+    facts.textContent = [words, ...more].join(" ");
   }
 }

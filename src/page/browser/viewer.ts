@@ -67,6 +67,9 @@ export class Viewer {
     this.refreshLight();
   }
 
+  /** Patches share unknowns. */
+  get shared(): boolean { return this.data.header.unknowns !== this.data.header.patches; }
+
   /** `event`: "light", "view" (how it is shown), "picks", "rows" (of picks, which come later). */
   listen(event: string, act: () => void): void {
     (this.listeners[event] ??= []).push(act);
@@ -91,7 +94,7 @@ export class Viewer {
       materials: this.materials,
       irradiance: unknownMeans(data, data.irradiance),
       sky,
-      shared: data.header.unknowns !== data.header.patches,
+      shared: this.shared,
     });
     this.agreement = loaded.agreement;
     this.reference = loaded.reference;

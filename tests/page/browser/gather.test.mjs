@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { folder, launch, module, open, pageData, program, relativeError, results } from "./support.mjs";
+import { folder, irradiance, launch, module, open, pageData, program, relativeError, results } from "./support.mjs";
 
 let browser;
 before(async () => {
@@ -80,20 +80,6 @@ async function gathered(page, passes) {
     passes,
     { timeout: 240000 },
   );
-}
-
-/** Irradiance of patches as the page shows it. */
-async function irradiance(page, patches) {
-  const shown = [];
-  for (const patch of patches) {
-    await page.locator("#pick-first").fill(String(patch));
-    await page.locator("#pick-first").press("Enter");
-    const row = await page
-      .locator('[data-pick="first"] tr[data-row] data')
-      .evaluateAll((cells) => cells.map((c) => Number(c.value)));
-    shown.push(...row.slice(6, 9));
-  }
-  return shown;
 }
 
 test("three passes, started by the keyboard, give the light of radiosity gather", async () => {

@@ -37,11 +37,11 @@ function install(from, to) {
 }
 
 /** The page of a scene: data of the program under test, in the template of these sources. */
-function makePage(template, name, scene, options) {
+function makePage(template, name, scene, options, looks = []) {
   const results = join(pages, `${name}.h5`),
     made = join(pages, `${name}.made.html`);
   run(program, ["solve", join(root, "data", scene), "-o", results, "--quiet", ...options]);
-  run(program, ["view", results, "-o", made, "--quiet"]);
+  run(program, ["view", results, "-o", made, "--quiet", ...looks]);
   const data = readFileSync(made, "utf8").match(/<script id="radiosity-data"[^]*?<\/script>/)[0];
   writeFileSync(
     join(pages, `${name}.html`),
@@ -73,6 +73,7 @@ writeFileSync(join(folder, "modules/product.wasm"), await assembled(join(sources
 const template = readFileSync(join(folder, "template.html"), "utf8");
 makePage(template, "cornell", "cornell-box.obj", []);
 makePage(template, "small", "cornell-box.obj", ["--patches", "400", "--solver", "jacobi"]);
+makePage(template, "shared", "furnished-room.obj", ["--patches", "200"], ["--elements", "off"]);
 writeFileSync(join(pages, "empty.html"), template);
 
 const files = readdirSync(tests)

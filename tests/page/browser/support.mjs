@@ -52,6 +52,20 @@ export async function open(browser, name, options = {}) {
   return { page, said };
 }
 
+/** Irradiance of patches as the page shows it. */
+export async function irradiance(page, patches) {
+  const shown = [];
+  for (const patch of patches) {
+    await page.locator("#pick-first").fill(String(patch));
+    await page.locator("#pick-first").press("Enter");
+    const row = await page
+      .locator('[data-pick="first"] tr[data-row] data')
+      .evaluateAll((cells) => cells.map((c) => Number(c.value)));
+    shown.push(...row.slice(6, 9));
+  }
+  return shown;
+}
+
 /** Root of the sum of squared differences, over that of the second. */
 export function relativeError(values, truth) {
   let difference = 0,
