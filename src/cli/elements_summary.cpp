@@ -54,7 +54,7 @@ void summarizeElements(Report& report, const Elements& elements, const FormFacto
   report.number("uniform_vertices", "a uniform grid as fine", std::round(r.uniform_vertices));
   report.count("unrefined", "left coarse at the cap", r.unrefined);
   report.number("shortest_edge_m", "shortest edge", r.edge, "m");
-  report.count("rays_a_vertex", "rays a vertex, indirect", std::size_t(r.rays_a_vertex));
+  report.count("rays_a_vertex", "rays a vertex, indirect, at least", std::size_t(r.rays_a_vertex));
   report.number("interpolation_error", "error of interpolation", r.interpolation_error);
   report.number("ray_error", "error of rays", r.ray_error);
   reportMatrixError(report, factors);

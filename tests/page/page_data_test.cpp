@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "formfactor/hemicube/eye_frame.h"
+#include "gather/eyes.h"
 #include "page/page.h"
 #include "page/surfaces.h"
 #include "page_reader.h"
@@ -220,11 +222,13 @@ TEST(PageData, BothSidesOfAPlateArePatches) {
   }
 }
 
+void useRoughRays(PipelineOptions& options) {
+  options.factors.method = FormFactorMethod::rays;
+  options.factors.tolerance = 0.1;
+}
+
 TEST(PageData, PatchesThatShareUnknownsHaveLightOfTheirOwn) {
-  Made made(dataScene("curved.obj"), 120, false, [](PipelineOptions& options) {
-    options.factors.method = FormFactorMethod::rays;
-    options.factors.tolerance = 0.1;
-  });
+  Made made(dataScene("curved.obj"), 120, false, useRoughRays);
   const PatchMesh& mesh = made.mesh();
   ASSERT_TRUE(mesh.clusters);
   expectShapes(made);
@@ -306,6 +310,68 @@ TEST(PageData, SmoothShadingIsThatOfPictures) {
       }
     }
   }
+}
+
+/// Eyes are the first shading vertices. On a flat side an eye lies in its patches' plane and looks
+/// along their normal; its axes are those of `radiosity gather`.
+TEST(PageData, EyesAreThoseOfTheGather) {
+  for (const bool flat : {true, false}) {
+    Made made(flat ? roomWithPlate() : dataScene("curved.obj"), 120, false, useRoughRays);
+    const PatchMesh& mesh = made.mesh();
+    const PageReader& page = made.page();
+    const auto position = page.floats("eye_position");
+    const auto normal = page.floats("eye_normal");
+    const auto axis = page.floats("eye_axis");
+    GatherOptions options;
+    options.crease = made.options.crease;
+    const std::vector<Eye> eyes = vertexEyes(mesh, cornerGroups(mesh, options.crease), options);
+    ASSERT_EQ(position.size(), 3 * eyes.size());
+    ASSERT_EQ(normal.size(), position.size());
+    ASSERT_EQ(axis.size(), position.size());
+    const auto origin = page.header["origin"].get<std::vector<double>>();
+    const Vec3 shift(origin[0], origin[1], origin[2]);
+    const double diagonal = page.header["diagonal"];
+    for (std::size_t g = 0; g < eyes.size(); ++g) {
+      ASSERT_TRUE(eyes[g].looks);
+      ASSERT_LE(glm::distance(point(position, g) + shift, eyes[g].position), kSingle * diagonal);
+      ASSERT_LE(glm::distance(point(normal, g), eyes[g].normal), 2 * kSingle);
+      ASSERT_NEAR(glm::length(point(normal, g)), 1, 2 * kSingle);
+      const EyeFrame frame = eyeFrame(eyes[g].position, eyes[g].normal, eyes[g].angle);
+      ASSERT_LE(glm::distance(point(axis, g), frame.axes[0]), 2 * kSingle);
+      ASSERT_NEAR(glm::dot(point(axis, g), point(normal, g)), 0, 4 * kSingle);
+    }
+    const auto corner = page.indices("triangle_corner");
+    const auto patch = page.indices("triangle_patch");
+    for (std::size_t k = 0; k < corner.size(); ++k) {
+      if (corner[k] >= eyes.size()) continue;  // within a patch
+      const Vec3 face = mesh.normal[patch[k / 3]];
+      ASSERT_GT(glm::dot(point(normal, corner[k]), face), 0);
+      if (!flat) continue;
+      ASSERT_LE(glm::distance(point(normal, corner[k]), face), 2 * kSingle);
+      const Vec3 eye = point(position, corner[k]) + shift;
+      ASSERT_NEAR(glm::dot(eye - mesh.centroid[patch[k / 3]], face), 0, 2 * kSingle * diagonal);
+    }
+  }
+}
+
+TEST(PageData, AnEyeThatStandsForNoAreaDoesNotLook) {
+  Scene scene = roomWithPlate();
+  const auto first = Index(scene.vertices.size());
+  for (const double x : {0.2, 0.3, 0.4}) scene.vertices.push_back({x, 0.2, 0.2});  // in one line
+  for (Index k = 0; k < 3; ++k) scene.corners.push_back(first + k);
+  scene.face_offset.push_back(Index(scene.corners.size()));
+  scene.face_surface.push_back(0);
+  Made made(std::move(scene), 60, false,
+            [](PipelineOptions& options) { options.mesh.faces_as_patches = true; });
+  const auto normal = made.page().floats("eye_normal");
+  const auto axis = made.page().floats("eye_axis");
+  std::size_t blind = 0;
+  for (std::size_t k = 0; k < normal.size(); k += 3) {
+    if (point(normal, k / 3) != Vec3(0.0)) continue;
+    ++blind;
+    EXPECT_EQ(point(axis, k / 3), Vec3(0.0));
+  }
+  EXPECT_EQ(blind, 3u);
 }
 
 TEST(PageData, EveryOutlineEdgeIsThereOnce) {
