@@ -150,8 +150,9 @@ export class ConvergePanel {
     slider.setAttribute("aria-valuetext",
       frame ? `${unit} ${frame.index}, residual ${frame.residual.toExponential(2)}` : "no run yet");
     const told = this.told();
-    drawPlot(element("plot"), this.frames.map((f) => ({ x: f.rows, y: f.residual })), told, this.shown,
-             "rows of the matrix used, over their number");
+    element("plot").hidden = !frame;
+    if (frame) drawPlot(element("plot"), this.frames.map((f) => ({ x: f.rows, y: f.residual })), told, this.shown,
+                        "rows of the matrix used, over their number");
     this.sayFacts(frame, told.length > 0);
   }
 

@@ -1,5 +1,7 @@
 // The residual over the work done, logarithmic upwards: a drawing of the solver's way.
 
+import { short } from "./ui";
+
 const WIDTH = 300, HEIGHT = 150, LEFT = 40, RIGHT = 8, TOP = 8, BOTTOM = 30;
 const SVG = "http://www.w3.org/2000/svg";
 
@@ -20,7 +22,7 @@ export function drawPlot(into: HTMLElement, run: Point[], told: Point[], now: nu
   const all = [...run, ...told].filter((p) => p.y > 0);
   const decades = all.map((p) => Math.log10(p.y));
   const high = Math.ceil(Math.max(0, ...decades)), low = Math.min(high - 1, Math.floor(Math.min(-1, ...decades)));
-  const most = Math.max(1, ...all.map((p) => p.x));
+  const most = Math.max(...all.map((p) => p.x)) || 1;
   const x = (v: number) => LEFT + (v / most) * (WIDTH - LEFT - RIGHT);
   const y = (v: number) =>
     TOP + ((high - Math.log10(Math.max(v, 10 ** low))) / (high - low)) * (HEIGHT - TOP - BOTTOM);
@@ -34,8 +36,7 @@ export function drawPlot(into: HTMLElement, run: Point[], told: Point[], now: nu
       shape("text", { x: LEFT - 5, y: y(10 ** d) + 4, "text-anchor": "end" }, d === 0 ? "1" : `1e${d}`));
   }
   svg.append(shape("text", { x: LEFT, y: HEIGHT - BOTTOM + 14 }, "0"),
-    shape("text", { x: WIDTH - RIGHT, y: HEIGHT - BOTTOM + 14, "text-anchor": "end" },
-      String(Math.round(most * 10) / 10)),
+    shape("text", { x: WIDTH - RIGHT, y: HEIGHT - BOTTOM + 14, "text-anchor": "end" }, short(most)),
     shape("text", { x: (LEFT + WIDTH) / 2, y: HEIGHT - 4, "text-anchor": "middle" }, axis),
     shape("polyline", { class: "run", points: run.map((p) => `${x(p.x)},${y(p.y)}`).join(" ") }));
   for (const p of told) svg.append(shape("circle", { class: "told", cx: x(p.x), cy: y(p.y), r: 3.5 }));

@@ -1,6 +1,6 @@
-;; F x for the rows of F, three bands at once: x and F x hold a vector of 32-bit floats an unknown, (red, green, blue, 0).
-;; An entry of a row costs one broadcast, one product and one sum; four running sums take turns, since a sum is not there
-;; for the next entry at once. Runs of rows lie behind one another, so addresses only step on.
+;; F x for the rows of F, three bands at once: x and F x hold a vector of 32-bit floats an unknown, (red, green,
+;; blue, 0). An entry of a row costs one broadcast, one product and one sum; four running sums take turns, since a sum
+;; is not there for the next entry at once. Rows lie behind one another, so addresses only step on.
 (module
   (import "page" "memory" (memory 0))
 

@@ -85,7 +85,7 @@ export class Session {
     const southwell = method === "southwell" ? solver.southwellStart(system) : null;
     const iterate = southwell ? southwell.iterate : solver.fromEmission(system);
     this.run = { id, method, system, iterate, southwell, index: 0 };
-    return this.frame(this.run, solver.irradianceOf(system, iterate.radiosity), NaN);
+    return this.frame(this.run, southwell ? null : solver.irradianceOf(system, iterate.radiosity), NaN);
   }
 
   /** The next frame of the run; null where another was started since. */

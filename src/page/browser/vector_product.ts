@@ -39,6 +39,10 @@ export class VectorProduct {
       for (let b = 0; b < BANDS; ++b) this.x[i * LANES + b] = x[i * BANDS + b]!;
     }
     this.kernel(size, begin.byteOffset, column.byteOffset, value.byteOffset, this.x.byteOffset, this.out.byteOffset);
-    return Float64Array.from(x, (_, k) => this.out[Math.floor(k / BANDS) * LANES + (k % BANDS)]!);
+    const result = new Float64Array(size * BANDS);
+    for (let i = 0; i < size; ++i) {
+      for (let b = 0; b < BANDS; ++b) result[i * BANDS + b] = this.out[i * LANES + b]!;
+    }
+    return result;
   }
 }

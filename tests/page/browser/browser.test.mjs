@@ -135,8 +135,9 @@ test("each look changes the picture, and back", async () => {
   assert.ok(apart(light, await colours()) < 0.5);
 });
 
-// Smooth light of patches against the picture that `radiosity render` draws of the same: not the same anti-aliasing, and values
-// of 8 bits; edges fall on few of the points. 6 of 255 by root mean square is a tenth of what one stop of exposure does.
+// Smooth light of patches against the picture that `radiosity render` draws of the same: not the same anti-aliasing,
+// and values of 8 bits; edges fall on few of the points. 6 of 255 by root mean square is a tenth of what one stop of
+// exposure does.
 test("the picture is that of radiosity render", async () => {
   const size = 740;
   const { page: square } = await open(browser, "cornell.html", {
@@ -156,9 +157,15 @@ test("the picture is that of radiosity render", async () => {
     "--quiet",
   ]);
   const mine = await colours(square);
-  const script =
-    "import sys,json\nfrom PIL import Image\ni=Image.open(sys.argv[1]).convert('RGBA');b=Image.new('RGBA',i.size,(0,0,0,0));b.alpha_composite(i)\n" +
-    "print(json.dumps([list(b.getpixel((int((.05+.1*x)*i.width),int((.05+.1*y)*i.height)))) for y in range(10) for x in range(10)]))";
+  const script = [
+    "import sys, json",
+    "from PIL import Image",
+    "shown = Image.open(sys.argv[1]).convert('RGBA')",
+    "image = Image.new('RGBA', shown.size, (0, 0, 0, 0))",
+    "image.alpha_composite(shown)",
+    "at = lambda x, y: (int((.05 + .1 * x) * image.width), int((.05 + .1 * y) * image.height))",
+    "print(json.dumps([list(image.getpixel(at(x, y))) for y in range(10) for x in range(10)]))",
+  ].join("\n");
   const theirs = JSON.parse(execFileSync("/usr/bin/python3", ["-c", script, file]));
   const pairs = theirs.map((p, k) => [p, mine.slice(3 * k, 3 * k + 3)]).filter(([p]) => p[3] === 255);
   assert.ok(pairs.length > 80);
@@ -208,8 +215,8 @@ test("sliders give the light of radiosity solve --set", async () => {
 });
 
 // 200 unknowns of 3,511 patches. A lamp of another strength scales all light. Other reflectances change how light is
-// spread within unknowns, which the program finds by rays and the page cannot: 1.3% here, and it says that it estimates.
-test("where patches share unknowns lamps give the light of radiosity solve --set, and reflectances an estimate", async () => {
+// spread within unknowns, which the program finds by rays and the page cannot: 1.3% here, and it says so.
+test("where patches share unknowns lamps give what radiosity solve --set does, reflectances an estimate", async () => {
   const { page: shared, said: words } = await open(browser, "shared.html");
   await shared.evaluate(() => {
     for (const id of ["relight-panel", "patch-panel"]) document.getElementById(id).open = true;
@@ -226,14 +233,14 @@ test("where patches share unknowns lamps give the light of radiosity solve --set
   };
 
   await range(slider("lamp", "strength"), 40);
-  const [brighter, expected] = await both();
-  brighter.forEach((x, k) => assert.ok(Math.abs(x - expected[k]) <= 1e-3 * expected[k], `${x}, not ${expected[k]}`));
+  const [dimmed, expected] = await both();
+  dimmed.forEach((x, k) => assert.ok(Math.abs(x - expected[k]) <= 1e-3 * expected[k], `${x}, not ${expected[k]}`));
   assert.match(await shared.locator("#relight-facts").textContent(), /share unknowns.*estimate/);
 
   await range(slider("parquet", "reflectance"), 0.1);
   const [darker, found] = await both();
   const error = relativeError(darker, found);
-  assert.ok(relativeError(brighter, found) > 2 * error, "the page must come nearer by relighting");
+  assert.ok(relativeError(dimmed, found) > 2 * error, "the page must come nearer by relighting");
   assert.ok(error < 0.02, `relative L2 ${error}`);
   assert.deepEqual(words, []);
   await shared.close();

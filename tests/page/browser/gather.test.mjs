@@ -17,7 +17,8 @@ test("delta form factors sum to 1, faces to their closed forms", async () => {
     const weights = deltaFormFactors(resolution);
     const sum = (from, to) => weights.subarray(from * resolution, to * resolution).reduce((total, x) => total + x, 0);
     assert.ok(Math.abs(sum(0, 3 * resolution) - 1) < 1e-6, `${resolution}: ${sum(0, 3 * resolution)}`);
-    // From a point to a square of edge 2 at height 1 above it: four quarters of configuration factor B-3 of Howell's catalogue.
+    // From a point to a square of edge 2 at height 1 above it: four quarters of configuration factor B-3 of Howell's
+    // catalogue.
     const top = (4 / Math.PI) * Math.SQRT1_2 * Math.atan(Math.SQRT1_2);
     assert.ok(Math.abs(sum(0, resolution) - top) < 1e-6);
     for (let side = 0; side < 4; ++side) {

@@ -29,7 +29,8 @@ def main():
     with h5py.File(sys.argv[1]) as file:
         if "gather" in file:
             light = file["gather"]
-            json.dump({"gathered": {name: light[name][()].ravel().tolist() for name in ("irradiance", "position")}}, sys.stdout)
+            gathered = {name: light[name][()].ravel().tolist() for name in ("irradiance", "position")}
+            json.dump({"gathered": gathered}, sys.stdout)
             return
         light = file["solution"]
         out = {name: light[name][()].ravel().tolist()

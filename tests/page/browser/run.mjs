@@ -1,5 +1,5 @@
-// node run.mjs FOLDER RADIOSITY: the tests of the page's browser half. FOLDER: everything is written there; packages are
-// fetched once. RADIOSITY: the program. CHROMIUM (environment): the browser, else the first that is found.
+// node run.mjs FOLDER RADIOSITY: the tests of the page's browser half. FOLDER: everything is written there; packages
+// are fetched once. RADIOSITY: the program. CHROMIUM (environment): the browser, else the first that is found.
 import { execFileSync, spawnSync } from "node:child_process";
 import { cpSync, existsSync, mkdirSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
@@ -12,6 +12,11 @@ if (!program) {
   console.error("usage: node run.mjs FOLDER RADIOSITY");
   process.exit(2);
 }
+/** Parts of the page that node runs by themselves. */
+const modules = [
+  ...["factors", "solver", "relight", "vector_product", "session"],
+  ...["container", "light", "load", "bvh", "gather_weights", "gather_eyes", "gather_chunks"],
+];
 const sources = join(folder, "source");
 const tests = join(folder, "tests");
 const pages = join(folder, "pages");
@@ -58,8 +63,7 @@ run(
   "npx",
   [
     "esbuild",
-    ...["factors", "solver", "relight", "vector_product", "session"].map((name) => `${name}.ts`),
-    ...["container", "light", "load", "bvh", "gather_weights", "gather_eyes", "gather_chunks"].map((name) => `${name}.ts`),
+    ...modules.map((name) => `${name}.ts`),
     "--bundle",
     "--format=esm",
     "--out-extension:.js=.mjs",
