@@ -1,7 +1,7 @@
 // The solver's way from E to the light, watched: played at a speed, stepped, and gone back through.
 import { drawPlot, type Point } from "./plot";
 import type { Frame, Method } from "./protocol";
-import { element, input, on, select } from "./ui";
+import { element, input, on, select, short } from "./ui";
 import type { Viewer } from "./viewer";
 
 /** Frames are kept for the slider; a run longer than that stops. */
@@ -164,9 +164,9 @@ export class ConvergePanel {
       facts.textContent = "From B = E on, with the materials as they are now.";
       return;
     }
-    const words = [`Residual ${frame.residual.toExponential(2)}`];
+    const words = [`Residual ${short(frame.residual)}`];
     if (this.method === "southwell") words[0] += " (light not sent on yet)";
-    if (Number.isFinite(frame.change)) words.push(`largest change ${frame.change.toExponential(2)}`);
+    if (Number.isFinite(frame.change)) words.push(`largest change ${short(frame.change)}`);
     if (told) {
       words.push(this.method === "jacobi" ? "circles: the program's residuals"
         : "circles: the program's largest changes; it also combines sweeps");

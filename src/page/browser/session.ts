@@ -46,10 +46,11 @@ export class Session {
     const system = this.system(load.materials);
     const radiosity = stored.map((h, k) => system.emission[k]! + system.reflectance[k]! * h);
     this.lit = { irradiance: stored, source: solver.source(system) };
+    const gathered = this.multiply(radiosity).map((h, k) => h + system.more[k]!);
     this.loaded = {
       kind: "loaded",
       entries: this.factors.value.length,
-      agreement: relativeDifference(solver.irradianceOf(system, radiosity), stored, this.factors.area),
+      agreement: relativeDifference(gathered, stored, this.factors.area),
       reference: load.shared ? this.relight(load.materials, REFERENCE_MS).irradiance : null,
     };
   }
@@ -62,8 +63,7 @@ export class Session {
   relight(materials: Materials | null, milliseconds: number): Omit<Reply & { kind: "relit" }, "ticket"> {
     const began = performance.now();
     if (materials) {
-      this.relighting = new Relight(this.system(materials), this.lit, (x) =>
-        this.vectors?.multiply(x) ?? solver.product(this.factors, x));
+      this.relighting = new Relight(this.system(materials), this.lit, (x) => this.multiply(x));
     }
     const relight = this.relighting!;
     const before = materials ? 0 : relight.products;
@@ -78,6 +78,11 @@ export class Session {
       converged: relight.residual <= RELIGHT_TOLERANCE,
       milliseconds: performance.now() - began,
     };
+  }
+
+  /** F x. */
+  private multiply(x: Float64Array): Float64Array {
+    return this.vectors?.multiply(x) ?? solver.product(this.factors, x);
   }
 
   start(id: number, method: Method, materials: Materials): Frame {
