@@ -71,11 +71,11 @@ export class Gather {
     this.working = false;
   }
 
-  /** Waits for the time of a batch. */
+  /** Waits for the time of a batch: as frames do, none comes while the page is out of sight. */
   private async turn(): Promise<void> {
     if (!this.gpu.software) return void (await new Promise(requestAnimationFrame));
     do await new Promise((resume) => setTimeout(resume, 1));
-    while (this.running && performance.now() - this.drawnAt() < MOVING_MS);
+    while (this.running && (document.hidden || performance.now() - this.drawnAt() < MOVING_MS));
   }
 
   /** As many eyes as a batch has time for. */
