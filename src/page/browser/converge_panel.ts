@@ -169,7 +169,7 @@ export class ConvergePanel {
     if (Number.isFinite(frame.change)) words.push(`largest change ${short(frame.change)}`);
     if (told) {
       words.push(this.method === "jacobi" ? "circles: the program's residuals"
-        : "circles: the program's largest changes; it also combines sweeps");
+        : "circles: the program's largest changes, the last one its residual");
     }
     facts.textContent = `${words.join("; ")}.`;
   }

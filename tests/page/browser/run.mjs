@@ -77,6 +77,7 @@ writeFileSync(join(folder, "modules/product.wasm"), await assembled(join(sources
 const template = readFileSync(join(folder, "template.html"), "utf8");
 makePage(template, "cornell", "cornell-box.obj", []);
 makePage(template, "small", "cornell-box.obj", ["--patches", "400", "--solver", "jacobi"]);
+makePage(template, "sweeps", "cornell-box.obj", ["--patches", "400", "--solver", "gauss-seidel"]);
 makePage(template, "shared", "furnished-room.obj", ["--patches", "200"], ["--elements", "off"]);
 writeFileSync(join(pages, "empty.html"), template);
 
