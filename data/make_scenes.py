@@ -4,8 +4,9 @@
     python3 data/make_scenes.py                      all scenes, into this folder
     python3 data/make_scenes.py --only cluttered --boxes 2000 --output /tmp/clutter.obj
 
-Each scene is an OBJ with its MTL, in metres, y up. Kd is linear reflectance, Ke is radiance in
-W/(m^2 sr). A line "# camera ..." is a camera that the program reads.
+Each scene is an OBJ with its MTL, in metres, y up; the city is an STL, a named solid an object. Kd is
+linear reflectance, Ke is radiance in W/(m^2 sr). A line "# camera ..." is a camera that the program
+reads.
 """
 import argparse
 import csv
@@ -79,6 +80,20 @@ class Scene:
                     self.add(name, material, [lower[k], (centre[0], y1, centre[1]), lower[m]])
                 else:
                     self.add(name, material, [lower[k], upper[k], upper[m], lower[m]])
+
+    def write_stl(self, path):
+        """Polygons must be convex. Normals are left to readers, as the format allows: 0 0 0."""
+        lines = []
+        for solid in dict.fromkeys(name for name, _, _ in self.faces):
+            lines.append(f"solid {solid}")
+            for name, _, points in self.faces:
+                for k in range(1, len(points) - 1) if name == solid else ():
+                    lines += ["facet normal 0 0 0", " outer loop"]
+                    lines += [" vertex {:g} {:g} {:g}".format(*p)
+                              for p in (points[0], points[k], points[k + 1])]
+                    lines += [" endloop", "endfacet"]
+            lines.append(f"endsolid {solid}")
+        pathlib.Path(path).write_text("\n".join(lines) + "\n")
 
     def write(self, path):
         path = pathlib.Path(path)
@@ -367,7 +382,20 @@ def cluttered(boxes):
     return scene
 
 
+def city():
+    """Blocks on a square: party walls, a courtyard, a tower that looks down on all of them."""
+    scene = Scene("six buildings on a ground of 80 x 80 m", {"wall": grey(0.3)})
+    scene.add("ground", "wall", [(0, 0, 0), (0, 0, 80), (80, 0, 80), (80, 0, 0)])
+    for name, (x0, z0), (x1, z1), height in [
+            ("tower", (50, 52), (60, 62), 45), ("hall", (12, 50), (36, 66), 9),
+            ("row_house_west", (14, 14), (24, 26), 10), ("row_house_middle", (24, 14), (34, 26), 12),
+            ("row_house_east", (34, 14), (44, 26), 10), ("school", (52, 12), (66, 38), 14)]:
+        scene.box(name, "wall", (x0, 0, z0), (x1, height, z1))
+    return scene
+
+
 SCENES = {
+    "city": lambda a: city(),
     "cornell-box": lambda a: cornell(closed=False),
     "cornell-box-closed": lambda a: cornell(closed=True),
     "furnace-cube": lambda a: furnace_cube(),
@@ -394,8 +422,9 @@ def main():
         parser.error("--boxes must be 1 or more")
     for name in [arguments.only] if arguments.only else SCENES:
         scene = SCENES[name](arguments)
-        path = arguments.output or HERE / f"{name}.obj"
-        scene.write(path)
+        ending = "stl" if name == "city" else "obj"
+        path = pathlib.Path(arguments.output or HERE / f"{name}.{ending}")
+        (scene.write_stl if path.suffix == ".stl" else scene.write)(path)
         print(f"{path}: {len(scene.faces)} polygons")
 
 

@@ -1,0 +1,69 @@
+"""What the README shows engineers, command by command, and whether the numbers are right."""
+import csv
+import os
+import pathlib
+import unittest
+
+from cli_runner import CliTest
+
+DATA = pathlib.Path(os.environ["RADIOSITY_SOURCE_DIR"]) / "data"
+
+
+class EngineerWalk(CliTest):
+    def table(self, name):
+        with open(self.folder / name, newline="") as file:
+            return {row["name"]: row for row in csv.DictReader(file)}
+
+    def test_a_city_gives_a_table_with_sky_view_factors(self):
+        self.run_program("factors", DATA / "city.stl", "--between", "surfaces", "-o", "city.csv")
+        city = self.table("city.csv")
+        self.assertEqual(len(city), 7)
+        for name, row in city.items():
+            views = [float(row[other]) for other in [*city, "sky", "backs"]]
+            # Each form factor is good to a thousandth of the mean, of some thousand patches.
+            self.assertAlmostEqual(sum(views), 1, delta=1e-3, msg=name)
+            for other in city:
+                there = float(row["area_m2"]) * float(row[other])
+                back = float(city[other]["area_m2"]) * float(city[other][name])
+                self.assertAlmostEqual(there, back, delta=1e-9 * max(there, 1))
+        # The tower, 6.1 times as high as it is wide, has 10 * 10 m^2 of roof, which sees the sky
+        # alone, and 1,800 m^2 of walls, of whose view the sky is one half at least: above the roofs
+        # around, half of the view is above the horizon, and below it there is ground or open land.
+        sky = float(city["tower"]["sky"])
+        self.assertGreater(sky, (100 + 0.5 * 0.9 * 1800) / 1900)
+        self.assertLess(sky, 1)
+        # Rays know nothing of what the exact method does; 1e-2 of a row's norm is below this.
+        self.run_program("factors", DATA / "city.stl", "--between", "surfaces", "--method", "rays",
+                         "-o", "rays.csv")
+        for name, row in self.table("rays.csv").items():
+            self.assertAlmostEqual(float(row["sky"]), float(city[name]["sky"]), delta=1e-2)
+
+    def test_a_heater_by_name_gives_temperatures_that_vtk_reads(self):
+        self.run_program("heat", DATA / "cornell-box-closed.obj", "--thermal", DATA / "oven.csv",
+                         "-o", "oven.vtp", "-o", "oven.csv")
+        from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName(str(self.folder / "oven.vtp"))
+        reader.Update()
+        temperature = reader.GetOutput().GetCellData().GetArray("temperature")
+        low, high = temperature.GetRange()
+        self.assertAlmostEqual(high, 900, delta=1e-9)  # the lamp is given, and nothing is hotter
+        self.assertGreater(low, 290)  # of the air, which alone takes heat out
+        with open(self.folder / "oven.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertIn("lamp/light", [row["surface"] for row in rows])
+
+    def test_view3d_s_example_has_its_closed_form(self):
+        self.run_program("factors", DATA / "quarter-blocked.vs3", "--between", "surfaces",
+                         "-o", "blocked.vf", "-o", "blocked.csv")
+        lines = (self.folder / "blocked.vf").read_text().splitlines()
+        self.assertEqual([float(a) for a in lines[1].split()], [1, 1, 0.25])
+        lower = [float(f) for f in lines[2].split()]
+        # Three fourths of two unit squares' (data/README.md), to the tolerance.
+        self.assertAlmostEqual(lower[1], 0.149868671773790, delta=1e-4)
+        table = self.table("blocked.csv")
+        self.assertAlmostEqual(lower[1], float(table["lower"]["upper"]), delta=1e-6)
+
+
+if __name__ == "__main__":
+    unittest.main()
