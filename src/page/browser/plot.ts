@@ -36,7 +36,8 @@ export function drawPlot(into: HTMLElement, run: Point[], told: Point[], now: nu
       shape("text", { x: LEFT - 5, y: y(10 ** d) + 4, "text-anchor": "end" }, d === 0 ? "1" : `1e${d}`));
   }
   svg.append(shape("text", { x: LEFT, y: HEIGHT - BOTTOM + 14 }, "0"),
-    shape("text", { x: WIDTH - RIGHT, y: HEIGHT - BOTTOM + 14, "text-anchor": "end" }, short(Number(most.toPrecision(2)))),
+    shape("text", { x: WIDTH - RIGHT, y: HEIGHT - BOTTOM + 14, "text-anchor": "end" },
+      short(Number(most.toPrecision(2)))),
     shape("text", { x: (LEFT + WIDTH) / 2, y: HEIGHT - 4, "text-anchor": "middle" }, axis),
     shape("polyline", { class: "run", points: run.map((p) => `${x(p.x)},${y(p.y)}`).join(" ") }));
   for (const p of told) svg.append(shape("circle", { class: "told", cx: x(p.x), cy: y(p.y), r: 3.5 }));
