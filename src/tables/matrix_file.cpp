@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "base/input_file.h"
+#include "base/made.h"
 #include "radiosity/results.h"
 #include "results/matrix_market.h"
 #include "tables/matrix_readers.h"
@@ -30,11 +31,12 @@ MatrixFile readOfResults(const std::string& path) {
   if (!results->mesh || !results->factors) {
     throw InputError(path + ": holds no form factors; run radiosity factors on it");
   }
+  const FormFactors& factors = made(results->factors);
   MatrixFile file;
   file.path = path;
-  file.factors = factorsOfUnknowns(results->mesh->mesh, *results->factors);
+  file.factors = factorsOfUnknowns(made(results->mesh).mesh, factors);
   // The matrix lives as long as the results that it is part of.
-  file.factors.matrix = std::shared_ptr<const ExchangeMatrix>(results, &results->factors->matrix);
+  file.factors.matrix = std::shared_ptr<const ExchangeMatrix>(results, &factors.matrix);
   return file;
 }
 

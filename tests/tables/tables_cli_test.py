@@ -131,6 +131,16 @@ class Tables(CliTest):
         truth = Truth(self.folder / "t.h5", [WALLS])
         self.assert_close(pairs["walls", "walls"], truth.factors[0, 0])
 
+    def test_threads_leave_every_bit(self):
+        self.run_program("factors", DATA / "cornell-box.obj", "--patches", 400, "--method", "exact",
+                         "-o", "t.h5")
+        self.run_program("factors", "t.h5", "--threads", 2, "-o", "a.csv", "-o", "a.txt")
+        run = self.run_program("factors", "t.h5", "--threads", 1, "-o", "b.csv", "-o", "b.txt")
+        self.assertIn("form factors   reused", run.out)
+        for name in ("csv", "txt"):
+            self.assertEqual((self.folder / f"a.{name}").read_bytes(),
+                             (self.folder / f"b.{name}").read_bytes())
+
     def test_energyplus_has_every_pair_of_the_zone(self):
         run = self.run_program(*ROOM, "-o", "t.idf", "--zone", "Room 1", "-o", "t.h5")
         self.assertIn("EnergyPlus takes the zone to be closed", run.err)

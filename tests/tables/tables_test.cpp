@@ -146,6 +146,32 @@ TEST_F(Tables, SumsOfSharedUnknownsAreThoseMadeByHand) {
   EXPECT_DOUBLE_EQ(area[1], 2) << "both sides of the sheet";
 }
 
+TEST_F(Tables, MatricesOnDiskGiveTheSameBits) {
+  Sample sample;
+  const NamedFactors in_memory = between(sample.mesh, sample.factors);
+  const std::vector<double> area(sample.factors.matrix.area().begin(),
+                                 sample.factors.matrix.area().end());
+  ExchangeMatrix on_disk(area, Precision::double_precision,
+                         std::make_shared<ScratchMemory>(folder_.string(), 0));
+  for (std::size_t u = 0; u < area.size(); ++u) {
+    std::vector<Index> columns;
+    std::vector<double> values;
+    sample.factors.matrix.forRow(u, [&](Index v, double value) {
+      columns.push_back(v);
+      values.push_back(value);
+    });
+    on_disk.setRow(u, columns, values);
+  }
+  sample.factors.matrix = std::move(on_disk);
+  const NamedFactors from_disk = between(sample.mesh, sample.factors);
+  for (std::size_t a = 0; a < 3; ++a) {
+    EXPECT_EQ(from_disk.sky[a], in_memory.sky[a]);
+    for (std::size_t b = 0; b < 3; ++b) {
+      EXPECT_EQ(from_disk.matrix->at(a, b), in_memory.matrix->at(a, b));
+    }
+  }
+}
+
 TEST_F(Tables, EntriesAreWithinTheirErrorOfFactorsToAThousandthOfTheTolerance) {
   const PatchMesh mesh = test::roomWithBlock(3).build();
   const NamedFactors rough = between(mesh, exactFactors(mesh, 3e-2));
