@@ -86,10 +86,9 @@ class CsvReader {
 }  // namespace
 
 std::string csvField(std::string_view text) {
-  const std::string plain(text);
-  if (plain.find_first_of(",\"\r\n") == std::string::npos) return plain;
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
   std::string out(1, '"');
-  for (const char c : plain) out.append(c == '"' ? 2 : 1, c);
+  for (const char c : text) out.append(c == '"' ? 2 : 1, c);
   out.push_back('"');
   return out;
 }

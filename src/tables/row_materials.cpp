@@ -126,8 +126,8 @@ class RowTable {
 
   void take(const CsvTable::Row& row) {
     const std::size_t n = matrix_.factors.size();
-    if (row_) {
-      const std::string& text = row.fields[*row_];
+    if (!name_) {
+      const std::string& text = row.fields[row_.value_or(0)];
       const std::optional<long long> value = parseInteger(text);
       if (!value || *value < 1 || std::size_t(*value) > n) {
         fail(row.line, fmt::format("`{}` is no row: they go from 1 to {}", text, n));

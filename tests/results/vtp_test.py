@@ -7,6 +7,7 @@ import h5py
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDataArray
+from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "cli"))
@@ -39,6 +40,10 @@ class Read:
         reader.SetFileName(str(path))
         reader.Update()
         data = reader.GetOutput()
+        sizes = vtkCellSizeFilter()
+        sizes.SetInputData(data)
+        sizes.Update()
+        self.areas = vtk_to_numpy(sizes.GetOutput().GetCellData().GetArray("Area"))
         self.points = vtk_to_numpy(data.GetPoints().GetData())
         polys = data.GetPolys()
         ends = vtk_to_numpy(polys.GetOffsetsArray())
@@ -77,6 +82,8 @@ class Vtp(CliTest):
         surface = mesh["surface"][()]
         self.assertEqual(read.names, names)
         self.assertEqual(read.arrays["surface"], [names[s] for s in surface])
+        # Area as VTK computes it of the polygons, but for rounding of coordinates' differences.
+        numpy.testing.assert_allclose(read.areas, mesh["area"][()], rtol=1e-12)
         for name, wanted in [("surface_id", surface), ("area", mesh["area"][()]),
                              ("side", mesh["side"][()]), ("patch", range(len(surface)))]:
             numpy.testing.assert_array_equal(read.arrays[name], wanted)
