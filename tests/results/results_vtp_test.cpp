@@ -13,7 +13,7 @@ class Vtp : public FolderTest {};
 TEST_F(Vtp, RefusesFieldsThatDoNotFit) {
   const PatchMesh mesh = sample::mesh(2);
   const std::vector<double> values(mesh.size(), 1.0);
-  const auto write = [&](std::vector<CellField> fields) {
+  const auto write = [&](const std::vector<CellField>& fields) {
     return [&, fields] { writeVtp(path("x.vtp"), mesh, fields); };
   };
   expectError<InputError>(path("x.vtp"), "field t has 5 values of 2 components for 5 patches",
