@@ -58,7 +58,7 @@ struct NamedFactors {
 
 /// F[a, b] = sum over i in a, j in b of A_i F_ij / A_a, in double precision; sky and backs are
 /// means by area. A two-sided surface has both sides in one row. Patches that share unknowns are of
-/// one surface, so that clusters are grouped as patches are. One pass over the matrix, whereever it
+/// one surface, so that clusters are grouped as patches are. One pass over the matrix, wherever it
 /// is. A group without area has a row of zeros. Errors: InputError where `groups` is of another
 /// number of surfaces; Cancelled.
 NamedFactors factorsBetween(const PatchMesh& mesh, const FormFactors& factors,

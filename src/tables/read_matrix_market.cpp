@@ -96,7 +96,9 @@ class Reader {
           fmt::format("is {} x {}; form factors have as many columns as rows", words[0], words[1]));
     }
     if (n_ == 0 || n_ >= kNone) fail(fmt::format("has {} rows", n_));
-    // A text of so many bytes has no more entries, nor (but for empty rows) more rows.
+    if (n_ > text_.size()) {
+      fail(fmt::format("claims {} rows and is too short for them; write it again", n_));
+    }
     stated_ = dense_ ? (symmetric_ ? n_ * (n_ + 1) / 2 : n_ * n_) : countIn(words[2]);
     if (stated_ > text_.size() / 2 + 1) {
       fail(fmt::format("claims {} entries and is too short for them; write it again", stated_));

@@ -140,6 +140,7 @@ TEST_F(MatrixFiles, RefusesDamagedMatrixMarket) {
   refuses(banner + "2 3 0\n", ":2: is 2 x 3");
   refuses(banner + "2 2 -1\n", ":2: `-1` is no count");
   refuses(banner + "2 2 1000000000\n1 1 1\n", "too short");
+  refuses(banner + "4000000000 4000000000 0\n", "claims 4000000000 rows");
   refuses(banner + "2 2 2\n1 2 .5\n", "ends after 1 of 2 entries");
   refuses(banner + "2 2 1\n1 2 .5\n2 1 .5\n", ":4: there are more than the 1 entries");
   refuses(banner + "2 2 1\n1 3 .5\n", ":3: `3` is no row or column: they go from 1 to 2");
