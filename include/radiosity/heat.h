@@ -138,12 +138,12 @@ struct HeatConditions {
 HeatConditions readHeatConditions(const Scene& scene, const std::string& csv_path,
                                   std::span<const std::string> settings);
 
-/// Errors: InputError naming the surface, for what solveHeat() would refuse before it begins: values
-/// out of range, and emissivities that are neither one nor one a band.
+/// Errors: InputError naming the surface, for what solveHeat() would refuse before it begins:
+/// values out of range, and emissivities that are neither one nor one a band.
 void validate(const HeatConditions& conditions, const HeatOptions& options);
 
 /// The same for the patches of a mesh that the factors are of. Where they share unknowns
-/// (PatchMesh::clusters), a cluster has one temperature and one radiosity, which are its patches'.
+/// (PatchMesh::clusters), a cluster has one temperature, and H is linear within it, as in solve().
 HeatSolution solveHeat(const FormFactors& factors, const HeatConditions& conditions,
                        const PatchMesh& mesh, const HeatOptions& options, Progress& progress);
 

@@ -17,6 +17,7 @@ constexpr double kWorthWarning = 1e-3;
 
 void surfaceTable(Report& report, const std::vector<SurfaceHeat>& surfaces) {
   std::vector<std::vector<std::string>> rows;
+  rows.reserve(surfaces.size());
   for (const SurfaceHeat& s : surfaces) {
     rows.push_back({s.name, numberText(s.area), numberText(s.temperature), numberText(s.lowest),
                     numberText(s.highest), numberText(s.radiosity), numberText(s.irradiance),
@@ -59,8 +60,7 @@ void factorError(Report& report, const FormFactors& factors) {
                 "unknown by " + factors.method + "; --method exact or rays says it");
     return;
   }
-  report.number("factor_error", "error of form factors",
-                factors.report.error_figure);
+  report.number("factor_error", "error of form factors", factors.report.error_figure);
   report.number("largest_row_error", "  largest figure of a row",
                 *std::max_element(factors.error.begin(), factors.error.end()));
 }

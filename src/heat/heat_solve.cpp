@@ -49,7 +49,7 @@ void checkFactors(const FormFactors& factors) {
 }  // namespace
 
 HeatSolve::HeatSolve(const FormFactors& factors, const HeatRows& rows, const HeatOptions& options,
-                     Progress& progress)
+                     std::span<const double> more, Progress& progress)
     : factors_(factors),
       rows_(rows),
       options_(options),
@@ -72,6 +72,7 @@ HeatSolve::HeatSolve(const FormFactors& factors, const HeatRows& rows, const Hea
   for (std::size_t k = 0; k < falling_.size(); ++k) {
     falling_[k] = std::max(0.0, factors.sky[k / width_]) * sky *
                   black_.fraction(int(k % width_), options.sky_temperature);
+    if (!more.empty()) falling_[k] += more[k];
   }
 }
 
@@ -333,7 +334,7 @@ HeatSolution HeatSolve::run() {
   const double tolerance = std::max(kRounding, kLinearShare * options_.tolerance);
   do {
     const HeatSystem s = system();
-    fields = solveSystem(factors_.matrix, s, fields.irradiance, tolerance, progress_);
+    fields = solveHeatSystem(factors_.matrix, s, fields.irradiance, tolerance, progress_);
     products += fields.products;
     step(s, fields);
     residuals = this->residuals(fields);
@@ -401,7 +402,8 @@ HeatSolution HeatSolve::solutionOf(HeatFields fields) const {
 }
 
 // What leaves row i and is not seen by fronts ends on the sky or on backs, so with reciprocity and
-// rows that sum to 1, sum A (J - H) = sum A sky (J - E_sky) + sum A backs J.
+// rows that sum to 1, sum A (J - H) = sum A sky (J - E_sky) + sum A backs J. What falls on fronts
+// beyond what the matrix gives does not get out.
 HeatBalance HeatSolve::balanceOf(const HeatSolution& solution) const {
   HeatBalance balance;
   std::vector<double> of_condition(rows_.conditions.size(), 0.0);

@@ -25,9 +25,10 @@ namespace radiosity {
 /// convection, edges of bands and tables of emissivity one step is exact, and y needs no start.
 class HeatSolve {
  public:
-  /// All are kept by reference. Errors: as solveHeat().
+  /// All are kept by reference. `more`: N * bands, W/m^2, irradiance beyond what matrix and sky
+  /// give; or empty. Errors: as solveHeat().
   HeatSolve(const FormFactors& factors, const HeatRows& rows, const HeatOptions& options,
-            Progress& progress);
+            std::span<const double> more, Progress& progress);
   HeatSolution run();
 
  private:
@@ -72,7 +73,7 @@ class HeatSolve {
   std::vector<double> temperature_;  ///< of each row
   std::vector<double> emissivity_;   ///< N * bands, at it
   std::vector<double> emitted_;      ///< N * bands: eps E(T)
-  std::vector<double> falling_;      ///< N * bands, from the sky
+  std::vector<double> falling_;      ///< N * bands, from the sky, and what is more
   std::vector<std::uint8_t> dark_;   ///< N * bands: nothing emits there
   // Of each node in the step at hand: what divides y, and its part without H.
   std::vector<double> gain_;

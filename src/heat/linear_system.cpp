@@ -188,9 +188,9 @@ std::vector<double> HeatSystem::radiosityOf(const std::vector<double>& irradianc
   return radiosity;
 }
 
-HeatFields solveSystem(const ExchangeMatrix& matrix, const HeatSystem& system,
-                       const std::vector<double>& start, double tolerance, Progress& progress,
-                       LinearMethod method) {
+HeatFields solveHeatSystem(const ExchangeMatrix& matrix, const HeatSystem& system,
+                           const std::vector<double>& start, double tolerance, Progress& progress,
+                           LinearMethod method) {
   const std::size_t unknowns = system.source.size();
   if (method == LinearMethod::automatic) {
     method = unknowns <= kMostDirect ? LinearMethod::direct : LinearMethod::iterative;

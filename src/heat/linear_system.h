@@ -43,8 +43,8 @@ inline constexpr std::size_t kMostDirect = 1500;
 /// the largest entry of the residual is below `tolerance` times the largest H. Rows that reflect or
 /// emit again all that falls on them in closed rooms cost GMRES a step a room. The system must not
 /// be singular. The same bits for any number of threads. Throws Cancelled.
-HeatFields solveSystem(const ExchangeMatrix& matrix, const HeatSystem& system,
-                       const std::vector<double>& start, double tolerance, Progress& progress,
-                       LinearMethod method = LinearMethod::automatic);
+HeatFields solveHeatSystem(const ExchangeMatrix& matrix, const HeatSystem& system,
+                           const std::vector<double>& start, double tolerance, Progress& progress,
+                           LinearMethod method = LinearMethod::automatic);
 
 }  // namespace radiosity

@@ -1,19 +1,11 @@
 #include "solve/cluster_solve.h"
 
-#include <algorithm>
-
 #include "formfactor/rays/patch_irradiance.h"
 #include "mesh/cluster_means.h"
+#include "solve/beyond_means.h"
 #include "solve/solve_rows.h"
 
 namespace radiosity {
-namespace {
-
-bool anyAbove0(const std::vector<double>& values) {
-  return std::any_of(values.begin(), values.end(), [](double value) { return value > 0; });
-}
-
-}  // namespace
 
 ClusterSolve::ClusterSolve(const FormFactors& factors, const PatchMaterials& materials,
                            const PatchMesh& mesh, const SolveOptions& options, Progress& progress)
@@ -22,8 +14,7 @@ ClusterSolve::ClusterSolve(const FormFactors& factors, const PatchMaterials& mat
       mesh_(mesh),
       options_(options),
       progress_(progress),
-      bands_(std::size_t(materials.bands)),
-      sees_out_(anyAbove0(factors.sky) || anyAbove0(factors.backs)) {
+      sees_out_(seesOut(factors)) {
   checkMaterials(materials.reflectance, materials.emission, materials.bands,
                  {mesh.surface, mesh.surface_names});
   reflectance_ = clusterMeans(mesh, materials.reflectance, materials.bands);
@@ -37,7 +28,8 @@ Solution ClusterSolve::run() const {
   PatchIrradiance within(mesh_, materials_.bands, materials_.sky);
   within.look(patchValues(mesh_, means.radiosity, materials_.bands), progress_);
   within.look(radiosityOf(within.around(means.irradiance)), progress_);
-  const std::vector<double> more = balanced(within.beyondMeans(), means.irradiance);
+  const std::vector<double> more =
+      balanced(factors_, within.beyondMeans(), means.irradiance, materials_.bands);
   Solution solution = between(more);
   accountFor(more, solution.summary.energy);
   solution.summary.seconds += means.summary.seconds;
@@ -60,37 +52,12 @@ std::vector<double> ClusterSolve::radiosityOf(std::span<const double> irradiance
   return radiosity;
 }
 
-/// Area times value, summed over clusters.
-double ClusterSolve::power(std::span<const double> values, std::size_t band) const {
-  const std::span<const double> area = factors_.matrix.area();
-  double sum = 0;
-  for (std::size_t c = 0; c < area.size(); ++c) sum += area[c] * values[c * bands_ + band];
-  return sum;
-}
-
-/// `more` so that no irradiance falls below 0 by it, and that light is neither made nor lost where
-/// all of it falls on fronts: then what differs within clusters falls elsewhere, all in all as
-/// much.
-std::vector<double> ClusterSolve::balanced(std::span<const double> more,
-                                           std::span<const double> irradiance) const {
-  std::vector<double> out(more.begin(), more.end());
-  for (std::size_t k = 0; k < out.size(); ++k) out[k] = std::max(out[k], -irradiance[k]);
-  for (std::size_t b = 0; !sees_out_ && b < bands_; ++b) {
-    const double made = power(out, b);
-    const double all = made + power(irradiance, b);
-    if (!(all > 0)) continue;
-    for (std::size_t k = b; k < out.size(); k += bands_) {
-      out[k] -= made / all * (irradiance[k] + out[k]);
-    }
-  }
-  return out;
-}
-
 /// What falls on fronts beyond what the matrix gives does not get out.
 void ClusterSolve::accountFor(std::span<const double> more, EnergyAccount& account) const {
-  for (std::size_t b = 0; sees_out_ && b < bands_; ++b) {
-    account.to_sky[b] -= power(more, b);
-    account.imbalance[b] += power(more, b);
+  for (int b = 0; sees_out_ && b < materials_.bands; ++b) {
+    const double power = powerOf(factors_.matrix.area(), more, materials_.bands, b);
+    account.to_sky[std::size_t(b)] -= power;
+    account.imbalance[std::size_t(b)] += power;
   }
 }
 

@@ -29,17 +29,13 @@ class ClusterSolve {
  private:
   Solution between(std::span<const double> more) const;
   std::vector<double> radiosityOf(std::span<const double> irradiance) const;
-  std::vector<double> balanced(std::span<const double> more,
-                               std::span<const double> irradiance) const;
   void accountFor(std::span<const double> more, EnergyAccount& account) const;
-  double power(std::span<const double> values, std::size_t band) const;
 
   const FormFactors& factors_;
   const PatchMaterials& materials_;
   const PatchMesh& mesh_;
   const SolveOptions& options_;
   Progress& progress_;
-  std::size_t bands_;
   bool sees_out_;  ///< the sky or backs
   std::vector<double> reflectance_;
   std::vector<double> emission_;

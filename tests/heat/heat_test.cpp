@@ -153,7 +153,7 @@ TEST(Heat, SkyAtTheTemperatureOfTheWallsTakesNothing) {
 // + 1; sigma T^4 of the sheets falls in equal steps, with no step between the sheets' sides.
 TEST(Heat, ShieldsDivideTheFlux) {
   for (const int n : {1, 2, 5}) {
-    const auto rows = Eigen::Index(2 * n + 2);
+    const Eigen::Index rows = 2 * n + 2;
     Matrix f = Matrix::Zero(rows, rows);
     for (Eigen::Index k = 0; k < rows; k += 2) f(k, k + 1) = f(k + 1, k) = 1;
     std::vector<HeatCondition> conditions{at("hot", .3, 900)};
@@ -201,8 +201,8 @@ TEST(Heat, IterationReachesThroughAHundredSheets) {
   system.nodes = 100;
   for (Index i = 1; i + 1 < n; ++i) system.node[i] = (i - 1) / 2;
   Progress quiet;
-  const auto direct = solveSystem(factors.matrix, system, {}, 1e-12, quiet, LinearMethod::direct);
-  const auto steps = solveSystem(factors.matrix, system, {}, 1e-12, quiet, LinearMethod::iterative);
+  const auto direct = solveHeatSystem(factors.matrix, system, {}, 1e-12, quiet, LinearMethod::direct);
+  const auto steps = solveHeatSystem(factors.matrix, system, {}, 1e-12, quiet, LinearMethod::iterative);
   // The residual, 1e-12, over the least eigenvalue, which is above 1/n^2 of .3.
   EXPECT_LT(test::largestDifference(direct.irradiance, steps.irradiance), 1e-7);
   EXPECT_LT(steps.products, 250u);
@@ -243,9 +243,9 @@ TEST(Heat, DirectAndIterativeSolutionsAgree) {
   }
   Progress quiet;
   const HeatFields direct =
-      solveSystem(factors.matrix, system, {}, 1e-13, quiet, LinearMethod::direct);
+      solveHeatSystem(factors.matrix, system, {}, 1e-13, quiet, LinearMethod::direct);
   const HeatFields iterative =
-      solveSystem(factors.matrix, system, {}, 1e-13, quiet, LinearMethod::iterative);
+      solveHeatSystem(factors.matrix, system, {}, 1e-13, quiet, LinearMethod::iterative);
   EXPECT_EQ(direct.products, 0);
   EXPECT_GT(iterative.products, 3);
   double largest = 0;
