@@ -12,7 +12,7 @@ import scipy.sparse
 
 from cli_runner import DATA, SMALL, CliTest
 
-COMMANDS = ["info", "mesh", "factors", "solve", "gather", "compare", "render"]
+COMMANDS = ["info", "mesh", "factors", "solve", "gather", "heat", "compare", "render"]
 
 
 def actions(report):

@@ -50,6 +50,9 @@ class Install(unittest.TestCase):
             # Howell C-11; the default tolerance leaves 1e-5 to closed forms, and six digits are
             # printed.
             self.assertAlmostEqual(squares, 0.199824895698387, delta=3e-6)
+            plates = float(run(str(root / "build/heat_between_plates")))
+            # sigma (1000^4 - 500^4) / (1/.8 + 1/.5 - 1), nine digits printed.
+            self.assertAlmostEqual(plates, 23626.56007993512, delta=2e-9)
             drawn = root / "cornell.png"
             said = run(str(root / "build/scene_to_picture"), f"{ROOT}/data/cornell-box.obj", str(drawn))
             self.assertIn("converged", said)
