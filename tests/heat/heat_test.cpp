@@ -201,8 +201,10 @@ TEST(Heat, IterationReachesThroughAHundredSheets) {
   system.nodes = 100;
   for (Index i = 1; i + 1 < n; ++i) system.node[i] = (i - 1) / 2;
   Progress quiet;
-  const auto direct = solveHeatSystem(factors.matrix, system, {}, 1e-12, quiet, LinearMethod::direct);
-  const auto steps = solveHeatSystem(factors.matrix, system, {}, 1e-12, quiet, LinearMethod::iterative);
+  const auto direct =
+      solveHeatSystem(factors.matrix, system, {}, 1e-12, quiet, LinearMethod::direct);
+  const auto steps =
+      solveHeatSystem(factors.matrix, system, {}, 1e-12, quiet, LinearMethod::iterative);
   // The residual, 1e-12, over the least eigenvalue, which is above 1/n^2 of .3.
   EXPECT_LT(test::largestDifference(direct.irradiance, steps.irradiance), 1e-7);
   EXPECT_LT(steps.products, 250u);
