@@ -93,7 +93,7 @@ class Scanner {
   void beginElements();
   void data(std::string_view line);
   void node(const std::vector<std::string_view>& fields);
-  void element(const std::vector<std::string_view>& fields);
+  void element(const std::vector<std::string_view>& fields, const ElementShape& shape);
   void members(const std::vector<std::string_view>& fields);
   void range(const std::vector<std::string_view>& fields);
   void addMember(const InpRange& range);
@@ -219,7 +219,7 @@ void Scanner::data(std::string_view line) {
   if (current_.word == "node") {
     node(fields);
   } else if (current_.word == "element" && shape_) {
-    element(fields);
+    element(fields, *shape_);
   } else if (current_.word == "elset") {
     current_.has("generate") ? range(fields) : members(fields);
   }
@@ -250,17 +250,17 @@ void Scanner::node(const std::vector<std::string_view>& fields) {
   scan_.nodes.push_back(std::move(node));
 }
 
-void Scanner::element(const std::vector<std::string_view>& fields) {
+void Scanner::element(const std::vector<std::string_view>& fields, const ElementShape& shape) {
   if (fields.empty()) return;
   std::size_t k = 0;
   if (!unfinished_) {
     const long long number = integer(fields[k++], "element number");
-    scan_.elements.push_back({number, *shape_, {}, where()});
+    scan_.elements.push_back({number, shape, {}, where()});
     if (in_set_) addMember({number, number, 1});
   }
   std::vector<long long>& nodes = scan_.elements.back().nodes;
   for (; k < fields.size(); ++k) nodes.push_back(integer(fields[k], "node number"));
-  const auto expected = std::size_t(shape_->nodes);
+  const auto expected = std::size_t(shape.nodes);
   if (nodes.size() > expected) {
     fail(fmt::format("element {} has {} nodes, its type has {}; correct it",
                      scan_.elements.back().number, nodes.size(), expected));

@@ -73,6 +73,7 @@ class PlyReader {
   void header();
   void headerLine(const std::vector<std::string_view>& words);
   void property(const std::vector<std::string_view>& words);
+  NumberType typeNamed(std::string_view word) const;
   void requireRoom(const Element& element) const;
   void vertices(const Element& element);
   void faces(const Element& element);
@@ -130,18 +131,21 @@ void PlyReader::headerLine(const std::vector<std::string_view>& words) {
   }
 }
 
+NumberType PlyReader::typeNamed(std::string_view word) const {
+  const std::optional<NumberType> type = typeOf(word);
+  if (!type) cursor_.fail(fmt::format("`{}` is no type of a PLY file; export it again", word));
+  return *type;
+}
+
 void PlyReader::property(const std::vector<std::string_view>& words) {
   const bool is_list = words[1] == "list";
   if (words.size() != (is_list ? 5U : 3U)) {
     cursor_.fail("a property is `TYPE NAME` or `list TYPE TYPE NAME`; export the file again");
   }
-  for (std::size_t k = is_list ? 2 : 1; k + 1 < words.size(); ++k) {
-    if (typeOf(words[k])) continue;
-    cursor_.fail(fmt::format("`{}` is no type of a PLY file; export it again", words[k]));
-  }
-  Property property{std::string(words.back()), *typeOf(words[words.size() - 2]), std::nullopt};
-  if (is_list) property.count = *typeOf(words[2]);
-  if (is_list && isFraction(*property.count)) {
+  Property property{std::string(words.back()), typeNamed(words[words.size() - 2]), std::nullopt};
+  if (!is_list) return elements_.back().properties.push_back(std::move(property));
+  property.count = typeNamed(words[2]);
+  if (isFraction(typeNamed(words[2]))) {
     cursor_.fail("the length of a list is a whole number; export the file again");
   }
   elements_.back().properties.push_back(std::move(property));

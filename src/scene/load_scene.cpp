@@ -24,10 +24,12 @@ struct Format {
 };
 
 constexpr std::array kFormats = {
-    Format{".obj", loadObj},  Format{".gltf", loadGltf},  Format{".glb", loadGltf},
-    Format{".stl", loadStl},  Format{".vs3", loadView3d}, Format{".v3d", loadView3d},
-    Format{".msh", loadGmsh}, Format{".inp", loadInp},    Format{".ply", loadPly},
-    Format{".vtk", loadVtk},  Format{".vtp", loadVtkXml}, Format{".vtu", loadVtkXml},
+    Format{".obj", loadObj},    Format{".gltf", loadGltf},  Format{".glb", loadGltf},
+    Format{".stl", loadStl},    Format{".vs3", loadView3d}, Format{".v3d", loadView3d},
+    Format{".msh", loadGmsh},   Format{".inp", loadInp},    Format{".ply", loadPly},
+    Format{".vtk", loadVtk},    Format{".vtp", loadVtkXml}, Format{".vtu", loadVtkXml},
+    Format{".dae", loadAssimp}, Format{".fbx", loadAssimp}, Format{".3ds", loadAssimp},
+    Format{".x3d", loadAssimp}, Format{".off", loadOff},
 };
 
 Scene readByExtension(const std::string& path, const SceneOptions& options) {

@@ -34,4 +34,11 @@ Scene loadVtk(const std::string& path, const SceneOptions& options);
 /// XML .vtp or .vtu; file units, overrides not yet applied.
 Scene loadVtkXml(const std::string& path, const SceneOptions& options);
 
+/// OFF, in text; file units, overrides not yet applied.
+Scene loadOff(const std::string& path, const SceneOptions& options);
+
+/// What Assimp reads: Collada, FBX, 3DS, X3D; Collada and FBX in metres, else file units,
+/// overrides not yet applied.
+Scene loadAssimp(const std::string& path, const SceneOptions& options);
+
 }  // namespace radiosity

@@ -54,12 +54,12 @@ class ByteSource {
   std::string take(std::size_t count) {
     if (!coded_) {
       if (count > rest_.size()) failShort();
-      const std::string bytes(rest_.substr(0, count));
+      std::string bytes(rest_.substr(0, count));
       rest_.remove_prefix(count);
       return bytes;
     }
     while (decoded_.size() < count) decodeFour();
-    const std::string bytes = decoded_.substr(0, count);
+    std::string bytes = decoded_.substr(0, count);
     decoded_.erase(0, count);
     return bytes;
   }
