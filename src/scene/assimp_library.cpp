@@ -27,7 +27,10 @@ AssimpLibrary openLibrary() {
   void* library = dlopen(RADIOSITY_ASSIMP, RTLD_LAZY | RTLD_LOCAL);  // never closed
   if (library == nullptr) fail();
   AssimpLibrary found{};
-  find(library, "aiImportFile", found.importFile);
+  find(library, "aiCreatePropertyStore", found.createPropertyStore);
+  find(library, "aiReleasePropertyStore", found.releasePropertyStore);
+  find(library, "aiSetImportPropertyInteger", found.setImportPropertyInteger);
+  find(library, "aiImportFileExWithProperties", found.importFileExWithProperties);
   find(library, "aiReleaseImport", found.releaseImport);
   find(library, "aiGetErrorString", found.getErrorString);
   find(library, "aiGetMaterialString", found.getMaterialString);

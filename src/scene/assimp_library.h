@@ -2,6 +2,7 @@
 // takes to start: it is opened when the first file that needs it is read.
 #pragma once
 
+#include <assimp/cimport.h>
 #include <assimp/material.h>
 #include <assimp/scene.h>
 
@@ -9,7 +10,11 @@ namespace radiosity {
 
 /// The functions of assimp/cimport.h and assimp/material.h of these names, less `ai`.
 struct AssimpLibrary {
-  const aiScene* (*importFile)(const char*, unsigned);
+  aiPropertyStore* (*createPropertyStore)();
+  void (*releasePropertyStore)(aiPropertyStore*);
+  void (*setImportPropertyInteger)(aiPropertyStore*, const char*, int);
+  const aiScene* (*importFileExWithProperties)(const char*, unsigned, aiFileIO*,
+                                               const aiPropertyStore*);
   void (*releaseImport)(const aiScene*);
   const char* (*getErrorString)();
   aiReturn (*getMaterialString)(const aiMaterial*, const char*, unsigned, unsigned, aiString*);

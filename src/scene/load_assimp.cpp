@@ -1,5 +1,6 @@
 // What Assimp reads and we do not: Collada, FBX, 3DS, X3D. Nodes are objects, diffuse and
 // emissive colours are read as those of an MTL file.
+#include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
@@ -29,8 +30,13 @@ class AssimpReader {
   }
 
   Scene read() {
+    const std::unique_ptr<aiPropertyStore, void (*)(aiPropertyStore*)> wishes(
+        library_.createPropertyStore(), library_.releasePropertyStore);
+    // Names as people gave them, not ids.
+    library_.setImportPropertyInteger(wishes.get(), AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, 1);
     const std::unique_ptr<const aiScene, void (*)(const aiScene*)> file(
-        library_.importFile(scene_.file.c_str(), aiProcess_ValidateDataStructure),
+        library_.importFileExWithProperties(scene_.file.c_str(), aiProcess_ValidateDataStructure,
+                                            nullptr, wishes.get()),
         library_.releaseImport);
     if (file == nullptr || file->mRootNode == nullptr) {
       fail(fmt::format("cannot be read ({}); export it again, or as .obj or .glb",

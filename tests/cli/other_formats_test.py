@@ -1,0 +1,153 @@
+"""OFF, and what Assimp reads: Collada, FBX, 3DS and X3D, with their names, colours and units."""
+
+import struct
+import sys
+import unittest
+
+from cli_runner import CliTest
+
+SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+
+COLLADA = """<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="centimeter" meter="0.01"/><up_axis>Y_UP</up_axis></asset>
+<library_effects>
+<effect id="paint-fx"><profile_COMMON><technique sid="common"><lambert>
+<emission><color>2 1 0 1</color></emission><diffuse><color>0.25 0.5 0.75 1</color></diffuse>
+</lambert></technique></profile_COMMON></effect></library_effects>
+<library_materials><material id="paint" name="paint"><instance_effect url="#paint-fx"/></material></library_materials>
+<library_geometries><geometry id="plate" name="plate"><mesh>
+<source id="p"><float_array id="pa" count="12">0 0 0 100 0 0 100 100 0 0 100 0</float_array>
+<technique_common><accessor source="#pa" count="4" stride="3"><param name="X" type="float"/>
+<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<polylist material="m" count="1"><input semantic="VERTEX" source="#v" offset="0"/>
+<vcount>4</vcount><p>0 1 2 3</p></polylist></mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="wall" name="north wall"><scale>2 1 1</scale>
+<instance_geometry url="#plate"><bind_material><technique_common>
+<instance_material symbol="m" target="#paint"/></technique_common></bind_material></instance_geometry></node>
+</visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/></scene>
+</COLLADA>
+"""
+
+X3D = """<?xml version="1.0"?>
+<X3D version="3.0"><Scene><Transform DEF="wall" translation="0 0 1"><Shape>
+<Appearance><Material diffuseColor="0.25 0.5 0.75" emissiveColor="2 1 0"/></Appearance>
+<IndexedFaceSet coordIndex="0 1 2 3 -1"><Coordinate point="0 0 0 1 0 0 1 1 0 0 1 0"/></IndexedFaceSet>
+</Shape></Transform></Scene></X3D>
+"""
+
+FBX = """; FBX 7.3.0 project file
+FBXHeaderExtension:  {
+    FBXVersion: 7300
+}
+GlobalSettings:  {
+    Version: 1000
+    Properties70:  {
+        P: "UnitScaleFactor", "double", "Number", "",1
+    }
+}
+Objects:  {
+    Geometry: 1, "Geometry::plate", "Mesh" {
+        Vertices: *12 {
+            a: 0,0,0,100,0,0,100,100,0,0,100,0
+        }
+        PolygonVertexIndex: *4 {
+            a: 0,1,2,-4
+        }
+    }
+    Model: 2, "Model::wall", "Mesh" {
+        Version: 232
+    }
+}
+Connections:  {
+    C: "OO",2,0
+    C: "OO",1,2
+}
+"""
+
+
+def chunk(number, body):
+    return struct.pack("<HI", number, 6 + len(body)) + body
+
+
+def three_ds():
+    colour = chunk(0x0010, struct.pack("<3f", .25, .5, .75))
+    material = chunk(0xAFFF, chunk(0xA000, b"paint\0") + chunk(0xA020, colour))
+    mesh = chunk(0x4110, struct.pack("<H12f", 4, *(x for p in SQUARE for x in p)))
+    faces = struct.pack("<H8H", 2, 0, 1, 2, 0, 0, 2, 3, 0)
+    mesh += chunk(0x4120, faces + chunk(0x4130, b"paint\0" + struct.pack("<3H", 2, 0, 1)))
+    scene = chunk(0x3D3D, material + chunk(0x4000, b"wall\0" + chunk(0x4100, mesh)))
+    node = chunk(0xB002, chunk(0xB010, b"wall\0" + struct.pack("<HHh", 0, 0, -1)))
+    return chunk(0x4D4D, scene + chunk(0xB000, node))
+
+
+OFF = "OFF # a comment\n4 2 0\n0 0 0\n1 0 0 # two\n1 1 0\n\n0 1 0\n3 0 1 2 0.5 0.5 0.5\n3 0 2 3\n"
+
+
+class OtherFormats(CliTest):
+    def put(self, name, content):
+        (self.folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+        return name
+
+    def only_surface(self, name, content, *options):
+        scene = self.report("info", self.put(name, content), *options)["scene"]
+        self.assertEqual(len(scene["surfaces"]), 1)
+        surface = scene["surfaces"][0]
+        material = next(m for m in scene["materials"] if m["name"] == surface["material"])
+        return surface, material
+
+    def says(self, line, name, content):
+        self.assertEqual(self.refuse("info", self.put(name, content)), f"radiosity: {name}{line}")
+
+    def test_collada(self):
+        surface, material = self.only_surface("a.dae", COLLADA)
+        self.assertEqual([surface["name"], surface["faces"]], ["north wall/paint", 1])
+        # Single precision, and centimetres; the node is twice as wide.
+        self.assertAlmostEqual(surface["area_m2"], 2, 6)
+        self.assertEqual([material["reflectance"], material["radiance_W_per_m2_sr"]], ["0.25, 0.5, 0.75", "2, 1, 0"])
+
+    def test_x3d(self):
+        surface, material = self.only_surface("a.x3d", X3D)
+        self.assertEqual([surface["faces"], surface["area_m2"]], [1, 1])
+        self.assertEqual([material["reflectance"], material["radiance_W_per_m2_sr"]], ["0.25, 0.5, 0.75", "2, 1, 0"])
+
+    def test_3ds(self):
+        surface, material = self.only_surface("a.3ds", three_ds())
+        self.assertEqual([surface["name"], surface["faces"], surface["area_m2"]], ["wall/paint", 2, 1])
+        self.assertEqual(material["reflectance"], "0.25, 0.5, 0.75")
+        self.says(f": is cut off: it says that it has {len(three_ds())} bytes and has {len(three_ds()) - 9}; export "
+                  "it again", "a.3ds", three_ds()[:-9])
+        self.says(": is no 3DS file; export it again", "a.3ds", "hello world")
+
+    def test_fbx(self):
+        surface, material = self.only_surface("a.fbx", FBX, "--default-reflectance", ".3")
+        self.assertEqual([surface["name"], surface["area_m2"]], ["wall/default", 1])
+        self.assertEqual(material["reflectance"], "0.3, 0.3, 0.3")
+
+    def test_off(self):
+        surface, _ = self.only_surface("a.off", OFF)
+        self.assertEqual([surface["name"], surface["faces"], surface["area_m2"]], ["a", 2, 1])
+        for old, new, line in [
+                ("OFF", "OFFF", ":1: is no OFF file in text, which begins with OFF, COFF or NOFF; export it again"),
+                ("4 2 0", "400000000 2 0", ":2: vertices 400000000: the file is too short for so many; it is cut off or "
+                                           "damaged, export it again"),
+                ("4 2 0", "-4 2 0", ":2: vertices `-4` is not a whole number of 0 or more; correct it"),
+                ("1 1 0", "1 nan 0", ":5: coordinate `nan` is not a finite number; write it as 1.5 with a decimal point"),
+                ("1 1 0", "1 1", ":5: a vertex has 3 coordinates; correct the line"),
+                ("3 0 2 3", "3 0 2 4", ":9: vertex 4 does not exist, there are 4 (from 0); correct the face"),
+                ("3 0 2 3", "4 0 2 3", ":9: a face has 3 corners or more, each a number; correct or remove it"),
+                ("3 0 2 3\n", "", ":9: the file ends too early; export it again"),
+        ]:
+            with self.subTest(new=new):
+                self.says(line, "a.off", OFF.replace(old, new))
+
+    def test_broken_files_of_assimp_are_one_line(self):
+        for name, content in [("a.dae", COLLADA[:900]), ("a.x3d", X3D[:200]), ("a.fbx", FBX[:300]), ("a.dae", "hello"),
+                              ("a.x3d", "<X3D/>"), ("a.fbx", b"Kaydara FBX Binary  \0\x1a\0\xff\xff\xff\xff")]:
+            with self.subTest(name=name):
+                self.refuse("info", self.put(name, content), words=[f"radiosity: {name}: "])
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())
