@@ -126,11 +126,11 @@ struct SceneOptions {
 std::string sceneExtensions();
 
 /// Reads a scene, its format told by the extension, and applies the overrides: .obj (+ .mtl), .gltf,
-/// .glb, .stl; View3D's .vs3 and .v3d; Gmsh's .msh (2.2 and 4.1); .inp of CalculiX and Abaqus; .ply;
-/// VTK's .vtk, .vtp and .vtu. Groups with names (solids, physical groups, element sets, arrays of
-/// cells) are surfaces of these names. Face f of the scene is face f of the file; a View3D surface
-/// is one face, or several where subsurfaces are cut out of it, a strip one face a triangle, and what
-/// has no area (volumes, lines, points) is left out. An OBJ has no cameras of its own; a comment line
+/// .glb, .stl; View3D's .vs3, .v3d; Gmsh's .msh (2.2, 4.1); CalculiX's and Abaqus's .inp; .ply, .off;
+/// VTK's .vtk, .vtp, .vtu; by Assimp .dae, .fbx, .3ds, .x3d. Named groups (solids, physical groups,
+/// element sets, arrays of cells) are surfaces of these names. Face f of the scene is face f of the
+/// file, but one face may be several (View3D's with subsurfaces, triangles of a strip), and what has
+/// no area (volumes, lines, points) is left out. An OBJ has no cameras of its own; a comment line
 /// `# camera eye=x,y,z target=x,y,z up=x,y,z fov=DEGREES` (file units, vertical field of view) is
 /// read as one.
 /// Errors: InputError, one line with file, element and cure; RunError where the scene does not fit
