@@ -209,8 +209,12 @@ class Pipeline {
   std::shared_ptr<ScratchMemory> memoryOfStoredMatrix() const;
   /// Reads the matrix of form factors that are there without it. Errors: as matrix().
   void loadMatrix();
-  /// Both, then writes results(): the file appears whole or stays what it was. Errors: as
-  /// writeResults().
+  /// Completes results() and brings the file `path` up to them without writing the form factors
+  /// again: where it is the one opened, or written since, and still has them. False where that
+  /// cannot be: save() it. Errors: as updateResults().
+  bool update(const std::string& path);
+  /// Completes results() and writes them, all of them where update() cannot: the file appears whole
+  /// or stays what it was. Errors: as writeResults().
   void save(const std::string& path);
   /// Writes what there is before a later step can fail. Light gathered on the same mesh, which the
   /// opened file may hold, stays; nothing is dropped yet.
@@ -241,6 +245,15 @@ class Pipeline {
   void requireOwnMesh(bool reused) const;
   const PatchMaterials& materialsOfMesh();
 
+  /// What a results file holds: the one opened or written last.
+  struct OnDisk {
+    std::string path;
+    std::string state;   ///< fileState() then
+    bool scene = false;  ///< it has the scene as it is
+    std::string mesh_key, factors_key, solution_key, elements_key, gather_key;  ///< empty: none
+  };
+  static OnDisk onDisk(const std::string& path, const Results& results, bool scene);
+
   template <class T>
   bool keep(Stage stage, std::optional<T> Results::*value, std::string Results::*value_key,
             const StageKey& key, bool there = true);
@@ -260,9 +273,10 @@ class Pipeline {
   PipelineOptions options_;
   Results results_;
   Results stored_;  ///< a stage that left it, or was discarded, leaves its key: to say what changed
-  std::string name_;           ///< of the scene, for messages
-  std::string source_;         ///< the results file that stages come from
-  std::string source_state_;   ///< when it was read
+  std::string name_;          ///< of the scene, for messages
+  std::string source_;        ///< the results file that stages come from
+  std::string source_state_;  ///< when it was read
+  OnDisk on_disk_;
   std::string saved_;          ///< the last file that save() or checkpoint() wrote
   std::string factors_asked_;  ///< the key that the form factors at hand are known to fit
   bool from_results_ = false;

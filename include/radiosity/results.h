@@ -80,6 +80,24 @@ Results readResults(const std::string& path, bool with_factors = true,
 /// of PatchMaterials::requireSizes(); `path` then is what it was.
 void writeResults(const std::string& path, const Results& results, Progress& progress);
 
+/// Stages that a file has as they are in `Results`.
+struct StagesAsStored {
+  bool scene = false;
+  bool solution = false;  ///< with the materials
+  bool elements = false;
+  bool gathered = false;
+};
+
+/// Brings the results file at `path`, which must have the mesh and the form factors of `results`,
+/// to what `results` says, without writing what it has already: stages that differ are written
+/// behind its end, and the file is switched over to them in one write of its first page. Killed at
+/// any moment it is what it was, or whole. The form factors may be without their matrix. False, and
+/// the file is what it was, where that cannot be: another run extends it, another program's HDF5
+/// wrote it, or stages replaced in earlier runs take up half of it; write it whole. Errors:
+/// RunError (disk full), those of PatchMaterials::requireSizes(); the file then is what it was,
+/// too.
+bool updateResults(const std::string& path, const Results& results, const StagesAsStored& stored);
+
 /// Bytes writeResults() will put on disk, within 4 kB.
 std::size_t estimateResultsBytes(const Results& results);
 

@@ -104,11 +104,21 @@ void announceResults(Session& session, Pipeline& pipeline, const std::string& pa
   requireDiskSpace(path, bytes);
 }
 
+void reportResults(Session& session, const Pipeline& pipeline, const std::string& path) {
+  std::error_code ignored;
+  session.report.output(path, std::filesystem::file_size(path, ignored),
+                        contents(pipeline.results()));
+}
+
 void writeResultsFile(Session& session, Pipeline& pipeline, OutputSet& files) {
   const std::string path = files.path(Format::results);
   pipeline.keepLaterStages();
   if (pipeline.isUpToDate(path)) {
     session.report.line("results", path + " is up to date");
+    return;
+  }
+  if (pipeline.update(path)) {
+    reportResults(session, pipeline, path);
     return;
   }
   announceResults(session, pipeline, path);
@@ -131,13 +141,12 @@ void keepFactors(Session& session, Pipeline& pipeline, const OutputSet& files) {
 void keepSolution(Session& session, Pipeline& pipeline, const OutputSet& files) {
   const std::string path = files.path(Format::results);
   if (path.empty() || pipeline.isUpToDate(path)) return;
-  pipeline.keepLaterStages();
-  announceResults(session, pipeline, path);
-  pipeline.save(path);
+  if (!pipeline.update(path)) {
+    announceResults(session, pipeline, path);
+    pipeline.save(path);
+  }
   sayIfInterrupted(path + " keeps the form factors and the solution", path);
-  std::error_code ignored;
-  session.report.output(path, std::filesystem::file_size(path, ignored),
-                        contents(pipeline.results()));
+  reportResults(session, pipeline, path);
 }
 
 void writeStages(Session& session, Pipeline& pipeline, OutputSet& files) {

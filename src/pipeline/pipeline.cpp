@@ -78,6 +78,18 @@ void Pipeline::openSource(const std::string& path) {
   source_state_ = fileState(path);
   stored_ = readResults(path, false);
   source_ = path;
+  on_disk_ = onDisk(path, stored_, false);
+}
+
+Pipeline::OnDisk Pipeline::onDisk(const std::string& path, const Results& results, bool scene) {
+  return {path,
+          fileState(path),
+          scene,
+          results.mesh ? results.mesh_key : "",
+          results.factors ? results.factors_key : "",
+          results.solution ? results.solution_key : "",
+          results.elements ? results.elements_key : "",
+          results.gathered ? results.gather_key : ""};
 }
 
 void Pipeline::openResults(const std::string& path, const SceneOptions& scene) {
@@ -92,6 +104,7 @@ void Pipeline::openResults(const std::string& path, const SceneOptions& scene) {
   }
   results_.scene = std::exchange(stored_.scene, std::nullopt);
   from_results_ = true;
+  on_disk_.scene = true;
   options_ = {meshOptionsOf(StageKey(stored_.mesh_key)),
               factorOptionsOf(StageKey(stored_.factors_key)),
               solveOptionsOf(StageKey(stored_.solution_key)),
@@ -115,6 +128,7 @@ void Pipeline::overrideScene(const SceneOptions& overrides) {
   const std::size_t known = notes.size();
   applyOverrides(made(results_.scene), overrides);
   overridden_ = true;
+  on_disk_.scene = false;
   changed_ = true;
   observer_.notes(*this, std::span(notes).subspan(std::min(known, notes.size())));
 }
@@ -277,10 +291,36 @@ void Pipeline::keepLaterStages() {
   changed_ = changed_ || dropped;
 }
 
-void Pipeline::save(const std::string& path) {
+bool Pipeline::update(const std::string& path) {
   keepLaterStages();
+  const bool same = path == on_disk_.path && fileState(path) == on_disk_.state &&
+                    results_.factors && results_.mesh_key == on_disk_.mesh_key &&
+                    results_.factors_key == on_disk_.factors_key;
+  if (!same) return false;
+  const auto stored = [](bool there, const std::string& key, const std::string& on_disk) {
+    return there ? key == on_disk : on_disk.empty();
+  };
+  // Without a solution there may be materials all the same.
+  const bool solution = results_.solution && results_.solution_key == on_disk_.solution_key;
+  const StagesAsStored as_stored = {
+      on_disk_.scene, solution,
+      stored(results_.elements.has_value(), results_.elements_key, on_disk_.elements_key),
+      stored(results_.gathered.has_value(), results_.gather_key, on_disk_.gather_key)};
+  if (!updateResults(path, results_, as_stored)) return false;
+  on_disk_ = onDisk(path, results_, true);
+  // The form factors in it are those that were there.
+  if (path == source_) source_state_ = on_disk_.state;
+  discardKeptRows();
+  saved_ = path;
+  changed_ = false;
+  return true;
+}
+
+void Pipeline::save(const std::string& path) {
+  if (update(path)) return;
   loadMatrix();
   writeResults(path, results_, progress_);
+  on_disk_ = onDisk(path, results_, true);
   discardKeptRows();
   saved_ = path;
   changed_ = false;
@@ -296,6 +336,7 @@ void Pipeline::checkpoint(const std::string& path) {
     results_.gather_key = stored_.gather_key;
   }
   writeResults(path, results_, progress_);
+  on_disk_ = onDisk(path, results_, true);
   discardKeptRows();
   if (lend) {
     stored_.gathered = std::exchange(results_.gathered, std::nullopt);

@@ -2,22 +2,59 @@
 
 #include <H5FDpublic.h>
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
+#include <map>
+#include <optional>
 
 namespace radiosity::h5 {
+
+namespace {
+
+/// What the system writes to the disk in one piece.
+constexpr std::size_t kPage = 4096;
+using Page = std::array<char, kPage>;
+
+bool readAll(int descriptor, haddr_t address, char* bytes, std::size_t size) {
+  while (size > 0) {
+    const ssize_t count = pread(descriptor, bytes, size, off_t(address));
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) break;
+    bytes += count;
+    address += haddr_t(count);
+    size -= std::size_t(count);
+  }
+  std::memset(bytes, 0, size);  // HDF5 takes what was never written for zeros
+  return size == 0;
+}
+
+/// The end of the file as its superblock has it ("HDF5 File Format Specification", II.A, versions 2
+/// and 3 with addresses of 8 bytes); nothing for others.
+std::optional<haddr_t> endInSuperblock(int descriptor) {
+  std::array<char, 48> block{};
+  if (!readAll(descriptor, 0, block.data(), block.size())) return std::nullopt;
+  const bool known = (block[8] == 2 || block[8] == 3) && block[9] == sizeof(haddr_t);
+  haddr_t end = 0;
+  std::memcpy(&end, block.data() + 28, sizeof end);
+  return known && end > kPage ? std::optional(end) : std::nullopt;
+}
+
+}  // namespace
 
 /// HDF5 sees the first member only; it must be the first.
 struct DiskFile {
   H5FD_t base{};
   Disk* disk = nullptr;
   int descriptor = -1;
-  haddr_t allocated = 0;  ///< "end of allocation": how long HDF5 wants the file
-  haddr_t end = 0;        ///< how long it is
+  haddr_t allocated = 0;          ///< "end of allocation": how long HDF5 wants the file
+  haddr_t end = 0;                ///< how long it is
+  std::map<haddr_t, Page> pages;  ///< extended files: before their old end, what HDF5 changes
 
   static DiskFile* of(H5FD_t* file) { return reinterpret_cast<DiskFile*>(file); }
   static const DiskFile* of(const H5FD_t* file) { return reinterpret_cast<const DiskFile*>(file); }
@@ -28,7 +65,9 @@ struct DiskFile {
 
   static H5FD_t* open(const char* name, unsigned /*flags*/, hid_t access, haddr_t /*most*/) {
     Disk* disk = *static_cast<Disk* const*>(H5Pget_driver_info(access));
-    const int descriptor = ::open(name, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    const bool extend = disk->mode_ == Disk::Mode::extend;
+    const int flags = O_RDWR | O_CLOEXEC | (extend ? 0 : O_CREAT | O_TRUNC);
+    const int descriptor = ::open(name, flags, 0666);
     if (descriptor < 0) {
       refuse(*disk);
       return nullptr;
@@ -36,11 +75,52 @@ struct DiskFile {
     auto* file = new DiskFile;
     file->disk = disk;
     file->descriptor = descriptor;
+    if (extend && !file->findOldEnd()) {
+      ::close(descriptor);
+      delete file;
+      return nullptr;
+    }
     return &file->base;
+  }
+
+  /// False where another run extends the file, or it is not of a form that can be.
+  bool findOldEnd() {
+    struct stat state {};
+    const std::optional<haddr_t> known = endInSuperblock(descriptor);
+    if (!known || flock(descriptor, LOCK_EX | LOCK_NB) != 0 || fstat(descriptor, &state) != 0 ||
+        haddr_t(state.st_size) < *known) {
+      return false;
+    }
+    disk->old_end_ = *known;
+    end = haddr_t(state.st_size);
+    return true;
+  }
+
+  /// Leaves what is behind the old end to be overwritten where nothing may be switched.
+  void finishExtending() {
+    Page before{};
+    for (auto page = pages.begin(); page != pages.end();) {
+      readAll(descriptor, page->first, before.data(), kPage);
+      page = before == page->second ? pages.erase(page) : std::next(page);
+    }
+    const bool first_page_alone = pages.size() == 1 && pages.begin()->first == 0;
+    if (!disk->may_switch_ || disk->error_ != 0 || !first_page_alone) {
+      if (ftruncate(descriptor, off_t(disk->old_end_)) != 0) refuse(*disk);
+      return;
+    }
+    // What the page leads to must be on the disk before it.
+    const Page& page = pages.begin()->second;
+    if (fdatasync(descriptor) != 0 || pwrite(descriptor, page.data(), kPage, 0) != kPage ||
+        fdatasync(descriptor) != 0) {
+      refuse(*disk);
+      return;
+    }
+    disk->switched_ = true;
   }
 
   static herr_t close(H5FD_t* base) {
     DiskFile* file = of(base);
+    if (file->disk->mode_ == Disk::Mode::extend) file->finishExtending();
     if (::close(file->descriptor) != 0) refuse(*file->disk);
     delete file;
     return 0;
@@ -49,16 +129,27 @@ struct DiskFile {
   static herr_t read(H5FD_t* base, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t address,
                      std::size_t size, void* buffer) {
     auto* bytes = static_cast<char*>(buffer);
-    while (size > 0) {
-      const ssize_t count = pread(of(base)->descriptor, bytes, size, off_t(address));
-      if (count < 0 && errno == EINTR) continue;
-      if (count <= 0) break;
-      bytes += count;
-      address += haddr_t(count);
-      size -= std::size_t(count);
+    readAll(of(base)->descriptor, address, bytes, size);
+    for (const auto& [start, page] : of(base)->pages) {
+      const haddr_t first = std::max(address, start);
+      const haddr_t last = std::min({address + size, start + kPage, of(base)->disk->old_end_});
+      if (first < last) std::memcpy(bytes + (first - address), &page[first - start], last - first);
     }
-    std::memset(bytes, 0, size);  // HDF5 takes what was never written for zeros
     return 0;
+  }
+
+  /// The part of a write that is before the old end stays in memory. Returns its length.
+  std::size_t keepInMemory(haddr_t address, std::size_t size, const char* bytes) {
+    const haddr_t last = std::min<haddr_t>(address + size, disk->old_end_);
+    for (haddr_t at = address; at < last;) {
+      const haddr_t start = at / kPage * kPage;
+      const auto [page, added] = pages.try_emplace(start);
+      if (added) readAll(descriptor, start, page->second.data(), kPage);
+      const std::size_t count = std::min<haddr_t>(start + kPage, last) - at;
+      std::memcpy(&page->second[at - start], bytes + (at - address), count);
+      at += count;
+    }
+    return last > address ? std::size_t(last - address) : 0;
   }
 
   static herr_t write(H5FD_t* base, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t address,
@@ -66,6 +157,12 @@ struct DiskFile {
     DiskFile* file = of(base);
     const auto* bytes = static_cast<const char*>(buffer);
     file->end = std::max(file->end, address + size);
+    if (file->disk->mode_ == Disk::Mode::extend) {
+      const std::size_t kept = file->keepInMemory(address, size, bytes);
+      bytes += kept;
+      address += kept;
+      size -= kept;
+    }
     while (size > 0 && file->disk->error_ == 0) {
       const ssize_t count = pwrite(file->descriptor, bytes, size, off_t(address));
       if (count < 0) {
@@ -120,7 +217,7 @@ struct DiskFile {
   }
 };
 
-Disk::Disk() {
+Disk::Disk(Mode mode) : mode_(mode) {
   static const H5FD_class_t kDriver = DiskFile::driver();
   driver_ = Handle(H5FDregister(&kDriver), H5FDunregister);
 }

@@ -24,7 +24,8 @@ InputFile::InputFile(const std::string& path) : path_(path) {
   }
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
-  // A finished results file is never written again, only replaced: no lock is needed.
+  // A finished results file is replaced, or extended behind its end and switched over in one write
+  // (h5_disk.h): no lock is needed.
   H5Pset_file_locking(access.get(), false, true);
   file_ = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
   if (!file_) {

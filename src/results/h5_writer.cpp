@@ -41,15 +41,46 @@ Handle layoutOf(const Shape& shape, std::size_t bytes, std::size_t chunk_rows) {
 
 }  // namespace
 
-OutputFile::OutputFile(const std::string& path, std::string shown) : shown_(std::move(shown)) {
-  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+namespace {
+
+/// Room for the groups and attributes of the root, in the file's first page (Disk): HDF5 takes the
+/// product. Without it a group that is added lies elsewhere, and the next one cannot be.
+constexpr unsigned kRootLinks = 8;
+constexpr unsigned kRootNames = 160;
+
+Handle accessTo(Disk& disk) {
+  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110);
   H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
-  disk_.serve(access.get());
+  disk.serve(access.get());
+  return access;
+}
+
+}  // namespace
+
+OutputFile::OutputFile(const std::string& path, std::string shown) : shown_(std::move(shown)) {
+  const Handle access = accessTo(disk_);
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation.get(), false);  // of the root group
+  H5Pset_est_link_info(creation.get(), kRootLinks, kRootNames);
   file_ = Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
   if (!file_) fail("/");
+}
+
+std::unique_ptr<OutputFile> OutputFile::extend(const std::string& path) {
+  std::unique_ptr<OutputFile> file(new OutputFile(Disk::Mode::extend));
+  file->shown_ = path;
+  const Handle access = accessTo(file->disk_);
+  file->file_ = Handle(H5Fopen(path.c_str(), H5F_ACC_RDWR, access.get()), H5Fclose);
+  return file->file_ ? std::move(file) : nullptr;
+}
+
+bool OutputFile::closeExtended() {
+  check("/");
+  disk_.allowSwitch();
+  const bool closed = file_.close();
+  check("/");
+  return closed && disk_.switched();
 }
 
 void OutputFile::close() {
@@ -174,6 +205,29 @@ void OutputGroup::link(const std::string& name, const OutputGroup& target,
                      H5P_DEFAULT) < 0) {
     file_->fail(pathOf(name));
   }
+}
+
+bool OutputGroup::has(const std::string& name) const {
+  return H5Lexists(id_.get(), name.c_str(), H5P_DEFAULT) > 0;
+}
+
+void OutputGroup::replace(const std::string& name, const std::string& fresh) {
+  if (has(name)) remove(name);
+  if (H5Lmove(id_.get(), fresh.c_str(), id_.get(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT) < 0) {
+    file_->fail(pathOf(name));
+  }
+}
+
+void OutputGroup::remove(const std::string& name) {
+  if (H5Ldelete(id_.get(), name.c_str(), H5P_DEFAULT) < 0) file_->fail(pathOf(name));
+}
+
+std::optional<std::uint64_t> OutputGroup::number(const std::string& name) const {
+  if (H5Aexists(id_.get(), name.c_str()) <= 0) return std::nullopt;
+  const Handle id(H5Aopen(id_.get(), name.c_str(), H5P_DEFAULT), H5Aclose);
+  std::uint64_t value = 0;
+  if (!id || H5Aread(id.get(), typeOf(Number::u64), &value) < 0) return std::nullopt;
+  return value;
 }
 
 // Bytes that HDF5 1.10 spends on each object besides its data, measured on files of ours.

@@ -1,6 +1,9 @@
 // A group of an HDF5 file being written, and a counter that stands in for one.
 #pragma once
 
+#include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,8 +18,15 @@ class OutputFile {
  public:
   /// `path` is what is written, `shown` what messages call it.
   OutputFile(const std::string& path, std::string shown);
+  /// Opens an existing file to be extended (Disk); nothing where that cannot be.
+  static std::unique_ptr<OutputFile> extend(const std::string& path);
   /// Flushes and closes. Without it the destructor closes and keeps quiet.
   void close();
+  /// Closes an extended file. False where it could not be switched to its new state: it is as it
+  /// was.
+  bool closeExtended();
+  /// Where an extended file ended.
+  std::uint64_t oldEnd() const { return disk_.oldEnd(); }
   hid_t id() const { return file_.get(); }
   [[noreturn]] void fail(const std::string& object) const;
   /// Throws if the disk has refused anything so far.
@@ -25,6 +35,8 @@ class OutputFile {
   }
 
  private:
+  explicit OutputFile(Disk::Mode mode) : disk_(mode) {}
+
   Silence silence_;  // these two first: they outlive the handle
   Disk disk_;
   std::string shown_;
@@ -44,6 +56,12 @@ class OutputGroup {
   void strings(const std::string& name, const std::vector<std::string>& values);
   /// A second name for what `target` holds; no bytes.
   void link(const std::string& name, const OutputGroup& target, const std::string& target_name);
+  bool has(const std::string& name) const;
+  /// `name` now names what `fresh` did. What it named before is nobody's.
+  void replace(const std::string& name, const std::string& fresh);
+  void remove(const std::string& name);
+  /// The number that an attribute holds; nothing where there is none.
+  std::optional<std::uint64_t> number(const std::string& name) const;
   /// An empty dataset of one dimension, to be filled in order by writeRows().
   Handle create(const std::string& name, const Shape& shape, const std::string& unit);
   /// Writes rows [first, first + count) of a dataset of one dimension.

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <memory>
 #include <new>
 #include <span>
+#include <utility>
 
 #include "base/atomic_file.h"
 #include "base/input_file.h"
@@ -32,11 +34,13 @@ constexpr const char* kFormat = "radiosity results";
 /// Raised whenever an older program could misread the file.
 constexpr std::int32_t kFormatVersion = 6;
 
-/// Everything but the matrix and the links, into a group or a counter.
+/// Everything but the matrix and the links, into a group or a counter. `suffix`: of the names of
+/// groups.
 template <class Sink>
 class StageWriter {
  public:
-  StageWriter(Sink& root, const Results& results) : root_(root), results_(results) {
+  StageWriter(Sink& root, const Results& results, std::string suffix = {})
+      : root_(root), results_(results), suffix_(std::move(suffix)) {
     if (results.mesh) geometry_hash_ = geometryHash(results.mesh->mesh);
   }
 
@@ -46,7 +50,7 @@ class StageWriter {
     root_.text("version", results_.version);
   }
   void scene(const Scene& scene) {
-    Sink group = root_.group("scene");
+    Sink group = root_.group("scene" + suffix_);
     FieldWriter<Sink> fields(group);
     describe(fields, scene);
   }
@@ -74,7 +78,7 @@ class StageWriter {
   }
   void solution() {
     if (!results_.solution && !results_.materials) return;
-    Sink group = root_.group("solution");
+    Sink group = root_.group("solution" + suffix_);
     FieldWriter<Sink> fields(group);
     if (results_.materials) describe(fields, *results_.materials);
     if (!results_.solution) return;
@@ -83,14 +87,14 @@ class StageWriter {
   }
   void elements() {
     if (!results_.elements) return;
-    Sink group = root_.group("elements");
+    Sink group = root_.group("elements" + suffix_);
     group.text("key", results_.elements_key);
     FieldWriter<Sink> fields(group);
     describe(fields, *results_.elements);
   }
   void gathered() {
     if (!results_.gathered) return;
-    Sink group = root_.group("gather");
+    Sink group = root_.group("gather" + suffix_);
     group.text("key", results_.gather_key);
     FieldWriter<Sink> fields(group);
     describe(fields, *results_.gathered);
@@ -106,6 +110,7 @@ class StageWriter {
  private:
   Sink& root_;
   const Results& results_;
+  std::string suffix_;
   std::string geometry_hash_;  ///< empty without a mesh
 };
 
@@ -277,6 +282,50 @@ void writeResults(const std::string& path, const Results& results, Progress& pro
   }
   file.close();
   target.commit();
+}
+
+namespace {
+
+/// An extended file is written whole once it is so much longer than when it was.
+constexpr double kMostGrowth = 1.5;
+/// The attribute that says how long it was.
+constexpr const char* kWholeBytes = "whole_bytes";
+constexpr const char* kFresh = ".new";
+
+}  // namespace
+
+// What a stage replaces is given up last: its room, which HDF5 could fill again, is before the end.
+bool updateResults(const std::string& path, const Results& results, const StagesAsStored& stored) {
+  requireRows(results);
+  const std::unique_ptr<h5::OutputFile> file = h5::OutputFile::extend(path);
+  if (!file) return false;
+  {
+    OutputGroup root(*file);
+    const std::optional<std::uint64_t> whole = root.number(kWholeBytes);
+    if (whole && double(file->oldEnd()) > kMostGrowth * double(*whole)) return false;
+    StageWriter<OutputGroup> stages(root, results, kFresh);
+    if (!stored.scene && results.scene) stages.scene(*results.scene);
+    if (!stored.solution) stages.solution();
+    if (!stored.elements) stages.elements();
+    if (!stored.gathered) stages.gathered();
+    if (!whole) {
+      const std::uint64_t bytes = file->oldEnd();
+      root.attribute(kWholeBytes, h5::Number::u64, 1, &bytes);
+    }
+    const std::pair<const char*, bool> groups[] = {{"scene", stored.scene},
+                                                   {"solution", stored.solution},
+                                                   {"elements", stored.elements},
+                                                   {"gather", stored.gathered}};
+    for (const auto& [name, as_stored] : groups) {
+      if (as_stored) continue;
+      if (root.has(std::string(name) + kFresh)) {
+        root.replace(name, std::string(name) + kFresh);
+      } else if (root.has(name)) {
+        root.remove(name);
+      }
+    }
+  }
+  return file->closeExtended();
 }
 
 std::size_t estimateResultsBytes(const Results& results) {

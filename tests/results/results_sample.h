@@ -263,6 +263,7 @@ inline Solution solution(std::size_t n, int bands) {
   }
   SolveSummary& r = s.summary;
   r.status = SolveStatus::no_convergence;
+  r.solver = Solver::gmres;
   r.iterations = 42;
   r.rows = 43;
   r.skipped = {44, 1, 2};
@@ -494,8 +495,8 @@ inline auto members(const SolveSkips& s) {
   return std::tie(a, b, c);
 }
 inline auto members(const SolveSummary& s) {
-  const auto& [a, b, c, d, e, f, g, h, i, j] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j);
+  const auto& [a, b, c, d, e, f, g, h, i, j, k] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k);
 }
 inline auto members(const Solution& s) {
   const auto& [a, b, c, d] = s;
