@@ -146,7 +146,7 @@ class Gmres {
       const Eigen::VectorXd& d = krylov.direction();
       const std::vector<double> image = applied({d.data(), d.data() + d.size()});
       krylov.add(asVector(image));
-      shown.record(krylov.residual() / scale);
+      shown.record(krylov.residual().lpNorm<Eigen::Infinity>() / scale);
       if (shown.converged()) break;
     }
     return krylov.correction();
