@@ -14,6 +14,7 @@ namespace {
 
 /// Heat that is lost on backs, or not accounted for, is worth a warning from this share on.
 constexpr double kWorthWarning = 1e-3;
+constexpr double kRounding = 1e-6;
 
 void surfaceTable(Report& report, const std::vector<SurfaceHeat>& surfaces) {
   std::vector<std::vector<std::string>> rows;
@@ -65,25 +66,48 @@ void factorError(Report& report, const FormFactors& factors) {
                 *std::max_element(factors.error.begin(), factors.error.end()));
 }
 
-void warnings(Report& report, const HeatSolution& heat) {
+/// W that leave all patches.
+double leaving(const HeatSolution& heat, const PatchMesh& mesh) {
+  const auto bands = std::size_t(heat.bands);
+  double sum = 0;
+  for (std::size_t k = 0; k < heat.radiosity.size(); ++k) {
+    sum += mesh.area[k / bands] * heat.radiosity[k];
+  }
+  return sum;
+}
+
+/// Net powers are small differences where all has about one temperature: then it takes more than
+/// single precision leaves of what leaves the patches, too.
+void warnOfLosses(const HeatBalance& b, double leaving, std::vector<Note>& notes) {
+  const auto worthIt = [&](double watts) {
+    return std::abs(watts) > kWorthWarning * b.throughput && std::abs(watts) > kRounding * leaving;
+  };
+  const auto share = [&](double watts) {
+    return b.throughput > 0 ? fmt::format("{:.3g}%", 100 * std::abs(watts) / b.throughput) : "all";
+  };
+  if (worthIt(b.on_backs)) {
+    notes.push_back(
+        {Severity::warning,
+         fmt::format(
+             "{} W are lost on surfaces seen from behind, which are black and at 0 K, {} of "
+             "the net powers: flipped? turn them round or use --two-sided NAME",
+             numberText(b.on_backs, 3), share(b.on_backs))});
+  }
+  if (worthIt(b.imbalance)) {
+    notes.push_back(
+        {Severity::warning,
+         fmt::format(
+             "{} W are not accounted for, {} of the net powers: rows of form factors do not "
+             "sum to 1 or lack reciprocity; give --closure enforce (hemicube: --symmetrize), "
+             "or a smaller --tolerance",
+             numberText(b.imbalance, 3), share(b.imbalance))});
+  }
+}
+
+void warnings(Report& report, const HeatSolution& heat, const PatchMesh& mesh) {
   const HeatSummary& s = heat.summary;
-  const HeatBalance& b = s.balance;
   std::vector<Note> notes;
-  const auto above = [&](double watts) { return std::abs(watts) > kWorthWarning * b.throughput; };
-  if (b.throughput > 0 && above(b.on_backs)) {
-    notes.push_back(
-        {Severity::warning,
-         fmt::format("{:.2g}% of the heat is lost on surfaces seen from behind, which are "
-                     "black and at 0 K: flipped? turn them round or use --two-sided NAME",
-                     100 * b.on_backs / b.throughput)});
-  }
-  if (b.throughput > 0 && above(b.imbalance)) {
-    notes.push_back(
-        {Severity::warning,
-         fmt::format("{:.2g}% of the heat is not accounted for: rows of form factors do "
-                     "not sum to 1; give --closure enforce, or a smaller --tolerance",
-                     100 * std::abs(b.imbalance) / b.throughput)});
-  }
+  warnOfLosses(s.balance, leaving(heat, mesh), notes);
   if (s.undetermined > 0) {
     notes.push_back(
         {Severity::warning,
@@ -119,7 +143,7 @@ void summarizeHeat(Report& report, const HeatSolution& heat, const FormFactors& 
     report.text("message", "in words", oneLine(s.message));
     report.yesNo("usable", "usable", s.usable());
   }
-  warnings(report, heat);
+  warnings(report, heat, mesh);
 }
 
 }  // namespace radiosity::cli

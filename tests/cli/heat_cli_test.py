@@ -73,6 +73,17 @@ class Heat(CliTest):
         for surface in report["surfaces"]:
             self.assertAlmostEqual(surface["temperature_K"], 700, delta=0.01)  # closure to 1e-6
 
+    def test_what_is_not_accounted_for_is_said(self):
+        # Flipped, the lower plate shows its back to the upper one.
+        self.write("plates.obj", PLATES.replace("f 1 2 3 4", "f 4 3 2 1"))
+        plates = ["plates.obj", "--patches", "8", "--condition", "*.emissivity=1"]
+        run = self.run_program("heat", *plates, "--condition", "*.temperature=400")
+        self.assertIn("lost on surfaces seen from behind", run.err)
+        # A room of one temperature has no net powers to speak of, and nothing is lost.
+        run = self.run_program("heat", "box.obj", "--patches", "200", "--closure", "enforce",
+                               "--thermal", "walls.csv")
+        self.assertNotIn("accounted", run.err)
+
     def test_all_files_say_the_same(self):
         run = self.run_program("heat", "box.obj", *SMALL, "--thermal", "walls.csv", "--condition",
                                "wall.convection=5", "--condition", "wall.ambient=290",
