@@ -69,6 +69,8 @@ TEST_F(ResultsFile, GivesBackWhateverStagesThereAre) {
     Results some = full;
     // What was gathered belongs to a mesh and is not stored without it.
     if ((stages & 34) != 34) some.gathered.reset(), some.gather_key.clear();
+    // Heat belongs to a mesh and form factors.
+    if ((stages & 6) != 6) some.heat.reset(), some.heat_key.clear();
     // Elements belong to a mesh and a solution.
     if ((stages & 82) != 82) some.elements.reset(), some.elements_key.clear();
     if ((stages & 1) == 0) some.scene.reset();

@@ -384,6 +384,23 @@ inline Gathered gathered(const PatchMesh& mesh, GatherAt at, int bands) {
   return g;
 }
 
+inline HeatSolution heat(const PatchMesh& mesh, int bands) {
+  HeatSolution h;
+  h.bands = bands;
+  for (std::size_t k = 0; k < mesh.size(); ++k) {
+    for (int b = 0; b < bands; ++b) {
+      h.radiosity.push_back(std::sqrt(double(k) + 0.2 * b));
+      h.irradiance.push_back(1e-30 * double(k) + b);
+    }
+    h.net_flux.push_back(0.3 - double(k));
+    h.convection.push_back(1.0 / (double(k) + 3));
+    h.temperature.push_back(300 + 1.0 / (double(k) + 1));
+  }
+  h.summary = {HeatStatus::no_convergence, 5,   12345678901,    1e-3, 2e-4, 7,
+               {1, 2, 3, 4, 5, 6},         0.5, "not converged"};
+  return h;
+}
+
 inline Results results(Index side, Precision precision, int bands = 3) {
   Results r;
   r.version = "0.1.0";
@@ -403,6 +420,8 @@ inline Results results(Index side, Precision precision, int bands = 3) {
       r.mesh->mesh,
       precision == Precision::single_precision ? GatherAt::patches : GatherAt::vertices, bands);
   r.gather_key = "passes=2";
+  r.heat = heat(r.mesh->mesh, bands);
+  r.heat_key = "sky-temperature=3";
   return r;
 }
 
@@ -534,9 +553,21 @@ inline auto members(const Gathered& s) {
   const auto& [a, b, c, d, e, f, g, h, i, j, k] = s;
   return std::tie(a, b, c, d, e, f, g, h, i, j, k);
 }
+inline auto members(const HeatBalance& s) {
+  const auto& [a, b, c, d, e, f] = s;
+  return std::tie(a, b, c, d, e, f);
+}
+inline auto members(const HeatSummary& s) {
+  const auto& [a, b, c, d, e, f, g, h, i] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i);
+}
+inline auto members(const HeatSolution& s) {
+  const auto& [a, b, c, d, e, f, g] = s;
+  return std::tie(a, b, c, d, e, f, g);
+}
 inline auto members(const Results& s) {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m);
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o);
 }
 
 template <class T>
