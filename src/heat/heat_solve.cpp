@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include "heat/conditions.h"
@@ -358,69 +357,6 @@ HeatSolution HeatSolve::run() {
                  "asked for {:.1e}; not usable; allow more iterations or a larger tolerance",
                  iterations, residuals.radiosity, residuals.balance, options_.tolerance);
   return solution;
-}
-
-/// A temperature beyond its table says that the emissivity there is not known.
-void HeatSolve::requireTables() const {
-  for (std::size_t i = 0; i < n_; ++i) {
-    const Index node = nodes_.of_row[i];
-    if (node != kNone && !(gain_[node] > 0)) continue;
-    for (const Emissivity& e : conditionOf(i).emissivity) {
-      if (e.temperatures.empty()) continue;
-      const double t = temperature_[i];
-      if (t >= e.temperatures.front() && t <= e.temperatures.back()) continue;
-      throw InputError(fmt::format(
-          "{}: reaches {:.6g} K, and its emissivity is given from {:g} to {:g} K; extend the table",
-          conditionOf(i).name, t, e.temperatures.front(), e.temperatures.back()));
-    }
-  }
-}
-
-HeatSolution HeatSolve::solutionOf(HeatFields fields) const {
-  HeatSolution solution;
-  solution.bands = int(width_);
-  solution.radiosity = std::move(fields.radiosity);
-  solution.irradiance = std::move(fields.irradiance);
-  solution.temperature = temperature_;
-  solution.net_flux.assign(n_, 0.0);
-  solution.convection.assign(n_, 0.0);
-  for (std::size_t i = 0; i < n_; ++i) {
-    for (std::size_t k = i * width_; k < (i + 1) * width_; ++k) {
-      solution.net_flux[i] += solution.radiosity[k] - solution.irradiance[k];
-    }
-    const Index node = nodes_.of_row[i];
-    if (node != kNone && !(gain_[node] > 0)) {
-      solution.temperature[i] = std::numeric_limits<double>::quiet_NaN();
-      ++solution.summary.undetermined;
-    } else {
-      const HeatCondition& c = conditionOf(i);
-      solution.convection[i] = c.convection * (temperature_[i] - c.ambient);
-    }
-  }
-  solution.summary.balance = balanceOf(solution);
-  return solution;
-}
-
-// What leaves row i and is not seen by fronts ends on the sky or on backs, so with reciprocity and
-// rows that sum to 1, sum A (J - H) = sum A sky (J - E_sky) + sum A backs J. What falls on fronts
-// beyond what the matrix gives does not get out.
-HeatBalance HeatSolve::balanceOf(const HeatSolution& solution) const {
-  HeatBalance balance;
-  std::vector<double> of_condition(rows_.conditions.size(), 0.0);
-  for (std::size_t i = 0; i < n_; ++i) {
-    const double radiated = area_[i] * solution.net_flux[i];
-    balance.radiated += radiated;
-    of_condition[rows_.of_row[i]] += radiated;
-    balance.convected += area_[i] * solution.convection[i];
-    for (std::size_t k = i * width_; k < (i + 1) * width_; ++k) {
-      balance.to_sky +=
-          area_[i] * (std::max(0.0, factors_.sky[i]) * solution.radiosity[k] - falling_[k]);
-      balance.on_backs += area_[i] * factors_.backs[i] * solution.radiosity[k];
-    }
-  }
-  for (const double power : of_condition) balance.throughput += std::max(0.0, power);
-  balance.imbalance = balance.radiated - balance.to_sky - balance.on_backs;
-  return balance;
 }
 
 }  // namespace radiosity
