@@ -55,6 +55,7 @@ struct DiskFile {
   haddr_t allocated = 0;          ///< "end of allocation": how long HDF5 wants the file
   haddr_t end = 0;                ///< how long it is
   std::map<haddr_t, Page> pages;  ///< extended files: before their old end, what HDF5 changes
+  struct stat before_extending {};
 
   static DiskFile* of(H5FD_t* file) { return reinterpret_cast<DiskFile*>(file); }
   static const DiskFile* of(const H5FD_t* file) { return reinterpret_cast<const DiskFile*>(file); }
@@ -85,14 +86,13 @@ struct DiskFile {
 
   /// False where another run extends the file, or it is not of a form that can be.
   bool findOldEnd() {
-    struct stat state {};
     const std::optional<haddr_t> known = endInSuperblock(descriptor);
-    if (!known || flock(descriptor, LOCK_EX | LOCK_NB) != 0 || fstat(descriptor, &state) != 0 ||
-        haddr_t(state.st_size) < *known) {
+    if (!known || flock(descriptor, LOCK_EX | LOCK_NB) != 0 ||
+        fstat(descriptor, &before_extending) != 0 || haddr_t(before_extending.st_size) < *known) {
       return false;
     }
     disk->old_end_ = *known;
-    end = haddr_t(state.st_size);
+    end = haddr_t(before_extending.st_size);
     return true;
   }
 
@@ -105,7 +105,12 @@ struct DiskFile {
     }
     const bool first_page_alone = pages.size() == 1 && pages.begin()->first == 0;
     if (!disk->may_switch_ || disk->error_ != 0 || !first_page_alone) {
-      if (ftruncate(descriptor, off_t(disk->old_end_)) != 0) refuse(*disk);
+      // Nor is it to look like another file.
+      const timespec times[] = {before_extending.st_atim, before_extending.st_mtim};
+      if (ftruncate(descriptor, before_extending.st_size) != 0 ||
+          futimens(descriptor, times) != 0) {
+        refuse(*disk);
+      }
       return;
     }
     // What the page leads to must be on the disk before it.

@@ -10,8 +10,6 @@
 namespace radiosity {
 namespace {
 
-using test::kSolvers;
-
 constexpr int kBandCounts[] = {1, 2, 3, 5, 8};
 
 /// Every `bands`-th value from `band` on.
@@ -34,8 +32,8 @@ TEST(SolveBands, EachAloneHasTheBitsItHasAmongOthers) {
       const std::vector<double> rho = random.vector(count, 0.1, 0.9);
       const std::vector<double> emission = random.vector(count, 0.0, 2.0);
       const std::vector<double> sky = random.vector(std::size_t(bands), 0.0, 1.0);
-      for (const Solver solver : kSolvers) {
-        // A fixed number of sweeps: among others, a band goes on until the last one is done.
+      // A fixed number of sweeps: among others, a band goes on until the last one is done.
+      for (const Solver solver : test::iterationsOf(factors)) {
         const SolveOptions options = test::options(solver, 1e-300, 9);
         Progress quiet;
         const Solution all = solve(factors, rho, emission, bands, options, quiet, {}, {}, sky);
