@@ -2,7 +2,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <cmath>
-#include <optional>
+#include <memory>
 
 #include "solve/iteration.h"
 
@@ -40,7 +40,7 @@ class Factored {
           m(k, l) = double(k == l) - scale_[k] * area * f(at(k), at(l)) * scale_[l];
         }
       }
-      cholesky_.emplace(m);  // reads the lower triangle
+      cholesky_ = std::make_unique<Eigen::LLT<Eigen::MatrixXd>>(m);  // reads the lower triangle
       solvable_ = cholesky_->info() == Eigen::Success;
       return;
     }
@@ -49,7 +49,7 @@ class Factored {
         m(k, l) = double(k == l) - rho[at(k)] * f(at(k), at(l));
       }
     }
-    lu_.emplace(m);
+    lu_ = std::make_unique<Eigen::PartialPivLU<Eigen::MatrixXd>>(m);
   }
 
   /// False where I - rho F is not positive definite, so that no B >= E solves the system.
@@ -94,9 +94,9 @@ class Factored {
   }
 
   std::vector<Eigen::Index> members_;
-  Eigen::ArrayXd scale_;  // D A^-1/2
-  std::optional<Eigen::LLT<Eigen::MatrixXd>> cholesky_;
-  std::optional<Eigen::PartialPivLU<Eigen::MatrixXd>> lu_;
+  Eigen::ArrayXd scale_;                                   // D A^-1/2
+  std::unique_ptr<Eigen::LLT<Eigen::MatrixXd>> cholesky_;  // where the matrix is symmetric
+  std::unique_ptr<Eigen::PartialPivLU<Eigen::MatrixXd>> lu_;
   bool solvable_ = true;
 };
 
