@@ -2,7 +2,6 @@
 // *ELEMENT, *ELSET and *INCLUDE) line by line.
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 

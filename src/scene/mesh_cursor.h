@@ -64,7 +64,6 @@ class MeshCursor {
 
   /// Of the word or line read last, counted from 1.
   std::size_t line() const { return line_; }
-  std::size_t position() const { return at_; }
 
  private:
   void skipBlanks();
