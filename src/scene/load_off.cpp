@@ -87,8 +87,7 @@ class OffReader {
     nextWords();
     const auto corners = std::size_t(integer(0, "number of corners"));
     if (corners < 3 || corners >= words_.size()) {
-      cursor_.fail(
-          fmt::format("a face has 3 corners or more, each a number; correct or remove it"));
+      cursor_.fail("a face has 3 corners or more, each a number; correct or remove it");
     }
     corners_.clear();
     const std::size_t vertices = faces_.scene().vertices.size();
