@@ -250,7 +250,8 @@ class Pipeline {
     std::string path;
     std::string state;   ///< fileState() then
     bool scene = false;  ///< it has the scene as it is
-    std::string mesh_key, factors_key, solution_key, elements_key, gather_key;  ///< empty: none
+    /// Empty: none.
+    std::string mesh_key, factors_key, solution_key, elements_key, gather_key, heat_key;
   };
   static OnDisk onDisk(const std::string& path, const Results& results, bool scene);
 

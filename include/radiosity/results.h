@@ -86,6 +86,7 @@ struct StagesAsStored {
   bool solution = false;  ///< with the materials
   bool elements = false;
   bool gathered = false;
+  bool heat = false;
 };
 
 /// Brings the results file at `path`, which must have the mesh and the form factors of `results`,

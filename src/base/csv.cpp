@@ -30,10 +30,15 @@ class CsvReader {
   bool next(CsvTable::Row& row) {
     while (at_ < text_.size()) {
       row = {line_, {}};
-      const bool is_comment = text_[at_] == '#';
+      const std::size_t first = text_.find_first_not_of(" \t", at_);
+      const bool is_comment = first != std::string_view::npos && text_[first] == '#';
+      if (is_comment) {
+        skipLine();
+        continue;
+      }
       readRecord(row.fields);
-      const bool is_empty = row.fields.size() == 1 && row.fields.front().empty();
-      if (!is_comment && !is_empty) return true;
+      const bool is_empty = row.fields.size() == 1 && withoutBlanks(row.fields.front()).empty();
+      if (!is_empty) return true;
     }
     return false;
   }
@@ -43,6 +48,12 @@ class CsvReader {
   }
 
  private:
+  /// A comment may hold quotes.
+  void skipLine() {
+    at_ = std::min(text_.find('\n', at_), text_.size() - 1) + 1;
+    ++line_;
+  }
+
   void readRecord(std::vector<std::string>& fields) {
     fields.emplace_back();
     while (at_ < text_.size()) {
@@ -106,6 +117,7 @@ CsvTable readCsv(const std::string& path) {
   table.path = path;
   CsvTable::Row row;
   if (!reader.next(row)) reader.fail(1, "there is no header line; name the columns in the first");
+  table.header_line = row.line;
   for (const std::string& name : row.fields) {
     table.header.push_back(withoutBlanks(name));
     if (std::count(table.header.begin(), table.header.end(), table.header.back()) > 1) {

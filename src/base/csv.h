@@ -19,6 +19,7 @@ struct CsvTable {
     std::vector<std::string> fields;
   };
   std::string path;
+  std::size_t header_line = 0;      ///< of the file, from 1
   std::vector<std::string> header;  ///< without blanks at their ends
   std::vector<Row> rows;            ///< each of as many fields as the header
 

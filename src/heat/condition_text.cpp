@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "base/input_file.h"
+#include "base/csv.h"
 #include "base/parse.h"
 #include "scene/text.h"
 
@@ -122,48 +122,27 @@ std::string listOf(const char* Property::*name) {
   return list;
 }
 
-/// Cells of a line, with "" for a quote and commas allowed between quotes (RFC 4180), trimmed.
-std::vector<std::string> cellsOf(std::string_view line, const std::string& origin) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (std::size_t k = 0; k < line.size(); ++k) {
-    const char c = line[k];
-    if (c == '"' && quoted && k + 1 < line.size() && line[k + 1] == '"') {
-      cells.back() += line[++k];
-    } else if (c == '"') {
-      quoted = !quoted;
-    } else if (c == ',' && !quoted) {
-      cells.emplace_back();
-    } else {
-      cells.back() += c;
-    }
-  }
-  if (quoted) fail(origin, "a quote is not closed");
-  for (std::string& cell : cells) cell = std::string(trimmed(cell));
-  return cells;
-}
-
 /// The property of each column; null for that of names.
 std::vector<const Property*> columnsOf(const std::vector<std::string>& header,
                                        const std::string& origin) {
   std::vector<const Property*> columns;
-  bool named = false;
   for (const std::string& title : header) {
-    if (title == kNameColumn && !named) {
-      named = true;
+    if (title == kNameColumn) {
       columns.push_back(nullptr);
       continue;
     }
     const auto found = std::ranges::find_if(
         kProperties, [&](const Property& property) { return title == property.column; });
-    if (found == kProperties.end() || std::ranges::count(header, title) > 1) {
-      fail(origin, fmt::format("column `{}` is {}; there are, with commas between them: {}, {}",
-                               title, found == kProperties.end() ? "unknown" : "there twice",
-                               kNameColumn, listOf(&Property::column)));
+    if (found == kProperties.end()) {
+      fail(origin,
+           fmt::format("column `{}` is unknown; there are, with commas between them: {}, {}", title,
+                       kNameColumn, listOf(&Property::column)));
     }
     columns.push_back(found);
   }
-  if (!named) fail(origin, fmt::format("the header names no column `{}`", kNameColumn));
+  if (std::ranges::count(columns, nullptr) == 0) {
+    fail(origin, fmt::format("the header names no column `{}`", kNameColumn));
+  }
   return columns;
 }
 
@@ -178,9 +157,6 @@ void checkHeated(const GivenCondition& given) {
 
 GivenCondition parseRow(const std::vector<std::string>& cells,
                         const std::vector<const Property*>& columns, const std::string& origin) {
-  if (cells.size() != columns.size()) {
-    fail(origin, fmt::format("has {} cells, the header has {}", cells.size(), columns.size()));
-  }
   GivenCondition given;
   given.origin = origin;
   for (std::size_t c = 0; c < cells.size(); ++c) {
@@ -201,23 +177,12 @@ GivenCondition parseRow(const std::vector<std::string>& cells,
 }  // namespace
 
 std::vector<GivenCondition> readConditionTable(const std::string& path) {
-  const std::string bytes = readWholeFile(path);
-  std::string_view text = bytes;
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  std::vector<const Property*> columns;
+  const CsvTable table = readCsv(path);
+  const std::vector<const Property*> columns =
+      columnsOf(table.header, fmt::format("{}:{}", path, table.header_line));
   std::vector<GivenCondition> rows;
-  std::size_t number = 0;
-  for (const std::string_view line : splitAt(text, '\n')) {
-    const std::string origin = fmt::format("{}:{}", path, ++number);
-    const std::string_view content = trimmed(line);
-    if (content.empty() || content.starts_with('#')) continue;
-    const std::vector<std::string> cells = cellsOf(content, origin);
-    if (columns.empty()) {
-      columns = columnsOf(cells, origin);
-    } else {
-      rows.push_back(parseRow(cells, columns, origin));
-    }
+  for (const CsvTable::Row& row : table.rows) {
+    rows.push_back(parseRow(row.fields, columns, fmt::format("{}:{}", path, row.line)));
   }
   if (rows.empty()) {
     throw InputError(

@@ -89,7 +89,8 @@ Pipeline::OnDisk Pipeline::onDisk(const std::string& path, const Results& result
           results.factors ? results.factors_key : "",
           results.solution ? results.solution_key : "",
           results.elements ? results.elements_key : "",
-          results.gathered ? results.gather_key : ""};
+          results.gathered ? results.gather_key : "",
+          results.heat ? results.heat_key : ""};
 }
 
 void Pipeline::openResults(const std::string& path, const SceneOptions& scene) {
@@ -305,7 +306,8 @@ bool Pipeline::update(const std::string& path) {
   const StagesAsStored as_stored = {
       on_disk_.scene, solution,
       stored(results_.elements.has_value(), results_.elements_key, on_disk_.elements_key),
-      stored(results_.gathered.has_value(), results_.gather_key, on_disk_.gather_key)};
+      stored(results_.gathered.has_value(), results_.gather_key, on_disk_.gather_key),
+      stored(results_.heat.has_value(), results_.heat_key, on_disk_.heat_key)};
   if (!updateResults(path, results_, as_stored)) return false;
   on_disk_ = onDisk(path, results_, true);
   // The form factors in it are those that were there.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/csv.h"
 #include "radiosity/results.h"
 #include "results/checked_file.h"
 
@@ -14,13 +15,6 @@ namespace {
 /// All digits of a number; nothing where there is none.
 std::string cell(double value) {
   return std::isnan(value) ? std::string() : fmt::format("{}", value);
-}
-
-std::string quoted(const std::string& name) {
-  if (name.find_first_of(",\"\n\r") == std::string::npos) return name;
-  std::string out;
-  for (const char c : name) out.append(c == '"' ? 2 : 1, c);
-  return fmt::format("\"{}\"", out);
 }
 
 std::string bandColumns(const char* name, int bands) {
@@ -38,7 +32,7 @@ void writeHeatTable(const std::string& path, std::span<const SurfaceHeat> surfac
       "surface,area_m2,temperature_K,lowest_K,highest_K,radiosity_W_per_m2,irradiance_W_per_m2,"
       "irradiance_error_W_per_m2,net_flux_W_per_m2,radiated_W,convected_W\n");
   for (const SurfaceHeat& s : surfaces) {
-    file.write(fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", quoted(s.name), cell(s.area),
+    file.write(fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", csvField(s.name), cell(s.area),
                            cell(s.temperature), cell(s.lowest), cell(s.highest), cell(s.radiosity),
                            cell(s.irradiance), cell(s.irradiance_error.value_or(NAN)),
                            cell(s.net_flux), cell(s.radiated), cell(s.convected)));
@@ -55,10 +49,10 @@ void writeHeatPatches(const std::string& path, const HeatSolution& heat, const P
       bandColumns("radiosity", heat.bands), bandColumns("irradiance", heat.bands)));
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     const Vec3& at = mesh.centroid[i];
-    std::string line =
-        fmt::format("{},{},{},{},{},{},{},{},{},{}", i, quoted(mesh.surface_names[mesh.surface[i]]),
-                    mesh.side[i] == 0 ? "front" : "back", at.x, at.y, at.z, mesh.area[i],
-                    cell(heat.temperature[i]), cell(heat.net_flux[i]), cell(heat.convection[i]));
+    std::string line = fmt::format(
+        "{},{},{},{},{},{},{},{},{},{}", i, csvField(mesh.surface_names[mesh.surface[i]]),
+        mesh.side[i] == 0 ? "front" : "back", at.x, at.y, at.z, mesh.area[i],
+        cell(heat.temperature[i]), cell(heat.net_flux[i]), cell(heat.convection[i]));
     for (const std::vector<double>* values : {&heat.radiosity, &heat.irradiance}) {
       for (std::size_t b = 0; b < bands; ++b)
         line.append(",").append(cell((*values)[i * bands + b]));

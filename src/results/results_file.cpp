@@ -101,7 +101,7 @@ class StageWriter {
   }
   void heat() {
     if (!results_.heat) return;
-    Sink group = root_.group("heat");
+    Sink group = root_.group("heat" + suffix_);
     group.text("key", results_.heat_key);
     FieldWriter<Sink> fields(group);
     describe(fields, *results_.heat);
@@ -308,6 +308,7 @@ bool updateResults(const std::string& path, const Results& results, const Stages
     if (!stored.solution) stages.solution();
     if (!stored.elements) stages.elements();
     if (!stored.gathered) stages.gathered();
+    if (!stored.heat) stages.heat();
     if (!whole) {
       const std::uint64_t bytes = file->oldEnd();
       root.attribute(kWholeBytes, h5::Number::u64, 1, &bytes);
@@ -315,7 +316,8 @@ bool updateResults(const std::string& path, const Results& results, const Stages
     const std::pair<const char*, bool> groups[] = {{"scene", stored.scene},
                                                    {"solution", stored.solution},
                                                    {"elements", stored.elements},
-                                                   {"gather", stored.gathered}};
+                                                   {"gather", stored.gathered},
+                                                   {"heat", stored.heat}};
     for (const auto& [name, as_stored] : groups) {
       if (as_stored) continue;
       if (root.has(std::string(name) + kFresh)) {

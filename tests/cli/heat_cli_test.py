@@ -177,7 +177,7 @@ class Heat(CliTest):
         table("", "bad.csv", "empty")
         table("surface,epsilon\nwall,1\n", "bad.csv:1", "column `epsilon` is unknown", "emissivity")
         table("emissivity,flux_W_per_m2\n.5,0\n", "bad.csv:1", "names no column `surface`")
-        table("surface,emissivity,temperature_K\n*,.5,300\nwall,.5\n", "bad.csv:3", "has 2 cells")
+        table("surface,emissivity,temperature_K\n*,.5,300\nwall,.5\n", "bad.csv:3", "2 fields")
         table("surface,emissivity,temperature_K\nwall,high,300\n", "bad.csv:2: wall", "`high`")
         table("surface,emissivity,temperature_K,flux_W_per_m2\n*,.5,300,4\n", "bad.csv:2",
               "more than one of temperature, flux and power")

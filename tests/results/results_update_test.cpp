@@ -42,7 +42,7 @@ class ResultsUpdate : public FolderTest {
 };
 
 constexpr StagesAsStored kButTheSolution = {
-    .scene = true, .solution = false, .elements = true, .gathered = true};
+    .scene = true, .solution = false, .elements = true, .gathered = true, .heat = true};
 
 TEST_F(ResultsUpdate, AddsASolutionAndTouchesNothingElse) {
   const Results solved = writeUnsolved();
