@@ -32,9 +32,10 @@ class EngineerWalk(CliTest):
         sky = float(city["tower"]["sky"])
         self.assertGreater(sky, (100 + 0.5 * 0.9 * 1800) / 1900)
         self.assertLess(sky, 1)
-        # Rays know nothing of what the exact method does; 1e-2 of a row's norm is below this.
+        # Rays know nothing of what the exact method does. Rows, whose norms are below .3, are good to
+        # a tenth of that, and a surface has hundreds of them.
         self.run_program("factors", DATA / "city.stl", "--between", "surfaces", "--method", "rays",
-                         "-o", "rays.csv")
+                         "--tolerance", "0.1", "-o", "rays.csv")
         for name, row in self.table("rays.csv").items():
             self.assertAlmostEqual(float(row["sky"]), float(city[name]["sky"]), delta=1e-2)
 
@@ -57,7 +58,9 @@ class EngineerWalk(CliTest):
         self.run_program("factors", DATA / "quarter-blocked.vs3", "--between", "surfaces",
                          "-o", "blocked.vf", "-o", "blocked.csv")
         lines = (self.folder / "blocked.vf").read_text().splitlines()
-        self.assertEqual([float(a) for a in lines[1].split()], [1, 1, 0.25])
+        areas = [float(a) for a in lines[1].split()]
+        for area, whole in zip(areas, [1, 1, 0.25], strict=True):
+            self.assertAlmostEqual(area, whole, delta=1e-12)  # sums over some hundred patches
         lower = [float(f) for f in lines[2].split()]
         # Three fourths of two unit squares' (data/README.md), to the tolerance.
         self.assertAlmostEqual(lower[1], 0.149868671773790, delta=1e-4)
