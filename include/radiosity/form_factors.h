@@ -56,8 +56,8 @@ struct FormFactorOptions {
   bool near_exact = false;
   /// Rays: unknowns (patches, or clusters where there are any), ascending, whose exchange with all
   /// others is exact: those that emit (emittingUnknowns()), since the light of all others rests on
-  /// them. They are left to rays, and the report says so, where exact rows would take more than half
-  /// as long as all rays and more than some seconds, or have more than a million pairs.
+  /// them. They are left to rays, and the report says so, where exact rows would take more than
+  /// half as long as all rays and more than some seconds, or have more than a million pairs.
   std::vector<Index> exact_rows;
   std::size_t memory_limit = 0;  ///< bytes; 0: no limit
   /// A folder on a disk. Rows that do not fit within memory_limit are in a file without a name

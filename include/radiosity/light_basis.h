@@ -32,8 +32,8 @@ struct LightBasis {
 };
 
 /// Solves for all sources at once, each to options.tolerance of its own largest emission: every
-/// product with the matrix serves them all. Errors: as solve(); InputError where there is no source,
-/// or two have one name.
+/// product with the matrix serves them all. Errors: as solve(); InputError where there is no
+/// source, or two have one name.
 LightBasis solveBasis(const FormFactors& factors, const PatchMaterials& materials,
                       const PatchMesh& mesh, std::span<const LightSource> sources,
                       const SolveOptions& options, Progress& progress);

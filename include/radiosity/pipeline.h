@@ -104,9 +104,9 @@ struct ScalarField {
 /// Scene -> mesh -> form factors -> solution -> elements; scene -> mesh -> gathered light; and mesh
 /// -> form factors -> radiative heat exchange.
 ///
-/// mesh(), factors(), solution(), elements(), gathered() and heat() first make what they stand on. Each
-/// stage has a key, a text of its options and of what it was made from. One with the same key is
-/// reused: from this object where it was made before, else from a results file; otherwise it is
+/// mesh(), factors(), solution(), elements(), gathered() and heat() first make what they stand on.
+/// Each stage has a key, a text of its options and of what it was made from. One with the same key
+/// is reused: from this object where it was made before, else from a results file; otherwise it is
 /// computed, and what stands on the one before is discarded. So options() may be changed between
 /// calls. References that a call returned hold until the stage is made again.
 class Pipeline {
@@ -153,8 +153,8 @@ class Pipeline {
   const Elements& elements();
   /// By the gather method; stands on the mesh alone.
   const Gathered& gathered();
-  /// Radiative heat exchange; stands on form factors, and on options() alone beside them. Errors: as
-  /// solveHeat().
+  /// Radiative heat exchange; stands on form factors, and on options() alone beside them. Errors:
+  /// as solveHeat().
   const HeatSolution& heat();
   /// Materials of the patches of mesh().
   const PatchMaterials& materials();

@@ -73,7 +73,8 @@ Results readResults(const std::string& path, bool with_factors = true,
 ///                  backs_by_surface;
 ///                  eye_of_corner (at vertices: the eye of every entry of /mesh/corners); at, key,
 ///                  summary/ with passes/ (a row a pass; bound is NaN where there is none)
-///   /heat          temperature (N), net_flux, convection (N), radiosity, irradiance (N x bands), as
+///   /heat          temperature (N), net_flux, convection (N), radiosity, irradiance (N x bands),
+///   as
 ///                  HeatSolution; key, summary/ with balance_W/
 /// Bands are as many as rows have columns: three from scene files, any number from a program.
 /// The matrix is written row by row, never copied. Errors: RunError (disk full), Cancelled, those

@@ -76,7 +76,8 @@ const char* examplesOf(Command command) {
              "  radiosity gather data/cornell-box.obj --passes 8 -o gathered.h5 -o gathered.png\n"
              "  radiosity gather cornell.h5 --at patches --resolution 128";
     case Command::heat:
-      return "Files (-o): .csv (by surface), .h5 (results), .vtp (patches, for ParaView). A results "
+      return "Files (-o): .csv (by surface), .h5 (results), .vtp (patches, for ParaView). A "
+             "results "
              "file\n"
              "given as input is updated in place where no -o is given; its form factors are "
              "reused.\n"

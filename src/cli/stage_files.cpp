@@ -70,8 +70,8 @@ OutputSet claimOutputs(const Session& session) {
   const Request& request = session.request;
   OutputSet files(parseOutputs(request));
   const bool keeps_stages = request.command == Command::factors ||
-                            request.command == Command::solve || request.command == Command::gather ||
-                            request.command == Command::heat;
+                            request.command == Command::solve ||
+                            request.command == Command::gather || request.command == Command::heat;
   if (!keeps_stages || !files.all().empty()) return files;
   std::error_code ignored;
   if (std::filesystem::is_regular_file(request.input, ignored) && isResultsFile(request.input)) {

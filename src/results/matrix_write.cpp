@@ -9,7 +9,6 @@ namespace radiosity {
 
 using h5::ColumnWriter;
 using h5::Number;
-using h5::Shape;
 
 namespace {
 
