@@ -8,6 +8,7 @@
 
 #include "radiosity/form_factors.h"
 #include "radiosity/patch_mesh.h"
+#include "radiosity/scene.h"
 #include "radiosity/solve.h"
 
 namespace [[gnu::visibility("default")]] radiosity {
@@ -22,6 +23,14 @@ struct LightSource {
 /// A source for each emitting surface, by its name, and one called "sky" where the sky shines: they
 /// add up to the light of the scene.
 std::vector<LightSource> lightSources(const PatchMaterials& materials, const PatchMesh& mesh);
+
+/// Sources from a table (RFC 4180) with the columns `set`, `name` and `emission` (radiant exitance,
+/// W/m^2), or `r`, `g` and `b` instead of it: what `name` stands for, as SceneOptions::set finds
+/// it, shines so in the source `set`, in the order in which sets are first named. Errors:
+/// InputError that names file and line: columns, numbers that are not finite and >= 0, a name that
+/// nothing has, a surface twice in a set; columns of colours where `bands` is not 3.
+std::vector<LightSource> readLightSources(const std::string& csv_path, const Scene& scene,
+                                          const PatchMesh& mesh, int bands);
 
 /// Light of sources, each by itself: of source s and band b in column s * bands + b.
 struct LightBasis {

@@ -15,6 +15,7 @@
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
 #include "radiosity/heat.h"
+#include "radiosity/light_basis.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/render.h"
 #include "radiosity/results.h"
@@ -27,7 +28,7 @@ class JournalFile;
 class Pipeline;
 class StageKey;
 
-enum class Stage { mesh, form_factors, solution, gather, elements, heat };
+enum class Stage { mesh, form_factors, solution, gather, elements, heat, basis };
 
 enum class StageAction {
   reused,      ///< taken from a results file
@@ -86,6 +87,9 @@ struct PipelineOptions {
   HeatOptions heat;
   HeatConditions heat_conditions;  ///< of the scene's surfaces: readHeatConditions()
   JournalOptions journal;
+  /// Of basis(), N * bands of mesh() each. Empty: those of the results file, where its light still
+  /// fits; else lightSources().
+  std::vector<LightSource> sources{};
 };
 
 /// A scalar of every patch, to be drawn by renderFalseColour().
@@ -102,13 +106,13 @@ struct ScalarField {
 };
 
 /// Scene -> mesh -> form factors -> solution -> elements; scene -> mesh -> gathered light; and mesh
-/// -> form factors -> radiative heat exchange.
+/// -> form factors -> radiative heat exchange, or light of single lamps.
 ///
-/// mesh(), factors(), solution(), elements(), gathered() and heat() first make what they stand on.
-/// Each stage has a key, a text of its options and of what it was made from. One with the same key
-/// is reused: from this object where it was made before, else from a results file; otherwise it is
-/// computed, and what stands on the one before is discarded. So options() may be changed between
-/// calls. References that a call returned hold until the stage is made again.
+/// mesh(), factors(), solution(), elements(), gathered(), heat() and basis() first make what they
+/// stand on. Each stage has a key, a text of its options and of what it was made from. One with the
+/// same key is reused: from this object where it was made before, else from a results file;
+/// otherwise it is computed, and what stands on the one before is discarded. So options() may be
+/// changed between calls. References that a call returned hold until the stage is made again.
 class Pipeline {
  public:
   /// Both must outlive it; no observer: nobody is told.
@@ -156,6 +160,11 @@ class Pipeline {
   /// Radiative heat exchange; stands on form factors, and on options() alone beside them. Errors:
   /// as solveHeat().
   const HeatSolution& heat();
+  /// Light of options().sources, each by itself. Errors: as solveBasis().
+  const LightBasis& basis();
+  /// The results file's light of single lamps, made with these form factors and this reflectance,
+  /// whatever its sources; null: it has none that fits.
+  const LightBasis* basisAtHand();
   /// Materials of the patches of mesh().
   const PatchMaterials& materials();
 
@@ -251,7 +260,7 @@ class Pipeline {
     std::string state;   ///< fileState() then
     bool scene = false;  ///< it has the scene as it is
     /// Empty: none.
-    std::string mesh_key, factors_key, solution_key, elements_key, gather_key, heat_key;
+    std::string mesh_key, factors_key, solution_key, elements_key, gather_key, heat_key, basis_key;
   };
   static OnDisk onDisk(const std::string& path, const Results& results, bool scene);
 
@@ -265,6 +274,8 @@ class Pipeline {
   bool keepElements();
   bool keepGathered();
   bool keepHeat();
+  bool keepBasis();
+  const LightBasis& takeStoredBasis();
   void dropEmptySolution();
 
   std::unique_ptr<JournalFile> journal_;

@@ -14,6 +14,7 @@
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
 #include "radiosity/heat.h"
+#include "radiosity/light_basis.h"
 #include "radiosity/lightmap.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/render.h"
@@ -41,6 +42,8 @@ struct Results {
   std::string gather_key;
   std::optional<HeatSolution> heat;  ///< radiative exchange; needs form factors
   std::string heat_key;
+  std::optional<LightBasis> basis;  ///< light of single lamps; needs form factors
+  std::string basis_key;
 };
 
 /// True for a file that starts with the HDF5 signature (whatever its name).
@@ -74,8 +77,9 @@ Results readResults(const std::string& path, bool with_factors = true,
 ///                  eye_of_corner (at vertices: the eye of every entry of /mesh/corners); at, key,
 ///                  summary/ with passes/ (a row a pass; bound is NaN where there is none)
 ///   /heat          temperature (N), net_flux, convection (N), radiosity, irradiance (N x bands),
-///   as
-///                  HeatSolution; key, summary/ with balance_W/
+///                  as HeatSolution; key, summary/ with balance_W/
+///   /basis         names (S), bands (of one source), radiosity, irradiance, reflectance, emission
+///                  (N x S * bands, column s * bands + b), sky (S * bands numbers), summary/, key
 /// Bands are as many as rows have columns: three from scene files, any number from a program.
 /// The matrix is written row by row, never copied. Errors: RunError (disk full), Cancelled, those
 /// of PatchMaterials::requireSizes(); `path` then is what it was.
@@ -88,6 +92,7 @@ struct StagesAsStored {
   bool elements = false;
   bool gathered = false;
   bool heat = false;
+  bool basis = false;
 };
 
 /// Brings the results file at `path`, which must have the mesh and the form factors of `results`,

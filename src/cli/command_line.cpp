@@ -121,6 +121,8 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
     return sub;
   }
   addSolveOptions(*sub, r);
+  if (command == Command::solve) addBasisOption(*sub, r);
+  if (command == Command::solve || command == Command::render) addMixOption(*sub, r);
   if (command == Command::solve) addMatrixOptions(*sub, r);
   if (compares) {
     addGatherOptions(*sub, r);

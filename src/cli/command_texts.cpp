@@ -64,6 +64,8 @@ const char* examplesOf(Command command) {
              "  radiosity solve cornell.h5 -o lit.glb -o cornell.vtp\n"
              "  radiosity solve room.glb -o baked.glb --lightmap baked.exr --lightmap-size 2048\n"
              "  radiosity solve cornell.h5 --set white.reflectance=.9\n"
+             "  radiosity solve cornell.h5 --basis surfaces\n"
+             "  radiosity solve cornell.h5 --mix lamp/light=0.5 -o dim.glb\n"
              "  radiosity solve plates.mtx --areas areas.txt --rows rows.csv -o light.csv";
     case Command::gather:
       return "Files (-o): .h5 (results), .png (exposed, sRGB), .exr (radiance, W/m^2/sr, linear),\n"

@@ -51,9 +51,11 @@ void keepSolution(Session& session, Pipeline& pipeline, const OutputSet& files);
 void writeStages(Session& session, Pipeline& pipeline, OutputSet& files);
 
 /// Writes the .csv of light by patch among `files`.
-void writeLightTable(Pipeline& pipeline, OutputSet& files);
-/// Writes the .vtp among `files`, with what the subcommand knows of each patch.
-void writeCells(Session& session, Pipeline& pipeline, OutputSet& files);
+void writeLightTable(Pipeline& pipeline, const Solution& light, OutputSet& files);
+/// Writes the .vtp among `files`, with what the subcommand knows of each patch; of a mixture, where
+/// there is one, instead of the solution.
+void writeCells(Session& session, Pipeline& pipeline, OutputSet& files,
+                const MixedLight* mix = nullptr);
 
 /// InputError, with the cure as a command line to paste, where nothing in the scene emits.
 void requireLight(const Session& session, const Pipeline& pipeline);

@@ -20,6 +20,7 @@ void describeStages(Session& session, const Pipeline& pipeline) {
   if (stored.elements) report.text("elements_key", "elements", stored.elements_key);
   if (stored.gathered) report.text("gather_key", "gather", stored.gather_key);
   if (stored.heat) report.text("heat_key", "heat exchange", stored.heat_key);
+  if (stored.basis) report.text("basis_key", "light of single lamps", stored.basis_key);
   if (!stored.mesh) return;
   summarizeMesh(report, *stored.mesh, Detail::brief);
   if (stored.factors) {
@@ -38,6 +39,7 @@ void describeStages(Session& session, const Pipeline& pipeline) {
     summarizeHeat(report, *stored.heat, made(stored.factors), stored.mesh->mesh,
                   pipeline.options().heat, Detail::brief);
   }
+  if (stored.basis) summarizeBasis(report, *stored.basis, Detail::full);
 }
 
 }  // namespace

@@ -28,6 +28,9 @@ void addAreasOption(CLI::App& app, Request& r, const char* group);
 void addMatrixOptions(CLI::App& app, Request& r);
 void addTableOptions(CLI::App& app, Request& r);
 void addSolveOptions(CLI::App& app, Request& r);
+/// Light of single lamps, solved for; of `solve` alone.
+void addBasisOption(CLI::App& app, Request& r);
+void addMixOption(CLI::App& app, Request& r);
 void addGatherOptions(CLI::App& app, Request& r);
 /// Options shared with the form factors.
 void addEyeOptions(CLI::App& app, Request& r);

@@ -62,6 +62,8 @@ StageWords wordsOf(Stage stage) {
       return {Command::render, "elements", "elements", "they still fit"};
     case Stage::heat:
       return {Command::heat, "heat", "heat exchange", "it still fits"};
+    case Stage::basis:
+      return {Command::solve, "basis", "single lamps", "it still fits"};
     case Stage::gather:
       break;
   }
@@ -181,6 +183,8 @@ void PipelineReport::summarize(const Pipeline& pipeline, const StageEvent& event
     case Stage::heat:
       return summarizeHeat(report_, made(results.heat), made(results.factors), mesh, options.heat,
                            light);
+    case Stage::basis:
+      return summarizeBasis(report_, made(results.basis), light);
     case Stage::elements:
       return;  // by those who show them: a picture may have some of them alone
   }

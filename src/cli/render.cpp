@@ -9,6 +9,7 @@
 #include "base/figure_text.h"
 #include "cli/commands.h"
 #include "cli/element_use.h"
+#include "cli/light_mix.h"
 #include "cli/lightmap.h"
 #include "cli/picture.h"
 #include "cli/summaries.h"
@@ -91,14 +92,16 @@ void drawQuantity(Session& session, Pipeline& pipeline, const Picture& picture, 
 }
 
 /// The light that the picture shows: of elements or at points, unless patches were asked for.
+/// `mix`: none, the solution.
 SurfaceLight litSurfaces(Session& session, Pipeline& pipeline, const Picture& picture,
-                         const ElementUse& elements) {
-  if (!elements.shown) return pipeline.solvedLight();
+                         const ElementUse& elements, const std::optional<MixedLight>& mix) {
   std::vector<std::uint8_t> wanted;  // all
-  if (!elements.all) {
+  if (elements.shown && !elements.all) {
     wanted =
         visiblePatches(pipeline.mesh().mesh, picture.camera, picture.options, session.progress);
   }
+  if (mix) return mixedSurfaces(session, pipeline, *mix, elements.shown, wanted);
+  if (!elements.shown) return pipeline.solvedLight();
   if (session.request.final_gather) return pipeline.pointLight(wanted);
   SurfaceLight light = pipeline.elementLight(wanted);
   summarizeElements(session.report, *light.elements, pipeline.factors());
@@ -180,12 +183,14 @@ int runRender(Session& session) {
   checkFinalGather(request, show, files);
   const ElementUse elements = elementUse(request, files);
   checkLightmap(request, elements, files);
+  checkMix(request, files);
   Run run(session, files.path(Format::results));
   Pipeline& pipeline = run.pipeline;
   pipeline.options().factors.sources_only |= onlySources(pipeline, elements, files);
+  chooseSources(request, pipeline);
   Picture picture = choosePicture(request, pipeline.scene());
   if (!show.quantity) requireColours(pipeline, request, files);
-  if (show.needsLight()) requireLight(session, pipeline);
+  if (show.needsLight() && request.mix.empty()) requireLight(session, pipeline);
   const PatchMesh& mesh = pipeline.mesh().mesh;
   requirePatch(show, mesh);
   if (!files.has(Format::results) && pipeline.onlyAdds()) {
@@ -195,7 +200,10 @@ int runRender(Session& session) {
   keepFactors(session, pipeline, files);
   int code = 0;
   std::vector<double> reflected;
-  if (show.needsLight()) {
+  const std::optional<MixedLight> mix = mixOf(session, pipeline);
+  if (mix) {
+    reflected = reflectedLight(mix->solution.radiosity, mix->materials);
+  } else if (show.needsLight()) {
     code = judgeSolution(session, pipeline);
     if (pipeline.solution().summary.status == SolveStatus::singular) {
       throw RunError("no picture: the system is singular");
@@ -205,7 +213,7 @@ int runRender(Session& session) {
   }
   framePicture(picture, mesh, factors.report.closed, reflected);
   SurfaceLight light;
-  if (!show.quantity) light = litSurfaces(session, pipeline, picture, elements);
+  if (!show.quantity) light = litSurfaces(session, pipeline, picture, elements, mix);
   reportPicture(session.report, picture);
   if (show.quantity) {
     drawQuantity(session, pipeline, picture, show, *show.quantity, files);

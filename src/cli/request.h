@@ -60,6 +60,9 @@ struct Request {
   std::optional<double> solve_tolerance;
   std::optional<int> max_iterations;
 
+  std::string basis;  ///< surfaces, or a table of sets; empty: none
+  std::string mix;    ///< "NAME=WEIGHT,..."; empty: none
+
   std::optional<std::string> gather_at;
   std::optional<int> passes;
   std::optional<double> gather_tolerance;

@@ -1,5 +1,6 @@
 #include "cli/commands.h"
 #include "cli/element_use.h"
+#include "cli/light_mix.h"
 #include "cli/lightmap.h"
 #include "cli/matrix_commands.h"
 #include "cli/picture.h"
@@ -10,8 +11,7 @@ namespace radiosity::cli {
 namespace {
 
 /// Writes the lit mesh, or the one with a lightmap, exposed as the picture of the same light is.
-void writeLit(Session& session, Pipeline& pipeline, bool elements, OutputSet& files) {
-  const SurfaceLight light = elements ? pipeline.elementLight() : pipeline.solvedLight();
+void writeLit(Session& session, Pipeline& pipeline, const SurfaceLight& light, OutputSet& files) {
   const ExposedPicture shown = exposePicture(session, pipeline, light);
   const PatchMesh& mesh = pipeline.mesh().mesh;
   if (session.request.lightmap.empty()) {
@@ -21,6 +21,19 @@ void writeLit(Session& session, Pipeline& pipeline, bool elements, OutputSet& fi
   }
 }
 
+/// Writes what --mix asks for; nothing is solved for but the light of single lamps.
+int writeMix(Session& session, Pipeline& pipeline, const MixedLight& mix, bool elements,
+             OutputSet& files) {
+  writeStages(session, pipeline, files);
+  if (files.has(Format::glb)) {
+    writeLit(session, pipeline, mixedSurfaces(session, pipeline, mix, elements), files);
+  }
+  writeLightTable(pipeline, mix.solution, files);
+  writeCells(session, pipeline, files, &mix);
+  files.commit(session.report, session.progress);
+  return 0;
+}
+
 }  // namespace
 
 int runSolve(Session& session) {
@@ -28,11 +41,17 @@ int runSolve(Session& session) {
   if (solvesMatrixFile(session.request)) return solveMatrixFile(session, files);
   const ElementUse elements = elementUse(session.request, files);
   checkLightmap(session.request, elements, files);
+  checkMix(session.request, files);
   Run run(session, files.path(Format::results));
   Pipeline& pipeline = run.pipeline;
   requireColours(pipeline, session.request, files);
+  chooseSources(session.request, pipeline);
   pipeline.factors();
   keepFactors(session, pipeline, files);
+  if (!session.request.basis.empty()) pipeline.basis();
+  if (const std::optional<MixedLight> mix = mixOf(session, pipeline)) {
+    return writeMix(session, pipeline, *mix, elements.shown, files);
+  }
   const int code = judgeSolution(session, pipeline);
   const bool singular = pipeline.solution().summary.status == SolveStatus::singular;
   if (elements.all && !singular) {
@@ -40,8 +59,11 @@ int runSolve(Session& session) {
     summarizeElements(session.report, pipeline.elements(), pipeline.factors());
   }
   writeStages(session, pipeline, files);
-  if (files.has(Format::glb) && !singular) writeLit(session, pipeline, elements.shown, files);
-  if (!singular) writeLightTable(pipeline, files);
+  if (files.has(Format::glb) && !singular) {
+    writeLit(session, pipeline, elements.shown ? pipeline.elementLight() : pipeline.solvedLight(),
+             files);
+  }
+  if (!singular) writeLightTable(pipeline, pipeline.solution(), files);
   writeCells(session, pipeline, files);
   files.commit(session.report, session.progress);
   return code;

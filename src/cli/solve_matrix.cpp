@@ -26,6 +26,8 @@ void requireOwnOptions(const Request& request, const OutputSet& files) {
       {"--tolerance", request.tolerance.has_value()},
       {"--closure", request.closure.has_value()},
       {"--elements", request.elements.has_value()},
+      {"--basis", !request.basis.empty()},
+      {"--mix", !request.mix.empty()},
       {"--lightmap", !request.lightmap.empty()}};
   for (const auto& [name, given] : of_scenes) {
     if (!given) continue;

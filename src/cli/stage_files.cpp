@@ -93,6 +93,7 @@ std::string contents(const Results& results) {
   if (results.elements) list += ", elements";
   if (results.gathered) list += ", gathered light";
   if (results.heat) list += ", heat exchange";
+  if (results.basis) list += ", light of single lamps";
   return list;
 }
 

@@ -192,6 +192,19 @@ void addSolveOptions(CLI::App& app, Request& r) {
                   defaults.max_iterations));
 }
 
+void addBasisOption(CLI::App& app, Request& r) {
+  add(app, "Solve", "--basis", r.basis, "surfaces|FILE.csv",
+      "Beside the solution, one for each lamp by itself, all in the same passes: a set for each "
+      "surface that emits and one for the sky; or sets from a table with the columns set,name,"
+      "emission (exitance, W/m^2; or r,g,b), names as --set has them. A results file keeps them");
+}
+
+void addMixOption(CLI::App& app, Request& r) {
+  add(app, "Solve", "--mix", r.mix, "NAME=WEIGHT,...",
+      "Show light of single lamps, of solve --basis, each times its weight (>= 0), without a "
+      "solve; sets that are not named are off");
+}
+
 void addGatherOptions(CLI::App& app, Request& r) {
   const GatherOptions defaults;
   add(app, "Gather", "--at", r.gather_at, "vertices|patches",

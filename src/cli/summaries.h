@@ -6,6 +6,7 @@
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
 #include "radiosity/heat.h"
+#include "radiosity/light_basis.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/render.h"
 #include "radiosity/scene.h"
@@ -36,6 +37,8 @@ void summarizeFinalGather(Report& report, const ElementReport& sources,
 /// heat_summary.cpp
 void summarizeHeat(Report& report, const HeatSolution& heat, const FormFactors& factors,
                    const PatchMesh& mesh, const HeatOptions& options, Detail detail);
+/// basis_summary.cpp
+void summarizeBasis(Report& report, const LightBasis& basis, Detail detail);
 void summarizeGathered(Report& report, const Gathered& gathered, const PatchMesh& mesh,
                        const GatherOptions& options, Detail detail);
 

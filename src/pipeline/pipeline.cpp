@@ -90,7 +90,8 @@ Pipeline::OnDisk Pipeline::onDisk(const std::string& path, const Results& result
           results.solution ? results.solution_key : "",
           results.elements ? results.elements_key : "",
           results.gathered ? results.gather_key : "",
-          results.heat ? results.heat_key : ""};
+          results.heat ? results.heat_key : "",
+          results.basis ? results.basis_key : ""};
 }
 
 void Pipeline::openResults(const std::string& path, const SceneOptions& scene) {
@@ -113,7 +114,8 @@ void Pipeline::openResults(const std::string& path, const SceneOptions& scene) {
               elementOptionsOf(StageKey(stored_.elements_key)),
               heatOptionsOf(StageKey(stored_.heat_key)),
               {},
-              options_.journal};
+              options_.journal,
+              {}};
   observer_.opened(*this);
   if (overrides(scene)) overrideScene(scene);
 }
@@ -272,6 +274,21 @@ bool Pipeline::keepHeat() {
   return false;
 }
 
+bool Pipeline::keepBasis() {
+  if (results_.basis || !stored_.basis) return false;
+  const bool fits = results_.factors &&
+                    isBasisOf(StageKey(stored_.basis_key), materialsOfMesh(), usedFactorsKey());
+  std::optional<LightBasis> found = std::exchange(stored_.basis, std::nullopt);
+  if (!fits) {
+    tell(Stage::basis, StageAction::dropped, "form factors or reflectance changed");
+    return true;
+  }
+  results_.basis = std::move(found);
+  results_.basis_key = stored_.basis_key;
+  tell(Stage::basis, StageAction::kept);
+  return false;
+}
+
 void Pipeline::dropEmptySolution() {
   if (!results_.solution || !results_.solution->radiosity.empty()) return;
   results_.solution.reset();
@@ -287,6 +304,7 @@ void Pipeline::keepLaterStages() {
   dropped = keepElements() || dropped;
   dropped = keepGathered() || dropped;
   dropped = keepHeat() || dropped;
+  dropped = keepBasis() || dropped;
   const bool needed = results_.solution || results_.gathered || hasOwnMaterials();
   if (!needed) results_.materials.reset();
   changed_ = changed_ || dropped;
@@ -304,10 +322,12 @@ bool Pipeline::update(const std::string& path) {
   // Without a solution there may be materials all the same.
   const bool solution = results_.solution && results_.solution_key == on_disk_.solution_key;
   const StagesAsStored as_stored = {
-      on_disk_.scene, solution,
+      on_disk_.scene,
+      solution,
       stored(results_.elements.has_value(), results_.elements_key, on_disk_.elements_key),
       stored(results_.gathered.has_value(), results_.gather_key, on_disk_.gather_key),
-      stored(results_.heat.has_value(), results_.heat_key, on_disk_.heat_key)};
+      stored(results_.heat.has_value(), results_.heat_key, on_disk_.heat_key),
+      stored(results_.basis.has_value(), results_.basis_key, on_disk_.basis_key)};
   if (!updateResults(path, results_, as_stored)) return false;
   on_disk_ = onDisk(path, results_, true);
   // The form factors in it are those that were there.

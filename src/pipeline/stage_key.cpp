@@ -16,9 +16,10 @@ namespace {
 
 // Names whose values are identities, and how a change of one reads.
 constexpr std::pair<std::string_view, std::string_view> kIdentities[] = {
-    {"scene", "geometry changed"},      {"mesh", "mesh changed"},
-    {"materials", "materials changed"}, {"factors", "form factors changed"},
-    {"solution", "solution changed"},   {"conditions", "conditions changed"}};
+    {"scene", "geometry changed"},          {"mesh", "mesh changed"},
+    {"materials", "materials changed"},     {"factors", "form factors changed"},
+    {"solution", "solution changed"},       {"conditions", "conditions changed"},
+    {"reflectance", "reflectance changed"}, {"sources", "sources changed"}};
 
 std::string onOff(bool value) { return value ? "on" : "off"; }
 
@@ -42,6 +43,23 @@ std::string materialsHash(const PatchMaterials& materials) {
     const std::uint64_t rows = values->size() / std::size_t(materials.bands);
     hash.bytes(&rows, sizeof rows);
     hash.bytes(values->data(), values->size() * sizeof(double));
+  }
+  return hash.hex();
+}
+
+std::string reflectanceHash(const PatchMaterials& materials) {
+  Hash hash;
+  hash.array(materials.reflectance);
+  hash.text(fmt::format("{}", materials.bands));
+  return hash.hex();
+}
+
+std::string sourcesHash(std::span<const LightSource> sources) {
+  Hash hash;
+  for (const LightSource& source : sources) {
+    hash.text(source.name);
+    hash.array(source.emission);
+    hash.array(source.sky);
   }
   return hash.hex();
 }
@@ -201,6 +219,24 @@ StageKey solutionKey(const SolveOptions& options, const PatchMaterials& material
   key.add("sky", skyText(materials.sky));
   key.add("factors", factorsHash(factors_key));
   return key;
+}
+
+StageKey basisKey(const SolveOptions& options, const PatchMaterials& materials,
+                  std::span<const LightSource> sources, const StageKey& factors_key) {
+  StageKey key;
+  key.add("solver", nameOf(kSolverNames, options.solver));
+  key.add("solve-tolerance", fmt::format("{}", options.tolerance));
+  key.add("max-iterations", fmt::format("{}", options.max_iterations));
+  key.add("reflectance", reflectanceHash(materials));
+  key.add("sources", sourcesHash(sources));
+  key.add("factors", factorsHash(factors_key));
+  return key;
+}
+
+bool isBasisOf(const StageKey& basis_key, const PatchMaterials& materials,
+               const StageKey& factors_key) {
+  return basis_key.get("reflectance") == reflectanceHash(materials) &&
+         basis_key.get("factors") == factorsHash(factors_key);
 }
 
 StageKey elementsKey(const ElementOptions& options, const std::string& solution_key) {

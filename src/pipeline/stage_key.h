@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
 #include "radiosity/heat.h"
+#include "radiosity/light_basis.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/scene.h"
 #include "radiosity/solve.h"
@@ -56,6 +58,13 @@ StageKey heatKey(const HeatOptions& options, const HeatConditions& conditions,
                  const StageKey& factors_key);
 /// Whether heat with that key was exchanged by these form factors, as used.
 bool isHeatOf(const StageKey& heat_key, const StageKey& factors_key);
+
+/// `materials`: their reflectance alone counts, what shines is in `sources`.
+StageKey basisKey(const SolveOptions& options, const PatchMaterials& materials,
+                  std::span<const LightSource> sources, const StageKey& factors_key);
+/// Whether light with that key is of these form factors, as used, and this reflectance.
+bool isBasisOf(const StageKey& basis_key, const PatchMaterials& materials,
+               const StageKey& factors_key);
 
 /// The options in a key; defaults where it says nothing.
 MeshOptions meshOptionsOf(const StageKey& key);

@@ -87,10 +87,13 @@ void Pipeline::discardFrom(Stage first) {
   if (all || first == Stage::form_factors || first == Stage::heat) {
     discard(results_.heat, results_.heat_key, stored_.heat_key);
   }
+  if (all || first == Stage::form_factors || first == Stage::basis) {
+    discard(results_.basis, results_.basis_key, stored_.basis_key);
+  }
   if (all || first == Stage::gather) {
     discard(results_.gathered, results_.gather_key, stored_.gather_key);
   }
-  if (first == Stage::gather || first == Stage::heat) return;
+  if (first == Stage::gather || first == Stage::heat || first == Stage::basis) return;
   discard(results_.elements, results_.elements_key, stored_.elements_key);
   if (first != Stage::elements) {
     discard(results_.solution, results_.solution_key, stored_.solution_key);
@@ -342,6 +345,54 @@ const HeatSolution& Pipeline::heat() {
   stored_.heat.reset();
   computed(Stage::heat, reason, watch.seconds());
   return made(results_.heat);
+}
+
+/// What is refused is wrong with the sources: an error of input.
+const LightBasis& Pipeline::basis() {
+  factors();
+  options_.solve.validate();
+  if (options_.sources.empty()) {
+    if (const LightBasis* at_hand = basisAtHand()) return *at_hand;
+  }
+  const PatchMaterials& materials = materialsOfMesh();
+  const PatchMesh& patches = made(results_.mesh).mesh;
+  const std::vector<LightSource> sources =
+      options_.sources.empty() ? lightSources(materials, patches) : options_.sources;
+  const StageKey key = basisKey(options_.solve, materials, sources, usedFactorsKey());
+  if (results_.basis && results_.basis_key == key.text()) return made(results_.basis);
+  discardFrom(Stage::basis);
+  if (stored_.basis && stored_.basis_key == key.text()) return takeStoredBasis();
+  const std::string reason = why(stored_.basis_key, key);
+  loadMatrix();
+  requireSolver(options_.solve.solver, made(results_.factors).matrix);
+  const Stopwatch watch;
+  LightBasis light =
+      solveBasis(made(results_.factors), materials, patches, sources, options_.solve, progress_);
+  if (!light.solution.summary.usable()) {
+    throw RunError("light of single lamps: " + light.solution.summary.message);
+  }
+  results_.basis = std::move(light);
+  results_.basis_key = key.text();
+  stored_.basis.reset();
+  computed(Stage::basis, reason, watch.seconds());
+  return made(results_.basis);
+}
+
+const LightBasis& Pipeline::takeStoredBasis() {
+  results_.basis = taken(stored_.basis);
+  results_.basis_key = stored_.basis_key;
+  tell(Stage::basis, StageAction::reused, source_);
+  return made(results_.basis);
+}
+
+const LightBasis* Pipeline::basisAtHand() {
+  factors();
+  const auto fits = [this](const std::string& key) {
+    return isBasisOf(StageKey(key), materialsOfMesh(), usedFactorsKey());
+  };
+  if (results_.basis && fits(results_.basis_key)) return &made(results_.basis);
+  if (!results_.basis && stored_.basis && fits(stored_.basis_key)) return &takeStoredBasis();
+  return nullptr;
 }
 
 }  // namespace radiosity

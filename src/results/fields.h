@@ -364,6 +364,19 @@ void describe(Archive& a, Described<Archive, HeatSolution>& h) {
   a.group("summary", [&](auto& summary) { describe(summary, h.summary); });
 }
 
+/// Bands of the materials and of the light are those of all sources.
+template <class Archive>
+void describe(Archive& a, Described<Archive, LightBasis>& l) {
+  a("names", l.names);
+  a("bands", l.bands);
+  describe(a, l.materials);
+  if constexpr (Archive::kReading) l.solution.bands = l.materials.bands;
+  const auto columns = std::size_t(std::max(l.solution.bands, 1));  // results_check.cpp: others
+  a.rows("radiosity", l.solution.radiosity, columns, "W/m^2");
+  a.rows("irradiance", l.solution.irradiance, columns, "W/m^2");
+  a.group("summary", [&](auto& summary) { describe(summary, l.solution.summary); });
+}
+
 /// Passes as they are stored: a row each.
 struct PassColumns {
   std::size_t bands;

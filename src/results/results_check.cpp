@@ -229,6 +229,24 @@ void checkHeat(const Checker& check, const HeatSolution& heat, std::size_t patch
   check.length(heat.temperature, patches, "/heat/temperature");
 }
 
+void checkBasis(const Checker& check, const LightBasis& basis, std::size_t patches) {
+  check.require(basis.bands >= 1, "/basis/bands", "is not 1 or more");
+  check.require(!basis.names.empty(), "/basis/names", "is empty");
+  const std::size_t columns = basis.names.size() * std::size_t(basis.bands);
+  check.require(std::size_t(basis.materials.bands) == columns, "/basis/reflectance",
+                fmt::format("has {} columns, not {} of each of {} sources", basis.materials.bands,
+                            basis.bands, basis.names.size()));
+  check.length(basis.materials.reflectance, columns * patches, "/basis/reflectance");
+  check.length(basis.materials.emission, columns * patches, "/basis/emission");
+  check.length(basis.solution.radiosity, columns * patches, "/basis/radiosity");
+  check.length(basis.solution.irradiance, columns * patches, "/basis/irradiance");
+  const EnergyAccount& energy = basis.solution.summary.energy;
+  for (const auto* values : {&energy.emitted, &energy.from_sky, &energy.absorbed, &energy.to_sky,
+                             &energy.on_backs, &energy.imbalance}) {
+    check.length(*values, columns, "/basis/summary/energy");
+  }
+}
+
 /// A row an unknown.
 void checkFactors(const Checker& check, const FormFactors& factors, const Results& results) {
   const std::size_t rows = results.mesh ? unknownsOf(results.mesh->mesh) : factors.fronts.size();
@@ -259,6 +277,10 @@ void checkResults(const std::string& path, const Results& results) {
   if (results.heat) {
     check.require(results.mesh.has_value(), "/heat", "comes without /mesh");
     if (results.mesh) checkHeat(check, *results.heat, results.mesh->mesh.size());
+  }
+  if (results.basis) {
+    check.require(results.mesh.has_value(), "/basis", "comes without /mesh");
+    if (results.mesh) checkBasis(check, *results.basis, results.mesh->mesh.size());
   }
 
   // All stages are about the same N patches.

@@ -106,6 +106,13 @@ class StageWriter {
     FieldWriter<Sink> fields(group);
     describe(fields, *results_.heat);
   }
+  void basis() {
+    if (!results_.basis) return;
+    Sink group = root_.group("basis" + suffix_);
+    group.text("key", results_.basis_key);
+    FieldWriter<Sink> fields(group);
+    describe(fields, *results_.basis);
+  }
 
  private:
   Sink& root_;
@@ -227,6 +234,12 @@ void readStages(const InputGroup& root, bool with_factors, std::shared_ptr<Scrat
     FieldReader fields(group);
     describe(fields, results.heat.emplace());
   }
+  if (root.has("basis")) {
+    const InputGroup group = root.group("basis");
+    results.basis_key = group.text("key");
+    FieldReader fields(group);
+    describe(fields, results.basis.emplace());
+  }
 }
 
 }  // namespace
@@ -279,6 +292,7 @@ void writeResults(const std::string& path, const Results& results, Progress& pro
     stages.elements();
     stages.gathered();
     stages.heat();
+    stages.basis();
   }
   file.close();
   target.commit();
@@ -309,15 +323,14 @@ bool updateResults(const std::string& path, const Results& results, const Stages
     if (!stored.elements) stages.elements();
     if (!stored.gathered) stages.gathered();
     if (!stored.heat) stages.heat();
+    if (!stored.basis) stages.basis();
     if (!whole) {
       const std::uint64_t bytes = file->oldEnd();
       root.attribute(kWholeBytes, h5::Number::u64, 1, &bytes);
     }
-    const std::pair<const char*, bool> groups[] = {{"scene", stored.scene},
-                                                   {"solution", stored.solution},
-                                                   {"elements", stored.elements},
-                                                   {"gather", stored.gathered},
-                                                   {"heat", stored.heat}};
+    const std::pair<const char*, bool> groups[] = {
+        {"scene", stored.scene},     {"solution", stored.solution}, {"elements", stored.elements},
+        {"gather", stored.gathered}, {"heat", stored.heat},         {"basis", stored.basis}};
     for (const auto& [name, as_stored] : groups) {
       if (as_stored) continue;
       if (root.has(std::string(name) + kFresh)) {
@@ -347,6 +360,7 @@ std::size_t estimateResultsBytes(const Results& results) {
   stages.elements();
   stages.gathered();
   stages.heat();
+  stages.basis();
   return bytes;
 }
 

@@ -71,6 +71,8 @@ TEST_F(ResultsFile, GivesBackWhateverStagesThereAre) {
     if ((stages & 34) != 34) some.gathered.reset(), some.gather_key.clear();
     // Heat belongs to a mesh and form factors.
     if ((stages & 6) != 6) some.heat.reset(), some.heat_key.clear();
+    // So does light of single lamps.
+    if ((stages & 6) != 6) some.basis.reset(), some.basis_key.clear();
     // Elements belong to a mesh and a solution.
     if ((stages & 82) != 82) some.elements.reset(), some.elements_key.clear();
     if ((stages & 1) == 0) some.scene.reset();

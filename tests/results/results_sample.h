@@ -401,6 +401,15 @@ inline HeatSolution heat(const PatchMesh& mesh, int bands) {
   return h;
 }
 
+inline LightBasis basis(std::size_t n, int bands) {
+  LightBasis l;
+  l.names = {"lamp", "a name, with a comma", "sky"};
+  l.bands = bands;
+  l.materials = materials(n, 3 * bands);
+  l.solution = solution(n, 3 * bands);
+  return l;
+}
+
 inline Results results(Index side, Precision precision, int bands = 3) {
   Results r;
   r.version = "0.1.0";
@@ -422,6 +431,8 @@ inline Results results(Index side, Precision precision, int bands = 3) {
   r.gather_key = "passes=2";
   r.heat = heat(r.mesh->mesh, bands);
   r.heat_key = "sky-temperature=3";
+  r.basis = basis(n, bands);
+  r.basis_key = "solver=cg reflectance=12ab";
   return r;
 }
 
@@ -565,9 +576,13 @@ inline auto members(const HeatSolution& s) {
   const auto& [a, b, c, d, e, f, g] = s;
   return std::tie(a, b, c, d, e, f, g);
 }
+inline auto members(const LightBasis& s) {
+  const auto& [a, b, c, d] = s;
+  return std::tie(a, b, c, d);
+}
 inline auto members(const Results& s) {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o);
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q);
 }
 
 template <class T>

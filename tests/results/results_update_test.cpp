@@ -41,8 +41,12 @@ class ResultsUpdate : public FolderTest {
   }
 };
 
-constexpr StagesAsStored kButTheSolution = {
-    .scene = true, .solution = false, .elements = true, .gathered = true, .heat = true};
+constexpr StagesAsStored kButTheSolution = {.scene = true,
+                                            .solution = false,
+                                            .elements = true,
+                                            .gathered = true,
+                                            .heat = true,
+                                            .basis = true};
 
 TEST_F(ResultsUpdate, AddsASolutionAndTouchesNothingElse) {
   const Results solved = writeUnsolved();
