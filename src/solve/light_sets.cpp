@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <optional>
 
 #include "base/csv.h"
 #include "base/parse.h"
@@ -28,25 +28,26 @@ struct Columns {
 };
 
 Columns columnsOf(const CsvTable& table, int bands) {
-  const auto at = [&](std::string_view name) { return table.column(name); };
-  const auto set = at("set");
-  const auto name = at("name");
-  const auto grey = at("emission");
-  const std::array colours = {at("r"), at("g"), at("b")};
-  const bool coloured = std::ranges::all_of(colours, [](const auto& c) { return c.has_value(); });
-  const std::size_t known = 2 + (coloured ? 3 : 1);
-  if (!set || !name || grey.has_value() == coloured || table.header.size() != known) {
+  const std::optional<std::size_t> set = table.column("set");
+  const std::optional<std::size_t> name = table.column("name");
+  const std::optional<std::size_t> grey = table.column("emission");
+  std::vector<std::size_t> colours;
+  for (const char* colour : {"r", "g", "b"}) {
+    if (const auto column = table.column(colour)) colours.push_back(*column);
+  }
+  const std::vector<std::size_t> emission = grey ? std::vector{*grey} : colours;
+  const bool whole = emission.size() == (grey ? 1 : 3);
+  if (!set || !name || !whole || table.header.size() != 2 + emission.size()) {
     fail(table, table.header_line,
          fmt::format("the columns are {}; there must be set,name,emission or set,name,r,g,b",
                      fmt::join(table.header, ",")));
   }
-  if (!coloured) return {*set, *name, {*grey}};
-  if (bands != 3) {
+  if (!grey && bands != 3) {
     fail(table, table.header_line,
          fmt::format("r,g,b are three bands and the materials have {}; give one column, emission",
                      bands));
   }
-  return {*set, *name, {*colours[0], *colours[1], *colours[2]}};
+  return {*set, *name, emission};
 }
 
 std::vector<double> emissionOf(const CsvTable& table, const CsvTable::Row& row,

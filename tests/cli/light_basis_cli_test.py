@@ -98,6 +98,7 @@ class LightBasis(CliTest):
     def test_tables_that_are_wrong_are_named(self):
         solve = ["solve", "box.obj", *SMALL, "-o", "s.h5", "--basis", "t.csv"]
         for text, words in (("set,name\na,room\n", "t.csv:1: the columns are set,name; there must"),
+                            ("set,name,r,g,emission\na,room,1,1,1\n", "t.csv:1: the columns are"),
                             ("set,name,emission\n", "t.csv:1: no line follows"),
                             ("set,name,emission\na,door,1\n", "t.csv:2: nothing is called 'door'"),
                             ("set,name,emission\na,room,-1\n", "t.csv:2: emission `-1` is not"),
