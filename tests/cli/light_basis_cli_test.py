@@ -7,8 +7,8 @@ import numpy as np
 
 from cli_runner import SMALL, CliTest
 
-# A residual of 1e-11 of the largest emission is an error of at most 1/(1 - 0.7) as much in a room of
-# reflectance 0.7; what is emitted is at most 5 times the smallest light here: 2e-10 of it.
+# A residual of 1e-11 of the largest emission is an error of at most 1/(1 - 0.7) as much in a room
+# of reflectance 0.7; what is emitted is at most 5 times the smallest light here: 2e-10 of it.
 EXACT = ["--solve-tolerance", "1e-11"]
 CLOSE = 1e-9
 ROOM = "room.emission=1,2,3"
