@@ -55,6 +55,7 @@ void reportAccount(Report& report, const char* side, const MatrixAccount& accoun
 
 void reportNames(Report& report, const MatrixComparison& c) {
   std::vector<std::vector<std::string>> rows;
+  rows.reserve(c.names.size());
   for (const MatrixComparison::OfName& n : c.names) {
     rows.push_back({n.name.empty() ? "(unnamed)" : n.name, fmt::format("{}", n.rows),
                     fmt::format("{:.4g}", n.relative_l2), fmt::format("{:.4g}", n.largest)});

@@ -181,6 +181,7 @@ std::vector<GivenCondition> readConditionTable(const std::string& path) {
   const std::vector<const Property*> columns =
       columnsOf(table.header, fmt::format("{}:{}", path, table.header_line));
   std::vector<GivenCondition> rows;
+  rows.reserve(table.rows.size());
   for (const CsvTable::Row& row : table.rows) {
     rows.push_back(parseRow(row.fields, columns, fmt::format("{}:{}", path, row.line)));
   }
