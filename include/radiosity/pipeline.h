@@ -266,6 +266,9 @@ class Pipeline {
 
   template <class T>
   bool keep(Stage stage, std::optional<T> Results::*value, std::string Results::*value_key,
+            bool fits, const std::string& why_not);
+  template <class T>
+  bool keep(Stage stage, std::optional<T> Results::*value, std::string Results::*value_key,
             const StageKey& key, bool there = true);
   bool keepFactors();
   bool keepSolution();

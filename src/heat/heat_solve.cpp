@@ -7,8 +7,8 @@
 #include <set>
 
 #include "heat/conditions.h"
-#include "heat/level.h"
 #include "scene/text.h"
+#include "solve/singular.h"
 
 namespace radiosity {
 

@@ -11,7 +11,7 @@ namespace radiosity {
 
 class UnionFind {
  public:
-  explicit UnionFind(std::size_t count) : parent_(count) {
+  explicit UnionFind(std::size_t count) : parent_(count), sets_(count) {
     std::iota(parent_.begin(), parent_.end(), Index(0));
   }
   Index find(Index x) {
@@ -24,10 +24,14 @@ class UnionFind {
     if (a == b) return;
     if (b < a) std::swap(a, b);
     parent_[b] = a;
+    --sets_;
   }
+  /// How many there are.
+  std::size_t sets() const { return sets_; }
 
  private:
   std::vector<Index> parent_;
+  std::size_t sets_;
 };
 
 }  // namespace radiosity

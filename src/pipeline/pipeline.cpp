@@ -213,20 +213,28 @@ void Pipeline::loadMatrix() {
   progress_.check();
 }
 
-/// Takes a stage of the results file that nobody asked for, where it was made by `key` and what it
-/// stands on is `there`. True where it is dropped.
+/// Takes a stage of the results file that nobody asked for, where it still `fits`; else says why it
+/// does not. True where it is dropped.
 template <class T>
 bool Pipeline::keep(Stage stage, std::optional<T> Results::*value, std::string Results::*value_key,
-                    const StageKey& key, bool there) {
+                    bool fits, const std::string& why_not) {
   std::optional<T> found = std::exchange(stored_.*value, std::nullopt);
-  if (!there || key.text() != stored_.*value_key) {
-    tell(stage, StageAction::dropped, why(stored_.*value_key, key));
+  if (!fits) {
+    tell(stage, StageAction::dropped, why_not);
     return true;
   }
   results_.*value = std::move(found);
   results_.*value_key = stored_.*value_key;
   tell(stage, StageAction::kept);
   return false;
+}
+
+/// The same where it was made by `key` and what it stands on is `there`.
+template <class T>
+bool Pipeline::keep(Stage stage, std::optional<T> Results::*value, std::string Results::*value_key,
+                    const StageKey& key, bool there) {
+  const std::string& stored_key = stored_.*value_key;
+  return keep(stage, value, value_key, there && key.text() == stored_key, why(stored_key, key));
 }
 
 bool Pipeline::keepFactors() {
@@ -261,32 +269,16 @@ bool Pipeline::keepGathered() {
 
 bool Pipeline::keepHeat() {
   if (results_.heat || !stored_.heat) return false;
-  const StageKey stored(stored_.heat_key);
-  const bool fits = results_.factors && isHeatOf(stored, usedFactorsKey());
-  std::optional<HeatSolution> found = std::exchange(stored_.heat, std::nullopt);
-  if (!fits) {
-    tell(Stage::heat, StageAction::dropped, "form factors changed");
-    return true;
-  }
-  results_.heat = std::move(found);
-  results_.heat_key = stored_.heat_key;
-  tell(Stage::heat, StageAction::kept);
-  return false;
+  const bool fits = results_.factors && isHeatOf(StageKey(stored_.heat_key), usedFactorsKey());
+  return keep(Stage::heat, &Results::heat, &Results::heat_key, fits, "form factors changed");
 }
 
 bool Pipeline::keepBasis() {
   if (results_.basis || !stored_.basis) return false;
   const bool fits = results_.factors &&
                     isBasisOf(StageKey(stored_.basis_key), materialsOfMesh(), usedFactorsKey());
-  std::optional<LightBasis> found = std::exchange(stored_.basis, std::nullopt);
-  if (!fits) {
-    tell(Stage::basis, StageAction::dropped, "form factors or reflectance changed");
-    return true;
-  }
-  results_.basis = std::move(found);
-  results_.basis_key = stored_.basis_key;
-  tell(Stage::basis, StageAction::kept);
-  return false;
+  return keep(Stage::basis, &Results::basis, &Results::basis_key, fits,
+              "form factors or reflectance changed");
 }
 
 void Pipeline::dropEmptySolution() {

@@ -11,19 +11,6 @@ constexpr double kRounding = 1e-13;
 
 using Marks = std::vector<double>;  // 0 or 1
 
-/// Marks every patch that sees a marked one, and so on: sum_j F_ij mark_j > 0 says that i does.
-void markAllThatReach(const ExchangeMatrix& matrix, Marks& marked) {
-  bool changed = true;
-  while (changed) {
-    changed = false;
-    matrix.sweep(marked, 1, [&](std::size_t i, const double* seen) {
-      if (marked[i] != 0 || !(seen[0] > 0)) return;
-      marked[i] = 1;
-      changed = true;
-    });
-  }
-}
-
 /// Patches of `room` that light from an emitter in it reaches. The room is closed under "sees".
 std::vector<std::size_t> litPatches(const System& system, std::size_t band, const Marks& room) {
   const auto bands = std::size_t(system.bands);
@@ -31,7 +18,7 @@ std::vector<std::size_t> litPatches(const System& system, std::size_t band, cons
   for (std::size_t i = 0; i < room.size(); ++i) {
     lit[i] = double(room[i] != 0 && system.emission[i * bands + band] > 0);
   }
-  markAllThatReach(system.matrix, lit);
+  markAllThatSee(system.matrix, 1, lit);
   std::vector<std::size_t> patches;
   for (std::size_t i = 0; i < room.size(); ++i) {
     if (room[i] != 0 && lit[i] != 0) patches.push_back(i);
@@ -40,6 +27,27 @@ std::vector<std::size_t> litPatches(const System& system, std::size_t band, cons
 }
 
 }  // namespace
+
+void markAllThatSee(const ExchangeMatrix& matrix, int bands, std::vector<double>& marks) {
+  const auto width = std::size_t(bands);
+  bool changed = true;
+  const auto update = [&](std::size_t i, const double* seen) {
+    for (std::size_t b = 0; b < width; ++b) {
+      double& mark = marks[i * width + b];
+      if (mark != 0 || !(seen[b] > 0)) continue;
+      mark = 1;
+      changed = true;
+    }
+  };
+  while (changed) {
+    changed = false;
+    matrix.sweep(marks, bands, update);
+  }
+}
+
+bool looksOut(const FormFactors& factors, std::size_t row) {
+  return factors.backs[row] + factors.sky[row] > kRounding;
+}
 
 // Power absorbed at i is A_i (1 - rho_i) H_i, and H_i gathers along row i; "light from i reaches j"
 // therefore means a stored F_ij, then F_jk, and so on. The patches that reach no loss are closed
@@ -52,12 +60,11 @@ WhiteRoom findWhiteRoom(const FormFactors& factors, const System& system) {
     Marks escapes(n);
     for (std::size_t i = 0; i < n; ++i) {
       const bool absorbs = 1 - system.reflectance[i * bands + band] > kRounding;
-      const bool leaks = factors.backs[i] + factors.sky[i] > kRounding;
       const bool sees_nothing = factors.fronts[i] <= 0;
-      escapes[i] = double(absorbs || leaks || sees_nothing);
+      escapes[i] = double(absorbs || looksOut(factors, i) || sees_nothing);
     }
     if (std::all_of(escapes.begin(), escapes.end(), [](auto e) { return e != 0; })) continue;
-    markAllThatReach(system.matrix, escapes);
+    markAllThatSee(system.matrix, 1, escapes);
     Marks room(n);
     std::transform(escapes.begin(), escapes.end(), room.begin(),
                    [](auto e) { return double(e == 0); });
