@@ -68,7 +68,7 @@ void reportNames(Report& report, const MatrixComparison& c) {
                rows);
 }
 
-void reportComparison(Report& report, const MatrixComparison& c, const MatrixFile& names) {
+void reportMatrixComparison(Report& report, const MatrixComparison& c, const MatrixFile& names) {
   report.section("comparison", "Comparison of form factors");
   report.number("relative_l2", "relative L2 difference", c.relative_l2,
                 c.weighted ? "(rows weighted by area)" : "(rows weigh alike: areas are not known)");
@@ -90,7 +90,7 @@ void reportComparison(Report& report, const MatrixComparison& c, const MatrixFil
 }
 
 /// Those given are of files that have none of their own.
-MatrixFile readSide(Session& session, const std::string& path) {
+MatrixFile readMatrixSide(Session& session, const std::string& path) {
   std::vector<double> areas;
   if (!session.request.areas.empty() && isMatrixFile(path)) {
     areas = readAreas(session.request.areas);
@@ -109,15 +109,15 @@ int compareMatrixFiles(Session& session, OutputSet& files) {
   const Request& request = session.request;
   requireNothingElse(request, files);
   if (request.second.empty()) throw InputError("compare: B is missing: radiosity compare A B");
-  const MatrixFile a = readSide(session, request.input);
-  const MatrixFile b = readSide(session, request.second);
+  const MatrixFile a = readMatrixSide(session, request.input);
+  const MatrixFile b = readMatrixSide(session, request.second);
   for (const auto& [label, file] : {std::pair("A", &a), std::pair("B", &b)}) {
     session.report.line(label, fmt::format("{}: form factors of {}", file->path,
                                            plural(file->factors.size(), "row", "rows")));
   }
   const MatrixComparison c = compareMatrices(a, b, session.progress);
   const bool a_named = !a.factors.names[c.row].empty();
-  reportComparison(session.report, c, a_named ? a : b);
+  reportMatrixComparison(session.report, c, a_named ? a : b);
   if (!request.compare_tolerance) return 0;
   const bool within = c.relative_l2 <= *request.compare_tolerance;
   session.report.text("verdict", "verdict",

@@ -11,9 +11,6 @@
 namespace radiosity {
 namespace {
 
-/// A byte of 255 may stand for anything above: its value is not known.
-constexpr double kTopByte = 254.5 / 255;
-
 Vec3 decoded(const Vec3& colour) {
   return {linearFromSrgb(colour.x), linearFromSrgb(colour.y), linearFromSrgb(colour.z)};
 }
@@ -92,7 +89,7 @@ LightField lightOf(const LitMesh& mesh, LightUnit unit) {
   for (std::size_t t = 0; t < mesh.colours.size(); ++t) {
     for (Vec3 value : mesh.colours[t]) {
       if (unit == LightUnit::srgb8) {
-        if (std::max({value.x, value.y, value.z}) >= kTopByte) field.clipped[t] = 1;
+        if (std::max({value.x, value.y, value.z}) >= kBrightestByte) field.clipped[t] = 1;
         value = decoded(value);
       } else if (unit == LightUnit::radiance) {
         value *= std::numbers::pi;

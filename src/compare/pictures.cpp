@@ -11,8 +11,6 @@
 namespace radiosity {
 namespace {
 
-constexpr double kTopByte = 254.5 / 255;
-
 struct Pixel {
   Vec3 value{0.0};  ///< radiance, or linear light without a unit
   bool shown = false;
@@ -24,7 +22,7 @@ Pixel pixelOf(const ImageFile& file, LightUnit unit, std::size_t k) {
   Pixel pixel{{rgba[0], rgba[1], rgba[2]}, rgba[3] > 0, false};
   if (unit == LightUnit::radiosity) pixel.value *= std::numbers::inv_pi;
   if (unit == LightUnit::srgb8) {
-    pixel.clipped = std::max({rgba[0], rgba[1], rgba[2]}) >= kTopByte;
+    pixel.clipped = std::max({rgba[0], rgba[1], rgba[2]}) >= kBrightestByte;
     for (int b = 0; b < 3; ++b) {
       pixel.value[b] = linearFromSrgb(std::clamp(double(rgba[b]), 0.0, 1.0));
     }

@@ -12,7 +12,7 @@ namespace radiosity {
 namespace {
 
 /// A part cut by a line into less than this share of itself counts as lying on one side.
-constexpr double kSliver = 1e-6;
+constexpr double kSliverCell = 1e-6;
 
 struct Line {
   double a, b, c;
@@ -32,7 +32,7 @@ struct Split {
 Split splitBy(const std::vector<CellPart>& parts, const Line& line) {
   Split split;
   for (const CellPart& part : parts) {
-    const double least = kSliver * doubledArea(part.corners);
+    const double least = kSliverCell * doubledArea(part.corners);
     CellPart in{clipConvex(part.corners, line.a, line.b, line.c), part.item};
     CellPart out{clipConvex(part.corners, -line.a, -line.b, -line.c), part.item};
     const bool has_in = doubledArea(in.corners) > least;
@@ -55,7 +55,7 @@ std::size_t largerSide(const std::vector<CellPart>& parts, const Line& line) {
       low = std::min(low, height);
       high = std::max(high, height);
     }
-    const double least = kSliver * (high - low);
+    const double least = kSliverCell * (high - low);
     inside += high > least;
     outside += low < -least;
   }

@@ -9,7 +9,7 @@ namespace radiosity {
 namespace {
 
 /// Shares of a cell below which an overlap is rounding (see PatchGrid).
-constexpr double kSliver = 1e-6;
+constexpr double kSliverPatch = 1e-6;
 /// Along one axis; their product stays below 2^24 (see RowMap).
 constexpr double kMostCells = 4096;
 constexpr std::int32_t kEmpty = std::numeric_limits<std::int32_t>::max();
@@ -29,8 +29,8 @@ struct CellRange {
   std::int32_t first, end;
 };
 CellRange cellRange(const Bounds& bounds, std::int32_t count) {
-  const auto first = std::int32_t(std::floor(bounds.low + kSliver));
-  const auto end = std::int32_t(std::ceil(bounds.high - kSliver));
+  const auto first = std::int32_t(std::floor(bounds.low + kSliverPatch));
+  const auto end = std::int32_t(std::ceil(bounds.high - kSliverPatch));
   const std::int32_t clamped = std::clamp(first, 0, count - 1);
   return {clamped, std::clamp(end, clamped + 1, count)};
 }
@@ -39,7 +39,7 @@ std::int32_t nearestCount(double extent) {
   return std::int32_t(std::clamp(std::round(extent), 1.0, kMostCells));
 }
 
-bool nearInteger(double x) { return std::abs(x - std::round(x)) < kSliver * x; }
+bool nearInteger(double x) { return std::abs(x - std::round(x)) < kSliverPatch * x; }
 
 }  // namespace
 
@@ -99,7 +99,7 @@ PatchGrid::PatchGrid(std::span<const GridPiece> pieces, const Vec3& origin, cons
       u.add(outline.back().x);
       v.add(outline.back().y);
     }
-    const double least = kSliver * std::min(doubledArea(outline), 1.0);
+    const double least = kSliverPatch * std::min(doubledArea(outline), 1.0);
     const CellRange columns = cellRange(u, columns_);
     const CellRange rows = cellRange(v, rows_);
     for (std::int32_t column = columns.first; column < columns.end; ++column) {

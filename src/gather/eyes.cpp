@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/geometry/segment.h"
 #include "base/parallel.h"
 #include "formfactor/hemicube/eye_frame.h"
 
@@ -23,13 +24,6 @@ struct Wedge {
 
 double angleBetween(const Vec3& a, const Vec3& b) {
   return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
-}
-
-double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 along = b - a;
-  const double length = glm::dot(along, along);
-  const double t = length > 0 ? std::clamp(glm::dot(p - a, along) / length, 0.0, 1.0) : 0.0;
-  return glm::distance(p, a + along * t);
 }
 
 /// The patches of one corner group about their vertex.

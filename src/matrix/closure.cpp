@@ -25,7 +25,7 @@ namespace radiosity {
 
 namespace {
 
-constexpr std::size_t kRowGrain = 16;
+constexpr std::size_t kClosureGrain = 16;
 /// Newton steps; one where no entry turns negative, else a handful.
 constexpr int kMostRounds = 30;
 constexpr std::size_t kMostSteps = 2000;
@@ -181,7 +181,7 @@ std::vector<double> LeastSquaresClosure::timesWeights(const std::vector<double>&
 StrongPairs LeastSquaresClosure::strongPairs(const std::vector<double>& own) {
   std::vector<std::vector<StrongPairs::Pair>> of_row(own.size());
   std::vector<double> diagonal = own;
-  parallelFor(own.size(), kRowGrain, [&](std::size_t k) {
+  parallelFor(own.size(), kClosureGrain, [&](std::size_t k) {
     if (!(root_[k] > 0)) {
       diagonal[k] = 1;
       return;
@@ -346,7 +346,7 @@ void LeastSquaresClosure::apply() {
   const bool single = matrix_.precision() == Precision::single_precision;
   std::vector<double> largest(n, 0.0);
   std::vector<double> moved(n, 0.0);
-  parallelFor(n, kRowGrain, [&](std::size_t k) {
+  parallelFor(n, kClosureGrain, [&](std::size_t k) {
     if (uncertain_.row(k).runs.empty()) return;
     const ExchangeMatrix::UpperEntries before = matrix_.upperEntries(k);
     ExchangeMatrix::UpperEntries after;

@@ -10,10 +10,10 @@ namespace radiosity {
 namespace {
 
 /// Rows a thread takes at a time: enough work to hide the scheduling of sparse rows.
-constexpr std::size_t kRowGrain = 16;
+constexpr std::size_t kProductGrain = 16;
 
 /// Bands summed in one walk along a row; more bands take another walk, from the cache.
-constexpr int kMaxBands = 4;
+constexpr int kBandsAWalk = 4;
 
 /// Values of one stored row. `columns` is null for a dense row.
 template <class Value>
@@ -50,8 +50,8 @@ void dot(const StoredValues<Value>& row, const double* x, std::size_t stride, do
 template <class Value>
 void dotAllBands(const StoredValues<Value>& row, const double* x, int bands, double* out) {
   const auto stride = std::size_t(bands);
-  for (int b = 0; b < bands; b += kMaxBands) {
-    switch (std::min(bands - b, kMaxBands)) {
+  for (int b = 0; b < bands; b += kBandsAWalk) {
+    switch (std::min(bands - b, kBandsAWalk)) {
       case 1:
         dot<1>(row, x + b, stride, out + b);
         break;
@@ -84,7 +84,7 @@ void rowProduct(const RowView& row, const double* x, int bands, double* out) {
 void ExchangeMatrix::product(std::span<const double> x, int bands, std::span<double> y,
                              std::span<const std::uint8_t> wanted) const {
   if (symmetric_) return symmetricProduct(x, bands, y, wanted);
-  parallelFor(size(), kRowGrain, [&](std::size_t i) {
+  parallelFor(size(), kProductGrain, [&](std::size_t i) {
     if (!wanted.empty() && wanted[i] == 0) return;
     rowProduct(viewOf(i), x.data(), bands, &y[i * std::size_t(bands)]);
   });

@@ -10,7 +10,7 @@ namespace radiosity {
 
 namespace {
 
-constexpr std::size_t kRowGrain = 16;
+constexpr std::size_t kSquaresGrain = 16;
 
 /// sum_m values[m]^2 (1 + area * inverse[m]), in running sums that do not wait for each other.
 template <class Value>
@@ -31,7 +31,7 @@ double sumOfSquares(const Value* values, double area, const double* inverse, std
 
 double ofRows(const ExchangeMatrix& matrix) {
   std::vector<double> rows(matrix.size(), 0.0);
-  parallelFor(matrix.size(), kRowGrain, [&](std::size_t i) {
+  parallelFor(matrix.size(), kSquaresGrain, [&](std::size_t i) {
     matrix.forRow(i, [&](Index, double value) { rows[i] += value * value; });
     rows[i] *= matrix.area()[i];
   });
@@ -51,7 +51,7 @@ double weightedSquares(const ExchangeMatrix& matrix) {
     inverse[k] = area[k] > 0 ? 1 / area[k] : 0.0;
   }
   std::vector<double> rows(n, 0.0);
-  parallelFor(n, kRowGrain, [&](std::size_t k) {
+  parallelFor(n, kSquaresGrain, [&](std::size_t k) {
     const double diagonal = matrix.diagonal(k);
     rows[k] = diagonal * diagonal;
     forRuns(matrix.upperRuns(k), [&](std::size_t offset, const auto* values, std::size_t count) {

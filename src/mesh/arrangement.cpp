@@ -20,11 +20,11 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<Index, Kernel>;
 /// The region a triangle belongs to: triangles with no edge of ours between them.
-using FaceBase =
+using RegionFaceBase =
     CGAL::Triangulation_face_base_with_info_2<Index, Kernel,
                                               CGAL::Constrained_triangulation_face_base_2<Kernel>>;
-using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<
-    Kernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
+using ArrangementTriangulation = CGAL::Constrained_Delaunay_triangulation_2<
+    Kernel, CGAL::Triangulation_data_structure_2<VertexBase, RegionFaceBase>,
     CGAL::No_constraint_intersection_requiring_constructions_tag>;
 using Cover = std::vector<std::pair<Index, int>>;
 
@@ -57,9 +57,9 @@ class PlaneCutter {
   void makeCells();
   void recordSides();
   Cover stepOver(const Cover& from, Index edge, bool to_left) const;
-  Index edgeBetween(Triangulation::Face_handle face, int k) const {
-    return edges_.find(face->vertex(Triangulation::ccw(k))->info(),
-                       face->vertex(Triangulation::cw(k))->info());
+  Index edgeBetween(ArrangementTriangulation::Face_handle face, int k) const {
+    return edges_.find(face->vertex(ArrangementTriangulation::ccw(k))->info(),
+                       face->vertex(ArrangementTriangulation::cw(k))->info());
   }
 
   const WeldedPoints& points_;
@@ -71,8 +71,8 @@ class PlaneCutter {
   const std::vector<Index>& own_;
   PlaneCut& out_;
 
-  Triangulation triangulation_;
-  std::unordered_map<Index, Triangulation::Vertex_handle> handle_;
+  ArrangementTriangulation triangulation_;
+  std::unordered_map<Index, ArrangementTriangulation::Vertex_handle> handle_;
   std::vector<Cover> cover_;    ///< by region
   std::vector<Index> cell_of_;  ///< by region
 };
@@ -92,7 +92,7 @@ void PlaneCutter::run() {
 /// False if two vertices have one image: one above the other within the slab that is the plane.
 bool PlaneCutter::insertVertices() {
   bool distinct = true;
-  Triangulation::Face_handle near;
+  ArrangementTriangulation::Face_handle near;
   for (const Index e : own_) {
     for (const Index v : {edges_[e].a, edges_[e].b}) {
       if (handle_.count(v) > 0) continue;
@@ -116,7 +116,7 @@ bool PlaneCutter::insertEdges() {
     for (const Index e : own_) {
       triangulation_.insert_constraint(handle_[edges_[e].a], handle_[edges_[e].b]);
     }
-  } catch (const Triangulation::Intersection_of_constraints_exception&) {
+  } catch (const ArrangementTriangulation::Intersection_of_constraints_exception&) {
     return false;
   }
   return true;
@@ -173,9 +173,9 @@ void PlaneCutter::reportCrossings() {
 
 void PlaneCutter::findRegions() {
   for (const auto face : triangulation_.all_face_handles()) face->info() = kNone;
-  std::vector<Triangulation::Face_handle> stack;
+  std::vector<ArrangementTriangulation::Face_handle> stack;
   Index regions = 0;
-  const auto flood = [&](Triangulation::Face_handle start) {
+  const auto flood = [&](ArrangementTriangulation::Face_handle start) {
     start->info() = regions;
     stack.push_back(start);
     while (!stack.empty()) {
@@ -226,7 +226,8 @@ void PlaneCutter::coverRegions() {
       if (!face->is_constrained(k)) continue;
       const Index edge = edgeBetween(face, k);
       // From ccw(k) to cw(k) the triangle itself is on the left.
-      const bool face_is_left = face->vertex(Triangulation::ccw(k))->info() == edges_[edge].a;
+      const bool face_is_left =
+          face->vertex(ArrangementTriangulation::ccw(k))->info() == edges_[edge].a;
       steps[face->info()].push_back({face->neighbor(k)->info(), edge, !face_is_left});
     }
   }
@@ -281,14 +282,14 @@ void PlaneCutter::makeCells() {
 
 void PlaneCutter::recordSides() {
   for (const Index e : own_) {
-    Triangulation::Face_handle face;
+    ArrangementTriangulation::Face_handle face;
     int k = 0;
     if (!triangulation_.is_edge(handle_[edges_[e].a], handle_[edges_[e].b], face, k)) continue;
     EdgeSides sides;
     sides.plane = number_;
     sides.left = cell_of_[face->info()];
     sides.right = cell_of_[face->neighbor(k)->info()];
-    if (face->vertex(Triangulation::ccw(k))->info() != edges_[e].a) {
+    if (face->vertex(ArrangementTriangulation::ccw(k))->info() != edges_[e].a) {
       std::swap(sides.left, sides.right);
     }
     if (sides.left != kNone || sides.right != kNone) out_.sides.emplace_back(e, sides);

@@ -35,7 +35,7 @@ std::vector<Index> frontsInOrder(const PatchMesh& mesh) {
   return fronts;
 }
 
-std::vector<Agglomerate> piecesOf(const PatchMesh& mesh, std::span<const Index> fronts) {
+std::vector<Agglomerate> agglomeratesOf(const PatchMesh& mesh, std::span<const Index> fronts) {
   const Vec3 centre = mesh.centroid[fronts[0]];
   std::vector<Agglomerate> pieces;
   pieces.reserve(fronts.size());
@@ -91,7 +91,7 @@ class FrontClusters {
  public:
   FrontClusters(const PatchMesh& mesh, std::span<const Index> fronts, std::size_t wanted)
       : mesh_(mesh), fronts_(fronts), wanted_(wanted), parts_({}, 0, 1) {
-    std::vector<Agglomerate> pieces = piecesOf(mesh, fronts);
+    std::vector<Agglomerate> pieces = agglomeratesOf(mesh, fronts);
     for (const Agglomerate& piece : pieces) area_ += piece.area;
     parts_ = Agglomeration(std::move(pieces), kBend * sideOf(wanted), sideOf(wanted));
   }

@@ -8,6 +8,7 @@
 #include <span>
 #include <unordered_map>
 
+#include "base/geometry/segment.h"
 #include "base/parallel.h"
 #include "mesh/edge_rows.h"
 #include "mesh/plane_image.h"
@@ -17,12 +18,6 @@ namespace radiosity {
 namespace {
 
 enum class Place { outside, border, inside };
-
-double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 d = b - a;
-  const double t = std::clamp(glm::dot(p - a, d) / glm::dot(d, d), 0.0, 1.0);
-  return glm::distance(p, a + t * d);
-}
 
 constexpr std::size_t kPairsAtATime = 256;  // of sheets: a task of a thread
 // Sheets with more edges than this are looked at by rows.

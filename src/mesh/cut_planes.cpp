@@ -12,12 +12,12 @@ namespace {
 /// Rounds of making edges meet that cross only in the image of a plane: one is the rule, more are
 /// rare. From kRoundsOfSnapping on, a vertex that an edge is to be led through becomes one with the
 /// edge's end if that is as near as a coincidence or two, so that the number of vertices falls.
-/// Planes that still need repairs after kRounds are given up, and so are planes whose repairs grow
-/// in number: where many edges are about as long as the coincidence, each edge that is made to meet
-/// another crosses two more.
+/// Planes that still need repairs after kRoundsOfRepair are given up, and so are planes whose
+/// repairs grow in number: where many edges are about as long as the coincidence, each edge that is
+/// made to meet another crosses two more.
 constexpr int kRoundsOfSnapping = 4;
-constexpr int kRounds = 40;
-constexpr double kGrowth = 2.0;
+constexpr int kRoundsOfRepair = 40;
+constexpr double kMostRepairGrowth = 2.0;
 
 class PlaneCuts {
  public:
@@ -53,14 +53,14 @@ class PlaneCuts {
 std::vector<Index> PlaneCuts::run() {
   Repairs wanted;
   std::size_t before = 0;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kRoundsOfRepair; ++round) {
     splitEdges(input_.points, input_.coincidence, edges_, wanted, progress_);
     markStale();
     cutStale();
     wanted = repairs();
     if (round >= kRoundsOfSnapping) wanted = collapse(wanted);
     const std::size_t count = wanted.splits.size() + wanted.merges.size();
-    if (count == 0 || (round > 0 && double(count) > kGrowth * double(before))) break;
+    if (count == 0 || (round > 0 && double(count) > kMostRepairGrowth * double(before))) break;
     before = count;
   }
   std::vector<Index> stuck;

@@ -8,7 +8,7 @@ namespace radiosity {
 
 namespace {
 
-constexpr double kGrowth = std::numbers::ln2;
+constexpr double kSizeGrowth = std::numbers::ln2;
 
 /// The measure m(t) = integral of 1/s from 0 to t and its inverse. s has up to three parts: rising
 /// from `start` until t = rise, constant, falling from t = fall on to `end`.
@@ -19,23 +19,23 @@ class Measure {
         start_(std::min(wanted.start, wanted.size)),
         end_(std::min(wanted.end, wanted.size)),
         size_(wanted.size),
-        rise_((size_ - start_) / kGrowth),
-        fall_(length - (size_ - end_) / kGrowth) {
+        rise_((size_ - start_) / kSizeGrowth),
+        fall_(length - (size_ - end_) / kSizeGrowth) {
     if (rise_ > fall_) {  // the slopes meet below `size`
-      rise_ = fall_ = std::clamp(0.5 * (length + (end_ - start_) / kGrowth), 0.0, length);
-      size_ = start_ + kGrowth * rise_;
+      rise_ = fall_ = std::clamp(0.5 * (length + (end_ - start_) / kSizeGrowth), 0.0, length);
+      size_ = start_ + kSizeGrowth * rise_;
     }
-    rising_ = std::log1p(kGrowth * rise_ / start_) / kGrowth;
+    rising_ = std::log1p(kSizeGrowth * rise_ / start_) / kSizeGrowth;
     constant_ = (fall_ - rise_) / size_;
-    total_ = rising_ + constant_ + std::log1p(kGrowth * (length - fall_) / end_) / kGrowth;
+    total_ = rising_ + constant_ + std::log1p(kSizeGrowth * (length - fall_) / end_) / kSizeGrowth;
   }
 
   double total() const { return total_; }
 
   double inverse(double m) const {
-    if (m < rising_) return start_ * std::expm1(kGrowth * m) / kGrowth;
+    if (m < rising_) return start_ * std::expm1(kSizeGrowth * m) / kSizeGrowth;
     if (m < rising_ + constant_) return rise_ + (m - rising_) * size_;
-    return length_ - end_ * std::expm1(kGrowth * (total_ - m)) / kGrowth;
+    return length_ - end_ * std::expm1(kSizeGrowth * (total_ - m)) / kSizeGrowth;
   }
 
  private:

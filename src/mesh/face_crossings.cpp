@@ -12,7 +12,7 @@ namespace radiosity {
 namespace {
 
 using Triangle = std::array<Vec3, 3>;
-struct Segment {
+struct Chord {
   Vec3 a;
   Vec3 b;
 };
@@ -20,7 +20,7 @@ struct Segment {
 Vec3 unitNormal(const Triangle& t) { return glm::normalize(glm::cross(t[1] - t[0], t[2] - t[0])); }
 
 /// Where `t` meets the plane through `base` with normal `n`. Empty: nowhere, or in a point.
-std::optional<Segment> chord(const Triangle& t, const Vec3& base, const Vec3& n) {
+std::optional<Chord> chord(const Triangle& t, const Vec3& base, const Vec3& n) {
   std::array<double, 3> height{};
   for (std::size_t k = 0; k < 3; ++k) height[k] = glm::dot(t[k] - base, n);
   std::vector<Vec3> ends;
@@ -34,11 +34,11 @@ std::optional<Segment> chord(const Triangle& t, const Vec3& base, const Vec3& n)
     }
   }
   if (ends.size() != 2) return std::nullopt;
-  return Segment{ends[0], ends[1]};
+  return Chord{ends[0], ends[1]};
 }
 
 /// The part of `s`, which lies in the plane of `t`, inside `t`.
-std::optional<Segment> clipped(const Segment& s, const Triangle& t) {
+std::optional<Chord> clipped(const Chord& s, const Triangle& t) {
   const Vec3 n = unitNormal(t);
   double from = 0;
   double to = 1;
@@ -51,7 +51,7 @@ std::optional<Segment> clipped(const Segment& s, const Triangle& t) {
     if (b < 0) to = std::min(to, a / (a - b));
   }
   if (from >= to) return std::nullopt;
-  return Segment{s.a + from * (s.b - s.a), s.a + to * (s.b - s.a)};
+  return Chord{s.a + from * (s.b - s.a), s.a + to * (s.b - s.a)};
 }
 
 class CrossingTest {
@@ -90,7 +90,7 @@ class CrossingTest {
     return lowest < -coincidence_ && highest > coincidence_;
   }
 
-  bool runsAlongRim(const Segment& s, const Triangle& t, unsigned rim) const {
+  bool runsAlongRim(const Chord& s, const Triangle& t, unsigned rim) const {
     for (unsigned k = 0; k < 3; ++k) {
       if ((rim >> k & 1u) == 0) continue;
       const Vec3 along = glm::normalize(t[(k + 1) % 3] - t[k]);

@@ -4,21 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "base/geometry/segment.h"
 #include "mesh/triangulate.h"
 
 namespace radiosity {
-
-namespace {
-
-double distanceSquared(const Vec2& p, const Vec2& a, const Vec2& b) {
-  const Vec2 along = b - a;
-  const double square = glm::dot(along, along);
-  const double t = square > 0 ? std::clamp(glm::dot(p - a, along) / square, 0.0, 1.0) : 0.0;
-  const Vec2 away = p - (a + t * along);
-  return glm::dot(away, away);
-}
-
-}  // namespace
 
 FaceLocator::FaceLocator(const Scene& scene, std::span<const Index> faces, const PlaneFrame& frame,
                          const Vec3& origin)
@@ -103,9 +92,9 @@ FaceLocator::Place FaceLocator::locate(const Vec3& p, Index preferred) const {
   }
   if (found.face != kNone) return found;
   for (const Triangle& t : triangles_) {
-    const double distance =
-        std::min({distanceSquared(q, t.p[0], t.p[1]), distanceSquared(q, t.p[1], t.p[2]),
-                  distanceSquared(q, t.p[2], t.p[0])});
+    const double distance = std::min({squaredDistanceToSegment(q, t.p[0], t.p[1]),
+                                      squaredDistanceToSegment(q, t.p[1], t.p[2]),
+                                      squaredDistanceToSegment(q, t.p[2], t.p[0])});
     if (distance < best) {
       best = distance;
       found = place(t, q);

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/geometry/plane_frame.h"
+#include "base/geometry/segment.h"
 #include "mesh/complex.h"
 #include "mesh/face_crossings.h"
 #include "mesh/face_polygons.h"
@@ -27,11 +28,8 @@ std::string nameOf(const Scene& scene, Index f) {
 double distanceToOutline(const Vec2& p, std::span<const Vec2> outline) {
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < outline.size(); ++k) {
-    const Vec2& a = outline[k];
-    const Vec2 along = outline[(k + 1) % outline.size()] - a;
-    const double square = glm::dot(along, along);
-    const double t = square > 0 ? std::clamp(glm::dot(p - a, along) / square, 0.0, 1.0) : 0.0;
-    nearest = std::min(nearest, glm::length(p - (a + t * along)));
+    nearest =
+        std::min(nearest, distanceToSegment(p, outline[k], outline[(k + 1) % outline.size()]));
   }
   return nearest;
 }

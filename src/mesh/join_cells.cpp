@@ -14,7 +14,7 @@
 namespace radiosity {
 namespace {
 
-using Edge = std::pair<Index, Index>;
+using CornerPair = std::pair<Index, Index>;
 
 /// Squared perimeter over area of what is compact enough: a square has 16, a rectangle 1 : 3 and an
 /// L of three squares 21.3. Worse shapes come only of worse ones.
@@ -142,7 +142,7 @@ class CellJoiner {
     std::set<Index> out;
     const std::vector<Index>& outline = patches_[k].group.outline;
     for (std::size_t i = 0; i < outline.size(); ++i) {
-      const Edge across(outline[(i + 1) % outline.size()], outline[i]);
+      const CornerPair across(outline[(i + 1) % outline.size()], outline[i]);
       const auto found = owner_.find(across);
       if (found != owner_.end() && kept_.count(across) == 0) out.insert(found->second);
     }
@@ -152,9 +152,9 @@ class CellJoiner {
 
   std::span<const Vec3> points_;
   double size_;
-  std::set<Edge> kept_;
+  std::set<CornerPair> kept_;
   std::vector<Patch> patches_;
-  std::map<Edge, Index> owner_;  ///< of directed edges: the patch on the left
+  std::map<CornerPair, Index> owner_;  ///< of directed edges: the patch on the left
 };
 
 /// Where a corner of the cells lies inside the patch: triangles between the corners of its outline,

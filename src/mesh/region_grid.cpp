@@ -3,6 +3,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/geometry/plane_frame.h"
+#include "base/geometry/segment.h"
 #include "mesh/region.h"
 
 namespace radiosity {
@@ -13,17 +14,10 @@ namespace {
 // triangle over it; farther than that plus one spacing a neighbour is always kept.
 constexpr double kClearance = 0.6;
 
-struct Segment {
+struct FlatSegment {
   Vec2 a;
   Vec2 b;
 };
-
-double distanceSquared(const Vec2& p, const Segment& s) {
-  const Vec2 along = s.b - s.a;
-  const double t = std::clamp(glm::dot(p - s.a, along) / glm::dot(along, along), 0.0, 1.0);
-  const Vec2 away = p - (s.a + t * along);
-  return glm::dot(away, away);
-}
 
 /// Grid points (i, j), i along rows: origin + (i * step.x, j * step.y), in turned coordinates.
 class Grid {
@@ -46,19 +40,20 @@ class Grid {
   double clearance() const { return kClearance * std::min(step_.x, step_.y); }
 
   /// Marks points too near to a segment.
-  void block(const Segment& s) {
+  void block(const FlatSegment& s) {
     const double reach = clearance();
     const Vec2 low = (glm::min(s.a, s.b) - reach - lower_) / step_;
     const Vec2 high = (glm::max(s.a, s.b) + reach - lower_) / step_;
     for (long j = first(low.y); j <= last(high.y, 1); ++j) {
       for (long i = first(low.x); i <= last(high.x, 0); ++i) {
-        if (distanceSquared(at(i, j), s) < reach * reach) state_[index(i, j)] |= kBlocked;
+        if (squaredDistanceToSegment(at(i, j), s.a, s.b) < reach * reach)
+          state_[index(i, j)] |= kBlocked;
       }
     }
   }
 
   /// Even-odd: a segment flips all points of the rows it crosses that lie to its right.
-  void flipRightOf(const Segment& s) {
+  void flipRightOf(const FlatSegment& s) {
     const Vec2& low = s.a.y <= s.b.y ? s.a : s.b;
     const Vec2& high = s.a.y <= s.b.y ? s.b : s.a;
     for (long j = first((low.y - lower_.y) / step_.y); j < rows(); ++j) {
@@ -105,7 +100,7 @@ std::vector<Vec2> backgroundGrid(const Region& region) {
   Grid grid(lower, upper, region.size, std::isfinite(region.longest));
   for (const auto& loop : region.loops) {
     for (std::size_t k = 0; k < loop.size(); ++k) {
-      const Segment s{turned[loop[k]], turned[loop[(k + 1) % loop.size()]]};
+      const FlatSegment s{turned[loop[k]], turned[loop[(k + 1) % loop.size()]]};
       grid.block(s);
       grid.flipRightOf(s);
     }

@@ -22,15 +22,16 @@ namespace radiosity {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<Index, Kernel>;
-using FaceBase =
+using CornerBase = CGAL::Triangulation_vertex_base_with_info_2<Index, Kernel>;
+using InsideFaceBase =
     CGAL::Triangulation_face_base_with_info_2<bool, Kernel,
                                               CGAL::Constrained_triangulation_face_base_2<Kernel>>;
-using DataStructure = CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>;
-using Cdt = CGAL::Constrained_Delaunay_triangulation_2<Kernel, DataStructure,
-                                                       CGAL::No_constraint_intersection_tag>;
-using Face = Cdt::Face_handle;
-using Vertex = Cdt::Vertex_handle;
+using DataStructure = CGAL::Triangulation_data_structure_2<CornerBase, InsideFaceBase>;
+using RegionTriangulation =
+    CGAL::Constrained_Delaunay_triangulation_2<Kernel, DataStructure,
+                                               CGAL::No_constraint_intersection_tag>;
+using Face = RegionTriangulation::Face_handle;
+using Vertex = RegionTriangulation::Vertex_handle;
 
 const AngleLimit kWantedAngle(25.0);           // triangles below are worked on
 const AngleLimit kAcceptedAngle(18.0);         // a new point must reach this around itself
@@ -39,7 +40,7 @@ constexpr int kRounds = 4;                     // refine, smooth, triangulate an
 constexpr int kSweeps = 4;                     // of smoothing, a round
 
 Vec2 positionOf(Vertex v) { return {v->point().x(), v->point().y()}; }
-Cdt::Point pointOf(const Vec2& p) { return {p.x, p.y}; }
+RegionTriangulation::Point pointOf(const Vec2& p) { return {p.x, p.y}; }
 /// Whether rounding or a move has left a triangle no area, or turned it over.
 bool isTurnedOver(Face f) {
   const Vec2 a = positionOf(f->vertex(0));
@@ -52,8 +53,8 @@ Angle smallestFreeAngle(Face f) {
   const Vec2 p[3] = {positionOf(f->vertex(0)), positionOf(f->vertex(1)), positionOf(f->vertex(2))};
   Angle smallest;
   for (int i = 0; i < 3; ++i) {
-    const int next = Cdt::ccw(i);
-    const int last = Cdt::cw(i);
+    const int next = RegionTriangulation::ccw(i);
+    const int last = RegionTriangulation::cw(i);
     if (f->is_constrained(next) && f->is_constrained(last)) continue;
     lower(smallest, {p[next], p[i], p[last]});
   }
@@ -116,8 +117,9 @@ class RegionMesher {
   void markInside();
   bool tiles() const;
   bool isOutline(Face f, int i) const {
-    return f->is_constrained(i) && outline_.count(edgeKey(f->vertex(Cdt::cw(i))->info(),
-                                                          f->vertex(Cdt::ccw(i))->info())) > 0;
+    return f->is_constrained(i) &&
+           outline_.count(edgeKey(f->vertex(RegionTriangulation::cw(i))->info(),
+                                  f->vertex(RegionTriangulation::ccw(i))->info())) > 0;
   }
   bool isFree(Vertex v) const { return v->info() >= region_.points.size(); }
   Worst worst() const;
@@ -128,8 +130,8 @@ class RegionMesher {
     double gain = 0;     ///< the smallest angle around it, if that is worth a point; else 0
     bool clear = false;  ///< removes the bad face and keeps out of the circles over constraints
   };
-  Trial tryPoint(const Cdt::Point& p, Face bad);
-  Vertex insert(const Cdt::Point& p, Face where);
+  Trial tryPoint(const RegionTriangulation::Point& p, Face bad);
+  Vertex insert(const RegionTriangulation::Point& p, Face where);
   void smooth();
   bool relax(Vertex v);
   Worst worstAround(Vertex v);
@@ -144,7 +146,7 @@ class RegionMesher {
   const Region& region_;
   std::unordered_set<std::uint64_t> outline_;
   std::vector<Vec2> interior_;
-  Cdt cdt_;
+  RegionTriangulation cdt_;
   std::size_t inserted_ = 0;
   std::size_t budget_ = 0;
 };
@@ -176,7 +178,7 @@ bool RegionMesher::insertPieces(const std::vector<Vertex>& vertices) {
     for (const auto& [from, to] : region_.inner) {
       cdt_.insert_constraint(vertices[from], vertices[to]);
     }
-  } catch (const Cdt::Intersection_of_constraints_exception&) {
+  } catch (const RegionTriangulation::Intersection_of_constraints_exception&) {
     return false;
   }
   return true;
@@ -226,8 +228,8 @@ void RegionMesher::markInside() {
   }
   for (Face f : cdt_.finite_face_handles()) {
     for (int i = 0; i < 3; ++i) {
-      const Index from = f->vertex(Cdt::ccw(i))->info();
-      const Index to = f->vertex(Cdt::cw(i))->info();
+      const Index from = f->vertex(RegionTriangulation::ccw(i))->info();
+      const Index to = f->vertex(RegionTriangulation::cw(i))->info();
       if (directed.count(directedKey(from, to)) > 0) visit(f);
     }
   }
@@ -298,23 +300,24 @@ void RegionMesher::refine() {
 
 /// Judges a point at p that would remove `bad` by the triangles it would make, which are known
 /// beforehand: p joined to the boundary of the zone it is in conflict with (Bowyer-Watson).
-RegionMesher::Trial RegionMesher::tryPoint(const Cdt::Point& p, Face bad) {
+RegionMesher::Trial RegionMesher::tryPoint(const RegionTriangulation::Point& p, Face bad) {
   Trial trial;
   Face& where = trial.where;
-  Cdt::Locate_type type;
+  RegionTriangulation::Locate_type type;
   int i = 0;
   where = cdt_.locate(p, type, i, bad);
-  if (type == Cdt::VERTEX || cdt_.is_infinite(where) || !where->info()) return trial;
-  if (type == Cdt::EDGE && where->is_constrained(i)) return trial;
+  if (type == RegionTriangulation::VERTEX || cdt_.is_infinite(where) || !where->info())
+    return trial;
+  if (type == RegionTriangulation::EDGE && where->is_constrained(i)) return trial;
   std::vector<Face> zone;
-  std::vector<Cdt::Edge> rim;
+  std::vector<RegionTriangulation::Edge> rim;
   cdt_.get_conflicts_and_boundary(p, std::back_inserter(zone), std::back_inserter(rim), where);
   if (std::find(zone.begin(), zone.end(), bad) == zone.end()) return trial;
   Angle after;
   trial.clear = true;
   for (const auto& [f, side] : rim) {
-    const Vec2 a = positionOf(f->vertex(Cdt::ccw(side)));
-    const Vec2 b = positionOf(f->vertex(Cdt::cw(side)));
+    const Vec2 a = positionOf(f->vertex(RegionTriangulation::ccw(side)));
+    const Vec2 b = positionOf(f->vertex(RegionTriangulation::cw(side)));
     const Vec2 q(p.x(), p.y());
     lower(after, smallestOf(q, a, b));
     if (!f->is_constrained(side)) continue;
@@ -328,13 +331,13 @@ RegionMesher::Trial RegionMesher::tryPoint(const Cdt::Point& p, Face bad) {
   return trial;
 }
 
-Vertex RegionMesher::insert(const Cdt::Point& p, Face where) {
+Vertex RegionMesher::insert(const RegionTriangulation::Point& p, Face where) {
   const Vertex v = cdt_.insert(p, where);
   v->info() = Index(region_.points.size() + interior_.size());
   interior_.emplace_back(p.x(), p.y());
   ++inserted_;
-  Cdt::Face_circulator f = cdt_.incident_faces(v);
-  const Cdt::Face_circulator end = f;
+  RegionTriangulation::Face_circulator f = cdt_.incident_faces(v);
+  const RegionTriangulation::Face_circulator end = f;
   do {
     f->info() = true;  // the conflict zone never crosses a constraint
   } while (++f != end);
@@ -345,10 +348,10 @@ bool RegionMesher::improve(Face bad, std::vector<Face>& changed) {
   const Vec2 p[3] = {positionOf(bad->vertex(0)), positionOf(bad->vertex(1)),
                      positionOf(bad->vertex(2))};
   Trial best;
-  Cdt::Point best_point;
+  RegionTriangulation::Point best_point;
   bool first = true;
   for (const Vec2& candidate : candidatesFor(p)) {
-    const Cdt::Point q = pointOf(candidate);
+    const RegionTriangulation::Point q = pointOf(candidate);
     if (!std::isfinite(q.x()) || !std::isfinite(q.y())) continue;
     const Trial trial = tryPoint(q, bad);
     // The first candidate is the circumcentre. Clear of the boundary it may go in without a gain of
@@ -363,8 +366,8 @@ bool RegionMesher::improve(Face bad, std::vector<Face>& changed) {
   }
   if (best.where == Face()) return false;
   const Vertex v = insert(best_point, best.where);
-  Cdt::Face_circulator f = cdt_.incident_faces(v);
-  const Cdt::Face_circulator end = f;
+  RegionTriangulation::Face_circulator f = cdt_.incident_faces(v);
+  const RegionTriangulation::Face_circulator end = f;
   do {
     changed.push_back(f);
   } while (++f != end);
@@ -373,8 +376,8 @@ bool RegionMesher::improve(Face bad, std::vector<Face>& changed) {
 
 Worst RegionMesher::worstAround(Vertex v) {
   Worst out;
-  Cdt::Face_circulator f = cdt_.incident_faces(v);
-  const Cdt::Face_circulator end = f;
+  RegionTriangulation::Face_circulator f = cdt_.incident_faces(v);
+  const RegionTriangulation::Face_circulator end = f;
   do {
     out.add(f);
   } while (++f != end);
@@ -387,14 +390,14 @@ bool RegionMesher::relax(Vertex v) {
   if (!before.isBelow(kWantedAngle)) return false;
   Vec2 mean(0.0);
   double count = 0;
-  Cdt::Vertex_circulator w = cdt_.incident_vertices(v);
-  const Cdt::Vertex_circulator end = w;
+  RegionTriangulation::Vertex_circulator w = cdt_.incident_vertices(v);
+  const RegionTriangulation::Vertex_circulator end = w;
   do {
     mean += positionOf(w);
     count += 1;
   } while (++w != end);
   mean /= count;
-  const Cdt::Point old = v->point();
+  const RegionTriangulation::Point old = v->point();
   const Vec2 from = positionOf(v);
   for (const double step : {1.0, 0.5, 0.25, -0.25}) {
     v->set_point(pointOf(from + step * (mean - from)));
@@ -417,8 +420,8 @@ void RegionMesher::smooth() {
 /// Whether the two triangles at the edge opposite of corner i make a convex quadrilateral.
 bool RegionMesher::isFlippable(Face f, int i) const {
   const auto& apex = f->vertex(i)->point();
-  const auto& from = f->vertex(Cdt::ccw(i))->point();
-  const auto& to = f->vertex(Cdt::cw(i))->point();
+  const auto& from = f->vertex(RegionTriangulation::ccw(i))->point();
+  const auto& to = f->vertex(RegionTriangulation::cw(i))->point();
   const auto& other = cdt_.mirror_vertex(f, i)->point();
   return CGAL::orientation(apex, from, other) == CGAL::LEFT_TURN &&
          CGAL::orientation(apex, other, to) == CGAL::LEFT_TURN;
@@ -437,8 +440,8 @@ void RegionMesher::flipFlat() {
     Face f = stack.back();
     stack.pop_back();
     for (int i = 0; i < 3; ++i) {
-      const Vec2 a = positionOf(f->vertex(Cdt::ccw(i)));
-      const Vec2 b = positionOf(f->vertex(Cdt::cw(i)));
+      const Vec2 a = positionOf(f->vertex(RegionTriangulation::ccw(i)));
+      const Vec2 b = positionOf(f->vertex(RegionTriangulation::cw(i)));
       if (f->is_constrained(i) ||
           heightOver(positionOf(f->vertex(i)), a, b) > 0.5 * region_.clearance ||
           !isFlippable(f, i)) {
@@ -468,15 +471,15 @@ double RegionMesher::longestPiece() const {
 
 /// Whether a point would be farther than the clearance from the pieces around it.
 bool RegionMesher::isClear(const Vec2& p, Face near) {
-  std::vector<Cdt::Edge> rim;
+  std::vector<RegionTriangulation::Edge> rim;
   const Face where = cdt_.locate(pointOf(p), near);
   if (cdt_.is_infinite(where) || !where->info()) return false;
   cdt_.get_boundary_of_conflicts(pointOf(p), std::back_inserter(rim), where);
-  return std::ranges::all_of(rim, [&](const Cdt::Edge& edge) {
+  return std::ranges::all_of(rim, [&](const RegionTriangulation::Edge& edge) {
     const auto& [f, i] = edge;
     return !f->is_constrained(i) ||
-           heightOver(p, positionOf(f->vertex(Cdt::ccw(i))), positionOf(f->vertex(Cdt::cw(i)))) >
-               region_.clearance;
+           heightOver(p, positionOf(f->vertex(RegionTriangulation::ccw(i))),
+                      positionOf(f->vertex(RegionTriangulation::cw(i)))) > region_.clearance;
   });
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "base/geometry/box_tree.h"
+#include "base/geometry/segment.h"
 #include "base/parallel.h"
 #include "mesh/enclosures.h"
 
@@ -40,13 +41,6 @@ struct Polygons {
     return out.grown(coincidence);
   }
 };
-
-double distanceToSegment(const Vec2& p, const Vec2& a, const Vec2& b) {
-  const Vec2 along = b - a;
-  const double length = glm::dot(along, along);
-  const double t = length > 0 ? std::clamp(glm::dot(p - a, along) / length, 0.0, 1.0) : 0.0;
-  return glm::distance(p, a + along * t);
-}
 
 /// Is a point of the polygon's plane inside it or on its rim? Seen along the normal's largest
 /// axis.

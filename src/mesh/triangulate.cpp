@@ -87,11 +87,11 @@ Triangles clipEars(std::span<const Vec2> outline) {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<Index, Kernel>;
 /// How many times the loops wind around a triangle.
-using FaceBase =
+using WindingFaceBase =
     CGAL::Triangulation_face_base_with_info_2<int, Kernel,
                                               CGAL::Constrained_triangulation_face_base_2<Kernel>>;
-using Cdt = CGAL::Constrained_Delaunay_triangulation_2<
-    Kernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
+using MarkedTriangulation = CGAL::Constrained_Delaunay_triangulation_2<
+    Kernel, CGAL::Triangulation_data_structure_2<VertexBase, WindingFaceBase>,
     CGAL::No_constraint_intersection_requiring_constructions_tag>;
 constexpr int kUnknown = std::numeric_limits<int>::min();
 
@@ -136,10 +136,10 @@ class LoopTriangulation {
       const bool repeats = k > 0 && p[order[k]] == p[order[k - 1]];
       first[order[k]] = repeats ? first[order[k - 1]] : order[k];
     }
-    std::vector<std::pair<Cdt::Point, Index>> points;
+    std::vector<std::pair<MarkedTriangulation::Point, Index>> points;
     points.reserve(p.size());
     for (Index k = 0; k < p.size(); ++k) {
-      if (first[k] == k) points.emplace_back(Cdt::Point(p[k].x, p[k].y), k);
+      if (first[k] == k) points.emplace_back(MarkedTriangulation::Point(p[k].x, p[k].y), k);
     }
     cdt_.insert(points.begin(), points.end());
     vertices_.resize(p.size());
@@ -157,7 +157,7 @@ class LoopTriangulation {
         if (a == b) continue;
         try {
           cdt_.insert_constraint(a, b);
-        } catch (const Cdt::Intersection_of_constraints_exception&) {
+        } catch (const MarkedTriangulation::Intersection_of_constraints_exception&) {
           return false;
         }
         countAlong(a, b);
@@ -168,10 +168,10 @@ class LoopTriangulation {
   }
 
   /// Counts the edges that a b consists of: other corners may lie on it.
-  void countAlong(Cdt::Vertex_handle a, Cdt::Vertex_handle b) {
+  void countAlong(MarkedTriangulation::Vertex_handle a, MarkedTriangulation::Vertex_handle b) {
     while (a != b) {
-      Cdt::Vertex_handle next;
-      Cdt::Face_handle face;
+      MarkedTriangulation::Vertex_handle next;
+      MarkedTriangulation::Face_handle face;
       int side = 0;
       cdt_.includes_edge(a, b, next, face, side);
       ++along_[directedKey(a->info(), next->info())];
@@ -184,7 +184,7 @@ class LoopTriangulation {
   /// changes by the number of loops that run along the edge.
   void wind() {
     for (const auto f : cdt_.all_face_handles()) f->info() = kUnknown;
-    std::vector<Cdt::Face_handle> open{cdt_.infinite_face()};
+    std::vector<MarkedTriangulation::Face_handle> open{cdt_.infinite_face()};
     cdt_.infinite_face()->info() = 0;
     while (!open.empty()) {
       const auto f = open.back();
@@ -194,8 +194,8 @@ class LoopTriangulation {
         if (next->info() != kUnknown) continue;
         next->info() = f->info();
         if (f->is_constrained(i)) {
-          next->info() -=
-              along_.at(directedKey(f->vertex(Cdt::ccw(i))->info(), f->vertex(Cdt::cw(i))->info()));
+          next->info() -= along_.at(directedKey(f->vertex(MarkedTriangulation::ccw(i))->info(),
+                                                f->vertex(MarkedTriangulation::cw(i))->info()));
         }
         open.push_back(next);
       }
@@ -203,8 +203,8 @@ class LoopTriangulation {
   }
 
   const FlatLoops& loops_;
-  Cdt cdt_;
-  std::vector<Cdt::Vertex_handle> vertices_;      ///< of the corners
+  MarkedTriangulation cdt_;
+  std::vector<MarkedTriangulation::Vertex_handle> vertices_;  ///< of the corners
   std::unordered_map<std::uint64_t, int> along_;  ///< loops along a directed edge, less those back
 };
 

@@ -16,53 +16,53 @@ namespace radiosity {
 
 namespace {
 
-enum class Number { i8, u8, i16, u16, i32, u32, f32, f64 };
+enum class PlyNumber { i8, u8, i16, u16, i32, u32, f32, f64 };
 
 struct Property {
   std::string name;
-  Number type = Number::f32;
-  std::optional<Number> list_count;  ///< the type of a list's length; none: one number
+  PlyNumber type = PlyNumber::f32;
+  std::optional<PlyNumber> list_count;  ///< the type of a list's length; none: one number
 };
 
-struct Element {
+struct PlyElement {
   std::string name;
   std::size_t count = 0;
   std::vector<Property> properties;
 };
 
-std::optional<Number> numberOf(std::string_view word) {
-  constexpr std::array<std::pair<std::string_view, Number>, 16> kTypes = {
-      {{"char", Number::i8},
-       {"int8", Number::i8},
-       {"uchar", Number::u8},
-       {"uint8", Number::u8},
-       {"short", Number::i16},
-       {"int16", Number::i16},
-       {"ushort", Number::u16},
-       {"uint16", Number::u16},
-       {"int", Number::i32},
-       {"int32", Number::i32},
-       {"uint", Number::u32},
-       {"uint32", Number::u32},
-       {"float", Number::f32},
-       {"float32", Number::f32},
-       {"double", Number::f64},
-       {"float64", Number::f64}}};
+std::optional<PlyNumber> numberOf(std::string_view word) {
+  constexpr std::array<std::pair<std::string_view, PlyNumber>, 16> kTypes = {
+      {{"char", PlyNumber::i8},
+       {"int8", PlyNumber::i8},
+       {"uchar", PlyNumber::u8},
+       {"uint8", PlyNumber::u8},
+       {"short", PlyNumber::i16},
+       {"int16", PlyNumber::i16},
+       {"ushort", PlyNumber::u16},
+       {"uint16", PlyNumber::u16},
+       {"int", PlyNumber::i32},
+       {"int32", PlyNumber::i32},
+       {"uint", PlyNumber::u32},
+       {"uint32", PlyNumber::u32},
+       {"float", PlyNumber::f32},
+       {"float32", PlyNumber::f32},
+       {"double", PlyNumber::f64},
+       {"float64", PlyNumber::f64}}};
   for (const auto& [name, type] : kTypes) {
     if (word == name) return type;
   }
   return std::nullopt;
 }
 
-std::size_t sizeOf(Number type) {
+std::size_t sizeOf(PlyNumber type) {
   switch (type) {
-    case Number::i8:
-    case Number::u8:
+    case PlyNumber::i8:
+    case PlyNumber::u8:
       return 1;
-    case Number::i16:
-    case Number::u16:
+    case PlyNumber::i16:
+    case PlyNumber::u16:
       return 2;
-    case Number::f64:
+    case PlyNumber::f64:
       return 8;
     default:
       return 4;
@@ -77,7 +77,7 @@ class PlyReader {
     readHeader();
     mesh_.file = path_;
     mesh_.surface_names = {""};
-    for (const Element& element : elements_) {
+    for (const PlyElement& element : elements_) {
       requireRoom(element);
       if (element.name == "vertex") {
         readVertices(element);
@@ -110,7 +110,7 @@ class PlyReader {
 
   /// A count is believed where the rest of the file may hold that many: a digit and a blank a
   /// number in text (an empty list is the length 0), else the bytes of the numbers.
-  void requireRoom(const Element& element) const {
+  void requireRoom(const PlyElement& element) const {
     if (element.count == 0) return;
     if (element.properties.empty()) {
       fail(fmt::format("its `{}` elements have no properties; export it again", element.name));
@@ -155,7 +155,7 @@ class PlyReader {
   void addProperty(const Words& words) {
     const bool list = words.size() == 5 && words[1] == "list";
     if (!list && words.size() != 3) failAt(words);
-    const std::optional<Number> type = numberOf(words[words.size() - 2]);
+    const std::optional<PlyNumber> type = numberOf(words[words.size() - 2]);
     if (!type) failAt(words);
     Property property;
     property.name = words.back();
@@ -177,7 +177,7 @@ class PlyReader {
     return double(std::bit_cast<T>(bytes));
   }
 
-  double number(Number type) {
+  double number(PlyNumber type) {
     if (ascii_) {
       const std::size_t begin = text_.find_first_not_of(" \t\r\n", at_);
       if (begin == std::string_view::npos) fail("ends too early; export it again");
@@ -188,28 +188,28 @@ class PlyReader {
       return *value;
     }
     switch (type) {
-      case Number::i8:
+      case PlyNumber::i8:
         return binary<std::int8_t>();
-      case Number::u8:
+      case PlyNumber::u8:
         return binary<std::uint8_t>();
-      case Number::i16:
+      case PlyNumber::i16:
         return binary<std::int16_t>();
-      case Number::u16:
+      case PlyNumber::u16:
         return binary<std::uint16_t>();
-      case Number::i32:
+      case PlyNumber::i32:
         return binary<std::int32_t>();
-      case Number::u32:
+      case PlyNumber::u32:
         return binary<std::uint32_t>();
-      case Number::f32:
+      case PlyNumber::f32:
         return binary<float>();
-      case Number::f64:
+      case PlyNumber::f64:
         break;
     }
     return binary<double>();
   }
 
   /// The numbers of one record: one a property, or a list's.
-  const std::vector<std::vector<double>>& record(const Element& element) {
+  const std::vector<std::vector<double>>& record(const PlyElement& element) {
     record_.resize(element.properties.size());
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
       const Property& property = element.properties[p];
@@ -223,14 +223,14 @@ class PlyReader {
     return record_;
   }
 
-  static std::optional<std::size_t> find(const Element& element, std::string_view name) {
+  static std::optional<std::size_t> find(const PlyElement& element, std::string_view name) {
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
       if (element.properties[p].name == name) return p;
     }
     return std::nullopt;
   }
 
-  void readVertices(const Element& element) {
+  void readVertices(const PlyElement& element) {
     std::array<std::size_t, 6> place{};
     constexpr std::array<const char*, 6> kNames = {"x", "y", "z", "red", "green", "blue"};
     for (std::size_t k = 0; k < 6; ++k) {
@@ -243,9 +243,9 @@ class PlyReader {
       }
       place[k] = *found;
     }
-    const Number type = element.properties[place[3]].type;
-    mesh_.bytes = type == Number::u8;
-    const double unit = type == Number::u8 ? 255 : type == Number::u16 ? 65535 : 1;
+    const PlyNumber type = element.properties[place[3]].type;
+    mesh_.bytes = type == PlyNumber::u8;
+    const double unit = type == PlyNumber::u8 ? 255 : type == PlyNumber::u16 ? 65535 : 1;
     for (std::size_t v = 0; v < element.count; ++v) {
       const auto& values = record(element);
       const auto at = [&](std::size_t k) {
@@ -257,7 +257,7 @@ class PlyReader {
     }
   }
 
-  void readFaces(const Element& element) {
+  void readFaces(const PlyElement& element) {
     std::optional<std::size_t> list = find(element, "vertex_indices");
     if (!list) list = find(element, "vertex_index");
     if (!list) fail("its faces have no vertex_indices; export it again");
@@ -281,7 +281,7 @@ class PlyReader {
   std::size_t at_ = 0;
   bool ascii_ = false;
   bool swapped_ = false;
-  std::vector<Element> elements_;
+  std::vector<PlyElement> elements_;
   std::vector<std::vector<double>> record_;
   std::vector<Vec3> colours_;
   LitMesh mesh_;

@@ -13,7 +13,7 @@ namespace radiosity {
 namespace {
 
 /// Gaps this much longer than what they part.
-constexpr double kFar = 1000;
+constexpr double kFarApart = 1000;
 
 struct FaceBox {
   Box3 box;
@@ -46,7 +46,7 @@ std::optional<Parted> partAlong(const std::vector<FaceBox>& boxes, glm::length_t
   Box3 before = boxes[0].box;
   for (std::size_t k = 1; k < boxes.size(); ++k) {
     const double gap = boxes[k].box.low[axis] - before.high[axis];
-    if (gap > kFar * std::max(before.diagonal(), rest[k].diagonal())) return Parted{k, gap};
+    if (gap > kFarApart * std::max(before.diagonal(), rest[k].diagonal())) return Parted{k, gap};
     before.add(boxes[k].box);
   }
   return std::nullopt;

@@ -25,10 +25,10 @@ int imageOf(const tinygltf::Texture& texture) {
   return webp->second.Has("source") ? webp->second.Get("source").GetNumberAsInt() : -1;
 }
 
-class MaterialReader {
+class GltfMaterialReader {
  public:
-  MaterialReader(const GltfFile& file, const SceneOptions& options, Scene& scene,
-                 FeatureNotes& ignored)
+  GltfMaterialReader(const GltfFile& file, const SceneOptions& options, Scene& scene,
+                     FeatureNotes& ignored)
       : file_(file), options_(options), scene_(scene), ignored_(ignored) {}
 
   GltfMaterials read();
@@ -49,7 +49,7 @@ class MaterialReader {
   std::map<std::pair<int, bool>, LoadedTexture> texture_of_;  ///< by image, repeat
 };
 
-GltfMaterials MaterialReader::read() {
+GltfMaterials GltfMaterialReader::read() {
   GltfMaterials result;
   UniqueNames names;
   for (std::size_t m = 0; m < file_.model.materials.size(); ++m) {
@@ -65,7 +65,7 @@ GltfMaterials MaterialReader::read() {
   return result;
 }
 
-Material MaterialReader::convert(const tinygltf::Material& gltf, const std::string& name) {
+Material GltfMaterialReader::convert(const tinygltf::Material& gltf, const std::string& name) {
   Material material;
   material.name = name;
   material.two_sided = gltf.doubleSided;
@@ -94,7 +94,8 @@ Material MaterialReader::convert(const tinygltf::Material& gltf, const std::stri
 }
 
 /// A corner of a face has one pair of texture coordinates here.
-Index MaterialReader::emissionTexture(const tinygltf::Material& gltf, const Material& material) {
+Index GltfMaterialReader::emissionTexture(const tinygltf::Material& gltf,
+                                          const Material& material) {
   if (gltf.emissiveTexture.index < 0 || material.emission == Vec3(0.0)) return kNone;
   if (!options_.textures) {
     ignored_.add("textures are off; the factor alone counts, material", material.name);
@@ -113,7 +114,7 @@ Index MaterialReader::emissionTexture(const tinygltf::Material& gltf, const Mate
 }
 
 /// Radiance is emissiveFactor x KHR_materials_emissive_strength; exitance is pi times that.
-Vec3 MaterialReader::emission(const tinygltf::Material& gltf, const std::string& name) const {
+Vec3 GltfMaterialReader::emission(const tinygltf::Material& gltf, const std::string& name) const {
   Vec3 factor{0.0};
   if (gltf.emissiveFactor.size() == 3) {
     factor = {gltf.emissiveFactor[0], gltf.emissiveFactor[1], gltf.emissiveFactor[2]};
@@ -131,8 +132,8 @@ Vec3 MaterialReader::emission(const tinygltf::Material& gltf, const std::string&
   return exitance;
 }
 
-Index MaterialReader::texture(const tinygltf::TextureInfo& info, TextureUse use,
-                              const std::string& material) {
+Index GltfMaterialReader::texture(const tinygltf::TextureInfo& info, TextureUse use,
+                                  const std::string& material) {
   const std::string what = "material " + material;
   const tinygltf::Texture& gltf = file_.at(file_.model.textures, info.index, "texture", what);
   const auto unusable = [&](const std::string& problem) {
@@ -159,7 +160,7 @@ Index MaterialReader::texture(const tinygltf::TextureInfo& info, TextureUse use,
   return loaded.index;
 }
 
-bool MaterialReader::repeats(const tinygltf::Texture& texture, const std::string& material) {
+bool GltfMaterialReader::repeats(const tinygltf::Texture& texture, const std::string& material) {
   if (texture.sampler < 0) return true;
   const tinygltf::Sampler& sampler =
       file_.at(file_.model.samplers, texture.sampler, "sampler", "material " + material);
@@ -175,7 +176,7 @@ bool MaterialReader::repeats(const tinygltf::Texture& texture, const std::string
   return !clamp;
 }
 
-TexcoordSource MaterialReader::texcoords(const tinygltf::TextureInfo& info) {
+TexcoordSource GltfMaterialReader::texcoords(const tinygltf::TextureInfo& info) {
   TexcoordSource source;
   source.set = info.texCoord;
   const auto extension = info.extensions.find("KHR_texture_transform");
@@ -189,7 +190,7 @@ TexcoordSource MaterialReader::texcoords(const tinygltf::TextureInfo& info) {
   return source;
 }
 
-void MaterialReader::noteIgnored(const tinygltf::Material& gltf, const std::string& name) {
+void GltfMaterialReader::noteIgnored(const tinygltf::Material& gltf, const std::string& name) {
   const tinygltf::PbrMetallicRoughness& pbr = gltf.pbrMetallicRoughness;
   if (pbr.metallicFactor != 0) {
     ignored_.add("metalness is not used (glTF's default is 1), material", name);
@@ -216,7 +217,7 @@ Vec2 TexcoordSource::apply(const Vec2& uv) const {
 
 GltfMaterials readGltfMaterials(const GltfFile& file, const SceneOptions& options, Scene& scene,
                                 FeatureNotes& ignored) {
-  return MaterialReader(file, options, scene, ignored).read();
+  return GltfMaterialReader(file, options, scene, ignored).read();
 }
 
 }  // namespace radiosity

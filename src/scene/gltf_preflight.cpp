@@ -17,7 +17,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "a GLB's numbers are read as they stand");
 
-constexpr std::size_t kHeader = 12;      // magic, version, length
+constexpr std::size_t kGlbHeader = 12;   // magic, version, length
 constexpr std::size_t kChunkHeader = 8;  // length, type
 constexpr std::uint32_t kJson = 0x4e4f534a;
 
@@ -32,7 +32,7 @@ std::string_view jsonChunk(const std::string& path, std::string_view content) {
   const auto fail = [&](const std::string& what) {
     throw InputError(fmt::format("{}: {}; export the scene again", path, what));
   };
-  if (content.size() < kHeader + kChunkHeader) fail("the file is cut off within its header");
+  if (content.size() < kGlbHeader + kChunkHeader) fail("the file is cut off within its header");
   const std::uint32_t version = wordAt(content, 4);
   if (version != 2) {
     throw InputError(fmt::format("{}: is binary glTF {}; export it as glTF 2.0", path, version));
@@ -41,16 +41,16 @@ std::string_view jsonChunk(const std::string& path, std::string_view content) {
   if (length > content.size()) {
     fail(fmt::format("the file is cut off: it has {} of {} bytes", content.size(), length));
   }
-  for (std::size_t at = kHeader; at < length;) {
+  for (std::size_t at = kGlbHeader; at < length;) {
     if (length - at < kChunkHeader || wordAt(content, at) > length - at - kChunkHeader) {
       fail(fmt::format("the chunk at byte {} reaches beyond the end of the file", at));
     }
     at += kChunkHeader + wordAt(content, at);
   }
-  if (length < kHeader + kChunkHeader || wordAt(content, kHeader + 4) != kJson) {
+  if (length < kGlbHeader + kChunkHeader || wordAt(content, kGlbHeader + 4) != kJson) {
     fail("its first chunk is not JSON");
   }
-  return content.substr(kHeader + kChunkHeader, wordAt(content, kHeader));
+  return content.substr(kGlbHeader + kChunkHeader, wordAt(content, kGlbHeader));
 }
 
 /// Version and required extensions that the JSON names.

@@ -23,7 +23,7 @@ constexpr std::size_t kMostMembers = std::size_t(1) << 24U;
 
 /// Shells, membranes, rigid and other surfaces by their types, and flat solids, as which Gmsh
 /// writes faces. Nothing for volumes, beams and the rest.
-std::optional<ElementShape> shapeOf(const std::string& type) {
+std::optional<ElementShape> shapeNamed(const std::string& type) {
   struct Family {
     ElementShape shape;
     std::vector<std::string_view> types;
@@ -78,7 +78,7 @@ Keyword keywordOf(std::string_view line) {
   return keyword;
 }
 
-class Scanner {
+class InpScanner {
  public:
   InpScan run(const std::string& path) {
     file(path, 0);
@@ -116,7 +116,7 @@ class Scanner {
   FeatureNotes notes_;
 };
 
-void Scanner::file(const std::string& path, int depth) {
+void InpScanner::file(const std::string& path, int depth) {
   const std::string content = readWholeFile(path);
   if (content.find('\0') != std::string::npos) {
     throw InputError(path + ": is not a text file; export it as CalculiX or Abaqus input");
@@ -143,7 +143,7 @@ void Scanner::file(const std::string& path, int depth) {
   file_ = outer_file;
 }
 
-void Scanner::refuseKeyword(const Keyword& keyword) const {
+void InpScanner::refuseKeyword(const Keyword& keyword) const {
   static constexpr std::array<std::string_view, 7> kGenerators = {
       "ngen", "ncopy", "nfill", "nmap", "elgen", "elcopy", "system"};
   if (keyword.word == "instance") {
@@ -166,7 +166,7 @@ void Scanner::refuseKeyword(const Keyword& keyword) const {
   }
 }
 
-void Scanner::keyword(const Keyword& keyword, int depth) {
+void InpScanner::keyword(const Keyword& keyword, int depth) {
   if (unfinished_) fail("the element before it has too few nodes; correct it");
   refuseKeyword(keyword);
   if (keyword.word == "include") return include(keyword, depth);
@@ -181,7 +181,7 @@ void Scanner::keyword(const Keyword& keyword, int depth) {
   }
 }
 
-void Scanner::include(const Keyword& keyword, int depth) {
+void InpScanner::include(const Keyword& keyword, int depth) {
   const std::string name = keyword.get("input");
   if (name.empty()) fail("*INCLUDE names no file; add INPUT=FILE");
   if (depth == kMostIncludes) {
@@ -193,10 +193,10 @@ void Scanner::include(const Keyword& keyword, int depth) {
   file(path, depth + 1);
 }
 
-void Scanner::beginElements() {
+void InpScanner::beginElements() {
   const std::string type = current_.get("type");
   if (type.empty()) fail("*ELEMENT names no type; add TYPE=S3 or another");
-  shape_ = shapeOf(lowerCase(type));
+  shape_ = shapeNamed(lowerCase(type));
   if (!shape_) {
     notes_.add("elements that are no faces (volumes, beams, ...) are left out, of type", type,
                Severity::warning);
@@ -207,13 +207,13 @@ void Scanner::beginElements() {
   }
 }
 
-std::size_t Scanner::setNamed(const std::string& name) {
+std::size_t InpScanner::setNamed(const std::string& name) {
   const auto [place, is_new] = set_index_.try_emplace(lowerCase(name), scan_.sets.size());
   if (is_new) scan_.sets.push_back({name, {}, false});
   return place->second;
 }
 
-void Scanner::data(std::string_view line) {
+void InpScanner::data(std::string_view line) {
   std::vector<std::string_view> fields = splitAt(line, ',');
   for (std::string_view& field : fields) field = trimmed(field);
   if (fields.back().empty()) fields.pop_back();  // a comma at the end of the line
@@ -226,13 +226,13 @@ void Scanner::data(std::string_view line) {
   }
 }
 
-long long Scanner::integer(std::string_view word, const char* what) const {
+long long InpScanner::integer(std::string_view word, const char* what) const {
   const std::optional<long long> value = parseInteger(word);
   if (!value) fail(fmt::format("{} `{}` is not a whole number; correct it", what, word));
   return *value;
 }
 
-void Scanner::node(const std::vector<std::string_view>& fields) {
+void InpScanner::node(const std::vector<std::string_view>& fields) {
   if (fields.empty()) return;
   InpNode node{integer(fields[0], "node number"), Vec3(0.0), where()};
   for (std::size_t k = 1; k < std::min<std::size_t>(fields.size(), 4); ++k) {
@@ -251,7 +251,7 @@ void Scanner::node(const std::vector<std::string_view>& fields) {
   scan_.nodes.push_back(std::move(node));
 }
 
-void Scanner::element(const std::vector<std::string_view>& fields, const ElementShape& shape) {
+void InpScanner::element(const std::vector<std::string_view>& fields, const ElementShape& shape) {
   if (fields.empty()) return;
   std::size_t k = 0;
   if (!unfinished_) {
@@ -269,7 +269,7 @@ void Scanner::element(const std::vector<std::string_view>& fields, const Element
   unfinished_ = nodes.size() < expected;
 }
 
-void Scanner::members(const std::vector<std::string_view>& fields) {
+void InpScanner::members(const std::vector<std::string_view>& fields) {
   for (const std::string_view field : fields) {
     if (const std::optional<long long> number = parseInteger(field)) {
       addMember({*number, *number, 1});
@@ -284,7 +284,7 @@ void Scanner::members(const std::vector<std::string_view>& fields) {
   }
 }
 
-void Scanner::range(const std::vector<std::string_view>& fields) {
+void InpScanner::range(const std::vector<std::string_view>& fields) {
   if (fields.size() < 2 || fields.size() > 3) {
     fail(fmt::format("GENERATE takes first, last and step, not {} numbers; correct the line",
                      fields.size()));
@@ -298,7 +298,7 @@ void Scanner::range(const std::vector<std::string_view>& fields) {
   addMember(range);
 }
 
-void Scanner::addMember(const InpRange& range) {
+void InpScanner::addMember(const InpRange& range) {
   if (++member_count_ > kMostMembers) {
     fail(fmt::format("its element sets have more than {} members; write them without one another",
                      kMostMembers));
@@ -308,6 +308,6 @@ void Scanner::addMember(const InpRange& range) {
 
 }  // namespace
 
-InpScan scanInp(const std::string& path) { return Scanner().run(path); }
+InpScan scanInp(const std::string& path) { return InpScanner().run(path); }
 
 }  // namespace radiosity

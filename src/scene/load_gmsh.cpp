@@ -27,7 +27,7 @@ constexpr const char* kSeveralGroups =
     "in several physical groups, they count to the first: faces also in";
 
 /// By Gmsh's number of the type; nothing for what it does not name or we do not know.
-std::optional<ElementShape> shapeOf(long long type) {
+std::optional<ElementShape> gmshShape(long long type) {
   static const std::map<long long, ElementShape> kShapes = {
       {1, {1, 2, 2}},   {2, {2, 3, 3}},   {3, {2, 4, 4}},   {4, {3, 4, 4}},    {5, {3, 8, 8}},
       {6, {3, 6, 6}},   {7, {3, 5, 5}},   {8, {1, 2, 3}},   {9, {2, 3, 6}},    {10, {2, 4, 9}},
@@ -221,7 +221,7 @@ void GmshReader::nodes4() {
 }
 
 ElementShape GmshReader::shape(long long type) const {
-  const std::optional<ElementShape> found = shapeOf(type);
+  const std::optional<ElementShape> found = gmshShape(type);
   if (!found) {
     cursor_.fail(
         fmt::format("elements of type {} are not read; save the mesh with elements of the "

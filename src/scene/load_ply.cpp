@@ -23,13 +23,13 @@ struct Property {
   std::optional<NumberType> count;  ///< type of the length of a list
 };
 
-struct Element {
+struct PlyElement {
   std::string name;
   std::size_t count = 0;
   std::vector<Property> properties;
 };
 
-std::optional<NumberType> typeOf(std::string_view name) {
+std::optional<NumberType> plyTypeNamed(std::string_view name) {
   using enum NumberType;
   constexpr std::pair<std::string_view, NumberType> kTypes[] = {
       {"char", i8},   {"int8", i8},     {"uchar", u8},   {"uint8", u8},
@@ -42,8 +42,6 @@ std::optional<NumberType> typeOf(std::string_view name) {
   return std::nullopt;
 }
 
-bool isFraction(NumberType type) { return type == NumberType::f32 || type == NumberType::f64; }
-
 class PlyReader {
  public:
   PlyReader(const std::string& path, std::string_view content, const SceneOptions& options)
@@ -53,7 +51,7 @@ class PlyReader {
 
   Scene read() {
     header();
-    for (const Element& element : elements_) {
+    for (const PlyElement& element : elements_) {
       if (element.name == "vertex") {
         vertices(element);
       } else if (element.name == "face") {
@@ -74,18 +72,18 @@ class PlyReader {
   void headerLine(const std::vector<std::string_view>& words);
   void property(const std::vector<std::string_view>& words);
   NumberType typeNamed(std::string_view word) const;
-  void requireRoom(const Element& element) const;
-  void vertices(const Element& element);
-  void faces(const Element& element);
-  void face(std::size_t number, const Element& element);
-  void passElement(const Element& element);
+  void requireRoom(const PlyElement& element) const;
+  void vertices(const PlyElement& element);
+  void faces(const PlyElement& element);
+  void face(std::size_t number, const PlyElement& element);
+  void passElement(const PlyElement& element);
   void pass(const Property& property);
   void noteColours();
 
   MeshCursor cursor_;
   GroupedFaces faces_;
   std::string stem_;
-  std::vector<Element> elements_;
+  std::vector<PlyElement> elements_;
   std::optional<Encoding> encoding_;
   std::vector<Index> corners_;  ///< of the face at hand
 };
@@ -132,7 +130,7 @@ void PlyReader::headerLine(const std::vector<std::string_view>& words) {
 }
 
 NumberType PlyReader::typeNamed(std::string_view word) const {
-  const std::optional<NumberType> type = typeOf(word);
+  const std::optional<NumberType> type = plyTypeNamed(word);
   if (!type) cursor_.fail(fmt::format("`{}` is no type of a PLY file; export it again", word));
   return *type;
 }
@@ -153,7 +151,7 @@ void PlyReader::property(const std::vector<std::string_view>& words) {
 
 /// Vertex colours may be light, paint or labels, linear or not: nobody can tell.
 void PlyReader::noteColours() {
-  for (const Element& element : elements_) {
+  for (const PlyElement& element : elements_) {
     for (const Property& property : element.properties) {
       const std::string name = lowerCase(property.name);
       if (name != "red" && name != "diffuse_red" && name != "r") continue;
@@ -167,7 +165,7 @@ void PlyReader::noteColours() {
 }
 
 /// So that a forged count makes no long loop.
-void PlyReader::requireRoom(const Element& element) const {
+void PlyReader::requireRoom(const PlyElement& element) const {
   std::size_t bytes = 0;
   for (const Property& property : element.properties)
     bytes += sizeOf(property.count.value_or(property.type));
@@ -176,7 +174,7 @@ void PlyReader::requireRoom(const Element& element) const {
                   std::max<std::size_t>(1, is_text ? element.properties.size() : bytes));
 }
 
-void PlyReader::vertices(const Element& element) {
+void PlyReader::vertices(const PlyElement& element) {
   requireRoom(element);
   for (const char* axis : {"x", "y", "z"}) {
     const bool found = std::any_of(element.properties.begin(), element.properties.end(),
@@ -199,7 +197,7 @@ void PlyReader::vertices(const Element& element) {
   }
 }
 
-void PlyReader::faces(const Element& element) {
+void PlyReader::faces(const PlyElement& element) {
   requireRoom(element);
   const bool found =
       std::any_of(element.properties.begin(), element.properties.end(), [](const Property& p) {
@@ -209,7 +207,7 @@ void PlyReader::faces(const Element& element) {
   for (std::size_t k = 0; k < element.count; ++k) face(k, element);
 }
 
-void PlyReader::face(std::size_t number, const Element& element) {
+void PlyReader::face(std::size_t number, const PlyElement& element) {
   std::string group = stem_;
   bool grouped = false;
   for (const Property& property : element.properties) {
@@ -247,7 +245,7 @@ void PlyReader::pass(const Property& property) {
   cursor_.skip(property.type, count);
 }
 
-void PlyReader::passElement(const Element& element) {
+void PlyReader::passElement(const PlyElement& element) {
   if (element.properties.empty()) return;
   requireRoom(element);
   for (std::size_t k = 0; k < element.count; ++k) {

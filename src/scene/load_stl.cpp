@@ -24,8 +24,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "records are read as they stand");
 
-constexpr std::size_t kHeader = 84;  // 80 bytes of anything, then how many triangles
-constexpr std::size_t kRecord = 50;  // normal, three corners, two bytes that nobody defined
+constexpr std::size_t kStlHeader = 84;  // 80 bytes of anything, then how many triangles
+constexpr std::size_t kRecord = 50;     // normal, three corners, two bytes that nobody defined
 
 std::size_t claimedTriangles(std::string_view content) {
   std::uint32_t count = 0;
@@ -36,8 +36,8 @@ std::size_t claimedTriangles(std::string_view content) {
 /// Exporters begin binary files with "solid", too: what has exactly the size that a binary header
 /// claims is binary, and so is what holds a zero byte.
 bool isBinary(std::string_view content) {
-  if (content.size() >= kHeader &&
-      content.size() == kHeader + kRecord * claimedTriangles(content)) {
+  if (content.size() >= kStlHeader &&
+      content.size() == kStlHeader + kRecord * claimedTriangles(content)) {
     return true;
   }
   return content.find('\0') != std::string_view::npos ||
@@ -188,16 +188,17 @@ void readBinary(const std::string& file, std::string_view content, const std::st
   const auto fail = [&](const std::string& what) {
     throw InputError(fmt::format("{}: {}; export it again", file, what));
   };
-  if (content.size() < kHeader) fail("is no STL: neither text that begins with solid nor binary");
+  if (content.size() < kStlHeader)
+    fail("is no STL: neither text that begins with solid nor binary");
   const std::size_t count = claimedTriangles(content);
-  const std::size_t held = (content.size() - kHeader) / kRecord;
+  const std::size_t held = (content.size() - kStlHeader) / kRecord;
   if (count > held) {
     fail(fmt::format("is cut off or no STL: it claims {} triangles and holds {}", count, held));
   }
   bool coloured = false;
   for (std::size_t t = 0; t < count; ++t) {
     std::array<float, 12> numbers{};
-    const char* record = content.data() + kHeader + kRecord * t;
+    const char* record = content.data() + kStlHeader + kRecord * t;
     std::memcpy(numbers.data(), record, sizeof numbers);
     coloured = coloured || record[48] != 0 || record[49] != 0;
     std::array<Vec3, 4> points{};  // the normal first
@@ -209,7 +210,7 @@ void readBinary(const std::string& file, std::string_view content, const std::st
     }
     builder.add({points[1], points[2], points[3]}, points[0], solid, t);
   }
-  const std::size_t rest = content.size() - kHeader - kRecord * count;
+  const std::size_t rest = content.size() - kStlHeader - kRecord * count;
   if (rest > 0) {
     notes.push_back(
         {Severity::warning, fmt::format("{} bytes after the last triangle are left out", rest)});

@@ -19,7 +19,7 @@ namespace {
 
 using enum NumberType;
 
-std::optional<NumberType> typeOf(std::string_view name) {
+std::optional<NumberType> vtkTypeNamed(std::string_view name) {
   constexpr std::pair<std::string_view, NumberType> kTypes[] = {
       {"char", i8},           {"unsigned_char", u8},
       {"short", i16},         {"unsigned_short", u16},
@@ -38,10 +38,8 @@ std::optional<NumberType> typeOf(std::string_view name) {
   return std::nullopt;
 }
 
-bool isFraction(NumberType type) { return type == f32 || type == f64; }
-
 /// Names and words of text files have %20 for a blank and the like.
-std::string decoded(std::string_view word) {
+std::string percentDecoded(std::string_view word) {
   const auto digit = [](char c) {
     return std::string_view("0123456789abcdef").find(lowerCase({&c, 1})[0]);
   };
@@ -130,7 +128,7 @@ void VtkReader::header() {
 }
 
 NumberType VtkReader::type(std::string_view name) const {
-  const std::optional<NumberType> found = typeOf(name);
+  const std::optional<NumberType> found = vtkTypeNamed(name);
   if (!found) cursor_.fail(fmt::format("numbers of type `{}` are not read; save as ASCII", name));
   return *found;
 }
@@ -244,7 +242,7 @@ void VtkReader::attribute(const std::string& word) {
   const bool is_text = cursor_.encoding() == Encoding::text;
   if (word == "field") return field();
   if (word == "scalars") {
-    const std::string name = decoded(cursor_.word());
+    const std::string name = percentDecoded(cursor_.word());
     const std::string kind(cursor_.word());
     const std::string_view components = cursor_.restOfLine();
     std::size_t count = 1;
@@ -257,7 +255,7 @@ void VtkReader::attribute(const std::string& word) {
     if (cursor_.startsWith("LOOKUP_TABLE")) cursor_.restOfLine();
     return array(name, kind, count, tuples_);
   }
-  const std::string name = decoded(cursor_.word());
+  const std::string name = percentDecoded(cursor_.word());
   if (word == "lookup_table") {
     const std::size_t size = small("size");
     cursor_.restOfLine();
@@ -286,10 +284,10 @@ void VtkReader::field() {
   cursor_.word();  // its name
   const std::size_t arrays = small("number of arrays");
   for (std::size_t k = 0; k < arrays; ++k) {
-    std::string name = decoded(cursor_.word());
+    std::string name = percentDecoded(cursor_.word());
     if (name == "METADATA") {
       passMetadata();
-      name = decoded(cursor_.word());
+      name = percentDecoded(cursor_.word());
     }
     const std::size_t components = small("number of components");
     const std::size_t tuples = small("number of tuples");
@@ -328,7 +326,7 @@ void VtkReader::words(const std::string& name, std::size_t components, std::size
   cursor_.require(tuples, "number of tuples", u8, components);
   const bool are_groups = wanted(name, components, tuples);
   for (std::size_t k = 0; k < components * tuples; ++k) {
-    const std::string word = decoded(cursor_.restOfLine());
+    const std::string word = percentDecoded(cursor_.restOfLine());
     if (are_groups) cells_.groups.push_back(word.empty() ? "unnamed" : word);
   }
 }

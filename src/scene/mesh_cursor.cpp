@@ -20,8 +20,6 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "bytes are turned for big ones alone");
 
-constexpr std::string_view kBlanks = " \t\r\n\v\f";
-
 }  // namespace
 
 std::size_t sizeOf(NumberType type) {

@@ -17,6 +17,11 @@ enum class NumberType { i8, u8, i16, u16, i32, u32, i64, u64, f32, f64 };
 /// Bytes of a number in a binary file.
 std::size_t sizeOf(NumberType type);
 
+/// Whether it is a floating-point number.
+inline bool isFraction(NumberType type) {
+  return type == NumberType::f32 || type == NumberType::f64;
+}
+
 /// A place in a mesh file. All errors are InputErrors "FILE:LINE: what; cure", and behind the first
 /// binary number "FILE: byte N: what; cure".
 class MeshCursor {

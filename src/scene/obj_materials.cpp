@@ -22,9 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class MaterialReader {
+class ObjMaterialReader {
  public:
-  MaterialReader(const SceneOptions& options, Scene& scene) : options_(options), scene_(scene) {}
+  ObjMaterialReader(const SceneOptions& options, Scene& scene) : options_(options), scene_(scene) {}
 
   void readLibraries(const ObjScan& scan);
   std::vector<Index> resolve(const ObjScan& scan);
@@ -54,7 +54,7 @@ class MaterialReader {
   FeatureNotes ignored_;
 };
 
-void MaterialReader::readLibraries(const ObjScan& scan) {
+void ObjMaterialReader::readLibraries(const ObjScan& scan) {
   const fs::path folder = fs::path(scene_.file).parent_path();
   for (const auto& [line, text] : scan.libraries) {
     std::error_code error;
@@ -83,7 +83,7 @@ void MaterialReader::readLibraries(const ObjScan& scan) {
   ignored_.appendTo(scene_.notes);
 }
 
-void MaterialReader::readLibrary(const fs::path& path) {
+void ObjMaterialReader::readLibrary(const fs::path& path) {
   const std::string file = path.string();
   const MtlScan scan = scanMtl(file, readWholeFile(file), ignored_);
   const std::vector<MtlMaterial>& scanned = scan.materials;
@@ -113,8 +113,8 @@ void MaterialReader::readLibrary(const fs::path& path) {
   }
 }
 
-Material MaterialReader::convert(const MtlMaterial& mtl, const tinyobj::material_t& parsed,
-                                 const fs::path& folder) {
+Material ObjMaterialReader::convert(const MtlMaterial& mtl, const tinyobj::material_t& parsed,
+                                    const fs::path& folder) {
   Material material = defaultMaterial(mtl.name, options_);
   if (mtl.textured) {
     material.texture = texture(
@@ -147,13 +147,14 @@ Material MaterialReader::convert(const MtlMaterial& mtl, const tinyobj::material
 }
 
 /// Exporters write a factor of 0 beside a texture and mean the texture.
-void MaterialReader::noteTextureAlone(const std::string& factor, const std::string& material) {
+void ObjMaterialReader::noteTextureAlone(const std::string& factor, const std::string& material) {
   ignored_.add(fmt::format("{0} is 0 beside map_{0}: the texture alone counts{1}, material", factor,
                            factor == "Ke" ? " (1 is 1 W/m^2/sr)" : ""),
                material);
 }
 
-Index MaterialReader::texture(const std::string& material, const Map& map, const fs::path& folder) {
+Index ObjMaterialReader::texture(const std::string& material, const Map& map,
+                                 const fs::path& folder) {
   if (!options_.textures) {
     ignored_.add("textures are off; the factor alone counts, material", material);
     return kNone;
@@ -189,7 +190,7 @@ Index MaterialReader::texture(const std::string& material, const Map& map, const
   return kNone;
 }
 
-std::vector<Index> MaterialReader::resolve(const ObjScan& scan) {
+std::vector<Index> ObjMaterialReader::resolve(const ObjScan& scan) {
   std::vector<Index> material_of;
   std::vector<std::string> unknown;
   for (const std::string& name : scan.materials) {
@@ -214,7 +215,7 @@ std::vector<Index> MaterialReader::resolve(const ObjScan& scan) {
 
 std::vector<Index> readObjMaterials(const ObjScan& scan, const SceneOptions& options,
                                     Scene& scene) {
-  MaterialReader reader(options, scene);
+  ObjMaterialReader reader(options, scene);
   reader.readLibraries(scan);
   return reader.resolve(scan);
 }

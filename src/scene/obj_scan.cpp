@@ -39,9 +39,9 @@ struct Referenced {
   std::size_t largest_line = 0;  ///< where
 };
 
-class Scanner {
+class ObjScanner {
  public:
-  explicit Scanner(const std::string& file) : file_(file) {}
+  explicit ObjScanner(const std::string& file) : file_(file) {}
 
   void statement(std::size_t line, std::string_view text);
   ObjScan finish();
@@ -79,7 +79,7 @@ class Scanner {
   FeatureNotes ignored_;
 };
 
-void Scanner::statement(std::size_t line, std::string_view text) {
+void ObjScanner::statement(std::size_t line, std::string_view text) {
   line_ = line;
   if (text[0] == '#') return comment(trimmed(text.substr(1)));
   words_ = splitWords(text);
@@ -105,7 +105,7 @@ void Scanner::statement(std::size_t line, std::string_view text) {
   other(keyword);
 }
 
-void Scanner::comment(std::string_view text) {
+void ObjScanner::comment(std::string_view text) {
   // Prose that happens to begin with "camera" is left alone.
   constexpr std::string_view kCamera = "camera";
   if (!text.starts_with(kCamera) || text.find('=') == std::string_view::npos) return;
@@ -119,8 +119,8 @@ void Scanner::comment(std::string_view text) {
   }
 }
 
-void Scanner::numbers(Referenced& list, std::size_t least, std::size_t most,
-                      std::string_view meaning) {
+void ObjScanner::numbers(Referenced& list, std::size_t least, std::size_t most,
+                         std::string_view meaning) {
   const std::size_t count = words_.size() - 1;
   if (count < least || count > most) {
     fail(fmt::format("{}, not {}; correct the line", meaning, count));
@@ -139,7 +139,7 @@ void Scanner::numbers(Referenced& list, std::size_t least, std::size_t most,
   if (&list == &texcoords_) scan_.texcoords.emplace_back(value);
 }
 
-void Scanner::face() {
+void ObjScanner::face() {
   const std::size_t corners = words_.size() - 1;
   if (corners < 3) {
     fail(fmt::format("a face needs 3 corners or more, this one has {}; correct or remove it",
@@ -154,7 +154,7 @@ void Scanner::face() {
   material_used_ = true;
 }
 
-void Scanner::corner(std::string_view word) {
+void ObjScanner::corner(std::string_view word) {
   const std::vector<std::string_view> parts = splitAt(word, '/');
   if (parts.size() > 3) fail(fmt::format("`{}` is not a corner v, v/vt or v/vt/vn", word));
   scan_.corners.push_back(index(parts[0], word, vertices_));
@@ -164,7 +164,7 @@ void Scanner::corner(std::string_view word) {
 }
 
 /// An index that counts from 0; only finish() checks it against the end of the file.
-Index Scanner::index(std::string_view word, std::string_view corner, Referenced& list) {
+Index ObjScanner::index(std::string_view word, std::string_view corner, Referenced& list) {
   const std::optional<long long> value = parseInteger(word);
   if (!value) {
     fail(fmt::format("`{}` is not a corner v, v/vt or v/vt/vn of whole numbers; correct it",
@@ -182,7 +182,7 @@ Index Scanner::index(std::string_view word, std::string_view corner, Referenced&
   return Index(*value > 0 ? *value - 1 : static_cast<long long>(list.count) + *value);
 }
 
-void Scanner::object(std::string name) {
+void ObjScanner::object(std::string name) {
   if (words_[0] == "o") object_name_ = name;
   if (name == "default" && words_[0] == "g") name = object_name_;
   name_ = std::move(name);
@@ -190,7 +190,7 @@ void Scanner::object(std::string name) {
   inheriting_ = material_used_;
 }
 
-void Scanner::material(std::string_view name) {
+void ObjScanner::material(std::string_view name) {
   if (name.empty()) fail("usemtl names no material; add the name or remove the line");
   const auto [place, is_new] =
       material_index_.try_emplace(std::string(name), Index(scan_.materials.size()));
@@ -200,7 +200,7 @@ void Scanner::material(std::string_view name) {
   inheriting_ = false;
 }
 
-void Scanner::other(std::string_view keyword) {
+void ObjScanner::other(std::string_view keyword) {
   if (contains(kDisplayStatements, keyword)) return;
   if (keyword == "l" || keyword == "p") {
     ignored_.add("lines and points have no area and are left out, in", name_);
@@ -213,7 +213,7 @@ void Scanner::other(std::string_view keyword) {
   }
 }
 
-Index Scanner::currentObject() {
+Index ObjScanner::currentObject() {
   if (object_ == kNone) {
     const auto [place, is_new] = object_index_.try_emplace(name_, Index(scan_.objects.size()));
     if (is_new) scan_.objects.push_back(name_);
@@ -222,7 +222,7 @@ Index Scanner::currentObject() {
   return object_;
 }
 
-ObjScan Scanner::finish() {
+ObjScan ObjScanner::finish() {
   for (const Referenced* list : {&vertices_, &texcoords_, &normals_}) {
     if (list->largest <= static_cast<long long>(list->count)) continue;
     line_ = list->largest_line;
@@ -269,7 +269,7 @@ ObjScan scanObj(const std::string& file, std::string_view text) {
   if (text.find('\0') != std::string_view::npos) {
     throw InputError(file + ": is not a text file; export it as Wavefront OBJ");
   }
-  Scanner scanner(file);
+  ObjScanner scanner(file);
   forEachStatement(text, [&](std::size_t line, std::string_view s) { scanner.statement(line, s); });
   return scanner.finish();
 }

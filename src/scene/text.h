@@ -10,6 +10,9 @@
 
 namespace radiosity {
 
+/// What separates words.
+inline constexpr std::string_view kBlanks = " \t\r\n\v\f";
+
 /// Without blanks at both ends.
 std::string_view trimmed(std::string_view text);
 

@@ -71,9 +71,10 @@ Turn turnBy(double degrees) {
   }
 }
 
-class Scanner {
+class View3dScanner {
  public:
-  Scanner(const std::string& file, std::string_view text) : file_(file), tokens_(tokensOf(text)) {}
+  View3dScanner(const std::string& file, std::string_view text)
+      : file_(file), tokens_(tokensOf(text)) {}
 
   View3dScan run() {
     while (at_ < tokens_.size() && statement()) skipLine();
@@ -119,13 +120,13 @@ class Scanner {
   FeatureNotes notes_;
 };
 
-std::string_view Scanner::take(const char* what) {
+std::string_view View3dScanner::take(const char* what) {
   if (at_ == tokens_.size()) fail(fmt::format("the file ends where a {} belongs; add it", what));
   line_ = tokens_[at_].line;  // data may go on in the next line
   return tokens_[at_++].word;
 }
 
-double Scanner::number(const char* what) {
+double View3dScanner::number(const char* what) {
   const std::string_view word = take(what);
   const std::optional<double> value = parseNumber(word);
   if (!value) {
@@ -135,7 +136,7 @@ double Scanner::number(const char* what) {
   return *value;
 }
 
-std::size_t Scanner::whole(const char* what) {
+std::size_t View3dScanner::whole(const char* what) {
   const std::string_view word = take(what);
   const std::optional<long long> value = parseInteger(word);
   if (!value || *value < 0) {
@@ -144,7 +145,7 @@ std::size_t Scanner::whole(const char* what) {
   return std::size_t(*value);
 }
 
-bool Scanner::statement() {
+bool View3dScanner::statement() {
   line_ = tokens_[at_].line;
   const std::string_view word = tokens_[at_++].word;
   const char letter = upper(word[0]);
@@ -175,14 +176,14 @@ bool Scanner::statement() {
 }
 
 /// What it asks of View3D, this program is asked by options.
-void Scanner::control() {
+void View3dScanner::control() {
   while (onThisLine()) {
     notes_.add("View3D controls are not used (options of the program say these)",
                std::string(take("control")));
   }
 }
 
-void Scanner::format() {
+void View3dScanner::format() {
   const std::string_view word = take("format");
   if (word == "3") {
     format_ = Format::vertices;
@@ -193,7 +194,7 @@ void Scanner::format() {
   }
 }
 
-void Scanner::vertex() {
+void View3dScanner::vertex() {
   const std::size_t given = whole("vertex number");
   if (given != scan_.vertices.size() + 1) {
     fail(fmt::format("vertex {} stands where vertex {} belongs; number them in order", given,
@@ -205,7 +206,7 @@ void Scanner::vertex() {
   scan_.vertices.push_back(place);
 }
 
-void Scanner::surface(char letter) {
+void View3dScanner::surface(char letter) {
   if (format_ == Format::unknown) fail("no F line before the first surface; write F 3 above it");
   View3dSurface surface;
   surface.line = line_;
@@ -240,7 +241,7 @@ void Scanner::surface(char letter) {
   scan_.surfaces.push_back(std::move(surface));
 }
 
-void Scanner::corners(View3dSurface& surface) {
+void View3dScanner::corners(View3dSurface& surface) {
   for (int k = 0; k < 4; ++k) {
     const std::size_t v = whole("vertex number");
     if (v == 0 && k == 3) return;  // a triangle
@@ -254,7 +255,7 @@ void Scanner::corners(View3dSurface& surface) {
   }
 }
 
-void Scanner::properties(View3dSurface& surface) {
+void View3dScanner::properties(View3dSurface& surface) {
   surface.base = whole("base surface");
   surface.combined = whole("combined surface");
   surface.emissivity = number("emissivity");
@@ -266,7 +267,7 @@ void Scanner::properties(View3dSurface& surface) {
 
 /// A shape in a plane of its own: x to the right and y up for who stands before its front, which
 /// looks to `azimuth` (clockwise from +y) and `tilt` (0 up, 90 level, 180 down).
-void Scanner::placedShape(View3dSurface& surface, char shape) {
+void View3dScanner::placedShape(View3dSurface& surface, char shape) {
   Vec3 origin(0.0);
   for (int k = 0; k < 3; ++k) origin[k] = number("coordinate");
   const Turn azimuth = turnBy(number("azimuth"));
@@ -293,7 +294,7 @@ void Scanner::placedShape(View3dSurface& surface, char shape) {
   }
 }
 
-void Scanner::checkReferences() const {
+void View3dScanner::checkReferences() const {
   const std::vector<View3dSurface>& all = scan_.surfaces;
   for (std::size_t k = 0; k < all.size(); ++k) {
     const View3dSurface& s = all[k];
@@ -341,7 +342,7 @@ View3dScan scanView3d(const std::string& file, std::string_view text) {
   if (text.find('\0') != std::string_view::npos) {
     throw InputError(file + ": is not a text file; export it as View3D input");
   }
-  return Scanner(file, text).run();
+  return View3dScanner(file, text).run();
 }
 
 }  // namespace radiosity

@@ -16,7 +16,7 @@ using enum NumberType;
   throw InputError(fmt::format("{}: DataArray {}: {}", file.path, array.name, what));
 }
 
-NumberType typeOf(const VtkFile& file, const VtkArray& array) {
+NumberType arrayType(const VtkFile& file, const VtkArray& array) {
   constexpr std::pair<std::string_view, NumberType> kTypes[] = {
       {"Int8", i8},    {"UInt8", u8},  {"Int16", i16},  {"UInt16", u16},  {"Int32", i32},
       {"UInt32", u32}, {"Int64", i64}, {"UInt64", u64}, {"Float32", f32}, {"Float64", f64}};
@@ -161,7 +161,7 @@ std::string bytesOf(const VtkFile& file, const VtkArray& array) {
 
 template <class Number, class Read>
 std::vector<Number> readAll(const VtkFile& file, const VtkArray& array, const Read& read) {
-  const NumberType type = typeOf(file, array);
+  const NumberType type = arrayType(file, array);
   const bool is_text = array.format == "ascii";
   const std::string bytes = is_text ? std::string() : bytesOf(file, array);
   MeshCursor cursor(fmt::format("{}: DataArray {}", file.path, array.name),

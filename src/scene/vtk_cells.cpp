@@ -14,7 +14,7 @@ constexpr long long kPixel = 8;
 constexpr long long kQuadraticPolygon = 36;
 
 /// Of a cell of `nodes` points. Nothing for a type that VTK does not have.
-std::optional<ElementShape> shapeOf(long long type, std::size_t nodes) {
+std::optional<ElementShape> vtkShape(long long type, std::size_t nodes) {
   const int n = int(std::min<std::size_t>(nodes, 1000));
   switch (type) {
     case 0:  // empty
@@ -98,7 +98,7 @@ class CellAdder {
   }
 
   void add(long long type) {
-    const std::optional<ElementShape> shape = shapeOf(type, corners_.size());
+    const std::optional<ElementShape> shape = vtkShape(type, corners_.size());
     if (!shape) fail(fmt::format("cells of type {} are not read; export polygons", type));
     if (shape->dimension == 2 && std::size_t(std::max(shape->corners, 3)) > corners_.size()) {
       fail(fmt::format("a face of {} points has too few; correct or remove it", corners_.size()));

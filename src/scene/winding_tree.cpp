@@ -17,7 +17,7 @@ namespace {
 /// A node stands for its triangles from this many radii on. The next term of the expansion is then
 /// at most some 1/16 of the node's own, and terms of opposite sides of a part cancel: the rest is
 /// far from the quarter that would change an answer.
-constexpr double kFar = 4;
+constexpr double kFarRadii = 4;
 
 }  // namespace
 
@@ -83,7 +83,7 @@ double WindingTree::around(const Vec3& point, Index own) const {
     waiting.pop_back();
     const Vec3 towards = node.middle - point;
     const double distance = glm::length(towards);
-    if (distance > kFar * node.radius) {
+    if (distance > kFarRadii * node.radius) {
       angle += glm::dot(towards, node.area) / (distance * distance * distance);
     } else if (node.second == 0) {
       for (std::size_t k = node.begin; k < node.end; ++k) {

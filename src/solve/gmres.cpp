@@ -13,7 +13,7 @@ namespace {
 /// Memory for so many vectors a band; rooms of up to two dozen nearly separate parts need fewer.
 constexpr int kMostSteps = 30;
 /// A cycle ends once its residual is so much smaller: beyond, rounding makes the recurrence untrue.
-constexpr double kCycleReduction = 1e-10;
+constexpr double kTrueReduction = 1e-10;
 
 class Gmres {
  public:
@@ -96,7 +96,7 @@ class Gmres {
       const Eigen::ArrayXd left = krylov[k].residual().array().abs();
       const double most = left.maxCoeff();
       largest = std::max(largest, most / largest_[b]);
-      exhausted = exhausted && most <= kCycleReduction * step.col(b).abs().maxCoeff();
+      exhausted = exhausted && most <= kTrueReduction * step.col(b).abs().maxCoeff();
       if (most <= tolerance * largest_[b] && system_.nonnegative) {
         const Eigen::ArrayXd own =
             (radiosity.col(b) + krylov[k].correction().array()).max(emission.col(b));

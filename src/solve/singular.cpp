@@ -7,7 +7,7 @@ namespace radiosity {
 namespace {
 
 /// 1 - rho and backs + sky below this are 0 to rounding: the accounts are sums of up to 1e5 pixels.
-constexpr double kRounding = 1e-13;
+constexpr double kNoChange = 1e-13;
 
 using Marks = std::vector<double>;  // 0 or 1
 
@@ -46,7 +46,7 @@ void markAllThatSee(const ExchangeMatrix& matrix, int bands, std::vector<double>
 }
 
 bool looksOut(const FormFactors& factors, std::size_t row) {
-  return factors.backs[row] + factors.sky[row] > kRounding;
+  return factors.backs[row] + factors.sky[row] > kNoChange;
 }
 
 // Power absorbed at i is A_i (1 - rho_i) H_i, and H_i gathers along row i; "light from i reaches j"
@@ -59,7 +59,7 @@ WhiteRoom findWhiteRoom(const FormFactors& factors, const System& system) {
   for (std::size_t band = 0; band < bands; ++band) {
     Marks escapes(n);
     for (std::size_t i = 0; i < n; ++i) {
-      const bool absorbs = 1 - system.reflectance[i * bands + band] > kRounding;
+      const bool absorbs = 1 - system.reflectance[i * bands + band] > kNoChange;
       const bool sees_nothing = factors.fronts[i] <= 0;
       escapes[i] = double(absorbs || looksOut(factors, i) || sees_nothing);
     }

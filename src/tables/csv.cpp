@@ -22,7 +22,7 @@ double largestResidual(const NamedFactors& factors, std::size_t a) {
   return largest;
 }
 
-void writeWide(CheckedFile& file, const NamedFactors& factors, Progress& progress) {
+void writeWideCsv(CheckedFile& file, const NamedFactors& factors, Progress& progress) {
   const bool has_error = !factors.error.empty();
   std::string header = "name,area_m2";
   for (std::size_t b = 0; b < factors.size(); ++b) {
@@ -45,7 +45,7 @@ void writeWide(CheckedFile& file, const NamedFactors& factors, Progress& progres
       });
 }
 
-void writeTall(CheckedFile& file, const NamedFactors& factors, Progress& progress) {
+void writeTallCsv(CheckedFile& file, const NamedFactors& factors, Progress& progress) {
   const bool has_error = !factors.error.empty();
   file.write(fmt::format("from,to,form_factor{},reciprocity_m2\n", has_error ? ",error" : ""));
   forDenseRows(
@@ -75,9 +75,9 @@ void writeFactorsCsv(const std::string& path, const NamedFactors& factors, Table
   if (layout == TableLayout::wide) requireTableSize(path, factors);
   CheckedFile file(path);
   if (layout == TableLayout::wide) {
-    writeWide(file, factors, progress);
+    writeWideCsv(file, factors, progress);
   } else {
-    writeTall(file, factors, progress);
+    writeTallCsv(file, factors, progress);
   }
   file.commit();
 }

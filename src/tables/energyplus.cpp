@@ -14,17 +14,17 @@ namespace radiosity {
 namespace {
 
 /// Of names of EnergyPlus objects.
-constexpr std::size_t kLongestName = 100;
+constexpr std::size_t kLongestIdfName = 100;
 
 void requireName(const std::string& path, const std::string& name) {
   const bool plain = std::none_of(name.begin(), name.end(), [](unsigned char c) {
     return c == ',' || c == ';' || c == '!' || c < 0x20;
   });
-  if (plain && !name.empty() && name.size() <= kLongestName) return;
+  if (plain && !name.empty() && name.size() <= kLongestIdfName) return;
   throw InputError(fmt::format(
       "{}: '{}' is no name for EnergyPlus: 1 to {} characters without comma, semicolon and "
       "exclamation mark; rename it (--group NEW=OLD)",
-      path, name, kLongestName));
+      path, name, kLongestIdfName));
 }
 
 /// The most that EnergyPlus takes (IDD: \maximum 1.0), but for the digits that are not written.

@@ -34,7 +34,7 @@ void writeSquare(CheckedFile& file, const char* key, const NamedFactors& factors
   file.write("\n]");
 }
 
-void writeWide(CheckedFile& file, const NamedFactors& factors, Progress& progress) {
+void writeWideJson(CheckedFile& file, const NamedFactors& factors, Progress& progress) {
   file.write(",\n\"form_factors\": [");
   forDenseRows(factors, "writing the table", progress,
                [&](std::size_t a, const std::vector<double>& row) {
@@ -49,7 +49,7 @@ void writeWide(CheckedFile& file, const NamedFactors& factors, Progress& progres
               [&](std::size_t a, std::size_t b) { return factors.reciprocityResidual(a, b); });
 }
 
-void writeTall(CheckedFile& file, const NamedFactors& factors, Progress& progress) {
+void writeTallJson(CheckedFile& file, const NamedFactors& factors, Progress& progress) {
   const auto label = [&](std::size_t a) {
     return factors.numbered ? nlohmann::json(a) : nlohmann::json(factors.names[a]);
   };
@@ -88,9 +88,9 @@ void writeFactorsJson(const std::string& path, const NamedFactors& factors, Tabl
   file.write(",\n\"sky_name\": " + dumped(factors.sky_name));
   if (!factors.error.empty()) file.write(",\n" + member("error", factors.error));
   if (layout == TableLayout::wide) {
-    writeWide(file, factors, progress);
+    writeWideJson(file, factors, progress);
   } else {
-    writeTall(file, factors, progress);
+    writeTallJson(file, factors, progress);
   }
   file.write("\n}\n");
   file.commit();

@@ -11,14 +11,14 @@ namespace radiosity {
 namespace {
 
 /// MatrixMarket has lines of up to 1024 characters.
-constexpr std::size_t kLongestName = 800;
+constexpr std::size_t kLongestRowName = 800;
 
 }  // namespace
 
 std::string rowComment(const NamedFactors& factors, std::size_t i) {
   return fmt::format("row {} area {} sky {} backs {} name {}", i + 1, factors.matrix->area()[i],
                      factors.sky[i], factors.backs[i],
-                     printable(factors.names[i]).substr(0, kLongestName));
+                     printable(factors.names[i]).substr(0, kLongestRowName));
 }
 
 std::optional<RowComment> parseRowComment(std::string_view text) {

@@ -9,12 +9,12 @@ namespace radiosity {
 
 namespace {
 
-constexpr Index kLeaf = 4;
+constexpr Index kLeafBoxes = 4;
 constexpr Index kWorthATask = 8192;
 
 /// Nodes below one of so many boxes.
 Index nodesBelow(Index count) {
-  return count <= kLeaf ? 0 : 2 + nodesBelow(count / 2) + nodesBelow(count - count / 2);
+  return count <= kLeafBoxes ? 0 : 2 + nodesBelow(count / 2) + nodesBelow(count - count / 2);
 }
 
 }  // namespace
@@ -34,7 +34,7 @@ void BoxTree::build(Index node, Index first, Index count, Index below,
   Box3 bound = boxes[order_[first]];
   for (Index k = first; k < first + count; ++k) bound.add(boxes[order_[k]]);
   nodes_[node] = {bound, first, count, count};
-  if (count <= kLeaf) return;
+  if (count <= kLeafBoxes) return;
   const Vec3 extent = bound.high - bound.low;
   const int axis =
       extent.x >= extent.y && extent.x >= extent.z ? 0 : (extent.y >= extent.z ? 1 : 2);

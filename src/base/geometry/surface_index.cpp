@@ -8,7 +8,7 @@
 namespace radiosity {
 namespace {
 
-constexpr std::size_t kLeaf = 4;
+constexpr std::size_t kLeafFaces = 4;
 
 }  // namespace
 
@@ -74,7 +74,7 @@ void SurfaceIndex::build(std::size_t begin, std::size_t end) {
   }
   const std::size_t place = nodes_.size();
   nodes_.push_back(node);
-  if (end - begin <= kLeaf) {
+  if (end - begin <= kLeafFaces) {
     nodes_[place].begin = std::uint32_t(begin);
     nodes_[place].count = std::uint32_t(end - begin);
     return;

@@ -19,8 +19,8 @@ using Square = Eigen::Matrix<double, kFeatures, kFeatures>;
 
 /// Rays of all clusters together, about, and of one of them in each replicate.
 constexpr double kAllRays = 1u << 24;
-constexpr double kFewestRays = 256;
-constexpr double kMostRays = 8192;
+constexpr double kFewestPatchRays = 256;
+constexpr double kMostPatchRays = 8192;
 /// Of the spread of the strongest feature: a feature that spreads less (what is normal to a plane)
 /// is held by so much.
 constexpr double kHeld = 1e-6;
@@ -97,7 +97,7 @@ PatchIrradiance::PatchIrradiance(const PatchMesh& mesh, int bands, std::span<con
       beyond_(mesh.unknowns() * bands_, 0.0) {
   for (std::size_t b = 0; b < sky.size(); ++b) sky_[b] = std::numbers::pi * sky[b];
   const double rays = kAllRays / (kReplicates * double(mesh.unknowns()));
-  rays_ = std::bit_floor(std::uint32_t(std::clamp(rays, kFewestRays, kMostRays)));
+  rays_ = std::bit_floor(std::uint32_t(std::clamp(rays, kFewestPatchRays, kMostPatchRays)));
 }
 
 void PatchIrradiance::look(std::span<const double> radiosity, Progress& progress) {

@@ -16,13 +16,14 @@ namespace {
 
 /// Rays to a point end this much of their length before it.
 constexpr float kShort = 1e-5F;
-constexpr int kCells = 8;  ///< along each side of the disc's square: a packet a cell of 1,024 rays
+constexpr int kDiscCells =
+    8;  ///< along each side of the disc's square: a packet a cell of 1,024 rays
 
 /// Cells row by row, to and fro, so that neighbours in the order are neighbours on the disc.
-int cellOf(float x, float y) {
-  const int row = std::min(int(y * kCells), kCells - 1);
-  const int column = std::min(int(x * kCells), kCells - 1);
-  return row * kCells + (row % 2 == 0 ? column : kCells - 1 - column);
+int discCellOf(float x, float y) {
+  const int row = std::min(int(y * kDiscCells), kDiscCells - 1);
+  const int column = std::min(int(x * kDiscCells), kDiscCells - 1);
+  return row * kDiscCells + (row % 2 == 0 ? column : kDiscCells - 1 - column);
 }
 
 /// What a ray to a point must not be stopped by; handed through Embree's context.
@@ -56,7 +57,7 @@ HemisphereSet::HemisphereSet(std::size_t rays, std::uint64_t seed) : rays_(rays)
     sobol.points(0, rays, seed + set, out);
     std::iota(order.begin(), order.end(), std::size_t(0));
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-      return cellOf(points[0][a], points[1][a]) < cellOf(points[0][b], points[1][b]);
+      return discCellOf(points[0][a], points[1][a]) < discCellOf(points[0][b], points[1][b]);
     });
     for (const std::size_t k : order) {
       float u = 0;

@@ -19,8 +19,8 @@ constexpr std::size_t kMostRows = 160;
 constexpr std::uint32_t kFewRays = kPilotRays;
 constexpr std::uint32_t kManyRays = 8 * kPilotRays;
 /// Orders that the sample may seem to show: of 160 rows it is rough still.
-constexpr double kLeastOrder = 1.1;
-constexpr double kMostOrder = 1.4;
+constexpr double kLeastForeseenOrder = 1.1;
+constexpr double kMostForeseenOrder = 1.4;
 /// Merging with what the others count takes about half off the square of an error.
 constexpr double kMerged = 0.5;
 /// Rays are cast to the next number that suits the net, and what a round says of an error is rough:
@@ -78,8 +78,8 @@ double orderOf(const std::vector<SampledRow>& rows) {
     many += row.many.error * row.many.error / (row.many.norm * row.many.norm);
   }
   if (!(few > many) || !(many > 0)) return kUsualOrder;
-  return std::clamp(std::log(few / many) / std::log(double(kManyRays) / kFewRays), kLeastOrder,
-                    kMostOrder);
+  return std::clamp(std::log(few / many) / std::log(double(kManyRays) / kFewRays),
+                    kLeastForeseenOrder, kMostForeseenOrder);
 }
 
 /// Few of the entries that are not there yet are found by so many times the rays.

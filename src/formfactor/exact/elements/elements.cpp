@@ -22,7 +22,7 @@ struct Piece {
 };
 
 /// Corners nearer to their neighbours' line, in a scene of size 1, are on it but for rounding.
-constexpr double kLevel = 0x1p-44;
+constexpr double kOnLine = 0x1p-44;
 /// Parts of a patch may have so much more or less area than it.
 constexpr double kSameArea = 1e-10;
 
@@ -33,7 +33,7 @@ std::vector<Vec3> withoutLevelCorners(std::vector<Vec3> outline) {
     const Vec3& after = outline[(k + 1) % outline.size()];
     const Vec3 across = glm::cross(after - before, outline[k] - before);
     const bool goes_on = glm::dot(outline[k] - before, after - outline[k]) > 0;
-    if (goes_on && glm::length(across) <= kLevel * glm::distance(after, before)) {
+    if (goes_on && glm::length(across) <= kOnLine * glm::distance(after, before)) {
       outline.erase(outline.begin() + std::ptrdiff_t(k));
     } else {
       ++k;

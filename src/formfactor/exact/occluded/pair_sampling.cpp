@@ -28,7 +28,7 @@ struct Heights {
 };
 
 template <class Plane>
-Heights heights(std::span<const Vec3> points, const Plane& plane) {
+Heights heightsOver(std::span<const Vec3> points, const Plane& plane) {
   Heights h;
   for (const Vec3& p : points) {
     const double d = glm::dot(plane.normal, p) - plane.offset;
@@ -87,7 +87,7 @@ bool EdgeDistances::seesEdgeOn(Index element, Index occluder) const {
   if (plane.normal == Vec3(0.0)) return false;
   const double height = glm::dot(plane.normal, elements_.centroid[element]) - plane.offset;
   if (std::abs(height) >= elements_.radius[element]) return false;
-  const Heights h = heights(elements_.outline(element), plane);
+  const Heights h = heightsOver(elements_.outline(element), plane);
   return h.least < -elements_.coincidence && h.most > elements_.coincidence;
 }
 
@@ -114,8 +114,8 @@ const PairPreparation::Between& PairPreparation::between(Index occluder, Index r
   Between& found = between_[occluder];
   if (found.stamp != stamp_) {
     const Occluder& body = occluders_.occluders[occluder];
-    const Heights first = heights(body.corners, elements_.facets[row_facet]);
-    const Heights second = heights(body.corners, elements_.facets[column_facet]);
+    const Heights first = heightsOver(body.corners, elements_.facets[row_facet]);
+    const Heights second = heightsOver(body.corners, elements_.facets[column_facet]);
     const double touching = elements_.coincidence;
     found = {stamp_, first.most > touching && second.most > touching, first.least < -touching,
              second.least < -touching};
@@ -150,8 +150,9 @@ void PairPreparation::prepare(std::span<const OccludedPair> batch,
     const OccludedPair& given = batch[k];
     const Index row_facet = elements_.facet[given.row];
     const Index column_facet = elements_.facet[given.column];
-    const Heights row = heights(elements_.outline(given.row), elements_.facets[column_facet]);
-    const Heights column = heights(elements_.outline(given.column), elements_.facets[row_facet]);
+    const Heights row = heightsOver(elements_.outline(given.row), elements_.facets[column_facet]);
+    const Heights column =
+        heightsOver(elements_.outline(given.column), elements_.facets[row_facet]);
     const double touching = elements_.coincidence;
     if (row.most <= touching || column.most <= touching) continue;
     SampledPair pair;

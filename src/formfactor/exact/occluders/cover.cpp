@@ -10,10 +10,11 @@
 namespace radiosity {
 namespace {
 
-using Piece = std::vector<Vec3>;
+using CoverPiece = std::vector<Vec3>;
 
 /// Parts of a convex piece below and above a plane; an empty one has no corners.
-void split(const Piece& piece, const Occluder::Plane& plane, Piece& below, Piece& above) {
+void split(const CoverPiece& piece, const Occluder::Plane& plane, CoverPiece& below,
+           CoverPiece& above) {
   below.clear();
   above.clear();
   for (std::size_t k = 0; k < piece.size(); ++k) {
@@ -32,7 +33,7 @@ void split(const Piece& piece, const Occluder::Plane& plane, Piece& below, Piece
 }
 
 /// Whether a piece is too thin to block anything: between lines a coincidence apart.
-bool isThin(const Piece& piece, double coincidence) {
+bool isThin(const CoverPiece& piece, double coincidence) {
   if (piece.size() < 3) return true;
   double length = 0;
   for (const Vec3& p : piece) length = std::max(length, glm::distance(p, piece[0]));
@@ -41,14 +42,14 @@ bool isThin(const Piece& piece, double coincidence) {
 }
 
 /// A face that lies in the polygon's plane, or kNone.
-Index coplanarFace(const OccluderPolygon& polygon, const std::vector<Piece>& pieces,
+Index coplanarFace(const OccluderPolygon& polygon, const std::vector<CoverPiece>& pieces,
                    const Occluder& solid, double coincidence) {
   for (Index k = 0; k < solid.planes.size(); ++k) {
     const Occluder::Plane& plane = solid.planes[k];
     // Only to save time: distances decide below.
     if (std::abs(glm::dot(plane.normal, polygon.normal)) < 0.5) continue;
     bool on = true;
-    for (const Piece& piece : pieces) {
+    for (const CoverPiece& piece : pieces) {
       for (const Vec3& p : piece) {
         on = on && std::abs(glm::dot(plane.normal, p) - plane.offset) <= coincidence;
       }
@@ -69,22 +70,22 @@ bool isCoveredBySolids(const OccluderPolygons& all, const OccluderPolygon& polyg
   });
   if (near.empty()) return false;
   std::sort(near.begin(), near.end());
-  std::vector<Piece> open;
+  std::vector<CoverPiece> open;
   for (const auto& t : all.trianglesOf(polygon)) {
     open.push_back({all.vertices[t[0]], all.vertices[t[1]], all.vertices[t[2]]});
   }
   if (open.empty()) return false;
   const Vec3 middle = 0.5 * (polygon.box.low + polygon.box.high);
   const double radius = 0.5 * glm::distance(polygon.box.low, polygon.box.high);
-  Piece below;
-  Piece above;
+  CoverPiece below;
+  CoverPiece above;
   for (const Index s : near) {
     const Occluder& solid = solids[s];
     if (glm::distance(middle, solid.centre) > radius + solid.radius) continue;
     const Index face = coplanarFace(polygon, open, solid, all.coincidence);
     if (face == kNone) continue;
-    std::vector<Piece> left;
-    for (Piece& piece : open) {
+    std::vector<CoverPiece> left;
+    for (CoverPiece& piece : open) {
       for (Index k = 0; k < solid.planes.size() && !piece.empty(); ++k) {
         if (k == face) continue;
         split(piece, solid.planes[k], below, above);

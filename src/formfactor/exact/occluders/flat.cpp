@@ -14,8 +14,6 @@
 namespace radiosity {
 namespace {
 
-using Edges = OccluderEdgeUsers;
-
 bool liesOn(const OccluderPolygons& all, const OccluderPolygon& polygon,
             const OccluderPolygon& plane) {
   for (const std::vector<Index>& loop : polygon.loops) {
@@ -34,8 +32,8 @@ std::vector<Index> reversed(std::vector<Index> loop) {
 }
 
 /// Polygons joined to `seed` by edges, all on its plane; none already marked.
-std::vector<Index> coplanarGroup(const OccluderPolygons& all, const Edges& edges, Index seed,
-                                 std::vector<std::uint8_t>& taken) {
+std::vector<Index> coplanarGroup(const OccluderPolygons& all, const OccluderEdgeUsers& edges,
+                                 Index seed, std::vector<std::uint8_t>& taken) {
   std::vector<Index> group{seed};
   taken[seed] = 1;
   for (std::size_t k = 0; k < group.size() && all.polygons[seed].planar; ++k) {
@@ -176,7 +174,7 @@ std::vector<std::vector<Index>> convexParts(OccluderPolygons& all, const Occlude
 
 std::vector<FlatPiece> flatPieces(OccluderPolygons& all, const std::vector<std::uint8_t>& taken,
                                   Progress& progress) {
-  const Edges edges = all.edgeUsers();
+  const OccluderEdgeUsers edges = all.edgeUsers();
   std::vector<std::uint8_t> done = taken;
   std::vector<FlatPiece> out;
   for (Index seed = 0; seed < all.polygons.size(); ++seed) {
