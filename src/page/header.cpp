@@ -6,6 +6,7 @@
 
 #include "radiosity/names.h"
 #include "radiosity/version.h"
+#include "solve/beyond_means.h"
 
 namespace radiosity::page {
 
@@ -126,6 +127,7 @@ void describeSolution(Json& header, const FormFactors& factors, const Solution& 
   header["method"] = factors.method;
   header["tolerance"] = toleranceOf(factors, options.factors);
   header["closed"] = factors.report.closed;
+  header["sees_out"] = seesOut(factors);
   const SolveSummary& summary = solution.summary;
   const Solver ran = summary.solver == Solver::automatic ? options.solve.solver : summary.solver;
   header["solver"] = {

@@ -10,6 +10,7 @@
 #include "page/factor_codes.h"
 #include "page/header.h"
 #include "page/html.h"
+#include "page/seen.h"
 #include "page/surfaces.h"
 #include "results/glb.h"
 
@@ -93,6 +94,7 @@ std::vector<std::byte> pageData(Pipeline& pipeline, const SurfaceLight& light,
   addEyes(mesh, options.crease, origin, container);
   addPatches(mesh, colours, origin, container);
   addFactors(factors, matrix, codes, container);
+  addSeenPatches(mesh, progress, container);
   report.element_triangles = addElements(mesh, light, options.crease, origin, container);
   report.pairs = codes.pairs;
   report.quantisation = codes.quantisation;

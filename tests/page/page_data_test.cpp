@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "formfactor/hemicube/eye_frame.h"
+#include "formfactor/rays/seen_patches.h"
 #include "gather/eyes.h"
 #include "page/page.h"
 #include "page/surfaces.h"
@@ -227,6 +228,35 @@ void useRoughRays(PipelineOptions& options) {
   options.factors.tolerance = 0.1;
 }
 
+/// What unknowns see that patches share.
+void expectSeen(const PageReader& page, const PatchMesh& mesh) {
+  Progress silent;
+  const SeenPatches seen = seenPatches(mesh, silent);
+  EXPECT_EQ(page.indices("seen_begin"), seen.begin);
+  EXPECT_EQ(page.indices("seen_item"), seen.item);
+  EXPECT_EQ(page.indices("seen_rays"), seen.rays);
+  EXPECT_EQ(page.array<std::uint8_t>("seen_axes"), seen.axes);
+  EXPECT_EQ(page.floats("patch_axis"), seen.patch);
+  const auto hits = page.array<std::uint16_t>("seen_hits");
+  EXPECT_TRUE(std::ranges::equal(hits, seen.hits));
+  const auto code = page.array<std::uint16_t>("seen_axis_code");
+  const auto scale = page.floats("seen_axis_scale");
+  ASSERT_EQ(code.size(), seen.mean.size());
+  std::size_t first_scale = 0;
+  std::size_t value = 0;
+  for (std::size_t k = 0; k < seen.axes.size(); ++k) {
+    for (std::size_t item = seen.begin[k]; item < seen.begin[k + 1]; ++item) {
+      for (std::size_t a = 0; a < seen.axes[k]; ++a, ++value) {
+        const double step = double(scale[first_scale + a]) / 32767;
+        // Half a step of a code, and single precision.
+        ASSERT_NEAR((code[value] - 32768) * step, double(seen.mean[value]), 0.5001 * step);
+      }
+    }
+    first_scale += seen.axes[k];
+  }
+  EXPECT_EQ(first_scale, scale.size());
+}
+
 TEST(PageData, PatchesThatShareUnknownsHaveLightOfTheirOwn) {
   Made made(dataScene("curved.obj"), 120, false, useRoughRays);
   const PatchMesh& mesh = made.mesh();
@@ -249,7 +279,9 @@ TEST(PageData, PatchesThatShareUnknownsHaveLightOfTheirOwn) {
   }
   EXPECT_EQ(page.header["method"], "rays");
   EXPECT_EQ(page.header["tolerance"], 0.1);
+  EXPECT_EQ(page.header["sees_out"], false);
   expectFactors(made, page.indices("factor_column").empty());
+  expectSeen(page, mesh);
 }
 
 /// The header's bound of what 16 bits do to light: |(F' - F) B| <= largest_row_error max B.
@@ -259,6 +291,7 @@ TEST(PageData, LightIsOffByNoMoreThanThePageSays) {
   Made made(std::move(scene), 200);
   EXPECT_EQ(made.page().header["sky"], (std::vector<double>{1, 2, 3}));
   EXPECT_EQ(made.page().header["closed"], false);
+  EXPECT_EQ(made.page().header["sees_out"], true);
   const std::vector<double> f = made.page().factors();
   const auto row_sky = made.page().floats("row_sky");
   EXPECT_GT(*std::max_element(row_sky.begin(), row_sky.end()), 0.1f);

@@ -2,36 +2,20 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <bit>
 #include <numbers>
 
 #include "base/made.h"
 #include "base/parallel.h"
 #include "formfactor/patch_seed.h"
+#include "formfactor/rays/cluster_features.h"
 #include "mesh/cluster_means.h"
 
 namespace radiosity {
 namespace {
 
-constexpr int kFeatures = 6;
-using Features = Eigen::Matrix<double, kFeatures, 1>;
-using Square = Eigen::Matrix<double, kFeatures, kFeatures>;
-
-/// Rays of all clusters together, about, and of one of them in each replicate.
-constexpr double kAllRays = 1u << 24;
-constexpr double kFewestPatchRays = 256;
-constexpr double kMostPatchRays = 8192;
-/// Of the spread of the strongest feature: a feature that spreads less (what is normal to a plane)
-/// is held by so much.
-constexpr double kHeld = 1e-6;
-
-Features featuresOf(const glm::vec3& place, const glm::vec3& normal, double size) {
-  Features f;
-  f << place.x / size, place.y / size, place.z / size, normal.x, normal.y, normal.z;
-  return f;
-}
-
-double sizeOf(const RayOrigins& origins) { return std::max(origins.size(), 1e-12); }
+constexpr int kFeatures = ClusterFeatures::kCount;
+using Features = ClusterFeatures::Vector;
+using Square = ClusterFeatures::Square;
 
 }  // namespace
 
@@ -66,8 +50,8 @@ struct PatchIrradiance::Fit {
   Eigen::MatrixXd slopes() const {
     Eigen::MatrixXd result = Eigen::MatrixXd::Zero(kFeatures, values.size());
     if (rays <= kFeatures + 1) return result;
-    Square spread = moments - sum * sum.transpose() / rays;
-    spread.diagonal().array() += kHeld * std::max(spread.diagonal().maxCoeff(), 1e-30);
+    Square spread = ClusterFeatures::spread(moments, sum, rays);
+    spread.diagonal().array() += ClusterFeatures::hold(spread);
     const Eigen::LDLT<Square> solver(spread);
     for (Eigen::Index b = 0; b < values.size(); ++b) {
       const Features with_value = products.col(b) - sum * (values[b] / rays);
@@ -96,8 +80,7 @@ PatchIrradiance::PatchIrradiance(const PatchMesh& mesh, int bands, std::span<con
       slopes_(slopesOf(mesh.unknowns()), 0.0),
       beyond_(mesh.unknowns() * bands_, 0.0) {
   for (std::size_t b = 0; b < sky.size(); ++b) sky_[b] = std::numbers::pi * sky[b];
-  const double rays = kAllRays / (kReplicates * double(mesh.unknowns()));
-  rays_ = std::bit_floor(std::uint32_t(std::clamp(rays, kFewestPatchRays, kMostPatchRays)));
+  rays_ = ClusterFeatures::rays(mesh.unknowns());
 }
 
 void PatchIrradiance::look(std::span<const double> radiosity, Progress& progress) {
@@ -123,11 +106,11 @@ void PatchIrradiance::lookFrom(std::size_t cluster, const View& view) {
   const std::span<const Index> patches = made(mesh_.clusters).patchesOf(cluster);
   const RayOrigins origins = caster_.origins(cluster);
   if (origins.empty()) return;
-  const double size = sizeOf(origins);
+  const ClusterFeatures features(mesh_, caster_, origins);
   Fit fit{int(bands_)};
   caster_.visitEnds(origins, patchSeed(mesh_, patches[0], 0), rays_,
                     [&](const glm::vec3& from, const glm::vec3& normal, std::uint32_t item) {
-                      fit.add(featuresOf(from, normal, size), &view.radiosity[item * bands_],
+                      fit.add(features.at(from, normal), &view.radiosity[item * bands_],
                               &view.beyond[item * bands_]);
                     });
   if (fit.rays == 0) return;
@@ -150,25 +133,18 @@ void PatchIrradiance::addSlopes(std::size_t cluster, std::vector<double>& irradi
   const std::span<const Index> patches = made(mesh_.clusters).patchesOf(cluster);
   const RayOrigins origins = caster_.origins(cluster);
   if (patches.size() < 2 || origins.empty()) return;
-  const double size = sizeOf(origins);
-  const auto features = [&](Index i) {
-    return featuresOf(caster_.place(mesh_.centroid[i]), glm::vec3(mesh_.normal[i]), size);
-  };
   double area = 0;
-  Features middle = Features::Zero();
-  for (const Index i : patches) {
-    area += mesh_.area[i];
-    middle += mesh_.area[i] * features(i);
-  }
+  for (const Index i : patches) area += mesh_.area[i];
   if (!(area > 0)) return;
-  middle /= area;
+  const ClusterFeatures features(mesh_, caster_, origins);
+  const Features middle = features.middleOf(patches);
   for (std::size_t b = 0; b < bands_; ++b) {
     const Eigen::Map<const Features> slopes(&slopes_[slopesOf(cluster) + b * kFeatures]);
     const double mean = irradiance[patches[0] * bands_ + b];
     double sum = 0;
     for (const Index i : patches) {
       double& value = irradiance[i * bands_ + b];
-      value = std::max(0.0, mean + slopes.dot(features(i) - middle));
+      value = std::max(0.0, mean + slopes.dot(features.ofPatch(i) - middle));
       sum += mesh_.area[i] * value;
     }
     // What was cut off at 0 has raised the mean.

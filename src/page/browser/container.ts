@@ -25,6 +25,7 @@ export interface Header {
   method: string;
   tolerance: number | null; // hemicubes have none
   closed: boolean;
+  sees_out: boolean; // the sky, or backs
   exposure: number; // pictures show radiance * 2^exposure
   sky: Rgb; // radiance
   camera: { eye: Rgb; target: Rgb; up: Rgb; fov: number };
@@ -40,6 +41,22 @@ export interface Header {
     largest_row_error: number;
   };
   arrays: Record<string, { type: string; offset: number; length: number }>;
+}
+
+/** What a page has of patches that share unknowns: sums over rays (the format is in ../README.md). */
+export interface SeenData {
+  begin: Uint32Array; // K+1
+  item: Uint32Array; // patches; N: the sky
+  hits: Uint16Array;
+  rays: Uint32Array; // K
+  axes: Uint8Array; // K
+  code: Uint16Array; // (code - 32768) / 32767 * scale
+  scale: Float32Array; // of each axis of each unknown
+  patchAxis: Float32Array; // patch by patch, of each axis of its unknown
+  unknown: Uint32Array; // N
+  area: Float32Array; // N, m^2
+  sky: Rgb; // radiance
+  seesOut: boolean;
 }
 
 /** All of a page's data; N patches, K unknowns, T triangles, S shading vertices. */
@@ -73,6 +90,7 @@ export interface PageData {
   factorColumn: Uint32Array; // empty: rows hold every column from the diagonal on
   factorCode: Uint16Array;
   order: Uint32Array | null; // K: in which order the program's Gauss-Seidel takes unknowns
+  seen: SeenData | null; // where patches share unknowns
   elementPosition: Float32Array;
   elementTriangle: Uint32Array;
   elementLight: Float32Array; // radiosity at each element vertex
@@ -128,6 +146,25 @@ function requireBelow(name: string, indices: ArrayLike<number>, limit: number): 
   }
 }
 
+function checkSeen(seen: SeenData, patches: number, unknowns: number): void {
+  const { axes, begin } = seen;
+  let ofItems = 0, ofUnknowns = 0, ofPatches = 0;
+  axes.forEach((count, k) => {
+    ofUnknowns += count;
+    ofItems += count * (begin[k + 1]! - begin[k]!);
+  });
+  for (const k of seen.unknown) ofPatches += axes[k]!;
+  requireLength("seen_begin", begin, unknowns + 1);
+  requireLength("seen_rays", seen.rays, unknowns);
+  requireLength("seen_axes", axes, unknowns);
+  requireLength("seen_item", seen.item, begin[unknowns]!);
+  requireLength("seen_hits", seen.hits, begin[unknowns]!);
+  requireLength("seen_axis_code", seen.code, ofItems);
+  requireLength("seen_axis_scale", seen.scale, ofUnknowns);
+  requireLength("patch_axis", seen.patchAxis, ofPatches);
+  requireBelow("seen_item", seen.item, patches + 1);
+}
+
 function check(data: PageData): void {
   const { patches: n, unknowns: k } = data.header;
   const triangles = data.trianglePatch.length;
@@ -148,6 +185,7 @@ function check(data: PageData): void {
   requireLength("shading_weight", data.shadingWeight, data.shadingPatch.length);
   if (data.eyePosition.length > 3 * vertices) requireLength("eye_position", data.eyePosition, 3 * vertices);
   for (const name of ["eyeNormal", "eyeAxis"] as const) requireLength(name, data[name], data.eyePosition.length);
+  if (data.seen) checkSeen(data.seen, n, k);
   requireLength("element_light", data.elementLight, data.elementPosition.length);
   requireBelow("patch_triangle", data.patchTriangle, data.position.length / 3);
   requireBelow("triangle_patch", data.trianglePatch, n);
@@ -159,6 +197,23 @@ function check(data: PageData): void {
   requireBelow("factor_column", data.factorColumn, k);
   if (data.order) requireBelow("order", data.order, k);
   requireBelow("element_triangle", data.elementTriangle, data.elementPosition.length / 3);
+}
+
+function readSeen(buffer: ArrayBuffer, header: Header): SeenData {
+  return {
+    begin: view(buffer, header, "seen_begin", "u32"),
+    item: view(buffer, header, "seen_item", "u32"),
+    hits: view(buffer, header, "seen_hits", "u16"),
+    rays: view(buffer, header, "seen_rays", "u32"),
+    axes: view(buffer, header, "seen_axes", "u8"),
+    code: view(buffer, header, "seen_axis_code", "u16"),
+    scale: view(buffer, header, "seen_axis_scale", "f32"),
+    patchAxis: view(buffer, header, "patch_axis", "f32"),
+    unknown: view(buffer, header, "unknown", "u32"),
+    area: view(buffer, header, "area", "f32"),
+    sky: header.sky,
+    seesOut: header.sees_out,
+  };
 }
 
 /** The arrays are views of `buffer`. Throws an Error with one clear line where the data are damaged. */
@@ -197,6 +252,7 @@ export function readContainer(buffer: ArrayBuffer): PageData {
     factorColumn: u32("factor_column"),
     factorCode: view(buffer, header, "factor_code", "u16"),
     order: "order" in header.arrays ? u32("order") : null,
+    seen: header.unknowns === header.patches ? null : readSeen(buffer, header),
     elementPosition: f32("element_position"),
     elementTriangle: u32("element_triangle"),
     elementLight: f32("element_light"),

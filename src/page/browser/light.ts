@@ -62,7 +62,7 @@ function permuted(data: PageData, values: Float32Array): Float32Array {
 /**
  * Irradiance of patches from that of unknowns. Where patches share unknowns (`reference` is there: the
  * unknowns' irradiance in the stored light, by the page's own solution) each patch's stored irradiance
- * changes as its unknown's does.
+ * changes as its unknown's does: an estimate, until light within unknowns is found anew (relight_shared.ts).
  */
 export function patchIrradiance(
   data: PageData, unknowns: Float32Array, reference: Float32Array | null): Float32Array {
@@ -130,10 +130,12 @@ export function withMaterials(data: PageData, states: MaterialState[]): Relit {
 }
 
 export function materialsOfUnknowns(data: PageData, light: Omit<PatchLight, "irradiance">, sky: Rgb): Materials {
+  const { emission, reflectance } = light;
   return {
-    emission: unknownMeans(data, light.emission),
-    reflectance: unknownMeans(data, light.reflectance),
+    emission: unknownMeans(data, emission),
+    reflectance: unknownMeans(data, reflectance),
     sky,
+    ...(data.seen && { patches: { emission, reflectance } }),
   };
 }
 

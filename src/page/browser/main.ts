@@ -58,8 +58,8 @@ function sayAbout(viewer: Viewer): void {
   element("about").replaceChildren(...rows.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]));
   if (shared) {
     element("about").after(make("p", { class: "note" },
-      "Patches share unknowns. Light is solved between unknowns; each patch's stored irradiance changes as " +
-      "its unknown's does."));
+      "Patches share unknowns. Relighting solves between them and finds light within them, as the program does; " +
+      "in a run that is watched each patch's stored irradiance changes as its unknown's does."));
   }
 }
 

@@ -1,13 +1,21 @@
 // What the page and its solver worker say to each other. Values of unknowns: K * 3, row-major.
+import type { SeenData } from "./container";
 import type { StoredFactors } from "./factors";
 
 export type Method = "jacobi" | "gauss-seidel" | "southwell";
 
-/** Light as the page was given it, and what the viewer changed: all of unknowns. */
+/** N * 3, row-major. */
+export interface PatchMaterials {
+  emission: Float32Array; // W/m^2
+  reflectance: Float32Array;
+}
+
+/** Light as the page was given it, and what the viewer changed: of unknowns. */
 export interface Materials {
   emission: Float32Array; // W/m^2
   reflectance: Float32Array;
   sky: [number, number, number]; // factors on the sky's light
+  patches?: PatchMaterials; // where they share unknowns
 }
 
 /** What the worker is given once. */
@@ -17,7 +25,7 @@ export interface Load {
   materials: Materials;
   irradiance: Float32Array; // as stored
   sky: Float32Array; // irradiance from the sky as stored, K * 3
-  shared: boolean; // patches share unknowns
+  seen: SeenData | null; // where patches share unknowns
 }
 
 export type Request =
@@ -41,7 +49,7 @@ export interface Frame {
 export type Reply =
   | { kind: "loaded"; entries: number; agreement: number; reference: Float32Array | null }
   | { kind: "rows"; ticket: number; rows: Float32Array[] }
-  | { kind: "relit"; ticket: number; irradiance: Float32Array; products: number; residual: number;
-      converged: boolean; milliseconds: number }
+  | { kind: "relit"; ticket: number; irradiance: Float32Array; ofPatches: Float32Array | null; products: number;
+      residual: number; converged: boolean; milliseconds: number }
   | ({ kind: "frame" } & Frame)
   | { kind: "failed"; message: string };

@@ -62,6 +62,9 @@ export class Relight {
   /** F B + more of the B that was reached; never below 0, since light is not. */
   irradiance(): Float64Array { return this.h.map((h, k) => Math.max(0, h + this.left[k]!)); }
 
+  /** What to start from for other materials. */
+  lit(): Lit { return { irradiance: this.irradiance(), source: source(this.system) }; }
+
   /** Steps until the residual is within `tolerance`, or until `expired()` says that time is up. */
   run(tolerance: number, expired: () => boolean): void {
     while (this.residual > tolerance && Number.isFinite(this.residual)) {

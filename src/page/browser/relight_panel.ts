@@ -167,10 +167,6 @@ export class RelightPanel {
     facts.dataset["milliseconds"] = String(light.milliseconds);
     const more = this.viewer.limited > 0
       ? [`${counted(this.viewer.limited)} textured patches are held at a reflectance of 1.`] : [];
-    if (this.viewer.shared) {
-      more.push("Patches share unknowns here, and light keeps its spread within each: an estimate. " +
-                "The command below finds that anew, too.");
-    }
     facts.textContent = [words, ...more].join(" ");
   }
 }

@@ -1,11 +1,14 @@
 // What the solver worker remembers between messages: the matrix, the light it last solved for, and a
 // run that is watched. It knows nothing of workers, so that tests call it as they are.
+import type { Rgb } from "./container";
 import { type Factors, denseRow, expand } from "./factors";
 import type { Frame, Load, Materials, Method, Reply } from "./protocol";
 import { type Lit, Relight } from "./relight";
+import { SharedRelight } from "./relight_shared";
 import * as solver from "./solver";
 import type { Iterate, System } from "./solver";
 import { VectorProduct } from "./vector_product";
+import { LightWithin } from "./within";
 
 /** Relighting is done when the residual is within this share of the mean irradiance. */
 export const RELIGHT_TOLERANCE = 5e-5;
@@ -26,10 +29,9 @@ interface Run {
 export class Session {
   private readonly vectors: VectorProduct | null;
   private readonly factors: Factors;
-  private skyIrradiance: Float32Array; // as stored
-  private order: Uint32Array | undefined;
   private lit: Lit;
-  private relighting: Relight | null = null;
+  private readonly within: LightWithin | null;
+  private relighting: Relight | SharedRelight | null = null;
   private run: Run | null = null;
   readonly loaded: Reply & { kind: "loaded" };
 
@@ -37,11 +39,10 @@ export class Session {
    * Where patches share unknowns the stored light is not the solution of the matrix alone, and a
    * reference is solved for. `kernel`: of VectorProduct; without it, sums are plain.
    */
-  constructor(load: Load, kernel: Uint8Array<ArrayBuffer> | null) {
+  constructor(private readonly load: Load, kernel: Uint8Array<ArrayBuffer> | null) {
     this.vectors = kernel && WebAssembly.validate(kernel) ? new VectorProduct(load.stored, kernel) : null;
     this.factors = this.vectors?.factors ?? expand(load.stored);
-    this.order = load.order ?? undefined;
-    this.skyIrradiance = load.sky;
+    this.within = load.seen && new LightWithin(load.seen);
     const stored = Float64Array.from(load.irradiance);
     const system = this.system(load.materials);
     const radiosity = stored.map((h, k) => system.emission[k]! + system.reflectance[k]! * h);
@@ -51,7 +52,7 @@ export class Session {
       kind: "loaded",
       entries: this.factors.value.length,
       agreement: relativeDifference(gathered, stored, this.factors.area),
-      reference: load.shared ? this.relight(load.materials, REFERENCE_MS).irradiance : null,
+      reference: load.seen && this.referenceLight(),
     };
   }
 
@@ -62,22 +63,39 @@ export class Session {
   /** Goes from the last light to that of `materials` for about so long; null: goes on where it stood. */
   relight(materials: Materials | null, milliseconds: number): Omit<Reply & { kind: "relit" }, "ticket"> {
     const began = performance.now();
-    if (materials) {
-      this.relighting = new Relight(this.system(materials), this.lit, (x) => this.multiply(x));
-    }
+    if (materials) this.relighting = this.relightFor(materials);
     const relight = this.relighting!;
     const before = materials ? 0 : relight.products;
     relight.run(RELIGHT_TOLERANCE, () => performance.now() - began > milliseconds);
-    const irradiance = relight.irradiance();
-    if (Number.isFinite(relight.residual)) this.lit = { irradiance, source: solver.source(relight.system) };
+    if (Number.isFinite(relight.residual)) this.lit = relight.lit();
+    const ofPatches = relight instanceof SharedRelight ? relight.ofPatches() : null;
     return {
       kind: "relit",
-      irradiance: Float32Array.from(irradiance),
+      irradiance: Float32Array.from(relight.irradiance()),
+      ofPatches: ofPatches && Float32Array.from(ofPatches),
       products: relight.products - before,
       residual: relight.residual,
-      converged: relight.residual <= RELIGHT_TOLERANCE,
+      converged: relight.residual <= RELIGHT_TOLERANCE && (ofPatches !== null || !this.within),
       milliseconds: performance.now() - began,
     };
+  }
+
+  private relightFor(materials: Materials): Relight | SharedRelight {
+    const system = this.system(materials);
+    const multiply = (x: Float64Array) => this.multiply(x);
+    const { seen } = this.load;
+    if (!this.within || !materials.patches || !seen) return new Relight(system, this.lit, multiply);
+    const sky = materials.sky.map((factor, b) => factor * seen.sky[b]!) as Rgb;
+    return new SharedRelight(system, this.lit, multiply, this.within, materials.patches, sky, seen.seesOut);
+  }
+
+  /** The matrix' own light of unknowns, with materials as stored. */
+  private referenceLight(): Float32Array {
+    const began = performance.now();
+    const relight = new Relight(this.system(this.load.materials), this.lit, (x) => this.multiply(x));
+    relight.run(RELIGHT_TOLERANCE, () => performance.now() - began > REFERENCE_MS);
+    this.lit = relight.lit();
+    return Float32Array.from(relight.irradiance());
   }
 
   /** F x. */
@@ -104,7 +122,7 @@ export class Session {
       return this.frame(run, solver.irradianceOf(run.system, run.iterate.radiosity), NaN);
     }
     const scale = solver.scales(solver.source(run.system));
-    const change = solver.gaussSeidelSweep(run.system, run.iterate, scale, this.order);
+    const change = solver.gaussSeidelSweep(run.system, run.iterate, scale, this.load.order ?? undefined);
     return this.frame(run, solver.irradianceOf(run.system, run.iterate.radiosity), change);
   }
 
@@ -135,7 +153,7 @@ export class Session {
   }
 
   private system(materials: Materials): System {
-    const more = this.skyIrradiance.map((h, k) => h * materials.sky[k % solver.BANDS]!);
+    const more = this.load.sky.map((h, k) => h * materials.sky[k % solver.BANDS]!);
     return { factors: this.factors, emission: materials.emission, reflectance: materials.reflectance, more };
   }
 }

@@ -12,6 +12,7 @@ type Relit = Reply & { kind: "relit" };
 
 export interface Relighting {
   irradiance: Float32Array; // of unknowns, K * 3
+  ofPatches: Float32Array | null; // N * 3, where patches share unknowns and all is solved
   products: number; // with the matrix, since the change
   milliseconds: number; // since the change, solver alone
   residual: number; // over the mean irradiance
@@ -90,11 +91,11 @@ export class SolverClient {
   private takeRelit(reply: Relit): void {
     this.products += reply.products;
     this.milliseconds += reply.milliseconds;
-    const { irradiance, residual, converged } = reply;
+    const { irradiance, ofPatches, residual, converged } = reply;
     const hopeless = !Number.isFinite(residual) || this.milliseconds > RELIGHT_LIMIT_MS;
     if ((converged || hopeless) && !this.wanted) this.relighting = false;
     const finished = !this.relighting;
-    this.onRelit({ irradiance, residual, converged, finished, products: this.products,
+    this.onRelit({ irradiance, ofPatches, residual, converged, finished, products: this.products,
                    milliseconds: this.milliseconds });
     if (!finished) this.nextRelight();
   }

@@ -68,7 +68,7 @@ export class Viewer {
   }
 
   /** Patches share unknowns. */
-  get shared(): boolean { return this.data.header.unknowns !== this.data.header.patches; }
+  get shared(): boolean { return this.data.seen !== null; }
 
   /** `event`: "light", "view" (how it is shown), "picks", "rows" (of picks, which come later). */
   listen(event: string, act: () => void): void {
@@ -94,12 +94,12 @@ export class Viewer {
       materials: this.materials,
       irradiance: unknownMeans(data, data.irradiance),
       sky,
-      shared: this.shared,
+      seen: data.seen,
     });
     this.agreement = loaded.agreement;
     this.reference = loaded.reference;
     this.solver.onRelit = (light) => {
-      if (this.source === "relit") this.take(light.irradiance);
+      if (this.source === "relit") this.take(light.irradiance, light.ofPatches);
       this.relitListener(light);
     };
     this.solver.onFrame = (frame) => {
@@ -248,10 +248,12 @@ export class Viewer {
     this.materials = materialsOfUnknowns(this.data, this.light, this.sky);
   }
 
-  /** Irradiance of unknowns; null: as it was. */
-  private take(irradiance: Float32Array | null): void {
+  /** Irradiance of unknowns, and of patches where it is known; neither: as it was. */
+  private take(irradiance: Float32Array | null, ofPatches: Float32Array | null = null): void {
     if (irradiance) {
-      this.light = { ...this.light, irradiance: patchIrradiance(this.data, irradiance, this.reference) };
+      this.light = {
+        ...this.light, irradiance: ofPatches ?? patchIrradiance(this.data, irradiance, this.reference),
+      };
     }
     this.refreshLight();
   }

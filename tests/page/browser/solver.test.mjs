@@ -10,6 +10,7 @@ const solver = await module("solver");
 const { Relight } = await module("relight");
 const { VectorProduct } = await module("vector_product");
 const { Session } = await module("session");
+const { LightWithin } = await module("within");
 const { withMaterials, unknownMeans, radiosityOf } = await module("light");
 const { TriangleTree } = await module("bvh");
 const { readContainer } = await module("container");
@@ -194,7 +195,7 @@ function session(withKernel = true) {
     materials,
     irradiance: unknownMeans(data, data.irradiance),
     sky: dark,
-    shared: false,
+    seen: null,
   };
   return new Session(load, withKernel ? kernel : null);
 }
@@ -247,6 +248,53 @@ test("a lamp of twice the power is solved for at once; new reflectances to 1e-3"
       );
     }
   }
+});
+
+const shared = await pageData("shared.html");
+const sharedMaterials = (reflectance) => ({
+  emission: unknownMeans(shared, shared.emission),
+  reflectance: unknownMeans(shared, reflectance),
+  sky: [1, 1, 1],
+  patches: { emission: shared.emission, reflectance },
+});
+function sharedSession() {
+  const irradiance = unknownMeans(shared, shared.irradiance);
+  const load = {
+    stored: factorsIn(shared),
+    order: null,
+    materials: sharedMaterials(shared.reflectance),
+    irradiance,
+    sky: new Float32Array(irradiance.length),
+    seen: shared.seen,
+  };
+  return new Session(load, kernel);
+}
+
+// Form factors and sums over rays are those of the program to 16 bits: 3e-5 here.
+test("where patches share unknowns the page finds the light of the program by itself", () => {
+  const relit = sharedSession().relight(sharedMaterials(shared.reflectance), 10000);
+  assert.ok(relit.converged);
+  assert.ok(relativeError(relit.ofPatches, results("shared.h5").irradiance) < 2e-4);
+});
+
+test("light of patches that share unknowns, cut short, goes on to the same light", () => {
+  const materials = sharedMaterials(shared.reflectance.map((x) => 0.5 * x));
+  const whole = sharedSession().relight(materials, 10000);
+  const cut = sharedSession();
+  let part = cut.relight(materials, 0);
+  assert.equal(part.ofPatches, null);
+  while (!part.converged) part = cut.relight(null, 0);
+  assert.deepEqual(part.ofPatches, whole.ofPatches);
+});
+
+// Slopes found in one light take patches below 0 where the mean is far lower.
+test("irradiance of patches is never negative, and its means are those of unknowns", () => {
+  const within = new LightWithin(shared.seen);
+  within.look(Float64Array.from(shared.irradiance), [0, 0, 0]);
+  const means = Float64Array.from(unknownMeans(shared, shared.irradiance), (h) => h / 1000);
+  const around = Float32Array.from(within.around(means));
+  assert.ok(around.every((h) => h >= 0) && around.some((h) => h === 0));
+  assert.ok(relativeError(unknownMeans(shared, around), means) < 1e-6); // single precision
 });
 
 test("a relight that is cut short goes on to the same light", () => {

@@ -1,0 +1,34 @@
+// What is seen from clusters, whatever the light: PatchIrradiance for those who have no rays.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "radiosity/base.h"
+#include "radiosity/patch_mesh.h"
+
+namespace radiosity {
+
+/// Sums over the rays of PatchIrradiance. Its least-squares fit in any light follows from them: the
+/// axes of a cluster are combinations of place and normal that have a mean of 0 over the cluster's
+/// rays and a mean square of 1, and of which no two go together. So the slope of irradiance along
+/// an axis is the mean over all rays of what a ray finds times the axis' value where it left.
+///
+/// Backs are black and left out. *Test:* rays_seen_patches_test.
+struct SeenPatches {
+  std::vector<std::uint32_t> begin;  ///< K + 1, into `item` and `hits`
+  std::vector<std::uint32_t> item;   ///< increasing in a row: a patch, or N: the sky
+  std::vector<std::uint32_t> hits;   ///< rays that end there
+  std::vector<std::uint32_t> rays;   ///< K: all rays of the cluster, those that end on backs too
+  std::vector<std::uint8_t> axes;    ///< K: 0 (one patch alone, or no area) to 6
+  /// Item by item, a value for each axis of its row: the mean over the rays that end there.
+  std::vector<float> mean;
+  /// Patch by patch, a value for each axis of its cluster: the patch's own, less the mean by area
+  /// over the cluster.
+  std::vector<float> patch;
+};
+
+/// Of a mesh that has clusters. The same bits for any number of threads. Throws Cancelled.
+SeenPatches seenPatches(const PatchMesh& mesh, Progress& progress);
+
+}  // namespace radiosity
