@@ -13,7 +13,6 @@
 namespace radiosity {
 namespace {
 
-constexpr int kFeatures = ClusterFeatures::kCount;
 using Features = ClusterFeatures::Vector;
 using Square = ClusterFeatures::Square;
 

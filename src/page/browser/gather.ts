@@ -11,7 +11,6 @@ const BATCH_MS = 16; // of a frame of 33 ms; the picture and the panels need the
 // a batch is what it then waits for.
 const SOFTWARE_BATCH_MS = 60;
 const SOFTWARE_PROGRESS_MS = 500;
-const MOVING_MS = 150; // after a picture, the next one may follow
 
 export interface GatherState {
   pass: number; // passes that are complete
@@ -27,8 +26,8 @@ export class Gather {
   onPass: (irradiance: Float32Array) => void = () => {};
   onProgress: () => void = () => {};
   onFailure: (error: Error) => void = () => {};
-  /** When the page drew a picture last: in software, gathering waits while pictures follow each other. */
-  drawnAt: () => number = () => -Infinity;
+  /** In software, gathering waits while the viewer moves. */
+  viewerMoves: () => boolean = () => false;
 
   private readonly materials: EyeMaterials;
   private readonly sky: Rgb;
@@ -75,7 +74,7 @@ export class Gather {
   private async turn(): Promise<void> {
     if (!this.gpu.software) return void (await new Promise(requestAnimationFrame));
     do await new Promise((resume) => setTimeout(resume, 1));
-    while (this.running && (document.hidden || performance.now() - this.drawnAt() < MOVING_MS));
+    while (this.running && (document.hidden || this.viewerMoves()));
   }
 
   /** As many eyes as a batch has time for. */

@@ -5,6 +5,7 @@ import { Chunks } from "./gather_chunks";
 import type { Eyes } from "./gather_eyes";
 import { ADD, DRAW, ROWS, WHOLE } from "./gather_shaders";
 import { deltaFormFactors, stripRows } from "./gather_weights";
+import { drawn, drawsInSoftware } from "./graphics";
 
 const ATLAS_WIDTH = 2048, ATLAS_HEIGHT = 1536; // pixels; 63 MB with its depths
 const CHUNK = 16; // triangles, in software: more draws cost what fewer vertices save
@@ -24,16 +25,6 @@ interface Target {
   frame: WebGLFramebuffer;
   texture: WebGLTexture;
 }
-
-/** What draws. Some browsers say it only by an extension, which others warn of. */
-function rendererOf(gl: WebGL2RenderingContext): string {
-  const name = String(gl.getParameter(gl.RENDERER));
-  const unmasked = name === "WebKit WebGL" ? gl.getExtension("WEBGL_debug_renderer_info") : null;
-  return unmasked ? String(gl.getParameter(unmasked.UNMASKED_RENDERER_WEBGL)) : name;
-}
-
-/** Drawing is done by the CPU: slower. */
-const isSoftware = (renderer: string): boolean => /swiftshader|llvmpipe|software|basic render/i.test(renderer);
 
 export class GatherGpu {
   /** No GPU draws. */
@@ -65,7 +56,7 @@ export class GatherGpu {
         "Gathering needs pictures of 32-bit floats (EXT_color_buffer_float), which this GPU does not draw.");
     }
     this.gl = gl;
-    this.software = isSoftware(rendererOf(gl));
+    this.software = drawsInSoftware(gl);
     this.chunks = new Chunks(data, this.software ? CHUNK : Infinity);
     this.rows = stripRows(resolution);
     this.columns = ATLAS_WIDTH / resolution;
@@ -111,17 +102,7 @@ export class GatherGpu {
 
   /** Resolves when all that was started is done. */
   async done(): Promise<void> {
-    const { gl } = this;
-    const sync = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
-    if (!sync) throw new Error("The GPU gave up on gathering; start again.");
-    gl.flush();
-    for (;;) {
-      if (gl.isContextLost()) throw new Error("The GPU gave up on gathering; start again.");
-      const status = gl.clientWaitSync(sync, 0, 0);
-      if (status === gl.ALREADY_SIGNALED || status === gl.CONDITION_SATISFIED) break;
-      await new Promise((resume) => setTimeout(resume, 1));
-    }
-    gl.deleteSync(sync);
+    if (!(await drawn(this.gl))) throw new Error("The GPU gave up on gathering; start again.");
   }
 
   /** What every eye received, G*4: irradiance, and the sum of its weights. */

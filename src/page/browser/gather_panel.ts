@@ -60,7 +60,7 @@ export class GatherPanel {
     }
     this.base = viewer.light;
     this.gather.onPass = (irradiance) => this.take(irradiance);
-    this.gather.drawnAt = () => viewer.stage.drawnAt;
+    this.gather.viewerMoves = () => viewer.stage.moving;
     this.gather.onProgress = () => this.say();
     this.gather.onFailure = (error) => {
       this.forget();

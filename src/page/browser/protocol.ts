@@ -31,6 +31,7 @@ export interface Load {
 export type Request =
   | ({ kind: "load" } & Load)
   | { kind: "rows"; ticket: number; unknowns: number[] }
+  | { kind: "warm" }
   | { kind: "relight"; ticket: number; materials: Materials | null; milliseconds: number } // null: go on
   | { kind: "start"; run: number; method: Method; materials: Materials }
   | { kind: "step"; run: number };

@@ -14,6 +14,8 @@ import { LightWithin } from "./within";
 export const RELIGHT_TOLERANCE = 5e-5;
 /** The reference light of clusters is solved at most this long. */
 const REFERENCE_MS = 5000;
+/** Work for nothing takes at most so long, about. */
+const WARM_MS = 150;
 /** Below this a residual is the rounding of 32-bit form factors. */
 const ROUNDING = 1e-7;
 
@@ -78,6 +80,14 @@ export class Session {
       converged: relight.residual <= RELIGHT_TOLERANCE && (ofPatches !== null || !this.within),
       milliseconds: performance.now() - began,
     };
+  }
+
+  /** Relights for nothing, of which nothing is kept: browsers compile what is used, the better the more. */
+  warm(): void {
+    const began = performance.now();
+    const { materials } = this.load;
+    const relight = this.relightFor({ ...materials, reflectance: materials.reflectance.map((rho) => 0.9 * rho) });
+    relight.run(RELIGHT_TOLERANCE, () => performance.now() - began > WARM_MS);
   }
 
   private relightFor(materials: Materials): Relight | SharedRelight {

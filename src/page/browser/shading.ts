@@ -80,7 +80,9 @@ export function patchMaterial(uniforms: Uniforms): ShaderMaterial {
       varying float vValue;
       vec3 falseColour() {
         if (vValue < -1e29) return vec3(0.45);
-        if (logarithmic && vValue <= 0.0) return vec3(0.2);
+        if (logarithmic && vValue <= 0.0) { // grey, with a hint of the light, which shows what is where
+          return vec3(0.12 + 0.25 * dot(display(vLight), vec3(0.2126, 0.7152, 0.0722)));
+        }
         float t = logarithmic ? log(max(vValue, 1e-30) / low) / log(high / low) : (vValue - low) / (high - low);
         return texture2D(map, vec2(clamp(t, 0.0, 1.0) * 255.0 / 256.0 + 0.5 / 256.0, 0.5)).rgb;
       }

@@ -58,6 +58,9 @@ export class SolverClient {
     });
   }
 
+  /** Does some work for nothing, so that the browser has compiled the solver when it is needed. */
+  warm(): void { this.send({ kind: "warm" }); }
+
   relight(materials: Materials): void {
     this.wanted = materials;
     if (!this.relighting) this.nextRelight();

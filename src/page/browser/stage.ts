@@ -4,9 +4,13 @@ import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 import type { CameraControl } from "./camera";
+import { drawn, drawsInSoftware } from "./graphics";
+import { Pace } from "./pace";
 import type { SceneMeshes } from "./scene";
 import type { Uniforms } from "./shading";
 
+/** A movement is over when nothing moved for so long; then the picture is drawn as finely as it gets. */
+const SETTLED_MS = 200;
 const MARK_PIXELS = 3;
 const RIM_PIXELS = 6; // behind the mark, so that it shows on any colour
 
@@ -44,13 +48,16 @@ export class Stage {
   split: number | null = null;
   /** What the finer mesh may stand for: both halves, or none of them. */
   elements = true;
-  /** When a picture was drawn last, as performance.now(). */
-  drawnAt = -Infinity;
+  /** The viewer moves. */
+  moving = false;
 
   private readonly renderer: WebGLRenderer | null; // null: the browser has no WebGL 2
   private readonly scene = new Scene();
   private readonly marks: Record<MarkName, Mark>;
+  private readonly pace: Pace | null; // null: a GPU draws
   private wanted = false;
+  private drawing = false;
+  private settling = 0; // a timer
 
   constructor(private readonly canvas: HTMLCanvasElement, private readonly meshes: SceneMeshes,
               private readonly control: CameraControl, private readonly uniforms: Uniforms) {
@@ -58,9 +65,10 @@ export class Stage {
     this.renderer = able ? new WebGLRenderer({ canvas, antialias: true, alpha: true }) : null;
     this.renderer?.setClearColor(0x000000, 0);
     if (this.renderer) this.renderer.autoClear = false;
+    this.pace = this.renderer && drawsInSoftware(this.gl(this.renderer)) ? new Pace() : null;
     this.scene.add(meshes.group);
     this.marks = { first: new Mark(this.scene), second: new Mark(this.scene) };
-    control.onMove = () => this.draw();
+    control.onMove = () => this.move();
     new ResizeObserver(() => this.resize()).observe(canvas);
     canvas.addEventListener("webglcontextrestored", () => this.draw());
     this.resize();
@@ -71,14 +79,43 @@ export class Stage {
     this.draw();
   }
 
-  /** Soon: at most once a frame. */
+  /** Soon: at most once a frame, in software when the picture before is done. */
   draw(): void {
     if (this.wanted) return;
     this.wanted = true;
-    requestAnimationFrame(() => {
-      this.wanted = false;
-      this.drawNow();
-    });
+    if (!this.drawing) requestAnimationFrame(() => void this.drawWanted());
+  }
+
+  private async drawWanted(): Promise<void> {
+    const { renderer, pace, moving } = this;
+    this.wanted = false;
+    const begin = performance.now();
+    this.drawNow();
+    if (!renderer || !pace) return;
+    this.drawing = true;
+    await drawn(this.gl(renderer));
+    this.drawing = false;
+    if (moving) pace.took(performance.now() - begin);
+    if (this.wanted) requestAnimationFrame(() => void this.drawWanted());
+  }
+
+  /** As draw(), for a picture that others will follow. */
+  private move(): void {
+    this.setMoving(true);
+    window.clearTimeout(this.settling);
+    this.settling = window.setTimeout(() => this.setMoving(false), SETTLED_MS);
+    this.draw();
+  }
+
+  private setMoving(moving: boolean): void {
+    if (moving === this.moving) return;
+    this.moving = moving;
+    this.canvas.toggleAttribute("data-moving", moving); // tests wait until it is over
+    this.draw();
+  }
+
+  private gl(renderer: WebGLRenderer): WebGL2RenderingContext {
+    return renderer.getContext() as WebGL2RenderingContext;
   }
 
   /** False: there is no picture, for want of WebGL 2. */
@@ -87,7 +124,6 @@ export class Stage {
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (width === 0 || height === 0) return;
-    this.renderer?.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer?.setSize(width, height, false);
     this.control.setAspect(width / height);
     this.drawNow(); // a resized canvas is empty until it is drawn
@@ -96,7 +132,8 @@ export class Stage {
   private drawNow(): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (!this.renderer) return;
-    this.drawnAt = performance.now();
+    const ratio = Math.min(window.devicePixelRatio, 2) * (this.moving ? this.pace?.scale ?? 1 : 1);
+    if (ratio !== this.renderer.getPixelRatio()) this.renderer.setPixelRatio(ratio);
     this.renderer.setScissorTest(false);
     this.renderer.clear();
     const left = this.split === null ? 0 : Math.round(width * this.split);
@@ -108,7 +145,8 @@ export class Stage {
   private half(renderer: WebGLRenderer, left: number, width: number, height: number, stored: boolean): void {
     renderer.setScissor(left, 0, width, height);
     this.uniforms.stored.value = stored;
-    this.meshes.arrange(this.elements && !this.uniforms.showValue.value);
+    const elements = this.elements && (!this.moving || !this.pace || this.pace.elements);
+    this.meshes.arrange(elements && !this.uniforms.showValue.value);
     renderer.render(this.scene, this.control.camera);
   }
 }

@@ -98,6 +98,7 @@ export class Viewer {
     });
     this.agreement = loaded.agreement;
     this.reference = loaded.reference;
+    whenIdle(() => this.solver.warm());
     this.solver.onRelit = (light) => {
       if (this.source === "relit") this.take(light.irradiance, light.ofPatches);
       this.relitListener(light);
@@ -307,6 +308,12 @@ function boxMiddle(position: Float32Array): Vector3 {
     high.max(point);
   }
   return low.add(high).multiplyScalar(0.5);
+}
+
+/** Safari knows no idle callbacks. */
+function whenIdle(act: () => void): void {
+  if ("requestIdleCallback" in window) window.requestIdleCallback(act);
+  else setTimeout(act, 500);
 }
 
 /** A colour of the page's theme. */

@@ -20,6 +20,9 @@ function answer(request: Request): Reply | null {
   switch (request.kind) {
     case "rows":
       return { kind: "rows", ticket: request.ticket, rows: session.rows(request.unknowns) };
+    case "warm":
+      session.warm();
+      return null;
     case "relight":
       return { ticket: request.ticket, ...session.relight(request.materials, request.milliseconds) };
     case "start":

@@ -33,6 +33,7 @@ const ofPatch = (values, patch) => values.slice(3 * patch, 3 * patch + 3);
 
 /** Colours of a grid of points of the picture, sRGB 0 to 255; the browser itself decodes the screenshot. */
 async function colours(where = page) {
+  await where.waitForFunction(() => !document.getElementById("picture").hasAttribute("data-moving"));
   await where.waitForTimeout(150);
   const png = (await where.locator("#picture").screenshot()).toString("base64");
   return where.evaluate(async (data) => {

@@ -149,6 +149,58 @@ test("three passes, started by the keyboard, give the light of radiosity gather"
   await page.close();
 });
 
+test("while the viewer moves software draws coarsely and gathers nothing; then both are as before", async () => {
+  const { page, said } = await open(browser, "small.html");
+  const size = () => page.locator("#picture").evaluate((canvas) => [canvas.width, canvas.clientWidth]);
+  const eyes = async () => Number((await page.locator("#gather-facts").textContent()).match(/: ([\d,]+) of/)[1]);
+  const settled = () =>
+    page.waitForFunction(() => !document.getElementById("picture").hasAttribute("data-moving"));
+  await settled();
+  const [still, shown] = await size();
+  assert.equal(still, shown);
+  await page.locator("#picture").focus();
+  await page.keyboard.press("g");
+  await page.waitForFunction(() => / [1-9]\d* of/.test(document.getElementById("gather-facts").textContent));
+  await page.keyboard.down("ArrowLeft");
+  await page.waitForFunction(() => {
+    const canvas = document.getElementById("picture");
+    return canvas.hasAttribute("data-moving") && canvas.width <= canvas.clientWidth / 2;
+  });
+  await page.waitForTimeout(300); // for the batch that was under way
+  const before = await eyes();
+  await page.waitForTimeout(600); // figures are told twice a second
+  assert.ok((await eyes()) - before <= 0, "no eye may look");
+  await page.keyboard.up("ArrowLeft");
+  await settled();
+  await page.waitForFunction(
+    (then) => {
+      const [canvas, facts] = ["picture", "gather-facts"].map((id) => document.getElementById(id));
+      return canvas.width === canvas.clientWidth && !facts.textContent.includes(`: ${then} of`);
+    },
+    before.toLocaleString("en"),
+  );
+  assert.deepEqual(said, []);
+  await page.close();
+});
+
+test("a movement is drawn as finely as keeps it quick, and what was too slow is not tried again", async () => {
+  const { Pace } = await module("pace");
+  const pace = new Pace();
+  const levels = (milliseconds, pictures) => {
+    for (let k = 0; k < pictures; ++k) pace.took(milliseconds);
+    return [pace.scale, pace.elements];
+  };
+  const [scale] = levels(30, 100);
+  assert.ok(scale < 1); // software begins coarsely, and stays where it is quick enough
+  assert.deepEqual(levels(5, 100), [1, true]);
+  levels(100, 1);
+  assert.deepEqual(levels(30, 1), [1, true], "one slow picture is an exception");
+  assert.ok(levels(100, 2)[0] < 1);
+  assert.ok(levels(5, 1000)[0] < 1);
+  const coarsest = levels(1000, 100);
+  assert.deepEqual(levels(1000, 100), coarsest);
+});
+
 test("where WebGL 2 cannot draw floats a sentence says so, and the rest of the page works", async () => {
   const page = await browser.newPage();
   await page.addInitScript(() => {

@@ -15,7 +15,7 @@ if (!program) {
 /** Parts of the page that node runs by themselves. */
 const modules = [
   ...["factors", "solver", "relight", "vector_product", "session", "within"],
-  ...["container", "light", "load", "bvh", "gather_weights", "gather_eyes", "gather_chunks"],
+  ...["container", "light", "load", "bvh", "gather_weights", "gather_eyes", "gather_chunks", "pace"],
 ];
 const sources = join(folder, "source");
 const tests = join(folder, "tests");

@@ -311,6 +311,13 @@ test("a relight that is cut short goes on to the same light", () => {
   assert.deepEqual(part.irradiance, whole.irradiance);
 });
 
+test("warming the solver up changes nothing", () => {
+  const materials = { emission: data.emission, reflectance: data.reflectance.map((x) => 0.6 * x), sky: [1, 1, 1] };
+  const warmed = session();
+  warmed.warm();
+  assert.deepEqual(warmed.relight(materials, 10000).irradiance, session().relight(materials, 10000).irradiance);
+});
+
 test("a room that keeps all its light has no solution, and is said to have none", () => {
   const lossless = { ...furnace(), reflectance: new Float32Array(12 * 3).fill(1) };
   const nothing = { irradiance: new Float64Array(36), source: solver.source(lossless) };

@@ -1,0 +1,38 @@
+// How finely software draws a picture while the viewer moves: so that the next one may follow soon.
+
+/** `scale`: of width and height. `elements`: or the patches instead, which are fewer. */
+const LEVELS = [
+  { scale: 1, elements: true },
+  { scale: 0.5, elements: true },
+  { scale: 0.5, elements: false },
+  { scale: 0.3, elements: false },
+] as const;
+const SLOW_MS = 50, QUICK_MS = 12; // a level takes a quarter of the one before, about
+const SLOW_PICTURES = 2, QUICK_PICTURES = 20; // one after the other, before it is another level
+
+export class Pace {
+  private level = 2;
+  private finest = 0; // what was too slow is not tried again
+  private slow = 0;
+  private quick = 0;
+
+  get scale(): number { return LEVELS[this.level]!.scale; }
+  get elements(): boolean { return LEVELS[this.level]!.elements; }
+
+  /** A picture of a movement took so long. */
+  took(milliseconds: number): void {
+    this.slow = milliseconds > SLOW_MS ? this.slow + 1 : 0;
+    this.quick = milliseconds < QUICK_MS ? this.quick + 1 : 0;
+    if (this.slow === SLOW_PICTURES && this.level + 1 < LEVELS.length) {
+      this.finest = this.level + 1;
+      this.turn(1);
+    } else if (this.quick === QUICK_PICTURES && this.level > this.finest) {
+      this.turn(-1);
+    }
+  }
+
+  private turn(by: number): void {
+    this.level += by;
+    this.slow = this.quick = 0;
+  }
+}
