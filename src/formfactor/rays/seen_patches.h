@@ -14,7 +14,7 @@ namespace radiosity {
 /// rays and a mean square of 1, and of which no two go together. So the slope of irradiance along
 /// an axis is the mean over all rays of what a ray finds times the axis' value where it left.
 ///
-/// Backs are black and left out. *Test:* rays_seen_patches_test.
+/// Backs are black and left out. *Test:* rays_patch_irradiance_test.
 struct SeenPatches {
   std::vector<std::uint32_t> begin;  ///< K + 1, into `item` and `hits`
   std::vector<std::uint32_t> item;   ///< increasing in a row: a patch, or N: the sky

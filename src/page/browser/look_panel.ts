@@ -17,6 +17,13 @@ const TITLES: Record<Show, string> = {
 };
 const EXPOSURE_STOPS = 8;
 
+/** Why there are no form factors to paint; null: there are some. */
+function whyNoFactors(viewer: Viewer): string | null {
+  const { first } = viewer.picks;
+  if (!first) return "pick a patch";
+  return first.row?.every((value) => value === 0) ? "all are 0" : null;
+}
+
 function showLegend(viewer: Viewer): void {
   const shown = viewer.shown();
   element("legend").hidden = shown === "light";
@@ -24,8 +31,9 @@ function showLegend(viewer: Viewer): void {
   if (shown === "light") return;
   const low = viewer.uniforms.low.value, high = viewer.uniforms.high.value;
   const logarithmic = viewer.uniforms.logarithmic.value;
-  element("legend-title").textContent =
-    TITLES[shown] + (shown === "factors" && !viewer.picks.first ? ": pick a patch" : logarithmic ? " (grey: 0)" : "");
+  const why = shown === "factors" ? whyNoFactors(viewer) : null;
+  element("legend-title").textContent = TITLES[shown] + (why ? `: ${why}` : logarithmic ? " (grey: 0)" : "");
+  element("legend-bar").hidden = element("legend-ticks").hidden = why !== null;
   const stops = Array.from({ length: 17 }, (_, k) => `rgb(${viridis(k / 16).map(Math.round).join(" ")})`);
   element("legend-bar").style.background = `linear-gradient(to right, ${stops.join(",")})`;
   element("legend-bar").setAttribute("aria-label", `Colours from ${short(low)} to ${short(high)}`);

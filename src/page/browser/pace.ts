@@ -7,7 +7,7 @@ const LEVELS = [
   { scale: 0.5, elements: false },
   { scale: 0.3, elements: false },
 ] as const;
-const SLOW_MS = 50, QUICK_MS = 12; // a level takes a quarter of the one before, about
+const SLOW_MS = 66, QUICK_MS = 12; // a level takes a quarter of the one before, about
 const SLOW_PICTURES = 2, QUICK_PICTURES = 20; // one after the other, before it is another level
 
 export class Pace {

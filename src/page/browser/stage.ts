@@ -10,7 +10,7 @@ import type { SceneMeshes } from "./scene";
 import type { Uniforms } from "./shading";
 
 /** A movement is over when nothing moved for so long; then the picture is drawn as finely as it gets. */
-const SETTLED_MS = 200;
+const SETTLED_MS = 300;
 const MARK_PIXELS = 3;
 const RIM_PIXELS = 6; // behind the mark, so that it shows on any colour
 
@@ -110,7 +110,8 @@ export class Stage {
   private setMoving(moving: boolean): void {
     if (moving === this.moving) return;
     this.moving = moving;
-    this.canvas.toggleAttribute("data-moving", moving); // tests wait until it is over
+    // Until the picture is as fine as it gets, which tests wait for.
+    if (moving) this.canvas.setAttribute("data-moving", "");
     this.draw();
   }
 
@@ -126,11 +127,14 @@ export class Stage {
     if (width === 0 || height === 0) return;
     this.renderer?.setSize(width, height, false);
     this.control.setAspect(width / height);
+    window.clearTimeout(this.settling); // another shape is no movement
+    this.moving = false;
     this.drawNow(); // a resized canvas is empty until it is drawn
   }
 
   private drawNow(): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (!this.moving) this.canvas.removeAttribute("data-moving");
     if (!this.renderer) return;
     const ratio = Math.min(window.devicePixelRatio, 2) * (this.moving ? this.pace?.scale ?? 1 : 1);
     if (ratio !== this.renderer.getPixelRatio()) this.renderer.setPixelRatio(ratio);
