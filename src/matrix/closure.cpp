@@ -103,7 +103,7 @@ LeastSquaresClosure::LeastSquaresClosure(ExchangeMatrix& matrix, const Uncertain
     : matrix_(matrix),
       uncertain_(uncertain),
       progress_(progress),
-      pass_(matrix.size(), 0, [&](std::size_t k) { return uncertain.row(k).codes.size() + 1; }),
+      pass_(matrix.size(), 1, [&](std::size_t k) { return uncertain.row(k).codes.size() + 1; }),
       area_(matrix.size()),
       goal_(matrix.size()),
       shortfall_(matrix.size()),

@@ -2,6 +2,8 @@
 // gathers F_kq x_q, and hands F_kq A_k x_k on to row q, which divides by its own area at the end.
 #include <algorithm>
 
+#include "base/aligned_buffer.h"
+#include "base/scratch_rows.h"
 #include "matrix/run_row.h"
 #include "matrix/triangle_kernels.h"
 #include "matrix/triangle_pass.h"
@@ -11,33 +13,55 @@ namespace radiosity {
 
 namespace {
 
+/// Bands that one pass over the matrix serves: more of them would take more memory for what is
+/// handed on, and no less time.
+constexpr int kBandsAtOnce = 16;
+
 std::size_t workOf(const RunRow& row) {
   return row.floats.size() + row.doubles.size() + row.runs.size();
 }
 
-/// Some bands of N * bands values, a plane each, by position instead of patch.
+/// Bands [first, last) of N * bands values, a plane each, by position instead of patch.
 struct Planes {
   Planes(std::size_t n, int first, int last)
       : first_band(std::size_t(first)),
-        bands(last - first),
-        stride(n + kOverrun),
-        values(stride * std::size_t(last - first)) {}
+        bands(std::size_t(last - first)),
+        stride((n + kSums - 1) / kSums * kSums) {
+    values.reserve(stride * bands);
+    std::fill_n(values.data(), stride * bands, 0.0);
+  }
   void take(std::span<const double> x, std::size_t width, std::span<const Index> order) {
-    const std::size_t n = order.size();
-    for (std::size_t b = 0; b < std::size_t(bands); ++b) {
-      for (std::size_t k = 0; k < n; ++k) {
-        values[b * stride + k] = x[order[k] * width + first_band + b];
-      }
+    for (std::size_t b = 0; b < bands; ++b) {
+      for (std::size_t k = 0; k < order.size(); ++k)
+        at(b, k) = x[order[k] * width + first_band + b];
     }
   }
+  double& at(std::size_t band, std::size_t k) { return values.data()[band * stride + k]; }
+  double at(std::size_t band, std::size_t k) const { return values.data()[band * stride + k]; }
   std::size_t first_band;
-  int bands;
+  std::size_t bands;
   std::size_t stride;
-  std::vector<double> values;
+  AlignedBuffer<double> values;
 };
 
 bool isWanted(std::span<const std::uint8_t> wanted, Index patch) {
   return wanted.empty() || wanted[patch] != 0;
+}
+
+/// sums[r * bands + b]: what the rows gather, where any of them is wanted (`gathers`), else 0;
+/// factor: as of TriangleKernels.
+void multiplyBlock(const TriangleKernels& kernels, const RowBlock& block,
+                   const RowOperands& operands, std::span<const double> factor, bool gathers,
+                   double* sums) {
+  const bool hands_on = std::ranges::any_of(factor, [](double f) { return f != 0; });
+  if (gathers && hands_on) {
+    kernels.gather_and_hand_on(block, operands, factor.data(), sums);
+  } else if (gathers) {
+    kernels.gather(block, operands, sums);
+  } else {
+    std::fill_n(sums, factor.size(), 0.0);
+    if (hands_on) kernels.hand_on(block, operands, factor.data());
+  }
 }
 
 /// The sum handed on to a row, divided by its area; a patch without area was handed nothing.
@@ -49,44 +73,53 @@ void ExchangeMatrix::symmetricProduct(std::span<const double> x, int bands, std:
                                       std::span<const std::uint8_t> wanted) const {
   const std::size_t n = size();
   const auto width = std::size_t(bands);
-  const TrianglePass pass(n, kOverrun, [&](std::size_t k) { return workOf(upper_[k]); });
+  const TrianglePass pass(n, kSums, [&](std::size_t k) { return workOf(upper_[k]); });
   const TriangleKernels kernels = triangleKernels();
-  for (int first = 0; first < bands; first += kMaxBands) {
-    Planes in(n, first, std::min(first + kMaxBands, bands));
+  for (int first = 0; first < bands; first += kBandsAtOnce) {
+    Planes in(n, first, std::min(first + kBandsAtOnce, bands));
     in.take(x, width, order_);
-    const auto planes = std::size_t(in.bands);
-    std::vector<double> gathered(n * planes, 0.0);
-    const auto row = [&](std::size_t k, double* handed_on, std::size_t stride) {
-      const double area = area_[order_[k]];
-      double factor[kMaxBands];
-      for (std::size_t b = 0; b < planes; ++b) factor[b] = in.values[b * in.stride + k] * area;
-      const RowOperands operands{.x = &in.values[k] + 1,
-                                 .x_stride = in.stride,
-                                 .z = handed_on,
-                                 .z_stride = stride,
-                                 .bands = in.bands};
-      const bool gathers = isWanted(wanted, order_[k]);
-      const bool hands_on = std::any_of(factor, factor + planes, [](double f) { return f != 0; });
-      double sums[kMaxBands] = {};
-      if (gathers && hands_on) {
-        kernels.gather_and_hand_on(upperRuns(k), operands, factor, sums);
-      } else if (gathers) {
-        kernels.gather(upperRuns(k), operands, sums);
-      } else if (hands_on) {
-        kernels.hand_on(upperRuns(k), operands, factor);
+    std::vector<double> gathered(n * in.bands);
+    // Positions are counted from `begin`, the first of a range of rows.
+    const auto block = [&](std::size_t k, std::size_t count, std::size_t begin, double* handed,
+                           std::size_t stride) {
+      const RowBlock rows{.rows = {&upper_[k], count}, .first = k + 1 - begin};
+      for (const RunRow& row : rows.rows) touchRows(scratch_.memory.get(), bytesOf(row));
+      const auto patches = std::span(order_).subspan(k, count);
+      const bool gathers =
+          std::ranges::any_of(patches, [&](Index patch) { return isWanted(wanted, patch); });
+      for (std::size_t b = 0; b < in.bands; b += kMaxBands) {
+        const std::size_t some = std::min(in.bands - b, std::size_t(kMaxBands));
+        const RowOperands operands{.x = &in.at(b, begin),
+                                   .x_stride = in.stride,
+                                   .z = handed + b * stride,
+                                   .z_stride = stride,
+                                   .bands = int(some)};
+        double factor[kMaxRows * kMaxBands];
+        double sums[kMaxRows * kMaxBands];
+        for (std::size_t m = 0; m < count * some; ++m) {
+          factor[m] = in.at(b + m % some, k + m / some) * area_[patches[m / some]];
+        }
+        multiplyBlock(kernels, rows, operands, {factor, count * some}, gathers, sums);
+        for (std::size_t m = 0; m < count * some; ++m) {
+          gathered[(k + m / some) * in.bands + b + m % some] = sums[m];
+        }
       }
-      for (std::size_t b = 0; b < planes; ++b) gathered[b * n + k] = sums[b];
+    };
+    const auto range = [&](std::size_t begin, std::size_t end, double* handed, std::size_t stride) {
+      for (std::size_t k = begin; k < end; k += kMaxRows) {
+        block(k, std::min(kMaxRows, end - k), begin, handed, stride);
+      }
     };
     const auto finish = [&](std::size_t k, const double* handed) {
       const Index patch = order_[k];
       if (!isWanted(wanted, patch)) return;
-      for (std::size_t b = 0; b < planes; ++b) {
-        const double own = diagonal_[k] * in.values[b * in.stride + k];
+      for (std::size_t b = 0; b < in.bands; ++b) {
+        const double own = diagonal_[k] * in.at(b, k);
         y[patch * width + in.first_band + b] =
-            gathered[b * n + k] + own + perArea(handed[b], area_[patch]);
+            gathered[k * in.bands + b] + own + perArea(handed[b], area_[patch]);
       }
     };
-    pass.run(planes, row, finish);
+    pass.runRanges(in.bands, range, finish);
   }
 }
 
@@ -99,40 +132,38 @@ void ExchangeMatrix::symmetricSweep(std::span<double> x, int bands, const Update
   const auto width = std::size_t(bands);
   Planes now(n, 0, bands);
   now.take(x, width, order_);
-  const std::size_t stride = now.stride;
-  std::vector<double> handed(stride * width, 0.0);
+  Planes handed(n, 0, bands);
   const TriangleKernels kernels = triangleKernels();
   std::vector<double> sums(width);
   std::vector<double> factor(width);
-  const auto operands = [&](std::size_t k, int first) {
-    const std::size_t start = std::size_t(first) * stride + k;
-    return RowOperands{.x = &now.values[start] + 1,
-                       .x_stride = stride,
-                       .z = &handed[start] + 1,
-                       .z_stride = stride,
+  const auto operands = [&](int first) {
+    return RowOperands{.x = &now.at(std::size_t(first), 0),
+                       .x_stride = now.stride,
+                       .z = &handed.at(std::size_t(first), 0),
+                       .z_stride = handed.stride,
                        .bands = std::min(bands - first, kMaxBands)};
   };
-  const auto gather = [&](std::size_t k) {
+  const auto gather = [&](const RowBlock& row) {
     for (int b = 0; b < bands; b += kMaxBands) {
-      kernels.gather(upperRuns(k), operands(k, b), &sums[std::size_t(b)]);
+      kernels.gather(row, operands(b), &sums[std::size_t(b)]);
     }
   };
   for (std::size_t k = 0; k < n; ++k) {
     const Index patch = order_[k];
     const double area = area_[patch];
+    const RowBlock row{.rows = {&upperRuns(k), 1}, .first = k + 1};
     if (isWanted(wanted, patch)) {
-      gather(k);
+      gather(row);
       for (std::size_t b = 0; b < width; ++b) {
-        sums[b] +=
-            diagonal_[k] * now.values[b * stride + k] + perArea(handed[b * stride + k], area);
+        sums[b] += diagonal_[k] * now.at(b, k) + perArea(handed.at(b, k), area);
       }
       update(patch, sums.data());
-      for (std::size_t b = 0; b < width; ++b) now.values[b * stride + k] = x[patch * width + b];
+      for (std::size_t b = 0; b < width; ++b) now.at(b, k) = x[patch * width + b];
     }
-    for (std::size_t b = 0; b < width; ++b) factor[b] = now.values[b * stride + k] * area;
+    for (std::size_t b = 0; b < width; ++b) factor[b] = now.at(b, k) * area;
     if (std::all_of(factor.begin(), factor.end(), [](double f) { return f == 0; })) continue;
     for (int b = 0; b < bands; b += kMaxBands) {
-      kernels.hand_on(upperRuns(k), operands(k, b), &factor[std::size_t(b)]);
+      kernels.hand_on(row, operands(b), &factor[std::size_t(b)]);
     }
   }
 }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "base/aligned_buffer.h"
 #include "base/parallel.h"
 
 namespace radiosity {
@@ -14,36 +15,38 @@ namespace radiosity {
 /// the work alone, never on the threads: the same bits for any number of them.
 class TrianglePass {
  public:
-  /// `work(k)`: of row k, in any unit. `overrun`: so many places after the last row may be touched.
+  /// `work(k)`: of row k, in any unit. Chunks start at multiples of `lanes`, and sums have room for
+  /// whole lanes after the last row.
   template <class Work>
-  TrianglePass(std::size_t rows, std::size_t overrun, const Work& work)
-      : rows_(rows), overrun_(overrun) {
+  TrianglePass(std::size_t rows, std::size_t lanes, const Work& work) : rows_(rows), lanes_(lanes) {
     std::size_t total = 0;
     for (std::size_t k = 0; k < rows; ++k) total += work(k);
     const std::size_t chunks = std::clamp<std::size_t>(rows / kRowsPerChunk, 1, kMostChunks);
     std::size_t done = 0;
     for (std::size_t k = 0; k < rows; ++k) {
       done += work(k);
-      if (starts_.size() < chunks && done * chunks >= starts_.size() * total) {
+      if (starts_.size() < chunks && done * chunks >= starts_.size() * total &&
+          (k + 1) % lanes == 0) {
         starts_.push_back(k + 1);
       }
     }
     starts_.push_back(rows);
   }
 
-  /// Calls row(k, sums, stride) for every k: it may add to sums[p * stride + m], plane p <
-  /// `planes`, what row k hands on to row k + 1 + m. Then finish(k, handed) for every k, handed[p]
-  /// being the total. Calls run in parallel; all of row() come before those of finish().
-  template <class Row, class Finish>
-  void run(std::size_t planes, const Row& row, const Finish& finish) const {
+  /// Calls rows(first, last, sums, stride) for ranges that together are all rows: it may add to
+  /// sums[p * stride + q - first], plane p < `planes`, what they hand on to row q after them. Then
+  /// finish(k, handed) for every k, handed[p] being the total. Calls run in parallel; all of rows()
+  /// come before those of finish(). `first` and `stride` are multiples of the lanes; sums are
+  /// aligned to a cache line.
+  template <class Rows, class Finish>
+  void runRanges(std::size_t planes, const Rows& rows, const Finish& finish) const {
     const std::size_t chunks = starts_.size() - 1;
-    std::vector<std::vector<double>> sums(chunks);  // of chunk c: from row starts_[c] on
+    std::vector<AlignedBuffer<double>> sums(chunks);  // of chunk c: from row starts_[c] on
     parallelFor(chunks, 1, [&](std::size_t c) {
       const std::size_t stride = strideOf(c);
-      sums[c].assign(stride * planes, 0.0);
-      for (std::size_t k = starts_[c]; k < starts_[c + 1]; ++k) {
-        row(k, sums[c].data() + (k - starts_[c]) + 1, stride);
-      }
+      sums[c].reserve(stride * planes);
+      std::fill_n(sums[c].data(), stride * planes, 0.0);
+      rows(starts_[c], starts_[c + 1], sums[c].data(), stride);
     });
     parallelFor((rows_ + kFinishBlock - 1) / kFinishBlock, 1, [&](std::size_t block) {
       std::vector<double> handed(planes);
@@ -52,12 +55,22 @@ class TrianglePass {
         for (std::size_t p = 0; p < planes; ++p) {
           handed[p] = 0;
           for (std::size_t c = 0; c < chunks && starts_[c] <= k; ++c) {
-            handed[p] += sums[c][p * strideOf(c) + (k - starts_[c])];
+            handed[p] += sums[c].data()[p * strideOf(c) + (k - starts_[c])];
           }
         }
         finish(k, handed.data());
       }
     });
+  }
+
+  /// The same row by row: calls row(k, sums, stride) for every k: it may add to sums[p * stride +
+  /// m] what row k hands on to row k + 1 + m.
+  template <class Row, class Finish>
+  void run(std::size_t planes, const Row& row, const Finish& finish) const {
+    const auto rows = [&](std::size_t first, std::size_t last, double* sums, std::size_t stride) {
+      for (std::size_t k = first; k < last; ++k) row(k, sums + (k - first) + 1, stride);
+    };
+    runRanges(planes, rows, finish);
   }
 
   /// The most that run() takes.
@@ -70,10 +83,12 @@ class TrianglePass {
   static constexpr std::size_t kMostChunks = 32;
   static constexpr std::size_t kFinishBlock = 256;
 
-  std::size_t strideOf(std::size_t chunk) const { return rows_ - starts_[chunk] + overrun_; }
+  std::size_t strideOf(std::size_t chunk) const {
+    return (rows_ - starts_[chunk] + lanes_ - 1) / lanes_ * lanes_;
+  }
 
   std::size_t rows_;
-  std::size_t overrun_;
+  std::size_t lanes_;
   std::vector<std::size_t> starts_{0};
 };
 

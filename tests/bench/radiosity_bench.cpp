@@ -10,6 +10,7 @@
 #include "error_curves.h"
 #include "figures.h"
 #include "gather_costs.h"
+#include "products.h"
 #include "rates.h"
 #include "report.h"
 #include "summary.h"
@@ -115,7 +116,10 @@ int main(int count, char** values) try {
   const Arguments& arguments = *given;
   std::filesystem::create_directories(arguments.out);
   bool verified = true;
-  if (arguments.rates) verified = benchRates() && verified;
+  if (arguments.rates) {
+    verified = benchRates() && verified;
+    verified = benchProducts() && verified;
+  }
   if (arguments.truth) verified = benchCurves(arguments) && verified;
   if (arguments.figures && !arguments.quick) {
     benchFigures(arguments.scene, arguments.truth_folder);
