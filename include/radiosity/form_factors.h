@@ -30,6 +30,27 @@ enum class ClosureMode {
   enforce  ///< change what is not known in closed form until they sum to 1 (closeRows())
 };
 
+/// What draws hemicubes. Both see the same but for pixels whose centres lie on an edge to within
+/// some 1/256 of a pixel.
+enum class EyeChoice {
+  cpu,       ///< the same bits on every machine
+  gl,        ///< OpenGL's z-buffer, in software where there is no other
+  automatic  ///< gl where eyeDevices() finds hardware, else cpu
+};
+
+/// A device that can draw hemicubes.
+struct EyeDevice {
+  std::string name;  ///< as its driver has it
+  std::string api;   ///< "OpenGL 4.5 ..."
+  bool hardware = false;
+};
+struct EyeDevices {
+  std::vector<EyeDevice> devices;  ///< hardware first
+  std::string problem;             ///< where there are none: why
+};
+/// Looks for devices anew at every call, which takes up to a second: drivers are loaded.
+EyeDevices eyeDevices();
+
 struct FormFactorOptions {
   FormFactorMethod method = FormFactorMethod::automatic;
   /// 1e-12 to 0.1. Exact: the error aimed at for an occluded pair, relative to the mean form factor
@@ -50,6 +71,7 @@ struct FormFactorOptions {
   int resolution = 256;    ///< hemicube: pixels along an edge of the top face; even, 16 to 4096
   std::uint64_t seed = 1;  ///< rays: of their directions; hemicube: of the turns about each normal
   bool random_turns = true;
+  EyeChoice eye = EyeChoice::cpu;  ///< hemicube
   bool symmetrize = false;  ///< hemicube: merge both estimates of each pair, then close rows
   /// Hemicube: pairs nearer than two patch sizes get the area-to-area value times the visible
   /// fraction that the item buffer tells.

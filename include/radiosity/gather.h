@@ -29,6 +29,7 @@ struct GatherOptions {
   int resolution = 256;    ///< of the hemicube's top face, as in FormFactorOptions
   std::uint64_t seed = 1;  ///< of the random turns about each normal
   bool random_turns = true;
+  EyeChoice eye = EyeChoice::cpu;
   double crease = 30;  ///< degrees; a vertex looks once per side that bends less, 0 to 180
   /// How far an eye on an edge moves away from it, as a share of the distance to the nearest edge
   /// that does not touch the vertex; above 0, at most 0.5. Along an edge of a room light goes as
@@ -67,7 +68,8 @@ struct GatherSummary {
   std::size_t bytes = 0;      ///< held at once
   std::string simd_target;
   double seconds = 0;
-  std::string message;  ///< plain words, with numbers
+  std::string message;      ///< plain words, with numbers
+  std::vector<Note> notes;  ///< on what looked; results files do not keep them
 };
 
 /// L eyes: the N patches, or the G corner groups of the mesh. An eye that stands for no area

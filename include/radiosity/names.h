@@ -32,6 +32,8 @@ inline constexpr NameTable<FormFactorMethod, 4> kMethodNames{
      {FormFactorMethod::exact, "exact"},
      {FormFactorMethod::rays, "rays"},
      {FormFactorMethod::hemicube, "hemicube"}}};
+inline constexpr NameTable<EyeChoice, 3> kEyeNames{
+    {{EyeChoice::cpu, "cpu"}, {EyeChoice::gl, "gl"}, {EyeChoice::automatic, "auto"}}};
 inline constexpr NameTable<ClosureMode, 3> kClosureNames{{{ClosureMode::off, "off"},
                                                           {ClosureMode::report, "report"},
                                                           {ClosureMode::enforce, "enforce"}}};

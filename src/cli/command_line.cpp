@@ -89,15 +89,30 @@ void addGeneralOptions(CLI::App& app, Request& r, Command command) {
   app.add_flag("--quiet", r.quiet, "Print errors and loud warnings only")->group("General");
 }
 
+/// Devices are listed without a scene.
+void addDevicesFlag(CLI::App& app, Request& r, CLI::Option& scene) {
+  app.add_flag("--devices", r.devices, "List the devices that can draw hemicubes (--eye gl)")
+      ->group("General")
+      ->excludes(&scene);
+  app.callback([&r, &scene] {
+    if (!r.devices && scene.count() == 0) throw CLI::RequiredError(scene.get_name());
+  });
+}
+
 CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
   CLI::App* sub = app.add_subcommand(commandName(command), descriptionOf(command));
   sub->footer(examplesOf(command));
   const bool compares = command == Command::compare;
-  sub->add_option(compares ? "A" : "SCENE", r.input,
-                  compares ? "The reference: results file, lit mesh or picture"
-                           : fmt::format("Scene ({}) or results file (.h5)", sceneExtensions()))
-      ->required()
-      ->option_text(" ");
+  CLI::Option* input =
+      sub->add_option(compares ? "A" : "SCENE", r.input,
+                      compares ? "The reference: results file, lit mesh or picture"
+                               : fmt::format("Scene ({}) or results file (.h5)", sceneExtensions()))
+          ->option_text(" ");
+  if (command == Command::info) {
+    addDevicesFlag(*sub, r, *input);
+  } else {
+    input->required();
+  }
   if (compares) addCompareOptions(*sub, r);
   addGeneralOptions(*sub, r, command);
   addSceneOptions(*sub, r);

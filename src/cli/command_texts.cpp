@@ -32,7 +32,8 @@ const char* examplesOf(Command command) {
       return "Examples:\n"
              "  radiosity info data/cornell-box.obj\n"
              "  radiosity info house.glb --set lamp.radiance=100\n"
-             "  radiosity info cornell.h5";
+             "  radiosity info cornell.h5\n"
+             "  radiosity info --devices";
     case Command::mesh:
       return "Files (-o): .obj (outlines), .glb (triangles), .vtp (ParaView), .h5 (results).\n\n"
              "Examples:\n"

@@ -3,6 +3,7 @@
 #include "base/made.h"
 #include "cli/commands.h"
 #include "cli/summaries.h"
+#include "cli/words.h"
 
 namespace radiosity::cli {
 
@@ -42,9 +43,24 @@ void describeStages(Session& session, const Pipeline& pipeline) {
   if (stored.basis) summarizeBasis(report, *stored.basis, Detail::full);
 }
 
+int listDevices(Report& report) {
+  report.section("devices", "Devices that draw hemicubes");
+  const EyeDevices found = eyeDevices();
+  if (found.devices.empty()) report.text("problem", "none", oneLine(found.problem));
+  std::vector<std::vector<std::string>> rows;
+  for (const EyeDevice& device : found.devices) {
+    rows.push_back({device.name, device.hardware ? "hardware" : "software", device.api});
+  }
+  if (rows.empty()) return 0;
+  report.table("devices",
+               {{"name", "device", false}, {"kind", "kind", false}, {"api", "by", false}}, rows);
+  return 0;
+}
+
 }  // namespace
 
 int runInfo(Session& session) {
+  if (session.request.devices) return listDevices(session.report);
   const Run run(session);
   describeScene(session.report, run.pipeline.scene());
   if (run.pipeline.fromResultsFile()) describeStages(session, run.pipeline);

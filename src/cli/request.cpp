@@ -70,6 +70,7 @@ FormFactorOptions Request::apply(FormFactorOptions options) const {
   if (near_pairs) options.near_exact = *near_pairs == "exact";
   set(options, &FormFactorOptions::resolution, resolution, "--resolution");
   set(options, &FormFactorOptions::seed, seed, "--seed");
+  setNamed(options.eye, kEyeNames, eye);
   set(options, &FormFactorOptions::symmetrize, symmetrize, "--symmetrize");
   if (precision) options.precision = named(kPrecisionNames, *precision);
   if (!memory_limit.empty()) options.memory_limit = parseBytes("--memory-limit", memory_limit);
@@ -91,6 +92,7 @@ GatherOptions Request::apply(GatherOptions options) const {
   set(options, &GatherOptions::tolerance, gather_tolerance, "--gather-tolerance");
   set(options, &GatherOptions::resolution, resolution, "--resolution");
   set(options, &GatherOptions::seed, seed, "--seed");
+  setNamed(options.eye, kEyeNames, eye);
   set(options, &GatherOptions::crease, crease, "--crease");
   options.validate();
   return options;

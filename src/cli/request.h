@@ -30,6 +30,8 @@ struct Request {
   std::string second;  ///< the file that `compare` compares the input with
   std::vector<std::string> outputs;
 
+  bool devices = false;  ///< of `info`: what can draw hemicubes, instead of a scene
+
   SceneOptions scene;
   /// The options given that only apply where a scene file is read ("--unit").
   std::vector<std::string> reading_options;
@@ -45,6 +47,7 @@ struct Request {
   std::optional<std::string> near_pairs;
   std::optional<int> resolution;
   std::optional<std::uint64_t> seed;
+  std::optional<std::string> eye;
   std::optional<bool> symmetrize;
   std::optional<std::string> precision;
   std::string memory_limit;

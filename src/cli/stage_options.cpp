@@ -86,6 +86,18 @@ void addMeshOptions(CLI::App& app, Request& r) {
   max_edge->excludes(faces);
 }
 
+namespace {
+
+void addEyeOption(CLI::App& app, Request& r, const char* group, const std::string& of) {
+  add(app, group, "--eye", r.eye, "cpu|gl|auto",
+      of + "drawn by the processor (cpu, default: the same bits on every machine), by OpenGL (gl; "
+           "radiosity info --devices lists what can), or by OpenGL where there is hardware for it "
+           "(auto)")
+      ->check(CLI::IsMember(namesIn(kEyeNames)));
+}
+
+}  // namespace
+
 void addFactorOptions(CLI::App& app, Request& r) {
   const FormFactorOptions defaults;
   add(app, "Form factors", "--method", r.method, "METHOD",
@@ -117,6 +129,7 @@ void addFactorOptions(CLI::App& app, Request& r) {
       fmt::format("rays: seed of their directions; hemicube: of the random turns (default {})",
                   defaults.seed))
       ->check(wholeNumber());
+  addEyeOption(app, r, "Form factors", "hemicube: ");
   app.add_flag_function(
          "--symmetrize,!--no-symmetrize", [&r](std::int64_t count) { r.symmetrize = count > 0; },
          "hemicube: merge both estimates of each pair (A_i F_ij = A_j F_ji), then restore the row "
@@ -229,6 +242,7 @@ void addEyeOptions(CLI::App& app, Request& r) {
   add(app, "Gather", "--seed", r.seed, "N",
       fmt::format("Seed of each hemicube's random turn (default {})", defaults.seed))
       ->check(wholeNumber());
+  addEyeOption(app, r, "Gather", "Hemicubes are ");
 }
 
 }  // namespace radiosity::cli

@@ -352,6 +352,7 @@ void summarizeGathered(Report& report, const Gathered& gathered, const PatchMesh
   const GatherSummary& s = gathered.summary;
   if (detail == Detail::brief) report.line("", oneLine(s.message));
   gatherFigures(report, gathered, options, detail);
+  report.notes(s.notes);
   if (s.passes.empty()) return;
   const EnergyAccount& energy = s.passes.back().energy;
   warnOfBacks(report, energy, gathered.backs_by_surface, mesh);

@@ -35,6 +35,7 @@ class PatchGrid {
   /// True if some cell holds a tree.
   bool hasTrees() const { return !nodes_.empty(); }
   const CellNode& node(std::int32_t index) const { return nodes_[std::size_t(index)]; }
+  std::span<const CellNode> nodes() const { return nodes_; }
   /// Grid coordinates of a point P of the plane are dot(uAxis, P - origin) + uOffset, and the same
   /// for v. Cells are centred on whole numbers: u runs from -1/2 to columns - 1/2.
   const Vec3& uAxis() const { return u_axis_; }

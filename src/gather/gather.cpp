@@ -246,9 +246,9 @@ void runPasses(const GatherScene& scene, const GatherOptions& options, Gathered&
 }  // namespace
 
 void GatherOptions::validate() const {
-  FormFactorOptions eye;
-  eye.resolution = resolution;
-  eye.validate();
+  FormFactorOptions hemicubes;
+  hemicubes.resolution = resolution;
+  hemicubes.validate();
   const auto require = [](bool good, const std::string& what) {
     if (!good) throw InputError(what);
   };

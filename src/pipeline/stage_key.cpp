@@ -77,15 +77,21 @@ void readNamed(const StageKey& key, std::string_view name, const Table& table, E
   if (const auto found = named(table, key.get(name).value_or(""))) value = *found;
 }
 
-/// Options that the command line does not have are named where they are not as by default, so that
-/// the keys in older files stay what they are.
-bool isNamedIfSet(std::string_view name) { return name == "random-turns" || name == "inset"; }
+/// Options that the command line does not have, or not always had, are named where they are not as
+/// by default, so that the keys in older files stay what they are.
+bool isNamedIfSet(std::string_view name) {
+  return name == "random-turns" || name == "inset" || name == "eye";
+}
 
 /// The tolerance of form factors that are only sources, where none was asked for.
 constexpr const char* kOfSources = "sources";
 
 void addTurns(StageKey& key, bool random_turns) {
   if (!random_turns) key.add("random-turns", onOff(random_turns));
+}
+
+void addEye(StageKey& key, EyeChoice eye) {
+  if (eye != EyeChoice::cpu) key.add("eye", nameOf(kEyeNames, eye));
 }
 
 std::string factorsHash(const StageKey& factors_key) {
@@ -191,6 +197,7 @@ StageKey factorsKeyOf(const FormFactorOptions& options, const std::string& mesh_
     key.add("symmetrize", onOff(options.symmetrize));
     key.add("near", options.near_exact ? "exact" : "off");
     addTurns(key, options.random_turns);
+    addEye(key, options.eye);
   }
   key.add("precision", nameOf(kPrecisionNames, options.storedPrecision()));
   key.add("mesh", mesh_hash);
@@ -264,6 +271,7 @@ StageKey gatherKey(const GatherOptions& options, const PatchMaterials& materials
   key.add("seed", fmt::format("{}", options.seed));
   key.add("crease", fmt::format("{}", options.crease));
   addTurns(key, options.random_turns);
+  addEye(key, options.eye);
   if (options.inset != GatherOptions().inset) key.add("inset", fmt::format("{}", options.inset));
   key.add("materials", materialsHash(materials));
   key.add("sky", skyText(materials.sky));
@@ -347,6 +355,7 @@ FormFactorOptions factorOptionsOf(const StageKey& key) {
   read(key, "seed", options.seed);
   read(key, "symmetrize", options.symmetrize);
   read(key, "random-turns", options.random_turns);
+  readNamed(key, "eye", kEyeNames, options.eye);
   options.precision = named(kPrecisionNames, key.get("precision").value_or(""));
   return options;
 }
@@ -380,6 +389,7 @@ GatherOptions gatherOptionsOf(const StageKey& key) {
   read(key, "seed", options.seed);
   read(key, "crease", options.crease);
   read(key, "random-turns", options.random_turns);
+  readNamed(key, "eye", kEyeNames, options.eye);
   read(key, "inset", options.inset);
   return options;
 }

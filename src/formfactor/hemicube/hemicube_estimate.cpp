@@ -1,10 +1,12 @@
 // Foresees time and memory of hemicubes from a sample of them.
 
 #include <algorithm>
+#include <atomic>
 #include <vector>
 
 #include "base/parallel.h"
 #include "base/processor_clock.h"
+#include "formfactor/hemicube/gpu_rows.h"
 #include "formfactor/hemicube/hemicube_factors.h"
 #include "formfactor/row_accounts.h"
 #include "matrix/both_estimates.h"
@@ -47,22 +49,21 @@ SampledRow lookFrom(std::size_t patch, std::size_t patches, const HemicubeScene&
   return sampled;
 }
 
-}  // namespace
+/// Of all rows, as a sample of them has it.
+struct Sample {
+  double entries = 0;         ///< a row
+  double seconds = 0;         ///< a row, by the clock, on the threads allowed
+  std::size_t eye_bytes = 0;  ///< of all threads
+};
 
-HemicubeEstimate estimateHemicubes(const PatchMesh& mesh, const HemicubeScene& scene,
-                                   const FormFactorOptions& options, Progress& progress) {
-  const std::size_t n = mesh.size();
-  const std::size_t samples = std::min(n, std::clamp(n / kOneIn, kLeastRows, kMostRows));
-  std::vector<SampledRow> rows(samples);
-  progress.begin("planning", samples);
-  parallelFor(samples, 1, [&](std::size_t k) {
-    const std::size_t patch = (2 * k + 1) * n / (2 * samples);
-    if (progress.cancelled() || scene.rows.isEmpty(patch)) return;
-    rows[k] = lookFrom(patch, n, scene);
+Sample sampleByCpu(const std::vector<Index>& patches, std::size_t n, const HemicubeScene& scene,
+                   Progress& progress) {
+  std::vector<SampledRow> rows(patches.size());
+  parallelFor(patches.size(), 1, [&](std::size_t k) {
+    if (progress.cancelled() || scene.rows.isEmpty(patches[k])) return;
+    rows[k] = lookFrom(patches[k], n, scene);
     progress.advance();
   });
-  progress.check();
-  progress.end();
   SampledRow sum;
   for (const SampledRow& row : rows) {
     sum.entries += row.entries;
@@ -70,11 +71,57 @@ HemicubeEstimate estimateHemicubes(const PatchMesh& mesh, const HemicubeScene& s
     sum.taken += row.taken;
     sum.hemicube_bytes = std::max(sum.hemicube_bytes, row.hemicube_bytes);
   }
-  const double share = samples > 0 ? 1 / double(samples) : 0;
+  const double share = patches.empty() ? 0 : 1 / double(patches.size());
+  const auto threads = double(allowedThreads());
+  return {share * double(sum.entries), sum.taken.ratio() * share * sum.seconds / threads,
+          allowedThreads() * sum.hemicube_bytes};
+}
+
+/// The second look is timed: before the first one a device compiles.
+Sample sampleByGpu(const std::vector<Index>& patches, std::size_t n, const HemicubeScene& scene,
+                   Progress& progress) {
+  std::vector<Index> looking;
+  for (const Index patch : patches) {
+    if (!scene.rows.isEmpty(patch)) looking.push_back(patch);
+  }
+  Progress silent;
+  std::atomic<std::size_t> entries = 0;
+  const auto count = [&](std::size_t patch, const HemicubeView& view, const HemicubeCounts&) {
+    PackedRow row;
+    row.pack(view, n);
+    entries += row.columns.size();
+    if (scene.near_pairs) scene.near_pairs->correct(patch, row);
+  };
+  const auto look = [&](Progress& watched) {
+    entries = 0;
+    const double start = clockSeconds();
+    lookFromPatches(*scene.gpu, scene.rows, looking, count, watched);
+    return clockSeconds() - start;
+  };
+  look(silent);
+  progress.check();
+  const double seconds = look(progress);
+  const double share = patches.empty() ? 0 : 1 / double(patches.size());
+  return {share * double(entries), share * seconds, scene.gpu->bytes()};
+}
+
+}  // namespace
+
+HemicubeEstimate estimateHemicubes(const PatchMesh& mesh, const HemicubeScene& scene,
+                                   const FormFactorOptions& options, Progress& progress) {
+  const std::size_t n = mesh.size();
+  const std::size_t samples = std::min(n, std::clamp(n / kOneIn, kLeastRows, kMostRows));
+  std::vector<Index> patches;
+  for (std::size_t k = 0; k < samples; ++k) {
+    patches.push_back(Index((2 * k + 1) * n / (2 * samples)));
+  }
+  progress.begin("planning", samples);
+  const Sample sample = (scene.gpu ? sampleByGpu : sampleByCpu)(patches, n, scene, progress);
+  progress.check();
+  progress.end();
   const std::size_t threads = allowedThreads();
   HemicubeEstimate estimate;
-  estimate.matrix_bytes =
-      estimateRowFormBytes(n, share * double(sum.entries), options.storedPrecision());
+  estimate.matrix_bytes = estimateRowFormBytes(n, sample.entries, options.storedPrecision());
   // Fronts, backs, sky, area; backs seen; columns and values, with the headers of their memory.
   constexpr std::size_t kAccounts =
       4 * sizeof(double) + sizeof(std::vector<SeenBack>) + 7 * sizeof(std::size_t) + 2 * 16;
@@ -83,14 +130,14 @@ HemicubeEstimate estimateHemicubes(const PatchMesh& mesh, const HemicubeScene& s
   // Merging makes a second matrix beside the first, in which a pair is stored once where one of its
   // ends or the other has seen it; closing its rows, after that, takes no more than the first.
   constexpr double kSeenByEither = 1.2;
-  const double merged = std::min(double(n), kSeenByEither * share * double(sum.entries));
+  const double merged = std::min(double(n), kSeenByEither * sample.entries);
   const std::size_t second =
       options.symmetrize ? expectedSymmetricBytes(n, merged, options.storedPrecision()) : 0;
-  const std::size_t beside = options.memory_held + n * kAccounts + scene.rows.sharedBytes() +
-                             threads * sum.hemicube_bytes + finishing;
+  const std::size_t beside =
+      options.memory_held + n * kAccounts + scene.rows.sharedBytes() + sample.eye_bytes + finishing;
   const std::size_t matrices = estimate.matrix_bytes + second;
   estimate.memory = planRowMemory(beside + matrices, beside, matrices, options);
-  estimate.measured = sum.taken.ratio() * share * sum.seconds * double(n) / double(threads);
+  estimate.measured = sample.seconds * double(n);
   return estimate;
 }
 

@@ -1,5 +1,6 @@
 #include "formfactor/hemicube/hemicube_factors.h"
 
+#include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
@@ -7,7 +8,9 @@
 #include <limits>
 #include <numeric>
 
+#include "base/figure_text.h"
 #include "base/parallel.h"
+#include "formfactor/hemicube/gpu_rows.h"
 #include "formfactor/hemicube/kept_row.h"
 #include "formfactor/hemicube/row_builder.h"
 #include "formfactor/row_accounts.h"
@@ -18,29 +21,43 @@
 namespace radiosity {
 namespace {
 
+/// What a thread needs to store rows, and what they have counted.
+struct RowStore {
+  PackedRow row;
+  HemicubeRowCounts counts;
+};
+
+/// What a thread needs to make them.
 struct Worker {
   Hemicube hemicube;
   std::vector<std::uint8_t> hidden;
-  PackedRow row;
-  HemicubeRowCounts counts;  ///< of all its rows
+  RowStore store;
+};
+
+/// The rows of one computation.
+struct Rows {
+  const HemicubeScene& scene;
+  RowJournal* journal;
+  FormFactors& result;
+  std::vector<std::vector<SeenBack>>& seen_backs;
+  std::vector<std::uint8_t> made;  ///< by row; empty ones are
 };
 
 /// Stores row i as it was seen, or with its near entries put right.
-void storeRow(std::size_t i, const HemicubeView& view, const NearPairs* near_pairs, Worker& worker,
+void storeRow(std::size_t i, const HemicubeView& view, const NearPairs* near_pairs, PackedRow& row,
               FormFactors& result, std::vector<SeenBack>& seen_backs, HemicubeRowCounts& counts) {
   const std::size_t n = result.fronts.size();
-  worker.row.pack(view, n);
+  row.pack(view, n);
   result.fronts[i] = view.fronts;
   double rest = 1;
   if (near_pairs != nullptr) {
-    const NearPairs::Outcome outcome = near_pairs->correct(i, worker.row);
+    const NearPairs::Outcome outcome = near_pairs->correct(i, row);
     counts.near_pairs += outcome.replaced;
     counts.capped += outcome.capped;
     rest = outcome.rest;
-    const std::vector<double>& values = worker.row.values;
-    result.fronts[i] = std::accumulate(values.begin(), values.end(), 0.0);
+    result.fronts[i] = std::accumulate(row.values.begin(), row.values.end(), 0.0);
   }
-  result.matrix.setRow(i, worker.row.columns, worker.row.values);
+  result.matrix.setRow(i, row.columns, row.values);
   result.backs[i] = rest * view.backs;
   result.sky[i] = rest * view.sky;
   for (std::size_t item = n; view.backs > 0 && item < view.items.size(); ++item) {
@@ -61,38 +78,87 @@ std::size_t rowsThere(const RowBuilder& rows, std::size_t n, RowJournal* journal
   return n - all + found;
 }
 
-/// Makes row i and keeps it.
-void makeRow(const HemicubeScene& scene, std::size_t i, RowJournal* journal, Worker& worker,
-             FormFactors& result, std::vector<SeenBack>& seen_backs) {
+/// Stores row i and keeps it. `drawn`: what looking at it has counted.
+void finishRow(Rows& rows, std::size_t i, const HemicubeView& view, const HemicubeCounts& drawn,
+               RowStore& store) {
   HemicubeRowCounts counts;
-  const HemicubeView& view = scene.rows.look(i, worker.hemicube, worker.hidden);
-  storeRow(i, view, scene.near_pairs ? &*scene.near_pairs : nullptr, worker, result, seen_backs,
-           counts);
-  counts.drawn = worker.hemicube.takeCounts();
-  if (journal != nullptr) keepRow(*journal, i, result, seen_backs, counts);
-  worker.counts += counts;
+  const NearPairs* near_pairs = rows.scene.near_pairs ? &*rows.scene.near_pairs : nullptr;
+  storeRow(i, view, near_pairs, store.row, rows.result, rows.seen_backs[i], counts);
+  counts.drawn = drawn;
+  if (rows.journal != nullptr) keepRow(*rows.journal, i, rows.result, rows.seen_backs[i], counts);
+  store.counts += counts;
+  rows.made[i] = 1;
+}
+
+/// Rows that need not be made: empty ones and those in the journal.
+HemicubeRowCounts takeRows(Rows& rows, const Progress& progress) {
+  tbb::enumerable_thread_specific<HemicubeRowCounts> taken;
+  parallelFor(rows.made.size(), 1, [&](std::size_t i) {
+    if (progress.cancelled()) return;
+    rows.made[i] = rows.scene.rows.isEmpty(i) ||
+                   (rows.journal != nullptr &&
+                    takeRow(*rows.journal, i, rows.result, rows.seen_backs[i], taken.local()));
+  });
+  HemicubeRowCounts all;
+  for (const HemicubeRowCounts& counts : taken) all += counts;
+  return all;
+}
+
+/// Rows by the GPU's eye; where that gives up, a note says why and the others are still to be made.
+HemicubeRowCounts makeRowsByGpu(Rows& rows, Progress& progress) {
+  std::vector<Index> patches;
+  for (std::size_t i = 0; i < rows.made.size(); ++i) {
+    if (rows.made[i] == 0) patches.push_back(Index(i));
+  }
+  tbb::enumerable_thread_specific<RowStore> stores;
+  const std::string problem = lookFromPatches(
+      *rows.scene.gpu, rows.scene.rows, patches,
+      [&](std::size_t i, const HemicubeView& view, const HemicubeCounts& drawn) {
+        finishRow(rows, i, view, drawn, stores.local());
+      },
+      progress);
+  const std::string& name = rows.scene.gpu->device().name;
+  std::vector<Note>& notes = rows.result.report.notes;
+  notes.push_back({Severity::info, "hemicubes drawn by " + name});
+  if (!problem.empty()) {
+    const auto left = std::size_t(std::count(rows.made.begin(), rows.made.end(), 0));
+    notes.push_back({Severity::warning, fmt::format("{}: {}; the other {} hemicubes were drawn by "
+                                                    "the processor",
+                                                    name, problem, countText(left))});
+  }
+  HemicubeRowCounts all;
+  for (const RowStore& store : stores) all += store.counts;
+  return all;
+}
+
+/// What is left, by the CPU's eye.
+HemicubeRowCounts makeRows(Rows& rows, Progress& progress) {
+  tbb::enumerable_thread_specific<Worker> workers([&] {
+    return Worker{rows.scene.rows.makeHemicube(), {}, {}};
+  });
+  parallelFor(rows.made.size(), 1, [&](std::size_t i) {
+    if (progress.cancelled() || rows.made[i] != 0) return;
+    Worker& worker = workers.local();
+    const HemicubeView& view = rows.scene.rows.look(i, worker.hemicube, worker.hidden);
+    finishRow(rows, i, view, worker.hemicube.takeCounts(), worker.store);
+    progress.advance();
+  });
+  HemicubeRowCounts all;
+  for (const Worker& worker : workers) all += worker.store.counts;
+  return all;
 }
 
 void fillRows(const HemicubeScene& scene, RowJournal* journal, FormFactors& result,
               std::vector<std::vector<SeenBack>>& seen_backs, Progress& progress) {
-  const RowBuilder& rows = scene.rows;
   const std::size_t n = result.fronts.size();
-  tbb::enumerable_thread_specific<Worker> workers([&] {
-    return Worker{rows.makeHemicube(), {}, {}, {}};
-  });
-  progress.begin("form factors", n, "rows", rowsThere(rows, n, journal));
-  parallelFor(n, 1, [&](std::size_t i) {
-    if (progress.cancelled() || rows.isEmpty(i)) return;
-    Worker& worker = workers.local();
-    if (journal != nullptr && takeRow(*journal, i, result, seen_backs[i], worker.counts)) return;
-    makeRow(scene, i, journal, worker, result, seen_backs[i]);
-    progress.advance();
-  });
+  Rows rows{scene, journal, result, seen_backs, std::vector<std::uint8_t>(n, 0)};
+  progress.begin("form factors", n, "rows", rowsThere(scene.rows, n, journal));
+  HemicubeRowCounts all = takeRows(rows, progress);
+  if (scene.gpu != nullptr) all += makeRowsByGpu(rows, progress);
+  all += makeRows(rows, progress);
   progress.check();
   progress.end();
 
-  HemicubeRowCounts all;
-  for (const Worker& worker : workers) all += worker.counts;
   const HemicubeCounts& counts = all.drawn;
   FormFactorReport& report = result.report;
   report.near_pairs = all.near_pairs;
@@ -154,7 +220,7 @@ void checkRows(FormFactors& result) {
 }  // namespace
 
 HemicubeScene::HemicubeScene(const PatchMesh& mesh, const FormFactorOptions& options)
-    : rows(mesh, options) {
+    : rows(mesh, options), gpu(openGpuEye(options.eye, rows.scene(), mesh, rows.weights())) {
   if (options.near_exact) near_pairs.emplace(mesh, options);
 }
 

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 
+#include "formfactor/hemicube/gpu_eye.h"
 #include "formfactor/hemicube/near_pairs.h"
 #include "formfactor/hemicube/row_builder.h"
 #include "formfactor/row_memory.h"
@@ -13,9 +15,10 @@ namespace radiosity {
 
 /// The scene as all rows see it.
 struct HemicubeScene {
-  /// Keeps `mesh` by reference.
+  /// Keeps `mesh` by reference. RunError as openGpuEye().
   HemicubeScene(const PatchMesh& mesh, const FormFactorOptions& options);
   RowBuilder rows;
+  std::unique_ptr<GpuEye> gpu;          ///< null: the CPU's eye looks
   std::optional<NearPairs> near_pairs;  ///< where near entries are to be made exact
 };
 

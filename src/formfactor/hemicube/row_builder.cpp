@@ -51,21 +51,29 @@ bool RowBuilder::isEmpty(std::size_t patch) const {
   return !(mesh_.area[patch] > 0) || mesh_.polygon[patch] == kNone;
 }
 
+PlacedEye RowBuilder::eyeOf(std::size_t patch, std::vector<std::uint8_t>& hidden) const {
+  const double angle = random_turns_ ? turnAngle(mesh_, patch, seed_) : 0.0;
+  return place(mesh_.centroid[patch], mesh_.normal[patch], angle, mesh_.polygon[patch], hidden);
+}
+
+PlacedEye RowBuilder::place(const Vec3& eye, const Vec3& normal, double angle, Index own,
+                            std::vector<std::uint8_t>& hidden) const {
+  hidden_backs_.fromEye(eye, own, hidden);
+  return {eyeFrame(eye * scene_.scale, normal, angle), own == kNone ? kNone : polygon_place_[own]};
+}
+
 const HemicubeView& RowBuilder::look(std::size_t patch, Hemicube& hemicube,
                                      std::vector<std::uint8_t>& hidden) const {
-  const double angle = random_turns_ ? turnAngle(mesh_, patch, seed_) : 0.0;
-  return lookFrom(mesh_.centroid[patch], mesh_.normal[patch], angle, mesh_.polygon[patch], hemicube,
-                  hidden);
+  const PlacedEye eye = eyeOf(patch, hidden);
+  return hemicube.look(eye.frame, eye.own, hidden.data());
 }
 
 const HemicubeView& RowBuilder::lookFrom(const Vec3& eye, const Vec3& normal, double angle,
                                          Index own, Hemicube& hemicube,
                                          std::vector<std::uint8_t>& hidden,
                                          RunVisitor* runs) const {
-  const Index place = own == kNone ? kNone : polygon_place_[own];
-  const Vec3 scaled = eye * scene_.scale;
-  hidden_backs_.fromEye(eye, own, hidden);
-  return hemicube.look(eyeFrame(scaled, normal, angle), place, hidden.data(), runs);
+  const PlacedEye placed = place(eye, normal, angle, own, hidden);
+  return hemicube.look(placed.frame, placed.own, hidden.data(), runs);
 }
 
 void PackedRow::pack(const HemicubeView& view, std::size_t patches) {

@@ -12,6 +12,12 @@
 
 namespace radiosity {
 
+/// An eye in the coordinates of the scene that it looks at, as Hemicube::look() wants it.
+struct PlacedEye {
+  EyeFrame frame;
+  Index own = kNone;
+};
+
 /// Builds the rows of one computation; made once, read by all threads.
 class RowBuilder {
  public:
@@ -22,6 +28,12 @@ class RowBuilder {
   const RasterKernels& kernels() const { return kernels_; }
   Hemicube makeHemicube() const { return {scene_, weights_, kernels_, tree_ ? &*tree_ : nullptr}; }
   bool isEmpty(std::size_t patch) const;
+  const DeltaFormFactors& weights() const { return weights_; }
+  /// The eye of a patch that is not empty, and (`hidden`) which black backs it cannot see.
+  PlacedEye eyeOf(std::size_t patch, std::vector<std::uint8_t>& hidden) const;
+  /// The same of any eye, as lookFrom() has it.
+  PlacedEye place(const Vec3& eye, const Vec3& normal, double angle, Index own,
+                  std::vector<std::uint8_t>& hidden) const;
   /// The view from a patch that is not empty. `hidden`: scratch.
   const HemicubeView& look(std::size_t patch, Hemicube& hemicube,
                            std::vector<std::uint8_t>& hidden) const;

@@ -5,10 +5,8 @@
 #include <xmmintrin.h>
 
 #include <algorithm>
-#include <optional>
 
 #include "base/geometry/box.h"
-#include "base/parallel.h"
 #include "radiosity/base.h"
 
 namespace radiosity {
@@ -38,31 +36,19 @@ EmbreeScene::EmbreeScene(const ViewScene& scene, const PatchMesh& mesh)
     : middle_(boxOf(scene.vertices).centre()),
       device_(newDevice()),
       scene_(rtcNewScene(device_)),
-      vertices_(scene.vertices) {
-  std::vector<std::optional<std::vector<Triangle>>> of_polygon(scene.polygons.size());
-  parallelFor(of_polygon.size(), 64,
-              [&](std::size_t p) { of_polygon[p] = scene.trianglesOf(scene.polygons[p]); });
-  std::vector<Index> without_triangles;
-  for (Index p = 0; p < of_polygon.size(); ++p) {
-    if (!of_polygon[p]) {
-      without_triangles.push_back(p);
-      continue;
-    }
-    triangles_.insert(triangles_.end(), of_polygon[p]->begin(), of_polygon[p]->end());
-    polygon_of_.insert(polygon_of_.end(), of_polygon[p]->size(), p);
-  }
-  if (!without_triangles.empty()) addTiles(scene, mesh, without_triangles);
+      all_(scene, mesh) {
   const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices_.size()));
-  for (const Vec3& v : vertices_) {
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                               RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                                               all_.vertices.size()));
+  for (const Vec3& v : all_.vertices) {
     const glm::vec3 at = place(v);
     for (int c = 0; c < 3; ++c) *vertices++ = at[c];
   }
   auto* corners = static_cast<std::uint32_t*>(
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                              3 * sizeof(std::uint32_t), triangles_.size()));
-  for (const auto& triangle : triangles_) {
+                              3 * sizeof(std::uint32_t), all_.triangles.size()));
+  for (const auto& triangle : all_.triangles) {
     for (const std::uint32_t corner : triangle) *corners++ = corner;
   }
   rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
@@ -75,23 +61,6 @@ EmbreeScene::EmbreeScene(const ViewScene& scene, const PatchMesh& mesh)
   // triangles a ray through their common edge ends on. (A device with one thread would leave the
   // whole process one.)
   tbb::task_arena(1).execute([&] { rtcCommitScene(scene_); });
-}
-
-void EmbreeScene::addTiles(const ViewScene& scene, const PatchMesh& mesh,
-                           const std::vector<Index>& without_triangles) {
-  std::vector<Index> place(mesh.polygons.size(), kNone);  // of those without triangles
-  for (const Index p : without_triangles) place[scene.polygons[p].source] = p;
-  for (std::size_t i = 0; i < mesh.size(); ++i) {
-    // A back has the tiles of its front.
-    const Index polygon = mesh.polygon[i];
-    if (polygon == kNone || place[polygon] == kNone || mesh.side[i] != 0) continue;
-    for (std::size_t t = mesh.piece_offset[i]; t < mesh.piece_offset[i + 1]; ++t) {
-      const auto first = std::uint32_t(vertices_.size());
-      for (const Index v : mesh.pieces[t]) vertices_.push_back(mesh.vertices[v] * scene.scale);
-      triangles_.push_back({first, first + 1, first + 2});
-      polygon_of_.push_back(place[polygon]);
-    }
-  }
 }
 
 void EmbreeScene::trace(RTCRayHit16& packet, int lanes) const {

@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "formfactor/view_scene.h"
+#include "formfactor/view_triangles.h"
 
 namespace radiosity {
 
@@ -59,23 +59,17 @@ class EmbreeScene {
   /// is RTC_INVALID_GEOMETRY_ID where there is none.
   RTCHit frontAt(const RTCRayHit16& packet, int k) const;
   /// In the coordinates of the ViewScene: its vertices, and those of such tiles.
-  const std::vector<Vec3>& vertices() const { return vertices_; }
+  const std::vector<Vec3>& vertices() const { return all_.vertices; }
   /// Corners in vertices().
-  const std::vector<std::array<std::uint32_t, 3>>& triangles() const { return triangles_; }
+  const std::vector<std::array<std::uint32_t, 3>>& triangles() const { return all_.triangles; }
   /// Position in ViewScene::polygons of each triangle.
-  const std::vector<std::uint32_t>& polygonOf() const { return polygon_of_; }
+  const std::vector<std::uint32_t>& polygonOf() const { return all_.polygon_of; }
 
  private:
-  using Triangle = std::array<std::uint32_t, 3>;
-  void addTiles(const ViewScene& scene, const PatchMesh& mesh,
-                const std::vector<Index>& without_triangles);
-
   Vec3 middle_;
   RTCDevice device_;
   RTCScene scene_;
-  std::vector<Vec3> vertices_;
-  std::vector<Triangle> triangles_;
-  std::vector<std::uint32_t> polygon_of_;
+  ViewTriangles all_;
 };
 
 /// Flushes denormals while it lives, which Embree's documentation asks for.

@@ -1,0 +1,104 @@
+// Hemicubes drawn by a GPU. What knows OpenGL stands in a library of its own (src/gl), which is
+// opened when the first device is asked for: the program runs where there is none.
+//
+// A GPU draws many hemicubes at once, all polygons in colours of their own (Cohen & Greenberg
+// 1985), finds the patches of visible pixels and adds up the delta form factors. Conventions are
+// those of hemicube.h; what differs is that vertices are rounded to the rasteriser's grid, so that
+// a pixel whose centre is within some 1/256 of a pixel of an edge may fall to either side.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formfactor/hemicube/delta_form_factors.h"
+#include "formfactor/hemicube/gpu_scene.h"
+#include "radiosity/form_factors.h"
+
+namespace radiosity {
+
+/// Where one eye stands, as Hemicube::look() has it, in the coordinates of the ViewScene.
+struct GpuView {
+  std::array<double, 3> eye;
+  std::array<double, 9> axes;  ///< column by column
+  std::uint32_t own;           ///< position in ViewScene::polygons, or kNone
+  std::uint32_t padding = 0;
+};
+static_assert(sizeof(GpuView) == 104);
+
+/// Polygons drawn and skipped by some hemicubes; as HemicubeCounts.
+struct GpuCounts {
+  std::uint32_t own_plane, horizon, facing_away, face, rasterised;
+};
+
+/// Delta form factors are summed as whole numbers of this unit, modulo 2^64: a sum then does not
+/// depend on the order in which a GPU adds, and no pixel is lost beside a large one.
+inline constexpr double kGpuUnit = 0x1p-62;
+
+/// The running sums of DeltaFormFactors in that unit, row by row, resolution + 1 each.
+struct GpuWeights {
+  explicit GpuWeights(const DeltaFormFactors& weights);
+  int resolution;
+  std::vector<std::uint64_t> top;   ///< rows 0 to resolution / 2 - 1; the others mirror them
+  std::vector<std::uint64_t> side;  ///< as many rows
+};
+
+/// What views [first, first + count) see: for each of them the weight of every item, the sky's
+/// last, in units of kGpuUnit, items + 1 of them.
+struct GpuRows {
+  std::size_t first = 0;
+  std::size_t count = 0;
+  std::span<const std::uint32_t> low, high;  ///< halves of count * (items + 1) weights
+  GpuCounts counts{};                        ///< of all of them
+  std::uint64_t weight(std::size_t k) const { return std::uint64_t(high[k]) << 32 | low[k]; }
+};
+
+/// Draws hemicubes of one scene on one device. One thread at a time.
+class GpuEye {
+ public:
+  virtual ~GpuEye() = default;
+
+  /// Describes view k: where it stands, and a bit for each polygon whose black back cannot be seen
+  /// (bit p % 32 of word p / 32; all are 0 before).
+  using Describe =
+      std::function<void(std::size_t k, GpuView& view, std::span<std::uint32_t> hidden)>;
+  /// Receives rows, views ascending, each once; false: that is enough.
+  using Take = std::function<bool(const GpuRows& rows)>;
+
+  /// Looks from `count` eyes. While rows are taken later ones are drawn. Empty, or why the device
+  /// gave up ("out of memory"): views after those taken were not seen then.
+  virtual std::string look(std::size_t count, const Describe& describe, const Take& take) = 0;
+
+  /// For tests: the polygons that view 0 sees, face by face as Hemicube::picture() has them.
+  virtual std::vector<Index> pictures(const Describe& describe) = 0;
+
+  /// Bytes held here and on the device, about.
+  virtual std::size_t bytes() const = 0;
+  virtual const EyeDevice& device() const = 0;
+};
+
+/// What the library offers.
+class GpuEyes {
+ public:
+  virtual ~GpuEyes() = default;
+  /// Devices that can draw, hardware first; where there are none `problem` says why.
+  virtual EyeDevices devices() const = 0;
+  /// An eye on device `d` of devices(), which keeps nothing of its arguments. Null: `problem` says
+  /// why.
+  virtual std::unique_ptr<GpuEye> open(std::size_t d, const GpuScene& scene,
+                                       const GpuWeights& weights, std::string& problem) const = 0;
+};
+
+/// Null where the library is not there: `problem` then says why.
+const GpuEyes* gpuEyes(std::string& problem);
+
+/// The eye that `choice` asks for: null for the CPU's, also where `automatic` finds no hardware.
+/// RunError where `gl` is asked for and no device can be used.
+std::unique_ptr<GpuEye> openGpuEye(EyeChoice choice, const ViewScene& scene, const PatchMesh& mesh,
+                                   const DeltaFormFactors& weights);
+
+}  // namespace radiosity

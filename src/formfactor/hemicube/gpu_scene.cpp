@@ -1,0 +1,130 @@
+#include "formfactor/hemicube/gpu_scene.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <numeric>
+#include <utility>
+
+#include "base/geometry/box_tree.h"
+#include "base/parallel.h"
+#include "formfactor/view_triangles.h"
+
+namespace radiosity {
+namespace {
+
+std::array<double, 3> numbers(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+/// Finds the vertices that lie on an edge, its ends left out.
+class EdgeVertices {
+ public:
+  EdgeVertices(const std::vector<Vec3>& vertices, double coincidence)
+      : vertices_(vertices), coincidence_(coincidence) {
+    std::vector<Box3> boxes;
+    boxes.reserve(vertices.size());
+    for (const Vec3& v : vertices) boxes.push_back({v, v});
+    tree_ = BoxTree(boxes);
+  }
+
+  /// From `a` to `b`. The same vertices, the other way round, as from `b` to `a`.
+  std::vector<Index> between(Index a, Index b) const {
+    if (a > b) {
+      std::vector<Index> found = between(b, a);
+      std::reverse(found.begin(), found.end());
+      return found;
+    }
+    const Vec3 from = vertices_[a];
+    const Vec3 edge = vertices_[b] - from;
+    const double squared = glm::dot(edge, edge);
+    std::vector<std::pair<double, Index>> found;
+    if (!(squared > 0)) return {};
+    const auto distanceOf = [&](const Vec3& p) {
+      const double along = std::clamp(glm::dot(p - from, edge) / squared, 0.0, 1.0);
+      return glm::distance(p, from + along * edge);
+    };
+    tree_.search(
+        [&](const Box3& box) {
+          return distanceOf(box.centre()) <= 0.5 * box.diagonal() + 2 * coincidence_;
+        },
+        [&](Index v) {
+          const double along = glm::dot(vertices_[v] - from, edge) / squared;
+          const bool inside =
+              along > 0 && along < 1 && vertices_[v] != from && vertices_[v] != vertices_[b];
+          if (v != a && v != b && inside && distanceOf(vertices_[v]) <= coincidence_) {
+            found.emplace_back(along, v);
+          }
+          return true;
+        });
+    std::sort(found.begin(), found.end());
+    std::vector<Index> ordered;
+    for (const auto& [along, v] : found) ordered.push_back(v);
+    return ordered;
+  }
+
+ private:
+  const std::vector<Vec3>& vertices_;
+  double coincidence_;
+  BoxTree tree_;
+};
+
+/// The triangle as a fan that has all vertices on its edges for corners.
+std::vector<GpuTriangle> cutAtVertices(const std::array<Index, 3>& triangle, Index polygon,
+                                       const EdgeVertices& on) {
+  std::vector<Index> outline;
+  for (std::size_t k = 0; k < 3; ++k) {
+    outline.push_back(triangle[k]);
+    const std::vector<Index> more = on.between(triangle[k], triangle[(k + 1) % 3]);
+    outline.insert(outline.end(), more.begin(), more.end());
+  }
+  std::vector<GpuTriangle> fan;
+  for (std::size_t k = 1; k + 1 < outline.size(); ++k) {
+    fan.push_back({outline[0], outline[k], outline[k + 1], polygon});
+  }
+  return fan;
+}
+
+}  // namespace
+
+GpuScene::GpuScene(const ViewScene& scene, const PatchMesh& mesh)
+    : coincidence(scene.coincidence), items(std::uint32_t(scene.items)), cells(scene.cells) {
+  addGrids(scene);
+  addPolygons(scene);
+  ViewTriangles all(scene, mesh);
+  vertices = std::move(all.vertices);
+  const EdgeVertices on(vertices, coincidence);
+  std::vector<std::vector<GpuTriangle>> cut(all.triangles.size());
+  parallelFor(cut.size(), 64, [&](std::size_t t) {
+    cut[t] = cutAtVertices(all.triangles[t], all.polygon_of[t], on);
+  });
+  for (const std::vector<GpuTriangle>& fan : cut) {
+    triangles.insert(triangles.end(), fan.begin(), fan.end());
+  }
+  // Of equal depths the polygon that is drawn first stays.
+  std::stable_sort(triangles.begin(), triangles.end(),
+                   [](const GpuTriangle& a, const GpuTriangle& b) { return a[3] < b[3]; });
+}
+
+void GpuScene::addGrids(const ViewScene& scene) {
+  for (std::size_t g = 0; g < scene.grids.size(); ++g) {
+    const PatchGrid& grid = scene.grids[g];
+    grids.push_back({numbers(grid.uAxis()), numbers(grid.vAxis()), grid.uOffset(), grid.vOffset(),
+                     grid.columns(), grid.rows(), scene.first_cell[g], std::int32_t(nodes.size())});
+    for (const CellNode& node : grid.nodes()) {
+      nodes.push_back({float(node.a), float(node.b), float(node.c), node.inside, node.outside});
+    }
+  }
+}
+
+void GpuScene::addPolygons(const ViewScene& scene) {
+  for (const ViewPolygon& polygon : scene.polygons) {
+    const auto [front, back] = polygon.side;
+    polygons.push_back({numbers(polygon.normal),
+                        numbers(polygon.origin),
+                        scene.loop_offset[polygon.loop_begin],
+                        scene.loop_offset[polygon.loop_end],
+                        {std::int32_t(front.item), std::int32_t(back.item)},
+                        {std::int32_t(front.grid), std::int32_t(back.grid)}});
+  }
+  corners = scene.corners;
+}
+
+}  // namespace radiosity

@@ -1,0 +1,431 @@
+#include "gl/gl_eye.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <deque>
+
+#include "gl/shaders.h"
+
+namespace radiosity::gl {
+
+namespace {
+
+/// Batches that are under way at once: while one is read, the next are drawn.
+constexpr std::size_t kRing = 3;
+/// Pixels drawn at once. In software an interrupt must not wait for more.
+constexpr std::size_t kPixelsInHardware = std::size_t(1) << 24;
+constexpr std::size_t kPixelsInSoftware = std::size_t(1) << 21;
+/// Bytes of a batch; one hemicube may take more.
+constexpr std::size_t kBatchBytes = std::size_t(256) << 20;
+constexpr std::size_t kMostViews = 4096;  // groups of a dispatch are no fewer than 65,535
+/// A triangle that four planes clip has seven corners, five triangles; a hemicube has five faces.
+constexpr std::size_t kMostPieces = 25;
+/// Room that clipped triangles get at first: most are seen on one face or none.
+constexpr std::size_t kPieces = 2;
+constexpr std::size_t kLittleRoom = 4096;
+
+constexpr std::size_t kCandidateBytes = 64;
+constexpr std::size_t kCornerBytes = 16;
+constexpr std::size_t kPixelBytes = 8;
+
+std::size_t pixelsOf(int resolution) {
+  return 3 * std::size_t(resolution) * std::size_t(resolution);
+}
+
+std::size_t limitOf(GLenum name) {
+  GLint64 limit = 0;
+  glGetInteger64v(name, &limit);
+  return std::size_t(limit);
+}
+
+/// As kClipTriangles has it.
+struct DrawCall {
+  std::uint32_t count, instances, first, base_instance, needed;
+};
+
+GLuint groups(std::size_t count, std::size_t size) { return GLuint((count + size - 1) / size); }
+
+class Texture {
+ public:
+  Texture(GLenum format, std::uint32_t width, std::uint32_t height) {
+    glGenTextures(1, &name_);
+    glBindTexture(GL_TEXTURE_2D, name_);
+    glTexStorage2D(GL_TEXTURE_2D, 1, format, GLsizei(width), GLsizei(height));
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  }
+  ~Texture() { glDeleteTextures(1, &name_); }
+  Texture(const Texture&) = delete;
+  Texture& operator=(const Texture&) = delete;
+  GLuint name() const { return name_; }
+
+ private:
+  GLuint name_ = 0;
+};
+
+/// What is drawn to: polygons and depths of all tiles.
+class Target {
+ public:
+  Target(std::uint32_t width, std::uint32_t height)
+      : polygons(GL_R32UI, width, height), depths_(GL_DEPTH_COMPONENT32F, width, height) {
+    glGenFramebuffers(1, &name_);
+    glBindFramebuffer(GL_FRAMEBUFFER, name_);
+    glFramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, polygons.name(), 0);
+    glFramebufferTexture(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, depths_.name(), 0);
+    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+      throw Failure("the driver draws no 32-bit numbers with 32-bit depths");
+    }
+  }
+  ~Target() { glDeleteFramebuffers(1, &name_); }
+  Target(const Target&) = delete;
+  Target& operator=(const Target&) = delete;
+
+  /// All sky, infinitely far.
+  void clear() const {
+    const std::array<GLuint, 4> sky = {kNone, 0, 0, 0};
+    const GLfloat far = 0;
+    glBindFramebuffer(GL_FRAMEBUFFER, name_);
+    glClearBufferuiv(GL_COLOR, 0, sky.data());
+    glClearBufferfv(GL_DEPTH, 0, &far);
+  }
+
+  Texture polygons;
+
+ private:
+  Texture depths_;
+  GLuint name_ = 0;
+};
+
+/// Corners of triangles as they are drawn.
+class CornerArray {
+ public:
+  explicit CornerArray(const Buffer& corners) {
+    glGenVertexArrays(1, &name_);
+    glBindVertexArray(name_);
+    glBindBuffer(GL_ARRAY_BUFFER, corners.name());
+    glEnableVertexAttribArray(0);
+    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, kCornerBytes, nullptr);
+    glEnableVertexAttribArray(1);
+    glVertexAttribIPointer(1, 1, GL_UNSIGNED_INT, kCornerBytes,
+                           reinterpret_cast<const void*>(3 * sizeof(float)));
+  }
+  ~CornerArray() { glDeleteVertexArrays(1, &name_); }
+  CornerArray(const CornerArray&) = delete;
+  CornerArray& operator=(const CornerArray&) = delete;
+  void bind() const { glBindVertexArray(name_); }
+
+ private:
+  GLuint name_ = 0;
+};
+
+/// What goes to the device and comes back for one batch under way.
+struct Slot {
+  explicit Slot(std::size_t bytes) : rows(bytes) {}
+  Buffer views;
+  Buffer hidden;
+  MappedBuffer rows;  ///< low halves, high halves, GpuCounts, DrawCall
+  Fence done;
+};
+
+/// All that depends on the size of batches.
+struct Room {
+  Room(const BatchPlan& plan, int resolution)
+      : target(plan.across * 2 * std::uint32_t(resolution),
+               plan.down * 3 * std::uint32_t(resolution) / 2),
+        corner_array(corners) {}
+  Target target;
+  Buffer candidates;
+  Buffer corners;
+  CornerArray corner_array;
+  Buffer low, high;
+  std::vector<std::unique_ptr<Slot>> slots;
+};
+
+}  // namespace
+
+struct GlEye::OnDevice {
+  Program find_candidates{{GL_COMPUTE_SHADER, {kTypes, kFindCandidates}}};
+  Program clip_triangles{{GL_COMPUTE_SHADER, {kTypes, kClipTriangles}}};
+  Program draw_triangles{{GL_VERTEX_SHADER, {kDrawCorner}}, {GL_FRAGMENT_SHADER, {kDrawPixel}}};
+  Program sum_rows{{GL_COMPUTE_SHADER, {kTypes, kSumRows}}};
+  Buffer vertices, corners, polygons, triangles, grids, cells, nodes, top_sums, side_sums;
+  Buffer counts, draw_call;
+  std::unique_ptr<Room> room;
+};
+
+GlEye::GlEye(const Device& device, const GpuScene& scene, const GpuWeights& weights)
+    : about_(device.about),
+      context_(device.display),
+      resolution_(weights.resolution),
+      coincidence_(scene.coincidence),
+      items_(scene.items),
+      polygons_(std::uint32_t(scene.polygons.size())),
+      triangles_(std::uint32_t(scene.triangles.size())),
+      hidden_words_((polygons_ + 31) / 32),
+      triangle_room_(std::min(kMostPieces * triangles_, kPieces * triangles_ + kLittleRoom)) {
+  const Context::Current current(context_);
+  on_device_ = std::make_unique<OnDevice>();
+  OnDevice& on = *on_device_;
+  const auto store = [](Buffer& buffer, const auto& values) { buffer.store(std::span(values)); };
+  store(on.vertices, scene.vertices);
+  store(on.corners, scene.corners);
+  store(on.polygons, scene.polygons);
+  store(on.triangles, scene.triangles);
+  store(on.grids, scene.grids);
+  store(on.cells, scene.cells);
+  store(on.nodes, scene.nodes);
+  store(on.top_sums, weights.top);
+  store(on.side_sums, weights.side);
+  on.counts.reserve(sizeof(GpuCounts));
+  on.draw_call.reserve(sizeof(DrawCall));
+  glEnable(GL_DEPTH_TEST);
+  glEnable(GL_DEPTH_CLAMP);
+  glDepthFunc(GL_GREATER);
+  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  makeRoom();
+}
+
+GlEye::~GlEye() {
+  try {
+    const Context::Current current(context_);
+    on_device_.reset();
+  } catch (const Failure&) {
+    // The context is lost; with it goes what it held.
+  }
+}
+
+BatchPlan GlEye::plan() const {
+  const std::size_t side = std::min(limitOf(GL_MAX_TEXTURE_SIZE), std::size_t(1) << 15);
+  const std::size_t across = side / (2 * std::size_t(resolution_));
+  const std::size_t down = side / (3 * std::size_t(resolution_) / 2);
+  const std::size_t row = 4 * (std::size_t(items_) + 1);
+  const std::size_t view = std::max<std::size_t>(
+      {row, kCandidateBytes * polygons_, 3 * kCornerBytes * triangle_room_, 4});
+  const std::size_t block = limitOf(GL_MAX_SHADER_STORAGE_BLOCK_SIZE);
+  const OnDevice& on = *on_device_;
+  const std::size_t shared =
+      std::max({on.cells.bytes(), on.nodes.bytes(), on.vertices.bytes(), on.polygons.bytes(),
+                on.triangles.bytes(), on.top_sums.bytes()});
+  if (across == 0 || down == 0 || view > block || shared > block) {
+    throw Failure("the scene is too large for the buffers of the device");
+  }
+  const std::size_t all = pixelsOf(resolution_) * kPixelBytes + kCandidateBytes * polygons_ +
+                          3 * kCornerBytes * triangle_room_ + 2 * row * (1 + kRing);
+  const std::size_t pixels = about_.hardware ? kPixelsInHardware : kPixelsInSoftware;
+  const std::size_t most = std::min({across * down, block / view, kBatchBytes / all,
+                                     pixels / pixelsOf(resolution_), kMostViews, most_views_});
+  BatchPlan plan;
+  plan.views = std::uint32_t(std::max<std::size_t>(most, 1));
+  plan.across = std::uint32_t(std::min<std::size_t>(across, plan.views));
+  plan.down = groups(plan.views, plan.across);
+  plan.triangles = triangle_room_ * plan.views;
+  return plan;
+}
+
+/// For batches as large as they may be now. Failure where the device has no room for one hemicube.
+void GlEye::makeRoom() {
+  plan_ = plan();
+  OnDevice& on = *on_device_;
+  on.room.reset();
+  on.room = std::make_unique<Room>(plan_, resolution_);
+  Room& room = *on.room;
+  const std::size_t rows = std::size_t(plan_.views) * (items_ + 1) * 4;
+  room.candidates.reserve(kCandidateBytes * polygons_ * plan_.views);
+  room.corners.reserve(3 * kCornerBytes * plan_.triangles);
+  room.low.reserve(rows);
+  room.high.reserve(rows);
+  for (std::size_t k = 0; k < kRing; ++k) {
+    room.slots.push_back(std::make_unique<Slot>(2 * rows + sizeof(GpuCounts) + sizeof(DrawCall)));
+    Slot& slot = *room.slots.back();
+    slot.views.reserve(sizeof(GpuView) * plan_.views, GL_STREAM_DRAW);
+    slot.hidden.reserve(4 * std::size_t(hidden_words_) * plan_.views, GL_STREAM_DRAW);
+    check("making room for hemicubes");
+    if (slot.rows.data() == nullptr) throw Failure("the driver maps no memory");
+  }
+}
+
+std::size_t GlEye::bytes() const {
+  const std::size_t row = 8 * (std::size_t(items_) + 1) * plan_.views;
+  return row * (1 + kRing) + kPixelBytes * pixelsOf(resolution_) * plan_.views +
+         kCandidateBytes * polygons_ * plan_.views + 3 * kCornerBytes * plan_.triangles +
+         on_device_->top_sums.bytes() + on_device_->side_sums.bytes() + on_device_->cells.bytes();
+}
+
+void GlEye::describe(const Batch& batch, const Describe& describe) {
+  std::vector<GpuView> views(batch.count);
+  std::vector<std::uint32_t> hidden(std::size_t(batch.count) * hidden_words_, 0);
+  for (std::size_t k = 0; k < batch.count; ++k) {
+    describe(batch.first + k, views[k],
+             std::span(hidden).subspan(k * hidden_words_, hidden_words_));
+  }
+  Slot& slot = *on_device_->room->slots[batch.slot];
+  slot.views.write(std::span<const GpuView>(views));
+  slot.hidden.write(std::span<const std::uint32_t>(hidden));
+}
+
+void GlEye::draw(const Batch& batch) {
+  OnDevice& on = *on_device_;
+  Room& room = *on.room;
+  Slot& slot = *room.slots[batch.slot];
+  on.counts.clear();
+  const DrawCall none = {0, 1, 0, 0, 0};
+  on.draw_call.write(std::span(&none, 1));
+
+  on.find_candidates.useWith({&on.vertices, &on.corners, &on.polygons, &on.grids, &slot.views,
+                              &slot.hidden, &room.candidates, &on.counts});
+  glUniform1ui(on.find_candidates.uniform("polygon_count"), polygons_);
+  glUniform1ui(on.find_candidates.uniform("hidden_words"), hidden_words_);
+  glUniform1d(on.find_candidates.uniform("coincidence"), coincidence_);
+  glDispatchCompute(groups(polygons_, 64), batch.count, 1);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+
+  on.clip_triangles.useWith(
+      {&on.vertices, &on.triangles, &slot.views, &room.candidates, &room.corners, &on.draw_call});
+  glUniform1ui(on.clip_triangles.uniform("triangle_count"), triangles_);
+  glUniform1ui(on.clip_triangles.uniform("polygon_count"), polygons_);
+  glUniform1ui(on.clip_triangles.uniform("capacity"), std::uint32_t(3 * plan_.triangles));
+  glUniform1i(on.clip_triangles.uniform("resolution"), resolution_);
+  glUniform1i(on.clip_triangles.uniform("tiles_across"), int(plan_.across));
+  glDispatchCompute(kFaces, batch.count, 1);
+  glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
+                  GL_BUFFER_UPDATE_BARRIER_BIT);
+
+  room.target.clear();
+  const int width = int(plan_.across) * 2 * resolution_;
+  const int height = int(plan_.down) * 3 * resolution_ / 2;
+  glViewport(0, 0, width, height);
+  on.draw_triangles.use();
+  glUniform2f(on.draw_triangles.uniform("target"), float(width), float(height));
+  room.corner_array.bind();
+  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, on.draw_call.name());
+  glDrawArraysIndirect(GL_TRIANGLES, nullptr);
+}
+
+void GlEye::sum(const Batch& batch) {
+  OnDevice& on = *on_device_;
+  Room& room = *on.room;
+  room.low.clear();
+  room.high.clear();
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, room.target.polygons.name());
+  on.sum_rows.useWith({&room.candidates, &on.grids, &on.cells, &on.nodes, &on.top_sums,
+                       &on.side_sums, &room.low, &room.high});
+  glUniform1ui(on.sum_rows.uniform("polygon_count"), polygons_);
+  glUniform1i(on.sum_rows.uniform("sky"), int(items_));
+  glUniform1i(on.sum_rows.uniform("resolution"), resolution_);
+  glUniform1i(on.sum_rows.uniform("tiles_across"), int(plan_.across));
+  glDispatchCompute(groups(std::size_t(resolution_), 128), GLuint(3 * resolution_), batch.count);
+}
+
+void GlEye::send(const Batch& batch) {
+  const OnDevice& on = *on_device_;
+  Slot& slot = *on.room->slots[batch.slot];
+  const std::size_t half = std::size_t(batch.count) * (items_ + 1) * 4;
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  slot.rows.copy(on.room->low, 0, half);
+  slot.rows.copy(on.room->high, half, half);
+  slot.rows.copy(on.counts, 2 * half, sizeof(GpuCounts));
+  slot.rows.copy(on.draw_call, 2 * half + sizeof(GpuCounts), sizeof(DrawCall));
+  glMemoryBarrier(GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
+  slot.done.set();
+}
+
+void GlEye::wait(const Batch& batch) const {
+  const Slot& slot = *on_device_->room->slots[batch.slot];
+  while (!slot.done.wait()) check("drawing hemicubes");
+}
+
+GpuRows GlEye::rowsOf(const Batch& batch) const {
+  const std::size_t values = std::size_t(batch.count) * (items_ + 1);
+  const std::byte* data = on_device_->room->slots[batch.slot]->rows.data();
+  const auto* halves = reinterpret_cast<const std::uint32_t*>(data);
+  GpuRows rows{batch.first, batch.count, {halves, values}, {halves + values, values}, {}};
+  std::memcpy(&rows.counts, data + 8 * values, sizeof rows.counts);
+  return rows;
+}
+
+/// Whether clipped triangles found no room; the next batches are then smaller, or have more.
+bool GlEye::hasOverflowed(const Batch& batch) {
+  DrawCall made{};
+  const std::size_t at = std::size_t(batch.count) * (items_ + 1) * 8 + sizeof(GpuCounts);
+  std::memcpy(&made, on_device_->room->slots[batch.slot]->rows.data() + at, sizeof made);
+  if (made.needed <= 3 * plan_.triangles) return false;
+  if (batch.count > 1) {
+    most_views_ = batch.count / 2;
+    // All of the room for fewer.
+    triangle_room_ = std::min(kMostPieces * triangles_, 2 * triangle_room_);
+  } else {
+    triangle_room_ = std::min(kMostPieces * triangles_, std::size_t(made.needed) / 3);
+  }
+  return true;
+}
+
+void GlEye::lookAtAll(std::size_t count, const Describe& describe_view, const Take& take) {
+  std::deque<Batch> under_way;
+  std::size_t next = 0;
+  std::size_t made = 0;
+  bool wanted = true;
+  while (wanted && (next < count || !under_way.empty())) {
+    while (next < count && under_way.size() < kRing) {
+      const Batch batch{next, std::uint32_t(std::min<std::size_t>(plan_.views, count - next)),
+                        made++ % kRing};
+      describe(batch, describe_view);
+      draw(batch);
+      sum(batch);
+      send(batch);
+      check("drawing hemicubes");
+      under_way.push_back(batch);
+      next += batch.count;
+    }
+    const Batch oldest = under_way.front();
+    under_way.pop_front();
+    wait(oldest);
+    if (hasOverflowed(oldest)) {
+      glFinish();
+      under_way.clear();
+      makeRoom();
+      next = oldest.first;
+      continue;
+    }
+    wanted = take(rowsOf(oldest));
+  }
+  glFinish();
+}
+
+std::string GlEye::look(std::size_t count, const Describe& describe, const Take& take) {
+  try {
+    const Context::Current current(context_);
+    lookAtAll(count, describe, take);
+  } catch (const Failure& failure) {
+    return failure.what();
+  }
+  return {};
+}
+
+std::vector<Index> GlEye::pictures(const Describe& describe_view) {
+  const Context::Current current(context_);
+  const Batch batch{0, 1, 0};
+  describe(batch, describe_view);
+  draw(batch);
+  const int width = 2 * resolution_;
+  const int height = 3 * resolution_ / 2;
+  std::vector<Index> tile(pixelsOf(resolution_));
+  glPixelStorei(GL_PACK_ALIGNMENT, 4);
+  glReadPixels(0, 0, width, height, GL_RED_INTEGER, GL_UNSIGNED_INT, tile.data());
+  check("reading pictures");
+  // As kClipTriangles places the faces.
+  const int r = resolution_;
+  const std::array<std::array<int, 2>, kFaces> corners = {
+      {{0, 0}, {r, 0}, {r, r / 2}, {0, r}, {r, r}}};
+  std::vector<Index> pixels;
+  for (std::size_t face = 0; face < kFaces; ++face) {
+    for (int y = 0; y < (face == 0 ? r : r / 2); ++y) {
+      const auto* row = tile.data() + (corners[face][1] + y) * width + corners[face][0];
+      pixels.insert(pixels.end(), row, row + r);
+    }
+  }
+  return pixels;
+}
+
+}  // namespace radiosity::gl

@@ -1,0 +1,363 @@
+#include "gl/shaders.h"
+
+namespace radiosity::gl {
+
+const char* const kTypes = R"(#version 430 core
+const uint kNone = 0xffffffffu;
+struct Polygon {
+  double normal[3], origin[3];
+  uint corner_begin, corner_end;
+  int item[2], grid[2];
+};
+struct Grid {
+  double u_axis[3], v_axis[3], u_offset, v_offset;
+  int columns, rows, first_cell, first_node;
+};
+struct Node {
+  float a, b, c;
+  int inside, outside;
+};
+struct View {
+  double eye[3], axes[9];
+  uint own, padding;
+};
+// In the eye's frame, along a pixel's ray r: 1 / depth = dot(plane, r), column = dot(u, r) * depth,
+// row = dot(v, r) * depth.
+struct Candidate {
+  vec4 plane, u, v;
+  int item, grid;
+  uint signs;  // of its corners, as signCode(); 0: not seen
+  uint padding;
+};
+// A point or direction as a face sees it: x, y and the distance along the face's axis.
+#define PROJECT(Vec)                          \
+  Vec project(uint face, Vec p) {             \
+    switch (face) {                           \
+      case 0u: return p;                      \
+      case 1u: return Vec(p.y, p.z, p.x);     \
+      case 2u: return Vec(-p.x, p.z, p.y);    \
+      case 3u: return Vec(-p.y, p.z, -p.x);   \
+      default: return Vec(p.x, p.z, -p.y);    \
+    }                                         \
+  }
+PROJECT(vec3)
+PROJECT(dvec3)
+dvec3 vec(double v[3]) { return dvec3(v[0], v[1], v[2]); }
+dvec3 toEye(View view, dvec3 direction) {
+  return dvec3(dot(direction, dvec3(view.axes[0], view.axes[1], view.axes[2])),
+               dot(direction, dvec3(view.axes[3], view.axes[4], view.axes[5])),
+               dot(direction, dvec3(view.axes[6], view.axes[7], view.axes[8])));
+}
+// FaceGeometry::mayCover(): a corner lies strictly inside each of the face's planes.
+const uint kInside[5] = uint[5](0x0f00u, 0x7002u, 0x5028u, 0x4031u, 0x6014u);
+bool mayCover(uint face, uint signs) { return (signs & kInside[face]) == kInside[face]; }
+)";
+
+const char* const kFindCandidates = R"(
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer Vertices { double vertices[]; };
+layout(std430, binding = 1) readonly buffer Corners { uint corners[]; };
+layout(std430, binding = 2) readonly buffer Polygons { Polygon polygons[]; };
+layout(std430, binding = 3) readonly buffer Grids { Grid grids[]; };
+layout(std430, binding = 4) readonly buffer Views { View views[]; };
+layout(std430, binding = 5) readonly buffer Hidden { uint hidden[]; };
+layout(std430, binding = 6) writeonly buffer Candidates { Candidate candidates[]; };
+layout(std430, binding = 7) buffer Counts { uint own_plane, horizon, facing_away, face, rasterised; };
+uniform uint polygon_count;
+uniform uint hidden_words;  // a view
+uniform double coincidence;
+const double kEdgeOn = 1e-30LF;  // as in hemicube_drawing.cpp
+const uint kOffPlane = 1u << 15, kAboveHorizon = 1u << 14;
+
+uint signsOf(dvec3 p) {
+  double values[7] = double[7](p.z + p.x, p.z - p.x, p.z + p.y, p.z - p.y, p.x + p.y, p.x - p.y, p.z);
+  uint signs = abs(p.z) > coincidence ? kOffPlane : 0u;
+  for (int k = 0; k < 7; ++k) signs |= uint(values[k] < 0) << k | uint(values[k] > 0) << (k + 8);
+  return signs;
+}
+
+// Signs of the corners, or 0 for what is not seen, which is counted.
+uint look(uint p, Polygon polygon, View view, double distance) {
+  uint signs = 0u;
+  for (uint c = polygon.corner_begin; c < polygon.corner_end; ++c) {
+    uint at = 3u * corners[c];
+    dvec3 vertex = dvec3(vertices[at], vertices[at + 1u], vertices[at + 2u]);
+    signs |= signsOf(toEye(view, vertex - vec(view.eye)));
+  }
+  if (p == view.own || (signs & kOffPlane) == 0u || !(abs(distance) > kEdgeOn)) {
+    atomicAdd(own_plane, 1u);
+    return 0u;
+  }
+  if ((signs & kAboveHorizon) == 0u) {
+    atomicAdd(horizon, 1u);
+    return 0u;
+  }
+  uint word = hidden[gl_WorkGroupID.y * hidden_words + p / 32u];
+  if (distance > 0 && (word >> (p % 32u) & 1u) != 0u) {
+    atomicAdd(facing_away, 1u);
+    return 0u;
+  }
+  uint faces = 0u;
+  for (uint f = 0u; f < 5u; ++f) faces += uint(mayCover(f, signs));
+  atomicAdd(rasterised, faces);
+  atomicAdd(face, 5u - faces);
+  return signs;
+}
+
+void main() {
+  uint p = gl_GlobalInvocationID.x;
+  if (p >= polygon_count) return;
+  View view = views[gl_WorkGroupID.y];
+  Polygon polygon = polygons[p];
+  dvec3 eye = vec(view.eye) - vec(polygon.origin);
+  double distance = -dot(vec(polygon.normal), eye);
+  Candidate seen;
+  seen.signs = look(p, polygon, view, distance);
+  int side = distance > 0 ? 1 : 0;
+  seen.item = polygon.item[side];
+  seen.grid = polygon.grid[side];
+  dvec3 plane = toEye(view, vec(polygon.normal)) / distance;
+  seen.plane = vec4(plane, 0);
+  if (seen.signs != 0u && seen.grid >= 0) {
+    Grid grid = grids[seen.grid];
+    double u = dot(vec(grid.u_axis), eye) + grid.u_offset;
+    double v = dot(vec(grid.v_axis), eye) + grid.v_offset;
+    seen.u = vec4(toEye(view, vec(grid.u_axis)) + u * plane, 0);
+    seen.v = vec4(toEye(view, vec(grid.v_axis)) + v * plane, 0);
+  }
+  candidates[gl_WorkGroupID.y * polygon_count + p] = seen;
+}
+)";
+
+const char* const kClipTriangles = R"(
+layout(local_size_x = 64) in;
+struct Corner {
+  float x, y, depth;
+  uint polygon;
+};
+layout(std430, binding = 0) readonly buffer Vertices { double vertices[]; };
+layout(std430, binding = 1) readonly buffer Triangles { uvec4 triangles[]; };
+layout(std430, binding = 2) readonly buffer Views { View views[]; };
+layout(std430, binding = 3) readonly buffer Candidates { Candidate candidates[]; };
+layout(std430, binding = 4) writeonly buffer Drawn { Corner drawn[]; };
+// As glDrawArraysIndirect() reads it, then the corners that there would have been room needed for.
+layout(std430, binding = 5) buffer Draw { uint count, instances, first, base_instance, needed; };
+uniform uint triangle_count;
+uniform uint polygon_count;
+uniform uint capacity;  // of `drawn`
+uniform int resolution;
+uniform int tiles_across;
+const double kNearest = 5.9604644775390625e-8LF;  // 2^-24: what is nearer is not told apart
+const int kMostCorners = 7;
+
+shared uint before[64];
+shared uint base;
+
+// Positive inside; planes as SidePlane counts them.
+double side(uint face, dvec3 p, int plane) {
+  switch (plane) {
+    case 0: return p.z + p.x;
+    case 1: return p.z - p.x;
+    case 2: return face == 0u ? p.z + p.y : p.y;
+    default: return p.z - p.y;
+  }
+}
+
+bool precedes(dvec3 a, dvec3 b) {
+  if (a.x != b.x) return a.x < b.x;
+  return a.y != b.y ? a.y < b.y : a.z < b.z;
+}
+
+// From its ends in a fixed order: neighbours get the same point to the bit.
+dvec3 crossing(dvec3 a, dvec3 b, double side_a, double side_b) {
+  if (precedes(b, a)) return b + side_b / (side_b - side_a) * (a - b);
+  return a + side_a / (side_a - side_b) * (b - a);
+}
+
+// Clips a loop of `count` corners and returns how many are left.
+int clip(inout dvec3 loop[kMostCorners], int count, uint face) {
+  for (int plane = 0; plane < 4 && count > 0; ++plane) {
+    dvec3 kept[kMostCorners];
+    int left = 0;
+    dvec3 last = loop[count - 1];
+    double from = side(face, last, plane);
+    for (int k = 0; k < count; ++k) {
+      double to = side(face, loop[k], plane);
+      if ((from < 0) != (to < 0) && left < kMostCorners) kept[left++] = crossing(last, loop[k], from, to);
+      if (!(to < 0) && left < kMostCorners) kept[left++] = loop[k];
+      last = loop[k];
+      from = to;
+    }
+    loop = kept;
+    count = left;
+  }
+  return count;
+}
+
+int clipped(uint t, View view, uint face, out dvec3 loop[kMostCorners]) {
+  uvec4 triangle = triangles[t];
+  uint signs = candidates[gl_WorkGroupID.y * polygon_count + triangle.w].signs;
+  if (!mayCover(face, signs)) return 0;
+  for (int k = 0; k < 3; ++k) {
+    uint at = 3u * triangle[k];
+    dvec3 vertex = dvec3(vertices[at], vertices[at + 1u], vertices[at + 2u]);
+    loop[k] = project(face, toEye(view, vertex - vec(view.eye)));
+  }
+  int count = clip(loop, 3, face);
+  // Only the eye itself has no distance inside a face: the polygon is seen edge-on.
+  for (int k = 0; k < count; ++k) if (!(loop[k].z > 0)) return 0;
+  return count;
+}
+
+Corner place(dvec3 p, uint face, uint polygon) {
+  double half_face = 0.5LF * resolution;
+  dvec2 middle = dvec2(half_face, face == 0u ? half_face : 0.0LF);
+  // The top face, then two side faces to its right, and two above.
+  ivec2 corner = ivec2(face == 0u || face == 3u ? 0 : resolution,
+                       face < 2u ? 0 : face == 2u ? resolution / 2 : resolution);
+  uint tile = gl_WorkGroupID.y;
+  corner += ivec2(tile % uint(tiles_across), tile / uint(tiles_across)) *
+            ivec2(2 * resolution, 3 * resolution / 2);
+  dvec2 pixel = dvec2(corner) + middle + half_face * p.xy / p.z;
+  return Corner(float(pixel.x), float(pixel.y), float(kNearest / p.z), polygon);
+}
+
+// Groups set room aside one piece of their triangles after the other, so that those of one face are
+// drawn in their order: of equal depths the first stays.
+void main() {
+  uint face = gl_WorkGroupID.x;
+  uint lane = gl_LocalInvocationID.x;
+  View view = views[gl_WorkGroupID.y];
+  for (uint first_triangle = 0u; first_triangle < triangle_count; first_triangle += 64u) {
+    dvec3 loop[kMostCorners];
+    uint t = first_triangle + lane;
+    int corners = t < triangle_count ? clipped(t, view, face, loop) : 0;
+    uint mine = corners < 3 ? 0u : 3u * uint(corners - 2);
+    before[lane] = mine;
+    barrier();
+    for (uint step = 1u; step < 64u; step *= 2u) {
+      uint sum = before[lane] + (lane >= step ? before[lane - step] : 0u);
+      barrier();
+      before[lane] = sum;
+      barrier();
+    }
+    if (lane == 63u && before[63] > 0u) {
+      base = atomicAdd(needed, before[63]);
+      if (base + before[63] <= capacity) atomicMax(count, base + before[63]);
+    }
+    barrier();
+    uint at = base + before[lane] - mine;
+    if (mine > 0u && base + before[63] <= capacity) {
+      for (int k = 1; k + 1 < corners; ++k) {
+        drawn[at++] = place(loop[0], face, triangles[t].w);
+        drawn[at++] = place(loop[k], face, triangles[t].w);
+        drawn[at++] = place(loop[k + 1], face, triangles[t].w);
+      }
+    }
+    barrier();
+  }
+}
+)";
+
+// Depths are inverse distances, linear in the pixel: no division by a fourth coordinate.
+const char* const kDrawCorner = R"(#version 430 core
+layout(location = 0) in vec3 corner;  // pixels of the target, and depth
+layout(location = 1) in uint polygon;
+uniform vec2 target;  // in pixels
+flat out uint drawn;
+void main() {
+  drawn = polygon;
+  gl_Position = vec4(2 * corner.xy / target - 1, corner.z, 1);
+}
+)";
+
+const char* const kDrawPixel = R"(#version 430 core
+flat in uint drawn;
+layout(location = 0) out uint polygon;
+void main() { polygon = drawn; }
+)";
+
+const char* const kSumRows = R"(
+layout(local_size_x = 128) in;
+layout(std430, binding = 0) readonly buffer Candidates { Candidate candidates[]; };
+layout(std430, binding = 1) readonly buffer Grids { Grid grids[]; };
+layout(std430, binding = 2) readonly buffer Cells { int cells[]; };
+layout(std430, binding = 3) readonly buffer Nodes { Node nodes[]; };
+layout(std430, binding = 4) readonly buffer TopSums { uvec2 top_sums[]; };
+layout(std430, binding = 5) readonly buffer SideSums { uvec2 side_sums[]; };
+layout(std430, binding = 6) buffer Low { uint low[]; };
+layout(std430, binding = 7) buffer High { uint high[]; };
+layout(binding = 0) uniform usampler2D picture;
+uniform uint polygon_count;
+uniform int sky;  // its item, the last
+uniform int resolution;
+uniform int tiles_across;
+
+shared int seen[128];
+
+// `pixel`: the ray through its centre, as the face sees it.
+int itemOf(uint polygon, uint face, vec3 pixel) {
+  if (polygon == kNone) return sky;
+  uint at = gl_WorkGroupID.z * polygon_count + polygon;
+  int grid = candidates[at].grid;
+  if (grid < 0) return candidates[at].item;
+  float w = dot(project(face, candidates[at].plane.xyz), pixel);
+  float u = dot(project(face, candidates[at].u.xyz), pixel);
+  float v = dot(project(face, candidates[at].v.xyz), pixel);
+  float scale = 1 / max(w, 1e-30);  // kLeastW
+  int columns = grids[grid].columns;
+  int column = int(clamp(roundEven(u * scale), 0, columns - 1));
+  int row = int(clamp(roundEven(v * scale), 0, grids[grid].rows - 1));
+  int entry = cells[grids[grid].first_cell + row * columns + column];
+  while (entry < 0) {
+    Node node = nodes[grids[grid].first_node + ~entry];
+    entry = node.a * u + node.b * v + node.c * w >= 0 ? node.inside : node.outside;
+  }
+  return entry;
+}
+
+// Adds a number of 64 bits, modulo 2^64, by halves.
+void add(int item, uvec2 number) {
+  uint at = gl_WorkGroupID.z * uint(sky + 1) + uint(item);
+  uint old = atomicAdd(low[at], number.x);
+  uint more = number.y + uint(old + number.x < old);
+  if (more != 0u) atomicAdd(high[at], more);
+}
+
+uvec2 negative(uvec2 number) { return uvec2(~number.x + 1u, ~number.y + uint(number.x == 0u)); }
+
+uvec2 sumAt(uint face, int y, int x) {
+  int row = face == 0u ? min(y, resolution - 1 - y) : y;
+  int at = row * (resolution + 1) + x;
+  return face == 0u ? top_sums[at] : side_sums[at];
+}
+
+// A run of pixels of one item is worth the difference of the running sums at its ends.
+void main() {
+  int x = int(gl_GlobalInvocationID.x);
+  int lane = int(gl_LocalInvocationID.x);
+  int row = int(gl_WorkGroupID.y);
+  int half_face = resolution / 2;
+  uint face = row < resolution ? 0u : 1u + uint((row - resolution) / half_face);
+  int y = face == 0u ? row : (row - resolution) % half_face;
+  int item = -1;
+  if (x < resolution) {
+    // As kClipTriangles places them.
+    ivec2 corner = ivec2(face == 0u || face == 3u ? 0 : resolution,
+                         face < 2u ? 0 : face == 2u ? half_face : resolution);
+    uint tile = gl_WorkGroupID.z;
+    corner += ivec2(tile % uint(tiles_across), tile / uint(tiles_across)) *
+              ivec2(2 * resolution, 3 * half_face);
+    vec2 centre = vec2(x + 0.5 * (1 - resolution), y + 0.5 * (face == 0u ? 1 - resolution : 1));
+    item = itemOf(texelFetch(picture, corner + ivec2(x, y), 0).x, face,
+                  vec3(centre * (2.0 / resolution), 1));
+  }
+  seen[lane] = item;
+  barrier();
+  if (x >= resolution) return;
+  if (lane == 0 || seen[lane - 1] != item) add(item, negative(sumAt(face, y, x)));
+  if (x == resolution - 1 || lane == 127 || seen[lane + 1] != item) add(item, sumAt(face, y, x + 1));
+}
+)";
+
+}  // namespace radiosity::gl
