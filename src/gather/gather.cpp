@@ -11,6 +11,7 @@
 
 #include "base/parallel.h"
 #include "formfactor/row_accounts.h"
+#include "gather/gpu_gatherer.h"
 #include "gather/passes.h"
 
 namespace radiosity {
@@ -58,6 +59,10 @@ class Passes {
         fronts_(scene.size(), 0.0F),
         seen_backs_(scene.size()),
         workers_([&] { return Gatherer(scene_, result_.radiosity); }) {
+    if (auto eye = openGpuEye(scene.eye, scene.rows.scene(), scene.mesh, scene.rows.weights())) {
+      gpu_.emplace(scene, std::move(eye));
+      noteOn(Severity::info, "hemicubes drawn by " + gpu_->device().name);
+    }
     result_.radiosity = scene.materials.emission;
     result_.irradiance.assign(bands_ * scene.size(), 0.0F);
     result_.backs.assign(scene.size(), 0.0F);
@@ -68,8 +73,10 @@ class Passes {
   GatherPass run(int number, Progress& progress) {
     const auto start = Clock::now();
     progress.begin(fmt::format("gathering, pass {}", number), scene_.size());
+    std::vector<std::uint8_t> gathered(scene_.size(), 0);
+    if (gpu_) gatherByGpu(number == 1, gathered, progress);
     parallelFor(scene_.size(), 1, [&](std::size_t k) {
-      if (progress.cancelled()) return;
+      if (progress.cancelled() || gathered[k] != 0) return;
       if (scene_.eyes[k].looks) gatherAt(k, number == 1);
       progress.advance();
     });
@@ -89,26 +96,54 @@ class Passes {
   double relativeBound() const { return relative_bound_; }
 
   HemicubeCounts counts() const {
-    HemicubeCounts counts;
+    HemicubeCounts counts = gpu_counts_;
+    if (gpu_) counts += gpu_->counts();
     for (const Gatherer& worker : workers_) counts += worker.counts();
     return counts;
   }
   std::size_t bytes() const {
     std::size_t sum = scene_.bytes() + scene_.size() * (4 * bands_ + 3) * sizeof(float);
     for (const Gatherer& worker : workers_) sum += worker.bytes();
+    if (gpu_) sum += gpu_->bytes();
     return sum;
   }
 
  private:
+  void noteOn(Severity severity, std::string text) {
+    result_.summary.notes.push_back({severity, std::move(text)});
+  }
+
   void gatherAt(std::size_t k, bool first) {
     Gatherer& worker = workers_.local();
     const Gatherer::Received received = worker.look(k);
-    if (first && received.backs > 0) {
-      const std::span<const double> backs = worker.backsBySurface();
-      for (std::size_t s = 0; s < backs.size(); ++s) {
-        if (backs[s] > 0) seen_backs_[k].push_back({Index(s), backs[s]});
-      }
+    if (first && received.backs > 0) seeBacks(k, worker.backsBySurface());
+    receive(k, received);
+  }
+
+  /// Marks what it has gathered at. Where the device gives up, the CPU's eye goes on.
+  void gatherByGpu(bool first, std::vector<std::uint8_t>& gathered, Progress& progress) {
+    const std::string problem = gpu_->pass(
+        [&](std::size_t k, const GpuGatherer::Seen& seen) {
+          if (first && seen.received.backs > 0) seeBacks(k, seen.backs);
+          receive(k, seen.received);
+          gathered[k] = 1;
+        },
+        progress);
+    if (problem.empty()) return;
+    noteOn(Severity::warning,
+           fmt::format("{}: {}; from here on hemicubes were drawn by the processor",
+                       gpu_->device().name, problem));
+    gpu_counts_ = gpu_->counts();
+    gpu_.reset();
+  }
+
+  void seeBacks(std::size_t k, std::span<const double> backs) {
+    for (std::size_t s = 0; s < backs.size(); ++s) {
+      if (backs[s] > 0) seen_backs_[k].push_back({Index(s), backs[s]});
     }
+  }
+
+  void receive(std::size_t k, const Gatherer::Received& received) {
     fronts_[k] = float(received.fronts);
     result_.backs[k] = float(received.backs);
     result_.sky[k] = float(received.sky);
@@ -200,6 +235,8 @@ class Passes {
   std::vector<float> fronts_;
   std::vector<std::vector<SeenBack>> seen_backs_;  ///< L, during the first pass
   double relative_bound_ = HUGE_VAL;
+  std::optional<GpuGatherer> gpu_;
+  HemicubeCounts gpu_counts_;  ///< of one that gave up
   tbb::enumerable_thread_specific<Gatherer> workers_;
 };
 

@@ -42,6 +42,7 @@ class GatherScene {
   std::optional<PatchBasis> basis;   ///< at vertices
   EyeMaterials materials;
   std::vector<double> sky;  ///< bands; radiance, W/m^2/sr
+  EyeChoice eye;
   /// The largest emission of a band, or the exitance of the sky where that is more: what changes
   /// are relative to.
   double largestSource(std::size_t band) const;

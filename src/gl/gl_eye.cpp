@@ -124,7 +124,7 @@ struct Slot {
   explicit Slot(std::size_t bytes) : rows(bytes) {}
   Buffer views;
   Buffer hidden;
-  MappedBuffer rows;  ///< low halves, high halves, GpuCounts, DrawCall
+  MappedBuffer rows;  ///< irradiance, low halves, high halves, GpuCounts, DrawCall
   Fence done;
 };
 
@@ -148,10 +148,47 @@ struct GlEye::OnDevice {
   Program find_candidates{{GL_COMPUTE_SHADER, {kTypes, kFindCandidates}}};
   Program clip_triangles{{GL_COMPUTE_SHADER, {kTypes, kClipTriangles}}};
   Program draw_triangles{{GL_VERTEX_SHADER, {kDrawCorner}}, {GL_FRAGMENT_SHADER, {kDrawPixel}}};
-  Program sum_rows{{GL_COMPUTE_SHADER, {kTypes, kSumRows}}};
+  Program sum_rows{{GL_COMPUTE_SHADER, {kTypes, kPixels, kSumRows}}};
   Buffer vertices, corners, polygons, triangles, grids, cells, nodes, top_sums, side_sums;
   Buffer counts, draw_call;
   std::unique_ptr<Room> room;
+};
+
+/// Of GpuField.
+struct GlEye::Light {
+  explicit Light(const GpuField& field, int resolution)
+      : bands(field.bands),
+        eyes(field.eyes),
+        patches(field.patches),
+        means(field.first_of_mean.empty() ? 0 : field.first_of_mean.size() - 1),
+        parts_a_view(field.first_facet.empty()
+                         ? 0
+                         : 3 * std::size_t(resolution) * groups(std::size_t(resolution), 128)) {
+    const auto store = [](Buffer& buffer, const auto& values) { buffer.store(std::span(values)); };
+    store(vertices, field.vertices);
+    store(facets, field.facets);
+    store(first_facet, field.first_facet);
+    store(mean_of, field.mean_of);
+    store(first_of_mean, field.first_of_mean);
+    std::vector<float> values = field.emission;
+    values.insert(values.end(), field.reflectance.begin(), field.reflectance.end());
+    values.insert(values.end(), field.sky.begin(), field.sky.end());
+    store(materials, values);
+    values = field.emission;
+    values.resize((eyes + means) * bands);
+    store(radiosity[0], values);
+    store(radiosity[1], values);
+  }
+
+  std::size_t bands, eyes, patches, means;
+  std::size_t parts_a_view;  ///< sums of 128 pixels; 0: patches have one radiosity
+  Program means_of{{GL_COMPUTE_SHADER, {kMeans}}};
+  Program interpolate{{GL_COMPUTE_SHADER, {kTypes, kPixels, kInterpolate}}};
+  Program gather{{GL_COMPUTE_SHADER, {kTypes, kGather}}};
+  Buffer vertices, facets, first_facet, mean_of, first_of_mean, materials;
+  std::array<Buffer, 2> radiosity;  ///< that is gathered, and the next
+  std::size_t now = 0;
+  Buffer parts, irradiance;
 };
 
 GlEye::GlEye(const Device& device, const GpuScene& scene, const GpuWeights& weights)
@@ -189,6 +226,7 @@ GlEye::GlEye(const Device& device, const GpuScene& scene, const GpuWeights& weig
 GlEye::~GlEye() {
   try {
     const Context::Current current(context_);
+    light_.reset();
     on_device_.reset();
   } catch (const Failure&) {
     // The context is lost; with it goes what it held.
@@ -230,13 +268,18 @@ void GlEye::makeRoom() {
   on.room.reset();
   on.room = std::make_unique<Room>(plan_, resolution_);
   Room& room = *on.room;
-  const std::size_t rows = std::size_t(plan_.views) * (items_ + 1) * 4;
+  const std::size_t rows = rowWeights(plan_.views) * 4;
   room.candidates.reserve(kCandidateBytes * polygons_ * plan_.views);
   room.corners.reserve(3 * kCornerBytes * plan_.triangles);
   room.low.reserve(rows);
   room.high.reserve(rows);
+  if (light_ != nullptr) {
+    light_->irradiance.reserve(irradianceBytes(plan_.views));
+    light_->parts.reserve(light_->parts_a_view * irradianceBytes(plan_.views));
+  }
   for (std::size_t k = 0; k < kRing; ++k) {
-    room.slots.push_back(std::make_unique<Slot>(2 * rows + sizeof(GpuCounts) + sizeof(DrawCall)));
+    room.slots.push_back(std::make_unique<Slot>(irradianceBytes(plan_.views) + 2 * rows +
+                                                sizeof(GpuCounts) + sizeof(DrawCall)));
     Slot& slot = *room.slots.back();
     slot.views.reserve(sizeof(GpuView) * plan_.views, GL_STREAM_DRAW);
     slot.hidden.reserve(4 * std::size_t(hidden_words_) * plan_.views, GL_STREAM_DRAW);
@@ -245,8 +288,12 @@ void GlEye::makeRoom() {
   }
 }
 
+std::size_t GlEye::irradianceBytes(std::size_t views) const {
+  return light_ == nullptr ? 0 : views * light_->bands * sizeof(double);
+}
+
 std::size_t GlEye::bytes() const {
-  const std::size_t row = 8 * (std::size_t(items_) + 1) * plan_.views;
+  const std::size_t row = 8 * rowWeights(plan_.views);
   return row * (1 + kRing) + kPixelBytes * pixelsOf(resolution_) * plan_.views +
          kCandidateBytes * polygons_ * plan_.views + 3 * kCornerBytes * plan_.triangles +
          on_device_->top_sums.bytes() + on_device_->side_sums.bytes() + on_device_->cells.bytes();
@@ -307,26 +354,71 @@ void GlEye::sum(const Batch& batch) {
   Room& room = *on.room;
   room.low.clear();
   room.high.clear();
-  glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, room.target.polygons.name());
+  glBindImageTexture(0, room.target.polygons.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
   on.sum_rows.useWith({&room.candidates, &on.grids, &on.cells, &on.nodes, &on.top_sums,
                        &on.side_sums, &room.low, &room.high});
   glUniform1ui(on.sum_rows.uniform("polygon_count"), polygons_);
   glUniform1i(on.sum_rows.uniform("sky"), int(items_));
   glUniform1i(on.sum_rows.uniform("resolution"), resolution_);
   glUniform1i(on.sum_rows.uniform("tiles_across"), int(plan_.across));
+  glUniform1i(on.sum_rows.uniform("keep_items"), light_ != nullptr);
   glDispatchCompute(groups(std::size_t(resolution_), 128), GLuint(3 * resolution_), batch.count);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                  GL_FRAMEBUFFER_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+/// After sum(), which has left items in the picture.
+void GlEye::gatherLight(const Batch& batch) {
+  const OnDevice& on = *on_device_;
+  Room& room = *on.room;
+  Light& light = *light_;
+  const Slot& slot = *room.slots[batch.slot];
+  const auto patches = std::uint32_t(light.patches);
+  const Buffer& radiosity = light.radiosity[light.now];
+  if (light.parts_a_view > 0) {
+    light.interpolate.useWith({&on.top_sums, &on.side_sums, &slot.views, &light.vertices,
+                               &light.first_facet, &light.facets, &radiosity, &light.parts});
+    glUniform1i(light.interpolate.uniform("resolution"), resolution_);
+    glUniform1i(light.interpolate.uniform("tiles_across"), int(plan_.across));
+    glUniform1ui(light.interpolate.uniform("patches"), patches);
+    glUniform1ui(light.interpolate.uniform("bands"), std::uint32_t(light.bands));
+    glDispatchCompute(groups(std::size_t(resolution_), 128), GLuint(3 * resolution_), batch.count);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  }
+  light.gather.useWith({&room.low, &room.high, &slot.views, &radiosity, &light.parts,
+                        &light.materials, &light.irradiance, &light.radiosity[1 - light.now]});
+  glUniform1ui(light.gather.uniform("patches"), patches);
+  glUniform1ui(light.gather.uniform("items"), items_);
+  glUniform1ui(light.gather.uniform("bands"), std::uint32_t(light.bands));
+  glUniform1ui(light.gather.uniform("eyes"), std::uint32_t(light.eyes));
+  glUniform1ui(light.gather.uniform("part_count"), std::uint32_t(light.parts_a_view));
+  glDispatchCompute(batch.count, 1, 1);
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+/// Of the radiosity that is gathered.
+void GlEye::takeMeans() {
+  const Light& light = *light_;
+  if (light.means == 0) return;
+  light.means_of.useWith({&light.mean_of, &light.first_of_mean, &light.radiosity[light.now]});
+  glUniform1ui(light.means_of.uniform("means"), std::uint32_t(light.means));
+  glUniform1ui(light.means_of.uniform("eyes"), std::uint32_t(light.eyes));
+  glUniform1ui(light.means_of.uniform("bands"), std::uint32_t(light.bands));
+  glDispatchCompute(groups(light.means * light.bands, 64), 1, 1);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
 void GlEye::send(const Batch& batch) {
   const OnDevice& on = *on_device_;
   Slot& slot = *on.room->slots[batch.slot];
-  const std::size_t half = std::size_t(batch.count) * (items_ + 1) * 4;
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  slot.rows.copy(on.room->low, 0, half);
-  slot.rows.copy(on.room->high, half, half);
-  slot.rows.copy(on.counts, 2 * half, sizeof(GpuCounts));
-  slot.rows.copy(on.draw_call, 2 * half + sizeof(GpuCounts), sizeof(DrawCall));
+  const std::size_t half = 4 * rowWeights(batch.count);
+  std::size_t at = irradianceBytes(batch.count);
+  if (at > 0) slot.rows.copy(light_->irradiance, 0, at);
+  slot.rows.copy(on.room->low, at, half);
+  slot.rows.copy(on.room->high, at + half, half);
+  at += 2 * half;
+  slot.rows.copy(on.counts, at, sizeof(GpuCounts));
+  slot.rows.copy(on.draw_call, at + sizeof(GpuCounts), sizeof(DrawCall));
   glMemoryBarrier(GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
   slot.done.set();
 }
@@ -337,10 +429,18 @@ void GlEye::wait(const Batch& batch) const {
 }
 
 GpuRows GlEye::rowsOf(const Batch& batch) const {
-  const std::size_t values = std::size_t(batch.count) * (items_ + 1);
+  const std::size_t values = rowWeights(batch.count);
+  const std::size_t light = irradianceBytes(batch.count);
   const std::byte* data = on_device_->room->slots[batch.slot]->rows.data();
+  const auto* irradiance = reinterpret_cast<const double*>(data);
+  data += light;
   const auto* halves = reinterpret_cast<const std::uint32_t*>(data);
-  GpuRows rows{batch.first, batch.count, {halves, values}, {halves + values, values}, {}};
+  GpuRows rows{batch.first,
+               batch.count,
+               {halves, values},
+               {halves + values, values},
+               {},
+               {irradiance, light / sizeof(double)}};
   std::memcpy(&rows.counts, data + 8 * values, sizeof rows.counts);
   return rows;
 }
@@ -348,7 +448,8 @@ GpuRows GlEye::rowsOf(const Batch& batch) const {
 /// Whether clipped triangles found no room; the next batches are then smaller, or have more.
 bool GlEye::hasOverflowed(const Batch& batch) {
   DrawCall made{};
-  const std::size_t at = std::size_t(batch.count) * (items_ + 1) * 8 + sizeof(GpuCounts);
+  const std::size_t at =
+      irradianceBytes(batch.count) + 8 * rowWeights(batch.count) + sizeof(GpuCounts);
   std::memcpy(&made, on_device_->room->slots[batch.slot]->rows.data() + at, sizeof made);
   if (made.needed <= 3 * plan_.triangles) return false;
   if (batch.count > 1) {
@@ -361,7 +462,8 @@ bool GlEye::hasOverflowed(const Batch& batch) {
   return true;
 }
 
-void GlEye::lookAtAll(std::size_t count, const Describe& describe_view, const Take& take) {
+void GlEye::lookAtAll(std::size_t count, const Describe& describe_view, const Take& take,
+                      bool gathers) {
   std::deque<Batch> under_way;
   std::size_t next = 0;
   std::size_t made = 0;
@@ -373,6 +475,7 @@ void GlEye::lookAtAll(std::size_t count, const Describe& describe_view, const Ta
       describe(batch, describe_view);
       draw(batch);
       sum(batch);
+      if (gathers) gatherLight(batch);
       send(batch);
       check("drawing hemicubes");
       under_way.push_back(batch);
@@ -396,7 +499,30 @@ void GlEye::lookAtAll(std::size_t count, const Describe& describe_view, const Ta
 std::string GlEye::look(std::size_t count, const Describe& describe, const Take& take) {
   try {
     const Context::Current current(context_);
-    lookAtAll(count, describe, take);
+    lookAtAll(count, describe, take, false);
+  } catch (const Failure& failure) {
+    return failure.what();
+  }
+  return {};
+}
+
+std::string GlEye::prepare(const GpuField& field) {
+  try {
+    const Context::Current current(context_);
+    light_ = std::make_unique<Light>(field, resolution_);
+    makeRoom();
+  } catch (const Failure& failure) {
+    return failure.what();
+  }
+  return {};
+}
+
+std::string GlEye::gather(std::size_t count, const Describe& describe, const Take& take) {
+  try {
+    const Context::Current current(context_);
+    takeMeans();
+    lookAtAll(count, describe, take, true);
+    light_->now = 1 - light_->now;
   } catch (const Failure& failure) {
     return failure.what();
   }

@@ -30,12 +30,15 @@ class GlEye final : public GpuEye {
   GlEye& operator=(const GlEye&) = delete;
 
   std::string look(std::size_t count, const Describe& describe, const Take& take) override;
+  std::string prepare(const GpuField& field) override;
+  std::string gather(std::size_t count, const Describe& describe, const Take& take) override;
   std::vector<Index> pictures(const Describe& describe) override;
   std::size_t bytes() const override;
   const EyeDevice& device() const override { return about_; }
 
  private:
   struct OnDevice;
+  struct Light;
   /// Hemicubes that the device works on: views [first, first + count).
   struct Batch {
     std::size_t first = 0;
@@ -48,11 +51,16 @@ class GlEye final : public GpuEye {
   void describe(const Batch& batch, const Describe& describe);
   void draw(const Batch& batch);
   void sum(const Batch& batch);
+  void gatherLight(const Batch& batch);
+  void takeMeans();
   void send(const Batch& batch);
   void wait(const Batch& batch) const;
   bool hasOverflowed(const Batch& batch);
   GpuRows rowsOf(const Batch& batch) const;
-  void lookAtAll(std::size_t count, const Describe& describe, const Take& take);
+  void lookAtAll(std::size_t count, const Describe& describe, const Take& take, bool gathers);
+  std::size_t rowWeights(std::size_t views) const { return views * (std::size_t(items_) + 1); }
+  /// Of irradiance in a slot of the ring.
+  std::size_t irradianceBytes(std::size_t views) const;
 
   EyeDevice about_;
   Context context_;
@@ -66,6 +74,7 @@ class GlEye final : public GpuEye {
   std::size_t triangle_room_ = 0;             ///< of a view
   BatchPlan plan_;
   std::unique_ptr<OnDevice> on_device_;
+  std::unique_ptr<Light> light_;  ///< null: none is gathered
 };
 
 }  // namespace radiosity::gl

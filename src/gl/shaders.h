@@ -22,9 +22,27 @@ extern const char* const kClipTriangles;
 extern const char* const kDrawCorner;
 extern const char* const kDrawPixel;
 
-/// Finds the item of every pixel and adds up weights. Groups: pixels / 128, rows of all faces,
-/// views. Blocks: candidates, grids, cells, nodes, running sums of the top face and of a side
-/// face, low and high halves of the rows. Texture 0: polygons drawn.
+/// What comes after kTypes in steps that work pixel by pixel. Groups: pixels / 128, rows of all
+/// faces, views. Image 0: polygons drawn.
+extern const char* const kPixels;
+
+/// Finds the item of every pixel and adds up weights; where items are kept, they replace polygons
+/// in the image. Blocks: candidates, grids, cells, nodes, running sums of the top face and of a
+/// side face, low and high halves of the rows.
 extern const char* const kSumRows;
+
+/// Means of sources (GpuField). Groups: means * bands / 64. Blocks: sources, where each mean's
+/// begin, radiosity. Stands alone.
+extern const char* const kMeans;
+
+/// Weight times interpolated radiosity, summed over 128 pixels of a row; pixels as kSumRows with
+/// items kept. Blocks: running sums of the top face and of a side face, views, vertices, where each
+/// patch's facets begin, facets, radiosity, sums.
+extern const char* const kInterpolate;
+
+/// Irradiance of views, from these sums or from rows, and the next radiosity of their sources.
+/// Groups: views. Blocks: low and high halves of the rows, views, radiosity, sums, materials
+/// (emission, reflectance, the sky's irradiance), irradiance, next radiosity.
+extern const char* const kGather;
 
 }  // namespace radiosity::gl

@@ -26,7 +26,7 @@ struct GpuView {
   std::array<double, 3> eye;
   std::array<double, 9> axes;  ///< column by column
   std::uint32_t own;           ///< position in ViewScene::polygons, or kNone
-  std::uint32_t padding = 0;
+  std::uint32_t source = 0;    ///< of GpuField: whose light this eye gathers
 };
 static_assert(sizeof(GpuView) == 104);
 
@@ -47,6 +47,33 @@ struct GpuWeights {
   std::vector<std::uint64_t> side;  ///< as many rows
 };
 
+/// A part of a patch between whose corners radiosity is interpolated (gather/patch_basis.h).
+struct GpuFacet {
+  std::array<double, 4> area;           ///< of quadrilaterals: C_k
+  std::array<std::uint32_t, 4> vertex;  ///< into GpuField::vertices
+  std::array<std::uint32_t, 4> source;
+  std::uint32_t count;  ///< 3 or 4
+  std::uint32_t padding = 0;
+};
+static_assert(sizeof(GpuFacet) == 72);
+
+/// Light that is gathered. Sources are the patches, or, where there are facets, what the corners of
+/// these name: the eyes, then means over several of them. Values are rows of `bands`.
+struct GpuField {
+  std::size_t bands = 0;
+  std::size_t eyes = 0;            ///< sources that gather
+  std::size_t patches = 0;         ///< of the scene
+  std::vector<float> emission;     ///< eyes * bands, W/m^2
+  std::vector<float> reflectance;  ///< eyes * bands
+  std::vector<double> sky;         ///< bands: irradiance under nothing but sky, W/m^2
+  std::vector<Vec3> vertices;      ///< in the coordinates of the ViewScene
+  std::vector<GpuFacet> facets;
+  std::vector<std::uint32_t> first_facet;  ///< patches + 1; empty: a patch has one radiosity
+  /// Sources after the eyes are means of mean_of[first_of_mean[m]] to mean_of[first_of_mean[m +
+  /// 1]].
+  std::vector<std::uint32_t> mean_of, first_of_mean;
+};
+
 /// What views [first, first + count) see: for each of them the weight of every item, the sky's
 /// last, in units of kGpuUnit, items + 1 of them.
 struct GpuRows {
@@ -54,6 +81,7 @@ struct GpuRows {
   std::size_t count = 0;
   std::span<const std::uint32_t> low, high;  ///< halves of count * (items + 1) weights
   GpuCounts counts{};                        ///< of all of them
+  std::span<const double> irradiance{};      ///< count * bands, without the sky's; of gather()
   std::uint64_t weight(std::size_t k) const { return std::uint64_t(high[k]) << 32 | low[k]; }
 };
 
@@ -72,6 +100,13 @@ class GpuEye {
   /// Looks from `count` eyes. While rows are taken later ones are drawn. Empty, or why the device
   /// gave up ("out of memory"): views after those taken were not seen then.
   virtual std::string look(std::size_t count, const Describe& describe, const Take& take) = 0;
+
+  /// Makes room for the light of a field, which is dark but for its emission. Empty, or why the
+  /// device gave up.
+  virtual std::string prepare(const GpuField& field) = 0;
+  /// As look(), and gathers light: the sources of the views have then what their eyes receive, for
+  /// the next call. Radiosity stays on the device.
+  virtual std::string gather(std::size_t count, const Describe& describe, const Take& take) = 0;
 
   /// For tests: the polygons that view 0 sees, face by face as Hemicube::picture() has them.
   virtual std::vector<Index> pictures(const Describe& describe) = 0;

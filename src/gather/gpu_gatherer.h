@@ -1,0 +1,42 @@
+// Gathering by the GPU's eye.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "formfactor/hemicube/gpu_eye.h"
+#include "gather/passes.h"
+
+namespace radiosity {
+
+/// Gathers at all eyes of a scene, pass by pass; what eyes reflect stays on the device and is
+/// gathered in the next pass. It is also what Gatherer would find, to rounding.
+class GpuGatherer {
+ public:
+  /// `scene` is kept by reference. RunError as openGpuEye(), and where the light of the scene finds
+  /// no room on the device.
+  GpuGatherer(const GatherScene& scene, std::unique_ptr<GpuEye> eye);
+
+  struct Seen {
+    Gatherer::Received received;
+    std::span<const double> backs;  ///< the share of the view on each surface's back
+  };
+  /// Calls take(eye, seen) on all threads for every eye that looks, and advances `progress`. Empty,
+  /// or why the device gave up: then some were not called, and there are no further passes.
+  std::string pass(const std::function<void(std::size_t, const Seen&)>& take, Progress& progress);
+
+  const HemicubeCounts& counts() const { return counts_; }
+  const EyeDevice& device() const { return eye_->device(); }
+  std::size_t bytes() const { return eye_->bytes(); }
+
+ private:
+  const GatherScene& scene_;
+  std::unique_ptr<GpuEye> eye_;
+  std::vector<Index> looking_;  ///< eyes
+  HemicubeCounts counts_;
+};
+
+}  // namespace radiosity
