@@ -11,11 +11,16 @@ namespace radiosity::gl {
 
 namespace {
 
-/// Batches that are under way at once: while one is read, the next are drawn.
-constexpr std::size_t kRing = 3;
-/// Pixels drawn at once. In software an interrupt must not wait for more.
-constexpr std::size_t kPixelsInHardware = std::size_t(1) << 24;
-constexpr std::size_t kPixelsInSoftware = std::size_t(1) << 21;
+/// How work is handed to a device.
+struct Pace {
+  std::size_t ring;  ///< batches that are under way at once: while one is read, the next are drawn
+  std::size_t pixels;  ///< of a batch; one hemicube may have more
+};
+constexpr Pace kHardware{3, std::size_t(1) << 24};
+/// The processor has nothing to gain from more at once, and an interrupt waits for all of it.
+constexpr Pace kSoftware{1, std::size_t(1) << 16};
+const Pace& paceOf(const EyeDevice& device) { return device.hardware ? kHardware : kSoftware; }
+
 /// Bytes of a batch; one hemicube may take more.
 constexpr std::size_t kBatchBytes = std::size_t(256) << 20;
 constexpr std::size_t kMostViews = 4096;  // groups of a dispatch are no fewer than 65,535
@@ -249,8 +254,8 @@ BatchPlan GlEye::plan() const {
     throw Failure("the scene is too large for the buffers of the device");
   }
   const std::size_t all = pixelsOf(resolution_) * kPixelBytes + kCandidateBytes * polygons_ +
-                          3 * kCornerBytes * triangle_room_ + 2 * row * (1 + kRing);
-  const std::size_t pixels = about_.hardware ? kPixelsInHardware : kPixelsInSoftware;
+                          3 * kCornerBytes * triangle_room_ + 2 * row * (1 + paceOf(about_).ring);
+  const std::size_t pixels = paceOf(about_).pixels;
   const std::size_t most = std::min({across * down, block / view, kBatchBytes / all,
                                      pixels / pixelsOf(resolution_), kMostViews, most_views_});
   BatchPlan plan;
@@ -277,7 +282,7 @@ void GlEye::makeRoom() {
     light_->irradiance.reserve(irradianceBytes(plan_.views));
     light_->parts.reserve(light_->parts_a_view * irradianceBytes(plan_.views));
   }
-  for (std::size_t k = 0; k < kRing; ++k) {
+  for (std::size_t k = 0; k < paceOf(about_).ring; ++k) {
     room.slots.push_back(std::make_unique<Slot>(irradianceBytes(plan_.views) + 2 * rows +
                                                 sizeof(GpuCounts) + sizeof(DrawCall)));
     Slot& slot = *room.slots.back();
@@ -294,7 +299,7 @@ std::size_t GlEye::irradianceBytes(std::size_t views) const {
 
 std::size_t GlEye::bytes() const {
   const std::size_t row = 8 * rowWeights(plan_.views);
-  return row * (1 + kRing) + kPixelBytes * pixelsOf(resolution_) * plan_.views +
+  return row * (1 + paceOf(about_).ring) + kPixelBytes * pixelsOf(resolution_) * plan_.views +
          kCandidateBytes * polygons_ * plan_.views + 3 * kCornerBytes * plan_.triangles +
          on_device_->top_sums.bytes() + on_device_->side_sums.bytes() + on_device_->cells.bytes();
 }
@@ -469,9 +474,9 @@ void GlEye::lookAtAll(std::size_t count, const Describe& describe_view, const Ta
   std::size_t made = 0;
   bool wanted = true;
   while (wanted && (next < count || !under_way.empty())) {
-    while (next < count && under_way.size() < kRing) {
+    while (next < count && under_way.size() < paceOf(about_).ring) {
       const Batch batch{next, std::uint32_t(std::min<std::size_t>(plan_.views, count - next)),
-                        made++ % kRing};
+                        made++ % paceOf(about_).ring};
       describe(batch, describe_view);
       draw(batch);
       sum(batch);
