@@ -125,25 +125,217 @@ class BothEyes {
   std::unique_ptr<GpuEye> gpu_;
 };
 
-void show(const char* name, const BothEyes::Difference& d) {
-  fprintf(stderr, "%s: %zu of %zu differ (%.5f%%), weight %.3g, row %.3g, sky %.3g, error %.3g\n", name,
-          d.polygon, d.pixels, 100.0 * double(d.polygon) / double(d.pixels), d.weight, d.row,
-          d.largest_sky, d.largest_error);
+/// At most kSame of pixels differ, rows are as far apart as these weigh and sum to 1: weights are
+/// whole numbers of 2^-62, of which a row has up to 3 * 128^2, and sums of items round anew.
+void expectSame(const BothEyes::Difference& difference) {
+  EXPECT_LE(double(difference.polygon), (1 - kSame) * double(difference.pixels));
+  EXPECT_LE(difference.row, 1e-13);
+  EXPECT_LE(difference.largest_error, 1e-13);
 }
 
-TEST(GpuEye, Explore) {
-  {
-    const PatchMesh mesh = test::roomWithBlock(3).build();
-    BothEyes both(mesh, 64);
-    show("room with block", both.compareAtPatches(mesh, 20));
-  }
-  for (const char* name : {"cornell-box-closed", "cornell-box", "two-rooms", "cluttered", "curved"}) {
+TEST(GpuEye, SeesWhatTheProcessorSeesInAClosedRoom) {
+  // The vertices of the block lie in the middle of no edge: no pixel is lost between polygons.
+  const PatchMesh mesh = test::roomWithBlock(3).build();
+  BothEyes both(mesh, 64);
+  const BothEyes::Difference difference = both.compareAtPatches(mesh, 12);
+  expectSame(difference);
+  EXPECT_EQ(difference.largest_sky, 0);
+}
+
+TEST(GpuEye, SeesWhatTheProcessorSeesInScenesOfFiles) {
+  // Faces in one plane are put together: vertices of others lie on their edges. Meshes have cells
+  // that patches share.
+  for (const char* name : {"cornell-box-closed", "two-rooms", "cluttered"}) {
     const PatchMesh mesh = meshOf(name, 300);
-    for (const int resolution : {32, 128}) {
-      BothEyes both(mesh, resolution);
-      show(name, both.compareAtPatches(mesh, 20));
+    BothEyes both(mesh, 96);
+    const BothEyes::Difference difference = both.compareAtPatches(mesh, 6);
+    expectSame(difference);
+    const bool closed = std::string(name) != "cluttered";
+    EXPECT_LE(difference.largest_sky, closed ? 0 : 1) << name;
+  }
+}
+
+TEST(GpuEye, SeesWhatTheProcessorSeesInAnOpenScene) {
+  const PatchMesh mesh = meshOf("cornell-box", 100);
+  BothEyes both(mesh, 34);  // the last group of a row of pixels is not full
+  const BothEyes::Difference difference = both.compareAtPatches(mesh, 10);
+  expectSame(difference);
+  EXPECT_GT(difference.largest_sky, 0.1);
+}
+
+/// Plates of `size` at random, each a polygon, above a floor.
+PatchMesh platesAboveAFloor(int count, double size, unsigned seed) {
+  MeshBuilder builder;
+  builder.grid("floor", {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, 2);
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> unit(0, 1);
+  const auto direction = [&] {
+    return glm::normalize(Vec3(unit(random), unit(random), unit(random)) - 0.5);
+  };
+  for (int k = 0; k < count; ++k) {
+    const Vec3 at(unit(random), unit(random), 0.2 + unit(random));
+    const Vec3 u = direction();
+    builder.grid("plates", at, size * u, size * glm::normalize(glm::cross(u, direction())), 1, 1,
+                 true);
+  }
+  return builder.build();
+}
+
+TEST(GpuEye, DrawsPolygonsSmallerThanAPixel) {
+  // A pixel of the top face is 1/16 wide at distance 1; plates are a fourth of that. Most are
+  // missed by all pixel centres, and those that are not are seen in one pixel.
+  const PatchMesh mesh = platesAboveAFloor(400, 1.0 / 64, 5);
+  BothEyes both(mesh, 32);
+  const BothEyes::Difference difference = both.compareAtPatches(mesh, 4);
+  // Nearly every pixel is at an edge, which one in 256 of them or so is too close to.
+  EXPECT_LE(double(difference.polygon), 0.01 * double(difference.pixels));
+  EXPECT_LE(difference.row, 1e-13);
+}
+
+TEST(GpuEye, DrawsPolygonsThroughTheEyesPlane) {
+  // Walls that the eye's plane cuts, one that passes through the eye itself, seen edge-on, and one
+  // in the eye's own plane.
+  MeshBuilder builder;
+  builder.grid("floor", {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
+  builder.grid("beside", {2, -1, 0}, {1, 0, 0}, {0, 1, 0});
+  builder.grid("wall", {0.5, -1, -1}, {0, 2, 0}, {0, 0, 2}, 3, 3, true);
+  builder.grid("tilted", {-0.8, -1, -0.5}, {0, 2, 0.25}, {-0.5, 0, 1.5}, 2, 2, true);
+  builder.grid("edge-on", {0, 0, 0.25}, {0, 1, 0}, {0, 0, 1}, 2, 2, true);
+  const PatchMesh mesh = builder.build();
+  BothEyes both(mesh, 64);
+  std::vector<std::uint8_t> hidden;
+  std::vector<PlacedEye> eyes;
+  for (const double angle : {0.1, 0.9, 2.3, 4.0}) {
+    eyes.push_back(both.rows().place({0, 0, 0}, {0, 0, 1}, angle, 0, hidden));
+  }
+  const BothEyes::Difference difference = both.compare(eyes, hidden);
+  expectSame(difference);
+  EXPECT_GT(difference.largest_sky, 0.1);
+}
+
+TEST(GpuEye, CutsTrianglesAtVerticesOnTheirEdges) {
+  // The wall's lower edge has a vertex of the floor's in its middle, which two quadrilaterals
+  // share.
+  MeshBuilder builder;
+  builder.grid("left", {0, 0, 0}, {0.3, 0, 0}, {0, 1, 0});
+  builder.grid("right", {0.3, 0, 0}, {0.7, 0, 0}, {0, 1, 0});
+  builder.grid("wall", {0, 1, 0}, {1, 0, 0}, {0, 0, 1});
+  const PatchMesh mesh = builder.build();
+  const GpuScene scene(ViewScene(mesh), mesh);
+  // Two triangles each, and one more where the wall's edge is cut: an edge of 1 and none of .3 +
+  // .7.
+  EXPECT_EQ(scene.triangles.size(), 7u);
+  for (const GpuTriangle& triangle : scene.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 a = scene.vertices[triangle[k]];
+      const Vec3 b = scene.vertices[triangle[(k + 1) % 3]];
+      for (const Vec3& v : scene.vertices) {
+        const double along = glm::dot(v - a, b - a) / glm::dot(b - a, b - a);
+        const bool between = along > 1e-9 && along < 1 - 1e-9;
+        EXPECT_FALSE(between && glm::distance(v, a + along * (b - a)) < 1e-9);
+      }
     }
   }
+}
+
+TEST(GpuEye, CountsItemsBeyondSinglePrecision) {
+  // Whole numbers above 2^24 are not all floats: the last patch of 2^24 + 5 is told from its
+  // neighbours. The scene has one wall; its number alone is that high.
+  constexpr std::int32_t kLast = (1 << 24) + 4;
+  MeshBuilder builder;
+  builder.grid("floor", {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
+  builder.grid("wall", {1, -1, 0}, {0, 0, 1}, {0, 2, 0}, 1, 1, true);
+  const PatchMesh mesh = builder.build();
+  const RowBuilder rows(mesh, ofResolution(16));
+  GpuScene scene(rows.scene(), mesh);
+  for (GpuPolygon& polygon : scene.polygons) {
+    if (polygon.normal[2] == 0) polygon.item = {kLast, kLast};
+  }
+  scene.items = kLast + 1;
+  std::string problem;
+  const auto gpu = gpuEyes(problem)->open(0, scene, GpuWeights(rows.weights()), problem);
+  ASSERT_NE(gpu, nullptr) << problem;
+  std::vector<std::uint8_t> hidden;
+  const PlacedEye eye = rows.eyeOf(0, hidden);
+  const auto describe = [&](std::size_t, GpuView& view, std::span<std::uint32_t> words) {
+    describeEye(eye, hidden, view, words);
+  };
+  Hemicube cpu = rows.makeHemicube();
+  const HemicubeView& expected = cpu.look(eye.frame, eye.own, hidden.data());
+  problem = gpu->look(1, describe, [&](const GpuRows& seen) {
+    const double wall = kGpuUnit * double(seen.weight(kLast));
+    const double sky = kGpuUnit * double(seen.weight(kLast + 1));
+    EXPECT_GT(wall, 0.1);
+    EXPECT_NEAR(sky, expected.sky, 1e-13);
+    EXPECT_NEAR(wall + sky, 1, 1e-13);
+    EXPECT_EQ(seen.weight(kLast - 1), 0u);
+    EXPECT_EQ(seen.weight(kLast & ~1), seen.weight(kLast));
+    return true;
+  });
+  EXPECT_EQ(problem, "");
+}
+
+TEST(GpuEye, BatchesAndRunsGiveTheSameBits) {
+  // 40 eyes of 32 pixels are more than one batch; alone, each is a batch of its own. Plates lie in
+  // each other's planes: of equal depths the first polygon stays, whatever order corners come in.
+  const PatchMesh mesh = platesAboveAFloor(40, 0.3, 7);
+  const RowBuilder rows(mesh, ofResolution(32));
+  const auto gpu = openGpuEye(EyeChoice::gl, rows.scene(), mesh, rows.weights());
+  std::vector<std::uint8_t> hidden;
+  std::vector<std::vector<std::uint64_t>> together;
+  const auto lookFrom = [&](std::size_t first, std::size_t count, auto&& take) {
+    const auto describe = [&](std::size_t k, GpuView& view, std::span<std::uint32_t> words) {
+      const PlacedEye eye = rows.eyeOf(first + k, hidden);
+      describeEye(eye, hidden, view, words);
+    };
+    EXPECT_EQ(gpu->look(count, describe, take), "");
+  };
+  lookFrom(0, 40, [&](const GpuRows& seen) {
+    const std::size_t items = seen.low.size() / seen.count;
+    EXPECT_EQ(seen.first, together.size());
+    for (std::size_t k = 0; k < seen.count; ++k) {
+      std::vector<std::uint64_t>& row = together.emplace_back();
+      for (std::size_t item = 0; item < items; ++item) row.push_back(seen.weight(k * items + item));
+    }
+    return true;
+  });
+  ASSERT_EQ(together.size(), 40u);
+  for (std::size_t k = 0; k < 40; k += 3) {
+    lookFrom(k, 1, [&](const GpuRows& seen) {
+      for (std::size_t item = 0; item < together[k].size(); ++item) {
+        EXPECT_EQ(seen.weight(item), together[k][item]);
+      }
+      return true;
+    });
+  }
+}
+
+TEST(GpuEye, FormFactorsAreTheProcessorsToWithinAFewPixels) {
+  const PatchMesh mesh = test::roomWithBlock(2).build();
+  Progress silent;
+  FormFactorOptions options = ofResolution(64);
+  const FormFactors cpu = computeFormFactors(mesh, options, silent);
+  options.eye = EyeChoice::gl;
+  const FormFactors gl = computeFormFactors(mesh, options, silent);
+  EXPECT_TRUE(gl.report.closed);
+  EXPECT_LE(gl.report.largest_row_error, 1e-12);
+  EXPECT_EQ(gl.report.hemicubes, cpu.report.hemicubes);
+  EXPECT_EQ(gl.report.pixels, cpu.report.pixels);
+  EXPECT_EQ(gl.report.skipped_own_plane, cpu.report.skipped_own_plane);
+  EXPECT_EQ(gl.report.skipped_horizon, cpu.report.skipped_horizon);
+  EXPECT_EQ(gl.report.skipped_facing_away, cpu.report.skipped_facing_away);
+  EXPECT_EQ(gl.report.skipped_face, cpu.report.skipped_face);
+  EXPECT_EQ(gl.report.rasterised_polygons, cpu.report.rasterised_polygons);
+  double row =
+      0;  // two pixels of the top face's middle, 3e-4 each, change hands in a row, not more
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    double sum = 0;
+    for (std::size_t j = 0; j < mesh.size(); ++j) {
+      sum += std::abs(gl.matrix.at(i, j) - cpu.matrix.at(i, j));
+    }
+    row = std::max(row, sum);
+  }
+  EXPECT_LE(row, 4 * 3.2e-4);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace {
 
 std::array<double, 3> numbers(const Vec3& v) { return {v.x, v.y, v.z}; }
 
-/// Finds the vertices that lie on an edge, its ends left out.
+/// Finds the vertices that lie on an edge, to within coincidence, its ends left out.
 class EdgeVertices {
  public:
   EdgeVertices(const std::vector<Vec3>& vertices, double coincidence)
@@ -23,6 +23,14 @@ class EdgeVertices {
     boxes.reserve(vertices.size());
     for (const Vec3& v : vertices) boxes.push_back({v, v});
     tree_ = BoxTree(boxes);
+  }
+
+  /// No higher than coincidence allows to tell from a line.
+  bool isThin(const std::array<Index, 3>& triangle) const {
+    const Vec3 u = vertices_[triangle[1]] - vertices_[triangle[0]];
+    const Vec3 v = vertices_[triangle[2]] - vertices_[triangle[0]];
+    const double longest = std::max({glm::length(u), glm::length(v), glm::length(v - u)});
+    return !(glm::length(glm::cross(u, v)) > 4 * coincidence_ * longest);
   }
 
   /// From `a` to `b`. The same vertices, the other way round, as from `b` to `a`.
@@ -46,11 +54,12 @@ class EdgeVertices {
           return distanceOf(box.centre()) <= 0.5 * box.diagonal() + 2 * coincidence_;
         },
         [&](Index v) {
-          const double along = glm::dot(vertices_[v] - from, edge) / squared;
-          const bool inside =
-              along > 0 && along < 1 && vertices_[v] != from && vertices_[v] != vertices_[b];
-          if (v != a && v != b && inside && distanceOf(vertices_[v]) <= coincidence_) {
-            found.emplace_back(along, v);
+          const Vec3& p = vertices_[v];
+          // An end, and what coincides with it, cuts nothing off.
+          const bool at_end = glm::distance(p, from) <= coincidence_ ||
+                              glm::distance(p, vertices_[b]) <= coincidence_;
+          if (!at_end && distanceOf(p) <= coincidence_) {
+            found.emplace_back(glm::dot(p - from, edge) / squared, v);
           }
           return true;
         });
@@ -66,20 +75,21 @@ class EdgeVertices {
   BoxTree tree_;
 };
 
-/// The triangle as a fan that has all vertices on its edges for corners.
-std::vector<GpuTriangle> cutAtVertices(const std::array<Index, 3>& triangle, Index polygon,
-                                       const EdgeVertices& on) {
-  std::vector<Index> outline;
-  for (std::size_t k = 0; k < 3; ++k) {
-    outline.push_back(triangle[k]);
-    const std::vector<Index> more = on.between(triangle[k], triangle[(k + 1) % 3]);
-    outline.insert(outline.end(), more.begin(), more.end());
+/// Cuts a triangle from a vertex on an edge to the corner opposite, and its parts likewise.
+void appendCut(const std::array<Index, 3>& triangle, Index polygon, const EdgeVertices& on,
+               std::vector<GpuTriangle>& parts) {
+  for (std::size_t k = 0; k < 3 && !on.isThin(triangle); ++k) {
+    const Index a = triangle[k];
+    const Index b = triangle[(k + 1) % 3];
+    const Index c = triangle[(k + 2) % 3];
+    const std::vector<Index> between = on.between(a, b);
+    if (between.empty()) continue;
+    const Index middle = between[between.size() / 2];
+    appendCut({a, middle, c}, polygon, on, parts);
+    appendCut({middle, b, c}, polygon, on, parts);
+    return;
   }
-  std::vector<GpuTriangle> fan;
-  for (std::size_t k = 1; k + 1 < outline.size(); ++k) {
-    fan.push_back({outline[0], outline[k], outline[k + 1], polygon});
-  }
-  return fan;
+  parts.push_back({triangle[0], triangle[1], triangle[2], polygon});
 }
 
 }  // namespace
@@ -92,11 +102,10 @@ GpuScene::GpuScene(const ViewScene& scene, const PatchMesh& mesh)
   vertices = std::move(all.vertices);
   const EdgeVertices on(vertices, coincidence);
   std::vector<std::vector<GpuTriangle>> cut(all.triangles.size());
-  parallelFor(cut.size(), 64, [&](std::size_t t) {
-    cut[t] = cutAtVertices(all.triangles[t], all.polygon_of[t], on);
-  });
-  for (const std::vector<GpuTriangle>& fan : cut) {
-    triangles.insert(triangles.end(), fan.begin(), fan.end());
+  parallelFor(cut.size(), 64,
+              [&](std::size_t t) { appendCut(all.triangles[t], all.polygon_of[t], on, cut[t]); });
+  for (const std::vector<GpuTriangle>& parts : cut) {
+    triangles.insert(triangles.end(), parts.begin(), parts.end());
   }
   // Of equal depths the polygon that is drawn first stays.
   std::stable_sort(triangles.begin(), triangles.end(),
