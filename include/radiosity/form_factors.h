@@ -72,7 +72,7 @@ struct FormFactorOptions {
   std::uint64_t seed = 1;  ///< rays: of their directions; hemicube: of the turns about each normal
   bool random_turns = true;
   EyeChoice eye = EyeChoice::cpu;  ///< hemicube
-  bool symmetrize = false;  ///< hemicube: merge both estimates of each pair, then close rows
+  bool symmetrize = false;         ///< hemicube: merge both estimates of each pair, then close rows
   /// Hemicube: pairs nearer than two patch sizes get the area-to-area value times the visible
   /// fraction that the item buffer tells.
   bool near_exact = false;

@@ -27,8 +27,8 @@ constexpr std::size_t kMostViews = 4096;  // groups of a dispatch are no fewer t
 /// A triangle that four planes clip has seven corners, five triangles; a hemicube has five faces.
 constexpr std::size_t kMostPieces = 25;
 /// Room that clipped triangles get at first: most are seen on one face or none.
-constexpr std::size_t kPieces = 2;
-constexpr std::size_t kLittleRoom = 4096;
+constexpr std::size_t kPieces = 1;
+constexpr std::size_t kLittleRoom = 256;
 
 constexpr std::size_t kCandidateBytes = 64;
 constexpr std::size_t kCornerBytes = 16;

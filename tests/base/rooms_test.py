@@ -27,6 +27,7 @@ CASES = [
      ["radiosity/solve.h", "radiosity/render.h"]),
     ("gather", "formfactor/hemicube/hemicube.h",
      ["formfactor/form_factors.cpp", "radiosity/results.h"]),
+    ("gl", "formfactor/hemicube/gpu_eye.h", ["gather/passes.h", "radiosity/solve.h"]),
     ("render", "radiosity/patch_mesh.h", ["radiosity/solve.h", "matrix/run_row.h"]),
     ("lightmap", "radiosity/render.h", ["results/glb.h", "radiosity/gather.h"]),
     ("results", "radiosity/gather.h", ["radiosity/compare.h"]),

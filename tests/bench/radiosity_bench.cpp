@@ -8,6 +8,7 @@
 #include <string>
 
 #include "error_curves.h"
+#include "eye_rates.h"
 #include "figures.h"
 #include "gather_costs.h"
 #include "products.h"
@@ -21,6 +22,7 @@ namespace {
 struct Arguments {
   bool quick = false;
   bool rates = true;
+  bool eyes = true;
   bool truth = true;  ///< the curves need it; alone: rows are made and kept
   bool curves = true;
   bool figures = true;
@@ -31,7 +33,7 @@ struct Arguments {
 };
 
 constexpr const char* kUsage =
-    "[--quick] [--only rates|truth|curves|figures|gather] [--scene NAME] [--out DIR] [--help]";
+    "[--quick] [--only rates|eyes|truth|curves|figures|gather] [--scene NAME] [--out DIR] [--help]";
 
 [[noreturn]] void refuse(const std::string& argument) {
   throw InputError(fmt::format("'{}': give {}", argument, kUsage));
@@ -55,11 +57,12 @@ std::optional<Arguments> parse(int count, char** values) {
       arguments.scene = value();
     } else if (name == "--only") {
       const std::string part = value();
-      if (part != "rates" && part != "truth" && part != "curves" && part != "figures" &&
-          part != "gather") {
+      if (part != "rates" && part != "eyes" && part != "truth" && part != "curves" &&
+          part != "figures" && part != "gather") {
         refuse(part);
       }
       arguments.rates = part == "rates";
+      arguments.eyes = part == "eyes";
       arguments.truth = part == "truth" || part == "curves";
       arguments.curves = part == "curves";
       arguments.figures = part == "figures";
@@ -120,6 +123,7 @@ int main(int count, char** values) try {
     verified = benchRates() && verified;
     verified = benchProducts() && verified;
   }
+  if (arguments.eyes) verified = benchEyes() && verified;
   if (arguments.truth) verified = benchCurves(arguments) && verified;
   if (arguments.figures && !arguments.quick) {
     benchFigures(arguments.scene, arguments.truth_folder);

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "bench_eyes.h"
 #include "bench_scenes.h"
 #include "clocks.h"
 #include "embree_view.h"
@@ -21,33 +22,6 @@ namespace radiosity::bench {
 namespace {
 
 constexpr int kRounds = 15;
-constexpr std::size_t kEyes = 24;
-
-std::size_t pixelsOf(int resolution) {
-  return 3 * std::size_t(resolution) * std::size_t(resolution);
-}
-
-FormFactorOptions optionsFor(int resolution) {
-  FormFactorOptions options;
-  options.method = FormFactorMethod::hemicube;
-  options.resolution = resolution;
-  return options;
-}
-
-/// Eyes spread evenly over the patches.
-std::vector<std::size_t> chooseEyes(const PatchMesh& mesh, const RowBuilder& rows) {
-  std::vector<std::size_t> eyes;
-  for (std::size_t k = 0; k < kEyes; ++k) {
-    const std::size_t patch = (2 * k + 1) * mesh.size() / (2 * kEyes);
-    if (!rows.isEmpty(patch)) eyes.push_back(patch);
-  }
-  return eyes;
-}
-
-EyeFrame frameOf(const PatchMesh& mesh, const RowBuilder& rows, std::size_t patch) {
-  return eyeFrame(mesh.centroid[patch] * rows.scene().scale, mesh.normal[patch],
-                  turnAngle(mesh, patch, 1));
-}
 
 /// Share of pixels in which both see the same polygon.
 double agreement(const PatchMesh& mesh, int resolution) {

@@ -213,6 +213,39 @@ TEST(GpuEye, DrawsPolygonsThroughTheEyesPlane) {
   EXPECT_GT(difference.largest_sky, 0.1);
 }
 
+TEST(GpuEye, MakesRoomWhereEveryTriangleIsOnManyFaces) {
+  // 300 triangles, far larger than what they lie in: clipping makes more than six of each, and
+  // there is room for fewer than three at first. They cross each other everywhere, and within
+  // depths' rounding of a crossing either may be nearer: a pixel in a hundred at most.
+  const PatchMesh mesh = platesAboveAFloor(150, 8, 3);
+  const RowBuilder rows(mesh, ofResolution(16));
+  const auto gpu = openGpuEye(EyeChoice::gl, rows.scene(), mesh, rows.weights());
+  Hemicube cpu = rows.makeHemicube();
+  const std::size_t bytes = gpu->bytes();
+  Progress silent;
+  std::vector<Index> patches(100);  // more than one batch
+  std::iota(patches.begin(), patches.end(), Index(0));
+  std::vector<std::vector<double>> items(patches.size());
+  const std::string problem = lookFromPatches(
+      *gpu, rows, patches,
+      [&](std::size_t patch, const HemicubeView& view, const HemicubeCounts&) {
+        items[patch].assign(view.items.begin(), view.items.end());
+      },
+      silent);
+  EXPECT_EQ(problem, "");
+  EXPECT_NE(gpu->bytes(), bytes);
+  std::vector<std::uint8_t> hidden;
+  for (const Index patch : patches) {
+    const HemicubeView& expected = rows.look(patch, cpu, hidden);
+    ASSERT_EQ(items[patch].size(), expected.items.size());
+    double difference = 0;
+    for (std::size_t k = 0; k < items[patch].size(); ++k) {
+      difference += std::abs(items[patch][k] - expected.items[k]);
+    }
+    EXPECT_LE(difference, 0.02);
+  }
+}
+
 TEST(GpuEye, CutsTrianglesAtVerticesOnTheirEdges) {
   // The wall's lower edge has a vertex of the floor's in its middle, which two quadrilaterals
   // share.
