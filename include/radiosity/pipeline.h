@@ -302,4 +302,15 @@ class Pipeline {
   bool replaces_ = false;
 };
 
+// ---- Keys of stages that are made without a pipeline, for a results file (Results::mesh_key and
+// the others): a pipeline that opens it with the same options then reuses them.
+
+std::string keyOfMesh(const MeshOptions& options, const Scene& scene);
+std::string keyOfFactors(const FormFactorOptions& options, const PatchMesh& mesh);
+/// `factors_key`, `method`: of the form factors (FormFactors::method).
+std::string keyOfSolution(const SolveOptions& options, const PatchMaterials& materials,
+                          const std::string& factors_key, const std::string& method);
+std::string keyOfHeat(const HeatOptions& options, const HeatConditions& conditions,
+                      const std::string& factors_key, const std::string& method);
+
 }  // namespace radiosity

@@ -17,6 +17,7 @@
 #include "radiosity/page.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/pipeline.h"
+#include "radiosity/point_factors.h"
 #include "radiosity/render.h"
 #include "radiosity/results.h"
 #include "radiosity/row_journal.h"

@@ -84,6 +84,10 @@ Results readResults(const std::string& path, bool with_factors = true,
 /// The matrix is written row by row, never copied. Errors: RunError (disk full), Cancelled, those
 /// of PatchMaterials::requireSizes(); `path` then is what it was.
 void writeResults(const std::string& path, const Results& results, Progress& progress);
+/// The same with form factors that stand elsewhere, in place of results.factors, which is not
+/// looked at: whoever shares them need not copy the matrix.
+void writeResults(const std::string& path, const Results& results, const FormFactors& factors,
+                  Progress& progress);
 
 /// Stages that a file has as they are in `Results`.
 struct StagesAsStored {

@@ -9,6 +9,7 @@
 #include "base/hash.h"
 #include "base/parse.h"
 #include "radiosity/names.h"
+#include "radiosity/pipeline.h"
 
 namespace radiosity {
 
@@ -403,6 +404,24 @@ HeatOptions heatOptionsOf(const StageKey& key) {
   read(key, "heat-iterations", options.max_iterations);
   read(key, "sigma", options.sigma);
   return options;
+}
+
+std::string keyOfMesh(const MeshOptions& options, const Scene& scene) {
+  return meshKey(options, scene).text();
+}
+
+std::string keyOfFactors(const FormFactorOptions& options, const PatchMesh& mesh) {
+  return factorsKey(options, mesh).text();
+}
+
+std::string keyOfSolution(const SolveOptions& options, const PatchMaterials& materials,
+                          const std::string& factors_key, const std::string& method) {
+  return solutionKey(options, materials, usedKey(StageKey(factors_key), method)).text();
+}
+
+std::string keyOfHeat(const HeatOptions& options, const HeatConditions& conditions,
+                      const std::string& factors_key, const std::string& method) {
+  return heatKey(options, conditions, usedKey(StageKey(factors_key), method)).text();
 }
 
 }  // namespace radiosity

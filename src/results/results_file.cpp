@@ -138,8 +138,8 @@ MeshLinks meshLinks(const Results& results) {
   return kPatchLinks;
 }
 
-void requireMatrix(const std::string& path, const Results& results) {
-  if (results.factors && results.factors->matrix.size() != results.factors->fronts.size()) {
+void requireMatrix(const std::string& path, const FormFactors* factors) {
+  if (factors != nullptr && factors->matrix.size() != factors->fronts.size()) {
     throw RunError(
         fmt::format("{}: the form factors came without their matrix; read them with it", path));
   }
@@ -271,8 +271,12 @@ Results readResults(const std::string& path, bool with_factors,
   return results;
 }
 
-void writeResults(const std::string& path, const Results& results, Progress& progress) {
-  requireMatrix(path, results);
+namespace {
+
+/// `shown`: the form factors to write; null: none.
+void writeStages(const std::string& path, const Results& results, const FormFactors* shown,
+                 Progress& progress) {
+  requireMatrix(path, shown);
   requireRows(results);
   AtomicFile target(path);
   h5::OutputFile file(target.temporary(), path);
@@ -283,10 +287,10 @@ void writeResults(const std::string& path, const Results& results, Progress& pro
     if (results.scene) stages.scene(*results.scene);
     std::optional<OutputGroup> mesh;
     if (results.mesh) mesh = stages.mesh(*results.mesh);
-    if (results.factors) {
-      OutputGroup factors = stages.factors(*results.factors);
+    if (shown != nullptr) {
+      OutputGroup factors = stages.factors(*shown);
       for (const auto& [name, source] : meshLinks(results)) factors.link(name, made(mesh), source);
-      writeMatrix(factors, results.factors->matrix, progress);
+      writeMatrix(factors, shown->matrix, progress);
     }
     stages.solution();
     stages.elements();
@@ -296,6 +300,17 @@ void writeResults(const std::string& path, const Results& results, Progress& pro
   }
   file.close();
   target.commit();
+}
+
+}  // namespace
+
+void writeResults(const std::string& path, const Results& results, Progress& progress) {
+  writeStages(path, results, results.factors ? &*results.factors : nullptr, progress);
+}
+
+void writeResults(const std::string& path, const Results& results, const FormFactors& factors,
+                  Progress& progress) {
+  writeStages(path, results, &factors, progress);
 }
 
 namespace {

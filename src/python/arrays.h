@@ -1,0 +1,66 @@
+// Arrays between C++ and numpy.
+#pragma once
+
+#include <pybind11/numpy.h>
+
+#include <span>
+#include <vector>
+
+#include "radiosity/base.h"
+
+namespace radiosity::python {
+
+namespace py = pybind11;
+
+/// Values as they stand in memory: read only, and with them lives `owner`, the Python object that
+/// holds them. No copy.
+template <class T>
+py::array view(const T* values, std::vector<py::ssize_t> shape, const py::object& owner) {
+  py::array array(py::dtype::of<T>(), std::move(shape), values, owner);
+  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return array;
+}
+template <class T>
+py::array view(const std::vector<T>& values, const py::object& owner) {
+  return view(values.data(), {py::ssize_t(values.size())}, owner);
+}
+inline py::array view(const std::vector<Vec3>& values, const py::object& owner) {
+  static_assert(sizeof(Vec3) == 3 * sizeof(double));
+  return view(reinterpret_cast<const double*>(values.data()), {py::ssize_t(values.size()), 3},
+              owner);
+}
+inline py::array view(const std::vector<std::array<Index, 3>>& values, const py::object& owner) {
+  return view(reinterpret_cast<const Index*>(values.data()), {py::ssize_t(values.size()), 3},
+              owner);
+}
+/// N * bands values as (N, bands).
+inline py::array rows(const std::vector<double>& values, int bands, const py::object& owner) {
+  return view(values.data(), {py::ssize_t(values.size()) / bands, bands}, owner);
+}
+
+/// A new array that takes the values over. No copy.
+template <class T>
+py::array taken(std::vector<T>&& values) {
+  auto* kept = new std::vector<T>(std::move(values));
+  const py::capsule owner(kept, [](void* p) { delete static_cast<std::vector<T>*>(p); });
+  return py::array(py::dtype::of<T>(), {py::ssize_t(kept->size())}, kept->data(), owner);
+}
+
+/// Contiguous arrays of one type; the package's functions have made them so.
+template <class T>
+using Array = py::array_t<T, py::array::c_style>;
+
+template <class T>
+std::span<const T> spanOf(const Array<T>& array) {
+  return {array.data(), std::size_t(array.size())};
+}
+template <class T>
+std::vector<T> vectorOf(const Array<T>& array) {
+  return {array.data(), array.data() + array.size()};
+}
+/// (n, 3) numbers as n vectors.
+inline std::span<const Vec3> vectorsOf(const Array<double>& array) {
+  return {reinterpret_cast<const Vec3*>(array.data()), std::size_t(array.size()) / 3};
+}
+
+}  // namespace radiosity::python

@@ -1,0 +1,211 @@
+// Form factors: of meshes, of matrices from elsewhere, between surfaces, from points.
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "arrays.h"
+#include "handles.h"
+#include "long_call.h"
+#include "options.h"
+#include "reports.h"
+
+namespace radiosity::python {
+namespace {
+
+FormFactorOptions factorOptions(const py::dict& given) {
+  FormFactorOptions options;
+  const Options take(given);
+  take.choice("method", kMethodNames, options.method);
+  take("tolerance", options.tolerance);
+  take.choice("closure", kClosureNames, options.closure);
+  Precision precision{};
+  take.choice("precision", kPrecisionNames, precision);
+  if (take.has("precision")) options.precision = precision;
+  take("resolution", options.resolution);
+  take("seed", options.seed);
+  take("symmetrize", options.symmetrize);
+  take("near_exact", options.near_exact);
+  take("memory_limit", options.memory_limit);
+  take("memory_held", options.memory_held);
+  take("scratch_folder", options.scratch_folder);
+  options.validate();
+  return options;
+}
+
+std::shared_ptr<FactorsHandle> formFactors(std::shared_ptr<MeshHandle> mesh, const py::dict& given,
+                                           const py::object& report) {
+  FormFactorOptions options = factorOptions(given);
+  auto handle = std::make_shared<FactorsHandle>();
+  handle->mesh = std::move(mesh);
+  runLong(report, [&](Progress& progress) {
+    const PatchMesh& patches = handle->mesh->result.mesh;
+    handle->key = keyOfFactors(options, patches);
+    options.exact_rows = emittingUnknowns(patches, handle->mesh->materials);
+    // The plan shares the mesh that the handle keeps.
+    const std::shared_ptr<const PatchMesh> shared(handle->mesh, &patches);
+    const FormFactorPlan plan = planFormFactors(shared, options, progress);
+    handle->factors = computeFormFactors(plan, progress);
+    handle->factors.report.estimated_bytes = plan.bytes;
+  });
+  return handle;
+}
+
+/// Rows of `value` type, compressed, as scipy has them.
+template <class Value, class Place>
+py::tuple compressedRows(const FactorsHandle& handle, std::size_t entries,
+                         const py::object& report) {
+  const ExchangeMatrix& matrix = handle.factors.matrix;
+  std::vector<Value> data(entries);
+  std::vector<Place> indices(entries);
+  std::vector<Place> starts(matrix.size() + 1, 0);
+  runLong(report, [&](Progress& progress) {
+    std::size_t at = 0;
+    progress.begin("rows", matrix.size(), "rows");
+    matrix.forPanels([&](const RowPanel& panel) {
+      for (std::size_t i = panel.first(); i < panel.last(); ++i) {
+        progress.check();
+        panel.forRow(i, [&](Index column, double value) {
+          indices[at] = Place(column);
+          data[at++] = Value(value);
+        });
+        starts[i + 1] = Place(at);
+        progress.advance();
+      }
+    });
+    progress.end();
+  });
+  return py::make_tuple(taken(std::move(data)), taken(std::move(indices)),
+                        taken(std::move(starts)));
+}
+
+py::tuple csrArrays(const FactorsHandle& handle, const py::object& report) {
+  const std::size_t entries = handle.factors.matrix.nonZeros();
+  const bool single = handle.factors.matrix.precision() == Precision::single_precision;
+  const bool narrow = entries <= std::size_t(std::numeric_limits<std::int32_t>::max());
+  if (single) {
+    return narrow ? compressedRows<float, std::int32_t>(handle, entries, report)
+                  : compressedRows<float, std::int64_t>(handle, entries, report);
+  }
+  return narrow ? compressedRows<double, std::int32_t>(handle, entries, report)
+                : compressedRows<double, std::int64_t>(handle, entries, report);
+}
+
+std::shared_ptr<FactorsHandle> fromCsr(const Array<double>& data, const Array<Index>& indices,
+                                       const Array<std::int64_t>& starts, const Array<double>& area,
+                                       const Array<double>& sky, const Array<double>& backs,
+                                       const std::vector<std::string>& names, bool single) {
+  auto handle = std::make_shared<FactorsHandle>();
+  const py::gil_scoped_release unlocked;
+  FormFactors& factors = handle->factors;
+  factors.matrix = ExchangeMatrix(
+      vectorOf(area), single ? Precision::single_precision : Precision::double_precision);
+  for (std::size_t i = 0; i < factors.matrix.size(); ++i) {
+    const auto first = std::size_t(starts.data()[i]);
+    const auto count = std::size_t(starts.data()[i + 1]) - first;
+    factors.matrix.setRow(i, spanOf(indices).subspan(first, count),
+                          spanOf(data).subspan(first, count));
+  }
+  factors.fronts = factors.matrix.rowSums();
+  factors.sky = vectorOf(sky);
+  factors.backs = vectorOf(backs);
+  factors.method = "matrix";
+  constexpr double kClosedWithin = 1e-5;  // as of matrices in files
+  factors.report.closed = std::all_of(factors.sky.begin(), factors.sky.end(),
+                                      [](double s) { return std::abs(s) < kClosedWithin; });
+  handle->names = names;
+  return handle;
+}
+
+std::shared_ptr<FactorsHandle> readMatrix(const std::string& path, const py::object& report) {
+  auto handle = std::make_shared<FactorsHandle>();
+  runLong(report, [&](Progress& progress) {
+    const MatrixFile file = readMatrixFile(path, progress);
+    handle->factors = factorsOfFile(file);
+    handle->names = file.factors.names;
+  });
+  return handle;
+}
+
+py::dict table(const py::object& self, const std::vector<std::string>& groups,
+               const py::object& report) {
+  const auto& handle = self.cast<const FactorsHandle&>();
+  const PatchMesh& mesh = meshOf(handle, "a table by surface names").result.mesh;
+  NamedFactors named;
+  std::vector<double> factors;
+  std::vector<double> errors;
+  std::string markdown;
+  runLong(report, [&](Progress& progress) {
+    named =
+        factorsBetween(mesh, handle.factors, groupSurfaces(mesh.surface_names, groups), progress);
+    for (std::size_t a = 0; a < named.size(); ++a) {
+      for (std::size_t b = 0; b < named.size(); ++b) {
+        factors.push_back(named.matrix->at(a, b));
+        errors.push_back(named.entryError(a, b));
+      }
+    }
+    markdown = factorsMarkdown(named, TableLayout::wide);
+  });
+  py::dict dict;
+  dict["names"] = named.names;
+  dict["area"] = py::array_t<double>(py::ssize_t(named.size()), named.matrix->area().data());
+  dict["factors"] = taken(std::move(factors));
+  dict["entry_error"] = taken(std::move(errors));
+  dict["sky"] = taken(std::move(named.sky));
+  dict["backs"] = taken(std::move(named.backs));
+  dict["markdown"] = markdown;
+  return dict;
+}
+
+py::array fromPoints(const MeshHandle& mesh, const Array<double>& points,
+                     const Array<double>& normals, const py::object& report) {
+  const auto rows = std::size_t(points.size()) / 3;
+  py::array_t<double> factors({py::ssize_t(rows), py::ssize_t(mesh.result.mesh.size())});
+  const std::span<double> values(factors.mutable_data(), std::size_t(factors.size()));
+  runLong(report, [&](Progress& progress) {
+    pointFormFactors(mesh.result.mesh, vectorsOf(points), vectorsOf(normals), values, progress);
+  });
+  return factors;
+}
+
+}  // namespace
+
+const MeshHandle& meshOf(const FactorsHandle& factors, const char* asks) {
+  if (factors.mesh) return *factors.mesh;
+  throw InputError(fmt::format(
+      "{}: these form factors are a matrix without a mesh; use those of form_factors(mesh)", asks));
+}
+
+void bindFactors(py::module_& module) {
+  using H = FactorsHandle;
+  py::class_<H, std::shared_ptr<H>> type(module, "FormFactors");
+  const auto array = [&](const char* name, auto field) {
+    type.def_property_readonly(name, [field](const py::object& self) {
+      return view(self.cast<const H&>().factors.*field, self);
+    });
+  };
+  array("fronts", &FormFactors::fronts);
+  array("sky", &FormFactors::sky);
+  array("backs", &FormFactors::backs);
+  array("error", &FormFactors::error);
+  type.def_property_readonly("area", [](const py::object& self) {
+    const auto area = self.cast<const H&>().factors.matrix.area();
+    return view(area.data(), {py::ssize_t(area.size())}, self);
+  });
+  type.def_property_readonly(
+      "mesh", [](const H& h) { return std::const_pointer_cast<MeshHandle>(h.mesh); });
+  type.def_readonly("names", &H::names);
+  type.def_property_readonly("method", [](const H& h) { return h.factors.method; });
+  type.def_property_readonly("symmetric",
+                             [](const H& h) { return h.factors.matrix.isSymmetric(); });
+  type.def_property_readonly("report", [](const H& h) { return dictOf(h.factors.report); });
+  module.def("form_factors", &formFactors);
+  module.def("csr_arrays", &csrArrays);
+  module.def("from_csr", &fromCsr);
+  module.def("read_matrix", &readMatrix);
+  module.def("table", &table);
+  module.def("from_points", &fromPoints);
+}
+
+}  // namespace radiosity::python

@@ -1,0 +1,50 @@
+// What the Python objects hold. All is made once and then read only, so that views of it last and
+// threads may share it.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "radiosity/radiosity.h"
+
+namespace radiosity::python {
+
+struct MeshHandle {
+  std::shared_ptr<const Scene> scene;  ///< null: a results file without one
+  MeshResult result;
+  PatchMaterials materials;  ///< of the scene; without one of no bands
+  std::string key;           ///< as Results::mesh_key
+};
+
+struct FactorsHandle {
+  std::shared_ptr<const MeshHandle> mesh;  ///< null: a matrix from elsewhere
+  std::vector<std::string> names;          ///< of the rows of such a matrix, or empty
+  FormFactors factors;
+  std::string key;  ///< as Results::factors_key
+};
+
+struct SolutionHandle {
+  std::shared_ptr<const FactorsHandle> factors;
+  PatchMaterials materials;
+  Solution solution;
+  std::string key;
+};
+
+struct HeatHandle {
+  std::shared_ptr<const FactorsHandle> factors;
+  HeatSolution solution;
+  std::string key;
+};
+
+// Each adds its classes and functions to the module.
+void bindScene(pybind11::module_& module);
+void bindFactors(pybind11::module_& module);
+void bindLight(pybind11::module_& module);
+
+/// The mesh of form factors; InputError where they are a matrix alone, with what `asks` for it.
+const MeshHandle& meshOf(const FactorsHandle& factors, const char* asks);
+
+}  // namespace radiosity::python

@@ -1,0 +1,278 @@
+// Light and heat on form factors, and pictures of light.
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "arrays.h"
+#include "handles.h"
+#include "long_call.h"
+#include "options.h"
+#include "reports.h"
+
+namespace radiosity::python {
+namespace {
+
+/// What one side of the reports' calls is for: surfaces of a mesh or rows of a matrix.
+const std::vector<std::string>& noNames() {
+  static const std::vector<std::string> kNone;
+  return kNone;
+}
+
+/// `reflectance`, `emission`: (rows, bands), rows being patches of the mesh or rows of the matrix.
+std::shared_ptr<SolutionHandle> solveLight(std::shared_ptr<FactorsHandle> factors,
+                                           const Array<double>& reflectance,
+                                           const Array<double>& emission,
+                                           const std::vector<double>& sky, const py::dict& given,
+                                           const py::object& report) {
+  SolveOptions options;
+  const Options take(given);
+  take.choice("solver", kSolverNames, options.solver);
+  take("tolerance", options.tolerance);
+  take("max_iterations", options.max_iterations);
+  options.validate();
+  auto handle = std::make_shared<SolutionHandle>();
+  handle->factors = std::move(factors);
+  PatchMaterials& materials = handle->materials;
+  materials = {int(emission.shape(1)), vectorOf(reflectance), vectorOf(emission), sky};
+  const FactorsHandle& of = *handle->factors;
+  runLong(report, [&](Progress& progress) {
+    if (!of.mesh) {
+      handle->solution = solve(of.factors, materials.reflectance, materials.emission,
+                               materials.bands, options, progress, {}, noNames(), sky);
+      return;
+    }
+    handle->solution = solve(of.factors, materials, of.mesh->result.mesh, options, progress);
+    handle->key = keyOfSolution(options, materials, of.key, of.factors.method);
+  });
+  return handle;
+}
+
+HeatOptions heatOptions(const py::dict& given) {
+  HeatOptions options;
+  const Options take(given);
+  take("sky_temperature", options.sky_temperature);
+  take("tolerance", options.tolerance);
+  take("max_iterations", options.max_iterations);
+  take("band_edges", options.bands.edges);
+  take("band_fractions", options.bands.fractions);
+  options.validate();
+  return options;
+}
+
+/// `settings`: as readHeatConditions() takes them.
+std::shared_ptr<HeatHandle> heat(std::shared_ptr<FactorsHandle> factors,
+                                 const std::string& table_path,
+                                 const std::vector<std::string>& settings, const py::dict& given,
+                                 const py::object& report) {
+  const HeatOptions options = heatOptions(given);
+  auto handle = std::make_shared<HeatHandle>();
+  handle->factors = std::move(factors);
+  const FactorsHandle& of = *handle->factors;
+  const MeshHandle& mesh = meshOf(of, "heat by surface names");
+  if (!mesh.scene)
+    throw InputError("heat: the results file has no scene, whose surfaces have names");
+  const HeatConditions conditions = readHeatConditions(*mesh.scene, table_path, settings);
+  validate(conditions, options);
+  runLong(report, [&](Progress& progress) {
+    handle->solution = solveHeat(of.factors, conditions, mesh.result.mesh, options, progress);
+    handle->key = keyOfHeat(options, conditions, of.key, of.factors.method);
+  });
+  return handle;
+}
+
+/// Conditions row by row; NaN: not given.
+std::shared_ptr<HeatHandle> heatOfRows(std::shared_ptr<FactorsHandle> factors,
+                                       const Array<double>& emissivity,
+                                       const Array<double>& temperature, const Array<double>& flux,
+                                       const py::dict& given, const py::object& report) {
+  const HeatOptions options = heatOptions(given);
+  auto handle = std::make_shared<HeatHandle>();
+  handle->factors = std::move(factors);
+  const FactorsHandle& of = *handle->factors;
+  const std::size_t rows = of.factors.matrix.size();
+  std::vector<HeatCondition> conditions(rows);
+  std::vector<Index> of_row(rows);
+  for (std::size_t i = 0; i < rows; ++i) {
+    HeatCondition& condition = conditions[i];
+    of_row[i] = Index(i);
+    condition.name = of.names.empty() ? fmt::format("row {}", i) : of.names[i];
+    condition.emissivity = {{{}, {emissivity.data()[i]}}};
+    if (!std::isnan(temperature.data()[i])) condition.temperature = temperature.data()[i];
+    if (!std::isnan(flux.data()[i])) condition.flux = flux.data()[i];
+  }
+  runLong(report, [&](Progress& progress) {
+    handle->solution = solveHeat(of.factors, {conditions, of_row, {}}, options, progress);
+  });
+  return handle;
+}
+
+py::list heatTable(const HeatHandle& heat) {
+  const MeshHandle& mesh = meshOf(*heat.factors, "a table by surface names");
+  py::list list;
+  for (const SurfaceHeat& surface :
+       heatBySurface(heat.solution, mesh.result.mesh, heat.factors->factors)) {
+    list.append(dictOf(surface));
+  }
+  return list;
+}
+
+using Triple = std::array<double, 3>;
+Vec3 vec(const Triple& t) { return {t[0], t[1], t[2]}; }
+
+/// A camera of a dictionary as Scene.cameras has them, a text, or a name of the scene's; nothing
+/// for None in a scene without cameras.
+std::optional<Camera> cameraOf(const py::object& given, const Scene* scene) {
+  if (given.is_none()) {
+    if (scene == nullptr || scene->cameras.empty()) return std::nullopt;
+    return scene->cameras.front();
+  }
+  if (py::isinstance<py::str>(given)) {
+    const auto text = given.cast<std::string>();
+    for (const Camera& camera : scene != nullptr ? scene->cameras : std::vector<Camera>()) {
+      if (camera.name == text) return camera;
+    }
+    return parseCamera(text);
+  }
+  const Options take(given.cast<py::dict>());
+  Camera camera;
+  Triple eye{}, target{}, up{camera.up.x, camera.up.y, camera.up.z};
+  if (!take.has("eye") || !take.has("target")) {
+    throw InputError(
+        "camera: has no eye or no target; give {'eye': (x, y, z), 'target': (x, y, z)}");
+  }
+  take("eye", eye);
+  take("target", target);
+  take("up", up);
+  take("vertical_fov", camera.vertical_fov);
+  take("aspect", camera.aspect);
+  camera.eye = vec(eye);
+  camera.target = vec(target);
+  camera.up = vec(up);
+  return camera;
+}
+
+int otherSide(double pixels) { return std::max(1, int(std::lround(pixels))); }
+
+/// The size of the picture: the side that is not given follows from the camera.
+void takeSize(const Options& take, const std::optional<Camera>& camera, RenderOptions& options) {
+  take("width", options.width);
+  take("height", options.height);
+  const double aspect = camera && camera->aspect > 0 ? camera->aspect : 1;
+  if (!take.has("height")) options.height = otherSide(options.width / aspect);
+  if (!take.has("width") && take.has("height")) options.width = otherSide(options.height * aspect);
+}
+
+/// Light at points of what the picture shows, as the command line draws it.
+void addElements(const PatchMesh& mesh, const SolutionHandle& light, const Camera& camera,
+                 const RenderOptions& options, const ElementOptions& elements, SurfaceLight& drawn,
+                 Progress& progress) {
+  const std::vector<std::uint8_t> wanted = visiblePatches(mesh, camera, options, progress);
+  drawn.elements = std::make_shared<const Elements>(computeElements(
+      mesh, light.materials, light.solution.irradiance, elements, wanted, progress));
+  drawn.reflectance = light.materials.reflectance;
+  drawn.emission = light.materials.emission;
+}
+
+/// The picture of a solution, or of radiosities (N, bands) where `light` is null.
+py::array render(const MeshHandle& mesh, const SolutionHandle* light,
+                 const Array<double>& radiosity, const py::object& from, const py::dict& given,
+                 const py::object& report) {
+  const Options take(given);
+  RenderOptions options;
+  ElementOptions element_options;
+  bool with_elements = light != nullptr;
+  take("samples", options.samples);
+  take("smooth", options.smooth);
+  take("crease", options.crease);
+  take("crease", element_options.crease);
+  take("show_backs", options.show_backs);
+  take("elements", with_elements);
+  take("element_tolerance", element_options.tolerance);
+  std::optional<Camera> camera = cameraOf(from, mesh.scene.get());
+  takeSize(take, camera, options);
+  options.validate();
+  const PatchMesh& patches = mesh.result.mesh;
+  const PatchMaterials plain{int(radiosity.shape(1)),
+                             std::vector<double>(std::size_t(radiosity.size()), 0.0),
+                             std::vector<double>(std::size_t(radiosity.size()), 0.0),
+                             {}};
+  Image image;
+  runLong(report, [&](Progress& progress) {
+    const PatchMaterials& materials = light != nullptr ? light->materials : plain;
+    const bool closed = light != nullptr && light->factors->factors.report.closed;
+    SurfaceLight drawn = surfaceLight(spanOf(radiosity), materials);
+    if (!camera) {
+      camera = framingCamera(patches, closed, double(options.width) / double(options.height),
+                             drawn.reflected);
+    }
+    if (with_elements) {
+      addElements(patches, *light, *camera, options, element_options, drawn, progress);
+    }
+    image = renderRadiance(patches, drawn, *camera, options, progress);
+  });
+  const std::vector<py::ssize_t> shape{image.height, image.width, 4};
+  return taken(std::move(image.rgba)).reshape(shape);
+}
+
+double exposure(const py::array_t<float, py::array::c_style>& picture) {
+  Image image;
+  image.height = int(picture.shape(0));
+  image.width = int(picture.shape(1));
+  image.rgba.assign(picture.data(), picture.data() + picture.size());
+  return autoExposure(image);
+}
+
+template <class Handle>
+auto valuesOf(std::vector<double> HeatSolution::*field) {
+  return [field](const py::object& self) {
+    return view(self.cast<const Handle&>().solution.*field, self);
+  };
+}
+
+}  // namespace
+
+void bindLight(py::module_& module) {
+  using S = SolutionHandle;
+  py::class_<S, std::shared_ptr<S>> solution(module, "Solution");
+  const auto light_rows = [&](const char* name, auto get) {
+    solution.def_property_readonly(name, [get](const py::object& self) {
+      const S& s = self.cast<const S&>();
+      return rows(get(s), s.solution.bands, self);
+    });
+  };
+  light_rows("radiosity", [](const S& s) -> const auto& { return s.solution.radiosity; });
+  light_rows("irradiance", [](const S& s) -> const auto& { return s.solution.irradiance; });
+  light_rows("reflectance", [](const S& s) -> const auto& { return s.materials.reflectance; });
+  light_rows("emission", [](const S& s) -> const auto& { return s.materials.emission; });
+  solution.def_property_readonly("summary", [](const S& s) { return dictOf(s.solution.summary); });
+  solution.def_property_readonly(
+      "form_factors", [](const S& s) { return std::const_pointer_cast<FactorsHandle>(s.factors); });
+
+  using H = HeatHandle;
+  py::class_<H, std::shared_ptr<H>> type(module, "Heat");
+  type.def_property_readonly("temperature", valuesOf<H>(&HeatSolution::temperature));
+  type.def_property_readonly("net_flux", valuesOf<H>(&HeatSolution::net_flux));
+  type.def_property_readonly("convection", valuesOf<H>(&HeatSolution::convection));
+  type.def_property_readonly("radiosity", [](const py::object& self) {
+    const HeatSolution& heat = self.cast<const H&>().solution;
+    return rows(heat.radiosity, heat.bands, self);
+  });
+  type.def_property_readonly("irradiance", [](const py::object& self) {
+    const HeatSolution& heat = self.cast<const H&>().solution;
+    return rows(heat.irradiance, heat.bands, self);
+  });
+  type.def_property_readonly("summary", [](const H& h) { return dictOf(h.solution.summary); });
+  type.def_property_readonly(
+      "form_factors", [](const H& h) { return std::const_pointer_cast<FactorsHandle>(h.factors); });
+
+  module.def("solve", &solveLight);
+  module.def("heat", &heat);
+  module.def("heat_of_rows", &heatOfRows);
+  module.def("heat_table", &heatTable);
+  module.def("render", &render);
+  module.def("exposure", &exposure);
+}
+
+}  // namespace radiosity::python

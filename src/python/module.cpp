@@ -1,0 +1,137 @@
+// The extension module radiosity._core: what the package in radiosity/ is made of. Arguments are as
+// that package passes them: arrays contiguous, of the type and shape that each function names.
+#include <pybind11/stl.h>
+
+#include <exception>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "handles.h"
+#include "long_call.h"
+
+namespace py = pybind11;
+
+namespace radiosity::python {
+namespace {
+
+/// What a results file holds, as handles that share the mesh and the form factors.
+py::dict read(const std::string& path, const py::object& report) {
+  Results results;
+  auto mesh = std::make_shared<MeshHandle>();
+  auto factors = std::make_shared<FactorsHandle>();
+  auto light = std::make_shared<SolutionHandle>();
+  auto heat = std::make_shared<HeatHandle>();
+  runLong(report, [&](Progress& progress) {
+    results = readResults(path);
+    progress.check();
+    if (results.scene) mesh->scene = std::make_shared<const Scene>(std::move(*results.scene));
+    if (results.mesh) mesh->result = std::move(*results.mesh);
+    mesh->key = results.mesh_key;
+    if (mesh->scene && results.mesh) {
+      mesh->materials = patchMaterials(*mesh->scene, mesh->result.mesh);
+    }
+    if (results.factors) factors->factors = std::move(*results.factors);
+  });
+  factors->key = results.factors_key;
+  factors->mesh = mesh;
+  py::dict dict;
+  if (mesh->scene) dict["scene"] = std::const_pointer_cast<Scene>(mesh->scene);
+  if (results.mesh) dict["mesh"] = mesh;
+  if (results.factors) dict["form_factors"] = factors;
+  if (results.solution && results.materials && results.factors) {
+    light->factors = factors;
+    light->materials = std::move(*results.materials);
+    light->solution = std::move(*results.solution);
+    light->key = results.solution_key;
+    dict["solution"] = light;
+  }
+  if (results.heat && results.factors) {
+    heat->factors = factors;
+    heat->solution = std::move(*results.heat);
+    heat->key = results.heat_key;
+    dict["heat"] = heat;
+  }
+  return dict;
+}
+
+/// Scene, mesh and form factors, and light and heat on them where there are some. The matrix is not
+/// copied.
+void save(const std::string& path, const FactorsHandle& factors, const SolutionHandle* light,
+          const HeatHandle* heat, const py::object& report) {
+  const MeshHandle& mesh = meshOf(factors, "a results file");
+  runLong(report, [&](Progress& progress) {
+    Results results;
+    results.version = RADIOSITY_VERSION;
+    if (mesh.scene) results.scene = *mesh.scene;
+    results.mesh = mesh.result;
+    results.mesh_key = mesh.key;
+    results.factors_key = factors.key;
+    if (light != nullptr) {
+      results.materials = light->materials;
+      results.solution = light->solution;
+      results.solution_key = light->key;
+    }
+    if (heat != nullptr) {
+      results.heat = heat->solution;
+      results.heat_key = heat->key;
+    }
+    writeResults(path, results, factors.factors, progress);
+  });
+}
+
+/// What options of the command line, which messages name, are called here.
+std::string withKeywords(std::string text) {
+  constexpr std::pair<const char*, const char*> kRenamed[] = {
+      {"--group ", "groups: "},          {"--condition ", "conditions: "},
+      {"--thermal FILE", "table=FILE"},  {"--solve-tolerance", "tolerance"},
+      {"--heat-tolerance", "tolerance"}, {"--max-iterations", "max_iterations"}};
+  for (const auto& [option, keyword] : kRenamed) {
+    for (std::size_t at = 0; (at = text.find(option, at)) != std::string::npos;) {
+      text.replace(at, std::string_view(option).size(), keyword);
+    }
+  }
+  return text;
+}
+
+PyObject* exceptionType(py::module_& module, const char* name, PyObject* base, const char* text) {
+  PyObject* type =
+      PyErr_NewExceptionWithDoc(("radiosity." + std::string(name)).c_str(), text, base, nullptr);
+  module.add_object(name, type);
+  return type;
+}
+
+void bindErrors(py::module_& module) {
+  // They live as long as the process.
+  static PyObject* const run_error =
+      exceptionType(module, "RunError", PyExc_RuntimeError,
+                    "The run itself failed: the disk is full, a memory limit is exceeded.");
+  static PyObject* const input_error = exceptionType(
+      module, "InputError", PyExc_ValueError,
+      "Bad input: one line with the file or argument, the element in it and the cure.");
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const InputError& error) {
+      PyErr_SetString(input_error, withKeywords(error.what()).c_str());
+    } catch (const RunError& error) {
+      PyErr_SetString(run_error, withKeywords(error.what()).c_str());
+    }
+  });
+}
+
+}  // namespace
+}  // namespace radiosity::python
+
+PYBIND11_MODULE(_core, module) {
+  using namespace radiosity;
+  python::bindErrors(module);
+  module.attr("version") = RADIOSITY_VERSION;
+  module.def("set_threads", &setThreads);
+  python::bindScene(module);
+  python::bindFactors(module);
+  python::bindLight(module);
+  module.def("read", &python::read);
+  module.def("save", &python::save);
+  module.def("is_results", &isResultsFile);
+}

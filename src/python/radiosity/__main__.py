@@ -1,0 +1,29 @@
+"""`python -m radiosity` is the command line: the program itself takes over."""
+
+import os
+import sys
+from pathlib import Path
+
+
+def program() -> Path:
+    """The program that was built or installed with this package."""
+    here = Path(__file__).parent  # of links in a build folder: the link's
+    places = [
+        here / "bin/radiosity",  # pip
+        here.parents[3] / "bin/radiosity",  # cmake --install: PREFIX/lib/pythonX.Y/site-packages
+        here.parents[1] / "radiosity",  # the build folder
+    ]
+    for place in places:
+        if place.is_file():
+            return place
+    looked = ", ".join(str(place) for place in places)
+    sys.exit(f"radiosity: the program is in none of {looked}; install the package again")
+
+
+def main() -> None:
+    path = program()
+    os.execv(path, [str(path), *sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    main()

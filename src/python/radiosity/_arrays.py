@@ -1,0 +1,58 @@
+"""Checks of what callers give, with one line on what is wrong and what would be right."""
+
+from __future__ import annotations
+
+from typing import Any, Optional, Sequence
+
+import numpy as np
+
+from ._core import InputError
+
+
+def _shape_text(shape: Sequence[Any]) -> str:
+    return "(" + ", ".join("any" if n is None else str(n) for n in shape) + ("," if len(shape) == 1 else "") + ")"
+
+
+def _require_shape(name: str, array: np.ndarray, shapes: Sequence[Sequence[Optional[int]]],
+                   meaning: str) -> None:
+    for shape in shapes:
+        if len(shape) == array.ndim and all(n is None or n == m for n, m in zip(shape, array.shape)):
+            return
+    wanted = " or ".join(_shape_text(shape) for shape in shapes)
+    raise InputError(f"{name}: has shape {array.shape}; give {wanted}{meaning and ': ' + meaning}")
+
+
+def numbers(name: str, value: Any, shapes: Sequence[Sequence[Optional[int]]], meaning: str = "",
+            nan: bool = False) -> np.ndarray:
+    """`value` as contiguous float64 of one of the shapes (None: any length), finite unless `nan`."""
+    try:
+        given = np.asarray(value)
+    except ValueError as error:
+        raise InputError(f"{name}: is no array of numbers: {error}") from None
+    if given.dtype.kind not in "buif":
+        raise InputError(f"{name}: has dtype {given.dtype}; give real numbers")
+    array = np.ascontiguousarray(given, dtype=np.float64) if given.ndim else given.astype(np.float64)
+    _require_shape(name, array, shapes, meaning)
+    bad = np.isinf(array) if nan else ~np.isfinite(array)
+    if bad.any():
+        first = tuple(int(k) for k in np.argwhere(bad)[0])
+        place = first[0] if len(first) == 1 else first
+        raise InputError(f"{name}: entry {place} is {array[first]}; give finite numbers")
+    return array
+
+
+def indices(name: str, value: Any, shapes: Sequence[Sequence[Optional[int]]], below: int,
+            of: str) -> np.ndarray:
+    """`value` as contiguous uint32 of one of the shapes, each at least 0 and below `below`."""
+    try:
+        given = np.asarray(value)
+    except ValueError as error:
+        raise InputError(f"{name}: is no array of whole numbers: {error}") from None
+    if given.dtype.kind not in "ui":
+        raise InputError(f"{name}: has dtype {given.dtype}; give whole numbers, indices of {of}")
+    _require_shape(name, given, shapes, "")
+    if given.size and (given.min() < 0 or given.max() >= below):
+        first = tuple(int(k) for k in np.argwhere((given < 0) | (given >= below))[0])
+        raise InputError(f"{name}: row {first[0]} has index {given[first]}; there are {below} {of}, "
+                         "numbered from 0")
+    return np.ascontiguousarray(given, dtype=np.uint32)

@@ -1,0 +1,317 @@
+"""Form factors: of meshes, of matrices from elsewhere, between surfaces, from points."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import Any, List, Optional, Sequence, Union
+
+import numpy as np
+import scipy.sparse
+
+from . import _core
+from ._arrays import numbers
+from ._core import InputError
+from ._mesh import Mesh
+from ._names import surfaces_named
+from ._progress import Progress, reporting
+
+
+@dataclass(frozen=True)
+class Table:
+    """Form factors between S named surfaces; made by FormFactors.table(). Text of it is Markdown."""
+
+    names: List[str]
+    #: (S,) m^2, both sides of a two-sided surface
+    area: np.ndarray
+    #: (S, S): factors[a, b] is the fraction of what leaves names[a] that reaches names[b]
+    factors: np.ndarray
+    #: (S,): what goes to the sky
+    sky: np.ndarray
+    #: (S,): what goes to black backs
+    backs: np.ndarray
+    #: (S, S): how far off each may be; NaN where the method has no error figures
+    error: np.ndarray
+    _text: str = ""
+
+    def __str__(self) -> str:
+        return self._text
+
+    def _repr_markdown_(self) -> str:
+        return self._text
+
+    def between(self, a: str, b: str) -> float:
+        """The fraction of what leaves `a` that reaches `b`: surfaces, or all surfaces of a material or
+        an object.
+
+        Errors: InputError for a name that is not there, with those that are.
+        """
+        of_a, of_b = surfaces_named(self.names, a), surfaces_named(self.names, b)
+        sums = self.factors[np.ix_(of_a, of_b)].sum(axis=1)
+        weights = self.area[of_a]
+        return float(weights @ sums / weights.sum()) if weights.any() else 0.0
+
+
+class FormFactors:
+    """F of shape (rows, rows): F[i, j] is the fraction of what leaves i that reaches j.
+
+    Rows are patches of the mesh, or the clusters that share rows (Mesh.cluster); of from_csr() those
+    of the matrix. Made by form_factors(), from_csr() and read().
+
+    >>> F = rad.form_factors(rad.mesh(rad.load("data/furnace-cube.obj"), patches=24))
+    >>> F
+    <FormFactors of 24 rows, exact>
+    """
+
+    def __init__(self, handle: "_core.FormFactors", mesh: Optional[Mesh] = None) -> None:
+        self._handle = handle
+        self._mesh = mesh
+        self._csr: Optional[scipy.sparse.csr_matrix] = None
+        self._table: Optional[Table] = None
+
+    def __len__(self) -> int:
+        return len(self._handle.area)
+
+    @property
+    def mesh(self) -> Optional[Mesh]:
+        """The mesh; None of a matrix from elsewhere."""
+        return self._mesh
+
+    @property
+    def csr(self) -> scipy.sparse.csr_matrix:
+        """The matrix, (rows, rows), float32 or float64 as it is stored; read only.
+
+        The first call assembles it (a copy: F is stored as runs, a symmetric one once a pair);
+        later ones return the same object.
+
+        >>> F = rad.form_factors(rad.mesh(rad.load("data/furnace-cube.obj"), patches=24))
+        >>> F.csr.shape, float(abs(F.csr.sum(axis=1) - 1).max()) < 1e-4
+        ((24, 24), True)
+        """
+        if self._csr is None:
+            with reporting(None) as report:
+                data, indices, starts = _core.csr_arrays(self._handle, report)
+            n = len(self)
+            matrix = scipy.sparse.csr_matrix((data, indices, starts), shape=(n, n), copy=False)
+            matrix.has_sorted_indices = True
+            matrix.has_canonical_format = True
+            for array in (matrix.data, matrix.indices, matrix.indptr):
+                array.flags.writeable = False
+            self._csr = matrix
+        return self._csr
+
+    @property
+    def area(self) -> np.ndarray:
+        """(rows,) float64, m^2; a view."""
+        return self._handle.area
+
+    @property
+    def fronts(self) -> np.ndarray:
+        """(rows,) float64: what of a row reaches patches, its sum; a view."""
+        return self._handle.fronts
+
+    @property
+    def sky(self) -> np.ndarray:
+        """(rows,) float64: what of a row goes to the sky; a view."""
+        return self._handle.sky
+
+    @property
+    def backs(self) -> np.ndarray:
+        """(rows,) float64: what of a row goes to black backs; a view."""
+        return self._handle.backs
+
+    @property
+    def error(self) -> np.ndarray:
+        """(rows,) float64: error figures; the 2-norm of a row's error is below its own in about 99%
+        of rows. Empty where the method has none (hemicube). A view."""
+        return self._handle.error
+
+    @property
+    def method(self) -> str:
+        """exact, rays or hemicube; of from_csr() "matrix", of a matrix in a file "file"."""
+        return self._handle.method
+
+    @property
+    def report(self) -> dict:
+        """What the computation did: seconds, error_figure, closed, reciprocity_residual, ..."""
+        return self._handle.report
+
+    def table(self, groups: Sequence[str] = (), progress: Progress = None) -> Table:
+        """Form factors between surfaces by name.
+
+        groups: "NAME=PATTERN" each: surfaces that match a pattern of the shell under one name.
+        Of a matrix from elsewhere: rows of one name are together, and there are no groups.
+
+        >>> F = rad.form_factors(rad.mesh(rad.load("data/cornell-box.obj"), patches=100))
+        >>> table = F.table(groups=["boxes=*block/*"])
+        >>> "boxes" in table.names
+        True
+        """
+        if self._mesh is None:
+            if groups:
+                raise InputError("groups: are of surfaces of a mesh; name the rows in from_csr()")
+            return self._table_of_rows()
+        if not groups and self._table is not None:
+            return self._table
+        with reporting(progress) as report:
+            got = _core.table(self._handle, list(groups), report)
+        n = len(got["names"])
+        table = Table(got["names"], got["area"], got["factors"].reshape(n, n), got["sky"],
+                      got["backs"], got["entry_error"].reshape(n, n), got["markdown"])
+        if not groups:
+            self._table = table
+        return table
+
+    def between(self, a: str, b: str) -> float:
+        """The fraction of what leaves `a` that reaches `b`, as Table.between().
+
+        >>> F = rad.form_factors(rad.mesh(rad.load("data/facing-plates.obj"), patches=50))
+        >>> a, b = F.mesh.surface_names
+        >>> round(F.between(a, b), 5)  # Howell C-11
+        0.19982
+        """
+        return self.table().between(a, b)
+
+    def save(self, path: Union[str, "os.PathLike[str]"], solution: Any = None, heat: Any = None,
+             progress: Progress = None) -> None:
+        """Writes scene, mesh and form factors, and a Solution and a Heat on them, as a results file
+        (HDF5), which read() and the command line take up. The matrix is not copied.
+
+        Errors: InputError for form factors without a mesh; RunError where the disk is full; the file
+        then is what it was.
+        """
+        for name, part in (("solution", solution), ("heat", heat)):
+            if part is not None and part.form_factors is not self:
+                raise InputError(f"{name}: is of other form factors; give one that was made of these")
+        with reporting(progress) as report:
+            _core.save(os.fspath(path), self._handle, getattr(solution, "_handle", None),
+                       getattr(heat, "_handle", None), report)
+
+    def _table_of_rows(self) -> Table:
+        if not self._handle.names:
+            raise InputError("table: the rows have no names; give names=... to from_csr()")
+        names = list(dict.fromkeys(self._handle.names))
+        place = {name: k for k, name in enumerate(names)}
+        group = [place[name] for name in self._handle.names]
+        member = scipy.sparse.csr_matrix((np.ones(len(group)), (range(len(group)), group)))
+        area = member.T @ self.area
+        each = np.divide(1.0, area, out=np.zeros_like(area), where=area > 0)
+        weighted = member.T @ scipy.sparse.diags(self.area)
+        factors = (weighted @ self.csr.astype(np.float64) @ member).toarray() * each[:, None]
+        nothing = np.full(factors.shape, np.nan)
+        lines = ["| from | " + " | ".join(names) + " | sky |", "|---" * (len(names) + 2) + "|"]
+        sky = (weighted @ self.sky) * each
+        for name, row, lost in zip(names, factors, sky):
+            lines.append(f"| {name} | " + " | ".join(f"{f:.6g}" for f in row) + f" | {lost:.6g} |")
+        return Table(names, area, factors, sky, (weighted @ self.backs) * each, nothing,
+                     "\n".join(lines) + "\n")
+
+    def __repr__(self) -> str:
+        return f"<FormFactors of {len(self):,} rows, {self.method}>"
+
+
+def _resident_bytes() -> int:
+    try:
+        with open("/proc/self/statm", encoding="ascii") as statm:
+            return int(statm.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    except OSError:
+        return 0
+
+
+def form_factors(mesh: Mesh, tolerance: Optional[float] = None, *, method: str = "auto",
+                 closure: str = "report", precision: Optional[str] = None, resolution: int = 256,
+                 seed: int = 1, near_exact: bool = False, symmetrize: bool = False,
+                 memory_limit: int = 0, scratch_folder: str = "",
+                 progress: Progress = None) -> FormFactors:
+    """Computes the form factors of a mesh.
+
+    tolerance: relative to the mean form factor, 1e-12 to 0.1 (default: exact 1e-3, rays 1e-2).
+    method: auto, exact, rays or hemicube. closure: off, report or enforce. precision: single or
+    double (default: single unless the tolerance asks for more). resolution: hemicube, pixels.
+    memory_limit: bytes, 0: none; beyond it rows are kept in scratch_folder, where one is given. The
+    same options give the same bits as on the command line.
+
+    Errors: InputError for options out of range; RunError where memory_limit is exceeded.
+
+    >>> mesh = rad.mesh(rad.load("data/facing-plates.obj"), patches=8)
+    >>> rad.form_factors(mesh, method="hemicube", resolution=64)
+    <FormFactors of 8 rows, hemicube>
+    """
+    if not isinstance(mesh, Mesh):
+        raise InputError(f"mesh: is a {type(mesh).__name__}; give a Mesh: rad.mesh(scene)")
+    if memory_limit < 0 or seed < 0:
+        raise InputError("memory_limit and seed: give 0 or more")
+    options = dict(tolerance=tolerance, method=method, closure=closure, precision=precision,
+                   resolution=resolution, seed=seed, near_exact=near_exact, symmetrize=symmetrize,
+                   memory_limit=memory_limit, scratch_folder=os.fspath(scratch_folder),
+                   memory_held=_resident_bytes() if memory_limit else 0)
+    with reporting(progress) as report:
+        return FormFactors(_core.form_factors(mesh._handle, options, report), mesh)
+
+
+def from_csr(matrix: Any, area: Any, *, sky: Any = None, backs: Any = None,
+             names: Optional[Sequence[str]] = None) -> FormFactors:
+    """Form factors of one's own: a scipy matrix or an array (n, n), >= 0, and areas (n,), m^2.
+
+    Values are copied; float32 is kept as such, all else becomes float64. sky, backs: (n,), what of a
+    row goes there (default: to the sky what the row lacks of 1, to backs nothing). names: (n,), for
+    messages and tables; need not be unique.
+
+    Errors: InputError for wrong shapes, and values that are negative or not finite, by row.
+
+    >>> F = rad.from_csr([[0, 1], [1, 0]], area=[1, 1], names=["hot", "cold"])
+    >>> F.between("hot", "cold")
+    1.0
+    """
+    given = matrix if scipy.sparse.issparse(matrix) else numbers("matrix", matrix, [(None, None)])
+    if given.dtype.kind not in "buif":
+        raise InputError(f"matrix: has dtype {given.dtype}; give real numbers")
+    single = getattr(matrix, "dtype", None) == np.float32
+    csr = scipy.sparse.csr_matrix(given, dtype=np.float64)
+    n = csr.shape[0]
+    if csr.shape != (n, n):
+        raise InputError(f"matrix: has shape {csr.shape}; give as many columns as rows")
+    areas = numbers("area", area, [(n,)], "one a row, m^2")
+    if not csr.has_canonical_format or not np.all(csr.data):
+        csr = csr.copy()
+        csr.sum_duplicates()
+        csr.eliminate_zeros()
+    bad = np.flatnonzero(~(np.isfinite(csr.data) & (csr.data > 0)))
+    if len(bad):
+        row = int(np.searchsorted(csr.indptr, bad[0], side="right")) - 1
+        raise InputError(f"matrix: row {row}, column {csr.indices[bad[0]]} is {csr.data[bad[0]]}; "
+                         "form factors are finite and not negative")
+    sums = np.asarray(csr.sum(axis=1)).reshape(-1)
+    lost = numbers("backs", np.zeros(n) if backs is None else backs, [(n,)], "one a row")
+    rest = np.where(areas > 0, 1 - sums - lost, 0.0) if sky is None else sky
+    if names is not None and len(names) != n:
+        raise InputError(f"names: are {len(names)}; give {n}, one a row")
+    handle = _core.from_csr(csr.data, csr.indices.astype(np.uint32), csr.indptr.astype(np.int64),
+                            areas, numbers("sky", rest, [(n,)], "one a row"), lost,
+                            [] if names is None else [str(name) for name in names], single)
+    return FormFactors(handle)
+
+
+def view_factors_from(mesh: Mesh, points: Any, normals: Any, progress: Progress = None) -> np.ndarray:
+    """Form factors from points to patches: what sensors see, (P, N) float64.
+
+    points: (P, 3), metres. normals: (P, 3), of any length but 0, or (3,) for all. Exact, with what is
+    in between clipped off; a point may be anywhere, and one on a surface sees what is on the side
+    that its normal points to. What a row lacks of 1 goes to the sky and to backs. The irradiance at
+    the points is view_factors_from(...) @ light.radiosity, W/m^2. The array is written in place: no
+    copy.
+
+    Errors: InputError naming the point or the normal.
+
+    >>> mesh = rad.mesh(rad.load("data/furnace-cube.obj"), patches=24)
+    >>> middle = mesh.vertices.mean(axis=0)
+    >>> row = rad.view_factors_from(mesh, [middle], [0, 0, 1])
+    >>> row.shape, float(row.sum().round(9))
+    ((1, 24), 1.0)
+    """
+    places = numbers("points", points, [(None, 3)])
+    directions = numbers("normals", normals, [(len(places), 3), (3,)])
+    if directions.ndim == 1:
+        directions = np.ascontiguousarray(np.broadcast_to(directions, places.shape))
+    with reporting(progress) as report:
+        return _core.from_points(mesh._handle, places, directions, report)

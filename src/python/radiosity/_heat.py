@@ -1,0 +1,192 @@
+"""Radiative heat exchange on the same form factors."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, List, Mapping, Optional, Sequence, Union
+
+import numpy as np
+
+from . import _core
+from ._arrays import numbers
+from ._core import InputError
+from ._factors import FormFactors
+from ._progress import Progress, reporting
+
+#: One value for all surfaces that others leave out, or values by name.
+ByName = Union[float, Mapping[str, Any]]
+
+
+class Heat:
+    """Temperatures and fluxes of N patches, or of the rows of a matrix; made by heat()."""
+
+    def __init__(self, handle: "_core.Heat", form_factors: FormFactors) -> None:
+        self._handle = handle
+        self._form_factors = form_factors
+
+    @property
+    def temperature(self) -> np.ndarray:
+        """(N,) float64, K; NaN where nothing determines it; a view."""
+        return self._handle.temperature
+
+    @property
+    def net_flux(self) -> np.ndarray:
+        """(N,) float64, W/m^2: net radiation, above 0 where a patch gives off heat; a view."""
+        return self._handle.net_flux
+
+    @property
+    def convection(self) -> np.ndarray:
+        """(N,) float64, W/m^2: given off to the air; a view."""
+        return self._handle.convection
+
+    @property
+    def radiosity(self) -> np.ndarray:
+        """(N, bands) float64, W/m^2: what leaves each patch; a view."""
+        return self._handle.radiosity
+
+    @property
+    def irradiance(self) -> np.ndarray:
+        """(N, bands) float64, W/m^2: what falls on each patch; a view."""
+        return self._handle.irradiance
+
+    @property
+    def summary(self) -> dict:
+        """status, usable, iterations, residual, balance (W), message, ... Not converging is no error:
+        look at `usable`."""
+        return self._handle.summary
+
+    @property
+    def form_factors(self) -> FormFactors:
+        """The form factors that heat was exchanged on."""
+        return self._form_factors
+
+    def table(self) -> List[dict]:
+        """A dict a surface: area, mean and extreme temperatures (K), radiosity, net_flux (W/m^2),
+        radiated, convected (W), ..."""
+        return _core.heat_table(self._handle)
+
+    def __repr__(self) -> str:
+        return f"<Heat of {len(self.temperature):,} rows, {self.summary['status']}>"
+
+
+def _number(name: str, value: Any) -> str:
+    return repr(float(numbers(name, value, [()])))
+
+
+def _emissivity(name: str, value: Any) -> str:
+    """One number, one a band, or a table {K: emissivity}, as text."""
+    bands = value if isinstance(value, (list, tuple, np.ndarray)) and np.ndim(value) else [value]
+    texts = []
+    for band in bands:
+        if isinstance(band, Mapping):
+            texts.append(" ".join(f"{_number(name, t)}:{_number(name, band[t])}" for t in sorted(band)))
+        else:
+            texts.append(_number(name, band))
+    return "; ".join(texts)
+
+
+def _by_name(value: Optional[ByName]) -> dict:
+    if value is None:
+        return {}
+    return dict(value) if isinstance(value, Mapping) else {"*": value}
+
+
+def _settings(given: Mapping[str, Optional[ByName]]) -> List[str]:
+    """The conditions as "NAME.PROPERTY=VALUE", first those of all that others leave out."""
+    by_property = {name: _by_name(value) for name, value in given.items()}
+    heated = {name for kind in ("temperature", "flux", "power", "convection")
+              for name, value in by_property[kind].items() if value is not None}
+    texts = []
+    for kind, values in by_property.items():
+        for name, value in values.items():
+            if value is None:
+                if kind != "temperature":
+                    raise InputError(f"{kind} of {name!r}: is None; leave it out")
+                if name not in heated:
+                    texts.append((name, f"{name}.flux=0"))
+            elif kind == "emissivity":
+                texts.append((name, f"{name}.emissivity={_emissivity(f'emissivity of {name!r}', value)}"))
+            elif kind == "isothermal":
+                texts.append((name, f"{name}.isothermal={'yes' if value else 'no'}"))
+            else:
+                texts.append((name, f"{name}.{kind}={_number(f'{kind} of {name!r}', value)}"))
+    return [text for name, text in sorted(texts, key=lambda pair: pair[0] != "*")]
+
+
+def _of_rows(F: FormFactors, name: str, value: Optional[Any], other: float) -> np.ndarray:
+    """A value a row, of one number, an array, or values by the rows' names."""
+    if not isinstance(value, Mapping):
+        given = numbers(name, other if value is None else value, [(), (len(F),)], "one a row", nan=True)
+        return np.ascontiguousarray(np.broadcast_to(given, (len(F),)))
+    names = F._handle.names
+    for known in value:
+        if known not in names:
+            raise InputError(f"{name} of {known!r}: no row is called so; there are: "
+                             f"{', '.join(dict.fromkeys(names)) or 'none'}")
+    texts = [value.get(row, other) for row in names]
+    return numbers(name, [np.nan if v is None else v for v in texts], [(len(F),)], nan=True)
+
+
+def heat(F: FormFactors, emissivity: Any = None, temperature: Any = None, *, flux: Any = None,
+         power: Any = None, convection: Any = None, ambient: Any = None, isothermal: Any = None,
+         table: Union[None, str, "os.PathLike[str]"] = None, sky_temperature: float = 0.0,
+         band_edges: Sequence[float] = (), band_fractions: Sequence[float] = (),
+         tolerance: float = 1e-9, max_iterations: int = 100, progress: Progress = None) -> Heat:
+    """Exchanges heat by radiation, with what each surface is given.
+
+    Each condition is a dict by the name of a surface, material or object, or one value for all that
+    no other names: emissivity (0 to 1; a list: one a band; a dict {K: emissivity}: a table),
+    temperature (K; None: to be found, adiabatic unless flux, power or convection says more), flux
+    (W/m^2 supplied), power (W supplied), convection (W/m^2/K) to air of `ambient` (K), isothermal
+    (bool). table: a CSV file of the same. band_edges: micrometres. Nothing is guessed: a surface
+    without emissivity or condition is an error.
+
+    Of a matrix from elsewhere: emissivity, temperature and flux alone, by the rows' names or one a
+    row, (rows,), NaN where not given.
+
+    Errors: InputError naming the surface and the cure.
+
+    >>> F = rad.from_csr([[0, 1], [1, 0]], area=[1, 1], names=["hot", "cold"])
+    >>> plates = rad.heat(F, {"hot": 0.8, "cold": 0.5}, {"hot": 1000, "cold": 500})
+    >>> float(plates.net_flux[0].round(6))  # sigma (1000^4 - 500^4) / (1/.8 + 1/.5 - 1)
+    23626.56008
+
+    >>> F = rad.form_factors(rad.mesh(rad.load("data/cornell-box-closed.obj"), patches=60))
+    >>> oven = rad.heat(F, emissivity=0.8, temperature={"lamp": 1200, "floor": 300, "*": None})
+    >>> oven.summary["status"]
+    'converged'
+    """
+    options = dict(sky_temperature=float(sky_temperature), tolerance=float(tolerance),
+                   max_iterations=max_iterations, band_edges=list(band_edges),
+                   band_fractions=list(band_fractions))
+    conditions = dict(emissivity=emissivity, temperature=temperature, flux=flux, power=power,
+                      convection=convection, ambient=ambient, isothermal=isothermal)
+    if F.mesh is None:
+        return _heat_of_rows(F, conditions, table, options, progress)
+    for name, value in conditions.items():
+        if value is not None and not isinstance(value, Mapping) and np.ndim(value) and name != "emissivity":
+            raise InputError(f"{name}: is an array; give one number, or a dict by surface name")
+    settings = _settings(conditions)
+    if not settings and table is None:
+        raise InputError("heat: no conditions are given; give emissivity and temperature (or flux, "
+                         "power, convection) by surface name, or table=FILE.csv")
+    with reporting(progress) as report:
+        handle = _core.heat(F._handle, os.fspath(table) if table is not None else "", settings,
+                            options, report)
+    return Heat(handle, F)
+
+
+def _heat_of_rows(F: FormFactors, given: dict, table: Any, options: dict, progress: Progress) -> Heat:
+    refused = [name for name in ("power", "convection", "ambient", "isothermal")
+               if given[name] is not None]
+    if table is not None or refused:
+        raise InputError(f"{(refused + ['table'])[0]}: is of surfaces of a mesh; of a matrix give "
+                         "emissivity, temperature and flux")
+    if given["emissivity"] is None:
+        raise InputError(f"emissivity: give one number, one a row ({len(F)},), or a dict by name")
+    arrays = [_of_rows(F, name, given[name], np.nan) for name in ("emissivity", "temperature", "flux")]
+    missing = np.flatnonzero(np.isnan(arrays[0]))
+    if len(missing):
+        raise InputError(f"emissivity: row {missing[0]} has none; give it")
+    with reporting(progress) as report:
+        return Heat(_core.heat_of_rows(F._handle, *arrays, options, report), F)

@@ -1,0 +1,75 @@
+"""Pictures of light."""
+
+from __future__ import annotations
+
+from typing import Any, Optional
+
+import numpy as np
+
+from . import _core
+from ._arrays import numbers
+from ._core import InputError
+from ._light import Solution
+from ._mesh import Mesh
+from ._progress import Progress, reporting
+
+
+def render(mesh: Mesh, light: Any, width: Optional[int] = None, height: Optional[int] = None, *,
+           camera: Any = None, samples: int = 4, smooth: bool = True, crease: float = 30.0,
+           show_backs: bool = False, elements: Optional[bool] = None,
+           element_tolerance: Optional[float] = None, progress: Progress = None) -> np.ndarray:
+    """The picture of a Solution, or of radiosities (N,) or (N, 3), W/m^2: (height, width, 4) float32.
+
+    Red, green and blue are radiance, W/m^2/sr, linear; alpha is the share of samples that hit
+    something. displayed() makes it ready to be shown. width, height: pixels, 512 by default; a side
+    that is left out follows from the camera. camera: a name of the scene's, a text
+    "eye=x,y,z;target=x,y,z;fov=DEGREES", or a dict as in Scene.cameras; default: the scene's first,
+    else one that shows what is lit. elements: light is evaluated anew, finer than patches, at what
+    the picture shows (default: of a Solution; slower, and what the command line draws); False: of the
+    patches alone. No copy of the picture is made.
+
+    Errors: InputError naming the option or the camera, and for light of 2 or more than 3 bands.
+
+    >>> mesh = rad.mesh(rad.load("data/cornell-box.obj"), patches=100)
+    >>> light = rad.solve(rad.form_factors(mesh))
+    >>> image = rad.render(mesh, light, width=16, elements=False)
+    >>> image.shape, image.dtype
+    ((16, 16, 4), dtype('float32'))
+    """
+    handle = None
+    if isinstance(light, Solution):
+        if light.form_factors.mesh is None or light.form_factors.mesh._handle is not mesh._handle:
+            raise InputError("light: is a solution on another mesh; give the mesh of its form factors")
+        handle, values = light._handle, light._handle.radiosity
+    else:
+        if elements:
+            raise InputError("elements: need a Solution, which knows the materials; give what solve() "
+                             "returned")
+        values = numbers("light", light, [(len(mesh),), (len(mesh), 1), (len(mesh), 3)],
+                         f"N = {len(mesh)}")
+        values = values.reshape(len(mesh), -1)
+    options = dict(width=width, height=height, samples=samples, smooth=smooth, crease=float(crease),
+                   show_backs=show_backs, elements=elements and smooth if handle is None else
+                   (smooth if elements is None else elements),
+                   element_tolerance=element_tolerance)
+    with reporting(progress) as report:
+        return _core.render(mesh._handle, handle, values, camera, options, report)
+
+
+def displayed(image: np.ndarray, exposure: Optional[float] = None) -> np.ndarray:
+    """A picture of radiance as screens show it: (height, width, 4) float32 from 0 to 1, sRGB.
+
+    exposure: stops; radiance is multiplied by 2 to the power of it. Default: automatic, as the
+    command line exposes a PNG. A new array.
+
+    >>> import numpy as np
+    >>> grey = np.full((2, 2, 4), [0.5, 0.5, 0.5, 1.0], dtype=np.float32)
+    >>> round(float(rad.displayed(grey, exposure=0)[0, 0, 0]), 4)
+    0.7354
+    """
+    picture = np.ascontiguousarray(numbers("image", image, [(None, None, 4)]), dtype=np.float32)
+    stops = _core.exposure(picture) if exposure is None else float(exposure)
+    linear = np.clip(picture[..., :3] * np.float32(2.0**stops), 0, 1)
+    coded = np.where(linear <= 0.0031308, 12.92 * linear,
+                     1.055 * np.power(linear, 1 / 2.4, dtype=np.float32) - 0.055)
+    return np.concatenate([coded, picture[..., 3:]], axis=-1).astype(np.float32)

@@ -1,0 +1,181 @@
+"""Scenes: from files, from arrays."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, Mapping, Optional, Sequence, Union
+
+import numpy as np
+
+from . import _core
+from ._arrays import indices, numbers
+from ._core import InputError
+from ._progress import Progress, reporting
+
+#: What is not said of a material of arrays.
+_PLAIN = {"reflectance": 0.5, "emission": 0.0, "two_sided": False}
+
+
+def _colour(name: str, value: Any) -> tuple:
+    given = numbers(name, value, [(), (3,)], "one number, or red, green and blue")
+    return tuple(float(x) for x in np.broadcast_to(given, 3))
+
+
+def _corners(faces: Any, vertices: int) -> tuple:
+    """Corners and offsets of an (F, k) array, or of a sequence of faces of several lengths."""
+    if not isinstance(faces, np.ndarray):
+        faces = list(faces)
+        if len({len(face) for face in faces}) > 1:
+            lengths = np.array([len(face) for face in faces], dtype=np.uint64)
+            flat = np.concatenate([np.asarray(face) for face in faces])
+            corners = indices("faces", flat, [(None,)], vertices, "vertices")
+            return corners, np.concatenate([[0], np.cumsum(lengths)]).astype(np.uint64), len(faces)
+    corners = indices("faces", faces, [(None, None)], vertices, "vertices")
+    count, size = corners.shape
+    if size < 3:
+        raise InputError(f"faces: have {size} corners; give (F, 3), (F, 4) or more corners a face")
+    return corners.reshape(-1), np.arange(0, count * size + 1, size, dtype=np.uint64), count
+
+
+def _group_of_faces(groups: Any, faces: int) -> tuple:
+    """The group of each face, and names in the order in which they first stand."""
+    if groups is None:
+        return np.zeros(faces, dtype=np.uint32), ["surface"]
+    given = np.asarray(groups)
+    if given.shape != (faces,) or given.dtype.kind not in "uiUO":
+        raise InputError(f"groups: has shape {given.shape} and dtype {given.dtype}; give one name or "
+                         f"number a face, shape ({faces},)")
+    names, first, of_face = np.unique(given, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    place = np.empty(len(names), dtype=np.uint32)
+    place[order] = np.arange(len(names), dtype=np.uint32)
+    return place[of_face.reshape(-1)], [str(names[k]) for k in order]
+
+
+def _materials(names: Sequence[str], given: Optional[Mapping[Any, Mapping[str, Any]]]) -> list:
+    known = {str(name): dict(material) for name, material in (given or {}).items()}
+    for name, material in known.items():
+        if name not in names:
+            raise InputError(f"materials: no group is called {name!r}; there are: {', '.join(names)}")
+        unknown = sorted(set(material) - set(_PLAIN))
+        if unknown:
+            raise InputError(f"materials: {name!r} has no property {unknown[0]!r}; there are: "
+                             f"{', '.join(_PLAIN)}")
+    made = []
+    for name in names:
+        material = {**_PLAIN, **known.get(name, {})}
+        made.append((name, _colour(f"reflectance of {name!r}", material["reflectance"]),
+                     _colour(f"emission of {name!r}", material["emission"]),
+                     bool(material["two_sided"])))
+    return made
+
+
+class Scene:
+    """Faces, their surfaces and materials.
+
+    vertices: (V, 3) numbers, metres. faces: (F, 3), (F, 4) or wider whole numbers, or a sequence of
+    faces of several lengths: indices of vertices, counter-clockwise seen from the front. groups: (F,)
+    names or numbers; each group is a surface, by that name. materials: by group, a dict of
+    `reflectance` (0 to 1; default 0.5), `emission` (radiant exitance, W/m^2; default 0), each one
+    number or red, green and blue, and `two_sided`. sky: radiance where nothing stands, W/m^2/sr.
+
+    The arrays are copied once. Errors: InputError naming the argument and the row.
+
+    >>> square = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+    >>> above = [[0, 0, 1], [0, 1, 1], [1, 1, 1], [1, 0, 1]]
+    >>> scene = rad.Scene(square + above, [[0, 1, 2, 3], [4, 5, 6, 7]], groups=["floor", "lamp"],
+    ...                   materials={"lamp": {"emission": 100}})
+    >>> scene.surface_names
+    ['floor', 'lamp']
+    >>> scene.materials[1]["emission"]
+    [100.0, 100.0, 100.0]
+    """
+
+    def __init__(self, vertices: Any, faces: Any, groups: Any = None,
+                 materials: Optional[Mapping[Any, Mapping[str, Any]]] = None,
+                 sky: Any = 0.0) -> None:
+        places = numbers("vertices", vertices, [(None, 3)])
+        corners, offset, count = _corners(faces, len(places))
+        surface, names = _group_of_faces(groups, count)
+        self._handle = _core.scene_of_arrays(places, corners, offset, surface,
+                                             _materials(names, materials), _colour("sky", sky))
+
+    @classmethod
+    def _of(cls, handle: "_core.Scene") -> "Scene":
+        scene = cls.__new__(cls)
+        scene._handle = handle
+        return scene
+
+    @property
+    def vertices(self) -> np.ndarray:
+        """(V, 3) float64, metres; a view."""
+        return self._handle.vertices
+
+    @property
+    def corners(self) -> np.ndarray:
+        """uint32 vertices of all faces' corners, one face after the other; a view."""
+        return self._handle.corners
+
+    @property
+    def face_offset(self) -> np.ndarray:
+        """(F + 1,) uint64: corners of face f are corners[face_offset[f]:face_offset[f + 1]]; a view."""
+        return self._handle.face_offset
+
+    @property
+    def face_surface(self) -> np.ndarray:
+        """(F,) uint32, into surface_names; a view."""
+        return self._handle.face_surface
+
+    @property
+    def surface_names(self) -> list:
+        """Names of the surfaces: "object/material", or the one name that both have."""
+        return self._handle.surface_names
+
+    @property
+    def materials(self) -> list:
+        """A dict a material: name, reflectance (0 to 1) and emission (W/m^2) by colour, two_sided."""
+        return self._handle.materials
+
+    @property
+    def cameras(self) -> list:
+        """A dict a camera, as render() takes them: name, eye, target, up, vertical_fov (radians), aspect."""
+        return self._handle.cameras
+
+    @property
+    def sky(self) -> list:
+        """Radiance from every direction in which nothing stands, W/m^2/sr, by colour."""
+        return self._handle.sky
+
+    @property
+    def notes(self) -> list:
+        """What a reader of the scene should know: a dict of severity and text each."""
+        return self._handle.notes
+
+    def __repr__(self) -> str:
+        return (f"<Scene of {len(self.face_surface):,} faces on {len(self.surface_names)} surfaces "
+                f"from {self._handle.file}>")
+
+
+def load(path: Union[str, "os.PathLike[str]"], *, unit: Optional[str] = None,
+         kd_is_srgb: bool = False, default_reflectance: float = 0.5, textures: bool = True,
+         set: Sequence[str] = (), materials_file: Optional[str] = None,
+         one_sided: Sequence[str] = (), two_sided: Sequence[str] = (), sky: Any = None,
+         progress: Progress = None) -> Scene:
+    """Reads a scene file, its format told by the extension (.obj, .glb, .stl, .msh, .ply, ...).
+
+    unit: mm, cm, m, in or ft (default metres). set: "NAME.PROPERTY=VALUE" each, with PROPERTY
+    reflectance, emission (W/m^2), radiance (W/m^2/sr) or tint. one_sided, two_sided: names of
+    materials, objects or surfaces, or "all". sky: radiance, W/m^2/sr, one number or three. The
+    options are those of the command line.
+
+    Errors: InputError with file, element and cure.
+
+    >>> rad.load("data/cornell-box.obj", set=["white.reflectance=0.9"])
+    <Scene of 18 faces on 8 surfaces from data/cornell-box.obj>
+    """
+    options = dict(unit=unit, kd_is_srgb=kd_is_srgb, default_reflectance=float(default_reflectance),
+                   textures=textures, set=list(set), materials_file=materials_file,
+                   one_sided=list(one_sided), two_sided=list(two_sided),
+                   sky=None if sky is None else _colour("sky", sky))
+    with reporting(progress) as report:
+        return Scene._of(_core.load(os.fspath(path), options, report))

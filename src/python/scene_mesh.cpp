@@ -1,0 +1,193 @@
+// Scenes and meshes.
+#include <pybind11/stl.h>
+
+#include <array>
+
+#include "arrays.h"
+#include "handles.h"
+#include "long_call.h"
+#include "options.h"
+#include "reports.h"
+
+namespace radiosity::python {
+namespace {
+
+using Triple = std::array<double, 3>;
+
+Vec3 vec(const Triple& t) { return {t[0], t[1], t[2]}; }
+Triple triple(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+std::shared_ptr<Scene> load(const std::string& path, const py::dict& given,
+                            const py::object& report) {
+  SceneOptions options;
+  const Options take(given);
+  take("unit", options.unit);
+  take("kd_is_srgb", options.kd_is_srgb);
+  take("default_reflectance", options.default_reflectance);
+  take("textures", options.textures);
+  take("set", options.set);
+  take("materials_file", options.materials_file);
+  take("one_sided", options.one_sided);
+  take("two_sided", options.two_sided);
+  Triple sky{};
+  take("sky", sky);
+  if (take.has("sky")) options.sky = vec(sky);
+  auto scene = std::make_shared<Scene>();
+  runLong(report, [&](Progress&) { *scene = loadScene(path, options); });
+  return scene;
+}
+
+std::shared_ptr<Scene> sceneOfArrays(const Array<double>& vertices, const Array<Index>& corners,
+                                     const Array<std::uint64_t>& offset,
+                                     const Array<Index>& surface, const py::list& materials,
+                                     const Triple& sky) {
+  auto scene = std::make_shared<Scene>();
+  scene->file = "arrays";
+  const auto places = vectorsOf(vertices);
+  scene->vertices.assign(places.begin(), places.end());
+  scene->corners = vectorOf(corners);
+  scene->face_offset = {offset.data(), offset.data() + offset.size()};
+  scene->face_surface = vectorOf(surface);
+  scene->face_element.resize(scene->face_surface.size());
+  for (std::size_t f = 0; f < scene->face_element.size(); ++f) scene->face_element[f] = f;
+  for (const py::handle& entry : materials) {
+    const auto [name, reflectance, emission, two_sided] =
+        entry.cast<std::tuple<std::string, Triple, Triple, bool>>();
+    Material material;
+    material.name = name;
+    material.reflectance = vec(reflectance);
+    material.emission = vec(emission);
+    material.two_sided = two_sided;
+    scene->surfaces.push_back({name, Index(scene->materials.size()), name});
+    scene->materials.push_back(material);
+  }
+  scene->sky = vec(sky);
+  {
+    const py::gil_scoped_release unlocked;
+    validate(*scene);
+  }
+  return scene;
+}
+
+py::list materialsOf(const Scene& scene) {
+  py::list list;
+  for (const Material& material : scene.materials) {
+    py::dict entry;
+    entry["name"] = material.name;
+    entry["reflectance"] = triple(material.reflectance);
+    entry["emission"] = triple(material.emission);
+    entry["two_sided"] = material.two_sided;
+    list.append(entry);
+  }
+  return list;
+}
+
+py::dict dictOf(const Camera& camera) {
+  py::dict entry;
+  entry["name"] = camera.name;
+  entry["eye"] = triple(camera.eye);
+  entry["target"] = triple(camera.target);
+  entry["up"] = triple(camera.up);
+  entry["vertical_fov"] = camera.vertical_fov;
+  entry["aspect"] = camera.aspect;
+  return entry;
+}
+
+std::shared_ptr<MeshHandle> mesh(std::shared_ptr<Scene> scene, const py::dict& given,
+                                 const py::object& report) {
+  MeshOptions options;
+  const Options take(given);
+  take("patches", options.patches);
+  take("max_edge", options.max_edge);
+  take("weld", options.weld);
+  take("faces_as_patches", options.faces_as_patches);
+  options.validate();
+  auto handle = std::make_shared<MeshHandle>();
+  handle->scene = std::move(scene);
+  runLong(report, [&](Progress& progress) {
+    handle->result = meshScene(*handle->scene, options, progress);
+    handle->materials = patchMaterials(*handle->scene, handle->result.mesh);
+    handle->key = keyOfMesh(options, *handle->scene);
+  });
+  return handle;
+}
+
+/// Views of an array of a handle.
+template <class Handle, class Get>
+auto viewed(Get get) {
+  return [get](const py::object& self) { return view(get(self.cast<const Handle&>()), self); };
+}
+
+void bindMesh(py::module_& module) {
+  using M = MeshHandle;
+  py::class_<M, std::shared_ptr<M>> type(module, "Mesh");
+  const auto array = [&](const char* name, auto field) {
+    type.def_property_readonly(
+        name, viewed<M>([field](const M& m) -> const auto& { return m.result.mesh.*field; }));
+  };
+  array("vertices", &PatchMesh::vertices);
+  array("corner_offset", &PatchMesh::corner_offset);
+  array("corners", &PatchMesh::corners);
+  array("piece_offset", &PatchMesh::piece_offset);
+  array("pieces", &PatchMesh::pieces);
+  array("centroid", &PatchMesh::centroid);
+  array("normal", &PatchMesh::normal);
+  array("area", &PatchMesh::area);
+  array("surface", &PatchMesh::surface);
+  array("source_face", &PatchMesh::source_face);
+  array("side", &PatchMesh::side);
+  array("twin", &PatchMesh::twin);
+  type.def_property_readonly("cluster", [](const py::object& self) -> py::object {
+    const auto& clusters = self.cast<const M&>().result.mesh.clusters;
+    return clusters ? py::object(view(clusters->of_patch, self)) : py::object(py::none());
+  });
+  type.def_property_readonly("reflectance", [](const py::object& self) {
+    const PatchMaterials& materials = self.cast<const M&>().materials;
+    return rows(materials.reflectance, materials.bands, self);
+  });
+  type.def_property_readonly("emission", [](const py::object& self) {
+    const PatchMaterials& materials = self.cast<const M&>().materials;
+    return rows(materials.emission, materials.bands, self);
+  });
+  type.def_property_readonly("sky", [](const M& m) { return m.materials.sky; });
+  type.def_property_readonly("surface_names",
+                             [](const M& m) { return m.result.mesh.surface_names; });
+  type.def_property_readonly("unknowns", [](const M& m) { return m.result.mesh.unknowns(); });
+  type.def_property_readonly("scene",
+                             [](const M& m) { return std::const_pointer_cast<Scene>(m.scene); });
+  type.def_property_readonly("report", [](const M& m) { return python::dictOf(m.result.report); });
+  module.def("mesh", &mesh);
+}
+
+}  // namespace
+
+void bindScene(py::module_& module) {
+  py::class_<Scene, std::shared_ptr<Scene>> type(module, "Scene");
+  const auto array = [&](const char* name, auto field) {
+    type.def_property_readonly(
+        name, viewed<Scene>([field](const Scene& s) -> const auto& { return s.*field; }));
+  };
+  array("vertices", &Scene::vertices);
+  array("face_offset", &Scene::face_offset);
+  array("corners", &Scene::corners);
+  array("face_surface", &Scene::face_surface);
+  type.def_readonly("file", &Scene::file);
+  type.def_property_readonly("sky", [](const Scene& s) { return triple(s.sky); });
+  type.def_property_readonly("notes", [](const Scene& s) { return listOf(s.notes); });
+  type.def_property_readonly("materials", &materialsOf);
+  type.def_property_readonly("surface_names", [](const Scene& s) {
+    std::vector<std::string> names;
+    for (const Surface& surface : s.surfaces) names.push_back(surface.name);
+    return names;
+  });
+  type.def_property_readonly("cameras", [](const Scene& s) {
+    py::list list;
+    for (const Camera& camera : s.cameras) list.append(dictOf(camera));
+    return list;
+  });
+  module.def("load", &load);
+  module.def("scene_of_arrays", &sceneOfArrays);
+  bindMesh(module);
+}
+
+}  // namespace radiosity::python
