@@ -64,9 +64,13 @@ def _materials(names: Sequence[str], given: Optional[Mapping[Any, Mapping[str, A
     made = []
     for name in names:
         material = {**_PLAIN, **known.get(name, {})}
-        made.append((name, _colour(f"reflectance of {name!r}", material["reflectance"]),
-                     _colour(f"emission of {name!r}", material["emission"]),
-                     bool(material["two_sided"])))
+        reflectance = _colour(f"reflectance of {name!r}", material["reflectance"])
+        emission = _colour(f"emission of {name!r}", material["emission"])
+        if not all(0 <= rho <= 1 for rho in reflectance):
+            raise InputError(f"reflectance of {name!r}: is {material['reflectance']}; give 0 to 1")
+        if not all(E >= 0 for E in emission):
+            raise InputError(f"emission of {name!r}: is {material['emission']}; give W/m^2, 0 or more")
+        made.append((name, reflectance, emission, bool(material["two_sided"])))
     return made
 
 

@@ -1,0 +1,123 @@
+"""Long calls: Ctrl-C, other threads, progress; and the package as the command line."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+
+import radiosity as rad
+
+
+@pytest.fixture(scope="module")
+def slow():
+    """A mesh whose form factors take far longer than a test waits."""
+    return rad.mesh(rad.load("data/furnished-room.obj"), patches=2000)
+
+
+def test_ctrl_c_raises_keyboard_interrupt(slow):
+    threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
+    start = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        rad.form_factors(slow, method="exact")
+    # 50 ms to see it and half a second to stop; as much again for a loaded machine.
+    assert time.monotonic() - start < 0.5 + 2 * 0.55
+
+
+def test_a_handler_of_signals_may_raise_what_it_likes(slow):
+    def handler(number, frame):
+        raise TimeoutError("enough")
+
+    before = signal.signal(signal.SIGUSR1, handler)
+    try:
+        threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGUSR1)).start()
+        with pytest.raises(TimeoutError, match="enough"):
+            rad.form_factors(slow, method="exact")
+    finally:
+        signal.signal(signal.SIGUSR1, before)
+
+
+def test_other_threads_run_meanwhile(slow):
+    class Stop(Exception):
+        pass
+
+    counted = []
+
+    def count():
+        while len(counted) < 5:
+            counted.append(time.monotonic())
+            time.sleep(0.01)
+
+    def stop(stage, done, total):
+        if len(counted) >= 5:
+            raise Stop
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    # It ends only because the other thread counts meanwhile.
+    with pytest.raises(Stop):
+        rad.form_factors(slow, method="exact", progress=stop)
+    thread.join()
+
+
+def test_two_threads_compute_at_once(cornell):
+    results = [None, None]
+
+    def compute(k):
+        results[k] = rad.form_factors(cornell.mesh, method="exact").csr.data
+
+    threads = [threading.Thread(target=compute, args=(k,)) for k in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert (results[0] == cornell.csr.data).all() and (results[1] == cornell.csr.data).all()
+
+
+def test_progress_tells_stage_done_and_total(slow):
+    told = []
+
+    class Enough(Exception):
+        pass
+
+    def progress(stage, done, total):
+        told.append((stage, done, total))
+        if stage == "form factors" and done > 0:
+            raise Enough
+
+    with pytest.raises(Enough):
+        rad.form_factors(slow, method="hemicube", progress=progress)
+    assert all(0 <= done <= total for _, done, total in told)
+    assert told[-1][2] == slow.unknowns  # a step a row
+
+
+def test_progress_on_standard_error(capsys, monkeypatch, cornell):
+    monkeypatch.setattr("radiosity._progress.SHOWN_AFTER", 0)
+    stop = threading.Timer(0.6, os.kill, (os.getpid(), signal.SIGINT))
+    stop.start()
+    with pytest.raises(KeyboardInterrupt):
+        mesh = rad.mesh(rad.load("data/furnished-room.obj"), patches=2000, progress=False)
+        rad.form_factors(mesh, method="exact", progress=True)
+    said = capsys.readouterr().err
+    assert re.search(r"\r[a-z ]+ \d+%.*, 0 s", said) and said.endswith(" \r")  # it is cleared
+    rad.form_factors(cornell.mesh, method="exact", progress=False)
+    assert capsys.readouterr().err == ""
+
+
+def module(*arguments, folder):
+    return subprocess.run([sys.executable, "-m", "radiosity", *arguments], cwd=folder, text=True,
+                          capture_output=True, timeout=120)
+
+
+def test_the_module_is_the_command_line(run_program, tmp_path):
+    run_program("mesh", "data/furnace-cube.obj", "--patches", 24, "-o", "a.obj")
+    done = module("mesh", "data/furnace-cube.obj", "--patches", "24", "-o", "b.obj", folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "a.obj").read_bytes() == (tmp_path / "b.obj").read_bytes()
+    wrong = module("mesh", "none.obj", folder=tmp_path)
+    assert wrong.returncode == 2 and wrong.stderr.startswith("radiosity: none.obj")
+    assert module("--version", folder=tmp_path).stdout.strip().endswith(rad.__version__)

@@ -1,0 +1,112 @@
+"""What Python computes and what the command line computes have the same bits."""
+
+import h5py
+import numpy as np
+import pytest
+import scipy.sparse
+
+import radiosity as rad
+
+SCENE = "data/cornell-box.obj"
+
+
+def stored(path, name):
+    with h5py.File(path) as file:
+        return file[name][...]
+
+
+@pytest.mark.parametrize("method, options", [("exact", {}), ("rays", {"tolerance": 0.05}),
+                                             ("hemicube", {"resolution": 32})])
+def test_form_factors_and_light(run_program, method, options):
+    words = [word for name, value in options.items() for word in (f"--{name}", value)]
+    folder = run_program("solve", SCENE, "--patches", 80, "--method", method, *words, "-o", "s.h5")
+    mesh = rad.mesh(rad.load(SCENE), patches=80)
+    F = rad.form_factors(mesh, method=method, **options)
+    light = rad.solve(F)
+    path = folder / "s.h5"
+    for name in ("data", "indices", "indptr"):
+        assert np.array_equal(getattr(F.csr, name), stored(path, f"form_factors/{name}")), name
+    assert np.array_equal(F.area, stored(path, "form_factors/area"))
+    assert np.array_equal(light.radiosity, stored(path, "solution/radiosity"))
+    assert np.array_equal(light.irradiance, stored(path, "solution/irradiance"))
+    assert np.array_equal(mesh.vertices, stored(path, "mesh/vertices"))
+
+
+def test_clusters_share_rows(run_program):
+    scene = "data/two-rooms.obj"
+    folder = run_program("solve", scene, "--patches", 10, "--method", "rays", "--tolerance", 0.1,
+                         "-o", "s.h5")
+    mesh = rad.mesh(rad.load(scene), patches=10)
+    F = rad.form_factors(mesh, 0.1, method="rays")
+    assert len(F) == mesh.unknowns < len(mesh)
+    assert np.array_equal(mesh.cluster, stored(folder / "s.h5", "mesh/clusters/of_patch"))
+    assert np.array_equal(rad.solve(F).radiosity, stored(folder / "s.h5", "solution/radiosity"))
+
+
+def test_heat_by_name(run_program):
+    scene = "data/cornell-box-closed.obj"
+    words = ["*.emissivity=0.8", "lamp.temperature=900", "short_block.emissivity=300:0.1 1000:0.25",
+             "*.flux=0", "floor.convection=5", "floor.ambient=290"]
+    folder = run_program("heat", scene, "--patches", 60, "--method", "exact", "-o", "h.h5",
+                         *(part for word in words for part in ("--condition", word)))
+    F = rad.form_factors(rad.mesh(rad.load(scene), patches=60), method="exact")
+    heat = rad.heat(F, {"*": 0.8, "short_block": {300: 0.1, 1000: 0.25}}, {"lamp": 900, "*": None},
+                    convection={"floor": 5}, ambient={"floor": 290})
+    assert np.array_equal(heat.temperature, stored(folder / "h.h5", "heat/temperature"))
+    assert np.array_equal(heat.net_flux, stored(folder / "h.h5", "heat/net_flux"))
+
+
+@pytest.mark.parametrize("elements", [True, False])
+def test_picture(run_program, elements):
+    coarse = ["--element-tolerance", 0.3] if elements else []
+    # Without a tolerance, form factors that serve elements alone are coarser on the command line.
+    folder = run_program("render", SCENE, "--patches", 80, "--method", "exact", "--tolerance", 1e-3,
+                         "--width", 16, "--elements", "on" if elements else "off", *coarse,
+                         "-o", "p.exr")
+    mesh = rad.mesh(rad.load(SCENE), patches=80)
+    image = rad.render(mesh, rad.solve(rad.form_factors(mesh, method="exact")), width=16,
+                       elements=elements, element_tolerance=0.3)
+    image[..., :3] *= image[..., 3:]  # as the format has it
+    assert np.array_equal(image, exr(folder / "p.exr"))
+
+
+def exr(path):
+    oiio = pytest.importorskip("OpenImageIO")
+    return oiio.ImageInput.open(str(path)).read_image(format=oiio.FLOAT)
+
+
+def test_the_command_line_reuses_what_python_saved(run_program, tmp_path):
+    folder = run_program("info", SCENE)
+    F = rad.form_factors(rad.mesh(rad.load(SCENE), patches=80), method="exact")
+    path = folder / "s.h5"
+    F.save(path, solution=rad.solve(F))
+    before = stored(path, "form_factors/data")
+    run_program("solve", "s.h5", "--report", "run.json")
+    said = (folder / "run.json").read_text()
+    assert '"recomputed"' not in said and '"computed"' not in said
+    assert np.array_equal(before, stored(path, "form_factors/data"))
+
+
+def test_python_reads_what_the_command_line_wrote(run_program):
+    folder = run_program("solve", SCENE, "--patches", 80, "--method", "exact", "-o", "s.h5")
+    run_program("factors", "s.h5", "-o", "f.mtx")
+    results = rad.read(folder / "s.h5")
+    assert np.array_equal(results.solution.radiosity, stored(folder / "s.h5", "solution/radiosity"))
+    assert results.mesh.surface_names == results.scene.surface_names
+    again = rad.solve(results.form_factors)
+    assert np.array_equal(again.radiosity, results.solution.radiosity)
+    of_text = rad.read(folder / "f.mtx").form_factors
+    # The file has the values of a symmetric matrix in 17 digits, scipy's rows are rounded to float32.
+    assert np.allclose(of_text.csr.toarray(), results.form_factors.csr.toarray(), rtol=6e-8, atol=0)
+    assert of_text.mesh is None and "lamp/light" in of_text.table().names
+
+
+def test_threads_change_no_bit(cornell):
+    one = rad.form_factors(cornell.mesh, method="exact")
+    rad.set_threads(1)
+    try:
+        two = rad.form_factors(cornell.mesh, method="exact")
+    finally:
+        rad.set_threads(0)
+    assert np.array_equal(one.csr.data, two.csr.data)
+    assert scipy.sparse.issparse(one.csr)

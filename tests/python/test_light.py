@@ -1,0 +1,179 @@
+"""Light, heat, tables and sensors against closed forms and against each other."""
+
+import numpy as np
+import pytest
+
+import radiosity as rad
+from conftest import box
+
+
+def dense_solution(F, rho, E):
+    """B = E + rho F B by numpy, column by column."""
+    A = F.csr.toarray().astype(float)
+    return np.linalg.solve(np.eye(len(F)) - rho[:, None] * A, E)
+
+
+def test_emission_of_every_shape(cornell):
+    n = len(cornell.mesh)
+    rng = np.random.default_rng(1)
+    E = rng.random((n, 2, 3))
+    rho = rng.random((n, 2)) * 0.8
+    all_lamps = rad.solve(cornell, rho, E, tolerance=1e-10)
+    assert all_lamps.radiosity.shape == (n, 2, 3)
+    for k in range(3):
+        one_lamp = rad.solve(cornell, rho, E[:, :, k], tolerance=1e-10)
+        for b in range(2):
+            expected = dense_solution(cornell, rho[:, b], E[:, b, k])
+            # F_ji follows from a stored F_ij in double precision; scipy's is rounded to float32.
+            assert np.allclose(all_lamps.radiosity[:, b, k], expected, rtol=1e-5)
+            assert np.allclose(one_lamp.radiosity[:, b], expected, rtol=1e-5)
+            alone = rad.solve(cornell, rho[:, b], E[:, b, k], tolerance=1e-10)
+            assert alone.radiosity.shape == (n,)
+            assert np.allclose(alone.radiosity, expected, rtol=1e-5)
+
+
+def test_furnace_of_one_reflectance(cube):
+    light = rad.solve(cube, reflectance=0.75, emission=np.ones(24), tolerance=1e-12)
+    # B = E / (1 - rho) whatever F, where rows sum to 1: exact form factors to 1e-6.
+    assert np.allclose(light.radiosity, 4, rtol=4e-6)
+    assert light.summary["usable"] and light.summary["energy"]["to_sky"][0] == pytest.approx(0, abs=1e-9)
+
+
+def test_a_singular_room_is_a_run_error(cube):
+    with pytest.raises(rad.RunError, match="singular"):
+        rad.solve(cube, reflectance=1.0, emission=np.ones(24))
+
+
+def test_own_matrix_solves_as_numpy_does():
+    rng = np.random.default_rng(2)
+    A = rng.random((40, 40)) / 40
+    F = rad.from_csr(A, rng.random(40) + 0.5)
+    rho = rng.random(40) * 0.9
+    E = rng.random((40, 2))
+    light = rad.solve(F, rho, E, tolerance=1e-13)
+    assert np.allclose(light.radiosity, dense_solution(F, rho, E), rtol=1e-11)
+    with pytest.raises(rad.InputError, match="have no scene"):
+        rad.solve(F)
+
+
+def test_table_is_the_matrix_summed(cornell):
+    table = cornell.table()
+    A = cornell.csr.toarray().astype(float)
+    surface = cornell.mesh.surface
+    for a, name in enumerate(table.names):
+        of_a = surface == cornell.mesh.surface_names.index(name)
+        for b, other in enumerate(table.names):
+            of_b = surface == cornell.mesh.surface_names.index(other)
+            expected = cornell.area[of_a] @ A[np.ix_(of_a, of_b)].sum(axis=1) / cornell.area[of_a].sum()
+            assert table.factors[a, b] == pytest.approx(expected, rel=1e-6, abs=1e-9)
+    assert np.allclose(table.factors.sum(axis=1) + table.sky + table.backs, 1, atol=1e-6)
+    # All white surfaces by their material's name, and one by its object's.
+    white = [k for k, name in enumerate(table.names) if name.endswith("/white")]
+    assert cornell.between("lamp", "white") == pytest.approx(
+        table.factors[table.names.index("lamp/light"), white].sum(), rel=1e-12)
+    assert "| lamp/light |" in str(table)
+
+
+def test_table_of_own_matrix_by_row_names():
+    F = rad.from_csr([[0, 0.2, 0.3], [0.2, 0, 0.1], [0.15, 0.05, 0]], [1, 1, 2], names=["a", "a", "b"])
+    assert F.between("a", "b") == pytest.approx(0.2)  # (1 * 0.3 + 1 * 0.1) / 2
+    assert F.table().area.tolist() == [2, 2]
+
+
+def test_heat_between_plates_by_rows():
+    F = rad.from_csr([[0, 1], [1, 0]], [1, 1])
+    sigma = 5.67037441918443e-8
+    got = rad.heat(F, emissivity=[0.8, 0.5], temperature=[1000, np.nan], flux=[np.nan, -1000])
+    expected = (1000**4 - 1000 / sigma * (1 / 0.8 + 1 / 0.5 - 1)) ** 0.25
+    assert got.temperature[1] == pytest.approx(expected, rel=1e-9)  # the solver's tolerance
+    assert got.summary["balance"]["radiated"] == pytest.approx(0, abs=1e-5)
+
+
+def test_heat_of_a_name_without_temperature_is_adiabatic():
+    F = rad.form_factors(rad.mesh(rad.load("data/cornell-box-closed.obj"), patches=60))
+    heat = rad.heat(F, 0.8, {"lamp": 1200, "floor": 300, "*": None})
+    rows = {row["name"]: row for row in heat.table()}
+    assert rows["lamp/light"]["temperature"] == pytest.approx(1200)
+    assert rows["left_wall/red"]["radiated"] == pytest.approx(0, abs=1e-5)
+    assert 300 < rows["left_wall/red"]["temperature"] < 1200
+
+
+def rectangle_above(a, b, c):
+    """Howell B-3: from a small surface to a parallel a x b rectangle, a corner of which is c above it."""
+    x, y = a / c, b / c
+    return (x / np.sqrt(1 + x * x) * np.arctan(y / np.sqrt(1 + x * x)) +
+            y / np.sqrt(1 + y * y) * np.arctan(x / np.sqrt(1 + y * y))) / (2 * np.pi)
+
+
+def plate(z, a=2.0, b=1.0, name="plate"):
+    return [[0, 0, z], [0, b, z], [a, b, z], [a, 0, z]], name  # looks down
+
+
+def test_a_sensor_below_a_plate():
+    vertices, name = plate(0.7)
+    mesh = rad.mesh(rad.Scene(vertices, [[0, 1, 2, 3]], [name]), patches=9)
+    row = rad.view_factors_from(mesh, [[0, 0, 0]], [0, 0, 1])
+    assert row.shape == (1, len(mesh))
+    assert row.sum() == pytest.approx(rectangle_above(2, 1, 0.7), rel=1e-12)
+    # From above, its back is black; from a side, none of it is above the horizon.
+    assert rad.view_factors_from(mesh, [[0.3, 0.3, 2]], [0, 0, -1]).sum() == 0
+    assert rad.view_factors_from(mesh, [[-1, 0, 0]], [-1, 0, 0]).sum() == 0
+
+
+def test_a_sensor_sees_past_what_is_in_between():
+    high, low = plate(1.0)[0], plate(0.5, 1.0, 1.0)[0]
+    scene = rad.Scene(high + low, [[0, 1, 2, 3], [4, 5, 6, 7]], ["high", "low"])
+    mesh = rad.mesh(scene, patches=40)
+    sees = mesh.per_patch({"high": 1.0})
+    row = rad.view_factors_from(mesh, [[0, 0, 0]], [0, 0, 3])[0]
+    # The low plate's shadow on the high one is twice as large, and covers it.
+    assert row @ sees == pytest.approx(0, abs=1e-15)
+    aside = rad.view_factors_from(mesh, [[2, 0, 0]], [0, 0, 1])[0]
+    # From below the corner (2, 0) the low plate, 1 to 2 to the left, 0.5 above, hides 2 and more.
+    assert aside @ sees == pytest.approx(rectangle_above(2, 1, 1.0), rel=1e-12)
+
+
+def test_sensors_in_a_closed_box_see_all_of_it():
+    vertices, faces = box()
+    mesh = rad.mesh(rad.Scene(vertices, [face[::-1] for face in faces]), patches=54)
+    rng = np.random.default_rng(4)
+    points = rng.random((20, 3)) - 0.5
+    rows = rad.view_factors_from(mesh, points, rng.standard_normal((20, 3)))
+    assert np.allclose(rows.sum(axis=1), 1, rtol=1e-10)  # Lambert's sums of a few patches' edges
+    # On a wall, upright and askew: upright the wall itself is on the horizon.
+    on_wall = rad.view_factors_from(mesh, [[0.1, 0.2, -0.5]] * 2, [[0, 0, 1], [1, 0, 1]])
+    assert np.allclose(on_wall.sum(axis=1), 1, rtol=1e-5)  # it is 2e-7 of the diagonal off the wall
+    wall = np.isclose(mesh.normal[:, 2], 1)
+    assert on_wall[0, wall].sum() == 0
+    assert on_wall[1, wall].sum() == pytest.approx((1 - np.cos(np.pi / 4)) / 2, rel=1e-4)
+
+
+def test_sensors_outside_see_the_hull_and_through_none_of_it():
+    vertices, faces = box()
+    mesh = rad.mesh(rad.Scene(vertices, faces), patches=54)
+    outside = rad.view_factors_from(mesh, [[0, 0, 5]], [0, 0, -1])[0]
+    corner = rectangle_above(0.5, 0.5, 4.5)
+    assert outside.sum() == pytest.approx(4 * corner, rel=1e-10)
+    assert set(np.flatnonzero(outside)) == set(np.flatnonzero(mesh.normal[:, 2] > 0.5))
+    inside = rad.view_factors_from(mesh, [[0, 0, 0]], [0, 0, 1])
+    assert inside.sum() == 0  # backs alone
+
+
+def test_irradiance_at_sensors_is_that_of_the_patches(cornell):
+    mesh = cornell.mesh
+    light = rad.solve(cornell)
+    floor = np.flatnonzero(mesh.per_patch({"floor": 1.0}))[::5]
+    rows = rad.view_factors_from(mesh, mesh.centroid[floor], mesh.normal[floor])
+    at_points = rows @ light.radiosity
+    # Point against mean over the patch: they differ by what light curves over a patch.
+    assert np.allclose(at_points, light.irradiance[floor], rtol=0.15)
+
+
+def test_a_picture_of_arrays(cornell):
+    values = cornell.mesh.per_patch({"lamp": np.pi}, 0.0)
+    image = rad.render(cornell.mesh, values, width=64, smooth=False, samples=1)
+    assert image.shape == (64, 64, 4) and image.dtype == np.float32
+    hit = image[image[..., 3] == 1]
+    assert set(np.unique(hit[:, :3])) == {0, 1}  # radiance is B / pi
+    shown = rad.displayed(image)
+    assert shown.min() >= 0 and shown.max() <= 1
