@@ -14,14 +14,13 @@ namespace [[gnu::visibility("default")]] radiosity {
 /// errors are those of rounding. What a row lacks of 1 goes to the sky and to backs. By
 /// reciprocity sum_i factors[k * N + i] B_i is the irradiance at the point, W/m^2.
 ///
-/// A point may be anywhere, also outside of the scene and inside of bodies. One on a surface (within
-/// 1e-7 of the scene's diagonal, where it is taken to be so far in front of it unless the normals
-/// agree) sees what is on the side that its normal points to.
+/// A point may be anywhere, also outside of the scene and inside of bodies. One on a surface
+/// (within 1e-7 of the scene's diagonal, where it is taken to be so far in front of it unless the
+/// normals agree) sees what is on the side that its normal points to.
 ///
 /// All cores, the same bits for any number of them. Errors: InputError where sizes do not fit and
 /// for a number that is not finite or a normal without direction, by its row; Cancelled.
 void pointFormFactors(const PatchMesh& mesh, std::span<const Vec3> points,
-                      std::span<const Vec3> normals, std::span<double> factors,
-                      Progress& progress);
+                      std::span<const Vec3> normals, std::span<double> factors, Progress& progress);
 
 }  // namespace radiosity

@@ -133,6 +133,34 @@ TEST_F(PipelineStages, ASavedFileIsReusedWhole) {
   EXPECT_FALSE(again.changed());
 }
 
+TEST_F(PipelineStages, StagesMadeWithoutAPipelineAreReusedByTheirKeys) {
+  const std::string file = path("alone.h5");
+  Progress quiet;
+  PipelineOptions options;
+  makeCoarse(options);
+  Results results;
+  results.scene = loadScene(kBox);
+  results.mesh = meshScene(*results.scene, options.mesh, quiet);
+  const PatchMesh& mesh = results.mesh->mesh;
+  // Apart from the results, as those have them who share form factors.
+  const FormFactors factors = computeFormFactors(mesh, options.factors, quiet);
+  results.materials = patchMaterials(*results.scene, mesh);
+  results.solution = solve(factors, *results.materials, mesh, options.solve, quiet);
+  results.mesh_key = keyOfMesh(options.mesh, *results.scene);
+  results.factors_key = keyOfFactors(options.factors, mesh);
+  results.solution_key =
+      keyOfSolution(options.solve, *results.materials, results.factors_key, factors.method);
+  writeResults(file, results, factors, quiet);
+
+  Recorder recorder;
+  Pipeline again(quiet, &recorder);
+  again.open(file);
+  EXPECT_EQ(again.solution().radiosity, results.solution->radiosity);
+  EXPECT_EQ(again.matrix().rowSums(), factors.matrix.rowSums());
+  const std::string reused = " reused: " + file;
+  EXPECT_EQ(recorder.take(), (Events{"mesh" + reused, "factors" + reused, "solution" + reused}));
+}
+
 TEST_F(PipelineStages, AChangedOptionRemakesWhatDependsOnIt) {
   const std::string file = savedBox();
   const Events reused = {"mesh reused: " + file, "factors reused: " + file,

@@ -96,7 +96,8 @@ class SensorView {
   /// Whether a point lies on a flat occluder or on its border.
   bool isOn(const Occluder& flat, const Vec3& at) const {
     const Vec3 normal = flat.planes[0].normal;
-    if (std::abs(glm::dot(normal, at) - flat.planes[0].offset) > elements_.coincidence) return false;
+    if (std::abs(glm::dot(normal, at) - flat.planes[0].offset) > elements_.coincidence)
+      return false;
     return std::none_of(flat.edges.begin(), flat.edges.end(), [&](const Occluder::Edge& edge) {
       const Vec3& from = flat.corners[edge.from];
       const Vec3 along = flat.corners[edge.to] - from;
@@ -138,15 +139,16 @@ class SensorView {
 void requirePoints(const PatchMesh& mesh, std::span<const Vec3> points,
                    std::span<const Vec3> normals, std::span<double> factors) {
   if (normals.size() != points.size()) {
-    throw InputError(fmt::format("view factors from points: {} points and {} normals; give one "
-                                 "normal a point",
-                                 points.size(), normals.size()));
+    throw InputError(
+        fmt::format("view factors from points: {} points and {} normals; give one "
+                    "normal a point",
+                    points.size(), normals.size()));
   }
   if (factors.size() != points.size() * mesh.size()) {
-    throw InputError(fmt::format("view factors from points: {} values are needed for {} points and "
-                                 "{} patches, there is room for {}",
-                                 points.size() * mesh.size(), points.size(), mesh.size(),
-                                 factors.size()));
+    throw InputError(
+        fmt::format("view factors from points: {} values are needed for {} points and "
+                    "{} patches, there is room for {}",
+                    points.size() * mesh.size(), points.size(), mesh.size(), factors.size()));
   }
   for (std::size_t k = 0; k < points.size(); ++k) {
     if (!isFinite(points[k])) {

@@ -30,8 +30,8 @@ class _Line:
             return
         self.next = now + BETWEEN
         share = f"{100 * done // total}%" if total else ""
-        count = f" ({done:,} of {total:,} {steps})" if steps else ""
-        self.write(f"{stage} {share}{count}, {now - self.start:.0f} s")
+        count = f" ({done:,} of {total:,} {steps})" if steps and total else ""
+        self.write(" ".join(filter(None, [stage, share + count])) + f", {now - self.start:.0f} s")
 
     def write(self, text: str) -> None:
         sys.stderr.write("\r" + text.ljust(self.width))
