@@ -39,9 +39,9 @@ std::shared_ptr<FactorsHandle> formFactors(std::shared_ptr<MeshHandle> mesh, con
   FormFactorOptions options = factorOptions(given);
   auto handle = std::make_shared<FactorsHandle>();
   handle->mesh = std::move(mesh);
+  handle->key = [options, mesh = handle->mesh] { return keyOfFactors(options, mesh->result.mesh); };
   runLong(report, [&](Progress& progress) {
     const PatchMesh& patches = handle->mesh->result.mesh;
-    handle->key = keyOfFactors(options, patches);
     options.exact_rows = emittingUnknowns(patches, handle->mesh->materials);
     // The plan shares the mesh that the handle keeps.
     const std::shared_ptr<const PatchMesh> shared(handle->mesh, &patches);

@@ -4,6 +4,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,31 +13,35 @@
 
 namespace radiosity::python {
 
+/// The key of a stage as Results has it, made when it is asked for: what it hashes may take longer
+/// than the stage.
+using Key = std::function<std::string()>;
+
 struct MeshHandle {
   std::shared_ptr<const Scene> scene;  ///< null: a results file without one
   MeshResult result;
   PatchMaterials materials;  ///< of the scene; without one of no bands
-  std::string key;           ///< as Results::mesh_key
+  Key key;
 };
 
 struct FactorsHandle {
   std::shared_ptr<const MeshHandle> mesh;  ///< null: a matrix from elsewhere
   std::vector<std::string> names;          ///< of the rows of such a matrix, or empty
   FormFactors factors;
-  std::string key;  ///< as Results::factors_key
+  Key key;
 };
 
 struct SolutionHandle {
   std::shared_ptr<const FactorsHandle> factors;
   PatchMaterials materials;
   Solution solution;
-  std::string key;
+  Key key;
 };
 
 struct HeatHandle {
   std::shared_ptr<const FactorsHandle> factors;
   HeatSolution solution;
-  std::string key;
+  Key key;
 };
 
 // Each adds its classes and functions to the module.

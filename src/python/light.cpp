@@ -44,8 +44,11 @@ std::shared_ptr<SolutionHandle> solveLight(std::shared_ptr<FactorsHandle> factor
       return;
     }
     handle->solution = solve(of.factors, materials, of.mesh->result.mesh, options, progress);
-    handle->key = keyOfSolution(options, materials, of.key, of.factors.method);
   });
+  handle->key = [options, self = handle.get()] {
+    const FactorsHandle& made_of = *self->factors;
+    return keyOfSolution(options, self->materials, made_of.key(), made_of.factors.method);
+  };
   return handle;
 }
 
@@ -77,8 +80,11 @@ std::shared_ptr<HeatHandle> heat(std::shared_ptr<FactorsHandle> factors,
   validate(conditions, options);
   runLong(report, [&](Progress& progress) {
     handle->solution = solveHeat(of.factors, conditions, mesh.result.mesh, options, progress);
-    handle->key = keyOfHeat(options, conditions, of.key, of.factors.method);
   });
+  handle->key = [options, conditions, self = handle.get()] {
+    const FactorsHandle& made_of = *self->factors;
+    return keyOfHeat(options, conditions, made_of.key(), made_of.factors.method);
+  };
   return handle;
 }
 

@@ -17,6 +17,8 @@ namespace {
 
 /// What a results file holds, as handles that share the mesh and the form factors.
 py::dict read(const std::string& path, const py::object& report) {
+  // A key as the file has it.
+  const auto kept = [](const std::string& text) { return [text] { return text; }; };
   Results results;
   auto mesh = std::make_shared<MeshHandle>();
   auto factors = std::make_shared<FactorsHandle>();
@@ -27,13 +29,13 @@ py::dict read(const std::string& path, const py::object& report) {
     progress.check();
     if (results.scene) mesh->scene = std::make_shared<const Scene>(std::move(*results.scene));
     if (results.mesh) mesh->result = std::move(*results.mesh);
-    mesh->key = results.mesh_key;
+    mesh->key = kept(results.mesh_key);
     if (mesh->scene && results.mesh) {
       mesh->materials = patchMaterials(*mesh->scene, mesh->result.mesh);
     }
     if (results.factors) factors->factors = std::move(*results.factors);
   });
-  factors->key = results.factors_key;
+  factors->key = kept(results.factors_key);
   factors->mesh = mesh;
   py::dict dict;
   if (mesh->scene) dict["scene"] = std::const_pointer_cast<Scene>(mesh->scene);
@@ -43,13 +45,13 @@ py::dict read(const std::string& path, const py::object& report) {
     light->factors = factors;
     light->materials = std::move(*results.materials);
     light->solution = std::move(*results.solution);
-    light->key = results.solution_key;
+    light->key = kept(results.solution_key);
     dict["solution"] = light;
   }
   if (results.heat && results.factors) {
     heat->factors = factors;
     heat->solution = std::move(*results.heat);
-    heat->key = results.heat_key;
+    heat->key = kept(results.heat_key);
     dict["heat"] = heat;
   }
   return dict;
@@ -65,16 +67,16 @@ void save(const std::string& path, const FactorsHandle& factors, const SolutionH
     results.version = RADIOSITY_VERSION;
     if (mesh.scene) results.scene = *mesh.scene;
     results.mesh = mesh.result;
-    results.mesh_key = mesh.key;
-    results.factors_key = factors.key;
+    results.mesh_key = mesh.key();
+    results.factors_key = factors.key();
     if (light != nullptr) {
       results.materials = light->materials;
       results.solution = light->solution;
-      results.solution_key = light->key;
+      results.solution_key = light->key();
     }
     if (heat != nullptr) {
       results.heat = heat->solution;
-      results.heat_key = heat->key;
+      results.heat_key = heat->key();
     }
     writeResults(path, results, factors.factors, progress);
   });

@@ -104,10 +104,10 @@ std::shared_ptr<MeshHandle> mesh(std::shared_ptr<Scene> scene, const py::dict& g
   options.validate();
   auto handle = std::make_shared<MeshHandle>();
   handle->scene = std::move(scene);
+  handle->key = [options, scene = handle->scene] { return keyOfMesh(options, *scene); };
   runLong(report, [&](Progress& progress) {
     handle->result = meshScene(*handle->scene, options, progress);
     handle->materials = patchMaterials(*handle->scene, handle->result.mesh);
-    handle->key = keyOfMesh(options, *handle->scene);
   });
   return handle;
 }
@@ -177,6 +177,7 @@ void bindScene(py::module_& module) {
   type.def_property_readonly("materials", &materialsOf);
   type.def_property_readonly("surface_names", [](const Scene& s) {
     std::vector<std::string> names;
+    names.reserve(s.surfaces.size());
     for (const Surface& surface : s.surfaces) names.push_back(surface.name);
     return names;
   });

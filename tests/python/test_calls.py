@@ -11,12 +11,13 @@ import time
 import pytest
 
 import radiosity as rad
+from conftest import ROOT
 
 
 @pytest.fixture(scope="module")
 def slow():
     """A mesh whose form factors take far longer than a test waits."""
-    return rad.mesh(rad.load("data/furnished-room.obj"), patches=2000)
+    return rad.mesh(rad.load(ROOT / "data/furnished-room.obj"), patches=2000)
 
 
 def test_ctrl_c_raises_keyboard_interrupt(slow):

@@ -1,7 +1,10 @@
 """Every example of every docstring is run; every public name has one, with the names' types."""
 
+import ast
 import doctest
 import inspect
+import os
+from pathlib import Path
 
 import pytest
 
@@ -47,3 +50,24 @@ def test_arguments_and_results_are_annotated():
             assert signature.return_annotation is not inspect.Signature.empty, name
             for parameter in signature.parameters.values():
                 assert parameter.name == "self" or parameter.annotation is not inspect.Parameter.empty, name
+
+
+def test_the_stub_of_the_extension_module_is_complete():
+    from radiosity import _core
+
+    stub = ast.parse((Path(rad.__file__).parent / "_core.pyi").read_text())
+    said = {node.name: node for node in stub.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
+    there = {name for name in vars(_core) if not name.startswith("_")} - {"version"}
+    assert set(said) == there
+    for name, node in said.items():
+        if isinstance(node, ast.ClassDef) and not name.endswith("Error"):
+            members = {m.name for m in node.body if isinstance(m, ast.FunctionDef)}
+            assert members == {m for m in vars(getattr(_core, name)) if not m.startswith("_")}, name
+
+
+def test_annotations_fit_each_other():
+    mypy = pytest.importorskip("mypy.api")
+    cache = Path(os.environ["RADIOSITY_BUILD_DIR"]) / "python/mypy"
+    said, _, code = mypy.run(["--ignore-missing-imports", f"--cache-dir={cache}",
+                              os.environ["RADIOSITY_SOURCE_DIR"] + "/src/python/radiosity"])
+    assert code == 0, said

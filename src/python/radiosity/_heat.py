@@ -184,9 +184,9 @@ def _heat_of_rows(F: FormFactors, given: dict, table: Any, options: dict, progre
                          "emissivity, temperature and flux")
     if given["emissivity"] is None:
         raise InputError(f"emissivity: give one number, one a row ({len(F)},), or a dict by name")
-    arrays = [_of_rows(F, name, given[name], np.nan) for name in ("emissivity", "temperature", "flux")]
-    missing = np.flatnonzero(np.isnan(arrays[0]))
+    eps, T, q = (_of_rows(F, name, given[name], np.nan) for name in ("emissivity", "temperature", "flux"))
+    missing = np.flatnonzero(np.isnan(eps))
     if len(missing):
         raise InputError(f"emissivity: row {missing[0]} has none; give it")
     with reporting(progress) as report:
-        return Heat(_core.heat_of_rows(F._handle, *arrays, options, report), F)
+        return Heat(_core.heat_of_rows(F._handle, eps, T, q, options, report), F)
