@@ -67,6 +67,7 @@ class Worker {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, kBetweenLooks, [this] { return over_; });
   }
+  /// What the work threw, once it is over.
   std::exception_ptr join() {
     thread_.join();
     return failure_;
@@ -77,7 +78,7 @@ class Worker {
   std::condition_variable changed_;
   bool over_ = false;
   std::exception_ptr failure_;
-  std::thread thread_;  // starts last
+  std::jthread thread_;  // starts last, ends first
 };
 
 }  // namespace
@@ -95,8 +96,8 @@ void runLong(const py::object& report, const std::function<void(Progress&)>& wor
       try {
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
         if (!report.is_none()) progress.tell(report);
-      } catch (py::error_already_set& error) {
-        raised.emplace(std::move(error));
+      } catch (const py::error_already_set& error) {
+        raised.emplace(error);
         progress.cancel();
       }
     }

@@ -113,7 +113,7 @@ void bindErrors(py::module_& module) {
       "Bad input: one line with the file or argument, the element in it and the cure.");
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
-      if (thrown) std::rethrow_exception(thrown);
+      if (thrown) std::rethrow_exception(std::move(thrown));
     } catch (const InputError& error) {
       PyErr_SetString(input_error, withKeywords(error.what()).c_str());
     } catch (const RunError& error) {

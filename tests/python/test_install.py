@@ -35,7 +35,7 @@ def works(package):
 
 
 def test_pip_installs_a_complete_package(tmp_path):
-    run(sys.executable, "-m", "pip", "install", ".", "--no-build-isolation", "--no-index", "--no-deps",
+    run(sys.executable, "-m", "pip", "install", ".", "--no-build-isolation", "--no-index",
         "--prefix", str(tmp_path), f"--config-settings=build-dir={BUILD}", "--quiet")
     package = next(tmp_path.glob(f"**/{PYTHON}/*-packages"))
     works(package)
