@@ -3,6 +3,7 @@
 
 #include <pybind11/numpy.h>
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -37,6 +38,11 @@ inline py::array view(const std::vector<std::array<Index, 3>>& values, const py:
 inline py::array rows(const std::vector<double>& values, int bands, const py::object& owner) {
   return view(values.data(), {py::ssize_t(values.size()) / bands, bands}, owner);
 }
+
+/// A vector as Python gives and takes a single one.
+using Triple = std::array<double, 3>;
+inline Vec3 vec(const Triple& t) { return {t[0], t[1], t[2]}; }
+inline Triple triple(const Vec3& v) { return {v.x, v.y, v.z}; }
 
 /// A new array that takes the values over. No copy.
 template <class T>

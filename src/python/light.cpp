@@ -2,7 +2,6 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "arrays.h"
@@ -13,12 +12,6 @@
 
 namespace radiosity::python {
 namespace {
-
-/// What one side of the reports' calls is for: surfaces of a mesh or rows of a matrix.
-const std::vector<std::string>& noNames() {
-  static const std::vector<std::string> kNone;
-  return kNone;
-}
 
 /// `reflectance`, `emission`: (rows, bands), rows being patches of the mesh or rows of the matrix.
 std::shared_ptr<SolutionHandle> solveLight(std::shared_ptr<FactorsHandle> factors,
@@ -40,7 +33,7 @@ std::shared_ptr<SolutionHandle> solveLight(std::shared_ptr<FactorsHandle> factor
   runLong(report, [&](Progress& progress) {
     if (!of.mesh) {
       handle->solution = solve(of.factors, materials.reflectance, materials.emission,
-                               materials.bands, options, progress, {}, noNames(), sky);
+                               materials.bands, options, progress, {}, {}, sky);
       return;
     }
     handle->solution = solve(of.factors, materials, of.mesh->result.mesh, options, progress);
@@ -123,9 +116,6 @@ py::list heatTable(const HeatHandle& heat) {
   }
   return list;
 }
-
-using Triple = std::array<double, 3>;
-Vec3 vec(const Triple& t) { return {t[0], t[1], t[2]}; }
 
 /// A camera of a dictionary as Scene.cameras has them, a text, or a name of the scene's; nothing
 /// for None in a scene without cameras.

@@ -1,8 +1,6 @@
 // Scenes and meshes.
 #include <pybind11/stl.h>
 
-#include <array>
-
 #include "arrays.h"
 #include "handles.h"
 #include "long_call.h"
@@ -11,11 +9,6 @@
 
 namespace radiosity::python {
 namespace {
-
-using Triple = std::array<double, 3>;
-
-Vec3 vec(const Triple& t) { return {t[0], t[1], t[2]}; }
-Triple triple(const Vec3& v) { return {v.x, v.y, v.z}; }
 
 std::shared_ptr<Scene> load(const std::string& path, const py::dict& given,
                             const py::object& report) {

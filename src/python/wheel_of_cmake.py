@@ -42,8 +42,10 @@ def version():
 def built(folder):
     """Builds into `folder`, as it is configured or as people run the program."""
     if not (folder / "CMakeCache.txt").exists():
-        subprocess.run(["cmake", "-S", ROOT, "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
-                        "-DRADIOSITY_TESTS=OFF", f"-DPython3_EXECUTABLE={sys.executable}"], check=True)
+        options = ["CMAKE_BUILD_TYPE=Release", "RADIOSITY_TESTS=OFF", "CMAKE_INSTALL_LIBDIR=lib",
+                   f"Python3_EXECUTABLE={sys.executable}"]
+        subprocess.run(["cmake", "-S", ROOT, "-B", folder, "-G", "Ninja",
+                        *(f"-D{option}" for option in options)], check=True)
     subprocess.run(["cmake", "--build", folder, "--target", "radiosity", "radiosity_cli",
                     "radiosity_images", "radiosity_python"], check=True)
 
