@@ -69,7 +69,7 @@ struct GatherSummary {
   std::string simd_target;
   double seconds = 0;
   std::string message;      ///< plain words, with numbers
-  std::vector<Note> notes;  ///< on what looked; results files do not keep them
+  std::vector<Note> notes;  ///< on what looked
 };
 
 /// L eyes: the N patches, or the G corner groups of the mesh. An eye that stands for no area

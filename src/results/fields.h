@@ -451,6 +451,7 @@ void describe(Archive& a, Described<Archive, GatherSummary>& s, std::size_t band
   a("simd_target", s.simd_target);
   a("seconds", s.seconds);
   a("message", s.message);
+  describeNotes(a, s.notes);
   a.group("passes", [&](auto& passes) {
     if constexpr (Archive::kReading) {
       PassColumns columns(bands);

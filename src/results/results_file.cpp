@@ -32,7 +32,7 @@ using h5::SizeCounter;
 
 constexpr const char* kFormat = "radiosity results";
 /// Raised whenever an older program could misread the file.
-constexpr std::int32_t kFormatVersion = 6;
+constexpr std::int32_t kFormatVersion = 7;
 
 /// Everything but the matrix and the links, into a group or a counter. `suffix`: of the names of
 /// groups.
