@@ -48,6 +48,7 @@ int listDevices(Report& report) {
   const EyeDevices found = eyeDevices();
   if (found.devices.empty()) report.text("problem", "none", oneLine(found.problem));
   std::vector<std::vector<std::string>> rows;
+  rows.reserve(found.devices.size());
   for (const EyeDevice& device : found.devices) {
     rows.push_back({device.name, device.hardware ? "hardware" : "software", device.api});
   }

@@ -13,12 +13,12 @@ ViewTriangles::ViewTriangles(const ViewScene& scene, const PatchMesh& mesh)
               [&](std::size_t p) { of_polygon[p] = scene.trianglesOf(scene.polygons[p]); });
   std::vector<Index> without_triangles;
   for (Index p = 0; p < of_polygon.size(); ++p) {
-    if (!of_polygon[p]) {
+    if (const auto& found = of_polygon[p]) {
+      triangles.insert(triangles.end(), found->begin(), found->end());
+      polygon_of.insert(polygon_of.end(), found->size(), p);
+    } else {
       without_triangles.push_back(p);
-      continue;
     }
-    triangles.insert(triangles.end(), of_polygon[p]->begin(), of_polygon[p]->end());
-    polygon_of.insert(polygon_of.end(), of_polygon[p]->size(), p);
   }
   if (!without_triangles.empty()) addTiles(scene, mesh, without_triangles);
 }

@@ -9,6 +9,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/made.h"
 #include "base/parallel.h"
 #include "formfactor/row_accounts.h"
 #include "gather/gpu_gatherer.h"
@@ -122,7 +123,8 @@ class Passes {
 
   /// Marks what it has gathered at. Where the device gives up, the CPU's eye goes on.
   void gatherByGpu(bool first, std::vector<std::uint8_t>& gathered, Progress& progress) {
-    const std::string problem = gpu_->pass(
+    GpuGatherer& gpu = made(gpu_);
+    const std::string problem = gpu.pass(
         [&](std::size_t k, const GpuGatherer::Seen& seen) {
           if (first && seen.received.backs > 0) seeBacks(k, seen.backs);
           receive(k, seen.received);
@@ -132,8 +134,8 @@ class Passes {
     if (problem.empty()) return;
     noteOn(Severity::warning,
            fmt::format("{}: {}; from here on hemicubes were drawn by the processor",
-                       gpu_->device().name, problem));
-    gpu_counts_ = gpu_->counts();
+                       gpu.device().name, problem));
+    gpu_counts_ = gpu.counts();
     gpu_.reset();
   }
 

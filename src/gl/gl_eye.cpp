@@ -108,12 +108,13 @@ class CornerArray {
   explicit CornerArray(const Buffer& corners) {
     glGenVertexArrays(1, &name_);
     glBindVertexArray(name_);
-    glBindBuffer(GL_ARRAY_BUFFER, corners.name());
+    glBindVertexBuffer(0, corners.name(), 0, kCornerBytes);
     glEnableVertexAttribArray(0);
-    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, kCornerBytes, nullptr);
+    glVertexAttribFormat(0, 3, GL_FLOAT, GL_FALSE, 0);
+    glVertexAttribBinding(0, 0);
     glEnableVertexAttribArray(1);
-    glVertexAttribIPointer(1, 1, GL_UNSIGNED_INT, kCornerBytes,
-                           reinterpret_cast<const void*>(3 * sizeof(float)));
+    glVertexAttribIFormat(1, 1, GL_UNSIGNED_INT, 3 * sizeof(float));
+    glVertexAttribBinding(1, 0);
   }
   ~CornerArray() { glDeleteVertexArrays(1, &name_); }
   CornerArray(const CornerArray&) = delete;

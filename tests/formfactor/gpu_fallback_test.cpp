@@ -47,9 +47,9 @@ class FailingEye final : public GpuEye {
   }
   static EyeFrame frameOf(const GpuView& view) {
     EyeFrame frame;
-    for (int k = 0; k < 3; ++k) {
-      frame.eye[k] = view.eye[std::size_t(k)];
-      for (int c = 0; c < 3; ++c) frame.axes[c][k] = view.axes[std::size_t(3 * c + k)];
+    for (std::size_t k = 0; k < 3; ++k) {
+      frame.eye[int(k)] = view.eye[k];
+      for (std::size_t c = 0; c < 3; ++c) frame.axes[int(c)][int(k)] = view.axes[3 * c + k];
     }
     return frame;
   }

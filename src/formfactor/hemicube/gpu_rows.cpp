@@ -10,10 +10,10 @@ namespace radiosity {
 
 void describeEye(const PlacedEye& eye, std::span<const std::uint8_t> hidden, GpuView& view,
                  std::span<std::uint32_t> words) {
-  for (int k = 0; k < 3; ++k) {
-    view.eye[std::size_t(k)] = eye.frame.eye[k];
-    for (int column = 0; column < 3; ++column) {
-      view.axes[std::size_t(3 * column + k)] = eye.frame.axes[column][k];
+  for (std::size_t k = 0; k < 3; ++k) {
+    view.eye[k] = eye.frame.eye[int(k)];
+    for (std::size_t column = 0; column < 3; ++column) {
+      view.axes[3 * column + k] = eye.frame.axes[int(column)][int(k)];
     }
   }
   view.own = eye.own;

@@ -65,6 +65,7 @@ class EdgeVertices {
         });
     std::sort(found.begin(), found.end());
     std::vector<Index> ordered;
+    ordered.reserve(found.size());
     for (const auto& [along, v] : found) ordered.push_back(v);
     return ordered;
   }
