@@ -167,8 +167,9 @@ bool benchEyes() {
   const EyeDevice& device = found.devices.front();
   setThreads(0);
   fmt::print(
-      "\nHemicubes a second, by the clock: the processor's eye on {} threads, OpenGL ({}, {}), "
-      "rows read\nback, and Embree on as many threads, which stops at the polygon.\n",
+      "\nHemicubes a second, by the clock: the processor's eye on {} threads, OpenGL, rows read "
+      "back, and\n"
+      "Embree on as many threads, which stops at the polygon. OpenGL by {}, {}.\n",
       allowedThreads(), device.name, device.hardware ? "hardware" : "in software");
   fmt::print("  {:<20} {:>8} {:>6} | {:>10} {:>10} {:>10} | {:>9} | {:>9}\n", "scene", "polygons",
              "pixels", "processor", "OpenGL", "Embree", "GL / proc", "same");
