@@ -80,7 +80,13 @@ PatchMaterials readRowMaterials(const std::string& path, const MatrixFile& matri
 /// above.
 std::vector<double> readAreas(const std::string& path);
 
-/// The matrix with its accounts, as solve() takes them.
+/// Form factors that others made, as solve() takes them; `sky` and `backs`: N, what of a row goes
+/// there. report.notes warns of rows that sum to more than 1 and, where the areas are known, of
+/// pairs that are far from reciprocal: such a matrix makes or loses energy.
+FormFactors factorsOfMatrix(ExchangeMatrix matrix, std::vector<double> sky,
+                            std::vector<double> backs, bool has_areas = true);
+
+/// The same of a file, with its error figures.
 FormFactors factorsOfFile(const MatrixFile& file);
 
 /// A line a row: row (from 1), name, area_m2, radiosity, irradiance and net_flux B - H, W/m^2, by

@@ -10,9 +10,6 @@ namespace radiosity::cli {
 
 namespace {
 
-/// Rows that sum to more than this give off more than there is.
-constexpr double kMostRowSum = 1 + 1e-4;
-
 void requireOwnOptions(const Request& request, const OutputSet& files) {
   const std::pair<const char*, bool> of_scenes[] = {
       {"--set", !request.scene.set.empty()},
@@ -56,13 +53,8 @@ void noteRows(Report& report, const MatrixFile& file, const FormFactors& factors
                      "areas of the rows are not known: they count as 1 m^2 each in energies; give "
                      "--areas FILE"});
   }
-  for (std::size_t i = 0; i < factors.fronts.size(); ++i) {
-    if (factors.fronts[i] <= kMostRowSum) continue;
-    notes.push_back(
-        {Severity::warning, fmt::format("row {} sums to {}: form factors sum to 1 at most", i + 1,
-                                        numberText(factors.fronts[i]))});
-  }
   report.notes(notes);
+  report.notes(factors.report.notes);
 }
 
 }  // namespace

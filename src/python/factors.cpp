@@ -98,22 +98,14 @@ std::shared_ptr<FactorsHandle> fromCsr(const Array<double>& data, const Array<In
                                        const std::vector<std::string>& names, bool single) {
   auto handle = std::make_shared<FactorsHandle>();
   const py::gil_scoped_release unlocked;
-  FormFactors& factors = handle->factors;
-  factors.matrix = ExchangeMatrix(
-      vectorOf(area), single ? Precision::single_precision : Precision::double_precision);
-  for (std::size_t i = 0; i < factors.matrix.size(); ++i) {
+  ExchangeMatrix matrix(vectorOf(area),
+                        single ? Precision::single_precision : Precision::double_precision);
+  for (std::size_t i = 0; i < matrix.size(); ++i) {
     const auto first = std::size_t(starts.data()[i]);
     const auto count = std::size_t(starts.data()[i + 1]) - first;
-    factors.matrix.setRow(i, spanOf(indices).subspan(first, count),
-                          spanOf(data).subspan(first, count));
+    matrix.setRow(i, spanOf(indices).subspan(first, count), spanOf(data).subspan(first, count));
   }
-  factors.fronts = factors.matrix.rowSums();
-  factors.sky = vectorOf(sky);
-  factors.backs = vectorOf(backs);
-  factors.method = "matrix";
-  constexpr double kClosedWithin = 1e-5;  // as of matrices in files
-  factors.report.closed = std::all_of(factors.sky.begin(), factors.sky.end(),
-                                      [](double s) { return std::abs(s) < kClosedWithin; });
+  handle->factors = factorsOfMatrix(std::move(matrix), vectorOf(sky), vectorOf(backs));
   handle->names = names;
   return handle;
 }

@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numeric>
 
 #include "base/input_file.h"
 #include "base/made.h"
+#include "radiosity/matrix_functions.h"
 #include "radiosity/results.h"
 #include "results/matrix_market.h"
 #include "tables/matrix_readers.h"
@@ -17,6 +19,36 @@ namespace {
 
 /// Below this a row of a file loses nothing to the sky: what text in six digits leaves.
 constexpr double kClosedWithin = 1e-5;
+/// Rows that sum to more than this give off more than there is.
+constexpr double kMostRowSum = 1 + 1e-4;
+/// Above this residual pairs are far from reciprocal; coarse hemicubes as they are reach a few
+/// percent.
+constexpr double kMostUneven = 0.05;
+
+bool isClosed(std::span<const double> sky) {
+  return std::all_of(sky.begin(), sky.end(), [](double s) { return std::abs(s) < kClosedWithin; });
+}
+
+void noteSums(FormFactors& factors) {
+  const auto largest = std::max_element(factors.fronts.begin(), factors.fronts.end());
+  if (largest == factors.fronts.end() || *largest <= kMostRowSum) return;
+  const auto above = std::count_if(factors.fronts.begin(), factors.fronts.end(),
+                                   [](double sum) { return sum > kMostRowSum; });
+  std::string text = fmt::format("row {} sums to {:.6g}: form factors sum to 1 at most",
+                                 largest - factors.fronts.begin() + 1, *largest);
+  if (above > 1) text += fmt::format(", and {} rows do not", above);
+  factors.report.notes.push_back({Severity::warning, text});
+}
+
+void noteReciprocity(FormFactors& factors) {
+  const double residual = reciprocityResidual(factors.matrix);
+  factors.report.reciprocity_residual = residual;
+  if (residual <= kMostUneven) return;
+  factors.report.notes.push_back(
+      {Severity::warning, fmt::format("A_i F_ij and A_j F_ji differ by {:.0f}%: energies will not "
+                                      "balance; are the areas those of the rows?",
+                                      100 * residual)});
+}
 
 std::string firstLine(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -95,8 +127,7 @@ MatrixFile readMatrixFile(const std::string& path, Progress& progress,
   factors.row_of.resize(factors.size());
   std::iota(factors.row_of.begin(), factors.row_of.end(), Index(0));
   if (!file.has_accounts) setDefaultAccounts(factors);
-  factors.closed = true;
-  for (const double sky : factors.sky) factors.closed &= std::abs(sky) < kClosedWithin;
+  factors.closed = isClosed(factors.sky);
   return file;
 }
 
@@ -105,14 +136,24 @@ void writeMatrixMarket(const std::string& path, const NamedFactors& factors, Pro
       path, *factors.matrix, [&](std::size_t i) { return rowComment(factors, i); }, progress);
 }
 
-FormFactors factorsOfFile(const MatrixFile& file) {
+FormFactors factorsOfMatrix(ExchangeMatrix matrix, std::vector<double> sky,
+                            std::vector<double> backs, bool has_areas) {
   FormFactors factors;
-  factors.matrix = *file.factors.matrix;
+  factors.matrix = std::move(matrix);
   factors.fronts = factors.matrix.rowSums();
-  factors.backs = file.factors.backs;
-  factors.sky = file.factors.sky;
+  factors.sky = std::move(sky);
+  factors.backs = std::move(backs);
+  factors.report.closed = isClosed(factors.sky);
+  factors.method = "matrix";
+  noteSums(factors);
+  if (has_areas) noteReciprocity(factors);
+  return factors;
+}
+
+FormFactors factorsOfFile(const MatrixFile& file) {
+  FormFactors factors =
+      factorsOfMatrix(*file.factors.matrix, file.factors.sky, file.factors.backs, file.has_areas);
   factors.error = file.factors.error;
-  factors.report.closed = file.factors.closed;
   factors.method = "file";
   return factors;
 }

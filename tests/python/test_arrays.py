@@ -2,6 +2,7 @@
 
 import gc
 import re
+import warnings
 
 import numpy as np
 import pytest
@@ -163,8 +164,18 @@ def test_own_matrices_keep_their_values():
     dense = rng.random((30, 30)) * (rng.random((30, 30)) < 0.4) / 30
     for dtype in (np.float32, np.float64):
         A = scipy.sparse.csr_matrix(dense.astype(dtype))
-        F = rad.from_csr(A, np.ones(30))
+        with pytest.warns(UserWarning, match="A_i F_ij and A_j F_ji differ"):
+            F = rad.from_csr(A, np.ones(30))
         assert F.csr.dtype == dtype and (F.csr != A).nnz == 0
         assert np.allclose(F.sky, 1 - A.sum(axis=1).A1)
     twice = scipy.sparse.coo_matrix(([0.25, 0.25, 0.0], ([0, 0, 1], [1, 1, 0])), shape=(2, 2))
-    assert rad.from_csr(twice, [1, 1]).csr.toarray().tolist() == [[0, 0.5], [0, 0]]
+    with pytest.warns(UserWarning, match="A_i F_ij and A_j F_ji differ"):
+        assert rad.from_csr(twice, [1, 1]).csr.toarray().tolist() == [[0, 0.5], [0, 0]]
+
+
+def test_only_matrices_that_make_energy_are_warned_of():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert rad.from_csr([[0, 1], [0.5, 0]], [1, 2]).report["notes"] == []
+    with pytest.warns(UserWarning, match="row 1 sums to 1.5: form factors sum to 1 at most"):
+        rad.from_csr([[0, 1.5], [1.5, 0]], [1, 1])

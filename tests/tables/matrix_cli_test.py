@@ -72,6 +72,15 @@ class Matrices(CliTest):
         self.assertEqual(first["area_m2"], "2")
         self.assertAlmostEqual(report["solution"]["emitted_W"][0], 6)
 
+    def test_areas_that_do_not_fit_the_rows_are_warned_of(self):
+        self.write("plates.mtx", PLATES)
+        self.write("rows.csv", "row,reflectance,emission\n1,.5,3\n2,.8,0\n")
+        for areas, warned in (("2\n2\n", False), ("2\n4\n", True)):
+            self.write("areas.txt", areas)
+            run = self.run_program("solve", "plates.mtx", "--areas", "areas.txt", "--rows",
+                                   "rows.csv")
+            self.assertEqual("A_i F_ij and A_j F_ji differ by" in run.err, warned)
+
     def test_a_closed_matrix_that_absorbs_nothing_has_no_light_to_write(self):
         self.write("plates.mtx", PLATES)
         self.write("rows.csv", "row,reflectance,emission\n1,1,3\n2,1,0\n")

@@ -14,6 +14,7 @@ from ._arrays import numbers
 from ._core import InputError
 from ._mesh import Mesh
 from ._names import surfaces_named
+from ._notes import tell
 from ._progress import Progress, reporting
 
 
@@ -246,7 +247,9 @@ def form_factors(mesh: Mesh, tolerance: Optional[float] = None, *, method: str =
                    memory_limit=memory_limit, scratch_folder=os.fspath(scratch_folder),
                    memory_held=_resident_bytes() if memory_limit else 0)
     with reporting(progress) as report:
-        return FormFactors(_core.form_factors(mesh._handle, options, report), mesh)
+        factors = FormFactors(_core.form_factors(mesh._handle, options, report), mesh)
+    tell(factors.report["notes"])
+    return factors
 
 
 def from_csr(matrix: Any, area: Any, *, sky: Any = None, backs: Any = None,
@@ -255,7 +258,8 @@ def from_csr(matrix: Any, area: Any, *, sky: Any = None, backs: Any = None,
 
     Values are copied; float32 is kept as such, all else becomes float64. sky, backs: (n,), what of a
     row goes there (default: to the sky what the row lacks of 1, to backs nothing). names: (n,), for
-    messages and tables; need not be unique.
+    messages and tables; need not be unique. A UserWarning says where rows sum to more than 1, or where
+    A_i F_ij is far from A_j F_ji.
 
     Errors: InputError for wrong shapes, and values that are negative or not finite, by row.
 
@@ -289,7 +293,9 @@ def from_csr(matrix: Any, area: Any, *, sky: Any = None, backs: Any = None,
     handle = _core.from_csr(csr.data, csr.indices.astype(np.uint32), csr.indptr.astype(np.int64),
                             areas, numbers("sky", rest, [(n,)], "one a row"), lost,
                             [] if names is None else [str(name) for name in names], single)
-    return FormFactors(handle)
+    factors = FormFactors(handle)
+    tell(factors.report["notes"])
+    return factors
 
 
 def view_factors_from(mesh: Mesh, points: Any, normals: Any, progress: Progress = None) -> np.ndarray:

@@ -10,6 +10,7 @@ from . import _core
 from ._arrays import numbers
 from ._core import InputError
 from ._names import surfaces_named
+from ._notes import tell
 from ._progress import Progress, reporting
 from ._scene import Scene
 
@@ -210,4 +211,6 @@ def mesh(scene: Scene, patches: int = 2000, *, max_edge: float = 0.0, weld: floa
     if options["patches"] < 1:
         raise InputError(f"patches: {patches} is below 1; give 1 or more")
     with reporting(progress) as report:
-        return Mesh(_core.mesh(scene._handle, options, report))
+        mesh = Mesh(_core.mesh(scene._handle, options, report))
+    tell(mesh.report["notes"])
+    return mesh

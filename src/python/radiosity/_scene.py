@@ -10,6 +10,7 @@ import numpy as np
 from . import _core
 from ._arrays import indices, numbers
 from ._core import InputError
+from ._notes import tell
 from ._progress import Progress, reporting
 
 #: What is not said of a material of arrays.
@@ -170,7 +171,8 @@ def load(path: Union[str, "os.PathLike[str]"], *, unit: Optional[str] = None,
     unit: mm, cm, m, in or ft (default metres). set: "NAME.PROPERTY=VALUE" each, with PROPERTY
     reflectance, emission (W/m^2), radiance (W/m^2/sr) or tint. one_sided, two_sided: names of
     materials, objects or surfaces, or "all". sky: radiance, W/m^2/sr, one number or three. The
-    options are those of the command line.
+    options are those of the command line. What was repaired is in Scene.notes, and said by
+    UserWarnings.
 
     Errors: InputError with file, element and cure.
 
@@ -182,4 +184,6 @@ def load(path: Union[str, "os.PathLike[str]"], *, unit: Optional[str] = None,
                    one_sided=list(one_sided), two_sided=list(two_sided),
                    sky=None if sky is None else _colour("sky", sky))
     with reporting(progress) as report:
-        return Scene._of(_core.load(os.fspath(path), options, report))
+        scene = Scene._of(_core.load(os.fspath(path), options, report))
+    tell(scene.notes)
+    return scene
