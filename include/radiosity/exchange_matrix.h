@@ -18,6 +18,7 @@ namespace [[gnu::visibility("default")]] radiosity {
 enum class Precision { single_precision, double_precision };
 
 class RowPanel;
+class SharedRows;
 struct RowView;
 struct RunRow;
 
@@ -43,6 +44,10 @@ class ExchangeMatrix {
   static ExchangeMatrix symmetric(std::vector<double> area, std::vector<Index> order,
                                   Precision precision,
                                   std::shared_ptr<ScratchMemory> scratch = nullptr);
+  /// One whose rows lie in several processes (src/matrix/shared_rows.h). Rows cannot be set, and
+  /// what walks over stored rows one after the other (sweep(), upperRow() and its kin, closure,
+  /// aggregation) throws RunError.
+  static ExchangeMatrix shared(std::shared_ptr<const SharedRows> rows);
   ExchangeMatrix(const ExchangeMatrix& other);
   ExchangeMatrix(ExchangeMatrix&& other) noexcept;
   ExchangeMatrix& operator=(const ExchangeMatrix& other);
@@ -122,6 +127,8 @@ class ExchangeMatrix {
   std::size_t denseRows() const;          ///< row form: how many rows are stored dense
   /// Where rows are; null: in memory.
   const std::shared_ptr<ScratchMemory>& scratch() const { return scratch_.memory; }
+  /// The processes that have its rows; null: they are here.
+  const SharedRows* sharedRows() const { return shared_.get(); }
 
  private:
   friend class RowPanel;
@@ -135,6 +142,7 @@ class ExchangeMatrix {
     std::shared_ptr<ScratchMemory> memory;
   };
   RowView viewOf(std::size_t i) const;  // row form
+  void requireRows(const char* what) const;
   /// Where panels end that hold so many entries a row.
   std::vector<std::size_t> panelEnds() const;
   void checkFactors(std::size_t k, std::span<const double> factors) const;
@@ -152,12 +160,13 @@ class ExchangeMatrix {
   std::vector<double> area_;
   Precision precision_ = Precision::single_precision;
   bool symmetric_ = false;
-  std::vector<Row> rows_;            // row form
-  std::vector<Index> order_;         // symmetric form: patch by position,
-  std::vector<Index> position_;      // position by patch,
-  std::vector<RunRow> upper_;        // by position k: F to positions k + 1, ...
-  std::vector<double> diagonal_;     // by position
-  std::vector<Index> without_area_;  // positions of patches of area 0
+  std::vector<Row> rows_;                     // row form
+  std::vector<Index> order_;                  // symmetric form: patch by position,
+  std::vector<Index> position_;               // position by patch,
+  std::vector<RunRow> upper_;                 // by position k: F to positions k + 1, ...
+  std::vector<double> diagonal_;              // by position
+  std::vector<Index> without_area_;           // positions of patches of area 0
+  std::shared_ptr<const SharedRows> shared_;  // null: the rows are here
 };
 
 }  // namespace radiosity

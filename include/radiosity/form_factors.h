@@ -17,6 +17,8 @@
 
 namespace [[gnu::visibility("default")]] radiosity {
 
+class Processes;
+
 enum class FormFactorMethod {
   automatic,  ///< exact or rays, whichever a sample of rows says is right; the report says why
   hemicube,
@@ -264,8 +266,10 @@ FormFactors computeFormFactors(const PatchMesh& mesh, const FormFactorOptions& o
 
 /// The same of a plan, which comes from planFormFactors(), as often as you like. `journal`: where
 /// rows are kept, and rows of an earlier run of the same are found; none: they are not. The same
-/// bits either way.
+/// bits either way. `processes`: those that share the work and, after that, the matrix; the others
+/// are in shareFormFactors() (src/formfactor/shared_factors.h) meanwhile. Errors: also InputError
+/// where the method cannot be shared.
 FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress,
-                               RowJournal* journal = nullptr);
+                               RowJournal* journal = nullptr, Processes* processes = nullptr);
 
 }  // namespace radiosity

@@ -39,12 +39,13 @@ inline constexpr NameTable<ClosureMode, 3> kClosureNames{{{ClosureMode::off, "of
                                                           {ClosureMode::enforce, "enforce"}}};
 inline constexpr NameTable<Precision, 2> kPrecisionNames{
     {{Precision::single_precision, "single"}, {Precision::double_precision, "double"}}};
-inline constexpr NameTable<Solver, 6> kSolverNames{{{Solver::automatic, "auto"},
+inline constexpr NameTable<Solver, 7> kSolverNames{{{Solver::automatic, "auto"},
                                                     {Solver::jacobi, "jacobi"},
                                                     {Solver::gauss_seidel, "gauss-seidel"},
                                                     {Solver::cg, "cg"},
                                                     {Solver::gmres, "gmres"},
-                                                    {Solver::direct, "direct"}}};
+                                                    {Solver::direct, "direct"},
+                                                    {Solver::petsc, "petsc"}}};
 inline constexpr NameTable<SolveStatus, 4> kSolveStatusNames{
     {{SolveStatus::converged, "converged"},
      {SolveStatus::no_convergence, "no_convergence"},

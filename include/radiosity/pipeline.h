@@ -2,6 +2,7 @@
 // asked for, unless a results file has it already. The command line is made of this.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -26,7 +27,9 @@ namespace [[gnu::visibility("default")]] radiosity {
 
 class JournalFile;
 class Pipeline;
+class Processes;
 class StageKey;
+enum class SharedTask : std::uint32_t;
 
 enum class Stage { mesh, form_factors, solution, gather, elements, heat, basis };
 
@@ -133,6 +136,15 @@ class Pipeline {
   void open(const std::string& path, const SceneOptions& scene = {}, const std::string& reuse = {});
   /// A scene in memory, as validate(const Scene&) asks; `reuse` as above.
   void open(Scene scene, const std::string& reuse = {});
+
+  /// Before the first stage, in process 0 of several (src/base/processes.h), which must outlive
+  /// this: form factors are computed by all of them, and their matrix stays with them. The others
+  /// call serve() meanwhile.
+  void share(Processes& processes) { processes_ = &processes; }
+  /// In the others, after open() with what process 0 opened: does a task that process 0 asks for
+  /// (not SharedTask::end), and then what it asks of these rows until it is done with them. Errors:
+  /// RunError where the mesh is not process 0's.
+  void serve(Processes& processes, SharedTask task);
 
   // ---- Options: those the results file's stages were made with, elsewhere the defaults. To keep
   // one, leave it; a stage whose options are changed is made again the next time it is asked for.
@@ -251,6 +263,8 @@ class Pipeline {
   void openJournal(const FormFactorPlan& plan, const StageKey& key);
   StageKey usedFactorsKey() const;
   bool hasOwnMaterials() const;
+  void shareStoredMatrix();
+  ExchangeMatrix shareRows(Processes& processes);
   void requireOwnMesh(bool reused) const;
   const PatchMaterials& materialsOfMesh();
 
@@ -281,6 +295,7 @@ class Pipeline {
   const LightBasis& takeStoredBasis();
   void dropEmptySolution();
 
+  Processes* processes_ = nullptr;  ///< null: this one alone
   std::unique_ptr<JournalFile> journal_;
   Progress& progress_;
   PipelineObserver silent_;

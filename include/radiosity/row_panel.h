@@ -45,8 +45,8 @@ struct RowView {
 /// Some consecutive rows of a matrix, for reading.
 class RowPanel {
  public:
-  /// first <= last <= N. Symmetric form: O(N + entries of the triangle), and memory for the entries
-  /// of the rows.
+  /// first <= last <= N. Symmetric form, and rows of several processes: O(N + entries of the
+  /// triangle), and memory for the entries of the rows.
   RowPanel(const ExchangeMatrix& matrix, std::size_t first, std::size_t last);
   std::size_t first() const { return first_; }
   std::size_t last() const { return last_; }  ///< one beyond
@@ -58,7 +58,7 @@ class RowPanel {
   }
   template <class Visit>
   void forRow(std::size_t i, std::size_t first, std::size_t last, Visit&& visit) const {
-    if (!matrix_->isSymmetric()) {
+    if (starts_.empty()) {
       matrix_->viewOf(i).forEntries(first, last, visit);
       return;
     }
@@ -76,7 +76,7 @@ class RowPanel {
   const ExchangeMatrix* matrix_;
   std::size_t first_;
   std::size_t last_;
-  // Symmetric form: compressed rows, none of them 0.
+  // Symmetric form, or rows of several processes: compressed, none of them 0. Else empty.
   std::vector<std::size_t> starts_;
   std::vector<Index> columns_;
   std::vector<double> values_;

@@ -13,12 +13,15 @@
 namespace [[gnu::visibility("default")]] radiosity {
 
 enum class Solver {
-  automatic,     ///< direct for few unknowns, else cg where the matrix is symmetric, else gmres
+  /// Direct for few unknowns, else cg where the matrix is symmetric, else gmres; under mpirun
+  /// petsc.
+  automatic,
   jacobi,        ///< B <- E + rho F B: a sweep adds a bounce
   gauss_seidel,  ///< the same row by row, with the new values of the rows before; on one thread
   cg,            ///< conjugate gradients; needs a matrix in the symmetric form
   gmres,         ///< for any matrix; keeps up to 30 vectors a band
-  direct         ///< Cholesky or LU; O(N^2) memory and O(N^3) time, N at most kMostDirectUnknowns
+  direct,        ///< Cholesky or LU; O(N^2) memory and O(N^3) time, N at most kMostDirectUnknowns
+  petsc          ///< PETSc's KSP with options of its own, on the rows of several processes (mpirun)
 };
 
 /// Up to so many unknowns Solver::automatic is direct: factoring takes no longer than a dozen

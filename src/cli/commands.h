@@ -1,6 +1,7 @@
 // The subcommands: options in, one walk through the stages, files and a report out.
 #pragma once
 
+#include "base/processes.h"
 #include "cli/outputs.h"
 #include "cli/pipeline_report.h"
 #include "cli/report.h"
@@ -15,6 +16,7 @@ struct Session {
   Report& report;
   Progress& progress;
   const TimeLimit& limit;
+  Processes* processes = nullptr;  ///< those of mpirun, in number 0; null: this one alone
 };
 
 /// The pipeline of one run, whose steps are reported.
@@ -36,6 +38,9 @@ int runHeat(Session& session);
 int runCompare(Session& session);
 int runRender(Session& session);
 int runView(Session& session);
+
+/// In the other processes of mpirun: does what number 0, which runs the same command, asks for.
+int serveCommand(const Request& request, Processes& processes);
 
 /// The files -o names; a results file that came in is updated where none is named and the
 /// subcommand is factors, solve, gather or heat.

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base/atomic_file.h"
+#include "base/processes.h"
 #include "cli/commands.h"
 #include "cli/console_progress.h"
 #include "cli/signal_guard.h"
@@ -43,7 +44,8 @@ int dispatch(Session& session) {
   return runView(session);
 }
 
-int run(const Request& request, const TimeLimit& limit, ConsoleProgress& progress) {
+int run(const Request& request, const TimeLimit& limit, ConsoleProgress& progress,
+        Processes* processes) {
   // Claimed and let go: a report that cannot be written is found before the work is done.
   if (!request.report.empty()) AtomicFile(request.report);
   setThreads(request.threads);
@@ -52,7 +54,7 @@ int run(const Request& request, const TimeLimit& limit, ConsoleProgress& progres
   report.fact("command", commandName(request.command));
   report.fact("input", request.input);
   report.fact("arguments", request.arguments);
-  Session session{request, report, progress, limit};
+  Session session{request, report, progress, limit, processes};
   const int code = dispatch(session);
   report.exitCode(code);
   if (!request.report.empty()) report.write(request.report);
@@ -64,13 +66,8 @@ int fail(const std::string& message, int code) {
   return code;
 }
 
-}  // namespace
-
-}  // namespace radiosity::cli
-
-int main(int argc, char** argv) {
-  using namespace radiosity;
-  using namespace radiosity::cli;
+/// Parses the arguments and runs the command; all errors end here.
+int runProgram(int argc, char** argv, Processes* processes) {
   try {
     Request request;
     if (const std::optional<int> done = parseCommandLine(argc, argv, request)) return *done;
@@ -78,7 +75,7 @@ int main(int argc, char** argv) {
     const TimeLimit limit(request.time_limit);
     const SignalGuard guard(progress, limit);
     try {
-      return run(request, limit, progress);
+      return run(request, limit, progress, processes);
     } catch (...) {
       progress.clear();
       // A library that stopped half-way because of the signal may report something else.
@@ -90,6 +87,51 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return fail("out of memory; use fewer --patches, or --memory-limit to be told before", 1);
   } catch (const std::exception& error) {
+    return fail(error.what(), 1);
+  }
+}
+
+/// Process 0 of several runs the command; then all end.
+int runFirst(int argc, char** argv, Processes& processes) {
+  const int code = runProgram(argc, argv, &processes);
+  if (processes.halfDone()) processes.abort(code);
+  SharedTask end = SharedTask::end;
+  processes.broadcastValue(end);
+  processes.finish();
+  return code;
+}
+
+/// What a command line says wrong, or asks to be printed, is for process 0 to say.
+int runOther(int argc, char** argv, Processes& processes) {
+  try {
+    Request request;
+    if (std::freopen("/dev/null", "w", stdout) == nullptr) std::fclose(stdout);
+    try {
+      parseCommandLine(argc, argv, request);
+    } catch (const InputError&) {
+      return serveCommand({}, processes);
+    }
+    return serveCommand(request, processes);
+  } catch (const std::exception& error) {
+    fail(fmt::format("process {} of {}: {}", processes.rank(), processes.size(), error.what()), 1);
+    processes.abort(1);
+  }
+  return 1;
+}
+
+}  // namespace
+
+}  // namespace radiosity::cli
+
+int main(int argc, char** argv) {
+  using namespace radiosity;
+  using namespace radiosity::cli;
+  if (!startedByMpi()) return runProgram(argc, argv, nullptr);
+  try {
+    Processes& processes = joinProcesses();
+    return processes.rank() == 0 ? runFirst(argc, argv, processes)
+                                 : runOther(argc, argv, processes);
+  } catch (const RunError& error) {
     return fail(error.what(), 1);
   }
 }

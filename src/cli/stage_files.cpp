@@ -60,6 +60,7 @@ Run::Run(Session& session, const std::string& results_output)
   options.heat = request.apply(options.heat);
   options.journal = request.journal(results_output);
   options.factors.scratch_folder = scratchFolder(request, results_output);
+  if (session.processes != nullptr) pipeline.share(*session.processes);
 }
 
 void requireLight(const Session& session, const Pipeline& pipeline) {

@@ -192,6 +192,7 @@ void addSolveOptions(CLI::App& app, Request& r) {
   add(app, "Solve", "--solver", r.solver, "NAME",
       fmt::format("auto (default): direct for up to {} unknowns, else cg, or gmres where form "
                   "factors are raw hemicube rows; cg: conjugate gradients; gmres: for any matrix; "
+                  "petsc: PETSc's KSP, under mpirun; "
                   "direct: factors it, up to {} unknowns; gauss-seidel and jacobi: the classic "
                   "sweeps, slow in bright rooms",
                   kFewUnknowns, kMostDirectUnknowns))

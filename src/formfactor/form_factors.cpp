@@ -18,6 +18,7 @@
 #include "formfactor/exact/assembly/row_sample.h"
 #include "formfactor/hemicube/hemicube_factors.h"
 #include "formfactor/rays/ray_factors.h"
+#include "formfactor/shared_factors.h"
 
 namespace radiosity {
 
@@ -296,19 +297,22 @@ FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
   return plan;
 }
 
-FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress,
-                               RowJournal* journal) {
+FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress, RowJournal* journal,
+                               Processes* processes) {
   const Clock::time_point start = Clock::now();
   if (!plan.prepared) throw std::logic_error("this plan is not from planFormFactors()");
   const FormFactorPlan::Prepared& prepared = *plan.prepared;
+  if (processes != nullptr) {
+    tellOthers(*processes, prepared.mesh, plan.method, prepared.options);
+  }
   FormFactors result;
   if (prepared.scene && prepared.kernels) {
     result = exactFactors(prepared.mesh, *prepared.scene, *prepared.kernels, prepared.estimate,
-                          prepared.options, progress, journal);
+                          prepared.options, progress, journal, processes);
     result.report.exact.seconds_prepare += prepared.seconds;
   } else if (prepared.hemicubes) {
     result = hemicubeFactors(prepared.mesh, *prepared.hemicubes, prepared.hemicube_estimate,
-                             prepared.options, progress, journal);
+                             prepared.options, progress, journal, processes);
   } else if (prepared.rays) {
     std::vector<KnownRow> known;
     if (prepared.exact_rows) known = prepared.exact_rows->compute(progress);

@@ -35,6 +35,14 @@ RowMemory planRowMemory(std::size_t whole, std::size_t beside, std::size_t rows,
   return memory;
 }
 
+RowMemory shareOf(const RowMemory& memory, std::size_t matrix_bytes, int processes) {
+  const bool on_disk = memory.scratch_bytes > 0;
+  const std::size_t rows = on_disk ? memory.scratch_bytes : matrix_bytes;
+  const std::size_t held = on_disk ? kTimesResident * memory.resident : matrix_bytes;
+  const std::size_t beside = memory.bytes > held ? memory.bytes - held : 0;
+  return {.bytes = beside + rows / std::size_t(processes)};
+}
+
 std::size_t panelsOf(std::size_t matrix_bytes, Precision precision) {
   // Both entries of a pair, where the matrix stores one.
   const std::size_t entries = 2 * matrix_bytes / valueBytes(precision);

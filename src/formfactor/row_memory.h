@@ -20,6 +20,9 @@ struct RowMemory {
 RowMemory planRowMemory(std::size_t whole, std::size_t beside, std::size_t rows,
                         const FormFactorOptions& options);
 
+/// Of one of some processes that share the rows, all of them in memory.
+RowMemory shareOf(const RowMemory& memory, std::size_t matrix_bytes, int processes);
+
 /// The most bytes that a symmetric matrix takes in panels.
 std::size_t panelsOf(std::size_t matrix_bytes, Precision precision);
 

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "base/union_find.h"
 #include "heat/conditions.h"
-#include "mesh/union_find.h"
 
 namespace radiosity {
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "matrix/shared_rows.h"
 #include "radiosity/exchange_matrix.h"
 
 namespace radiosity {
@@ -31,13 +32,18 @@ void forBothEstimates(const ExchangeMatrix& matrix, const Visit& visit) {
   for (std::size_t begin = 0; begin < n; begin += kBlock) {
     const std::size_t count = std::min(kBlock, n - begin);
     std::fill(columns.begin(), columns.end(), 0.0);
-    parallelFor(n, kBlock, [&](std::size_t j) {
-      matrix.forRow(j, begin, begin + count,
-                    [&](Index i, double value) { columns[(i - begin) * n + j] = value; });
-    });
+    if (const SharedRows* shared = matrix.sharedRows(); shared != nullptr) {
+      shared->columns(begin, begin + count, std::span(columns).first(count * n));
+    } else {
+      parallelFor(n, kBlock, [&](std::size_t j) {
+        matrix.forRow(j, begin, begin + count,
+                      [&](Index i, double value) { columns[(i - begin) * n + j] = value; });
+      });
+    }
+    const RowPanel rows(matrix, begin, begin + count);
     parallelFor(count, 1, [&](std::size_t k) {
       std::vector<double> row(n, 0.0);
-      matrix.forRow(begin + k, [&](Index j, double value) { row[j] = value; });
+      rows.forRow(begin + k, [&](Index j, double value) { row[j] = value; });
       visit(begin + k, std::span<const double>(row),
             std::span<const double>(columns).subspan(k * n, n));
     });

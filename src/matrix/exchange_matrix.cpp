@@ -10,6 +10,7 @@
 #include "base/scratch_rows.h"
 #include "matrix/matrix_row.h"
 #include "matrix/run_row.h"
+#include "matrix/shared_rows.h"
 
 namespace radiosity {
 
@@ -70,8 +71,30 @@ ExchangeMatrix::ExchangeMatrix(std::vector<double> area, Precision precision,
   }
 }
 
+ExchangeMatrix ExchangeMatrix::shared(std::shared_ptr<const SharedRows> rows) {
+  const ExchangeMatrix& own = rows->own();
+  ExchangeMatrix matrix;
+  matrix.area_ = own.area_;
+  matrix.precision_ = own.precision_;
+  matrix.symmetric_ = own.symmetric_;
+  matrix.order_ = own.order_;
+  matrix.position_ = own.position_;
+  if (matrix.symmetric_) matrix.diagonal_.assign(matrix.size(), 0.0);  // nobody is to read it
+  matrix.shared_ = std::move(rows);
+  return matrix;
+}
+
+void ExchangeMatrix::requireRows(const char* what) const {
+  if (!shared_) return;
+  throw RunError(
+      fmt::format("{} needs all rows of the form factors in one process; start that "
+                  "without mpirun, from the results file",
+                  what));
+}
+
 void ExchangeMatrix::setRow(std::size_t i, std::span<const Index> columns,
                             std::span<const double> values) {
+  requireRows("setting a row");
   if (symmetric_) throw InputError("exchange matrix: a symmetric one is set by upper rows");
   checkRow(i, size(), columns, values);
   const std::size_t value_bytes = valueBytes(precision_);
@@ -94,12 +117,18 @@ void ExchangeMatrix::setRow(std::size_t i, std::span<const Index> columns,
 }
 
 RowView ExchangeMatrix::viewOf(std::size_t i) const {
+  requireRows("what walks along stored rows");
   const Row& row = rows_[i];
   touchRows(scratch_.memory.get(), bytesOf(row));
   return {row.columns, row.floats, row.doubles, row.dense};
 }
 
 double ExchangeMatrix::at(std::size_t i, std::size_t j) const {
+  if (shared_) {
+    double found = 0;
+    forRow(i, j, j + 1, [&](Index, double value) { found = value; });
+    return found;
+  }
   if (!symmetric_) {
     double found = 0;
     viewOf(i).forEntries(j, j + 1, [&](Index, double value) { found = value; });
@@ -111,6 +140,7 @@ double ExchangeMatrix::at(std::size_t i, std::size_t j) const {
 }
 
 std::vector<Index> ExchangeMatrix::rowEntries() const {
+  if (shared_) return shared_->sizes().row_entries;
   std::vector<Index> entries(size(), 0);
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     viewOf(i).forEntries(0, size(), [&](Index, double) { ++entries[i]; });
@@ -136,6 +166,7 @@ std::size_t ExchangeMatrix::nonZeros() const {
 }
 
 std::size_t ExchangeMatrix::bytes() const {
+  if (shared_) return shared_->sizes().bytes;
   std::size_t total = 0;
   for (const Row& row : rows_) total += bytesOf(row);
   for (const RunRow& row : upper_) total += bytesOf(row);
@@ -143,11 +174,13 @@ std::size_t ExchangeMatrix::bytes() const {
 }
 
 std::size_t ExchangeMatrix::denseRows() const {
+  if (shared_) return shared_->sizes().dense_rows;
   return std::size_t(
       std::count_if(rows_.begin(), rows_.end(), [](const Row& r) { return r.dense; }));
 }
 
 std::vector<double> ExchangeMatrix::rowSums() const {
+  if (shared_) return shared_->rowSums();
   const std::vector<double> ones(size(), 1.0);
   std::vector<double> sums(size());
   product(ones, 1, sums);

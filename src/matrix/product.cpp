@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 #include "matrix/matrix_row.h"
 #include "matrix/run_row.h"
+#include "matrix/shared_rows.h"
 
 namespace radiosity {
 
@@ -83,6 +84,7 @@ void rowProduct(const RowView& row, const double* x, int bands, double* out) {
 
 void ExchangeMatrix::product(std::span<const double> x, int bands, std::span<double> y,
                              std::span<const std::uint8_t> wanted) const {
+  if (shared_) return shared_->product(x, bands, y, wanted);
   if (symmetric_) return symmetricProduct(x, bands, y, wanted);
   parallelFor(size(), kProductGrain, [&](std::size_t i) {
     if (!wanted.empty() && wanted[i] == 0) return;
@@ -92,6 +94,7 @@ void ExchangeMatrix::product(std::span<const double> x, int bands, std::span<dou
 
 void ExchangeMatrix::sweep(std::span<double> x, int bands, const Update& update,
                            std::span<const std::uint8_t> wanted) const {
+  requireRows("a sweep over the rows (Gauss-Seidel)");
   if (symmetric_) return symmetricSweep(x, bands, update, wanted);
   std::vector<double> gathered(static_cast<std::size_t>(bands));
   for (std::size_t i = 0; i < size(); ++i) {

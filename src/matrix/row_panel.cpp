@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "matrix/run_row.h"
+#include "matrix/shared_rows.h"
 #include "matrix/sort_entries.h"
 
 namespace radiosity {
@@ -112,16 +113,22 @@ class Gathering {
 
 RowPanel::RowPanel(const ExchangeMatrix& matrix, std::size_t first, std::size_t last)
     : matrix_(&matrix), first_(first), last_(last) {
+  if (matrix.sharedRows() != nullptr) {
+    matrix.sharedRows()->panel(first, last, starts_, columns_, values_);
+    return;
+  }
   if (matrix.isSymmetric()) Gathering(matrix, first, last).run(starts_, columns_, values_);
 }
 
 std::vector<std::size_t> ExchangeMatrix::panelEnds() const {
   std::vector<std::size_t> ends;
-  if (!symmetric_) {
+  if (!symmetric_ && !shared_) {
     if (size() > 0) ends.push_back(size());
     return ends;
   }
-  const std::size_t most = panelBytes(bytes()) / RowPanel::kEntryBytes;
+  // Of shared rows a panel is not to be more than a process has of them.
+  const std::size_t share = shared_ ? std::size_t(shared_->processes()) : 1;
+  const std::size_t most = panelBytes(bytes() / share) / RowPanel::kEntryBytes;
   std::size_t held = 0;
   const std::vector<Index> entries = rowEntries();
   for (std::size_t i = 0; i < size(); ++i) {

@@ -107,4 +107,9 @@ class RunReader {
 
 std::size_t bytesOf(const RunRow& row);
 
+/// How much there is to do in a walk along the row; 0 where nothing is stored.
+inline std::size_t workOf(const RunRow& row) {
+  return row.floats.size() + row.doubles.size() + row.runs.size();
+}
+
 }  // namespace radiosity

@@ -51,6 +51,7 @@ ExchangeMatrix ExchangeMatrix::symmetric(std::vector<double> area, std::vector<I
 }
 
 void ExchangeMatrix::checkFactors(std::size_t k, std::span<const double> factors) const {
+  requireRows("setting a row");
   if (!symmetric_ || k >= size() || factors.size() > size() - k) {
     throw InputError(
         fmt::format("exchange matrix: {} factors for row {} of the upper triangle of {}",
@@ -83,6 +84,7 @@ void ExchangeMatrix::checkFactors(std::size_t k, std::span<const double> factors
 
 void ExchangeMatrix::checkPositions(std::size_t k, std::span<const Index> positions,
                                     std::span<const double> factors) const {
+  requireRows("setting a row");
   if (!symmetric_ || k >= size() || positions.size() != factors.size()) {
     throw InputError(
         fmt::format("exchange matrix: {} positions and {} factors for row {} of the upper triangle "
@@ -148,6 +150,7 @@ ExchangeMatrix::UpperEntries ExchangeMatrix::upperEntries(std::size_t k) const {
 }
 
 const RunRow& ExchangeMatrix::upperRuns(std::size_t k) const {
+  requireRows("what walks along stored rows");
   touchRows(scratch_.memory.get(), bytesOf(upper_[k]));
   return upper_[k];
 }

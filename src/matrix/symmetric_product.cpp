@@ -17,10 +17,6 @@ namespace {
 /// handed on, and no less time.
 constexpr int kBandsAtOnce = 16;
 
-std::size_t workOf(const RunRow& row) {
-  return row.floats.size() + row.doubles.size() + row.runs.size();
-}
-
 /// Bands [first, last) of N * bands values, a plane each, by position instead of patch.
 struct Planes {
   Planes(std::size_t n, int first, int last)

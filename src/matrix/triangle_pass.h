@@ -73,6 +73,9 @@ class TrianglePass {
     runRanges(planes, rows, finish);
   }
 
+  /// The first row of each chunk, and the end.
+  const std::vector<std::size_t>& starts() const { return starts_; }
+
   /// The most that run() takes.
   static std::size_t bytes(std::size_t rows, std::size_t planes) {
     return kMostChunks * rows * planes * sizeof(double);

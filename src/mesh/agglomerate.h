@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "mesh/union_find.h"
+#include "base/union_find.h"
 #include "radiosity/base.h"
 
 namespace radiosity {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "mesh/union_find.h"
+#include "base/union_find.h"
 
 namespace radiosity {
 

@@ -14,8 +14,8 @@
 #include "base/geometry/box.h"
 #include "base/geometry/solid_angle.h"
 #include "base/parallel.h"
+#include "base/union_find.h"
 #include "mesh/edge_key.h"
-#include "mesh/union_find.h"
 
 namespace radiosity {
 namespace {

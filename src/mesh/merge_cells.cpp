@@ -9,10 +9,10 @@
 
 #include "base/geometry/plane_frame.h"
 #include "base/parallel.h"
+#include "base/union_find.h"
 #include "mesh/edge_crossings.h"
 #include "mesh/straighten.h"
 #include "mesh/trace_loops.h"
-#include "mesh/union_find.h"
 
 namespace radiosity {
 

@@ -5,8 +5,8 @@
 #include <tuple>
 #include <utility>
 
+#include "base/union_find.h"
 #include "mesh/edge_key.h"
-#include "mesh/union_find.h"
 
 namespace radiosity {
 

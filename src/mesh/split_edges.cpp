@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "base/union_find.h"
 #include "mesh/box_filter.h"
-#include "mesh/union_find.h"
 
 namespace radiosity {
 

@@ -4,8 +4,8 @@
 #include <numeric>
 #include <utility>
 
+#include "base/union_find.h"
 #include "mesh/box_pairs.h"
-#include "mesh/union_find.h"
 #include "scene/winding_tree.h"
 
 namespace radiosity {

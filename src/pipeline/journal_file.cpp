@@ -140,7 +140,22 @@ JournalFile::JournalFile(std::string path, std::string key, bool resume)
   syncer_ = std::thread([this] { sync(); });
 }
 
+JournalFile::JournalFile(std::string path, std::string key, std::unique_ptr<Descriptor> file)
+    : path_(std::move(path)), key_(std::move(key)), file_(std::move(file)), only_read_(true) {
+  readBlocks(readKey(file_->number()).end);
+}
+
+std::unique_ptr<JournalFile> JournalFile::openForReading(const std::string& path,
+                                                         const std::string& key) {
+  const int number = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (number < 0) return nullptr;
+  auto file = std::make_unique<Descriptor>(number);
+  if (readKey(number).key != key) return nullptr;
+  return std::unique_ptr<JournalFile>(new JournalFile(path, key, std::move(file)));
+}
+
 JournalFile::~JournalFile() {
+  if (only_read_) return;
   {
     const std::lock_guard lock(writing_);
     closing_ = true;
@@ -219,7 +234,8 @@ void JournalFile::readBlocks(std::uint64_t offset) {
     end_ = offset;
   }
   found_.blocks = there_.size();
-  if (end_ < size && ftruncate(file, off_t(end_)) != 0) failure_ = std::strerror(errno);
+  if (!only_read_ && end_ < size && ftruncate(file, off_t(end_)) != 0)
+    failure_ = std::strerror(errno);
 }
 
 std::optional<std::string> JournalFile::keyIn(const std::string& path) {

@@ -45,6 +45,11 @@ class JournalFile : public RowJournal {
   /// Removes the file where there is nothing in it.
   ~JournalFile() override;
 
+  /// One that another process holds, or held, to look up what is there: keep() is not for it. Null
+  /// where there is none of that key.
+  static std::unique_ptr<JournalFile> openForReading(const std::string& path,
+                                                     const std::string& key);
+
   /// The key of the journal `path`; empty where there is none.
   static std::optional<std::string> keyIn(const std::string& path);
 
@@ -67,6 +72,7 @@ class JournalFile : public RowJournal {
 
  private:
   class Descriptor;
+  JournalFile(std::string path, std::string key, std::unique_ptr<Descriptor> file);
   /// Of a payload in the file.
   struct Place {
     std::uint64_t offset;
@@ -91,6 +97,7 @@ class JournalFile : public RowJournal {
   std::size_t kept_ = 0;   ///< blocks written
   std::string failure_;
   bool removed_ = false;
+  bool only_read_ = false;
   bool unsynced_ = false;
   bool closing_ = false;
   std::condition_variable closing_signal_;

@@ -1,10 +1,13 @@
 // Rows of form factors in a file, from the first that is computed until all are in the results.
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "base/figure_text.h"
 #include "pipeline/journal_file.h"
+#include "pipeline/shared_journal.h"
 #include "pipeline/stage_key.h"
 #include "radiosity/names.h"
 #include "radiosity/pipeline.h"
@@ -27,6 +30,14 @@ std::string resumedText(const JournalFile::Found& at_opening, std::size_t rows, 
                         at_opening.damaged == 1 ? "block" : "blocks");
   }
   return text;
+}
+
+/// Those of other processes.
+void removeJournalsBeside(const std::string& path, const std::string& key) {
+  for (const std::string& beside : journalsBeside(path)) {
+    std::error_code ignored;
+    if (JournalFile::keyIn(beside) == key) std::filesystem::remove(beside, ignored);
+  }
 }
 
 }  // namespace
@@ -71,6 +82,7 @@ void Pipeline::openJournal(const FormFactorPlan& plan, const StageKey& key) {
 
 void Pipeline::discardKeptRows() {
   if (journal_) {
+    removeJournalsBeside(journal_->path(), journal_->key());
     journal_->remove();
     journal_.reset();
     return;
@@ -80,6 +92,7 @@ void Pipeline::discardKeptRows() {
   if (path.empty() || !results_.factors) return;
   const std::string key = journalKey(StageKey(results_.factors_key), results_.factors->method);
   if (JournalFile::keyIn(path) != key) return;
+  removeJournalsBeside(path, key);
   try {
     JournalFile(path, key, true).remove();
   } catch (const RunError&) {

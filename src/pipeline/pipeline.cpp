@@ -12,11 +12,16 @@
 #include "base/made.h"
 #include "base/parallel.h"
 #include "base/process_memory.h"
+#include "base/processes.h"
 #include "formfactor/row_memory.h"
+#include "formfactor/shared_factors.h"
+#include "matrix/shared_rows.h"
 #include "matrix/working_memory.h"
 #include "pipeline/journal_file.h"
+#include "pipeline/shared_journal.h"
 #include "pipeline/stage_key.h"
 #include "radiosity/version.h"
+#include "results/matrix_blocks.h"
 
 namespace radiosity {
 
@@ -199,8 +204,45 @@ std::shared_ptr<ScratchMemory> Pipeline::memoryOfStoredMatrix() const {
   return makeRowMemory(memory, options, n);
 }
 
+/// Each process reads a share of the rows; what process 0 has read besides stays.
+void Pipeline::shareStoredMatrix() {
+  SharedTask task = SharedTask::stored_matrix;
+  processes_->broadcastValue(task);
+  const SharedStep step(*processes_);
+  std::vector<char> path(source_.begin(), source_.end());
+  processes_->broadcastArray(path);
+  ExchangeMatrix own = readMatrixPart(source_, {0, std::size_t(processes_->size())});
+  made(results_.factors).matrix = ExchangeMatrix::shared(
+      std::make_shared<SharedRows>(*processes_, std::move(own), [this] { progress_.check(); }));
+}
+
+/// A share of the form factors.
+ExchangeMatrix Pipeline::shareRows(Processes& processes) {
+  JournalTold told;
+  told.broadcast(processes);
+  const std::unique_ptr<JournalFile> file = told.open(processes.rank());
+  std::unique_ptr<SharedJournal> journal;
+  if (file) journal = std::make_unique<SharedJournal>(*file, told.path, told.resume);
+  return shareFormFactors(mesh().mesh, processes, progress_, journal.get());
+}
+
+void Pipeline::serve(Processes& processes, SharedTask task) {
+  if (task == SharedTask::form_factors) {
+    serveRows(processes, shareRows(processes));
+    return;
+  }
+  std::vector<char> path;
+  processes.broadcastArray(path);
+  serveRows(processes, readMatrixPart({path.begin(), path.end()}, {std::size_t(processes.rank()),
+                                                                   std::size_t(processes.size())}));
+}
+
 void Pipeline::loadMatrix() {
   if (!results_.factors || results_.factors->matrix.size() == results_.factors->fronts.size()) {
+    return;
+  }
+  if (processes_ != nullptr) {
+    shareStoredMatrix();
     return;
   }
   std::optional<FormFactors> factors =

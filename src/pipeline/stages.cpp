@@ -7,7 +7,10 @@
 
 #include "base/made.h"
 #include "base/process_memory.h"
+#include "base/processes.h"
+#include "formfactor/shared_factors.h"
 #include "pipeline/journal_file.h"
+#include "pipeline/shared_journal.h"
 #include "pipeline/stage_key.h"
 #include "radiosity/names.h"
 #include "radiosity/pipeline.h"
@@ -155,19 +158,38 @@ FormFactorPlan Pipeline::planFactors() const {
   }
   const std::optional<FormFactorMethod> kept = methodOfKeptRows(factorsKey(options, patches));
   if (kept) options.method = *kept;
+  const bool only_exact = processes_ != nullptr && options.method == FormFactorMethod::automatic;
+  if (only_exact) options.method = FormFactorMethod::exact;
   FormFactorPlan plan = planFormFactors(patches, options, progress_);
   if (kept) plan.reason = "rows of an earlier run are there";
+  if (only_exact) plan.reason = "it is the one that processes share";
   // Planning may have tried the exact method, which takes more than hemicubes then do.
   plan.bytes = std::max(plan.bytes, peakBytes());
   return plan;
 }
 
 FormFactors Pipeline::computeFactors(std::optional<FormFactorPlan> plan, const StageKey& key) {
+  if (processes_ != nullptr) requireShareable(made(results_.mesh).mesh, options_.factors);
   return computedStage("form factors", [&] {
     if (!plan) plan = planFactors();
     observer_.planned(*this, *plan);
     openJournal(*plan, key);
-    FormFactors factors = computeFormFactors(*plan, progress_, journal_.get());
+    std::optional<SharedStep> step;
+    std::unique_ptr<SharedJournal> shared;
+    if (processes_ != nullptr) {
+      SharedTask task = SharedTask::form_factors;
+      processes_->broadcastValue(task);
+      step.emplace(*processes_);
+      JournalTold told;
+      if (journal_) {
+        told = {journal_->path(), journal_->key(), options_.journal.resume};
+        shared = std::make_unique<SharedJournal>(*journal_, told.path, told.resume);
+      }
+      told.broadcast(*processes_);
+    }
+    RowJournal* const journal = shared ? shared.get() : static_cast<RowJournal*>(journal_.get());
+    FormFactors factors = computeFormFactors(*plan, progress_, journal, processes_);
+    step.reset();
     if (journal_ && !journal_->failure().empty()) {
       observer_.rows(*this, fmt::format("not all rows were kept: {}: {}", journal_->path(),
                                         journal_->failure()));

@@ -17,7 +17,18 @@ void writeMatrix(h5::OutputGroup& group, const ExchangeMatrix& matrix, Progress&
 /// Counts the bytes that writeMatrix() adds to the file.
 void countMatrix(h5::SizeCounter& group, const ExchangeMatrix& matrix);
 
+/// Rows of a matrix, as many parts of about equal numbers of entries as processes.
+struct MatrixPart {
+  std::size_t part = 0;
+  std::size_t parts = 1;
+};
+
 /// The same matrix, value for value to the bit. `scratch`: where it is to be; null: in memory.
-ExchangeMatrix readMatrix(const h5::InputGroup& group, std::shared_ptr<ScratchMemory> scratch);
+/// `part`: the rows to read; all others are empty.
+ExchangeMatrix readMatrix(const h5::InputGroup& group, std::shared_ptr<ScratchMemory> scratch,
+                          const MatrixPart& part = {});
+
+/// Rows of the matrix in the results file `path`, which has one. Errors: as readResults().
+ExchangeMatrix readMatrixPart(const std::string& path, const MatrixPart& part);
 
 }  // namespace radiosity

@@ -40,6 +40,22 @@ std::vector<Index> readOrder(const h5::InputGroup& group, std::size_t n) {
 struct StoredRows {
   Number number = Number::f32;  ///< of data
   std::vector<std::int64_t> indptr;
+  std::size_t first = 0;  ///< to be read
+  std::size_t last = 0;   ///< one beyond
+
+  /// About as many entries as in each other part.
+  void choose(const MatrixPart& part) {
+    const auto rowAt = [&](std::size_t k) {
+      const std::int64_t before =
+          std::int64_t(double(indptr.back()) * double(k) / double(part.parts));
+      return k == part.parts
+                 ? indptr.size() - 1
+                 : std::size_t(std::lower_bound(indptr.begin(), indptr.end() - 1, before) -
+                               indptr.begin());
+    };
+    first = part.part == 0 ? 0 : rowAt(part.part);
+    last = rowAt(part.part + 1);
+  }
 };
 
 /// Row starts: from 0 upward to the number of entries, no row longer than the matrix.
@@ -88,8 +104,12 @@ class BlockReader {
   using Store =
       std::function<void(std::size_t row, std::span<const std::int32_t>, std::span<const T>)>;
 
-  BlockReader(const h5::InputGroup& group, const std::vector<std::int64_t>& indptr, Store store)
-      : group_(&group), indptr_(&indptr), store_(std::move(store)) {
+  BlockReader(const h5::InputGroup& group, const StoredRows& rows_there, Store store)
+      : group_(&group),
+        indptr_(&rows_there.indptr),
+        first_(rows_there.first),
+        last_(rows_there.last),
+        store_(std::move(store)) {
     std::size_t rows = 0;
     indices_ = group.open("indices", Number::i32, 0, rows);
     data_ = group.open("data", h5::numberOf<T>(), 0, rows);
@@ -98,10 +118,9 @@ class BlockReader {
   void readAll() {
     // About four chunks: wide enough for all threads, small beside any matrix worth storing.
     const auto block = std::int64_t(4 * h5::kChunkBytes / sizeof(std::int32_t));
-    const std::size_t n = indptr_->size() - 1;
-    for (std::size_t first = 0; first < n;) {
+    for (std::size_t first = first_; first < last_;) {
       std::size_t last = first + 1;
-      while (last < n && (*indptr_)[last + 1] - (*indptr_)[first] <= block) ++last;
+      while (last < last_ && (*indptr_)[last + 1] - (*indptr_)[first] <= block) ++last;
       read(first, last);
       first = last;
     }
@@ -141,6 +160,8 @@ class BlockReader {
 
   const h5::InputGroup* group_;
   const std::vector<std::int64_t>* indptr_;
+  std::size_t first_;
+  std::size_t last_;
   Store store_;
   h5::Handle indices_;
   h5::Handle data_;
@@ -150,7 +171,7 @@ class BlockReader {
 
 template <class T>
 void readByRows(const h5::InputGroup& group, const StoredRows& rows, ExchangeMatrix& matrix) {
-  BlockReader<T>(group, rows.indptr, [&](std::size_t i, auto columns, auto values) {
+  BlockReader<T>(group, rows, [&](std::size_t i, auto columns, auto values) {
     matrix.setRow(i, std::vector<Index>(columns.begin(), columns.end()),
                   std::vector<double>(values.begin(), values.end()));
   }).readAll();
@@ -182,8 +203,10 @@ void readTriangle(const h5::InputGroup& group, const StoredRows& rows, std::span
     store(k, later, factors);
     surplus.fetch_add(more, std::memory_order_relaxed);
   };
-  BlockReader<T>(group, rows.indptr, keepUpper).readAll();
-  if (surplus != 0) group.fail("indices", "is not that of a symmetric matrix");
+  BlockReader<T>(group, rows, keepUpper).readAll();
+  // Of all rows together there is none.
+  if (rows.first == 0 && rows.last == order.size() && surplus != 0)
+    group.fail("indices", "is not that of a symmetric matrix");
 }
 
 template <class T>
@@ -201,7 +224,8 @@ void readSymmetric(const h5::InputGroup& group, const StoredRows& rows, Exchange
 
 }  // namespace
 
-ExchangeMatrix readMatrix(const h5::InputGroup& group, std::shared_ptr<ScratchMemory> scratch) {
+ExchangeMatrix readMatrix(const h5::InputGroup& group, std::shared_ptr<ScratchMemory> scratch,
+                          const MatrixPart& part) {
   std::size_t n = 0;
   const h5::Handle area_set = group.open("area", Number::f64, 0, n);
   std::vector<double> area(n);
@@ -209,7 +233,8 @@ ExchangeMatrix readMatrix(const h5::InputGroup& group, std::shared_ptr<ScratchMe
   for (const double a : area) {
     if (!(a >= 0) || !std::isfinite(a)) group.fail("area", fmt::format("holds the area {}", a));
   }
-  const StoredRows rows = openRows(group, n);
+  StoredRows rows = openRows(group, n);
+  rows.choose(part);
   const bool single = rows.number == Number::f32;
   const Precision precision = single ? Precision::single_precision : Precision::double_precision;
   if (group.has("order")) {
@@ -221,6 +246,11 @@ ExchangeMatrix readMatrix(const h5::InputGroup& group, std::shared_ptr<ScratchMe
   ExchangeMatrix matrix(std::move(area), precision, std::move(scratch));
   single ? readByRows<float>(group, rows, matrix) : readByRows<double>(group, rows, matrix);
   return matrix;
+}
+
+ExchangeMatrix readMatrixPart(const std::string& path, const MatrixPart& part) {
+  const h5::InputFile file(path);
+  return readMatrix(h5::InputGroup(file).group("form_factors"), nullptr, part);
 }
 
 }  // namespace radiosity

@@ -88,6 +88,7 @@ class Convergence {
   bool lastSweep() const { return sweeps() + 1 >= max_sweeps_; }
   bool finished() const { return converged() || gaveUp() != GaveUp::no || sweeps() >= max_sweeps_; }
   int sweeps() const { return int(history_.size()); }
+  int sweepsLeft() const { return max_sweeps_ - sweeps(); }
   /// Rows of the matrix that were multiplied in a sweep.
   void countRows(std::size_t rows) { rows_ += rows; }
   std::size_t rows() const { return rows_; }
@@ -123,6 +124,8 @@ Fields conjugateGradients(const System& system, Convergence& convergence);
 Fields gmres(const System& system, Convergence& convergence);
 /// O(N^2) memory, O(N^3) time a band.
 Fields direct(const System& system, Convergence& convergence);
+/// The rows must lie in several processes (ExchangeMatrix::sharedRows()).
+Fields petscSolve(const System& system, Convergence& convergence);
 
 /// conjugateGradients() where the matrix is symmetric, else gmres().
 Fields krylovSolve(const System& system, Convergence& convergence);

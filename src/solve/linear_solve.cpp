@@ -28,6 +28,8 @@ std::string_view workOf(Solver solver) {
       return "products of GMRES";
     case Solver::direct:
       return "products of the direct solver";
+    case Solver::petsc:
+      return "products of PETSc";
   }
   throw std::logic_error("a solver without a name");
 }
@@ -46,6 +48,8 @@ Fields run(Solver solver, const System& system, Convergence& convergence) {
       return gmres(system, convergence);
     case Solver::direct:
       return direct(system, convergence);
+    case Solver::petsc:
+      return petscSolve(system, convergence);
   }
   throw std::logic_error("a solver without an iteration");
 }
@@ -58,6 +62,7 @@ struct Choice {
 Choice choose(Solver asked, const ExchangeMatrix& matrix) {
   if (asked != Solver::automatic) return {asked, ""};
   if (matrix.size() <= kFewUnknowns) return {Solver::direct, "few unknowns"};
+  if (matrix.sharedRows() != nullptr) return {Solver::petsc, "the rows lie in several processes"};
   if (matrix.isSymmetric()) return {Solver::cg, "the matrix is symmetric"};
   return {Solver::gmres, "the matrix is not symmetric"};
 }
@@ -135,6 +140,17 @@ void requireSolver(Solver solver, const ExchangeMatrix& matrix) {
         "solver cg: conjugate gradients need a symmetric matrix, and rows of hemicubes are not "
         "(A_i "
         "F_ij = A_j F_ji does not hold); use gmres or auto, or merge the rows (--symmetrize)");
+  }
+  const bool shared = matrix.sharedRows() != nullptr;
+  if (solver == Solver::petsc && !shared) {
+    throw InputError(
+        "solver petsc: it runs on the processes of mpirun: mpirun -n 4 radiosity solve ...; "
+        "without, use cg or auto");
+  }
+  if (solver == Solver::gauss_seidel && shared) {
+    throw InputError(
+        "solver gauss-seidel: a row after the other needs all rows in one process; under mpirun "
+        "use petsc, cg or auto");
   }
   if (solver == Solver::direct && matrix.size() > kMostDirectUnknowns) {
     throw InputError(fmt::format(

@@ -1,27 +1,18 @@
 #include "solve/matrix_rooms.h"
 
-#include "matrix/run_row.h"
-#include "mesh/union_find.h"
+#include "matrix/own_rows.h"
+#include "matrix/shared_rows.h"
 
 namespace radiosity {
 
 MatrixRooms matrixRooms(const ExchangeMatrix& matrix) {
-  const std::size_t n = matrix.size();
-  UnionFind rooms_of(n);
-  for (std::size_t k = 0; k < n && rooms_of.sets() > 1; ++k) {
-    forRuns(matrix.upperRuns(k), [&](std::size_t offset, const auto* values, std::size_t count) {
-      const std::size_t first = k + 1 + offset;
-      for (std::size_t m = 0; m < count; ++m) {
-        if (values[m] != 0) rooms_of.unite(Index(k), Index(first + m));
-      }
-    });
-  }
-  MatrixRooms rooms{std::vector<Index>(n), 0};
-  std::vector<Index> number(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    const Index root = rooms_of.find(Index(k));
-    if (root == k) number[k] = Index(rooms.count++);
-    rooms.of_patch[matrix.order()[k]] = number[root];
+  const SharedRows* const shared = matrix.sharedRows();
+  const std::vector<Index> first = shared != nullptr ? shared->joined() : joinedBy(matrix);
+  MatrixRooms rooms{std::vector<Index>(first.size()), 0};
+  std::vector<Index> number(first.size());
+  for (std::size_t k = 0; k < first.size(); ++k) {
+    if (first[k] == k) number[k] = Index(rooms.count++);
+    rooms.of_patch[matrix.order()[k]] = number[first[k]];
   }
   return rooms;
 }

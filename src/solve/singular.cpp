@@ -39,9 +39,16 @@ void markAllThatSee(const ExchangeMatrix& matrix, int bands, std::vector<double>
       changed = true;
     }
   };
+  std::vector<double> seen(matrix.sharedRows() != nullptr ? marks.size() : 0);
   while (changed) {
     changed = false;
-    matrix.sweep(marks, bands, update);
+    if (seen.empty()) {
+      matrix.sweep(marks, bands, update);
+      continue;
+    }
+    // Rows of several processes: all at once, which takes a few steps more.
+    matrix.product(marks, bands, seen);
+    for (std::size_t i = 0; i < matrix.size(); ++i) update(i, &seen[i * width]);
   }
 }
 

@@ -4,16 +4,21 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
+#include "base/byte_stream.h"
 #include "base/figure_text.h"
+#include "base/hand_out.h"
 #include "base/parallel.h"
 #include "formfactor/hemicube/gpu_rows.h"
 #include "formfactor/hemicube/kept_row.h"
 #include "formfactor/hemicube/row_builder.h"
 #include "formfactor/row_accounts.h"
+#include "matrix/shared_rows.h"
 #include "mesh/canonical_order.h"
 #include "radiosity/closure.h"
 #include "radiosity/matrix_functions.h"
@@ -90,11 +95,18 @@ void finishRow(Rows& rows, std::size_t i, const HemicubeView& view, const Hemicu
   rows.made[i] = 1;
 }
 
+struct RowRange {
+  std::size_t first;
+  std::size_t last;  ///< one beyond
+  std::size_t size() const { return last - first; }
+};
+
 /// Rows that need not be made: empty ones and those in the journal.
-HemicubeRowCounts takeRows(Rows& rows, const Progress& progress) {
+HemicubeRowCounts takeRows(Rows& rows, RowRange range, const Progress& progress) {
   tbb::enumerable_thread_specific<HemicubeRowCounts> taken;
-  parallelFor(rows.made.size(), 1, [&](std::size_t i) {
+  parallelFor(range.size(), 1, [&](std::size_t k) {
     if (progress.cancelled()) return;
+    const std::size_t i = range.first + k;
     rows.made[i] = rows.scene.rows.isEmpty(i) ||
                    (rows.journal != nullptr &&
                     takeRow(*rows.journal, i, rows.result, rows.seen_backs[i], taken.local()));
@@ -131,36 +143,99 @@ HemicubeRowCounts makeRowsByGpu(Rows& rows, Progress& progress) {
   return all;
 }
 
-/// What is left, by the CPU's eye.
-HemicubeRowCounts makeRows(Rows& rows, Progress& progress) {
-  tbb::enumerable_thread_specific<Worker> workers([&] {
-    return Worker{rows.scene.rows.makeHemicube(), {}, {}};
-  });
-  parallelFor(rows.made.size(), 1, [&](std::size_t i) {
+using Workers = tbb::enumerable_thread_specific<Worker>;
+
+/// What is left, by the CPU's eye. How many rows that was.
+std::size_t makeRows(Rows& rows, RowRange range, Workers& workers, Progress& progress) {
+  std::atomic<std::size_t> made{0};
+  parallelFor(range.size(), 1, [&](std::size_t k) {
+    const std::size_t i = range.first + k;
     if (progress.cancelled() || rows.made[i] != 0) return;
     Worker& worker = workers.local();
     const HemicubeView& view = rows.scene.rows.look(i, worker.hemicube, worker.hidden);
     finishRow(rows, i, view, worker.hemicube.takeCounts(), worker.store);
+    made.fetch_add(1, std::memory_order_relaxed);
     progress.advance();
   });
+  progress.check();
+  return made;
+}
+
+/// What all have counted since this was asked last.
+HemicubeRowCounts takeCounts(Workers& workers) {
   HemicubeRowCounts all;
-  for (const Worker& worker : workers) all += worker.store.counts;
+  for (Worker& worker : workers) all += std::exchange(worker.store.counts, {});
   return all;
 }
 
-void fillRows(const HemicubeScene& scene, RowJournal* journal, FormFactors& result,
-              std::vector<std::vector<SeenBack>>& seen_backs, Progress& progress) {
+/// Rows in blocks by all processes; process 0 gets accounts and counts of all of them.
+HemicubeRowCounts shareRows(Processes& processes, Rows& rows, Workers& workers,
+                            Progress& progress) {
+  constexpr std::size_t kBlocksAProcess = 32;
+  const std::size_t n = rows.made.size();
+  FormFactors& result = rows.result;
+  HemicubeRowCounts all;
+  BlockWork work;
+  work.blocks = std::min(n, kBlocksAProcess * std::size_t(processes.size()));
+  const auto rangeOf = [&](std::size_t block) {
+    return RowRange{block * n / work.blocks, (block + 1) * n / work.blocks};
+  };
+  work.run = [&](std::size_t block) {
+    const RowRange range = rangeOf(block);
+    HemicubeRowCounts counts = takeRows(rows, range, progress);
+    const std::size_t made = makeRows(rows, range, workers, progress);
+    counts += takeCounts(workers);
+    ByteWriter bytes;
+    bytes.put(made);
+    bytes.put(counts);
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      bytes.put(result.fronts[i]);
+      bytes.put(result.backs[i]);
+      bytes.put(result.sky[i]);
+      bytes.putArray(std::span<const SeenBack>(rows.seen_backs[i]));
+    }
+    return std::vector<std::byte>(bytes.bytes().begin(), bytes.bytes().end());
+  };
+  work.take = [&](std::size_t block, std::span<const std::byte> from, int process) {
+    ByteReader bytes(from);
+    const auto made = bytes.get<std::size_t>();
+    if (process != 0) progress.advance(made);
+    all += bytes.get<HemicubeRowCounts>();
+    const RowRange range = rangeOf(block);
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      result.fronts[i] = bytes.get<double>();
+      result.backs[i] = bytes.get<double>();
+      result.sky[i] = bytes.get<double>();
+      rows.seen_backs[i] = bytes.getArray<SeenBack>();
+    }
+  };
+  handOut(processes, work, progress);
+  return all;
+}
+
+HemicubeRowCounts fillRows(const HemicubeScene& scene, RowJournal* journal, Processes* processes,
+                           FormFactors& result, std::vector<std::vector<SeenBack>>& seen_backs,
+                           Progress& progress) {
   const std::size_t n = result.fronts.size();
   Rows rows{scene, journal, result, seen_backs, std::vector<std::uint8_t>(n, 0)};
+  Workers workers([&] { return Worker{scene.rows.makeHemicube(), {}, {}}; });
   progress.begin("form factors", n, "rows", rowsThere(scene.rows, n, journal));
-  HemicubeRowCounts all = takeRows(rows, progress);
-  if (scene.gpu != nullptr) all += makeRowsByGpu(rows, progress);
-  all += makeRows(rows, progress);
+  HemicubeRowCounts counts;
+  if (processes != nullptr) {
+    counts = shareRows(*processes, rows, workers, progress);
+  } else {
+    counts = takeRows(rows, {0, n}, progress);
+    if (scene.gpu != nullptr) counts += makeRowsByGpu(rows, progress);
+    makeRows(rows, {0, n}, workers, progress);
+    counts += takeCounts(workers);
+  }
   progress.check();
   progress.end();
+  return counts;
+}
 
+void reportCounts(const HemicubeRowCounts& all, std::size_t n, FormFactorReport& report) {
   const HemicubeCounts& counts = all.drawn;
-  FormFactorReport& report = result.report;
   report.near_pairs = all.near_pairs;
   report.capped = all.capped;
   report.hemicubes = counts.hemicubes;
@@ -173,6 +248,18 @@ void fillRows(const HemicubeScene& scene, RowJournal* journal, FormFactors& resu
   report.skipped_hidden = counts.skipped_hidden;
   report.pixels = counts.pixels;
   report.closed = counts.hemicubes > 0 && counts.sky_pixels == 0;
+}
+
+/// No rows yet.
+FormFactors emptyRows(const PatchMesh& mesh, const FormFactorOptions& options,
+                      std::shared_ptr<ScratchMemory> scratch) {
+  FormFactors result;
+  result.method = "hemicube";
+  result.matrix = ExchangeMatrix(mesh.area, options.storedPrecision(), std::move(scratch));
+  for (std::vector<double>* account : {&result.fronts, &result.backs, &result.sky}) {
+    account->assign(mesh.size(), 0.0);
+  }
+  return result;
 }
 
 /// How far off the entries of a merged matrix may be: the square of the error goes with the
@@ -226,21 +313,22 @@ HemicubeScene::HemicubeScene(const PatchMesh& mesh, const FormFactorOptions& opt
 
 FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
                             const HemicubeEstimate& estimate, const FormFactorOptions& options,
-                            Progress& progress, RowJournal* journal) {
+                            Progress& progress, RowJournal* journal, Processes* processes) {
   const std::size_t n = mesh.size();
-  FormFactors result;
-  result.method = "hemicube";
+  const RowMemory memory = processes != nullptr
+                               ? shareOf(estimate.memory, estimate.matrix_bytes, processes->size())
+                               : estimate.memory;
+  FormFactors result = emptyRows(mesh, options, makeRowMemory(memory, options, n));
   FormFactorReport& report = result.report;
   report.polygons = mesh.polygons.size();
   report.simd_target = scene.rows.kernels().target;
-  report.estimated_bytes = estimate.memory.bytes;
-  result.matrix = ExchangeMatrix(mesh.area, options.storedPrecision(),
-                                 makeRowMemory(estimate.memory, options, n));
-  result.fronts.assign(n, 0.0);
-  result.backs.assign(n, 0.0);
-  result.sky.assign(n, 0.0);
+  report.estimated_bytes = memory.bytes;
   std::vector<std::vector<SeenBack>> seen_backs(n);
-  fillRows(scene, journal, result, seen_backs, progress);
+  reportCounts(fillRows(scene, journal, processes, result, seen_backs, progress), n, report);
+  if (processes != nullptr) {
+    result.matrix = ExchangeMatrix::shared(std::make_shared<SharedRows>(
+        *processes, std::move(result.matrix), [&progress] { progress.check(); }));
+  }
   constexpr std::size_t kSteps = 2;
   progress.begin("finishing", kSteps);
   const auto step = [&] {
@@ -255,6 +343,16 @@ FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
   progress.end();
   if (options.symmetrize) symmetrize(result, progress);
   return result;
+}
+
+ExchangeMatrix hemicubeRowsForOthers(const PatchMesh& mesh, const FormFactorOptions& options,
+                                     Processes& processes, Progress& progress,
+                                     RowJournal* journal) {
+  const HemicubeScene scene(mesh, options);
+  FormFactors result = emptyRows(mesh, options, nullptr);
+  std::vector<std::vector<SeenBack>> seen_backs(mesh.size());
+  fillRows(scene, journal, &processes, result, seen_backs, progress);
+  return std::move(result.matrix);
 }
 
 }  // namespace radiosity

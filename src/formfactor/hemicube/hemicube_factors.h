@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/processes.h"
 #include "formfactor/hemicube/gpu_eye.h"
 #include "formfactor/hemicube/near_pairs.h"
 #include "formfactor/hemicube/row_builder.h"
@@ -32,9 +33,13 @@ HemicubeEstimate estimateHemicubes(const PatchMesh& mesh, const HemicubeScene& s
                                    const FormFactorOptions& options, Progress& progress);
 
 /// Raw rows, as they were seen, unless `symmetrize`. See computeFormFactors(). `scene` is the
-/// mesh's, `estimate` the scene's; `journal` may be null.
+/// mesh's, `estimate` the scene's; `journal` and `processes` may be null.
 FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
                             const HemicubeEstimate& estimate, const FormFactorOptions& options,
-                            Progress& progress, RowJournal* journal);
+                            Progress& progress, RowJournal* journal, Processes* processes);
+
+/// In the other processes, while process 0 is in hemicubeFactors(): the rows that fell to this one.
+ExchangeMatrix hemicubeRowsForOthers(const PatchMesh& mesh, const FormFactorOptions& options,
+                                     Processes& processes, Progress& progress, RowJournal* journal);
 
 }  // namespace radiosity

@@ -10,9 +10,11 @@
 #include <cmath>
 
 #include "formfactor/closed_scene.h"
+#include "formfactor/exact/assembly/shared_tasks.h"
 #include "formfactor/exact/assembly/task_journal.h"
 #include "formfactor/exact/clip_kernels.h"
 #include "formfactor/row_accounts.h"
+#include "matrix/shared_rows.h"
 #include "mesh/canonical_order.h"
 #include "mesh/enclosures.h"
 #include "radiosity/closure.h"
@@ -35,31 +37,69 @@ std::size_t recheckEvery(double occluded_pairs, double tolerance) {
   return std::size_t(std::max(1.0, 1 / share));
 }
 
-/// All rows, in parallel. Sums are made in a tree that depends on the tasks alone.
+/// What rows are put into, and what they are made of.
+struct RowStore {
+  RowStore(const PatchMesh& mesh, const ExactScene& scene, const FormFactorOptions& options,
+           const std::shared_ptr<ScratchMemory>& scratch)
+      : matrix(ExchangeMatrix::symmetric(mesh.area, scene.order.patch, options.storedPrecision(),
+                                         scratch)),
+        backs(mesh.size(), 0.0),
+        seen_backs(mesh.size()),
+        enforces(options.closure == ClosureMode::enforce),
+        uncertain(enforces ? mesh.size() : 0, scratch) {}
+  RowContext context(const ExactScene& scene, const ExactKernels& kernels,
+                     std::size_t recheck_every, const Progress& progress) {
+    return {scene.elements,
+            scene.order,
+            scene.chunks,
+            scene.visibility,
+            kernels.unoccluded,
+            kernels.occluded,
+            progress,
+            recheck_every,
+            matrix,
+            enforces ? &uncertain : nullptr,
+            backs,
+            seen_backs};
+  }
+
+  ExchangeMatrix matrix;
+  std::vector<double> backs;
+  std::vector<std::vector<SeenBack>> seen_backs;
+  bool enforces;
+  UncertainEntries uncertain;
+};
+
+/// All rows, in parallel, or the share of this process. Sums are made in a tree that depends on the
+/// tasks alone.
 RowSums fillRows(const RowContext& context, const RowTasks& tasks, RowJournal* journal,
-                 Progress& progress) {
+                 Processes* processes, Progress& progress) {
   const TaskJournal kept(journal, context, tasks);
   tbb::enumerable_thread_specific<RowAssembly> workers([&] { return RowAssembly(context); });
   using Range = tbb::blocked_range<std::size_t>;
+  const auto sumTasks = [&](std::size_t begin, std::size_t end) {
+    return tbb::parallel_deterministic_reduce(
+        Range(begin, end, 1), RowSums(context.order.ranked),
+        [&](const Range& range, RowSums part) {
+          for (std::size_t t = range.begin(); t != range.end(); ++t) {
+            // A leaf of the tree is one task: `part` holds the sums of no other.
+            if (kept.take(t, part)) continue;
+            const auto rows = tasks[t];
+            workers.local().run(rows, part);
+            kept.keep(t, part);
+            const PatchOrder& order = context.order;
+            progress.advance(order.rank[rows.back().end - 1] + 1 - order.rank[rows.front().first]);
+          }
+          return part;
+        },
+        [](RowSums a, const RowSums& b) {
+          a += b;
+          return a;
+        });
+  };
   progress.begin("form factors", context.order.ranked, "rows", kept.rows());
-  RowSums sums = tbb::parallel_deterministic_reduce(
-      Range(0, tasks.size(), 1), RowSums(context.order.ranked),
-      [&](const Range& range, RowSums part) {
-        for (std::size_t t = range.begin(); t != range.end(); ++t) {
-          // A leaf of the tree is one task: `part` holds the sums of no other.
-          if (kept.take(t, part)) continue;
-          const auto rows = tasks[t];
-          workers.local().run(rows, part);
-          kept.keep(t, part);
-          const PatchOrder& order = context.order;
-          progress.advance(order.rank[rows.back().end - 1] + 1 - order.rank[rows.front().first]);
-        }
-        return part;
-      },
-      [](RowSums a, const RowSums& b) {
-        a += b;
-        return a;
-      });
+  RowSums sums = processes != nullptr ? shareTasks(*processes, context, tasks, sumTasks, progress)
+                                      : sumTasks(0, tasks.size());
   progress.check();
   progress.end();
   return sums;
@@ -160,39 +200,33 @@ void close(const PatchOrder& order, const UncertainEntries& uncertain, ClosureMo
 
 FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
                          const ExactKernels& kernels, const ExactEstimate& estimate,
-                         const FormFactorOptions& options, Progress& progress,
-                         RowJournal* journal) {
+                         const FormFactorOptions& options, Progress& progress, RowJournal* journal,
+                         Processes* processes) {
   const std::size_t n = mesh.size();
+  const RowMemory memory = processes != nullptr
+                               ? shareOf(estimate.memory, estimate.matrix_bytes, processes->size())
+                               : estimate.memory;
   FormFactors result;
   result.method = "exact";
   FormFactorReport& report = result.report;
   report.polygons = mesh.polygons.size();
   report.simd_target = clipKernels(options.simd).target;
   report.empty_rows = n - scene.order.ranked;
-  report.estimated_bytes = estimate.memory.bytes;
-  const std::shared_ptr<ScratchMemory> scratch = makeRowMemory(estimate.memory, options, n);
+  report.estimated_bytes = memory.bytes;
+  const std::shared_ptr<ScratchMemory> scratch = makeRowMemory(memory, options, n);
 
-  result.matrix =
-      ExchangeMatrix::symmetric(mesh.area, scene.order.patch, options.storedPrecision(), scratch);
-  result.backs.assign(n, 0.0);
+  RowStore rows(mesh, scene, options, scratch);
+  std::size_t recheck_every =
+      recheckEvery(estimate.occluded_pairs, options.toleranceOf(FormFactorMethod::exact));
+  if (processes != nullptr) processes->broadcastValue(recheck_every);
+  const RowSums sums = fillRows(rows.context(scene, kernels, recheck_every, progress), scene.tasks,
+                                journal, processes, progress);
+  result.matrix = processes == nullptr
+                      ? std::move(rows.matrix)
+                      : ExchangeMatrix::shared(std::make_shared<SharedRows>(
+                            *processes, std::move(rows.matrix), [&] { progress.check(); }));
+  result.backs = std::move(rows.backs);
   result.sky.assign(n, 0.0);
-  std::vector<std::vector<SeenBack>> seen_backs(n);
-  const bool enforces = options.closure == ClosureMode::enforce;
-  UncertainEntries uncertain(enforces ? n : 0, scratch);
-  const RowContext context{
-      scene.elements,
-      scene.order,
-      scene.chunks,
-      scene.visibility,
-      kernels.unoccluded,
-      kernels.occluded,
-      progress,
-      recheckEvery(estimate.occluded_pairs, options.toleranceOf(FormFactorMethod::exact)),
-      result.matrix,
-      enforces ? &uncertain : nullptr,
-      result.backs,
-      seen_backs};
-  const RowSums sums = fillRows(context, scene.tasks, journal, progress);
   using Clock = std::chrono::steady_clock;
   const Clock::time_point finishing = Clock::now();
   reportCounts(scene, sums, report.exact);
@@ -200,15 +234,27 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   setErrors(scene.order, sums.error, kernels.closed_form, result);
   setAccounts(mesh, scene.order, result, progress);
   if (report.closed && options.closure != ClosureMode::off) {
-    close(scene.order, uncertain, options.closure, result, progress);
+    close(scene.order, rows.uncertain, options.closure, result, progress);
   }
   progress.begin("finishing", 1);
-  accountForBacks(mesh, canonicalOrder(mesh), mesh.area, seen_backs, result);
+  accountForBacks(mesh, canonicalOrder(mesh), mesh.area, rows.seen_backs, result);
   progress.advance();
   progress.end();
   progress.check();
   report.exact.seconds_finish = std::chrono::duration<double>(Clock::now() - finishing).count();
   return result;
+}
+
+ExchangeMatrix exactRowsForOthers(const PatchMesh& mesh, const FormFactorOptions& options,
+                                  Processes& processes, Progress& progress, RowJournal* journal) {
+  const ExactScene scene(mesh, progress);
+  const ExactKernels kernels(scene, options);
+  RowStore rows(mesh, scene, options, nullptr);
+  std::size_t recheck_every = 1;
+  processes.broadcastValue(recheck_every);
+  fillRows(rows.context(scene, kernels, recheck_every, progress), scene.tasks, journal, &processes,
+           progress);
+  return std::move(rows.matrix);
 }
 
 }  // namespace radiosity

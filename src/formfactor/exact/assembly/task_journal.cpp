@@ -65,6 +65,16 @@ void takeCounts(ByteReader& bytes, RowSums& sums) {
 
 }  // namespace
 
+void putSums(const RowSums& sums, std::size_t first, ByteWriter& bytes) {
+  putCounts(sums, bytes);
+  sums.error.put(first, bytes);
+}
+
+bool takeSums(std::size_t first, ByteReader& bytes, RowSums& sums) {
+  takeCounts(bytes, sums);
+  return sums.error.take(first, bytes);
+}
+
 TaskJournal::TaskJournal(RowJournal* journal, const RowContext& context, const RowTasks& tasks)
     : journal_(journal), context_(context), tasks_(tasks) {
   if (journal_ == nullptr) return;
@@ -92,8 +102,7 @@ bool TaskJournal::take(std::size_t task, RowSums& sums) const {
     rows.push_back(takeRow(rank, bytes));
   }
   RowSums found(context_.order.ranked);
-  takeCounts(bytes, found);
-  if (!found.error.take(ranks.first, bytes) || !bytes.isWhole()) return false;
+  if (!takeSums(ranks.first, bytes, found) || !bytes.isWhole()) return false;
   for (std::size_t k = 0; k < rows.size(); ++k) store(ranks.first + k, std::move(rows[k]));
   sums = std::move(found);
   return true;
@@ -104,8 +113,7 @@ void TaskJournal::keep(std::size_t task, const RowSums& sums) const {
   const Ranks ranks = ranksOf(task);
   ByteWriter bytes;
   for (std::size_t rank = ranks.first; rank < ranks.end; ++rank) putRow(rank, bytes);
-  putCounts(sums, bytes);
-  sums.error.put(ranks.first, bytes);
+  putSums(sums, ranks.first, bytes);
   journal_->keep(RowBlock::exact_task, task, bytes.bytes());
 }
 

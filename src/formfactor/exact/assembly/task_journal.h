@@ -11,6 +11,11 @@
 
 namespace radiosity {
 
+/// Sums over pairs of rows from the one of rank `first` on, and back. Of bytes of another number of
+/// rows nothing is taken, and false comes back.
+void putSums(const RowSums& sums, std::size_t first, ByteWriter& bytes);
+bool takeSums(std::size_t first, ByteReader& bytes, RowSums& sums);
+
 /// A block a task: its rows as they are stored, which errors its entries have, the black backs that
 /// they see, and what the task adds to the sums over all pairs, without which the error figures
 /// would not be those of a run in one go.

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "base/geometry/point_tree.h"
+#include "base/union_find.h"
 #include "formfactor/exact/occluders/clip.h"
-#include "mesh/union_find.h"
 
 namespace radiosity {
 

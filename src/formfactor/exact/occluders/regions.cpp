@@ -7,7 +7,7 @@
 
 #include "base/geometry/plane_frame.h"
 #include "base/geometry/solid_angle.h"
-#include "mesh/union_find.h"
+#include "base/union_find.h"
 
 namespace radiosity {
 namespace {

@@ -1,0 +1,121 @@
+#include "base/hand_out.h"
+
+#include <atomic>
+#include <chrono>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "base/byte_stream.h"
+
+namespace radiosity {
+
+namespace {
+
+constexpr std::size_t kNoBlock = std::size_t(-1);
+
+std::vector<std::byte> answer(std::size_t block, std::span<const std::byte> bytes) {
+  ByteWriter writer;
+  writer.put(block);
+  writer.putArray(bytes);
+  return {writer.bytes().begin(), writer.bytes().end()};
+}
+
+void workForOthers(Processes& processes, const BlockWork& work) {
+  std::vector<std::byte> done = answer(kNoBlock, {});
+  for (;;) {
+    processes.send(0, done);
+    const Processes::Message next = processes.receive(0);
+    ByteReader reader(next.bytes);
+    const auto block = reader.get<std::size_t>();
+    if (block == kNoBlock) return;
+    done = answer(block, work.run(block));
+  }
+}
+
+/// Process 0's own share, beside the thread that hands out.
+class OwnShare {
+ public:
+  OwnShare(const BlockWork& work, std::atomic<std::size_t>& next)
+      : work_(work), next_(next), thread_([this] { run(); }) {}
+  ~OwnShare() {
+    next_ = work_.blocks;
+    thread_.join();
+  }
+  OwnShare(const OwnShare&) = delete;
+  OwnShare& operator=(const OwnShare&) = delete;
+
+  /// Hands what was done to take(); throws what the work threw. How many blocks it was.
+  std::size_t collect() {
+    std::deque<std::pair<std::size_t, std::vector<std::byte>>> done;
+    {
+      const std::lock_guard lock(mutex_);
+      if (failure_) std::rethrow_exception(failure_);
+      done.swap(done_);
+    }
+    for (const auto& [block, bytes] : done) work_.take(block, bytes, 0);
+    return done.size();
+  }
+
+ private:
+  void run() {
+    try {
+      for (std::size_t block = next_++; block < work_.blocks; block = next_++) {
+        std::vector<std::byte> bytes = work_.run(block);
+        const std::lock_guard lock(mutex_);
+        done_.emplace_back(block, std::move(bytes));
+      }
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      failure_ = std::current_exception();
+    }
+  }
+
+  const BlockWork& work_;
+  std::atomic<std::size_t>& next_;
+  std::mutex mutex_;
+  std::deque<std::pair<std::size_t, std::vector<std::byte>>> done_;
+  std::exception_ptr failure_;
+  std::thread thread_;
+};
+
+/// Takes what another process did and gives it the next block. Whether it did one.
+bool serve(Processes& processes, const BlockWork& work, std::atomic<std::size_t>& next,
+           int& working) {
+  const Processes::Message message = processes.receive(Processes::kAny);
+  ByteReader reader(message.bytes);
+  const auto done = reader.get<std::size_t>();
+  const std::vector<std::byte> bytes = reader.getArray<std::byte>();
+  std::size_t block = next++;
+  if (block >= work.blocks) {
+    block = kNoBlock;
+    --working;
+  }
+  processes.send(message.from, std::as_bytes(std::span(&block, 1)));
+  if (done == kNoBlock) return false;
+  work.take(done, bytes, message.from);
+  return true;
+}
+
+}  // namespace
+
+void handOut(Processes& processes, const BlockWork& work, Progress& progress) {
+  if (processes.rank() != 0) return workForOthers(processes, work);
+  constexpr std::chrono::milliseconds kBetweenLooks{1};
+  std::atomic<std::size_t> next{0};
+  OwnShare own(work, next);
+  int working = processes.size() - 1;
+  for (std::size_t done = 0; done < work.blocks || working > 0;) {
+    progress.check();
+    done += own.collect();
+    if (processes.hasMessage()) {
+      done += serve(processes, work, next, working) ? 1 : 0;
+    } else {
+      std::this_thread::sleep_for(kBetweenLooks);
+    }
+  }
+}
+
+}  // namespace radiosity

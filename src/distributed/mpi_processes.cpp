@@ -1,0 +1,145 @@
+#include "distributed/mpi_processes.h"
+
+#include <petscsys.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <thread>
+
+#include "distributed/petsc_solve.h"
+
+namespace radiosity {
+
+namespace {
+
+constexpr int kLength = 1;  // tags: how long a message is,
+constexpr int kBytes = 2;   // and its bytes
+/// MPI counts in ints: more go in parts.
+constexpr std::size_t kMostBytes = std::size_t(1) << 30;
+
+/// Waits without taking a core from those that compute: short at first, for answers that come at
+/// once.
+class Patience {
+ public:
+  void wait(const WhileWaiting& waiting) {
+    constexpr int kBusy = 200;
+    constexpr std::chrono::microseconds kShort{20};
+    constexpr std::chrono::microseconds kLong{1000};
+    if (++times_ < kBusy) {
+      std::this_thread::yield();
+      return;
+    }
+    std::this_thread::sleep_for(times_ < 2 * kBusy ? kShort : kLong);
+    if (waiting) waiting();
+  }
+
+ private:
+  int times_ = 0;
+};
+
+/// Calls move(offset, count) for parts of `size` that MPI can count.
+template <class Move>
+void inParts(std::size_t size, std::size_t most, const Move& move) {
+  for (std::size_t at = 0; at < size; at += most) move(at, int(std::min(most, size - at)));
+}
+
+}  // namespace
+
+MpiProcesses::MpiProcesses() {
+  int provided = 0;
+  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+  MPI_Comm_size(MPI_COMM_WORLD, &size_);
+  // Signals are the program's own; PETSc would print its call stack.
+  PetscOptionsSetValue(nullptr, "-no_signal_handler", nullptr);
+  PetscInitializeNoArguments();
+}
+
+void MpiProcesses::wait(MPI_Request& request, const WhileWaiting& waiting) {
+  Patience patience;
+  for (int done = 0;;) {
+    MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+    if (done != 0) return;
+    patience.wait(waiting);
+  }
+}
+
+void MpiProcesses::send(int to, std::span<const std::byte> bytes) {
+  unsigned long long length = bytes.size();
+  MPI_Request request = MPI_REQUEST_NULL;
+  MPI_Isend(&length, 1, MPI_UNSIGNED_LONG_LONG, to, kLength, MPI_COMM_WORLD, &request);
+  wait(request, {});
+  inParts(bytes.size(), kMostBytes, [&](std::size_t at, int count) {
+    MPI_Isend(bytes.data() + at, count, MPI_BYTE, to, kBytes, MPI_COMM_WORLD, &request);
+    wait(request, {});
+  });
+}
+
+bool MpiProcesses::hasMessage() {
+  int there = 0;
+  MPI_Iprobe(MPI_ANY_SOURCE, kLength, MPI_COMM_WORLD, &there, MPI_STATUS_IGNORE);
+  return there != 0;
+}
+
+Processes::Message MpiProcesses::receive(int from, const WhileWaiting& waiting) {
+  const int source = from == kAny ? MPI_ANY_SOURCE : from;
+  unsigned long long length = 0;
+  MPI_Status status{};
+  Patience patience;
+  for (int there = 0; there == 0;) {
+    MPI_Iprobe(source, kLength, MPI_COMM_WORLD, &there, &status);
+    if (there == 0) patience.wait(waiting);
+  }
+  Message message;
+  message.from = status.MPI_SOURCE;
+  MPI_Recv(&length, 1, MPI_UNSIGNED_LONG_LONG, message.from, kLength, MPI_COMM_WORLD,
+           MPI_STATUS_IGNORE);
+  message.bytes.resize(length);
+  inParts(message.bytes.size(), kMostBytes, [&](std::size_t at, int count) {
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Irecv(message.bytes.data() + at, count, MPI_BYTE, message.from, kBytes, MPI_COMM_WORLD,
+              &request);
+    wait(request, waiting);
+  });
+  return message;
+}
+
+void MpiProcesses::broadcast(std::span<std::byte> bytes, const WhileWaiting& waiting) {
+  inParts(bytes.size(), kMostBytes, [&](std::size_t at, int count) {
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Ibcast(bytes.data() + at, count, MPI_BYTE, 0, MPI_COMM_WORLD, &request);
+    wait(request, waiting);
+  });
+}
+
+void MpiProcesses::sum(std::span<double> values, const WhileWaiting& waiting) {
+  inParts(values.size(), kMostBytes / sizeof(double), [&](std::size_t at, int count) {
+    MPI_Request request = MPI_REQUEST_NULL;
+    double* mine = values.data() + at;
+    MPI_Ireduce(rank_ == 0 ? MPI_IN_PLACE : mine, rank_ == 0 ? mine : nullptr, count, MPI_DOUBLE,
+                MPI_SUM, 0, MPI_COMM_WORLD, &request);
+    wait(request, waiting);
+  });
+}
+
+KrylovOutcome MpiProcesses::solve(const KrylovProblem& problem, std::span<double> solution) {
+  return petscSolve(problem, solution);
+}
+
+void MpiProcesses::finish() {
+  PetscFinalize();
+  MPI_Finalize();
+}
+
+void MpiProcesses::abort(int code) {
+  MPI_Abort(MPI_COMM_WORLD, code);
+  std::abort();
+}
+
+}  // namespace radiosity
+
+extern "C" [[gnu::visibility("default")]] radiosity::Processes* radiosityProcesses() {
+  static radiosity::MpiProcesses processes;
+  return &processes;
+}

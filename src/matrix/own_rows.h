@@ -1,0 +1,31 @@
+// What a process makes of the rows that it holds of a matrix (shared_rows.h).
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "radiosity/exchange_matrix.h"
+
+namespace radiosity {
+
+/// Symmetric form: what row k gathers of ones, its diagonal included, and adds what it hands on to
+/// row q to handed_on[q - begin]. `begin`: at most k, and a multiple of kSums (triangle_kernels.h);
+/// ones, and room, for whole vectors of rows from there on.
+double sumRow(const ExchangeMatrix& own, std::size_t k, std::size_t begin,
+              std::span<const double> ones, std::span<double> handed_on);
+
+/// y = the transpose of the rows times x, N * bands; in the symmetric form by one product.
+void transposedProduct(const ExchangeMatrix& own, std::span<const double> x, int bands,
+                       std::span<double> y);
+
+/// Calls visit(i, j, F_ij) for every entry of the rows, in the symmetric form for those that they
+/// hand on, too.
+void forOwnEntries(const ExchangeMatrix& own,
+                   const std::function<void(std::size_t, std::size_t, double)>& visit);
+
+/// Symmetric form, by position: the first of those that these rows join it to.
+std::vector<Index> joinedBy(const ExchangeMatrix& own);
+
+}  // namespace radiosity

@@ -1,0 +1,319 @@
+#include "matrix/shared_rows.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/byte_stream.h"
+#include "base/parallel.h"
+#include "base/union_find.h"
+#include "matrix/ordered_sums.h"
+#include "matrix/own_rows.h"
+#include "matrix/run_row.h"
+#include "matrix/sort_entries.h"
+
+namespace radiosity {
+
+namespace {
+
+constexpr std::size_t kRowGrain = 64;
+
+enum class Request : std::uint32_t {
+  product,
+  row_sums,
+  sizes,
+  panel,
+  columns,
+  joined,
+  solve,
+  forget
+};
+
+struct Order {
+  Request request = Request::forget;
+  std::int32_t bands = 1;
+  std::uint64_t first = 0;
+  std::uint64_t last = 0;
+};
+
+/// Row entries, then bytes and dense rows: whole numbers, which sums of doubles keep.
+std::vector<double> sizesOf(const ExchangeMatrix& own) {
+  const std::vector<Index> entries = own.rowEntries();
+  std::vector<double> sizes(entries.begin(), entries.end());
+  sizes.push_back(double(own.bytes()));
+  sizes.push_back(double(own.denseRows()));
+  return sizes;
+}
+
+RowOwners findOwners(Processes& processes, const ExchangeMatrix& own, const WhileWaiting& waiting) {
+  RowOwners owners;
+  if (!own.isSymmetric()) return owners;
+  const std::size_t n = own.size();
+  std::vector<double> work(2 * n, 0.0);
+  for (std::size_t k = 0; k < n; ++k) {
+    work[k] = double(workOf(own.upperRuns(k)));
+    if (work[k] > 0) work[n + k] = processes.rank() + 1;
+  }
+  processes.sum(work, waiting);
+  processes.broadcastArray(work, waiting);
+  owners.work.assign(work.begin(), work.begin() + std::ptrdiff_t(n));
+  for (std::size_t k = 0; k < n; ++k) owners.owner.push_back(int(work[n + k]) - 1);
+  return owners;
+}
+
+struct PanelRows {
+  std::vector<Index> counts;  ///< entries of each row
+  std::vector<Index> columns;
+  std::vector<double> values;
+};
+
+PanelRows panelOf(const ExchangeMatrix& own, std::size_t first, std::size_t last) {
+  PanelRows rows;
+  const RowPanel panel(own, first, last);
+  for (std::size_t i = first; i < last; ++i) {
+    const std::size_t before = rows.columns.size();
+    panel.forRow(i, [&](Index column, double value) {
+      rows.columns.push_back(column);
+      rows.values.push_back(value);
+    });
+    rows.counts.push_back(Index(rows.columns.size() - before));
+  }
+  return rows;
+}
+
+/// `dense`: of zeros.
+void fillColumns(const ExchangeMatrix& own, std::size_t first, std::size_t last,
+                 std::span<double> dense) {
+  const std::size_t n = own.size();
+  const RowPanel rows(own, 0, n);
+  parallelFor(n, kRowGrain, [&](std::size_t i) {
+    rows.forRow(i, first, last, [&](Index j, double value) { dense[(j - first) * n + i] = value; });
+  });
+}
+
+void send(Processes& processes, const PanelRows& rows) {
+  ByteWriter bytes;
+  bytes.putArray(std::span(rows.counts));
+  bytes.putArray(std::span(rows.columns));
+  bytes.putArray(std::span(rows.values));
+  processes.send(0, bytes.bytes());
+}
+
+PanelRows receive(Processes& processes, int from, const WhileWaiting& waiting) {
+  const Processes::Message message = processes.receive(from, waiting);
+  ByteReader bytes(message.bytes);
+  PanelRows rows;
+  rows.counts = bytes.getArray<Index>();
+  rows.columns = bytes.getArray<Index>();
+  rows.values = bytes.getArray<double>();
+  return rows;
+}
+
+/// What all processes know of a problem, and then their own parts of it.
+class SharedProblem {
+ public:
+  SharedProblem(Processes& processes, const ExchangeMatrix& own, const KrylovProblem& given,
+                const WhileWaiting& waiting)
+      : left_(given.left.begin(), given.left.end()),
+        right_(given.right.begin(), given.right.end()),
+        right_side_(given.right_side.begin(), given.right_side.end()),
+        near_null_(given.near_null.begin(), given.near_null.end()),
+        near_null_of_(given.near_null_of.begin(), given.near_null_of.end()) {
+    struct {
+      std::uint64_t near_nulls;
+      double reduction;
+      std::int32_t bands;
+      std::int32_t most_products;
+      bool symmetric;
+    } figures{given.near_nulls, given.reduction, given.bands, given.most_products, given.symmetric};
+    processes.broadcastValue(figures, waiting);
+    for (std::vector<double>* values : {&left_, &right_, &right_side_, &near_null_}) {
+      processes.broadcastArray(*values, waiting);
+    }
+    processes.broadcastArray(near_null_of_, waiting);
+    problem_.rows = own.size();
+    problem_.bands = figures.bands;
+    problem_.left = left_;
+    problem_.right = right_;
+    problem_.right_side = right_side_;
+    problem_.symmetric = figures.symmetric;
+    problem_.near_null = near_null_;
+    problem_.near_null_of = near_null_of_;
+    problem_.near_nulls = figures.near_nulls;
+    problem_.reduction = figures.reduction;
+    problem_.most_products = figures.most_products;
+    const int bands = figures.bands;
+    problem_.product = [&own, bands](std::span<const double> x, std::span<double> y) {
+      own.product(x, bands, y);
+    };
+    problem_.transposed_product = [&own, bands](std::span<const double> x, std::span<double> y) {
+      transposedProduct(own, x, bands, y);
+    };
+    problem_.entries = [&own](const KrylovProblem::Visit& visit) { forOwnEntries(own, visit); };
+  }
+
+  const KrylovProblem& problem() const { return problem_; }
+
+ private:
+  std::vector<double> left_;
+  std::vector<double> right_;
+  std::vector<double> right_side_;
+  std::vector<double> near_null_;
+  std::vector<unsigned> near_null_of_;
+  KrylovProblem problem_;
+};
+
+}  // namespace
+
+SharedRows::SharedRows(Processes& processes, ExchangeMatrix own, WhileWaiting waiting)
+    : processes_(processes),
+      own_(std::move(own)),
+      waiting_(std::move(waiting)),
+      owners_(findOwners(processes_, own_, waiting_)) {}
+
+SharedRows::~SharedRows() {
+  if (processes_.halfDone()) return;
+  Order order;
+  processes_.broadcastValue(order);
+}
+
+void SharedRows::product(std::span<const double> x, int bands, std::span<double> y,
+                         std::span<const std::uint8_t> wanted) const {
+  const SharedStep step(processes_);
+  Order order{.request = Request::product, .bands = bands};
+  processes_.broadcastValue(order, waiting_);
+  std::vector<double> sums(x.begin(), x.end());
+  processes_.broadcast(std::as_writable_bytes(std::span(sums)), waiting_);
+  own_.product(x, bands, sums);
+  processes_.sum(sums, waiting_);
+  const auto width = std::size_t(bands);
+  for (std::size_t i = 0; i < own_.size(); ++i) {
+    if (!wanted.empty() && wanted[i] == 0) continue;
+    std::copy_n(&sums[i * width], width, &y[i * width]);
+  }
+}
+
+std::vector<double> SharedRows::rowSums() const {
+  const SharedStep step(processes_);
+  Order order{.request = Request::row_sums};
+  processes_.broadcastValue(order, waiting_);
+  return orderedRowSums(processes_, own_, owners_, waiting_);
+}
+
+SharedRows::Sizes SharedRows::sizes() const {
+  const SharedStep step(processes_);
+  Order order{.request = Request::sizes};
+  processes_.broadcastValue(order, waiting_);
+  std::vector<double> sums = sizesOf(own_);
+  processes_.sum(sums, waiting_);
+  Sizes sizes;
+  sizes.row_entries.assign(sums.begin(), sums.begin() + std::ptrdiff_t(own_.size()));
+  sizes.bytes = std::size_t(sums[own_.size()]);
+  sizes.dense_rows = std::size_t(sums[own_.size() + 1]);
+  return sizes;
+}
+
+void SharedRows::panel(std::size_t first, std::size_t last, std::vector<std::size_t>& starts,
+                       std::vector<Index>& columns, std::vector<double>& values) const {
+  const SharedStep step(processes_);
+  Order order{.request = Request::panel, .first = first, .last = last};
+  processes_.broadcastValue(order, waiting_);
+  std::vector<PanelRows> parts{panelOf(own_, first, last)};
+  for (int p = 1; p < processes_.size(); ++p) parts.push_back(receive(processes_, p, waiting_));
+  starts.assign(1, 0);
+  std::vector<std::size_t> taken(parts.size(), 0);
+  EntrySorter sorter;
+  for (std::size_t row = 0; row < last - first; ++row) {
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      const std::size_t end = taken[p] + parts[p].counts[row];
+      for (; taken[p] < end; ++taken[p]) {
+        columns.push_back(parts[p].columns[taken[p]]);
+        values.push_back(parts[p].values[taken[p]]);
+      }
+    }
+    sorter.sort(std::span(columns).subspan(starts.back()), std::span(values).subspan(starts.back()),
+                own_.size());
+    starts.push_back(columns.size());
+  }
+}
+
+void SharedRows::columns(std::size_t first, std::size_t last, std::span<double> dense) const {
+  const SharedStep step(processes_);
+  Order order{.request = Request::columns, .first = first, .last = last};
+  processes_.broadcastValue(order, waiting_);
+  fillColumns(own_, first, last, dense);
+  processes_.sum(dense, waiting_);
+}
+
+std::vector<Index> SharedRows::joined() const {
+  const SharedStep step(processes_);
+  Order order{.request = Request::joined};
+  processes_.broadcastValue(order, waiting_);
+  UnionFind sets(own_.size());
+  std::vector<Index> first = joinedBy(own_);
+  for (int p = 0;;) {
+    for (std::size_t k = 0; k < first.size(); ++k) sets.unite(first[k], Index(k));
+    if (++p == processes_.size()) break;
+    const Processes::Message message = processes_.receive(p, waiting_);
+    ByteReader bytes(message.bytes);
+    first = bytes.getArray<Index>();
+  }
+  for (std::size_t k = 0; k < first.size(); ++k) first[k] = sets.find(Index(k));
+  return first;
+}
+
+KrylovOutcome SharedRows::solve(const KrylovProblem& problem, std::span<double> solution) const {
+  const SharedStep step(processes_);
+  Order order{.request = Request::solve};
+  processes_.broadcastValue(order, waiting_);
+  const SharedProblem shared(processes_, own_, problem, waiting_);
+  return processes_.solve(shared.problem(), solution);
+}
+
+void serveRows(Processes& processes, const ExchangeMatrix& own) {
+  const RowOwners owners = findOwners(processes, own, {});
+  std::vector<double> values;
+  for (Order order;;) {
+    processes.broadcastValue(order);
+    switch (order.request) {
+      case Request::product: {
+        std::vector<double> x(own.size() * std::size_t(order.bands));
+        processes.broadcast(std::as_writable_bytes(std::span(x)));
+        values.assign(x.size(), 0.0);
+        own.product(x, order.bands, values);
+        processes.sum(values);
+        break;
+      }
+      case Request::row_sums:
+        orderedRowSums(processes, own, owners, {});
+        break;
+      case Request::sizes:
+        values = sizesOf(own);
+        processes.sum(values);
+        break;
+      case Request::panel:
+        send(processes, panelOf(own, order.first, order.last));
+        break;
+      case Request::columns:
+        values.assign((order.last - order.first) * own.size(), 0.0);
+        fillColumns(own, order.first, order.last, values);
+        processes.sum(values);
+        break;
+      case Request::joined: {
+        ByteWriter bytes;
+        const std::vector<Index> first = joinedBy(own);
+        bytes.putArray(std::span(first));
+        processes.send(0, bytes.bytes());
+        break;
+      }
+      case Request::solve: {
+        const SharedProblem shared(processes, own, {}, {});
+        processes.solve(shared.problem(), {});
+        break;
+      }
+      case Request::forget:
+        return;
+    }
+  }
+}
+
+}  // namespace radiosity

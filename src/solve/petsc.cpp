@@ -1,0 +1,125 @@
+// PETSc's solvers, where the rows of the matrix lie in several processes.
+//
+// With H = F B and z = L H, B = E + R z is the solution where (I - L F R) z = L F E. In the
+// symmetric form L = D sqrt(A) and R = D A^-1/2, D = sqrt(rho), as in conjugate_gradients.cpp; else
+// L = rho and R = 1. PETSc's residual is that of its recurrence, in a norm; the true one of B
+// follows, and where it is not small enough, what is missing is solved for in turn.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "matrix/shared_rows.h"
+#include "solve/iteration.h"
+#include "solve/matrix_rooms.h"
+
+namespace radiosity {
+
+namespace {
+
+/// Of what is asked for: PETSc stops by the 2-norm, and the largest residual is to be below.
+constexpr double kMargin = 0.1;
+constexpr double kLeastReduction = 1e-14;
+/// Where the residual is small enough but for patches that little light reaches.
+constexpr double kSettling = 1e-3;
+/// Solutions that leave more than half of the residual, one after the other, before it is taken for
+/// rounding.
+constexpr int kMostStalls = 3;
+
+class PetscSolve {
+ public:
+  PetscSolve(const System& system, Convergence& convergence)
+      : system_(system),
+        convergence_(convergence),
+        left_(system.reflectance),
+        right_(left_.size(), 1.0),
+        z_(left_.size(), 0.0),
+        fields_{system.emission, std::vector<double>(left_.size())} {
+    if (!system.matrix.isSymmetric()) return;
+    const auto bands = std::size_t(system.bands);
+    for (std::size_t k = 0; k < left_.size(); ++k) {
+      const double root = std::sqrt(system.matrix.area()[k / bands]);
+      const double d = root > 0 ? std::sqrt(system.reflectance[k]) : 0.0;
+      left_[k] = d * root;
+      right_[k] = root > 0 ? d / root : 0.0;
+    }
+  }
+
+  Fields run() {
+    double last = HUGE_VAL;
+    int stalls = 0;
+    for (;;) {
+      for (std::size_t k = 0; k < z_.size(); ++k) {
+        fields_.radiosity[k] = system_.emission[k] + right_[k] * z_[k];
+      }
+      multiply(system_, fields_, convergence_);
+      const double residual = relativeResidual(system_, fields_.radiosity, fields_.irradiance);
+      stalls = residual > 0.5 * last ? stalls + 1 : 0;
+      last = residual;
+      convergence_.record(residual, smallEverywhere(system_, fields_.radiosity, fields_.irradiance,
+                                                    convergence_.tolerance()));
+      if (convergence_.converged()) return std::move(fields_);
+      if (indefinite_) convergence_.giveUp(GaveUp::grows);
+      if (stalls == kMostStalls) convergence_.giveUp(GaveUp::rounding);
+      if (convergence_.finished()) return std::move(fields_);
+      improve(residual);
+    }
+  }
+
+ private:
+  /// Adds the z that the residual `residual` of B is short of.
+  void improve(double residual) {
+    if (rooms_.of_patch.empty() && system_.matrix.isSymmetric()) findRooms();
+    std::vector<double> missing(z_.size());
+    for (std::size_t k = 0; k < missing.size(); ++k) {
+      missing[k] = left_[k] * fields_.irradiance[k] - z_[k];
+    }
+    KrylovProblem problem;
+    problem.rows = system_.matrix.size();
+    problem.bands = system_.bands;
+    problem.left = left_;
+    problem.right = right_;
+    problem.right_side = missing;
+    problem.symmetric = system_.matrix.isSymmetric();
+    problem.near_null_of = room_of_;
+    problem.near_null = problem.symmetric ? std::span<const double>(left_) : std::span<double>();
+    problem.near_nulls = rooms_.count * std::size_t(system_.bands);
+    const double wanted = kMargin * convergence_.tolerance() / residual;
+    problem.reduction = wanted < kMargin ? std::max(wanted, kLeastReduction) : kSettling;
+    problem.most_products = std::max(1, convergence_.sweepsLeft() - 1);  // one is left to check
+    std::vector<double> step(z_.size());
+    const KrylovOutcome outcome = system_.matrix.sharedRows()->solve(problem, step);
+    indefinite_ = outcome.indefinite;
+    for (const double reduced : outcome.reductions) {
+      convergence_.countRows(system_.matrix.size());
+      convergence_.record(residual * reduced, false);
+    }
+    if (indefinite_) return;
+    for (std::size_t k = 0; k < z_.size(); ++k) z_[k] += step[k];
+  }
+
+  void findRooms() {
+    rooms_ = matrixRooms(system_.matrix);
+    const auto bands = std::size_t(system_.bands);
+    for (std::size_t k = 0; k < z_.size(); ++k) {
+      room_of_.push_back(unsigned(rooms_.of_patch[k / bands] * bands + k % bands));
+    }
+  }
+
+  const System& system_;
+  Convergence& convergence_;
+  std::vector<double> left_;
+  std::vector<double> right_;
+  std::vector<double> z_;
+  Fields fields_;
+  MatrixRooms rooms_;
+  std::vector<unsigned> room_of_;  // by place: room * bands + band
+  bool indefinite_ = false;
+};
+
+}  // namespace
+
+Fields petscSolve(const System& system, Convergence& convergence) {
+  return PetscSolve(system, convergence).run();
+}
+
+}  // namespace radiosity

@@ -1,0 +1,205 @@
+"""Several processes, started by mpirun: the same form factors to the bit, the same light, rows
+shared between them; what they cannot do is refused in a line."""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import time
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from cli_runner import DATA, PROGRAM, CliTest
+
+BOX = str(DATA / "cornell-box-closed.obj")
+ROOMS = str(DATA / "two-rooms.obj")
+CITY = str(DATA / "city.stl")
+# As root, and with more processes than cores.
+ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+BUILT = (Path(PROGRAM).parent / "libradiosity_distributed.so").exists()
+
+
+def launch(processes, *arguments):
+    # Unbound, each with one thread: processes then share cores as they come.
+    return ["mpirun", "--oversubscribe", "--bind-to", "none", "-n", str(processes), PROGRAM,
+            *arguments, "--threads", "1"]
+
+
+def processes_of(launcher):
+    """The ids of the programs that a launcher runs."""
+    children = Path(f"/proc/{launcher}/task/{launcher}/children").read_text().split()
+    return [int(child) for child in children]
+
+
+def work_of(launcher, count):
+    """Processor seconds of its programs; 0 for those of `count` that are not there yet."""
+    ticks = [Path(f"/proc/{p}/stat").read_text().split()[13] for p in processes_of(launcher)]
+    seconds = [int(t) / os.sysconf("SC_CLK_TCK") for t in ticks]
+    return seconds + [0.0] * (count - len(seconds))
+
+
+def peak_bytes(process):
+    found = re.search(r"VmHWM:\s+(\d+) kB", Path(f"/proc/{process}/status").read_text())
+    return 1024 * int(found[1]) if found else 0
+
+
+@unittest.skipUnless(BUILT, "built without MPI (RADIOSITY_MPI)")
+class MpiTest(CliTest):
+    def mpirun(self, processes, *arguments, petsc="", code=0):
+        done = subprocess.run(launch(processes, *arguments), cwd=self.folder, timeout=300, text=True,
+                              capture_output=True, env={**ENVIRONMENT, "PETSC_OPTIONS": petsc})
+        self.assertEqual(done.returncode, code, done.stderr)
+        return done
+
+    def assert_same_factors(self, first, second):
+        with h5py.File(self.folder / first) as a, h5py.File(self.folder / second) as b:
+            a, b = a["form_factors"], b["form_factors"]
+            arrays = [name for name in a if isinstance(a[name], h5py.Dataset)]
+            self.assertIn("data", arrays)
+            self.assertEqual(arrays, [n for n in b if isinstance(b[n], h5py.Dataset)])
+            for name in arrays:
+                self.assertEqual(a[name][()].tobytes(), b[name][()].tobytes(), name)
+
+    def radiosity_of(self, file):
+        with h5py.File(self.folder / file) as results:
+            return results["solution/radiosity"][()]
+
+    def test_form_factors_have_the_same_bits_for_any_number_of_processes(self):
+        raw = ["hemicube", "--resolution", "64"]
+        for scene, patches, method, counts in [(BOX, "300", ["exact"], [1, 2, 4]),
+                                               (ROOMS, "250", ["exact"], [4]),
+                                               (CITY, "1200", ["exact"], [2]),
+                                               (ROOMS, "250", raw, [2])]:
+            with self.subTest(f"{scene} {method}"):
+                options = ["factors", scene, "--patches", patches, "--method", *method]
+                self.run_program(*options, "-o", "one.h5")
+                for processes in counts:
+                    self.mpirun(processes, *options, "-o", "many.h5")
+                    self.assert_same_factors("one.h5", "many.h5")
+                    os.remove(self.folder / "many.h5")
+
+    def test_more_processes_than_blocks_of_rows(self):
+        options = ["factors", str(DATA / "facing-plates.obj"), "--patches", "2"]
+        self.run_program(*options, "--method", "exact", "-o", "one.h5")
+        self.mpirun(4, *options, "-o", "many.h5")
+        self.assert_same_factors("one.h5", "many.h5")
+
+    def test_solutions_are_those_of_one_process(self):
+        # The residual is at rounding, so that solutions differ by no more than it leaves.
+        exactly = ["--solve-tolerance", "1e-14"]
+        for scene, patches, runs in [(BOX, "400", [(1, "auto"), (2, "petsc"), (4, "petsc")]),
+                                     (ROOMS, "400", [(2, "petsc"), (2, "cg")])]:
+            options = ["solve", scene, "--patches", patches, "--method", "exact", *exactly]
+            self.run_program(*options, "--solver", "cg", "-o", "one.h5")
+            expected = self.radiosity_of("one.h5")
+            for processes, solver in runs:
+                with self.subTest(f"{scene} {processes} {solver}"):
+                    done = self.mpirun(processes, *options, "--solver", solver, "-o", "many.h5")
+                    self.assertIn("converged", done.stdout)
+                    found = self.radiosity_of("many.h5")
+                    self.assertLess(np.abs(found - expected).max(), 1e-12 * expected.max())
+                    os.remove(self.folder / "many.h5")
+
+    def test_many_read_what_one_wrote_and_one_what_many_wrote(self):
+        options = [BOX, "--patches", "400", "--method", "exact"]
+        self.run_program("factors", *options, "-o", "one.h5")
+        self.mpirun(3, "factors", *options, "-o", "many.h5")
+        self.mpirun(3, "solve", "one.h5", "-o", "solved_by_many.h5")
+        self.run_program("solve", "many.h5", "-o", "solved_by_one.h5")
+        self.assert_same_factors("solved_by_many.h5", "solved_by_one.h5")
+        one = self.radiosity_of("solved_by_one.h5")
+        # Both are within their bounds of the solution, of a residual of 1e-6 of the lamp.
+        self.assertLess(np.abs(self.radiosity_of("solved_by_many.h5") - one).max(), 1e-5 * one.max())
+
+    def test_petsc_takes_its_own_options(self):
+        options = ["solve", BOX, "--patches", "300", "--method", "exact", "--solve-tolerance", "1e-9"]
+        self.run_program(*options, "--solver", "cg", "-o", "one.h5")
+        expected = self.radiosity_of("one.h5")
+        for petsc, printed in [("-ksp_monitor", "KSP Residual norm"),
+                               ("-ksp_type richardson -pc_type none -ksp_view", "type: richardson"),
+                               ("-radiosity_mat_type aij -ksp_type richardson -pc_type sor -ksp_view",
+                                "type: mpiaij")]:
+            with self.subTest(petsc):
+                done = self.mpirun(2, *options, "--solver", "petsc", "-o", "many.h5", petsc=petsc)
+                self.assertIn(printed, done.stdout)
+                self.assertLess(np.abs(self.radiosity_of("many.h5") - expected).max(),
+                                1e-6 * expected.max())
+                os.remove(self.folder / "many.h5")
+
+    def peaks(self, processes, *arguments):
+        """The most memory that any process of a run took, and the run's report."""
+        run = subprocess.Popen([*launch(processes, *arguments), "--report", "report.json"],
+                               cwd=self.folder, env=ENVIRONMENT, stdout=subprocess.DEVNULL)
+        most = 0
+        while run.poll() is None:
+            try:
+                most = max([most, *map(peak_bytes, processes_of(run.pid))])
+            except (FileNotFoundError, ProcessLookupError):
+                pass
+            time.sleep(0.01)
+        self.assertEqual(run.returncode, 0)
+        return most, json.loads((self.folder / "report.json").read_text())
+
+    def test_memory_of_a_process_falls_with_their_number(self):
+        options = ["solve", BOX, "--patches", "4000", "--method", "exact"]
+        alone, report = self.peaks(1, *options)
+        matrix = report["form_factors"]["matrix_bytes"]
+        fourth, _ = self.peaks(4, *options)
+        # Three quarters of the rows are elsewhere; buffers of messages take some of it.
+        self.assertGreater(alone - fourth, 0.6 * matrix)
+
+    def test_a_killed_process_ends_all_and_is_named(self):
+        run = subprocess.Popen(launch(3, "factors", str(DATA / "cluttered.obj"), "--patches", "3000",
+                                      "--method", "exact", "-o", "f.h5"),
+                               cwd=self.folder, env=ENVIRONMENT, text=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        # Once it is at work; a launcher that still starts processes waits for a dead one.
+        while run.poll() is None and not all(t > 0.3 for t in work_of(run.pid, 3)):
+            time.sleep(0.05)
+        os.kill(processes_of(run.pid)[1], signal.SIGKILL)
+        out, err = run.communicate(timeout=60)
+        self.assertNotEqual(run.returncode, 0)
+        self.assertRegex(out + err, r"rank 1 .*signal 9")
+        self.assertFalse((self.folder / "f.h5").exists())
+
+    def test_rows_that_processes_kept_are_found_by_any_number_of_them(self):
+        options = ["factors", BOX, "--patches", "1500", "--method", "exact", "--tolerance", "1e-5"]
+        self.run_program(*options, "-o", "one.h5")
+        run = subprocess.Popen(launch(3, *options, "--resume", "-o", "f.h5"), cwd=self.folder,
+                               env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        kept = [self.folder / name for name in ["f.h5.rows", "f.h5.rows.1", "f.h5.rows.2"]]
+        while run.poll() is None and not all(f.exists() and f.stat().st_size > 20000 for f in kept):
+            time.sleep(0.002)
+        for process in processes_of(run.pid) if run.poll() is None else []:
+            os.kill(process, signal.SIGKILL)
+        run.wait()
+        self.assertTrue(all(file.exists() for file in kept), "the run came to its end")
+        done = self.mpirun(2, *options, "--resume", "-o", "f.h5")
+        found = re.search(r"resumed: (\d+) of", done.stdout)
+        self.assertGreater(int(found[1]), 0)
+        self.assert_same_factors("one.h5", "f.h5")
+        self.assertFalse([name for name in self.files() if ".rows" in name])
+
+    def test_what_processes_cannot_share_is_refused(self):
+        for options, words in [(["--method", "rays"], "--method exact"),
+                               (["--method", "hemicube", "--eye", "gl"], "--eye cpu"),
+                               (["--method", "exact", "--closure", "enforce"], "--closure enforce")]:
+            done = self.mpirun(2, "factors", BOX, "--patches", "100", *options, code=2)
+            self.assertIn(words, done.stderr)
+        done = self.mpirun(2, "solve", BOX, "--patches", "100", "--method", "exact", "--solver",
+                           "gauss-seidel", code=2)
+        self.assertIn("petsc", done.stderr)
+        alone = self.run_program("solve", BOX, "--patches", "100", "--solver", "petsc", code=2)
+        self.assertIn("mpirun", alone.err)
+
+    def test_a_fault_of_the_scene_is_told_once(self):
+        done = self.mpirun(3, "factors", "missing.obj", code=2)
+        self.assertEqual(done.stderr.count("missing.obj"), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
