@@ -2,7 +2,7 @@
 
 #include <petscksp.h>
 
-#include <chrono>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -130,11 +130,12 @@ std::string nameOf(KSP ksp, PC pc) {
 
 KrylovOutcome petscSolve(const KrylovProblem& problem, std::span<double> solution) {
   ShellOperator shell(problem);
-  const CoarseCorrection coarse(problem, shell);
+  std::optional<CoarseCorrection> coarse;
+  if (problem.near_nulls > 0) coarse.emplace(problem, shell);
   OwnedMat entries;
   if (wantsEntries()) {
     entries.handle = shell.assembled();
-    coarse.attach(entries.handle);
+    if (coarse) coarse->attach(entries.handle);
   }
   const Mat matrix = entries.handle != nullptr ? entries.handle : shell.matrix();
 
@@ -149,9 +150,9 @@ KrylovOutcome petscSolve(const KrylovProblem& problem, std::span<double> solutio
                                   problem.most_products));
   requireNoError(KSPSetResidualHistory(ksp.handle, nullptr, problem.most_products + 1, PETSC_TRUE));
   requireNoError(KSPGetPC(ksp.handle, &pc));
-  requireNoError(PCSetType(pc, problem.near_nulls > 0 ? PCSHELL : PCNONE));
-  if (problem.near_nulls > 0) {
-    requireNoError(PCShellSetContext(pc, const_cast<CoarseCorrection*>(&coarse)));
+  requireNoError(PCSetType(pc, coarse ? PCSHELL : PCNONE));
+  if (coarse) {
+    requireNoError(PCShellSetContext(pc, &*coarse));
     requireNoError(PCShellSetApply(pc, CoarseCorrection::apply));
   }
   requireNoError(KSPSetFromOptions(ksp.handle));

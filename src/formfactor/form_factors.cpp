@@ -318,7 +318,7 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress, R
     if (prepared.exact_rows) known = prepared.exact_rows->compute(progress);
     const double seconds_known = secondsSince(start);
     result = rayFactors(prepared.mesh, *prepared.rays, std::move(known), prepared.ray_estimate,
-                        prepared.options, progress, journal);
+                        prepared.options, progress, journal, processes);
     result.report.rays.seconds_prepare += seconds_known;
     noteRowsByRays(prepared, result.report);
   } else {

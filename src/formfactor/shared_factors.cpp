@@ -5,6 +5,7 @@
 #include "base/hash.h"
 #include "formfactor/exact/assembly/exact_factors.h"
 #include "formfactor/hemicube/hemicube_factors.h"
+#include "formfactor/rays/ray_factors.h"
 
 namespace radiosity {
 
@@ -32,11 +33,6 @@ std::uint64_t checksumOfMesh(const PatchMesh& mesh) {
 }  // namespace
 
 void requireShareable(const PatchMesh& mesh, const FormFactorOptions& options) {
-  if (options.method == FormFactorMethod::rays) {
-    throw InputError(
-        "under mpirun form factors are exact or by hemicubes: give --method exact or hemicube, or "
-        "start the program without mpirun");
-  }
   if (options.method == FormFactorMethod::hemicube && options.eye != EyeChoice::cpu) {
     throw InputError(
         "under mpirun hemicubes are drawn by the processor: give --eye cpu, or start the program "
@@ -47,15 +43,16 @@ void requireShareable(const PatchMesh& mesh, const FormFactorOptions& options) {
         "--symmetrize needs all rows in one process: leave it out, or start the program without "
         "mpirun");
   }
-  if (options.closure == ClosureMode::enforce) {
+  const bool rays = options.method == FormFactorMethod::rays;
+  if (options.closure == ClosureMode::enforce && !rays) {
     throw InputError(
         "--closure enforce needs all rows in one process: leave it out, or start the "
         "program without mpirun");
   }
-  if (mesh.clusters) {
+  if (mesh.clusters && !rays && options.method != FormFactorMethod::automatic) {
     throw InputError(
-        "under mpirun every patch is an unknown of its own: give more --patches, or "
-        "start the program without mpirun");
+        "under mpirun patches share unknowns where rays count between these: give --method rays "
+        "or more --patches, or start the program without mpirun");
   }
 }
 
@@ -93,6 +90,9 @@ ExchangeMatrix shareFormFactors(const PatchMesh& mesh, Processes& processes, Pro
   options.seed = task.seed;
   options.random_turns = task.random_turns;
   options.near_exact = task.near_exact;
+  if (task.method == FormFactorMethod::rays) {
+    return rayRowsForOthers(mesh, task.seed, processes, progress);
+  }
   if (task.method == FormFactorMethod::hemicube) {
     return hemicubeRowsForOthers(mesh, options, processes, progress, journal);
   }

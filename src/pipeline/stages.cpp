@@ -156,13 +156,14 @@ FormFactorPlan Pipeline::planFactors() const {
     options.exact_rows = emittingUnknowns(
         patches, results_.materials ? *results_.materials : patchMaterials(scene(), patches));
   }
-  const std::optional<FormFactorMethod> kept = methodOfKeptRows(factorsKey(options, patches));
+  std::optional<FormFactorMethod> kept = methodOfKeptRows(factorsKey(options, patches));
+  const bool only_rays =
+      processes_ != nullptr && patches.clusters && options.method == FormFactorMethod::automatic;
+  if (only_rays) kept = FormFactorMethod::rays;
   if (kept) options.method = *kept;
-  const bool only_exact = processes_ != nullptr && options.method == FormFactorMethod::automatic;
-  if (only_exact) options.method = FormFactorMethod::exact;
   FormFactorPlan plan = planFormFactors(patches, options, progress_);
   if (kept) plan.reason = "rows of an earlier run are there";
-  if (only_exact) plan.reason = "it is the one that processes share";
+  if (only_rays) plan.reason = "processes share them where patches share unknowns";
   // Planning may have tried the exact method, which takes more than hemicubes then do.
   plan.bytes = std::max(plan.bytes, peakBytes());
   return plan;

@@ -10,7 +10,10 @@
 #include "base/processor_clock.h"
 #include "base/scratch_rows.h"
 #include "formfactor/rays/ray_rounds.h"
+#include "formfactor/rays/shared_rays.h"
 #include "formfactor/row_accounts.h"
+#include "matrix/dealt_rows.h"
+#include "matrix/shared_rows.h"
 #include "radiosity/closure.h"
 
 namespace radiosity {
@@ -165,6 +168,13 @@ void noteLoosened(const FormFactorOptions& options, FormFactorReport& report) {
                    tolerance)});
 }
 
+/// From here on rows are with all processes.
+void share(Processes& processes, Progress& progress, ExchangeMatrix& matrix) {
+  const WhileWaiting waiting = [&progress] { progress.check(); };
+  ExchangeMatrix own = dealRows(processes, std::move(matrix), waiting);
+  matrix = ExchangeMatrix::shared(std::make_shared<SharedRows>(processes, std::move(own), waiting));
+}
+
 bool seesSky(const std::vector<RayRow>& rows) {
   return std::any_of(rows.begin(), rows.end(),
                      [](const RayRow& row) { return row.sky[0] + row.sky[1] > 0; });
@@ -174,7 +184,8 @@ bool seesSky(const std::vector<RayRow>& rows) {
 
 FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene,
                        std::vector<KnownRow> rows_known, const RayEstimate& estimate,
-                       const FormFactorOptions& options, Progress& progress, RowJournal* journal) {
+                       const FormFactorOptions& options, Progress& progress, RowJournal* journal,
+                       Processes* processes) {
   const std::size_t n = scene.size();
   FormFactors result;
   result.method = "rays";
@@ -189,8 +200,8 @@ FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene,
   if (!options.exact_rows.empty()) report.rays.exact_rows = rows_known.size();
   const KnownEntries known(std::move(rows_known), scene.position());
 
-  std::vector<RayRow> rows =
-      castRows(scene, known, RayAim(options), report.rays, progress, journal, scratch.get());
+  std::vector<RayRow> rows = castRows(scene, known, RayAim(options), report.rays, progress, journal,
+                                      scratch.get(), processes);
   noteLoosened(options, report);
   report.closed = scene.provedClosed() || !seesSky(rows);
   result.matrix =
@@ -213,7 +224,14 @@ FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene,
   accountForBacks(mesh, scene.order(), result.matrix.area(), seen_backs, result);
   report.rays.seconds_close = clockSeconds() - closing;
   report.rays.seconds_prepare = estimate.seconds_prepare;
+  if (processes != nullptr) share(*processes, progress, result.matrix);
   return result;
+}
+
+ExchangeMatrix rayRowsForOthers(const PatchMesh& mesh, std::uint64_t seed, Processes& processes,
+                                Progress& progress) {
+  castForOthers(processes, RayScene(mesh, seed), progress);
+  return receiveRows(processes);
 }
 
 }  // namespace radiosity

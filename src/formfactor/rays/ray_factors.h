@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
+#include "base/processes.h"
 #include "formfactor/rays/ray_scene.h"
 #include "formfactor/row_memory.h"
 #include "radiosity/form_factors.h"
@@ -26,10 +28,15 @@ RayEstimate estimateRays(const RayScene& scene, const FormFactorOptions& options
 /// Rows are cast in rounds: each is continued until the error expected of it, merged with what the
 /// others count, is below options.toleranceOf(rays) times its norm, or times that of a usual row
 /// where it sees less: what little an open body sees of itself is not worth a thousand times the
-/// rays of the rest. `known`: rows that need none. `journal` may be null. Errors: RunError where
-/// the estimate exceeds options.memory_limit.
+/// rays of the rest. `known`: rows that need none. `journal` and `processes` may be null. Errors:
+/// RunError where the estimate exceeds options.memory_limit.
 FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene, std::vector<KnownRow> known,
                        const RayEstimate& estimate, const FormFactorOptions& options,
-                       Progress& progress, RowJournal* journal);
+                       Progress& progress, RowJournal* journal, Processes* processes);
+
+/// In the other processes, while process 0 is in rayFactors(): casts a share of the rays. Returns
+/// the rows that fell to this one once process 0 had merged all.
+ExchangeMatrix rayRowsForOthers(const PatchMesh& mesh, std::uint64_t seed, Processes& processes,
+                                Progress& progress);
 
 }  // namespace radiosity

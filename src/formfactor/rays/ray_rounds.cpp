@@ -11,6 +11,7 @@
 #include "base/scratch_rows.h"
 #include "formfactor/rays/ray_scene.h"
 #include "formfactor/rays/round_journal.h"
+#include "formfactor/rays/shared_rays.h"
 
 namespace radiosity {
 namespace {
@@ -38,7 +39,7 @@ std::uint32_t raysNeeded(const RowState& before, const RowState& now, double aim
 class Rounds {
  public:
   Rounds(const RayScene& scene, const KnownEntries& known, const RayAim& aim, RayReport& report,
-         Progress& progress, RowJournal* journal, ScratchMemory* scratch)
+         Progress& progress, RowJournal* journal, ScratchMemory* scratch, Processes* processes)
       : scene_(scene),
         known_(known),
         aim_(aim),
@@ -46,6 +47,7 @@ class Rounds {
         progress_(progress),
         journal_(journal, scene.size(), known.identity()),
         scratch_(scratch),
+        processes_(processes),
         before_(scene.size()),
         now_(scene.size()) {
     rows_.reserve(scene.size());
@@ -69,6 +71,7 @@ class Rounds {
       rays = wishes(loosened_);
       journal_.keep(report_.rounds, {rays, before_, now_, usual_norm_, loosened_});
     }
+    if (processes_ != nullptr) endCasting(*processes_, progress_);
     finish();
     return std::move(rows_);
   }
@@ -144,6 +147,20 @@ class Rounds {
     });
     progress_.begin(report_.rounds == 0 ? "first rays" : "form factors", kReplicates * all, "rays",
                     kReplicates * kept);
+    if (processes_ != nullptr) {
+      castByAll(todo, rays);
+    } else {
+      castHere(todo, rays);
+    }
+    progress_.check();
+    progress_.end();
+    ++report_.rounds;
+    report_.rays += kReplicates * all;
+    report_.seconds_cast += clockSeconds() - start;
+    return true;
+  }
+
+  void castHere(const std::vector<Index>& todo, const std::vector<std::uint32_t>& rays) {
     parallelFor(todo.size(), 1, [&](std::size_t t) {
       if (progress_.cancelled()) return;
       const std::size_t k = todo[t];
@@ -152,12 +169,21 @@ class Rounds {
       castRow(report_.rounds, k, rays[k]);
       progress_.advance(kReplicates * more);
     });
-    progress_.check();
-    progress_.end();
-    ++report_.rounds;
-    report_.rays += kReplicates * all;
-    report_.seconds_cast += clockSeconds() - start;
-    return true;
+  }
+
+  void castByAll(const std::vector<Index>& todo, const std::vector<std::uint32_t>& rays) {
+    std::vector<RowToCast> left;
+    for (const Index k : todo) {
+      if (journal_.takeRow(report_.rounds, k, rays[k], rows_[k])) continue;
+      left.push_back({k, rows_[k].rays, rays[k]});
+    }
+    if (left.empty()) return;
+    const auto take = [&](const RowToCast& row, const RayRow& counted) {
+      rows_[row.position].add(counted);
+      touchRows(scratch_, rows_[row.position].bytes());
+      journal_.keepRow(report_.rounds, row.position, rows_[row.position]);
+    };
+    castTogether(*processes_, scene_, std::move(left), take, progress_);
   }
 
   /// The rays, in each replicate, that rows need for errors `loosened` times those aimed at.
@@ -216,6 +242,7 @@ class Rounds {
   Progress& progress_;
   RoundJournal journal_;
   ScratchMemory* scratch_;
+  Processes* processes_;
   std::vector<RayRow> rows_;
   std::vector<RowState> before_;
   std::vector<RowState> now_;
@@ -251,8 +278,8 @@ double loosening(double most, const std::function<double(double)>& raysAt) {
 
 std::vector<RayRow> castRows(const RayScene& scene, const KnownEntries& known, const RayAim& aim,
                              RayReport& report, Progress& progress, RowJournal* journal,
-                             ScratchMemory* scratch) {
-  return Rounds(scene, known, aim, report, progress, journal, scratch).run();
+                             ScratchMemory* scratch, Processes* processes) {
+  return Rounds(scene, known, aim, report, progress, journal, scratch, processes).run();
 }
 
 }  // namespace radiosity

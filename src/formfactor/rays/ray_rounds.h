@@ -10,6 +10,7 @@
 
 namespace radiosity {
 
+class Processes;
 class RayScene;
 
 /// Rays of the first round, in each replicate.
@@ -41,9 +42,10 @@ double loosening(double most, const std::function<double(double)>& raysAt);
 
 /// All rows, by position. `known`: entries that are not estimated. Fills what the report says of
 /// rays and rounds. `journal`: null where nothing is kept. `scratch`: where the rows' entries are
-/// to be; null: in memory.
+/// to be; null: in memory. `processes`: those that share the casting, whose others are in
+/// castForOthers() (shared_rays.h); null: this one alone.
 std::vector<RayRow> castRows(const RayScene& scene, const KnownEntries& known, const RayAim& aim,
                              RayReport& report, Progress& progress, RowJournal* journal,
-                             ScratchMemory* scratch);
+                             ScratchMemory* scratch, Processes* processes);
 
 }  // namespace radiosity

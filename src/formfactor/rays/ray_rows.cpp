@@ -219,6 +219,30 @@ double RowAccuracy::figure() const {
   return std::hypot(error * std::sqrt(quantile(degrees)), known_error);
 }
 
+void RayRow::add(const RayRow& more) {
+  std::vector<Index> all;
+  std::set_union(columns.begin(), columns.end(), more.columns.begin(), more.columns.end(),
+                 std::back_inserter(all));
+  std::vector<Hits> sums(all.size());
+  const auto addHits = [&](const RayRow& row) {
+    std::size_t at = 0;
+    for (std::size_t e = 0; e < row.columns.size(); ++e) {
+      while (all[at] < row.columns[e]) ++at;
+      for (std::size_t r = 0; r < kReplicates; ++r) sums[at][r] += row.hits[e][r];
+    }
+  };
+  addHits(*this);
+  addHits(more);
+  columns.assign(all.begin(), all.end());
+  hits.assign(sums.begin(), sums.end());
+  for (std::size_t r = 0; r < kReplicates; ++r) {
+    sky[r] += more.sky[r];
+    lost[r] += more.lost[r];
+  }
+  leaked += more.leaked;
+  rays = more.rays;
+}
+
 void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
                    const KnownEntries& known, std::span<const std::uint8_t> wanted,
                    ScratchMemory* scratch, const std::function<void(const MergedRow&)>& visit) {

@@ -33,6 +33,9 @@ struct RayRow {
   /// Its entries stay in `memory`, whatever is assigned to it.
   explicit RayRow(std::pmr::memory_resource* memory) : columns(memory), hits(memory) {}
 
+  /// Adds what the rays from number `rays` to more.rays - 1 of each replicate counted.
+  void add(const RayRow& more);
+
   /// Of the entries.
   std::size_t bytes() const {
     return columns.size() * sizeof(Index) + hits.size() * sizeof(hits[0]);

@@ -1,8 +1,7 @@
 #include "formfactor/rays/round_journal.h"
 
+#include <algorithm>
 #include <utility>
-
-#include "base/byte_stream.h"
 
 namespace radiosity {
 
@@ -37,9 +36,7 @@ std::optional<RayRound> RoundJournal::take(int round) const {
 
 /// Columns as distances from the one before, and all in as few bytes as they need: most counts of
 /// most rows are small.
-void RoundJournal::keepRow(int round, std::size_t position, const RayRow& row) const {
-  if (journal_ == nullptr) return;
-  ByteWriter bytes;
+void putRayRow(const RayRow& row, ByteWriter& bytes) {
   bytes.put(row.rays);
   bytes.put(row.sky);
   bytes.put(row.lost);
@@ -51,6 +48,32 @@ void RoundJournal::keepRow(int round, std::size_t position, const RayRow& row) c
     for (const std::uint32_t hits : row.hits[e]) bytes.putVarint(hits);
     before = row.columns[e];
   }
+}
+
+RayRow takeRayRow(ByteReader& bytes) {
+  RayRow row;
+  row.rays = bytes.get<std::uint32_t>();
+  row.sky = bytes.get<std::array<std::uint32_t, kReplicates>>();
+  row.lost = bytes.get<std::array<std::uint32_t, kReplicates>>();
+  row.leaked = bytes.get<std::uint32_t>();
+  // An entry takes a byte or more: of more entries than bytes are left, none is good.
+  const std::size_t entries = std::min<std::size_t>(bytes.getVarint(), bytes.left());
+  row.columns.reserve(entries);
+  row.hits.reserve(entries);
+  Index column = 0;
+  for (std::size_t e = 0; e < entries; ++e) {
+    column += Index(bytes.getVarint());
+    row.columns.push_back(column);
+    auto& hits = row.hits.emplace_back();
+    for (std::uint32_t& of_replicate : hits) of_replicate = std::uint32_t(bytes.getVarint());
+  }
+  return row;
+}
+
+void RoundJournal::keepRow(int round, std::size_t position, const RayRow& row) const {
+  if (journal_ == nullptr) return;
+  ByteWriter bytes;
+  putRayRow(row, bytes);
   journal_->keep(RowBlock::ray_row, number(round, position), bytes.bytes());
 }
 
@@ -62,22 +85,7 @@ bool RoundJournal::takeRow(int round, std::size_t position, std::uint32_t rays, 
   if (!hasRow(round, position)) return false;
   const std::vector<std::byte> block = journal_->kept(RowBlock::ray_row, number(round, position));
   ByteReader bytes(block);
-  RayRow kept;
-  kept.rays = bytes.get<std::uint32_t>();
-  kept.sky = bytes.get<std::array<std::uint32_t, kReplicates>>();
-  kept.lost = bytes.get<std::array<std::uint32_t, kReplicates>>();
-  kept.leaked = bytes.get<std::uint32_t>();
-  const std::size_t entries = bytes.getVarint();
-  if (entries > bytes.left()) return false;
-  kept.columns.reserve(entries);
-  kept.hits.reserve(entries);
-  Index column = 0;
-  for (std::size_t e = 0; e < entries; ++e) {
-    column += Index(bytes.getVarint());
-    kept.columns.push_back(column);
-    auto& hits = kept.hits.emplace_back();
-    for (std::uint32_t& of_replicate : hits) of_replicate = std::uint32_t(bytes.getVarint());
-  }
+  RayRow kept = takeRayRow(bytes);
   if (!bytes.isWhole() || kept.rays != rays) return false;
   row = std::move(kept);
   return true;

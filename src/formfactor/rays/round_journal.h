@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "base/byte_stream.h"
 #include "formfactor/rays/ray_rows.h"
 #include "radiosity/row_journal.h"
 
@@ -27,6 +28,10 @@ struct RayRound {
   double usual_norm = 0;            ///< of the last
   double loosened = 1;              ///< times the tolerance aimed at
 };
+
+/// A row as bytes, and back.
+void putRayRow(const RayRow& row, ByteWriter& bytes);
+RayRow takeRayRow(ByteReader& bytes);
 
 /// Blocks of all rounds and rows stay. Rows are kept whole, not as what a round adds to them: where
 /// one is damaged the round before still is good.

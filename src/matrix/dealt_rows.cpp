@@ -1,0 +1,99 @@
+#include "matrix/dealt_rows.h"
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "base/byte_stream.h"
+#include "matrix/run_row.h"
+
+namespace radiosity {
+
+namespace {
+
+/// Of a message with rows, about.
+constexpr std::size_t kMessageBytes = std::size_t(1) << 24;
+
+/// The first row of each process's share, and the end.
+std::vector<std::size_t> sharesOf(const ExchangeMatrix& whole, std::size_t processes) {
+  const std::size_t n = whole.size();
+  std::size_t total = 0;
+  for (std::size_t k = 0; k < n; ++k) total += workOf(whole.upperRuns(k));
+  std::vector<std::size_t> starts{0};
+  std::size_t done = 0;
+  for (std::size_t k = 0; k < n && starts.size() < processes; ++k) {
+    done += workOf(whole.upperRuns(k));
+    while (starts.size() < processes && done * processes >= starts.size() * total) {
+      starts.push_back(k + 1);
+    }
+  }
+  starts.resize(processes, n);
+  starts.push_back(n);
+  return starts;
+}
+
+void putRow(const ExchangeMatrix& whole, std::size_t k, ByteWriter& bytes) {
+  const ExchangeMatrix::UpperEntries row = whole.upperEntries(k);
+  bytes.put(Index(k));
+  bytes.putArray(std::span(row.positions));
+  bytes.putArray(std::span(row.factors));
+}
+
+/// Rows `first` to `last` - 1 in messages, and an empty one.
+void sendRows(Processes& processes, int to, const ExchangeMatrix& whole, std::size_t first,
+              std::size_t last, const WhileWaiting& waiting) {
+  while (first < last) {
+    ByteWriter bytes;
+    while (first < last && bytes.bytes().size() < kMessageBytes) putRow(whole, first++, bytes);
+    processes.send(to, bytes.bytes());
+    if (waiting) waiting();
+  }
+  processes.send(to, {});
+}
+
+void takeRow(ByteReader& bytes, ExchangeMatrix& own) {
+  const auto k = bytes.get<Index>();
+  const std::vector<Index> positions = bytes.getArray<Index>();
+  const std::vector<double> factors = bytes.getArray<double>();
+  own.setUpperRow(k, positions, factors);
+}
+
+}  // namespace
+
+ExchangeMatrix dealRows(Processes& processes, ExchangeMatrix whole, const WhileWaiting& waiting) {
+  std::vector<double> area(whole.area().begin(), whole.area().end());
+  std::vector<Index> order(whole.order().begin(), whole.order().end());
+  Precision precision = whole.precision();
+  processes.broadcastArray(area, waiting);
+  processes.broadcastArray(order, waiting);
+  processes.broadcastValue(precision, waiting);
+  const std::vector<std::size_t> starts = sharesOf(whole, std::size_t(processes.size()));
+  for (int p = 1; p < processes.size(); ++p) {
+    const auto share = std::size_t(p);
+    sendRows(processes, p, whole, starts[share], starts[share + 1], waiting);
+  }
+  ExchangeMatrix own =
+      ExchangeMatrix::symmetric(std::move(area), std::move(order), precision, whole.scratch());
+  for (std::size_t k = starts[0]; k < starts[1]; ++k) {
+    const ExchangeMatrix::UpperEntries row = whole.upperEntries(k);
+    own.setUpperRow(k, row.positions, row.factors);
+  }
+  return own;
+}
+
+ExchangeMatrix receiveRows(Processes& processes) {
+  std::vector<double> area;
+  std::vector<Index> order;
+  Precision precision = Precision::single_precision;
+  processes.broadcastArray(area);
+  processes.broadcastArray(order);
+  processes.broadcastValue(precision);
+  ExchangeMatrix own = ExchangeMatrix::symmetric(std::move(area), std::move(order), precision);
+  for (;;) {
+    const Processes::Message message = processes.receive(0);
+    if (message.bytes.empty()) return own;
+    for (ByteReader bytes(message.bytes); bytes.left() > 0;) takeRow(bytes, own);
+  }
+}
+
+}  // namespace radiosity
