@@ -2,11 +2,13 @@
 // not converge, 2 bad input or arguments).
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <optional>
 #include <string>
+#include <thread>
 
 #include "base/atomic_file.h"
 #include "base/processes.h"
@@ -113,6 +115,9 @@ int runOther(int argc, char** argv, Processes& processes) {
     }
     return serveCommand(request, processes);
   } catch (const std::exception& error) {
+    // What is wrong in all processes is for process 0 to say, which then ends them.
+    constexpr std::chrono::seconds kForFirst{1};
+    std::this_thread::sleep_for(kForFirst);
     fail(fmt::format("process {} of {}: {}", processes.rank(), processes.size(), error.what()), 1);
     processes.abort(1);
   }

@@ -54,6 +54,8 @@ MpiProcesses::MpiProcesses() {
   // Signals are the program's own; PETSc would print its call stack.
   PetscOptionsSetValue(nullptr, "-no_signal_handler", nullptr);
   PetscInitializeNoArguments();
+  // Its errors become exceptions, which say what is wrong in a line.
+  PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
 }
 
 void MpiProcesses::wait(MPI_Request& request, const WhileWaiting& waiting) {

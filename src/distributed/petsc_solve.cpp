@@ -113,7 +113,7 @@ bool wantsEntries() {
       PetscOptionsGetString(nullptr, nullptr, "-radiosity_mat_type", type, sizeof type, nullptr));
   const std::string_view wanted = type;
   if (wanted != "shell" && wanted != "aij") {
-    throw InputError("-radiosity_mat_type " + std::string(wanted) + ": give shell or aij");
+    throw RunError("-radiosity_mat_type " + std::string(wanted) + ": give shell or aij");
   }
   return wanted == "aij";
 }

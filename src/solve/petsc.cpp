@@ -23,7 +23,7 @@ constexpr double kLeastReduction = 1e-14;
 constexpr double kSettling = 1e-3;
 /// Solutions that leave more than half of the residual, one after the other, before it is taken for
 /// rounding.
-constexpr int kMostStalls = 3;
+constexpr int kMostPetscStalls = 3;
 
 class PetscSolve {
  public:
@@ -59,7 +59,7 @@ class PetscSolve {
                                                     convergence_.tolerance()));
       if (convergence_.converged()) return std::move(fields_);
       if (indefinite_) convergence_.giveUp(GaveUp::grows);
-      if (stalls == kMostStalls) convergence_.giveUp(GaveUp::rounding);
+      if (stalls == kMostPetscStalls) convergence_.giveUp(GaveUp::rounding);
       if (convergence_.finished()) return std::move(fields_);
       improve(residual);
     }

@@ -68,11 +68,17 @@ class MpiTest(CliTest):
         with h5py.File(self.folder / file) as results:
             return results["solution/radiosity"][()]
 
+    def assert_same_radiosity(self, first, second):
+        """To 1e-12 of the largest: the residuals were asked to be at rounding."""
+        expected, found = self.radiosity_of(first), self.radiosity_of(second)
+        self.assertLess(np.abs(found - expected).max(), 1e-12 * expected.max())
+
     def test_form_factors_have_the_same_bits_for_any_number_of_processes(self):
         raw = ["hemicube", "--resolution", "64"]
         for scene, patches, method, counts in [(BOX, "300", ["exact"], [1, 2, 4]),
                                                (ROOMS, "250", ["exact"], [4]),
                                                (CITY, "1200", ["exact"], [2]),
+                                               (CITY, "600", ["rays"], [1, 4]),
                                                (ROOMS, "250", raw, [2])]:
             with self.subTest(f"{scene} {method}"):
                 options = ["factors", scene, "--patches", patches, "--method", *method]
@@ -81,6 +87,28 @@ class MpiTest(CliTest):
                     self.mpirun(processes, *options, "-o", "many.h5")
                     self.assert_same_factors("one.h5", "many.h5")
                     os.remove(self.folder / "many.h5")
+
+    def test_unknowns_that_patches_share_have_the_same_bits_and_light(self):
+        options = ["solve", str(DATA / "furnished-room.obj"), "--patches", "200", "--method", "rays",
+                   "--tolerance", "5e-2", "--solve-tolerance", "1e-13"]
+        self.run_program(*options, "-o", "one.h5")
+        self.mpirun(3, *options, "-o", "many.h5")
+        self.assert_same_factors("one.h5", "many.h5")
+        self.assert_same_radiosity("one.h5", "many.h5")
+
+    def test_raw_rows_of_hemicubes_are_solved(self):
+        options = ["solve", ROOMS, "--patches", "250", "--method", "hemicube", "--resolution", "64",
+                   "--solve-tolerance", "1e-14"]
+        self.run_program(*options, "-o", "one.h5")
+        self.mpirun(3, *options, "-o", "many.h5")
+        self.assert_same_radiosity("one.h5", "many.h5")
+
+    def test_a_room_without_light_stays_dark(self):
+        (self.folder / "box.mtl").write_text(
+            (self.folder / "box.mtl").read_text().replace("Ke 5 4 3", "Ke 0 0 0"))
+        done = self.mpirun(2, "solve", "box.obj", "--patches", "150", "--solver", "petsc", "-o", "d.h5")
+        self.assertIn("nothing emits light", done.stderr)
+        self.assertFalse(self.radiosity_of("d.h5").any())
 
     def test_more_processes_than_blocks_of_rows(self):
         options = ["factors", str(DATA / "facing-plates.obj"), "--patches", "2"]
@@ -95,13 +123,11 @@ class MpiTest(CliTest):
                                      (ROOMS, "400", [(2, "petsc"), (2, "cg")])]:
             options = ["solve", scene, "--patches", patches, "--method", "exact", *exactly]
             self.run_program(*options, "--solver", "cg", "-o", "one.h5")
-            expected = self.radiosity_of("one.h5")
             for processes, solver in runs:
                 with self.subTest(f"{scene} {processes} {solver}"):
                     done = self.mpirun(processes, *options, "--solver", solver, "-o", "many.h5")
                     self.assertIn("converged", done.stdout)
-                    found = self.radiosity_of("many.h5")
-                    self.assertLess(np.abs(found - expected).max(), 1e-12 * expected.max())
+                    self.assert_same_radiosity("one.h5", "many.h5")
                     os.remove(self.folder / "many.h5")
 
     def test_many_read_what_one_wrote_and_one_what_many_wrote(self):
@@ -152,14 +178,18 @@ class MpiTest(CliTest):
         # Three quarters of the rows are elsewhere; buffers of messages take some of it.
         self.assertGreater(alone - fourth, 0.6 * matrix)
 
-    def test_a_killed_process_ends_all_and_is_named(self):
+    def run_at_work(self):
+        """Three processes that are at work: a launcher that still starts them waits for a dead one."""
         run = subprocess.Popen(launch(3, "factors", str(DATA / "cluttered.obj"), "--patches", "3000",
                                       "--method", "exact", "-o", "f.h5"),
                                cwd=self.folder, env=ENVIRONMENT, text=True,
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-        # Once it is at work; a launcher that still starts processes waits for a dead one.
         while run.poll() is None and not all(t > 0.3 for t in work_of(run.pid, 3)):
             time.sleep(0.05)
+        return run
+
+    def test_a_killed_process_ends_all_and_is_named(self):
+        run = self.run_at_work()
         os.kill(processes_of(run.pid)[1], signal.SIGKILL)
         out, err = run.communicate(timeout=60)
         self.assertNotEqual(run.returncode, 0)
@@ -185,8 +215,7 @@ class MpiTest(CliTest):
         self.assertFalse([name for name in self.files() if ".rows" in name])
 
     def test_what_processes_cannot_share_is_refused(self):
-        for options, words in [(["--method", "rays"], "--method exact"),
-                               (["--method", "hemicube", "--eye", "gl"], "--eye cpu"),
+        for options, words in [(["--method", "hemicube", "--eye", "gl"], "--eye cpu"),
                                (["--method", "exact", "--closure", "enforce"], "--closure enforce")]:
             done = self.mpirun(2, "factors", BOX, "--patches", "100", *options, code=2)
             self.assertIn(words, done.stderr)
@@ -196,9 +225,23 @@ class MpiTest(CliTest):
         alone = self.run_program("solve", BOX, "--patches", "100", "--solver", "petsc", code=2)
         self.assertIn("mpirun", alone.err)
 
-    def test_a_fault_of_the_scene_is_told_once(self):
+    def test_a_fault_is_told_once(self):
         done = self.mpirun(3, "factors", "missing.obj", code=2)
         self.assertEqual(done.stderr.count("missing.obj"), 1)
+        # One that all processes find, in PETSc, of few unknowns.
+        done = self.mpirun(3, "solve", "box.obj", "--patches", "150", "--solver", "petsc", code=1,
+                           petsc="-ksp_type nonsense")
+        self.assertEqual(done.stderr.count("radiosity: "), 1)
+        self.assertIn("Unknown type", done.stderr)
+
+    def test_an_interrupt_ends_all_processes(self):
+        run = self.run_at_work()
+        processes = processes_of(run.pid)
+        run.send_signal(signal.SIGINT)
+        run.communicate(timeout=60)
+        self.assertNotEqual(run.returncode, 0)
+        self.assertFalse([p for p in processes if Path(f"/proc/{p}").exists()])
+        self.assertNotIn("f.h5", self.files())
 
 
 if __name__ == "__main__":
