@@ -42,6 +42,12 @@ def work_of(launcher, count):
     return seconds + [0.0] * (count - len(seconds))
 
 
+def is_running(process):
+    status = Path(f"/proc/{process}/status")
+    # One that ended may wait for its launcher's parent to ask how.
+    return status.exists() and "State:\tZ" not in status.read_text()
+
+
 def peak_bytes(process):
     found = re.search(r"VmHWM:\s+(\d+) kB", Path(f"/proc/{process}/status").read_text())
     return 1024 * int(found[1]) if found else 0
@@ -89,10 +95,10 @@ class MpiTest(CliTest):
                     os.remove(self.folder / "many.h5")
 
     def test_unknowns_that_patches_share_have_the_same_bits_and_light(self):
-        options = ["solve", str(DATA / "furnished-room.obj"), "--patches", "200", "--method", "rays",
-                   "--tolerance", "5e-2", "--solve-tolerance", "1e-13"]
-        self.run_program(*options, "-o", "one.h5")
-        self.mpirun(3, *options, "-o", "many.h5")
+        options = ["solve", str(DATA / "curved.obj"), "--patches", "150", "--tolerance", "5e-2",
+                   "--solve-tolerance", "1e-14"]
+        self.run_program(*options, "--method", "rays", "--solver", "cg", "-o", "one.h5")
+        self.mpirun(3, *options, "--solver", "petsc", "-o", "many.h5")  # rays by themselves
         self.assert_same_factors("one.h5", "many.h5")
         self.assert_same_radiosity("one.h5", "many.h5")
 
@@ -171,12 +177,13 @@ class MpiTest(CliTest):
         return most, json.loads((self.folder / "report.json").read_text())
 
     def test_memory_of_a_process_falls_with_their_number(self):
-        options = ["solve", BOX, "--patches", "4000", "--method", "exact"]
+        options = ["factors", BOX, "--patches", "10000", "--method", "hemicube", "--resolution", "32"]
         alone, report = self.peaks(1, *options)
         matrix = report["form_factors"]["matrix_bytes"]
         fourth, _ = self.peaks(4, *options)
-        # Three quarters of the rows are elsewhere; buffers of messages take some of it.
-        self.assertGreater(alone - fourth, 0.6 * matrix)
+        # Three quarters of the rows are elsewhere, less what a process takes that is quicker than
+        # others, and buffers of messages.
+        self.assertGreater(alone - fourth, 0.5 * matrix)
 
     def run_at_work(self):
         """Three processes that are at work: a launcher that still starts them waits for a dead one."""
@@ -240,7 +247,7 @@ class MpiTest(CliTest):
         run.send_signal(signal.SIGINT)
         run.communicate(timeout=60)
         self.assertNotEqual(run.returncode, 0)
-        self.assertFalse([p for p in processes if Path(f"/proc/{p}").exists()])
+        self.assertFalse([p for p in processes if is_running(p)])
         self.assertNotIn("f.h5", self.files())
 
 

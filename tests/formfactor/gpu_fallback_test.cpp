@@ -81,7 +81,7 @@ TEST(GpuFallback, TheProcessorDrawsWhatALostDeviceHasNot) {
     HemicubeScene scene(mesh, options);
     scene.gpu = std::make_unique<FailingEye>(scene.rows, lives);
     const FormFactors seen =
-        hemicubeFactors(mesh, scene, HemicubeEstimate(), options, silent, nullptr);
+        hemicubeFactors(mesh, scene, HemicubeEstimate(), options, silent, nullptr, nullptr);
     EXPECT_EQ(seen.report.hemicubes, expected.report.hemicubes);
     EXPECT_EQ(seen.report.pixels, expected.report.pixels);
     EXPECT_TRUE(seen.report.closed);
