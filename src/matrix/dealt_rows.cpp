@@ -60,7 +60,8 @@ void takeRow(ByteReader& bytes, ExchangeMatrix& own) {
 
 }  // namespace
 
-ExchangeMatrix dealRows(Processes& processes, ExchangeMatrix whole, const WhileWaiting& waiting) {
+ExchangeMatrix dealRows(Processes& processes, const ExchangeMatrix& whole,
+                        const WhileWaiting& waiting) {
   std::vector<double> area(whole.area().begin(), whole.area().end());
   std::vector<Index> order(whole.order().begin(), whole.order().end());
   Precision precision = whole.precision();

@@ -8,7 +8,8 @@ namespace radiosity {
 
 /// By process 0, while the others call receiveRows(). `whole`: in the symmetric form. Returns the
 /// rows that stay, a share of about equal work; all others are empty. Values keep their bits.
-ExchangeMatrix dealRows(Processes& processes, ExchangeMatrix whole, const WhileWaiting& waiting);
+ExchangeMatrix dealRows(Processes& processes, const ExchangeMatrix& whole,
+                        const WhileWaiting& waiting);
 
 /// By the others: their share.
 ExchangeMatrix receiveRows(Processes& processes);

@@ -171,7 +171,7 @@ void noteLoosened(const FormFactorOptions& options, FormFactorReport& report) {
 /// From here on rows are with all processes.
 void share(Processes& processes, Progress& progress, ExchangeMatrix& matrix) {
   const WhileWaiting waiting = [&progress] { progress.check(); };
-  ExchangeMatrix own = dealRows(processes, std::move(matrix), waiting);
+  ExchangeMatrix own = dealRows(processes, matrix, waiting);
   matrix = ExchangeMatrix::shared(std::make_shared<SharedRows>(processes, std::move(own), waiting));
 }
 
