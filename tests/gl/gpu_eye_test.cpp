@@ -24,7 +24,7 @@ PatchMesh meshOf(const std::string& name, std::size_t patches) {
   MeshOptions options;
   options.patches = patches;
   Progress silent;
-  return meshScene(loadScene(RADIOSITY_SOURCE_DIR "/data/" + name + ".obj"), options, silent).mesh;
+  return meshScene(loadScene(RADIOSITY_SOURCE_DIR "/data/" + name), options, silent).mesh;
 }
 
 FormFactorOptions ofResolution(int resolution) {
@@ -145,18 +145,20 @@ TEST(GpuEye, SeesWhatTheProcessorSeesInAClosedRoom) {
 TEST(GpuEye, SeesWhatTheProcessorSeesInScenesOfFiles) {
   // Faces in one plane are put together: vertices of others lie on their edges. Meshes have cells
   // that patches share.
-  for (const char* name : {"cornell-box-closed", "two-rooms", "cluttered"}) {
+  for (const char* name :
+       {"cornell-box-closed.obj", "two-rooms.obj", "cluttered.obj", "blender-room.glb"}) {
     const PatchMesh mesh = meshOf(name, 300);
     BothEyes both(mesh, 96);
     const BothEyes::Difference difference = both.compareAtPatches(mesh, 6);
     expectSame(difference);
-    const bool closed = std::string(name) != "cluttered";
+    const bool closed =
+        name == std::string("cornell-box-closed.obj") || name == std::string("two-rooms.obj");
     EXPECT_LE(difference.largest_sky, closed ? 0 : 1) << name;
   }
 }
 
 TEST(GpuEye, SeesWhatTheProcessorSeesInAnOpenScene) {
-  const PatchMesh mesh = meshOf("cornell-box", 100);
+  const PatchMesh mesh = meshOf("cornell-box.obj", 100);
   BothEyes both(mesh, 34);  // the last group of a row of pixels is not full
   const BothEyes::Difference difference = both.compareAtPatches(mesh, 10);
   expectSame(difference);
