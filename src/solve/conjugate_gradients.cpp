@@ -11,7 +11,6 @@
 // Erhel & Guyomarc'h, SIAM J. Sci. Comput. 21, 2000). Rooms are the components of the matrix: they
 // exchange nothing, so one product serves them all and their coarse matrix is diagonal.
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -30,9 +29,6 @@ constexpr double kCycleReduction = 1e-10;
 constexpr double kNothingLeft = 1e-13;
 /// Rooms darker than this in every band, by area, converge as quickly without.
 constexpr double kBright = 0.7;
-/// Cycles that leave more than half of the residual, one after the other, before it is taken for
-/// rounding.
-constexpr int kMostStalls = 3;
 
 class ConjugateGradients {
  public:
@@ -46,33 +42,18 @@ class ConjugateGradients {
         z_(BandArray::Zero(up_.rows(), up_.cols())),
         fields_{system.emission, std::vector<double>(system.emission.size())},
         scratch_{fields_.radiosity, fields_.irradiance} {
-    const std::span<const double> area = system.matrix.area();
-    forAll([&](std::size_t i, std::size_t /*band*/, std::size_t k) {
-      const double root = std::sqrt(area[i]);
-      const double d = root > 0 ? std::sqrt(system.reflectance[k]) : 0.0;
-      up_.data()[k] = d * root;
-      down_.data()[k] = root > 0 ? d / root : 0.0;
-    });
+    symmetricScales(system, {up_.data(), std::size_t(up_.size())},
+                    {down_.data(), std::size_t(down_.size())});
   }
 
   Fields run() {
     auto radiosity = asArray(fields_.radiosity, system_.bands);
     const auto irradiance = asArray(fields_.irradiance, system_.bands);
     const auto emission = asArray(system_.emission, system_.bands);
-    double last = HUGE_VAL;
-    int stalls = 0;
+    Corrections corrections(system_, convergence_);
     for (bool first = true;; first = false) {
       radiosity = emission + down_ * z_;
-      multiply(system_, fields_, convergence_);
-      const double residual = relativeResidual(system_, fields_.radiosity, fields_.irradiance);
-      stalls = residual > 0.5 * last ? stalls + 1 : 0;
-      last = residual;
-      convergence_.record(residual, smallEverywhere(system_, fields_.radiosity, fields_.irradiance,
-                                                    convergence_.tolerance()));
-      if (convergence_.converged()) return std::move(fields_);
-      if (indefinite_) convergence_.giveUp(GaveUp::grows);
-      if (stalls == kMostStalls) convergence_.giveUp(GaveUp::rounding);
-      if (convergence_.finished()) return std::move(fields_);
+      if (corrections.end(fields_, indefinite_)) return std::move(fields_);
       if (first) findRooms();
       if (!indefinite_) cycle(up_ * irradiance - z_);
       // H is not below 0 where no E is.

@@ -124,10 +124,7 @@ Fields direct(const System& system, Convergence& convergence) {
   std::vector<Factored> factored;
   double last = HUGE_VAL;
   for (;;) {
-    multiply(system, fields, convergence);
-    const double residual = relativeResidual(system, fields.radiosity, fields.irradiance);
-    convergence.record(residual, smallEverywhere(system, fields.radiosity, fields.irradiance,
-                                                 convergence.tolerance()));
+    const double residual = measure(system, fields, convergence);
     if (convergence.finished()) return fields;
     if (!factored.empty() && residual > 0.5 * last) convergence.giveUp(GaveUp::rounding);
     last = residual;

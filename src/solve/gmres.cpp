@@ -31,10 +31,7 @@ class Gmres {
     double last = HUGE_VAL;
     int failures = 0;
     for (;;) {
-      multiply(system_, fields_, convergence_);
-      const double residual = relativeResidual(system_, fields_.radiosity, fields_.irradiance);
-      convergence_.record(residual, smallEverywhere(system_, fields_.radiosity, fields_.irradiance,
-                                                    convergence_.tolerance()));
+      const double residual = measure(system_, fields_, convergence_);
       if (convergence_.finished()) return std::move(fields_);
       const BandArray step = emission + reflectance * irradiance - radiosity;
       // Twice no gain: there is no B >= E, since rho F has a spectral radius above 1, and plain

@@ -10,6 +10,10 @@ namespace {
 
 constexpr double kProgressSteps = 100;
 
+/// Corrections that leave more than half of the residual, one after the other, before it is taken
+/// for rounding.
+constexpr int kMostStalls = 3;
+
 /// |r| never grows where rho_i rowsum_i <= 1; row sums a little above 1 may let it grow a little
 /// before it falls. A residual of a million times the emission is beyond both.
 constexpr double kDivergedResidual = 1e6;
@@ -70,6 +74,34 @@ bool smallEverywhere(const System& system, const std::vector<double>& radiosity,
     if (!(std::abs(own - radiosity[k]) <= kOwnShare * tolerance * own)) return false;
   }
   return true;
+}
+
+double measure(const System& system, Fields& fields, Convergence& convergence) {
+  multiply(system, fields, convergence);
+  const double residual = relativeResidual(system, fields.radiosity, fields.irradiance);
+  convergence.record(residual, smallEverywhere(system, fields.radiosity, fields.irradiance,
+                                               convergence.tolerance()));
+  return residual;
+}
+
+bool Corrections::end(Fields& fields, bool indefinite) {
+  const double last = residual_;
+  residual_ = measure(system_, fields, convergence_);
+  stalls_ = residual_ > 0.5 * last ? stalls_ + 1 : 0;
+  if (convergence_.converged()) return true;
+  if (indefinite) convergence_.giveUp(GaveUp::grows);
+  if (stalls_ == kMostStalls) convergence_.giveUp(GaveUp::rounding);
+  return convergence_.finished();
+}
+
+void symmetricScales(const System& system, std::span<double> up, std::span<double> down) {
+  const auto bands = std::size_t(system.bands);
+  for (std::size_t k = 0; k < up.size(); ++k) {
+    const double root = std::sqrt(system.matrix.area()[k / bands]);
+    const double d = root > 0 ? std::sqrt(system.reflectance[k]) : 0.0;
+    up[k] = d * root;
+    down[k] = root > 0 ? d / root : 0.0;
+  }
 }
 
 Convergence::Convergence(double tolerance, int max_sweeps, const std::string& stage,

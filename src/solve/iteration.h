@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -114,6 +116,30 @@ struct Fields {
 
 /// H <- F B of the fields, on the rows of patches that reflect, which are counted.
 void multiply(const System& system, Fields& fields, Convergence& convergence);
+
+/// H <- F B of the fields; records the residual of B, with smallEverywhere(), and returns it.
+double measure(const System& system, Fields& fields, Convergence& convergence);
+
+/// Judges a solver that corrects B by solutions of a system of its own, in a norm, until the true
+/// residual of B is small.
+class Corrections {
+ public:
+  Corrections(const System& system, Convergence& convergence)
+      : system_(system), convergence_(convergence) {}
+  /// Measures the fields. Whether to end; `indefinite`: the solver has found its system to be so.
+  bool end(Fields& fields, bool indefinite);
+  double residual() const { return residual_; }  ///< as measured last
+
+ private:
+  const System& system_;
+  Convergence& convergence_;
+  double residual_ = HUGE_VAL;
+  int stalls_ = 0;
+};
+
+/// D sqrt(A) and D A^-1/2, D = sqrt(rho), N * bands: with `up` F `down` the system of a matrix in
+/// the symmetric form is symmetric. 0 for patches without area.
+void symmetricScales(const System& system, std::span<double> up, std::span<double> down);
 
 // Each runs until `convergence` is finished; its last residual is the true one of the fields
 // returned.

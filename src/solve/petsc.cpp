@@ -5,7 +5,6 @@
 // L = rho and R = 1. PETSc's residual is that of its recurrence, in a norm; the true one of B
 // follows, and where it is not small enough, what is missing is solved for in turn.
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "matrix/shared_rows.h"
@@ -21,9 +20,6 @@ constexpr double kMargin = 0.1;
 constexpr double kLeastReduction = 1e-14;
 /// Where the residual is small enough but for patches that little light reaches.
 constexpr double kSettling = 1e-3;
-/// Solutions that leave more than half of the residual, one after the other, before it is taken for
-/// rounding.
-constexpr int kMostPetscStalls = 3;
 
 class PetscSolve {
  public:
@@ -35,33 +31,17 @@ class PetscSolve {
         z_(left_.size(), 0.0),
         fields_{system.emission, std::vector<double>(left_.size())} {
     if (!system.matrix.isSymmetric()) return;
-    const auto bands = std::size_t(system.bands);
-    for (std::size_t k = 0; k < left_.size(); ++k) {
-      const double root = std::sqrt(system.matrix.area()[k / bands]);
-      const double d = root > 0 ? std::sqrt(system.reflectance[k]) : 0.0;
-      left_[k] = d * root;
-      right_[k] = root > 0 ? d / root : 0.0;
-    }
+    symmetricScales(system, left_, right_);
   }
 
   Fields run() {
-    double last = HUGE_VAL;
-    int stalls = 0;
+    Corrections corrections(system_, convergence_);
     for (;;) {
       for (std::size_t k = 0; k < z_.size(); ++k) {
         fields_.radiosity[k] = system_.emission[k] + right_[k] * z_[k];
       }
-      multiply(system_, fields_, convergence_);
-      const double residual = relativeResidual(system_, fields_.radiosity, fields_.irradiance);
-      stalls = residual > 0.5 * last ? stalls + 1 : 0;
-      last = residual;
-      convergence_.record(residual, smallEverywhere(system_, fields_.radiosity, fields_.irradiance,
-                                                    convergence_.tolerance()));
-      if (convergence_.converged()) return std::move(fields_);
-      if (indefinite_) convergence_.giveUp(GaveUp::grows);
-      if (stalls == kMostPetscStalls) convergence_.giveUp(GaveUp::rounding);
-      if (convergence_.finished()) return std::move(fields_);
-      improve(residual);
+      if (corrections.end(fields_, indefinite_)) return std::move(fields_);
+      improve(corrections.residual());
     }
   }
 

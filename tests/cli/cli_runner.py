@@ -7,6 +7,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import h5py
+
 PROGRAM = os.environ["RADIOSITY"]
 DATA = Path(os.environ["RADIOSITY_SOURCE_DIR"]) / "data"
 # Built with node and npm: `view` can write pages.
@@ -96,3 +98,13 @@ class CliTest(unittest.TestCase):
             self.assertIn(word, lines[0])
         self.assertEqual(self.files(), before)
         return lines[0]
+
+    def assert_same_factors(self, first, second):
+        """All arrays of the form factors of two results files, to the bit."""
+        with h5py.File(self.folder / first) as a, h5py.File(self.folder / second) as b:
+            a, b = a["form_factors"], b["form_factors"]
+            arrays = [name for name in a if isinstance(a[name], h5py.Dataset)]
+            self.assertIn("data", arrays)
+            self.assertEqual(arrays, [n for n in b if isinstance(b[n], h5py.Dataset)])
+            for name in arrays:
+                self.assertEqual(a[name][()].tobytes(), b[name][()].tobytes(), name)

@@ -61,15 +61,6 @@ class MpiTest(CliTest):
         self.assertEqual(done.returncode, code, done.stderr)
         return done
 
-    def assert_same_factors(self, first, second):
-        with h5py.File(self.folder / first) as a, h5py.File(self.folder / second) as b:
-            a, b = a["form_factors"], b["form_factors"]
-            arrays = [name for name in a if isinstance(a[name], h5py.Dataset)]
-            self.assertIn("data", arrays)
-            self.assertEqual(arrays, [n for n in b if isinstance(b[n], h5py.Dataset)])
-            for name in arrays:
-                self.assertEqual(a[name][()].tobytes(), b[name][()].tobytes(), name)
-
     def radiosity_of(self, file):
         with h5py.File(self.folder / file) as results:
             return results["solution/radiosity"][()]

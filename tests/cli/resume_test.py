@@ -70,14 +70,9 @@ class ResumeTest(CliTest):
         return largest
 
     def assert_same_factors(self, first, second):
+        super().assert_same_factors(first, second)
         with h5py.File(self.folder / first) as a, h5py.File(self.folder / second) as b:
-            a, b = a["form_factors"], b["form_factors"]
-            arrays = [name for name in a if isinstance(a[name], h5py.Dataset)]
-            self.assertIn("data", arrays)
-            self.assertEqual(arrays, [n for n in b if isinstance(b[n], h5py.Dataset)])
-            for name in arrays:
-                self.assertEqual(a[name][()].tobytes(), b[name][()].tobytes(), name)
-            self.assertEqual(a.attrs["key"], b.attrs["key"])
+            self.assertEqual(a["form_factors"].attrs["key"], b["form_factors"].attrs["key"])
 
     def test_killed_runs_go_on(self):
         for method, options in METHODS.items():
