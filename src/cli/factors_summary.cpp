@@ -152,7 +152,7 @@ void summarizeFactors(Report& report, const FormFactors& factors, const PatchMes
     report.seconds("seconds", "time", r.seconds);
     report.seconds("seconds_plan", "  of that, planning", r.seconds_plan);
     report.seconds("estimated_seconds", "  the rest estimated before", r.estimated_seconds);
-    report.text("simd_target", "instruction set", r.simd_target);
+    if (!r.simd_target.empty()) report.text("simd_target", "instruction set", r.simd_target);
     report.bytes("matrix_bytes", "matrix in memory", r.matrix_bytes);
     report.bytes("estimated_bytes", "  estimated before", r.estimated_bytes);
     report.count("polygons", "planar polygons", r.polygons);

@@ -13,6 +13,8 @@ namespace {
 
 /// Share of the view on black backs above which normals are suspect.
 constexpr double kSuspectBacks = 1e-3;
+/// Surfaces that the warning names, if there are as many, however small the share of each.
+constexpr std::size_t kNamedBacks = 3;
 
 void noteBacks(const PatchMesh& mesh, FormFactors& result) {
   const std::vector<double>& share = result.backs_by_surface;
@@ -23,12 +25,17 @@ void noteBacks(const PatchMesh& mesh, FormFactors& result) {
   std::stable_sort(worst.begin(), worst.end(),
                    [&](std::size_t a, std::size_t b) { return share[a] > share[b]; });
   std::string names;
+  std::size_t named = 0;
   for (const std::size_t s : worst) {
-    // Name what makes up the warning, not every sliver.
-    if (share[s] < 0.1 * total) break;
+    // Name what makes up the warning, not every sliver; of many alike the first few.
+    if (share[s] < 0.1 * total && (named >= kNamedBacks || share[s] <= 0)) break;
     names += fmt::format("{}{} ({:.2f}%)", names.empty() ? "" : ", ", mesh.surface_names[s],
                          100 * share[s]);
+    ++named;
   }
+  const auto all =
+      std::size_t(std::count_if(share.begin(), share.end(), [](double v) { return v > 0; }));
+  if (all > named) names += fmt::format(" and {} more", all - named);
   result.report.notes.push_back(
       {Severity::warning,
        fmt::format("{:.2f}% of the view ends on black backs, seen from behind: {}; flipped? "

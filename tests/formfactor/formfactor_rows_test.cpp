@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <random>
+#include <regex>
 
 #include "formfactor/hemicube/row_builder.h"
 #include "radiosity/form_factors.h"
@@ -125,6 +126,22 @@ TEST(Rows, AccountsOfAnOpenScene) {
   ASSERT_EQ(f.report.notes.size(), 1u);
   EXPECT_NE(f.report.notes[0].text.find("flipped"), std::string::npos);
   EXPECT_NE(f.report.notes[0].text.find("flipped (", 0), std::string::npos);
+}
+
+TEST(Rows, OfManySurfacesSeenFromBehindTheWarningNamesThree) {
+  // Twenty boards above a floor, facing up as it does: none makes up a tenth of what it sees.
+  MeshBuilder builder;
+  builder.grid("floor", {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, 1);
+  for (int k = 0; k < 20; ++k) {
+    const double x = 0.05 * k;
+    builder.grid("board " + std::to_string(k), {x, 0, 0.5}, {0.05, 0, 0}, {0, 1, 0}, 1, 1);
+  }
+  const FormFactors f = compute(builder.build(), doublePrecision(64));
+  ASSERT_EQ(f.report.notes.size(), 1u);
+  EXPECT_TRUE(
+      std::regex_search(f.report.notes[0].text,
+                        std::regex(R"(: (board \d+ \(\d\.\d\d%\)(, )?){3} and 17 more; flipped)")))
+      << f.report.notes[0].text;
 }
 
 TEST(Rows, TwoSidedPolygonsAreSeenFromBothSides) {

@@ -76,18 +76,24 @@ class EdgeVertices {
   BoxTree tree_;
 };
 
-/// Cuts a triangle from a vertex on an edge to the corner opposite, and its parts likewise.
+/// Cuts a triangle from a vertex on an edge to the corner opposite, and its parts likewise. `used`:
+/// its corners and those of the triangles that it was cut from. None of these cuts again: where a
+/// vertex lies close beside an obtuse corner, the cut from it passes by that corner, and cutting
+/// there would bring back the triangle of before.
 void appendCut(const std::array<Index, 3>& triangle, Index polygon, const EdgeVertices& on,
-               std::vector<GpuTriangle>& parts) {
+               std::vector<Index>& used, std::vector<GpuTriangle>& parts) {
   for (std::size_t k = 0; k < 3 && !on.isThin(triangle); ++k) {
     const Index a = triangle[k];
     const Index b = triangle[(k + 1) % 3];
     const Index c = triangle[(k + 2) % 3];
-    const std::vector<Index> between = on.between(a, b);
+    std::vector<Index> between = on.between(a, b);
+    std::erase_if(between, [&](Index v) { return std::ranges::find(used, v) != used.end(); });
     if (between.empty()) continue;
     const Index middle = between[between.size() / 2];
-    appendCut({a, middle, c}, polygon, on, parts);
-    appendCut({middle, b, c}, polygon, on, parts);
+    used.push_back(middle);
+    appendCut({a, middle, c}, polygon, on, used, parts);
+    appendCut({middle, b, c}, polygon, on, used, parts);
+    used.pop_back();
     return;
   }
   parts.push_back({triangle[0], triangle[1], triangle[2], polygon});
@@ -103,8 +109,11 @@ GpuScene::GpuScene(const ViewScene& scene, const PatchMesh& mesh)
   vertices = std::move(all.vertices);
   const EdgeVertices on(vertices, coincidence);
   std::vector<std::vector<GpuTriangle>> cut(all.triangles.size());
-  parallelFor(cut.size(), 64,
-              [&](std::size_t t) { appendCut(all.triangles[t], all.polygon_of[t], on, cut[t]); });
+  parallelFor(cut.size(), 64, [&](std::size_t t) {
+    const std::array<Index, 3>& triangle = all.triangles[t];
+    std::vector<Index> used(triangle.begin(), triangle.end());
+    appendCut(triangle, all.polygon_of[t], on, used, cut[t]);
+  });
   for (const std::vector<GpuTriangle>& parts : cut) {
     triangles.insert(triangles.end(), parts.begin(), parts.end());
   }
