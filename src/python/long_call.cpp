@@ -1,13 +1,18 @@
 #include "long_call.h"
 
+#include <unistd.h>
+
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 namespace py = pybind11;
 
@@ -47,39 +52,101 @@ class WatchedProgress : public Progress {
   std::atomic<std::size_t> done_{0};
 };
 
-/// The work on its thread, and whether it is over.
+/// A thread that does one piece of work after the other. Threads that are kept know their share of
+/// TBB's and of the heap's; starting one anew takes longer than a small solve may.
 class Worker {
  public:
-  Worker(const std::function<void(Progress&)>& work, Progress& progress)
-      : thread_([this, &work, &progress] {
-          try {
-            work(progress);
-          } catch (...) {
-            failure_ = std::current_exception();
-          }
-          const std::lock_guard lock(mutex_);
-          over_ = true;
-          changed_.notify_one();
-        }) {}
+  ~Worker() {
+    {
+      const std::lock_guard lock(mutex_);
+      ended_ = true;
+    }
+    changed_.notify_one();
+  }  // and joins
+
+  /// Both are there until the work is over.
+  void start(const std::function<void(Progress&)>& work, Progress& progress) {
+    {
+      const std::lock_guard lock(mutex_);
+      work_ = &work;
+      progress_ = &progress;
+      failure_ = nullptr;
+    }
+    changed_.notify_one();
+  }
 
   /// True once the work is over.
   bool wait() {
     std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, kBetweenLooks, [this] { return over_; });
+    return over_.wait_for(lock, kBetweenLooks, [this] { return work_ == nullptr; });
   }
+
   /// What the work threw, once it is over.
-  std::exception_ptr join() {
-    thread_.join();
-    return failure_;
+  std::exception_ptr failure() { return std::exchange(failure_, nullptr); }
+
+ private:
+  void run() {
+    std::unique_lock lock(mutex_);
+    while (true) {
+      changed_.wait(lock, [this] { return ended_ || work_ != nullptr; });
+      if (work_ == nullptr) return;
+      lock.unlock();
+      std::exception_ptr failure;
+      try {
+        (*work_)(*progress_);
+      } catch (...) {
+        failure = std::current_exception();
+      }
+      lock.lock();
+      failure_ = failure;
+      work_ = nullptr;
+      over_.notify_one();
+    }
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;  // for the thread
+  std::condition_variable over_;     // for its caller
+  const std::function<void(Progress&)>* work_ = nullptr;
+  Progress* progress_ = nullptr;
+  std::exception_ptr failure_;
+  bool ended_ = false;
+  std::jthread thread_{[this] { run(); }};  // starts last, ends first
+};
+
+/// The workers that wait for work: as many as there were calls at once.
+class IdleWorkers {
+ public:
+  std::unique_ptr<Worker> take() {
+    const std::lock_guard lock(mutex_);
+    forgetThoseOfTheParent();
+    if (idle_.empty()) return std::make_unique<Worker>();
+    std::unique_ptr<Worker> worker = std::move(idle_.back());
+    idle_.pop_back();
+    return worker;
+  }
+  void giveBack(std::unique_ptr<Worker> worker) {
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(worker));
   }
 
  private:
+  /// A process that forked off has copies of them without their threads, which cannot be joined.
+  void forgetThoseOfTheParent() {
+    if (std::exchange(process_, getpid()) == getpid()) return;
+    for (std::unique_ptr<Worker>& worker : idle_) static_cast<void>(worker.release());
+    idle_.clear();
+  }
+
   std::mutex mutex_;
-  std::condition_variable changed_;
-  bool over_ = false;
-  std::exception_ptr failure_;
-  std::jthread thread_;  // starts last, ends first
+  std::vector<std::unique_ptr<Worker>> idle_;
+  pid_t process_ = getpid();
 };
+
+IdleWorkers& idleWorkers() {
+  static IdleWorkers workers;
+  return workers;
+}
 
 }  // namespace
 
@@ -89,8 +156,9 @@ void runLong(const py::object& report, const std::function<void(Progress&)>& wor
   std::exception_ptr failure;
   {
     const py::gil_scoped_release unlocked;
-    Worker worker(work, progress);
-    while (!worker.wait()) {
+    std::unique_ptr<Worker> worker = idleWorkers().take();
+    worker->start(work, progress);
+    while (!worker->wait()) {
       if (progress.cancelled()) continue;
       const py::gil_scoped_acquire locked;
       try {
@@ -101,7 +169,8 @@ void runLong(const py::object& report, const std::function<void(Progress&)>& wor
         progress.cancel();
       }
     }
-    failure = worker.join();
+    failure = worker->failure();
+    idleWorkers().giveBack(std::move(worker));
   }
   if (raised) throw py::error_already_set(std::move(*raised));
   if (failure) std::rethrow_exception(failure);

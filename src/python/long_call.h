@@ -9,7 +9,7 @@
 
 namespace radiosity::python {
 
-/// Runs `work` on a thread of its own, while this one waits without Python's lock. Every 50 ms the
+/// Runs `work` on another thread, while this one waits without Python's lock. Every 50 ms the
 /// waiting thread lets Python handle signals, so that Ctrl-C cancels the work and raises
 /// KeyboardInterrupt, and calls report(stage, done, total, steps), unless that is None; what it
 /// raises cancels the work, too. Errors of the work are thrown here. `work` must touch no Python

@@ -83,6 +83,21 @@ def test_two_threads_compute_at_once(cornell):
     assert (results[0] == cornell.csr.data).all() and (results[1] == cornell.csr.data).all()
 
 
+def test_a_forked_process_computes_too(cornell):
+    """It has no copies of the threads of its parent, which computed before."""
+    read, write = os.pipe()
+    child = os.fork()
+    if child == 0:
+        signal.alarm(60)  # ends it, where it would wait for a thread that is not there
+        os.write(write, rad.solve(cornell).radiosity.tobytes())
+        os._exit(0)
+    os.close(write)
+    with os.fdopen(read, "rb") as pipe:
+        radiosity = pipe.read()
+    assert os.waitpid(child, 0)[1] == 0
+    assert radiosity == rad.solve(cornell).radiosity.tobytes()
+
+
 def test_progress_tells_stage_done_and_total(slow):
     told = []
 

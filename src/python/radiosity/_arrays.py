@@ -33,9 +33,9 @@ def numbers(name: str, value: Any, shapes: Sequence[Sequence[Optional[int]]], me
         raise InputError(f"{name}: has dtype {given.dtype}; give real numbers")
     array = np.ascontiguousarray(given, dtype=np.float64) if given.ndim else given.astype(np.float64)
     _require_shape(name, array, shapes, meaning)
-    bad = np.isinf(array) if nan else ~np.isfinite(array)
-    if bad.any():
-        first = tuple(int(k) for k in np.argwhere(bad)[0])
+    good = ~np.isinf(array) if nan else np.isfinite(array)
+    if not good.all():
+        first = tuple(int(k) for k in np.argwhere(~good)[0])
         place = first[0] if len(first) == 1 else first
         raise InputError(f"{name}: entry {place} is {array[first]}; give finite numbers")
     return array

@@ -103,7 +103,8 @@ def solve(F: FormFactors, reflectance: Any = None, emission: Any = None, *, sky:
         reflectance = F.mesh.reflectance
     rho = numbers("reflectance", reflectance, [(), (rows,), (rows, bands)], f"N = {rows}")
     rho = rho.reshape(rows, 1) if rho.ndim == 1 else rho
-    rho = np.repeat(np.broadcast_to(rho, (rows, bands)), lamps, axis=1)
+    rho = np.broadcast_to(rho, (rows, bands))
+    rho = rho if lamps == 1 else np.repeat(rho, lamps, axis=1)
     shine = [] if sky is None or len(np.atleast_1d(sky)) == 0 else np.repeat(
         np.broadcast_to(numbers("sky", sky, [(), (bands,)]), (bands,)), lamps).tolist()
     options = dict(solver=solver, tolerance=float(tolerance), max_iterations=max_iterations)
