@@ -37,6 +37,7 @@ AssimpLibrary openLibrary() {
   find(library, "aiGetMaterialColor", found.getMaterialColor);
   find(library, "aiGetMaterialIntegerArray", found.getMaterialIntegerArray);
   find(library, "aiGetMaterialTextureCount", found.getMaterialTextureCount);
+  find(library, "aiGetMaterialTexture", found.getMaterialTexture);
   return found;
 }
 

@@ -22,6 +22,9 @@ struct AssimpLibrary {
   aiReturn (*getMaterialIntegerArray)(const aiMaterial*, const char*, unsigned, unsigned, int*,
                                       unsigned*);
   unsigned (*getMaterialTextureCount)(const aiMaterial*, aiTextureType);
+  aiReturn (*getMaterialTexture)(const aiMaterial*, aiTextureType, unsigned, aiString*,
+                                 aiTextureMapping*, unsigned*, ai_real*, aiTextureOp*,
+                                 aiTextureMapMode*, unsigned*);
 };
 
 /// Opens the library at the first call. RunError where it is not installed.

@@ -1,18 +1,21 @@
-// What Assimp reads and we do not: Collada, FBX, 3DS, X3D. Nodes are objects, diffuse and
-// emissive colours are read as those of an MTL file.
+// What Assimp reads and we do not: Collada, FBX, 3DS, X3D. Nodes are objects.
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <glm/geometric.hpp>
+#include <map>
 #include <memory>
 #include <numbers>
 
 #include "base/finite.h"
 #include "base/input_file.h"
-#include "base/srgb.h"
 #include "scene/assimp_library.h"
+#include "scene/assimp_materials.h"
 #include "scene/mesh_cursor.h"
 #include "scene/readers.h"
 #include "scene/scene_builder.h"
@@ -21,6 +24,10 @@
 namespace radiosity {
 
 namespace {
+
+bool is3ds(const std::string& path) {
+  return lowerCase(std::filesystem::path(path).extension().string()) == ".3ds";
+}
 
 class AssimpReader {
  public:
@@ -35,14 +42,15 @@ class AssimpReader {
     // Names as people gave them, not ids.
     library_.setImportPropertyInteger(wishes.get(), AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, 1);
     const std::unique_ptr<const aiScene, void (*)(const aiScene*)> file(
-        library_.importFileExWithProperties(scene_.file.c_str(), aiProcess_ValidateDataStructure,
-                                            nullptr, wishes.get()),
+        library_.importFileExWithProperties(
+            scene_.file.c_str(), aiProcess_ValidateDataStructure | aiProcess_TransformUVCoords,
+            nullptr, wishes.get()),
         library_.releaseImport);
     if (file == nullptr || file->mRootNode == nullptr) {
       fail(fmt::format("cannot be read ({}); export it again, or as .obj or .glb",
                        onOneLine(library_.getErrorString())));
     }
-    for (unsigned m = 0; m < file->mNumMaterials; ++m) addMaterial(*file->mMaterials[m], m);
+    texcoord_set_ = readAssimpMaterials(*file, options_, scene_, notes_);
     scale_ = metresPerUnit(*file);
     addNodes(*file);
     if (scene_.faceCount() == 0) fail("no faces; export the scene with its meshes as polygons");
@@ -53,6 +61,10 @@ class AssimpReader {
     }
     notes_.appendTo(scene_.notes);
     builder_.finish();
+    // In all of these formats a texture stands in place of the colour.
+    for (Material& material : scene_.materials) {
+      if (material.texture != kNone) material.reflectance = Vec3(1.0);
+    }
     return std::move(scene_);
   }
 
@@ -61,62 +73,20 @@ class AssimpReader {
     throw InputError(fmt::format("{}: {}", scene_.file, what));
   }
 
-  void addMaterial(const aiMaterial& given, unsigned number);
-  Vec3 colour(const aiMaterial& given, const char* key, const Vec3& otherwise) const;
   std::string objectName(const aiNode& node, const aiMesh& mesh) const;
   static double metresPerUnit(const aiScene& file);
   void addNodes(const aiScene& file);
   void addMesh(const aiMesh& mesh, const std::string& object, const aiMatrix4x4& place);
+  void addCamera(const aiCamera& given, const aiMatrix4x4& place);
 
   const SceneOptions& options_;
   const AssimpLibrary& library_ = assimpLibrary();
   Scene scene_;
   SceneBuilder builder_;
-  UniqueNames material_names_;
+  std::vector<unsigned> texcoord_set_;  ///< by material
   FeatureNotes notes_;
   double scale_ = 1;
 };
-
-// Keys of materials are written out where AI_MATKEY macros give three arguments at once.
-
-Vec3 AssimpReader::colour(const aiMaterial& given, const char* key, const Vec3& otherwise) const {
-  aiColor4D found;
-  if (library_.getMaterialColor(&given, key, 0, 0, &found) != AI_SUCCESS) return otherwise;
-  return {double(found.r), double(found.g), double(found.b)};
-}
-
-void AssimpReader::addMaterial(const aiMaterial& given, unsigned number) {
-  aiString text;
-  std::string name;
-  if (library_.getMaterialString(&given, AI_MATKEY_NAME, &text) == AI_SUCCESS) name = text.C_Str();
-  // Assimp makes up a grey material for meshes without one.
-  if (name == AI_DEFAULT_MATERIAL_NAME) {
-    scene_.materials.push_back(defaultMaterial(material_names_.make("default"), options_));
-    return;
-  }
-  if (name.empty()) name = fmt::format("material {}", number);
-  Material material = defaultMaterial(material_names_.make(name), options_);
-  material.reflectance = colour(given, "$clr.diffuse", material.reflectance);
-  const Vec3 radiance = colour(given, "$clr.emissive", Vec3(0.0));
-  checkReflectance(scene_.file, material.name, material.reflectance);
-  checkEmission(scene_.file, material.name, radiance);
-  if (options_.kd_is_srgb) {
-    for (int band = 0; band < 3; ++band) {
-      material.reflectance[band] = linearFromSrgb(material.reflectance[band]);
-    }
-  }
-  material.emission = std::numbers::pi * radiance;
-  int two_sided = 0;
-  if (library_.getMaterialIntegerArray(&given, AI_MATKEY_TWOSIDED, &two_sided, nullptr) ==
-      AI_SUCCESS) {
-    material.two_sided = two_sided != 0;
-  }
-  if (library_.getMaterialTextureCount(&given, aiTextureType_DIFFUSE) > 0) {
-    notes_.add("textures of this format are not read, the colour alone counts", material.name,
-               Severity::warning);
-  }
-  scene_.materials.push_back(std::move(material));
-}
 
 /// Assimp makes up names in angle brackets.
 std::string AssimpReader::objectName(const aiNode& node, const aiMesh& mesh) const {
@@ -138,6 +108,10 @@ double AssimpReader::metresPerUnit(const aiScene& file) {
 
 /// All nodes, each before its children. (No recursion: a file may have chains of any length.)
 void AssimpReader::addNodes(const aiScene& file) {
+  std::multimap<std::string, const aiCamera*> camera_of;  // by the node that holds it
+  for (unsigned c = 0; c < file.mNumCameras; ++c) {
+    camera_of.emplace(file.mCameras[c]->mName.C_Str(), file.mCameras[c]);
+  }
   std::vector<std::pair<const aiNode*, aiMatrix4x4>> open = {{file.mRootNode, aiMatrix4x4()}};
   while (!open.empty()) {
     const auto [node, above] = open.back();
@@ -147,6 +121,8 @@ void AssimpReader::addNodes(const aiScene& file) {
       const aiMesh& mesh = *file.mMeshes[node->mMeshes[k]];
       addMesh(mesh, objectName(*node, mesh), place);
     }
+    const auto [first, last] = camera_of.equal_range(node->mName.C_Str());
+    for (auto camera = first; camera != last; ++camera) addCamera(*camera->second, place);
     for (unsigned k = node->mNumChildren; k-- > 0;) open.emplace_back(node->mChildren[k], place);
   }
 }
@@ -164,7 +140,9 @@ void AssimpReader::addMesh(const aiMesh& mesh, const std::string& object,
   }
   const bool mirrors = place.Determinant() < 0;
   const Index surface = builder_.surface(object, mesh.mMaterialIndex);
+  const aiVector3D* const texcoords = mesh.mTextureCoords[texcoord_set_[mesh.mMaterialIndex]];
   std::vector<Index> corners;
+  std::vector<Vec2> pairs;
   for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
     const aiFace& face = mesh.mFaces[f];
     if (face.mNumIndices < 3) {
@@ -172,11 +150,53 @@ void AssimpReader::addMesh(const aiMesh& mesh, const std::string& object,
       continue;
     }
     corners.clear();
+    pairs.clear();
     for (unsigned k = 0; k < face.mNumIndices; ++k) {
-      corners.push_back(Index(first + face.mIndices[mirrors ? face.mNumIndices - 1 - k : k]));
+      const unsigned vertex = face.mIndices[mirrors ? face.mNumIndices - 1 - k : k];
+      corners.push_back(Index(first + vertex));
+      if (texcoords == nullptr) continue;
+      // Assimp's origin is the bottom left corner.
+      pairs.emplace_back(double(texcoords[vertex].x), 1 - double(texcoords[vertex].y));
+      if (!std::isfinite(pairs.back().x) || !std::isfinite(pairs.back().y)) {
+        fail(fmt::format("object {}: a texture coordinate is not a finite number; export it again",
+                         object));
+      }
     }
-    builder_.addFace(corners, {}, surface, f);
+    builder_.addFace(corners, pairs, surface, f);
   }
+}
+
+/// Assimp's angle is horizontal, whole, whatever the file had.
+void AssimpReader::addCamera(const aiCamera& given, const aiMatrix4x4& place) {
+  // Assimp loses where they look at.
+  if (is3ds(scene_.file)) {
+    notes_.add("cameras of 3DS files are not used", given.mName.C_Str(), Severity::warning);
+    return;
+  }
+  const auto vectorOf = [](const aiVector3D& v) {
+    return Vec3(double(v.x), double(v.y), double(v.z));
+  };
+  const aiMatrix3x3 turn(place);
+  const Vec3 forward = vectorOf(turn * given.mLookAt);
+  Camera camera;
+  camera.name = given.mName.C_Str();
+  camera.eye = scale_ * vectorOf(place * given.mPosition);
+  camera.up = vectorOf(turn * given.mUp);
+  camera.aspect = std::max(0.0, double(given.mAspect));
+  const double width = std::tan(0.5 * double(given.mHorizontalFOV));
+  // Of a picture of which the file does not say how high it is: 4 : 3.
+  camera.vertical_fov = 2 * std::atan(width / (camera.aspect > 0 ? camera.aspect : 4.0 / 3));
+  const bool usable = isFinite(camera.eye) && isFinite(forward) &&
+                      glm::length(glm::cross(forward, camera.up)) > 0 && camera.vertical_fov > 0 &&
+                      camera.vertical_fov < std::numbers::pi;
+  if (!usable) {
+    notes_.add("cameras without a view direction or an angle are not used", camera.name,
+               Severity::warning);
+    return;
+  }
+  camera.target = camera.eye + glm::normalize(forward);
+  camera.up = glm::normalize(camera.up);
+  scene_.cameras.push_back(camera);
 }
 
 }  // namespace
@@ -186,7 +206,7 @@ namespace {
 /// Assimp reads what is left of a 3DS file as if it were whole: its first chunk says how long it
 /// is.
 void requireWhole3ds(const std::string& path) {
-  if (lowerCase(std::filesystem::path(path).extension().string()) != ".3ds") return;
+  if (!is3ds(path)) return;
   const std::string content = readWholeFile(path);
   MeshCursor cursor(path, content);
   cursor.setEncoding(Encoding::little);

@@ -1,8 +1,14 @@
 """OFF, and what Assimp reads: Collada, FBX, 3DS and X3D, with their names, colours and units."""
 
+import math
+import os
 import struct
 import sys
 import unittest
+
+import h5py
+import numpy as np
+from PIL import Image
 
 from cli_runner import CliTest
 
@@ -29,6 +35,24 @@ COLLADA = """<?xml version="1.0"?>
 </visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/></scene>
 </COLLADA>
 """
+
+# The same plate with an image of a red and a blue half, and a camera that looks at it from above.
+TEXTURED = (COLLADA
+    .replace("<library_effects>", """<library_images><image id="im" name="im"><init_from>C:\\work\\HALVES.PNG</init_from>
+</image></library_images><library_cameras><camera id="c" name="c"><optics><technique_common><perspective>
+<xfov>60</xfov><aspect_ratio>2</aspect_ratio></perspective></technique_common></optics></camera></library_cameras>
+<library_effects>""")
+    .replace("<technique sid=", """<newparam sid="su"><surface type="2D"><init_from>im</init_from></surface></newparam>
+<newparam sid="sa"><sampler2D><source>su</source></sampler2D></newparam><technique sid=""")
+    .replace("<color>0.25 0.5 0.75 1</color>", '<texture texture="sa" texcoord="UV0"/>')
+    .replace("<vertices id=", """<source id="t"><float_array id="ta" count="8">0 0 1 0 1 1 0 1</float_array>
+<technique_common><accessor source="#ta" count="4" stride="2"><param name="S" type="float"/>
+<param name="T" type="float"/></accessor></technique_common></source><vertices id=""")
+    .replace("""source="#v" offset="0"/>""", """source="#v" offset="0"/><input semantic="TEXCOORD" source="#t" offset="0" set="0"/>""")
+    .replace("""target="#paint"/>""", """target="#paint"><bind_vertex_input semantic="UV0" input_semantic="TEXCOORD"
+input_set="0"/></instance_material>""").replace("</instance_material></instance_material>", "</instance_material>")
+    .replace("</visual_scene>", """<node id="cam" name="above"><translate>50 50 300</translate>
+<instance_camera url="#c"/></node></visual_scene>"""))
 
 X3D = """<?xml version="1.0"?>
 <X3D version="3.0"><Scene><Transform DEF="wall" translation="0 0 1"><Shape>
@@ -106,6 +130,43 @@ class OtherFormats(CliTest):
         # Single precision, and centimetres; the node is twice as wide.
         self.assertAlmostEqual(surface["area_m2"], 2, 6)
         self.assertEqual([material["reflectance"], material["radiance_W_per_m2_sr"]], ["0.25, 0.5, 0.75", "2, 1, 0"])
+
+    def patches_of(self, *options):
+        """Centroid and reflectance of each front patch of the textured plate."""
+        self.run_program("solve", "a.dae", "--patches", "8", *options, "-o", "r.h5")
+        with h5py.File(self.folder / "r.h5") as results:
+            return results["form_factors/centroid"][()], results["solution/reflectance"][()]
+
+    def test_textures_are_found_by_name_and_stand_in_place_of_colours(self):
+        halves = np.zeros((2, 4, 3), np.uint8)
+        halves[:, :2] = (255, 0, 0)
+        halves[:, 2:] = (0, 0, 255)
+        halves[0] //= 5  # the upper row is 51 / 255, which is .0331 linear
+        Image.fromarray(halves).save(self.folder / "halves.png")
+        self.put("a.dae", TEXTURED)
+        run = self.run_program("info", "a.dae")
+        self.assertIn("taken from beside the scene: texture: C:\\work\\HALVES.PNG", run.out)
+        centroid, reflectance = self.patches_of()
+        dark = ((51 / 255 + 0.055) / 1.055) ** 2.4  # sRGB, IEC 61966-2-1
+        for at, rho in zip(centroid, reflectance):
+            value = dark if at[1] > 0.5 else 1
+            expected = [value, 0, 0] if at[0] < 1 else [0, 0, value]
+            np.testing.assert_allclose(rho, expected, atol=1e-6)  # texels are floats
+        _, off = self.patches_of("--textures", "off")
+        os.remove(self.folder / "halves.png")
+        run = self.run_program("info", "a.dae")
+        self.assertIn("HALVES.PNG is not there; the colour alone counts, material: paint", run.err)
+        _, without = self.patches_of()
+        self.assertEqual(off.tolist(), without.tolist())
+
+    def test_cameras_of_collada(self):
+        self.put("a.dae", TEXTURED)
+        camera = self.report("info", "a.dae")["scene"]["cameras"][0]
+        self.assertEqual(camera["name"], "above")
+        np.testing.assert_allclose(np.array(camera["eye_m"].split(", "), float), [.5, .5, 3], rtol=1e-6)
+        np.testing.assert_allclose(np.array(camera["target_m"].split(", "), float), [.5, .5, 2], rtol=1e-6)
+        # 60 degrees wide, half as high.
+        self.assertAlmostEqual(float(camera["fov_deg"]), math.degrees(2 * math.atan(math.tan(math.pi / 6) / 2)), 3)
 
     def test_x3d(self):
         surface, material = self.only_surface("a.x3d", X3D)
