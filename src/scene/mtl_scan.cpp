@@ -25,6 +25,15 @@ bool isMap(std::string_view keyword) {
          std::find(kMaps.begin(), kMaps.end(), keyword) != kMaps.end();
 }
 
+/// The words behind the keyword, up to a comment, less the option of `d -halo 0.5`.
+std::vector<std::string_view> argumentsOf(const std::vector<std::string_view>& words) {
+  const auto end = std::find_if(words.begin() + 1, words.end(),
+                                [](std::string_view word) { return word[0] == '#'; });
+  std::vector<std::string_view> arguments(words.begin() + 1, end);
+  std::erase(arguments, "-halo");
+  return arguments;
+}
+
 class MtlScanner {
  public:
   MtlScanner(const std::string& file, FeatureNotes& ignored) : file_(file), ignored_(ignored) {}
@@ -50,18 +59,25 @@ class MtlScanner {
 void MtlScanner::statement(std::size_t line, std::string_view text) {
   line_ = line;
   if (text[0] == '#') return;
-  text_.append(text) += '\n';
   const std::vector<std::string_view> words = splitWords(text);
   const std::string_view keyword = words[0];
   if (keyword == "newmtl") {
-    const std::string_view name = trimmed(text.substr(keyword.size()));
-    if (name.empty()) fail("newmtl names no material; add the name");
-    materials_.push_back({std::string(name), line, {}, {}, false, false});
+    std::string name(trimmed(text.substr(keyword.size())));
+    if (name.empty()) {
+      name = kUnnamed;
+      ignored_.add(fmt::format("newmtl names no material, it is called {}, line", kUnnamed),
+                   std::to_string(line), Severity::warning);
+    }
+    text_ += fmt::format("newmtl {}\n", name);
+    materials_.push_back({std::move(name), line, {}, {}, false, false});
     return;
   }
   if (materials_.empty()) {
-    fail(fmt::format("`{}` stands before the first newmtl; name its material first", keyword));
+    ignored_.add("MTL statements before the first newmtl are not used",
+                 fmt::format("`{}` in line {}", keyword, line), Severity::warning);
+    return;
   }
+  text_.append(text) += '\n';
   MtlMaterial& material = materials_.back();
   if (keyword == "Kd") {
     material.reflectance = colour(keyword, words);
@@ -76,7 +92,13 @@ void MtlScanner::statement(std::size_t line, std::string_view text) {
   } else if (isMap(keyword)) {
     ignored_.add(fmt::format("texture {} is not used, material", keyword), material.name);
   } else if (std::find(kNumeric.begin(), kNumeric.end(), keyword) != kNumeric.end()) {
-    noteIgnored(keyword, values(words));
+    // Exporters write -nan(ind) for what they do not use; nor is it used here.
+    const auto arguments = argumentsOf(words);
+    const auto bad = std::ranges::find_if_not(
+        arguments, [](std::string_view word) { return parseNumber(word).has_value(); });
+    if (bad == arguments.end()) return noteIgnored(keyword, values(words));
+    ignored_.add("MTL statements that are not used have values that are no numbers",
+                 fmt::format("`{}` in line {}", *bad, line));
   } else {
     ignored_.add(fmt::format("unknown MTL statement `{}` is not used, material", keyword),
                  material.name, Severity::warning);
@@ -85,12 +107,11 @@ void MtlScanner::statement(std::size_t line, std::string_view text) {
 
 std::vector<double> MtlScanner::values(const std::vector<std::string_view>& words) const {
   std::vector<double> result;
-  for (std::size_t k = 1; k < words.size() && words[k][0] != '#'; ++k) {
-    if (words[k] == "-halo") continue;  // `d -halo 0.5`
-    const std::optional<double> value = parseNumber(words[k]);
+  for (const std::string_view word : argumentsOf(words)) {
+    const std::optional<double> value = parseNumber(word);
     if (!value) {
       fail(fmt::format("material {}: `{}` is not a finite number; write {} with decimal points",
-                       materials_.back().name, words[k], words[0]));
+                       materials_.back().name, word, words[0]));
     }
     result.push_back(*value);
   }

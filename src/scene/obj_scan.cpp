@@ -57,6 +57,7 @@ class ObjScanner {
   Index index(std::string_view word, std::string_view corner, Referenced& list);
   void object(std::string name);
   void material(std::string_view name);
+  void noteNameless(const std::string& what);
   void other(std::string_view keyword);
   Index currentObject();
 
@@ -69,9 +70,9 @@ class ObjScanner {
   ObjScan scan_;
   std::map<std::string, Index> object_index_;
   std::map<std::string, Index> material_index_;
-  std::string object_name_ = "unnamed";  ///< of the last `o`
-  std::string name_ = "unnamed";         ///< of the last `o` or `g`
-  Index object_ = kNone;                 ///< index of name_, once a face needs it
+  std::string object_name_{kUnnamed};  ///< of the last `o`
+  std::string name_{kUnnamed};         ///< of the last `o` or `g`
+  Index object_ = kNone;               ///< index of name_, once a face needs it
   Index material_ = kNone;
   bool material_used_ = false;  ///< by a face since its usemtl
   bool inheriting_ = false;     ///< a new object began after that face
@@ -85,12 +86,12 @@ void ObjScanner::statement(std::size_t line, std::string_view text) {
   words_ = splitWords(text);
   const std::string_view keyword = words_[0];
   const std::string_view rest = trimmed(text.substr(keyword.size()));
-  if (keyword == "o") return object(rest.empty() ? "unnamed" : std::string(rest));
+  if (keyword == "o") return object(std::string(rest.empty() ? kUnnamed : rest));
   // A bare `g` and "g default" end a group without starting one: back to the object.
   if (keyword == "g") return object(rest.empty() ? object_name_ : std::string(rest));
   if (keyword == "usemtl") return material(rest);
   if (keyword == "mtllib") {
-    if (rest.empty()) fail("mtllib names no file; add the name or remove the line");
+    if (rest.empty()) return noteNameless("mtllib names no file and is not used");
     scan_.libraries.emplace_back(line, rest);
     return;
   }
@@ -190,8 +191,15 @@ void ObjScanner::object(std::string name) {
   inheriting_ = material_used_;
 }
 
+void ObjScanner::noteNameless(const std::string& what) {
+  ignored_.add(what + ", line", std::to_string(line_), Severity::warning);
+}
+
 void ObjScanner::material(std::string_view name) {
-  if (name.empty()) fail("usemtl names no material; add the name or remove the line");
+  if (name.empty()) {
+    name = kUnnamed;
+    noteNameless(fmt::format("usemtl names no material, {} is taken", kUnnamed));
+  }
   const auto [place, is_new] =
       material_index_.try_emplace(std::string(name), Index(scan_.materials.size()));
   if (is_new) scan_.materials.emplace_back(name);

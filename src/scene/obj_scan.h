@@ -12,6 +12,9 @@
 
 namespace radiosity {
 
+/// The name of an object, and of a material, that has none.
+inline constexpr std::string_view kUnnamed = "unnamed";
+
 /// Calls visit(line number, text) for every statement of an OBJ or MTL file, comments included.
 /// A line that ends in a backslash goes on in the next one; blank lines are left out.
 void forEachStatement(std::string_view text,
