@@ -143,8 +143,9 @@ void ObjScanner::numbers(Referenced& list, std::size_t least, std::size_t most,
 void ObjScanner::face() {
   const std::size_t corners = words_.size() - 1;
   if (corners < 3) {
-    fail(fmt::format("a face needs 3 corners or more, this one has {}; correct or remove it",
-                     corners));
+    ignored_.add("faces of fewer than 3 corners have no area and are left out, in", name_,
+                 Severity::warning);
+    return;
   }
   for (std::size_t k = 1; k <= corners; ++k) corner(words_[k]);
   scan_.faces.push_back({line_, currentObject(), material_});

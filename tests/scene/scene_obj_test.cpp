@@ -141,7 +141,7 @@ TEST_F(SceneObj, RefusesIndicesThatPointNowhere) {
 }
 
 TEST_F(SceneObj, RefusesFacesOfTooFewCorners) {
-  EXPECT_CONTAINS(errorOf(kSquare + "f 1 2\n"), "scene.obj:5: a face needs 3 corners");
+  EXPECT_CONTAINS(errorOf(kSquare + "f 1 2\n"), "scene.obj: no faces");
 }
 
 TEST_F(SceneObj, RefusesFilesThatAreNoScene) {
@@ -184,6 +184,13 @@ TEST_F(SceneObj, TurnsRadianceIntoExitance) {
   }
   EXPECT_EQ(scene.materialOf(1).reflectance, Vec3(.4)) << "one number stands for all bands";
   EXPECT_FALSE(lamp.two_sided);
+}
+
+TEST_F(SceneObj, FacesOfTwoCornersAreLeftOut) {
+  const Scene scene = load(kSquare + "o edge\nf 1 2\no wall\n" + kFace + "f\n");
+  EXPECT_EQ(scene.faceCount(), 1U);
+  EXPECT_NOTE(scene.notes, "fewer than 3 corners have no area and are left out, in: edge, wall",
+              Severity::warning);
 }
 
 TEST_F(SceneObj, MaterialsWithoutANameAreOneMaterial) {
