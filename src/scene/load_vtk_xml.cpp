@@ -90,10 +90,11 @@ void VtkXmlReader::header(const pugi::xml_node& root) {
   }
   file_.wide_header = std::string_view(root.attribute("header_type").value()) == "UInt64";
   const std::string compressor = root.attribute("compressor").value();
-  file_.packed = !compressor.empty();
-  if (file_.packed && compressor != "vtkZLibDataCompressor") {
+  const std::optional<VtkPacking> packing = vtkPacking(compressor);
+  if (!packing) {
     fail(fmt::format("compressor {} is not read; save with zlib or without one", compressor));
   }
+  file_.packing = *packing;
   const pugi::xml_node appended = root.child("AppendedData");
   file_.appended_is_raw = std::string_view(appended.attribute("encoding").value()) == "raw";
 }

@@ -1,10 +1,15 @@
 #include "scene/vtk_arrays.h"
 
 #include <fmt/format.h>
+#include <lz4.h>
+#include <lzma.h>
 #include <zlib.h>
 
 #include <array>
-#include <optional>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
 
 namespace radiosity {
 
@@ -119,10 +124,38 @@ std::vector<std::size_t> headerOf(const VtkFile& file, ByteSource& source, std::
   return numbers;
 }
 
+/// Bytes that one byte of packed data can stand for at most: by the format, of LZMA by far more
+/// than is met.
+std::size_t mostRatio(VtkPacking packing) {
+  if (packing == VtkPacking::zlib) return 1032;
+  return packing == VtkPacking::lz4 ? 255 : 8192;
+}
+
+/// Fills `block` from what it was packed to; false where that is damaged.
+bool unpackBlock(VtkPacking packing, const std::string& packed, std::span<char> block) {
+  if (packing == VtkPacking::lz4) {
+    constexpr std::size_t kMost = std::numeric_limits<int>::max();
+    return packed.size() <= kMost && block.size() <= kMost &&
+           LZ4_decompress_safe(packed.data(), block.data(), int(packed.size()),
+                               int(block.size())) == int(block.size());
+  }
+  const auto* in = reinterpret_cast<const std::uint8_t*>(packed.data());
+  auto* out = reinterpret_cast<std::uint8_t*>(block.data());
+  if (packing == VtkPacking::lzma) {
+    std::uint64_t memory = std::uint64_t{1} << 30U;  // of the decoder; xz -9 asks for 65 MiB
+    std::size_t read = 0;
+    std::size_t written = 0;
+    return lzma_stream_buffer_decode(&memory, 0, nullptr, in, &read, packed.size(), out, &written,
+                                     block.size()) == LZMA_OK &&
+           written == block.size();
+  }
+  uLongf length = block.size();
+  return uncompress(out, &length, in, packed.size()) == Z_OK && length == block.size();
+}
+
 /// Blocks, each packed by itself: how many, of which size, size of the last (0: as the others),
 /// then the size of each when packed.
 std::string unpacked(const VtkFile& file, const VtkArray& array, ByteSource& source) {
-  constexpr std::size_t kMostRatio = 1032;  // no deflated data is denser
   const std::vector<std::size_t> head = headerOf(file, source, 3);
   const std::size_t blocks = head[0];
   if (blocks > source.room() / 4)
@@ -133,16 +166,13 @@ std::string unpacked(const VtkFile& file, const VtkArray& array, ByteSource& sou
   for (std::size_t k = 0; k < blocks; ++k) {
     const bool is_short = k + 1 == blocks && head[2] > 0;
     const std::size_t size = is_short ? head[2] : head[1];
-    if (sizes[k] > source.room() || size / kMostRatio > sizes[k]) {
+    if (sizes[k] > source.room() || size / mostRatio(file.packing) > sizes[k]) {
       fail(file, array, "a block's size is wrong; the file is damaged, export it again");
     }
     const std::string packed = source.take(sizes[k]);
     const std::size_t begin = all.size();
     all.resize(begin + size);
-    uLongf length = size;
-    const int code = uncompress(reinterpret_cast<Bytef*>(all.data() + begin), &length,
-                                reinterpret_cast<const Bytef*>(packed.data()), packed.size());
-    if (code != Z_OK || length != size) {
+    if (!unpackBlock(file.packing, packed, std::span(all).subspan(begin))) {
       fail(file, array, "a block cannot be unpacked; the file is damaged, export it again");
     }
   }
@@ -151,7 +181,7 @@ std::string unpacked(const VtkFile& file, const VtkArray& array, ByteSource& sou
 
 std::string bytesOf(const VtkFile& file, const VtkArray& array) {
   ByteSource source(file, array);
-  if (file.packed) return unpacked(file, array, source);
+  if (file.packing != VtkPacking::none) return unpacked(file, array, source);
   const std::size_t size = headerOf(file, source, 1)[0];
   if (size > source.room()) {
     fail(file, array, "it ends too early; the file is cut off or damaged, export it again");
@@ -179,6 +209,18 @@ std::vector<Number> readAll(const VtkFile& file, const VtkArray& array, const Re
 }
 
 }  // namespace
+
+std::optional<VtkPacking> vtkPacking(std::string_view compressor) {
+  constexpr std::pair<std::string_view, VtkPacking> kNames[] = {
+      {"", VtkPacking::none},
+      {"vtkZLibDataCompressor", VtkPacking::zlib},
+      {"vtkLZ4DataCompressor", VtkPacking::lz4},
+      {"vtkLZMADataCompressor", VtkPacking::lzma}};
+  for (const auto& [name, packing] : kNames) {
+    if (name == compressor) return packing;
+  }
+  return std::nullopt;
+}
 
 std::vector<double> vtkNumbers(const VtkFile& file, const VtkArray& array) {
   return readAll<double>(file, array, [](MeshCursor& cursor, NumberType type) {

@@ -1,6 +1,7 @@
-// Arrays of an XML VTK file: text, base64 in place, or appended, packed by zlib or not.
+// Arrays of an XML VTK file: text, base64 in place, or appended, packed or not.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,14 +11,20 @@
 
 namespace radiosity {
 
+enum class VtkPacking { none, zlib, lz4, lzma };
+
+/// How a file packs blocks, by the name of the compressor; empty: not at all. None: it is not
+/// known.
+std::optional<VtkPacking> vtkPacking(std::string_view compressor);
+
 /// The file as a whole.
 struct VtkFile {
   std::string path;
   Encoding order = Encoding::little;  ///< of bytes
   bool wide_header = false;           ///< header_type UInt64, not UInt32
-  bool packed = false;                ///< by zlib
-  bool appended_is_raw = false;       ///< else base64
-  std::string_view appended;          ///< what stands behind the underscore
+  VtkPacking packing = VtkPacking::none;
+  bool appended_is_raw = false;  ///< else base64
+  std::string_view appended;     ///< what stands behind the underscore
 };
 
 /// One DataArray element.

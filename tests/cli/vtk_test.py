@@ -3,11 +3,16 @@
 import base64
 import re
 import struct
+import subprocess
 import sys
 import unittest
 
+from vtkmodules.vtkCommonCore import vtkIntArray
+from vtkmodules.vtkFiltersSources import vtkPlaneSource
+from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+
 import mesh_files
-from cli_runner import CliTest
+from cli_runner import PROGRAM, CliTest
 
 MESH = mesh_files.Mesh([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], {"plate": [[0, 1, 2], [0, 2, 3]]})
 POINTS = "POINTS 6 float\n0 0 0 1 0 0 0 1 0 1 1 0 0 2 0 1 2 0\n"
@@ -61,6 +66,56 @@ class Vtk(CliTest):
         self.put(text, "a.vtp")
         self.assertEqual(self.areas("a.vtp"), {"floor": .5, "unnamed": .5})
 
+    def written_by_vtk(self, compressor, mode):
+        """A grid of 60 x 60 squares, so that it takes more than one block; half of them are group 1."""
+        plane = vtkPlaneSource()
+        plane.SetResolution(60, 60)
+        plane.Update()
+        grid = plane.GetOutput()
+        group = vtkIntArray()
+        group.SetName("group")
+        for k in range(grid.GetNumberOfCells()):
+            group.InsertNextValue(int(2 * k >= grid.GetNumberOfCells()))
+        grid.GetCellData().AddArray(group)
+        writer = vtkXMLPolyDataWriter()
+        writer.SetFileName(str(self.folder / "a.vtp"))
+        getattr(writer, f"SetCompressorTypeTo{compressor}")()
+        getattr(writer, f"SetDataModeTo{mode}")()
+        writer.SetInputData(grid)
+        self.assertTrue(writer.Write())
+
+    def test_what_vtk_itself_writes(self):
+        for compressor in ["None", "ZLib", "LZ4", "LZMA"]:
+            for mode in ["Binary", "Appended"]:
+                with self.subTest(f"{compressor} {mode}"):
+                    self.written_by_vtk(compressor, mode)
+                    packed = f"vtk{compressor}DataCompressor".encode()
+                    self.assertEqual(packed in (self.folder / "a.vtp").read_bytes(), compressor != "None")
+                    areas = self.areas("a.vtp")
+                    self.assertEqual(list(areas), ["group 0", "group 1"])
+                    for area in areas.values():
+                        self.assertAlmostEqual(area, 0.5, 6)  # single precision
+
+    def test_damaged_packed_data(self):
+        for compressor in ["LZ4", "LZMA"]:
+            self.written_by_vtk(compressor, "Appended")
+            content = bytearray((self.folder / "a.vtp").read_bytes())
+            begin = content.index(b"<AppendedData")
+            refused = 0
+            for at in range(begin + 40, len(content) - 60, (len(content) - begin) // 40):
+                broken = content[:]
+                broken[at] = ord("A") if broken[at] != ord("A") else ord("Q")
+                run = self.attempt(bytes(broken))
+                self.assertIn(run.returncode, (0, 2), run.stderr)
+                refused += run.returncode == 2
+                self.assertLessEqual(run.stderr.count("radiosity: a.vtp"), 1)
+            self.assertGreater(refused, 0)
+
+    def attempt(self, content):
+        self.put(content, "a.vtp")
+        return subprocess.run([PROGRAM, "info", "a.vtp"], cwd=self.folder, capture_output=True, text=True, timeout=60,
+                              check=False)
+
     def test_broken_legacy_files(self):
         text = LEGACY + "POLYDATA\n" + POINTS + "POLYGONS 1 4\n3 0 1 2\n"
         for old, new, line in [
@@ -103,7 +158,7 @@ class Vtk(CliTest):
                                    "a decimal point"),
                 (">1 1<", ">1<", ": DataArray group has 1 values for 2 cells; export it again"),
                 ("Float64", "Float80", ": DataArray Points: type `Float80` is not read; export the file again"),
-                ('byte_order', 'compressor="vtkLZ4DataCompressor" byte_order', ": compressor vtkLZ4DataCompressor is not "
+                ('byte_order', 'compressor="vtkSnappyDataCompressor" byte_order', ": compressor vtkSnappyDataCompressor is not "
                  "read; save with zlib or without one"),
         ]:
             with self.subTest(new=new):
