@@ -102,6 +102,30 @@ void PipelineReport::notReused(const std::string& path, const std::string& why) 
   report_.line("note", fmt::format("nothing is reused from {}: {}", path, oneLine(why)));
 }
 
+/// Options that were given and are about another method than the one that is chosen.
+void PipelineReport::noteUnused(FormFactorMethod method) {
+  const bool hemicubes = method == FormFactorMethod::hemicube;
+  // Gathering has hemicubes of its own.
+  const bool gathers = request_.command == Command::gather || request_.command == Command::compare;
+  const std::pair<const char*, bool> options[] = {
+      {"--resolution", request_.resolution && !hemicubes && !gathers},
+      {"--eye", request_.eye && !hemicubes && !gathers},
+      {"--seed", request_.seed && method == FormFactorMethod::exact && !gathers},
+      {"--symmetrize", request_.symmetrize.value_or(false) && !hemicubes},
+      {"--near", request_.near_pairs && !hemicubes},
+      {"--tolerance", request_.tolerance && hemicubes},
+      {"--closure", request_.closure && hemicubes}};
+  std::vector<std::string> unused;
+  for (const auto& [name, is_unused] : options) {
+    if (is_unused) unused.emplace_back(name);
+  }
+  if (unused.empty()) return;
+  const Note note{Severity::warning,
+                  fmt::format("not used by the method {}: {}", nameOf(kMethodNames, method),
+                              fmt::join(unused, ", "))};
+  report_.notes({&note, 1});
+}
+
 void PipelineReport::planned(const Pipeline& pipeline, const FormFactorPlan& plan) {
   const FormFactorOptions& options = pipeline.options().factors;
   const PatchMesh& mesh = made(pipeline.results().mesh).mesh;
@@ -126,6 +150,7 @@ void PipelineReport::planned(const Pipeline& pipeline, const FormFactorPlan& pla
           plan.scratch_bytes > 0 ? ", scratch file about " + bytesText(plan.scratch_bytes) : "",
           writes_results_ ? ", disk at most about " + bytesText(disk) : ""));
   if (!plan.reason.empty()) report_.line("", "because " + plan.reason);
+  noteUnused(plan.method);
   if (options.sources_only && !options.tolerance && !hemicubes) {
     report_.line("", "only as sources of the light that elements gather; --tolerance for more");
   }

@@ -29,6 +29,7 @@ class PipelineReport : public PipelineObserver {
   void stage(const Pipeline& pipeline, const StageEvent& event) override;
 
  private:
+  void noteUnused(FormFactorMethod method);
   void summarize(const Pipeline& pipeline, const StageEvent& event);
 
   const Request& request_;

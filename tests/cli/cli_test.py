@@ -354,6 +354,15 @@ class ExactFactors(CliTest):
             np.testing.assert_allclose(exchange, exchange.T, rtol=2e-7)
             np.testing.assert_allclose(matrix.sum(axis=1), 1, atol=3e-5)
 
+    def test_options_of_other_methods_are_named(self):
+        for method, given, named in [
+                ("exact", ["--resolution", "64", "--eye", "cpu", "--seed", "3"], "exact: --resolution, --eye, --seed"),
+                ("rays", ["--seed", "3", "--symmetrize"], "rays: --symmetrize"),
+                ("hemicube", ["--seed", "3", "--resolution", "32", "--tolerance", "0.01"], "hemicube: --tolerance")]:
+            run = self.run_program("factors", "box.obj", "--patches", "30", "--method", method, *given, "-o",
+                                   f"{method}.h5")
+            self.assertIn(f"not used by the method {named}\n", run.err)
+
     def test_options_are_part_of_the_key(self):
         self.run_program("factors", "box.obj", "--patches", "60", "-o", "f.h5")
         self.assertEqual(actions(self.report("factors", "f.h5"))["form_factors"], "reused")
