@@ -127,7 +127,7 @@ std::string sceneExtensions();
 
 /// Reads a scene, its format told by the extension, and applies the overrides: .obj (+ .mtl),
 /// .gltf, .glb, .stl; View3D's .vs3, .v3d; Gmsh's .msh (2.2, 4.1); .inp of CalculiX and Abaqus;
-/// .ply, .off; VTK's .vtk, .vtp, .vtu; by Assimp .dae, .fbx, .3ds, .x3d. Named groups (solids,
+/// .ply, .off; VTK's .vtk, .vtp, .vtu; by Assimp .dae, .fbx, .3ds, .x3d, .ifc. Named groups (solids,
 /// physical groups, element sets, arrays of cells) are surfaces. Face f of the scene is face f of
 /// the file, but one may be several (View3D's with subsurfaces, triangles of a strip), and what has
 /// no area (volumes, lines, points) is left out. An OBJ has no cameras of its own; a comment line

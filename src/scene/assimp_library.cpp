@@ -35,6 +35,7 @@ AssimpLibrary openLibrary() {
   find(library, "aiGetErrorString", found.getErrorString);
   find(library, "aiGetMaterialString", found.getMaterialString);
   find(library, "aiGetMaterialColor", found.getMaterialColor);
+  find(library, "aiGetMaterialFloatArray", found.getMaterialFloatArray);
   find(library, "aiGetMaterialIntegerArray", found.getMaterialIntegerArray);
   find(library, "aiGetMaterialTextureCount", found.getMaterialTextureCount);
   find(library, "aiGetMaterialTexture", found.getMaterialTexture);

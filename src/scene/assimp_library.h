@@ -19,6 +19,8 @@ struct AssimpLibrary {
   const char* (*getErrorString)();
   aiReturn (*getMaterialString)(const aiMaterial*, const char*, unsigned, unsigned, aiString*);
   aiReturn (*getMaterialColor)(const aiMaterial*, const char*, unsigned, unsigned, aiColor4D*);
+  aiReturn (*getMaterialFloatArray)(const aiMaterial*, const char*, unsigned, unsigned, ai_real*,
+                                    unsigned*);
   aiReturn (*getMaterialIntegerArray)(const aiMaterial*, const char*, unsigned, unsigned, int*,
                                       unsigned*);
   unsigned (*getMaterialTextureCount)(const aiMaterial*, aiTextureType);

@@ -40,17 +40,19 @@ class AssimpMaterialReader {
                        FeatureNotes& ignored)
       : file_(file), options_(options), scene_(scene), ignored_(ignored) {}
 
-  std::vector<unsigned> read() {
-    std::vector<unsigned> sets;
+  std::vector<AssimpMaterial> read() {
+    std::vector<AssimpMaterial> all;
     for (unsigned m = 0; m < file_.mNumMaterials; ++m) {
-      scene_.materials.push_back(convert(*file_.mMaterials[m], m));
-      sets.push_back(set_);
+      const Material material = convert(*file_.mMaterials[m], m);
+      const Index index = added(material);
+      all.push_back({index, set_});
     }
-    return sets;
+    return all;
   }
 
  private:
   Material convert(const aiMaterial& given, unsigned number);
+  Index added(Material material);
   Vec3 colour(const aiMaterial& given, const char* key, const Vec3& otherwise) const;
   Index texture(const aiMaterial& given, const std::string& material);
   LoadedTexture& loaded(const std::string& name, bool repeat);
@@ -64,6 +66,7 @@ class AssimpMaterialReader {
   const AssimpLibrary& library_ = assimpLibrary();
   UniqueNames names_;
   std::map<std::pair<std::string, bool>, LoadedTexture> texture_of_;  ///< by name, repeat
+  std::map<std::string, std::vector<Index>> added_;                   ///< by the name in the file
   unsigned set_ = 0;  ///< of texture coordinates, of the material in hand
 };
 
@@ -82,9 +85,9 @@ Material AssimpMaterialReader::convert(const aiMaterial& given, unsigned number)
   std::string name;
   if (library_.getMaterialString(&given, AI_MATKEY_NAME, &text) == AI_SUCCESS) name = text.C_Str();
   // Assimp makes up a grey material for meshes without one.
-  if (name == AI_DEFAULT_MATERIAL_NAME) return defaultMaterial(names_.make("default"), options_);
+  if (name == AI_DEFAULT_MATERIAL_NAME) return defaultMaterial("default", options_);
   if (name.empty()) name = fmt::format("material {}", number);
-  Material material = defaultMaterial(names_.make(name), options_);
+  Material material = defaultMaterial(name, options_);
   material.reflectance = colour(given, "$clr.diffuse", material.reflectance);
   const Vec3 radiance = colour(given, "$clr.emissive", Vec3(0.0));
   checkReflectance(scene_.file, material.name, material.reflectance);
@@ -100,12 +103,33 @@ Material AssimpMaterialReader::convert(const aiMaterial& given, unsigned number)
       AI_SUCCESS) {
     material.two_sided = two_sided != 0;
   }
+  float opacity = 1;
+  if (library_.getMaterialFloatArray(&given, AI_MATKEY_OPACITY, &opacity, nullptr) == AI_SUCCESS &&
+      opacity < 1) {
+    ignored_.add("transparency (opacity) is not used, material", material.name, Severity::warning);
+  }
   material.texture = texture(given, material.name);
   if (library_.getMaterialTextureCount(&given, aiTextureType_EMISSIVE) > 0) {
     ignored_.add("emissive textures of this format are not read, the colour alone counts",
                  material.name, Severity::warning);
   }
   return material;
+}
+
+/// Some formats give each object a material of its own.
+Index AssimpMaterialReader::added(Material material) {
+  std::vector<Index>& of_name = added_[material.name];
+  for (const Index index : of_name) {
+    const Material& other = scene_.materials[index];
+    if (other.reflectance == material.reflectance && other.emission == material.emission &&
+        other.texture == material.texture && other.two_sided == material.two_sided) {
+      return index;
+    }
+  }
+  material.name = names_.make(material.name);
+  of_name.push_back(Index(scene_.materials.size()));
+  scene_.materials.push_back(std::move(material));
+  return of_name.back();
 }
 
 Index AssimpMaterialReader::texture(const aiMaterial& given, const std::string& material) {
@@ -188,8 +212,8 @@ fs::path AssimpMaterialReader::pathOf(const std::string& name) {
 
 }  // namespace
 
-std::vector<unsigned> readAssimpMaterials(const aiScene& file, const SceneOptions& options,
-                                          Scene& scene, FeatureNotes& ignored) {
+std::vector<AssimpMaterial> readAssimpMaterials(const aiScene& file, const SceneOptions& options,
+                                                Scene& scene, FeatureNotes& ignored) {
   return AssimpMaterialReader(file, options, scene, ignored).read();
 }
 

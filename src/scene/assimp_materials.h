@@ -10,11 +10,17 @@ struct aiScene;
 
 namespace radiosity {
 
-/// Adds all materials to `scene`, in the file's order; what is not used goes to `ignored`. Returns
-/// for each the set of texture coordinates that its texture takes (0 where it has none). Diffuse
+/// What has become of a material of the file.
+struct AssimpMaterial {
+  Index index;   ///< into Scene::materials
+  unsigned set;  ///< of texture coordinates, which its texture takes
+};
+
+/// Adds all materials to `scene` and returns what has become of each, in the file's order: those of
+/// one name that are alike in all that is used are one. What is not used goes to `ignored`. Diffuse
 /// and emissive colours are read as those of an MTL file; a reflectance is the colour's, also
 /// beside a texture. Errors: InputError naming the material.
-std::vector<unsigned> readAssimpMaterials(const aiScene& file, const SceneOptions& options,
-                                          Scene& scene, FeatureNotes& ignored);
+std::vector<AssimpMaterial> readAssimpMaterials(const aiScene& file, const SceneOptions& options,
+                                                Scene& scene, FeatureNotes& ignored);
 
 }  // namespace radiosity

@@ -1,4 +1,4 @@
-// What Assimp reads and we do not: Collada, FBX, 3DS, X3D. Nodes are objects.
+// What Assimp reads and we do not: Collada, FBX, 3DS, X3D, IFC. Nodes are objects.
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -11,6 +11,7 @@
 #include <map>
 #include <memory>
 #include <numbers>
+#include <string_view>
 
 #include "base/finite.h"
 #include "base/input_file.h"
@@ -50,7 +51,7 @@ class AssimpReader {
       fail(fmt::format("cannot be read ({}); export it again, or as .obj or .glb",
                        onOneLine(library_.getErrorString())));
     }
-    texcoord_set_ = readAssimpMaterials(*file, options_, scene_, notes_);
+    materials_ = readAssimpMaterials(*file, options_, scene_, notes_);
     scale_ = metresPerUnit(*file);
     addNodes(*file);
     if (scene_.faceCount() == 0) fail("no faces; export the scene with its meshes as polygons");
@@ -83,14 +84,18 @@ class AssimpReader {
   const AssimpLibrary& library_ = assimpLibrary();
   Scene scene_;
   SceneBuilder builder_;
-  std::vector<unsigned> texcoord_set_;  ///< by material
+  std::vector<AssimpMaterial> materials_;  ///< by number in the file
   FeatureNotes notes_;
   double scale_ = 1;
 };
 
-/// Assimp makes up names in angle brackets.
+/// Assimp makes up names in angle brackets, and calls what an IFC file has in several places, such
+/// as a window, as the kind of reference: there the node above has the name.
 std::string AssimpReader::objectName(const aiNode& node, const aiMesh& mesh) const {
-  for (const aiString* name : {&node.mName, &mesh.mName}) {
+  constexpr std::string_view kReference = "IfcMappedItem";
+  const aiNode* named = &node;
+  while (named->mParent != nullptr && named->mName.C_Str() == kReference) named = named->mParent;
+  for (const aiString* name : {&named->mName, &mesh.mName}) {
     if (name->length > 0 && name->data[0] != '<') return name->C_Str();
   }
   return std::filesystem::path(scene_.file).stem().string();
@@ -139,8 +144,9 @@ void AssimpReader::addMesh(const aiMesh& mesh, const std::string& object,
     }
   }
   const bool mirrors = place.Determinant() < 0;
-  const Index surface = builder_.surface(object, mesh.mMaterialIndex);
-  const aiVector3D* const texcoords = mesh.mTextureCoords[texcoord_set_[mesh.mMaterialIndex]];
+  const AssimpMaterial& material = materials_[mesh.mMaterialIndex];
+  const Index surface = builder_.surface(object, material.index);
+  const aiVector3D* const texcoords = mesh.mTextureCoords[material.set];
   std::vector<Index> corners;
   std::vector<Vec2> pairs;
   for (unsigned f = 0; f < mesh.mNumFaces; ++f) {

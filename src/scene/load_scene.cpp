@@ -29,7 +29,7 @@ constexpr std::array kFormats = {
     Format{".msh", loadGmsh},   Format{".inp", loadInp},    Format{".ply", loadPly},
     Format{".vtk", loadVtk},    Format{".vtp", loadVtkXml}, Format{".vtu", loadVtkXml},
     Format{".dae", loadAssimp}, Format{".fbx", loadAssimp}, Format{".3ds", loadAssimp},
-    Format{".x3d", loadAssimp}, Format{".off", loadOff},
+    Format{".x3d", loadAssimp}, Format{".ifc", loadAssimp}, Format{".off", loadOff},
 };
 
 Scene readByExtension(const std::string& path, const SceneOptions& options) {

@@ -1,6 +1,7 @@
 """Models that others made, of Debian's package for Assimp's tests: each is read or refused in a line,
 and those that are read have finite form factors that account for all of the view."""
 
+import re
 import subprocess
 import unittest
 from pathlib import Path
@@ -11,7 +12,7 @@ import numpy as np
 from cli_runner import PROGRAM, CliTest
 
 MODELS = Path("/usr/share/assimp/models")
-READ = {".obj", ".gltf", ".glb", ".stl", ".ply", ".off", ".dae", ".fbx", ".3ds", ".x3d"}
+READ = {".obj", ".gltf", ".glb", ".stl", ".ply", ".off", ".dae", ".fbx", ".3ds", ".x3d", ".ifc"}
 
 # A few of each format, of at most some thousand faces: spiders, a duck, a rock, boxes.
 MESHED = [
@@ -36,8 +37,18 @@ class ModelsOfOthersTest(CliTest):
                 self.assertEqual(run.returncode, 2)
                 self.assertRegex(run.stderr, r"\Aradiosity: [^\n]*\n\Z")
                 self.assertIn(str(model), run.stderr)
-        # 108 of 156 in Debian 12; the others are of glTF 1, broken on purpose, or points alone.
+        # 109 of 157 in Debian 12; the others are of glTF 1, broken on purpose, or points alone.
         self.assertGreater(read, len(models) // 2)
+
+    def test_a_building_has_its_names_materials_and_metres(self):
+        file = MODELS / "IFC/AC14-FZK-Haus.ifc"
+        scene = self.report("info", file)["scene"]
+        area = {surface["name"].split("_")[1]: surface["area_m2"] for surface in scene["surfaces"]}
+        self.assertAlmostEqual(area["Bodenplatte"], 2 * 12 * 10 + 2 * (12 + 10) * 0.2, 4)  # a slab
+        windows = [s["name"] for s in scene["surfaces"] if re.fullmatch("IfcWindow_.*/Glas", s["name"])]
+        self.assertEqual(len(windows), file.read_text(errors="replace").count("IFCWINDOW("))
+        # Of the many materials "Glas" of the file, all alike, there is one.
+        self.assertEqual([m["name"] for m in scene["materials"] if "Glas" in m["name"]], ["Glas"])
 
     def test_form_factors_account_for_all_of_the_view(self):
         for model in MESHED:
