@@ -143,6 +143,9 @@ void AssimpReader::addMesh(const aiMesh& mesh, const std::string& object,
       fail(fmt::format("object {}: a coordinate is not a finite number; export it again", object));
     }
   }
+  if (mesh.mColors[0] != nullptr) {
+    notes_.add("colours of vertices do not change the reflectance, in", object, Severity::warning);
+  }
   const bool mirrors = place.Determinant() < 0;
   const AssimpMaterial& material = materials_[mesh.mMaterialIndex];
   const Index surface = builder_.surface(object, material.index);

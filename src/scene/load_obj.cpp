@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "base/input_file.h"
@@ -14,13 +15,14 @@ namespace radiosity {
 
 namespace {
 
-/// Texture coordinates of a face's corners; empty unless all corners have them. The origin of an
-/// OBJ's texture is its bottom left corner.
+/// Texture coordinates of a face's corners; empty unless all corners have finite ones. The origin
+/// of an OBJ's texture is its bottom left corner.
 std::vector<Vec2> faceTexcoords(const ObjScan& scan, std::size_t face) {
   std::vector<Vec2> result;
   for (std::size_t k = scan.face_offset[face]; k < scan.face_offset[face + 1]; ++k) {
     if (scan.corner_texcoord[k] == kNone) return {};
     const Vec2 uv = scan.texcoords[scan.corner_texcoord[k]];
+    if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return {};
     result.emplace_back(uv.x, 1 - uv.y);
   }
   return result;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -129,14 +130,26 @@ void ObjScanner::numbers(Referenced& list, std::size_t least, std::size_t most,
   Vec3 value{0.0};
   for (std::size_t k = 0; k < count; ++k) {
     const std::optional<double> number = parseNumber(words_[k + 1]);
-    if (!number) {
+    if (!number && &list == &vertices_) {
       fail(fmt::format("`{}` is not a finite number; write it as 1.5 with a decimal point",
                        words_[k + 1]));
     }
-    if (k < 3) value[int(k)] = *number;
+    if (!number) {
+      // Of slivers exporters write NaN. Normals are not used, a face without coordinates may be.
+      ignored_.add(fmt::format("a {} that is no finite number is not used, in", list.what), name_,
+                   Severity::warning);
+    }
+    if (k < 3) value[int(k)] = number.value_or(std::numeric_limits<double>::quiet_NaN());
   }
   if (++list.count >= kNone) fail(fmt::format("more than {} of one kind; split the scene", kNone));
-  if (&list == &vertices_) scan_.vertices.push_back(value);
+  if (&list == &vertices_) {
+    scan_.vertices.push_back(value);
+    if (count >= 6 && coloured_ != name_) {
+      coloured_ = name_;
+      ignored_.add("colours of vertices are not used: the format does not say what they mean, in",
+                   name_);
+    }
+  }
   if (&list == &texcoords_) scan_.texcoords.emplace_back(value);
 }
 

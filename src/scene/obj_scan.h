@@ -28,7 +28,7 @@ struct ObjFace {
 
 struct ObjScan {
   std::vector<Vec3> vertices;                  ///< file units, correctly rounded
-  std::vector<Vec2> texcoords;                 ///< as written: v grows upwards
+  std::vector<Vec2> texcoords;                 ///< as written: v grows upwards; NaN: no number
   std::vector<ObjFace> faces;                  ///< F, in file order
   std::vector<std::size_t> face_offset = {0};  ///< F + 1, into the two below
   std::vector<Index> corners;                  ///< into vertices

@@ -121,8 +121,7 @@ TEST_F(SceneObj, RefusesWhatIsNoNumber) {
     EXPECT_CONTAINS(error, fmt::format("`{}`", word));
   }
   EXPECT_CONTAINS(errorOf("v 0 0\n"), "scene.obj:1: a vertex has 3 coordinates, not 2");
-  EXPECT_CONTAINS(errorOf(kSquare + "vt 0 x\nf 1 2 3\n"), "scene.obj:5:");
-  EXPECT_CONTAINS(errorOf(kSquare + "vn 0 0 nan\nf 1 2 3\n"), "scene.obj:5:");
+  EXPECT_CONTAINS(errorOf(kSquare + "vt 0 0 0 0\nf 1 2 3\n"), "scene.obj:5:");
 }
 
 TEST_F(SceneObj, RefusesIndicesThatPointNowhere) {
@@ -184,6 +183,21 @@ TEST_F(SceneObj, TurnsRadianceIntoExitance) {
   }
   EXPECT_EQ(scene.materialOf(1).reflectance, Vec3(.4)) << "one number stands for all bands";
   EXPECT_FALSE(lamp.two_sided);
+}
+
+TEST_F(SceneObj, WhatIsNotUsedMayBeNoNumber) {
+  const Scene scene = load(kSquare + "o wall\nvn nan -nan(ind) 0\nvt nan 0\nf 1/1/1 2/1/1 3/1/1\n");
+  EXPECT_EQ(scene.faceCount(), 1U);
+  EXPECT_TRUE(scene.texcoords.empty());
+  EXPECT_NOTE(scene.notes, "a normal that is no finite number is not used, in: wall",
+              Severity::warning);
+  EXPECT_NOTE(scene.notes, "a texture coordinate that is no finite number is not used, in: wall",
+              Severity::warning);
+}
+
+TEST_F(SceneObj, ColoursOfVerticesAreSaid) {
+  const Scene scene = load("v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 1 1 0 1 0 0\nf 1 2 3\n");
+  EXPECT_NOTE(scene.notes, "colours of vertices are not used", Severity::info);
 }
 
 TEST_F(SceneObj, FacesOfTwoCornersAreLeftOut) {
