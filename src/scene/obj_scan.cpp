@@ -78,6 +78,7 @@ class ObjScanner {
   bool material_used_ = false;  ///< by a face since its usemtl
   bool inheriting_ = false;     ///< a new object began after that face
   std::set<std::pair<Index, Index>> inherited_;
+  std::string coloured_;  ///< the object whose vertices' colours were noted last
   FeatureNotes ignored_;
 };
 
