@@ -1,9 +1,10 @@
 // Form factors: of meshes, of matrices from elsewhere, between surfaces, from points.
 #include <pybind11/stl.h>
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
+#include <variant>
 
 #include "arrays.h"
 #include "handles.h"
@@ -25,6 +26,7 @@ FormFactorOptions factorOptions(const py::dict& given) {
   if (take.has("precision")) options.precision = precision;
   take("resolution", options.resolution);
   take("seed", options.seed);
+  take.choice("eye", kEyeNames, options.eye);
   take("symmetrize", options.symmetrize);
   take("near_exact", options.near_exact);
   take("memory_limit", options.memory_limit);
@@ -52,15 +54,15 @@ std::shared_ptr<FactorsHandle> formFactors(std::shared_ptr<MeshHandle> mesh, con
   return handle;
 }
 
-/// Rows of `value` type, compressed, as scipy has them.
+/// Rows as scipy has them, compressed.
 template <class Value, class Place>
-py::tuple compressedRows(const FactorsHandle& handle, std::size_t entries,
-                         const py::object& report) {
-  const ExchangeMatrix& matrix = handle.factors.matrix;
-  std::vector<Value> data(entries);
-  std::vector<Place> indices(entries);
-  std::vector<Place> starts(matrix.size() + 1, 0);
-  runLong(report, [&](Progress& progress) {
+struct CompressedRows {
+  std::vector<Value> data;
+  std::vector<Place> indices;
+  std::vector<Place> starts;
+
+  CompressedRows(const ExchangeMatrix& matrix, std::size_t entries, Progress& progress)
+      : data(entries), indices(entries), starts(matrix.size() + 1, 0) {
     std::size_t at = 0;
     progress.begin("rows", matrix.size(), "rows");
     matrix.forPanels([&](const RowPanel& panel) {
@@ -75,21 +77,38 @@ py::tuple compressedRows(const FactorsHandle& handle, std::size_t entries,
       }
     });
     progress.end();
+  }
+};
+
+template <class Value>
+using EitherRows =
+    std::variant<CompressedRows<Value, std::int32_t>, CompressedRows<Value, std::int64_t>>;
+
+/// With places of 32 bits where they suffice.
+template <class Value>
+py::tuple rowsOf(const ExchangeMatrix& matrix, const py::object& report) {
+  std::optional<EitherRows<Value>> rows;
+  runLong(report, [&](Progress& progress) {
+    const std::size_t entries = matrix.nonZeros();
+    progress.check();
+    if (entries <= std::size_t(std::numeric_limits<std::int32_t>::max())) {
+      rows.emplace(std::in_place_index<0>, matrix, entries, progress);
+    } else {
+      rows.emplace(std::in_place_index<1>, matrix, entries, progress);
+    }
   });
-  return py::make_tuple(taken(std::move(data)), taken(std::move(indices)),
-                        taken(std::move(starts)));
+  return std::visit(
+      [](auto& r) {
+        return py::make_tuple(taken(std::move(r.data)), taken(std::move(r.indices)),
+                              taken(std::move(r.starts)));
+      },
+      *rows);
 }
 
 py::tuple csrArrays(const FactorsHandle& handle, const py::object& report) {
-  const std::size_t entries = handle.factors.matrix.nonZeros();
-  const bool single = handle.factors.matrix.precision() == Precision::single_precision;
-  const bool narrow = entries <= std::size_t(std::numeric_limits<std::int32_t>::max());
-  if (single) {
-    return narrow ? compressedRows<float, std::int32_t>(handle, entries, report)
-                  : compressedRows<float, std::int64_t>(handle, entries, report);
-  }
-  return narrow ? compressedRows<double, std::int32_t>(handle, entries, report)
-                : compressedRows<double, std::int64_t>(handle, entries, report);
+  const ExchangeMatrix& matrix = handle.factors.matrix;
+  return matrix.precision() == Precision::single_precision ? rowsOf<float>(matrix, report)
+                                                           : rowsOf<double>(matrix, report);
 }
 
 std::shared_ptr<FactorsHandle> fromCsr(const Array<double>& data, const Array<Index>& indices,

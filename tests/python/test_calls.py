@@ -69,6 +69,28 @@ def test_other_threads_run_meanwhile(slow):
     thread.join()
 
 
+def test_other_threads_run_while_rows_are_made():
+    mesh = rad.mesh(rad.load(ROOT / "data/cornell-box.obj"), patches=3000)
+    F = rad.form_factors(mesh, 0.1, method="exact")
+    ticks = []
+    made = threading.Event()
+
+    def tick():
+        while not made.wait(0.0005):
+            ticks.append(time.monotonic())
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    start = time.monotonic()
+    F.csr
+    end = time.monotonic()
+    made.set()
+    thread.join()
+    within = [start, *(t for t in ticks if start < t < end), end]
+    # Counting the entries takes half of the time, filling in most of the rest.
+    assert max(b - a for a, b in zip(within, within[1:])) < 0.3 * (end - start)
+
+
 def test_two_threads_compute_at_once(cornell):
     results = [None, None]
 
