@@ -35,7 +35,8 @@ inline py::array view(const std::vector<std::array<Index, 3>>& values, const py:
               owner);
 }
 /// N * bands values as (N, bands).
-inline py::array rows(const std::vector<double>& values, int bands, const py::object& owner) {
+template <class T>
+py::array rows(const std::vector<T>& values, int bands, const py::object& owner) {
   return view(values.data(), {py::ssize_t(values.size()) / bands, bands}, owner);
 }
 

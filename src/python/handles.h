@@ -38,6 +38,12 @@ struct SolutionHandle {
   Key key;
 };
 
+struct GatheredHandle {
+  std::shared_ptr<const MeshHandle> mesh;
+  Gathered gathered;
+  std::vector<double> radiosity;  ///< of the patches, N * bands
+};
+
 struct HeatHandle {
   std::shared_ptr<const FactorsHandle> factors;
   HeatSolution solution;
@@ -48,6 +54,7 @@ struct HeatHandle {
 void bindScene(pybind11::module_& module);
 void bindFactors(pybind11::module_& module);
 void bindLight(pybind11::module_& module);
+void bindGather(pybind11::module_& module);
 
 /// The mesh of form factors; InputError where they are a matrix alone, with what `asks` for it.
 const MeshHandle& meshOf(const FactorsHandle& factors, const char* asks);

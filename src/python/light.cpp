@@ -2,6 +2,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "arrays.h"
@@ -117,6 +118,20 @@ py::list heatTable(const HeatHandle& heat) {
   return list;
 }
 
+py::dict cameraProperties(const py::object& given) {
+  constexpr std::array kKnown = {"name", "eye", "target", "up", "aspect", "vertical_fov"};
+  if (!py::isinstance<py::dict>(given)) refuse("camera", given, "a name, a text or a dict");
+  auto properties = given.cast<py::dict>();
+  for (const auto& [name, value] : properties) {
+    const std::string word = py::str(name);
+    if (std::ranges::find(kKnown, word) == kKnown.end()) {
+      throw InputError(fmt::format("camera: has no property '{}'; there are: {} (radians)", word,
+                                   fmt::join(kKnown, ", ")));
+    }
+  }
+  return properties;
+}
+
 /// A camera of a dictionary as Scene.cameras has them, a text, or a name of the scene's; nothing
 /// for None in a scene without cameras.
 std::optional<Camera> cameraOf(const py::object& given, const Scene* scene) {
@@ -131,13 +146,14 @@ std::optional<Camera> cameraOf(const py::object& given, const Scene* scene) {
     }
     return parseCamera(text);
   }
-  const Options take(given.cast<py::dict>());
+  const Options take(cameraProperties(given), "camera");
   Camera camera;
   Triple eye{}, target{}, up{camera.up.x, camera.up.y, camera.up.z};
   if (!take.has("eye") || !take.has("target")) {
     throw InputError(
         "camera: has no eye or no target; give {'eye': (x, y, z), 'target': (x, y, z)}");
   }
+  take("name", camera.name);
   take("eye", eye);
   take("target", target);
   take("up", up);

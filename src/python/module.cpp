@@ -2,15 +2,15 @@
 // that package passes them: arrays contiguous, of the type and shape that each function names.
 #include <pybind11/stl.h>
 
+#include <cstdint>
 #include <exception>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "handles.h"
+#include "keywords.h"
 #include "long_call.h"
-
-namespace py = pybind11;
+#include "options.h"
 
 namespace radiosity::python {
 namespace {
@@ -82,20 +82,6 @@ void save(const std::string& path, const FactorsHandle& factors, const SolutionH
   });
 }
 
-/// What options of the command line, which messages name, are called here.
-std::string withKeywords(std::string text) {
-  constexpr std::pair<const char*, const char*> kRenamed[] = {
-      {"--group ", "groups: "},          {"--condition ", "conditions: "},
-      {"--thermal FILE", "table=FILE"},  {"--solve-tolerance", "tolerance"},
-      {"--heat-tolerance", "tolerance"}, {"--max-iterations", "max_iterations"}};
-  for (const auto& [option, keyword] : kRenamed) {
-    for (std::size_t at = 0; (at = text.find(option, at)) != std::string::npos;) {
-      text.replace(at, std::string_view(option).size(), keyword);
-    }
-  }
-  return text;
-}
-
 PyObject* exceptionType(py::module_& module, const char* name, PyObject* base, const char* text) {
   PyObject* type =
       PyErr_NewExceptionWithDoc(("radiosity." + std::string(name)).c_str(), text, base, nullptr);
@@ -129,10 +115,13 @@ PYBIND11_MODULE(_core, module) {
   using namespace radiosity;
   python::bindErrors(module);
   module.attr("version") = RADIOSITY_VERSION;
-  module.def("set_threads", &setThreads);
+  module.def("set_threads", [](const python::py::object& threads) {
+    setThreads(python::valueOf<std::uint16_t>("threads", threads));
+  });
   python::bindScene(module);
   python::bindFactors(module);
   python::bindLight(module);
+  python::bindGather(module);
   module.def("read", &python::read);
   module.def("save", &python::save);
   module.def("is_results", &isResultsFile);

@@ -5,8 +5,12 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <array>
+#include <concepts>
+#include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "radiosity/names.h"
 
@@ -14,14 +18,64 @@ namespace radiosity::python {
 
 namespace py = pybind11;
 
+/// InputError "NAME: is VALUE of type T; give WANTED".
+[[noreturn]] void refuse(const std::string& name, const py::handle& given,
+                         const std::string& wanted);
+
+/// The Python int of a whole number of any type (int, numpy's, a float without a fraction); null
+/// for all else.
+py::object wholeNumber(const py::handle& given);
+
+/// What to give, in words.
+template <class Value>
+inline constexpr const char* kWanted = "a number";
+template <>
+inline constexpr const char* kWanted<bool> = "True or False";
+template <>
+inline constexpr const char* kWanted<std::string> = "text";
+template <>
+inline constexpr const char* kWanted<std::vector<std::string>> = "a list of texts";
+template <>
+inline constexpr const char* kWanted<std::vector<double>> = "a list of numbers";
+template <>
+inline constexpr const char* kWanted<std::array<double, 3>> = "three numbers";
+
+/// What a caller gave for `name`. Errors: InputError where it is no such value.
+template <class Value>
+Value valueOf(const std::string& name, const py::handle& given) {
+  try {
+    return given.cast<Value>();
+  } catch (const py::cast_error&) {
+    refuse(name, given, kWanted<Value>);
+  }
+}
+template <std::integral Value>
+  requires(!std::same_as<Value, bool>)
+Value valueOf(const std::string& name, const py::handle& given) {
+  const py::object whole = wholeNumber(given);
+  if (!whole) refuse(name, given, "a whole number");
+  try {
+    return whole.cast<Value>();
+  } catch (const py::cast_error&) {
+    using Limits = std::numeric_limits<Value>;
+    refuse(name, given, fmt::format("a whole number, {} to {}", Limits::min(), Limits::max()));
+  }
+}
+
 /// Takes the keyword arguments of a call one by one; None leaves what there is.
 class Options {
  public:
-  explicit Options(py::dict given) : given_(std::move(given)) {}
+  /// `of`: what they are properties of, for messages ("camera"); empty: of the call itself.
+  explicit Options(py::dict given, std::string of = {})
+      : given_(std::move(given)), of_(std::move(of)) {}
 
   template <class Value>
   void operator()(const char* name, Value& value) const {
-    if (has(name)) value = given_[name].template cast<Value>();
+    if (has(name)) value = valueOf<Value>(called(name), given_[name]);
+  }
+  template <class Value>
+  void operator()(const char* name, std::optional<Value>& value) const {
+    if (has(name)) value = valueOf<Value>(called(name), given_[name]);
   }
   template <class Enum, std::size_t N>
   void choice(const char* name, const NameTable<Enum, N>& table, Enum& value) const {
@@ -37,7 +91,10 @@ class Options {
   bool has(const char* name) const { return given_.contains(name) && !given_[name].is_none(); }
 
  private:
+  std::string called(const char* name) const { return of_.empty() ? name : of_ + " " + name; }
+
   py::dict given_;
+  std::string of_;
 };
 
 }  // namespace radiosity::python

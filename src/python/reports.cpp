@@ -2,6 +2,7 @@
 
 #include <pybind11/stl.h>
 
+#include "keywords.h"
 #include "radiosity/names.h"
 
 namespace py = pybind11;
@@ -65,6 +66,23 @@ py::dict dictOf(const RayReport& report) {
       .dict();
 }
 
+py::dict dictOf(const EnergyAccount& account) {
+  using E = EnergyAccount;
+  return Fields(account)("emitted", &E::emitted)("from_sky", &E::from_sky)(
+             "absorbed", &E::absorbed)("to_sky", &E::to_sky)("on_backs", &E::on_backs)(
+             "imbalance", &E::imbalance)
+      .dict();
+}
+
+py::dict dictOf(const GatherPass& pass) {
+  using P = GatherPass;
+  py::dict dict = Fields(pass)("seconds", &P::seconds)("change", &P::change)("bound", &P::bound)(
+                      "in_flight", &P::in_flight)
+                      .dict();
+  dict["energy"] = dictOf(pass.energy);
+  return dict;
+}
+
 }  // namespace
 
 py::list listOf(const std::vector<Note>& notes) {
@@ -72,7 +90,7 @@ py::list listOf(const std::vector<Note>& notes) {
   for (const Note& note : notes) {
     py::dict entry;
     entry["severity"] = nameOf(kSeverityNames, note.severity);
-    entry["text"] = note.text;
+    entry["text"] = withKeywords(note.text);
     list.append(entry);
   }
   return list;
@@ -118,30 +136,40 @@ py::dict dictOf(const FormFactorReport& report) {
 
 py::dict dictOf(const SolveSummary& summary) {
   using S = SolveSummary;
-  using E = EnergyAccount;
-  py::dict dict =
-      Fields(summary)("iterations", &S::iterations)("rows", &S::rows)("residual", &S::residual)(
-          "error_bound", &S::error_bound)("seconds", &S::seconds)(
-          "residual_history", &S::residual_history)("message", &S::message)
-          .dict();
+  py::dict dict = Fields(summary)("iterations", &S::iterations)("rows", &S::rows)(
+                      "residual", &S::residual)("error_bound", &S::error_bound)(
+                      "seconds", &S::seconds)("residual_history", &S::residual_history)
+                      .dict();
+  dict["message"] = withKeywords(summary.message);
   dict["status"] = nameOf(kSolveStatusNames, summary.status);
   dict["solver"] = nameOf(kSolverNames, summary.solver);
   dict["usable"] = summary.usable();
-  dict["energy"] = Fields(summary.energy)("emitted", &E::emitted)("from_sky", &E::from_sky)(
-                       "absorbed", &E::absorbed)("to_sky", &E::to_sky)("on_backs", &E::on_backs)(
-                       "imbalance", &E::imbalance)
-                       .dict();
+  dict["energy"] = dictOf(summary.energy);
+  return dict;
+}
+
+py::dict dictOf(const GatherSummary& summary) {
+  using S = GatherSummary;
+  py::dict dict = Fields(summary)("hemicubes", &S::hemicubes)("pixels", &S::pixels)(
+                      "closed", &S::closed)("bytes", &S::bytes)("seconds", &S::seconds)
+                      .dict();
+  dict["message"] = withKeywords(summary.message);
+  dict["status"] = nameOf(kGatherStatusNames, summary.status);
+  dict["notes"] = listOf(summary.notes);
+  py::list passes;
+  for (const GatherPass& pass : summary.passes) passes.append(dictOf(pass));
+  dict["passes"] = passes;
   return dict;
 }
 
 py::dict dictOf(const HeatSummary& summary) {
   using S = HeatSummary;
   using B = HeatBalance;
-  py::dict dict =
-      Fields(summary)("iterations", &S::iterations)("linear_steps", &S::linear_steps)(
-          "residual", &S::residual)("balance_residual", &S::balance_residual)(
-          "undetermined", &S::undetermined)("seconds", &S::seconds)("message", &S::message)
-          .dict();
+  py::dict dict = Fields(summary)("iterations", &S::iterations)("linear_steps", &S::linear_steps)(
+                      "residual", &S::residual)("balance_residual", &S::balance_residual)(
+                      "undetermined", &S::undetermined)("seconds", &S::seconds)
+                      .dict();
+  dict["message"] = withKeywords(summary.message);
   dict["status"] = nameOf(kHeatStatusNames, summary.status);
   dict["usable"] = summary.usable();
   dict["balance"] = Fields(summary.balance)("radiated", &B::radiated)("to_sky", &B::to_sky)(

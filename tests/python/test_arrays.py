@@ -61,7 +61,7 @@ def test_outlines_are_flat_polygons_of_the_given_area(cornell):
         assert np.allclose(normal, mesh.area[i] * mesh.normal[i], rtol=1e-9, atol=1e-12)
 
 
-def test_a_million_faces_become_a_scene():
+def test_a_million_faces_become_a_scene_and_a_mesh():
     side = 708  # 2 * 707^2 = 999,698 triangles
     u, v = np.meshgrid(np.arange(side), np.arange(side), indexing="ij")
     vertices = np.column_stack([u.ravel(), v.ravel(), np.zeros(side * side)])
@@ -72,6 +72,10 @@ def test_a_million_faces_become_a_scene():
     assert len(scene.face_surface) == len(faces) == 999698
     assert scene.surface_names == ["0", "1", "2"]
     assert np.array_equal(scene.corners.reshape(-1, 3), faces)
+    mesh = rad.mesh(scene, faces_as_patches=True)
+    assert len(mesh) == len(faces)
+    assert np.array_equal(mesh.source_face, np.arange(len(faces)))
+    assert mesh.area.sum() == pytest.approx((side - 1) ** 2, rel=1e-12)
 
 
 def test_scene_takes_strided_and_whole_number_arrays():
@@ -107,8 +111,8 @@ SQUARE = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
      "reflectance of 'surface': is 1.5; give 0 to 1"),
     (lambda: rad.load("data/none.obj"), "data/none.obj"),
     (lambda: rad.load("data/cornell-box.obj", unit="mile"), "unit"),
-    (lambda: rad.mesh("data/cornell-box.obj"), "scene: is a str"),
-    (lambda: rad.mesh(rad.load("data/cornell-box.obj"), patches=0), "patches: 0 is below 1"),
+    (lambda: rad.mesh("data/cornell-box.obj"), "scene: is of type str; give a Scene"),
+    (lambda: rad.mesh(rad.load("data/cornell-box.obj"), patches=0), "patches: 0 is out of range; 1 to"),
     (lambda: rad.mesh(rad.load("data/cornell-box.obj"), weld=1.0), "weld"),
     (lambda: rad.read("README.md"), "README.md: is no matrix of form factors"),
 ])
@@ -122,7 +126,7 @@ def test_what_is_wrong_is_said(call, message):
 @pytest.mark.parametrize("call, message", [
     (lambda F: rad.form_factors(F.mesh, 2.0), "tolerance"),
     (lambda F: rad.form_factors(F.mesh, method="guess"), "'guess' is not one of auto, exact"),
-    (lambda F: rad.form_factors(F), "mesh: is a FormFactors"),
+    (lambda F: rad.form_factors(F), "mesh: is of type FormFactors"),
     (lambda F: F.between("lamp", "none"), "none: no surface, material or object.*lamp/light"),
     (lambda F: F.table(groups=["a=nothing*"]), "groups: a=nothing.*matches no surface"),
     (lambda F: rad.solve(F, emission=np.ones(3)), r"emission: has shape \(3,\); give .*N = "),

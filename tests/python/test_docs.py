@@ -4,6 +4,7 @@ import ast
 import doctest
 import inspect
 import os
+import re
 from pathlib import Path
 
 import pytest
@@ -32,8 +33,20 @@ def test_docstring_and_its_examples(name):
     assert text, f"{name} has no docstring"
     test = doctest.DocTestParser().get_doctest(text, {"rad": rad}, name, name, 0)
     told = []
-    doctest.DocTestRunner(optionflags=doctest.ELLIPSIS).run(test, out=told.append)
+    doctest.DocTestRunner(optionflags=doctest.ELLIPSIS, verbose=False).run(test, out=told.append)
     assert not told, "".join(told)
+
+
+@pytest.mark.parametrize("page", ["README.md", "src/python/README.md"])
+def test_the_code_of_a_page_runs(page, tmp_path, monkeypatch):
+    root = Path(os.environ["RADIOSITY_SOURCE_DIR"])
+    blocks = re.findall(r"^```python\n(.*?)^```", (root / page).read_text(), re.DOTALL | re.MULTILINE)
+    assert len(blocks) == 1
+    (tmp_path / "data").symlink_to(root / "data")
+    monkeypatch.chdir(tmp_path)  # it may write files
+    made = {}
+    exec(compile(blocks[0], page, "exec"), made)
+    assert made["image"].shape == (512, 512, 4) and made["light"].summary["status"] == "converged"
 
 
 def test_every_function_that_computes_has_an_example():

@@ -1,5 +1,7 @@
 """What Python computes and what the command line computes have the same bits."""
 
+import json
+
 import h5py
 import numpy as np
 import pytest
@@ -16,7 +18,8 @@ def stored(path, name):
 
 
 @pytest.mark.parametrize("method, options", [("exact", {}), ("rays", {"tolerance": 0.05}),
-                                             ("hemicube", {"resolution": 32})])
+                                             ("hemicube", {"resolution": 32}),
+                                             ("hemicube", {"resolution": 32, "eye": "auto"})])
 def test_form_factors_and_light(run_program, method, options):
     words = [word for name, value in options.items() for word in (f"--{name}", value)]
     folder = run_program("solve", SCENE, "--patches", 80, "--method", method, *words, "-o", "s.h5")
@@ -68,6 +71,41 @@ def test_picture(run_program, elements):
                        elements=elements, element_tolerance=0.3)
     image[..., :3] *= image[..., 3:]  # as the format has it
     assert np.array_equal(image, exr(folder / "p.exr"))
+
+
+def test_a_picture_of_all_defaults(run_program):
+    folder = run_program("solve", SCENE, "-o", "s.h5")
+    run_program("render", "s.h5", "-o", "p.exr")
+    mesh = rad.mesh(rad.load(SCENE))
+    image = rad.render(mesh, rad.solve(rad.form_factors(mesh)))
+    image[..., :3] *= image[..., 3:]
+    assert np.array_equal(image, exr(folder / "p.exr"))
+
+
+def test_tables(run_program):
+    folder = run_program("factors", SCENE, "--patches", 80, "--between", "surfaces", "-o", "t.json")
+    said = json.loads((folder / "t.json").read_text())
+    table = rad.form_factors(rad.mesh(rad.load(SCENE), patches=80)).table()
+    assert table.names == said["names"]
+    for name, values in {"area": "area_m2", "factors": "form_factors", "sky": "sky", "backs": "backs",
+                         "error": "entry_error"}.items():
+        assert np.array_equal(getattr(table, name), np.array(said[values])), name
+
+
+@pytest.mark.parametrize("at", ["patches", "vertices"])
+def test_gathered_light(run_program, at):
+    folder = run_program("gather", SCENE, "--patches", 80, "--resolution", 32, "--at", at, "--passes", 4,
+                         "-o", "g.h5")
+    mesh = rad.mesh(rad.load(SCENE), patches=80)
+    light = rad.gather(mesh, at=at, resolution=32, passes=4)
+    path = folder / "g.h5"
+    assert np.array_equal(light.eye_radiosity, stored(path, "gather/radiosity"))
+    assert np.array_equal(light.eye_irradiance, stored(path, "gather/irradiance"))
+    assert np.array_equal(light.eye_position, stored(path, "gather/position"))
+    assert len(light.passes) == 4 and light.summary["status"] == "pass_limit"
+    assert light.radiosity.shape == (len(mesh), 3)
+    if at == "patches":
+        assert np.array_equal(light.radiosity, light.eye_radiosity)
 
 
 def exr(path):

@@ -29,6 +29,7 @@ from ._core import InputError, RunError, set_threads as _set_threads, version as
 from ._factors import FormFactors, Table, form_factors, from_csr, view_factors_from
 from ._files import Results, read
 from ._foreign import from_meshio, from_trimesh
+from ._gather import Gathered, gather
 from ._heat import Heat, heat
 from ._light import Solution, solve
 from ._mesh import Mesh, mesh
@@ -36,9 +37,9 @@ from ._picture import displayed, render
 from ._scene import Scene, load
 
 __all__ = [
-    "FormFactors", "Heat", "InputError", "Mesh", "Results", "RunError", "Scene", "Solution", "Table",
-    "displayed", "form_factors", "from_csr", "from_meshio", "from_trimesh", "heat", "load", "mesh",
-    "read", "render", "set_threads", "solve", "view_factors_from",
+    "FormFactors", "Gathered", "Heat", "InputError", "Mesh", "Results", "RunError", "Scene", "Solution",
+    "Table", "displayed", "form_factors", "from_csr", "from_meshio", "from_trimesh", "gather", "heat",
+    "load", "mesh", "read", "render", "set_threads", "solve", "view_factors_from",
 ]
 
 
@@ -50,6 +51,4 @@ def set_threads(threads: int) -> None:
     >>> rad.set_threads(1)
     >>> rad.set_threads(0)
     """
-    if threads < 0:
-        raise InputError(f"threads: {threads} is below 0; give 0 (all cores) or more")
     _set_threads(threads)

@@ -2,11 +2,37 @@
 
 from __future__ import annotations
 
-from typing import Any, Optional, Sequence
+import os
+from typing import Any, List, Optional, Sequence
 
 import numpy as np
 
 from ._core import InputError
+
+
+def require(name: str, value: Any, kind: type, cure: str) -> None:
+    """InputError unless `value` is of the type; `cure` says what to give."""
+    if not isinstance(value, kind):
+        raise InputError(f"{name}: is of type {type(value).__name__}; give {cure}")
+
+
+def texts(name: str, value: Any) -> List[str]:
+    """A list of texts; one text is a list of itself."""
+    try:
+        given = [value] if isinstance(value, str) else list(value)
+    except TypeError:
+        raise InputError(f"{name}: is of type {type(value).__name__}; give texts") from None
+    for text in given:
+        require(name, text, str, "texts")
+    return given
+
+
+def path_text(name: str, value: Any) -> str:
+    """The path of a file, as text."""
+    try:
+        return os.fsdecode(value)
+    except TypeError:
+        raise InputError(f"{name}: is of type {type(value).__name__}; give the path of a file") from None
 
 
 def _shape_text(shape: Sequence[Any]) -> str:
@@ -29,11 +55,15 @@ def numbers(name: str, value: Any, shapes: Sequence[Sequence[Optional[int]]], me
         given = np.asarray(value)
     except ValueError as error:
         raise InputError(f"{name}: is no array of numbers: {error}") from None
+    if given.dtype.kind == "O" and not given.ndim:
+        raise InputError(f"{name}: is of type {type(value).__name__}; give real numbers")
     if given.dtype.kind not in "buif":
         raise InputError(f"{name}: has dtype {given.dtype}; give real numbers")
     array = np.ascontiguousarray(given, dtype=np.float64) if given.ndim else given.astype(np.float64)
     _require_shape(name, array, shapes, meaning)
     good = ~np.isinf(array) if nan else np.isfinite(array)
+    if not good.all() and not array.ndim:
+        raise InputError(f"{name}: is {array}; give a finite number")
     if not good.all():
         first = tuple(int(k) for k in np.argwhere(~good)[0])
         place = first[0] if len(first) == 1 else first

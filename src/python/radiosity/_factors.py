@@ -10,11 +10,11 @@ import numpy as np
 import scipy.sparse
 
 from . import _core
-from ._arrays import numbers
+from ._arrays import numbers, path_text, require, texts
 from ._core import InputError
 from ._mesh import Mesh
 from ._names import surfaces_named
-from ._notes import tell
+from ._notes import tell, warn
 from ._progress import Progress, reporting
 
 
@@ -137,10 +137,11 @@ class FormFactors:
         """What the computation did: seconds, error_figure, closed, reciprocity_residual, ..."""
         return self._handle.report
 
-    def table(self, groups: Sequence[str] = (), progress: Progress = None) -> Table:
+    def table(self, groups: Union[str, Sequence[str]] = (), progress: Progress = None) -> Table:
         """Form factors between surfaces by name.
 
-        groups: "NAME=PATTERN" each: surfaces that match a pattern of the shell under one name.
+        groups: "NAME=PATTERN", one or a list: surfaces that match a pattern of the shell under one
+        name.
         Of a matrix from elsewhere: rows of one name are together, and there are no groups.
 
         >>> F = rad.form_factors(rad.mesh(rad.load("data/cornell-box.obj"), patches=100))
@@ -155,7 +156,7 @@ class FormFactors:
         if not groups and self._table is not None:
             return self._table
         with reporting(progress) as report:
-            got = _core.table(self._handle, list(groups), report)
+            got = _core.table(self._handle, texts("groups", groups), report)
         n = len(got["names"])
         table = Table(got["names"], got["area"], got["factors"].reshape(n, n), got["sky"],
                       got["backs"], got["entry_error"].reshape(n, n), got["markdown"])
@@ -176,17 +177,29 @@ class FormFactors:
     def save(self, path: Union[str, "os.PathLike[str]"], solution: Any = None, heat: Any = None,
              progress: Progress = None) -> None:
         """Writes scene, mesh and form factors, and a Solution and a Heat on them, as a results file
-        (HDF5), which read() and the command line take up. The matrix is not copied.
+        (HDF5, .h5), which read() and the command line take up. A file of that name is replaced. The
+        matrix is not copied.
 
-        Errors: InputError for form factors without a mesh; RunError where the disk is full; the file
-        then is what it was.
+        Errors: InputError for another ending than .h5 and for form factors without a mesh; RunError
+        where the disk is full; the file then is what it was.
         """
-        for name, part in (("solution", solution), ("heat", heat)):
-            if part is not None and part.form_factors is not self:
-                raise InputError(f"{name}: is of other form factors; give one that was made of these")
+        name = path_text("path", path)
+        if not name.lower().endswith(".h5"):
+            raise InputError(f"{name}: is no name of a results file; end it in .h5")
+        light = self._part("solution", solution, _core.Solution, "a Solution: rad.solve(F)")
+        exchanged = self._part("heat", heat, _core.Heat, "a Heat: rad.heat(F, ...)")
         with reporting(progress) as report:
-            _core.save(os.fspath(path), self._handle, getattr(solution, "_handle", None),
-                       getattr(heat, "_handle", None), report)
+            _core.save(name, self._handle, light, exchanged, report)
+
+    def _part(self, name: str, part: Any, kind: type, cure: str) -> Any:
+        """The handle of what is saved with the form factors."""
+        if part is None:
+            return None
+        if not isinstance(getattr(part, "_handle", None), kind):
+            raise InputError(f"{name}: is of type {type(part).__name__}; give {cure}")
+        if part.form_factors is not self:
+            raise InputError(f"{name}: is of other form factors; give one that was made of these")
+        return part._handle
 
     def _table_of_rows(self) -> Table:
         if not self._handle.names:
@@ -221,16 +234,25 @@ def _resident_bytes() -> int:
 
 def form_factors(mesh: Mesh, tolerance: Optional[float] = None, *, method: str = "auto",
                  closure: str = "report", precision: Optional[str] = None, resolution: int = 256,
-                 seed: int = 1, near_exact: bool = False, symmetrize: bool = False,
-                 memory_limit: int = 0, scratch_folder: str = "",
+                 eye: str = "cpu", seed: int = 1, near_exact: bool = False,
+                 symmetrize: bool = False, memory_limit: int = 0,
+                 scratch_folder: Union[str, "os.PathLike[str]"] = "",
                  progress: Progress = None) -> FormFactors:
     """Computes the form factors of a mesh.
 
     tolerance: relative to the mean form factor, 1e-12 to 0.1 (default: exact 1e-3, rays 1e-2).
     method: auto, exact, rays or hemicube. closure: off, report or enforce. precision: single or
-    double (default: single unless the tolerance asks for more). resolution: hemicube, pixels.
-    memory_limit: bytes, 0: none; beyond it rows are kept in scratch_folder, where one is given. The
-    same options give the same bits as on the command line.
+    double (default: single unless the tolerance asks for more). memory_limit: bytes, 0: none; beyond
+    it rows are kept in scratch_folder, where one is given. seed: of the directions of rays and of the
+    turns of hemicubes about their normals; another one gives another sample of the same quality.
+
+    Of hemicubes alone: resolution, pixels along an edge, even, 16 to 4096. eye: who draws them: cpu
+    (the same bits on every machine), gl (OpenGL) or auto (OpenGL where there is hardware for it).
+    near_exact: pairs nearer than two patch sizes, where pixels are coarse, get their area-to-area
+    value times the visible fraction. symmetrize: both estimates of a pair are merged, so that A_i F_ij
+    = A_j F_ji, and rows are closed. A UserWarning names options that the method does not use.
+
+    The mesh is kept, not copied. The same options give the same bits as on the command line.
 
     Errors: InputError for options out of range; RunError where memory_limit is exceeded.
 
@@ -238,18 +260,38 @@ def form_factors(mesh: Mesh, tolerance: Optional[float] = None, *, method: str =
     >>> rad.form_factors(mesh, method="hemicube", resolution=64)
     <FormFactors of 8 rows, hemicube>
     """
-    if not isinstance(mesh, Mesh):
-        raise InputError(f"mesh: is a {type(mesh).__name__}; give a Mesh: rad.mesh(scene)")
-    if memory_limit < 0 or seed < 0:
-        raise InputError("memory_limit and seed: give 0 or more")
+    require("mesh", mesh, Mesh, "a Mesh: rad.mesh(scene)")
     options = dict(tolerance=tolerance, method=method, closure=closure, precision=precision,
-                   resolution=resolution, seed=seed, near_exact=near_exact, symmetrize=symmetrize,
-                   memory_limit=memory_limit, scratch_folder=os.fspath(scratch_folder),
+                   resolution=resolution, eye=eye, seed=seed, near_exact=near_exact,
+                   symmetrize=symmetrize, memory_limit=memory_limit,
+                   scratch_folder=path_text("scratch_folder", scratch_folder),
                    memory_held=_resident_bytes() if memory_limit else 0)
     with reporting(progress) as report:
         factors = FormFactors(_core.form_factors(mesh._handle, options, report), mesh)
     tell(factors.report["notes"])
+    unused = _unused(options, factors.method)
+    if unused:
+        warn(f"not used by the method {factors.method}: {', '.join(unused)}")
     return factors
+
+
+def _unused(options: dict, method: str) -> List[str]:
+    """Options that are not what they are by default, and are of other methods than the one that ran."""
+    unused: dict = {"resolution": 256, "eye": "cpu", "near_exact": False, "symmetrize": False}
+    if method == "hemicube":
+        unused = {"tolerance": None, "closure": "report"}
+    elif method == "exact":
+        unused["seed"] = 1
+    return [name for name, usual in unused.items() if options[name] != usual]
+
+
+def _shares(name: str, value: Any, rows: int) -> np.ndarray:
+    """What of each row goes somewhere."""
+    array = numbers(name, value, [(rows,)], "one a row")
+    below = np.flatnonzero(array < 0)
+    if len(below):
+        raise InputError(f"{name}: row {below[0]} is {array[below[0]]}; give 0 or more")
+    return array
 
 
 def from_csr(matrix: Any, area: Any, *, sky: Any = None, backs: Any = None,
@@ -261,7 +303,8 @@ def from_csr(matrix: Any, area: Any, *, sky: Any = None, backs: Any = None,
     messages and tables; need not be unique. A UserWarning says where rows sum to more than 1, or where
     A_i F_ij is far from A_j F_ji.
 
-    Errors: InputError for wrong shapes, and values that are negative or not finite, by row.
+    Errors: InputError for wrong shapes, and values that are negative or not finite, by row: of the
+    matrix, the areas, sky and backs.
 
     >>> F = rad.from_csr([[0, 1], [1, 0]], area=[1, 1], names=["hot", "cold"])
     >>> F.between("hot", "cold")
@@ -286,16 +329,22 @@ def from_csr(matrix: Any, area: Any, *, sky: Any = None, backs: Any = None,
         raise InputError(f"matrix: row {row}, column {csr.indices[bad[0]]} is {csr.data[bad[0]]}; "
                          "form factors are finite and not negative")
     sums = np.asarray(csr.sum(axis=1)).reshape(-1)
-    lost = numbers("backs", np.zeros(n) if backs is None else backs, [(n,)], "one a row")
-    rest = np.where(areas > 0, 1 - sums - lost, 0.0) if sky is None else sky
-    if names is not None and len(names) != n:
-        raise InputError(f"names: are {len(names)}; give {n}, one a row")
+    lost = np.zeros(n) if backs is None else _shares("backs", backs, n)
+    rest = np.where(areas > 0, 1 - sums - lost, 0.0) if sky is None else _shares("sky", sky, n)
     handle = _core.from_csr(csr.data, csr.indices.astype(np.uint32), csr.indptr.astype(np.int64),
-                            areas, numbers("sky", rest, [(n,)], "one a row"), lost,
-                            [] if names is None else [str(name) for name in names], single)
+                            areas, rest, lost, _row_names(names, n), single)
     factors = FormFactors(handle)
     tell(factors.report["notes"])
     return factors
+
+
+def _row_names(names: Optional[Sequence[str]], rows: int) -> List[str]:
+    if names is None:
+        return []
+    given = [names] if isinstance(names, str) else [str(name) for name in names]
+    if len(given) != rows:
+        raise InputError(f"names: are {len(given)}; give {rows}, one a row")
+    return given
 
 
 def view_factors_from(mesh: Mesh, points: Any, normals: Any, progress: Progress = None) -> np.ndarray:
@@ -315,6 +364,7 @@ def view_factors_from(mesh: Mesh, points: Any, normals: Any, progress: Progress 
     >>> row.shape, float(row.sum().round(9))
     ((1, 24), 1.0)
     """
+    require("mesh", mesh, Mesh, "a Mesh: rad.mesh(scene)")
     places = numbers("points", points, [(None, 3)])
     directions = numbers("normals", normals, [(len(places), 3), (3,)])
     if directions.ndim == 1:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Optional, Union
 
 from . import _core
+from ._arrays import path_text
 from ._factors import FormFactors
 from ._heat import Heat
 from ._light import Solution
@@ -30,6 +31,9 @@ def read(path: Union[str, "os.PathLike[str]"], progress: Progress = None) -> Res
     """Reads a results file (.h5) of this package or the command line, or a matrix of form factors
     alone: MatrixMarket (.mtx), View3D (.vf).
 
+    Arrays of what was read are views of it, no copies. Reading a results file shows no progress, and
+    Ctrl-C raises KeyboardInterrupt only when the file has been read.
+
     Errors: InputError, one line with the file and the cure.
 
     >>> import tempfile
@@ -40,7 +44,7 @@ def read(path: Union[str, "os.PathLike[str]"], progress: Progress = None) -> Res
     >>> (again.form_factors.csr != F.csr).nnz
     0
     """
-    name = os.fspath(path)
+    name = path_text("path", path)
     with reporting(progress) as report:
         if not _core.is_results(name):
             return Results(form_factors=FormFactors(_core.read_matrix(name, report)))

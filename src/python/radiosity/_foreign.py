@@ -19,7 +19,7 @@ def from_meshio(mesh: Any, materials: Optional[Mapping[Any, Mapping[str, Any]]] 
     """A scene of a meshio.Mesh: its triangles, quadrilaterals and polygons, as Scene() takes them.
 
     Groups are its cell sets, else its physical groups (gmsh), else one. A face of no set is in the
-    group "other". Volumes, lines and points are left out.
+    group "other". Volumes, lines and points are left out. All arrays are copied.
 
     Errors: InputError for a mesh without faces.
 
@@ -29,6 +29,8 @@ def from_meshio(mesh: Any, materials: Optional[Mapping[Any, Mapping[str, Any]]] 
     >>> rad.from_meshio(square).surface_names
     ['floor']
     """
+    if not hasattr(mesh, "cells") or not hasattr(mesh, "points"):
+        raise InputError(f"mesh: is of type {type(mesh).__name__}; give a meshio.Mesh")
     points = np.asarray(mesh.points, dtype=np.float64)
     if points.shape[1] == 2:
         points = np.column_stack([points, np.zeros(len(points))])
@@ -69,10 +71,12 @@ def _groups(mesh: Any, block: int, count: int) -> list:
 def from_trimesh(mesh: Any, materials: Optional[Mapping[Any, Mapping[str, Any]]] = None,
                  sky: Any = 0.0) -> Scene:
     """A scene of a trimesh.Trimesh, one group, or of a trimesh.Scene, whose geometries are groups in
-    the place where its graph puts them.
+    the place where its graph puts them. All arrays are copied.
 
     Errors: InputError for one without faces.
     """
+    if not hasattr(mesh, "geometry") and not hasattr(mesh, "faces"):
+        raise InputError(f"mesh: is of type {type(mesh).__name__}; give a trimesh.Trimesh or Scene")
     if hasattr(mesh, "geometry"):
         parts = []
         for node in mesh.graph.nodes_geometry:

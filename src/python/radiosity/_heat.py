@@ -8,9 +8,10 @@ from typing import Any, List, Mapping, Optional, Sequence, Union
 import numpy as np
 
 from . import _core
-from ._arrays import numbers
+from ._arrays import numbers, path_text, require
 from ._core import InputError
 from ._factors import FormFactors
+from ._notes import warn
 from ._progress import Progress, reporting
 
 #: One value for all surfaces that others leave out, or values by name.
@@ -51,8 +52,8 @@ class Heat:
 
     @property
     def summary(self) -> dict:
-        """status, usable, iterations, residual, balance (W), message, ... Not converging is no error:
-        look at `usable`."""
+        """status, usable, iterations, residual, balance (W), message, ... Not converging is no error
+        but a warning: `usable` is False then."""
         return self._handle.summary
 
     @property
@@ -138,13 +139,15 @@ def heat(F: FormFactors, emissivity: Any = None, temperature: Any = None, *, flu
     no other names: emissivity (0 to 1; a list: one a band; a dict {K: emissivity}: a table),
     temperature (K; None: to be found, adiabatic unless flux, power or convection says more), flux
     (W/m^2 supplied), power (W supplied), convection (W/m^2/K) to air of `ambient` (K), isothermal
-    (bool). table: a CSV file of the same. band_edges: micrometres. Nothing is guessed: a surface
-    without emissivity or condition is an error.
+    (bool). The name "*" is all surfaces that no other names. table: a CSV file of the same.
+    band_edges: micrometres. Nothing is guessed: a surface without emissivity or condition is an error.
+    A UserWarning says where the iterations did not converge.
 
     Of a matrix from elsewhere: emissivity, temperature and flux alone, by the rows' names or one a
     row, (rows,), NaN where not given.
 
-    Errors: InputError naming the surface and the cure.
+    What is given is copied; the arrays of the result are views of new ones. Errors: InputError naming
+    the surface and the cure.
 
     >>> F = rad.from_csr([[0, 1], [1, 0]], area=[1, 1], names=["hot", "cold"])
     >>> plates = rad.heat(F, {"hot": 0.8, "cold": 0.5}, {"hot": 1000, "cold": 500})
@@ -156,24 +159,42 @@ def heat(F: FormFactors, emissivity: Any = None, temperature: Any = None, *, flu
     >>> oven.summary["status"]
     'converged'
     """
-    options = dict(sky_temperature=float(sky_temperature), tolerance=float(tolerance),
-                   max_iterations=max_iterations, band_edges=list(band_edges),
-                   band_fractions=list(band_fractions))
+    require("F", F, FormFactors, "form factors: rad.form_factors(mesh)")
+    options = dict(sky_temperature=sky_temperature, tolerance=tolerance,
+                   max_iterations=max_iterations,
+                   band_edges=numbers("band_edges", band_edges, [(None,)]).tolist(),
+                   band_fractions=numbers("band_fractions", band_fractions, [(None,)]).tolist())
     conditions = dict(emissivity=emissivity, temperature=temperature, flux=flux, power=power,
                       convection=convection, ambient=ambient, isothermal=isothermal)
-    if F.mesh is None:
-        return _heat_of_rows(F, conditions, table, options, progress)
-    for name, value in conditions.items():
-        if value is not None and not isinstance(value, Mapping) and np.ndim(value) and name != "emissivity":
-            raise InputError(f"{name}: is an array; give one number, or a dict by surface name")
-    settings = _settings(conditions)
+    by = _heat_of_rows if F.mesh is None else _heat_by_name
+    found = by(F, conditions, table, options, progress)
+    summary = found.summary
+    if not summary["usable"]:
+        warn(summary["message"])
+    return found
+
+
+def _heat_by_name(F: FormFactors, given: dict, table: Any, options: dict, progress: Progress) -> Heat:
+    _refuse_arrays(given, len(options["band_fractions"]) or len(options["band_edges"]) + 1)
+    settings = _settings(given)
     if not settings and table is None:
         raise InputError("heat: no conditions are given; give emissivity and temperature (or flux, "
                          "power, convection) by surface name, or table=FILE.csv")
+    path = "" if table is None else path_text("table", table)
     with reporting(progress) as report:
-        handle = _core.heat(F._handle, os.fspath(table) if table is not None else "", settings,
-                            options, report)
-    return Heat(handle, F)
+        return Heat(_core.heat(F._handle, path, settings, options, report), F)
+
+
+def _refuse_arrays(conditions: dict, bands: int) -> None:
+    """Surfaces of a mesh have conditions by name, and an emissivity may be one a band."""
+    for name, value in conditions.items():
+        if value is None or isinstance(value, Mapping) or not np.ndim(value):
+            continue
+        if name != "emissivity":
+            raise InputError(f"{name}: is an array; give one number, or a dict by surface name")
+        if len(value) not in (1, bands):
+            raise InputError(f"emissivity: has {len(value)} values; give one number, {bands} (one a "
+                             "band), or a dict by surface name")
 
 
 def _heat_of_rows(F: FormFactors, given: dict, table: Any, options: dict, progress: Progress) -> Heat:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, Optional, Tuple
+from typing import Any, NamedTuple, Optional, Tuple
 
 import numpy as np
 
 from . import _core
-from ._arrays import numbers
+from ._arrays import numbers, require
 from ._core import InputError, RunError
 from ._factors import FormFactors
+from ._mesh import Mesh
+from ._notes import warn
 from ._progress import Progress, reporting
 
 
@@ -49,7 +51,7 @@ class Solution:
     def summary(self) -> dict:
         """status, usable, solver, iterations, residual, error_bound, energy (W by band), message, ...
 
-        Not converging is no error: look at `usable`.
+        Not converging is no error but a warning: `usable` is False then.
         """
         return self._handle.summary
 
@@ -62,11 +64,68 @@ class Solution:
         return f"<Solution of shape {self._shape}, {self.summary['status']}>"
 
 
-def _light_of_scene(F: FormFactors, sky: Any) -> tuple:
-    if F.mesh is None:
-        raise InputError(f"emission: these form factors have no scene; give it, shape ({len(F)},), "
-                         f"({len(F)}, bands) or ({len(F)}, bands, k)")
-    return F.mesh.emission, F.mesh._handle.sky if sky is None else sky
+class Materials(NamedTuple):
+    """Reflectance and emission of each row in every band, and the sky's radiance by band."""
+
+    reflectance: np.ndarray
+    emission: np.ndarray
+    sky: list
+    shape: Tuple[int, ...]  # of the emission as it was given
+
+
+def _emission(mesh: Optional[Mesh], rows: int, meaning: str, given: Any) -> np.ndarray:
+    """What is given, else the scene's."""
+    if given is None:
+        if mesh is None:
+            raise InputError(f"emission: these form factors have no scene; give it, shape ({rows},), "
+                             f"({rows}, bands) or ({rows}, bands, k)")
+        return mesh.emission
+    E = numbers("emission", given, [(rows,), (rows, None), (rows, None, None)], meaning)
+    if 0 in E.shape[1:]:
+        raise InputError(f"emission: has shape {E.shape}; give at least one band")
+    return E
+
+
+def _reflectance(mesh: Optional[Mesh], rows: int, bands: int, meaning: str, given: Any) -> np.ndarray:
+    """(rows, bands) of what is given, else the scene's."""
+    if given is None:
+        if mesh is None or bands != 3:
+            raise InputError(f"reflectance: the scene's has 3 bands, emission has {bands}; give one "
+                             f"number, ({rows},) or ({rows}, {bands})")
+        return mesh.reflectance
+    rho = numbers("reflectance", given, [(), (rows,), (rows, bands)], meaning)
+    return np.broadcast_to(rho.reshape(rows, 1) if rho.ndim == 1 else rho, (rows, bands))
+
+
+def _sky(given: Any, bands: int, lamps: int) -> list:
+    """Its radiance in each band of each lamp; empty where it is dark."""
+    if given is None:
+        return []
+    radiance = numbers("sky", given, [(), (bands,)], "one number, or one a band")
+    return np.repeat(np.broadcast_to(radiance, (bands,)), lamps).tolist()
+
+
+def materials_of(mesh: Optional[Mesh], rows: int, meaning: str, reflectance: Any, emission: Any,
+                 sky: Any) -> Materials:
+    """What is given of the light on `rows` rows; the rest is the scene's."""
+    E = _emission(mesh, rows, meaning, emission)
+    bands = 1 if E.ndim == 1 else E.shape[1]
+    lamps = E.shape[2] if E.ndim == 3 else 1
+    rho = _reflectance(mesh, rows, bands, meaning, reflectance)
+    if lamps > 1:
+        rho = np.repeat(rho, lamps, axis=1)
+    if mesh is not None and emission is None and sky is None:
+        shine = mesh._handle.sky
+    else:
+        shine = _sky(sky, bands, lamps)
+    return Materials(np.ascontiguousarray(rho), E.reshape(rows, bands * lamps), shine, E.shape)
+
+
+def _meaning_of_rows(F: FormFactors) -> str:
+    if F.mesh is None or len(F.mesh) == len(F):
+        return f"N = {len(F)}"
+    return (f"N = {len(F.mesh)} patches, which share the {len(F)} rows of the form factors; values of "
+            "rows become those of patches by values[mesh.cluster]")
 
 
 def solve(F: FormFactors, reflectance: Any = None, emission: Any = None, *, sky: Any = None,
@@ -80,37 +139,26 @@ def solve(F: FormFactors, reflectance: Any = None, emission: Any = None, *, sky:
     emission is given. solver: auto, jacobi, gauss-seidel, cg, gmres or direct. tolerance: of the true
     residual, relative to the largest emission of a band.
 
-    Arrays are copied once, as float64. Errors: InputError naming the argument and the patch.
+    Arrays are copied once, as float64; those of the result are views of new ones. A UserWarning says
+    where the iterations did not converge.
+
+    Errors: InputError naming the argument and the patch; RunError for a closed room that reflects all
+    light.
 
     >>> F = rad.form_factors(rad.mesh(rad.load("data/furnace-cube.obj"), patches=24), tolerance=1e-6)
     >>> light = rad.solve(F, reflectance=0.5, emission=[1.0] * 24, tolerance=1e-9)
     >>> light.radiosity.shape, float(light.radiosity.mean().round(3))  # E / (1 - rho)
     ((24,), 2.0)
     """
+    require("F", F, FormFactors, "form factors: rad.form_factors(mesh)")
     rows = len(F) if F.mesh is None else len(F.mesh)
-    if emission is None:
-        emission, sky = _light_of_scene(F, sky)
-    E = numbers("emission", emission, [(rows,), (rows, None), (rows, None, None)], f"N = {rows}")
-    shape = E.shape
-    bands = 1 if E.ndim == 1 else shape[1]
-    lamps = shape[2] if E.ndim == 3 else 1
-    if bands * lamps < 1:
-        raise InputError(f"emission: has shape {shape}; give at least one band")
-    if reflectance is None:
-        if F.mesh is None or bands != 3:
-            raise InputError(f"reflectance: the scene's has 3 bands, emission has {bands}; give one "
-                             f"number, ({rows},) or ({rows}, {bands})")
-        reflectance = F.mesh.reflectance
-    rho = numbers("reflectance", reflectance, [(), (rows,), (rows, bands)], f"N = {rows}")
-    rho = rho.reshape(rows, 1) if rho.ndim == 1 else rho
-    rho = np.broadcast_to(rho, (rows, bands))
-    rho = rho if lamps == 1 else np.repeat(rho, lamps, axis=1)
-    shine = [] if sky is None or len(np.atleast_1d(sky)) == 0 else np.repeat(
-        np.broadcast_to(numbers("sky", sky, [(), (bands,)]), (bands,)), lamps).tolist()
-    options = dict(solver=solver, tolerance=float(tolerance), max_iterations=max_iterations)
+    light = materials_of(F.mesh, rows, _meaning_of_rows(F), reflectance, emission, sky)
+    options = dict(solver=solver, tolerance=tolerance, max_iterations=max_iterations)
     with reporting(progress) as report:
-        handle = _core.solve(F._handle, np.ascontiguousarray(rho), E.reshape(rows, bands * lamps),
-                             shine, options, report)
-    if handle.summary["status"] == "singular":
-        raise RunError(handle.summary["message"])
-    return Solution(handle, F, shape)
+        handle = _core.solve(F._handle, light.reflectance, light.emission, light.sky, options, report)
+    summary = handle.summary
+    if summary["status"] == "singular":
+        raise RunError(summary["message"])
+    if not summary["usable"]:
+        warn(summary["message"])
+    return Solution(handle, F, light.shape)

@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import Any, Mapping, Optional
 
 import numpy as np
 
 from . import _core
-from ._arrays import numbers
+from ._arrays import numbers, require
 from ._core import InputError
 from ._names import surfaces_named
 from ._notes import tell
 from ._progress import Progress, reporting
 from ._scene import Scene
+
+
+def _package(name: str, cure: str) -> Any:
+    try:
+        return import_module(name)
+    except ImportError:
+        raise ImportError(f"{name} is not installed; {cure}", name=name) from None
 
 
 class Mesh:
@@ -139,6 +147,7 @@ class Mesh:
         >>> mesh.per_patch({"lamp": 10.0}).max()
         10.0
         """
+        require("by_name", by_name, Mapping, "a dict by the name of a surface, material or object")
         names = self.surface_names
         values = [numbers("other", other, [(), (None,)])] * len(names)
         for name, value in by_name.items():
@@ -154,20 +163,24 @@ class Mesh:
     def to_meshio(self, **fields: Any) -> Any:
         """A meshio.Mesh of the triangles, with `fields` ((N,) or (N, bands)) as their data.
 
+        Its points are a view, all else is a copy. Errors: ImportError where meshio is not installed,
+        with the cure.
+
         >>> mesh = rad.mesh(rad.load("data/furnace-cube.obj"), patches=24)
         >>> sorted(mesh.to_meshio(area=mesh.area).cell_data)
         ['area', 'surface']
         """
-        import meshio
-
+        meshio = _package("meshio", "install Debian's python3-meshio, or run `pip install meshio`")
         data = {name: [values] for name, values in self._of_triangles(fields).items()}
         return meshio.Mesh(self.vertices, [("triangle", self.triangles.astype(np.int64))],
                            cell_data=data)
 
     def to_pyvista(self, **fields: Any) -> Any:
-        """A pyvista.PolyData of the triangles, with `fields` ((N,) or (N, bands)) as their data."""
-        import pyvista
+        """A pyvista.PolyData of the triangles, with `fields` ((N,) or (N, bands)) as their data.
 
+        All arrays are copies. Errors: ImportError where pyvista is not installed, with the cure.
+        """
+        pyvista = _package("pyvista", "run `pip install pyvista`")
         faces = np.insert(self.triangles.astype(np.int64), 0, 3, axis=1)
         poly = pyvista.PolyData(np.array(self.vertices), faces.reshape(-1))
         for name, values in self._of_triangles(fields).items():
@@ -197,19 +210,16 @@ def mesh(scene: Scene, patches: int = 2000, *, max_edge: float = 0.0, weld: floa
 
     max_edge: metres, the longest patch edge (0: derived from `patches`). weld: coincidence, as a
     fraction of the scene's diagonal. faces_as_patches: patch k is face k of the scene; nothing is
-    welded, cut or re-ordered. The same options give the same mesh as on the command line.
+    welded, cut or re-ordered. The same options give the same mesh as on the command line. The
+    scene is kept, not copied; the mesh's arrays are views of new ones.
 
     Errors: InputError for options out of range and a scene without area.
 
     >>> rad.mesh(rad.load("data/furnace-cube.obj"), patches=24)
     <Mesh of 24 patches on 6 surfaces>
     """
-    if not isinstance(scene, Scene):
-        raise InputError(f"scene: is a {type(scene).__name__}; give a Scene: load(path) or Scene(...)")
-    options = dict(patches=int(patches), max_edge=float(max_edge), weld=float(weld),
-                   faces_as_patches=faces_as_patches)
-    if options["patches"] < 1:
-        raise InputError(f"patches: {patches} is below 1; give 1 or more")
+    require("scene", scene, Scene, "a Scene: rad.load(path) or rad.Scene(...)")
+    options = dict(patches=patches, max_edge=max_edge, weld=weld, faces_as_patches=faces_as_patches)
     with reporting(progress) as report:
         mesh = Mesh(_core.mesh(scene._handle, options, report))
     tell(mesh.report["notes"])

@@ -7,8 +7,9 @@ from typing import Any, Optional
 import numpy as np
 
 from . import _core
-from ._arrays import numbers
+from ._arrays import numbers, require
 from ._core import InputError
+from ._factors import FormFactors
 from ._light import Solution
 from ._mesh import Mesh
 from ._progress import Progress, reporting
@@ -36,6 +37,7 @@ def render(mesh: Mesh, light: Any, width: Optional[int] = None, height: Optional
     >>> image.shape, image.dtype
     ((16, 16, 4), dtype('float32'))
     """
+    require("mesh", mesh, Mesh, "a Mesh: rad.mesh(scene)")
     handle = None
     if isinstance(light, Solution):
         if light.form_factors.mesh is None or light.form_factors.mesh._handle is not mesh._handle:
@@ -45,10 +47,13 @@ def render(mesh: Mesh, light: Any, width: Optional[int] = None, height: Optional
         if elements:
             raise InputError("elements: need a Solution, which knows the materials; give what solve() "
                              "returned")
+        if hasattr(light, "radiosity") or isinstance(light, FormFactors):
+            raise InputError(f"light: is of type {type(light).__name__}; give a Solution, "
+                             "rad.solve(F), or radiosities of the patches")
         values = numbers("light", light, [(len(mesh),), (len(mesh), 1), (len(mesh), 3)],
                          f"N = {len(mesh)}")
         values = values.reshape(len(mesh), -1)
-    options = dict(width=width, height=height, samples=samples, smooth=smooth, crease=float(crease),
+    options = dict(width=width, height=height, samples=samples, smooth=smooth, crease=crease,
                    show_backs=show_backs, elements=elements and smooth if handle is None else
                    (smooth if elements is None else elements),
                    element_tolerance=element_tolerance)
@@ -60,7 +65,7 @@ def displayed(image: np.ndarray, exposure: Optional[float] = None) -> np.ndarray
     """A picture of radiance as screens show it: (height, width, 4) float32 from 0 to 1, sRGB.
 
     exposure: stops; radiance is multiplied by 2 to the power of it. Default: automatic, as the
-    command line exposes a PNG. A new array.
+    command line exposes a PNG. The result is a new array; a float32 picture is not copied for it.
 
     >>> import numpy as np
     >>> grey = np.full((2, 2, 4), [0.5, 0.5, 0.5, 1.0], dtype=np.float32)
@@ -68,7 +73,7 @@ def displayed(image: np.ndarray, exposure: Optional[float] = None) -> np.ndarray
     0.7354
     """
     picture = np.ascontiguousarray(numbers("image", image, [(None, None, 4)]), dtype=np.float32)
-    stops = _core.exposure(picture) if exposure is None else float(exposure)
+    stops = _core.exposure(picture) if exposure is None else float(numbers("exposure", exposure, [()]))
     linear = np.clip(picture[..., :3] * np.float32(2.0**stops), 0, 1)
     coded = np.where(linear <= 0.0031308, 12.92 * linear,
                      1.055 * np.power(linear, 1 / 2.4, dtype=np.float32) - 0.055)

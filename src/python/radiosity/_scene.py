@@ -8,7 +8,7 @@ from typing import Any, Mapping, Optional, Sequence, Union
 import numpy as np
 
 from . import _core
-from ._arrays import indices, numbers
+from ._arrays import indices, numbers, path_text, require, texts
 from ._core import InputError
 from ._notes import tell
 from ._progress import Progress, reporting
@@ -54,7 +54,12 @@ def _group_of_faces(groups: Any, faces: int) -> tuple:
 
 
 def _materials(names: Sequence[str], given: Optional[Mapping[Any, Mapping[str, Any]]]) -> list:
-    known = {str(name): dict(material) for name, material in (given or {}).items()}
+    if given is not None:
+        require("materials", given, Mapping, "a dict by group")
+    known: dict = {}
+    for group, properties in (given or {}).items():
+        require(f"material of {group!r}", properties, Mapping, "a dict of properties")
+        known[str(group)] = dict(properties)
     for name, material in known.items():
         if name not in names:
             raise InputError(f"materials: no group is called {name!r}; there are: {', '.join(names)}")
@@ -163,27 +168,32 @@ class Scene:
 
 def load(path: Union[str, "os.PathLike[str]"], *, unit: Optional[str] = None,
          kd_is_srgb: bool = False, default_reflectance: float = 0.5, textures: bool = True,
-         set: Sequence[str] = (), materials_file: Optional[str] = None,
-         one_sided: Sequence[str] = (), two_sided: Sequence[str] = (), sky: Any = None,
-         progress: Progress = None) -> Scene:
+         set: Union[str, Sequence[str]] = (),
+         materials_file: Union[None, str, "os.PathLike[str]"] = None,
+         one_sided: Union[str, Sequence[str]] = (), two_sided: Union[str, Sequence[str]] = (),
+         sky: Any = None, progress: Progress = None) -> Scene:
     """Reads a scene file, its format told by the extension (.obj, .glb, .stl, .msh, .ply, ...).
 
     unit: mm, cm, m, in or ft (default metres). set: "NAME.PROPERTY=VALUE" each, with PROPERTY
     reflectance, emission (W/m^2), radiance (W/m^2/sr) or tint. one_sided, two_sided: names of
-    materials, objects or surfaces, or "all". sky: radiance, W/m^2/sr, one number or three. The
-    options are those of the command line. What was repaired is in Scene.notes, and said by
-    UserWarnings.
+    materials, objects or surfaces, or "all". Each of the three is a list, or one text. sky:
+    radiance, W/m^2/sr, one number or three. The options are those of the command line. What was
+    repaired is in Scene.notes, and said by UserWarnings.
+
+    The scene's arrays are views of what was read, no copies. Reading shows no progress, and Ctrl-C
+    raises KeyboardInterrupt only when the file has been read.
 
     Errors: InputError with file, element and cure.
 
     >>> rad.load("data/cornell-box.obj", set=["white.reflectance=0.9"])
     <Scene of 18 faces on 8 surfaces from data/cornell-box.obj>
     """
-    options = dict(unit=unit, kd_is_srgb=kd_is_srgb, default_reflectance=float(default_reflectance),
-                   textures=textures, set=list(set), materials_file=materials_file,
-                   one_sided=list(one_sided), two_sided=list(two_sided),
+    materials_path = None if materials_file is None else path_text("materials_file", materials_file)
+    options = dict(unit=unit, kd_is_srgb=kd_is_srgb, default_reflectance=default_reflectance,
+                   textures=textures, set=texts("set", set), materials_file=materials_path,
+                   one_sided=texts("one_sided", one_sided), two_sided=texts("two_sided", two_sided),
                    sky=None if sky is None else _colour("sky", sky))
     with reporting(progress) as report:
-        scene = Scene._of(_core.load(os.fspath(path), options, report))
+        scene = Scene._of(_core.load(path_text("path", path), options, report))
     tell(scene.notes)
     return scene
