@@ -65,6 +65,14 @@ class UncertainEntries {
   std::vector<Row> rows_;
 };
 
+/// What rows see beside the matrix, such as the sky: its share of each row and how far off that may
+/// be. A row's entries and its share make the same sum after closure as the target and the share do
+/// before; the share moves as an uncertain entry does and stays >= 0.
+struct SharesBeside {
+  std::span<const double> share;  ///< N values >= 0, or none: there is nothing beside the matrix
+  std::span<const double> error;  ///< as many, absolute; 0: the share is known
+};
+
 /// Makes the smallest change to the exchange areas of a symmetric matrix that gives every row its
 /// target sum: it minimises the sum over uncertain pairs of (change of G_ij / error of G_ij)^2,
 /// keeps G_ij = G_ji and F_ij >= 0, and moves nothing else. Weighted least squares with a Lagrange
@@ -77,10 +85,10 @@ class UncertainEntries {
 /// the tolerance in single precision, 1e-16 in double. A row in which nothing is uncertain stays as
 /// it is, and not every target can be reached (two plates that see only each other exchange the
 /// same area): the report says what is left. Targets: N finite values >= 0. Errors: InputError
-/// where the matrix is not symmetric, sizes differ or a target is none; Cancelled, the matrix then
-/// is as it was.
+/// where the matrix is not symmetric, sizes differ, or a target or a share is none; Cancelled, the
+/// matrix then is as it was.
 ClosureReport closeRows(ExchangeMatrix& matrix, const UncertainEntries& uncertain,
                         std::span<const double> target_row_sums, Progress& progress,
-                        double tolerance = 1e-9);
+                        double tolerance = 1e-9, const SharesBeside& beside = {});
 
 }  // namespace radiosity

@@ -58,10 +58,14 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
 /// Newton step solves
 ///     (D + W) step = what the rows lack,   D_k = sum_q w_kq over the entries that are not at 0,
 /// symmetric and positive semi-definite. Where no entry turns negative one step is all there is.
+///
+/// What a row sees beside the matrix is one more entry of it, which no other row shares:
+/// d_k = max(-A_k share_k, w_k m_k) with w_k = (A_k e_k)^2.
 class LeastSquaresClosure {
  public:
   LeastSquaresClosure(ExchangeMatrix& matrix, const UncertainEntries& uncertain,
-                      std::span<const double> target, Progress& progress);
+                      std::span<const double> target, const SharesBeside& beside,
+                      Progress& progress);
 
   void findMultipliers(double tolerance);
   /// Changes the matrix as they say.
@@ -75,6 +79,7 @@ class LeastSquaresClosure {
   std::pmr::vector<std::uint8_t>& freeOf(std::size_t k);
   std::vector<double> timesWeights(const std::vector<double>& x);
   StrongPairs strongPairs(const std::vector<double>& own);
+  std::vector<double> diagonal();
   void evaluate();
   double largestLack() const;
   std::vector<double> newtonStep(double tolerance);
@@ -87,6 +92,12 @@ class LeastSquaresClosure {
   std::vector<double> area_;           // in a unit that keeps its squares in range
   // As uncertain_.row(k).codes, 0 where held at 0:
   std::vector<std::pmr::vector<std::uint8_t>> free_;
+  struct Beside {
+    double share = 0;
+    double squared_error = 0;
+    bool held = false;
+  };
+  std::vector<Beside> beside_;     // N, or none
   std::vector<double> goal_;       // what rows are to sum to
   std::vector<double> shortfall_;  // goal - row sum before
   std::vector<double> root_;       // of D while all are free
@@ -94,17 +105,20 @@ class LeastSquaresClosure {
   // As evaluate() found them for the multipliers:
   std::vector<double> lacking_;  // goal - row sum after
   double dual_ = 0;              // f
+  std::size_t held_ = 0;         // entries at 0
   std::size_t turned_ = 0;       // entries that were held or freed
   ClosureReport report_;
 };
 
 LeastSquaresClosure::LeastSquaresClosure(ExchangeMatrix& matrix, const UncertainEntries& uncertain,
-                                         std::span<const double> target, Progress& progress)
+                                         std::span<const double> target, const SharesBeside& beside,
+                                         Progress& progress)
     : matrix_(matrix),
       uncertain_(uncertain),
       progress_(progress),
       pass_(matrix.size(), 1, [&](std::size_t k) { return uncertain.row(k).codes.size() + 1; }),
       area_(matrix.size()),
+      beside_(beside.share.size()),
       goal_(matrix.size()),
       shortfall_(matrix.size()),
       multiplier_(matrix.size(), 0.0) {
@@ -127,9 +141,11 @@ LeastSquaresClosure::LeastSquaresClosure(ExchangeMatrix& matrix, const Uncertain
     // A row that sums to 0 sees nothing or has no area: nothing is asked of it.
     goal_[k] = sums[patch] > 0 ? target[patch] : 0.0;
     shortfall_[k] = goal_[k] - sums[patch];
+    if (beside_.empty() || !(sums[patch] > 0)) continue;
+    beside_[k] = {beside.share[patch], beside.error[patch] * beside.error[patch]};
   }
   report_.adjustable = uncertain.entries();
-  root_ = timesWeights(std::vector<double>(matrix.size(), 1.0));
+  root_ = diagonal();
   for (double& d : root_) d = std::sqrt(d);
   // The shortfall that evaluate() would find while nothing is moved.
   lacking_ = shortfall_;
@@ -177,6 +193,15 @@ std::vector<double> LeastSquaresClosure::timesWeights(const std::vector<double>&
   return out;
 }
 
+/// D.
+std::vector<double> LeastSquaresClosure::diagonal() {
+  std::vector<double> sums = timesWeights(std::vector<double>(area_.size(), 1.0));
+  for (std::size_t k = 0; k < beside_.size(); ++k) {
+    if (!beside_[k].held) sums[k] += area_[k] * area_[k] * beside_[k].squared_error;
+  }
+  return sums;
+}
+
 /// Of D + W, scaled by the root of D; `own`: its diagonal.
 StrongPairs LeastSquaresClosure::strongPairs(const std::vector<double>& own) {
   std::vector<std::vector<StrongPairs::Pair>> of_row(own.size());
@@ -209,27 +234,37 @@ void LeastSquaresClosure::evaluate() {
   std::vector<std::size_t> turned(n, 0);
   std::vector<double> value(n, 0.0);
   lacking_ = shortfall_;
+  // Moves an entry of row k with the sum of its multipliers; returns its change, and whether it is
+  // held at 0.
+  const auto move = [&](std::size_t k, double f, double squared_error, double sum, bool was_held) {
+    const double slope = area_[k] * squared_error;  // of the change of F
+    const bool held = slope * sum < -f;
+    const double change = held ? -f : slope * sum;
+    turned[k] += held != was_held ? 1 : 0;
+    lacking_[k] -= change;
+    value[k] += area_[k] * (held ? -f * sum - f * f / (2 * slope) : change * sum / 2);
+    return std::pair(change, held);
+  };
   const auto row = [&](std::size_t k, double* handed_on, std::size_t) {
-    const double area = area_[k];
     std::pmr::vector<std::uint8_t>& free = freeOf(k);
     forUncertain(k, [&](std::size_t index, std::size_t later, std::uint8_t code, double f) {
       const double sum = multiplier_[k] + multiplier_[later];
-      const double slope = area * squared_[code];  // of the change of F
-      const bool held = slope * sum < -f;
-      const double change = held ? -f : slope * sum;
-      turned[k] += held != (free[index] == 0) ? 1 : 0;
+      const auto [change, held] = move(k, f, squared_[code], sum, free[index] == 0);
       free[index] = held ? std::uint8_t(0) : code;
       emptied[k] += held ? 1 : 0;
-      lacking_[k] -= change;
-      handed_on[later - k - 1] += area * change;
-      value[k] += area * (held ? -f * sum - f * f / (2 * slope) : change * sum / 2);
+      handed_on[later - k - 1] += area_[k] * change;
     });
-    value[k] -= area * shortfall_[k] * multiplier_[k];
+    if (!beside_.empty() && beside_[k].squared_error > 0) {
+      Beside& beside = beside_[k];
+      beside.held = move(k, beside.share, beside.squared_error, multiplier_[k], beside.held).second;
+    }
+    value[k] -= area_[k] * shortfall_[k] * multiplier_[k];
   };
   pass_.run(1, row, [&](std::size_t k, const double* handed) {
     if (area_[k] > 0) lacking_[k] -= handed[0] / area_[k];
   });
   report_.emptied = std::accumulate(emptied.begin(), emptied.end(), std::size_t(0));
+  held_ = report_.emptied + std::size_t(std::ranges::count(beside_, true, &Beside::held));
   turned_ = std::accumulate(turned.begin(), turned.end(), std::size_t(0));
   dual_ = std::accumulate(value.begin(), value.end(), 0.0);
 }
@@ -240,10 +275,10 @@ void LeastSquaresClosure::evaluate() {
 /// rows shares uncertain entries only with another set).
 std::vector<double> LeastSquaresClosure::newtonStep(double tolerance) {
   const std::size_t n = area_.size();
-  const double damping = report_.emptied > 0 ? kDamping * largestLack() : 0;
+  const double damping = held_ > 0 ? kDamping * largestLack() : 0;
   std::vector<double> own(n, 1.0);  // D, scaled: 1 while all are free
-  if (report_.emptied > 0) {
-    own = timesWeights(own);
+  if (held_ > 0) {
+    own = diagonal();
     for (std::size_t k = 0; k < n; ++k) {
       own[k] = root_[k] > 0 ? own[k] / (root_[k] * root_[k]) + damping : 0;
     }
@@ -391,7 +426,11 @@ ClosureReport LeastSquaresClosure::report(double tolerance) const {
   const std::vector<double> sums = matrix_.rowSums();
   report.reached = true;
   for (std::size_t k = 0; k < area_.size(); ++k) {
-    const double residual = std::abs(sums[matrix_.order()[k]] - goal_[k]);
+    double beside = 0;
+    if (!beside_.empty()) {
+      beside = std::max(-beside_[k].share, area_[k] * beside_[k].squared_error * multiplier_[k]);
+    }
+    const double residual = std::abs(sums[matrix_.order()[k]] + beside - goal_[k]);
     report.largest_residual = std::max(report.largest_residual, residual);
     const bool off = residual > tolerance + rounding * goal_[k];
     if (off) report.reached = false;
@@ -409,6 +448,16 @@ void checkTarget(std::span<const double> target, std::size_t n) {
       throw InputError(fmt::format("closure: {} is no sum for row {}", target[i], i));
     }
   }
+}
+
+void checkBeside(const SharesBeside& beside, std::size_t n) {
+  const auto usable = [](double x) { return x >= 0 && std::isfinite(x); };
+  const bool fits = beside.share.size() == beside.error.size() &&
+                    (beside.share.empty() || beside.share.size() == n) &&
+                    std::ranges::all_of(beside.share, usable) &&
+                    std::ranges::all_of(beside.error, usable);
+  if (!fits)
+    throw InputError(fmt::format("closure: shares beside the matrix do not fit {} rows", n));
 }
 
 }  // namespace
@@ -432,14 +481,15 @@ ClosureReport reportClosure(std::span<const double> row_sums,
 
 ClosureReport closeRows(ExchangeMatrix& matrix, const UncertainEntries& uncertain,
                         std::span<const double> target_row_sums, Progress& progress,
-                        double tolerance) {
+                        double tolerance, const SharesBeside& beside) {
   checkTarget(target_row_sums, matrix.size());
+  checkBeside(beside, matrix.size());
   if (!matrix.isSymmetric() || uncertain.size() != matrix.size()) {
     throw InputError(fmt::format("closure: uncertain entries of {} rows for a {} matrix of {}",
                                  uncertain.size(),
                                  matrix.isSymmetric() ? "symmetric" : "row by row", matrix.size()));
   }
-  LeastSquaresClosure closure(matrix, uncertain, target_row_sums, progress);
+  LeastSquaresClosure closure(matrix, uncertain, target_row_sums, beside, progress);
   // Half: the other half is left for the sums of what is stored.
   closure.findMultipliers(tolerance / 2);
   closure.apply();

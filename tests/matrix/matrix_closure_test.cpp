@@ -394,6 +394,79 @@ TEST(LeastSquaresClosure, EmptiesARowThatIsToSumToZero) {
   EXPECT_NEAR(report.largest_move, 0.2, 3e-8);
 }
 
+// What a row sees beside the matrix is one more pair, with a patch that has no sum to keep.
+TEST(LeastSquaresClosure, SharesBesideTheMatrixMoveByTheirErrors) {
+  constexpr std::size_t kPatches = 30;
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    const Scene scene(kPatches, 0.4, 1.0 / 64, seed);
+    std::vector<Scene::Pair> pairs = scene.pairs();
+    std::vector<double> share(kPatches);
+    std::vector<double> error(kPatches);
+    Matrix rows = Matrix::Zero(Eigen::Index(kPatches), Eigen::Index(pairs.size() + kPatches));
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+      rows(pairs[p].k, Eigen::Index(p)) = rows(pairs[p].q, Eigen::Index(p)) = pairs[p].weight;
+    }
+    for (std::size_t k = 0; k < kPatches; ++k) {
+      const Index patch = scene.order[k];
+      share[patch] = 0.25;
+      error[patch] = std::exp2(-8 - double(k % 5));
+      rows(Eigen::Index(k), Eigen::Index(pairs.size() + k)) = scene.area[patch] * error[patch];
+    }
+    const Vector expected = rows.completeOrthogonalDecomposition().solve(scene.lacking());
+    ExchangeMatrix matrix = scene.matrix();
+    Progress silent;
+    const ClosureReport report =
+        closeRows(matrix, scene.uncertain(), std::vector<double>(kPatches, 1.0), silent, 1e-9,
+                  {.share = share, .error = error});
+    EXPECT_TRUE(report.reached) << seed;
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+      const auto& [k, q, weight, raw] = pairs[p];
+      const double now = scene.area[scene.order[std::size_t(k)]] *
+                         matrix.at(scene.order[std::size_t(k)], scene.order[std::size_t(q)]);
+      EXPECT_NEAR((now - raw) / weight, expected[Eigen::Index(p)], 1e-3) << seed;  // as above
+    }
+  }
+}
+
+// A plate whose row sum was estimated 10% too large, and two small patches that see it and the sky,
+// known well: the sky of the plate has to give way, for the small rows have no room.
+TEST(LeastSquaresClosure, ASmallPatchIsNotMadeToSeeMoreThanItsView) {
+  const std::vector<double> area{100, 1, 1};
+  auto matrix = ExchangeMatrix::symmetric(area, {0, 1, 2}, Precision::double_precision);
+  matrix.setUpperRow(0, std::vector<double>{0, 0.005, 0.005});
+  UncertainEntries uncertain(3);
+  uncertain.setRow(0, std::vector<Index>{1, 2}, std::vector<double>{1e-4, 1e-4});
+  const std::vector<double> fronts{0.011, 0.5, 0.5};
+  const std::vector<double> sky{0.989, 0.5, 0.5};
+  Progress silent;
+  ExchangeMatrix without = matrix;
+  EXPECT_FALSE(closeRows(without, uncertain, fronts, silent).reached);
+  const ClosureReport report =
+      closeRows(matrix, uncertain, fronts, silent, 1e-12,
+                {.share = sky, .error = std::vector<double>{1e-3, 1e-3, 1e-3}});
+  EXPECT_TRUE(report.reached);
+  // By hand, with m_0 and m_1 = m_2: d = (m_0 + m_1) (100 * 1e-4)^2, the plate's sky moves by
+  // m_0 (100 * 1e-3)^2, a small one's by m_1 1e-6; 2 d + sky_0 = 0.1, d + sky_1 = 0.
+  const Matrix system{{2e-4 + 1e-2, 2e-4}, {1e-4, 1e-4 + 1e-6}};
+  const Vector multiplier = system.colPivHouseholderQr().solve(Vector{{0.1, 0.0}});
+  // Errors are kept to a quarter of an octave: that of 1e-4 is 0.94e-4 to the next step.
+  EXPECT_NEAR(matrix.at(1, 0), 0.5 + 1e-4 * multiplier.sum(), 1e-5);
+  EXPECT_LE(matrix.rowSums()[1], 1.0);
+}
+
+TEST(LeastSquaresClosure, RefusesSharesThatDoNotFit) {
+  auto matrix = ofRows({{0, 0.5}, {0}}, Precision::double_precision);
+  const std::vector<double> target(2, 0.5);
+  Progress silent;
+  const auto with = [&](const std::vector<double>& share, const std::vector<double>& error) {
+    closeRows(matrix, allOf(matrix), target, silent, 1e-9, {.share = share, .error = error});
+  };
+  EXPECT_THROW(with({0.5}, {0.1}), InputError);
+  EXPECT_THROW(with({0.5, 0.5}, {0.1}), InputError);
+  EXPECT_THROW(with({0.5, -0.5}, {0.1, 0.1}), InputError);
+  EXPECT_THROW(with({0.5, 0.5}, {0.1, std::nan("")}), InputError);
+}
+
 TEST(UncertainEntries, TakeAByteEach) {
   const std::size_t n = 1000;
   UncertainEntries uncertain(n);

@@ -33,10 +33,18 @@ void setKnownAccount(const KnownEntries& known, std::size_t k, Index i, double a
   result.sky[i] = rest - result.fronts[i];
 }
 
+/// How far off the sky's share of a row may be: by the spread of its rays, and by one ray at least,
+/// since a row that saw none may have missed it.
+double skyError(double sky, double each) {
+  const double share = std::clamp(sky, 0.0, 1.0);
+  return std::sqrt(share * (1 - share) * each + each * each);
+}
+
 /// What a row saw of fronts, backs and sky, by its own rays alone. What is known takes the place of
-/// the rays that ended there; all others count for what that leaves.
+/// the rays that ended there; all others count for what that leaves. `sky_error`: of the sky's
+/// share.
 void setAccounts(const RayScene& scene, const KnownEntries& known, const std::vector<RayRow>& rows,
-                 ScratchMemory* scratch, FormFactors& result,
+                 ScratchMemory* scratch, FormFactors& result, std::vector<double>& sky_error,
                  std::vector<std::vector<SeenBack>>& seen_backs) {
   const std::size_t n = rows.size();
   parallelFor(n, 64, [&](std::size_t k) {
@@ -46,6 +54,9 @@ void setAccounts(const RayScene& scene, const KnownEntries& known, const std::ve
     if (!(row.counted() > 0)) return;
     if (known.rowAt(k) != nullptr) {
       setKnownAccount(known, k, i, scene.area()[k], result, seen_backs[i]);
+      for (const KnownEntries::Entry& entry : known.at(k)) {
+        sky_error[i] += entry.error / scene.area()[k];
+      }
       return;
     }
     double known_share = 0;
@@ -70,6 +81,7 @@ void setAccounts(const RayScene& scene, const KnownEntries& known, const std::ve
     }
     result.fronts[i] = fronts;
     result.sky[i] = (double(row.sky[0]) + double(row.sky[1])) * each;
+    sky_error[i] = skyError(result.sky[i], each);
   });
 }
 
@@ -133,16 +145,20 @@ void store(const RayScene& scene, const KnownEntries& known, const std::vector<R
   result.report.error_figure = norms > 0 ? std::sqrt(squares / norms) : 0.0;
 }
 
-/// Rows sum to what their own rays saw of fronts: merging has moved that.
-void close(const UncertainEntries& uncertain, ClosureMode mode, FormFactors& result,
-           Progress& progress) {
-  if (mode == ClosureMode::off) {
-    result.fronts = result.matrix.rowSums();
-    return;
+/// Fronts, backs and sky of a row make 1 by its own rays; merging has moved the fronts. What they
+/// lack goes to fronts and sky, each by its error.
+void close(const UncertainEntries& uncertain, const std::vector<double>& sky_error,
+           ClosureMode mode, FormFactors& result, Progress& progress) {
+  if (mode != ClosureMode::off) {
+    SharesBeside sky;
+    if (!result.report.closed) sky = {result.sky, sky_error};
+    result.report.closure =
+        closeRows(result.matrix, uncertain, result.fronts, progress, kClosureTolerance, sky);
+    result.report.closure_enforced = true;
+    // The very sums, not those that storing rounds.
+    if (result.report.closed && result.report.closure.reached) return;
   }
-  result.report.closure =
-      closeRows(result.matrix, uncertain, result.fronts, progress, kClosureTolerance);
-  result.report.closure_enforced = true;
+  result.fronts = result.matrix.rowSums();
 }
 
 /// Sky is what rows leave, and nothing where the scene is closed.
@@ -210,16 +226,17 @@ FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene,
   result.backs.assign(n, 0.0);
   result.sky.assign(n, 0.0);
   result.error.assign(n, 0.0);
+  std::vector<double> sky_error(n, 0.0);
   std::vector<std::vector<SeenBack>> seen_backs(n);
   UncertainEntries uncertain(n, scratch);
   const double storing = clockSeconds();
-  setAccounts(scene, known, rows, scratch.get(), result, seen_backs);
+  setAccounts(scene, known, rows, scratch.get(), result, sky_error, seen_backs);
   store(scene, known, rows, scratch.get(), result, uncertain);
   rows = {};
   progress.check();
   const double closing = clockSeconds();
   report.rays.seconds_merge += closing - storing;
-  close(uncertain, options.closure, result, progress);
+  close(uncertain, sky_error, options.closure, result, progress);
   balance(result);
   accountForBacks(mesh, scene.order(), result.matrix.area(), seen_backs, result);
   report.rays.seconds_close = clockSeconds() - closing;
