@@ -7,6 +7,8 @@
 #include <array>
 #include <string_view>
 
+#include "gl/software_renderer.h"
+
 namespace radiosity::gl {
 
 namespace {
@@ -16,8 +18,10 @@ std::string missingLibrary() {
   const auto opens = [](const char* name) {
     return dlopen(name, RTLD_LAZY | RTLD_LOCAL) != nullptr;
   };
-  if (!opens("libEGL.so.1")) return "there is no libEGL.so.1";
-  if (!opens("libOpenGL.so.0") && !opens("libGL.so.1")) return "there is no libOpenGL.so.0";
+  if (!opens("libEGL.so.1")) return "there is no libEGL.so.1: install Debian's libegl1";
+  if (!opens("libOpenGL.so.0") && !opens("libGL.so.1")) {
+    return "there is no libOpenGL.so.0: install Debian's libopengl0";
+  }
   return {};
 }
 
@@ -71,16 +75,19 @@ const char* lacking() {
   return epoxy_has_gl_extension("GL_ARB_buffer_storage") ? nullptr : "GL_ARB_buffer_storage";
 }
 
+const std::string kInstallDriver =
+    ": install a driver (in software: libegl-mesa0 and libgl1-mesa-dri)";
+
 struct FoundDevices {
   std::vector<Device> devices;
-  std::string problem = "there is no device";
+  std::string problem = "there is no device" + kInstallDriver;
 };
 
 void lookAt(const FoundDisplay& found, FoundDevices& all) {
   EGLint major = 0;
   EGLint minor = 0;
   if (eglInitialize(found.display, &major, &minor) == EGL_FALSE) {
-    if (all.devices.empty()) all.problem = "no driver starts";
+    if (all.devices.empty()) all.problem = "no driver starts" + kInstallDriver;
     return;
   }
   try {
@@ -88,15 +95,12 @@ void lookAt(const FoundDisplay& found, FoundDevices& all) {
     const Context::Current current(context);
     const std::string name = text(GL_RENDERER);
     if (const char* what = lacking()) {
-      all.problem = name + " lacks " + what;
+      all.problem = name + " lacks " + what + ": install a newer driver";
       return;
     }
-    // Mesa's drivers in software, whatever EGL says of the device.
-    const bool software =
-        name.starts_with("llvmpipe") || name.starts_with("softpipe") || name.starts_with("SWR");
-    all.devices.push_back(
-        {found.display,
-         {name, std::string("OpenGL ") + text(GL_VERSION), found.hardware && !software}});
+    all.devices.push_back({found.display,
+                           {name, std::string("OpenGL ") + text(GL_VERSION),
+                            found.hardware && !isSoftwareRenderer(name)}});
   } catch (const Failure& failure) {
     all.problem = failure.what();
   }
@@ -113,6 +117,15 @@ FoundDevices lookForDevices() {
     return a.about.hardware > b.about.hardware;
   });
   return all;
+}
+
+/// False, too, where the driver of the current context cannot tell.
+bool isLost() {
+  if (epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_KHR_robustness")) {
+    return glGetGraphicsResetStatus() != GL_NO_ERROR;
+  }
+  return epoxy_has_gl_extension("GL_ARB_robustness") &&
+         glGetGraphicsResetStatusARB() != GL_NO_ERROR;
 }
 
 }  // namespace
@@ -140,7 +153,9 @@ Context::Context(EGLDisplay display) : display_(display) {
   // Where a driver can say that the device is lost, it shall.
   context_ = create(EGL_LOSE_CONTEXT_ON_RESET);
   if (context_ == EGL_NO_CONTEXT) context_ = create(EGL_NO_RESET_NOTIFICATION);
-  if (context_ == EGL_NO_CONTEXT) throw Failure("a driver gives no core profile of OpenGL 4.3");
+  if (context_ == EGL_NO_CONTEXT) {
+    throw Failure("a driver gives no core profile of OpenGL 4.3: install a newer driver");
+  }
 }
 
 Context::~Context() { eglDestroyContext(display_, context_); }
@@ -157,9 +172,7 @@ Context::Current::~Current() {
 }
 
 void check(const std::string& doing) {
-  if (epoxy_gl_version() >= 45 && glGetGraphicsResetStatus() != GL_NO_ERROR) {
-    throw Failure("the device was lost while " + doing);
-  }
+  if (isLost()) throw Failure("the device was lost while " + doing);
   const GLenum error = glGetError();
   if (error == GL_NO_ERROR) return;
   const std::string what = error == GL_OUT_OF_MEMORY ? "the device has no memory left"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 #include <deque>
 
@@ -11,18 +12,13 @@ namespace radiosity::gl {
 
 namespace {
 
-/// How work is handed to a device.
-struct Pace {
-  std::size_t ring;  ///< batches that are under way at once: while one is read, the next are drawn
-  std::size_t pixels;  ///< of a batch; one hemicube may have more
-};
-constexpr Pace kHardware{3, std::size_t(1) << 24};
+constexpr GpuPace kHardware{3, std::size_t(1) << 24};
 /// The processor has nothing to gain from more at once, and an interrupt waits for all of it.
-constexpr Pace kSoftware{1, std::size_t(1) << 16};
-const Pace& paceOf(const EyeDevice& device) { return device.hardware ? kHardware : kSoftware; }
+constexpr GpuPace kSoftware{1, std::size_t(1) << 16};
 
 /// Bytes of a batch; one hemicube may take more.
 constexpr std::size_t kBatchBytes = std::size_t(256) << 20;
+constexpr std::size_t kMostSide = std::size_t(1) << 15;  // of the target, pixels
 constexpr std::size_t kMostViews = 4096;  // groups of a dispatch are no fewer than 65,535
 /// A triangle that four planes clip has seven corners, five triangles; a hemicube has five faces.
 constexpr std::size_t kMostPieces = 25;
@@ -31,7 +27,6 @@ constexpr std::size_t kPieces = 1;
 constexpr std::size_t kLittleRoom = 256;
 
 constexpr std::size_t kCandidateBytes = 64;
-constexpr std::size_t kCornerBytes = 16;
 constexpr std::size_t kPixelBytes = 8;
 
 std::size_t pixelsOf(int resolution) {
@@ -51,109 +46,13 @@ struct DrawCall {
 
 GLuint groups(std::size_t count, std::size_t size) { return GLuint((count + size - 1) / size); }
 
-class Texture {
- public:
-  Texture(GLenum format, std::uint32_t width, std::uint32_t height) {
-    glGenTextures(1, &name_);
-    glBindTexture(GL_TEXTURE_2D, name_);
-    glTexStorage2D(GL_TEXTURE_2D, 1, format, GLsizei(width), GLsizei(height));
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-  }
-  ~Texture() { glDeleteTextures(1, &name_); }
-  Texture(const Texture&) = delete;
-  Texture& operator=(const Texture&) = delete;
-  GLuint name() const { return name_; }
-
- private:
-  GLuint name_ = 0;
-};
-
-/// What is drawn to: polygons and depths of all tiles.
-class Target {
- public:
-  Target(std::uint32_t width, std::uint32_t height)
-      : polygons(GL_R32UI, width, height), depths_(GL_DEPTH_COMPONENT32F, width, height) {
-    glGenFramebuffers(1, &name_);
-    glBindFramebuffer(GL_FRAMEBUFFER, name_);
-    glFramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, polygons.name(), 0);
-    glFramebufferTexture(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, depths_.name(), 0);
-    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-      throw Failure("the driver draws no 32-bit numbers with 32-bit depths");
-    }
-  }
-  ~Target() { glDeleteFramebuffers(1, &name_); }
-  Target(const Target&) = delete;
-  Target& operator=(const Target&) = delete;
-
-  /// All sky, infinitely far.
-  void clear() const {
-    const std::array<GLuint, 4> sky = {kNone, 0, 0, 0};
-    const GLfloat far = 0;
-    glBindFramebuffer(GL_FRAMEBUFFER, name_);
-    glClearBufferuiv(GL_COLOR, 0, sky.data());
-    glClearBufferfv(GL_DEPTH, 0, &far);
-  }
-
-  Texture polygons;
-
- private:
-  Texture depths_;
-  GLuint name_ = 0;
-};
-
-/// Corners of triangles as they are drawn.
-class CornerArray {
- public:
-  explicit CornerArray(const Buffer& corners) {
-    glGenVertexArrays(1, &name_);
-    glBindVertexArray(name_);
-    glBindVertexBuffer(0, corners.name(), 0, kCornerBytes);
-    glEnableVertexAttribArray(0);
-    glVertexAttribFormat(0, 3, GL_FLOAT, GL_FALSE, 0);
-    glVertexAttribBinding(0, 0);
-    glEnableVertexAttribArray(1);
-    glVertexAttribIFormat(1, 1, GL_UNSIGNED_INT, 3 * sizeof(float));
-    glVertexAttribBinding(1, 0);
-  }
-  ~CornerArray() { glDeleteVertexArrays(1, &name_); }
-  CornerArray(const CornerArray&) = delete;
-  CornerArray& operator=(const CornerArray&) = delete;
-  void bind() const { glBindVertexArray(name_); }
-
- private:
-  GLuint name_ = 0;
-};
-
-/// What goes to the device and comes back for one batch under way.
-struct Slot {
-  explicit Slot(std::size_t bytes) : rows(bytes) {}
-  Buffer views;
-  Buffer hidden;
-  MappedBuffer rows;  ///< irradiance, low halves, high halves, GpuCounts, DrawCall
-  Fence done;
-};
-
-/// All that depends on the size of batches.
-struct Room {
-  Room(const BatchPlan& plan, int resolution)
-      : target(plan.across * 2 * std::uint32_t(resolution),
-               plan.down * 3 * std::uint32_t(resolution) / 2),
-        corner_array(corners) {}
-  Target target;
-  Buffer candidates;
-  Buffer corners;
-  CornerArray corner_array;
-  Buffer low, high;
-  std::vector<std::unique_ptr<Slot>> slots;
-};
-
 }  // namespace
 
 struct GlEye::OnDevice {
   Program find_candidates{{GL_COMPUTE_SHADER, {kTypes, kFindCandidates}}};
   Program clip_triangles{{GL_COMPUTE_SHADER, {kTypes, kClipTriangles}}};
-  Program draw_triangles{{GL_VERTEX_SHADER, {kDrawCorner}}, {GL_FRAGMENT_SHADER, {kDrawPixel}}};
+  Program draw_triangles{{GL_VERTEX_SHADER, {kDrawCorner}},
+                         {GL_FRAGMENT_SHADER, {kTypes, kDrawPixel}}};
   Program sum_rows{{GL_COMPUTE_SHADER, {kTypes, kPixels, kSumRows}}};
   Buffer vertices, corners, polygons, triangles, grids, cells, nodes, top_sums, side_sums;
   Buffer counts, draw_call;
@@ -197,8 +96,12 @@ struct GlEye::Light {
   Buffer parts, irradiance;
 };
 
-GlEye::GlEye(const Device& device, const GpuScene& scene, const GpuWeights& weights)
+const GpuPace& paceOf(const EyeDevice& device) { return device.hardware ? kHardware : kSoftware; }
+
+GlEye::GlEye(const Device& device, const GpuScene& scene, const GpuWeights& weights,
+             const GpuPace& pace)
     : about_(device.about),
+      pace_(pace),
       context_(device.display),
       resolution_(weights.resolution),
       coincidence_(scene.coincidence),
@@ -208,6 +111,28 @@ GlEye::GlEye(const Device& device, const GpuScene& scene, const GpuWeights& weig
       hidden_words_((polygons_ + 31) / 32),
       triangle_room_(std::min(kMostPieces * triangles_, kPieces * triangles_ + kLittleRoom)) {
   const Context::Current current(context_);
+  try {
+    store(scene, weights);
+    makeRoom();
+  } catch (...) {
+    on_device_.reset();  // while the context is current
+    throw;
+  }
+}
+
+GlEye::~GlEye() {
+  try {
+    const Context::Current current(context_);
+    light_.reset();
+    on_device_.reset();
+  } catch (const Failure&) {
+    // The context is lost, and with it goes what it held: nothing is there to be deleted.
+    static_cast<void>(light_.release());
+    static_cast<void>(on_device_.release());
+  }
+}
+
+void GlEye::store(const GpuScene& scene, const GpuWeights& weights) {
   on_device_ = std::make_unique<OnDevice>();
   OnDevice& on = *on_device_;
   const auto store = [](Buffer& buffer, const auto& values) { buffer.store(std::span(values)); };
@@ -226,39 +151,51 @@ GlEye::GlEye(const Device& device, const GpuScene& scene, const GpuWeights& weig
   glEnable(GL_DEPTH_CLAMP);
   glDepthFunc(GL_GREATER);
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-  makeRoom();
 }
 
-GlEye::~GlEye() {
-  try {
-    const Context::Current current(context_);
-    light_.reset();
-    on_device_.reset();
-  } catch (const Failure&) {
-    // The context is lost; with it goes what it held.
+/// Bytes of the largest buffer that shaders read and whose size does not go with the views.
+std::size_t GlEye::largestBlock() const {
+  const OnDevice& on = *on_device_;
+  std::size_t largest = 0;
+  const auto see = [&](std::initializer_list<const Buffer*> buffers) {
+    for (const Buffer* buffer : buffers) largest = std::max(largest, buffer->bytes());
+  };
+  see({&on.vertices, &on.corners, &on.polygons, &on.triangles, &on.grids, &on.cells, &on.nodes,
+       &on.top_sums, &on.side_sums});
+  if (light_ != nullptr) {
+    see({&light_->vertices, &light_->facets, &light_->first_facet, &light_->mean_of,
+         &light_->first_of_mean, &light_->materials, &light_->radiosity[0]});
   }
+  return largest;
+}
+
+/// What a view adds to the buffer of which it takes most.
+std::size_t GlEye::largestBlockOfAView() const {
+  return std::max({4 * rowWeights(1), kCandidateBytes * polygons_,
+                   3 * kCornerBytes * triangle_room_, sizeof(GpuView),
+                   4 * std::size_t(hidden_words_), irradianceBytes(1), partBytes(1)});
+}
+
+/// In all buffers.
+std::size_t GlEye::bytesOfAView() const {
+  const std::size_t row = 8 * rowWeights(1) + irradianceBytes(1);
+  return pixelsOf(resolution_) * kPixelBytes + kCandidateBytes * polygons_ +
+         3 * kCornerBytes * triangle_room_ + partBytes(1) + row * (1 + pace_.ring);
 }
 
 BatchPlan GlEye::plan() const {
-  const std::size_t side = std::min(limitOf(GL_MAX_TEXTURE_SIZE), std::size_t(1) << 15);
+  // Powers of two, so that a viewport that is one is not larger than the device allows.
+  const std::size_t side = std::bit_floor(std::min(limitOf(GL_MAX_TEXTURE_SIZE), kMostSide));
   const std::size_t across = side / (2 * std::size_t(resolution_));
   const std::size_t down = side / (3 * std::size_t(resolution_) / 2);
-  const std::size_t row = 4 * (std::size_t(items_) + 1);
-  const std::size_t view = std::max<std::size_t>(
-      {row, kCandidateBytes * polygons_, 3 * kCornerBytes * triangle_room_, 4});
   const std::size_t block = limitOf(GL_MAX_SHADER_STORAGE_BLOCK_SIZE);
-  const OnDevice& on = *on_device_;
-  const std::size_t shared =
-      std::max({on.cells.bytes(), on.nodes.bytes(), on.vertices.bytes(), on.polygons.bytes(),
-                on.triangles.bytes(), on.top_sums.bytes()});
-  if (across == 0 || down == 0 || view > block || shared > block) {
+  const std::size_t view = largestBlockOfAView();
+  if (across == 0 || down == 0 || view > block || largestBlock() > block) {
     throw Failure("the scene is too large for the buffers of the device");
   }
-  const std::size_t all = pixelsOf(resolution_) * kPixelBytes + kCandidateBytes * polygons_ +
-                          3 * kCornerBytes * triangle_room_ + 2 * row * (1 + paceOf(about_).ring);
-  const std::size_t pixels = paceOf(about_).pixels;
-  const std::size_t most = std::min({across * down, block / view, kBatchBytes / all,
-                                     pixels / pixelsOf(resolution_), kMostViews, most_views_});
+  const std::size_t most =
+      std::min({across * down, block / view, kBatchBytes / bytesOfAView(),
+                pace_.pixels / pixelsOf(resolution_), kMostViews, most_views_});
   BatchPlan plan;
   plan.views = std::uint32_t(std::max<std::size_t>(most, 1));
   plan.across = std::uint32_t(std::min<std::size_t>(across, plan.views));
@@ -281,9 +218,9 @@ void GlEye::makeRoom() {
   room.high.reserve(rows);
   if (light_ != nullptr) {
     light_->irradiance.reserve(irradianceBytes(plan_.views));
-    light_->parts.reserve(light_->parts_a_view * irradianceBytes(plan_.views));
+    light_->parts.reserve(partBytes(plan_.views));
   }
-  for (std::size_t k = 0; k < paceOf(about_).ring; ++k) {
+  for (std::size_t k = 0; k < pace_.ring; ++k) {
     room.slots.push_back(std::make_unique<Slot>(irradianceBytes(plan_.views) + 2 * rows +
                                                 sizeof(GpuCounts) + sizeof(DrawCall)));
     Slot& slot = *room.slots.back();
@@ -298,11 +235,13 @@ std::size_t GlEye::irradianceBytes(std::size_t views) const {
   return light_ == nullptr ? 0 : views * light_->bands * sizeof(double);
 }
 
+std::size_t GlEye::partBytes(std::size_t views) const {
+  return light_ == nullptr ? 0 : light_->parts_a_view * irradianceBytes(views);
+}
+
 std::size_t GlEye::bytes() const {
-  const std::size_t row = 8 * rowWeights(plan_.views);
-  return row * (1 + paceOf(about_).ring) + kPixelBytes * pixelsOf(resolution_) * plan_.views +
-         kCandidateBytes * polygons_ * plan_.views + 3 * kCornerBytes * plan_.triangles +
-         on_device_->top_sums.bytes() + on_device_->side_sums.bytes() + on_device_->cells.bytes();
+  return bytesOfAView() * plan_.views + on_device_->top_sums.bytes() +
+         on_device_->side_sums.bytes() + on_device_->cells.bytes();
 }
 
 void GlEye::describe(const Batch& batch, const Describe& describe) {
@@ -342,14 +281,18 @@ void GlEye::draw(const Batch& batch) {
   glUniform1i(on.clip_triangles.uniform("tiles_across"), int(plan_.across));
   glDispatchCompute(kFaces, batch.count, 1);
   glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
-                  GL_BUFFER_UPDATE_BARRIER_BIT);
+                  GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 
   room.target.clear();
-  const int width = int(plan_.across) * 2 * resolution_;
-  const int height = int(plan_.down) * 3 * resolution_ / 2;
-  glViewport(0, 0, width, height);
-  on.draw_triangles.use();
-  glUniform2f(on.draw_triangles.uniform("target"), float(width), float(height));
+  // Powers of two: places of corners are then exact on the way through them.
+  const std::uint32_t width = std::bit_ceil(room.target.width());
+  const std::uint32_t height = std::bit_ceil(room.target.height());
+  glViewport(0, 0, GLsizei(width), GLsizei(height));
+  on.draw_triangles.useWith({&room.candidates});
+  glUniform1ui(on.draw_triangles.uniform("polygon_count"), polygons_);
+  glUniform1i(on.draw_triangles.uniform("resolution"), resolution_);
+  glUniform1i(on.draw_triangles.uniform("tiles_across"), int(plan_.across));
+  glUniform2f(on.draw_triangles.uniform("scale"), 2 / float(width), 2 / float(height));
   room.corner_array.bind();
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, on.draw_call.name());
   glDrawArraysIndirect(GL_TRIANGLES, nullptr);
@@ -360,7 +303,7 @@ void GlEye::sum(const Batch& batch) {
   Room& room = *on.room;
   room.low.clear();
   room.high.clear();
-  glBindImageTexture(0, room.target.polygons.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
+  glBindImageTexture(0, room.target.polygons().name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
   on.sum_rows.useWith({&room.candidates, &on.grids, &on.cells, &on.nodes, &on.top_sums,
                        &on.side_sums, &room.low, &room.high});
   glUniform1ui(on.sum_rows.uniform("polygon_count"), polygons_);
@@ -475,9 +418,9 @@ void GlEye::lookAtAll(std::size_t count, const Describe& describe_view, const Ta
   std::size_t made = 0;
   bool wanted = true;
   while (wanted && (next < count || !under_way.empty())) {
-    while (next < count && under_way.size() < paceOf(about_).ring) {
+    while (next < count && under_way.size() < pace_.ring) {
       const Batch batch{next, std::uint32_t(std::min<std::size_t>(plan_.views, count - next)),
-                        made++ % paceOf(about_).ring};
+                        made++ % pace_.ring};
       describe(batch, describe_view);
       draw(batch);
       sum(batch);
@@ -502,50 +445,50 @@ void GlEye::lookAtAll(std::size_t count, const Describe& describe_view, const Ta
   glFinish();
 }
 
-std::string GlEye::look(std::size_t count, const Describe& describe, const Take& take) {
+/// Does `work` with the context current. Empty, or why the device gave up, then or before.
+std::string GlEye::onDevice(const std::function<void()>& work) {
+  if (!failure_.empty()) return failure_;
   try {
     const Context::Current current(context_);
-    lookAtAll(count, describe, take, false);
+    work();
   } catch (const Failure& failure) {
-    return failure.what();
+    failure_ = failure.what();
   }
-  return {};
+  return failure_;
+}
+
+std::string GlEye::look(std::size_t count, const Describe& describe, const Take& take) {
+  return onDevice([&] { lookAtAll(count, describe, take, false); });
 }
 
 std::string GlEye::prepare(const GpuField& field) {
-  try {
-    const Context::Current current(context_);
+  return onDevice([&] {
     light_ = std::make_unique<Light>(field, resolution_);
     makeRoom();
-  } catch (const Failure& failure) {
-    return failure.what();
-  }
-  return {};
+  });
 }
 
 std::string GlEye::gather(std::size_t count, const Describe& describe, const Take& take) {
-  try {
-    const Context::Current current(context_);
+  return onDevice([&] {
     takeMeans();
     lookAtAll(count, describe, take, true);
     light_->now = 1 - light_->now;
-  } catch (const Failure& failure) {
-    return failure.what();
-  }
-  return {};
+  });
 }
 
 std::vector<Index> GlEye::pictures(const Describe& describe_view) {
-  const Context::Current current(context_);
-  const Batch batch{0, 1, 0};
-  describe(batch, describe_view);
-  draw(batch);
   const int width = 2 * resolution_;
   const int height = 3 * resolution_ / 2;
   std::vector<Index> tile(pixelsOf(resolution_));
-  glPixelStorei(GL_PACK_ALIGNMENT, 4);
-  glReadPixels(0, 0, width, height, GL_RED_INTEGER, GL_UNSIGNED_INT, tile.data());
-  check("reading pictures");
+  const std::string problem = onDevice([&] {
+    const Batch batch{0, 1, 0};
+    describe(batch, describe_view);
+    draw(batch);
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    glReadPixels(0, 0, width, height, GL_RED_INTEGER, GL_UNSIGNED_INT, tile.data());
+    check("reading pictures");
+  });
+  if (!problem.empty()) throw RunError(problem);
   // As kClipTriangles places the faces.
   const int r = resolution_;
   const std::array<std::array<int, 2>, kFaces> corners = {

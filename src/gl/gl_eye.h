@@ -2,29 +2,25 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "formfactor/hemicube/face_geometry.h"
 #include "formfactor/hemicube/gpu_eye.h"
+#include "gl/batch_room.h"
 #include "gl/device.h"
-#include "gl/objects.h"
 
 namespace radiosity::gl {
 
-/// How many hemicubes are drawn at once, and what they take. The faces of one fill a tile of
-/// 2 x 3/2 resolutions.
-struct BatchPlan {
-  std::uint32_t views = 0;
-  std::uint32_t across = 0, down = 0;  ///< tiles of the target
-  std::size_t triangles = 0;           ///< that there is room for after clipping
-};
+/// What suits a device.
+const GpuPace& paceOf(const EyeDevice& device);
 
 class GlEye final : public GpuEye {
  public:
   /// Failure where the device does not hold the scene and one hemicube.
-  GlEye(const Device& device, const GpuScene& scene, const GpuWeights& weights);
+  GlEye(const Device& device, const GpuScene& scene, const GpuWeights& weights,
+        const GpuPace& pace);
   ~GlEye() override;
   GlEye(const GlEye&) = delete;
   GlEye& operator=(const GlEye&) = delete;
@@ -46,8 +42,13 @@ class GlEye final : public GpuEye {
     std::size_t slot = 0;  ///< of the ring
   };
 
+  void store(const GpuScene& scene, const GpuWeights& weights);
+  std::size_t largestBlock() const;
+  std::size_t largestBlockOfAView() const;
+  std::size_t bytesOfAView() const;
   BatchPlan plan() const;
   void makeRoom();
+  std::string onDevice(const std::function<void()>& work);
   void describe(const Batch& batch, const Describe& describe);
   void draw(const Batch& batch);
   void sum(const Batch& batch);
@@ -61,8 +62,11 @@ class GlEye final : public GpuEye {
   std::size_t rowWeights(std::size_t views) const { return views * (std::size_t(items_) + 1); }
   /// Of irradiance in a slot of the ring.
   std::size_t irradianceBytes(std::size_t views) const;
+  /// Of sums of 128 pixels.
+  std::size_t partBytes(std::size_t views) const;
 
   EyeDevice about_;
+  GpuPace pace_;
   Context context_;
   int resolution_;
   double coincidence_;
@@ -75,6 +79,7 @@ class GlEye final : public GpuEye {
   BatchPlan plan_;
   std::unique_ptr<OnDevice> on_device_;
   std::unique_ptr<Light> light_;  ///< null: none is gathered
+  std::string failure_;           ///< why the device gave up; empty: it has not
 };
 
 }  // namespace radiosity::gl

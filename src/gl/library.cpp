@@ -19,9 +19,11 @@ class OpenGlEyes final : public GpuEyes {
   }
 
   std::unique_ptr<GpuEye> open(std::size_t d, const GpuScene& scene, const GpuWeights& weights,
-                               std::string& problem) const override {
+                               std::optional<GpuPace> pace, std::string& problem) const override {
     try {
-      return std::make_unique<gl::GlEye>(gl::findDevices(problem)[d], scene, weights);
+      const gl::Device& device = gl::findDevices(problem).at(d);
+      return std::make_unique<gl::GlEye>(device, scene, weights,
+                                         pace.value_or(gl::paceOf(device.about)));
     } catch (const gl::Failure& failure) {
       problem = failure.what();
       return nullptr;

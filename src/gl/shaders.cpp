@@ -42,6 +42,12 @@ struct Candidate {
   }
 PROJECT(vec3)
 PROJECT(dvec3)
+// Through the centre of a pixel of a face, as that sees it.
+vec3 rayThrough(ivec2 at, uint face, int resolution) {
+  vec2 centre = vec2(at.x + 0.5 * (1 - resolution),
+                     at.y + 0.5 * (face == 0u ? 1 - resolution : 1));
+  return vec3(centre * (2.0 / resolution), 1);
+}
 dvec3 vec(double v[3]) { return dvec3(v[0], v[1], v[2]); }
 dvec3 toEye(View view, dvec3 direction) {
   return dvec3(dot(direction, dvec3(view.axes[0], view.axes[1], view.axes[2])),
@@ -132,7 +138,8 @@ void main() {
 const char* const kClipTriangles = R"(
 layout(local_size_x = 64) in;
 struct Corner {
-  float x, y, depth;
+  float x, y;
+  float farthest, nearest;  // 1 / distance, of the corners of what is drawn
   uint polygon;
 };
 layout(std430, binding = 0) readonly buffer Vertices { double vertices[]; };
@@ -147,7 +154,6 @@ uniform uint polygon_count;
 uniform uint capacity;  // of `drawn`
 uniform int resolution;
 uniform int tiles_across;
-const double kNearest = 5.9604644775390625e-8LF;  // 2^-24: what is nearer is not told apart
 const int kMostCorners = 7;
 
 shared uint before[64];
@@ -209,7 +215,7 @@ int clipped(uint t, View view, uint face, out dvec3 loop[kMostCorners]) {
   return count;
 }
 
-Corner place(dvec3 p, uint face, uint polygon) {
+Corner place(dvec3 p, uint face, vec2 range, uint polygon) {
   double half_face = 0.5LF * resolution;
   dvec2 middle = dvec2(half_face, face == 0u ? half_face : 0.0LF);
   // The top face, then two side faces to its right, and two above.
@@ -218,8 +224,11 @@ Corner place(dvec3 p, uint face, uint polygon) {
   uint tile = gl_WorkGroupID.y;
   corner += ivec2(tile % uint(tiles_across), tile / uint(tiles_across)) *
             ivec2(2 * resolution, 3 * resolution / 2);
-  dvec2 pixel = dvec2(corner) + middle + half_face * p.xy / p.z;
-  return Corner(float(pixel.x), float(pixel.y), float(kNearest / p.z), polygon);
+  // Whole numbers of 1/256 of a pixel. Up to 2^16 pixels they are floats, and so is all that comes
+  // of them until the rasteriser has them: a hemicube looks the same in every tile.
+  dvec2 on_face = roundEven(256.0LF * half_face * p.xy / p.z) * 0.00390625LF;
+  dvec2 pixel = dvec2(corner) + middle + on_face;
+  return Corner(float(pixel.x), float(pixel.y), range.x, range.y, polygon);
 }
 
 // Groups set room aside one piece of their triangles after the other, so that those of one face are
@@ -248,10 +257,17 @@ void main() {
     barrier();
     uint at = base + before[lane] - mine;
     if (mine > 0u && base + before[63] <= capacity) {
+      double least = loop[0].z;
+      double most = loop[0].z;
+      for (int k = 1; k < corners; ++k) {
+        least = min(least, loop[k].z);
+        most = max(most, loop[k].z);
+      }
+      vec2 range = vec2(1 / most, 1 / least);
       for (int k = 1; k + 1 < corners; ++k) {
-        drawn[at++] = place(loop[0], face, triangles[t].w);
-        drawn[at++] = place(loop[k], face, triangles[t].w);
-        drawn[at++] = place(loop[k + 1], face, triangles[t].w);
+        drawn[at++] = place(loop[0], face, range, triangles[t].w);
+        drawn[at++] = place(loop[k], face, range, triangles[t].w);
+        drawn[at++] = place(loop[k + 1], face, range, triangles[t].w);
       }
     }
     barrier();
@@ -259,22 +275,48 @@ void main() {
 }
 )";
 
-// Depths are inverse distances, linear in the pixel: no division by a fourth coordinate.
 const char* const kDrawCorner = R"(#version 430 core
-layout(location = 0) in vec3 corner;  // pixels of the target, and depth
+layout(location = 0) in vec4 corner;  // pixels of the target; 1 / distance of what is drawn
 layout(location = 1) in uint polygon;
-uniform vec2 target;  // in pixels
+uniform vec2 scale;  // 2 / the viewport's size, a power of two
 flat out uint drawn;
+flat out vec2 range;
 void main() {
   drawn = polygon;
-  gl_Position = vec4(2 * corner.xy / target - 1, corner.z, 1);
+  range = corner.zw;
+  gl_Position = vec4(scale * corner.xy - 1, 0, 1);
 }
 )";
 
-const char* const kDrawPixel = R"(#version 430 core
+// Depths are inverse distances, of the plane at the pixel's centre: what the rasteriser makes of
+// those of corners depends on where in the target they are. A centre may lie 1/256 of a pixel
+// beside the polygon, where the plane of one that is seen edge-on is anywhere: no further than its
+// corners.
+const char* const kDrawPixel = R"(
+layout(std430, binding = 0) readonly buffer Candidates { Candidate candidates[]; };
+uniform uint polygon_count;
+uniform int resolution;
+uniform int tiles_across;
 flat in uint drawn;
+flat in vec2 range;
 layout(location = 0) out uint polygon;
-void main() { polygon = drawn; }
+const float kNearest = 5.9604644775390625e-8;  // 2^-24: what is nearer is not told apart
+
+void main() {
+  int half_face = resolution / 2;
+  ivec2 size = ivec2(2 * resolution, 3 * half_face);
+  ivec2 tile = ivec2(gl_FragCoord.xy) / size;
+  ivec2 place = ivec2(gl_FragCoord.xy) - tile * size;
+  // As kClipTriangles places the faces.
+  bool right = place.x >= resolution;
+  bool above = place.y >= resolution;
+  uint face = above ? (right ? 4u : 3u) : !right ? 0u : place.y < half_face ? 1u : 2u;
+  ivec2 at = ivec2(right ? place.x - resolution : place.x, face == 0u ? place.y : place.y % half_face);
+  uint view = uint(tile.y * tiles_across + tile.x);
+  vec3 plane = project(face, candidates[view * polygon_count + drawn].plane.xyz);
+  gl_FragDepth = kNearest * clamp(dot(plane, rayThrough(at, face, resolution)), range.x, range.y);
+  polygon = drawn;
+}
 )";
 
 const char* const kPixels = R"(
@@ -303,9 +345,7 @@ Pixel thisPixel() {
   corner += ivec2(tile % uint(tiles_across), tile / uint(tiles_across)) *
             ivec2(2 * resolution, 3 * half_face);
   pixel.place = corner + ivec2(pixel.x, pixel.y);
-  vec2 centre = vec2(pixel.x + 0.5 * (1 - resolution),
-                     pixel.y + 0.5 * (pixel.face == 0u ? 1 - resolution : 1));
-  pixel.ray = vec3(centre * (2.0 / resolution), 1);
+  pixel.ray = rayThrough(ivec2(pixel.x, pixel.y), pixel.face, resolution);
   return pixel;
 }
 // Of the running sums of its row, which of its face's.

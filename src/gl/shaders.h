@@ -18,7 +18,8 @@ extern const char* const kFindCandidates;
 /// Blocks: vertices, triangles, views, candidates, corners drawn, the draw.
 extern const char* const kClipTriangles;
 
-/// Draws these triangles: polygon and depth of every pixel.
+/// Draws these triangles: polygon and depth of every pixel. The second comes after kTypes. Blocks:
+/// candidates.
 extern const char* const kDrawCorner;
 extern const char* const kDrawPixel;
 

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -98,7 +99,8 @@ class GpuEye {
   using Take = std::function<bool(const GpuRows& rows)>;
 
   /// Looks from `count` eyes. While rows are taken later ones are drawn. Empty, or why the device
-  /// gave up ("out of memory"): views after those taken were not seen then.
+  /// gave up ("out of memory"): views after those taken were not seen then. One that has given up,
+  /// here or below, does nothing more but say so again.
   virtual std::string look(std::size_t count, const Describe& describe, const Take& take) = 0;
 
   /// Makes room for the light of a field, which is dark but for its emission. Empty, or why the
@@ -109,6 +111,7 @@ class GpuEye {
   virtual std::string gather(std::size_t count, const Describe& describe, const Take& take) = 0;
 
   /// For tests: the polygons that view 0 sees, face by face as Hemicube::picture() has them.
+  /// RunError where the device gives up.
   virtual std::vector<Index> pictures(const Describe& describe) = 0;
 
   /// Bytes held here and on the device, about.
@@ -116,24 +119,38 @@ class GpuEye {
   virtual const EyeDevice& device() const = 0;
 };
 
+/// How work is handed to a device; rows have the same bits whatever it is.
+struct GpuPace {
+  std::size_t ring;  ///< batches that are under way at once: while one is read, the next are drawn
+  std::size_t pixels;  ///< of a batch; one hemicube may have more
+};
+
 /// What the library offers.
 class GpuEyes {
  public:
   virtual ~GpuEyes() = default;
-  /// Devices that can draw, hardware first; where there are none `problem` says why.
+  /// Devices that can draw, hardware first; where there are none `problem` says why, and the cure.
   virtual EyeDevices devices() const = 0;
-  /// An eye on device `d` of devices(), which keeps nothing of its arguments. Null: `problem` says
-  /// why.
+  /// An eye on device `d` of devices(), which keeps nothing of its arguments. `pace`: empty for
+  /// what suits the device. Null: `problem` says why.
   virtual std::unique_ptr<GpuEye> open(std::size_t d, const GpuScene& scene,
-                                       const GpuWeights& weights, std::string& problem) const = 0;
+                                       const GpuWeights& weights, std::optional<GpuPace> pace,
+                                       std::string& problem) const = 0;
 };
 
-/// Null where the library is not there: `problem` then says why.
-const GpuEyes* gpuEyes(std::string& problem);
+/// Those of the library; without devices where it is not there.
+const GpuEyes& gpuEyes();
 
-/// The eye that `choice` asks for: null for the CPU's, also where `automatic` finds no hardware.
-/// RunError where `gl` is asked for and no device can be used.
+/// Why it is not, and the cure, from the words of the loader (dlerror()).
+std::string libraryProblem(const std::string& loader_words);
+
+/// The eye that `choice` asks for: null for the CPU's, also where `automatic` finds no hardware, or
+/// finds the program to be one of several processes. RunError, with the cure, where `gl` is asked
+/// for and there is no device. One that cannot hold the scene gives up at the first call.
 std::unique_ptr<GpuEye> openGpuEye(EyeChoice choice, const ViewScene& scene, const PatchMesh& mesh,
                                    const DeltaFormFactors& weights);
+/// The same with the devices of `eyes`.
+std::unique_ptr<GpuEye> openGpuEye(EyeChoice choice, const ViewScene& scene, const PatchMesh& mesh,
+                                   const DeltaFormFactors& weights, const GpuEyes& eyes);
 
 }  // namespace radiosity

@@ -1,0 +1,23 @@
+// Which of OpenGL's renderers draw on the processor.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string>
+#include <string_view>
+
+namespace radiosity::gl {
+
+/// Whether Mesa draws in software behind this name (GL_RENDERER), directly or, as "zink (llvmpipe
+/// ...)", through another driver: whatever EGL says of the device.
+inline bool isSoftwareRenderer(std::string_view name) {
+  std::string small(name);
+  std::ranges::transform(small, small.begin(), [](unsigned char c) { return std::tolower(c); });
+  constexpr std::array<std::string_view, 5> kSoftware = {"llvmpipe", "lavapipe", "softpipe", "swr",
+                                                         "swiftshader"};
+  return std::ranges::any_of(
+      kSoftware, [&](std::string_view word) { return small.find(word) != std::string::npos; });
+}
+
+}  // namespace radiosity::gl
