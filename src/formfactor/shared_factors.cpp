@@ -33,9 +33,10 @@ std::uint64_t checksumOfMesh(const PatchMesh& mesh) {
 }  // namespace
 
 void requireShareable(const PatchMesh& mesh, const FormFactorOptions& options) {
-  if (options.method == FormFactorMethod::hemicube && options.eye != EyeChoice::cpu) {
+  if (options.method == FormFactorMethod::hemicube && options.eye == EyeChoice::gl) {
     throw InputError(
-        "under mpirun hemicubes are drawn by the processor: give --eye cpu, or start the program "
+        "under mpirun hemicubes are drawn by the processor: give --eye cpu or auto, or start the "
+        "program "
         "without mpirun");
   }
   if (options.symmetrize) {

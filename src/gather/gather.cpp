@@ -53,17 +53,14 @@ void checkMaterials(const PatchMesh& mesh, const PatchMaterials& materials) {
 /// The passes of one run.
 class Passes {
  public:
-  Passes(const GatherScene& scene, Gathered& result)
+  Passes(const GatherScene& scene, std::unique_ptr<GpuEye> eye, Gathered& result)
       : scene_(scene),
         bands_(scene.bands),
         result_(result),
         fronts_(scene.size(), 0.0F),
         seen_backs_(scene.size()),
         workers_([&] { return Gatherer(scene_, result_.radiosity); }) {
-    if (auto eye = openGpuEye(scene.eye, scene.rows.scene(), scene.mesh, scene.rows.weights())) {
-      gpu_.emplace(scene, std::move(eye));
-      noteOn(Severity::info, "hemicubes drawn by " + gpu_->device().name);
-    }
+    if (eye != nullptr) gpu_.emplace(scene, std::move(eye));
     result_.radiosity = scene.materials.emission;
     result_.irradiance.assign(bands_ * scene.size(), 0.0F);
     result_.backs.assign(scene.size(), 0.0F);
@@ -131,10 +128,11 @@ class Passes {
           gathered[k] = 1;
         },
         progress);
+    const bool drew = gpu.counts().hemicubes > 0;
+    if (first && drew) noteOn(Severity::info, "hemicubes drawn by " + gpu.device().name);
     if (problem.empty()) return;
-    noteOn(Severity::warning,
-           fmt::format("{}: {}; from here on hemicubes were drawn by the processor",
-                       gpu.device().name, problem));
+    noteOn(Severity::warning, fmt::format("{}: {}; {} hemicubes were drawn by the processor",
+                                          gpu.device().name, problem, drew ? "the other" : "all"));
     gpu_counts_ = gpu.counts();
     gpu_.reset();
   }
@@ -263,10 +261,10 @@ std::string messageOf(const GatherSummary& summary, const GatherOptions& options
       passes, last.change, options.tolerance, bound);
 }
 
-void runPasses(const GatherScene& scene, const GatherOptions& options, Gathered& result,
-               Progress& progress) {
+void runPasses(const GatherScene& scene, std::unique_ptr<GpuEye> eye, const GatherOptions& options,
+               Gathered& result, Progress& progress) {
   GatherSummary& summary = result.summary;
-  Passes passes(scene, result);
+  Passes passes(scene, std::move(eye), result);
   summary.status = GatherStatus::pass_limit;
   for (int k = 1; k <= options.passes; ++k) {
     summary.passes.push_back(passes.run(k, progress));
@@ -306,18 +304,29 @@ Gathered gather(const PatchMesh& mesh, const PatchMaterials& materials,
   options.validate();
   checkMaterials(mesh, materials);
   const GatherScene scene(mesh, materials, options);
+  std::unique_ptr<GpuEye> eye;
+  if (scene.isLit()) {
+    eye = openGpuEye(options.eye, scene.rows.scene(), mesh, scene.rows.weights());
+  }
+  Gathered result = gatherIn(scene, std::move(eye), options, progress);
+  result.summary.seconds = secondsSince(start);
+  return result;
+}
+
+Gathered gatherIn(const GatherScene& scene, std::unique_ptr<GpuEye> eye,
+                  const GatherOptions& options, Progress& progress) {
   Gathered result;
-  result.backs_by_surface.assign(mesh.surface_names.size(), 0.0);
-  result.at = options.at;
-  result.bands = materials.bands;
+  result.backs_by_surface.assign(scene.mesh.surface_names.size(), 0.0);
+  result.at = scene.at;
+  result.bands = int(scene.bands);
   result.area = scene.area;
   result.eye_of_corner = scene.eye_of_corner;
   result.position.reserve(scene.size());
-  for (const Eye& eye : scene.eyes) result.position.push_back(eye.position);
+  for (const Eye& at : scene.eyes) result.position.push_back(at.position);
   GatherSummary& summary = result.summary;
   summary.simd_target = scene.rows.kernels().target;
   if (scene.isLit()) {
-    runPasses(scene, options, result, progress);
+    runPasses(scene, std::move(eye), options, result, progress);
   } else {
     summary.status = GatherStatus::no_light;
     for (auto* field : {&result.radiosity, &result.irradiance}) {
@@ -326,7 +335,6 @@ Gathered gather(const PatchMesh& mesh, const PatchMaterials& materials,
     for (auto* share : {&result.backs, &result.sky}) share->assign(scene.size(), 0.0F);
   }
   summary.message = messageOf(summary, options);
-  summary.seconds = secondsSince(start);
   return result;
 }
 

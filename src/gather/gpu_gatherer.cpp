@@ -1,6 +1,5 @@
 #include "gather/gpu_gatherer.h"
 
-#include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
 
 #include <numbers>
@@ -57,11 +56,7 @@ GpuField fieldOf(const GatherScene& scene) {
 }  // namespace
 
 GpuGatherer::GpuGatherer(const GatherScene& scene, std::unique_ptr<GpuEye> eye)
-    : scene_(scene), eye_(std::move(eye)) {
-  const std::string problem = eye_->prepare(fieldOf(scene));
-  if (!problem.empty()) {
-    throw RunError(fmt::format("eye gl: {}: {}; take the eye cpu", eye_->device().name, problem));
-  }
+    : scene_(scene), eye_(std::move(eye)), problem_(eye_->prepare(fieldOf(scene))) {
   for (std::size_t k = 0; k < scene.size(); ++k) {
     if (scene.eyes[k].looks) looking_.push_back(Index(k));
   }
@@ -69,6 +64,7 @@ GpuGatherer::GpuGatherer(const GatherScene& scene, std::unique_ptr<GpuEye> eye)
 
 std::string GpuGatherer::pass(const std::function<void(std::size_t, const Seen&)>& take,
                               Progress& progress) {
+  if (!problem_.empty()) return problem_;
   const std::size_t patches = scene_.mesh.size();
   const auto resolution = std::size_t(scene_.resolution);
   std::vector<std::uint8_t> hidden;

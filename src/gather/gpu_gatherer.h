@@ -16,8 +16,7 @@ namespace radiosity {
 /// gathered in the next pass. It is also what Gatherer would find, to rounding.
 class GpuGatherer {
  public:
-  /// `scene` is kept by reference. RunError as openGpuEye(), and where the light of the scene finds
-  /// no room on the device.
+  /// `scene` is kept by reference. Where its light finds no room on the device, pass() says so.
   GpuGatherer(const GatherScene& scene, std::unique_ptr<GpuEye> eye);
 
   struct Seen {
@@ -35,6 +34,7 @@ class GpuGatherer {
  private:
   const GatherScene& scene_;
   std::unique_ptr<GpuEye> eye_;
+  std::string problem_;         ///< why there are no passes; empty: there are
   std::vector<Index> looking_;  ///< eyes
   HemicubeCounts counts_;
 };

@@ -30,8 +30,7 @@ GatherScene::GatherScene(const PatchMesh& patch_mesh, const PatchMaterials& of_p
       resolution(options.resolution),
       simd(options.simd),
       rows(patch_mesh, eyeOptions(options)),
-      sky(of_patches.sky),
-      eye(options.eye) {
+      sky(of_patches.sky) {
   sky.resize(bands, 0.0);  // none: dark
   if (at == GatherAt::patches) {
     standAtPatches(of_patches, options);

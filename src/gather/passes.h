@@ -1,9 +1,11 @@
 // Gathering at one eye, and the fields that the passes work on.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "formfactor/hemicube/gpu_eye.h"
 #include "formfactor/hemicube/row_builder.h"
 #include "gather/eyes.h"
 #include "gather/interpolated_view.h"
@@ -42,7 +44,6 @@ class GatherScene {
   std::optional<PatchBasis> basis;   ///< at vertices
   EyeMaterials materials;
   std::vector<double> sky;  ///< bands; radiance, W/m^2/sr
-  EyeChoice eye;
   /// The largest emission of a band, or the exitance of the sky where that is more: what changes
   /// are relative to.
   double largestSource(std::size_t band) const;
@@ -53,6 +54,10 @@ class GatherScene {
   void standAtPatches(const PatchMaterials& of_patches, const GatherOptions& options);
   void standAtVertices(const PatchMaterials& of_patches, const GatherOptions& options);
 };
+
+/// gather() in a scene with these options. `eye`: null for the CPU's.
+Gathered gatherIn(const GatherScene& scene, std::unique_ptr<GpuEye> eye,
+                  const GatherOptions& options, Progress& progress);
 
 /// One thread's hemicube and what it adds up.
 class Gatherer {

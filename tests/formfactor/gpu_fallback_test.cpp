@@ -2,9 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <utility>
 
 #include "formfactor/hemicube/gpu_rows.h"
 #include "formfactor/hemicube/hemicube_factors.h"
+#include "formfactor/shared_factors.h"
+#include "gather/passes.h"
 #include "support/mesh_builder.h"
 
 namespace radiosity {
@@ -23,10 +27,14 @@ class FailingEye final : public GpuEye {
     }
     return {};
   }
-  std::string prepare(const GpuField& /*field*/) override { return {}; }
-  std::string gather(std::size_t /*count*/, const Describe& /*describe*/,
-                     const Take& /*take*/) override {
-    return "the device was lost";
+  /// Of patches, which have one radiosity each.
+  std::string prepare(const GpuField& field) override {
+    field_ = field;
+    return {};
+  }
+  /// What patches emit, as a first pass does.
+  std::string gather(std::size_t count, const Describe& describe, const Take& take) override {
+    return look(count, describe, take);
   }
   std::vector<Index> pictures(const Describe& /*describe*/) override { return {}; }
   std::size_t bytes() const override { return 0; }
@@ -36,6 +44,7 @@ class FailingEye final : public GpuEye {
   GpuRows rowsOf(std::size_t first, std::size_t count, const Describe& describe) {
     low_.clear();
     high_.clear();
+    irradiance_.clear();
     Hemicube hemicube = rows_.makeHemicube();
     for (std::size_t k = 0; k < count; ++k) {
       GpuView view{};
@@ -43,7 +52,7 @@ class FailingEye final : public GpuEye {
       describe(first + k, view, words);
       add(hemicube.look(frameOf(view), view.own, nullptr));
     }
-    return {first, count, low_, high_, {}, {}};
+    return {first, count, low_, high_, {}, irradiance_};
   }
   static EyeFrame frameOf(const GpuView& view) {
     EyeFrame frame;
@@ -61,20 +70,66 @@ class FailingEye final : public GpuEye {
     };
     for (const double weight : seen.items) addWeight(weight);
     addWeight(seen.sky);
+    for (std::size_t band = 0; band < field_.bands; ++band) {
+      double& sum = irradiance_.emplace_back(0);
+      for (std::size_t j = 0; j < field_.patches; ++j) {
+        sum += seen.items[j] * double(field_.emission[field_.bands * j + band]);
+      }
+    }
   }
 
   const RowBuilder& rows_;
   std::size_t lives_;
   EyeDevice about_{"failing", "none", true};
+  GpuField field_;
   std::vector<std::uint32_t> low_, high_;
+  std::vector<double> irradiance_;
 };
 
-TEST(GpuFallback, TheProcessorDrawsWhatALostDeviceHasNot) {
-  const PatchMesh mesh = test::roomWithBlock(1).build();
+/// One device, which holds no scene.
+class FullEyes final : public GpuEyes {
+ public:
+  explicit FullEyes(bool hardware) : hardware_(hardware) {}
+  EyeDevices devices() const override { return {{{"full", "none", hardware_}}, {}}; }
+  std::unique_ptr<GpuEye> open(std::size_t /*d*/, const GpuScene& /*scene*/,
+                               const GpuWeights& /*weights*/, std::optional<GpuPace> /*pace*/,
+                               std::string& problem) const override {
+    problem = "the device has no memory left";
+    return nullptr;
+  }
+
+ private:
+  bool hardware_;
+};
+
+/// No device.
+class NoEyes final : public GpuEyes {
+ public:
+  EyeDevices devices() const override { return {{}, "there is no device: install a driver"}; }
+  std::unique_ptr<GpuEye> open(std::size_t /*d*/, const GpuScene& /*scene*/,
+                               const GpuWeights& /*weights*/, std::optional<GpuPace> /*pace*/,
+                               std::string& /*problem*/) const override {
+    return nullptr;
+  }
+};
+
+FormFactorOptions hemicubes() {
   FormFactorOptions options;
   options.method = FormFactorMethod::hemicube;
   options.resolution = 32;
   options.precision = Precision::double_precision;
+  return options;
+}
+
+bool has(const std::vector<Note>& notes, Severity severity, const std::string& words) {
+  return std::ranges::any_of(notes, [&](const Note& note) {
+    return note.severity == severity && note.text.find(words) != std::string::npos;
+  });
+}
+
+TEST(GpuFallback, TheProcessorDrawsWhatALostDeviceHasNot) {
+  const PatchMesh mesh = test::roomWithBlock(1).build();
+  const FormFactorOptions options = hemicubes();
   Progress silent;
   const FormFactors expected = computeFormFactors(mesh, options, silent);
   for (const std::size_t lives : {0, 4, 100}) {
@@ -92,12 +147,131 @@ TEST(GpuFallback, TheProcessorDrawsWhatALostDeviceHasNot) {
       }
     }
     const std::vector<Note>& notes = seen.report.notes;
-    const bool told = std::any_of(notes.begin(), notes.end(), [](const Note& note) {
-      return note.severity == Severity::warning &&
-             note.text.find("the device was lost") != std::string::npos;
-    });
-    EXPECT_EQ(told, lives < mesh.size());
+    EXPECT_EQ(has(notes, Severity::warning, "failing: the device was lost"), lives < mesh.size());
+    EXPECT_EQ(has(notes, Severity::info, "hemicubes drawn by failing"), lives > 0);
   }
+}
+
+TEST(GpuFallback, MemoryIsForeseenWhereTheDeviceIsLost) {
+  const PatchMesh mesh = test::roomWithBlock(1).build();
+  Progress silent;
+  HemicubeScene scene(mesh, hemicubes());
+  const HemicubeEstimate expected = estimateHemicubes(mesh, scene, hemicubes(), silent);
+  scene.gpu = std::make_unique<FailingEye>(scene.rows, 0);
+  const HemicubeEstimate estimate = estimateHemicubes(mesh, scene, hemicubes(), silent);
+  EXPECT_EQ(estimate.matrix_bytes, expected.matrix_bytes);
+}
+
+/// A room whose first patch shines.
+PatchMaterials lampAndWalls(const PatchMesh& mesh) {
+  PatchMaterials materials;
+  materials.bands = 2;
+  materials.reflectance.assign(2 * mesh.size(), 0.5);
+  materials.emission.assign(2 * mesh.size(), 0);
+  materials.emission[0] = 10;
+  materials.emission[1] = 20;
+  return materials;
+}
+
+TEST(GpuFallback, TheProcessorGathersWhatALostDeviceHasNot) {
+  const PatchMesh mesh = test::roomWithBlock(1).build();
+  const PatchMaterials materials = lampAndWalls(mesh);
+  GatherOptions options;
+  options.at = GatherAt::patches;
+  options.resolution = 32;
+  options.passes = 4;
+  Progress silent;
+  const Gathered expected = gather(mesh, materials, options, silent);
+  const GatherScene scene(mesh, materials, options);
+  for (const std::size_t lives : {0, 4}) {
+    auto eye = std::make_unique<FailingEye>(scene.rows, lives);
+    const Gathered seen = gatherIn(scene, std::move(eye), options, silent);
+    EXPECT_EQ(seen.summary.hemicubes, expected.summary.hemicubes);
+    ASSERT_EQ(seen.radiosity.size(), expected.radiosity.size());
+    for (std::size_t k = 0; k < seen.radiosity.size(); ++k) {
+      EXPECT_NEAR(seen.radiosity[k], expected.radiosity[k], 1e-5);
+    }
+    const std::vector<Note>& notes = seen.summary.notes;
+    EXPECT_TRUE(has(notes, Severity::warning, "failing: the device was lost"));
+    EXPECT_EQ(has(notes, Severity::info, "hemicubes drawn by failing"), lives > 0);
+  }
+}
+
+TEST(GpuFallback, TheProcessorDrawsASceneThatTheDeviceCannotHold) {
+  const PatchMesh mesh = test::roomWithBlock(1).build();
+  Progress silent;
+  const FormFactors expected = computeFormFactors(mesh, hemicubes(), silent);
+  for (const EyeChoice choice : {EyeChoice::gl, EyeChoice::automatic}) {
+    HemicubeScene scene(mesh, hemicubes());
+    scene.gpu = openGpuEye(choice, scene.rows.scene(), mesh, scene.rows.weights(), FullEyes(true));
+    const FormFactors seen =
+        hemicubeFactors(mesh, scene, HemicubeEstimate(), hemicubes(), silent, nullptr, nullptr);
+    for (std::size_t i = 0; i < mesh.size(); ++i) {
+      EXPECT_EQ(seen.matrix.at(0, i), expected.matrix.at(0, i));
+    }
+    const std::vector<Note>& notes = seen.report.notes;
+    EXPECT_TRUE(has(notes, Severity::warning, "full: the device has no memory left; all "));
+    EXPECT_FALSE(has(notes, Severity::info, "drawn by"));
+  }
+}
+
+TEST(GpuFallback, LightThatFindsNoRoomIsGatheredByTheProcessor) {
+  const PatchMesh mesh = test::roomWithBlock(1).build();
+  const PatchMaterials materials = lampAndWalls(mesh);
+  GatherOptions options;
+  options.resolution = 32;
+  options.passes = 2;
+  Progress silent;
+  const Gathered expected = gather(mesh, materials, options, silent);
+  const GatherScene scene(mesh, materials, options);
+  auto eye =
+      openGpuEye(EyeChoice::gl, scene.rows.scene(), mesh, scene.rows.weights(), FullEyes(false));
+  const Gathered seen = gatherIn(scene, std::move(eye), options, silent);
+  EXPECT_EQ(seen.radiosity, expected.radiosity);
+  EXPECT_TRUE(has(seen.summary.notes, Severity::warning, "full: the device has no memory left"));
+  EXPECT_FALSE(has(seen.summary.notes, Severity::info, "drawn by"));
+}
+
+TEST(GpuFallback, AMissingDeviceIsAnErrorWhereItIsAskedFor) {
+  const PatchMesh mesh = test::roomWithBlock(1).build();
+  const RowBuilder rows(mesh, hemicubes());
+  const auto open = [&](EyeChoice choice, const GpuEyes& eyes) {
+    return openGpuEye(choice, rows.scene(), mesh, rows.weights(), eyes);
+  };
+  try {
+    open(EyeChoice::gl, NoEyes());
+    FAIL();
+  } catch (const RunError& error) {
+    EXPECT_STREQ(error.what(), "eye gl: there is no device: install a driver; or take the eye cpu");
+  }
+  EXPECT_EQ(open(EyeChoice::automatic, NoEyes()), nullptr);
+  EXPECT_EQ(open(EyeChoice::automatic, FullEyes(false)), nullptr);
+  EXPECT_NE(open(EyeChoice::automatic, FullEyes(true)), nullptr);
+  EXPECT_EQ(open(EyeChoice::cpu, FullEyes(true)), nullptr);
+}
+
+TEST(GpuFallback, AMissingLibraryIsToldFromOneThatDoesNotLoad) {
+  const std::string not_found = ": cannot open shared object file: No such file or directory";
+  const std::string missing = libraryProblem("libradiosity_gl.so" + not_found);
+  EXPECT_NE(missing.find("built without libepoxy-dev"), std::string::npos) << missing;
+  const std::string broken = libraryProblem("libepoxy.so.0" + not_found);
+  EXPECT_NE(broken.find("install Debian's libepoxy0"), std::string::npos) << broken;
+  EXPECT_EQ(broken.find("-dev"), std::string::npos) << broken;
+}
+
+TEST(GpuFallback, ProcessesOfOneRunDrawByTheProcessor) {
+  const PatchMesh mesh = test::roomWithBlock(1).build();
+  const RowBuilder rows(mesh, hemicubes());
+  setenv("OMPI_COMM_WORLD_SIZE", "2", 1);
+  const auto eye =
+      openGpuEye(EyeChoice::automatic, rows.scene(), mesh, rows.weights(), FullEyes(true));
+  unsetenv("OMPI_COMM_WORLD_SIZE");
+  EXPECT_EQ(eye, nullptr);
+  FormFactorOptions options = hemicubes();
+  options.eye = EyeChoice::automatic;
+  EXPECT_NO_THROW(requireShareable(mesh, options));
+  options.eye = EyeChoice::gl;
+  EXPECT_THROW(requireShareable(mesh, options), InputError);
 }
 
 }  // namespace

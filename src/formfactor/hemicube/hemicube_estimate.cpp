@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "base/parallel.h"
@@ -77,9 +79,10 @@ Sample sampleByCpu(const std::vector<Index>& patches, std::size_t n, const Hemic
           allowedThreads() * sum.hemicube_bytes};
 }
 
-/// The second look is timed: before the first one a device compiles.
-Sample sampleByGpu(const std::vector<Index>& patches, std::size_t n, const HemicubeScene& scene,
-                   Progress& progress) {
+/// The second look is timed: before the first one a device compiles. Empty where the device gives
+/// up, of which the rows' own look will tell.
+std::optional<Sample> sampleByGpu(const std::vector<Index>& patches, std::size_t n,
+                                  const HemicubeScene& scene, Progress& progress) {
   std::vector<Index> looking;
   for (const Index patch : patches) {
     if (!scene.rows.isEmpty(patch)) looking.push_back(patch);
@@ -92,17 +95,16 @@ Sample sampleByGpu(const std::vector<Index>& patches, std::size_t n, const Hemic
     entries += row.columns.size();
     if (scene.near_pairs) scene.near_pairs->correct(patch, row);
   };
-  const auto look = [&](Progress& watched) {
+  const auto gaveUp = [&](Progress& watched) {
     entries = 0;
-    const double start = clockSeconds();
-    lookFromPatches(*scene.gpu, scene.rows, looking, count, watched);
-    return clockSeconds() - start;
+    return !lookFromPatches(*scene.gpu, scene.rows, looking, count, watched).empty();
   };
-  look(silent);
+  if (gaveUp(silent)) return std::nullopt;
   progress.check();
-  const double seconds = look(progress);
+  const double start = clockSeconds();
+  if (gaveUp(progress)) return std::nullopt;
   const double share = patches.empty() ? 0 : 1 / double(patches.size());
-  return {share * double(entries), share * seconds, scene.gpu->bytes()};
+  return Sample{share * double(entries), share * (clockSeconds() - start), scene.gpu->bytes()};
 }
 
 }  // namespace
@@ -116,7 +118,9 @@ HemicubeEstimate estimateHemicubes(const PatchMesh& mesh, const HemicubeScene& s
     patches.push_back(Index((2 * k + 1) * n / (2 * samples)));
   }
   progress.begin("planning", samples);
-  const Sample sample = (scene.gpu ? sampleByGpu : sampleByCpu)(patches, n, scene, progress);
+  std::optional<Sample> by_gpu;
+  if (scene.gpu) by_gpu = sampleByGpu(patches, n, scene, progress);
+  const Sample sample = by_gpu ? *by_gpu : sampleByCpu(patches, n, scene, progress);
   progress.check();
   progress.end();
   const std::size_t threads = allowedThreads();

@@ -131,12 +131,13 @@ HemicubeRowCounts makeRowsByGpu(Rows& rows, Progress& progress) {
       progress);
   const std::string& name = rows.scene.gpu->device().name;
   std::vector<Note>& notes = rows.result.report.notes;
-  notes.push_back({Severity::info, "hemicubes drawn by " + name});
+  const auto left = std::size_t(std::count(rows.made.begin(), rows.made.end(), 0));
+  const bool drew = left < patches.size();
+  if (drew) notes.push_back({Severity::info, "hemicubes drawn by " + name});
   if (!problem.empty()) {
-    const auto left = std::size_t(std::count(rows.made.begin(), rows.made.end(), 0));
-    notes.push_back({Severity::warning, fmt::format("{}: {}; the other {} hemicubes were drawn by "
-                                                    "the processor",
-                                                    name, problem, countText(left))});
+    notes.push_back(
+        {Severity::warning, fmt::format("{}: {}; {} {} hemicubes were drawn by the processor", name,
+                                        problem, drew ? "the other" : "all", countText(left))});
   }
   HemicubeRowCounts all;
   for (const RowStore& store : stores) all += store.counts;
