@@ -2,7 +2,6 @@
 #include <pybind11/stl.h>
 
 #include <limits>
-#include <optional>
 #include <utility>
 #include <variant>
 
@@ -61,6 +60,7 @@ struct CompressedRows {
   std::vector<Place> indices;
   std::vector<Place> starts;
 
+  CompressedRows() = default;
   CompressedRows(const ExchangeMatrix& matrix, std::size_t entries, Progress& progress)
       : data(entries), indices(entries), starts(matrix.size() + 1, 0) {
     std::size_t at = 0;
@@ -87,14 +87,14 @@ using EitherRows =
 /// With places of 32 bits where they suffice.
 template <class Value>
 py::tuple rowsOf(const ExchangeMatrix& matrix, const py::object& report) {
-  std::optional<EitherRows<Value>> rows;
+  EitherRows<Value> rows;
   runLong(report, [&](Progress& progress) {
     const std::size_t entries = matrix.nonZeros();
     progress.check();
     if (entries <= std::size_t(std::numeric_limits<std::int32_t>::max())) {
-      rows.emplace(std::in_place_index<0>, matrix, entries, progress);
+      rows.template emplace<0>(matrix, entries, progress);
     } else {
-      rows.emplace(std::in_place_index<1>, matrix, entries, progress);
+      rows.template emplace<1>(matrix, entries, progress);
     }
   });
   return std::visit(
@@ -102,7 +102,7 @@ py::tuple rowsOf(const ExchangeMatrix& matrix, const py::object& report) {
         return py::make_tuple(taken(std::move(r.data)), taken(std::move(r.indices)),
                               taken(std::move(r.starts)));
       },
-      *rows);
+      rows);
 }
 
 py::tuple csrArrays(const FactorsHandle& handle, const py::object& report) {
