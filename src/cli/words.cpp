@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/figure_text.h"
+#include "base/near_names.h"
 #include "base/printable.h"
 #include "radiosity/base.h"
 
@@ -95,27 +96,6 @@ double parseDuration(const std::string& option, const std::string& text) {
       "{}: '{}' is not a time above 0; write seconds or a number with s, m or h, e.g. 90s or 10m",
       option, text));
 }
-
-namespace {
-
-/// Optimal string alignment distance: Levenshtein's with swaps of neighbouring letters.
-std::size_t editDistance(const std::string& a, const std::string& b) {
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
-  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, replaced});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
-      }
-    }
-  }
-  return d[a.size()][b.size()];
-}
-
-}  // namespace
 
 std::optional<std::string> nearest(const std::string& word,
                                    std::span<const std::string> candidates) {

@@ -1,9 +1,10 @@
 // Surfaces joined under one name by patterns.
 #include <fmt/format.h>
-#include <fnmatch.h>
 
 #include <algorithm>
 
+#include "base/name_pattern.h"
+#include "base/near_names.h"
 #include "radiosity/tables.h"
 #include "scene/text.h"
 
@@ -36,7 +37,7 @@ Wish parse(const std::string& text) {
 
 /// A name as it stands may hold characters that mean something in a pattern.
 bool matches(const Wish& wish, const std::string& surface) {
-  return surface == wish.pattern || fnmatch(wish.pattern.c_str(), surface.c_str(), 0) == 0;
+  return surface == wish.pattern || matchesPattern(wish.pattern, surface);
 }
 
 class Grouping {
@@ -60,7 +61,7 @@ class Grouping {
     }
     if (!any) {
       throw InputError(fmt::format("{}: matches no surface; there are: {}", wish.option,
-                                   joinNames(surfaces_, 40)));
+                                   joinNames(nearestFirst(wish.pattern, surfaces_), 40)));
     }
     options_.resize(result_.names.size());
     options_[group] = wish.option;

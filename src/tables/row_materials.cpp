@@ -6,6 +6,7 @@
 
 #include "base/csv.h"
 #include "base/input_file.h"
+#include "base/near_names.h"
 #include "base/parse.h"
 #include "radiosity/matrix_files.h"
 #include "scene/text.h"
@@ -148,9 +149,9 @@ class RowTable {
     std::set<std::string> seen(matrix_.factors.names.begin(), matrix_.factors.names.end());
     seen.erase("");
     const std::vector<std::string> names(seen.begin(), seen.end());
-    fail(line, names.empty()
-                   ? fmt::format("{} has no names; use a column `row`", matrix_.path)
-                   : fmt::format("no row is called {}; there are: {}", name, joinNames(names, 40)));
+    fail(line, names.empty() ? fmt::format("{} has no names; use a column `row`", matrix_.path)
+                             : fmt::format("no row is called {}; there are: {}", name,
+                                           joinNames(nearestFirst(name, names), 40)));
   }
 
   void takeOthers(const CsvTable::Row& row) {

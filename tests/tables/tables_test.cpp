@@ -203,6 +203,12 @@ TEST_F(Tables, GroupsAreTakenByTheFirstThatMatches) {
   EXPECT_EQ(groupSurfaces(surfaces).names, surfaces);
 }
 
+TEST_F(Tables, AQuestionMarkIsACharacterOfUtf8) {
+  const std::vector<std::string> surfaces = {"Wände", "Winde", "Wand"};
+  EXPECT_EQ(groupSurfaces(surfaces, std::vector<std::string>{"g=W?nde"}).of_surface,
+            (std::vector<Index>{0, 0, 1}));
+}
+
 TEST_F(Tables, RefusesGroupsThatAreNone) {
   const std::vector<std::string> surfaces = {"left", "right"};
   const auto error = [&](std::vector<std::string> groups) {
