@@ -110,13 +110,31 @@ std::optional<std::size_t> CsvTable::column(std::string_view name) const {
   return std::size_t(found - header.begin());
 }
 
-CsvTable readCsv(const std::string& path) {
-  const std::string text = readWholeFile(path);
+namespace {
+
+/// What spreadsheets write where the decimal comma is the custom.
+void requireCommas(const CsvReader& reader, const CsvTable::Row& header) {
+  if (header.fields.size() > 1) return;
+  const std::string& only = header.fields.front();
+  const std::size_t other = only.find_first_of(";\t");
+  if (other == std::string::npos) return;
+  reader.fail(header.line,
+              fmt::format("the header has one column, `{}`; write commas between columns, not {}, "
+                          "and points in numbers",
+                          only, only[other] == ';' ? "semicolons" : "tabs"));
+}
+
+}  // namespace
+
+CsvTable readCsv(const std::string& path) { return parseCsv(path, readWholeFile(path)); }
+
+CsvTable parseCsv(const std::string& path, std::string_view text) {
   CsvReader reader(path, text);
   CsvTable table;
   table.path = path;
   CsvTable::Row row;
   if (!reader.next(row)) reader.fail(1, "there is no header line; name the columns in the first");
+  requireCommas(reader, row);
   table.header_line = row.line;
   for (const std::string& name : row.fields) {
     table.header.push_back(withoutBlanks(name));
@@ -127,7 +145,8 @@ CsvTable readCsv(const std::string& path) {
   }
   while (reader.next(row)) {
     if (row.fields.size() != table.header.size()) {
-      reader.fail(row.line, fmt::format("{} fields, and the header has {}; give one a column",
+      reader.fail(row.line, fmt::format("{} fields, and the header has {}; give one a column, with "
+                                        "commas between them and points in numbers",
                                         row.fields.size(), table.header.size()));
     }
     for (std::string& field : row.fields) field = withoutBlanks(field);

@@ -27,8 +27,10 @@ struct CsvTable {
   std::optional<std::size_t> column(std::string_view name) const;
 };
 
-/// Errors: InputError that names file and line: no header, a column twice, a row of another number
-/// of fields, quotes that do not end; as readWholeFile().
+/// `path`: for messages. Errors: InputError that names file and line: no header, one with other
+/// separators, a column twice, a row of another number of fields, quotes that do not end.
+CsvTable parseCsv(const std::string& path, std::string_view text);
+/// The same of a file. Errors: as readWholeFile(), too.
 CsvTable readCsv(const std::string& path);
 
 }  // namespace radiosity

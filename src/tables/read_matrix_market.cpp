@@ -95,7 +95,9 @@ class Reader {
       fail(
           fmt::format("is {} x {}; form factors have as many columns as rows", words[0], words[1]));
     }
-    if (n_ == 0 || n_ >= kNone) fail(fmt::format("has {} rows", n_));
+    if (n_ == 0 || n_ >= kNone) {
+      fail(fmt::format("has {} rows; form factors have 1 to {}, a row a patch", n_, kNone - 1));
+    }
     if (n_ > text_.size()) {
       fail(fmt::format("claims {} rows and is too short for them; write it again", n_));
     }
