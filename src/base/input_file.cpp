@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <new>
 #include <stdexcept>
+#include <system_error>
 
 #include "radiosity/base.h"
 
@@ -19,7 +22,9 @@ std::string whyNotAFile(const std::string& path) {
   const fs::file_status status = fs::status(path, error);
   switch (status.type()) {
     case fs::file_type::regular:
-      return {};
+      if (access(path.c_str(), R_OK) == 0) return {};
+      return fmt::format("cannot be opened ({}); check the permissions",
+                         std::generic_category().message(errno));
     case fs::file_type::not_found:
       return "no such file; check the name and the folder";
     case fs::file_type::directory:

@@ -6,7 +6,7 @@
 namespace radiosity {
 
 /// Why `path` cannot be opened as a file, with the cure ("no such file; check the name and the
-/// folder"); empty for a regular file, also one behind a link.
+/// folder"); empty for a regular file that may be read, also one behind a link.
 std::string whyNotAFile(const std::string& path);
 
 /// Throws InputError "PATH: why; cure" unless `path` is a regular file.

@@ -120,7 +120,7 @@ Side readSide(const std::string& label, const std::string& path, const std::stri
   Side side;
   side.label = label;
   side.path = path;
-  if (isResultsFile(path)) {
+  if (isResultsFile(path) || extensionOf(path) == ".h5") {
     readResultsSide(side, said);
   } else if (isPictureName(path)) {
     ImageFile file = readPicture(path, max_image);
@@ -260,10 +260,7 @@ void drawField(Session& session, const LightField& side, const Comparison& c, Pi
                OutputSet& files) {
   const PatchMesh mesh = cellMesh(side);
   picture.options.smooth = false;
-  if (picture.camera_from.empty()) {
-    picture.camera =
-        framingCamera(mesh, false, double(picture.options.width) / double(picture.options.height));
-  }
+  framePicture(picture, mesh, false);
   files.write(Format::png, "difference, false colour", [&](const std::string& temporary) {
     writeImage(temporary,
                renderFalseColour(mesh, differenceOnTriangles(side, c),

@@ -22,6 +22,7 @@
 #include "pipeline/stage_key.h"
 #include "radiosity/version.h"
 #include "results/matrix_blocks.h"
+#include "scene/text.h"
 
 namespace radiosity {
 
@@ -40,9 +41,14 @@ const char* readingOption(const SceneOptions& given) {
   return nullptr;
 }
 
+/// What such a file holds instead is said by who reads it.
+bool isNamedAsResults(const std::string& path) {
+  return lowerCase(std::filesystem::path(path).extension().string()) == ".h5";
+}
+
 bool overrides(const SceneOptions& options) {
   return !options.set.empty() || !options.materials_file.empty() || !options.one_sided.empty() ||
-         !options.two_sided.empty() || options.sky.has_value();
+         !options.two_sided.empty() || options.sky.has_value() || options.up.has_value();
 }
 
 }  // namespace
@@ -60,7 +66,7 @@ void Pipeline::open(const std::string& path, const SceneOptions& scene, const st
   requireFile(path);
   scene.validate();
   name_ = path;
-  if (isResultsFile(path)) {
+  if (isResultsFile(path) || isNamedAsResults(path)) {
     openResults(path, scene);
   } else {
     progress_.begin("reading", 1);

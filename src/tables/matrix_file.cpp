@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <numeric>
 
@@ -10,6 +11,7 @@
 #include "radiosity/matrix_functions.h"
 #include "radiosity/results.h"
 #include "results/matrix_market.h"
+#include "scene/text.h"
 #include "tables/matrix_readers.h"
 #include "tables/row_comments.h"
 
@@ -56,6 +58,18 @@ std::string firstLine(const std::string& path) {
   file.read(line.data(), std::streamsize(line.size()));
   line.resize(std::size_t(file.gcount()));
   return line.substr(0, line.find_first_of("\r\n"));
+}
+
+/// For a file that begins as none of the formats does; its name says which was meant.
+[[noreturn]] void refuseStart(const std::string& path) {
+  const std::string extension = lowerCase(std::filesystem::path(path).extension().string());
+  const std::string why =
+      extension == ".mtx"
+          ? fmt::format("it does not begin with {}; write it again", kMatrixMarketMark)
+      : extension == ".vf" ? "it does not begin as View3D's do (program, version, 0, 0 or 1, 0, "
+                             "rows); write it again"
+                           : "what is read: results (.h5), MatrixMarket (.mtx), View3D (.vf)";
+  throw InputError(fmt::format("{}: is no matrix of form factors; {}", path, why));
 }
 
 MatrixFile readOfResults(const std::string& path) {
@@ -116,9 +130,7 @@ MatrixFile readMatrixFile(const std::string& path, Progress& progress,
   } else if (parseView3dHeader(line)) {
     file = readView3d(path, areas);
   } else {
-    throw InputError(path +
-                     ": is no matrix of form factors; what is read: results (.h5), MatrixMarket "
-                     "(.mtx), View3D (.vf)");
+    refuseStart(path);
   }
   NamedFactors& factors = file.factors;
   file.path = path;
