@@ -52,20 +52,26 @@ class Cleaner {
   std::vector<Index> weldedLoop(std::span<const Index> corners) const;
   void addPlanar(const std::vector<Index>& loop, Index source, double given);
   void addTriangles(const std::vector<Index>& loop, const Vec3& normal, Index source);
-  void noteDeviation(const std::vector<Index>& loop,
-                     const std::vector<std::array<Index, 3>>& triangles);
+  double deviation(const std::vector<Index>& loop,
+                   const std::vector<std::array<Index, 3>>& triangles) const;
   bool isThin(const std::vector<Vec3>& polygon) const;
   bool isPlanar(const std::vector<Vec3>& polygon, const Vec3& normal) const;
   const std::string& nameOf(Index source) const {
     return scene_.surfaces[scene_.face_surface[source]].name;
   }
 
+  /// Polygons of a surface that are not planar.
+  struct Bent {
+    std::size_t count = 0;
+    double deviation = 0;  ///< of the farthest corner, m
+  };
+
   const Scene& scene_;
   MeshReport& report_;
   InputFaces& out_;
   std::vector<Index> welded_;  ///< scene vertex -> point
   std::map<std::string, std::size_t> thin_;
-  std::map<std::string, std::size_t> bent_;
+  std::map<std::string, Bent> bent_;
   std::map<std::string, std::size_t> twice_;
 };
 
@@ -159,7 +165,6 @@ void Cleaner::addPlanar(const std::vector<Index>& loop, Index source, double giv
 
 void Cleaner::addTriangles(const std::vector<Index>& loop, const Vec3& normal, Index source) {
   ++report_.nonplanar_faces;
-  ++bent_[nameOf(source)];
   const PlaneImage image(normal);
   std::vector<Vec2> outline;
   for (const Vec3& p : at(loop)) outline.push_back(image(p));
@@ -169,18 +174,22 @@ void Cleaner::addTriangles(const std::vector<Index>& loop, const Vec3& normal, I
     std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
     addPlanar(corners, source, area(at(corners)));
   }
-  noteDeviation(loop, triangles);
+  const double off = deviation(loop, triangles);
+  report_.largest_deviation = std::max(report_.largest_deviation, off);
+  Bent& bent = bent_[nameOf(source)];
+  ++bent.count;
+  bent.deviation = std::max(bent.deviation, off);
 }
 
-/// How far corners are off the planes of the triangles beside theirs.
-void Cleaner::noteDeviation(const std::vector<Index>& loop,
-                            const std::vector<std::array<Index, 3>>& triangles) {
+/// How far corners are off the planes of the triangles beside theirs, at most.
+double Cleaner::deviation(const std::vector<Index>& loop,
+                          const std::vector<std::array<Index, 3>>& triangles) const {
+  double most = 0;
   const auto note = [&](const std::array<Index, 3>& t, Index apex) {
     const std::vector<Vec3> plane = at({loop[t[0]], loop[t[1]], loop[t[2]]});
     if (isThin(plane)) return;
     const Vec3 n = glm::normalize(vectorAreaOf(plane));
-    const double off = std::abs(glm::dot(out_.points[loop[apex]] - plane[0], n));
-    report_.largest_deviation = std::max(report_.largest_deviation, off);
+    most = std::max(most, std::abs(glm::dot(out_.points[loop[apex]] - plane[0], n)));
   };
   struct Side {
     std::size_t triangle = 0;
@@ -197,6 +206,7 @@ void Cleaner::noteDeviation(const std::vector<Index>& loop,
       note(triangles[other->second.triangle], t[i]);
     }
   }
+  return most;
 }
 
 void Cleaner::addFace(Index f) {
@@ -237,12 +247,13 @@ void Cleaner::writeNotes() {
         {Severity::warning, fmt::format("{}: {} faces thinner than {:.3g} m were dropped", name,
                                         count, out_.coincidence)});
   }
-  for (const auto& [name, count] : bent_) {
+  for (const auto& [name, bent] : bent_) {
     report_.notes.push_back(
         {Severity::info,
-         fmt::format("{}: {} not planar (up to {:.3g} m off) and split into triangles", name,
-                     count == 1 ? "1 polygon was" : fmt::format("{} polygons were", count),
-                     report_.largest_deviation)});
+         fmt::format(
+             "{}: {} not planar (up to {:.3g} m off) and split into triangles", name,
+             bent.count == 1 ? "1 polygon was" : fmt::format("{} polygons were", bent.count),
+             bent.deviation)});
   }
   for (const auto& [name, count] : twice_) {
     report_.notes.push_back(

@@ -469,6 +469,17 @@ TEST(Repair, NonPlanarQuadBecomesTriangles) {
   });
 }
 
+TEST(Repair, EachSurfaceIsToldHowFarItsOwnPolygonsAreOff) {
+  SceneBuilder b;
+  b.face(b.surface("floor"), {{0, 0, 0}, {4, 0, 0}, {4, 4, 0.02}, {0, 4, 0}});
+  b.face(b.surface("tent"), {{10, 0, 0}, {14, 0, 0}, {14, 4, 2}, {10, 4, 0}});
+  bothWays(b.scene(), [&](const Built& built) {
+    // The fourth corner is so far above the plane of the others, or a little less, by the diagonal.
+    EXPECT_TRUE(hasNote(built, "floor/floor: 1 polygon was not planar (up to 0.02 m off)"));
+    EXPECT_GT(built.report.largest_deviation, 1);
+  });
+}
+
 TEST(Repair, SeparateVerticesAreWelded) {
   SceneBuilder b;
   const Index box = b.surface("box");
