@@ -60,6 +60,14 @@ void GroupedFaces::noteElements() {
        "lines and points have no area and are left out");
 }
 
+void GroupedFaces::refuseCloud() const {
+  if (scene_.faceCount() > 0 || scene_.vertices.empty()) return;
+  throw InputError(
+      fmt::format("{}: is a cloud of {} points without faces; make a surface of it first (in "
+                  "MeshLab: Filters, Remeshing, Surface Reconstruction)",
+                  scene_.file, scene_.vertices.size()));
+}
+
 Scene GroupedFaces::finish(const std::string& cure) {
   if (scene_.faceCount() == 0) {
     const char* what = volumes_ > 0 ? "no faces, volume elements alone" : "no faces";
@@ -76,7 +84,7 @@ Scene GroupedFaces::finish(const std::string& cure) {
   return std::move(scene_);
 }
 
-bool namesGroups(std::string_view array) {
+std::optional<std::size_t> groupArrayRank(std::string_view array) {
   static constexpr std::array<std::string_view, 15> kWords = {
       "surface", "group", "region", "physical",   "gmshphysical", "part",  "material", "object",
       "label",   "zone",  "patch",  "cellentity", "entity",       "solid", "component"};
@@ -87,7 +95,9 @@ bool namesGroups(std::string_view array) {
   for (const std::string_view ending : {"s", "id", "index", "tag", "name"}) {
     if (word.ends_with(ending)) word.resize(word.size() - ending.size());
   }
-  return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
+  const auto* const found = std::find(kWords.begin(), kWords.end(), word);
+  if (found == kWords.end()) return std::nullopt;
+  return std::size_t(found - kWords.begin());
 }
 
 }  // namespace radiosity

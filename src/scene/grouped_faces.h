@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,6 +40,8 @@ class GroupedFaces {
   void addElement(const ElementShape& shape, std::span<const Index> nodes, const std::string& group,
                   std::size_t element);
 
+  /// InputError where there are vertices alone, as scanners write them.
+  void refuseCloud() const;
   /// InputError, with `cure`, where there are no faces.
   Scene finish(const std::string& cure);
 
@@ -55,8 +58,9 @@ class GroupedFaces {
 };
 
 /// Whether an array of numbers or names of faces, called `array`, says which part of the scene they
-/// belong to: "group", "RegionId", "PhysicalIds", "material_index" and the like.
-bool namesGroups(std::string_view array);
+/// belong to ("group", "RegionId", "PhysicalIds", "material_index" and the like): how far down it
+/// stands in the list of such names, the likeliest first. None: it does not.
+std::optional<std::size_t> groupArrayRank(std::string_view array);
 
 /// Nodes by their numbers, which need not be consecutive.
 class NodeNumbers {

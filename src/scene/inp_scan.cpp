@@ -90,6 +90,7 @@ class InpScanner {
   void file(const std::string& path, int depth);
   void keyword(const Keyword& keyword, int depth);
   void refuseKeyword(const Keyword& keyword) const;
+  void noteMaker(const Keyword& keyword);
   void include(const Keyword& keyword, int depth);
   void beginElements();
   void data(std::string_view line);
@@ -112,6 +113,7 @@ class InpScanner {
   std::size_t set_ = 0;                ///< that *ELSET or *ELEMENT adds to
   bool in_set_ = false;
   std::size_t member_count_ = 0;
+  bool has_system_ = false;                       ///< coordinates of nodes are another system's
   std::map<std::string, std::size_t> set_index_;  ///< by name in small letters
   FeatureNotes notes_;
 };
@@ -144,18 +146,14 @@ void InpScanner::file(const std::string& path, int depth) {
 }
 
 void InpScanner::refuseKeyword(const Keyword& keyword) const {
-  static constexpr std::array<std::string_view, 7> kGenerators = {
-      "ngen", "ncopy", "nfill", "nmap", "elgen", "elcopy", "system"};
   if (keyword.word == "instance") {
     fail(
         "parts and instances are not read; write the input without them (in Abaqus/CAE: Model, "
         "Edit Attributes, Do not use parts and assemblies in input files)");
   }
-  if (std::find(kGenerators.begin(), kGenerators.end(), keyword.word) != kGenerators.end()) {
-    fail(
-        fmt::format("*{} makes or moves nodes and is not read; write out nodes and elements "
-                    "where they lie",
-                    keyword.word));
+  if (keyword.word == "nmap") fail("*NMAP moves nodes and is not read; write nodes where they lie");
+  if (keyword.word == "node" && has_system_) {
+    fail("nodes in the coordinates of *SYSTEM are not read; write x, y, z");
   }
   const bool lists = keyword.word == "node" || keyword.word == "element" || keyword.word == "elset";
   if (lists && keyword.has("input")) {
@@ -172,12 +170,27 @@ void InpScanner::keyword(const Keyword& keyword, int depth) {
   if (keyword.word == "include") return include(keyword, depth);
   current_ = keyword;
   in_set_ = false;
+  if (keyword.word == "system") has_system_ = false;
+  noteMaker(keyword);
   if (keyword.word == "element") beginElements();
   if (keyword.word == "elset") {
     if (keyword.get("elset").empty()) fail("*ELSET names no set; add ELSET=NAME");
     set_ = setNamed(keyword.get("elset"));
     scan_.sets[set_].chosen = true;
     in_set_ = true;
+  }
+}
+
+/// What is made of shells is missed in the scene, and nodes may be missed by a shell: both are for
+/// the reader to tell.
+void InpScanner::noteMaker(const Keyword& keyword) {
+  const std::string& word = keyword.word;
+  if (word == "ngen" || word == "nfill" || word == "ncopy") scan_.node_makers.push_back(word);
+  if (word != "elgen" && word != "elcopy") return;
+  scan_.makers.push_back({word, {}, where()});
+  const auto copied = set_index_.find(lowerCase(keyword.get("old set")));
+  if (word == "elcopy" && copied != set_index_.end()) {
+    scan_.makers.back().originals = scan_.sets[copied->second].members;
   }
 }
 
@@ -198,13 +211,13 @@ void InpScanner::beginElements() {
   if (type.empty()) fail("*ELEMENT names no type; add TYPE=S3 or another");
   shape_ = shapeNamed(lowerCase(type));
   if (!shape_) {
+    scan_.left_out.push_back(type);
     notes_.add("elements that are no faces (volumes, beams, ...) are left out, of type", type,
                Severity::warning);
   }
-  if (shape_ && !current_.get("elset").empty()) {
-    set_ = setNamed(current_.get("elset"));
-    in_set_ = true;
-  }
+  if (current_.get("elset").empty()) return;
+  set_ = setNamed(current_.get("elset"));  // also of no faces: sets of sets may name it
+  in_set_ = shape_.has_value();
 }
 
 std::size_t InpScanner::setNamed(const std::string& name) {
@@ -223,6 +236,11 @@ void InpScanner::data(std::string_view line) {
     element(fields, *shape_);
   } else if (current_.word == "elset") {
     current_.has("generate") ? range(fields) : members(fields);
+  } else if (current_.word == "elgen" && !fields.empty()) {
+    const long long original = integer(fields[0], "element number");
+    scan_.makers.back().originals.push_back({original, original, 1});
+  } else if (current_.word == "system") {
+    has_system_ = true;
   }
 }
 

@@ -37,10 +37,20 @@ struct InpSet {
   bool chosen = false;  ///< by *ELSET, not on the line *ELEMENT
 };
 
+/// A statement that makes elements of others, as *ELGEN.
+struct InpMaker {
+  std::string keyword;
+  std::vector<InpRange> originals;
+  std::string where;  ///< "FILE:LINE"
+};
+
 struct InpScan {
   std::vector<InpNode> nodes;
   std::vector<InpElement> elements;
-  std::vector<InpSet> sets;  ///< of elements, in the order they come
+  std::vector<std::string> left_out;     ///< types of elements that are no faces
+  std::vector<InpMaker> makers;          ///< of elements
+  std::vector<std::string> node_makers;  ///< keywords that make nodes, which are not there
+  std::vector<InpSet> sets;              ///< of elements, in the order they come
   std::vector<Note> notes;
 };
 

@@ -6,6 +6,7 @@
 
 #include "scene/inp_scan.h"
 #include "scene/readers.h"
+#include "scene/text.h"
 
 namespace radiosity {
 
@@ -22,8 +23,10 @@ class InpReader {
   }
 
   Scene read() {
+    requireElements();
     addNodes();
     sortElements();
+    refuseMadeShells();
     assignSets();
     std::vector<Index> corners;
     for (std::size_t e = 0; e < scan_.elements.size(); ++e) {
@@ -35,12 +38,35 @@ class InpReader {
                         std::size_t(element.number));
     }
     notes_.appendTo(faces_.scene().notes);
-    return faces_.finish("write the surfaces as shells (TYPE=S3, S4, S6, S8)");
+    return faces_.finish("write the surfaces as shells");
   }
 
  private:
   [[noreturn]] static void fail(const std::string& where, const std::string& what) {
     throw InputError(fmt::format("{}: {}", where, what));
+  }
+
+  void requireElements() const {
+    if (!scan_.elements.empty()) return;
+    if (scan_.nodes.empty() && scan_.left_out.empty()) {
+      fail(path_,
+           "is no input of CalculiX or Abaqus: it has neither *NODE nor *ELEMENT; check the name");
+    }
+    std::vector<std::string> types(scan_.left_out);
+    std::sort(types.begin(), types.end());
+    types.erase(std::unique(types.begin(), types.end()), types.end());
+    fail(path_, fmt::format("no faces, {}; write the surfaces as shells (TYPE=S3, S4, S6, S8)",
+                            types.empty() ? "nodes alone"
+                                          : "elements of type " + joinNames(types) + " alone"));
+  }
+
+  void refuseMadeShells() {
+    for (const InpMaker& maker : scan_.makers) {
+      if (facesOf(maker.originals).empty()) continue;
+      fail(maker.where, fmt::format("*{} makes shells of others and is not read; write out nodes "
+                                    "and elements where they lie",
+                                    maker.keyword));
+    }
   }
 
   void addNodes() {
@@ -53,8 +79,13 @@ class InpReader {
   Index vertexOf(long long number, const InpElement& element) const {
     const Index vertex = nodes_.find(number);
     if (vertex == kNone) {
+      const std::string cure =
+          scan_.node_makers.empty()
+              ? "correct it"
+              : fmt::format("*{} makes nodes and is not read, write out nodes where they lie",
+                            scan_.node_makers.front());
       fail(element.where,
-           fmt::format("node {} of element {} does not exist; correct it", number, element.number));
+           fmt::format("node {} of element {} does not exist; {}", number, element.number, cure));
     }
     return vertex;
   }
@@ -71,10 +102,10 @@ class InpReader {
   }
   long long number(Index e) const { return scan_.elements[e].number; }
 
-  /// Faces of a set, each once, in any order.
-  std::vector<Index> facesOf(const InpSet& set) {
+  /// Faces among the elements of these numbers, each once, in any order.
+  std::vector<Index> facesOf(const std::vector<InpRange>& numbers) {
     std::vector<Index> found;
-    for (const InpRange& range : set.members) {
+    for (const InpRange& range : numbers) {
       auto at = std::lower_bound(order_.begin(), order_.end(), range.first,
                                  [&](Index e, long long first) { return number(e) < first; });
       for (; at != order_.end() && number(*at) <= range.last; ++at) {
@@ -106,7 +137,7 @@ class InpReader {
     std::vector<std::tuple<int, std::size_t>> rank(count);
     std::vector<bool> loses(scan_.sets.size(), false);
     for (std::size_t s = 0; s < scan_.sets.size(); ++s) {
-      const std::vector<Index> found = facesOf(scan_.sets[s]);
+      const std::vector<Index> found = facesOf(scan_.sets[s].members);
       const auto rank_here = rankOf(scan_.sets[s], found.size());
       for (const Index e : found) {
         const bool is_first = set_of_[e] == kNone;

@@ -35,6 +35,7 @@ class OffReader {
     const std::size_t faces = count(1, "faces", 8);
     for (std::size_t v = 0; v < vertices; ++v) vertex();
     for (std::size_t f = 0; f < faces; ++f) face(f);
+    faces_.refuseCloud();
     return faces_.finish("export the scene with its faces");
   }
 

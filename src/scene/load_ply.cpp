@@ -64,6 +64,7 @@ class PlyReader {
       faces_.scene().notes.push_back(
           {Severity::warning, "what stands after the last element of the file is left out"});
     }
+    faces_.refuseCloud();
     return faces_.finish("export the scene with its faces");
   }
 
@@ -225,7 +226,7 @@ void PlyReader::face(std::size_t number, const PlyElement& element) {
         corners_.push_back(Index(vertex));
       }
     } else if (!grouped && !property.count && !isFraction(property.type) &&
-               namesGroups(property.name)) {
+               groupArrayRank(property.name)) {
       group = fmt::format("{} {}", property.name, cursor_.integer(property.type, "group"));
       grouped = true;
     } else {

@@ -90,7 +90,8 @@ class VtkReader {
   void words(const std::string& name, std::size_t components, std::size_t tuples);
   NumberType type(std::string_view name) const;
   void passMetadata();
-  bool wanted(const std::string& name, std::size_t components, std::size_t tuples) const;
+  bool mayBeGroups(const std::string& name, std::size_t components, std::size_t tuples) const;
+  void offerGroups(const VtkGroupRank& rank, std::vector<std::string> groups);
   std::size_t small(const char* what);
   void assemble();
 
@@ -98,6 +99,7 @@ class VtkReader {
   MeshCursor cursor_;
   GroupedFaces faces_;
   VtkCells cells_;
+  std::optional<VtkGroupRank> group_rank_;  ///< of the array that cells_.groups are from
   bool is_grid_ = false;
   bool has_types_ = false;
   Lists kinds_[4];  ///< POLYDATA: vertices, lines, polygons, strips; a grid: its cells first
@@ -297,9 +299,16 @@ void VtkReader::field() {
   }
 }
 
-bool VtkReader::wanted(const std::string& name, std::size_t components, std::size_t tuples) const {
-  return data_ == Data::cell && components == 1 && tuples == tuples_ && cells_.groups.empty() &&
-         namesGroups(name);
+bool VtkReader::mayBeGroups(const std::string& name, std::size_t components,
+                            std::size_t tuples) const {
+  return data_ == Data::cell && components == 1 && tuples == tuples_ && groupArrayRank(name);
+}
+
+/// Keeps what ranks first among what is offered.
+void VtkReader::offerGroups(const VtkGroupRank& rank, std::vector<std::string> groups) {
+  if (group_rank_ && *group_rank_ <= rank) return;
+  group_rank_ = rank;
+  cells_.groups = std::move(groups);
 }
 
 void VtkReader::array(const std::string& name, std::string_view kind, std::size_t components,
@@ -307,12 +316,14 @@ void VtkReader::array(const std::string& name, std::string_view kind, std::size_
   if (lowerCase(kind) == "string") return words(name, components, tuples);
   const NumberType number = type(kind);
   cursor_.require(tuples, "number of tuples", number, components);
-  if (!wanted(name, components, tuples) || isFraction(number)) {
+  if (!mayBeGroups(name, components, tuples) || isFraction(number)) {
     return cursor_.skip(number, components * tuples);
   }
-  for (const long long value : numbers(number, tuples, "group")) {
-    cells_.groups.push_back(vtkGroupName(name, value));
-  }
+  const std::vector<long long> values = numbers(number, tuples, "group");
+  std::vector<std::string> groups;
+  groups.reserve(values.size());
+  for (const long long value : values) groups.push_back(vtkGroupName(name, value));
+  offerGroups(vtkGroupRank(name, false, allDiffer(values)), std::move(groups));
 }
 
 /// One a line.
@@ -324,11 +335,13 @@ void VtkReader::words(const std::string& name, std::size_t components, std::size
                     name));
   }
   cursor_.require(tuples, "number of tuples", u8, components);
-  const bool are_groups = wanted(name, components, tuples);
+  const bool may_be_groups = mayBeGroups(name, components, tuples);
+  std::vector<std::string> groups;
   for (std::size_t k = 0; k < components * tuples; ++k) {
     const std::string word = percentDecoded(cursor_.restOfLine());
-    if (are_groups) cells_.groups.push_back(word.empty() ? "unnamed" : word);
+    if (may_be_groups) groups.push_back(word.empty() ? "unnamed" : word);
   }
+  if (may_be_groups) offerGroups(vtkGroupRank(name, true, false), std::move(groups));
 }
 
 void VtkReader::assemble() {

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <pugixml.hpp>
 
 #include "base/input_file.h"
@@ -32,9 +34,11 @@ class VtkXmlReader {
                       "Surface)",
                       kind));
     }
+    const pugi::xml_node data = root.child(kind.c_str());
+    group_array_ = groupArray(data);
     std::size_t first = 0;
     const std::string stem = std::filesystem::path(file_.path).stem().string();
-    for (const pugi::xml_node piece : root.child(kind.c_str()).children("Piece")) {
+    for (const pugi::xml_node piece : data.children("Piece")) {
       const VtkCells cells = kind == "PolyData" ? polygons(piece) : grid(piece);
       addVtkCells(cells, file_.path, stem, first, faces_);
       first += cells.ends.size();
@@ -52,6 +56,8 @@ class VtkXmlReader {
   VtkArray array(const pugi::xml_node& node) const;
   pugi::xml_node named(const pugi::xml_node& parent, const char* name) const;
   void points(const pugi::xml_node& piece, VtkCells& cells);
+  bool mayBeGroups(const pugi::xml_node& node) const;
+  std::string groupArray(const pugi::xml_node& data) const;
   void groups(const pugi::xml_node& piece, VtkCells& cells) const;
   void append(const pugi::xml_node& lists, VtkCells& cells) const;
   VtkCells polygons(const pugi::xml_node& piece);
@@ -60,6 +66,7 @@ class VtkXmlReader {
   std::string content_;
   VtkFile file_;
   pugi::xml_document document_;
+  std::string group_array_;  ///< that names cells; empty: none does
   GroupedFaces faces_;
 };
 
@@ -141,27 +148,57 @@ void VtkXmlReader::append(const pugi::xml_node& lists, VtkCells& cells) const {
   }
 }
 
+bool VtkXmlReader::mayBeGroups(const pugi::xml_node& node) const {
+  const std::string_view type = node.attribute("type").value();
+  return groupArrayRank(node.attribute("Name").value()) && !type.starts_with("Float") &&
+         node.attribute("NumberOfComponents").as_llong(1) <= 1;
+}
+
+/// The array that names cells, one for all pieces: a piece of few cells would not tell.
+std::string VtkXmlReader::groupArray(const pugi::xml_node& data) const {
+  std::map<std::string, std::vector<long long>> values;  // of all cells, none of words
+  std::vector<VtkArray> arrays;
+  for (const pugi::xml_node piece : data.children("Piece")) {
+    for (const pugi::xml_node node : piece.child("CellData").children()) {
+      if (!mayBeGroups(node)) continue;
+      const VtkArray found = array(node);
+      const auto [place, is_new] = values.try_emplace(found.name);
+      if (is_new) arrays.push_back(found);
+      if (found.type == "String") continue;
+      const std::vector<long long> here = vtkIntegers(file_, found);
+      place->second.insert(place->second.end(), here.begin(), here.end());
+    }
+  }
+  std::string best;
+  std::optional<VtkGroupRank> best_rank;
+  for (const VtkArray& found : arrays) {
+    const auto rank =
+        vtkGroupRank(found.name, found.type == "String", allDiffer(values.at(found.name)));
+    if (best_rank && *best_rank <= rank) continue;
+    best = found.name;
+    best_rank = rank;
+  }
+  return best;
+}
+
 void VtkXmlReader::groups(const pugi::xml_node& piece, VtkCells& cells) const {
-  for (const pugi::xml_node node : piece.child("CellData").children()) {
-    const VtkArray data = array(node);
-    const bool is_fraction = data.type.starts_with("Float");
-    const long long components = node.attribute("NumberOfComponents").as_llong(1);
-    if (!namesGroups(data.name) || is_fraction || components > 1) continue;
-    if (data.type == "String") {
-      cells.groups = vtkWords(file_, data);
-      for (std::string& group : cells.groups) {
-        if (group.empty()) group = "unnamed";
-      }
-    } else {
-      for (const long long value : vtkIntegers(file_, data)) {
-        cells.groups.push_back(vtkGroupName(data.name, value));
-      }
+  const pugi::xml_node node =
+      piece.child("CellData").find_child_by_attribute("Name", group_array_.c_str());
+  if (group_array_.empty() || !node) return;
+  const VtkArray data = array(node);
+  if (data.type == "String") {
+    cells.groups = vtkWords(file_, data);
+    for (std::string& group : cells.groups) {
+      if (group.empty()) group = "unnamed";
     }
-    if (cells.groups.size() != cells.ends.size()) {
-      fail(fmt::format("DataArray {} has {} values for {} cells; export it again", data.name,
-                       cells.groups.size(), cells.ends.size()));
+  } else {
+    for (const long long value : vtkIntegers(file_, data)) {
+      cells.groups.push_back(vtkGroupName(data.name, value));
     }
-    return;
+  }
+  if (cells.groups.size() != cells.ends.size()) {
+    fail(fmt::format("DataArray {} has {} values for {} cells; export it again", data.name,
+                     cells.groups.size(), cells.ends.size()));
   }
 }
 

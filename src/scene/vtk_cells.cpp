@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <map>
+#include <algorithm>
 #include <optional>
 #include <span>
 
@@ -131,6 +131,16 @@ class CellAdder {
 };
 
 }  // namespace
+
+VtkGroupRank vtkGroupRank(std::string_view array, bool has_words, bool differs_everywhere) {
+  return {has_words ? 0 : differs_everywhere ? 2 : 1, groupArrayRank(array).value_or(kNone)};
+}
+
+bool allDiffer(std::span<const long long> values) {
+  std::vector<long long> sorted(values.begin(), values.end());
+  std::sort(sorted.begin(), sorted.end());
+  return std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
+}
 
 std::string vtkGroupName(const std::string& array, long long value) {
   return fmt::format("{} {}", array, value);

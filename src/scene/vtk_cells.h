@@ -2,8 +2,10 @@
 // Toolkit", file formats).
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "scene/grouped_faces.h"
@@ -24,6 +26,15 @@ inline constexpr long long kVtkPolyVertex = 2;
 inline constexpr long long kVtkPolyLine = 4;
 inline constexpr long long kVtkPolygon = 7;
 inline constexpr long long kVtkStrip = 6;
+
+/// Which of several arrays that name groups counts: the one of the lowest rank, of equal ones the
+/// first. Words are meant to be read. Numbers that differ from cell to cell are numbers of the
+/// cells, and count where there is nothing else. `array`: as groupArrayRank() takes it.
+using VtkGroupRank = std::pair<int, std::size_t>;
+VtkGroupRank vtkGroupRank(std::string_view array, bool has_words, bool differs_everywhere);
+
+/// Whether no two are the same.
+bool allDiffer(std::span<const long long> values);
 
 /// "group 3": the name of an integer group.
 std::string vtkGroupName(const std::string& array, long long value);

@@ -60,6 +60,13 @@ class Inp(CliTest):
         self.assertIn("elements that are no faces (volumes, beams, ...) are left out, of type: C3D4, B31",
                       self.run_program("info", "a.inp").err)
 
+    def test_what_other_statements_make_is_no_matter_of_the_shells(self):
+        # Nodes and volumes that keywords make of others, a system that is over, a set of volumes and shells.
+        text = (HEAD + TWO + "*NGEN\n1, 5, 1\n*NFILL\nNall, Nall, 3\n*NCOPY\n*SYSTEM\n1, 0, 0\n*SYSTEM\n*NODE\n"
+                "7, 0, 2, 0\n*ELEMENT, TYPE=C3D8, ELSET=Esolid\n3, 1,2,3,4,5,6,7,8\n*ELGEN\n3, 2, 1, 1\n"
+                "*ELCOPY, OLD SET=Esolid\n*ELSET, ELSET=Eboth\nSurface1, Esolid\n")
+        self.assertEqual(self.surfaces(text), {"Surface1": 2})
+
     def test_included_files_are_read(self):
         (self.folder / "parts").mkdir()
         self.put(HEAD + "*INCLUDE, INPUT=more.msh\n", "parts/nodes.inc")
@@ -90,8 +97,15 @@ class Inp(CliTest):
                 ("*HEADING\n", "*INSTANCE, NAME=a, PART=b\n", ":1: parts and instances are not read; write the input "
                  "without them (in Abaqus/CAE: Model, Edit Attributes, Do not use parts and assemblies in input "
                  "files)"),
-                ("*HEADING\n", "*NGEN\n", ":1: *ngen makes or moves nodes and is not read; write out nodes and "
-                                          "elements where they lie"),
+                ("*HEADING\n", "*NMAP\n", ":1: *NMAP moves nodes and is not read; write nodes where they lie"),
+                ("*HEADING\n", "*SYSTEM\n1, 0, 0\n", ":5: nodes in the coordinates of *SYSTEM are not read; write "
+                                                      "x, y, z"),
+                ("4, 0., 1., 0.", "*NGEN\n3, 4, 1", ":13: node 4 of element 1 does not exist; *ngen makes nodes and is "
+                                                    "not read, write out nodes where they lie"),
+                ("2, 2,5,6,3\n", "*ELGEN\n1, 3, 1, 1\n", ":13: *elgen makes shells of others and is not read; write "
+                                                          "out nodes and elements where they lie"),
+                ("2, 2,5,6,3\n", "*ELCOPY, OLD SET=surface1\n", ":13: *elcopy makes shells of others and is not "
+                 "read; write out nodes and elements where they lie"),
                 (", NSET=Nall", ", SYSTEM=C", ":4: cylindrical and spherical coordinates are not read; write x, y, z"),
                 (", NSET=Nall", ", INPUT=x", ":4: *node from another file is not read; use *INCLUDE"),
         ]:
@@ -103,7 +117,12 @@ class Inp(CliTest):
                   text + "*ELSET, ELSET=a\nnone\n")
         self.says(":15: the last element is not less than the first, and the step is 1 or more; correct the line",
                   text + "*ELSET, ELSET=a, GENERATE\n1, 9, 0\n")
-        self.says(": no faces; write the surfaces as shells (TYPE=S3, S4, S6, S8)", HEAD)
+        self.says(": no faces, nodes alone; write the surfaces as shells (TYPE=S3, S4, S6, S8)", HEAD)
+        solids = "*ELEMENT, TYPE=C3D8\n1, 1,2,3,4\n*ELEMENT, TYPE=B32\n2, 1,2,3\n*ELEMENT, TYPE=C3D8\n3, 1,2,3,4\n"
+        self.says(": no faces, elements of type B32, C3D8 alone; write the surfaces as shells (TYPE=S3, S4, S6, S8)",
+                  HEAD + solids)
+        self.says(": is no input of CalculiX or Abaqus: it has neither *NODE nor *ELEMENT; check the name",
+                  "SPECIES\nH2 O2\nEND\n")
 
     def test_sets_of_sets_do_not_fill_the_memory(self):
         text = HEAD + TWO + "*ELSET, ELSET=s0\n1, 1\n"

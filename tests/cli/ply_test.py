@@ -96,8 +96,10 @@ class Ply(CliTest):
                   whole[:place] + nan + whole[place + 8:])
         self.refuse("info", self.put(whole.replace(b"element face 1", b"element face 4294967295")),
                     words=["a.ply: byte ", "element face 4294967295: the file is too short for so many"])
-        self.says(": no faces; export the scene with its faces",
-                  whole.replace(b"element face 1", b"element face 0"))
+        self.says(": is a cloud of 4 points without faces; make a surface of it first (in MeshLab: Filters, "
+                  "Remeshing, Surface Reconstruction)", whole.replace(b"element face 1", b"element face 0"))
+        self.says(": no faces; export the scene with its faces", "ply\nformat ascii 1.0\nelement vertex 0\nproperty "
+                  "float x\nproperty float y\nproperty float z\nend_header\n")
 
 
 if __name__ == "__main__":

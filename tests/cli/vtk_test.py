@@ -66,6 +66,40 @@ class Vtk(CliTest):
         self.put(text, "a.vtp")
         self.assertEqual(self.areas("a.vtp"), {"floor": .5, "unnamed": .5})
 
+    def test_of_several_arrays_that_name_groups_the_best_counts(self):
+        number = "{} 1 2 int\n{}\n"
+        words = "part 1 2 string\nlamp\nfloor\n"
+        ids = number.format("CellEntityIds", "4 4")
+        cells = number.format("patch", "0 1")
+        surface = number.format("surface", "7 7")
+        for arrays, names in [([ids, surface, words], ["lamp", "floor"]), ([ids, surface], ["surface 7"]),
+                              ([surface, ids], ["surface 7"]), ([cells, ids], ["CellEntityIds 4"]),
+                              ([cells], ["patch 0", "patch 1"]),
+                              ([cells, number.format("object", "8 9")], ["object 8", "object 9"])]:
+            self.put(LEGACY + "POLYDATA\n" + POINTS + "POLYGONS 2 10\n4 0 1 3 2\n4 2 3 5 4\nCELL_DATA 2\n"
+                     f"FIELD FieldData {len(arrays)}\n" + "".join(arrays))
+            self.assertEqual(list(self.areas()), names)
+
+    def test_all_pieces_have_the_same_array(self):
+        # Each piece has one cell, whose number differs from none other's there.
+        number = '<DataArray type="Int32" Name="{}" format="ascii">{}</DataArray>'
+        pieces = ""
+        for k in range(3):
+            pieces += ('<Piece NumberOfPoints="3" NumberOfPolys="1"><Points><DataArray type="Float64" '
+                       f'NumberOfComponents="3" format="ascii">{k} 0 0 {k + 1} 0 0 {k} 1 0</DataArray></Points><CellData>'
+                       f'{number.format("region", k)}{number.format("zone", k // 2)}</CellData><Polys>'
+                       f'{number.format("connectivity", "0 1 2")}{number.format("offsets", 3)}</Polys></Piece>')
+        self.put(f'<VTKFile type="PolyData"><PolyData>{pieces}</PolyData></VTKFile>', "a.vtp")
+        self.assertEqual(self.areas("a.vtp"), {"zone 0": 1, "zone 1": .5})
+
+    def test_the_programs_own_files_keep_the_names(self):
+        box = self.areas("box.obj")
+        self.run_program("mesh", "box.obj", "--patches", "60", "-o", "a.vtp")
+        again = self.areas("a.vtp")
+        self.assertEqual(sorted(again), sorted(box))
+        for name, area in again.items():
+            self.assertAlmostEqual(area, box[name], 12)
+
     def written_by_vtk(self, compressor, mode):
         """A grid of 60 x 60 squares, so that it takes more than one block; half of them are group 1."""
         plane = vtkPlaneSource()
