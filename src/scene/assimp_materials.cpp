@@ -148,8 +148,7 @@ Index AssimpMaterialReader::texture(const aiMaterial& given, const std::string& 
   }
   const std::string name = path.C_Str();
   const auto unusable = [&](const std::string& problem) {
-    ignored_.add(fmt::format("texture {} {}; the colour alone counts, material", name, problem),
-                 material, Severity::warning);
+    noteUnusedTexture(name, problem, "colour", material, ignored_);
     return kNone;
   };
   if (mapping != aiTextureMapping_UV) return unusable("is not mapped by coordinates");

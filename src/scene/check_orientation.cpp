@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <iterator>
 
 #include "scene/checks.h"
 #include "scene/text.h"
@@ -128,10 +129,17 @@ std::vector<std::string> SceneChecks::contentsOf(const ConnectedPart& outer,
   });
   std::sort(near.begin(), near.end());
   std::vector<std::string> contents;
+  const auto is_known = [&](const std::string& name) {
+    return std::find(contents.begin(), contents.end(), name) != contents.end();
+  };
   for (const std::size_t k : near) {
     const ConnectedPart& part = topology_.parts[k];
-    if (contents.size() == most) break;
-    if (&part != &outer && placeOf(part, outer) == Place::inside) contents.push_back(namesOf(part));
+    if (contents.size() >= most) break;
+    const std::vector<std::string> surfaces = surfacesOf(part);
+    const bool adds = !std::all_of(surfaces.begin(), surfaces.end(), is_known);
+    if (!adds || &part == &outer || placeOf(part, outer) != Place::inside) continue;
+    std::copy_if(surfaces.begin(), surfaces.end(), std::back_inserter(contents),
+                 [&](const std::string& name) { return !is_known(name); });
   }
   return contents;
 }
@@ -154,12 +162,14 @@ void SceneChecks::reportPart(const ConnectedPart& part, SceneInfo& info) const {
                      namesOf(part), emits_inwards ? " Its light stays inside" : "")});
   }
   if (part.volume > 0 && (!contents.empty() || camera_inside)) {
+    const std::string names = namesOf(part);
+    std::replace(contents.begin(), contents.end(), names, std::string("another part of it"));
     if (camera_inside) contents.emplace_back("a camera");
     info.problems.push_back(
         {Severity::loud,
          fmt::format("{}: closed, faces outwards and holds {}: a room with flipped normals? What "
                      "lies inside a solid is dropped",
-                     namesOf(part), joinNames(contents, 4))});
+                     names, joinNames(contents, 4))});
   }
 }
 

@@ -134,13 +134,17 @@ void SceneChecks::reportFaces(SceneInfo& info) const {
   }
 }
 
-std::string SceneChecks::namesOf(const ConnectedPart& part) const {
+std::vector<std::string> SceneChecks::surfacesOf(const ConnectedPart& part) const {
   std::vector<std::string> names;
   std::set<Index> seen;
   for (const Index f : part.faces) {
     if (seen.insert(scene_.face_surface[f]).second) names.push_back(surfaceOf(f));
   }
-  return joinNames(names, 4);
+  return names;
+}
+
+std::string SceneChecks::namesOf(const ConnectedPart& part) const {
+  return joinNames(surfacesOf(part), 4);
 }
 
 }  // namespace radiosity

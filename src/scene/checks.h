@@ -43,11 +43,14 @@ class SceneChecks {
     return scene_.surfaces[scene_.face_surface[face]].name;
   }
   bool emits(Index face) const { return materialOf(face).emission != Vec3(0.0); }
-  /// "a/b, c/d" of the surfaces a part has faces of.
+  /// The surfaces a part has faces of, each once.
+  std::vector<std::string> surfacesOf(const ConnectedPart& part) const;
+  /// "a/b, c/d" of them.
   std::string namesOf(const ConnectedPart& part) const;
   Place placeOf(const Vec3& point, const ConnectedPart& outer) const;
   Place placeOf(const ConnectedPart& inner, const ConnectedPart& outer) const;
-  /// Names of parts that lie within `outer`, in their order, `most` at most.
+  /// Surfaces of parts that lie within `outer`, each once, in the order of the parts; no more are
+  /// looked for once there are `most`.
   std::vector<std::string> contentsOf(const ConnectedPart& outer, std::size_t most) const;
   void reportFlippedFaces(SceneInfo& info) const;
   void reportInsideOut(SceneInfo& info) const;

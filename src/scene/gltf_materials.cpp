@@ -136,17 +136,19 @@ Index GltfMaterialReader::texture(const tinygltf::TextureInfo& info, TextureUse 
                                   const std::string& material) {
   const std::string what = "material " + material;
   const tinygltf::Texture& gltf = file_.at(file_.model.textures, info.index, "texture", what);
-  const auto unusable = [&](const std::string& problem) {
-    ignored_.add(problem + "; the factor alone counts, material", material, Severity::warning);
+  const auto unusable = [&](const std::string& image, const std::string& problem) {
+    noteUnusedTexture(image, problem, "factor", material, ignored_);
     return kNone;
   };
   const int source = imageOf(gltf);
-  if (source < 0) return unusable("texture has no image in PNG, JPEG or WebP");
+  if (source < 0) {
+    return unusable(std::to_string(info.index), "has no image in PNG, JPEG or WebP");
+  }
   const tinygltf::Image& image = file_.at(file_.model.images, source, "image", what);
   std::string name = image.name.empty() ? image.uri : image.name;
   if (name.empty()) name = fmt::format("image{}", source);
   const std::span<const unsigned char> bytes = file_.imageBytes(image, what);
-  if (bytes.empty()) return unusable("texture " + name + " is not there");
+  if (bytes.empty()) return unusable(name, kImageMissing);
   const bool repeat = repeats(gltf, material);
   const auto [place, is_new] = texture_of_.try_emplace({source, repeat});
   LoadedTexture& loaded = place->second;
@@ -156,7 +158,7 @@ Index GltfMaterialReader::texture(const tinygltf::TextureInfo& info, TextureUse 
     loaded = keepTexture(std::move(result), repeat, scene_);
   }
   const std::string problem = loaded.problemAs(use);
-  if (!problem.empty()) return unusable("texture " + name + " " + problem);
+  if (!problem.empty()) return unusable(name, problem);
   return loaded.index;
 }
 

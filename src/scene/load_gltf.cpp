@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
@@ -35,6 +36,7 @@ class Reader {
   Index materialOf(const tinygltf::Primitive& primitive, const std::string& object,
                    const std::string& what);
   void noteUnused();
+  bool isNoted(const std::string& extension) const;
 
   const GltfFile& file_;
   const tinygltf::Model& model_;
@@ -224,10 +226,19 @@ void Reader::noteUnused() {
     ignored_.add("animations are not played", fmt::format("{}", model_.animations.size()));
   }
   for (const std::string& extension : model_.extensionsUsed) {
-    if (!isSupportedGltfExtension(extension)) {
+    if (!isSupportedGltfExtension(extension) && !isNoted(extension)) {
       ignored_.add("optional extensions that are not read", extension);
     }
   }
+}
+
+/// Whether materials or nodes that have it are named beside it.
+bool Reader::isNoted(const std::string& extension) const {
+  for (std::size_t k = 0; k < visited_.size(); ++k) {
+    if (visited_[k] && model_.nodes[k].extensions.contains(extension)) return true;
+  }
+  return std::any_of(model_.materials.begin(), model_.materials.end(),
+                     [&](const tinygltf::Material& m) { return m.extensions.contains(extension); });
 }
 
 }  // namespace

@@ -38,6 +38,10 @@ Scene readByExtension(const std::string& path, const SceneOptions& options) {
   for (const Format& format : kFormats) {
     if (extension == format.extension) return format.load(path, options);
   }
+  if (extension == ".gz") {
+    throw InputError(
+        fmt::format("{0}: is packed by gzip; unpack it first: gunzip --keep '{0}'", path));
+  }
   throw InputError(fmt::format(
       "{}: {} is not a scene format this program reads; export it as one "
       "of {}",

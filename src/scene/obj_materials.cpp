@@ -185,8 +185,7 @@ Index ObjMaterialReader::texture(const std::string& material, const Map& map,
   }
   const std::string problem = loaded.problemAs(map.use);
   if (problem.empty()) return loaded.index;
-  ignored_.add(fmt::format("texture {} {}; the factor alone counts, material", path, problem),
-               material, Severity::warning);
+  noteUnusedTexture(path, problem, "factor", material, ignored_);
   return kNone;
 }
 

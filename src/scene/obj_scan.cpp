@@ -174,9 +174,10 @@ void ObjScanner::corner(std::string_view word) {
   const std::vector<std::string_view> parts = splitAt(word, '/');
   if (parts.size() > 3) fail(fmt::format("`{}` is not a corner v, v/vt or v/vt/vn", word));
   scan_.corners.push_back(index(parts[0], word, vertices_));
-  const bool textured = parts.size() > 1 && !(parts[1].empty() && parts.size() == 3);
+  // `1/`, `1//` and `1/2/` leave out what a corner need not have.
+  const bool textured = parts.size() > 1 && !parts[1].empty();
   scan_.corner_texcoord.push_back(textured ? index(parts[1], word, texcoords_) : kNone);
-  if (parts.size() > 2) index(parts[2], word, normals_);
+  if (parts.size() > 2 && !parts[2].empty()) index(parts[2], word, normals_);
 }
 
 /// An index that counts from 0; only finish() checks it against the end of the file.

@@ -18,16 +18,17 @@ std::string UniqueNames::make(const std::string& wanted) {
   }
 }
 
-void FeatureNotes::add(const std::string& feature, const std::string& name, Severity severity) {
+void FeatureNotes::add(const std::string& feature, const std::string& name, Severity severity,
+                       std::size_t shown) {
   const auto [place, is_new] = entry_of_.try_emplace(feature, entries_.size());
-  if (is_new) entries_.push_back({feature, severity, {}, {}});
+  if (is_new) entries_.push_back({feature, severity, shown, {}, {}});
   Entry& entry = entries_[place->second];
   if (entry.seen.insert(name).second) entry.names.push_back(name);
 }
 
 void FeatureNotes::appendTo(std::vector<Note>& notes) const {
   for (const Entry& entry : entries_) {
-    notes.push_back({entry.severity, entry.feature + ": " + joinNames(entry.names)});
+    notes.push_back({entry.severity, entry.feature + ": " + joinNames(entry.names, entry.shown)});
   }
 }
 

@@ -26,7 +26,9 @@ class UniqueNames {
 /// Collects "this feature of that element is not used" and turns it into one note a feature.
 class FeatureNotes {
  public:
-  void add(const std::string& feature, const std::string& name, Severity severity = Severity::info);
+  /// `shown`: so many names are written out, of the others how many they are.
+  void add(const std::string& feature, const std::string& name, Severity severity = Severity::info,
+           std::size_t shown = 12);
   /// Appends "FEATURE: NAME, NAME" for every feature, in the order they were first seen.
   void appendTo(std::vector<Note>& notes) const;
 
@@ -34,6 +36,7 @@ class FeatureNotes {
   struct Entry {
     std::string feature;
     Severity severity;
+    std::size_t shown;
     std::vector<std::string> names;  ///< in the order they came, once each
     std::set<std::string> seen;
   };

@@ -81,6 +81,18 @@ std::string LoadedTexture::problemAs(TextureUse use) const {
   return "has texels above 1, which are no reflectances";
 }
 
+void noteUnusedTexture(const std::string& file, const std::string& problem, const char* what,
+                       const std::string& material, FeatureNotes& notes) {
+  if (problem != kImageMissing) {
+    notes.add(fmt::format("texture {} {}; the {} alone counts, material", file, problem, what),
+              material, Severity::warning);
+    return;
+  }
+  constexpr std::size_t kShown = 4;  // with their paths
+  notes.add(fmt::format("textures that are not there; the {} alone counts, material", what),
+            fmt::format("{} ({})", material, file), Severity::warning, kShown);
+}
+
 LoadedTexture keepTexture(TextureResult result, bool repeat, Scene& scene) {
   LoadedTexture loaded;
   loaded.problem = result.problem;
@@ -94,7 +106,7 @@ LoadedTexture keepTexture(TextureResult result, bool repeat, Scene& scene) {
 
 TextureResult readTexture(const std::string& path, double max_image) {
   std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) return withProblem("is not there");
+  if (!std::filesystem::exists(path, ignored)) return withProblem(kImageMissing);
   const std::string why = whyNotAFile(path);
   if (!why.empty()) return withProblem(why);
   return decoded(path, [&] { return imageCodec().read(path, max_image * 1e6); });

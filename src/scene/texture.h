@@ -5,6 +5,7 @@
 #include <string>
 
 #include "radiosity/scene.h"
+#include "scene/scene_builder.h"
 
 namespace radiosity {
 
@@ -15,6 +16,9 @@ struct TextureResult {
   bool above_one = false;  ///< a texel is above 1: it is no reflectance
   std::string problem;
 };
+
+/// TextureResult::problem where there is no such image.
+inline constexpr const char* kImageMissing = "is not there";
 
 /// The quantity that a texture multiplies.
 enum class TextureUse { reflectance, emission };
@@ -28,6 +32,12 @@ struct LoadedTexture {
   /// Why it cannot be used so; empty: it can.
   std::string problemAs(TextureUse use) const;
 };
+
+/// Says that the `what` (factor or colour) of `material` alone counts, since the image `file`
+/// cannot be used for what LoadedTexture::problem says. Those that are not there are one note
+/// together: where a folder is missing they are all.
+void noteUnusedTexture(const std::string& file, const std::string& problem, const char* what,
+                       const std::string& material, FeatureNotes& notes);
 
 /// Puts what was read among the scene's textures.
 LoadedTexture keepTexture(TextureResult result, bool repeat, Scene& scene);

@@ -155,7 +155,7 @@ class OtherFormats(CliTest):
         _, off = self.patches_of("--textures", "off")
         os.remove(self.folder / "halves.png")
         run = self.run_program("info", "a.dae")
-        self.assertIn("HALVES.PNG is not there; the colour alone counts, material: paint", run.err)
+        self.assertIn("are not there; the colour alone counts, material: paint (C:\\work\\HALVES.PNG)", run.err)
         _, without = self.patches_of()
         self.assertEqual(off.tolist(), without.tolist())
 
@@ -202,6 +202,8 @@ class OtherFormats(CliTest):
         ]:
             with self.subTest(new=new):
                 self.says(line, "a.off", OFF.replace(old, new))
+        self.says(": is a cloud of 4 points without faces; make a surface of it first (in MeshLab: Filters, "
+                  "Remeshing, Surface Reconstruction)", "a.off", OFF[:OFF.index("3 0 1 2")].replace("4 2 0", "4 0 0"))
 
     def test_broken_files_of_assimp_are_one_line(self):
         for name, content in [("a.dae", COLLADA[:900]), ("a.x3d", X3D[:200]), ("a.fbx", FBX[:300]), ("a.dae", "hello"),

@@ -135,6 +135,16 @@ TEST(SceneInspect, NamesSolidsAndRoomsThatAreInsideOut) {
   outwards.box(outwards.surface("lamp", 0.5, 1), {1, 1, 1}, {2, 2, 2});
   EXPECT_NOTE(inspectScene(outwards.scene()).problems,
               "walls/walls: closed, faces outwards and holds lamp/lamp", Severity::loud);
+  // However many bodies a surface has, it is named once; what else the solid has is no other's.
+  SceneBuilder beads;
+  const Index shell = beads.surface("shell");
+  const Index bead = beads.surface("bead", 0.5, 1);
+  beads.box(shell, {0, 0, 0}, {9, 9, 9});
+  for (int k = 1; k < 5; ++k) beads.box(bead, {2 * k - 1, 1, 1}, {2 * k, 2, 2});
+  beads.box(shell, {1, 4, 1}, {2, 5, 2});
+  EXPECT_NOTE(inspectScene(beads.scene()).problems,
+              "shell/shell: closed, faces outwards and holds bead/bead, another part of it: a room",
+              Severity::loud);
   // A lamp turned inside out keeps its light.
   Room room;
   room.builder.box(room.lamp, {0.5, 0.5, 2}, {1, 1, 3}, false);

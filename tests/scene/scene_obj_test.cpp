@@ -133,10 +133,39 @@ TEST_F(SceneObj, RefusesIndicesThatPointNowhere) {
   EXPECT_CONTAINS(errorOf(kSquare + "f 1//2 2//1 3//1\n"), "normal 2 does not exist");
   EXPECT_CONTAINS(errorOf(kSquare + "f 1 2 99999999999\n"), "vertex 99999999999 does not exist");
   EXPECT_CONTAINS(errorOf(kSquare + "f 1.5 2 3\n"), "`1.5` is not a corner");
-  EXPECT_CONTAINS(errorOf(kSquare + "f 1/ 2/ 3/\n"), "is not a corner");
   EXPECT_CONTAINS(errorOf(kSquare + "f 1/1/1/1 2 3\n"), "is not a corner");
+  EXPECT_CONTAINS(errorOf(kSquare + "f /1 2 3\n"), "`/1` is not a corner");
   // A vertex may be defined after the face that uses it.
   EXPECT_EQ(load("f 1 2 3\n" + kSquare).faceCount(), 1u);
+}
+
+TEST_F(SceneObj, TakesWhatStandsEmptyBehindSlashesAsLeftOut) {
+  const Scene scene =
+      load(kSquare + "vt 0 0\nvn 0 0 1\nf 1/ 2/ 3/\nf 1// 2// 3//\nf 1/1/ 3/1/ 4//1\n");
+  EXPECT_EQ(scene.faceCount(), 3u);
+  EXPECT_CONTAINS(errorOf(kSquare + "f 1/2/ 2/ 3/\n"), "texture coordinate 2 does not exist");
+}
+
+TEST_F(SceneObj, NamesMissingTexturesInOneNote) {
+  std::string mtl;
+  std::string faces;
+  for (int k = 0; k < 15; ++k) {
+    mtl += fmt::format("newmtl m{0}\nKd .5 .5 .5\nmap_Kd t{0}.png\n", k);
+    faces += fmt::format("usemtl m{}\n{}", k, kFace);
+  }
+  write("m.mtl", mtl);
+  const Scene scene = load("mtllib m.mtl\n" + kSquare + faces);
+  EXPECT_NOTE(scene.notes,
+              fmt::format("textures that are not there; the factor alone counts, material: "
+                          "m0 ({0}), m1 ({1}), m2 ({2}), m3 ({3}) and 11 more",
+                          path("t0.png"), path("t1.png"), path("t2.png"), path("t3.png")),
+              Severity::warning);
+  EXPECT_EQ(allNotes(scene.notes).find("m4"), std::string::npos);
+}
+
+TEST_F(SceneObj, SaysHowToUnpackAFile) {
+  EXPECT_CONTAINS(inputErrorOf([&] { loadScene(write("wing.obj.gz", "\x1f\x8b")); }),
+                  "wing.obj.gz: is packed by gzip; unpack it first: gunzip --keep");
 }
 
 TEST_F(SceneObj, RefusesFacesOfTooFewCorners) {
@@ -292,8 +321,10 @@ TEST_F(SceneObj, NamesWhatADiffuseMaterialLeavesOut) {
   EXPECT_NOTE(scene.notes, "transparency (d, Tr) is not used, material: glass", Severity::warning);
   EXPECT_NOTE(scene.notes, "texture map_Bump is not used, material: glass", Severity::info);
   EXPECT_NOTE(scene.notes, "metalness (Pm) is not used, material: steel", Severity::info);
-  EXPECT_NOTE(scene.notes, "e.png is not there; the factor alone counts, material: steel",
-              Severity::warning);
+  EXPECT_NOTE(
+      scene.notes,
+      fmt::format("are not there; the factor alone counts, material: steel ({})", path("e.png")),
+      Severity::warning);
   EXPECT_NOTE(scene.notes, "unknown MTL statement `blurb`", Severity::warning);
   EXPECT_NOTE(scene.notes, "material bare gives no Kd: reflectance 0.5", Severity::info);
   EXPECT_NOTE(scene.notes, "m.mtl:17: material bare is defined twice", Severity::warning);

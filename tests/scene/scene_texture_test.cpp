@@ -156,8 +156,10 @@ TEST_F(SceneTexture, TexturesCanBeTurnedOff) {
 
 TEST_F(SceneTexture, GoesOnWithTheFactorWhereATextureCannotBeUsed) {
   Scene scene = load("Kd .3 .3 .3\nmap_Kd lost.png\n");
-  EXPECT_NOTE(scene.notes, "lost.png is not there; the factor alone counts, material: paint",
-              Severity::warning);
+  EXPECT_NOTE(
+      scene.notes,
+      fmt::format("are not there; the factor alone counts, material: paint ({})", path("lost.png")),
+      Severity::warning);
   EXPECT_EQ(scene.materialOf(0).texture, kNone);
   EXPECT_EQ(scene.materialOf(0).reflectance, Vec3(.3));
   EXPECT_EQ(load("map_Kd lost.png\n").materialOf(0).reflectance, Vec3(.5)) << "not 0.6, not 1";
@@ -313,7 +315,7 @@ TEST_F(SceneGltfTexture, ReadsImageFilesAndReportsMissingOnes) {
   Json json = document({{"index", 0}});
   json["images"][0] = {{"uri", "my%20wood.png"}};
   EXPECT_NOTE(load(json).notes,
-              "my%20wood.png is not there; the factor alone counts, material: desk",
+              "are not there; the factor alone counts, material: desk (my%20wood.png)",
               Severity::warning);
   write("my wood.png", png(1, {"\x80\xff\x40"}, 2, 8));
   const Scene scene = load(json);
