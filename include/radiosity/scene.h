@@ -108,7 +108,7 @@ void validate(const Scene& scene);
 
 /// How a file is read. The defaults are the ones the README states.
 struct SceneOptions {
-  std::string unit;                    ///< mm|cm|m|in|ft; empty: metres
+  std::string unit;                    ///< mm|cm|m|in|ft; empty: the file's, else metres
   bool kd_is_srgb = false;             ///< Kd and base colour of an OBJ are sRGB, linearise them
   double default_reflectance = 0.5;    ///< where a face has no material; 0 to 1
   bool textures = true;                ///< false: the material's factor alone
@@ -126,13 +126,13 @@ struct SceneOptions {
 std::string sceneExtensions();
 
 /// Reads a scene, its format told by the extension, and applies the overrides: .obj (+ .mtl),
-/// .gltf, .glb, .stl; View3D's .vs3, .v3d; Gmsh's .msh (2.2, 4.1); .inp of CalculiX and Abaqus;
-/// .ply, .off; VTK's .vtk, .vtp, .vtu; by Assimp .dae, .fbx, .3ds, .x3d, .ifc. Named groups (solids,
-/// physical groups, element sets, arrays of cells) are surfaces. Face f of the scene is face f of
-/// the file, but one may be several (View3D's with subsurfaces, triangles of a strip), and what has
-/// no area (volumes, lines, points) is left out. An OBJ has no cameras of its own; a comment line
-/// `# camera eye=x,y,z target=x,y,z up=x,y,z fov=DEGREES` (file units, vertical field of view) is
-/// read as one.
+/// .gltf, .glb, .stl, .3mf; View3D's .vs3, .v3d; Gmsh's .msh (2.2, 4.1); .inp of CalculiX and
+/// Abaqus; .ply, .off; VTK's .vtk, .vtp, .vtu; by Assimp .dae, .fbx, .3ds, .x3d, .ifc. Named groups
+/// (solids, physical groups, element sets, arrays of cells) are surfaces. Face f of the scene is
+/// face f of the file, but one may be several (View3D's with subsurfaces, triangles of a strip),
+/// and what has no area (volumes, lines, points) is left out. An OBJ has no cameras of its own; a
+/// comment line `# camera eye=x,y,z target=x,y,z up=x,y,z fov=DEGREES` (file units, vertical field
+/// of view) is read as one.
 /// Errors: InputError, one line with file, element and cure; RunError where the scene does not fit
 /// into memory.
 Scene loadScene(const std::string& path, const SceneOptions& options = {});

@@ -30,6 +30,7 @@ constexpr std::array kFormats = {
     Format{".vtk", loadVtk},    Format{".vtp", loadVtkXml}, Format{".vtu", loadVtkXml},
     Format{".dae", loadAssimp}, Format{".fbx", loadAssimp}, Format{".3ds", loadAssimp},
     Format{".x3d", loadAssimp}, Format{".ifc", loadAssimp}, Format{".off", loadOff},
+    Format{".3mf", load3mf},
 };
 
 Scene readByExtension(const std::string& path, const SceneOptions& options) {

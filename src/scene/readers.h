@@ -37,6 +37,9 @@ Scene loadVtkXml(const std::string& path, const SceneOptions& options);
 /// OFF, in text; file units, overrides not yet applied.
 Scene loadOff(const std::string& path, const SceneOptions& options);
 
+/// 3MF; scene.unit as the file names it, overrides not yet applied.
+Scene load3mf(const std::string& path, const SceneOptions& options);
+
 /// What Assimp reads: Collada, FBX, 3DS, X3D, IFC; Collada, FBX and IFC in metres, else file units,
 /// overrides not yet applied.
 Scene loadAssimp(const std::string& path, const SceneOptions& options);
