@@ -78,7 +78,7 @@ struct HeatBalance {
   double on_backs = 0;    ///< falls on backs that carry no patches: black, at 0 K
   double imbalance = 0;   ///< of rows that do not sum to 1, missing reciprocity and the residual
   double convected = 0;   ///< sum of A h (T - ambient)
-  double throughput = 0;  ///< sum of the net powers above 0, to judge the imbalance by
+  double throughput = 0;  ///< sum of the net powers above 0
 };
 
 struct HeatSummary {
@@ -96,6 +96,14 @@ struct HeatSummary {
   bool usable() const { return status == HeatStatus::converged; }
 };
 
+/// Conditions as a person wrote them.
+struct ConditionText {
+  std::string origin;                 ///< the file that the table is from, for messages
+  std::string table;                  ///< comma-separated, as src/heat/README.md says; empty: none
+  std::vector<std::string> settings;  ///< "NAME.PROPERTY=VALUE", which replace cells of the table
+  bool empty() const { return table.empty() && settings.empty(); }
+};
+
 /// N patches, or rows of the matrix.
 struct HeatSolution {
   int bands = 1;
@@ -105,6 +113,7 @@ struct HeatSolution {
   std::vector<double> convection;   ///< N, W/m^2: h (T - ambient), given off to the air
   std::vector<double> temperature;  ///< N, K; NaN where undetermined
   HeatSummary summary;
+  ConditionText conditions{};  ///< what it was solved for, where that came as text
 };
 
 /// What is known of the rows of a matrix.
@@ -125,18 +134,29 @@ struct HeatRows {
 HeatSolution solveHeat(const FormFactors& factors, const HeatRows& rows, const HeatOptions& options,
                        Progress& progress);
 
-/// Conditions of a scene's surfaces.
+/// Conditions of a scene's surfaces, or of the rows of a matrix.
 struct HeatConditions {
   std::vector<HeatCondition> conditions;
-  std::vector<Index> of_surface;  ///< S, into conditions; S as PatchMesh::surface_names
+  std::vector<Index> of_surface;  ///< into conditions; S as PatchMesh::surface_names, or N rows
+  ConditionText text{};           ///< what they were read from; or empty
 };
 
-/// Reads conditions by name, as SceneOptions::set finds surfaces. `csv_path`: a table whose columns
-/// src/heat/README.md lists; empty: none. `settings`: "NAME.PROPERTY=VALUE", which replace what the
-/// table says. A row or setting of the name * holds for whatever others leave out. Errors:
-/// InputError, one line with file, line and cure; also for a surface without a condition.
+/// The table at `csv_path` (empty: none) and the settings. Errors: as readWholeFile(), and
+/// InputError where there is neither.
+ConditionText readConditionText(const std::string& csv_path, std::span<const std::string> settings);
+
+/// Conditions by name, as SceneOptions::set finds surfaces, or by a pattern of names: * any text,
+/// ? a character, [abc] one of some. What is said by name goes before what a pattern says of the
+/// same surface, settings go before the table, and the name * holds for whatever others leave out.
+/// Errors: InputError, one line with file, line and cure; also for a surface without a condition.
+HeatConditions readHeatConditions(const Scene& scene, const ConditionText& text);
 HeatConditions readHeatConditions(const Scene& scene, const std::string& csv_path,
                                   std::span<const std::string> settings);
+
+/// The same for rows of a matrix, by name (empty where a row has none) or number, from 1.
+/// `emissivity`: N, where conditions give none; or empty.
+HeatConditions readHeatConditions(std::span<const std::string> names,
+                                  std::span<const double> emissivity, const ConditionText& text);
 
 /// Errors: InputError naming the surface, for what solveHeat() would refuse before it begins:
 /// values out of range, and emissivities that are neither one nor one a band.
@@ -166,5 +186,8 @@ struct SurfaceHeat {
 };
 std::vector<SurfaceHeat> heatBySurface(const HeatSolution& solution, const PatchMesh& mesh,
                                        const FormFactors& factors);
+/// The same of the rows of a matrix: those of one name together, each without a name by itself.
+std::vector<SurfaceHeat> heatByName(const HeatSolution& solution,
+                                    std::span<const std::string> names, const FormFactors& factors);
 
 }  // namespace radiosity

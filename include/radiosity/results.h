@@ -49,6 +49,12 @@ struct Results {
 /// True for a file that starts with the HDF5 signature (whatever its name).
 bool isResultsFile(const std::string& path);
 
+/// True for an HDF5 file of another program, which is not to be replaced by results.
+bool isForeignHdf5(const std::string& path);
+
+/// The scene in a results file, without its stages; none where it has none or cannot be read.
+std::optional<Scene> sceneInResults(const std::string& path);
+
 /// Reads all stages. InputError: no such file, not a results file, a damaged or foreign dataset
 /// (named). `with_factors` false: the matrix is left out (its accounts and report are read).
 /// `scratch`: where the matrix is to be; null: in memory.
@@ -77,7 +83,8 @@ Results readResults(const std::string& path, bool with_factors = true,
 ///                  eye_of_corner (at vertices: the eye of every entry of /mesh/corners); at, key,
 ///                  summary/ with passes/ (a row a pass; bound is NaN where there is none)
 ///   /heat          temperature (N), net_flux, convection (N), radiosity, irradiance (N x bands),
-///                  as HeatSolution; key, summary/ with balance_W/
+///                  as HeatSolution; condition_table and condition_settings, what it was solved
+///                  for as that was written; key, summary/ with balance_W/
 ///   /basis         names (S), bands (of one source), radiosity, irradiance, reflectance, emission
 ///                  (N x S * bands, column s * bands + b), sky (S * bands numbers), summary/, key
 /// Bands are as many as rows have columns: three from scene files, any number from a program.
@@ -199,5 +206,8 @@ LitMesh readLitMesh(const std::string& path);
 void writeHeatTable(const std::string& path, std::span<const SurfaceHeat> surfaces);
 /// The same by patch, with its centroid; radiosity and irradiance a column a band.
 void writeHeatPatches(const std::string& path, const HeatSolution& heat, const PatchMesh& mesh);
+/// The same by row of a matrix, from 1, with its name, which may be empty. All have N entries.
+void writeHeatRows(const std::string& path, const HeatSolution& heat,
+                   std::span<const std::string> names, std::span<const double> area);
 
 }  // namespace radiosity

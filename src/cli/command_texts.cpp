@@ -86,10 +86,17 @@ const char* examplesOf(Command command) {
              "reused.\n"
              "Every surface needs an emissivity and a condition: a temperature, a net flux or "
              "power,\n"
-             "or convection. Net flux is above 0 where a surface gives off heat.\n\n"
+             "or convection. Net flux is above 0 where a surface gives off heat. Without "
+             "conditions\n"
+             "those that a results file was made with hold. SCENE may be a matrix of any program,\n"
+             ".mtx (MatrixMarket) or .vf (View3D, with emissivities): conditions by name or "
+             "number\n"
+             "of its rows, from 1; figures go to a .csv.\n\n"
              "Examples:\n"
              "  radiosity heat oven.obj --thermal oven.csv -o oven.h5 -o surfaces.csv\n"
              "  radiosity heat oven.h5 --thermal oven.csv --condition heater.power=900\n"
+             "  radiosity heat oven.h5 -o again.csv\n"
+             "  radiosity heat enclosure.vf --condition 1.temperature=550 --condition '*.flux=0'\n"
              "  radiosity heat plate.stl --condition '*.emissivity=0.9' --condition '*.flux=100'\n"
              "             --sky-temperature 255 -o plate.vtp";
     case Command::compare:

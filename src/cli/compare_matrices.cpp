@@ -3,7 +3,6 @@
 
 #include "cli/matrix_commands.h"
 #include "cli/words.h"
-#include "radiosity/matrix_files.h"
 
 namespace radiosity::cli {
 
@@ -73,7 +72,7 @@ void reportMatrixComparison(Report& report, const MatrixComparison& c, const Mat
   report.number("relative_l2", "relative L2 difference", c.relative_l2,
                 c.weighted ? "(rows weighted by area)" : "(rows weigh alike: areas are not known)");
   report.number("largest", "largest difference", c.largest);
-  report.text("largest_from", "  from", placeOf(names, c.row));
+  report.text("largest_from", "  from (numbered from 1)", placeOf(names, c.row));
   report.text("largest_to", "  to", placeOf(names, c.column));
   report.number("largest_a", "  A there", c.a);
   report.number("largest_b", "  B there", c.b);
@@ -92,7 +91,7 @@ void reportMatrixComparison(Report& report, const MatrixComparison& c, const Mat
 /// Those given are of files that have none of their own.
 MatrixFile readMatrixSide(Session& session, const std::string& path) {
   std::vector<double> areas;
-  if (!session.request.areas.empty() && isMatrixFile(path)) {
+  if (!session.request.areas.empty() && isMatrixInput(path)) {
     areas = readAreas(session.request.areas);
   }
   return readMatrixFile(path, session.progress, areas);
@@ -101,8 +100,8 @@ MatrixFile readMatrixSide(Session& session, const std::string& path) {
 }  // namespace
 
 bool comparesMatrices(const Request& request) {
-  return request.compare_factors || isMatrixFile(request.input) ||
-         (!request.second.empty() && isMatrixFile(request.second));
+  return request.compare_factors || isMatrixInput(request.input) ||
+         (!request.second.empty() && isMatrixInput(request.second));
 }
 
 int compareMatrixFiles(Session& session, OutputSet& files) {

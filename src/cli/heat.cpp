@@ -1,7 +1,8 @@
 #include "radiosity/heat.h"
 
-#include "base/made.h"
-#include "cli/commands.h"
+#include <fmt/format.h>
+
+#include "cli/matrix_commands.h"
 #include "radiosity/results.h"
 
 namespace radiosity::cli {
@@ -18,17 +19,48 @@ void writeTables(Pipeline& pipeline, OutputSet& files) {
               [&](const std::string& temporary) { writeHeatPatches(temporary, heat, mesh); });
 }
 
+/// Those given; where none are, those that the heat in the results file was solved for.
+HeatConditions conditionsFor(Session& session, const Pipeline& pipeline) {
+  const Request& request = session.request;
+  const std::optional<HeatSolution>& stored = pipeline.stored().heat;
+  const bool given = !request.thermal.empty() || !request.conditions.empty();
+  if (given || !pipeline.fromResultsFile() || !stored || stored->conditions.empty()) {
+    return readHeatConditions(pipeline.scene(), request.thermal, request.conditions);
+  }
+  session.report.line("conditions", "those in " + request.input);
+  ConditionText text = stored->conditions;
+  text.origin = request.input + ": /heat/condition_table";
+  return readHeatConditions(pipeline.scene(), text);
+}
+
+/// Options that change what light does, and nothing of heat.
+void noteLightOptions(Session& session) {
+  const SceneOptions& scene = session.request.scene;
+  std::vector<std::string> unused;
+  if (!scene.set.empty()) unused.emplace_back("--set");
+  if (!scene.materials_file.empty()) unused.emplace_back("--materials");
+  if (scene.sky) unused.emplace_back("--sky (heat has --sky-temperature)");
+  for (const std::string& name : session.request.reading_options) {
+    if (name != "--unit") unused.push_back(name);
+  }
+  if (unused.empty()) return;
+  const Note note{Severity::warning,
+                  fmt::format("about light, not used by heat: {}", fmt::join(unused, ", "))};
+  session.report.notes({&note, 1});
+}
+
 }  // namespace
 
 int runHeat(Session& session) {
   OutputSet files = claimOutputs(session);
+  if (takesMatrixFile(session.request)) return heatMatrixFile(session, files);
   Run run(session, files.path(Format::results));
   Pipeline& pipeline = run.pipeline;
   // Before form factors are computed: what is wrong with the conditions is soon found.
   PipelineOptions& options = pipeline.options();
-  options.heat_conditions =
-      readHeatConditions(pipeline.scene(), session.request.thermal, session.request.conditions);
+  options.heat_conditions = conditionsFor(session, pipeline);
   validate(options.heat_conditions, options.heat);
+  noteLightOptions(session);
   pipeline.factors();
   keepFactors(session, pipeline, files);
   const HeatSummary& summary = pipeline.heat().summary;

@@ -11,7 +11,8 @@ namespace radiosity::cli {
 void addHeatOptions(CLI::App& app, Request& r) {
   const HeatOptions defaults;
   add(app, "Heat", "--thermal", r.thermal, "FILE.csv",
-      "Conditions by surface, material or object name; * stands for all others. Columns: surface, "
+      "Conditions by surface, material or object name, or by a pattern of them; * stands for all "
+      "others. Of a matrix (.mtx, .vf): by name or number of rows. Columns: surface, "
       "emissivity, temperature_K, flux_W_per_m2 (0: adiabatic), power_W, convection_W_per_m2_K, "
       "ambient_K, isothermal (yes: one temperature)");
   add(app, "Heat", "--condition", r.conditions, "NAME.PROPERTY=VALUE",
@@ -37,6 +38,7 @@ void addHeatOptions(CLI::App& app, Request& r) {
                   defaults.max_iterations));
   add(app, "Heat", "--patch-table", r.patch_table, "FILE.csv",
       "Write the figures of every patch, beside those of surfaces in -o FILE.csv");
+  addAreasOption(app, r, "Heat");
 }
 
 }  // namespace radiosity::cli

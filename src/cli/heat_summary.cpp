@@ -12,9 +12,9 @@ namespace radiosity::cli {
 
 namespace {
 
-/// Heat that is lost on backs, or not accounted for, is worth a warning from this share on.
-constexpr double kWorthWarning = 1e-3;
-constexpr double kRounding = 1e-6;
+/// Heat that is lost on backs, or not accounted for, is worth a warning from this share of what all
+/// surfaces give off.
+constexpr double kWorthWarning = 1e-4;
 
 void surfaceTable(Report& report, const std::vector<SurfaceHeat>& surfaces) {
   std::vector<std::vector<std::string>> rows;
@@ -40,13 +40,21 @@ void surfaceTable(Report& report, const std::vector<SurfaceHeat>& surfaces) {
                rows);
 }
 
-void balanceFigures(Report& report, const HeatBalance& b) {
+/// W that leave all surfaces: net powers are small differences of it where all has about one
+/// temperature, and say nothing of how much is lost.
+double givenOff(const std::vector<SurfaceHeat>& surfaces) {
+  double sum = 0;
+  for (const SurfaceHeat& s : surfaces) sum += s.area * s.radiosity;
+  return sum;
+}
+
+void balanceFigures(Report& report, const HeatBalance& b, double given_off) {
   const auto watts = [&](const char* key, const char* label, double value) {
-    const bool share = b.throughput > 0;
     report.number(key, label, value,
-                  share ? fmt::format("W  ({:.3g}%)", 100 * value / b.throughput) : "W");
+                  given_off > 0 ? fmt::format("W  ({:.3g}%)", 100 * value / given_off) : "W");
   };
-  report.number("throughput_W", "net powers above 0", b.throughput, "W");
+  report.number("given_off_W", "given off by all surfaces", given_off, "W  (100%)");
+  watts("throughput_W", "net powers above 0", b.throughput);
   watts("radiated_W", "radiated by all surfaces, net", b.radiated);
   watts("to_sky_W", "  of it to the sky, net", b.to_sky);
   watts("on_backs_W", "  lost on backs", b.on_backs);
@@ -66,48 +74,32 @@ void factorError(Report& report, const FormFactors& factors) {
                 *std::max_element(factors.error.begin(), factors.error.end()));
 }
 
-/// W that leave all patches.
-double leaving(const HeatSolution& heat, const PatchMesh& mesh) {
-  const auto bands = std::size_t(heat.bands);
-  double sum = 0;
-  for (std::size_t k = 0; k < heat.radiosity.size(); ++k) {
-    sum += mesh.area[k / bands] * heat.radiosity[k];
-  }
-  return sum;
-}
-
-/// Net powers are small differences where all has about one temperature: then it takes more than
-/// single precision leaves of what leaves the patches, too.
-void warnOfLosses(const HeatBalance& b, double leaving, std::vector<Note>& notes) {
-  const auto worthIt = [&](double watts) {
-    return std::abs(watts) > kWorthWarning * b.throughput && std::abs(watts) > kRounding * leaving;
-  };
+void warnOfLosses(const HeatBalance& b, double given_off, std::vector<Note>& notes) {
+  const auto worthIt = [&](double watts) { return std::abs(watts) > kWorthWarning * given_off; };
   const auto share = [&](double watts) {
-    return b.throughput > 0 ? fmt::format("{:.3g}%", 100 * std::abs(watts) / b.throughput) : "all";
+    return fmt::format("{:.3g}% of what all surfaces give off", 100 * std::abs(watts) / given_off);
   };
   if (worthIt(b.on_backs)) {
     notes.push_back(
         {Severity::warning,
-         fmt::format(
-             "{} W are lost on surfaces seen from behind, which are black and at 0 K, {} of "
-             "the net powers: flipped? turn them round or use --two-sided NAME",
-             numberText(b.on_backs, 3), share(b.on_backs))});
+         fmt::format("{} W are lost on surfaces seen from behind, which are black and at 0 K, {}: "
+                     "flipped? turn them round or use --two-sided NAME",
+                     numberText(b.on_backs, 3), share(b.on_backs))});
   }
   if (worthIt(b.imbalance)) {
     notes.push_back(
         {Severity::warning,
          fmt::format(
-             "{} W are not accounted for, {} of the net powers: rows of form factors do not "
+             "{} W are not accounted for, {}: rows of form factors do not "
              "sum to 1 or lack reciprocity; give --closure enforce (hemicube: --symmetrize), "
              "or a smaller --tolerance",
              numberText(b.imbalance, 3), share(b.imbalance))});
   }
 }
 
-void warnings(Report& report, const HeatSolution& heat, const PatchMesh& mesh) {
-  const HeatSummary& s = heat.summary;
+void warnings(Report& report, const HeatSummary& s, double given_off) {
   std::vector<Note> notes;
-  warnOfLosses(s.balance, leaving(heat, mesh), notes);
+  warnOfLosses(s.balance, given_off, notes);
   if (s.undetermined > 0) {
     notes.push_back(
         {Severity::warning,
@@ -121,8 +113,10 @@ void warnings(Report& report, const HeatSolution& heat, const PatchMesh& mesh) {
 }  // namespace
 
 void summarizeHeat(Report& report, const HeatSolution& heat, const FormFactors& factors,
-                   const PatchMesh& mesh, const HeatOptions& options, Detail detail) {
+                   const std::vector<SurfaceHeat>& surfaces, const HeatOptions& options,
+                   Detail detail) {
   const HeatSummary& s = heat.summary;
+  const double given_off = givenOff(surfaces);
   if (detail == Detail::brief) report.line("", oneLine(s.message));
   {
     const Section section(report, detail, "heat", "Heat exchange");
@@ -138,12 +132,12 @@ void summarizeHeat(Report& report, const HeatSolution& heat, const FormFactors& 
     report.number("tolerance", "  asked for", options.tolerance);
     report.seconds("seconds", "time", s.seconds);
     factorError(report, factors);
-    balanceFigures(report, s.balance);
-    surfaceTable(report, heatBySurface(heat, mesh, factors));
+    balanceFigures(report, s.balance, given_off);
+    surfaceTable(report, surfaces);
     report.text("message", "in words", oneLine(s.message));
     report.yesNo("usable", "usable", s.usable());
   }
-  warnings(report, heat, mesh);
+  warnings(report, s, given_off);
 }
 
 }  // namespace radiosity::cli

@@ -1,13 +1,37 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <sstream>
+
+#include "base/figure_text.h"
 #include "base/made.h"
 #include "cli/commands.h"
+#include "cli/matrix_commands.h"
 #include "cli/summaries.h"
 #include "cli/words.h"
 
 namespace radiosity::cli {
 
 namespace {
+
+/// The heat exchange, and what it was solved for.
+void describeHeat(Report& report, const Results& stored, const HeatOptions& options) {
+  const HeatSolution& heat = made(stored.heat);
+  const FormFactors& factors = made(stored.factors);
+  summarizeHeat(report, heat, factors, heatBySurface(heat, made(stored.mesh).mesh, factors),
+                options, Detail::brief);
+  constexpr std::size_t kMostLines = 40;
+  std::vector<std::string> lines;
+  std::istringstream table(heat.conditions.table);
+  for (std::string line; std::getline(table, line);) lines.push_back(line);
+  lines.insert(lines.end(), heat.conditions.settings.begin(), heat.conditions.settings.end());
+  for (std::size_t k = 0; k < std::min(lines.size(), kMostLines); ++k) {
+    report.line(k == 0 ? "conditions" : "", lines[k]);
+  }
+  if (lines.size() > kMostLines) {
+    report.line("", fmt::format("... and {} more lines", countText(lines.size() - kMostLines)));
+  }
+}
 
 /// The stages a results file holds, and the options that made them.
 void describeStages(Session& session, const Pipeline& pipeline) {
@@ -37,8 +61,7 @@ void describeStages(Session& session, const Pipeline& pipeline) {
                       Detail::brief);
   }
   if (stored.heat) {
-    summarizeHeat(report, *stored.heat, made(stored.factors), stored.mesh->mesh,
-                  pipeline.options().heat, Detail::brief);
+    describeHeat(report, stored, pipeline.options().heat);
   }
   if (stored.basis) summarizeBasis(report, *stored.basis, Detail::full);
 }
@@ -62,6 +85,7 @@ int listDevices(Report& report) {
 
 int runInfo(Session& session) {
   if (session.request.devices) return listDevices(session.report);
+  if (isMatrixInput(session.request.input)) return describeMatrixFile(session);
   const Run run(session);
   describeScene(session.report, run.pipeline.scene());
   if (run.pipeline.fromResultsFile()) describeStages(session, run.pipeline);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <string_view>
 
 #include "base/figure_text.h"
 #include "base/made.h"
@@ -86,6 +88,15 @@ const char* wordOf(StageAction action) {
   return "dropped";
 }
 
+/// Whether a note on the scene tells of what only light looks at; heat has emissivities instead.
+bool isAboutLight(const Note& note) {
+  if (note.severity == Severity::loud) return false;
+  const std::string_view words[] = {"reflectance", "emission", "radiance", "texture"};
+  return std::any_of(std::begin(words), std::end(words), [&](std::string_view word) {
+    return note.text.find(word) != std::string::npos;
+  });
+}
+
 }  // namespace
 
 void PipelineReport::opened(const Pipeline& pipeline) {
@@ -95,7 +106,11 @@ void PipelineReport::opened(const Pipeline& pipeline) {
 void PipelineReport::notes(const Pipeline& pipeline, std::span<const Note> notes) {
   // Those of a scene file stand at the end of what `info` says.
   if (request_.command == Command::info && !pipeline.fromResultsFile()) return;
-  report_.notes(notes);
+  if (request_.command != Command::heat) return report_.notes(notes);
+  std::vector<Note> not_of_light;
+  std::copy_if(notes.begin(), notes.end(), std::back_inserter(not_of_light),
+               [](const Note& note) { return !isAboutLight(note); });
+  report_.notes(not_of_light);
 }
 
 void PipelineReport::notReused(const std::string& path, const std::string& why) {
@@ -185,6 +200,10 @@ void PipelineReport::stage(const Pipeline& pipeline, const StageEvent& event) {
                 event.seconds.value_or(-1));
   if (kept || event.action == StageAction::dropped) return;
   summarize(pipeline, event);
+  if (event.stage != Stage::form_factors || event.action != StageAction::reused) return;
+  // Those that are computed are planned before.
+  const std::string& method = made(pipeline.results().factors).method;
+  if (const auto known = named(kMethodNames, method)) noteUnused(*known);
 }
 
 void PipelineReport::summarize(const Pipeline& pipeline, const StageEvent& event) {
@@ -206,8 +225,9 @@ void PipelineReport::summarize(const Pipeline& pipeline, const StageEvent& event
     case Stage::gather:
       return summarizeGathered(report_, made(results.gathered), mesh, options.gather, light);
     case Stage::heat:
-      return summarizeHeat(report_, made(results.heat), made(results.factors), mesh, options.heat,
-                           light);
+      return summarizeHeat(report_, made(results.heat), made(results.factors),
+                           heatBySurface(made(results.heat), mesh, made(results.factors)),
+                           options.heat, light);
     case Stage::basis:
       return summarizeBasis(report_, made(results.basis), light);
     case Stage::elements:

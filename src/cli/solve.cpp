@@ -38,7 +38,7 @@ int writeMix(Session& session, Pipeline& pipeline, const MixedLight& mix, bool e
 
 int runSolve(Session& session) {
   OutputSet files = claimOutputs(session);
-  if (solvesMatrixFile(session.request)) return solveMatrixFile(session, files);
+  if (takesMatrixFile(session.request)) return solveMatrixFile(session, files);
   const ElementUse elements = elementUse(session.request, files);
   checkLightmap(session.request, elements, files);
   checkMix(session.request, files);

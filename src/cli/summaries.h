@@ -36,7 +36,8 @@ void summarizeFinalGather(Report& report, const ElementReport& sources,
                           const PixelGatherReport& gathered, const FormFactors& factors);
 /// heat_summary.cpp
 void summarizeHeat(Report& report, const HeatSolution& heat, const FormFactors& factors,
-                   const PatchMesh& mesh, const HeatOptions& options, Detail detail);
+                   const std::vector<SurfaceHeat>& surfaces, const HeatOptions& options,
+                   Detail detail);
 /// basis_summary.cpp
 void summarizeBasis(Report& report, const LightBasis& basis, Detail detail);
 void summarizeGathered(Report& report, const Gathered& gathered, const PatchMesh& mesh,

@@ -7,6 +7,7 @@
 
 #include "base/csv.h"
 #include "base/parse.h"
+#include "heat/conditions.h"
 #include "scene/text.h"
 
 namespace radiosity {
@@ -33,6 +34,8 @@ double kelvin(const std::string& origin, const char* what, std::string_view text
   const double value = numberIn(origin, what, text);
   if (value < 0)
     fail(origin, fmt::format("{} {} is below 0; temperatures are in kelvin", what, text));
+  if (value > kHottest)
+    fail(origin, fmt::format("{} {} is above {:g} K, which no surface has", what, text, kHottest));
   return value;
 }
 
@@ -176,18 +179,18 @@ GivenCondition parseRow(const std::vector<std::string>& cells,
 
 }  // namespace
 
-std::vector<GivenCondition> readConditionTable(const std::string& path) {
-  const CsvTable table = readCsv(path);
+std::vector<GivenCondition> parseConditionTable(const std::string& origin, std::string_view text) {
+  const CsvTable table = parseCsv(origin, text);
   const std::vector<const Property*> columns =
-      columnsOf(table.header, fmt::format("{}:{}", path, table.header_line));
+      columnsOf(table.header, fmt::format("{}:{}", origin, table.header_line));
   std::vector<GivenCondition> rows;
   rows.reserve(table.rows.size());
   for (const CsvTable::Row& row : table.rows) {
-    rows.push_back(parseRow(row.fields, columns, fmt::format("{}:{}", path, row.line)));
+    rows.push_back(parseRow(row.fields, columns, fmt::format("{}:{}", origin, row.line)));
   }
   if (rows.empty()) {
     throw InputError(
-        fmt::format("{}: holds no conditions; write a header, {},{}, and a line a surface", path,
+        fmt::format("{}: holds no conditions; write a header, {},{}, and a line a surface", origin,
                     kNameColumn, "emissivity,temperature_K"));
   }
   return rows;

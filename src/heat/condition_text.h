@@ -30,7 +30,8 @@ inline constexpr std::string_view kOthers = "*";
 
 /// Errors of both: InputError, with the origin: for what is not written like this, not within its
 /// range or said twice.
-std::vector<GivenCondition> readConditionTable(const std::string& path);
+/// `origin`: of the table, for messages.
+std::vector<GivenCondition> parseConditionTable(const std::string& origin, std::string_view table);
 GivenCondition parseSetting(const std::string& text);
 
 }  // namespace radiosity

@@ -17,7 +17,9 @@ void require(bool good, const std::string& name, const std::string& what) {
   if (!good) throw InputError(fmt::format("{}: {}", name, what));
 }
 
-bool isTemperature(double t) { return t >= 0 && std::isfinite(t); }
+bool isTemperature(double t) { return t >= 0 && t <= kHottest; }
+
+bool isWithin(double value, double most) { return std::abs(value) <= most; }
 
 void checkEmissivity(const std::string& name, const Emissivity& e) {
   const std::size_t wanted = e.temperatures.empty() ? 1 : e.temperatures.size();
@@ -30,8 +32,8 @@ void checkEmissivity(const std::string& name, const Emissivity& e) {
   }
   for (std::size_t k = 0; k < e.temperatures.size(); ++k) {
     require(isTemperature(e.temperatures[k]), name,
-            fmt::format("emissivity at {} K: give temperatures in kelvin, 0 or more",
-                        e.temperatures[k]));
+            fmt::format("emissivity at {} K: give temperatures in kelvin, 0 to {:g}",
+                        e.temperatures[k], kHottest));
     require(k == 0 || e.temperatures[k] > e.temperatures[k - 1], name,
             "temperatures of the table of emissivity do not increase");
   }
@@ -46,15 +48,23 @@ void checkCondition(const HeatCondition& c, int bands) {
       int(c.temperature.has_value()) + int(c.flux.has_value()) + int(c.power.has_value());
   require(given <= 1, c.name, "has more than one of temperature, flux and power; give one");
   if (c.temperature) {
-    require(isTemperature(*c.temperature), c.name,
-            fmt::format("temperature {} is not one in kelvin, 0 or more", *c.temperature));
+    require(
+        isTemperature(*c.temperature), c.name,
+        fmt::format("temperature {} is not one in kelvin, 0 to {:g}", *c.temperature, kHottest));
   }
-  if (c.flux) require(std::isfinite(*c.flux), c.name, "flux is not finite");
-  if (c.power) require(std::isfinite(*c.power), c.name, "power is not finite");
-  require(c.convection >= 0 && std::isfinite(c.convection), c.name,
-          fmt::format("convection {} W/m^2/K is not a finite number >= 0", c.convection));
+  if (c.flux) {
+    require(isWithin(*c.flux, kMostFlux), c.name,
+            fmt::format("flux {} W/m^2 is not within {:g}", *c.flux, kMostFlux));
+  }
+  if (c.power) {
+    require(isWithin(*c.power, kMostPower), c.name,
+            fmt::format("power {} W is not within {:g}", *c.power, kMostPower));
+  }
+  require(
+      c.convection >= 0 && c.convection <= kMostConvection, c.name,
+      fmt::format("convection {} W/m^2/K is not within 0 and {:g}", c.convection, kMostConvection));
   require(isTemperature(c.ambient), c.name,
-          fmt::format("ambient {} is not a temperature in kelvin, 0 or more", c.ambient));
+          fmt::format("ambient {} is not a temperature in kelvin, 0 to {:g}", c.ambient, kHottest));
 }
 
 }  // namespace
@@ -96,8 +106,8 @@ void HeatBands::validate() const {
 void HeatOptions::validate() const {
   bands.validate();
   if (!isTemperature(sky_temperature)) {
-    throw InputError(
-        fmt::format("sky temperature {} is not one in kelvin, 0 or more", sky_temperature));
+    throw InputError(fmt::format("sky temperature {} is not one in kelvin, 0 to {:g}",
+                                 sky_temperature, kHottest));
   }
   if (!(tolerance > 0 && tolerance < 1)) {
     throw InputError(fmt::format("tolerance {} is not between 0 and 1", tolerance));

@@ -7,6 +7,14 @@
 
 namespace radiosity {
 
+/// The hottest that is taken for a temperature, K: far beyond what solid surfaces have, and
+/// sigma T^4 keeps all its digits. Heat a square metre is at most what a black surface of it emits.
+inline constexpr double kHottest = 1e8;
+inline constexpr double kMostFlux = 5.67e24;
+/// W, W/m^2/K.
+inline constexpr double kMostPower = 1e30;
+inline constexpr double kMostConvection = 1e15;
+
 /// Errors: InputError naming the condition, for a value out of range, for two of temperature, flux
 /// and power, and for emissivities that are neither one nor `bands`.
 void validate(std::span<const HeatCondition> conditions, int bands);

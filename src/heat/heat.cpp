@@ -123,8 +123,10 @@ HeatSolution solveHeat(const FormFactors& factors, const HeatConditions& conditi
   }
   const std::vector<Index> twin = twinsOf(mesh);
   const HeatRows rows{conditions.conditions, of_row, twin};
-  if (mesh.clusters) return SharedHeat(factors, rows, mesh, options, progress).run();
-  return solved(factors, rows, options, {}, progress);
+  HeatSolution solution = mesh.clusters ? SharedHeat(factors, rows, mesh, options, progress).run()
+                                        : solved(factors, rows, options, {}, progress);
+  solution.conditions = conditions.text;
+  return solution;
 }
 
 }  // namespace radiosity

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "heat/conditions.h"
@@ -30,6 +31,11 @@ double largest(const std::vector<double>& values) {
 bool canEmit(const Emissivity& emissivity) {
   return std::any_of(emissivity.values.begin(), emissivity.values.end(),
                      [](double value) { return value > 0; });
+}
+
+bool allFinite(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(),
+                     [](double value) { return std::isfinite(value); });
 }
 
 bool hasTable(const HeatCondition& condition) {
@@ -299,11 +305,15 @@ void HeatSolve::refuseCold(std::size_t n) const {
       rows_.conditions[node.condition].name, -node.supplied / node.area));
 }
 
-/// H is multiplied anew.
+/// H is multiplied anew. What is no number is infinitely far off.
 HeatSolve::Residuals HeatSolve::residuals(HeatFields& fields) const {
   factors_.matrix.product(fields.radiosity, int(width_), fields.irradiance);
   for (std::size_t k = 0; k < falling_.size(); ++k) fields.irradiance[k] += falling_[k];
   Residuals worst;
+  if (!allFinite(fields.radiosity) || !allFinite(fields.irradiance) || !allFinite(temperature_)) {
+    worst.radiosity = worst.balance = std::numeric_limits<double>::infinity();
+    return worst;
+  }
   const double scale = largest(fields.radiosity);
   if (!(scale > 0)) return worst;
   for (std::size_t k = 0; k < falling_.size(); ++k) {
@@ -338,7 +348,8 @@ HeatSolution HeatSolve::run() {
     step(s, fields);
     residuals = this->residuals(fields);
     ++iterations;
-  } while (!(residuals.worst() <= options_.tolerance) && iterations < options_.max_iterations);
+  } while (residuals.worst() > options_.tolerance && std::isfinite(residuals.worst()) &&
+           iterations < options_.max_iterations);
   requireTables();
   HeatSolution solution = solutionOf(std::move(fields));
   HeatSummary& summary = solution.summary;

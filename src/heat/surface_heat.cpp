@@ -1,7 +1,10 @@
 // Figures of surfaces from those of their patches.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
 
 #include "radiosity/heat.h"
 
@@ -9,23 +12,29 @@ namespace radiosity {
 
 namespace {
 
-/// Root mean square over patches, by area, of J in all bands.
-double meanRadiosity(const HeatSolution& solution, const PatchMesh& mesh) {
+/// What a solution is of: patches, or rows of a matrix.
+struct Parts {
+  std::span<const double> area;
+  std::span<const Index> surface;  ///< into names
+  std::vector<double> error;       ///< figures of their rows; empty: unknown
+};
+
+/// Root mean square over parts, by area, of J in all bands.
+double meanRadiosity(const HeatSolution& solution, std::span<const double> areas) {
   const auto bands = std::size_t(solution.bands);
   double squares = 0;
   double area = 0;
-  for (std::size_t i = 0; i < mesh.size(); ++i) {
+  for (std::size_t i = 0; i < areas.size(); ++i) {
     double all = 0;
     for (std::size_t b = 0; b < bands; ++b) all += solution.radiosity[i * bands + b];
-    squares += mesh.area[i] * all * all;
-    area += mesh.area[i];
+    squares += areas[i] * all * all;
+    area += areas[i];
   }
   return area > 0 ? std::sqrt(squares / area) : 0;
 }
 
-void addPatch(const HeatSolution& solution, const PatchMesh& mesh, std::size_t i, SurfaceHeat& s) {
+void addPart(const HeatSolution& solution, double area, std::size_t i, SurfaceHeat& s) {
   const auto bands = std::size_t(solution.bands);
-  const double area = mesh.area[i];
   s.area += area;
   for (std::size_t b = 0; b < bands; ++b) {
     s.radiosity += area * solution.radiosity[i * bands + b];
@@ -38,25 +47,21 @@ void addPatch(const HeatSolution& solution, const PatchMesh& mesh, std::size_t i
   s.highest = std::max(s.highest, solution.temperature[i]);
 }
 
-}  // namespace
-
-std::vector<SurfaceHeat> heatBySurface(const HeatSolution& solution, const PatchMesh& mesh,
-                                       const FormFactors& factors) {
-  std::vector<SurfaceHeat> out(mesh.surface_names.size());
+std::vector<SurfaceHeat> summed(const HeatSolution& solution, const Parts& parts,
+                                std::span<const std::string> names) {
+  std::vector<SurfaceHeat> out(names.size());
   std::vector<double> error(out.size(), 0.0);
   for (std::size_t s = 0; s < out.size(); ++s) {
-    out[s].name = mesh.surface_names[s];
+    out[s].name = names[s];
     out[s].lowest = std::numeric_limits<double>::infinity();
     out[s].highest = -out[s].lowest;
   }
-  for (std::size_t i = 0; i < mesh.size(); ++i) {
-    if (!(mesh.area[i] > 0)) continue;
-    addPatch(solution, mesh, i, out[mesh.surface[i]]);
-    if (!factors.error.empty()) {
-      error[mesh.surface[i]] += mesh.area[i] * factors.error[mesh.unknownOf(i)];
-    }
+  for (std::size_t i = 0; i < parts.area.size(); ++i) {
+    if (!(parts.area[i] > 0)) continue;
+    addPart(solution, parts.area[i], i, out[parts.surface[i]]);
+    if (!parts.error.empty()) error[parts.surface[i]] += parts.area[i] * parts.error[i];
   }
-  const double rms = meanRadiosity(solution, mesh);
+  const double rms = meanRadiosity(solution, parts.area);
   for (std::size_t s = 0; s < out.size(); ++s) {
     SurfaceHeat& surface = out[s];
     if (!(surface.area > 0)) {
@@ -69,9 +74,35 @@ std::vector<SurfaceHeat> heatBySurface(const HeatSolution& solution, const Patch
     surface.irradiance /= surface.area;
     surface.net_flux = surface.radiated / surface.area;
     if (std::isnan(surface.temperature)) surface.lowest = surface.highest = surface.temperature;
-    if (!factors.error.empty()) surface.irradiance_error = error[s] / surface.area * rms;
+    if (!parts.error.empty()) surface.irradiance_error = error[s] / surface.area * rms;
   }
   return out;
+}
+
+}  // namespace
+
+std::vector<SurfaceHeat> heatBySurface(const HeatSolution& solution, const PatchMesh& mesh,
+                                       const FormFactors& factors) {
+  Parts parts{mesh.area, mesh.surface, {}};
+  for (std::size_t i = 0; i < mesh.size() && !factors.error.empty(); ++i) {
+    parts.error.push_back(factors.error[mesh.unknownOf(i)]);
+  }
+  return summed(solution, parts, mesh.surface_names);
+}
+
+std::vector<SurfaceHeat> heatByName(const HeatSolution& solution,
+                                    std::span<const std::string> names,
+                                    const FormFactors& factors) {
+  std::vector<std::string> of_groups;
+  std::vector<Index> group(names.size());
+  std::unordered_map<std::string, Index> known;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const bool named = !names[i].empty();
+    const auto next = Index(of_groups.size());
+    group[i] = named ? known.emplace(names[i], next).first->second : next;
+    if (group[i] == next) of_groups.push_back(named ? names[i] : fmt::format("row {}", i + 1));
+  }
+  return summed(solution, {factors.matrix.area(), group, factors.error}, of_groups);
 }
 
 }  // namespace radiosity

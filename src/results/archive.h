@@ -79,6 +79,14 @@ class FieldWriter {
   void laterChoice(const char* name, const Enum& value, const NameTable<Enum, N>& names) {
     choice(name, value, names);
   }
+  /// Texts that older files lack; none where there is nothing to say.
+  void later(const char* name, const std::vector<std::string>& values) {
+    if (!values.empty()) sink_->strings(name, values);
+  }
+  /// One that may be longer than an attribute.
+  void laterText(const char* name, const std::string& value) {
+    if (!value.empty()) sink_->strings(name, {value});
+  }
   /// Whether there is a group of what may be absent; reading, it is made where there is.
   template <class T>
   bool present(const char* /*name*/, const std::optional<T>& value) {
@@ -181,6 +189,15 @@ class FieldReader {
   template <class Enum, std::size_t N>
   void laterChoice(const char* name, Enum& value, const NameTable<Enum, N>& names) {
     if (source_->hasAttribute(name)) choice(name, value, names);
+  }
+  void later(const char* name, std::vector<std::string>& values) {
+    values.clear();
+    if (source_->has(name)) values = source_->strings(name);
+  }
+  void laterText(const char* name, std::string& value) {
+    std::vector<std::string> values;
+    later(name, values);
+    value = values.empty() ? std::string() : std::move(values.front());
   }
   template <class T>
   bool present(const char* name, std::optional<T>& value) {

@@ -25,6 +25,7 @@ template <class Archive>
 void describe(Archive& a, Described<Archive, Scene>& s) {
   a("file", s.file);
   a("unit", s.unit);
+  a.laterChoice("up", s.up, kUpNames);
   a("sky", s.sky);
   a("vertices", s.vertices, "m");
   a("face_offset", s.face_offset);
@@ -362,6 +363,8 @@ void describe(Archive& a, Described<Archive, HeatSolution>& h) {
   a("convection", h.convection, "W/m^2");
   a("temperature", h.temperature, "K");
   a.group("summary", [&](auto& summary) { describe(summary, h.summary); });
+  a.laterText("condition_table", h.conditions.table);
+  a.later("condition_settings", h.conditions.settings);
 }
 
 /// Bands of the materials and of the light are those of all sources.

@@ -24,6 +24,23 @@ std::string bandColumns(const char* name, int bands) {
   return columns;
 }
 
+/// The columns that patches and rows have alike.
+std::string commonColumns(int bands) {
+  return fmt::format("area_m2,temperature_K,net_flux_W_per_m2,convection_W_per_m2{}{}\n",
+                     bandColumns("radiosity", bands), bandColumns("irradiance", bands));
+}
+
+std::string commonCells(const HeatSolution& heat, std::size_t i, double area) {
+  const auto bands = std::size_t(heat.bands);
+  std::string cells = fmt::format("{},{},{},{}", area, cell(heat.temperature[i]),
+                                  cell(heat.net_flux[i]), cell(heat.convection[i]));
+  for (const std::vector<double>* values : {&heat.radiosity, &heat.irradiance}) {
+    for (std::size_t b = 0; b < bands; ++b)
+      cells.append(",").append(cell((*values)[i * bands + b]));
+  }
+  return cells.append("\n");
+}
+
 }  // namespace
 
 void writeHeatTable(const std::string& path, std::span<const SurfaceHeat> surfaces) {
@@ -42,22 +59,22 @@ void writeHeatTable(const std::string& path, std::span<const SurfaceHeat> surfac
 
 void writeHeatPatches(const std::string& path, const HeatSolution& heat, const PatchMesh& mesh) {
   CheckedFile file(path);
-  const auto bands = std::size_t(heat.bands);
-  file.write(fmt::format(
-      "patch,surface,side,x_m,y_m,z_m,area_m2,temperature_K,net_flux_W_per_m2,convection_W_per_m2"
-      "{}{}\n",
-      bandColumns("radiosity", heat.bands), bandColumns("irradiance", heat.bands)));
+  file.write("patch,surface,side,x_m,y_m,z_m," + commonColumns(heat.bands));
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     const Vec3& at = mesh.centroid[i];
-    std::string line = fmt::format(
-        "{},{},{},{},{},{},{},{},{},{}", i, csvField(mesh.surface_names[mesh.surface[i]]),
-        mesh.side[i] == 0 ? "front" : "back", at.x, at.y, at.z, mesh.area[i],
-        cell(heat.temperature[i]), cell(heat.net_flux[i]), cell(heat.convection[i]));
-    for (const std::vector<double>* values : {&heat.radiosity, &heat.irradiance}) {
-      for (std::size_t b = 0; b < bands; ++b)
-        line.append(",").append(cell((*values)[i * bands + b]));
-    }
-    file.write(line.append("\n"));
+    file.write(fmt::format("{},{},{},{},{},{},{}", i, csvField(mesh.surface_names[mesh.surface[i]]),
+                           mesh.side[i] == 0 ? "front" : "back", at.x, at.y, at.z,
+                           commonCells(heat, i, mesh.area[i])));
+  }
+  file.commit();
+}
+
+void writeHeatRows(const std::string& path, const HeatSolution& heat,
+                   std::span<const std::string> names, std::span<const double> area) {
+  CheckedFile file(path);
+  file.write("row,name," + commonColumns(heat.bands));
+  for (std::size_t i = 0; i < area.size(); ++i) {
+    file.write(fmt::format("{},{},{}", i + 1, csvField(names[i]), commonCells(heat, i, area[i])));
   }
   file.commit();
 }

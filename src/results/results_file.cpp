@@ -154,8 +154,12 @@ void requireRows(const Results& results) {
                                       : materials.reflectance.size() / bands);
 }
 
+bool isOurs(const InputGroup& root) {
+  return root.hasAttribute("format") && root.text("format") == kFormat;
+}
+
 void checkHead(const h5::InputFile& file, const InputGroup& root) {
-  if (!root.hasAttribute("format") || root.text("format") != kFormat) {
+  if (!isOurs(root)) {
     throw InputError(fmt::format(
         "{}: is an HDF5 file of another program; name one written by radiosity", file.path()));
   }
@@ -250,6 +254,33 @@ bool isResultsFile(const std::string& path) {
   std::array<char, 8> start{};
   std::ifstream file(path, std::ios::binary);
   return file.read(start.data(), start.size()) && start == kSignature;
+}
+
+bool isForeignHdf5(const std::string& path) {
+  if (!isResultsFile(path)) return false;
+  try {
+    return !isOurs(InputGroup(h5::InputFile(path)));
+  } catch (const InputError&) {
+    return false;  // damaged: nobody's
+  }
+}
+
+std::optional<Scene> sceneInResults(const std::string& path) {
+  std::optional<Scene> scene;
+  if (!isResultsFile(path)) return scene;
+  try {
+    const h5::InputFile file(path);
+    const InputGroup root(file);
+    checkHead(file, root);
+    if (root.has("scene")) {
+      const InputGroup group = root.group("scene");
+      FieldReader fields(group);
+      describe(fields, scene.emplace());
+    }
+  } catch (const InputError&) {
+    scene.reset();
+  }
+  return scene;
 }
 
 Results readResults(const std::string& path, bool with_factors,

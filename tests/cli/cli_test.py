@@ -362,6 +362,9 @@ class ExactFactors(CliTest):
             run = self.run_program("factors", "box.obj", "--patches", "30", "--method", method, *given, "-o",
                                    f"{method}.h5")
             self.assertIn(f"not used by the method {named}\n", run.err)
+        run = self.run_program("factors", "exact.h5", "--seed", "3")
+        self.assertIn("form factors   reused", run.out)
+        self.assertIn("not used by the method exact: --seed\n", run.err)
 
     def test_options_are_part_of_the_key(self):
         self.run_program("factors", "box.obj", "--patches", "60", "-o", "f.h5")

@@ -132,6 +132,84 @@ class Heat(CliTest):
         with h5py.File(self.folder / "x.h5") as file:
             self.assertNotIn("heat", file)
 
+    def test_conditions_are_in_the_results_file(self):
+        solved = ["--thermal", "walls.csv", "--condition", "ceiling.temperature=710"]
+        self.run_program("heat", "box.obj", *SMALL, *solved, "-o", "done.h5", "-o", "first.csv")
+        again = self.report("heat", "done.h5", "-o", "again.csv")
+        self.assertEqual(again["stages"]["heat"]["action"], "reused")
+        self.assertEqual((self.folder / "again.csv").read_bytes(),
+                         (self.folder / "first.csv").read_bytes())
+        # With another mesh they still hold, by name.
+        other = self.report("heat", "done.h5", "--patches", "100", "--patch-table", "p.csv")
+        self.assertEqual(other["stages"]["heat"]["action"], "recomputed")
+        self.assertAlmostEqual(other["heat"]["surfaces"][1]["temperature_K"], 710)
+        said = self.run_program("info", "done.h5").out
+        for line in TABLE.splitlines() + ["ceiling.temperature=710"]:
+            self.assertIn(line, said)
+        # Another stage keeps them with the heat; conditions that are given replace them.
+        self.run_program("solve", "done.h5")
+        self.run_program("heat", "done.h5", "--thermal", "walls.csv")
+        self.assertNotIn("710", self.run_program("info", "done.h5").out)
+        # A name that is gone is looked for in the file's own table.
+        with h5py.File(self.folder / "done.h5", "r+") as file:
+            table = file["heat/condition_table"][()]
+            file["heat/condition_table"][...] = [table[0].replace(b"ceiling", b"cellar2")]
+        self.refuse("heat", "done.h5", "-o", "x.csv",
+                    words=["done.h5: /heat/condition_table:4", "cellar2", "there are: "])
+
+    def test_a_results_file_without_conditions_asks_for_them(self):
+        self.run_program("factors", "box.obj", *SMALL, "-o", "x.h5")
+        self.refuse("heat", "x.h5", "-o", "x.csv", words=["no conditions are given"])
+
+    def test_options_of_light_are_named(self):
+        small = ["heat", "box.obj", *SMALL, "--thermal", "walls.csv"]
+        run = self.run_program(*small, "--set", "lamp.reflectance=.3", "--sky", "3", "--kd-is", "srgb")
+        self.assertIn("about light, not used by heat: --set, --sky (heat has --sky-temperature), "
+                      "--kd-is\n", run.err)
+        self.assertNotIn("->", run.out + run.err)
+        # Faces without a material have a reflectance by default, which heat has no use for.
+        run = self.run_program("heat", "plates.obj", "--patches", "8", "--condition",
+                               "*.emissivity=.5", "--condition", "*.temperature=300")
+        self.assertEqual(run.err, "")
+        self.assertIn("no material", self.run_program("solve", "plates.obj", "--patches", "8",
+                                                      "--sky", "1").err)
+
+    def test_shares_are_of_all_that_is_given_off(self):
+        # Net powers are next to nothing where all have one temperature.
+        room = ["box.obj", "--patches", "60", "--method", "exact", "--condition", "*.emissivity=.9",
+                "--condition", "*.flux=0", "--condition", "ceiling.temperature=300"]
+        run = self.run_program("heat", *room)
+        self.assertEqual(run.err, "")
+        heat = self.heat(*room)
+        # About sigma 300^4 from six walls of 1 m^2.
+        self.assertAlmostEqual(heat["given_off_W"] / (6 * SIGMA * 300 ** 4), 1, delta=.01)
+        self.write("plates.obj", PLATES.replace("f 1 2 3 4", "f 4 3 2 1"))
+        run = self.run_program("heat", "plates.obj", "--patches", "8", "--condition",
+                               "*.emissivity=1", "--condition", "*.temperature=400")
+        # Of two black plates of one temperature half is the upper one's, of which F goes to the back.
+        self.assertIn("9.99% of what all surfaces give off", run.err)
+
+    def test_temperatures_beyond_all_bounds_are_refused(self):
+        small = ["heat", "box.obj", *SMALL, "--condition", "*.emissivity=.9", "-o", "x.csv"]
+        for condition, words in [("*.temperature=1e99", ["*.temperature=1e99", "above 1e+08 K"]),
+                                 ("*.flux=1e300", ["flux 1e+300 W/m^2"]),
+                                 ("room.power=-1e300", ["power -1e+300 W"])]:
+            self.refuse(*small, "--condition", "*.temperature=300", "--condition", condition,
+                        words=words)
+        self.refuse(*small, "--condition", "*.temperature=300", "--sky-temperature", "1e80",
+                    words=["--sky-temperature", "0 to 1e+08"])
+
+    def test_all_surfaces_without_emissivity_are_named(self):
+        self.refuse("heat", "box.obj", *SMALL, "--condition", "*.temperature=300",
+                    words=["no emissivity for room/wall, ceiling/lamp"])
+
+    def test_patterns_name_surfaces(self):
+        heat = self.heat("box.obj", *SMALL, "--condition", "*.emissivity=.8", "--condition",
+                         "*oo*.temperature=300", "--condition", "c?iling*.temperature=400")
+        self.assertEqual([s["temperature_K"] for s in heat["surfaces"]], [300, 400])
+        self.refuse("heat", "box.obj", *SMALL, "--thermal", "walls.csv", "--condition",
+                    "*cieling*.flux=0", words=["*cieling* matches no surface", "there are: ceiling"])
+
     def test_bands_of_one_emissivity_are_grey(self):
         common = ["box.obj", *SMALL, "--thermal", "walls.csv", "--condition", "wall.flux=100"]
         grey = self.heat(*common)
@@ -175,6 +253,8 @@ class Heat(CliTest):
         refuse("--thermal", "walls.csv", "-o", "x.png", words=["heat writes", ".csv"])
         table("surface,emissivity\n", "bad.csv: holds no conditions")
         table("", "bad.csv", "empty")
+        table("surface;emissivity;temperature_K\nwall;0,5;300\n", "bad.csv:1", "write commas",
+              "points in numbers")
         table("surface,epsilon\nwall,1\n", "bad.csv:1", "column `epsilon` is unknown", "emissivity")
         table("emissivity,flux_W_per_m2\n.5,0\n", "bad.csv:1", "names no column `surface`")
         table("surface,emissivity,temperature_K\n*,.5,300\nwall,.5\n", "bad.csv:3", "2 fields")

@@ -232,14 +232,65 @@ TEST(HeatConditionsByName, SettingsFindSurfacesAndObjects) {
   EXPECT_DOUBLE_EQ(lid.emissivity[0].at(100), .1);
 }
 
+TEST(HeatConditionsByName, NamesGoBeforePatternsAndSettingsBeforeTheTable) {
+  const auto temperatures = [](const std::string& table, const std::vector<std::string>& settings) {
+    const HeatConditions c = readHeatConditions(
+        namedScene(),
+        ConditionText{"t.csv", "surface,emissivity,temperature_K\n" + table, settings});
+    std::vector<double> out;
+    for (const Index k : c.of_surface) out.push_back(c.conditions[k].temperature.value_or(0));
+    return out;
+  };
+  using Temperatures = std::vector<double>;  // of walls, floor and lid
+  EXPECT_EQ(temperatures("*l*,.5,1\nlid,,2\n", {}), (Temperatures{1, 1, 2}));
+  EXPECT_EQ(temperatures("lid,.5,2\n*l*,.5,1\n", {}), (Temperatures{1, 1, 2}));
+  EXPECT_EQ(temperatures("*,.5,1\nlid,.5,2\n", {"?l*.temperature=3"}), (Temperatures{1, 3, 2}));
+  EXPECT_EQ(temperatures("*,.5,1\nlid,.5,2\n", {"lid.temperature=4", "*d.temperature=3"}),
+            (Temperatures{1, 1, 4}));
+  EXPECT_EQ(temperatures("*,.5,1\nlid,.5,2\n", {"*d.temperature=3"}), (Temperatures{1, 1, 3}));
+  // The object's name is one, too.
+  EXPECT_EQ(temperatures("*,.5,1\nsh*,.5,2\n", {}), (Temperatures{2, 2, 1}));
+  EXPECT_NE(test::errorOf([&] {
+              temperatures("*l*,.5,1\n*d,.5,2\n", {});
+            }).find("t.csv:3: lid is named here and in t.csv:2"),
+            std::string::npos);
+}
+
+TEST(HeatConditionsByName, RowsGoByNameOrNumber) {
+  const std::vector<std::string> names = {"wall", "", "wall", "lid"};
+  const std::vector<double> emissivity = {.1, .2, .3, .4};
+  const auto read = [&](const std::vector<std::string>& settings) {
+    return readHeatConditions(names, emissivity, ConditionText{"", "", settings});
+  };
+  const HeatConditions c =
+      read({"wall.temperature=300", "2.flux=5", "lid.flux=0", "lid.emissivity=.9"});
+  ASSERT_EQ(c.of_surface.size(), 4u);
+  const auto of = [&](std::size_t row) { return c.conditions[c.of_surface[row]]; };
+  EXPECT_EQ(of(0).temperature, 300);
+  EXPECT_EQ(of(1).flux, 5);
+  EXPECT_EQ(of(1).name, "row 2");
+  for (const auto& [row, value] : {std::pair(0, .1), {1, .2}, {2, .3}, {3, .9}}) {
+    EXPECT_EQ(of(std::size_t(row)).emissivity[0].values, std::vector<double>{value}) << row;
+  }
+  const auto says = [&](const std::vector<std::string>& settings, const std::string& words) {
+    const std::string message = test::errorOf([&] { read(settings); });
+    EXPECT_NE(message.find(words), std::string::npos) << message;
+  };
+  says({"5.flux=0"}, "no row is called 5; there are: wall, lid, numbers from 1 to 4");
+  says({"lid.flux=0", "2.flux=0"}, "no condition for row 1 (wall), row 3 (wall)");
+  says({"*.flux=0", "wall.power=10"}, "whose emissivities in the file differ");
+}
+
 TEST(HeatConditionsByName, WhatIsWrongIsNamed) {
   const auto says = [](const std::vector<std::string>& settings, const std::string& words) {
     const std::string message = test::errorOf([&] { given(settings); });
     EXPECT_NE(message.find(words), std::string::npos) << message;
   };
-  says({"lid.temperature=300"}, "lid: has no emissivity");
+  says({"*.temperature=300"}, "no emissivity for walls, floor, lid: give one");
+  says({"*.emissivity=.5", "*.flux=0", "lid.temperature=1e9"}, "above 1e+08 K");
+  says({"*.emissivity=.5", "*.flux=0", "l?dd.flux=1"}, "l?dd matches no surface");
   says({"lid.temperature=300", "*.emissivity=0.5"}, "no condition for walls, floor");
-  says({"door.temperature=3"}, "is called door; there are: walls, floor, lid, shell");
+  says({"door.temperature=3"}, "is called door; there are: floor, lid, walls, shell");
   says({"lid.heat=3"}, "`heat` is none of emissivity, temperature, flux");
   says({"lid.temperature"}, "is not NAME.PROPERTY=VALUE");
   says({"lid.temperature=-20"}, "temperatures are in kelvin");

@@ -427,6 +427,18 @@ TEST(Heat, IsothermalSurfaceSharesItsPower) {
   EXPECT_GT(std::abs(s.net_flux[0] - s.net_flux[1]), 1);
 }
 
+TEST(Heat, ValuesBeyondAllBoundsAreNoSolution) {
+  const std::string message = test::errorOf([] {
+    solved(facingPlates(), {at("a", .5, 1e99), at("b", .5, 300)});
+  });
+  EXPECT_NE(message.find("a: temperature 1e+99 is not one in kelvin, 0 to 1e+08"),
+            std::string::npos)
+      << message;
+  // 1e24 W/m^2 leave a surface of emissivity 1e-300: sigma T^4 would be 1e324.
+  const HeatSolution none = solved(facingPlates(), {fluxed("a", 1e-300, 1e24), at("b", .5, 300)});
+  EXPECT_FALSE(none.summary.usable()) << none.summary.message;
+}
+
 TEST(Heat, RefusesWhatHasNoTemperature) {
   const FormFactors plates = facingPlates();
   const auto error = [&](const std::vector<HeatCondition>& conditions) {

@@ -1,5 +1,6 @@
 """Form factors as files: compared with each other, and solved without their scene."""
 import csv
+import os
 import sys
 import unittest
 from pathlib import Path
@@ -105,6 +106,84 @@ class Matrices(CliTest):
         numpy.testing.assert_allclose(of_matrix, of_scene, atol=2e-6)
         with h5py.File(self.folder / "s.h5") as file:
             numpy.testing.assert_array_equal(of_scene[:, :3], file["solution/radiosity"][()])
+
+    # Four surfaces, two of them adiabatic: Howell, Menguc & Siegel's enclosure; F by row, each
+    # divided by its sum; areas by reciprocity.
+    def enclosure(self):
+        f = numpy.array([[0, .123, .6928, .1841], [.123, 0, .1841, .6928],
+                         [.2771, .0736, .4458, .2035], [.0736, .2771, .2035, .4458]])
+        return f / f.sum(axis=1, keepdims=True)
+
+    def assert_enclosure(self, name):
+        rows = self.light(name)
+        temperature = [float(row["temperature_K"]) for row in rows]
+        self.assertAlmostEqual(temperature[2], 505.52788, delta=1e-5)
+        self.assertAlmostEqual(temperature[3], 463.29647, delta=1e-5)
+        # The published flux has sigma = 5.670367e-8.
+        flux = float(rows[0]["net_flux_W_per_m2"]) * 5.670367e-8 / 5.67037441918443e-8
+        self.assertAlmostEqual(flux, 2003.1839, delta=1e-4)
+
+    def test_heat_of_an_enclosure_of_view3d(self):
+        lines = ["View3D 3.3.1 0 1 0 4", "1 1 2.5 2.5"]
+        lines += [" ".join(map(repr, map(float, row))) for row in self.enclosure()]
+        self.write("f.vf", "\n".join([*lines, "1 .75 .5 .5"]) + "\n")
+        conditions = ["--condition", "1.temperature=550", "--condition", "2.temperature=300",
+                      "--condition", "*.flux=0"]
+        run = self.run_program("heat", "f.vf", *conditions, "-o", "s.csv", "--patch-table", "r.csv")
+        self.assert_enclosure("r.csv")
+        self.assertEqual([row["surface"] for row in self.light("s.csv")],
+                         ["row 1", "row 2", "row 3", "row 4"])
+        self.assertEqual(run.err, "")
+        self.assertIn("row sums from", self.run_program("info", "f.vf").out)
+
+    def test_heat_of_a_matrix_with_names(self):
+        f = self.enclosure()
+        names = ["bottom", "top", "left", "right"]
+        text = "%%MatrixMarket matrix array real general\n"
+        for i, (area, name) in enumerate(zip([1, 1, 2.5, 2.5], names)):
+            text += f"% row {i + 1} area {area} sky 0 backs 0 name {name}\n"
+        text += "4 4\n" + "".join(f"{float(x)!r}\n" for x in f.T.ravel())
+        self.write("f.mtx", text)
+        self.write("t.csv", "surface,emissivity,temperature_K,flux_W_per_m2\nbottom,1,550,\n"
+                   "top,.75,300,\n*,.5,,0\n")
+        self.run_program("heat", "f.mtx", "--thermal", "t.csv", "-o", "s.csv", "--patch-table",
+                         "r.csv")
+        self.assert_enclosure("r.csv")
+        self.assertEqual([row["surface"] for row in self.light("s.csv")], names)
+        heat = ["heat", "f.mtx", "--thermal", "t.csv"]
+        self.refuse(*heat, "-o", "x.h5", words=["x.h5", ".csv"])
+        self.refuse(*heat, "--patches", 9, words=["--patches", "is a matrix"])
+        self.refuse(*heat, "--condition", "botom.flux=1", words=["botom", "there are: bottom"])
+        self.refuse("heat", "f.mtx", words=["no conditions are given"])
+        self.refuse("heat", "f.mtx", "--condition", "*.flux=0", words=["no emissivity for row 1 (bottom)"])
+        self.refuse("heat", "box.obj", "--areas", "t.csv", "--condition", "*.flux=0",
+                    words=["--areas", "box.obj"])
+
+    def test_a_matrix_is_no_scene(self):
+        self.write("plates.mtx", PLATES)
+        said = self.run_program("info", "plates.mtx").out
+        for words in ("2 rows", "--rows", "--thermal", "compare"):
+            self.assertIn(words, said)
+        self.refuse("mesh", "plates.mtx", words=["plates.mtx", "form factors alone", "mesh needs a scene"])
+        self.refuse("render", "none.mtx", "-o", "x.png", words=["none.mtx", "no such file"])
+
+    def test_what_cannot_be_used_is_called_by_its_name(self):
+        self.write("rows.csv", "row,reflectance,emission\n1,.5,3\n2,.8,0\n")
+        self.write("q.mtx", "2 2 2\n1 2 1\n2 1 1\n")
+        self.write("q.vf", "text\n")
+        os.mkfifo(self.folder / "pipe.mtx")
+        for command in (["solve", "--rows", "rows.csv"], ["heat", "--condition", "*.flux=0"],
+                        ["info"], ["compare", "q.mtx"]):
+            for name, words in (("q.mtx", "does not begin with %%MatrixMarket"),
+                                ("q.vf", "does not begin as View3D's"), ("pipe.mtx", "is a pipe"),
+                                ("none.mtx", "no such file")):
+                if command[0] == "compare" and name != "q.mtx":
+                    continue
+                self.refuse(command[0], name, *command[1:], words=[name, words])
+        self.write("q.mtx", "%%MatrixMarket matrix coordinate real general\n"
+                   "999999999999 999999999999 1\n1 1 1\n")
+        self.refuse("solve", "q.mtx", "--rows", "rows.csv",
+                    words=["q.mtx:2", "999999999999 rows", "form factors have 1 to"])
 
     def test_what_is_refused(self):
         self.write("plates.mtx", PLATES)

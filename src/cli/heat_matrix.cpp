@@ -1,0 +1,49 @@
+// heat of a matrix from elsewhere: conditions by the names of its rows, or by their numbers.
+#include <fmt/format.h>
+
+#include "cli/matrix_commands.h"
+#include "cli/summaries.h"
+#include "radiosity/results.h"
+
+namespace radiosity::cli {
+
+namespace {
+
+void requireOwnOptions(const Request& request, const OutputSet& files) {
+  refuseSceneOptions(request);
+  for (const Output& output : files.all()) {
+    if (output.format == Format::surface_table || output.format == Format::patch_table) continue;
+    throw InputError(output.path + ": heat of a matrix without a scene goes to a .csv");
+  }
+}
+
+}  // namespace
+
+int heatMatrixFile(Session& session, OutputSet& files) {
+  const Request& request = session.request;
+  requireOwnOptions(request, files);
+  const HeatOptions options = request.apply(HeatOptions());
+  const ConditionText text = readConditionText(request.thermal, request.conditions);
+  const MatrixFile file = readMatrixInput(session);
+  const std::vector<std::string>& names = file.factors.names;
+  const HeatConditions conditions = readHeatConditions(names, file.emissivity, text);
+  validate(conditions, options);
+  const FormFactors factors = reportedFactors(session, file);
+  const HeatSolution heat =
+      solveHeat(factors, HeatRows{conditions.conditions, conditions.of_surface, {}}, options,
+                session.progress);
+  const std::vector<SurfaceHeat> surfaces = heatByName(heat, names, factors);
+  summarizeHeat(session.report, heat, factors, surfaces, options, Detail::full);
+  files.write(Format::surface_table, "heat exchange by name",
+              [&](const std::string& temporary) { writeHeatTable(temporary, surfaces); });
+  files.write(Format::patch_table, "heat exchange by row", [&](const std::string& temporary) {
+    writeHeatRows(temporary, heat, names, factors.matrix.area());
+  });
+  files.commit(session.report, session.progress);
+  if (heat.summary.usable()) return 0;
+  const Note unusable{Severity::loud, heat.summary.message};
+  session.report.notes({&unusable, 1});
+  return 1;
+}
+
+}  // namespace radiosity::cli

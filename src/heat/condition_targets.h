@@ -1,0 +1,68 @@
+// What conditions may name: surfaces of a scene, or rows of a matrix.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "radiosity/base.h"
+#include "radiosity/scene.h"
+
+namespace radiosity {
+
+class ConditionTargets {
+ public:
+  virtual ~ConditionTargets() = default;
+  virtual std::size_t size() const = 0;
+  /// For messages.
+  virtual std::string nameOf(Index target) const = 0;
+  /// What a name may be of: "surface, material or object with faces".
+  virtual std::string_view kinds() const = 0;
+  /// Those that `name` stands for as it is, ascending.
+  virtual std::vector<Index> named(const std::string& name) const = 0;
+  /// Those with a name that a pattern matches, ascending.
+  virtual std::vector<Index> matching(const std::string& pattern) const = 0;
+  virtual std::vector<std::string> knownNames() const = 0;
+  /// Emissivity where no condition gives one.
+  virtual std::optional<double> emissivityOf(Index target) const = 0;
+};
+
+/// Surfaces go by their own name, their material's and their object's.
+class SurfaceTargets : public ConditionTargets {
+ public:
+  explicit SurfaceTargets(const Scene& scene) : scene_(scene) {}
+  std::size_t size() const override { return scene_.surfaces.size(); }
+  std::string nameOf(Index target) const override { return scene_.surfaces[target].name; }
+  std::string_view kinds() const override { return "surface, material or object with faces"; }
+  std::vector<Index> named(const std::string& name) const override;
+  std::vector<Index> matching(const std::string& pattern) const override;
+  std::vector<std::string> knownNames() const override;
+  std::optional<double> emissivityOf(Index /*target*/) const override { return std::nullopt; }
+
+ private:
+  const Scene& scene_;
+};
+
+/// Rows go by their name, or by their number from 1.
+class RowTargets : public ConditionTargets {
+ public:
+  /// Both are kept by reference. `names`: N, empty where a row has none; `emissivity`: N, or empty.
+  RowTargets(std::span<const std::string> names, std::span<const double> emissivity);
+  std::size_t size() const override { return names_.size(); }
+  std::string nameOf(Index target) const override;
+  std::string_view kinds() const override { return "row"; }
+  std::vector<Index> named(const std::string& name) const override;
+  std::vector<Index> matching(const std::string& pattern) const override;
+  std::vector<std::string> knownNames() const override;
+  std::optional<double> emissivityOf(Index target) const override;
+
+ private:
+  std::span<const std::string> names_;
+  std::span<const double> emissivity_;
+  std::unordered_map<std::string, std::vector<Index>> by_name_;
+};
+
+}  // namespace radiosity

@@ -1,0 +1,258 @@
+// Conditions of surfaces or rows from what lines say by name.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "base/input_file.h"
+#include "base/name_pattern.h"
+#include "base/near_names.h"
+#include "heat/condition_targets.h"
+#include "heat/condition_text.h"
+#include "scene/text.h"
+
+namespace radiosity {
+
+namespace {
+
+/// How messages list names that there are, and names that lack something.
+constexpr std::size_t kMostNames = 40;
+constexpr std::size_t kFewNames = 12;
+
+[[noreturn]] void fail(const GivenCondition& given, const std::string& what) {
+  throw InputError(fmt::format("{}: {}", given.origin, what));
+}
+
+/// All lines, those of the table first, and which of them each target is named by.
+class Lines {
+ public:
+  Lines(const ConditionTargets& targets, const ConditionText& text)
+      : targets_(targets), of_target_(targets.size()) {
+    if (!text.table.empty()) lines_ = parseConditionTable(text.origin, text.table);
+    table_ = lines_.size();
+    for (const std::string& setting : text.settings) lines_.push_back(parseSetting(setting));
+    checkOthers();
+    find();
+    placeAll(0, table_);
+    placeAll(table_, lines_.size());
+  }
+
+  HeatConditions conditions() {
+    HeatConditions out;
+    std::map<Same, Index> known;
+    for (Index t = 0; t < of_target_.size(); ++t) {
+      const Same same{of_target_[t], targets_.emissivityOf(t)};
+      const auto found = known.find(same);
+      if (!same.named_by.empty() && found != known.end()) {
+        out.of_surface.push_back(found->second);
+        continue;
+      }
+      GivenCondition given = together(same);
+      if (!given.emissivity && same.emissivity) given.emissivity = {{{}, {*same.emissivity}}};
+      if (!given.heated() && !given.convection) without_condition_.push_back(targets_.nameOf(t));
+      if (!given.emissivity) without_emissivity_.push_back(targets_.nameOf(t));
+      out.of_surface.push_back(Index(out.conditions.size()));
+      if (!same.named_by.empty()) known[same] = out.of_surface.back();
+      const bool alone = same.named_by.empty() || countNamedBy(same.named_by) == 1;
+      out.conditions.push_back(
+          conditionOf(given, alone ? targets_.nameOf(t) : lines_[same.named_by[0]].name));
+    }
+    requireAll();
+    return out;
+  }
+
+ private:
+  /// Targets of which the same is said have one condition.
+  struct Same {
+    std::vector<std::size_t> named_by;
+    std::optional<double> emissivity;  ///< where no line gives one
+    auto operator<=>(const Same&) const = default;
+  };
+
+  /// There is one line of a table for all others, and it says nothing of one surface.
+  void checkOthers() const {
+    bool there = false;
+    for (std::size_t k = 0; k < lines_.size(); ++k) {
+      const GivenCondition& line = lines_[k];
+      if (line.name != kOthers) continue;
+      if (line.power || line.isothermal) {
+        fail(line, "power and isothermal are of surfaces together; give them by name, not for *");
+      }
+      if (k < table_ && there) fail(line, "a second line for *; give one");
+      there = there || k < table_;
+    }
+  }
+
+  /// Targets named by exactly these lines.
+  std::size_t countNamedBy(const std::vector<std::size_t>& named_by) const {
+    return std::size_t(std::ranges::count(of_target_, named_by));
+  }
+
+  /// What each line names; a name as it stands goes before a pattern.
+  void find() {
+    found_.resize(lines_.size());
+    by_pattern_.assign(lines_.size(), false);
+    for (std::size_t k = 0; k < lines_.size(); ++k) {
+      const GivenCondition& line = lines_[k];
+      if (line.name == kOthers) continue;
+      found_[k] = targets_.named(line.name);
+      by_pattern_[k] = found_[k].empty() && isPattern(line.name);
+      if (by_pattern_[k]) found_[k] = targets_.matching(line.name);
+      if (found_[k].empty()) failForName(line, by_pattern_[k]);
+    }
+  }
+
+  [[noreturn]] void failForName(const GivenCondition& line, bool pattern) const {
+    const std::vector<std::string> known = nearestFirst(line.name, targets_.knownNames());
+    const std::string what = pattern
+                                 ? fmt::format("{} matches no {}", line.name, targets_.kinds())
+                                 : fmt::format("no {} is called {}", targets_.kinds(), line.name);
+    fail(line, fmt::format("{}; there are: {}", what, joinNames(known, kMostNames)));
+  }
+
+  /// Lines from `first` on: what patterns say, then what is said by name.
+  void placeAll(std::size_t first, std::size_t last) {
+    for (const bool pattern : {true, false}) {
+      for (std::size_t k = first; k < last; ++k) {
+        if (by_pattern_[k] == pattern) place(k);
+      }
+    }
+  }
+
+  void place(std::size_t k) {
+    for (const Index t : found_[k]) {
+      std::vector<std::size_t>& named_by = of_target_[t];
+      const bool twice =
+          k < table_ && !named_by.empty() && by_pattern_[named_by.back()] == by_pattern_[k];
+      if (twice) {
+        fail(lines_[k], fmt::format("{} is named here and in {}; name it once", targets_.nameOf(t),
+                                    lines_[named_by.back()].origin));
+      }
+      named_by.push_back(k);
+    }
+  }
+
+  static void add(const GivenCondition& line, GivenCondition& to) {
+    if (line.emissivity) to.emissivity = line.emissivity;
+    if (line.heated()) {
+      to.temperature = line.temperature;
+      to.flux = line.flux;
+      to.power = line.power;
+      to.origin = line.origin;
+    }
+    if (line.convection) to.convection = line.convection;
+    if (line.ambient) to.ambient = line.ambient;
+    if (line.isothermal) to.isothermal = line.isothermal;
+  }
+
+  /// What all lines say that name a target; where they are silent, what is said of all others.
+  GivenCondition together(const Same& same) {
+    GivenCondition out;
+    for (const GivenCondition& line : lines_) {
+      if (line.name == kOthers) add(line, out);
+    }
+    for (const std::size_t k : same.named_by) add(lines_[k], out);
+    for (const std::size_t k : same.named_by) {
+      const GivenCondition& line = lines_[k];
+      const bool shares = (line.power && out.power) || (line.isothermal && *line.isothermal);
+      if (!shares) continue;
+      const auto [known, added] = shared_.emplace(k, same);
+      if (added || known->second == same) continue;
+      if (known->second.named_by == same.named_by) {
+        fail(line,
+             fmt::format("{}: power and isothermal are of all that the name stands for, whose "
+                         "emissivities in the file differ; give it one emissivity",
+                         line.name));
+      }
+      fail(line, fmt::format("{}: power and isothermal are of all that the name stands for, and "
+                             "another setting takes some of it out; name them one by one",
+                             line.name));
+    }
+    return out;
+  }
+
+  static HeatCondition conditionOf(const GivenCondition& given, const std::string& name) {
+    const bool convects = given.convection.value_or(0) > 0;
+    if (convects && !given.ambient) {
+      throw InputError(
+          fmt::format("{}: has convection and no ambient temperature; give both", name));
+    }
+    if (given.ambient && !given.convection) {
+      throw InputError(
+          fmt::format("{}: has an ambient temperature and no convection; give both", name));
+    }
+    HeatCondition condition;
+    condition.name = name;
+    condition.emissivity = given.emissivity.value_or(std::vector<Emissivity>());
+    condition.temperature = given.temperature;
+    condition.flux = given.flux;
+    condition.power = given.power;
+    condition.convection = given.convection.value_or(0);
+    condition.ambient = given.ambient.value_or(0);
+    condition.isothermal = given.isothermal.value_or(false);
+    return condition;
+  }
+
+  void requireAll() const {
+    if (!without_condition_.empty()) {
+      throw InputError(fmt::format(
+          "no condition for {}: give a temperature, flux (0: adiabatic), power or convection, each "
+          "by name or for all others by the name *",
+          joinNames(without_condition_, kFewNames)));
+    }
+    if (!without_emissivity_.empty()) {
+      throw InputError(fmt::format(
+          "no emissivity for {}: give one, each by name or for all others by the name *",
+          joinNames(without_emissivity_, kFewNames)));
+    }
+  }
+
+  const ConditionTargets& targets_;
+  std::vector<GivenCondition> lines_;
+  std::size_t table_ = 0;                            ///< how many are of the table
+  std::vector<std::vector<Index>> found_;            ///< by line
+  std::vector<bool> by_pattern_;                     ///< by line
+  std::vector<std::vector<std::size_t>> of_target_;  ///< lines, those that go before others last
+  std::map<std::size_t, Same> shared_;               ///< by line: who shares its power
+  std::vector<std::string> without_condition_;
+  std::vector<std::string> without_emissivity_;
+};
+
+HeatConditions conditionsOf(const ConditionTargets& targets, const ConditionText& text) {
+  HeatConditions out = Lines(targets, text).conditions();
+  out.text = text;
+  return out;
+}
+
+}  // namespace
+
+ConditionText readConditionText(const std::string& csv_path,
+                                std::span<const std::string> settings) {
+  if (csv_path.empty() && settings.empty()) {
+    throw InputError(
+        "no conditions are given: name a table of them, --thermal FILE.csv, or give them by name, "
+        "--condition NAME.temperature=500");
+  }
+  ConditionText text;
+  text.origin = csv_path;
+  if (!csv_path.empty()) text.table = readWholeFile(csv_path);
+  text.settings.assign(settings.begin(), settings.end());
+  return text;
+}
+
+HeatConditions readHeatConditions(const Scene& scene, const ConditionText& text) {
+  return conditionsOf(SurfaceTargets(scene), text);
+}
+
+HeatConditions readHeatConditions(const Scene& scene, const std::string& csv_path,
+                                  std::span<const std::string> settings) {
+  return readHeatConditions(scene, readConditionText(csv_path, settings));
+}
+
+HeatConditions readHeatConditions(std::span<const std::string> names,
+                                  std::span<const double> emissivity, const ConditionText& text) {
+  return conditionsOf(RowTargets(names, emissivity), text);
+}
+
+}  // namespace radiosity
