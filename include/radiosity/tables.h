@@ -83,6 +83,15 @@ enum class TableLayout {
 
 inline constexpr std::size_t kMostTableValues = 100'000'000;
 
+// What the writers below refuse in the names and the number of rows, before there are form factors:
+// InputError. Of `rows` count names, numbered and sky_name.
+
+/// Of .csv, .json and .md.
+void checkTableRows(const std::string& path, const NamedFactors& rows, TableLayout layout);
+void checkEnergyPlusRows(const std::string& path, const NamedFactors& rows,
+                         const std::string& zone);
+void checkView3dRows(const std::string& path, const NamedFactors& rows);
+
 /// Comma-separated (RFC 4180), with a header. Wide: name, area_m2, a column a receiver, the sky's,
 /// backs, sum (of these; 1 but for the errors), error (of the row), reciprocity_m2 (the row's
 /// largest residual). Tall: from, to, form_factor, error, reciprocity_m2. Where there are no error

@@ -51,6 +51,11 @@ OutputSet claimOutputs(const Session& session);
 void keepFactors(Session& session, Pipeline& pipeline, const OutputSet& files);
 void keepSolution(Session& session, Pipeline& pipeline, const OutputSet& files);
 
+/// The same for a run that makes no later stage: the .h5 is there before tables are written.
+void saveResults(Session& session, Pipeline& pipeline, const OutputSet& files);
+
+/// Writes the .mtx among `files`, after saying how large it will be.
+void writeMatrix(Session& session, Pipeline& pipeline, OutputSet& files);
 /// Writes the .h5 and .mtx among `files`, after saying how large they will be. A results file
 /// that would not change is left alone.
 void writeStages(Session& session, Pipeline& pipeline, OutputSet& files);

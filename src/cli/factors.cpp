@@ -7,13 +7,16 @@ int runFactors(Session& session) {
   OutputSet files = claimOutputs(session);
   checkTableOptions(session.request, files);
   Run run(session, files.path(Format::results));
-  checkGroups(session.request, run.pipeline.scene());
+  std::vector<std::string> surfaces;
+  for (const Surface& surface : run.pipeline.scene().surfaces) surfaces.push_back(surface.name);
+  checkTables(session, files, surfaces, 0);
+  checkTables(session, files, surfaces, run.pipeline.mesh().mesh.unknowns());
   run.pipeline.factors();
+  saveResults(session, run.pipeline, files);
   writeTables(session, run.pipeline, files);
   writeCells(session, run.pipeline, files);
-  writeStages(session, run.pipeline, files);
+  writeMatrix(session, run.pipeline, files);
   files.commit(session.report, session.progress);
-  run.pipeline.discardKeptRows();
   return 0;
 }
 

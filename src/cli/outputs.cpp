@@ -9,6 +9,7 @@
 
 #include "base/figure_text.h"
 #include "cli/words.h"
+#include "radiosity/results.h"
 
 namespace radiosity::cli {
 
@@ -110,6 +111,12 @@ std::vector<Output> parseOutputs(const Request& request) {
     }
     if (output.format != Format::results && sameFile(path, request.input)) {
       throw InputError(path + ": is the input itself; write to another name");
+    }
+    if (output.format == Format::results && isForeignHdf5(path)) {
+      throw InputError(
+          path +
+          ": is an HDF5 file of another program, which results would replace; write to "
+          "another name, or delete it");
     }
     outputs.push_back(output);
   }

@@ -45,7 +45,7 @@ std::string extensionOf(const std::string& path);
 
 /// The files that -o names for this subcommand, those of --lightmap and --patch-table. InputError:
 /// an extension it cannot write (with the list of those it can), the same file twice, the scene
-/// file itself.
+/// file itself, an HDF5 file of another program where results would go.
 std::vector<Output> parseOutputs(const Request& request);
 
 /// Writes under temporary names; commit() renames all. Without commit() nothing stays.

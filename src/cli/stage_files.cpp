@@ -4,11 +4,12 @@
 #include <filesystem>
 
 #include "base/figure_text.h"
+#include "base/input_file.h"
 #include "cli/commands.h"
 #include "cli/light_cure.h"
+#include "cli/matrix_commands.h"
 #include "cli/signal_guard.h"
 #include "cli/words.h"
-#include "radiosity/matrix_files.h"
 #include "radiosity/results.h"
 
 namespace radiosity::cli {
@@ -21,6 +22,29 @@ void refuseReadingOptions(const Request& request) {
   throw InputError(fmt::format(
       "{}: {} says how a scene file is read, and this is a results file; give the scene file",
       request.input, request.reading_options.front()));
+}
+
+/// What holds form factors alone is for few subcommands.
+void requireScene(const Request& request) {
+  if (!isMatrixInput(request.input)) return;
+  requireFile(request.input);
+  throw InputError(fmt::format(
+      "{}: holds form factors alone, and {} needs a scene; solve, heat, info and compare take them",
+      request.input, commandName(request.command)));
+}
+
+/// Results of one scene are often written over those of its last state, but not of another scene.
+void warnOfOtherScene(Session& session, const Scene& scene, const std::string& results_output) {
+  namespace fs = std::filesystem;
+  if (results_output.empty() || results_output == session.request.input) return;
+  const std::optional<Scene> before = sceneInResults(results_output);
+  if (!before || fs::path(before->file).filename() == fs::path(scene.file).filename()) return;
+  if (before->vertices == scene.vertices && before->corners == scene.corners) return;
+  const Note loud{Severity::loud,
+                  fmt::format("{}: holds results of {}, which will be replaced by those of {}; "
+                              "interrupt and write to another name to keep them",
+                              results_output, before->file, scene.file)};
+  session.report.notes({&loud, 1});
 }
 
 /// Where the output goes there is room for what does not fit into memory.
@@ -48,8 +72,10 @@ Run::Run(Session& session, const std::string& results_output)
     : said(session.request, session.report, session.limit, !results_output.empty()),
       pipeline(session.progress, &said) {
   const Request& request = session.request;
+  requireScene(request);
   refuseReadingOptions(request);
   pipeline.open(request.input, request.scene, results_output);
+  warnOfOtherScene(session, pipeline.scene(), results_output);
   PipelineOptions& options = pipeline.options();
   options.mesh = request.apply(options.mesh);
   options.factors = request.apply(options.factors);
@@ -78,7 +104,7 @@ OutputSet claimOutputs(const Session& session) {
   if (std::filesystem::is_regular_file(request.input, ignored) && isResultsFile(request.input)) {
     files.add({request.input, Format::results});
   } else {
-    const char* kept_in = isMatrixFile(request.input) ? "FILE.csv" : "FILE.h5";
+    const char* kept_in = isMatrixInput(request.input) ? "FILE.csv" : "FILE.h5";
     session.report.line(
         "note", fmt::format("nothing will be written; add -o {} to keep the result", kept_in));
   }
@@ -140,19 +166,43 @@ void keepFactors(Session& session, Pipeline& pipeline, const OutputSet& files) {
   session.report.line("kept", "form factors, in " + path);
 }
 
-void keepSolution(Session& session, Pipeline& pipeline, const OutputSet& files) {
-  const std::string path = files.path(Format::results);
-  if (path.empty() || pipeline.isUpToDate(path)) return;
+namespace {
+
+/// `kept`: what is in the file then, for whoever interrupts the run.
+void saveNow(Session& session, Pipeline& pipeline, const std::string& path, const char* kept) {
   if (!pipeline.update(path)) {
     announceResults(session, pipeline, path);
     pipeline.save(path);
   }
-  sayIfInterrupted(path + " keeps the form factors and the solution", path);
+  sayIfInterrupted(fmt::format("{} keeps {}", path, kept), path);
   reportResults(session, pipeline, path);
+}
+
+}  // namespace
+
+void keepSolution(Session& session, Pipeline& pipeline, const OutputSet& files) {
+  const std::string path = files.path(Format::results);
+  if (path.empty() || pipeline.isUpToDate(path)) return;
+  saveNow(session, pipeline, path, "the form factors and the solution");
+}
+
+void saveResults(Session& session, Pipeline& pipeline, const OutputSet& files) {
+  const std::string path = files.path(Format::results);
+  if (path.empty()) return;
+  pipeline.keepLaterStages();
+  if (pipeline.isUpToDate(path)) {
+    session.report.line("results", path + " is up to date");
+    return;
+  }
+  saveNow(session, pipeline, path, "the form factors");
 }
 
 void writeStages(Session& session, Pipeline& pipeline, OutputSet& files) {
   if (files.has(Format::results)) writeResultsFile(session, pipeline, files);
+  writeMatrix(session, pipeline, files);
+}
+
+void writeMatrix(Session& session, Pipeline& pipeline, OutputSet& files) {
   if (!files.has(Format::matrix_market)) return;
   const ExchangeMatrix& matrix = pipeline.matrix();
   // Two indices and 17 digits with sign, point and exponent: at most 40 characters an entry.
@@ -160,11 +210,12 @@ void writeStages(Session& session, Pipeline& pipeline, OutputSet& files) {
   const std::string path = files.path(Format::matrix_market);
   session.report.line("matrix", fmt::format("{}: at most {} to write", path, bytesText(bytes)));
   requireDiskSpace(path, bytes);
-  files.write(
-      Format::matrix_market, "form factors, MatrixMarket", [&](const std::string& temporary) {
-        writeMatrixMarket(temporary, factorsOfUnknowns(pipeline.mesh().mesh, pipeline.factors()),
-                          session.progress);
-      });
+  files.write(Format::matrix_market, "form factors, MatrixMarket, numbered from 1",
+              [&](const std::string& temporary) {
+                writeMatrixMarket(temporary,
+                                  factorsOfUnknowns(pipeline.mesh().mesh, pipeline.factors()),
+                                  session.progress);
+              });
 }
 
 int judgeSolution(Session& session, Pipeline& pipeline) {

@@ -31,6 +31,16 @@ bool printsTable(const Request& request) {
   return !request.between.empty() || !request.groups.empty();
 }
 
+/// What --between says, else what the format is for.
+std::string betweenOf(const Request& request, Format format) {
+  if (!request.between.empty()) return request.between;
+  return isOfPatches(format) ? "patches" : "groups";
+}
+
+std::vector<std::string> groupsOf(const Request& request, const std::string& between) {
+  return between == "surfaces" ? std::vector<std::string>() : request.groups;
+}
+
 /// The tables of one run: each is made once.
 class Tables {
  public:
@@ -47,8 +57,7 @@ class Tables {
       made = factorsOfUnknowns(mesh, factors);
     } else {
       const SurfaceGroups groups =
-          groupSurfaces(mesh.surface_names, between == "surfaces" ? std::vector<std::string>()
-                                                                  : session_.request.groups);
+          groupSurfaces(mesh.surface_names, groupsOf(session_.request, between));
       session_.report.notes(groups.notes);
       made = factorsBetween(mesh, factors, groups, session_.progress);
     }
@@ -56,11 +65,7 @@ class Tables {
     return *made;
   }
 
-  /// What --between says, else what the format is for.
-  const NamedFactors& of(Format format) {
-    const std::string& asked = session_.request.between;
-    return get(!asked.empty() ? asked : isOfPatches(format) ? "patches" : "groups");
-  }
+  const NamedFactors& of(Format format) { return get(betweenOf(session_.request, format)); }
 
   std::vector<double> emissivity(const NamedFactors& factors) {
     return emissivities(factors, pipeline_.mesh().mesh, pipeline_.materials());
@@ -160,9 +165,11 @@ void writeTable(Session& session, Tables& tables, Format format, OutputSet& file
         writeView3d(path, factors, tables.emissivity(factors), progress);
       });
     case Format::triplets:
-      return write(", triplets", [&](Path path) { writeTriplets(path, factors, progress); });
+      return write(", triplets numbered from 0",
+                   [&](Path path) { writeTriplets(path, factors, progress); });
     default:
-      return write(", HDF5", [&](Path path) { writeTripletsHdf5(path, factors, progress); });
+      return write(", HDF5, numbered from 0",
+                   [&](Path path) { writeTripletsHdf5(path, factors, progress); });
   }
 }
 
@@ -203,11 +210,33 @@ void checkTableOptions(const Request& request, const OutputSet& files) {
           "--group", "joins surfaces, and --between asks for others; use --between groups");
 }
 
-void checkGroups(const Request& request, const Scene& scene) {
-  std::vector<std::string> names;
-  names.reserve(scene.surfaces.size());
-  for (const Surface& surface : scene.surfaces) names.push_back(surface.name);
-  groupSurfaces(names, request.groups);
+void checkTables(const Session& session, const OutputSet& files,
+                 std::span<const std::string> surfaces, std::size_t unknowns) {
+  const Request& request = session.request;
+  const auto rowsOf = [&](const std::string& between) {
+    NamedFactors rows;
+    rows.numbered = between == "patches";
+    rows.sky_name = request.sky_name;
+    rows.names = rows.numbered ? std::vector<std::string>(unknowns)
+                               : groupSurfaces(surfaces, groupsOf(request, between)).names;
+    return rows;
+  };
+  groupSurfaces(surfaces, request.groups);
+  for (const Output& output : files.all()) {
+    const auto rows = [&] { return rowsOf(betweenOf(request, output.format)); };
+    if (output.format == Format::csv || output.format == Format::json) {
+      checkTableRows(output.path, rows(), layoutOf(request));
+    } else if (output.format == Format::markdown) {
+      checkTableRows(output.path, rows(), TableLayout::wide);
+    } else if (output.format == Format::idf) {
+      checkEnergyPlusRows(output.path, rows(), zoneOf(session));
+    } else if (output.format == Format::view3d) {
+      checkView3dRows(output.path, rows());
+    }
+  }
+  if (printsTable(request)) {
+    checkTableRows("table", rowsOf(request.between), TableLayout::tall);
+  }
 }
 
 void writeTables(Session& session, Pipeline& pipeline, OutputSet& files) {

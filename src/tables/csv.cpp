@@ -71,8 +71,7 @@ void writeTallCsv(CheckedFile& file, const NamedFactors& factors, Progress& prog
 
 void writeFactorsCsv(const std::string& path, const NamedFactors& factors, TableLayout layout,
                      Progress& progress) {
-  requireDistinctNames(path, factors);
-  if (layout == TableLayout::wide) requireTableSize(path, factors);
+  checkTableRows(path, factors, layout);
   CheckedFile file(path);
   if (layout == TableLayout::wide) {
     writeWideCsv(file, factors, progress);

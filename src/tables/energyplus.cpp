@@ -63,10 +63,15 @@ void requireNames(const std::string& path, const NamedFactors& factors) {
 
 }  // namespace
 
+void checkEnergyPlusRows(const std::string& path, const NamedFactors& rows,
+                         const std::string& zone) {
+  requireNames(path, rows);
+  requireName(path, zone);
+}
+
 void writeEnergyPlus(const std::string& path, const NamedFactors& factors, const std::string& zone,
                      Progress& progress) {
-  requireNames(path, factors);
-  requireName(path, zone);
+  checkEnergyPlusRows(path, factors, zone);
   CheckedFile file(path);
   file.write(fmt::format(
       "! Form factors by radiosity: from surface, to surface, F. EnergyPlus takes the zone to be\n"

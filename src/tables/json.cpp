@@ -80,8 +80,7 @@ void writeTallJson(CheckedFile& file, const NamedFactors& factors, Progress& pro
 
 void writeFactorsJson(const std::string& path, const NamedFactors& factors, TableLayout layout,
                       Progress& progress) {
-  requireDistinctNames(path, factors);
-  if (layout == TableLayout::wide) requireTableSize(path, factors);
+  checkTableRows(path, factors, layout);
   CheckedFile file(path);
   file.write("{\"names\": " + dumped(factors.names) + ",\n");
   file.write(member("area_m2", factors.matrix->area()));

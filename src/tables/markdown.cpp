@@ -120,8 +120,7 @@ std::string factorsMarkdown(const NamedFactors& factors, TableLayout layout, int
 
 void writeFactorsMarkdown(const std::string& path, const NamedFactors& factors,
                           TableLayout layout) {
-  requireDistinctNames(path, factors);
-  requireTableSize(path, factors);
+  checkTableRows(path, factors, TableLayout::wide);
   CheckedFile file(path);
   file.write(factorsMarkdown(factors, layout));
   file.commit();

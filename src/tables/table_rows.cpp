@@ -30,4 +30,13 @@ void requireTableSize(const std::string& path, const NamedFactors& factors) {
                   path, factors.size(), factors.size() * factors.size()));
 }
 
+void checkTableRows(const std::string& path, const NamedFactors& rows, TableLayout layout) {
+  requireDistinctNames(path, rows);
+  if (layout == TableLayout::wide) requireTableSize(path, rows);
+}
+
+void checkView3dRows(const std::string& path, const NamedFactors& rows) {
+  requireTableSize(path, rows);
+}
+
 }  // namespace radiosity

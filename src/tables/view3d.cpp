@@ -29,7 +29,7 @@ void requireAreas(const std::string& path, const NamedFactors& factors) {
 void writeView3d(const std::string& path, const NamedFactors& factors,
                  std::span<const double> emissivity, Progress& progress) {
   requireAreas(path, factors);
-  requireTableSize(path, factors);
+  checkView3dRows(path, factors);
   if (emissivity.size() != factors.size()) {
     throw InputError(fmt::format("{}: {} emissivities are given for {} rows", path,
                                  emissivity.size(), factors.size()));

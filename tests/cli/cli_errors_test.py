@@ -145,6 +145,39 @@ class BadInput(CliTest):
             file["x"] = 1
         self.refuse("render", "foreign.h5", "-o", "p.png", words=["foreign.h5"])
 
+    def test_what_is_named_as_a_results_file_and_is_none(self):
+        self.write("text.h5", "no HDF5\n")
+        self.write("empty.h5", "")
+        for name in ("text.h5", "empty.h5"):
+            for command in (["info"], ["solve"], ["heat"], ["render", "-o", "p.png"]):
+                self.refuse(command[0], name, *command[1:], words=[name, "is not a results file"])
+            self.refuse("compare", name, "box.obj", words=[name, "is not a results file"])
+
+    def test_another_programs_hdf5_is_not_replaced(self):
+        with h5py.File(self.folder / "mine.h5", "w") as file:
+            file["measured"] = [1.0, 2.0]
+        before = (self.folder / "mine.h5").read_bytes()
+        for command in ("mesh", "factors", "render"):
+            self.refuse(command, "box.obj", *SMALL[:2], "-o", "mine.h5",
+                        words=["mine.h5", "HDF5 file of another program", "another name"])
+        self.assertEqual((self.folder / "mine.h5").read_bytes(), before)
+
+    def test_results_of_another_scene_are_replaced_loudly(self):
+        small = ["factors", *SMALL, "-o", "x.h5"]
+        self.write("other.obj", (self.folder / "box.obj").read_text().replace("v 1 1 1", "v 1 1 2"))
+        self.run_program(*small, "other.obj")
+        run = self.run_program(*small, "box.obj", "--quiet")
+        self.assertIn("WARNING: x.h5: holds results of other.obj", run.err)
+        # A scene that changed is the same scene.
+        self.write("box.obj", (self.folder / "other.obj").read_text())
+        self.assertEqual(self.run_program(*small, "box.obj").err, "")
+        # So are results that go over those of another scene.
+        self.run_program("factors", "other.obj", *SMALL, "-o", "y.h5")
+        self.write("other.obj", (self.folder / "box.obj").read_text().replace("v 1 1 2", "v 1 1 3"))
+        self.run_program("factors", "other.obj", *SMALL, "-o", "y.h5")
+        run = self.run_program("factors", "x.h5", "-o", "y.h5")
+        self.assertIn("WARNING: y.h5: holds results of other.obj", run.err)
+
     def test_reading_options_and_a_results_file(self):
         self.run_program("mesh", "box.obj", *SMALL[:2], "-o", "m.h5")
         self.refuse("solve", "m.h5", "--unit", "mm", words=["--unit", "scene file"])

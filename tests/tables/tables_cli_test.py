@@ -226,6 +226,33 @@ class Tables(CliTest):
         self.refuse(*small, "--between", "patches", "-o", "t.idf", words=["t.idf", "--between"])
         self.refuse(*small, "--sky-name", "room/wall", "-o", "t.csv", words=["--sky-name"])
 
+    def test_names_are_refused_before_form_factors_are_computed(self):
+        # A run that computed them would have said so, and left k.h5.
+        small = ["factors", "box.obj", "--patches", 30, "-o", "k.h5"]
+        for arguments, words in [
+                (["--group", "sky=*wall*", "-o", "k.csv"], ["k.csv", "is called sky"]),
+                (["--group", "sky=*wall*"], ["is called sky"]),
+                (["--group", "backs=*wall*", "-o", "k.json"], ["k.json", "is called backs"]),
+                (["--sky-name", "ceiling/lamp", "-o", "k.md"], ["k.md", "ceiling/lamp"]),
+                (["--between", "patches", "-o", "k.idf"], ["k.idf", "--between patches"]),
+                (["--group", "a, b=*wall*", "-o", "k.idf"], ["k.idf", "'a, b'", "EnergyPlus"]),
+                (["--group", "CEILING/LAMP=*wall*", "-o", "k.idf"], ["k.idf", "ignores case"]),
+                (["--zone", "a;b", "-o", "k.idf"], ["k.idf", "'a;b'"])]:
+            self.refuse(*small, *arguments, words=words)
+            run = self.run_program(*small, *arguments, code=2)
+            self.assertNotIn("about", run.out, "planned")
+
+    def test_a_table_that_fails_leaves_the_form_factors(self):
+        # View3D's readers divide by areas; which rows have none, the mesh alone says.
+        self.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\n"
+                   "o a\nf 1 2 3 4\no line\nf 1 2 5\n")
+        run = self.run_program("factors", "flat.obj", "--patches", 8, "-o", "k.h5", "-o", "k.vf", code=2)
+        self.assertIn("no area", run.err)
+        self.assertIn("k.h5", self.files())
+        self.assertNotIn("k.vf", self.files())
+        again = self.report("factors", "k.h5", "-o", "k.csv")
+        self.assertEqual(again["stages"]["form_factors"]["action"], "reused")
+
 
 if __name__ == "__main__":
     unittest.main()
