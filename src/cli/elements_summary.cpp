@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "cli/summaries.h"
 
@@ -51,7 +50,7 @@ void summarizeElements(Report& report, const Elements& elements, const FormFacto
   report.count("direct_vertices", "vertices evaluated, direct", r.direct_vertices);
   report.count("direct_by_rays", "  of them by rays", r.direct_by_rays);
   report.count("indirect_vertices", "vertices evaluated, indirect", r.indirect_vertices);
-  report.number("uniform_vertices", "a uniform grid as fine", std::round(r.uniform_vertices));
+  report.largeCount("uniform_vertices", "a uniform grid as fine", r.uniform_vertices);
   report.count("unrefined", "left coarse at the cap", r.unrefined);
   report.number("shortest_edge_m", "shortest edge", r.edge, "m");
   report.count("rays_a_vertex", "rays a vertex, indirect, at least", std::size_t(r.rays_a_vertex));
@@ -71,7 +70,7 @@ void summarizeFinalGather(Report& report, const ElementReport& sources,
   report.count("emitters", "emitters", sources.emitters);
   report.count("points", "points evaluated", gathered.points);
   report.count("rays_a_pixel", "rays a pixel, at most", std::size_t(gathered.rays_a_pixel));
-  report.number("rays", "rays of indirect light", std::round(gathered.rays));
+  report.largeCount("rays", "rays of indirect light", gathered.rays);
   report.number("ray_error", "error of rays, of pixels", gathered.ray_error);
   reportMatrixError(report, factors);
   report.seconds("seconds_sources", "time, sources",

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <map>
@@ -22,7 +23,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr int kLabelWidth = 33;  // the longest label, and room after it
+constexpr int kLabelWidth = 32;  // a blank follows, also of longer labels
 constexpr int kStageWidth = 15;
 constexpr std::size_t kAlike = 3;       // notes of one shape that are printed
 constexpr std::size_t kMostNotes = 30;  // of one severity, beyond which they are only counted
@@ -88,12 +89,19 @@ void Report::section(const std::string& key, const std::string& title) {
 }
 
 void Report::figure(const std::string& label, const std::string& value) const {
-  if (!muted()) put(stdout, fmt::format("  {:<{}}{}\n", label, kLabelWidth, oneLine(value)));
+  if (!muted()) put(stdout, fmt::format("  {:<{}} {}\n", label, kLabelWidth, oneLine(value)));
 }
 
 void Report::count(const std::string& key, const std::string& label, std::size_t value) {
   here()[key] = value;
   figure(label, countText(value));
+}
+
+void Report::largeCount(const std::string& key, const std::string& label, double value) {
+  constexpr double kMostCounted = 1e18;
+  here()[key] = std::round(value);
+  figure(label,
+         value < kMostCounted ? countText(std::size_t(std::llround(value))) : numberText(value));
 }
 
 void Report::number(const std::string& key, const std::string& label, double value,

@@ -24,6 +24,8 @@ class Report {
   /// A heading, and the object of the file that later figures go to.
   void section(const std::string& key, const std::string& title);
   void count(const std::string& key, const std::string& label, std::size_t value);
+  /// One that a double holds, rounded: it may be beyond what can be counted.
+  void largeCount(const std::string& key, const std::string& label, double value);
   /// `key` ends in the unit where there is one ("area_m2").
   void number(const std::string& key, const std::string& label, double value,
               const std::string& unit = "");

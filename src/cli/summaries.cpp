@@ -165,7 +165,7 @@ void summarizeMesh(Report& report, const MeshResult& result, Detail detail) {
                         plural(mesh.size(), "patch", "patches"), plural(r.quads, "quad", "quads"),
                         plural(r.triangles, "triangle", "triangles"),
                         others > 0 ? fmt::format(", {} of more corners", others) : "",
-                        r.clusters > 0 ? fmt::format(" in {} clusters", r.clusters) : "",
+                        r.clusters > 0 ? fmt::format(" in {} clusters", countText(r.clusters)) : "",
                         plural(r.polygons, "polygon", "polygons"), r.t_junctions,
                         numberText(r.smallest_angle, 3)));
   }
