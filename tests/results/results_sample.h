@@ -399,6 +399,7 @@ inline HeatSolution heat(const PatchMesh& mesh, int bands) {
   }
   h.summary = {HeatStatus::no_convergence, 5,   12345678901,    1e-3, 2e-4, 7,
                {1, 2, 3, 4, 5, 6},         0.5, "not converged"};
+  h.conditions = {"", "surface,emissivity\r\n# ä\n*,0.5\n", {"lamp.temperature=900", "*.flux=0"}};
   return h;
 }
 
@@ -573,9 +574,13 @@ inline auto members(const HeatSummary& s) {
   const auto& [a, b, c, d, e, f, g, h, i] = s;
   return std::tie(a, b, c, d, e, f, g, h, i);
 }
+inline auto members(const ConditionText& s) {
+  // Where it came from is not kept in the file.
+  return std::tie(s.table, s.settings);
+}
 inline auto members(const HeatSolution& s) {
-  const auto& [a, b, c, d, e, f, g] = s;
-  return std::tie(a, b, c, d, e, f, g);
+  const auto& [a, b, c, d, e, f, g, h] = s;
+  return std::tie(a, b, c, d, e, f, g, h);
 }
 inline auto members(const LightBasis& s) {
   const auto& [a, b, c, d] = s;
