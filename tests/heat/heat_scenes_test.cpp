@@ -238,6 +238,7 @@ TEST(HeatConditionsByName, NamesGoBeforePatternsAndSettingsBeforeTheTable) {
         namedScene(),
         ConditionText{"t.csv", "surface,emissivity,temperature_K\n" + table, settings});
     std::vector<double> out;
+    out.reserve(c.of_surface.size());
     for (const Index k : c.of_surface) out.push_back(c.conditions[k].temperature.value_or(0));
     return out;
   };
