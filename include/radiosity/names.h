@@ -27,6 +27,7 @@ using NameTable = std::array<std::pair<Enum, std::string_view>, N>;
 
 inline constexpr NameTable<Severity, 3> kSeverityNames{
     {{Severity::info, "info"}, {Severity::warning, "warning"}, {Severity::loud, "loud"}}};
+inline constexpr NameTable<Up, 2> kUpNames{{{Up::y, "y"}, {Up::z, "z"}}};
 inline constexpr NameTable<FormFactorMethod, 4> kMethodNames{
     {{FormFactorMethod::automatic, "auto"},
      {FormFactorMethod::exact, "exact"},

@@ -37,18 +37,18 @@ struct RenderOptions {
 /// inside a room, open or closed, at eye height; else from outside, on the side from which most can
 /// be seen. A room is where nearly all directions end on fronts: a window may be open, a wall may
 /// not be missing. Its name says which: "framed from inside", "framed from outside".
-/// `light`: N values >= 0, what each patch reflects; empty: all are lit alike. Errors: InputError
-/// where sizes differ or the aspect ratio is no positive number.
+/// `light`: N values >= 0, what each patch reflects; empty: all are lit alike. `up`: of the scene.
+/// Errors: InputError where sizes differ or the aspect ratio is no positive number.
 Camera framingCamera(const PatchMesh& mesh, bool closed, double aspect,
-                     std::span<const double> light = {});
+                     std::span<const double> light = {}, Up up = Up::y);
 
 /// The brightness that is typical of what is lit, sum a v^2 / sum a v over areas a and values v;
 /// 0 where all are 0. N values.
 double typicalLight(const PatchMesh& mesh, std::span<const double> light);
 
-/// "eye=x,y,z;target=x,y,z;up=x,y,z;fov=DEGREES" (up and fov may be left out) -> Camera.
-/// InputError says which part is wrong.
-Camera parseCamera(const std::string& text);
+/// "eye=x,y,z;target=x,y,z;up=x,y,z;fov=DEGREES" (up and fov may be left out) -> Camera. `up`: of
+/// the scene. InputError says which part is wrong.
+Camera parseCamera(const std::string& text, Up up = Up::y);
 
 /// The camera as parseCamera() reads it, every digit of it.
 std::string cameraText(const Camera& camera);

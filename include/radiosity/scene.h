@@ -64,6 +64,9 @@ struct Camera {
 
 /// Structure of arrays. F faces are polygons of 3 or more corners (concave ones allowed),
 /// counter-clockwise seen from the front.
+/// The axis that points up: only cameras that nobody gave depend on it.
+enum class Up { y, z };
+
 struct Scene {
   std::string file;                       ///< where it came from, for messages
   std::vector<Vec3> vertices;             ///< metres
@@ -81,6 +84,7 @@ struct Scene {
   std::vector<Camera> cameras;
   /// Radiance W/m^2/sr that comes from every direction in which nothing stands.
   Vec3 sky{0.0};
+  Up up = Up::y;
   std::string unit = "m";  ///< the file's unit before conversion: mm, cm, m, in, ft
   std::vector<Note> notes;
 
@@ -118,6 +122,7 @@ struct SceneOptions {
   std::vector<std::string> one_sided;  ///< material, object or surface names, or "all"
   std::vector<std::string> two_sided;  ///< the same; one_sided is applied first
   std::optional<Vec3> sky;             ///< replaces Scene::sky; finite, >= 0
+  std::optional<Up> up;                ///< replaces Scene::up, which the format decides
   /// Throws InputError naming the option and its range.
   void validate() const;
 };
@@ -137,7 +142,7 @@ std::string sceneExtensions();
 /// into memory.
 Scene loadScene(const std::string& path, const SceneOptions& options = {});
 
-/// Applies `set`, `materials_file`, `one_sided`, `two_sided`, `sky` to a scene already in memory
+/// Applies `set`, `materials_file`, `one_sided`, `two_sided`, `sky`, `up` to a scene already in memory
 /// (one that came back from a results file). NAME is a surface, material or object, tried in that
 /// order, but the material where a surface has its name only because its object has it too;
 /// PROPERTY is reflectance, emission (exitance, W/m^2), radiance (W/m^2/sr) or tint (what the

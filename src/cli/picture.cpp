@@ -27,7 +27,7 @@ Camera namedCamera(const Request& request, const Scene& scene, std::string& from
   }
   if (request.camera.find('=') != std::string::npos) {
     from = "--camera";
-    return parseCamera(request.camera);
+    return parseCamera(request.camera, scene.up);
   }
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
@@ -60,6 +60,7 @@ Picture choosePicture(const Request& request, const Scene& scene) {
   exposureNumber(request);
   Picture picture;
   picture.options = request.renderOptions();
+  picture.up = scene.up;
   if (!request.camera.empty()) {
     picture.camera = namedCamera(request, scene, picture.camera_from);
   } else if (!scene.cameras.empty()) {
@@ -77,8 +78,9 @@ Picture choosePicture(const Request& request, const Scene& scene) {
 void framePicture(Picture& picture, const PatchMesh& mesh, bool closed,
                   std::span<const double> reflected) {
   if (!picture.camera_from.empty()) return;
-  picture.camera = framingCamera(
-      mesh, closed, double(picture.options.width) / double(picture.options.height), reflected);
+  picture.camera =
+      framingCamera(mesh, closed, double(picture.options.width) / double(picture.options.height),
+                    reflected, picture.up);
   picture.camera_from = picture.camera.name;
 }
 
@@ -98,10 +100,12 @@ void reportPicture(Report& report, const Picture& picture) {
   const Camera& c = picture.camera;
   const double eye[] = {c.eye.x, c.eye.y, c.eye.z};
   const double target[] = {c.target.x, c.target.y, c.target.z};
+  const double up[] = {c.up.x, c.up.y, c.up.z};
   report.section("picture", "Picture");
   report.text("camera", "camera", picture.camera_from);
   report.bands("eye_m", "eye", eye, "m");
   report.bands("target_m", "target", target, "m");
+  report.bands("up", "up", up, "");
   report.number("vertical_fov_deg", "vertical field of view", degrees(c.vertical_fov), "deg");
   report.text(
       "size", "size",

@@ -13,6 +13,7 @@ namespace radiosity::cli {
 struct Picture {
   Camera camera;
   std::string camera_from;  ///< in words: where the camera came from
+  Up up = Up::y;            ///< of the scene
   RenderOptions options;
 };
 

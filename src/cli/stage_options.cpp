@@ -55,6 +55,13 @@ void addSceneOptions(CLI::App& app, Request& r) {
          "nothing is hit")
       ->group("Scene")
       ->option_text("RADIANCE");
+  app.add_option_function<std::string>(
+         "--up", [&r](const std::string& text) { r.scene.up = named(kUpNames, text); },
+         "Axis that points up, for cameras that nobody gave: y or z (default: z in .stl, .3mf, "
+         ".msh, .inp, .vs3 and VTK's files, else y)")
+      ->check(CLI::IsMember(namesIn(kUpNames)))
+      ->group("Scene")
+      ->option_text("y|z");
   add(app, "Scene", "--materials", r.scene.materials_file, "FILE.json",
       R"(Overrides from a file: {"NAME": {"reflectance": [R,G,B], "emission": [R,G,B]}})");
   add(app, "Scene", "--one-sided", r.scene.one_sided, "NAME|all",

@@ -95,6 +95,7 @@ void describeScene(Report& report, const Scene& scene) {
   bands(report, "lower_m", "lower corner", info.lower, "m");
   bands(report, "upper_m", "upper corner", info.upper, "m");
   bands(report, "extent_m", "extent", info.upper - info.lower, "m");
+  report.text("up", "up", nameOf(kUpNames, scene.up));
   report.yesNo("closed", "closed", info.closed);
   report.count("open_edges", "open edges", info.open_edges);
   bands(report, "emitted_power_W", "emitted power (R G B)", info.emitted_power, "W");

@@ -30,6 +30,23 @@ constexpr double kStanding = 1.1;   // worth of standing at that height
 constexpr double kEnclosed = 0.75;  // share of all directions that end on fronts within a room
 constexpr double kRoom = 1.5;       // worth of being in a room that has an outside too
 
+/// The same mesh, or camera, turned about the x axis so that z is y.
+Vec3 turnedUp(const Vec3& v) { return {v.x, v.z, -v.y}; }
+Vec3 turnedBack(const Vec3& v) { return {v.x, 0 - v.z, v.y}; }  // no -0, which would be printed
+
+PatchMesh turnedUp(const PatchMesh& mesh) {
+  PatchMesh turned = mesh;
+  for (auto* const vectors : {&turned.vertices, &turned.centroid, &turned.normal}) {
+    for (Vec3& v : *vectors) v = turnedUp(v);
+  }
+  return turned;
+}
+
+Camera turnedBack(Camera camera) {
+  for (Vec3* const v : {&camera.eye, &camera.target, &camera.up}) *v = turnedBack(*v);
+  return camera;
+}
+
 /// The box around all patches that have an area.
 Box3 boundingBox(const PatchMesh& mesh) {
   Box3 box;
@@ -341,7 +358,8 @@ double typicalLight(const PatchMesh& mesh, std::span<const double> light) {
 }
 
 Camera framingCamera(const PatchMesh& mesh, bool closed, double aspect,
-                     std::span<const double> light) {
+                     std::span<const double> light, Up up) {
+  if (up == Up::z) return turnedBack(framingCamera(turnedUp(mesh), closed, aspect, light));
   if (!(aspect > 0) || !std::isfinite(aspect)) {
     throw InputError("framing: the picture's aspect ratio must be positive");
   }

@@ -9,8 +9,8 @@
 
 namespace radiosity {
 
-Camera parseCamera(const std::string& text) {
-  Camera camera = readCamera(text, ';');
+Camera parseCamera(const std::string& text, Up up) {
+  Camera camera = readCamera(text, ';', up);
   makeView(camera, 1, 1);  // the checks every camera has to pass
   return camera;
 }

@@ -25,6 +25,7 @@ template <class Archive>
 void describe(Archive& a, Described<Archive, Scene>& s) {
   a("file", s.file);
   a("unit", s.unit);
+  a.laterChoice("up", s.up, kUpNames);
   a("sky", s.sky);
   a("vertices", s.vertices, "m");
   a("face_offset", s.face_offset);

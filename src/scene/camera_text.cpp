@@ -58,7 +58,7 @@ Parts partsOf(std::string_view text, char separator) {
 
 }  // namespace
 
-Camera readCamera(std::string_view text, char separator) {
+Camera readCamera(std::string_view text, char separator, Up up) {
   const Parts given = partsOf(text, separator);
   for (const char* needed : {"eye", "target"}) {
     if (!given.contains(needed)) {
@@ -71,8 +71,16 @@ Camera readCamera(std::string_view text, char separator) {
   if (given.contains("up")) {
     camera.up = point("up", given.at("up"));
     if (camera.up == Vec3(0.0)) throw InputError("camera: up is 0,0,0; it must have a direction");
-  } else if (camera.eye.x == camera.target.x && camera.eye.z == camera.target.z) {
-    camera.up = {0, 0, -1};  // straight up or down, as on a map
+  } else {
+    const int across = up == Up::y ? 2 : 1;
+    const bool straight =
+        camera.eye.x == camera.target.x && camera.eye[across] == camera.target[across];
+    camera.up = Vec3(0.0);
+    if (straight) {
+      camera.up[across] = up == Up::y ? -1 : 1;  // up or down, as on a map
+    } else {
+      camera.up[up == Up::y ? 1 : 2] = 1;
+    }
   }
   if (given.contains("fov")) {
     camera.vertical_fov = number("fov", given.at("fov")) * std::numbers::pi / 180;

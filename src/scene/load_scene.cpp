@@ -21,23 +21,30 @@ namespace {
 struct Format {
   const char* extension;
   Scene (*load)(const std::string&, const SceneOptions&);
+  Up up = Up::y;  ///< by custom
 };
 
 constexpr std::array kFormats = {
-    Format{".obj", loadObj},    Format{".gltf", loadGltf},  Format{".glb", loadGltf},
-    Format{".stl", loadStl},    Format{".vs3", loadView3d}, Format{".v3d", loadView3d},
-    Format{".msh", loadGmsh},   Format{".inp", loadInp},    Format{".ply", loadPly},
-    Format{".vtk", loadVtk},    Format{".vtp", loadVtkXml}, Format{".vtu", loadVtkXml},
-    Format{".dae", loadAssimp}, Format{".fbx", loadAssimp}, Format{".3ds", loadAssimp},
-    Format{".x3d", loadAssimp}, Format{".ifc", loadAssimp}, Format{".off", loadOff},
-    Format{".3mf", load3mf},
+    Format{".obj", loadObj},           Format{".gltf", loadGltf},
+    Format{".glb", loadGltf},          Format{".stl", loadStl, Up::z},
+    Format{".vs3", loadView3d, Up::z}, Format{".v3d", loadView3d, Up::z},
+    Format{".msh", loadGmsh, Up::z},   Format{".inp", loadInp, Up::z},
+    Format{".ply", loadPly},           Format{".vtk", loadVtk, Up::z},
+    Format{".vtp", loadVtkXml, Up::z}, Format{".vtu", loadVtkXml, Up::z},
+    Format{".dae", loadAssimp},        Format{".fbx", loadAssimp},
+    Format{".3ds", loadAssimp},        Format{".x3d", loadAssimp},
+    Format{".ifc", loadAssimp},        Format{".off", loadOff},
+    Format{".3mf", load3mf, Up::z},
 };
 
 Scene readByExtension(const std::string& path, const SceneOptions& options) {
   requireFile(path);
   const std::string extension = lowerCase(std::filesystem::path(path).extension().string());
   for (const Format& format : kFormats) {
-    if (extension == format.extension) return format.load(path, options);
+    if (extension != format.extension) continue;
+    Scene scene = format.load(path, options);
+    scene.up = format.up;
+    return scene;
   }
   if (extension == ".gz") {
     throw InputError(

@@ -288,6 +288,7 @@ void applyOverrides(Scene& scene, const SceneOptions& options) {
       overrides.setSides(name, true, {"--two-sided " + name});
     }
     if (options.sky) overrides.setSky(*options.sky);
+    if (options.up) scene.up = *options.up;
   } catch (...) {
     scene.materials = std::move(materials);
     scene.surfaces = std::move(surfaces);

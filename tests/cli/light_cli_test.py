@@ -61,6 +61,25 @@ class Sky(CliTest):
         self.refuse("solve", "box.obj", "--sky", "1,-2,3", words=["--sky: sky radiance -2 is not"])
 
 
+class UpAxis(CliTest):
+    def up(self, scene, *options):
+        report = self.report("render", scene, "--sky", "1", "--patches", "100", "--width", "16",
+                             "-o", "a.png", *options)
+        return report["picture"]["up"]
+
+    def test_engineers_files_stand_on_z_and_others_on_y(self):
+        city = DATA / "city.stl"
+        self.assertEqual(self.up(city), [0, 0, 1])
+        self.assertEqual(self.up(city, "--up", "y"), [0, 1, 0])
+        self.assertEqual(self.up(DATA / "cluttered.obj", "--up", "z"), [0, 0, 1])
+        self.assertEqual(self.report("info", city)["scene"]["up"], "z")
+
+    def test_a_results_file_keeps_it_and_may_be_told_another(self):
+        self.run_program("factors", DATA / "city.stl", "--patches", "100", "-o", "city.h5")
+        self.assertEqual(self.up("city.h5"), [0, 0, 1])
+        self.assertEqual(self.up("city.h5", "--up", "y"), [0, 1, 0])
+
+
 class DarkScenes(CliTest):
     def test_both_cures_are_named_and_the_first_can_be_pasted(self):
         self.write("box.obj", (self.folder / "box.obj").read_text().replace("o room", "o my room"))

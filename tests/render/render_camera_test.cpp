@@ -38,6 +38,8 @@ TEST(ParseCamera, UpAndFieldOfViewMayBeLeftOut) {
   EXPECT_EQ(camera.up, Vec3(0, 1, 0));
   EXPECT_EQ(camera.vertical_fov, Camera().vertical_fov);
   EXPECT_EQ(parseCamera("eye=0,5,0;target=0,0,0").up, Vec3(0, 0, -1));
+  EXPECT_EQ(parseCamera("eye=0,5,0;target=0,0,0", Up::z).up, Vec3(0, 0, 1));
+  EXPECT_EQ(parseCamera("eye=0,0,5;target=0,0,0", Up::z).up, Vec3(0, 1, 0));
 }
 
 TEST(ParseCamera, SaysWhichPartIsWrong) {
@@ -124,6 +126,21 @@ TEST(FramingCamera, AClosedRoomIsSeenFromAnEndAlongItsLength) {
     EXPECT_GT(std::abs(view[axis]), 0.98);
     EXPECT_EQ(fronts(mesh, camera), 1);
   }
+}
+
+TEST(FramingCamera, StandsOnTheFloorOfASceneWhoseUpIsZ) {
+  const PatchMesh mesh = room({8, 2.5, 4}, true);
+  PatchMesh lying = mesh;
+  for (auto* const vectors : {&lying.vertices, &lying.centroid, &lying.normal}) {
+    for (Vec3& v : *vectors) v = {v.x, -v.z, v.y};
+  }
+  const Camera standing = framingCamera(mesh, true, 1.5);
+  const Camera camera = framingCamera(lying, true, 1.5, {}, Up::z);
+  EXPECT_EQ(camera.eye, Vec3(standing.eye.x, -standing.eye.z, standing.eye.y));
+  EXPECT_EQ(camera.target, Vec3(standing.target.x, -standing.target.z, standing.target.y));
+  EXPECT_EQ(camera.up, Vec3(0, 0, 1));
+  EXPECT_NEAR(camera.eye.z, 1.6, 1e-12);  // eye height
+  EXPECT_EQ(fronts(lying, camera), 1);
 }
 
 TEST(FramingCamera, NeverStandsInABlock) {

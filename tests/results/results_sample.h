@@ -34,6 +34,7 @@ inline Scene scene() {
   s.textures.push_back({"two.png", 40, 30, std::vector<float>(40 * 30 * 3, 0.25f), true});
   s.cameras = {{"front", {1, 2, 3}, {4, 5, 6}, {0, 0, 1}, 0.6, 1.5}, {}};
   s.sky = {0.1, 1, 1e9};
+  s.up = Up::z;
   s.unit = "mm";
   s.notes = {{Severity::loud, "lamp: emits by inheritance"}, {Severity::info, ""}};
   return s;
@@ -461,8 +462,8 @@ inline auto members(const Camera& s) {
   return std::tie(a, b, c, d, e, f);
 }
 inline auto members(const Scene& s) {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o);
 }
 inline auto members(const PlanarPolygons& s) {
   const auto& [a, b, c, d, e, f, g, h] = s;
