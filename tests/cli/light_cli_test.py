@@ -71,7 +71,7 @@ class UpAxis(CliTest):
         city = DATA / "city.stl"
         self.assertEqual(self.up(city), [0, 0, 1])
         self.assertEqual(self.up(city, "--up", "y"), [0, 1, 0])
-        self.assertEqual(self.up(DATA / "cluttered.obj", "--up", "z"), [0, 0, 1])
+        self.assertEqual(self.up(DATA / "facing-plates.obj", "--up", "z"), [0, 0, 1])
         self.assertEqual(self.report("info", city)["scene"]["up"], "z")
 
     def test_a_results_file_keeps_it_and_may_be_told_another(self):
