@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import radiosity as rad
+from conftest import ROOT
 
 CORNELL = "data/cornell-box.obj"
 SQUARE = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
@@ -16,7 +17,7 @@ SQUARE = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
 @pytest.fixture(scope="module")
 def plates():
     """Two plates that face each other, 8 patches."""
-    return rad.form_factors(rad.mesh(rad.load("data/facing-plates.obj"), patches=8))
+    return rad.form_factors(rad.mesh(rad.load(ROOT / "data/facing-plates.obj"), patches=8))
 
 
 def refused(call, message):
