@@ -159,9 +159,9 @@ typename AdaptiveIntegrator<T>::Members AdaptiveIntegrator<T>::integrateCell(
 
 template <class T>
 bool AdaptiveIntegrator<T>::isSpent(Index member, const VisibleFraction& so_far) const {
-  const std::size_t occluders = std::max<std::size_t>(targets_[member].blockers.size(), 1);
-  constexpr std::size_t kMost = std::is_same_v<T, double> ? kMostLooks : kMostSingleLooks;
-  return so_far.points > kMost / occluders;
+  constexpr bool kMany = std::is_same_v<T, double>;
+  const std::size_t most = kMany && looks_ < kMostLooksOfAll ? kMostLooks : kMostSingleLooks;
+  return so_far.points > most / blockersOf(member);
 }
 
 /// Fills sums_ by a rule of side x side points.
@@ -177,6 +177,7 @@ void AdaptiveIntegrator<T>::sumCell(const SampleCell& cell, std::size_t side, in
   for (std::size_t k = 0; k < members.index.size(); ++k) {
     VisibleFraction& pair = out[members.index[k]];
     pair.points += points.count;
+    looks_ += points.count * blockersOf(members.index[k]);
     CellSum& sum = sums_[k];
     for (std::size_t q = 0; q < points.count; ++q) {
       sum.visible += points.point[q].weight * double(view_.visible(q)[k]);

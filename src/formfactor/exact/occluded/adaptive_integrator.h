@@ -1,6 +1,8 @@
 // Pairs that are sampled from the same points, from their first cells to the tolerance.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <type_traits>
@@ -34,6 +36,9 @@ struct VisibleFraction {
 /// Most work for a pair: points times the occluders looked past from each, a few tenths of a
 /// second. Steps of shadows that no halving resolves would take hundreds of times that.
 inline constexpr std::size_t kMostLooks = std::size_t(1) << 20;
+/// Work of one integrator, some seconds, after which pairs get no more than in single precision,
+/// and state what they miss: of a large face under clutter thousands of pairs would take the most.
+inline constexpr std::size_t kMostLooksOfAll = std::size_t(1) << 24;
 /// In single precision: between critical lines, in double precision, what takes more takes fewer.
 inline constexpr std::size_t kMostSingleLooks = std::size_t(1) << 12;
 
@@ -89,6 +94,9 @@ class AdaptiveIntegrator {
 
   double distanceInRadii(const SampledPair& pair) const;
   bool isSpent(Index member, const VisibleFraction& so_far) const;
+  std::size_t blockersOf(Index member) const {
+    return std::max<std::size_t>(targets_[member].blockers.size(), 1);
+  }
 
   const ElementSet& elements_;
   double far_reach_;
@@ -101,7 +109,8 @@ class AdaptiveIntegrator {
   std::conditional_t<std::is_same_v<T, double>, CriticalLineQuadrature, Unused> between_lines_{
       view_};
   Vec3 normal_{0.0};
-  bool far_ = false;  ///< the members at work are
+  bool far_ = false;       ///< the members at work are
+  std::size_t looks_ = 0;  ///< of all groups so far
   std::vector<GroupTarget> targets_;
   std::vector<const GroupTarget*> chosen_;
   std::vector<CellSum> sums_;     ///< by member
