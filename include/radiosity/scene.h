@@ -142,9 +142,9 @@ std::string sceneExtensions();
 /// into memory.
 Scene loadScene(const std::string& path, const SceneOptions& options = {});
 
-/// Applies `set`, `materials_file`, `one_sided`, `two_sided`, `sky`, `up` to a scene already in memory
-/// (one that came back from a results file). NAME is a surface, material or object, tried in that
-/// order, but the material where a surface has its name only because its object has it too;
+/// Applies `set`, `materials_file`, `one_sided`, `two_sided`, `sky`, `up` to a scene already in
+/// memory (one that came back from a results file). NAME is a surface, material or object, tried in
+/// that order, but the material where a surface has its name only because its object has it too;
 /// PROPERTY is reflectance, emission (exitance, W/m^2), radiance (W/m^2/sr) or tint (what the
 /// reflectance is multiplied by); VALUE is one number or three with commas. Reflectance and
 /// emission replace a texture, tint keeps it. A surface that shares its material gets a copy of its
