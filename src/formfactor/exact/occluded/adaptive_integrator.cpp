@@ -160,7 +160,7 @@ typename AdaptiveIntegrator<T>::Members AdaptiveIntegrator<T>::integrateCell(
 template <class T>
 bool AdaptiveIntegrator<T>::isSpent(Index member, const VisibleFraction& so_far) const {
   constexpr bool kMany = std::is_same_v<T, double>;
-  const std::size_t most = kMany && looks_ < kMostLooksOfAll ? kMostLooks : kMostSingleLooks;
+  const std::size_t most = kMany && looks_ < most_looks_ ? kMostLooks : kMostSingleLooks;
   return so_far.points > most / blockersOf(member);
 }
 

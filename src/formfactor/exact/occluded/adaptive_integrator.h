@@ -36,8 +36,10 @@ struct VisibleFraction {
 /// Most work for a pair: points times the occluders looked past from each, a few tenths of a
 /// second. Steps of shadows that no halving resolves would take hundreds of times that.
 inline constexpr std::size_t kMostLooks = std::size_t(1) << 20;
-/// Work of one integrator, some seconds, after which pairs get no more than in single precision,
-/// and state what they miss: of a large face under clutter thousands of pairs would take the most.
+/// Work of all pairs of a task that are evaluated again, some seconds, after which pairs get no
+/// more than in single precision, and state what they miss: of a large face under clutter thousands
+/// of pairs would take the most. Where the tolerance asks for double precision there is no such
+/// bound: many points are what it takes.
 inline constexpr std::size_t kMostLooksOfAll = std::size_t(1) << 24;
 /// In single precision: between critical lines, in double precision, what takes more takes fewer.
 inline constexpr std::size_t kMostSingleLooks = std::size_t(1) << 12;
@@ -53,10 +55,15 @@ template <class T>
 class AdaptiveIntegrator {
  public:
   /// `far_reach`: targets this many radii away, or more, are far.
+  /// `most_looks`: work after which pairs in double precision get no more than in single.
   /// `progress`, if given: integrate() throws Cancelled where it is cancelled.
   AdaptiveIntegrator(const ElementSet& elements, const ClipKernels<T>& kernels, double far_reach,
-                     const Progress* progress = nullptr)
-      : elements_(elements), far_reach_(far_reach), progress_(progress), view_(kernels) {}
+                     std::size_t most_looks, const Progress* progress = nullptr)
+      : elements_(elements),
+        far_reach_(far_reach),
+        most_looks_(most_looks),
+        progress_(progress),
+        view_(kernels) {}
 
   /// `group`: pairs with one sampled element, which is cut by one plane or by none.
   /// fractions[k], of group[k], comes with `allowed` set.
@@ -100,6 +107,7 @@ class AdaptiveIntegrator {
 
   const ElementSet& elements_;
   double far_reach_;
+  std::size_t most_looks_;
   const Progress* progress_;
   BatchVisibility<T> view_;
   /// See cutAtLines().

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "formfactor/exact/error_model.h"
@@ -59,8 +60,12 @@ void OccludedKernel::integrate(const ClipKernels<T>& kernels, const Batch& batch
   std::fill(out.begin(), out.end(), OccludedExchange());
   PairPreparation ready(elements_, occluders_, distances_);
   ready.prepare(pairs, batch.occluder_list, end);
+  const std::size_t most_looks = batch.tolerance >= kSinglePrecision
+                                     ? kMostLooksOfAll
+                                     : std::numeric_limits<std::size_t>::max();
   AdaptiveIntegrator<T> groups(elements_, kernels,
-                               std::cbrt(kFarError / (kFarMost * batch.tolerance)), batch.progress);
+                               std::cbrt(kFarError / (kFarMost * batch.tolerance)), most_looks,
+                               batch.progress);
   std::vector<VisibleFraction> fractions;
   const auto clipFacet = [&](const SampledPair& p) {
     return p.sampled_cut ? elements_.facet[p.target] : kNone;
