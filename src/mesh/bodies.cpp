@@ -4,6 +4,7 @@
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/convex_hull_3.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -22,11 +23,11 @@ struct Relation {
 };
 
 /// Relations that are not "outside altogether", by (closed component, other component).
-std::map<std::pair<Index, Index>, Relation> relations(const Arrangement& arrangement,
-                                                      const Components& components,
-                                                      const Winding& winding,
-                                                      std::vector<std::size_t>& cell_count) {
-  std::map<std::pair<Index, Index>, Relation> out;
+using Relations = std::map<std::pair<Index, Index>, Relation>;
+
+Relations relations(const Arrangement& arrangement, const Components& components,
+                    const Winding& winding, std::vector<std::size_t>& cell_count) {
+  Relations out;
   for (std::size_t k = 0; k < arrangement.cells.size(); ++k) {
     for (const auto& [sheet, layers] : arrangement.cells[k].cover) {
       const Index other = components.of_sheet[sheet];
@@ -73,45 +74,85 @@ bool isConvex(const Component& component, double coincidence) {
 
 double diagonal(const Component& c) { return glm::distance(c.box.low, c.box.high); }
 
-}  // namespace
+/// What a closed two-sided component is, by what lies in it.
+class TwoSided {
+ public:
+  TwoSided(const std::vector<Component>& list, const Relations& relation,
+           const std::vector<std::size_t>& cell_count, double coincidence)
+      : list_(list), relation_(relation), cell_count_(cell_count), coincidence_(coincidence) {}
 
-std::vector<Body> findBodies(const Arrangement& arrangement, const Components& components,
-                             const Winding& winding, double coincidence) {
-  const auto& list = components.list;
-  std::vector<Body> out(list.size(), Body::none);
-  std::vector<std::size_t> cell_count(list.size(), 0);
-  const auto relation = relations(arrangement, components, winding, cell_count);
-  for (std::size_t c = 0; c < list.size(); ++c) {
-    if (!list[c].closed) continue;
-    if (!list[c].two_sided) {
-      if (!list[c].inward) out[c] = Body::solid;
-      continue;
-    }
+  Body bodyOf(Index c) const {
     bool holds_whole = false;
     bool smaller_sticks_out = false;
     std::size_t not_outside = 1;  // itself
     bool outside = false;
-    auto it = relation.lower_bound({Index(c), 0});
-    for (; it != relation.end() && it->first.first == c; ++it) {
+    auto it = relation_.lower_bound({c, 0});
+    for (; it != relation_.end() && it->first.first == c; ++it) {
       const Index other = it->first.second;
       if (other == c) continue;
       const auto& [inside, on_skin] = it->second;
       ++not_outside;
-      const bool partly_outside = inside + on_skin < cell_count[other];
+      const bool partly_outside = inside + on_skin < cell_count_[other];
       outside = outside || partly_outside;
       if (inside > 0 && !partly_outside) holds_whole = true;
-      if (inside > 0 && partly_outside && diagonal(list[other]) < diagonal(list[c])) {
+      if (inside > 0 && partly_outside && diagonal(list_[other]) < diagonal(list_[c])) {
         smaller_sticks_out = true;
       }
     }
-    outside = outside || not_outside < list.size();
-    if (outside) {
-      if (!holds_whole && !smaller_sticks_out) out[c] = Body::solid;
-    } else if (holds_whole || isConvex(list[c], coincidence)) {
-      out[c] = Body::room;
+    outside = outside || not_outside < list_.size();
+    if (outside) return holds_whole || smaller_sticks_out ? Body::none : Body::solid;
+    return holds_whole || isConvex(list_[c], coincidence_) ? Body::room : Body::none;
+  }
+
+ private:
+  const std::vector<Component>& list_;
+  const Relations& relation_;
+  const std::vector<std::size_t>& cell_count_;
+  double coincidence_;
+};
+
+}  // namespace
+
+Bodies::Bodies(const Arrangement& arrangement, const Components& components, const Winding& winding,
+               double coincidence)
+    : winding_(winding) {
+  const std::vector<Component>& list = components.list;
+  body_.assign(list.size(), Body::none);
+  cavities_.resize(list.size());
+  std::vector<std::size_t> cell_count(list.size(), 0);
+  const Relations relation = relations(arrangement, components, winding, cell_count);
+  const TwoSided two_sided(list, relation, cell_count, coincidence);
+  for (Index c = 0; c < list.size(); ++c) {
+    if (!list[c].closed) continue;
+    if (list[c].two_sided) {
+      body_[c] = two_sided.bodyOf(c);
+    } else if (!list[c].inward) {
+      body_[c] = Body::solid;
+    }
+    if (body_[c] == Body::room) rooms_.push_back(c);
+  }
+  for (const auto& [pair, how] : relation) {
+    const auto& [solid, other] = pair;
+    const Component& within = list[other];
+    const bool whole = how.inside + how.on_skin == cell_count[other];
+    if (body_[solid] == Body::solid && within.closed && within.inward && !within.two_sided &&
+        whole) {
+      cavities_[solid].push_back(other);
     }
   }
-  return out;
+}
+
+bool Bodies::isWithin(Index solid, Index cell, Side side) const {
+  if (body_[solid] != Body::solid || winding_.of(solid, cell, side) < 1) return false;
+  return std::none_of(cavities_[solid].begin(), cavities_[solid].end(),
+                      [&](Index cavity) { return winding_.of(cavity, cell, side) >= 1; });
+}
+
+bool Bodies::isWithinAny(Index cell, Side side) const {
+  const auto& at = winding_.at(cell, side);
+  return std::any_of(at.begin(), at.end(), [&](const Winding::Entry& e) {
+    return isWithin(e.component, cell, side);
+  });
 }
 
 }  // namespace radiosity

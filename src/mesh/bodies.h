@@ -13,12 +13,31 @@ enum class Body {
   room,   ///< nothing is to be seen outside
 };
 
-/// One-sided components: solid if closed and turned outward. The file's orientation of two-sided
-/// ones means nothing, so what else there is decides: solid if no other component is inside and
-/// something is outside; room if everything else is inside, or if there is nothing else and it
-/// is convex. A component that sticks out of a larger one leaves it undecided which of the two
-/// the larger one is, and then it is neither.
-std::vector<Body> findBodies(const Arrangement& arrangement, const Components& components,
-                             const Winding& winding, double coincidence);
+/// The bodies of a scene. One-sided components: solid if closed and turned outward. The file's
+/// orientation of two-sided ones means nothing, so what else there is decides: solid if no other
+/// component is inside and something is outside; room if everything else is inside, or if there is
+/// nothing else and it is convex. A component that sticks out of a larger one leaves it undecided
+/// which of the two the larger one is, and then it is neither.
+/// A solid is hollow where closed one-sided components turned inward lie within it: an oven's
+/// chamber, the inner sheet of walls that are modelled as two sheets back to back.
+class Bodies {
+ public:
+  Bodies(const Arrangement& arrangement, const Components& components, const Winding& winding,
+         double coincidence);
+
+  Body of(Index component) const { return body_[component]; }
+  /// Ascending.
+  const std::vector<Index>& rooms() const { return rooms_; }
+  /// Whether the space next to a side of a cell is inside a solid, and in none of its cavities.
+  bool isWithin(Index solid, Index cell, Side side) const;
+  /// The same of any solid.
+  bool isWithinAny(Index cell, Side side) const;
+
+ private:
+  const Winding& winding_;
+  std::vector<Body> body_;  ///< by component
+  std::vector<Index> rooms_;
+  std::vector<std::vector<Index>> cavities_;  ///< of solids, by component
+};
 
 }  // namespace radiosity

@@ -33,7 +33,7 @@ struct Layer {
 class Classifier {
  public:
   Classifier(const Scene& scene, const Arrangement& arrangement, const std::vector<Sheet>& sheets,
-             const Components& components, const Winding& winding, const std::vector<Body>& bodies,
+             const Components& components, const Winding& winding, const Bodies& bodies,
              MeshReport& report)
       : scene_(scene),
         arrangement_(arrangement),
@@ -41,11 +41,7 @@ class Classifier {
         components_(components),
         winding_(winding),
         bodies_(bodies),
-        report_(report) {
-    for (std::size_t c = 0; c < bodies.size(); ++c) {
-      if (bodies[c] == Body::room) rooms_.push_back(Index(c));
-    }
-  }
+        report_(report) {}
 
   void run(Index cell, std::vector<VisibleCell>& out);
   void writeNotes();
@@ -66,9 +62,8 @@ class Classifier {
   const std::vector<Sheet>& sheets_;
   const Components& components_;
   const Winding& winding_;
-  const std::vector<Body>& bodies_;
+  const Bodies& bodies_;
   MeshReport& report_;
-  std::vector<Index> rooms_;
   std::map<std::pair<std::string, std::string>, double> outdone_;       ///< (loser, winner): m^2
   std::map<std::pair<std::string, std::string>, double> back_to_back_;  ///< m^2
 };
@@ -89,23 +84,19 @@ std::vector<Layer> Classifier::layersOf(const PlaneCell& cell) const {
 }
 
 bool Classifier::seesNothing(Index cell, Side side) const {
-  const auto& at = winding_.at(cell, side);
-  const bool inside = std::any_of(at.begin(), at.end(), [&](const Winding::Entry& e) {
-    return bodies_[e.component] == Body::solid && e.number >= 1;
-  });
-  return inside || std::any_of(rooms_.begin(), rooms_.end(),
-                               [&](Index room) { return winding_.of(room, cell, side) == 0; });
+  return bodies_.isWithinAny(cell, side) ||
+         std::any_of(bodies_.rooms().begin(), bodies_.rooms().end(),
+                     [&](Index room) { return winding_.of(room, cell, side) == 0; });
 }
 
 /// The skin of a solid goes where something faces it from within the solid: the two are in
 /// contact, and it is that something's place the solid stands on.
 void Classifier::dropContacts(Index cell, std::vector<Layer>& layers) const {
   for (Layer& skin : layers) {
-    if (bodies_[skin.component] != Body::solid) continue;
     const bool outward_above = sheets_[skin.sheet].facing * components_.outward[skin.sheet] > 0;
     const Side out = outward_above ? kAbove : kBelow;
     const Side in = opposite(out);
-    if (winding_.of(skin.component, cell, in) < 1) continue;
+    if (!bodies_.isWithin(skin.component, cell, in)) continue;
     const bool faced = std::any_of(layers.begin(), layers.end(), [&](const Layer& other) {
       return other.component != skin.component && other.carries[in];
     });
@@ -208,7 +199,7 @@ std::vector<VisibleCell> classify(const Scene& scene, const Arrangement& arrange
                                   const std::vector<Sheet>& sheets, const Components& components,
                                   const InputFaces& input, MeshReport& report) {
   const Winding winding(arrangement, sheets, components, input.coincidence);
-  const auto bodies = findBodies(arrangement, components, winding, input.coincidence);
+  const Bodies bodies(arrangement, components, winding, input.coincidence);
   Classifier classifier(scene, arrangement, sheets, components, winding, bodies, report);
   std::vector<VisibleCell> out;
   for (std::size_t k = 0; k < arrangement.cells.size(); ++k) classifier.run(Index(k), out);

@@ -298,6 +298,52 @@ TEST(Contact, ASolidInsideASolidIsGoneAndSaid) {
   });
 }
 
+/// A chamber within walls as thick as `wall`, or as thin as two sheets back to back, with a heater
+/// in it that stands on its floor: all of the chamber is seen but where the heater stands.
+TEST(Contact, AChamberInASolidIsSeenFromInside) {
+  for (const double wall : {0.5, 0.0}) {
+    SceneBuilder b;
+    const Index shell = b.surface("shell");
+    const Index chamber = b.surface("chamber");
+    const Index heater = b.surface("heater");
+    b.box(shell, {0, 0, 0}, {4, 4, 4});
+    b.box(chamber, {wall, wall, wall}, {4 - wall, 4 - wall, 4 - wall}, false);
+    b.box(heater, {1, 1, wall}, {2, 2, 2});
+    bothWays(b.scene(), [&](const Built& built) {
+      EXPECT_EQ(polygonsOf(built, shell), 6u);
+      EXPECT_EQ(polygonsOf(built, chamber), 6u);
+      EXPECT_EQ(polygonsOf(built, heater), 5u);
+      EXPECT_EQ(built.report.surfaces[shell].buried, 0);
+      expectArea(built.report.surfaces[chamber].buried, 1);
+      expectArea(built.report.surfaces[heater].buried, 1);
+    });
+  }
+}
+
+/// Of one surface, as CAD exports it; and a room's furniture is no chamber.
+TEST(Contact, WhatIsHollowIsToldByItsOrientation) {
+  SceneBuilder hollow;
+  const Index oven = hollow.surface("oven");
+  hollow.box(oven, {0, 0, 0}, {4, 4, 4});
+  hollow.box(oven, {1, 1, 1}, {3, 3, 3}, false);
+  bothWays(hollow.scene(), [&](const Built& built) {
+    EXPECT_EQ(polygonsOf(built, oven), 12u);
+    EXPECT_EQ(built.report.surfaces[oven].buried, 0);
+  });
+  SceneBuilder room;
+  const Index walls = room.surface("walls");
+  const Index block = room.surface("block");
+  const Index within = room.surface("within");
+  room.box(walls, {0, 0, 0}, {9, 9, 9}, false);
+  room.box(block, {2, 2, 2}, {6, 6, 6});
+  room.box(within, {3, 3, 3}, {4, 4, 4});
+  bothWays(room.scene(), [&](const Built& built) {
+    EXPECT_EQ(polygonsOf(built, walls), 6u);
+    EXPECT_EQ(polygonsOf(built, block), 6u);
+    EXPECT_EQ(polygonsOf(built, within), 0u);
+  });
+}
+
 TEST(Contact, OpenContainerOnFloorKeepsBothAndSaysSo) {
   SceneBuilder b;
   const Index floor = b.surface("floor");

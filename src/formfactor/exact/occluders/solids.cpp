@@ -199,6 +199,7 @@ class SolidSearch {
     if (!body) return {};
     ConvexSolid slab{std::move(*body), {}};
     findOnFaces(slab, {});
+    if (isLookedInto(slab, {})) return {};
     return slab;
   }
 
@@ -264,13 +265,30 @@ class SolidSearch {
     if (set.planes.size() < 2) return {};
     std::optional<Occluder> hull = growth_.hullOf(set);
     // Polygons back to back make no solid: they are one flat occluder.
-    if (!hull || hull->planes.size() < 4 || !isEmpty(all_, *hull, set.polygons()) ||
-        !letsNothingIn(*hull, set, opaque)) {
-      return {};
-    }
+    if (!hull || hull->planes.size() < 4 || !isEmpty(all_, *hull, set.polygons())) return {};
+    const std::vector<double> missing = missingAreas(*hull, set);
+    if (!letsNothingIn(*hull, set, missing, opaque)) return {};
     ConvexSolid solid{std::move(*hull), {}};
     findOnFaces(solid, set.members);
+    if (isLookedInto(solid, missing)) return {};
     return solid;
+  }
+
+  /// True if polygons on the body's faces look into it and see more there than backs: each other,
+  /// or what is outside of an open face. (A basin is often two sheets back to back; the outer one
+  /// is in convex position. But a floor may look into the box that stands on it.)
+  bool isLookedInto(const ConvexSolid& solid, const std::vector<double>& missing) const {
+    std::set<Index> looking;
+    for (const ConvexSolid::OnFace& on : solid.on_faces) {
+      const OccluderPolygon& polygon = all_.polygons[on.polygon];
+      const bool outward = glm::dot(polygon.normal, solid.body.planes[on.face].normal) > 0;
+      if (!outward || !polygon.one_sided) looking.insert(on.face);
+    }
+    if (looking.size() != 1) return !looking.empty();
+    for (Index k = 0; k < missing.size(); ++k) {
+      if (missing[k] > 0 && k != *looking.begin()) return true;
+    }
+    return false;
   }
 
   /// `members`: ascending; of them it is known.
@@ -300,8 +318,8 @@ class SolidSearch {
   double score(const ConvexSolid& solid) const { return areaOnFaces(solid) * volumeOf(solid.body); }
 
   /// True if nothing gets in or out where the set does not cover the hull.
-  bool letsNothingIn(const Occluder& hull, const ConvexSet& set, bool opaque) const {
-    const std::vector<double> missing = missingAreas(hull, set);
+  bool letsNothingIn(const Occluder& hull, const ConvexSet& set,
+                     const std::vector<double>& missing, bool opaque) const {
     std::vector<Index> gaps;
     for (Index k = 0; k < hull.planes.size() && gaps.size() < 2; ++k) {
       const Occluder::Plane& plane = hull.planes[k];
