@@ -156,7 +156,9 @@ void planExactRows(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Pro
   const double most = std::max(kLittleExactRowWork, kExactRowWork * prepared.ray_estimate.rays);
   for (const double tolerance : kExactRowTolerances) {
     rows.setTolerance(std::min(prepared.options.toleranceOf(FormFactorMethod::rays), tolerance));
-    if (rows.work(progress) > most) continue;
+    const RowSample sample = rows.sample(progress);
+    if (rows.work(sample) > most) continue;
+    plan.seconds += rows.seconds(sample, progress);
     plan.bytes += rows.bytes() + KnownEntries::bytes(pairs);
     return;
   }

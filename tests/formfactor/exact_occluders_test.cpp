@@ -1,6 +1,7 @@
 // What blocks: solids and flat pieces recovered from the polygons, against the polygons themselves.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -293,6 +294,23 @@ TEST(ExactSolids, ASheetAndTheFacesOfAnInnerRoomAreFlat) {
   EXPECT_EQ(made.set.solids, 0u);
   EXPECT_EQ(made.set.occluders.size(), 7u);
   EXPECT_EQ(made.set.skipped_hull, 6u);
+}
+
+/// A quad that is not planar by some coincidences, once with each diagonal: where the planes of its
+/// faces cross is anybody's guess, and points beside it would be inside all of them.
+TEST(ExactSolids, KnifeEdgesMakeNoSolid) {
+  const auto hullOf = [](double off) {
+    const std::vector<Vec3> p{{0, 0, 0}, {0.3, 0, off}, {0.3, 0.3, 0}, {0, 0.3, off}};
+    std::vector<Occluder::Plane> planes;
+    for (const auto& [a, b, c] : {std::array{0, 1, 3}, {1, 2, 3}, {0, 2, 1}, {0, 3, 2}}) {
+      const Vec3 normal = glm::normalize(glm::cross(p[b] - p[a], p[c] - p[a]));
+      planes.push_back({normal, glm::dot(normal, p[a])});
+    }
+    return convexHull(p, planes, 5e-8);
+  };
+  EXPECT_FALSE(hullOf(4e-7));
+  EXPECT_FALSE(hullOf(1e-5));
+  EXPECT_TRUE(hullOf(1e-2));
 }
 
 /// Boxes side by side with dropped contact areas, of heights and depths that differ: one solid

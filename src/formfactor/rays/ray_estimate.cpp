@@ -57,15 +57,29 @@ SampledRow sampleRow(const RayScene& scene, std::size_t position, const Progress
   RayRow row;
   scene.cast(position, kFewRays, row, progress);
   if (row.columns.empty() || progress.cancelled()) return sampled;
-  sampled.few = accuracyAlone(row);
+  sampled.few = accuracyAlone(row, scene.size());
   sampled.few_entries = double(row.columns.size());
   const BothWatches watches;
   scene.cast(position, kManyRays, row, progress);
   sampled.taken = watches.elapsed();
-  sampled.many = accuracyAlone(row);
+  sampled.many = accuracyAlone(row, scene.size());
   sampled.entries = double(row.columns.size());
   sampled.visible = visibleEntries(row);
   return sampled;
+}
+
+/// Errors by all rows sampled, as rounds will take them (CommonError).
+void moderate(std::vector<SampledRow>& rows) {
+  CommonError few;
+  CommonError many;
+  for (const SampledRow& row : rows) {
+    few.add(row.few);
+    many.add(row.many);
+  }
+  for (SampledRow& row : rows) {
+    row.few = few.moderated(row.few);
+    row.many = many.moderated(row.many);
+  }
 }
 
 /// How error squared falls, over all rows: of one alone it is too rough.
@@ -189,6 +203,7 @@ RayEstimate estimateRays(const RayScene& scene, const FormFactorOptions& options
   });
   progress.check();
   progress.end();
+  moderate(rows);
   const RayAim aim(options);
   const Forecast forecast(rows, n, aim);
   const double entries = forecast.entries(n);

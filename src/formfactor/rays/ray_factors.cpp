@@ -131,8 +131,10 @@ void store(const RayScene& scene, const KnownEntries& known, const std::vector<R
   });
   double squares = 0;
   double norms = 0;
+  CommonError common;
+  for (const RowAccuracy& row : accuracy) common.add(row);
   for (std::size_t k = 0; k < n; ++k) {
-    const RowAccuracy& row = accuracy[k];
+    const RowAccuracy row = common.moderated(accuracy[k]);
     const double figure = row.figure();
     result.error[scene.order()[k]] = figure;
     squares += scene.area()[k] * (row.error * row.error + row.known_error * row.known_error);

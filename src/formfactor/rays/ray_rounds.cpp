@@ -25,16 +25,8 @@ constexpr int kMostRounds = 24;
 constexpr double kLeastOrder = 0.9;
 constexpr double kMostOrder = 2.5;
 
-/// Rays for an error of `aim`, from what was seen with fewer.
-std::uint32_t raysNeeded(const RowState& before, const RowState& now, double aim) {
-  double order = kUsualOrder;
-  if (before.rays > 0 && now.rays > before.rays && now.error > 0 && before.error > now.error) {
-    order = 2 * std::log(before.error / now.error) / std::log(double(now.rays) / before.rays);
-    order = std::clamp(order, kLeastOrder, kMostOrder);
-  }
-  const double growth = std::pow(now.error / aim, 2 / order);
-  return std::min(roundedRays(now.rays * std::min(growth, kMostGrowth)), kMostRays);
-}
+/// Rows aim at so much of the tolerance, since errors are themselves known to some per cent only.
+constexpr double kMargin = 0.95;
 
 class Rounds {
  public:
@@ -69,7 +61,9 @@ class Rounds {
           std::max(loosened_,
                    loosening(aim_.most_rays, [&](double times) { return raysOf(wishes(times)); }));
       rays = wishes(loosened_);
-      journal_.keep(report_.rounds, {rays, before_, now_, usual_norm_, loosened_});
+      if (tighten()) rays = wishes(loosened_);
+      journal_.keep(report_.rounds,
+                    {rays, before_, now_, common_, usual_norm_, loosened_, tightened_});
     }
     if (processes_ != nullptr) endCasting(*processes_, progress_);
     finish();
@@ -85,8 +79,10 @@ class Rounds {
       targets.push_back(std::move(round->rays));
       before_ = std::move(round->before);
       now_ = std::move(round->now);
+      common_ = round->common;
       usual_norm_ = round->usual_norm;
       loosened_ = round->loosened;
+      tightened_ = round->tightened;
     }
     rays = std::move(targets.back());
     targets.pop_back();
@@ -186,15 +182,50 @@ class Rounds {
     castTogether(*processes_, scene_, std::move(left), take, progress_);
   }
 
+  /// What a row is to bring down: its error, or that of the backs it sees, on the same scale.
+  double errorOf(const RowState& row) const {
+    return std::max(row.error, row.backs * std::max(row.norm, usual_norm_));
+  }
+
+  /// Rays for an error of `aim`, from what was seen with fewer.
+  std::uint32_t raysNeeded(const RowState& before, const RowState& now, double aim) const {
+    const double error = errorOf(now);
+    double order = kUsualOrder;
+    if (before.rays > 0 && now.rays > before.rays && error > 0 && errorOf(before) > error) {
+      order = 2 * std::log(errorOf(before) / error) / std::log(double(now.rays) / before.rays);
+      order = std::clamp(order, kLeastOrder, kMostOrder);
+    }
+    const double growth = std::pow(error / aim, 2 / order);
+    return std::min(roundedRays(now.rays * std::min(growth, kMostGrowth)), kMostRays);
+  }
+
   /// The rays, in each replicate, that rows need for errors `loosened` times those aimed at.
   std::vector<std::uint32_t> wishes(double loosened) const {
     std::vector<std::uint32_t> rays(rows_.size(), 0);
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       const double allowed = loosened * aim(k);
-      if (now_[k].error <= allowed || now_[k].rays >= kMostRays) continue;
+      if (errorOf(now_[k]) <= allowed || now_[k].rays >= kMostRays) continue;
       rays[k] = raysNeeded(before_[k], now_[k], allowed);
     }
     return rays;
+  }
+  /// Rows of a small norm may be off by the tolerance of a usual one, so that all of them together
+  /// can be off by more than the tolerance. True if rows have to aim at less for that: once all
+  /// have reached what they aimed at.
+  bool tighten() {
+    double squares = 0;
+    double norms = 0;
+    bool is_done = true;
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      squares += scene_.area()[k] * now_[k].error * now_[k].error;
+      norms += scene_.area()[k] * now_[k].norm * now_[k].norm;
+      is_done = is_done && isGoodEnough(k);
+    }
+    const double most = kMargin * aim_.tolerance;
+    const double error = norms > 0 ? std::sqrt(squares / norms) : 0.0;
+    if (!is_done || loosened_ > 1 || !(error > most)) return false;
+    tightened_ *= kMargin * most / error;
+    return true;
   }
   /// All rays there then are, of both replicates.
   double raysOf(const std::vector<std::uint32_t>& wished) const {
@@ -208,12 +239,20 @@ class Rounds {
     const double start = clockSeconds();
     std::vector<std::uint8_t> wanted(rows_.size());
     for (std::size_t k = 0; k < rows_.size(); ++k) wanted[k] = rays[k] > 0;
+    std::vector<RowAccuracy> measured(rows_.size());
     forMergedRows(rows_, scene_.area(), known_, wanted, scratch_, [&](const MergedRow& merged) {
       const std::size_t k = merged.position;
-      const RowAccuracy accuracy = accuracyOf(merged, rows_[k], scene_.area()[k]);
-      before_[k] = now_[k];
-      now_[k] = {rows_[k].rays, accuracy.error, accuracy.norm};
+      measured[k] = accuracyOf(merged, rows_[k], scene_.area()[k]);
     });
+    for (const RowAccuracy& row : measured) common_.add(row);
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      if (wanted[k] == 0) continue;
+      const RowAccuracy accuracy = common_.moderated(measured[k]);
+      before_[k] = now_[k];
+      const double all = std::hypot(accuracy.norm, accuracy.backs_norm);
+      now_[k] = {rows_[k].rays, accuracy.error, accuracy.norm,
+                 all > 0 ? accuracy.backs_error / all : 0.0};
+    }
     UsualNorm usual;
     for (std::size_t k = 0; k < now_.size(); ++k) usual.add(now_[k].norm, scene_.area()[k]);
     usual_norm_ = usual.value();
@@ -221,8 +260,10 @@ class Rounds {
     report_.seconds_merge += clockSeconds() - start;
   }
 
-  double aim(std::size_t k) const { return aim_.tolerance * std::max(now_[k].norm, usual_norm_); }
-  bool isGoodEnough(std::size_t k) const { return now_[k].error <= aim(k); }
+  double aim(std::size_t k) const {
+    return tightened_ * aim_.tolerance * std::max(now_[k].norm, usual_norm_);
+  }
+  bool isGoodEnough(std::size_t k) const { return errorOf(now_[k]) <= aim(k); }
 
   void finish() {
     if (loosened_ > 1) report_.loosened_tolerance = loosened_ * aim_.tolerance;
@@ -238,6 +279,7 @@ class Rounds {
   const KnownEntries& known_;
   RayAim aim_;
   double loosened_ = 1;
+  double tightened_ = kMargin;  ///< times the tolerance
   RayReport& report_;
   Progress& progress_;
   RoundJournal journal_;
@@ -246,6 +288,7 @@ class Rounds {
   std::vector<RayRow> rows_;
   std::vector<RowState> before_;
   std::vector<RowState> now_;
+  CommonError common_;  ///< of all rounds
   double usual_norm_ = 0;
 };
 

@@ -17,65 +17,6 @@ namespace {
 /// Of what is handed on to the rows that are merged at once.
 constexpr std::size_t kPanelBytes = std::size_t(1) << 25;
 
-/// The 99% quantile of F(nu, nu), by nu (Abramowitz & Stegun, "Handbook of Mathematical Functions",
-/// table 26.9; from 150 on by its normal approximation 26.6.14).
-constexpr std::array<std::pair<double, double>, 15> kQuantiles{{{1, 4052},
-                                                                {2, 99.0},
-                                                                {3, 29.46},
-                                                                {4, 15.98},
-                                                                {5, 10.97},
-                                                                {6, 8.47},
-                                                                {8, 6.03},
-                                                                {10, 4.85},
-                                                                {15, 3.52},
-                                                                {20, 2.94},
-                                                                {30, 2.39},
-                                                                {60, 1.84},
-                                                                {120, 1.53},
-                                                                {400, 1.262},
-                                                                {1600, 1.123}}};
-
-double quantile(double degrees) {
-  if (degrees <= kQuantiles.front().first) return kQuantiles.front().second;
-  for (std::size_t k = 1; k < kQuantiles.size(); ++k) {
-    const auto& [low, at_low] = kQuantiles[k - 1];
-    const auto& [high, at_high] = kQuantiles[k];
-    if (degrees > high) continue;
-    const double share = std::log(degrees / low) / std::log(high / low);
-    return at_low * std::pow(at_high / at_low, share);
-  }
-  return kQuantiles.back().second;
-}
-
-/// Sums over the entries of a row, of which each replicate has an estimate.
-class ReplicateSums {
- public:
-  void add(double first, double second) {
-    const double half = 0.5 * (first - second);
-    const double square = half * half;
-    product_ += first * second;
-    squares_ += square;
-    fourths_ += square * square;
-  }
-  RowAccuracy accuracy() const {
-    RowAccuracy result;
-    // The product of independent estimates has no bias, the square of their mean has.
-    result.norm = std::sqrt(std::max(0.0, product_));
-    result.error = std::sqrt(squares_);
-    // Independent normal terms would be three times as many as this says, for their fourth moment
-    // is 3. Neighbours share the border that rays fall to either side of: they are not independent.
-    // (Counted three times, 95.6 to 98% of the rows of five scenes at two tolerances are below
-    // their figures, where 99% are meant to be.)
-    if (fourths_ > 0) result.degrees = std::max(1.0, squares_ * squares_ / fourths_);
-    return result;
-  }
-
- private:
-  double product_ = 0;
-  double squares_ = 0;
-  double fourths_ = 0;
-};
-
 using Hits = std::array<std::uint32_t, kReplicates>;
 
 /// Bytes of an entry that another row hands on.
@@ -205,6 +146,7 @@ void forBothEnds(const RayRow& own, std::span<const Index> columns, std::span<co
 struct Merging {
   std::vector<Index> columns;
   std::vector<std::array<double, kReplicates>> factors;
+  std::vector<double> variances;
 };
 
 }  // namespace
@@ -213,10 +155,6 @@ std::size_t mergingBytes(std::size_t rows, double entries) {
   constexpr std::size_t kRowBytes = (kReplicates + 4 + kBlocks) * sizeof(double);
   return rows * kRowBytes +
          std::size_t(std::min(double(kPanelBytes), entries * double(kHandedBytes)));
-}
-
-double RowAccuracy::figure() const {
-  return std::hypot(error * std::sqrt(quantile(degrees)), known_error);
 }
 
 void RayRow::add(const RayRow& more) {
@@ -264,6 +202,7 @@ void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
       Merging& merging = mergings.local();
       merging.columns.clear();
       merging.factors.clear();
+      merging.variances.clear();
       const std::span<const KnownEntries::Entry> entries = known.at(k);
       const bool all_known = known.rowAt(k) != nullptr;
       std::size_t next = 0;  // of these
@@ -272,6 +211,7 @@ void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
           const double factor = entries[next].exchange / area[k];
           merging.columns.push_back(entries[next].position);
           merging.factors.push_back({factor, factor});
+          merging.variances.push_back(0);
         }
       };
       const auto merge = [&](Index j, const Hits& own, const Hits& of_j) {
@@ -279,30 +219,51 @@ void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
         addKnownBefore(j);
         merging.columns.push_back(j);
         std::array<double, kReplicates>& factor = merging.factors.emplace_back();
+        double all_hits = 0;
         for (std::size_t r = 0; r < kReplicates; ++r) {
           const double hits = double(own[r]) + double(of_j[r]);
           if (hits == 0) continue;
           const double from_j = j == k ? 0.0 : density[j][r];
           factor[r] = hits / ((density[k][r] + from_j) * area[k]);
+          all_hits += hits;
         }
+        merging.variances.push_back(foreseenVariance(0.5 * (factor[0] + factor[1]), all_hits));
       };
       touchRows(scratch, rows[k].bytes());
       forBothEnds(rows[k], handed.columns(k), handed.hits(k), n, merge);
       addKnownBefore(n);
-      visit({k, n, merging.columns, merging.factors, entries, all_known});
+      visit({k, n, merging.columns, merging.factors, merging.variances, entries, all_known});
     });
     first = last;
   }
 }
 
+namespace {
+
+/// An entry that a row alone has counted.
+void addAlone(const RayRow& row, std::size_t e, ReplicateSums& sums) {
+  const double first = row.hits[e][0] / row.counted(0);
+  const double second = row.hits[e][1] / row.counted(1);
+  const double hits = double(row.hits[e][0]) + double(row.hits[e][1]);
+  sums.add(first, second, foreseenVariance(0.5 * (first + second), hits));
+}
+
+}  // namespace
+
 RowAccuracy accuracyOf(const MergedRow& merged, const RayRow& own, double area) {
   ReplicateSums sums;
-  for (const auto& [first, second] : merged.factors) sums.add(first, second);
+  for (std::size_t e = 0; e < merged.factors.size(); ++e) {
+    sums.add(merged.factors[e][0], merged.factors[e][1], merged.variances[e]);
+  }
+  ReplicateSums backs;
   for (std::size_t e = merged.all_known ? 0 : own.columns.size(); e-- > 0;) {
     if (own.columns[e] < merged.unknowns) break;
-    sums.add(own.hits[e][0] / own.counted(0), own.hits[e][1] / own.counted(1));
+    addAlone(own, e, backs);
   }
   RowAccuracy accuracy = sums.accuracy();
+  accuracy.backs_norm = backs.accuracy().norm;
+  accuracy.backs_error = backs.accuracy().error;
+  if (!merged.all_known) accuracy.rays = own.counted();
   double squares = 0;
   double fourths = 0;
   for (const KnownEntries::Entry& entry : merged.known) {
@@ -314,10 +275,10 @@ RowAccuracy accuracyOf(const MergedRow& merged, const RayRow& own, double area) 
   return accuracy;
 }
 
-RowAccuracy accuracyAlone(const RayRow& row) {
+RowAccuracy accuracyAlone(const RayRow& row, std::size_t unknowns) {
   ReplicateSums sums;
-  for (const auto& [first, second] : row.hits) {
-    sums.add(first / row.counted(0), second / row.counted(1));
+  for (std::size_t e = 0; e < row.columns.size() && row.columns[e] < unknowns; ++e) {
+    addAlone(row, e, sums);
   }
   return sums.accuracy();
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "formfactor/rays/known_entries.h"
+#include "formfactor/rays/row_accuracy.h"
 #include "radiosity/base.h"
 #include "radiosity/scratch_memory.h"
 
@@ -58,6 +59,9 @@ struct MergedRow {
   /// F from this row's unknown to those, by the first and the second replicate; twice the same
   /// where it is known.
   std::span<const std::array<double, kReplicates>> factors;
+  /// Foreseen, of their means, but for a factor that all rows share (foreseenVariance()); 0 where
+  /// they are known.
+  std::span<const double> variances;
   std::span<const KnownEntries::Entry> known;  ///< those among them that are known
   bool all_known = false;                      ///< the row rests on no rays
 };
@@ -71,19 +75,6 @@ void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
 
 /// Bytes that forMergedRows() takes of `rows` rows with `entries` of their own, all together.
 std::size_t mergingBytes(std::size_t rows, double entries);
-
-/// How far off a row is, from its replicates.
-struct RowAccuracy {
-  double norm = 0;   ///< sqrt(sum_j F_ij^2)
-  double error = 0;  ///< root mean square expected of sqrt(sum_j (F_ij - true F_ij)^2)
-  /// About: of how many independent terms the squared error is the sum.
-  double degrees = 1;
-  double known_error = 0;  ///< stated, of the entries that are known; not in `error`
-
-  /// What sqrt(sum_j (F_ij - true F_ij)^2) is below in 99% of rows: error squared over its estimate
-  /// is distributed like F with as many degrees of freedom above as below.
-  double figure() const;
-};
 
 /// The norm of a usual row: the root mean square of those added, weighted by area.
 class UsualNorm {
@@ -104,6 +95,6 @@ class UsualNorm {
 RowAccuracy accuracyOf(const MergedRow& merged, const RayRow& own, double area);
 
 /// The same of a row by itself, before it is merged with what the others count.
-RowAccuracy accuracyAlone(const RayRow& row);
+RowAccuracy accuracyAlone(const RayRow& row, std::size_t unknowns);
 
 }  // namespace radiosity

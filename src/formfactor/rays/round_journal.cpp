@@ -12,8 +12,10 @@ void RoundJournal::keep(int round, const RayRound& decided) const {
   bytes.putArray(std::span(decided.rays));
   bytes.putArray(std::span(decided.before));
   bytes.putArray(std::span(decided.now));
+  bytes.put(decided.common);
   bytes.put(decided.usual_norm);
   bytes.put(decided.loosened);
+  bytes.put(decided.tightened);
   journal_->keep(RowBlock::ray_round, std::uint64_t(round), bytes.bytes());
 }
 
@@ -26,8 +28,10 @@ std::optional<RayRound> RoundJournal::take(int round) const {
   decided.rays = bytes.getArray<std::uint32_t>();
   decided.before = bytes.getArray<RowState>();
   decided.now = bytes.getArray<RowState>();
+  decided.common = bytes.get<CommonError>();
   decided.usual_norm = bytes.get<double>();
   decided.loosened = bytes.get<double>();
+  decided.tightened = bytes.get<double>();
   const bool fits =
       decided.rays.size() == rows_ && decided.before.size() == rows_ && decided.now.size() == rows_;
   if (!bytes.isWhole() || !fits) return {};

@@ -18,6 +18,7 @@ struct RowState {
   std::uint32_t rays = 0;
   double error = 0;
   double norm = 0;
+  double backs = 0;  ///< error of the backs it sees, over the norm of all it sees
 };
 
 /// What is decided when a round begins. All by position.
@@ -25,8 +26,10 @@ struct RayRound {
   std::vector<std::uint32_t> rays;  ///< each row is to have in each replicate, where it has less
   std::vector<RowState> before;     ///< by the measurement before the last,
   std::vector<RowState> now;        ///< and by the last
+  CommonError common;               ///< of all rows measured up to the last
   double usual_norm = 0;            ///< of the last
   double loosened = 1;              ///< times the tolerance aimed at
+  double tightened = 1;             ///< the same, for the matrix to keep it
 };
 
 /// A row as bytes, and back.

@@ -9,7 +9,6 @@
 
 #include "base/parallel.h"
 #include "formfactor/exact/assembly/row_assembly.h"
-#include "formfactor/exact/assembly/row_sample.h"
 #include "formfactor/exact/error_model.h"
 #include "matrix/run_row.h"
 #include "matrix/uncertain_row.h"
@@ -130,10 +129,17 @@ LeadingRows::LeadingRows(const PatchMesh& mesh, std::vector<Index> wanted,
       options_(options),
       scene_(mesh, progress, patchesOf(mesh, wanted_)) {}
 
-double LeadingRows::work(Progress& progress) const {
+RowSample LeadingRows::sample(Progress& progress) const {
   const double tolerance = options_.toleranceOf(FormFactorMethod::exact);
-  const RowSample sample = sampleRows(scene_, scene_.leadingTasks(), tolerance, progress);
+  return sampleRows(scene_, scene_.leadingTasks(), tolerance, progress);
+}
+
+double LeadingRows::work(const RowSample& sample) const {
   return estimateExact(scene_, sample, options_).work;
+}
+
+double LeadingRows::seconds(const RowSample& sample, Progress& progress) const {
+  return exactSeconds(scene_, ExactKernels(scene_, options_), sample, options_, progress);
 }
 
 std::size_t LeadingRows::bytes() const {

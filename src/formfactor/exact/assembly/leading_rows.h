@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "formfactor/exact/assembly/exact_scene.h"
+#include "formfactor/exact/assembly/row_sample.h"
 #include "formfactor/known_rows.h"
 #include "radiosity/form_factors.h"
 
@@ -22,8 +23,12 @@ class LeadingRows {
 
   /// FormFactorOptions::tolerance of compute(), before that of the options.
   void setTolerance(double tolerance) { options_.tolerance = tolerance; }
-  /// What compute() takes, foreseen from a sample as ExactEstimate::work: the same in every run.
-  double work(Progress& progress) const;
+  /// Some of the rows, for what follows.
+  RowSample sample(Progress& progress) const;
+  /// What compute() takes, foreseen as ExactEstimate::work: the same in every run.
+  double work(const RowSample& sample) const;
+  /// The same by the clock, here and now.
+  double seconds(const RowSample& sample, Progress& progress) const;
   /// Held by compute() beside this, about.
   std::size_t bytes() const;
 

@@ -15,6 +15,10 @@
 namespace radiosity {
 namespace {
 
+/// Radians between two faces at an edge. Planes that are known to the coincidence then cross within
+/// 1,000 of it of the edge.
+constexpr double kKnifeAngle = 1e-3;
+
 struct FlatPoint {
   Vec2 at;
   Index id;
@@ -100,7 +104,7 @@ class Wrapping {
     }
     // Euler's formula: anything else is no single closed convex surface.
     if (occluder.corners.size() + occluder.planes.size() != occluder.edges.size() + 2) return {};
-    if (!holdsCorners(occluder)) return {};
+    if (!holdsCorners(occluder) || hasKnifeEdge(occluder)) return {};
     boundOccluder(occluder);
     return occluder;
   }
@@ -115,6 +119,17 @@ class Wrapping {
       }
     }
     return members;
+  }
+
+  /// True where two faces meet back to back but for the coincidence: where their planes cross is
+  /// not known, and points off the body may be behind all of its planes.
+  static bool hasKnifeEdge(const Occluder& occluder) {
+    return std::any_of(
+        occluder.edges.begin(), occluder.edges.end(), [&](const Occluder::Edge& edge) {
+          const Vec3& left = occluder.planes[edge.left].normal;
+          const Vec3& right = occluder.planes[edge.right].normal;
+          return glm::dot(left, right) < 0 && glm::length(glm::cross(left, right)) < kKnifeAngle;
+        });
   }
 
   /// True if no corner is in front of a plane.

@@ -1,0 +1,80 @@
+#include "formfactor/rays/row_accuracy.h"
+
+#include <algorithm>
+#include <boost/math/distributions/fisher_f.hpp>
+#include <cmath>
+
+namespace radiosity {
+namespace {
+
+constexpr double kStated = 0.99;
+
+/// Independent normal terms are about so many times as many as squared terms over the sum of their
+/// squares say of entries: neighbours share the border that rays fall to either side of. (Counted
+/// without it, 95.6 to 98% of the rows of five scenes at two tolerances were below their figures.)
+constexpr double kEntriesATerm = 3;
+
+/// Of n scrambled points in four dimensions about n^(3/4) lie in cells that a border runs through.
+constexpr double kGain = 0.25;
+
+}  // namespace
+
+double RowAccuracy::figure() const {
+  const double estimated = std::hypot(error, backs_error);
+  double seen = known_error;
+  if (estimated > 0) {
+    const boost::math::fisher_f distribution(terms, degrees);
+    seen = std::hypot(estimated * std::sqrt(boost::math::quantile(distribution, kStated)),
+                      known_error);
+  }
+  // Whatever takes more than this of a row is met by one of its rays in 99% of rows.
+  const double unseen = rays > 0 ? -std::log(1 - kStated) / rays : 0.0;
+  return std::max(seen, unseen);
+}
+
+RowAccuracy ReplicateSums::accuracy() const {
+  RowAccuracy result;
+  // The product of independent estimates has no bias, the square of their mean has.
+  result.norm = std::sqrt(std::max(0.0, product_));
+  result.error = std::sqrt(squares_);
+  result.foreseen = std::sqrt(foreseen_);
+  if (foreseen_squares_ > 0) {
+    result.terms = std::max(1.0, foreseen_ * foreseen_ / (kEntriesATerm * foreseen_squares_));
+  }
+  result.degrees = result.terms;
+  return result;
+}
+
+double foreseenVariance(double factor, double hits) {
+  if (!(hits > 0)) return 0;
+  const double independent = hits * std::max(0.0, 1 - factor);  // variance of the hits
+  const double of_net = independent * std::pow(std::max(1.0, independent), -kGain);
+  return factor * factor * of_net / (hits * hits);
+}
+
+void CommonError::add(const RowAccuracy& row) {
+  if (!(row.foreseen > 0)) return;
+  const double ratio = (row.error * row.error) / (row.foreseen * row.foreseen);
+  rows_ += 1;
+  degrees_ += row.degrees;
+  ratios_ += ratio;
+  squares_ += ratio * ratio / (1 + 2 / row.degrees);
+}
+
+RowAccuracy CommonError::moderated(const RowAccuracy& row) const {
+  RowAccuracy result = row;
+  if (!(row.foreseen > 0) || !(ratios_ > 0)) return result;
+  const double mean = ratios_ / rows_;
+  // How much rows' own ratios differ: their variance over their mean squared.
+  const double spread = std::max(0.0, squares_ / rows_ / (mean * mean) - 1);
+  const double common = mean * row.foreseen * row.foreseen;
+  // What is common weighs as an estimate of so many degrees would, and of no more than there are.
+  double weight = degrees_;
+  if (spread > 0) weight = std::min(weight, 2 * (1 + 1 / spread));
+  result.degrees = row.degrees + weight;
+  result.error =
+      std::sqrt((row.degrees * row.error * row.error + weight * common) / result.degrees);
+  return result;
+}
+
+}  // namespace radiosity
