@@ -16,7 +16,7 @@ namespace {
 
 FormFactorOptions factorOptions(const py::dict& given) {
   FormFactorOptions options;
-  const Options take(given);
+  const KeywordOptions take(given);
   take.choice("method", kMethodNames, options.method);
   take("tolerance", options.tolerance);
   take.choice("closure", kClosureNames, options.closure);

@@ -12,7 +12,7 @@ namespace {
 
 GatherOptions gatherOptions(const py::dict& given) {
   GatherOptions options;
-  const Options take(given);
+  const KeywordOptions take(given);
   take.choice("at", kGatherAtNames, options.at);
   take("passes", options.passes);
   take("tolerance", options.tolerance);

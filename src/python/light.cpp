@@ -21,7 +21,7 @@ std::shared_ptr<SolutionHandle> solveLight(std::shared_ptr<FactorsHandle> factor
                                            const std::vector<double>& sky, const py::dict& given,
                                            const py::object& report) {
   SolveOptions options;
-  const Options take(given);
+  const KeywordOptions take(given);
   take.choice("solver", kSolverNames, options.solver);
   take("tolerance", options.tolerance);
   take("max_iterations", options.max_iterations);
@@ -48,7 +48,7 @@ std::shared_ptr<SolutionHandle> solveLight(std::shared_ptr<FactorsHandle> factor
 
 HeatOptions heatOptions(const py::dict& given) {
   HeatOptions options;
-  const Options take(given);
+  const KeywordOptions take(given);
   take("sky_temperature", options.sky_temperature);
   take("tolerance", options.tolerance);
   take("max_iterations", options.max_iterations);
@@ -146,7 +146,7 @@ std::optional<Camera> cameraOf(const py::object& given, const Scene* scene) {
     }
     return parseCamera(text);
   }
-  const Options take(cameraProperties(given), "camera");
+  const KeywordOptions take(cameraProperties(given), "camera");
   Camera camera;
   Triple eye{}, target{}, up{camera.up.x, camera.up.y, camera.up.z};
   if (!take.has("eye") || !take.has("target")) {
@@ -168,7 +168,8 @@ std::optional<Camera> cameraOf(const py::object& given, const Scene* scene) {
 int otherSide(double pixels) { return std::max(1, int(std::lround(pixels))); }
 
 /// The size of the picture: the side that is not given follows from the camera.
-void takeSize(const Options& take, const std::optional<Camera>& camera, RenderOptions& options) {
+void takeSize(const KeywordOptions& take, const std::optional<Camera>& camera,
+              RenderOptions& options) {
   take("width", options.width);
   take("height", options.height);
   const double aspect = camera && camera->aspect > 0 ? camera->aspect : 1;
@@ -191,7 +192,7 @@ void addElements(const PatchMesh& mesh, const SolutionHandle& light, const Camer
 py::array render(const MeshHandle& mesh, const SolutionHandle* light,
                  const Array<double>& radiosity, const py::object& from, const py::dict& given,
                  const py::object& report) {
-  const Options take(given);
+  const KeywordOptions take(given);
   RenderOptions options;
   ElementOptions element_options;
   bool with_elements = light != nullptr;

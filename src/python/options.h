@@ -63,10 +63,10 @@ Value valueOf(const std::string& name, const py::handle& given) {
 }
 
 /// Takes the keyword arguments of a call one by one; None leaves what there is.
-class Options {
+class KeywordOptions {
  public:
   /// `of`: what they are properties of, for messages ("camera"); empty: of the call itself.
-  explicit Options(py::dict given, std::string of = {})
+  explicit KeywordOptions(py::dict given, std::string of = {})
       : given_(std::move(given)), of_(std::move(of)) {}
 
   template <class Value>

@@ -13,7 +13,7 @@ namespace {
 std::shared_ptr<Scene> load(const std::string& path, const py::dict& given,
                             const py::object& report) {
   SceneOptions options;
-  const Options take(given);
+  const KeywordOptions take(given);
   take("unit", options.unit);
   take("kd_is_srgb", options.kd_is_srgb);
   take("default_reflectance", options.default_reflectance);
@@ -89,7 +89,7 @@ py::dict dictOf(const Camera& camera) {
 std::shared_ptr<MeshHandle> mesh(std::shared_ptr<Scene> scene, const py::dict& given,
                                  const py::object& report) {
   MeshOptions options;
-  const Options take(given);
+  const KeywordOptions take(given);
   take("patches", options.patches);
   take("max_edge", options.max_edge);
   take("weld", options.weld);
