@@ -150,9 +150,8 @@ bool Bodies::isWithin(Index solid, Index cell, Side side) const {
 
 bool Bodies::isWithinAny(Index cell, Side side) const {
   const auto& at = winding_.at(cell, side);
-  return std::any_of(at.begin(), at.end(), [&](const Winding::Entry& e) {
-    return isWithin(e.component, cell, side);
-  });
+  return std::any_of(at.begin(), at.end(),
+                     [&](const Winding::Entry& e) { return isWithin(e.component, cell, side); });
 }
 
 }  // namespace radiosity

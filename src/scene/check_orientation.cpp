@@ -120,42 +120,78 @@ void SceneChecks::reportInsideOut(SceneInfo& info) const {
   }
 }
 
-std::vector<std::string> SceneChecks::contentsOf(const ConnectedPart& outer,
-                                                 std::size_t most) const {
+std::vector<std::size_t> SceneChecks::partsNear(const ConnectedPart& part) const {
   std::vector<std::size_t> near;
-  part_boxes_.query({outer.lower, outer.upper}, [&](Index k) {
+  part_boxes_.query({part.lower, part.upper}, [&](Index k) {
     near.push_back(k);
     return true;
   });
   std::sort(near.begin(), near.end());
+  return near;
+}
+
+std::vector<const ConnectedPart*> SceneChecks::cavitiesOf(const ConnectedPart& solid) const {
+  std::vector<const ConnectedPart*> cavities;
+  if (!(solid.volume > 0)) return cavities;
+  for (const std::size_t k : partsNear(solid)) {
+    const ConnectedPart& part = topology_.parts[k];
+    if (part.closed && part.volume < 0 && placeOf(part, solid) == Place::inside) {
+      cavities.push_back(&part);
+    }
+  }
+  return cavities;
+}
+
+bool SceneChecks::isCavity(const ConnectedPart& part) const {
+  const std::vector<std::size_t> near = partsNear(part);
+  return std::any_of(near.begin(), near.end(), [&](std::size_t k) {
+    const ConnectedPart& solid = topology_.parts[k];
+    return solid.closed && solid.volume > 0 && placeOf(part, solid) == Place::inside;
+  });
+}
+
+std::vector<std::string> SceneChecks::contentsOf(const ConnectedPart& outer,
+                                                 std::size_t most) const {
+  const std::vector<const ConnectedPart*> cavities = cavitiesOf(outer);
   std::vector<std::string> contents;
   const auto is_known = [&](const std::string& name) {
     return std::find(contents.begin(), contents.end(), name) != contents.end();
   };
-  for (const std::size_t k : near) {
+  for (const std::size_t k : partsNear(outer)) {
     const ConnectedPart& part = topology_.parts[k];
     if (contents.size() >= most) break;
     const std::vector<std::string> surfaces = surfacesOf(part);
     const bool adds = !std::all_of(surfaces.begin(), surfaces.end(), is_known);
     if (!adds || &part == &outer || placeOf(part, outer) != Place::inside) continue;
+    const bool is_in_cavity =
+        std::any_of(cavities.begin(), cavities.end(), [&](const ConnectedPart* cavity) {
+          return &part == cavity || placeOf(part, *cavity) != Place::outside;
+        });
+    if (is_in_cavity) continue;
     std::copy_if(surfaces.begin(), surfaces.end(), std::back_inserter(contents),
                  [&](const std::string& name) { return !is_known(name); });
   }
   return contents;
 }
 
-/// A closed part that faces inwards is a room, and has something in it; one that faces outwards is
-/// a solid, and has nothing in it. A part that is alone may be either.
+/// A closed part that faces inwards is a room, and has something in it, or a solid's cavity; one
+/// that faces outwards is a solid, and has nothing in it but in its cavities. A part that is alone
+/// may be either.
 void SceneChecks::reportPart(const ConnectedPart& part, SceneInfo& info) const {
   const bool has_others = topology_.parts.size() > 1;
   std::vector<std::string> contents = contentsOf(part, part.volume < 0 ? 1 : 5);
+  const std::vector<const ConnectedPart*> cavities = cavitiesOf(part);
   bool camera_inside = false;
   for (const Camera& camera : scene_.cameras) {
-    camera_inside |= placeOf(camera.eye - faces_.centre, part) == Place::inside;
+    const Vec3 eye = camera.eye - faces_.centre;
+    camera_inside |= placeOf(eye, part) == Place::inside &&
+                     std::none_of(cavities.begin(), cavities.end(), [&](const ConnectedPart* in) {
+                       return placeOf(eye, *in) == Place::inside;
+                     });
   }
   const bool emits_inwards =
       std::any_of(part.faces.begin(), part.faces.end(), [&](Index f) { return emits(f); });
-  if (part.volume < 0 && contents.empty() && !camera_inside && has_others) {
+  if (part.volume < 0 && contents.empty() && !camera_inside && has_others && !isCavity(part)) {
     info.problems.push_back(
         {emits_inwards ? Severity::loud : Severity::warning,
          fmt::format("{}: closed, faces inwards and holds nothing: a solid with flipped normals?{}",

@@ -49,8 +49,14 @@ class SceneChecks {
   std::string namesOf(const ConnectedPart& part) const;
   Place placeOf(const Vec3& point, const ConnectedPart& outer) const;
   Place placeOf(const ConnectedPart& inner, const ConnectedPart& outer) const;
-  /// Surfaces of parts that lie within `outer`, each once, in the order of the parts; no more are
-  /// looked for once there are `most`.
+  /// Parts whose boxes meet that of `part`, ascending.
+  std::vector<std::size_t> partsNear(const ConnectedPart& part) const;
+  /// Closed parts turned inward within a solid: they make it hollow.
+  std::vector<const ConnectedPart*> cavitiesOf(const ConnectedPart& solid) const;
+  /// Whether a part that is turned inward lies within a solid.
+  bool isCavity(const ConnectedPart& part) const;
+  /// Surfaces of parts that lie within `outer` and not in a cavity of it, each once, in the order
+  /// of the parts; no more are looked for once there are `most`.
   std::vector<std::string> contentsOf(const ConnectedPart& outer, std::size_t most) const;
   void reportFlippedFaces(SceneInfo& info) const;
   void reportInsideOut(SceneInfo& info) const;

@@ -43,10 +43,23 @@ bool isOneOf(std::string_view word, std::span<const std::string_view> known) {
   });
 }
 
-/// 2: the name has such a word; 1: it has "light" before others, which may be a colour: "light
+/// Whether "light" at the end of these words is a shade: another material is the same in dark, or
+/// without a shade ("metalLight" beside "metalDark" or "metal").
+bool isShade(const Scene& scene, std::vector<std::string> words) {
+  if (words.size() < 2 || words.back() != "light") return false;
+  std::vector<std::string> plain(words.begin(), words.end() - 1);
+  words.back() = "dark";
+  return std::any_of(scene.materials.begin(), scene.materials.end(), [&](const Material& other) {
+    const std::vector<std::string> of_other = wordsOf(other.name);
+    return of_other == plain || of_other == words;
+  });
+}
+
+/// 2: the name has such a word; 1: it has "light" before others, which may be a shade: "light
 /// wood"; 0: neither.
-int match(const std::string& name, std::span<const std::string_view> known) {
+int match(const Scene& scene, const std::string& name, std::span<const std::string_view> known) {
   const std::vector<std::string> words = wordsOf(name);
+  if (isShade(scene, words)) return 0;
   int found = 0;
   for (std::size_t k = 0; k < words.size(); ++k) {
     if (!isOneOf(words[k], known)) continue;
@@ -61,8 +74,8 @@ std::string bestMatch(const Scene& scene, std::span<const std::string_view> know
   std::string name;
   for (const Surface& surface : scene.surfaces) {
     const std::string& material = scene.materials[surface.material].name;
-    const int of_material = 2 * match(material, known);
-    const int of_object = 2 * match(surface.object, known) - 1;
+    const int of_material = 2 * match(scene, material, known);
+    const int of_object = 2 * match(scene, surface.object, known) - 1;
     if (std::max(of_material, of_object) <= most) continue;
     most = std::max(of_material, of_object);
     name = of_material > of_object ? material : surface.name;
@@ -73,6 +86,7 @@ std::string bestMatch(const Scene& scene, std::span<const std::string_view> know
 /// The surface with most area that faces down, if most of its area does and it is in the upper
 /// half: the underside of a table is no ceiling.
 std::string facingDown(const Scene& scene) {
+  const auto up = scene.up == Up::z ? 2 : 1;
   std::vector<double> area(scene.surfaces.size(), 0.0);
   std::vector<double> down(scene.surfaces.size(), 0.0);
   std::vector<double> height(scene.surfaces.size(), 0.0);
@@ -86,13 +100,13 @@ std::string facingDown(const Scene& scene) {
       sum += glm::cross(scene.vertices[face[k]] - first, scene.vertices[face[k + 1]] - first) * 0.5;
     }
     for (const Index v : face) {
-      low = std::min(low, scene.vertices[v].y);
-      high = std::max(high, scene.vertices[v].y);
+      low = std::min(low, scene.vertices[v][up]);
+      high = std::max(high, scene.vertices[v][up]);
     }
     const Index s = scene.face_surface[f];
     area[s] += glm::length(sum);
-    height[s] += glm::length(sum) * first.y;
-    if (-sum.y > 0.9 * glm::length(sum)) down[s] += -sum.y;
+    height[s] += glm::length(sum) * first[up];
+    if (-sum[up] > 0.9 * glm::length(sum)) down[s] += -sum[up];
   }
   std::size_t best = scene.surfaces.size();
   for (std::size_t s = 0; s < area.size(); ++s) {

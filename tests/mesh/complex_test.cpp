@@ -310,7 +310,8 @@ TEST(Contact, AChamberInASolidIsSeenFromInside) {
     b.box(chamber, {wall, wall, wall}, {4 - wall, 4 - wall, 4 - wall}, false);
     b.box(heater, {1, 1, wall}, {2, 2, 2});
     bothWays(b.scene(), [&](const Built& built) {
-      EXPECT_EQ(polygonsOf(built, shell), 6u);
+      // Of thin walls, the part that is back to back with nothing, under the heater, is one more.
+      EXPECT_EQ(polygonsOf(built, shell), wall > 0 ? 6u : 7u);
       EXPECT_EQ(polygonsOf(built, chamber), 6u);
       EXPECT_EQ(polygonsOf(built, heater), 5u);
       EXPECT_EQ(built.report.surfaces[shell].buried, 0);

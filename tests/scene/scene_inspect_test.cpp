@@ -145,6 +145,27 @@ TEST(SceneInspect, NamesSolidsAndRoomsThatAreInsideOut) {
   EXPECT_NOTE(inspectScene(beads.scene()).problems,
               "shell/shell: closed, faces outwards and holds bead/bead, another part of it: a room",
               Severity::loud);
+  // A solid may be hollow: with something in its chamber, or nothing; what is in its wall is gone.
+  for (const bool heated : {true, false}) {
+    SceneBuilder oven;
+    const Index walls = oven.surface("walls");
+    oven.box(walls, {0, 0, 0}, {4, 4, 4});
+    oven.box(walls, {1, 1, 1}, {3, 3, 3}, false);
+    const Index heater = oven.surface("heater", 0.5, 1);
+    oven.box(heater, {1.5, 1.5, 1.5}, {2, 2, 2});
+    if (!heated) oven.box(oven.surface("lost"), {0.1, 0.1, 0.1}, {0.5, 0.5, 0.5});
+    const SceneInfo info = inspectScene(oven.scene());
+    if (heated) {
+      EXPECT_EQ(findNote(info.problems, "faces"), nullptr);
+    } else {
+      EXPECT_NOTE(info.problems, "walls/walls: closed, faces outwards and holds lost/lost: a room",
+                  Severity::loud);
+    }
+  }
+  SceneBuilder empty;
+  empty.box(empty.surface("walls", 0.5, 1), {0, 0, 0}, {4, 4, 4});
+  empty.box(empty.surface("chamber"), {1, 1, 1}, {3, 3, 3}, false);
+  EXPECT_EQ(problemsOf(empty.scene()), "");
   // A lamp turned inside out keeps its light.
   Room room;
   room.builder.box(room.lamp, {0.5, 0.5, 2}, {1, 1, 3}, false);

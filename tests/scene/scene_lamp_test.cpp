@@ -27,6 +27,17 @@ TEST(LikelyLamp, AnObjectsNameWillDo) {
   EXPECT_EQ(likelyLamp(builder.scene()), "floor lamp/white");
 }
 
+TEST(LikelyLamp, AShadeOfAMaterialIsNone) {
+  SceneBuilder builder;
+  builder.level(builder.surface("metalDark"), 0, 0, 1, 1, 0);
+  builder.level(builder.surface("metalLight"), 0, 0, 1, 1, 1);
+  builder.level(builder.surface("Wood.light"), 0, 0, 1, 1, 2);
+  builder.level(builder.surface("wood"), 0, 0, 1, 1, 3);
+  EXPECT_EQ(likelyLamp(builder.scene()), "metalDark/metalDark");  // the first there is
+  builder.level(builder.surface("deskLight"), 0, 0, 1, 1, 4);
+  EXPECT_EQ(likelyLamp(builder.scene()), "deskLight");
+}
+
 TEST(LikelyLamp, ElseTheCeiling) {
   SceneBuilder named;
   named.level(named.surface("floor"), 0, 0, 1, 1, 0);
@@ -46,6 +57,10 @@ TEST(LikelyLamp, ElseTheCeiling) {
   down(small, 1, 2.9);
   down(large, 2, 2.95);
   down(table, 3, 0.7);
+  EXPECT_EQ(likelyLamp(builder.scene()), "c/c");
+  // The same standing on z.
+  for (Vec3& p : builder.scene().vertices) p = {p.x, -p.z, p.y};
+  builder.scene().up = Up::z;
   EXPECT_EQ(likelyLamp(builder.scene()), "c/c");
 }
 

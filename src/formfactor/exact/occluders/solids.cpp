@@ -318,8 +318,8 @@ class SolidSearch {
   double score(const ConvexSolid& solid) const { return areaOnFaces(solid) * volumeOf(solid.body); }
 
   /// True if nothing gets in or out where the set does not cover the hull.
-  bool letsNothingIn(const Occluder& hull, const ConvexSet& set,
-                     const std::vector<double>& missing, bool opaque) const {
+  bool letsNothingIn(const Occluder& hull, const ConvexSet& set, const std::vector<double>& missing,
+                     bool opaque) const {
     std::vector<Index> gaps;
     for (Index k = 0; k < hull.planes.size() && gaps.size() < 2; ++k) {
       const Occluder::Plane& plane = hull.planes[k];

@@ -26,7 +26,9 @@ struct ConvexSolid {
 ///   that face (a box on the floor of a room, contact area dropped); or it is the only such face,
 ///   so that whatever goes in has to come out elsewhere, and what is around it is tied to it edge
 ///   by edge or covers it (a box on a table); or the polygons belong to a closed surface with the
-///   hull on the side that nobody looks into (a book between books on a board).
+///   hull on the side that nobody looks into (a book between books on a board);
+/// - no polygons on its faces look into it and see each other, or out where a face is open (the
+///   inner sheet of a basin that is two sheets back to back).
 /// Where faces were cut at contacts or merged with others', so that such sets are small, slabs
 /// behind single polygons stand in (slabs.h), the more telling one of each first.
 /// A curved surface (ConvexGroups) is a solid if all of it is in convex position; parts of one that
