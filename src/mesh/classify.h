@@ -18,8 +18,8 @@ struct VisibleCell {
 
 /// Decides by the space next to each side and by what else lies in the same place:
 /// - a side inside a closed outward solid, and in no cavity of it, is buried; what faces that
-/// solid's skin from inside it
-///   is in contact with the skin, and takes it along (a block's bottom goes with the floor);
+///   solid's skin from inside it is in contact with the skin, and takes it along (a block's bottom
+///   goes with the floor);
 /// - the sides of a two-sided closed component that see nothing are hidden;
 /// - of sheets that face alike the emitter wins, else the smaller surface, else the first name;
 /// - the far side of a two-sided sheet that lies on a one-sided one is in contact.
