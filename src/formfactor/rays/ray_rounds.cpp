@@ -61,9 +61,9 @@ class Rounds {
           std::max(loosened_,
                    loosening(aim_.most_rays, [&](double times) { return raysOf(wishes(times)); }));
       rays = wishes(loosened_);
-      if (tighten()) rays = wishes(loosened_);
-      journal_.keep(report_.rounds,
-                    {rays, before_, now_, common_, usual_norm_, loosened_, tightened_});
+      if (matrixIsShort()) tighten(rays);
+      journal_.keep(report_.rounds, {rays, before_, now_, common_, usual_norm_, usual_whole_norm_,
+                                     loosened_, tightened_});
     }
     if (processes_ != nullptr) endCasting(*processes_, progress_);
     finish();
@@ -81,6 +81,7 @@ class Rounds {
       now_ = std::move(round->now);
       common_ = round->common;
       usual_norm_ = round->usual_norm;
+      usual_whole_norm_ = round->usual_whole_norm;
       loosened_ = round->loosened;
       tightened_ = round->tightened;
     }
@@ -182,17 +183,21 @@ class Rounds {
     castTogether(*processes_, scene_, std::move(left), take, progress_);
   }
 
-  /// What a row is to bring down: its error, or that of the backs it sees, on the same scale.
-  double errorOf(const RowState& row) const {
-    return std::max(row.error, row.backs * std::max(row.norm, usual_norm_));
+  /// What a row is to bring down: its error over its norm, or that of the backs it sees over the
+  /// norm of all it sees; over usual norms where its own are smaller.
+  double relativeError(const RowState& row) const {
+    const double norm = std::max(row.norm, usual_norm_);
+    const double whole = std::max(row.whole_norm, usual_whole_norm_);
+    return std::max(norm > 0 ? row.error / norm : 0.0, whole > 0 ? row.backs_error / whole : 0.0);
   }
 
-  /// Rays for an error of `aim`, from what was seen with fewer.
+  /// Rays for a relative error of `aim`, from what was seen with fewer.
   std::uint32_t raysNeeded(const RowState& before, const RowState& now, double aim) const {
-    const double error = errorOf(now);
+    const double error = relativeError(now);
+    const double error_before = relativeError(before);
     double order = kUsualOrder;
-    if (before.rays > 0 && now.rays > before.rays && error > 0 && errorOf(before) > error) {
-      order = 2 * std::log(errorOf(before) / error) / std::log(double(now.rays) / before.rays);
+    if (before.rays > 0 && now.rays > before.rays && error > 0 && error_before > error) {
+      order = 2 * std::log(error_before / error) / std::log(double(now.rays) / before.rays);
       order = std::clamp(order, kLeastOrder, kMostOrder);
     }
     const double growth = std::pow(error / aim, 2 / order);
@@ -203,29 +208,38 @@ class Rounds {
   std::vector<std::uint32_t> wishes(double loosened) const {
     std::vector<std::uint32_t> rays(rows_.size(), 0);
     for (std::size_t k = 0; k < rows_.size(); ++k) {
-      const double allowed = loosened * aim(k);
-      if (errorOf(now_[k]) <= allowed || now_[k].rays >= kMostRays) continue;
+      const double allowed = loosened * aim();
+      if (relativeError(now_[k]) <= allowed || now_[k].rays >= kMostRays) continue;
       rays[k] = raysNeeded(before_[k], now_[k], allowed);
     }
     return rays;
   }
-  /// Rows of a small norm may be off by the tolerance of a usual one, so that all of them together
-  /// can be off by more than the tolerance. True if rows have to aim at less for that: once all
-  /// have reached what they aimed at.
-  bool tighten() {
+  /// True once all rows have reached what they aimed at and the matrix has not: rows of a small
+  /// norm may be off by the tolerance of a usual one.
+  bool matrixIsShort() const {
+    bool is_done = loosened_ == 1;
+    for (std::size_t k = 0; k < rows_.size() && is_done; ++k) is_done = isGoodEnough(k);
+    return is_done && matrixError() > kMargin * aim_.tolerance;
+  }
+  double matrixError() const {
     double squares = 0;
     double norms = 0;
-    bool is_done = true;
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       squares += scene_.area()[k] * now_[k].error * now_[k].error;
       norms += scene_.area()[k] * now_[k].norm * now_[k].norm;
-      is_done = is_done && isGoodEnough(k);
     }
-    const double most = kMargin * aim_.tolerance;
-    const double error = norms > 0 ? std::sqrt(squares / norms) : 0.0;
-    if (!is_done || loosened_ > 1 || !(error > most)) return false;
-    tightened_ *= kMargin * most / error;
-    return true;
+    return norms > 0 ? std::sqrt(squares / norms) : 0.0;
+  }
+  /// Rows aim at so much less, and `rays` are what that needs; unless it is more than is allowed.
+  void tighten(std::vector<std::uint32_t>& rays) {
+    const double before = tightened_;
+    tightened_ *= kMargin * kMargin * aim_.tolerance / matrixError();
+    std::vector<std::uint32_t> more = wishes(loosened_);
+    if (raysOf(more) <= aim_.most_rays) {
+      rays = std::move(more);
+    } else {
+      tightened_ = before;
+    }
   }
   /// All rays there then are, of both replicates.
   double raysOf(const std::vector<std::uint32_t>& wished) const {
@@ -249,21 +263,24 @@ class Rounds {
       if (wanted[k] == 0) continue;
       const RowAccuracy accuracy = common_.moderated(measured[k]);
       before_[k] = now_[k];
-      const double all = std::hypot(accuracy.norm, accuracy.backs_norm);
-      now_[k] = {rows_[k].rays, accuracy.error, accuracy.norm,
-                 all > 0 ? accuracy.backs_error / all : 0.0};
+      now_[k] = {rows_[k].rays, accuracy.error, accuracy.norm, accuracy.backs_error,
+                 std::hypot(accuracy.norm, accuracy.backs_norm)};
     }
     UsualNorm usual;
-    for (std::size_t k = 0; k < now_.size(); ++k) usual.add(now_[k].norm, scene_.area()[k]);
+    UsualNorm whole;
+    for (std::size_t k = 0; k < now_.size(); ++k) {
+      usual.add(now_[k].norm, scene_.area()[k]);
+      whole.add(now_[k].whole_norm, scene_.area()[k]);
+    }
     usual_norm_ = usual.value();
+    usual_whole_norm_ = whole.value();
     progress_.check();
     report_.seconds_merge += clockSeconds() - start;
   }
 
-  double aim(std::size_t k) const {
-    return tightened_ * aim_.tolerance * std::max(now_[k].norm, usual_norm_);
-  }
-  bool isGoodEnough(std::size_t k) const { return errorOf(now_[k]) <= aim(k); }
+  /// For relative errors.
+  double aim() const { return tightened_ * aim_.tolerance; }
+  bool isGoodEnough(std::size_t k) const { return relativeError(now_[k]) <= aim(); }
 
   void finish() {
     if (loosened_ > 1) report_.loosened_tolerance = loosened_ * aim_.tolerance;
@@ -290,6 +307,7 @@ class Rounds {
   std::vector<RowState> now_;
   CommonError common_;  ///< of all rounds
   double usual_norm_ = 0;
+  double usual_whole_norm_ = 0;
 };
 
 }  // namespace

@@ -14,6 +14,7 @@ void RoundJournal::keep(int round, const RayRound& decided) const {
   bytes.putArray(std::span(decided.now));
   bytes.put(decided.common);
   bytes.put(decided.usual_norm);
+  bytes.put(decided.usual_whole_norm);
   bytes.put(decided.loosened);
   bytes.put(decided.tightened);
   journal_->keep(RowBlock::ray_round, std::uint64_t(round), bytes.bytes());
@@ -30,6 +31,7 @@ std::optional<RayRound> RoundJournal::take(int round) const {
   decided.now = bytes.getArray<RowState>();
   decided.common = bytes.get<CommonError>();
   decided.usual_norm = bytes.get<double>();
+  decided.usual_whole_norm = bytes.get<double>();
   decided.loosened = bytes.get<double>();
   decided.tightened = bytes.get<double>();
   const bool fits =

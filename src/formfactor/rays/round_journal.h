@@ -18,7 +18,8 @@ struct RowState {
   std::uint32_t rays = 0;
   double error = 0;
   double norm = 0;
-  double backs = 0;  ///< error of the backs it sees, over the norm of all it sees
+  double backs_error = 0;
+  double whole_norm = 0;  ///< of fronts and backs
 };
 
 /// What is decided when a round begins. All by position.
@@ -27,7 +28,8 @@ struct RayRound {
   std::vector<RowState> before;     ///< by the measurement before the last,
   std::vector<RowState> now;        ///< and by the last
   CommonError common;               ///< of all rows measured up to the last
-  double usual_norm = 0;            ///< of the last
+  double usual_norm = 0;            ///< of the last,
+  double usual_whole_norm = 0;      ///< and of fronts and backs
   double loosened = 1;              ///< times the tolerance aimed at
   double tightened = 1;             ///< the same, for the matrix to keep it
 };

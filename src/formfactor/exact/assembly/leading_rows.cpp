@@ -139,7 +139,11 @@ double LeadingRows::work(const RowSample& sample) const {
 }
 
 double LeadingRows::seconds(const RowSample& sample, Progress& progress) const {
-  return exactSeconds(scene_, ExactKernels(scene_, options_), sample, options_, progress);
+  // There are often fewer tasks than threads.
+  const double threads = double(allowedThreads());
+  const double busy = std::min(threads, double(std::max<std::size_t>(scene_.leadingTasks(), 1)));
+  return threads / busy *
+         exactSeconds(scene_, ExactKernels(scene_, options_), sample, options_, progress);
 }
 
 std::size_t LeadingRows::bytes() const {
