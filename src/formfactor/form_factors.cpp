@@ -227,8 +227,7 @@ void planEither(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progre
   if (!exact && kLookShare * most > kFirstLookSeconds) {
     exact = lookAtExact(prepared, kLookShare * most, progress);
   }
-  // Where neither fits, the limit says so for the one that is nearer to it.
-  if (exact && (fits(*exact) || exact->bytes <= plan.bytes) && exact->seconds <= most) {
+  if (exact && fits(*exact) && exact->seconds <= most) {
     prepared.rays.reset();
     plan = std::move(*exact);
     plan.other_seconds = ray_seconds;
