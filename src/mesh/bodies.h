@@ -25,7 +25,6 @@ class Bodies {
   Bodies(const Arrangement& arrangement, const Components& components, const Winding& winding,
          double coincidence);
 
-  Body of(Index component) const { return body_[component]; }
   /// Ascending.
   const std::vector<Index>& rooms() const { return rooms_; }
   /// Whether the space next to a side of a cell is inside a solid, and in none of its cavities.

@@ -151,8 +151,8 @@ bool SceneChecks::isCavity(const ConnectedPart& part) const {
 }
 
 std::vector<std::string> SceneChecks::contentsOf(const ConnectedPart& outer,
+                                                 std::span<const ConnectedPart* const> cavities,
                                                  std::size_t most) const {
-  const std::vector<const ConnectedPart*> cavities = cavitiesOf(outer);
   std::vector<std::string> contents;
   const auto is_known = [&](const std::string& name) {
     return std::find(contents.begin(), contents.end(), name) != contents.end();
@@ -179,8 +179,8 @@ std::vector<std::string> SceneChecks::contentsOf(const ConnectedPart& outer,
 /// may be either.
 void SceneChecks::reportPart(const ConnectedPart& part, SceneInfo& info) const {
   const bool has_others = topology_.parts.size() > 1;
-  std::vector<std::string> contents = contentsOf(part, part.volume < 0 ? 1 : 5);
   const std::vector<const ConnectedPart*> cavities = cavitiesOf(part);
+  std::vector<std::string> contents = contentsOf(part, cavities, part.volume < 0 ? 1 : 5);
   bool camera_inside = false;
   for (const Camera& camera : scene_.cameras) {
     const Vec3 eye = camera.eye - faces_.centre;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -55,9 +56,11 @@ class SceneChecks {
   std::vector<const ConnectedPart*> cavitiesOf(const ConnectedPart& solid) const;
   /// Whether a part that is turned inward lies within a solid.
   bool isCavity(const ConnectedPart& part) const;
-  /// Surfaces of parts that lie within `outer` and not in a cavity of it, each once, in the order
-  /// of the parts; no more are looked for once there are `most`.
-  std::vector<std::string> contentsOf(const ConnectedPart& outer, std::size_t most) const;
+  /// Surfaces of parts that lie within `outer` and not in one of its `cavities`, each once, in the
+  /// order of the parts; no more are looked for once there are `most`.
+  std::vector<std::string> contentsOf(const ConnectedPart& outer,
+                                      std::span<const ConnectedPart* const> cavities,
+                                      std::size_t most) const;
   void reportFlippedFaces(SceneInfo& info) const;
   void reportInsideOut(SceneInfo& info) const;
   void reportPart(const ConnectedPart& part, SceneInfo& info) const;

@@ -261,8 +261,9 @@ RowAccuracy accuracyOf(const MergedRow& merged, const RayRow& own, double area) 
     addAlone(own, e, backs);
   }
   RowAccuracy accuracy = sums.accuracy();
-  accuracy.backs_norm = backs.accuracy().norm;
-  accuracy.backs_error = backs.accuracy().error;
+  const RowAccuracy of_backs = backs.accuracy();
+  accuracy.backs_norm = of_backs.norm;
+  accuracy.backs_error = of_backs.error;
   if (!merged.all_known) accuracy.rays = own.counted();
   double squares = 0;
   double fourths = 0;

@@ -94,7 +94,8 @@ class UsualNorm {
 /// `area`: its, m^2.
 RowAccuracy accuracyOf(const MergedRow& merged, const RayRow& own, double area);
 
-/// The same of a row by itself, before it is merged with what the others count.
+/// The same of a row by itself, before it is merged with what the others count; without backs,
+/// which come from column `unknowns` on.
 RowAccuracy accuracyAlone(const RayRow& row, std::size_t unknowns);
 
 }  // namespace radiosity
