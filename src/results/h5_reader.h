@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/input_file.h"
 #include "results/h5.h"
 
 namespace radiosity::h5 {
@@ -25,6 +26,22 @@ class InputFile {
   std::string path_;
   Handle file_;
 };
+
+/// What `read` makes of the file at `path`. Another run may switch the file to its new state
+/// between two reads of HDF5's (h5_disk.h): of its length and of its first page, say. What looks
+/// damaged then is whole for who begins again.
+template <class Read>
+auto readSettled(const std::string& path, const Read& read) {
+  constexpr int kMostTries = 100;  // a file that runs replace all the time
+  for (int tries = 1;; ++tries) {
+    const std::string state = fileState(path);
+    try {
+      return read();
+    } catch (const InputError&) {
+      if (fileState(path) == state || tries == kMostTries) throw;
+    }
+  }
+}
 
 class InputGroup {
  public:

@@ -230,6 +230,18 @@ std::optional<std::uint64_t> OutputGroup::number(const std::string& name) const 
   return value;
 }
 
+bool OutputGroup::says(const std::string& group, const std::string& name,
+                       const std::string& value) const {
+  const Handle id(H5Aopen_by_name(id_.get(), group.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+                  H5Aclose);
+  if (!id) return false;
+  const Handle type(H5Aget_type(id.get()), H5Tclose);
+  if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0) return false;
+  std::string found(H5Tget_size(type.get()), '\0');
+  if (H5Aread(id.get(), type.get(), found.data()) < 0) return false;
+  return found.substr(0, found.find_last_not_of('\0') + 1) == value;
+}
+
 // Bytes that HDF5 1.10 spends on each object besides its data, measured on files of ours.
 // (Object header with its messages; link in the group that holds it.)
 namespace {

@@ -62,6 +62,8 @@ class OutputGroup {
   void remove(const std::string& name);
   /// The number that an attribute holds; nothing where there is none.
   std::optional<std::uint64_t> number(const std::string& name) const;
+  /// Whether the text `name` of the group `group` in this one is `value`.
+  bool says(const std::string& group, const std::string& name, const std::string& value) const;
   /// An empty dataset of one dimension, to be filled in order by writeRows().
   Handle create(const std::string& name, const Shape& shape, const std::string& unit);
   /// Writes rows [first, first + count) of a dataset of one dimension.

@@ -246,45 +246,21 @@ void readStages(const InputGroup& root, bool with_factors, std::shared_ptr<Scrat
   }
 }
 
-}  // namespace
-
-bool isResultsFile(const std::string& path) {
-  if (!whyNotAFile(path).empty()) return false;
-  constexpr std::array<char, 8> kSignature = {'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
-  std::array<char, 8> start{};
-  std::ifstream file(path, std::ios::binary);
-  return file.read(start.data(), start.size()) && start == kSignature;
-}
-
-bool isForeignHdf5(const std::string& path) {
-  if (!isResultsFile(path)) return false;
-  try {
-    return !isOurs(InputGroup(h5::InputFile(path)));
-  } catch (const InputError&) {
-    return false;  // damaged: nobody's
-  }
-}
-
-std::optional<Scene> sceneInResults(const std::string& path) {
+std::optional<Scene> sceneAtOnce(const std::string& path) {
+  const h5::InputFile file(path);
+  const InputGroup root(file);
+  checkHead(file, root);
   std::optional<Scene> scene;
-  if (!isResultsFile(path)) return scene;
-  try {
-    const h5::InputFile file(path);
-    const InputGroup root(file);
-    checkHead(file, root);
-    if (root.has("scene")) {
-      const InputGroup group = root.group("scene");
-      FieldReader fields(group);
-      describe(fields, scene.emplace());
-    }
-  } catch (const InputError&) {
-    scene.reset();
+  if (root.has("scene")) {
+    const InputGroup group = root.group("scene");
+    FieldReader fields(group);
+    describe(fields, scene.emplace());
   }
   return scene;
 }
 
-Results readResults(const std::string& path, bool with_factors,
-                    std::shared_ptr<ScratchMemory> scratch) {
+Results readAtOnce(const std::string& path, bool with_factors,
+                   std::shared_ptr<ScratchMemory> scratch) {
   const h5::InputFile file(path);
   const InputGroup root(file);
   checkHead(file, root);
@@ -300,6 +276,39 @@ Results readResults(const std::string& path, bool with_factors,
     clusters = clustersOf(std::move(clusters->of_patch), unknownsOf(results.mesh->mesh));
   }
   return results;
+}
+
+}  // namespace
+
+bool isResultsFile(const std::string& path) {
+  if (!whyNotAFile(path).empty()) return false;
+  constexpr std::array<char, 8> kSignature = {'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
+  std::array<char, 8> start{};
+  std::ifstream file(path, std::ios::binary);
+  return file.read(start.data(), start.size()) && start == kSignature;
+}
+
+bool isForeignHdf5(const std::string& path) {
+  if (!isResultsFile(path)) return false;
+  try {
+    return h5::readSettled(path, [&] { return !isOurs(InputGroup(h5::InputFile(path))); });
+  } catch (const InputError&) {
+    return false;  // damaged: nobody's
+  }
+}
+
+std::optional<Scene> sceneInResults(const std::string& path) {
+  if (!isResultsFile(path)) return std::nullopt;
+  try {
+    return h5::readSettled(path, [&] { return sceneAtOnce(path); });
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+Results readResults(const std::string& path, bool with_factors,
+                    std::shared_ptr<ScratchMemory> scratch) {
+  return h5::readSettled(path, [&] { return readAtOnce(path, with_factors, scratch); });
 }
 
 namespace {
@@ -352,6 +361,13 @@ constexpr double kMostGrowth = 1.5;
 constexpr const char* kWholeBytes = "whole_bytes";
 constexpr const char* kFresh = ".new";
 
+/// Another run may have replaced the file since the caller looked.
+bool isOfTheSameFactors(const OutputGroup& root, const Results& results) {
+  if (!root.says("mesh", "key", results.mesh_key)) return false;
+  return root.says("form_factors", "key", results.factors_key) &&
+         root.says("form_factors", "geometry_hash", geometryHash(made(results.mesh).mesh));
+}
+
 }  // namespace
 
 // What a stage replaces is given up last: its room, which HDF5 could fill again, is before the end.
@@ -361,6 +377,7 @@ bool updateResults(const std::string& path, const Results& results, const Stages
   if (!file) return false;
   {
     OutputGroup root(*file);
+    if (!isOfTheSameFactors(root, results)) return false;
     const std::optional<std::uint64_t> whole = root.number(kWholeBytes);
     if (whole && double(file->oldEnd()) > kMostGrowth * double(*whole)) return false;
     StageWriter<OutputGroup> stages(root, results, kFresh);

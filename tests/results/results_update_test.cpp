@@ -93,6 +93,39 @@ TEST_F(ResultsUpdate, LeavesTheFileToARunThatExtendsIt) {
   EXPECT_TRUE(bytes() == before);
 }
 
+TEST_F(ResultsUpdate, LeavesAFileAloneWhoseFormFactorsAnotherRunHasReplaced) {
+  Results solved = writeUnsolved();
+  const std::string before = bytes();
+  solved.factors_key = "of another run";
+  EXPECT_FALSE(updateResults(file(), solved, kButTheSolution));
+  EXPECT_TRUE(bytes() == before);
+}
+
+// HDF5 asks for the length of a file before it reads where its first page says that it ends.
+TEST_F(ResultsUpdate, MayBeReadWhileAnotherRunSwitchesTheFile) {
+  Results solved = writeUnsolved();
+  const pid_t reader = fork();
+  if (reader == 0) {
+    int failures = 0;
+    while (access(path("done").c_str(), F_OK) != 0) {
+      try {
+        readResults(file());
+      } catch (const InputError&) {
+        ++failures;
+      }
+    }
+    _exit(failures == 0 ? 0 : 1);
+  }
+  for (int round = 0; round < 300; ++round) {
+    solved.solution_key = "round=" + std::to_string(round);
+    if (!updateResults(file(), solved, kButTheSolution)) writeUnsolved();
+  }
+  std::ofstream(path("done")) << "";
+  int status = -1;
+  waitpid(reader, &status, 0);
+  EXPECT_EQ(status, 0) << "a read failed";
+}
+
 TEST_F(ResultsUpdate, LeavesAFileOfAnotherKindAlone) {
   std::ofstream(file()) << "no HDF5 at all";
   const std::string before = bytes();
