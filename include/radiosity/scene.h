@@ -134,9 +134,9 @@ std::string sceneExtensions();
 /// .gltf, .glb, .stl, .3mf; View3D's .vs3, .v3d; Gmsh's .msh (2.2, 4.1); .inp of CalculiX and
 /// Abaqus; .ply, .off; VTK's .vtk, .vtp, .vtu; by Assimp .dae, .fbx, .3ds, .x3d, .ifc. Named groups
 /// (solids, physical groups, element sets, arrays of cells) are surfaces. Face f of the scene is
-/// face f of the file, but one may be several (View3D's with subsurfaces, triangles of a strip),
-/// and what has no area (volumes, lines, points) is left out. An OBJ has no cameras of its own; a
-/// comment line `# camera eye=x,y,z target=x,y,z up=x,y,z fov=DEGREES` (file units, vertical field
+/// face f of the file, but one may be several (View3D's with subsurfaces, triangles of a strip).
+/// Lines and points are left out, volumes where there are faces; where there are none, the skin of
+/// the volumes is the scene. An OBJ has no cameras of its own; a comment line `# camera eye=x,y,z target=x,y,z up=x,y,z fov=DEGREES` (file units, vertical field
 /// of view) is read as one.
 /// Errors: InputError, one line with file, element and cure; RunError where the scene does not fit
 /// into memory.

@@ -35,7 +35,7 @@ void GroupedFaces::addFace(std::span<const Index> corners, const std::string& gr
 void GroupedFaces::addElement(const ElementShape& shape, std::span<const Index> nodes,
                               const std::string& group, std::size_t element) {
   if (shape.dimension > 2) {
-    ++volumes_;
+    addVolume(shape, nodes, group, element);
   } else if (shape.dimension < 2) {
     ++lines_;
   } else if (shape.nodes == 0) {
@@ -44,6 +44,39 @@ void GroupedFaces::addElement(const ElementShape& shape, std::span<const Index> 
     if (shape.nodes > shape.corners) ++curved_;
     addFace(nodes.first(std::size_t(shape.corners)), group, element);
   }
+}
+
+void GroupedFaces::addVolume(const ElementShape& shape, std::span<const Index> nodes,
+                             const std::string& group, std::size_t element) {
+  ++volumes_;
+  if (scene_.faceCount() > 0) {
+    skin_.clear();
+    skin_volumes_.clear();
+    return;
+  }
+  if (!skin_.add(nodes.first(std::size_t(shape.corners)))) return;
+  if (shape.nodes > shape.corners) ++curved_volumes_;
+  if (volume_groups_.empty() || volume_groups_.back() != group) volume_groups_.push_back(group);
+  skin_volumes_.push_back({Index(volume_groups_.size() - 1), element});
+}
+
+/// What bounds the volumes is what light and heat see of them.
+void GroupedFaces::addSkin() {
+  for (const VolumeSkin::Face& face : skin_.faces(scene_.vertices)) {
+    const Volume& volume = skin_volumes_[face.volume];
+    const auto named = side_groups_.find({face.volume, face.side});
+    addFace(face.vertices(),
+            named == side_groups_.end() ? volume_groups_[volume.group] : named->second,
+            volume.element);
+  }
+  if (scene_.faceCount() == 0) return;
+  scene_.notes.push_back(
+      {Severity::warning,
+       fmt::format("no faces, volume elements alone ({}): the sides that no two of them share are "
+                   "the surfaces ({})",
+                   skin_.size(), scene_.faceCount())});
+  volumes_ -= skin_.size();
+  curved_ = curved_volumes_;
 }
 
 void GroupedFaces::noteElements() {
@@ -69,6 +102,7 @@ void GroupedFaces::refuseCloud() const {
 }
 
 Scene GroupedFaces::finish(const std::string& cure) {
+  if (scene_.faceCount() == 0) addSkin();
   if (scene_.faceCount() == 0) {
     const char* what = volumes_ > 0 ? "no faces, volume elements alone" : "no faces";
     throw InputError(fmt::format("{}: {}; {}", scene_.file, what, cure));

@@ -11,13 +11,14 @@
 
 #include "radiosity/scene.h"
 #include "scene/scene_builder.h"
+#include "scene/volume_skin.h"
 
 namespace radiosity {
 
 /// What an element of a mesh is; the first `corners` of its nodes are its corners, in order.
 struct ElementShape {
   int dimension;  ///< 0 point, 1 line, 2 face, 3 volume
-  int corners;    ///< of a face
+  int corners;    ///< of a face, of a volume (0: one whose sides are not known)
   int nodes;      ///< 0: any number, and all are corners
 };
 
@@ -35,10 +36,14 @@ class GroupedFaces {
   Index addVertex(const Vec3& place);
   /// `element`: how the file calls the face, for Scene::face_element.
   void addFace(std::span<const Index> corners, const std::string& group, std::size_t element);
-  /// The same for an element of any shape: volumes, lines and points are left out, of curved faces
-  /// the corners count; finish() says so.
+  /// The same for an element of any shape: lines and points are left out, of curved faces the
+  /// corners count, of volumes the skin where there are no faces; finish() says so.
   void addElement(const ElementShape& shape, std::span<const Index> nodes, const std::string& group,
                   std::size_t element);
+  /// Sides of volumes of a group of their own: {volume, side} as VolumeSkin::Face has them.
+  void setSideGroups(std::map<std::pair<Index, int>, std::string> groups) {
+    side_groups_ = std::move(groups);
+  }
 
   /// InputError where there are vertices alone, as scanners write them.
   void refuseCloud() const;
@@ -46,6 +51,9 @@ class GroupedFaces {
   Scene finish(const std::string& cure);
 
  private:
+  void addVolume(const ElementShape& shape, std::span<const Index> nodes, const std::string& group,
+                 std::size_t element);
+  void addSkin();
   void noteElements();
 
   const SceneOptions& options_;
@@ -54,6 +62,15 @@ class GroupedFaces {
   std::map<std::string, Index> surface_of_;
   std::size_t curved_ = 0;
   std::size_t volumes_ = 0;
+  VolumeSkin skin_;  ///< while there are no faces
+  struct Volume {
+    Index group;  ///< into volume_groups_
+    std::size_t element;
+  };
+  std::vector<Volume> skin_volumes_;  ///< by skin_'s volumes
+  std::vector<std::string> volume_groups_;
+  std::map<std::pair<Index, int>, std::string> side_groups_;
+  std::size_t curved_volumes_ = 0;
   std::size_t lines_ = 0;
 };
 

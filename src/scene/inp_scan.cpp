@@ -48,6 +48,32 @@ std::optional<ElementShape> shapeNamed(const std::string& type) {
   return std::nullopt;
 }
 
+/// Volumes of solids, heat transfer (D), acoustics (A) and fluids (F), whatever the letters behind
+/// their number of nodes (C3D20RBR) say of their integration.
+std::optional<ElementShape> volumeNamed(const std::string& type) {
+  static constexpr std::array<ElementShape, 9> kShapes = {{{3, 4, 4},
+                                                           {3, 5, 5},
+                                                           {3, 6, 6},
+                                                           {3, 8, 8},
+                                                           {3, 4, 10},
+                                                           {3, 5, 13},
+                                                           {3, 6, 15},
+                                                           {3, 8, 20},
+                                                           {3, 8, 27}}};
+  for (const std::string_view family : {"c3d", "dc3d", "dcc3d", "ac3d", "f3d", "fc3d", "q3d"}) {
+    if (!type.starts_with(family)) continue;
+    const std::size_t begin = family.size();
+    std::size_t end = begin;
+    while (end < type.size() && type[end] >= '0' && type[end] <= '9') ++end;
+    const std::optional<long long> nodes =
+        parseInteger(std::string_view(type).substr(begin, end - begin));
+    for (const ElementShape& shape : kShapes) {
+      if (nodes && *nodes == shape.nodes) return shape;
+    }
+  }
+  return std::nullopt;
+}
+
 /// A line `*WORD, NAME=VALUE, NAME`: names in small letters.
 struct Keyword {
   std::string word;
@@ -80,6 +106,7 @@ Keyword keywordOf(std::string_view line) {
 
 class InpScanner {
  public:
+  explicit InpScanner(InpElements kind) : kind_(kind) {}
   InpScan run(const std::string& path) {
     file(path, 0);
     notes_.appendTo(scan_.notes);
@@ -93,9 +120,11 @@ class InpScanner {
   void noteMaker(const Keyword& keyword);
   void include(const Keyword& keyword, int depth);
   void beginElements();
+  void beginSurface();
   void data(std::string_view line);
   void node(const std::vector<std::string_view>& fields);
   void element(const std::vector<std::string_view>& fields, const ElementShape& shape);
+  void sides(const std::vector<std::string_view>& fields);
   void members(const std::vector<std::string_view>& fields);
   void range(const std::vector<std::string_view>& fields);
   void addMember(const InpRange& range);
@@ -104,6 +133,7 @@ class InpScanner {
   [[noreturn]] void fail(const std::string& what) const { cursor_->fail(what); }
   std::string where() const { return fmt::format("{}:{}", *file_, cursor_->line()); }
 
+  InpElements kind_;
   const MeshCursor* cursor_ = nullptr;  ///< of the file at hand
   const std::string* file_ = nullptr;
   InpScan scan_;
@@ -173,6 +203,7 @@ void InpScanner::keyword(const Keyword& keyword, int depth) {
   if (keyword.word == "system") has_system_ = false;
   noteMaker(keyword);
   if (keyword.word == "element") beginElements();
+  if (keyword.word == "surface") beginSurface();
   if (keyword.word == "elset") {
     if (keyword.get("elset").empty()) fail("*ELSET names no set; add ELSET=NAME");
     set_ = setNamed(keyword.get("elset"));
@@ -209,15 +240,30 @@ void InpScanner::include(const Keyword& keyword, int depth) {
 void InpScanner::beginElements() {
   const std::string type = current_.get("type");
   if (type.empty()) fail("*ELEMENT names no type; add TYPE=S3 or another");
-  shape_ = shapeNamed(lowerCase(type));
+  const bool wants_volumes = kind_ == InpElements::volumes;
+  const std::optional<ElementShape> volume = volumeNamed(lowerCase(type));
+  shape_ = wants_volumes ? volume : shapeNamed(lowerCase(type));
   if (!shape_) {
     scan_.left_out.push_back(type);
-    notes_.add("elements that are no faces (volumes, beams, ...) are left out, of type", type,
-               Severity::warning);
+    if (volume) ++scan_.volumes;
+    notes_.add(wants_volumes
+                   ? "elements that are no volumes (beams, springs, ...) are left out, of type"
+                   : "elements that are no faces (volumes, beams, ...) are left out, of type",
+               type, Severity::warning);
   }
   if (current_.get("elset").empty()) return;
   set_ = setNamed(current_.get("elset"));  // also of no faces: sets of sets may name it
   in_set_ = shape_.has_value();
+}
+
+/// Surfaces of nodes, and those that others are cut of, say nothing of sides.
+void InpScanner::beginSurface() {
+  const std::string type = lowerCase(current_.get("type"));
+  if (kind_ != InpElements::volumes || (!type.empty() && type != "element")) {
+    current_.word.clear();
+  } else {
+    scan_.surfaces.push_back({current_.get("name"), {}});
+  }
 }
 
 std::size_t InpScanner::setNamed(const std::string& name) {
@@ -236,6 +282,8 @@ void InpScanner::data(std::string_view line) {
     element(fields, *shape_);
   } else if (current_.word == "elset") {
     current_.has("generate") ? range(fields) : members(fields);
+  } else if (current_.word == "surface") {
+    sides(fields);
   } else if (current_.word == "elgen" && !fields.empty()) {
     const long long original = integer(fields[0], "element number");
     scan_.makers.back().originals.push_back({original, original, 1});
@@ -287,6 +335,20 @@ void InpScanner::element(const std::vector<std::string_view>& fields, const Elem
   unfinished_ = nodes.size() < expected;
 }
 
+/// "12, S3" or "SET, S3". Other labels (SPOS, EDGE1) are no sides of volumes.
+void InpScanner::sides(const std::vector<std::string_view>& fields) {
+  if (fields.size() != 2) return;
+  const std::string label = lowerCase(fields[1]);
+  if (label.size() != 2 || label[0] != 's' || label[1] < '1' || label[1] > '6') return;
+  InpSides sides{{}, label[1] - '0'};
+  if (const std::optional<long long> number = parseInteger(fields[0])) {
+    sides.elements.push_back({*number, *number, 1});
+  } else if (const auto found = set_index_.find(lowerCase(fields[0])); found != set_index_.end()) {
+    sides.elements = scan_.sets[found->second].members;
+  }
+  scan_.surfaces.back().sides.push_back(std::move(sides));
+}
+
 void InpScanner::members(const std::vector<std::string_view>& fields) {
   for (const std::string_view field : fields) {
     if (const std::optional<long long> number = parseInteger(field)) {
@@ -326,6 +388,6 @@ void InpScanner::addMember(const InpRange& range) {
 
 }  // namespace
 
-InpScan scanInp(const std::string& path) { return InpScanner().run(path); }
+InpScan scanInp(const std::string& path, InpElements kind) { return InpScanner(kind).run(path); }
 
 }  // namespace radiosity

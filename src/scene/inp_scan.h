@@ -16,7 +16,7 @@ struct InpNode {
   std::string where;  ///< "FILE:LINE", for errors
 };
 
-/// A shell or another element that is a face.
+/// A shell or another element that is a face; or a volume.
 struct InpElement {
   long long number;
   ElementShape shape;
@@ -44,17 +44,32 @@ struct InpMaker {
   std::string where;  ///< "FILE:LINE"
 };
 
+/// Some sides of elements, as *SURFACE lists them.
+struct InpSides {
+  std::vector<InpRange> elements;
+  int side;  ///< from 1
+};
+struct InpSurface {
+  std::string name;
+  std::vector<InpSides> sides;
+};
+
 struct InpScan {
   std::vector<InpNode> nodes;
   std::vector<InpElement> elements;
-  std::vector<std::string> left_out;     ///< types of elements that are no faces
+  std::vector<std::string> left_out;     ///< types of elements that are none of those asked for
+  std::size_t volumes = 0;               ///< blocks of volumes among them
   std::vector<InpMaker> makers;          ///< of elements
   std::vector<std::string> node_makers;  ///< keywords that make nodes, which are not there
   std::vector<InpSet> sets;              ///< of elements, in the order they come
+  std::vector<InpSurface> surfaces;      ///< of sides of volumes
   std::vector<Note> notes;
 };
 
-/// Reads the file and those that it includes. Errors: InputError "FILE:LINE: what is wrong; cure".
-InpScan scanInp(const std::string& path);
+enum class InpElements { faces, volumes };
+
+/// Reads the file and those that it includes: elements of one kind. Errors: InputError "FILE:LINE:
+/// what is wrong; cure".
+InpScan scanInp(const std::string& path, InpElements kind);
 
 }  // namespace radiosity

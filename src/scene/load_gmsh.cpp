@@ -71,11 +71,12 @@ class GmshReader {
   void elements4();
   void readNodes(const ElementShape& shape, NumberType type);
   ElementShape shape(long long type) const;
-  std::string physicalName(long long tag) const;
+  std::string physicalName(int dimension, long long tag) const;
   struct Side {
     std::string group;
     bool turned;
   };
+  std::string volumeGroup(long long entity) const;
   std::vector<Side> sidesOf(long long entity);
   void addSides(const ElementShape& shape, std::span<const Side> sides, long long tag);
   bool isNewFace(const ElementShape& shape, long long entity);
@@ -86,8 +87,9 @@ class GmshReader {
   int version_ = 0;
   NodeNumbers nodes_;
   std::vector<Index> corners_;                               ///< of the element at hand
-  std::map<long long, std::string> physical_;                ///< names of surfaces' groups, by tag
-  std::map<long long, std::vector<long long>> tags_;         ///< groups of a surface entity (4.1)
+  using Tag = std::pair<int, long long>;                     ///< of a dimension: 2 or 3
+  std::map<Tag, std::string> physical_;                      ///< names of groups
+  std::map<Tag, std::vector<long long>> tags_;               ///< groups of an entity (4.1)
   std::set<std::pair<long long, std::vector<Index>>> seen_;  ///< faces of an entity (2.2)
 };
 
@@ -164,7 +166,7 @@ void GmshReader::physicalNames() {
       cursor_.fail(fmt::format("`{}` is not a name in quotation marks; correct it", name));
     }
     name = trimmed(name.substr(1, name.size() - 2));
-    if (dimension == 2 && !name.empty()) physical_[tag] = name;
+    if (dimension >= 2 && !name.empty()) physical_[{int(dimension), tag}] = name;
   }
   cursor_.setEncoding(encoding);
 }
@@ -181,7 +183,7 @@ void GmshReader::entities() {
       for (std::size_t g = 0; g < groups; ++g) {
         tags.push_back(cursor_.integer(i32, "physical tag"));
       }
-      if (dimension == 2) tags_[tag] = tags;
+      if (dimension >= 2) tags_[{dimension, tag}] = tags;
       if (dimension > 0) {
         cursor_.skip(i32, cursor_.count(u64, "number of bounding entities", i32));
       }
@@ -244,8 +246,8 @@ void GmshReader::readNodes(const ElementShape& shape, NumberType type) {
   }
 }
 
-std::string GmshReader::physicalName(long long tag) const {
-  const auto found = physical_.find(tag);
+std::string GmshReader::physicalName(int dimension, long long tag) const {
+  const auto found = physical_.find({dimension, tag});
   return found == physical_.end() ? fmt::format("physical {}", tag) : found->second;
 }
 
@@ -276,7 +278,7 @@ void GmshReader::elements2() {
       if (tags > 2) cursor_.skip(i32, tags - 2);
       readNodes(kind, i32);
       const std::string group =
-          physical != 0 ? physicalName(physical) : fmt::format("entity {}", entity);
+          physical != 0 ? physicalName(kind.dimension, physical) : fmt::format("entity {}", entity);
       if (isNewFace(kind, entity)) {
         faces_.addElement(kind, corners_, group, std::size_t(tag));
       } else {
@@ -286,16 +288,22 @@ void GmshReader::elements2() {
   }
 }
 
+std::string GmshReader::volumeGroup(long long entity) const {
+  const auto found = tags_.find({3, entity});
+  if (found == tags_.end() || found->second.empty()) return fmt::format("entity {}", entity);
+  return physicalName(3, std::abs(found->second.front()));
+}
+
 /// Each side of a surface counts to the first of its groups; one with a negative tag takes the
 /// surface turned over. (Version 2.2 writes the faces of such groups turned already, 4.1 does not.)
 std::vector<GmshReader::Side> GmshReader::sidesOf(long long entity) {
-  const auto found = tags_.find(entity);
+  const auto found = tags_.find({2, entity});
   if (found == tags_.end() || found->second.empty()) {
     return {{fmt::format("entity {}", entity), false}};
   }
   std::vector<Side> sides;
   for (const long long tag : found->second) {
-    const Side side{physicalName(std::abs(tag)), tag < 0};
+    const Side side{physicalName(2, std::abs(tag)), tag < 0};
     const bool taken = std::any_of(sides.begin(), sides.end(),
                                    [&](const Side& s) { return s.turned == side.turned; });
     if (taken) {
@@ -316,8 +324,9 @@ void GmshReader::elements4() {
     const ElementShape kind = shape(cursor_.integer(i32, "element type"));
     const std::size_t count =
         cursor_.count(u64, "number of elements", u64, std::size_t(kind.nodes) + 1);
-    const std::vector<Side> sides =
-        kind.dimension == 2 ? sidesOf(entity) : std::vector<Side>{{"", false}};
+    std::vector<Side> sides = {{"", false}};
+    if (kind.dimension == 2) sides = sidesOf(entity);
+    if (kind.dimension == 3) sides.front().group = volumeGroup(entity);
     for (std::size_t k = 0; k < count; ++k) {
       const long long tag = cursor_.integer(u64, "element");
       readNodes(kind, u64);

@@ -1,8 +1,10 @@
-// CalculiX and Abaqus: shells are faces, element sets are surfaces.
+// CalculiX and Abaqus: shells are faces, or the skin of volumes; element sets are surfaces.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <tuple>
+#include <utility>
 
 #include "scene/inp_scan.h"
 #include "scene/readers.h"
@@ -26,8 +28,9 @@ class InpReader {
     requireElements();
     addNodes();
     sortElements();
-    refuseMadeShells();
+    refuseMadeElements();
     assignSets();
+    nameSides();
     std::vector<Index> corners;
     for (std::size_t e = 0; e < scan_.elements.size(); ++e) {
       const InpElement& element = scan_.elements[e];
@@ -60,10 +63,10 @@ class InpReader {
                                           : "elements of type " + joinNames(types) + " alone"));
   }
 
-  void refuseMadeShells() {
+  void refuseMadeElements() {
     for (const InpMaker& maker : scan_.makers) {
-      if (facesOf(maker.originals).empty()) continue;
-      fail(maker.where, fmt::format("*{} makes shells of others and is not read; write out nodes "
+      if (elementsOf(maker.originals).empty()) continue;
+      fail(maker.where, fmt::format("*{} makes elements of others and is not read; write out nodes "
                                     "and elements where they lie",
                                     maker.keyword));
     }
@@ -102,8 +105,8 @@ class InpReader {
   }
   long long number(Index e) const { return scan_.elements[e].number; }
 
-  /// Faces among the elements of these numbers, each once, in any order.
-  std::vector<Index> facesOf(const std::vector<InpRange>& numbers) {
+  /// Elements of these numbers, each once, in any order.
+  std::vector<Index> elementsOf(const std::vector<InpRange>& numbers) {
     std::vector<Index> found;
     for (const InpRange& range : numbers) {
       auto at = std::lower_bound(order_.begin(), order_.end(), range.first,
@@ -137,7 +140,7 @@ class InpReader {
     std::vector<std::tuple<int, std::size_t>> rank(count);
     std::vector<bool> loses(scan_.sets.size(), false);
     for (std::size_t s = 0; s < scan_.sets.size(); ++s) {
-      const std::vector<Index> found = facesOf(scan_.sets[s].members);
+      const std::vector<Index> found = elementsOf(scan_.sets[s].members);
       const auto rank_here = rankOf(scan_.sets[s], found.size());
       for (const Index e : found) {
         const bool is_first = set_of_[e] == kNone;
@@ -157,6 +160,23 @@ class InpReader {
     }
   }
 
+  /// Sides of volumes that *SURFACE names; a side of several counts to the first.
+  void nameSides() {
+    std::map<std::pair<Index, int>, std::string> groups;
+    for (const InpSurface& surface : scan_.surfaces) {
+      for (const InpSides& sides : surface.sides) {
+        for (const Index e : elementsOf(sides.elements)) {
+          const auto [place, is_new] = groups.try_emplace({e, sides.side}, surface.name);
+          if (is_new || place->second == surface.name) continue;
+          notes_.add(
+              "surfaces that have sides in common with earlier ones, and leave these to them",
+              surface.name);
+        }
+      }
+    }
+    faces_.setSideGroups(std::move(groups));
+  }
+
   const std::string& path_;
   const InpScan& scan_;
   GroupedFaces faces_;
@@ -170,7 +190,9 @@ class InpReader {
 }  // namespace
 
 Scene loadInp(const std::string& path, const SceneOptions& options) {
-  const InpScan scan = scanInp(path);
+  InpScan scan = scanInp(path, InpElements::faces);
+  // Where there are faces, they are what a mesher made of the sides of volumes.
+  if (scan.elements.empty() && scan.volumes > 0) scan = scanInp(path, InpElements::volumes);
   return InpReader(path, scan, options).read();
 }
 

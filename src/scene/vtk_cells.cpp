@@ -11,7 +11,47 @@ namespace radiosity {
 namespace {
 
 constexpr long long kPixel = 8;
+constexpr long long kVoxel = 11;
 constexpr long long kQuadraticPolygon = 36;
+
+/// 0: prisms of five and six sides, polyhedra. Nothing for what is no volume.
+std::optional<int> cornersOfVolume(long long type) {
+  switch (type) {
+    case 10:
+    case 24:
+    case 71:
+    case 78:
+      return 4;
+    case 14:
+    case 27:
+    case 37:
+    case 74:
+    case 81:
+      return 5;
+    case 13:
+    case 26:
+    case 31:
+    case 32:
+    case 73:
+    case 80:
+      return 6;
+    case kVoxel:
+    case 12:
+    case 25:
+    case 29:
+    case 33:
+    case 72:
+    case 79:
+      return 8;
+    case 15:
+    case 16:
+    case 41:
+    case 42:
+      return 0;
+    default:
+      return std::nullopt;
+  }
+}
 
 /// Of a cell of `nodes` points. Nothing for a type that VTK does not have.
 std::optional<ElementShape> vtkShape(long long type, std::size_t nodes) {
@@ -50,10 +90,9 @@ std::optional<ElementShape> vtkShape(long long type, std::size_t nodes) {
     default:
       break;
   }
-  const bool volume = (type >= 10 && type <= 16) || (type >= 24 && type <= 27) || type == 29 ||
-                      (type >= 31 && type <= 33) || type == 37 || type == 41 || type == 42 ||
-                      (type >= 71 && type <= 74) || (type >= 78 && type <= 81);
-  if (volume) return ElementShape{3, 4, n};
+  if (const std::optional<int> corners = cornersOfVolume(type)) {
+    return ElementShape{3, *corners, n};
+  }
   return std::nullopt;
 }
 
@@ -100,10 +139,14 @@ class CellAdder {
   void add(long long type) {
     const std::optional<ElementShape> shape = vtkShape(type, corners_.size());
     if (!shape) fail(fmt::format("cells of type {} are not read; export polygons", type));
-    if (shape->dimension == 2 && std::size_t(std::max(shape->corners, 3)) > corners_.size()) {
-      fail(fmt::format("a face of {} points has too few; correct or remove it", corners_.size()));
+    const int least = shape->dimension == 2 ? std::max(shape->corners, 3) : shape->corners;
+    if (shape->dimension >= 2 && std::size_t(least) > corners_.size()) {
+      fail(fmt::format("a {} of {} points has too few; correct or remove it",
+                       shape->dimension == 2 ? "face" : "volume", corners_.size()));
     }
-    if (type == kPixel) std::swap(corners_[2], corners_[3]);  // row by row, not around
+    // Row by row, not around.
+    if (type == kPixel || type == kVoxel) std::swap(corners_[2], corners_[3]);
+    if (type == kVoxel) std::swap(corners_[6], corners_[7]);
     if (type == kVtkStrip) return addStrip();
     faces_.addElement(*shape, corners_, group(), first_ + cell_);
   }

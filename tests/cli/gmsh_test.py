@@ -54,8 +54,19 @@ class Gmsh(CliTest):
         run = self.run_program("info", "a.msh")
         self.assertIn("2 volume elements are left out: their faces are no surfaces here", run.err)
         self.assertIn("2 lines and points have no area and are left out", run.out)
-        self.says(": no faces, volume elements alone; save the mesh of the surfaces too (in Gmsh: physical "
-                  "surfaces, or Mesh.SaveAll=1)", msh2(places, ["4 2 2 1 1 2 3 5"]))
+        self.says(": no faces; save the mesh of the surfaces too (in Gmsh: physical surfaces, or Mesh.SaveAll=1)",
+                  msh2(places, ["1 2 2 1 1 2"]))
+
+    def test_volumes_alone_are_read_by_their_skin(self):
+        places = SQUARE + [(0, 0, 1)]
+        names = '$PhysicalNames\n2\n2 2 "wall"\n3 2 "block"\n$EndPhysicalNames\n'
+        # The second element is there once for each of its physical groups, as version 2.2 has it.
+        self.put(msh2(places, ["4 2 2 1 1 2 3 5", "4 2 2 2 1 3 4 5", "4 2 7 2 1 3 4 5"], names))
+        faces, area = self.surfaces()["block"]
+        self.assertEqual(faces, 6)
+        self.assertAlmostEqual(area, 2 + 2 ** .5, delta=1e-5)  # of digits in the report
+        self.assertEqual(list(self.surfaces()), ["block"])
+        self.assertRegex(self.run_program("info", "a.msh").out, r"closed +yes")
 
     def test_a_face_in_several_groups_counts_to_the_first(self):
         # Version 2.2 writes it once for each; 4.1 lists the groups of its entity.

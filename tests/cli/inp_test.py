@@ -60,6 +60,40 @@ class Inp(CliTest):
         self.assertIn("elements that are no faces (volumes, beams, ...) are left out, of type: C3D4, B31",
                       self.run_program("info", "a.inp").err)
 
+    def test_volumes_alone_are_read_by_their_skin(self):
+        nodes = "*NODE\n" + "".join(f"{12 * z + 4 * y + x + 1}, {x}, {y}, {z}\n"
+                                    for z in range(3) for y in range(3) for x in range(4))
+        cubes = [(12 * z + 4 * y + x + 1) for z in range(2) for y in range(2) for x in range(3)]
+        bricks = [",".join(str(a + d) for d in [0, 1, 5, 4, 12, 13, 17, 16]) for a in cubes]
+        text = nodes + "*ELEMENT, TYPE=DC3D8, ELSET=lower\n" + "".join(
+            f"{k + 1}, {b}\n" for k, b in enumerate(bricks[:6])) + "*ELEMENT, TYPE=C3D8R, ELSET=upper\n" + "".join(
+            f"{k + 7}, {b}\n" for k, b in enumerate(bricks[6:])) + "*ELEMENT, TYPE=SPRINGA\n99, 1, 2\n"
+        self.assertEqual(self.surfaces(text), {"lower": 6 + 10, "upper": 6 + 10})
+        run = self.run_program("info", "a.inp")
+        self.assertIn("no faces, volume elements alone (12): the sides that no two of them share are the surfaces (32)",
+                      run.err)
+        self.assertRegex(run.out, r"closed +yes")
+        self.assertNotIn("flipped", run.err)
+        # Sides that *SURFACE names are surfaces of that name.
+        named = text + ("*SURFACE, NAME=hot, TYPE=ELEMENT\nupper, S2\n*SURFACE, NAME=other, TYPE=NODE\n1\n"
+                        "*SURFACE, NAME=corner\n1, S1\n1, S3\n1, S6\n12, S2\n12, S4\n7, SPOS\n")
+        self.assertEqual(self.surfaces(named), {"lower": 13, "upper": 10 - 1, "hot": 6, "corner": 4})
+        self.assertIn("leave these to them: corner", self.run_program("info", "a.inp").out)
+
+    def test_volumes_of_every_order(self):
+        nodes = HEAD + "".join(f"{k}, {k % 5}, {k % 7}, {k % 3}\n" for k in range(11, 40))
+        nodes += "7, 0., 0., 1.\n8, 1., 0., 1.\n9, 1., 1., 1.\n10, 0., 1., 1.\n"
+        for kind, corners, count, area in [("C3D4", "1,2,4,7", 4, 1.5 + 3 ** .5 / 2), ("C3D10M", "1,2,4,7", 10, 1.5 + 3 ** .5 / 2),
+                                           ("c3d5", "1,2,3,4,7", 5, 2 + 2 ** .5), ("C3D6", "1,2,4,7,8,10", 6, 3 + 2 ** .5),
+                                           ("DC3D15", "1,2,4,7,8,10", 15, 3 + 2 ** .5), ("C3D8I", "1,2,3,4,7,8,9,10", 8, 6),
+                                           ("C3D20RBR", "1,2,3,4,7,8,9,10", 20, 6), ("AC3D20", "1,2,3,4,7,8,9,10", 20, 6)]:
+            with self.subTest(kind=kind):
+                more = [str(11 + k) for k in range(count - len(corners.split(",")))]
+                lines = ",".join(corners.split(",") + more[:8]) + "".join(",\n" + x for x in more[8:])
+                found = self.surfaces(f"{nodes}*ELEMENT, TYPE={kind}, ELSET=body\n1, {lines}\n")
+                self.assertEqual(list(found), ["body"])
+                self.assertAlmostEqual(found["body"], area, delta=1e-5)  # of digits in the report
+
     def test_what_other_statements_make_is_no_matter_of_the_shells(self):
         # Nodes and volumes that keywords make of others, a system that is over, a set of volumes and shells.
         text = (HEAD + TWO + "*NGEN\n1, 5, 1\n*NFILL\nNall, Nall, 3\n*NCOPY\n*SYSTEM\n1, 0, 0\n*SYSTEM\n*NODE\n"
@@ -102,9 +136,9 @@ class Inp(CliTest):
                                                       "x, y, z"),
                 ("4, 0., 1., 0.", "*NGEN\n3, 4, 1", ":13: node 4 of element 1 does not exist; *ngen makes nodes and is "
                                                     "not read, write out nodes where they lie"),
-                ("2, 2,5,6,3\n", "*ELGEN\n1, 3, 1, 1\n", ":13: *elgen makes shells of others and is not read; write "
+                ("2, 2,5,6,3\n", "*ELGEN\n1, 3, 1, 1\n", ":13: *elgen makes elements of others and is not read; write "
                                                           "out nodes and elements where they lie"),
-                ("2, 2,5,6,3\n", "*ELCOPY, OLD SET=surface1\n", ":13: *elcopy makes shells of others and is not "
+                ("2, 2,5,6,3\n", "*ELCOPY, OLD SET=surface1\n", ":13: *elcopy makes elements of others and is not "
                  "read; write out nodes and elements where they lie"),
                 (", NSET=Nall", ", SYSTEM=C", ":4: cylindrical and spherical coordinates are not read; write x, y, z"),
                 (", NSET=Nall", ", INPUT=x", ":4: *node from another file is not read; use *INCLUDE"),
@@ -118,9 +152,11 @@ class Inp(CliTest):
         self.says(":15: the last element is not less than the first, and the step is 1 or more; correct the line",
                   text + "*ELSET, ELSET=a, GENERATE\n1, 9, 0\n")
         self.says(": no faces, nodes alone; write the surfaces as shells (TYPE=S3, S4, S6, S8)", HEAD)
-        solids = "*ELEMENT, TYPE=C3D8\n1, 1,2,3,4\n*ELEMENT, TYPE=B32\n2, 1,2,3\n*ELEMENT, TYPE=C3D8\n3, 1,2,3,4\n"
-        self.says(": no faces, elements of type B32, C3D8 alone; write the surfaces as shells (TYPE=S3, S4, S6, S8)",
-                  HEAD + solids)
+        lines = "*ELEMENT, TYPE=CAX8\n1, 1,2,3,4\n*ELEMENT, TYPE=B32\n2, 1,2,3\n*ELEMENT, TYPE=CAX8\n3, 1,2,3,4\n"
+        self.says(": no faces, elements of type B32, CAX8 alone; write the surfaces as shells (TYPE=S3, S4, S6, S8)",
+                  HEAD + lines)
+        self.says(":13: element 2 has 5 nodes, its type has 4; correct it",
+                  HEAD + "*ELEMENT, TYPE=C3D4\n1, 1,2,3,5\n2, 1,2,3,4,5\n")
         self.says(": is no input of CalculiX or Abaqus: it has neither *NODE nor *ELEMENT; check the name",
                   "SPECIES\nH2 O2\nEND\n")
 

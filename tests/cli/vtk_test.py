@@ -49,6 +49,20 @@ class Vtk(CliTest):
                       "1 volume element is left out: its faces are no surfaces here"]:
             self.assertIn(words, run.err)
 
+    def test_volumes_alone_are_read_by_their_skin(self):
+        points = "POINTS 12 float\n" + "".join(f"{x} {y} {z}\n" for z in range(3) for y in range(2) for x in range(2))
+        # A voxel counts its points row by row, a hexahedron around.
+        cells = "8 0 1 2 3 4 5 6 7\n8 4 5 7 6 8 9 11 10\n"
+        self.put(LEGACY + "UNSTRUCTURED_GRID\n" + points + f"CELLS 2 18\n{cells}CELL_TYPES 2\n11 12\n")
+        self.assertEqual(self.areas(), {"a": 10})
+        run = self.run_program("info", "a.vtk")
+        self.assertIn("no faces, volume elements alone (2)", run.err)
+        self.assertRegex(run.out, r"closed +yes")
+        self.says(": cell 0: a volume of 5 points has too few; correct or remove it",
+                  LEGACY + "UNSTRUCTURED_GRID\n" + points + "CELLS 1 6\n5 0 1 2 3 4\nCELL_TYPES 1\n12\n")
+        self.says(": no faces, volume elements alone; export the surface as polygons",
+                  LEGACY + "UNSTRUCTURED_GRID\n" + points + "CELLS 1 11\n10 0 1 2 3 4 5 6 7 8 9\nCELL_TYPES 1\n15\n")
+
     def test_arrays_that_are_no_groups_are_passed_over(self):
         data = ("POINT_DATA 6\nSCALARS group int 1\nLOOKUP_TABLE own\n1 2 3 4 5 6\nLOOKUP_TABLE own 1\n0 0 0 1\n"
                 "NORMALS n float\n" + "0 0 1 " * 6 + "\nCELL_DATA 2\nFIELD FieldData 4\ntemperature 1 2 float\n300 nan\n"
