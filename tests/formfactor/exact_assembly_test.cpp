@@ -359,6 +359,27 @@ TEST(RowTasks, EveryElementOnceAndPatchesWhole) {
   EXPECT_GT(tasks.size(), 8u);
 }
 
+TEST(RowTasks, RowsThatLeadAreInTasksOfTheirOwn) {
+  const PatchMesh mesh = test::roomWithBlock(9).build();
+  for (const std::size_t leading : {1, 2, 40}) {
+    std::vector<std::uint8_t> flags(mesh.size(), 0);
+    std::fill_n(flags.begin() + 7, leading, std::uint8_t(1));
+    Progress silent;
+    const ElementSet elements(mesh, silent, flags);
+    ASSERT_GE(elements.leading_elements, leading);
+    const RowTasks tasks(elements);
+    std::size_t leads = 0;
+    std::size_t rows = 0;
+    for (std::size_t t = 0; t < tasks.size(); ++t) {
+      if (tasks[t].front().first >= elements.leading_elements) continue;
+      ++leads;
+      rows += tasks[t].back().end - tasks[t].front().first;
+    }
+    EXPECT_EQ(rows, elements.leading_elements);
+    EXPECT_GE(leads, std::min<std::size_t>(leading, 8)) << "for several threads";
+  }
+}
+
 TEST(ElementSet, PiecesOfAPatchStandTogether) {
   // Pairs of interlocking L-shaped patches, each cut into two pieces, all over a floor.
   MeshBuilder builder;

@@ -38,7 +38,7 @@ class LeadingRows {
 
  private:
   struct Triangle;
-  /// The rows that lead, and others of the same tasks.
+  /// The rows that lead.
   void fill(Triangle& triangle, const ExactKernels& kernels, Progress& progress) const;
 
   const PatchMesh& mesh_;

@@ -16,11 +16,19 @@ constexpr Index kChunk = 32;
 
 /// Even a small scene is to give every thread several tasks.
 constexpr std::size_t kLeastTasks = 48;
+/// The same for rows that lead, which may be all that are asked for: there are often few.
+constexpr std::size_t kLeastLeadingTasks = 16;
 
 std::size_t rowsPerTask(const ElementSet& elements) {
   const std::size_t held = kPanelBytes / (sizeof(double) * (elements.size() + 1));
   return std::clamp<std::size_t>(std::min(elements.patch_elements / kLeastTasks, held), 8,
                                  kMostRows);
+}
+
+/// Of a task that begins with this element.
+std::size_t mostRows(const ElementSet& elements, Index first, std::size_t most) {
+  if (first >= elements.leading_elements) return most;
+  return std::clamp<std::size_t>(elements.leading_elements / kLeastLeadingTasks, 1, most);
 }
 
 void appendRanges(const ElementSet& elements, Index node, std::size_t most,
@@ -40,7 +48,8 @@ void appendRanges(const ElementSet& elements, Index node, std::size_t most,
 RowTasks::RowTasks(const ElementSet& elements) {
   const std::size_t most = rowsPerTask(elements);
   for (const Facet& facet : elements.facets) {
-    if (!facet.black) appendRanges(elements, facet.root, most, ranges_);
+    if (facet.black) continue;
+    appendRanges(elements, facet.root, mostRows(elements, facet.elements.first, most), ranges_);
   }
   offset_.push_back(0);
   std::size_t rows = 0;
@@ -50,7 +59,9 @@ RowTasks::RowTasks(const ElementSet& elements) {
     const bool last = r + 1 == ranges_.size();
     // A patch of several elements may lie in several clusters.
     const bool cuts_patch = !last && elements.patch[end - 1] == elements.patch[end];
-    const bool full = last || rows + ranges_[r + 1].size() > most;
+    // Those that lead are with none that nobody asked for.
+    const bool full = last || end == elements.leading_elements ||
+                      rows + ranges_[r + 1].size() > mostRows(elements, ranges_[r].first, most);
     if (full && !cuts_patch) {
       offset_.push_back(r + 1);
       rows = 0;
