@@ -111,9 +111,9 @@ struct StagesAsStored {
 /// behind its end, and the file is switched over to them in one write of its first page. Killed at
 /// any moment it is what it was, or whole. The form factors may be without their matrix. False, and
 /// the file is what it was, where that cannot be: another run extends it or has replaced its form
-/// factors, another program's HDF5 wrote it, or stages replaced in earlier runs take up half of it; write it whole. Errors:
-/// RunError (disk full), those of PatchMaterials::requireSizes(); the file then is what it was,
-/// too.
+/// factors, another program's HDF5 wrote it, or stages replaced in earlier runs take up half of it;
+/// write it whole. Errors: RunError (disk full), those of PatchMaterials::requireSizes(); the file
+/// then is what it was, too.
 bool updateResults(const std::string& path, const Results& results, const StagesAsStored& stored);
 
 /// Bytes writeResults() will put on disk, within 4 kB.
