@@ -136,10 +136,10 @@ std::string sceneExtensions();
 /// (solids, physical groups, element sets, arrays of cells) are surfaces. Face f of the scene is
 /// face f of the file, but one may be several (View3D's with subsurfaces, triangles of a strip).
 /// Lines and points are left out, volumes where there are faces; where there are none, the skin of
-/// the volumes is the scene. An OBJ has no cameras of its own; a comment line `# camera eye=x,y,z target=x,y,z up=x,y,z fov=DEGREES` (file units, vertical field
-/// of view) is read as one.
-/// Errors: InputError, one line with file, element and cure; RunError where the scene does not fit
-/// into memory.
+/// the volumes is the scene. An OBJ has no cameras of its own; a comment line `# camera eye=x,y,z
+/// target=x,y,z up=x,y,z fov=DEGREES` (file units, vertical field of view) is read as one. Errors:
+/// InputError, one line with file, element and cure; RunError where the scene does not fit into
+/// memory.
 Scene loadScene(const std::string& path, const SceneOptions& options = {});
 
 /// Applies `set`, `materials_file`, `one_sided`, `two_sided`, `sky`, `up` to a scene already in

@@ -83,10 +83,12 @@ class Inp(CliTest):
     def test_volumes_of_every_order(self):
         nodes = HEAD + "".join(f"{k}, {k % 5}, {k % 7}, {k % 3}\n" for k in range(11, 40))
         nodes += "7, 0., 0., 1.\n8, 1., 0., 1.\n9, 1., 1., 1.\n10, 0., 1., 1.\n"
-        for kind, corners, count, area in [("C3D4", "1,2,4,7", 4, 1.5 + 3 ** .5 / 2), ("C3D10M", "1,2,4,7", 10, 1.5 + 3 ** .5 / 2),
-                                           ("c3d5", "1,2,3,4,7", 5, 2 + 2 ** .5), ("C3D6", "1,2,4,7,8,10", 6, 3 + 2 ** .5),
-                                           ("DC3D15", "1,2,4,7,8,10", 15, 3 + 2 ** .5), ("C3D8I", "1,2,3,4,7,8,9,10", 8, 6),
-                                           ("C3D20RBR", "1,2,3,4,7,8,9,10", 20, 6), ("AC3D20", "1,2,3,4,7,8,9,10", 20, 6)]:
+        tetrahedron, brick = "1,2,4,7", "1,2,3,4,7,8,9,10"
+        for kind, corners, count, area in [
+                ("C3D4", tetrahedron, 4, 1.5 + 3 ** .5 / 2), ("C3D10M", tetrahedron, 10, 1.5 + 3 ** .5 / 2),
+                ("c3d5", "1,2,3,4,7", 5, 2 + 2 ** .5), ("C3D6", "1,2,4,7,8,10", 6, 3 + 2 ** .5),
+                ("DC3D15", "1,2,4,7,8,10", 15, 3 + 2 ** .5), ("C3D8I", brick, 8, 6), ("C3D20RBR", brick, 20, 6),
+                ("AC3D20", brick, 20, 6)]:
             with self.subTest(kind=kind):
                 more = [str(11 + k) for k in range(count - len(corners.split(",")))]
                 lines = ",".join(corners.split(",") + more[:8]) + "".join(",\n" + x for x in more[8:])
