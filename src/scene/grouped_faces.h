@@ -40,9 +40,9 @@ class GroupedFaces {
   /// corners count, of volumes the skin where there are no faces; finish() says so.
   void addElement(const ElementShape& shape, std::span<const Index> nodes, const std::string& group,
                   std::size_t element);
-  /// Sides of volumes of a group of their own: {volume, side} as VolumeSkin::Face has them.
-  void setSideGroups(std::map<std::pair<Index, int>, std::string> groups) {
-    side_groups_ = std::move(groups);
+  /// A side of a volume is of a group of its own: as VolumeSkin::Face counts them.
+  void nameSide(Index volume, int side, const std::string& group) {
+    side_groups_[{volume, side}] = group;
   }
 
   /// InputError where there are vertices alone, as scanners write them.

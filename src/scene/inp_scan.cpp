@@ -4,12 +4,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 #include <map>
 #include <optional>
 
 #include "base/input_file.h"
 #include "base/parse.h"
+#include "scene/inp_keyword.h"
 #include "scene/mesh_cursor.h"
 #include "scene/text.h"
 
@@ -21,114 +25,66 @@ constexpr int kMostIncludes = 16;  // a file that includes itself never ends
 /// Sets of sets of sets: what no person means is refused before it fills the memory.
 constexpr std::size_t kMostMembers = std::size_t(1) << 24U;
 
-/// Shells, membranes, rigid and other surfaces by their types, and flat solids, as which Gmsh
-/// writes faces. Nothing for volumes, beams and the rest.
-std::optional<ElementShape> shapeNamed(const std::string& type) {
-  struct Family {
-    ElementShape shape;
-    std::vector<std::string_view> types;
-  };
-  static const std::array<Family, 5> kFamilies = {{
-      {{2, 3, 3},
-       {"s3", "s3r", "s3rs", "s3t", "s3rt", "stri3", "ds3", "m3d3", "r3d3", "sfm3d3", "cps3",
-        "cpe3", "dc2d3"}},
-      {{2, 3, 6}, {"s6", "stri65", "ds6", "m3d6", "sfm3d6", "cps6", "cpe6", "dc2d6"}},
-      {{2, 4, 4},
-       {"s4", "s4r", "s4rs", "s4rsw", "s4r5", "s4t", "s4rt", "ds4", "m3d4", "m3d4r", "r3d4",
-        "sfm3d4", "sfm3d4r", "cps4", "cps4r", "cpe4", "cpe4r", "dc2d4"}},
-      {{2, 4, 8},
-       {"s8", "s8r", "s8r5", "s8rt", "ds8", "m3d8", "m3d8r", "sfm3d8", "sfm3d8r", "cps8", "cps8r",
-        "cpe8", "cpe8r", "dc2d8"}},
-      {{2, 4, 9}, {"s9r5", "m3d9", "m3d9r"}},
-  }};
-  for (const Family& family : kFamilies) {
-    const auto& types = family.types;
-    if (std::find(types.begin(), types.end(), type) != types.end()) return family.shape;
-  }
-  return std::nullopt;
-}
+/// Where an instance of a part lies.
+struct InstancePlacement {
+  Vec3 shift{0.0};
+  Vec3 from{0.0};  ///< axis of the turn
+  Vec3 to{0.0};
+  double degrees = 0;
 
-/// Volumes of solids, heat transfer (D), acoustics (A) and fluids (F), whatever the letters behind
-/// their number of nodes (C3D20RBR) say of their integration.
-std::optional<ElementShape> volumeNamed(const std::string& type) {
-  static constexpr std::array<ElementShape, 9> kShapes = {{{3, 4, 4},
-                                                           {3, 5, 5},
-                                                           {3, 6, 6},
-                                                           {3, 8, 8},
-                                                           {3, 4, 10},
-                                                           {3, 5, 13},
-                                                           {3, 6, 15},
-                                                           {3, 8, 20},
-                                                           {3, 8, 27}}};
-  for (const std::string_view family : {"c3d", "dc3d", "dcc3d", "ac3d", "f3d", "fc3d", "q3d"}) {
-    if (!type.starts_with(family)) continue;
-    const std::size_t begin = family.size();
-    std::size_t end = begin;
-    while (end < type.size() && type[end] >= '0' && type[end] <= '9') ++end;
-    const std::optional<long long> nodes =
-        parseInteger(std::string_view(type).substr(begin, end - begin));
-    for (const ElementShape& shape : kShapes) {
-      if (nodes && *nodes == shape.nodes) return shape;
-    }
+  /// Shifted, then turned about the axis (Rodrigues).
+  Vec3 of(const Vec3& place) const {
+    const Vec3 shifted = place + shift;
+    if (degrees == 0) return shifted;
+    const Vec3 axis = glm::normalize(to - from);
+    const Vec3 arm = shifted - from;
+    const double angle = glm::radians(degrees);
+    return from + std::cos(angle) * arm + std::sin(angle) * glm::cross(axis, arm) +
+           (1 - std::cos(angle)) * glm::dot(axis, arm) * axis;
   }
-  return std::nullopt;
-}
-
-/// A line `*WORD, NAME=VALUE, NAME`: names in small letters.
-struct Keyword {
-  std::string word;
-  std::map<std::string, std::string> parameters;
-
-  std::string get(const std::string& name) const {
-    const auto found = parameters.find(name);
-    return found == parameters.end() ? std::string() : found->second;
-  }
-  bool has(const std::string& name) const { return parameters.contains(name); }
 };
-
-Keyword keywordOf(std::string_view line) {
-  const std::vector<std::string_view> parts = splitAt(line, ',');
-  Keyword keyword;
-  keyword.word = lowerCase(trimmed(parts[0].substr(1)));
-  for (std::size_t k = 1; k < parts.size(); ++k) {
-    const std::size_t equals = parts[k].find('=');
-    const std::string name = lowerCase(trimmed(parts[k].substr(0, equals)));
-    if (name.empty()) continue;
-    std::string_view value;
-    if (equals != std::string_view::npos) value = trimmed(parts[k].substr(equals + 1));
-    if (value.size() > 1 && value.front() == '"' && value.back() == '"') {
-      value = value.substr(1, value.size() - 2);
-    }
-    keyword.parameters[name] = value;
-  }
-  return keyword;
-}
 
 class InpScanner {
  public:
-  explicit InpScanner(InpElements kind) : kind_(kind) {}
+  explicit InpScanner(InpElements kind) : kind_(kind), body_(&scan_.bodies.emplace_back()) {}
   InpScan run(const std::string& path) {
     file(path, 0);
+    if (!parts_.empty() && scan_.bodies.size() == 1) {
+      throw InputError(path + ": its parts have no *INSTANCE, so nothing says where they lie");
+    }
     notes_.appendTo(scan_.notes);
     return std::move(scan_);
   }
 
  private:
   void file(const std::string& path, int depth);
-  void keyword(const Keyword& keyword, int depth);
-  void refuseKeyword(const Keyword& keyword) const;
-  void noteMaker(const Keyword& keyword);
-  void include(const Keyword& keyword, int depth);
+  void keyword(const InpKeyword& keyword, int depth);
+  void refuseKeyword(const InpKeyword& keyword) const;
+  void noteMaker(const InpKeyword& keyword);
+  void include(const InpKeyword& keyword, int depth);
   void beginElements();
+  void beginSet();
   void beginSurface();
+  void beginPart(const InpKeyword& keyword);
+  void beginInstance(const InpKeyword& keyword);
+  void place(const std::vector<std::string_view>& fields);
+  void endInstance();
+  /// The instance of that name in small letters, or null.
+  InpBody* instanceNamed(const std::string& name);
+  double coordinate(std::string_view field) const;
   void data(std::string_view line);
   void node(const std::vector<std::string_view>& fields);
   void element(const std::vector<std::string_view>& fields, const ElementShape& shape);
   void sides(const std::vector<std::string_view>& fields);
   void members(const std::vector<std::string_view>& fields);
+  void addMembersNamed(std::string_view field);
   void range(const std::vector<std::string_view>& fields);
-  void addMember(const InpRange& range);
+  void addMember(InpSet& set, const InpRange& range);
+  /// As sets of the instance at hand are called in small letters.
+  std::string ownName(const std::string& name) const;
   std::size_t setNamed(const std::string& name);
+  static std::size_t setIn(InpBody& body, const std::string& name);
+  void addSides(InpBody& body, std::string_view members, int side);
   long long integer(std::string_view word, const char* what) const;
   [[noreturn]] void fail(const std::string& what) const { cursor_->fail(what); }
   std::string where() const { return fmt::format("{}:{}", *file_, cursor_->line()); }
@@ -137,14 +93,20 @@ class InpScanner {
   const MeshCursor* cursor_ = nullptr;  ///< of the file at hand
   const std::string* file_ = nullptr;
   InpScan scan_;
-  Keyword current_;                    ///< whose data lines come
-  std::optional<ElementShape> shape_;  ///< of the elements that come
-  bool unfinished_ = false;            ///< the last element goes on in the next line
-  std::size_t set_ = 0;                ///< that *ELSET or *ELEMENT adds to
+  InpBody* body_;                         ///< that things are added to
+  std::map<std::string, InpBody> parts_;  ///< by name in small letters
+  bool in_part_ = false;
+  bool in_instance_ = false;
+  std::vector<InstancePlacement> placements_;  ///< of the instance at hand: none or one
+  std::size_t placing_lines_ = 0;              ///< of its data, read
+  InpBody* set_body_ = nullptr;                ///< that set_ is of
+  InpKeyword current_;                         ///< whose data lines come
+  std::optional<ElementShape> shape_;          ///< of the elements that come
+  bool unfinished_ = false;                    ///< the last element goes on in the next line
+  std::size_t set_ = 0;                        ///< that *ELSET or *ELEMENT adds to
   bool in_set_ = false;
   std::size_t member_count_ = 0;
-  bool has_system_ = false;                       ///< coordinates of nodes are another system's
-  std::map<std::string, std::size_t> set_index_;  ///< by name in small letters
+  bool has_system_ = false;  ///< coordinates of nodes are another system's
   FeatureNotes notes_;
 };
 
@@ -165,22 +127,17 @@ void InpScanner::file(const std::string& path, int depth) {
     }
     std::string whole(line);
     while (whole.ends_with(',') && !cursor.atEnd()) whole += cursor.nextLine();
-    keyword(keywordOf(whole), depth);
+    keyword(inpKeyword(whole), depth);
   }
   if (unfinished_) {
-    throw InputError(scan_.elements.back().where +
+    throw InputError(body_->elements.back().where +
                      ": the last element has too few nodes; correct it, or the file is cut off");
   }
   cursor_ = outer_cursor;
   file_ = outer_file;
 }
 
-void InpScanner::refuseKeyword(const Keyword& keyword) const {
-  if (keyword.word == "instance") {
-    fail(
-        "parts and instances are not read; write the input without them (in Abaqus/CAE: Model, "
-        "Edit Attributes, Do not use parts and assemblies in input files)");
-  }
+void InpScanner::refuseKeyword(const InpKeyword& keyword) const {
   if (keyword.word == "nmap") fail("*NMAP moves nodes and is not read; write nodes where they lie");
   if (keyword.word == "node" && has_system_) {
     fail("nodes in the coordinates of *SYSTEM are not read; write x, y, z");
@@ -194,7 +151,7 @@ void InpScanner::refuseKeyword(const Keyword& keyword) const {
   }
 }
 
-void InpScanner::keyword(const Keyword& keyword, int depth) {
+void InpScanner::keyword(const InpKeyword& keyword, int depth) {
   if (unfinished_) fail("the element before it has too few nodes; correct it");
   refuseKeyword(keyword);
   if (keyword.word == "include") return include(keyword, depth);
@@ -204,28 +161,120 @@ void InpScanner::keyword(const Keyword& keyword, int depth) {
   noteMaker(keyword);
   if (keyword.word == "element") beginElements();
   if (keyword.word == "surface") beginSurface();
-  if (keyword.word == "elset") {
-    if (keyword.get("elset").empty()) fail("*ELSET names no set; add ELSET=NAME");
-    set_ = setNamed(keyword.get("elset"));
-    scan_.sets[set_].chosen = true;
-    in_set_ = true;
+  if (keyword.word == "elset") beginSet();
+  if (keyword.word == "part") beginPart(keyword);
+  if (keyword.word == "instance") beginInstance(keyword);
+  if (keyword.word == "end part") {
+    in_part_ = false;
+    body_ = &scan_.bodies.front();
   }
+  if (keyword.word == "end instance") endInstance();
+}
+
+/// A set of the assembly is one of the instance whose elements it lists.
+void InpScanner::beginSet() {
+  if (current_.get("elset").empty()) fail("*ELSET names no set; add ELSET=NAME");
+  InpBody* const outer = body_;
+  if (current_.has("instance")) {
+    const std::string instance = current_.get("instance");
+    body_ = instanceNamed(lowerCase(instance));
+    if (body_ == nullptr) {
+      fail(fmt::format("there is no instance `{}` before it; correct it", instance));
+    }
+  }
+  set_ = setNamed(current_.get("elset"));
+  set_body_ = body_;
+  body_ = outer;
+  set_body_->sets[set_].chosen = true;
+  if (current_.has("internal")) set_body_->sets[set_].internal = true;
+  in_set_ = true;
+}
+
+void InpScanner::beginPart(const InpKeyword& keyword) {
+  if (in_part_ || in_instance_) fail("a part begins within another; end that with *END PART");
+  const auto [place, is_new] = parts_.try_emplace(lowerCase(keyword.get("name")));
+  if (!is_new) fail(fmt::format("part `{}` is there twice; rename one", keyword.get("name")));
+  in_part_ = true;
+  body_ = &place->second;
+}
+
+void InpScanner::beginInstance(const InpKeyword& keyword) {
+  if (in_part_ || in_instance_) fail("an instance begins within another; add *END INSTANCE");
+  const std::string name = keyword.get("name");
+  const auto part = parts_.find(lowerCase(keyword.get("part")));
+  if (part == parts_.end()) {
+    fail(fmt::format("instance `{}` is of part `{}`, which does not come before it; correct it",
+                     name, keyword.get("part")));
+  }
+  if (instanceNamed(lowerCase(name)) != nullptr) {
+    fail(fmt::format("instance `{}` is there twice; rename one", name));
+  }
+  body_ = &scan_.bodies.emplace_back(part->second);
+  body_->name = name;
+  body_->set_index.clear();
+  for (std::size_t s = 0; s < body_->sets.size(); ++s) {
+    body_->sets[s].name = name + "." + body_->sets[s].name;
+    body_->set_index[lowerCase(body_->sets[s].name)] = s;
+  }
+  for (InpSurface& surface : body_->surfaces) surface.name = name + "." + surface.name;
+  in_instance_ = true;
+  placements_.clear();
+  placing_lines_ = 0;
+}
+
+/// The first line shifts an instance, the second turns it about an axis of two points.
+void InpScanner::place(const std::vector<std::string_view>& fields) {
+  const std::size_t expected = placing_lines_ == 0 ? 3 : 7;
+  if (placing_lines_ > 1 || fields.size() != expected) {
+    fail(
+        "an instance is placed by a line of 3 numbers, its shift, and one of 7, two points of an "
+        "axis and degrees; correct it");
+  }
+  std::array<double, 7> values{};
+  for (std::size_t k = 0; k < expected; ++k) values[k] = coordinate(fields[k]);
+  if (placing_lines_++ == 0) {
+    placements_ = {{{values[0], values[1], values[2]}, Vec3(0.0), Vec3(0.0), 0}};
+    return;
+  }
+  InstancePlacement& placement = placements_.front();
+  placement.from = {values[0], values[1], values[2]};
+  placement.to = {values[3], values[4], values[5]};
+  placement.degrees = values[6];
+  if (placement.degrees != 0 && placement.from == placement.to) {
+    fail("the two points of the axis are the same; correct them");
+  }
+}
+
+void InpScanner::endInstance() {
+  if (!in_instance_) fail("*END INSTANCE ends none; correct it");
+  for (const InstancePlacement& placement : placements_) {
+    for (InpNode& node : body_->nodes) node.place = placement.of(node.place);
+  }
+  in_instance_ = false;
+  body_ = &scan_.bodies.front();
+}
+
+InpBody* InpScanner::instanceNamed(const std::string& name) {
+  for (std::size_t k = 1; k < scan_.bodies.size(); ++k) {
+    if (lowerCase(scan_.bodies[k].name) == name) return &scan_.bodies[k];
+  }
+  return nullptr;
 }
 
 /// What is made of shells is missed in the scene, and nodes may be missed by a shell: both are for
 /// the reader to tell.
-void InpScanner::noteMaker(const Keyword& keyword) {
+void InpScanner::noteMaker(const InpKeyword& keyword) {
   const std::string& word = keyword.word;
-  if (word == "ngen" || word == "nfill" || word == "ncopy") scan_.node_makers.push_back(word);
+  if (word == "ngen" || word == "nfill" || word == "ncopy") body_->node_makers.push_back(word);
   if (word != "elgen" && word != "elcopy") return;
-  scan_.makers.push_back({word, {}, where()});
-  const auto copied = set_index_.find(lowerCase(keyword.get("old set")));
-  if (word == "elcopy" && copied != set_index_.end()) {
-    scan_.makers.back().originals = scan_.sets[copied->second].members;
+  body_->makers.push_back({word, {}, where()});
+  const auto copied = body_->set_index.find(ownName(keyword.get("old set")));
+  if (word == "elcopy" && copied != body_->set_index.end()) {
+    body_->makers.back().originals = body_->sets[copied->second].members;
   }
 }
 
-void InpScanner::include(const Keyword& keyword, int depth) {
+void InpScanner::include(const InpKeyword& keyword, int depth) {
   const std::string name = keyword.get("input");
   if (name.empty()) fail("*INCLUDE names no file; add INPUT=FILE");
   if (depth == kMostIncludes) {
@@ -241,8 +290,8 @@ void InpScanner::beginElements() {
   const std::string type = current_.get("type");
   if (type.empty()) fail("*ELEMENT names no type; add TYPE=S3 or another");
   const bool wants_volumes = kind_ == InpElements::volumes;
-  const std::optional<ElementShape> volume = volumeNamed(lowerCase(type));
-  shape_ = wants_volumes ? volume : shapeNamed(lowerCase(type));
+  const std::optional<ElementShape> volume = inpVolume(lowerCase(type));
+  shape_ = wants_volumes ? volume : inpFace(lowerCase(type));
   if (!shape_) {
     scan_.left_out.push_back(type);
     if (volume) ++scan_.volumes;
@@ -253,6 +302,7 @@ void InpScanner::beginElements() {
   }
   if (current_.get("elset").empty()) return;
   set_ = setNamed(current_.get("elset"));  // also of no faces: sets of sets may name it
+  set_body_ = body_;
   in_set_ = shape_.has_value();
 }
 
@@ -262,14 +312,31 @@ void InpScanner::beginSurface() {
   if (kind_ != InpElements::volumes || (!type.empty() && type != "element")) {
     current_.word.clear();
   } else {
-    scan_.surfaces.push_back({current_.get("name"), {}});
+    // Of the assembly: a share for each instance.
+    const std::string own = in_instance_ ? body_->name + "." : "";
+    const auto begin = [&](InpBody& body) {
+      body.surfaces.push_back({own + current_.get("name"), {}});
+    };
+    if (in_part_ || in_instance_) {
+      begin(*body_);
+    } else {
+      for (InpBody& body : scan_.bodies) begin(body);
+    }
   }
 }
 
 std::size_t InpScanner::setNamed(const std::string& name) {
-  const auto [place, is_new] = set_index_.try_emplace(lowerCase(name), scan_.sets.size());
-  if (is_new) scan_.sets.push_back({name, {}, false});
+  return setIn(*body_, in_instance_ ? body_->name + "." + name : name);
+}
+
+std::size_t InpScanner::setIn(InpBody& body, const std::string& name) {
+  const auto [place, is_new] = body.set_index.try_emplace(lowerCase(name), body.sets.size());
+  if (is_new) body.sets.push_back({name, {}});
   return place->second;
+}
+
+std::string InpScanner::ownName(const std::string& name) const {
+  return lowerCase(in_instance_ ? body_->name + "." + name : name);
 }
 
 void InpScanner::data(std::string_view line) {
@@ -284,9 +351,11 @@ void InpScanner::data(std::string_view line) {
     current_.has("generate") ? range(fields) : members(fields);
   } else if (current_.word == "surface") {
     sides(fields);
+  } else if (current_.word == "instance" && !fields.empty()) {
+    place(fields);
   } else if (current_.word == "elgen" && !fields.empty()) {
     const long long original = integer(fields[0], "element number");
-    scan_.makers.back().originals.push_back({original, original, 1});
+    body_->makers.back().originals.push_back({original, original, 1});
   } else if (current_.word == "system") {
     has_system_ = true;
   }
@@ -303,18 +372,20 @@ void InpScanner::node(const std::vector<std::string_view>& fields) {
   InpNode node{integer(fields[0], "node number"), Vec3(0.0), where()};
   for (std::size_t k = 1; k < std::min<std::size_t>(fields.size(), 4); ++k) {
     if (fields[k].empty()) continue;  // a coordinate that is left out is 0
-    std::string word = lowerCase(fields[k]);
-    std::replace(word.begin(), word.end(), 'd', 'e');  // Fortran's exponents
-    const std::optional<double> value = parseNumber(word);
-    if (!value) {
-      fail(
-          fmt::format("coordinate `{}` is not a finite number; write it as 1.5 with a decimal "
-                      "point",
-                      fields[k]));
-    }
-    node.place[int(k) - 1] = *value;
+    node.place[int(k) - 1] = coordinate(fields[k]);
   }
-  scan_.nodes.push_back(std::move(node));
+  body_->nodes.push_back(std::move(node));
+}
+
+double InpScanner::coordinate(std::string_view field) const {
+  std::string word = lowerCase(field);
+  std::replace(word.begin(), word.end(), 'd', 'e');  // Fortran's exponents
+  const std::optional<double> value = parseNumber(word);
+  if (!value) {
+    fail(fmt::format("coordinate `{}` is not a finite number; write it as 1.5 with a decimal point",
+                     field));
+  }
+  return *value;
 }
 
 void InpScanner::element(const std::vector<std::string_view>& fields, const ElementShape& shape) {
@@ -322,15 +393,15 @@ void InpScanner::element(const std::vector<std::string_view>& fields, const Elem
   std::size_t k = 0;
   if (!unfinished_) {
     const long long number = integer(fields[k++], "element number");
-    scan_.elements.push_back({number, shape, {}, where()});
-    if (in_set_) addMember({number, number, 1});
+    body_->elements.push_back({number, shape, {}, where()});
+    if (in_set_) addMember(set_body_->sets[set_], {number, number, 1});
   }
-  std::vector<long long>& nodes = scan_.elements.back().nodes;
+  std::vector<long long>& nodes = body_->elements.back().nodes;
   for (; k < fields.size(); ++k) nodes.push_back(integer(fields[k], "node number"));
   const auto expected = std::size_t(shape.nodes);
   if (nodes.size() > expected) {
     fail(fmt::format("element {} has {} nodes, its type has {}; correct it",
-                     scan_.elements.back().number, nodes.size(), expected));
+                     body_->elements.back().number, nodes.size(), expected));
   }
   unfinished_ = nodes.size() < expected;
 }
@@ -340,27 +411,65 @@ void InpScanner::sides(const std::vector<std::string_view>& fields) {
   if (fields.size() != 2) return;
   const std::string label = lowerCase(fields[1]);
   if (label.size() != 2 || label[0] != 's' || label[1] < '1' || label[1] > '6') return;
-  InpSides sides{{}, label[1] - '0'};
-  if (const std::optional<long long> number = parseInteger(fields[0])) {
+  const int side = label[1] - '0';
+  if (in_part_ || in_instance_) return addSides(*body_, fields[0], side);
+  for (InpBody& body : scan_.bodies) addSides(body, fields[0], side);
+}
+
+/// `members`: a set or an element of the body, "INSTANCE.12" where it is an instance.
+void InpScanner::addSides(InpBody& body, std::string_view members, int side) {
+  InpSides sides{{}, side};
+  const std::string name = lowerCase(members);
+  const std::string prefix = lowerCase(body.name) + ".";
+  const bool is_element = !body.name.empty() && name.starts_with(prefix);
+  const bool is_local = body.name.empty() || in_instance_;
+  const std::optional<long long> number =
+      parseInteger(is_element ? std::string_view(name).substr(prefix.size()) : members);
+  if (number && (is_element || is_local)) {
     sides.elements.push_back({*number, *number, 1});
-  } else if (const auto found = set_index_.find(lowerCase(fields[0])); found != set_index_.end()) {
-    sides.elements = scan_.sets[found->second].members;
+  } else if (const auto found = body.set_index.find(ownName(name)); found != body.set_index.end()) {
+    sides.elements = body.sets[found->second].members;
   }
-  scan_.surfaces.back().sides.push_back(std::move(sides));
+  if (!sides.elements.empty()) body.surfaces.back().sides.push_back(std::move(sides));
 }
 
 void InpScanner::members(const std::vector<std::string_view>& fields) {
   for (const std::string_view field : fields) {
     if (const std::optional<long long> number = parseInteger(field)) {
-      addMember({*number, *number, 1});
+      addMember(set_body_->sets[set_], {*number, *number, 1});
       continue;
     }
-    const auto found = set_index_.find(lowerCase(field));
-    if (found == set_index_.end()) {
-      fail(fmt::format("`{}` is neither an element nor a set that came before; correct it", field));
-    }
-    if (found->second == set_) continue;
-    for (const InpRange& range : scan_.sets[found->second].members) addMember(range);
+    addMembersNamed(field);
+  }
+}
+
+/// A set; of the assembly's sets also "INSTANCE.12" and "INSTANCE.SET", which go to a set of that
+/// instance.
+void InpScanner::addMembersNamed(std::string_view field) {
+  const std::string name = lowerCase(field);
+  const std::size_t dot = name.find('.');
+  InpBody* body = dot == std::string::npos ? nullptr : instanceNamed(name.substr(0, dot));
+  std::size_t set = set_;
+  if (body == nullptr) {
+    body = set_body_;
+  } else if (body != set_body_) {
+    const InpSet& listed = set_body_->sets[set_];
+    set = setIn(*body, listed.name);
+    body->sets[set].chosen = listed.chosen;
+    body->sets[set].internal = listed.internal;
+  }
+  if (const auto number = parseInteger(std::string_view(name).substr(dot + 1));
+      number && dot != std::string::npos) {
+    return addMember(body->sets[set], {*number, *number, 1});
+  }
+  auto found = body->set_index.find(name);
+  if (found == body->set_index.end()) found = body->set_index.find(ownName(name));
+  if (found == body->set_index.end()) {
+    fail(fmt::format("`{}` is neither an element nor a set that came before; correct it", field));
+  }
+  if (found->second == set) return;
+  for (const InpRange& range : body->sets[found->second].members) {
+    addMember(body->sets[set], range);
   }
 }
 
@@ -375,18 +484,28 @@ void InpScanner::range(const std::vector<std::string_view>& fields) {
     fail(
         "the last element is not less than the first, and the step is 1 or more; correct the line");
   }
-  addMember(range);
+  addMember(set_body_->sets[set_], range);
 }
 
-void InpScanner::addMember(const InpRange& range) {
+void InpScanner::addMember(InpSet& set, const InpRange& range) {
   if (++member_count_ > kMostMembers) {
     fail(fmt::format("its element sets have more than {} members; write them without one another",
                      kMostMembers));
   }
-  scan_.sets[set_].members.push_back(range);
+  set.members.push_back(range);
 }
 
 }  // namespace
+
+bool InpScan::hasElements() const {
+  return std::any_of(bodies.begin(), bodies.end(),
+                     [](const InpBody& body) { return !body.elements.empty(); });
+}
+
+bool InpScan::hasNodes() const {
+  return std::any_of(bodies.begin(), bodies.end(),
+                     [](const InpBody& body) { return !body.nodes.empty(); });
+}
 
 InpScan scanInp(const std::string& path, InpElements kind) { return InpScanner(kind).run(path); }
 

@@ -2,6 +2,9 @@
 // *ELEMENT, *ELSET and *INCLUDE) line by line.
 #pragma once
 
+#include <cstddef>
+#include <deque>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -34,7 +37,8 @@ struct InpRange {
 struct InpSet {
   std::string name;  ///< as it is first written; case does not count
   std::vector<InpRange> members;
-  bool chosen = false;  ///< by *ELSET, not on the line *ELEMENT
+  bool chosen = false;    ///< by *ELSET, not on the line *ELEMENT
+  bool internal = false;  ///< a program's own, to make surfaces of: names nothing
 };
 
 /// A statement that makes elements of others, as *ELGEN.
@@ -54,16 +58,26 @@ struct InpSurface {
   std::vector<InpSides> sides;
 };
 
-struct InpScan {
+/// What has numbers of its own: what the file has outside of all parts, or an instance of a part,
+/// moved to where it lies. Sets and surfaces of the part are called "INSTANCE.SET", as Abaqus does.
+struct InpBody {
+  std::string name;  ///< of the instance
   std::vector<InpNode> nodes;
   std::vector<InpElement> elements;
-  std::vector<std::string> left_out;     ///< types of elements that are none of those asked for
-  std::size_t volumes = 0;               ///< blocks of volumes among them
-  std::vector<InpMaker> makers;          ///< of elements
-  std::vector<std::string> node_makers;  ///< keywords that make nodes, which are not there
-  std::vector<InpSet> sets;              ///< of elements, in the order they come
-  std::vector<InpSurface> surfaces;      ///< of sides of volumes
+  std::vector<InpMaker> makers;                  ///< of elements
+  std::vector<std::string> node_makers;          ///< keywords that make nodes, which are not there
+  std::vector<InpSet> sets;                      ///< of elements, in the order they come
+  std::map<std::string, std::size_t> set_index;  ///< by name in small letters
+  std::vector<InpSurface> surfaces;              ///< of sides of volumes
+};
+
+struct InpScan {
+  std::deque<InpBody> bodies;         ///< the file's own first
+  std::vector<std::string> left_out;  ///< types of elements that are none of those asked for
+  std::size_t volumes = 0;            ///< blocks of volumes among them
   std::vector<Note> notes;
+  bool hasElements() const;
+  bool hasNodes() const;
 };
 
 enum class InpElements { faces, volumes };

@@ -17,54 +17,62 @@ namespace {
 /// Numbers that sets name may be those of many elements each; nobody means more in all.
 constexpr std::size_t kMostVisits = std::size_t(1) << 28U;
 
-class InpReader {
- public:
-  InpReader(const std::string& path, const InpScan& scan, const SceneOptions& options)
-      : path_(path), scan_(scan), faces_(path, options) {
-    faces_.scene().notes = scan.notes;
-  }
+[[noreturn]] void fail(const std::string& where, const std::string& what) {
+  throw InputError(fmt::format("{}: {}", where, what));
+}
 
-  Scene read() {
-    requireElements();
+void requireElements(const std::string& path, const InpScan& scan) {
+  if (scan.hasElements()) return;
+  if (!scan.hasNodes() && scan.left_out.empty()) {
+    fail(path,
+         "is no input of CalculiX or Abaqus: it has neither *NODE nor *ELEMENT; check the name");
+  }
+  std::vector<std::string> types(scan.left_out);
+  std::sort(types.begin(), types.end());
+  types.erase(std::unique(types.begin(), types.end()), types.end());
+  fail(path, fmt::format("no faces, {}; write the surfaces as shells (TYPE=S3, S4, S6, S8)",
+                         types.empty() ? "nodes alone"
+                                       : "elements of type " + joinNames(types) + " alone"));
+}
+
+/// What the bodies of a file are put into.
+struct InpScene {
+  const std::string& path;
+  GroupedFaces faces;
+  FeatureNotes notes;
+  std::size_t visits = 0;    ///< of elements, by numbers of sets
+  std::size_t elements = 0;  ///< of the bodies that are in it
+};
+
+/// Adds the elements of one body.
+class BodyReader {
+ public:
+  BodyReader(const InpBody& body, InpScene& scene) : body_(body), scene_(scene) {}
+
+  void read() {
     addNodes();
     sortElements();
     refuseMadeElements();
     assignSets();
     nameSides();
     std::vector<Index> corners;
-    for (std::size_t e = 0; e < scan_.elements.size(); ++e) {
-      const InpElement& element = scan_.elements[e];
+    for (std::size_t e = 0; e < body_.elements.size(); ++e) {
+      const InpElement& element = body_.elements[e];
       corners.clear();
       for (const long long number : element.nodes) corners.push_back(vertexOf(number, element));
-      faces_.addElement(element.shape, corners,
-                        set_of_[e] == kNone ? "unnamed" : scan_.sets[set_of_[e]].name,
-                        std::size_t(element.number));
+      scene_.faces.addElement(element.shape, corners, groupOf(e), std::size_t(element.number));
     }
-    notes_.appendTo(faces_.scene().notes);
-    return faces_.finish("write the surfaces as shells");
+    scene_.elements += body_.elements.size();
   }
 
  private:
-  [[noreturn]] static void fail(const std::string& where, const std::string& what) {
-    throw InputError(fmt::format("{}: {}", where, what));
-  }
-
-  void requireElements() const {
-    if (!scan_.elements.empty()) return;
-    if (scan_.nodes.empty() && scan_.left_out.empty()) {
-      fail(path_,
-           "is no input of CalculiX or Abaqus: it has neither *NODE nor *ELEMENT; check the name");
-    }
-    std::vector<std::string> types(scan_.left_out);
-    std::sort(types.begin(), types.end());
-    types.erase(std::unique(types.begin(), types.end()), types.end());
-    fail(path_, fmt::format("no faces, {}; write the surfaces as shells (TYPE=S3, S4, S6, S8)",
-                            types.empty() ? "nodes alone"
-                                          : "elements of type " + joinNames(types) + " alone"));
+  std::string groupOf(std::size_t e) const {
+    if (set_of_[e] != kNone) return body_.sets[set_of_[e]].name;
+    return body_.name.empty() ? "unnamed" : body_.name;
   }
 
   void refuseMadeElements() {
-    for (const InpMaker& maker : scan_.makers) {
+    for (const InpMaker& maker : body_.makers) {
       if (elementsOf(maker.originals).empty()) continue;
       fail(maker.where, fmt::format("*{} makes elements of others and is not read; write out nodes "
                                     "and elements where they lie",
@@ -73,8 +81,8 @@ class InpReader {
   }
 
   void addNodes() {
-    for (const InpNode& node : scan_.nodes) {
-      if (nodes_.add(node.number, faces_.addVertex(node.place))) continue;
+    for (const InpNode& node : body_.nodes) {
+      if (nodes_.add(node.number, scene_.faces.addVertex(node.place))) continue;
       fail(node.where, fmt::format("node {} is there twice; number nodes anew", node.number));
     }
   }
@@ -83,10 +91,10 @@ class InpReader {
     const Index vertex = nodes_.find(number);
     if (vertex == kNone) {
       const std::string cure =
-          scan_.node_makers.empty()
+          body_.node_makers.empty()
               ? "correct it"
               : fmt::format("*{} makes nodes and is not read, write out nodes where they lie",
-                            scan_.node_makers.front());
+                            body_.node_makers.front());
       fail(element.where,
            fmt::format("node {} of element {} does not exist; {}", number, element.number, cure));
     }
@@ -94,16 +102,16 @@ class InpReader {
   }
 
   void sortElements() {
-    for (std::size_t e = 0; e < scan_.elements.size(); ++e) order_.push_back(Index(e));
+    for (std::size_t e = 0; e < body_.elements.size(); ++e) order_.push_back(Index(e));
     std::sort(order_.begin(), order_.end(),
               [&](Index a, Index b) { return number(a) < number(b); });
     for (std::size_t k = 1; k < order_.size(); ++k) {
       if (number(order_[k]) != number(order_[k - 1])) continue;
-      fail(scan_.elements[std::max(order_[k], order_[k - 1])].where,
+      fail(body_.elements[std::max(order_[k], order_[k - 1])].where,
            fmt::format("element {} is there twice; number elements anew", number(order_[k])));
     }
   }
-  long long number(Index e) const { return scan_.elements[e].number; }
+  long long number(Index e) const { return body_.elements[e].number; }
 
   /// Elements of these numbers, each once, in any order.
   std::vector<Index> elementsOf(const std::vector<InpRange>& numbers) {
@@ -112,8 +120,8 @@ class InpReader {
       auto at = std::lower_bound(order_.begin(), order_.end(), range.first,
                                  [&](Index e, long long first) { return number(e) < first; });
       for (; at != order_.end() && number(*at) <= range.last; ++at) {
-        if (++visits_ > kMostVisits) {
-          throw InputError(path_ +
+        if (++scene_.visits > kMostVisits) {
+          throw InputError(scene_.path +
                            ": its element sets overlap too often; write them without one "
                            "another");
         }
@@ -130,18 +138,19 @@ class InpReader {
   /// a set goes first, unless it has all elements; then the smaller one; then the one that came
   /// first.
   std::tuple<int, std::size_t> rankOf(const InpSet& set, std::size_t size) const {
-    const bool is_all = size == scan_.elements.size();
+    const bool is_all = size == body_.elements.size();
     return {is_all ? 2 : set.chosen ? 0 : 1, size};
   }
 
   void assignSets() {
-    const std::size_t count = scan_.elements.size();
+    const std::size_t count = body_.elements.size();
     set_of_.assign(count, kNone);
     std::vector<std::tuple<int, std::size_t>> rank(count);
-    std::vector<bool> loses(scan_.sets.size(), false);
-    for (std::size_t s = 0; s < scan_.sets.size(); ++s) {
-      const std::vector<Index> found = elementsOf(scan_.sets[s].members);
-      const auto rank_here = rankOf(scan_.sets[s], found.size());
+    std::vector<bool> loses(body_.sets.size(), false);
+    for (std::size_t s = 0; s < body_.sets.size(); ++s) {
+      if (body_.sets[s].internal) continue;
+      const std::vector<Index> found = elementsOf(body_.sets[s].members);
+      const auto rank_here = rankOf(body_.sets[s], found.size());
       for (const Index e : found) {
         const bool is_first = set_of_[e] == kNone;
         const bool wins = is_first || rank_here < rank[e];
@@ -153,38 +162,37 @@ class InpReader {
     }
     for (std::size_t s = 0; s < loses.size(); ++s) {
       if (!loses[s]) continue;
-      notes_.add(
+      scene_.notes.add(
           "sets that have elements in common with smaller sets, or with those of *ELSET, and "
           "leave these to them",
-          scan_.sets[s].name);
+          body_.sets[s].name);
     }
   }
 
   /// Sides of volumes that *SURFACE names; a side of several counts to the first.
   void nameSides() {
-    std::map<std::pair<Index, int>, std::string> groups;
-    for (const InpSurface& surface : scan_.surfaces) {
+    std::map<std::pair<Index, int>, const std::string*> named;
+    for (const InpSurface& surface : body_.surfaces) {
       for (const InpSides& sides : surface.sides) {
         for (const Index e : elementsOf(sides.elements)) {
-          const auto [place, is_new] = groups.try_emplace({e, sides.side}, surface.name);
-          if (is_new || place->second == surface.name) continue;
-          notes_.add(
-              "surfaces that have sides in common with earlier ones, and leave these to them",
-              surface.name);
+          const auto [place, is_new] = named.try_emplace({e, sides.side}, &surface.name);
+          if (is_new) {
+            scene_.faces.nameSide(Index(scene_.elements) + e, sides.side, surface.name);
+          } else if (*place->second != surface.name) {
+            scene_.notes.add(
+                "surfaces that have sides in common with earlier ones, and leave these to them",
+                surface.name);
+          }
         }
       }
     }
-    faces_.setSideGroups(std::move(groups));
   }
 
-  const std::string& path_;
-  const InpScan& scan_;
-  GroupedFaces faces_;
+  const InpBody& body_;
+  InpScene& scene_;
   NodeNumbers nodes_;
   std::vector<Index> order_;   ///< elements by their numbers
   std::vector<Index> set_of_;  ///< by element; kNone: in no set
-  std::size_t visits_ = 0;
-  FeatureNotes notes_;
 };
 
 }  // namespace
@@ -192,8 +200,13 @@ class InpReader {
 Scene loadInp(const std::string& path, const SceneOptions& options) {
   InpScan scan = scanInp(path, InpElements::faces);
   // Where there are faces, they are what a mesher made of the sides of volumes.
-  if (scan.elements.empty() && scan.volumes > 0) scan = scanInp(path, InpElements::volumes);
-  return InpReader(path, scan, options).read();
+  if (!scan.hasElements() && scan.volumes > 0) scan = scanInp(path, InpElements::volumes);
+  requireElements(path, scan);
+  InpScene scene{path, GroupedFaces(path, options), {}, 0, 0};
+  scene.faces.scene().notes = scan.notes;
+  for (const InpBody& body : scan.bodies) BodyReader(body, scene).read();
+  scene.notes.appendTo(scene.faces.scene().notes);
+  return scene.faces.finish("write the surfaces as shells");
 }
 
 }  // namespace radiosity

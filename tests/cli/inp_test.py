@@ -1,5 +1,6 @@
 """CalculiX and Abaqus input as scenes: shells, sets, includes, and each broken file with its line."""
 
+import json
 import sys
 import unittest
 
@@ -80,6 +81,30 @@ class Inp(CliTest):
         self.assertEqual(self.surfaces(named), {"lower": 13, "upper": 10 - 1, "hot": 6, "corner": 4})
         self.assertIn("leave these to them: corner", self.run_program("info", "a.inp").out)
 
+    def test_instances_of_parts_lie_where_they_are_placed(self):
+        part = "*Part, name=Plate\n" + HEAD[HEAD.index("*NODE"):] + TWO.replace(", ELSET=Surface1", "") + (
+            "*Elset, elset=all, generate\n1, 2\n*End Part\n")
+        assembly = ("*Assembly, name=A\n*Instance, name=low, part=plate\n*End Instance\n"
+                    # Shifted, then turned over about its edge.
+                    "*Instance, name=high, part=Plate\n0, 0, 1\n0, .5, 1, 1, .5, 1, 180\n*End Instance\n"
+                    "*Node\n1, 50, 50, 50\n*Elset, elset=heater, instance=low\n1\n*Elset, elset=pair\nlow.2, HIGH.1\n"
+                    "*Elset, elset=_s, internal, instance=high\n2\n*End Assembly\n")
+        self.assertEqual(self.surfaces(part + assembly), {"heater": 1, "pair": 2, "high.all": 1})
+        # The heater and the first square of the turned plate lie face to face: Howell C-11.
+        self.run_program("factors", "a.inp", "--patches", "1", "--between", "groups", "-o", "t.json")
+        table = json.loads((self.folder / "t.json").read_text())
+        names = table["names"]
+        self.assertAlmostEqual(table["form_factors"][names.index("heater")][names.index("pair")], 0.199825,
+                               delta=1e-6)  # of its six digits
+
+    def test_surfaces_of_an_assembly_have_sides_of_several_instances(self):
+        part = ("*PART, NAME=p\n*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n"
+                "*ELEMENT, TYPE=C3D8, ELSET=body\n1, 1,2,3,4,5,6,7,8\n*SURFACE, NAME=foot\nbody, S1\n*END PART\n")
+        text = part + ("*INSTANCE, NAME=a, PART=p\n*END INSTANCE\n*INSTANCE, NAME=b, PART=p\n3, 0, 0\n*END INSTANCE\n"
+                       "*ELSET, ELSET=_g, INTERNAL, INSTANCE=a\n1\n*ELSET, ELSET=_h, INTERNAL, INSTANCE=b\n1\n"
+                       "*SURFACE, NAME=gap\n_g, S4\n_h, S6\n*SURFACE, NAME=top\nb.body, S2\na.1, S2\n")
+        self.assertEqual(self.surfaces(text), {"a.body": 3, "a.foot": 1, "b.body": 3, "b.foot": 1, "gap": 2, "top": 2})
+
     def test_volumes_of_every_order(self):
         nodes = HEAD + "".join(f"{k}, {k % 5}, {k % 7}, {k % 3}\n" for k in range(11, 40))
         nodes += "7, 0., 0., 1.\n8, 1., 0., 1.\n9, 1., 1., 1.\n10, 0., 1., 1.\n"
@@ -130,9 +155,20 @@ class Inp(CliTest):
                                                "cut off"),
                 ("2, 2,5,6,3\n", "2, 2,5,6\n*STEP\n", ":14: the element before it has too few nodes; correct it"),
                 ("TYPE=S4, ", "", ":11: *ELEMENT names no type; add TYPE=S3 or another"),
-                ("*HEADING\n", "*INSTANCE, NAME=a, PART=b\n", ":1: parts and instances are not read; write the input "
-                 "without them (in Abaqus/CAE: Model, Edit Attributes, Do not use parts and assemblies in input "
-                 "files)"),
+                ("*HEADING\n", "*INSTANCE, NAME=a, PART=b\n", ":1: instance `a` is of part `b`, which does not come "
+                                                              "before it; correct it"),
+                ("*HEADING\n", "*PART, NAME=a\n*PART, NAME=b\n", ":2: a part begins within another; end that with "
+                                                                  "*END PART"),
+                ("*HEADING\n", "*PART, NAME=a\n*END PART\n*PART, NAME=A\n", ":3: part `A` is there twice; rename one"),
+                ("*HEADING\n", "*PART, NAME=a\n*END PART\n*INSTANCE, PART=a, NAME=x\n*END INSTANCE\n*INSTANCE, PART=a, "
+                 "NAME=X\n", ":5: instance `X` is there twice; rename one"),
+                ("*HEADING\n", "*PART, NAME=a\n*END PART\n*INSTANCE, PART=a, NAME=x\n1, 2\n", ":4: an instance is placed "
+                 "by a line of 3 numbers, its shift, and one of 7, two points of an axis and degrees; correct it"),
+                ("*HEADING\n", "*PART, NAME=a\n*END PART\n*INSTANCE, PART=a, NAME=x\n0,0,0\n1,1,1,1,1,1,5\n",
+                 ":5: the two points of the axis are the same; correct them"),
+                ("*HEADING\n", "*PART, NAME=a\n", ": its parts have no *INSTANCE, so nothing says where they lie"),
+                ("*HEADING\n", "*END INSTANCE\n", ":1: *END INSTANCE ends none; correct it"),
+                ("*HEADING\n", "*ELSET, ELSET=s, INSTANCE=x\n", ":1: there is no instance `x` before it; correct it"),
                 ("*HEADING\n", "*NMAP\n", ":1: *NMAP moves nodes and is not read; write nodes where they lie"),
                 ("*HEADING\n", "*SYSTEM\n1, 0, 0\n", ":5: nodes in the coordinates of *SYSTEM are not read; write "
                                                       "x, y, z"),
