@@ -186,14 +186,20 @@ FormFactors readFactors(const InputGroup& group, bool with_matrix,
   return factors;
 }
 
-void readStages(const InputGroup& root, bool with_factors, std::shared_ptr<ScratchMemory> scratch,
-                Results& results) {
-  results.version = root.text("version");
+std::optional<Scene> readScene(const InputGroup& root) {
+  std::optional<Scene> scene;
   if (root.has("scene")) {
     const InputGroup group = root.group("scene");
     FieldReader fields(group);
-    describe(fields, results.scene.emplace());
+    describe(fields, scene.emplace());
   }
+  return scene;
+}
+
+void readStages(const InputGroup& root, bool with_factors, std::shared_ptr<ScratchMemory> scratch,
+                Results& results) {
+  results.version = root.text("version");
+  results.scene = readScene(root);
   std::string mesh_hash;
   if (root.has("mesh")) {
     const InputGroup group = root.group("mesh");
@@ -250,13 +256,7 @@ std::optional<Scene> sceneAtOnce(const std::string& path) {
   const h5::InputFile file(path);
   const InputGroup root(file);
   checkHead(file, root);
-  std::optional<Scene> scene;
-  if (root.has("scene")) {
-    const InputGroup group = root.group("scene");
-    FieldReader fields(group);
-    describe(fields, scene.emplace());
-  }
-  return scene;
+  return readScene(root);
 }
 
 Results readAtOnce(const std::string& path, bool with_factors,
