@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "formfactor/closed_scene.h"
+#include "formfactor/computed_factors.h"
 #include "formfactor/exact/assembly/error_figure.h"
 #include "formfactor/exact/assembly/row_tasks.h"
 #include "radiosity/form_factors.h"
@@ -18,18 +19,6 @@ namespace radiosity {
 namespace {
 
 using test::MeshBuilder;
-
-FormFactorOptions exactly(double tolerance = 1e-3) {
-  FormFactorOptions options;
-  options.method = FormFactorMethod::exact;
-  options.tolerance = tolerance;
-  return options;
-}
-
-FormFactors compute(const PatchMesh& mesh, const FormFactorOptions& options = exactly()) {
-  Progress silent;
-  return computeFormFactors(mesh, options, silent);
-}
 
 /// Bit for bit, as if patch order[k] of a were patch k of b.
 void expectSame(const FormFactors& a, const FormFactors& b, std::vector<std::size_t> order = {}) {
@@ -88,7 +77,7 @@ TEST(ExactFactors, TenDigitsWithOnePatchAPlate) {
                                               {1, 0.199824895698387},
                                               {10, 0.00316205683875760}};
   for (const auto& [gap, value] : values) {
-    const FormFactors f = compute(facingPlates(1, gap), exactly(1e-11));
+    const FormFactors f = test::computed(facingPlates(1, gap), test::exactly(1e-11));
     EXPECT_EQ(f.matrix.precision(), Precision::double_precision);
     EXPECT_NEAR(f.matrix.at(0, 1), value, 1e-10 * value) << gap;
     EXPECT_NEAR(f.sky[0], 1 - value, 1e-10) << gap;
@@ -100,7 +89,7 @@ TEST(ExactFactors, ObstructedPlates) {
   // the closed form of the aperture). The tolerance is per pair, relative to the mean 1/N; 2 * 16
   // pairs of one row and random signs leave some units of it.
   const PatchMesh mesh = twinPlates(4);
-  const FormFactors f = compute(mesh, exactly(1e-4));
+  const FormFactors f = test::computed(mesh, test::exactly(1e-4));
   EXPECT_NEAR(totalBetween(mesh, f, "low", "high"), 0.0995062945990, 2e-5);
   EXPECT_GT(f.report.exact.occluded, 0u);
   EXPECT_GT(f.report.exact.rechecked, 0u);
@@ -108,7 +97,7 @@ TEST(ExactFactors, ObstructedPlates) {
 
 TEST(ExactFactors, FurnaceInAClosedRoomWithABlock) {
   const PatchMesh mesh = test::roomWithBlock(4).build();
-  const FormFactors f = compute(mesh);
+  const FormFactors f = test::computed(mesh);
   EXPECT_TRUE(f.report.closed);
   // Rows sum to 1 but for the error of occluded pairs. A row's sum of N errors is at most
   // sqrt(N) times the root of their squares, which the figure bounds in 99 of 100 rows.
@@ -128,19 +117,19 @@ TEST(ExactFactors, FurnaceInAClosedRoomWithABlock) {
 
 TEST(ExactFactors, ClosureIsReportedOrEnforced) {
   const PatchMesh mesh = test::roomWithBlock(4).build();
-  FormFactorOptions options = exactly();
-  const FormFactors told = compute(mesh, options);
+  FormFactorOptions options = test::exactly();
+  const FormFactors told = test::computed(mesh, options);
   EXPECT_FALSE(told.report.closure_enforced);
   EXPECT_EQ(told.report.closure.largest_residual_before, told.report.largest_row_error);
   EXPECT_GT(told.report.closure.rms_residual_before, 0.0);
   EXPECT_LT(told.report.closure.rms_residual_before, told.report.largest_row_error);
   EXPECT_EQ(told.report.closure.adjustable, 0u);  // nobody asked what could be changed
   options.closure = ClosureMode::off;
-  const FormFactors raw = compute(mesh, options);
+  const FormFactors raw = test::computed(mesh, options);
   expectSame(told, raw);  // saying changes nothing
   EXPECT_EQ(raw.report.closure.largest_residual_before, 0.0);
   options.closure = ClosureMode::enforce;
-  const FormFactors closed = compute(mesh, options);
+  const FormFactors closed = test::computed(mesh, options);
   ASSERT_TRUE(closed.report.closure_enforced);
   // All that were clipped but those whose rules agree to the bit; some of them came out as hidden.
   EXPECT_LE(closed.report.closure.adjustable, raw.report.exact.occluded + raw.report.exact.hidden);
@@ -166,7 +155,7 @@ TEST(ExactFactors, AccountsOfAnOpenScene) {
   builder.grid("high", {0, 0, 1}, {0, 1, 0}, {1, 0, 0}, 1, 1);
   builder.grid("flipped", {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, 1, 1);
   const PatchMesh mesh = builder.build();
-  const FormFactors f = compute(mesh, exactly(1e-9));
+  const FormFactors f = test::computed(mesh, test::exactly(1e-9));
   EXPECT_FALSE(f.report.closed);
   EXPECT_NEAR(f.fronts[0], 0.199824895698387, 1e-9);
   EXPECT_NEAR(f.backs[0], 0.200043776075403, 1e-9);
@@ -203,8 +192,8 @@ TEST(ExactFactors, PatchesOfSeveralElements) {
   };
   const PatchMesh whole = scene(true);
   const PatchMesh parts = scene(false);
-  const FormFactors a = compute(whole, exactly(1e-9));
-  const FormFactors b = compute(parts, exactly(1e-9));
+  const FormFactors a = test::computed(whole, test::exactly(1e-9));
+  const FormFactors b = test::computed(parts, test::exactly(1e-9));
   ASSERT_EQ(whole.size(), parts.size() - 2);
   EXPECT_GT(a.report.exact.elements, whole.size());
   for (std::size_t j = 0; j < 9; ++j) {
@@ -218,7 +207,7 @@ TEST(ExactFactors, PatchesOfSeveralElements) {
 TEST(ExactFactors, CoplanarPatchesCostNothing) {
   MeshBuilder builder;
   builder.grid("floor", {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 100, 100);
-  const FormFactors f = compute(builder.build());
+  const FormFactors f = test::computed(builder.build());
   const ExactReport& e = f.report.exact;
   EXPECT_EQ(e.elements, 10000u);
   EXPECT_EQ(e.unoccluded + e.occluded + e.hidden, 0u);
@@ -229,7 +218,7 @@ TEST(ExactFactors, CoplanarPatchesCostNothing) {
 TEST(ExactFactors, ConvexScenesRunNoVisibility) {
   MeshBuilder builder;
   builder.box("room", {0, 0, 0}, {1, 2, 3}, 4, true);
-  const FormFactors f = compute(builder.build());
+  const FormFactors f = test::computed(builder.build());
   const ExactReport& e = f.report.exact;
   EXPECT_EQ(e.occluded + e.hidden + e.shaft_tests + e.points, 0u);
   EXPECT_EQ(e.facet_pairs_unoccluded + e.facet_pairs_no_exchange, e.facet_pairs);
@@ -241,20 +230,20 @@ TEST(ExactFactors, ConvexScenesRunNoVisibility) {
 
 TEST(ExactFactors, ThreadsScalarTargetAndScaleChangeNoBit) {
   const PatchMesh mesh = test::roomWithBlock(3).build();
-  const FormFactors f = compute(mesh);
+  const FormFactors f = test::computed(mesh);
   setThreads(1);
-  expectSame(f, compute(mesh));
+  expectSame(f, test::computed(mesh));
   setThreads(0);
-  FormFactorOptions scalar = exactly();
+  FormFactorOptions scalar = test::exactly();
   scalar.simd = false;
-  expectSame(f, compute(mesh, scalar));
+  expectSame(f, test::computed(mesh, scalar));
   for (const int exponent : {-20, 20}) {
     PatchMesh scaled = mesh;
     for (Vec3& v : scaled.vertices) v *= std::ldexp(1.0, exponent);
     for (Vec3& v : scaled.centroid) v *= std::ldexp(1.0, exponent);
     for (Vec3& v : scaled.polygons.origin) v *= std::ldexp(1.0, exponent);
     for (double& a : scaled.area) a *= std::ldexp(1.0, 2 * exponent);
-    expectSame(f, compute(scaled));
+    expectSame(f, test::computed(scaled));
   }
 }
 
@@ -269,29 +258,29 @@ TEST(ExactFactors, NumberingChangesNoBit) {
   for (std::size_t k = 0; k < order.size(); ++k) {
     shuffled.index_in_surface[k] = mesh.index_in_surface[order[k]];
   }
-  expectSame(compute(mesh), compute(shuffled), order);
+  expectSame(test::computed(mesh), test::computed(shuffled), order);
 }
 
 TEST(ExactFactors, MemoryIsEstimatedAndRefused) {
   const PatchMesh mesh = test::roomWithBlock(4).build();
-  FormFactorOptions options = exactly();
+  FormFactorOptions options = test::exactly();
   Progress silent;
   const FormFactorPlan plan = planFormFactors(mesh, options, silent);
   EXPECT_EQ(plan.method, FormFactorMethod::exact);
-  EXPECT_GE(plan.bytes, compute(mesh, options).report.matrix_bytes);
+  EXPECT_GE(plan.bytes, test::computed(mesh, options).report.matrix_bytes);
   options.memory_limit = 1000;
-  EXPECT_THROW(compute(mesh, options), RunError);
+  EXPECT_THROW(test::computed(mesh, options), RunError);
 }
 
 TEST(ExactFactors, APlanOutlivesItsMesh) {
   const PatchMesh mesh = test::roomWithBlock(3).build();
   Progress silent;
   for (const auto method : {FormFactorMethod::exact, FormFactorMethod::hemicube}) {
-    FormFactorOptions options = exactly();
+    FormFactorOptions options = test::exactly();
     options.method = method;
     options.resolution = 32;
     options.near_exact = true;
-    const FormFactors expected = compute(mesh, options);
+    const FormFactors expected = test::computed(mesh, options);
     auto dies = std::make_unique<PatchMesh>(mesh);
     const FormFactorPlan copied = planFormFactors(*dies, options, silent);
     *dies = PatchMesh();
@@ -303,7 +292,7 @@ TEST(ExactFactors, APlanOutlivesItsMesh) {
     shared.reset();
     expectSame(computeFormFactors(kept, silent), expected);
   }
-  EXPECT_THROW(planFormFactors(std::shared_ptr<const PatchMesh>(), exactly(), silent),
+  EXPECT_THROW(planFormFactors(std::shared_ptr<const PatchMesh>(), test::exactly(), silent),
                std::logic_error);
 }
 
@@ -311,13 +300,14 @@ TEST(ExactFactors, CancelEndsTheRun) {
   struct CancelAtOnce : Progress {
     void advance(std::size_t) override { cancel(); }
   } progress;
-  EXPECT_THROW(computeFormFactors(test::roomWithBlock(4).build(), exactly(), progress), Cancelled);
+  EXPECT_THROW(computeFormFactors(test::roomWithBlock(4).build(), test::exactly(), progress),
+               Cancelled);
 }
 
 TEST(ExactFactors, AutoSaysWhatAndWhy) {
   Progress silent;
   const PatchMesh mesh = test::roomWithBlock(3).build();
-  const FormFactors f = compute(mesh, FormFactorOptions());
+  const FormFactors f = test::computed(mesh, FormFactorOptions());
   EXPECT_EQ(f.method, "exact");
   // Exact is taken without a look at rays where it is soon done, which this is.
   EXPECT_EQ(f.report.method_reason.rfind("it takes ", 0), 0u) << f.report.method_reason;
@@ -328,17 +318,17 @@ TEST(ExactFactors, DegeneratePatchesHaveEmptyRows) {
   mesh.area[5] = 0;
   mesh.polygon[5] = kNone;
   mesh.normal[5] = Vec3(0.0);
-  const FormFactors f = compute(mesh);
+  const FormFactors f = test::computed(mesh);
   EXPECT_EQ(f.report.empty_rows, 1u);
   EXPECT_EQ(f.fronts[5] + f.backs[5] + f.sky[5] + f.error[5], 0.0);
 }
 
 TEST(ExactFactors, EmptyAndSingle) {
-  const FormFactors none = compute(PatchMesh());
+  const FormFactors none = test::computed(PatchMesh());
   EXPECT_EQ(none.fronts.size(), 0u);
   MeshBuilder builder;
   builder.grid("alone", {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
-  const FormFactors one = compute(builder.build());
+  const FormFactors one = test::computed(builder.build());
   EXPECT_EQ(one.fronts[0], 0.0);
   EXPECT_EQ(one.sky[0], 1.0);
 }
@@ -432,7 +422,7 @@ std::vector<double> exchangeOfSurfaces(const Scene& scene, std::size_t patches, 
   const PatchMesh mesh = meshScene(scene, meshing, progress).mesh;
   joined = false;
   for (std::size_t i = 0; i < mesh.size(); ++i) joined |= mesh.outline(i).size() > 4;
-  const FormFactors f = compute(mesh, exactly(tolerance));
+  const FormFactors f = test::computed(mesh, test::exactly(tolerance));
   const std::size_t n = mesh.surface_names.size();
   std::vector<double> sum(n * n, 0.0);
   for (std::size_t i = 0; i < mesh.size(); ++i) {

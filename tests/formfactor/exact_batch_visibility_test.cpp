@@ -11,7 +11,7 @@
 namespace radiosity {
 namespace {
 
-constexpr Vec3 kUp(0, 0, 1);
+constexpr Vec3 kReceiverNormal(0, 0, 1);
 
 SampleCell cell() {
   return {{Vec3(-0.05, -0.05, 0), Vec3(0.05, -0.05, 0), Vec3(0.05, 0.05, 0), Vec3(-0.05, 0.05, 0)}};
@@ -80,7 +80,8 @@ Scene randomScene(std::uint64_t seed) {
   for (std::size_t k = 0; k < scene.outlines.size(); ++k) {
     GroupTarget target;
     const Vec3 middle = 0.5 * (scene.outlines[k][0] + scene.outlines[k][2]);
-    target.setOutline(scene.outlines[k], makeFrame(middle, -kUp, axisAcross(kUp)));
+    target.setOutline(scene.outlines[k],
+                      makeFrame(middle, -kReceiverNormal, axisAcross(kReceiverNormal)));
     target.blockers = scene.blockers[k];
     scene.targets.push_back(target);
   }
@@ -105,11 +106,11 @@ void expectAsExact(const ClipKernels<T>& kernels, double tolerance) {
   std::size_t open = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const Scene scene = randomScene(seed);
-    view.look(points.all(), cell().middle(), kUp, pointers(scene), false);
+    view.look(points.all(), cell().middle(), kReceiverNormal, pointers(scene), false);
     for (std::size_t q = 0; q < points.count; ++q) {
       for (std::size_t k = 0; k < scene.targets.size(); ++k) {
-        const PointView expected =
-            exact.look(points.point[q].position, kUp, scene.outlines[k], scene.blockers[k]);
+        const PointView expected = exact.look(points.point[q].position, kReceiverNormal,
+                                              scene.outlines[k], scene.blockers[k]);
         const double visible = double(view.visible(q)[k]);
         ASSERT_NEAR(double(view.whole(q)[k]), expected.whole, tolerance * expected.whole);
         ASSERT_NEAR(visible, expected.visible, tolerance * expected.whole)
@@ -149,9 +150,10 @@ TEST(BatchVisibility, OtherTargetsOfTheBatchChangeNothing) {
     const SamplePoints points = cell().points(side);
     const Scene scene = randomScene(side);
     const std::vector<const GroupTarget*> all = pointers(scene);
-    together.look(points.all(), cell().middle(), kUp, all, false);
+    together.look(points.all(), cell().middle(), kReceiverNormal, all, false);
     for (std::size_t k = 0; k < all.size(); ++k) {
-      alone.look(points.all(), cell().middle(), kUp, std::span(all).subspan(k, 1), false);
+      alone.look(points.all(), cell().middle(), kReceiverNormal, std::span(all).subspan(k, 1),
+                 false);
       for (std::size_t q = 0; q < points.count; ++q) {
         EXPECT_EQ(together.whole(q)[k], alone.whole(q)[0]);
         EXPECT_EQ(together.visible(q)[k], alone.visible(q)[0]);

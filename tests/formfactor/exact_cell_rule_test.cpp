@@ -13,7 +13,7 @@
 namespace radiosity {
 namespace {
 
-const SampleCell kUnitSquare = {{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}};
+const SampleCell kUnitCell = {{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}};
 
 /// A shadow with a straight edge that crosses a target with parallel sides: the visible fraction
 /// is 0, rises linearly over a strip of the cell, and is 1 from there on.
@@ -65,7 +65,7 @@ Errors errorsOfRamps(double change, std::size_t side, int level) {
   constexpr int kTimes = 4000;
   for (int k = 0; k < kTimes; ++k) {
     const Ramp ramp = randomRamp(change, random);
-    SampleCell cell = kUnitSquare;
+    SampleCell cell = kUnitCell;
     for (int l = 0; l < level; ++l) cell = cell.child(random() % 4);
     const SamplePoints points = cell.points(side);
     CellValues values;

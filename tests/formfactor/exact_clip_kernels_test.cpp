@@ -20,7 +20,7 @@ namespace radiosity {
 namespace {
 
 template <class Check>
-void forEveryTarget(const Check& check) {
+void forEveryClipTarget(const Check& check) {
   test::onEveryTarget([] { return clipKernels(true); }, check);
 }
 
@@ -224,7 +224,7 @@ void expectSameBits(const ClipKernelSet& kernels, const Arena& setup) {
 }
 
 TEST(ClipKernels, EveryTargetAgreesToTheBit) {
-  forEveryTarget([](const ClipKernelSet& kernels) {
+  forEveryClipTarget([](const ClipKernelSet& kernels) {
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
       const Arena setup = randomSetup(seed, seed % 4 == 0 ? 0.5 : 0.03, seed % 5 == 0);
       expectSameBits<float>(kernels, setup);
@@ -404,7 +404,7 @@ void expectSameCones(const Occluder& body, std::span<const Vec3> eyes,
 }
 
 TEST(ClipKernels, ConesAgreeToTheBit) {
-  forEveryTarget([](const ClipKernelSet& kernels) {
+  forEveryClipTarget([](const ClipKernelSet& kernels) {
     forEveryBody([&](const Occluder& body, std::span<const Vec3> eyes) {
       expectSameCones<float>(body, eyes, kernels);
       expectSameCones<double>(body, eyes, kernels);
@@ -458,7 +458,7 @@ TEST(ClipKernels, MissedByConesIsWhatASideKeepsOut) {
 }
 
 TEST(ClipKernels, MissedByConesIsTheSameOnEveryTargetAndFromEveryEdge) {
-  forEveryTarget([](const ClipKernelSet& kernels) {
+  forEveryClipTarget([](const ClipKernelSet& kernels) {
     std::mt19937_64 random(12);
     forEveryBody([&](const Occluder& body, std::span<const Vec3> eyes) {
       ConeMemory memory(body);

@@ -41,7 +41,7 @@ double formFactor(const Loop& a, const Loop& b, double tolerance) {
   return kernel.pair(0, 1) / set.area[0];
 }
 
-struct Case {
+struct ClosedForm {
   std::string name;
   Loop a, b;
   double value;
@@ -52,19 +52,20 @@ Loop turnedUp(double degrees) {
   return rectangle({0, 0, 0}, {0, 1, 0}, {std::cos(angle), 0, std::sin(angle)});
 }
 
-std::vector<Case> cases() {
+std::vector<ClosedForm> closedForms() {
   const Loop unit = rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   const auto parallel = [&](double a, double b, double c, double value) {
-    return Case{"parallel " + std::to_string(c), rectangle({0, 0, 0}, {a, 0, 0}, {0, b, 0}),
-                rectangle({0, 0, c}, {0, b, 0}, {a, 0, 0}), value};
+    return ClosedForm{"parallel " + std::to_string(c), rectangle({0, 0, 0}, {a, 0, 0}, {0, b, 0}),
+                      rectangle({0, 0, c}, {0, b, 0}, {a, 0, 0}), value};
   };
   const auto perpendicular = [&](double w, double h, double l, double value) {
-    return Case{"perpendicular " + std::to_string(h), rectangle({0, 0, 0}, {w, 0, 0}, {0, l, 0}),
-                rectangle({0, 0, 0}, {0, l, 0}, {0, 0, h}), value};
+    return ClosedForm{"perpendicular " + std::to_string(h),
+                      rectangle({0, 0, 0}, {w, 0, 0}, {0, l, 0}),
+                      rectangle({0, 0, 0}, {0, l, 0}, {0, 0, h}), value};
   };
   const auto shifted = [&](const char* name, const Vec3& by, const Vec3& u, const Vec3& v,
                            double value) {
-    return Case{name, unit, rectangle(by, u, v), value};
+    return ClosedForm{name, unit, rectangle(by, u, v), value};
   };
   const Vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), o(0, 0, 0);
   const auto octant = [&](double i, double j, double k) {
@@ -114,7 +115,7 @@ std::vector<Case> cases() {
 }
 
 TEST(ClosedForms, PublishedValuesToTenDigits) {
-  for (const Case& c : cases()) {
+  for (const ClosedForm& c : closedForms()) {
     // One part in 1e10: the values are given to 12 digits or more.
     EXPECT_NEAR(formFactor(c.a, c.b, 1e-11), c.value, 1e-10 * c.value) << c.name;
     EXPECT_NEAR(formFactor(c.b, c.a, 1e-11) * glm::length(newell(c.b)),
@@ -146,7 +147,7 @@ TEST(ClosedForms, RowsOfAFrustumSumToOne) {
 }
 
 TEST(ClosedForms, EveryToleranceIsKept) {
-  for (const Case& c : cases()) {
+  for (const ClosedForm& c : closedForms()) {
     for (const double tolerance : {1e-2, 1e-3, 1e-5, 1e-7, 1e-9}) {
       EXPECT_NEAR(formFactor(c.a, c.b, tolerance), c.value, tolerance * c.value) << c.name;
     }
@@ -162,7 +163,7 @@ TEST(ClosedForms, TurnedMovedAndScaledValuesAreTheSame) {
     }
     return loop;
   };
-  for (const Case& c : cases()) {
+  for (const ClosedForm& c : closedForms()) {
     // Coordinates moved by 1e3 sizes lose 3 of 16 digits, near pairs lose some more.
     EXPECT_NEAR(formFactor(moved(c.a), moved(c.b), 1e-11), c.value, 1e-9 * c.value) << c.name;
   }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMostParts = 400;
 constexpr double kCoincidence = 1e-7;
-const Vec3 kUp(0, 0, 1);
+const Vec3 kPlaneNormal(0, 0, 1);
 
 double areaOf(const CriticalLines::Part& part) {
   double sum = 0;
@@ -48,13 +48,15 @@ struct Sight {
 std::size_t countParts(const Sight& sight, const Occluder& body, std::mt19937& random) {
   const std::vector<Blocker> blockers = {{&body, 0, false}};
   CriticalLines lines;
-  EXPECT_TRUE(lines.cut(sight.eyes, kUp, sight.target, blockers, kCoincidence, kMostParts));
+  EXPECT_TRUE(
+      lines.cut(sight.eyes, kPlaneNormal, sight.target, blockers, kCoincidence, kMostParts));
   VisiblePart view;
   double area = 0;
   for (const CriticalLines::Part& part : lines.parts()) {
     area += areaOf(part);
     const auto shape = [&] {
-      return view.look(lines.lift(pointIn(part, random)), kUp, sight.target, blockers).shape;
+      return view.look(lines.lift(pointIn(part, random)), kPlaneNormal, sight.target, blockers)
+          .shape;
     };
     const std::uint64_t first = shape();
     for (int sample = 0; sample < 20; ++sample) EXPECT_EQ(shape(), first);
@@ -142,12 +144,13 @@ TEST(CriticalLines, RefusesWhatTakesMore) {
   const std::vector<Blocker> blockers = {{&box, 0, false}};
   const std::size_t parts = countParts(sight, box, random);
   CriticalLines lines;
-  EXPECT_TRUE(lines.cut(sight.eyes, kUp, sight.target, blockers, kCoincidence, parts));
+  EXPECT_TRUE(lines.cut(sight.eyes, kPlaneNormal, sight.target, blockers, kCoincidence, parts));
   EXPECT_EQ(lines.parts().size(), parts);
-  EXPECT_FALSE(lines.cut(sight.eyes, kUp, sight.target, blockers, kCoincidence, parts - 1));
+  EXPECT_FALSE(
+      lines.cut(sight.eyes, kPlaneNormal, sight.target, blockers, kCoincidence, parts - 1));
   // Twelve edges each: too many to look for lines.
   const std::vector<Blocker> many(6, blockers[0]);
-  EXPECT_FALSE(lines.cut(sight.eyes, kUp, sight.target, many, kCoincidence, kMostParts));
+  EXPECT_FALSE(lines.cut(sight.eyes, kPlaneNormal, sight.target, many, kCoincidence, kMostParts));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "exact_scenes.h"
+#include "formfactor/computed_factors.h"
 #include "formfactor/exact/assembly/exact_scene.h"
 #include "formfactor/exact/assembly/recorded_pairs.h"
 #include "formfactor/exact/assembly/row_sample.h"
@@ -23,13 +24,6 @@ ExactEstimate estimateOf(const PatchMesh& mesh, const FormFactorOptions& options
   const ExactScene scene(mesh, silent);
   const RowSample sample = sampleRows(scene, options.toleranceOf(FormFactorMethod::exact), silent);
   return estimateExact(scene, sample, options);
-}
-
-FormFactorOptions exactly(double tolerance) {
-  FormFactorOptions options;
-  options.method = FormFactorMethod::exact;
-  options.tolerance = tolerance;
-  return options;
 }
 
 PatchMesh meshNamed(const std::string& name, std::size_t patches) {
@@ -51,7 +45,7 @@ TEST(ExactEstimate, PointsAreForeseenWithinAFactorOfTwo) {
                         Case{"curved", 1500, {1e-1}}}) {
     const PatchMesh mesh = meshNamed(c.scene, c.patches);
     for (const double tolerance : c.tolerances) {
-      const FormFactorOptions options = exactly(tolerance);
+      const FormFactorOptions options = test::exactly(tolerance);
       const double foreseen = estimateOf(mesh, options).points;
       const auto counted = double(computeFormFactors(mesh, options, silent).report.exact.points);
       EXPECT_LT(counted, kFactor * foreseen) << c.scene << ' ' << tolerance;
@@ -62,7 +56,7 @@ TEST(ExactEstimate, PointsAreForeseenWithinAFactorOfTwo) {
 
 TEST(ExactEstimate, IsTheSameInEveryRunButForTheClock) {
   const PatchMesh mesh = meshNamed("furnished-room", 600);
-  const FormFactorOptions options = exactly(1e-3);
+  const FormFactorOptions options = test::exactly(1e-3);
   const ExactEstimate first = estimateOf(mesh, options);
   setThreads(1);
   const ExactEstimate second = estimateOf(mesh, options);
@@ -123,8 +117,8 @@ TEST(ExactEstimate, ASampleKeepsToItsBound) {
 
 TEST(ExactEstimate, TighterTolerancesTakeLonger) {
   const PatchMesh mesh = meshNamed("two-rooms", 300);
-  const ExactEstimate loose = estimateOf(mesh, exactly(1e-2));
-  const ExactEstimate tight = estimateOf(mesh, exactly(1e-3));
+  const ExactEstimate loose = estimateOf(mesh, test::exactly(1e-2));
+  const ExactEstimate tight = estimateOf(mesh, test::exactly(1e-3));
   EXPECT_GT(loose.refining, 0);
   EXPECT_LT(loose.refining, loose.work);
   // What goes with 1 / tolerance; sums of some thousand numbers, rounded differently.
@@ -138,7 +132,7 @@ TEST(ExactEstimate, NothingInBetweenTakesNoPoints) {
   builder.grid("low", {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 8, 8);
   builder.grid("high", {0, 0, 1}, {0, 1, 0}, {1, 0, 0}, 8, 8);
   const PatchMesh mesh = builder.build();
-  const ExactEstimate estimate = estimateOf(mesh, exactly(1e-6));
+  const ExactEstimate estimate = estimateOf(mesh, test::exactly(1e-6));
   EXPECT_EQ(estimate.points, 0);
   EXPECT_EQ(estimate.refining, 0);
   EXPECT_GT(estimate.work, 0);

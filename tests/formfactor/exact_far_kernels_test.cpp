@@ -20,7 +20,7 @@ using test::ElementPairs;
 using test::Shape;
 
 template <class Check>
-void forEveryTarget(const Check& check) {
+void forEveryFarTarget(const Check& check) {
   test::onEveryTarget([] { return farKernels(true); }, check);
 }
 
@@ -90,7 +90,7 @@ const std::vector<Sample>& samples(std::size_t shape) {
 }
 
 TEST(FarKernels, TheTableOfAccuracyIsKeptOnEveryInstructionSet) {
-  forEveryTarget([](const FarKernels& kernels) {
+  forEveryFarTarget([](const FarKernels& kernels) {
     for (std::size_t s = 0; s < kShapes.size(); ++s) {
       for (const double tolerance : {1e-2, 1e-3, 1e-4, 1e-5, 1e-7, 1e-9}) {
         const bool single = tolerance >= 1e-5;
@@ -166,7 +166,7 @@ void expectTheScalarTargetsBits(const FarKernels& kernels) {
 }
 
 TEST(FarKernels, EveryInstructionSetHasTheSameBits) {
-  forEveryTarget([](const FarKernels& kernels) {
+  forEveryFarTarget([](const FarKernels& kernels) {
     expectTheScalarTargetsBits<float>(kernels);
     expectTheScalarTargetsBits<double>(kernels);
   });

@@ -23,8 +23,8 @@ namespace {
 using test::MeshBuilder;
 
 /// A mesh with everything the exact method makes of it, and its partly visible pairs.
-struct Case : VisibilitySink {
-  explicit Case(PatchMesh given)
+struct PairsCase : VisibilitySink {
+  explicit PairsCase(PatchMesh given)
       : mesh(std::move(given)),
         elements(mesh),
         occluders(mesh, elements),
@@ -77,11 +77,11 @@ MeshBuilder plates(int n) {
 double pastSheet(double x0, double x1, double y0, double y1, double tolerance) {
   MeshBuilder builder = plates(8);
   builder.grid("sheet", {x0, y0, 0.5}, {x1 - x0, 0, 0}, {0, y1 - y0, 0}, 1, 1, true);
-  const Case scene(builder.build());
+  const PairsCase scene(builder.build());
   // Pairs with the sheet, the third surface, are no part of the sum.
   double sum = 0;
   const auto plate = [&](Index e) { return scene.mesh.surface[scene.elements.patch[e]] < 2; };
-  for (const Case::Open& pair : scene.open) {
+  for (const PairsCase::Open& pair : scene.open) {
     if (plate(pair.row) && plate(pair.column)) sum += pair.exchange;
   }
   OccludedCounts counts;
@@ -136,7 +136,7 @@ PatchMesh clutteredRoom(int n) {
 }
 
 TEST(OccludedPairs, StaysBetweenNothingAndUnoccluded) {
-  const Case scene(clutteredRoom(3));
+  const PairsCase scene(clutteredRoom(3));
   for (const double tolerance : {1e-3, 1e-4}) {
     OccludedCounts counts;
     const auto found = scene.evaluate(tolerance, counts);
@@ -151,7 +151,7 @@ TEST(OccludedPairs, StaysBetweenNothingAndUnoccluded) {
 }
 
 TEST(OccludedPairs, VectorsAndBatchesChangeNothing) {
-  const Case scene(clutteredRoom(3));
+  const PairsCase scene(clutteredRoom(3));
   for (const double tolerance : {1e-3, 1e-4}) {
     OccludedCounts counts;
     const auto vectors = scene.evaluate(tolerance, counts);
@@ -170,7 +170,7 @@ TEST(OccludedPairs, VectorsAndBatchesChangeNothing) {
 }
 
 TEST(OccludedPairs, StricterEvaluationConfirmsStatedErrors) {
-  const Case scene(clutteredRoom(2));
+  const PairsCase scene(clutteredRoom(2));
   for (const double tolerance : {1e-2, 1e-4}) {
     OccludedCounts counts;
     const auto found = scene.evaluate(tolerance, counts);
@@ -203,7 +203,7 @@ void square(MeshBuilder& builder, const std::string& name, double x, double y, d
 }
 
 /// The pair of the first two surfaces.
-const OccludedPair& firstPair(const Case& scene) {
+const OccludedPair& firstPair(const PairsCase& scene) {
   for (const OccludedPair& pair : scene.pairs) {
     if (scene.mesh.surface[scene.elements.patch[pair.row]] +
             scene.mesh.surface[scene.elements.patch[pair.column]] ==
@@ -222,7 +222,7 @@ TEST(OccludedPairs, PointsLieWhereTheShadowThatMovesMostMovesLeast) {
   square(builder, "small", 0.1, 0.07, 1, 0.02, false);
   square(builder, "beside the large", 0.9, 0.1, 0.1, 1.1, true, true);
   square(builder, "beside the small", 0.15, 0.07, 0.997, 0.1, true, true);
-  const Case scene(builder.build());
+  const PairsCase scene(builder.build());
   const OccludedPair& pair = firstPair(scene);
   const EdgeDistances distances(scene.elements, scene.occluders);
   PairPreparation ready(scene.elements, scene.occluders, distances);
@@ -244,7 +244,7 @@ TEST(OccludedPairs, ErrorOfFarKernelsIsStated) {
     square(builder, "small", 0, 0, 0, 0.02, true);
     square(builder, "large", away, 0.1, away, 1, false);
     builder.grid("edge", {away / 2, -3, away / 2}, {3, 0, 0}, {0, 6, 0}, 1, 1, true);
-    const Case scene(builder.build());
+    const PairsCase scene(builder.build());
     const OccludedPair& pair = firstPair(scene);
     const double area = scene.elements.scale * scene.elements.scale;
     const truth::GroundTruth truth(scene.mesh, {});
@@ -277,7 +277,7 @@ TEST(OccludedPairs, APairThatIsCutShortAtOneEndIsEvaluatedFromTheOther) {
   options.patches = 120;
   Progress silent;
   const Scene box = loadScene(RADIOSITY_SOURCE_DIR "/data/cornell-box-closed.obj");
-  const Case scene(meshScene(box, options, silent).mesh);
+  const PairsCase scene(meshScene(box, options, silent).mesh);
   const Index a = patchAt(scene.mesh, {0.555, 0.373, 0.169});
   const Index b = patchAt(scene.mesh, {0.0, 0.091, 0.210});
   const auto pair = std::find_if(scene.pairs.begin(), scene.pairs.end(), [&](const auto& p) {
@@ -300,7 +300,7 @@ TEST(OccludedPairs, APairThatIsCutShortAtOneEndIsEvaluatedFromTheOther) {
 
 /// Every so many rows of a mesh, true.
 struct TrueRows {
-  TrueRows(const Case& scene, std::size_t every) {
+  TrueRows(const PairsCase& scene, std::size_t every) {
     truth::TruthOptions options;
     options.accuracy = 1e-5;
     const truth::GroundTruth truth(scene.mesh, options);
@@ -320,7 +320,7 @@ struct RowErrors {
   double median_ratio = 0;  ///< figure over true error
 };
 
-RowErrors compareRows(const Case& scene, const TrueRows& rows, double tolerance) {
+RowErrors compareRows(const PairsCase& scene, const TrueRows& rows, double tolerance) {
   OccludedCounts counts;
   const auto found = scene.evaluate(tolerance, counts);
   std::vector<double> figure(scene.elements.patch_elements);
@@ -364,9 +364,9 @@ TEST(OccludedPairs, RowsKeepTheToleranceAndSaySo) {
   // are occluded; among twelve blocks nearly all are: three times it is asserted. Figures are above
   // the error in every row of the sample, and within ten times it in half of them; twenty, where
   // large patches past many blocks leave much to guess.
-  const Case block(test::roomWithBlock(3).build());
-  const Case clutter(clutteredRoom(3));
-  for (const Case* scene : {&block, &clutter}) {
+  const PairsCase block(test::roomWithBlock(3).build());
+  const PairsCase clutter(clutteredRoom(3));
+  for (const PairsCase* scene : {&block, &clutter}) {
     const TrueRows rows(*scene, 13);
     for (const double tolerance : {1e-3, 1e-4}) {
       const RowErrors errors = compareRows(*scene, rows, tolerance);

@@ -96,13 +96,13 @@ void expectBlocksAlike(const PatchMesh& mesh, std::size_t lines, unsigned seed,
   EXPECT_GT(checked, lines / 2);
 }
 
-struct Case {
+struct OccluderCase {
   const char* name;
   Scene (*make)();
   std::size_t lines;
 };
 
-const Case kCases[] = {
+const OccluderCase kOccluderCases[] = {
     {"cornell", [] { return test::dataScene("cornell-box"); }, 20000},
     {"cornell_closed", [] { return test::dataScene("cornell-box-closed"); }, 20000},
     {"blocked_plates", [] { return test::dataScene("blocked-plates"); }, 5000},
@@ -113,7 +113,7 @@ const Case kCases[] = {
     {"hard", test::hardRoom, 20000},
 };
 
-class ExactOccluders : public ::testing::TestWithParam<Case> {};
+class ExactOccluders : public ::testing::TestWithParam<OccluderCase> {};
 
 TEST_P(ExactOccluders, BlockWhatPolygonsBlock) {
   expectBlocksAlike(test::meshOf(GetParam().make(), 100), GetParam().lines, 1);
@@ -123,7 +123,7 @@ TEST_P(ExactOccluders, BlockWhatPolygonsBlockTurned) {
   expectBlocksAlike(test::meshOf(test::turned(GetParam().make()), 100), GetParam().lines / 2, 2);
 }
 
-class ExactOccludersOfFaces : public ::testing::TestWithParam<Case> {};
+class ExactOccludersOfFaces : public ::testing::TestWithParam<OccluderCase> {};
 
 TEST_P(ExactOccludersOfFaces, BlockWhatPolygonsBlock) {
   const Scene scene = GetParam().make();
@@ -131,16 +131,18 @@ TEST_P(ExactOccludersOfFaces, BlockWhatPolygonsBlock) {
   expectBlocksAlike(test::meshOf(faces, 1, true), GetParam().lines / 2, 3);
 }
 
-std::string nameOf(const ::testing::TestParamInfo<Case>& tested) { return tested.param.name; }
+std::string nameOf(const ::testing::TestParamInfo<OccluderCase>& tested) {
+  return tested.param.name;
+}
 
 /// All but the furnished room: finding the occluders among its 10,000 faces takes seconds.
-std::vector<Case> casesOfFaces() {
-  std::vector<Case> cases(std::begin(kCases), std::end(kCases));
-  std::erase_if(cases, [](const Case& c) { return std::string(c.name) == "furnished"; });
+std::vector<OccluderCase> casesOfFaces() {
+  std::vector<OccluderCase> cases(std::begin(kOccluderCases), std::end(kOccluderCases));
+  std::erase_if(cases, [](const OccluderCase& c) { return std::string(c.name) == "furnished"; });
   return cases;
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, ExactOccluders, ::testing::ValuesIn(kCases), nameOf);
+INSTANTIATE_TEST_SUITE_P(Scenes, ExactOccluders, ::testing::ValuesIn(kOccluderCases), nameOf);
 INSTANTIATE_TEST_SUITE_P(Scenes, ExactOccludersOfFaces, ::testing::ValuesIn(casesOfFaces()),
                          nameOf);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "formfactor/computed_factors.h"
 #include "formfactor/exact_scenes.h"
 #include "radiosity/form_factors.h"
 #include "support/mesh_builder.h"
@@ -12,24 +13,12 @@
 namespace radiosity {
 namespace {
 
-FormFactors computed(const PatchMesh& mesh, const FormFactorOptions& options) {
-  Progress silent;
-  return computeFormFactors(mesh, options, silent);
-}
-
-FormFactors exactOf(const PatchMesh& mesh) {
-  FormFactorOptions options;
-  options.method = FormFactorMethod::exact;
-  options.tolerance = 1e-4;
-  return computed(mesh, options);
-}
-
 FormFactors byRays(const PatchMesh& mesh, const std::vector<Index>& exact_rows, double tolerance) {
   FormFactorOptions options;
   options.method = FormFactorMethod::rays;
   options.tolerance = tolerance;
   options.exact_rows = exact_rows;
-  return computed(mesh, options);
+  return test::computed(mesh, options);
 }
 
 /// What each patch sees of some, over what it truly sees of them: the largest difference, of
@@ -59,7 +48,7 @@ TEST_P(ExactRows, GiveDirectLightThatRaysAloneMiss) {
   const PatchMesh mesh = test::meshOf(scene, 300);
   const std::vector<Index> emitters = emittingUnknowns(mesh, patchMaterials(scene, mesh));
   ASSERT_FALSE(emitters.empty());
-  const FormFactors truth = exactOf(mesh);
+  const FormFactors truth = test::computed(mesh, test::exactly(1e-4));
   constexpr double kTolerance = 5e-2;
   const FormFactors rays = byRays(mesh, {}, kTolerance);
   const FormFactors both = byRays(mesh, emitters, kTolerance);
@@ -101,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, ExactRows,
 
 TEST(ExactRowsOfClusters, AreSumsOverTheirPatches) {
   PatchMesh mesh = test::roomWithBlock(4).build();
-  const FormFactors truth = exactOf(mesh);
+  const FormFactors truth = test::computed(mesh, test::exactly(1e-4));
   PatchClusters clusters;  // three patches each, whatever surface they are of
   for (Index i = 0; i < mesh.size(); ++i) {
     if (i % 3 == 0) clusters.begin.push_back(clusters.patches.size());

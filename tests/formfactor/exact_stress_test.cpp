@@ -425,7 +425,7 @@ TEST(Sameness, NoBitOfTheExactMethodDependsOnTightness) {
 
 // ---- What is not there costs nothing
 
-TEST(Skips, ConvexAndCoplanar) {
+TEST(ExactSkips, ConvexAndCoplanar) {
   MeshBuilder plain;
   plain.grid("floor", {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 100, 100);
   const ExactReport flat = compute(plain.build(), FormFactorMethod::exact).report.exact;

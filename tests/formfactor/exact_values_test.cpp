@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 
+#include "formfactor/computed_factors.h"
 #include "radiosity/form_factors.h"
 #include "support/mesh_builder.h"
 #include "truth/closed_forms.h"
@@ -17,16 +18,7 @@ using test::cubeOfTriangles;
 using test::MeshBuilder;
 using truth::Corners;
 
-constexpr double kPi = std::numbers::pi;
-
-FormFactors exact(const PatchMesh& mesh, double tolerance = 1e-3) {
-  FormFactorOptions options;
-  options.method = FormFactorMethod::exact;
-  options.tolerance = tolerance;
-  options.precision = Precision::double_precision;
-  Progress silent;
-  return computeFormFactors(mesh, options, silent);
-}
+using std::numbers::pi;
 
 /// F from the patches of one surface to those of another, area to area.
 double surfaceToSurface(const PatchMesh& mesh, const FormFactors& factors, const std::string& from,
@@ -51,7 +43,7 @@ TEST(ExactValues, PlanarClosedFormsToTenDigits) {
     builder.polygon("from", {k.from});
     builder.polygon("to", {k.to});
     const PatchMesh mesh = builder.build();
-    const FormFactors f = exact(mesh, 1e-11);
+    const FormFactors f = test::exactInDouble(mesh, 1e-11);
     // Ten digits of the value; the last digit of the table's own is 1e-13.
     EXPECT_NEAR(f.matrix.at(0, 1) / k.f, 1, 1e-10) << k.name;
     EXPECT_NEAR(f.matrix.at(1, 0) * mesh.area[1], k.f * mesh.area[0], 1e-10 * k.f) << k.name;
@@ -61,7 +53,7 @@ TEST(ExactValues, PlanarClosedFormsToTenDigits) {
 
 TEST(ExactValues, CubeOfTriangles) {
   const PatchMesh mesh = cubeOfTriangles();
-  const FormFactors f = exact(mesh, 1e-11);
+  const FormFactors f = test::exactInDouble(mesh, 1e-11);
   const double known[] = {0.211324865405187, 0.184424034121610, 0.0563375489264, 0.0760875888927,
                           0.0999124478491937};  // the last: half a face's, where diagonals cross
   for (std::size_t i = 0; i < mesh.size(); ++i) {
@@ -77,7 +69,7 @@ TEST(ExactValues, CubeOfTriangles) {
 TEST(ExactValues, ObstructedPlatesInPatches) {
   for (const truth::ObstructedForm& k : truth::obstructedForms()) {
     const PatchMesh mesh = truth::blockedPlates({k.obstacle}, 8);
-    const FormFactors f = exact(mesh, 1e-7);
+    const FormFactors f = test::exactInDouble(mesh, 1e-7);
     EXPECT_NEAR(surfaceToSurface(mesh, f, "lower", "upper"), k.f, 1e-6) << k.name;
     EXPECT_NEAR(surfaceToSurface(mesh, f, "upper", "lower"), k.f, 1e-6) << k.name;
   }
@@ -90,7 +82,7 @@ TEST(ExactValues, ObstructedPlatesToNineDigitsTakeFewPoints) {
   std::size_t pairs = 0;
   for (const truth::ObstructedForm& k : truth::obstructedForms()) {
     const PatchMesh mesh = truth::blockedPlates({k.obstacle}, 8);
-    const FormFactors f = exact(mesh, 1e-9);
+    const FormFactors f = test::exactInDouble(mesh, 1e-9);
     // Errors of 64 x 64 values, within 1e-9 of the mean form factor 1/128 each; truth has 13
     // digits.
     EXPECT_NEAR(surfaceToSurface(mesh, f, "lower", "upper"), k.f, 1e-9) << k.name;
@@ -119,7 +111,7 @@ void disc(MeshBuilder& builder, const std::string& surface, double radius, doubl
           int sides) {
   Corners rim;
   for (int k = 0; k < sides; ++k) {
-    const double a = 2 * kPi * (up ? k : -k) / sides;
+    const double a = 2 * pi * (up ? k : -k) / sides;
     rim.emplace_back(radius * std::cos(a), radius * std::sin(a), z);
   }
   std::vector<Corners> wedges;
@@ -143,7 +135,7 @@ TEST(ExactValues, CoaxialDiscs) {
       disc(builder, "lower", c.r1, 0, true, sides);
       disc(builder, "upper", c.r2, c.h, false, sides);
       const PatchMesh mesh = builder.build();
-      values.push_back(surfaceToSurface(mesh, exact(mesh, 1e-9), "lower", "upper"));
+      values.push_back(surfaceToSurface(mesh, test::exactInDouble(mesh, 1e-9), "lower", "upper"));
     }
     expectSecondOrder(values, c.f, "discs " + std::to_string(c.r1) + " " + std::to_string(c.h));
   }
@@ -156,8 +148,8 @@ void sphere(MeshBuilder& builder, const std::string& surface, double radius, int
   const auto at = [&](int ring, int k) {
     if (ring == 0) return Vec3(0, 0, -radius);
     if (ring == rings) return Vec3(0, 0, radius);
-    const double polar = kPi * ring / rings;
-    const double a = 2 * kPi * (k % sides) / sides;
+    const double polar = pi * ring / rings;
+    const double a = 2 * pi * (k % sides) / sides;
     return radius *
            Vec3(std::sin(polar) * std::cos(a), std::sin(polar) * std::sin(a), -std::cos(polar));
   };
@@ -181,7 +173,7 @@ TEST(ExactValues, SphereInACube) {
     sphere(builder, "sphere", 0.5, sides, false);
     builder.box("cube", Vec3(-1), Vec3(1), 1, true);
     const PatchMesh mesh = builder.build();
-    const FormFactors f = exact(mesh);
+    const FormFactors f = test::exactInDouble(mesh);
     // Nothing stands between the sphere and the cube: closed forms, 1e-5 or better each.
     EXPECT_NEAR(surfaceToSurface(mesh, f, "sphere", "cube"), 1, 1e-5) << sides;
     EXPECT_EQ(surfaceToSurface(mesh, f, "sphere", "sphere"), 0) << sides;
@@ -200,7 +192,7 @@ TEST(ExactValues, ConcentricSpheres) {
     sphere(builder, "inner", 1, sides, false);
     sphere(builder, "outer", 2, sides, true);
     const PatchMesh mesh = builder.build();
-    const FormFactors f = exact(mesh, 1e-5);
+    const FormFactors f = test::exactInDouble(mesh, 1e-5);
     double areas[2] = {0, 0};
     for (std::size_t i = 0; i < mesh.size(); ++i) areas[mesh.surface[i]] += mesh.area[i];
     // Whatever leaves a convex solid reaches what encloses it: exact for the polyhedra. A row's
@@ -219,7 +211,7 @@ TEST(ExactValues, InsideASphere) {
     MeshBuilder builder;
     sphere(builder, "sphere", 1, sides, true);
     const PatchMesh mesh = builder.build();
-    const FormFactors f = exact(mesh);
+    const FormFactors f = test::exactInDouble(mesh);
     EXPECT_EQ(f.report.exact.shaft_tests, 0u) << "a convex room";
     // Northern cap above 45 degrees and southern hemisphere: heights are fractions of the sphere.
     double exchange = 0;
@@ -240,8 +232,8 @@ TEST(ExactValues, InsideASphere) {
 void cylinder(MeshBuilder& builder, const std::string& surface, double radius, double height,
               int sides, bool inward) {
   for (int k = 0; k < sides; ++k) {
-    const double a = 2 * kPi * k / sides;
-    const double b = 2 * kPi * (k + 1 == sides ? 0 : k + 1) / sides;
+    const double a = 2 * pi * k / sides;
+    const double b = 2 * pi * (k + 1 == sides ? 0 : k + 1) / sides;
     Vec3 from(radius * std::cos(a), radius * std::sin(a), 0);
     Vec3 to(radius * std::cos(b), radius * std::sin(b), 0);
     if (inward) std::swap(from, to);
@@ -254,7 +246,7 @@ void annulus(MeshBuilder& builder, const std::string& surface, double inner, dou
              int sides, bool up) {
   Corners out, in;
   for (int k = 0; k < sides; ++k) {
-    const double a = 2 * kPi * k / sides;
+    const double a = 2 * pi * k / sides;
     out.emplace_back(outer * std::cos(a), outer * std::sin(a), z);
     in.emplace_back(inner * std::cos(a), inner * std::sin(a), z);
   }
@@ -289,7 +281,7 @@ TEST(ExactValues, CoaxialCylinders) {
       annulus(builder, "low", 1, c.r, 0, sides, true);
       annulus(builder, "high", 1, c.r, c.h, sides, false);
       const PatchMesh mesh = builder.build();
-      const FormFactors f = exact(mesh, 1e-4);
+      const FormFactors f = test::exactInDouble(mesh, 1e-4);
       EXPECT_TRUE(f.report.closed);
       const auto add = [&](const char* what, const char* from, const char* to, double value) {
         values[what].first = value;
@@ -328,8 +320,8 @@ TEST(ExactBounds, ObstructedIsNeverMoreThanUnobstructed) {
     for (const double tolerance : {1e-1, 1e-3, 1e-6}) {
       const PatchMesh with = truth::blockedPlates({k.obstacle}, 6);
       const PatchMesh without = truth::blockedPlates({}, 6);
-      const FormFactors f = exact(with, tolerance);
-      const FormFactors free = exact(without, tolerance);
+      const FormFactors f = test::exactInDouble(with, tolerance);
+      const FormFactors free = test::exactInDouble(without, tolerance);
       expectBounds(with, f);
       for (std::size_t i = 0; i < without.size(); ++i) {
         for (std::size_t j = 0; j < without.size(); ++j) {

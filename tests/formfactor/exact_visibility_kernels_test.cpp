@@ -12,7 +12,7 @@ namespace radiosity {
 namespace {
 
 template <class Check>
-void forEveryTarget(const Check& check) {
+void forEveryVisibilityTarget(const Check& check) {
   test::onEveryTarget([] { return visibilityKernels(true); }, check);
 }
 
@@ -64,7 +64,7 @@ TEST(ExactVisibilityKernels, EveryInstructionSetAnswersByTheDefinition) {
       if (Heights(planes[k], shape, bound).exceed > 0) crossed = k;
     }
     found += above != kPlaneBits;
-    forEveryTarget([&](const VisibilityKernels& kernels) {
+    forEveryVisibilityTarget([&](const VisibilityKernels& kernels) {
       std::uint64_t its_below = 0;
       EXPECT_EQ(kernels.findAbove(planes.data(), bits, shape, bound, its_below), above);
       EXPECT_EQ(its_below, below);

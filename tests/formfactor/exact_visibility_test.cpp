@@ -124,14 +124,14 @@ void expectTrue(const PatchMesh& mesh, std::size_t lines, unsigned seed) {
   EXPECT_GT(decided, lines / 2);
 }
 
-struct Case {
+struct VisibilityCase {
   const char* name;
   Scene (*make)();
   std::size_t patches;
   std::size_t lines;
 };
 
-const Case kCases[] = {
+const VisibilityCase kVisibilityCases[] = {
     {"cornell", [] { return test::dataScene("cornell-box"); }, 250, 40000},
     {"cornell_closed", [] { return test::dataScene("cornell-box-closed"); }, 250, 40000},
     {"blocked_plates", [] { return test::dataScene("blocked-plates"); }, 100, 20000},
@@ -141,20 +141,20 @@ const Case kCases[] = {
     {"hard", test::hardRoom, 250, 40000},
 };
 
-class ExactVisibility : public ::testing::TestWithParam<Case> {};
+class ExactVisibility : public ::testing::TestWithParam<VisibilityCase> {};
 
 TEST_P(ExactVisibility, AnswersAreTrue) {
-  const Case& c = GetParam();
+  const VisibilityCase& c = GetParam();
   expectTrue(test::meshOf(c.make(), c.patches), c.lines, 1);
 }
 
 TEST_P(ExactVisibility, AnswersAreTrueTurned) {
-  const Case& c = GetParam();
+  const VisibilityCase& c = GetParam();
   expectTrue(test::meshOf(test::turned(c.make()), c.patches), c.lines / 2, 2);
 }
 
 TEST_P(ExactVisibility, AnswersAreTrueForFacesAsPatches) {
-  const Case& c = GetParam();
+  const VisibilityCase& c = GetParam();
   const Scene scene = c.make();
   const Scene faces = test::sceneOfPatches(test::meshOf(scene, c.patches), scene);
   expectTrue(test::meshOf(faces, 1, true), c.lines / 2, 3);
@@ -211,7 +211,7 @@ TEST(ExactVisibilityCounts, ScalarTargetGivesTheSame) {
   EXPECT_EQ(counts.hidden, table.counts.hidden);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, ExactVisibility, ::testing::ValuesIn(kCases),
+INSTANTIATE_TEST_SUITE_P(Scenes, ExactVisibility, ::testing::ValuesIn(kVisibilityCases),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
 TEST(ExactVisibilityCounts, ConvexRoomNeedsNoVisibility) {

@@ -17,7 +17,7 @@ namespace radiosity {
 namespace {
 
 template <class Check>
-void forEveryTarget(const Check& check) {
+void forEveryRasterTarget(const Check& check) {
   test::onEveryTarget([] { return rasterKernels(true); }, check);
 }
 
@@ -78,7 +78,7 @@ TEST(Kernels, FillAndClearAgreeToTheBit) {
   drawRandomSpans([&](const std::vector<Span>& spans, float slope, std::uint32_t item) {
     for (const Span& span : spans) fillPixels(expected.target(), span, slope, item);
   });
-  forEveryTarget([&](const RasterKernels& kernels) {
+  forEveryRasterTarget([&](const RasterKernels& kernels) {
     Picture picture;
     kernels.clear(picture.depth.data(), picture.items.data(), kPixels);
     drawRandomSpans([&](const std::vector<Span>& spans, float slope, std::uint32_t item) {
@@ -92,7 +92,7 @@ TEST(Kernels, FillAndClearAgreeToTheBit) {
 }
 
 TEST(Kernels, FillTouchesOnlyItsSpanAndKeepsTheFirstOfEquals) {
-  forEveryTarget([&](const RasterKernels& kernels) {
+  forEveryRasterTarget([&](const RasterKernels& kernels) {
     Picture picture;
     kernels.clear(picture.depth.data(), picture.items.data(), kPixels);
     const Span span{3, 5, 37, 1.0F};
@@ -114,7 +114,7 @@ TEST(Kernels, FillTouchesOnlyItsSpanAndKeepsTheFirstOfEquals) {
 
 TEST(Kernels, FillTakesEveryDepthAboveMinusInfinity) {
   // Inverse depths may round to 0 or below near the horizon; such pixels are not sky.
-  forEveryTarget([&](const RasterKernels& kernels) {
+  forEveryRasterTarget([&](const RasterKernels& kernels) {
     Picture picture;
     kernels.clear(picture.depth.data(), picture.items.data(), kPixels);
     const Span span{0, 0, kWidth, -1e30F};
@@ -138,7 +138,7 @@ TEST(Kernels, RunsAgree) {
         if (x == 0 || values.data()[x] != values.data()[x - 1]) expected.push_back(x);
       }
       expected.push_back(count);
-      forEveryTarget([&](const RasterKernels& kernels) {
+      forEveryRasterTarget([&](const RasterKernels& kernels) {
         ASSERT_EQ(expected.size() - 1, kernels.findRuns(values.data(), count, starts));
         ASSERT_TRUE(std::equal(expected.begin(), expected.end(), starts));
       });
@@ -191,7 +191,7 @@ TEST(Kernels, CellsAgreeAlsoOutsideTheGrid) {
       cells.push_back(cell);
     }
     CellRuns found;
-    forEveryTarget([&](const RasterKernels& kernels) {
+    forEveryRasterTarget([&](const RasterKernels& kernels) {
       ASSERT_EQ(starts.size(), kernels.locate(map, 3, kWidth, found.starts, found.cells)) << k;
       ASSERT_TRUE(std::equal(starts.begin(), starts.end(), found.starts));
       ASSERT_TRUE(std::equal(cells.begin(), cells.end(), found.cells));
@@ -215,7 +215,7 @@ TEST(Kernels, EdgesCrossRowsAlike) {
       ASSERT_TRUE(pixel == 0 || pixel - 0.5 < x);
       ASSERT_TRUE(pixel == kWidth || pixel + 0.5 >= x);
     }
-    forEveryTarget([&](const RasterKernels& kernels) {
+    forEveryRasterTarget([&](const RasterKernels& kernels) {
       std::int32_t found[21];
       found[edge.end - first] = -7;
       kernels.cross(edge, found);
@@ -228,7 +228,7 @@ TEST(Kernels, EdgesCrossRowsAlike) {
 TEST(Kernels, CellsAreTheOnesTheCoordinatesFallInto) {
   // u = x + 0.5 (pixel centres), v = 1.25: column x, row 1 of a grid of 50 x 2.
   RowMap map{1, kWidth / 2.0F - 0.5F, 0, 0.75F, 0, 1, 0.5F - kWidth / 2.0F, 49, 1, 50, 3};
-  forEveryTarget([&](const RasterKernels& kernels) {
+  forEveryRasterTarget([&](const RasterKernels& kernels) {
     CellRuns runs;
     ASSERT_EQ(50u, kernels.locate(map, 0, kWidth, runs.starts, runs.cells));
     for (int x = 0; x < kWidth; ++x) {
@@ -256,7 +256,7 @@ TEST(Kernels, WholeRowsAgreeOnEveryInstructionSet) {
   Progress silent;
   const FormFactors expected = computeFormFactors(mesh, options, silent);
   options.simd = true;
-  forEveryTarget([&](const RasterKernels& kernels) {
+  forEveryRasterTarget([&](const RasterKernels& kernels) {
     const FormFactors f = computeFormFactors(mesh, options, silent);
     EXPECT_EQ(f.report.simd_target, kernels.target);
     for (std::size_t i = 0; i < mesh.size(); ++i) {

@@ -11,7 +11,7 @@ namespace {
 
 using test::MeshBuilder;
 
-FormFactors compute(const PatchMesh& mesh, FormFactorMethod method, bool near_exact) {
+FormFactors computeNear(const PatchMesh& mesh, FormFactorMethod method, bool near_exact) {
   FormFactorOptions options;
   options.method = method;
   options.near_exact = near_exact;
@@ -41,7 +41,7 @@ TEST(NearPairs, OnePatchAPlate) {
     MeshBuilder builder;
     builder.grid("low", {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
     builder.grid("high", {0, 0, gap}, {0, 1, 0}, {1, 0, 0});
-    const FormFactors f = compute(builder.build(), FormFactorMethod::hemicube, true);
+    const FormFactors f = computeNear(builder.build(), FormFactorMethod::hemicube, true);
     EXPECT_EQ(f.report.near_pairs, 2u);
     EXPECT_NEAR(f.matrix.at(0, 1), value, 1e-5 * value);
     EXPECT_NEAR(f.sky[0], 1 - value, 1e-5);
@@ -50,9 +50,9 @@ TEST(NearPairs, OnePatchAPlate) {
 
 TEST(NearPairs, AWholeRoomGetsBetterAndStaysClosed) {
   const PatchMesh mesh = test::roomWithBlock(3).build();
-  const FormFactors exact = compute(mesh, FormFactorMethod::exact, false);
-  const FormFactors plain = compute(mesh, FormFactorMethod::hemicube, false);
-  const FormFactors corrected = compute(mesh, FormFactorMethod::hemicube, true);
+  const FormFactors exact = computeNear(mesh, FormFactorMethod::exact, false);
+  const FormFactors plain = computeNear(mesh, FormFactorMethod::hemicube, false);
+  const FormFactors corrected = computeNear(mesh, FormFactorMethod::hemicube, true);
   // A single point is off by per cents next to an edge; what is left is occluded or less near.
   EXPECT_LT(difference(mesh, corrected, exact), 0.4 * difference(mesh, plain, exact));
   EXPECT_LE(corrected.report.largest_row_error, 1e-12);  // sums of at most 200 terms
@@ -64,8 +64,8 @@ TEST(NearPairs, AWholeRoomGetsBetterAndStaysClosed) {
 }
 
 TEST(NearPairs, OffByDefault) {
-  const FormFactors f = compute(test::roomWithBlock(2).build(), FormFactorMethod::hemicube,
-                                FormFactorOptions().near_exact);
+  const FormFactors f = computeNear(test::roomWithBlock(2).build(), FormFactorMethod::hemicube,
+                                    FormFactorOptions().near_exact);
   EXPECT_EQ(f.report.near_pairs, 0u);
 }
 

@@ -113,7 +113,7 @@ class NoEyes final : public GpuEyes {
   }
 };
 
-FormFactorOptions hemicubes() {
+FormFactorOptions smallHemicubes() {
   FormFactorOptions options;
   options.method = FormFactorMethod::hemicube;
   options.resolution = 32;
@@ -129,7 +129,7 @@ bool has(const std::vector<Note>& notes, Severity severity, const std::string& w
 
 TEST(GpuFallback, TheProcessorDrawsWhatALostDeviceHasNot) {
   const PatchMesh mesh = test::roomWithBlock(1).build();
-  const FormFactorOptions options = hemicubes();
+  const FormFactorOptions options = smallHemicubes();
   Progress silent;
   const FormFactors expected = computeFormFactors(mesh, options, silent);
   for (const std::size_t lives : {0, 4, 100}) {
@@ -155,10 +155,10 @@ TEST(GpuFallback, TheProcessorDrawsWhatALostDeviceHasNot) {
 TEST(GpuFallback, MemoryIsForeseenWhereTheDeviceIsLost) {
   const PatchMesh mesh = test::roomWithBlock(1).build();
   Progress silent;
-  HemicubeScene scene(mesh, hemicubes());
-  const HemicubeEstimate expected = estimateHemicubes(mesh, scene, hemicubes(), silent);
+  HemicubeScene scene(mesh, smallHemicubes());
+  const HemicubeEstimate expected = estimateHemicubes(mesh, scene, smallHemicubes(), silent);
   scene.gpu = std::make_unique<FailingEye>(scene.rows, 0);
-  const HemicubeEstimate estimate = estimateHemicubes(mesh, scene, hemicubes(), silent);
+  const HemicubeEstimate estimate = estimateHemicubes(mesh, scene, smallHemicubes(), silent);
   EXPECT_EQ(estimate.matrix_bytes, expected.matrix_bytes);
 }
 
@@ -200,12 +200,12 @@ TEST(GpuFallback, TheProcessorGathersWhatALostDeviceHasNot) {
 TEST(GpuFallback, TheProcessorDrawsASceneThatTheDeviceCannotHold) {
   const PatchMesh mesh = test::roomWithBlock(1).build();
   Progress silent;
-  const FormFactors expected = computeFormFactors(mesh, hemicubes(), silent);
+  const FormFactors expected = computeFormFactors(mesh, smallHemicubes(), silent);
   for (const EyeChoice choice : {EyeChoice::gl, EyeChoice::automatic}) {
-    HemicubeScene scene(mesh, hemicubes());
+    HemicubeScene scene(mesh, smallHemicubes());
     scene.gpu = openGpuEye(choice, scene.rows.scene(), mesh, scene.rows.weights(), FullEyes(true));
-    const FormFactors seen =
-        hemicubeFactors(mesh, scene, HemicubeEstimate(), hemicubes(), silent, nullptr, nullptr);
+    const FormFactors seen = hemicubeFactors(mesh, scene, HemicubeEstimate(), smallHemicubes(),
+                                             silent, nullptr, nullptr);
     for (std::size_t i = 0; i < mesh.size(); ++i) {
       EXPECT_EQ(seen.matrix.at(0, i), expected.matrix.at(0, i));
     }
@@ -234,7 +234,7 @@ TEST(GpuFallback, LightThatFindsNoRoomIsGatheredByTheProcessor) {
 
 TEST(GpuFallback, AMissingDeviceIsAnErrorWhereItIsAskedFor) {
   const PatchMesh mesh = test::roomWithBlock(1).build();
-  const RowBuilder rows(mesh, hemicubes());
+  const RowBuilder rows(mesh, smallHemicubes());
   const auto open = [&](EyeChoice choice, const GpuEyes& eyes) {
     return openGpuEye(choice, rows.scene(), mesh, rows.weights(), eyes);
   };
@@ -261,13 +261,13 @@ TEST(GpuFallback, AMissingLibraryIsToldFromOneThatDoesNotLoad) {
 
 TEST(GpuFallback, ProcessesOfOneRunDrawByTheProcessor) {
   const PatchMesh mesh = test::roomWithBlock(1).build();
-  const RowBuilder rows(mesh, hemicubes());
+  const RowBuilder rows(mesh, smallHemicubes());
   setenv("OMPI_COMM_WORLD_SIZE", "2", 1);
   const auto eye =
       openGpuEye(EyeChoice::automatic, rows.scene(), mesh, rows.weights(), FullEyes(true));
   unsetenv("OMPI_COMM_WORLD_SIZE");
   EXPECT_EQ(eye, nullptr);
-  FormFactorOptions options = hemicubes();
+  FormFactorOptions options = smallHemicubes();
   options.eye = EyeChoice::automatic;
   EXPECT_NO_THROW(requireShareable(mesh, options));
   options.eye = EyeChoice::gl;

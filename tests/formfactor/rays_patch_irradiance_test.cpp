@@ -12,7 +12,7 @@
 namespace radiosity {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Of patches whose clusters have these, K * bands.
 std::vector<double> patchIrradiance(const PatchMesh& mesh, std::span<const double> radiosity,
@@ -49,7 +49,7 @@ PatchMesh bentStrip() {
   constexpr int kPieces = 6;
   test::MeshBuilder builder;
   const auto at = [](int k) {
-    const double angle = k * kPi / 12;
+    const double angle = k * pi / 12;
     return Vec3(std::sin(angle), 0, 2 + std::cos(angle));
   };
   for (int k = 0; k < kPieces - 1; ++k) {
@@ -72,7 +72,7 @@ TEST(PatchIrradiance, FollowsTheNormalUnderAnOpenSky) {
   double mean = 0;
   double area = 0;
   for (std::size_t i = 0; i < strip; ++i) {
-    truth.push_back(kPi * (1 + mesh.normal[i].z) / 2);
+    truth.push_back(pi * (1 + mesh.normal[i].z) / 2);
     mean += mesh.area[i] * truth.back();
     area += mesh.area[i];
   }
@@ -80,15 +80,15 @@ TEST(PatchIrradiance, FollowsTheNormalUnderAnOpenSky) {
   Progress silent;
   const std::vector<double> sky = {1.0};
   const std::vector<double> found = patchIrradiance(mesh, std::vector<double>{0, 0},
-                                                    std::vector<double>{mean, kPi}, 1, sky, silent);
+                                                    std::vector<double>{mean, pi}, 1, sky, silent);
   double found_mean = 0;
   for (std::size_t i = 0; i < strip; ++i) {
     // 16,384 rays, each of them 0 or pi: 0.4% of pi at random, more at the ends of the strip.
-    EXPECT_NEAR(found[i], truth[i], 0.02 * kPi) << i;
+    EXPECT_NEAR(found[i], truth[i], 0.02 * pi) << i;
     found_mean += mesh.area[i] * found[i] / area;
   }
   EXPECT_NEAR(found_mean, mean, 1e-12);
-  EXPECT_EQ(found[strip], kPi);  // an unknown of one patch keeps its own
+  EXPECT_EQ(found[strip], pi);  // an unknown of one patch keeps its own
 }
 
 TEST(PatchIrradiance, IsTheSameEverywhereInAFurnace) {
@@ -159,7 +159,7 @@ TEST(SeenPatches, GivesTheIrradianceOfPatchesInAnyLight) {
   for (const double ground : {0.0, 0.3, 5.0}) {
     std::vector<double> light(mesh.size() + 1, 0.2);
     light[mesh.size() - 1] = ground;
-    light.back() = kPi * sky[0];
+    light.back() = pi * sky[0];
     const std::vector<double> by_axes = byAxes(mesh, seen, light, 3);
     light.pop_back();
     PatchIrradiance within(mesh, 1, sky);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "formfactor/computed_factors.h"
 #include "formfactor/exact_scenes.h"
 #include "formfactor/rays/ray_rounds.h"
 #include "formfactor/rays/ray_scene.h"
@@ -21,18 +22,6 @@ FormFactorOptions byRays(double tolerance) {
   options.method = FormFactorMethod::rays;
   options.tolerance = tolerance;
   return options;
-}
-
-FormFactors computed(const PatchMesh& mesh, const FormFactorOptions& options) {
-  Progress silent;
-  return computeFormFactors(mesh, options, silent);
-}
-
-FormFactors exactOf(const PatchMesh& mesh, double tolerance) {
-  FormFactorOptions options;
-  options.method = FormFactorMethod::exact;
-  options.tolerance = tolerance;
-  return computed(mesh, options);
 }
 
 /// How far off rows are from true ones.
@@ -77,7 +66,7 @@ TEST(Rays, FindTheFormFactorsOfACube) {
   test::MeshBuilder builder;
   builder.box("room", {0, 0, 0}, {1, 1, 1}, 1, true);
   const PatchMesh mesh = builder.build();
-  const FormFactors f = computed(mesh, byRays(1e-4));
+  const FormFactors f = test::computed(mesh, byRays(1e-4));
   ASSERT_EQ(mesh.size(), 6u);
   EXPECT_TRUE(f.report.closed);
   for (std::size_t i = 0; i < 6; ++i) {
@@ -94,7 +83,7 @@ TEST(Rays, FindTheFormFactorsOfACube) {
 
 TEST(Rays, KeepReciprocityAndClosure) {
   const PatchMesh mesh = test::roomWithBlock(4).build();
-  const FormFactors f = computed(mesh, byRays(2e-2));
+  const FormFactors f = test::computed(mesh, byRays(2e-2));
   EXPECT_TRUE(f.matrix.isSymmetric());
   EXPECT_TRUE(f.report.closed);
   const std::vector<double> sums = f.matrix.rowSums();
@@ -110,9 +99,9 @@ class RaysAgainstExact : public testing::TestWithParam<const char*> {};
 TEST_P(RaysAgainstExact, RowsAreAsGoodAsAskedForAndAsStated) {
   const PatchMesh mesh = test::meshOf(test::dataScene(GetParam()), 300);
   ASSERT_FALSE(mesh.clusters);
-  const FormFactors truth = exactOf(mesh, 1e-4);
+  const FormFactors truth = test::computed(mesh, test::exactly(1e-4));
   constexpr double kTolerance = 2e-2;
-  const FormFactors f = computed(mesh, byRays(kTolerance));
+  const FormFactors f = test::computed(mesh, byRays(kTolerance));
   EXPECT_EQ(f.report.rays.short_rows, 0u);
   const Score found = score(f, truth);
   // The tolerance is the root mean square that is expected of a row: the matrix keeps it, and a
@@ -131,9 +120,9 @@ INSTANTIATE_TEST_SUITE_P(Scenes, RaysAgainstExact,
 TEST(Rays, GiveTheSameBitsForAnyNumberOfThreads) {
   const PatchMesh mesh = test::roomWithBlock(3).build();
   setThreads(1);
-  const FormFactors one = computed(mesh, byRays(3e-2));
+  const FormFactors one = test::computed(mesh, byRays(3e-2));
   setThreads(0);
-  const FormFactors all = computed(mesh, byRays(3e-2));
+  const FormFactors all = test::computed(mesh, byRays(3e-2));
   EXPECT_EQ(one.report.rays.rays, all.report.rays.rays);
   EXPECT_EQ(one.error, all.error);
   for (std::size_t i = 0; i < mesh.size(); ++i) {
@@ -146,9 +135,9 @@ TEST(Rays, GiveTheSameBitsForAnyNumberOfThreads) {
 TEST(Rays, OtherSeedsGiveOtherRaysAndTheSameValues) {
   const PatchMesh mesh = test::roomWithBlock(3).build();
   FormFactorOptions options = byRays(2e-2);
-  const FormFactors first = computed(mesh, options);
+  const FormFactors first = test::computed(mesh, options);
   options.seed = 2;
-  const FormFactors second = computed(mesh, options);
+  const FormFactors second = test::computed(mesh, options);
   const Score found = score(first, second);
   EXPECT_GT(found.all, 0);
   EXPECT_LT(found.all, 2 * 2e-2);  // each is off by one tolerance at most
@@ -162,8 +151,8 @@ TEST(Rays, DoNotDependOnPlaceOrUnit) {
   for (Vec3& c : far.centroid) c = 1024.0 * c + offset;
   for (Vec3& o : far.polygons.origin) o = 1024.0 * o + offset;
   for (double& a : far.area) a *= 1024.0 * 1024.0;
-  const FormFactors here = computed(mesh, byRays(2e-2));
-  const FormFactors there = computed(far, byRays(2e-2));
+  const FormFactors here = test::computed(mesh, byRays(2e-2));
+  const FormFactors there = test::computed(far, byRays(2e-2));
   // Single precision rounds places of rays: next to no ray ends elsewhere.
   EXPECT_LT(score(there, here).all, 1e-3);
 }
@@ -174,7 +163,7 @@ TEST(Rays, TellSkyAndBacksFromFronts) {
   builder.grid("floor", {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, 2);
   builder.grid("plate", {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, 1, 1);
   const PatchMesh mesh = builder.build();
-  const FormFactors f = computed(mesh, byRays(1e-2));
+  const FormFactors f = test::computed(mesh, byRays(1e-2));
   EXPECT_FALSE(f.report.closed);
   double backs = 0;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -190,10 +179,10 @@ TEST(Rays, TellSkyAndBacksFromFronts) {
 
 TEST(Rays, GoOnUntilATighterToleranceIsMet) {
   const PatchMesh mesh = test::roomWithBlock(3).build();
-  const FormFactors truth = exactOf(mesh, 1e-5);
+  const FormFactors truth = test::computed(mesh, test::exactly(1e-5));
   double before = 1;
   for (const double tolerance : {5e-2, 1e-2, 3e-3}) {
-    const Score found = score(computed(mesh, byRays(tolerance)), truth);
+    const Score found = score(test::computed(mesh, byRays(tolerance)), truth);
     EXPECT_LT(found.all, tolerance);
     EXPECT_LT(found.all, before);
     before = found.all;
@@ -202,7 +191,7 @@ TEST(Rays, GoOnUntilATighterToleranceIsMet) {
 
 TEST(Rays, OfClustersAreSumsOverTheirPatches) {
   PatchMesh mesh = test::roomWithBlock(4).build();
-  const FormFactors truth = exactOf(mesh, 1e-4);
+  const FormFactors truth = test::computed(mesh, test::exactly(1e-4));
   PatchClusters clusters;  // pairs of patches that follow each other on a surface
   clusters.begin.push_back(0);
   for (Index i = 0; i < mesh.size(); ++i) {
@@ -214,7 +203,7 @@ TEST(Rays, OfClustersAreSumsOverTheirPatches) {
   }
   clusters.begin.push_back(clusters.patches.size());
   mesh.clusters = clusters;
-  const FormFactors f = computed(mesh, byRays(5e-3));
+  const FormFactors f = test::computed(mesh, byRays(5e-3));
   ASSERT_EQ(f.matrix.size(), clusters.size());
   double squares = 0;
   double norms = 0;

@@ -110,13 +110,13 @@ Bits bitsOf(const FormFactors& factors) {
   return bits;
 }
 
-struct Case {
+struct JournalCase {
   const char* name;
   FormFactorOptions options;
 };
 
-std::vector<Case> cases() {
-  std::vector<Case> all;
+std::vector<JournalCase> journalCases() {
+  std::vector<JournalCase> all;
   FormFactorOptions options;
   options.method = FormFactorMethod::exact;
   all.push_back({"exact", options});
@@ -141,7 +141,7 @@ std::vector<Case> cases() {
 /// A room with a block in it, of which a surface is seen from behind.
 PatchMesh room() { return test::roomWithBlock(3).build(); }
 
-class Journal : public testing::TestWithParam<Case> {
+class Journal : public testing::TestWithParam<JournalCase> {
  protected:
   FormFactors computed(MemoryJournal* journal) const {
     Progress silent;
@@ -207,11 +207,14 @@ TEST_P(Journal, BlocksOfAnotherFormAreNotUsed) {
   EXPECT_EQ(bitsOf(computed(&journal)), plain) << "longer";
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, Journal, testing::ValuesIn(cases()), [](const auto& method) {
-  std::string name = method.param.name;
-  std::erase_if(name, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; });
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Methods, Journal, testing::ValuesIn(journalCases()),
+                         [](const auto& method) {
+                           std::string name = method.param.name;
+                           std::erase_if(name, [](char c) {
+                             return std::isalnum(static_cast<unsigned char>(c)) == 0;
+                           });
+                           return name;
+                         });
 
 }  // namespace
 }  // namespace radiosity

@@ -6,33 +6,26 @@
 #include <cmath>
 
 #include "exact_scenes.h"
+#include "formfactor/computed_factors.h"
 #include "radiosity/form_factors.h"
 #include "truth/ground_truth.h"
 
 namespace radiosity {
 namespace {
 
-FormFactors exact(const PatchMesh& mesh, double tolerance = 1e-3) {
-  FormFactorOptions options;
-  options.method = FormFactorMethod::exact;
-  options.tolerance = tolerance;
-  options.precision = Precision::double_precision;
-  Progress silent;
-  return computeFormFactors(mesh, options, silent);
-}
-
-struct Score {
+struct SampledScore {
   double rel_l2 = 0;          ///< area-weighted, over the rows looked at
   double median_ratio = 0;    ///< median error figure / median true error
   std::size_t uncovered = 0;  ///< rows whose true error is above their figure
   std::size_t rows = 0;
 };
 
-Score score(const PatchMesh& mesh, const FormFactors& f, std::size_t rows) {
+SampledScore score(const PatchMesh& mesh, const FormFactors& f, std::size_t rows,
+                   double tolerance = 1e-3) {
   truth::TruthOptions options;
-  options.accuracy = 1e-6;  // a thousandth of the default tolerance of what is judged
+  options.accuracy = std::min(1e-5, 1e-2 * tolerance);  // a hundredth of what is judged
   const truth::GroundTruth truth(mesh, options);
-  Score s;
+  SampledScore s;
   double off = 0;
   double all = 0;
   std::vector<double> figures;
@@ -67,7 +60,7 @@ struct Judged {
   std::string name;
   PatchMesh mesh;
   FormFactors factors;
-  Score score;
+  SampledScore score;
 };
 
 const std::vector<Judged>& judged() {
@@ -75,7 +68,7 @@ const std::vector<Judged>& judged() {
     std::vector<Judged> list;
     const auto add = [&](const std::string& name, PatchMesh mesh, std::size_t rows) {
       list.push_back({name, std::move(mesh), {}, {}});
-      list.back().factors = exact(list.back().mesh);
+      list.back().factors = test::exactInDouble(list.back().mesh);
       list.back().score = score(list.back().mesh, list.back().factors, rows);
     };
     add("closed Cornell box", test::meshOf(test::dataScene("cornell-box-closed"), 1000), 60);
@@ -112,7 +105,7 @@ TEST(ExactAgainstTruth, ATighterToleranceLowersTheError) {
   const PatchMesh mesh = test::meshOf(test::dataScene("cornell-box-closed"), 300);
   double previous = 1;
   for (const double tolerance : {1e-1, 1e-3, 1e-5}) {
-    const Score s = score(mesh, exact(mesh, tolerance), 20);
+    const SampledScore s = score(mesh, test::exactInDouble(mesh, tolerance), 20, tolerance);
     EXPECT_LT(s.rel_l2, 0.5 * previous) << tolerance;
     // Single entries may be off by ten tolerances times the mean form factor, which is below the
     // root mean square of a row.

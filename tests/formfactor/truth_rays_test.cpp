@@ -224,7 +224,7 @@ Scene hangingBoxes() {
   return builder.scene();
 }
 
-PatchMesh meshOf(const std::string& name, std::size_t patches) {
+PatchMesh meshOfScene(const std::string& name, std::size_t patches) {
   MeshOptions options;
   options.patches = patches;
   Progress silent;
@@ -258,7 +258,7 @@ class TruthAgainstRays : public testing::TestWithParam<RayScene> {};
 
 TEST_P(TruthAgainstRays, AgreeWithinTheirStandardError) {
   const auto [name, patches, count] = GetParam();
-  const PatchMesh mesh = meshOf(name, patches);
+  const PatchMesh mesh = meshOfScene(name, patches);
   const ZTest test = compare(mesh, everyNth(mesh, count));
   RecordProperty("compared", std::to_string(test.compared));
   RecordProperty("occluded", std::to_string(test.occluded));
@@ -282,7 +282,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, TruthAgainstRays,
 
 TEST(TruthAgainstRaysSharpness, OnePercentMoreIsNoticed) {
   // The same test turns a truth down that is off by 1%.
-  const PatchMesh mesh = meshOf("cornell-box-closed", 250);
+  const PatchMesh mesh = meshOfScene("cornell-box-closed", 250);
   const auto rows = everyNth(mesh, 16);
   EXPECT_GT(compare(mesh, rows, 1.01).mean_square, kMeanSquare);
 }

@@ -25,11 +25,6 @@ GatherOptions atPatches(int passes, int resolution = 64) {
   return options;
 }
 
-Gathered run(const Room& room, const GatherOptions& options) {
-  Progress quiet;
-  return gather(room.mesh, room.materials, options, quiet);
-}
-
 double largest(const std::vector<double>& values) {
   return *std::max_element(values.begin(), values.end());
 }
@@ -76,7 +71,7 @@ TEST(GatherAtPatches, EveryPassIsAJacobiIterate) {
     std::vector<double> b = room.materials.emission;
     for (int passes = 1; passes <= 4; ++passes) {
       b = jacobiStep(room, factors.matrix, b);
-      const Gathered gathered = run(room, atPatches(passes));
+      const Gathered gathered = test::gathered(room, atPatches(passes));
       ASSERT_EQ(gathered.summary.passes.size(), std::size_t(passes));
       EXPECT_LE(worst(gathered.radiosity, b), 1e-6 * scale) << scene << " pass " << passes;
     }
@@ -89,13 +84,13 @@ TEST(GatherAtPatches, TheTransposeWouldBeFound) {
   const Room room = test::loadRoom("cornell-box-closed", 250);
   const FormFactors factors = matrixOf(room, 64);
   const std::vector<double> wrong = jacobiStep(room, factors.matrix, room.materials.emission, true);
-  const Gathered gathered = run(room, atPatches(1));
+  const Gathered gathered = test::gathered(room, atPatches(1));
   EXPECT_GT(worst(gathered.radiosity, wrong), 1e-2 * largest(room.materials.emission));
 }
 
 TEST(GatherAtPatches, EnergyOfEveryPassIsAccountedFor) {
   const Room room = test::loadRoom("cornell-box", 250);
-  const Gathered gathered = run(room, atPatches(12));
+  const Gathered gathered = test::gathered(room, atPatches(12));
   double before = HUGE_VAL;
   for (const GatherPass& pass : gathered.summary.passes) {
     const EnergyAccount& e = pass.energy;
@@ -111,7 +106,7 @@ TEST(GatherAtPatches, EnergyOfEveryPassIsAccountedFor) {
     before = pass.in_flight[0];
   }
   // After the first pass what flies on is what the lamp's light was reflected to: B_1 - E.
-  const Gathered once = run(room, atPatches(1));
+  const Gathered once = test::gathered(room, atPatches(1));
   double reflected = 0;
   for (std::size_t i = 0; i < room.mesh.size(); ++i) {
     reflected +=
@@ -129,7 +124,7 @@ TEST(GatherAtPatches, BacksAreAccountedForBySurface) {
   Room room{builder.build(), {}};
   test::makeUniform(room, 0.5, 1.0);
   const FormFactors factors = matrixOf(room, 64);
-  const Gathered gathered = run(room, atPatches(2));
+  const Gathered gathered = test::gathered(room, atPatches(2));
   ASSERT_EQ(gathered.backs_by_surface.size(), 2U);
   EXPECT_EQ(gathered.backs_by_surface[0], 0);
   // Five sixths of the area see a fifth of the view each.
@@ -137,7 +132,7 @@ TEST(GatherAtPatches, BacksAreAccountedForBySurface) {
   EXPECT_NEAR(gathered.backs_by_surface[1], factors.backs_by_surface[1], 1e-12);  // rounding
   GatherOptions at_vertices = atPatches(1);
   at_vertices.at = GatherAt::vertices;
-  const Gathered from_vertices = run(room, at_vertices);
+  const Gathered from_vertices = test::gathered(room, at_vertices);
   EXPECT_EQ(from_vertices.backs_by_surface[0], 0);
   // Points on a grid of six for the area: some per cent.
   EXPECT_NEAR(from_vertices.backs_by_surface[1], 5.0 / 6 * 0.2, 1e-2);
@@ -153,9 +148,9 @@ TEST(GatherAtPatches, BacksAreAccountedForBySurface) {
 
 TEST(GatherAtPatches, TheBoundHoldsAndIsNotIdle) {
   const Room room = test::loadRoom("cornell-box-closed", 250);
-  const Gathered limit = run(room, atPatches(120));
+  const Gathered limit = test::gathered(room, atPatches(120));
   for (const int passes : {1, 3, 8, 20}) {
-    const Gathered gathered = run(room, atPatches(passes));
+    const Gathered gathered = test::gathered(room, atPatches(passes));
     double error = 0;
     for (std::size_t k = 0; k < limit.radiosity.size(); ++k) {
       error = std::max(error, std::abs(double(limit.radiosity[k]) - gathered.radiosity[k]));
@@ -172,7 +167,7 @@ TEST(GatherAtPatches, StopsOnTheBoundOrOnThePasses) {
   const Room room = test::loadRoom("furnace-cube", 96);
   GatherOptions options = atPatches(1000);
   options.tolerance = 1e-3;
-  const Gathered converged = run(room, options);
+  const Gathered converged = test::gathered(room, options);
   EXPECT_EQ(converged.summary.status, GatherStatus::converged);
   EXPECT_LT(converged.summary.passes.size(), 40u);
   const double wanted = 1e-3 * largest(room.materials.emission);
@@ -182,7 +177,7 @@ TEST(GatherAtPatches, StopsOnTheBoundOrOnThePasses) {
   EXPECT_LE(*last, wanted);
   EXPECT_GT(*before, wanted);
   options.passes = 3;
-  const Gathered limited = run(room, options);
+  const Gathered limited = test::gathered(room, options);
   EXPECT_EQ(limited.summary.status, GatherStatus::pass_limit);
   EXPECT_EQ(limited.summary.passes.size(), 3u);
   EXPECT_NE(limited.summary.message.find("3 passes as limited"), std::string::npos);
@@ -191,7 +186,7 @@ TEST(GatherAtPatches, StopsOnTheBoundOrOnThePasses) {
 TEST(GatherAtPatches, NoBoundIsClaimedInAWhiteRoom) {
   Room room = test::loadRoom("furnace-cube", 96);
   for (double& rho : room.materials.reflectance) rho = 1;
-  const Gathered gathered = run(room, atPatches(5));
+  const Gathered gathered = test::gathered(room, atPatches(5));
   EXPECT_EQ(gathered.summary.status, GatherStatus::pass_limit);
   for (const GatherPass& pass : gathered.summary.passes) EXPECT_FALSE(pass.bound);
   // Nothing is absorbed: after k passes B = (k + 1) E, to the rounding of floats.
@@ -206,12 +201,12 @@ TEST(GatherAtPatches, DarkScenesAndBadInputSaySo) {
   Progress quiet;
   Room dark = room;
   for (double& e : dark.materials.emission) e = 0;
-  const Gathered black = run(dark, atPatches(5));
+  const Gathered black = test::gathered(dark, atPatches(5));
   EXPECT_EQ(black.summary.status, GatherStatus::no_light);
   EXPECT_EQ(*std::max_element(black.radiosity.begin(), black.radiosity.end()), 0.0F);
   room.materials.reflectance[3 * 7 + 1] = 1.5;
   try {
-    run(room, atPatches(1));
+    test::gathered(room, atPatches(1));
     FAIL() << "a reflectance of 1.5 was taken";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("patch 7"), std::string::npos) << error.what();

@@ -37,4 +37,9 @@ inline void makeUniform(Room& room, double reflectance, double emission) {
   room.materials.emission.assign(count, emission);
 }
 
+inline Gathered gathered(const Room& room, const GatherOptions& options) {
+  Progress quiet;
+  return gather(room.mesh, room.materials, options, quiet);
+}
+
 }  // namespace radiosity::test

@@ -28,11 +28,6 @@ GatherOptions atVertices(int passes = 100, int resolution = 64) {
   return options;
 }
 
-Gathered run(const Room& room, const GatherOptions& options) {
-  Progress quiet;
-  return gather(room.mesh, room.materials, options, quiet);
-}
-
 TEST(GatherAtVertices, EveryClosedSceneIsAFurnaceAtEveryVertex) {
   // B = E / (1 - rho) = 4/3 whatever is seen, if no eye loses a pixel and interpolation keeps
   // constants. Left over: 4^-14 = 4e-9 of the passes and float rounding, 6e-8 of B over 1 - rho.
@@ -41,7 +36,7 @@ TEST(GatherAtVertices, EveryClosedSceneIsAFurnaceAtEveryVertex) {
     test::makeUniform(room, 0.25, 1.0);
     GatherOptions options = atVertices(14, 32);
     options.tolerance = 1e-12;
-    const Gathered gathered = run(room, options);
+    const Gathered gathered = test::gathered(room, options);
     EXPECT_TRUE(gathered.summary.closed) << scene;
     EXPECT_EQ(gathered.summary.hemicubes, gathered.area.size()) << scene;
     for (const float b : gathered.radiosity) ASSERT_NEAR(b, 4.0 / 3, 1e-6) << scene;
@@ -53,7 +48,7 @@ TEST(GatherAtVertices, EveryClosedSceneIsAFurnaceAtEveryVertex) {
 TEST(GatherAtVertices, AreasAddUpAndEnergyIsAccountedForWithThem) {
   for (const char* scene : {"cornell-box", "curved", "two-rooms"}) {
     const Room room = test::loadRoom(scene, 300);
-    const Gathered gathered = run(room, atVertices(3, 32));
+    const Gathered gathered = test::gathered(room, atVertices(3, 32));
     const double area = std::accumulate(room.mesh.area.begin(), room.mesh.area.end(), 0.0);
     EXPECT_NEAR(std::accumulate(gathered.area.begin(), gathered.area.end(), 0.0), area,
                 1e-9 * area);
@@ -112,7 +107,7 @@ Room splitRoom() {
 
 TEST(GatherAtVertices, NoLightLeaksUnderASheet) {
   const Room room = splitRoom();
-  const Gathered gathered = run(room, atVertices(8));
+  const Gathered gathered = test::gathered(room, atVertices(8));
   const std::vector<double> corners = cornerRadiosity(room.mesh, gathered);
   std::size_t dark = 0;
   for (std::size_t i = 0; i < room.mesh.size(); ++i) {
@@ -133,7 +128,7 @@ TEST(GatherAtVertices, NoLightLeaksUnderASheet) {
 
 TEST(GatherAtVertices, LightGoesThroughADoorwayAndLosesMostOfItself) {
   const Room room = test::loadRoom("two-rooms", 600);
-  const Gathered gathered = run(room, atVertices(30));
+  const Gathered gathered = test::gathered(room, atVertices(30));
   const std::vector<double> means = patchRadiosity(room.mesh, gathered);
   const auto meanOf = [&](const std::string& name) {
     double sum = 0;
@@ -287,23 +282,23 @@ TEST(GatherAtVertices, ThreadsScaleAndNumberingChangeNoBit) {
   Room room{builder.build(), {}};
   test::makeUniform(room, 0.6, 0.0);
   test::setRgb(room.materials.emission, 3, {1, 2, 3});
-  const Gathered reference = run(room, atVertices(4, 32));
+  const Gathered reference = test::gathered(room, atVertices(4, 32));
 
   setThreads(1);
-  const Gathered alone = run(room, atVertices(4, 32));
+  const Gathered alone = test::gathered(room, atVertices(4, 32));
   setThreads(0);
   EXPECT_EQ(alone.radiosity, reference.radiosity);
 
   GatherOptions scalar = atVertices(4, 32);
   scalar.simd = false;
-  EXPECT_EQ(run(room, scalar).radiosity, reference.radiosity);
+  EXPECT_EQ(test::gathered(room, scalar).radiosity, reference.radiosity);
 
   Room large = room;
   for (Vec3& v : large.mesh.vertices) v *= 1024.0;
   for (Vec3& v : large.mesh.centroid) v *= 1024.0;
   for (Vec3& v : large.mesh.polygons.origin) v *= 1024.0;
   for (double& a : large.mesh.area) a *= 1024.0 * 1024.0;
-  EXPECT_EQ(run(large, atVertices(4, 32)).radiosity, reference.radiosity);
+  EXPECT_EQ(test::gathered(large, atVertices(4, 32)).radiosity, reference.radiosity);
 
   std::vector<std::size_t> order(room.mesh.size());
   std::iota(order.begin(), order.end(), std::size_t(0));
@@ -311,7 +306,7 @@ TEST(GatherAtVertices, ThreadsScaleAndNumberingChangeNoBit) {
   Room turned{builder.build(order), room.materials};
   test::setRgb(turned.materials.emission, 3, Vec3(0));
   test::setRgb(turned.materials.emission, room.mesh.size() - 1 - 3, {1, 2, 3});
-  const Gathered permuted = run(turned, atVertices(4, 32));
+  const Gathered permuted = test::gathered(turned, atVertices(4, 32));
   const std::vector<double> a = cornerRadiosity(room.mesh, reference);
   const std::vector<double> b = cornerRadiosity(turned.mesh, permuted);
   for (std::size_t i = 0; i < order.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 
+#include "heat/conditions.h"
 #include "radiosity/heat.h"
 #include "support/error_of.h"
 
@@ -78,18 +79,6 @@ struct Triangles {
   Scene scene() const { return sceneOfTriangles(vertices, triangles, materials, of_triangle); }
 };
 
-HeatCondition condition(const std::string& name, double emissivity) {
-  HeatCondition c;
-  c.name = name;
-  c.emissivity = {{{}, {emissivity}}};
-  return c;
-}
-HeatCondition at(const std::string& name, double emissivity, double temperature) {
-  HeatCondition c = condition(name, emissivity);
-  c.temperature = temperature;
-  return c;
-}
-
 /// Conditions by surface, in the order of the scene's materials.
 HeatConditions inOrder(std::vector<HeatCondition> conditions) {
   HeatConditions out{std::move(conditions), {}};
@@ -128,8 +117,9 @@ TEST(HeatScenes, ConcentricSpheresComeToTheirClosedForm) {
     t.sphere(t.surface("outer"), 2, times, true);
     FormFactorOptions exact;
     exact.method = FormFactorMethod::exact;
-    const Solved s = solved(t.scene(), inOrder({at("inner", .8, 1000), at("outer", .5, 500)}),
-                            {.faces_as_patches = true}, exact);
+    const Solved s =
+        solved(t.scene(), inOrder({test::at("inner", .8, 1000), test::at("outer", .5, 500)}),
+               {.faces_as_patches = true}, exact);
     ASSERT_EQ(s.heat.summary.status, HeatStatus::converged);
     error.push_back(s.surfaces[0].radiated / truth - 1);
     RecordProperty("error_" + std::to_string(times), std::to_string(error.back()));
@@ -159,8 +149,8 @@ Triangles boxWithSheet(bool sheet) {
 // sides by patch, and floor and ceiling mirror each other: sigma T^4 of sheets is the mean.
 TEST(HeatScenes, BothSidesOfASheetHaveOneTemperature) {
   const Solved s = solved(boxWithSheet(true).scene(),
-                          inOrder({condition("walls", .5), at("floor", 1, 800),
-                                   at("ceiling", 1, 400), condition("sheet", 1)}),
+                          inOrder({test::condition("walls", .5), test::at("floor", 1, 800),
+                                   test::at("ceiling", 1, 400), test::condition("sheet", 1)}),
                           {.patches = 300});
   const double mean = std::pow((std::pow(800, 4) + std::pow(400, 4)) / 2, .25);
   std::size_t backs = 0;
@@ -183,10 +173,11 @@ TEST(HeatScenes, SharedUnknownsGiveTheFiguresOfSurfaces) {
   const std::size_t before = t.vertices.size();
   t.sphere(ball, .2, 2, false);
   for (std::size_t k = before; k < t.vertices.size(); ++k) t.vertices[k] += Vec3(.5);
-  HeatCondition heated = condition("ball", .7);
+  HeatCondition heated = test::condition("ball", .7);
   heated.power = 500;
   const HeatConditions conditions =
-      inOrder({condition("walls", .5), at("floor", .9, 400), at("ceiling", .3, 300), heated});
+      inOrder({test::condition("walls", .5), test::at("floor", .9, 400),
+               test::at("ceiling", .3, 300), heated});
   const Solved fine = solved(t.scene(), conditions, {.patches = 800});
   const Solved shared = solved(t.scene(), conditions, {.patches = 120});
   ASSERT_TRUE(shared.mesh.clusters);

@@ -1,4 +1,5 @@
 // Radiative heat exchange against closed forms and published values.
+
 #include "radiosity/heat.h"
 
 #include <gtest/gtest.h>
@@ -6,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "heat/conditions.h"
 #include "heat/linear_system.h"
 #include "solve/solve_systems.h"
 #include "support/error_of.h"
@@ -15,19 +17,8 @@ namespace {
 
 using test::Matrix;
 
-HeatCondition surface(const std::string& name, double emissivity) {
-  HeatCondition c;
-  c.name = name;
-  c.emissivity = {{{}, {emissivity}}};
-  return c;
-}
-HeatCondition at(const std::string& name, double emissivity, double temperature) {
-  HeatCondition c = surface(name, emissivity);
-  c.temperature = temperature;
-  return c;
-}
 HeatCondition fluxed(const std::string& name, double emissivity, double flux) {
-  HeatCondition c = surface(name, emissivity);
+  HeatCondition c = test::condition(name, emissivity);
   c.flux = flux;
   return c;
 }
@@ -60,7 +51,8 @@ TEST(Heat, SigmaFollowsFromTheExactConstantsOfTheSi) {
 // q = sigma (T1^4 - T2^4) / (1/eps1 + 1/eps2 - 1), Howell, Menguc & Siegel, "Thermal Radiation Heat
 // Transfer", chapter 5. Differences of numbers of 5e4 in 16 digits.
 TEST(Heat, ParallelPlates) {
-  const HeatSolution s = solved(facingPlates(), {at("hot", .8, 1000), at("cold", .5, 500)});
+  const HeatSolution s =
+      solved(facingPlates(), {test::at("hot", .8, 1000), test::at("cold", .5, 500)});
   EXPECT_EQ(s.summary.status, HeatStatus::converged);
   EXPECT_EQ(s.summary.iterations, 1);
   EXPECT_NEAR(s.net_flux[0], 23626.56007993512, 1e-9);
@@ -73,13 +65,13 @@ TEST(Heat, ParallelPlates) {
 // the power, over the area of the plate.
 TEST(Heat, FluxAndPowerGiveTheTemperatureThatHasThem) {
   const HeatSolution s =
-      solved(facingPlates(), {fluxed("hot", .8, 23626.56007993512), at("cold", .5, 500)});
+      solved(facingPlates(), {fluxed("hot", .8, 23626.56007993512), test::at("cold", .5, 500)});
   EXPECT_NEAR(s.temperature[0], 1000, 1e-10);
-  HeatCondition powered = surface("hot", .8);
+  HeatCondition powered = test::condition("hot", .8);
   powered.power = 2 * 23626.56007993512;
   Matrix f(2, 2);
   f << 0, 1, 1, 0;
-  const HeatSolution p = solved(test::factorsFrom(f, {2, 2}), {powered, at("cold", .5, 500)});
+  const HeatSolution p = solved(test::factorsFrom(f, {2, 2}), {powered, test::at("cold", .5, 500)});
   EXPECT_NEAR(p.temperature[0], 1000, 1e-10);
   EXPECT_NEAR(p.net_flux[0], 23626.56007993512, 1e-8);
 }
@@ -95,10 +87,10 @@ TEST(Heat, FourSurfacesTwoOfThemAdiabatic) {
   for (Eigen::Index i = 0; i < 4; ++i) f.row(i) /= f.row(i).sum();
   HeatOptions options;
   options.sigma = 5.670367e-8;
-  const HeatSolution s = solved(
-      test::factorsFrom(f, {1, 1, 2.5, 2.5}),
-      {at("bottom", 1, 550), at("top", .75, 300), fluxed("left", .5, 0), fluxed("right", .9, 0)},
-      options);
+  const HeatSolution s = solved(test::factorsFrom(f, {1, 1, 2.5, 2.5}),
+                                {test::at("bottom", 1, 550), test::at("top", .75, 300),
+                                 fluxed("left", .5, 0), fluxed("right", .9, 0)},
+                                options);
   EXPECT_NEAR(s.radiosity[1], 1127.0277, 5e-5);
   EXPECT_NEAR(s.net_flux[0], 2003.1839, 5e-5);
   EXPECT_NEAR(s.temperature[2], 505.52788, 5e-6);
@@ -125,7 +117,7 @@ TEST(Heat, SphericalCavityHasItsEffectiveEmissivity) {
     for (const double emissivity : {.1, .7}) {
       const FormFactors factors = cavity(cap, 12);
       const HeatSolution s =
-          solved(factors, std::vector<HeatCondition>(12, at("wall", emissivity, 700)));
+          solved(factors, std::vector<HeatCondition>(12, test::at("wall", emissivity, 700)));
       const double effective = emissivity / (emissivity + (1 - emissivity) * cap);
       for (const double j : s.radiosity) EXPECT_NEAR(j / sigmaT4(700), effective, 1e-13);
       // What leaves is what the aperture, of that emissivity, would emit: a of the whole sphere
@@ -142,7 +134,7 @@ TEST(Heat, SkyAtTheTemperatureOfTheWallsTakesNothing) {
   HeatOptions options;
   options.sky_temperature = 350;
   const HeatSolution s =
-      solved(cavity(.2, 12), std::vector<HeatCondition>(12, at("wall", .3, 350)), options);
+      solved(cavity(.2, 12), std::vector<HeatCondition>(12, test::at("wall", .3, 350)), options);
   for (const double q : s.net_flux) EXPECT_NEAR(q, 0, 1e-12 * sigmaT4(350));
   const HeatSolution a =
       solved(cavity(.2, 12), std::vector<HeatCondition>(12, fluxed("wall", .3, 0)), options);
@@ -156,7 +148,7 @@ TEST(Heat, ShieldsDivideTheFlux) {
     const Eigen::Index rows = 2 * n + 2;
     Matrix f = Matrix::Zero(rows, rows);
     for (Eigen::Index k = 0; k < rows; k += 2) f(k, k + 1) = f(k + 1, k) = 1;
-    std::vector<HeatCondition> conditions{at("hot", .3, 900)};
+    std::vector<HeatCondition> conditions{test::at("hot", .3, 900)};
     std::vector<Index> twin{kNone};
     std::vector<Index> of_row{0};
     for (int k = 0; k < n; ++k) {
@@ -165,7 +157,7 @@ TEST(Heat, ShieldsDivideTheFlux) {
       twin.push_back(Index(2 * k + 2));
       twin.push_back(Index(2 * k + 1));
     }
-    conditions.push_back(at("cold", .3, 300));
+    conditions.push_back(test::at("cold", .3, 300));
     of_row.push_back(Index(n + 1));
     twin.push_back(kNone);
     Progress quiet;
@@ -213,7 +205,7 @@ TEST(Heat, IterationReachesThroughAHundredSheets) {
 // One wall of the unit cube has a temperature, all others are adiabatic.
 TEST(Heat, AdiabaticRoomIsIsothermal) {
   std::vector<HeatCondition> conditions(6, fluxed("wall", .4, 0));
-  conditions[2] = at("heater", .05, 612);
+  conditions[2] = test::at("heater", .05, 612);
   const HeatSolution s =
       solved(test::factorsFrom(test::cube(), std::vector<double>(6, 1.0)), conditions);
   for (const double t : s.temperature) EXPECT_NEAR(t, 612, 612e-10);
@@ -263,7 +255,7 @@ TEST(Heat, PlateToSkyAndAir) {
   options.sky_temperature = 255;
   options.tolerance = 1e-12;
   for (const double t : {180.0, 290.0, 900.0}) {
-    HeatCondition c = surface("plate", .85);
+    HeatCondition c = test::condition("plate", .85);
     c.convection = 12;
     c.ambient = 293;
     c.flux = .85 * (sigmaT4(t) - sigmaT4(255)) + 12 * (t - 293);
@@ -277,17 +269,18 @@ TEST(Heat, PlateToSkyAndAir) {
 }
 
 TEST(Heat, SurfaceThatOnlyConvectsHasTheAirsTemperature) {
-  HeatCondition mirror = surface("mirror", 0);
+  HeatCondition mirror = test::condition("mirror", 0);
   mirror.convection = 5;
   mirror.ambient = 280;
   mirror.flux = 50;
-  const HeatSolution s = solved(facingPlates(), {mirror, at("cold", .5, 500)});
+  const HeatSolution s = solved(facingPlates(), {mirror, test::at("cold", .5, 500)});
   EXPECT_NEAR(s.temperature[0], 290, 1e-6);  // 280 + 50 / 5
   EXPECT_NEAR(s.radiosity[0], s.irradiance[0], 1e-9);
 }
 
 TEST(Heat, MirrorThatIsAdiabaticHasNoTemperature) {
-  const HeatSolution s = solved(facingPlates(), {surface("mirror", 0), at("cold", .5, 500)});
+  const HeatSolution s =
+      solved(facingPlates(), {test::condition("mirror", 0), test::at("cold", .5, 500)});
   EXPECT_TRUE(s.summary.usable());
   EXPECT_EQ(s.summary.undetermined, 1u);
   EXPECT_TRUE(std::isnan(s.temperature[0]));
@@ -320,8 +313,8 @@ TEST(Heat, BandFractionIsTheIntegralOfPlancksLaw) {
 // Bands that all have the grey emissivity are the grey problem, cut up.
 TEST(Heat, BandsOfOneEmissivityAreGrey) {
   std::vector<HeatCondition> conditions(6, fluxed("wall", .4, 0));
-  conditions[0] = at("hot", .6, 1400);
-  conditions[1] = at("cold", .9, 300);
+  conditions[0] = test::at("hot", .6, 1400);
+  conditions[1] = test::at("cold", .9, 300);
   conditions[4] = fluxed("heated", .2, 3e3);
   conditions[5].convection = 20;
   conditions[5].ambient = 320;
@@ -371,14 +364,15 @@ TEST(Heat, BandsBetweenPlatesAndTheSheetThatCouplesThem) {
   };
   const HeatSolution plates =
       solved(facingPlates(),
-             {banded(at("hot", 1, 1200), .9, .2), banded(at("cold", 1, 400), .5, .3)}, options);
+             {banded(test::at("hot", 1, 1200), .9, .2), banded(test::at("cold", 1, 400), .5, .3)},
+             options);
   EXPECT_NEAR(plates.net_flux[0] / exchange(0, 1200, 2, 400), 1, 1e-12);
 
   Matrix f = Matrix::Zero(4, 4);
   f(0, 1) = f(1, 0) = f(2, 3) = f(3, 2) = 1;
-  const std::vector<HeatCondition> conditions{banded(at("hot", 1, 1200), .9, .2),
-                                              banded(surface("sheet", 1), .1, .8),
-                                              banded(at("cold", 1, 400), .5, .3)};
+  const std::vector<HeatCondition> conditions{banded(test::at("hot", 1, 1200), .9, .2),
+                                              banded(test::condition("sheet", 1), .1, .8),
+                                              banded(test::at("cold", 1, 400), .5, .3)};
   const std::vector<Index> of_row{0, 1, 1, 2};
   const std::vector<Index> twin{kNone, 2, 1, kNone};
   Progress quiet;
@@ -412,12 +406,12 @@ TEST(Heat, EmissivityFollowsItsTable) {
 
 // A surface of uneven rows at one temperature: its power is what both give off.
 TEST(Heat, IsothermalSurfaceSharesItsPower) {
-  HeatCondition c = surface("heater", .8);
+  HeatCondition c = test::condition("heater", .8);
   c.power = 1000;
   c.isothermal = true;
   Matrix f = Matrix::Zero(3, 3);
   f << 0, 0, .5, 0, 0, .1, .1, .06, 0;
-  const std::vector<HeatCondition> conditions{c, at("wall", .5, 300)};
+  const std::vector<HeatCondition> conditions{c, test::at("wall", .5, 300)};
   const std::vector<Index> of_row{0, 0, 1};
   Progress quiet;
   const HeatSolution s =
@@ -429,13 +423,14 @@ TEST(Heat, IsothermalSurfaceSharesItsPower) {
 
 TEST(Heat, ValuesBeyondAllBoundsAreNoSolution) {
   const std::string message = test::errorOf([] {
-    solved(facingPlates(), {at("a", .5, 1e99), at("b", .5, 300)});
+    solved(facingPlates(), {test::at("a", .5, 1e99), test::at("b", .5, 300)});
   });
   EXPECT_NE(message.find("a: temperature 1e+99 is not one in kelvin, 0 to 1e+08"),
             std::string::npos)
       << message;
   // 1e24 W/m^2 leave a surface of emissivity 1e-300: sigma T^4 would be 1e324.
-  const HeatSolution none = solved(facingPlates(), {fluxed("a", 1e-300, 1e24), at("b", .5, 300)});
+  const HeatSolution none =
+      solved(facingPlates(), {fluxed("a", 1e-300, 1e24), test::at("b", .5, 300)});
   EXPECT_FALSE(none.summary.usable()) << none.summary.message;
 }
 
@@ -450,18 +445,20 @@ TEST(Heat, RefusesWhatHasNoTemperature) {
   says(error({fluxed("a", .5, 10), fluxed("b", .5, 10)}), "temperatures of a, b have no level");
   says(error({fluxed("a", .5, 10), fluxed("b", .5, 10)}), "20 W in all");
   says(error({fluxed("a", .5, 0), fluxed("b", .5, 0)}), "no level");
-  says(error({fluxed("a", .5, 0), at("b", 0, 300)}), "temperatures of a have no level");
-  says(error({fluxed("a", 0, 10), at("b", .5, 300)}), "a: has emissivity 0");
-  says(error({fluxed("a", .5, -1e4), at("b", .5, 300)}), "a: more heat is taken out");
+  says(error({fluxed("a", .5, 0), test::at("b", 0, 300)}), "temperatures of a have no level");
+  says(error({fluxed("a", 0, 10), test::at("b", .5, 300)}), "a: has emissivity 0");
+  says(error({fluxed("a", .5, -1e4), test::at("b", .5, 300)}), "a: more heat is taken out");
   HeatCondition cold = fluxed("a", .5, -1e4);
   cold.convection = 3;
   cold.ambient = 300;
-  says(error({cold, at("b", .5, 300)}), "a: more heat is taken out");
-  HeatCondition both = at("a", .5, 300);
+  says(error({cold, test::at("b", .5, 300)}), "a: more heat is taken out");
+  HeatCondition both = test::at("a", .5, 300);
   both.flux = 1;
-  says(error({both, at("b", .5, 300)}), "a: has more than one of temperature, flux and power");
-  says(error({at("a", 1.5, 300), at("b", .5, 300)}), "a: emissivity 1.5 is not within 0 and 1");
-  says(error({at("a", .5, -3), at("b", .5, 300)}), "a: temperature -3");
+  says(error({both, test::at("b", .5, 300)}),
+       "a: has more than one of temperature, flux and power");
+  says(error({test::at("a", 1.5, 300), test::at("b", .5, 300)}),
+       "a: emissivity 1.5 is not within 0 and 1");
+  says(error({test::at("a", .5, -3), test::at("b", .5, 300)}), "a: temperature -3");
 }
 
 // A surface that nothing lights and nothing heats is at 0 K, and that is no error.

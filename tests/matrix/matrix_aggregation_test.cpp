@@ -12,7 +12,7 @@
 namespace radiosity {
 namespace {
 
-constexpr std::size_t kPatches = 60;
+constexpr std::size_t kSamplePatches = 60;
 constexpr std::size_t kGroups = 13;
 /// Of sums of some 60 x 60 / 13 doubles.
 constexpr double kRounding = 1e-13;
@@ -20,16 +20,16 @@ constexpr double kRounding = 1e-13;
 using Dense = std::vector<std::vector<double>>;
 
 /// Symmetric exchange areas, two thirds of them 0, of rows that sum to `sum` times the area.
-struct Sample {
-  std::vector<double> area = std::vector<double>(kPatches);
-  std::vector<Index> order = std::vector<Index>(kPatches);
-  std::vector<Index> group_of = std::vector<Index>(kPatches);
-  Dense exchange = Dense(kPatches, std::vector<double>(kPatches, 0.0));
+struct GroupedSample {
+  std::vector<double> area = std::vector<double>(kSamplePatches);
+  std::vector<Index> order = std::vector<Index>(kSamplePatches);
+  std::vector<Index> group_of = std::vector<Index>(kSamplePatches);
+  Dense exchange = Dense(kSamplePatches, std::vector<double>(kSamplePatches, 0.0));
 
-  explicit Sample(unsigned seed) {
+  explicit GroupedSample(unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
-    for (std::size_t i = 0; i < kPatches; ++i) {
+    for (std::size_t i = 0; i < kSamplePatches; ++i) {
       // The first patch of each group but the last, which stays empty; then at random.
       group_of[i] = Index(i < kGroups - 1 ? i : random() % (kGroups - 1));
       for (std::size_t j = 0; j <= i; ++j) {
@@ -37,7 +37,7 @@ struct Sample {
       }
     }
     // What a patch does not give to others is its own, as of a bent one: all rows sum to 1.
-    for (std::size_t i = 0; i < kPatches; ++i) {
+    for (std::size_t i = 0; i < kSamplePatches; ++i) {
       area[i] = 0.5 + std::accumulate(exchange[i].begin(), exchange[i].end(), 0.0);
       exchange[i][i] += 0.5;
     }
@@ -47,10 +47,10 @@ struct Sample {
 
   ExchangeMatrix rows() const {
     ExchangeMatrix matrix(area, Precision::double_precision);
-    for (std::size_t i = 0; i < kPatches; ++i) {
+    for (std::size_t i = 0; i < kSamplePatches; ++i) {
       std::vector<Index> columns;
       std::vector<double> values;
-      for (Index j = 0; j < kPatches; ++j) {
+      for (Index j = 0; j < kSamplePatches; ++j) {
         if (exchange[i][j] == 0) continue;
         columns.push_back(j);
         values.push_back(exchange[i][j] / area[i]);
@@ -62,9 +62,9 @@ struct Sample {
 
   ExchangeMatrix symmetric(Precision precision = Precision::double_precision) const {
     auto matrix = ExchangeMatrix::symmetric(area, order, precision);
-    for (std::size_t k = 0; k < kPatches; ++k) {
+    for (std::size_t k = 0; k < kSamplePatches; ++k) {
       std::vector<double> upper;
-      for (std::size_t later = k; later < kPatches; ++later) {
+      for (std::size_t later = k; later < kSamplePatches; ++later) {
         upper.push_back(exchange[order[k]][order[later]] / area[order[k]]);
       }
       matrix.setUpperRow(k, upper);
@@ -75,8 +75,8 @@ struct Sample {
   /// The definition: G_IJ is the sum of G_ij over i in I and j in J.
   Dense ofGroups() const {
     Dense sums(kGroups, std::vector<double>(kGroups, 0.0));
-    for (std::size_t i = 0; i < kPatches; ++i) {
-      for (std::size_t j = 0; j < kPatches; ++j) {
+    for (std::size_t i = 0; i < kSamplePatches; ++i) {
+      for (std::size_t j = 0; j < kSamplePatches; ++j) {
         sums[group_of[i]][group_of[j]] += exchange[i][j];
       }
     }
@@ -84,12 +84,12 @@ struct Sample {
   }
 };
 
-void expectSums(const ExchangeMatrix& matrix, const Sample& sample, double relative) {
+void expectSums(const ExchangeMatrix& matrix, const GroupedSample& sample, double relative) {
   const Dense sums = sample.ofGroups();
   ASSERT_EQ(matrix.size(), kGroups);
   for (std::size_t group = 0; group < kGroups; ++group) {
     double area = 0;
-    for (std::size_t i = 0; i < kPatches; ++i)
+    for (std::size_t i = 0; i < kSamplePatches; ++i)
       area += sample.group_of[i] == group ? sample.area[i] : 0;
     EXPECT_NEAR(matrix.area()[group], area, kRounding * area);
     for (std::size_t other = 0; other < kGroups; ++other) {
@@ -103,7 +103,7 @@ void expectSums(const ExchangeMatrix& matrix, const Sample& sample, double relat
 TEST(Aggregation, ExchangeAreasAreSumsOverTheGroups) {
   Progress progress;
   for (unsigned seed = 1; seed <= 5; ++seed) {
-    const Sample sample(seed);
+    const GroupedSample sample(seed);
     const auto rows = aggregated(sample.rows(), sample.group_of, kGroups, progress);
     const auto symmetric = aggregated(sample.symmetric(), sample.group_of, kGroups, progress);
     EXPECT_FALSE(rows.isSymmetric());
@@ -120,7 +120,7 @@ TEST(Aggregation, ExchangeAreasAreSumsOverTheGroups) {
 
 TEST(Aggregation, KeepsClosureAndReciprocity) {
   Progress progress;
-  const Sample sample(7);
+  const GroupedSample sample(7);
   const auto rows = aggregated(sample.rows(), sample.group_of, kGroups, progress);
   const auto symmetric = aggregated(sample.symmetric(), sample.group_of, kGroups, progress);
   for (const ExchangeMatrix* matrix : {&rows, &symmetric}) {
@@ -134,15 +134,15 @@ TEST(Aggregation, KeepsClosureAndReciprocity) {
 
 TEST(Aggregation, OfOnePatchAGroupChangesNothing) {
   Progress progress;
-  const Sample sample(3);
-  std::vector<Index> each(kPatches);
+  const GroupedSample sample(3);
+  std::vector<Index> each(kSamplePatches);
   std::iota(each.begin(), each.end(), Index(0));
   for (const ExchangeMatrix& matrix : {sample.rows(), sample.symmetric()}) {
-    const auto same = aggregated(matrix, each, kPatches, progress);
+    const auto same = aggregated(matrix, each, kSamplePatches, progress);
     EXPECT_EQ(std::vector(same.order().begin(), same.order().end()),
               std::vector(matrix.order().begin(), matrix.order().end()));
-    for (std::size_t i = 0; i < kPatches; ++i) {
-      for (std::size_t j = 0; j < kPatches; ++j) {
+    for (std::size_t i = 0; i < kSamplePatches; ++i) {
+      for (std::size_t j = 0; j < kSamplePatches; ++j) {
         EXPECT_NEAR(same.at(i, j), matrix.at(i, j), 4e-16 * matrix.at(i, j));
       }
     }
@@ -151,7 +151,7 @@ TEST(Aggregation, OfOnePatchAGroupChangesNothing) {
 
 TEST(Aggregation, RefusesGroupsThatDoNotFit) {
   Progress progress;
-  const Sample sample(1);
+  const GroupedSample sample(1);
   std::vector<Index> group_of = sample.group_of;
   group_of.pop_back();
   EXPECT_THROW(aggregated(sample.rows(), group_of, kGroups, progress), InputError);

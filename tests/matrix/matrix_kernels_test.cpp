@@ -5,6 +5,7 @@
 #include <random>
 #include <vector>
 
+#include "matrix/random_vector.h"
 #include "matrix/run_row.h"
 #include "matrix/triangle_kernels.h"
 #include "support/simd_targets.h"
@@ -108,11 +109,9 @@ void expectTheBitsOfTheDefinition(const TriangleKernels& kernels, const Block& s
   EXPECT_EQ(sums, gathered);
 }
 
-constexpr Precision kPrecisions[] = {Precision::single_precision, Precision::double_precision};
-
 TEST(TriangleKernels, EveryInstructionSetGivesTheBitsOfTheDefinition) {
   forEveryTarget([](const TriangleKernels& kernels) {
-    for (const Precision precision : kPrecisions) {
+    for (const Precision precision : test::kPrecisions) {
       for (std::size_t n = 0; n < 130; n += n < 20 ? 1 : 11) {
         const Block sample(1, n, 40, n % kSums, precision, unsigned(n));
         for (int bands = 1; bands <= kMaxBands; ++bands) {
@@ -128,7 +127,7 @@ TEST(TriangleKernels, EveryInstructionSetGivesTheBitsOfTheDefinition) {
 TEST(TriangleKernels, RowsAtOnceGiveTheBitsOfRowsOneByOne) {
   forEveryTarget([](const TriangleKernels& kernels) {
     unsigned seed = 0;
-    for (const Precision precision : kPrecisions) {
+    for (const Precision precision : test::kPrecisions) {
       for (const unsigned length : {40U, 600U, 100000U}) {
         for (const std::size_t count : {std::size_t(3), kMaxRows - 1, kMaxRows}) {
           const Block sample(count, 1500, length, 1 + seed % kSums, precision, seed);
@@ -143,7 +142,7 @@ TEST(TriangleKernels, RowsAtOnceGiveTheBitsOfRowsOneByOne) {
 }
 
 TEST(RunRow, HoldsEveryValueAndLeavesZerosOut) {
-  for (const Precision precision : kPrecisions) {
+  for (const Precision precision : test::kPrecisions) {
     for (unsigned seed = 0; seed < 20; ++seed) {
       std::mt19937 random(seed);
       const std::vector<double> dense = someRuns(300, 40, random);

@@ -104,7 +104,7 @@ TEST(ScratchMemory, LeavesNoFileAndNamesAFolderThatIsNotThere) {
   }
 }
 
-TEST(SymmetricForm, RowsWithFewValuesAreSetByTheirPositions) {
+TEST(SymmetricFormInScratch, RowsWithFewValuesAreSetByTheirPositions) {
   const ExchangeMatrix dense = filled(nullptr);
   ExchangeMatrix sparse = filled(nullptr);
   for (std::size_t k = 0; k < kSize; ++k) {

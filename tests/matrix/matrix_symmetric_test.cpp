@@ -8,12 +8,13 @@
 #include <random>
 #include <vector>
 
+#include "matrix/random_vector.h"
 #include "radiosity/matrix_functions.h"
 
 namespace radiosity {
 namespace {
 
-using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 enum class Pattern { dense, runs, scattered, empty };
 
@@ -22,10 +23,10 @@ enum class Pattern { dense, runs, scattered, empty };
 struct Sample {
   std::vector<double> area;
   std::vector<Index> order;
-  Matrix f;
+  RowMatrix f;
 
   Sample(std::size_t n, Pattern pattern, unsigned seed, bool with_diagonal = false)
-      : area(n), order(n), f(Matrix::Zero(Eigen::Index(n), Eigen::Index(n))) {
+      : area(n), order(n), f(RowMatrix::Zero(Eigen::Index(n), Eigen::Index(n))) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
     for (double& a : area) a = std::pow(10.0, 4 * uniform(random) - 2);
@@ -69,25 +70,16 @@ struct Sample {
 };
 
 constexpr Pattern kPatterns[] = {Pattern::dense, Pattern::runs, Pattern::scattered, Pattern::empty};
-constexpr Precision kPrecisions[] = {Precision::single_precision, Precision::double_precision};
-
-std::vector<double> randomVector(std::size_t n, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> uniform(0.5, 2.0);
-  std::vector<double> values(n);
-  for (double& value : values) value = uniform(random);
-  return values;
-}
 
 /// F x by Eigen.
-Matrix times(const Matrix& f, const std::vector<double>& x, int bands) {
-  return f * Eigen::Map<const Matrix>(x.data(), f.cols(), bands);
+RowMatrix times(const RowMatrix& f, const std::vector<double>& x, int bands) {
+  return f * Eigen::Map<const RowMatrix>(x.data(), f.cols(), bands);
 }
 
 TEST(SymmetricForm, EveryEntryFromBothEnds) {
   for (const Pattern pattern : kPatterns) {
     const Sample sample(150, pattern, 1, true);
-    for (const Precision precision : kPrecisions) {
+    for (const Precision precision : test::kPrecisions) {
       const ExchangeMatrix matrix = sample.matrix(precision);
       EXPECT_TRUE(matrix.isSymmetric());
       std::size_t entries = 0;
@@ -192,12 +184,12 @@ TEST(SymmetricForm, ProductAgreesWithEigenAndTheRowForm) {
       rows.setRow(i, columns, values);
     }
     for (const int bands : {1, 2, 3, 4, 5, 6, 7, 8, 9, 16, 19}) {
-      const std::vector<double> x = randomVector(n * std::size_t(bands), 4);
+      const std::vector<double> x = test::randomVector(n * std::size_t(bands), 4);
       std::vector<double> y(x.size(), NAN);
       std::vector<double> by_rows(x.size());
       matrix.product(x, bands, y);
       rows.product(x, bands, by_rows);
-      const Matrix expected = times(sample.f, x, bands);
+      const RowMatrix expected = times(sample.f, x, bands);
       for (std::size_t k = 0; k < y.size(); ++k) {
         // 401 terms >= 0 summed in another order: relative 401 * 2^-53.
         EXPECT_NEAR(y[k], expected.data()[k], 5e-14 * expected.data()[k]);
@@ -215,7 +207,7 @@ TEST(SymmetricForm, ThreadsDoNotChangeABit) {
   for (const Pattern pattern : {Pattern::dense, Pattern::runs, Pattern::scattered}) {
     const std::size_t n = 1100;
     const Sample sample(n, pattern, 5);
-    const std::vector<double> x = randomVector(n * 3, 6);
+    const std::vector<double> x = test::randomVector(n * 3, 6);
     std::vector<std::vector<double>> products;
     std::vector<std::size_t> bytes;
     for (const int threads : {1, 2, 4}) {
@@ -247,7 +239,7 @@ TEST(SymmetricForm, NumberingDoesNotChangeABit) {
   auto matrix = ExchangeMatrix::symmetric(area, order, Precision::single_precision);
   for (std::size_t k = 0; k < n; ++k) matrix.setUpperRow(k, sample.upper(k));
   const ExchangeMatrix plain = sample.matrix(Precision::single_precision);
-  const std::vector<double> x = randomVector(n * 3, 9);
+  const std::vector<double> x = test::randomVector(n * 3, 9);
   std::vector<double> other_x(n * 3);
   for (std::size_t i = 0; i < n; ++i) {
     std::copy_n(&x[i * 3], 3, &other_x[renamed[i] * 3]);
@@ -265,7 +257,7 @@ TEST(SymmetricForm, NumberingDoesNotChangeABit) {
 TEST(SymmetricForm, ScaleDoesNotChangeABit) {
   const std::size_t n = 200;
   const Sample sample(n, Pattern::dense, 10);
-  const std::vector<double> x = randomVector(n, 11);
+  const std::vector<double> x = test::randomVector(n, 11);
   std::vector<double> reference(n);
   sample.matrix(Precision::single_precision).product(x, 1, reference);
   for (const int exponent : {-500, -80, 80, 500}) {
@@ -287,12 +279,12 @@ TEST(SymmetricForm, SweepGathersWhatUpdatesLeft) {
       const auto width = std::size_t(bands);
       const Sample sample(n, pattern, 12, true);
       const ExchangeMatrix matrix = sample.matrix(Precision::single_precision);
-      std::vector<double> x = randomVector(n * width, 13);
-      Matrix expected = Eigen::Map<const Matrix>(x.data(), Eigen::Index(n), bands);
+      std::vector<double> x = test::randomVector(n * width, 13);
+      RowMatrix expected = Eigen::Map<const RowMatrix>(x.data(), Eigen::Index(n), bands);
       std::vector<Index> visited;
       matrix.sweep(x, bands, [&](std::size_t i, const double* gathered) {
         visited.push_back(Index(i));
-        const Matrix sums = sample.f.row(Eigen::Index(i)) * expected;
+        const RowMatrix sums = sample.f.row(Eigen::Index(i)) * expected;
         for (std::size_t b = 0; b < width; ++b) {
           // 130 terms >= 0 in another order.
           EXPECT_NEAR(gathered[b], sums(0, Eigen::Index(b)), 2e-14 * sums(0, Eigen::Index(b)));
@@ -329,7 +321,7 @@ TEST(SymmetricForm, TakesHalfTheMemoryAndNoneForZeros) {
 TEST(SymmetricForm, EstimateIsAnUpperBound) {
   const std::size_t n = 600;
   for (const Pattern pattern : kPatterns) {
-    for (const Precision precision : kPrecisions) {
+    for (const Precision precision : test::kPrecisions) {
       const ExchangeMatrix matrix = Sample(n, pattern, 15).matrix(precision);
       const double per_row = double(matrix.nonZeros()) / double(n);
       const auto estimate = double(estimateSymmetricBytes(n, per_row, precision));

@@ -5,6 +5,7 @@
 #include <random>
 #include <vector>
 
+#include "matrix/random_vector.h"
 #include "radiosity/matrix_functions.h"
 
 namespace radiosity {
@@ -38,14 +39,6 @@ ExchangeMatrix toMatrix(const Dense& dense, std::vector<double> area, Precision 
     matrix.setRow(i, columns, values);
   }
   return matrix;
-}
-
-std::vector<double> randomVector(std::size_t n, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> uniform(0.5, 2.0);
-  std::vector<double> values(n);
-  for (double& value : values) value = uniform(random);
-  return values;
 }
 
 TEST(ExchangeMatrix, StoresEachRowTheSmallerWay) {
@@ -96,7 +89,7 @@ TEST(ExchangeMatrix, ProductIsTheSumOverColumns) {
     EXPECT_EQ(matrix.denseRows(), fill < 0.5 ? 0u : n);
     for (int bands = 1; bands <= 9; ++bands) {
       const auto width = std::size_t(bands);
-      const std::vector<double> x = randomVector(n * width, 8);
+      const std::vector<double> x = test::randomVector(n * width, 8);
       std::vector<double> y(n * width);
       matrix.product(x, bands, y);
       for (std::size_t i = 0; i < n; ++i) {
@@ -125,7 +118,7 @@ TEST(ExchangeMatrix, StorageAndThreadsDoNotChangeABit) {
     const auto as_sparse = toMatrix(wide, std::vector<double>(padded, 1.0), precision);
     ASSERT_EQ(as_dense.denseRows(), n);
     ASSERT_EQ(as_sparse.denseRows(), 0u);
-    const std::vector<double> x = randomVector(padded * 3, 2);
+    const std::vector<double> x = test::randomVector(padded * 3, 2);
     std::vector<double> dense_y(n * 3);
     std::vector<double> sparse_y(padded * 3);
     std::vector<double> one_thread_y(padded * 3);
@@ -198,7 +191,7 @@ TEST(Reciprocity, MergeTrustsTheSmallerPatch) {
 
 TEST(Reciprocity, MergedMatrixIsSymmetric) {
   const std::size_t n = 300;  // more than one block of columns
-  const std::vector<double> area = randomVector(n, 21);
+  const std::vector<double> area = test::randomVector(n, 21);
   for (const double fill : {0.03, 0.9}) {
     const Dense dense = randomDense(n, fill, 22);
     const auto matrix = toMatrix(dense, area, Precision::double_precision);

@@ -14,15 +14,10 @@ namespace {
 
 using test::SceneBuilder;
 
-struct Made {
-  PatchMesh mesh;
-  MeshReport report;
-};
-
-Made asPatches(const Scene& scene) {
+MeshResult asPatches(const Scene& scene) {
   MeshOptions options;
   options.faces_as_patches = true;
-  Made made;
+  MeshResult made;
   made.mesh = facesAsPatches(scene, options, made.report);
   return made;
 }
@@ -260,15 +255,15 @@ TEST(FacesAsPatches, MovingAndScalingKeepTheRules) {
   const Index s = b.surface("s");
   b.box(s, {0, 0, 0}, {1, 1, 1});
   b.face(s, {{0.5, 0.5, -1}, {0.6, 0.5, -1}, {0.6, 0.5, 2}, {0.5, 0.5, 2}});
-  const Made plain = asPatches(b.scene());
+  const MeshResult plain = asPatches(b.scene());
   EXPECT_EQ(plain.report.crossings, 2u);
-  const Made moved = asPatches(test::moved(b.scene(), {1048576.0, 0, -2097152.0}));
+  const MeshResult moved = asPatches(test::moved(b.scene(), {1048576.0, 0, -2097152.0}));
   EXPECT_EQ(moved.report.crossings, 2u);
   // Coordinates near 2e6 keep 2e-10 of their last digit.
   for (std::size_t i = 0; i < plain.mesh.size(); ++i) {
     EXPECT_NEAR(moved.mesh.area[i], plain.mesh.area[i], 1e-9);
   }
-  const Made scaled = asPatches(test::scaled(b.scene(), 0.0625));
+  const MeshResult scaled = asPatches(test::scaled(b.scene(), 0.0625));
   for (std::size_t i = 0; i < plain.mesh.size(); ++i) {
     EXPECT_EQ(scaled.mesh.area[i], plain.mesh.area[i] * 0.0625 * 0.0625);
   }

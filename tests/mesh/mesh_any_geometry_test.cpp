@@ -14,7 +14,7 @@
 namespace radiosity::test {
 namespace {
 
-MeshResult mesh(const Scene& scene, std::size_t patches = 300, double weld = 1e-7) {
+MeshResult meshed(const Scene& scene, std::size_t patches = 300, double weld = 1e-7) {
   Progress progress;
   MeshOptions options;
   options.patches = patches;
@@ -58,7 +58,7 @@ void everywhere(const Scene& scene, const std::function<void(const MeshResult&)>
        {std::pair{"as it is", scene}, std::pair{"turned", turned(scene)},
         std::pair{"far away", moved(scene, {1e6, -2e6, 3e6})}}) {
     SCOPED_TRACE(where);
-    const MeshResult result = mesh(placed, 300, weld);
+    const MeshResult result = meshed(placed, 300, weld);
     expectAreaConserved(result.report);
     expectPatchesWithArea(result.mesh);
     if (result.report.t_junctions > 0) {
@@ -255,7 +255,7 @@ TEST(AnyGeometry, APolygonOfTwentyThousandCorners) {
   // And one that is not planar.
   for (std::size_t k = 0; k < corners.size(); ++k) corners[k].z = 2 + (k % 2 == 0 ? 1e-3 : 0.0);
   b.face(plate, corners);
-  const MeshResult r = mesh(b.scene());
+  const MeshResult r = meshed(b.scene());
   expectAreaConserved(r.report);
   expectPatchesWithArea(r.mesh);
   EXPECT_EQ(r.report.nonplanar_faces, 1u);

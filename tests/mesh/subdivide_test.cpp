@@ -18,14 +18,9 @@ namespace {
 using test::CoarseBuilder;
 using test::SceneBuilder;
 
-struct Made {
-  PatchMesh mesh;
-  MeshReport report;
-};
-
-Made subdivided(CoarseBuilder& input, const MeshOptions& options) {
+MeshResult subdivided(CoarseBuilder& input, const MeshOptions& options) {
   Progress progress;
-  Made made;
+  MeshResult made;
   made.mesh = subdivide(input.complex(), input.scene(), options, made.report, progress);
   return made;
 }
@@ -351,11 +346,11 @@ TEST(Subdivide, PowersOfTwoChangeNothing) {
     for (const double factor : {std::ldexp(1.0, -20), std::ldexp(1.0, 20)}) {
       CoarseBuilder input;
       addShape(input, shape);
-      const Made plain = subdivided(input, count(150));
+      const MeshResult plain = subdivided(input, count(150));
       for (Vec3& vertex : input.complex().vertices) vertex *= factor;
       for (Vec3& vertex : input.scene().vertices) vertex *= factor;
       input.complex().coincidence *= factor;
-      const Made scaled = subdivided(input, count(150));
+      const MeshResult scaled = subdivided(input, count(150));
       ASSERT_EQ(plain.mesh.corners, scaled.mesh.corners) << shape.name;
       for (std::size_t v = 0; v < plain.mesh.vertices.size(); ++v) {
         ASSERT_EQ(plain.mesh.vertices[v] * factor, scaled.mesh.vertices[v]) << shape.name;
@@ -370,11 +365,11 @@ TEST(Subdivide, PowersOfTwoChangeNothing) {
 TEST(Subdivide, FarFromTheOriginOnlyRepresentationIsLost) {
   CoarseBuilder input;
   addShape(input, goodShapes()[5]);
-  const Made near = subdivided(input, count(150));
+  const MeshResult near = subdivided(input, count(150));
   const Vec3 away(1e6, -1e6, 1e6);
   input.complex().origin = away;
   for (Vec3& vertex : input.scene().vertices) vertex += away;
-  const Made far = subdivided(input, count(150));
+  const MeshResult far = subdivided(input, count(150));
   ASSERT_EQ(near.mesh.corners, far.mesh.corners);
   EXPECT_EQ(near.mesh.area, far.mesh.area);
   EXPECT_EQ(near.mesh.normal, far.mesh.normal);

@@ -275,14 +275,14 @@ double pictureError(int n, const Field& field, double margin) {
   return worst;
 }
 
-TEST(Picture, ALinearFieldIsReproducedAwayFromTheBorder) {
+TEST(InterpolatedPicture, ALinearFieldIsReproducedAwayFromTheBorder) {
   const Field linear = [](const Vec3& p) { return 1 + 2 * p.x + 3 * p.y; };
   // Inner corners are means over four equal patches: exact. What is left is the float of the
   // picture, 6e-8 of values up to 6.
   for (const int n : {4, 8, 32}) EXPECT_LT(pictureError(n, linear, 1.0 / n), 4e-7) << n;
 }
 
-TEST(Picture, TheBorderIsFirstOrderAndTheInsideSecond) {
+TEST(InterpolatedPicture, TheBorderIsFirstOrderAndTheInsideSecond) {
   // A corner on the border is a mean over patches on one side of it: half a patch too far inside,
   // so the error of a linear field there is slope * h / 2 in each direction, and halves with h.
   const Field linear = [](const Vec3& p) { return 1 + 2 * p.x + 3 * p.y; };
@@ -299,7 +299,7 @@ TEST(Picture, TheBorderIsFirstOrderAndTheInsideSecond) {
   EXPECT_NEAR(std::log2(error16 / error32), 2, 0.2);
 }
 
-TEST(Picture, AConstantFieldIsThatConstantInEveryPixelThatHits) {
+TEST(InterpolatedPicture, AConstantFieldIsThatConstantInEveryPixelThatHits) {
   QuadMesh builder;
   builder.box("room", {-2, 0, -3}, {2, 2.5, 3}, 7, true);
   builder.box("block", {-1, 0.25, -1.5}, {0, 1.5, -0.5}, 3);

@@ -67,16 +67,18 @@ double linear(double encoded) {
 /// Texels are stored in single precision: half an ulp of 1 and the roundings on the way.
 constexpr double kTexel = 2e-7;
 
-const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
-const std::string kFace = "f 1/1 2/2 3/3 4/4\n";
+const std::string kTexturedSquare =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
+const std::string kTexturedFace = "f 1/1 2/2 3/3 4/4\n";
 
 class SceneTexture : public SceneFiles {
  protected:
   Scene load(const std::string& mtl, const SceneOptions& options = {},
-             const std::string& faces = kFace) {
+             const std::string& faces = kTexturedFace) {
     write("m.mtl", "newmtl paint\n" + mtl);
     return loadScene(
-        write("scene.obj", "mtllib m.mtl\n" + kSquare + "o wall\nusemtl paint\n" + faces), options);
+        write("scene.obj", "mtllib m.mtl\n" + kTexturedSquare + "o wall\nusemtl paint\n" + faces),
+        options);
   }
 };
 
@@ -179,8 +181,8 @@ TEST_F(SceneTexture, GoesOnWithTheFactorWhereATextureCannotBeUsed) {
 
 TEST_F(SceneTexture, NeedsTextureCoordinatesOnEveryFace) {
   write("grey.png", png(1, {"\x40"}, 0, 8));
-  const Scene scene =
-      load("Kd .3 .3 .3\nmap_Kd grey.png\n", {}, kFace + "o bare\nusemtl paint\nf 1/1 2/2 3\n");
+  const Scene scene = load("Kd .3 .3 .3\nmap_Kd grey.png\n", {},
+                           kTexturedFace + "o bare\nusemtl paint\nf 1/1 2/2 3\n");
   EXPECT_EQ(scene.materialOf(0).texture, 0u);
   EXPECT_EQ(scene.materialOf(1).texture, kNone);
   EXPECT_EQ(scene.materialOf(1).reflectance, Vec3(.3));
@@ -252,8 +254,8 @@ TEST_F(SceneTexture, AnEmissiveTextureMultipliesKe) {
 
 TEST_F(SceneTexture, AnEmissiveTextureNeedsCoordinatesToo) {
   write("grey.png", png(1, {"\x40"}, 0, 8));
-  const Scene scene =
-      load("Ke 1 1 1\nmap_Ke grey.png\n", {}, kFace + "o bare\nusemtl paint\nf 1/1 2/2 3\n");
+  const Scene scene = load("Ke 1 1 1\nmap_Ke grey.png\n", {},
+                           kTexturedFace + "o bare\nusemtl paint\nf 1/1 2/2 3\n");
   EXPECT_EQ(scene.materialOf(0).emission_texture, 0u);
   EXPECT_EQ(scene.materialOf(1).emission, Vec3(0));
   EXPECT_NOTE(scene.notes,

@@ -27,14 +27,16 @@ class MatrixFiles : public FolderTest {
 };
 
 // Opposite faces of a cube: catalogue C-11 of Howell et al.; adjacent ones follow from closure.
-constexpr double kOpposite = 0.199824896;
+constexpr double kOppositeSides = 0.199824896;
 
 /// As View3D writes the cube, whose faces 1 and 4, 2 and 5, 3 and 6 are opposite: six decimals.
 std::string cubeOfView3d() {
   std::string text = "View3D 3.3.1 0 1 0 6          \n1 1 1 1 1 1\n";
   for (int a = 0; a < 6; ++a) {
     for (int b = 0; b < 6; ++b) {
-      const double value = a == b ? 0 : (b - a + 6) % 3 == 0 ? kOpposite : (1 - kOpposite) / 4;
+      const double value = a == b                 ? 0
+                           : (b - a + 6) % 3 == 0 ? kOppositeSides
+                                                  : (1 - kOppositeSides) / 4;
       text += fmt::format("{}{:.6f}", b == 0 ? "" : " ", value);
     }
     text += '\n';
