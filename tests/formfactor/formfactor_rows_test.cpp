@@ -6,6 +6,7 @@
 #include <random>
 #include <regex>
 
+#include "formfactor/computed_factors.h"
 #include "formfactor/hemicube/row_builder.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/matrix_functions.h"
@@ -21,11 +22,6 @@ FormFactorOptions hemicubes() {
   FormFactorOptions options;
   options.method = FormFactorMethod::hemicube;
   return options;
-}
-
-FormFactors byHemicubes(const PatchMesh& mesh, const FormFactorOptions& options = hemicubes()) {
-  Progress silent;
-  return computeFormFactors(mesh, options, silent);
 }
 
 FormFactorOptions doublePrecision(int resolution) {
@@ -54,7 +50,7 @@ TEST(Rows, FurnaceIsExactInAClosedRoomWithABlock) {
   // With rows that sum to 1, E = 1 and rho = 1/2 give B = 2 everywhere: one row product of the
   // constant 2 returns 2. The row's accounts are sums of at most a few thousand terms below 1.
   const PatchMesh mesh = test::roomWithBlock(3).build();
-  const FormFactors f = byHemicubes(mesh, doublePrecision(64));
+  const FormFactors f = test::computed(mesh, doublePrecision(64));
   EXPECT_TRUE(f.report.closed);
   EXPECT_LE(f.report.largest_row_error, 1e-12);
   const std::vector<double> constant(mesh.size(), 2.0);
@@ -96,7 +92,7 @@ TEST(Rows, SymmetricEyesWithoutTurnsDoNotLeak) {
   builder.box("block", {-0.25, -0.25, -0.25}, {0.25, 0.25, 0.25}, 2);
   FormFactorOptions options = doublePrecision(16);
   options.random_turns = false;
-  const FormFactors f = byHemicubes(builder.build(), options);
+  const FormFactors f = test::computed(builder.build(), options);
   EXPECT_TRUE(f.report.closed);
   for (const double backs : f.backs) EXPECT_EQ(backs, 0.0);
 }
@@ -108,7 +104,7 @@ TEST(Rows, AccountsOfAnOpenScene) {
   builder.grid("high", {0, 0, 1}, {0, 1, 0}, {1, 0, 0}, 2, 2);
   builder.grid("flipped", {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, 2, 2);  // faces away from the others
   const PatchMesh mesh = builder.build();
-  const FormFactors f = byHemicubes(mesh, doublePrecision(128));
+  const FormFactors f = test::computed(mesh, doublePrecision(128));
   EXPECT_FALSE(f.report.closed);
   EXPECT_LE(f.report.largest_row_error, 1e-12);
   for (std::size_t i = 0; i < 8; ++i) {
@@ -136,7 +132,7 @@ TEST(Rows, OfManySurfacesSeenFromBehindTheWarningNamesThree) {
     const double x = 0.05 * k;
     builder.grid("board " + std::to_string(k), {x, 0, 0.5}, {0.05, 0, 0}, {0, 1, 0}, 1, 1);
   }
-  const FormFactors f = byHemicubes(builder.build(), doublePrecision(64));
+  const FormFactors f = test::computed(builder.build(), doublePrecision(64));
   ASSERT_EQ(f.report.notes.size(), 1u);
   EXPECT_TRUE(
       std::regex_search(f.report.notes[0].text,
@@ -152,7 +148,7 @@ TEST(Rows, TwoSidedPolygonsAreSeenFromBothSides) {
   builder.grid("plate", {0.25, 0.25, 0.5}, {0.5, 0, 0}, {0, 0.5, 0}, 2, 2, true);
   const PatchMesh mesh = builder.build();
   ASSERT_EQ(mesh.size(), 16u);
-  const FormFactors f = byHemicubes(mesh, doublePrecision(256));
+  const FormFactors f = test::computed(mesh, doublePrecision(256));
   for (std::size_t i = 0; i < 4; ++i) {
     double to_fronts = 0;
     double to_backs = 0;
@@ -174,7 +170,7 @@ TEST(Rows, DegeneratePatchesHaveEmptyRows) {
   mesh.area[5] = 0;
   mesh.polygon[5] = kNone;
   mesh.normal[5] = Vec3(0.0);
-  const FormFactors f = byHemicubes(mesh, doublePrecision(32));
+  const FormFactors f = test::computed(mesh, doublePrecision(32));
   EXPECT_EQ(f.report.empty_rows, 1u);
   EXPECT_EQ(f.report.hemicubes, 23u);
   EXPECT_EQ(f.fronts[5], 0.0);
@@ -186,26 +182,26 @@ TEST(Rows, DegeneratePatchesHaveEmptyRows) {
 
 TEST(Rows, ScalingByAPowerOfTwoChangesNoBit) {
   const PatchMesh mesh = test::roomWithBlock(2).build();
-  const FormFactors f = byHemicubes(mesh, doublePrecision(64));
+  const FormFactors f = test::computed(mesh, doublePrecision(64));
   for (const int exponent : {-20, -1, 3, 20}) {
     PatchMesh scaled = mesh;
     for (Vec3& v : scaled.vertices) v *= std::ldexp(1.0, exponent);
     for (Vec3& v : scaled.centroid) v *= std::ldexp(1.0, exponent);
     for (Vec3& v : scaled.polygons.origin) v *= std::ldexp(1.0, exponent);
     for (double& a : scaled.area) a *= std::ldexp(1.0, 2 * exponent);
-    expectSameRows(f, byHemicubes(scaled, doublePrecision(64)));
+    expectSameRows(f, test::computed(scaled, doublePrecision(64)));
   }
 }
 
 TEST(Rows, ThreadCountAndScalarTargetChangeNoBit) {
   const PatchMesh mesh = test::roomWithBlock(2).build();
-  const FormFactors f = byHemicubes(mesh, doublePrecision(64));
+  const FormFactors f = test::computed(mesh, doublePrecision(64));
   setThreads(1);
-  expectSameRows(f, byHemicubes(mesh, doublePrecision(64)));
+  expectSameRows(f, test::computed(mesh, doublePrecision(64)));
   setThreads(0);
   FormFactorOptions scalar = doublePrecision(64);
   scalar.simd = false;
-  const FormFactors by_scalars = byHemicubes(mesh, scalar);
+  const FormFactors by_scalars = test::computed(mesh, scalar);
   EXPECT_EQ(by_scalars.report.simd_target, test::scalarTarget());
   EXPECT_NE(f.report.simd_target, test::scalarTarget());
   expectSameRows(f, by_scalars);
@@ -217,8 +213,8 @@ TEST(Rows, PermutationOfPatchesChangesNoBit) {
   std::vector<std::size_t> order(mesh.size());
   std::iota(order.begin(), order.end(), std::size_t(0));
   std::shuffle(order.begin(), order.end(), std::mt19937_64(3));
-  const FormFactors f = byHemicubes(mesh, doublePrecision(64));
-  const FormFactors permuted = byHemicubes(builder.build(order), doublePrecision(64));
+  const FormFactors f = test::computed(mesh, doublePrecision(64));
+  const FormFactors permuted = test::computed(builder.build(order), doublePrecision(64));
   expectSameRows(f, permuted, order);
   EXPECT_EQ(f.backs_by_surface, permuted.backs_by_surface);
 }
@@ -226,9 +222,9 @@ TEST(Rows, PermutationOfPatchesChangesNoBit) {
 TEST(Rows, SeedTurnsTheHemicubes) {
   const PatchMesh mesh = test::roomWithBlock(1).build();
   FormFactorOptions options = doublePrecision(32);
-  const FormFactors f = byHemicubes(mesh, options);
+  const FormFactors f = test::computed(mesh, options);
   options.seed = 2;
-  EXPECT_NE(f.matrix.at(0, 8), byHemicubes(mesh, options).matrix.at(0, 8));
+  EXPECT_NE(f.matrix.at(0, 8), test::computed(mesh, options).matrix.at(0, 8));
 }
 
 TEST(Rows, MemoryLimitRefusesWithTheNumbers) {
@@ -236,14 +232,14 @@ TEST(Rows, MemoryLimitRefusesWithTheNumbers) {
   FormFactorOptions options = doublePrecision(32);
   options.memory_limit = 1000;
   try {
-    byHemicubes(mesh, options);
+    test::computed(mesh, options);
     FAIL() << "no error";
   } catch (const RunError& error) {
     EXPECT_NE(std::string(error.what()).find("limit"), std::string::npos) << error.what();
   }
   Progress silent;
   options.memory_limit = planFormFactors(mesh, options, silent).bytes;
-  EXPECT_GE(options.memory_limit, byHemicubes(mesh, options).report.matrix_bytes);
+  EXPECT_GE(options.memory_limit, test::computed(mesh, options).report.matrix_bytes);
 }
 
 TEST(Rows, OptionsHaveValidDefaultsAndRanges) {
@@ -268,9 +264,9 @@ TEST(Rows, CancelStops) {
 TEST(Rows, SymmetrizeMergesBothEndsAndKeepsRowSums) {
   const PatchMesh mesh = test::roomWithBlock(3).build();
   FormFactorOptions options = doublePrecision(128);
-  const FormFactors raw = byHemicubes(mesh, options);
+  const FormFactors raw = test::computed(mesh, options);
   options.symmetrize = true;
-  const FormFactors f = byHemicubes(mesh, options);
+  const FormFactors f = test::computed(mesh, options);
   EXPECT_TRUE(f.report.symmetrized);
   EXPECT_GT(raw.report.reciprocity_residual, 1e-3);  // one point a patch: the ends differ
   EXPECT_EQ(f.report.reciprocity_residual, raw.report.reciprocity_residual);

@@ -1,5 +1,4 @@
 // Radiative heat exchange against closed forms and published values.
-
 #include "radiosity/heat.h"
 
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "matrix/random_vector.h"
+#include "matrix/operands.h"
 #include "matrix/run_row.h"
 #include "matrix/triangle_kernels.h"
 #include "support/simd_targets.h"

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "matrix/random_vector.h"
+#include "matrix/operands.h"
 #include "radiosity/matrix_functions.h"
 
 namespace radiosity {

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "formfactor/computed_factors.h"
 #include "radiosity/gather.h"
 #include "solve_systems.h"
 #include "support/quad_mesh.h"
@@ -20,14 +21,6 @@ PatchMesh meshOf(const Scene& scene, std::size_t patches) {
   options.patches = patches;
   Progress quiet;
   return meshScene(scene, options, quiet).mesh;
-}
-
-FormFactors exactFactors(const PatchMesh& mesh, double tolerance = 1e-9) {
-  FormFactorOptions options;
-  options.method = FormFactorMethod::exact;
-  options.tolerance = tolerance;
-  Progress quiet;
-  return computeFormFactors(mesh, options, quiet);
 }
 
 Solution solveUnder(const FormFactors& factors, double rho, const std::vector<double>& emission,
@@ -53,7 +46,7 @@ TEST(Sky, AFloorReflectsExactlyRhoPiL) {
   test::SceneBuilder builder;
   builder.level(builder.surface("floor"), 0, 0, 3, 2, 0);
   const PatchMesh mesh = meshOf(builder.scene(), 40);
-  const FormFactors factors = exactFactors(mesh);
+  const FormFactors factors = test::computed(mesh, test::exactly(1e-9));
   const std::vector<double> sky = {1, 0, 2.5};
   const Solution s = solveUnder(factors, 0.3, std::vector<double>(3 * mesh.size(), 0.0), sky);
   ASSERT_EQ(s.summary.status, SolveStatus::converged) << s.summary.message;
@@ -79,7 +72,7 @@ TEST(Sky, AnOpenCubeSeesTheSkyByTheClosedForms) {
   scene.face_element.pop_back();
   const PatchMesh mesh = meshOf(scene, 5);
   ASSERT_EQ(mesh.size(), 5U);
-  const FormFactors factors = exactFactors(mesh);
+  const FormFactors factors = test::computed(mesh, test::exactly(1e-9));
   const double opposite = 0.199824895698387;
   const double adjacent = (1 - opposite) / 4;
   const Solution s =
@@ -104,7 +97,7 @@ TEST(Sky, FurnaceOfAnOpenBox) {
   scene.face_surface.pop_back();
   scene.face_element.pop_back();
   const PatchMesh mesh = meshOf(scene, 60);
-  const FormFactors factors = exactFactors(mesh);
+  const FormFactors factors = test::computed(mesh, test::exactly(1e-9));
   for (const double rho : {0.1, 0.5, 0.95}) {
     const std::vector<double> emission(mesh.size(), (1 - rho) * kPi);
     const Solution s = solveUnder(factors, rho, emission, {1.0});

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "formfactor/computed_factors.h"
 #include "support/error_of.h"
 #include "support/mesh_builder.h"
 #include "support/results_folder.h"
@@ -30,14 +31,6 @@ PatchMesh cube(int n) {
   return builder.build();
 }
 
-FormFactors exactFactors(const PatchMesh& mesh, double tolerance) {
-  FormFactorOptions options;
-  options.method = FormFactorMethod::exact;
-  options.tolerance = tolerance;
-  Progress quiet;
-  return computeFormFactors(mesh, options, quiet);
-}
-
 NamedFactors between(const PatchMesh& mesh, const FormFactors& factors,
                      const std::vector<std::string>& groups = {}) {
   Progress quiet;
@@ -49,7 +42,7 @@ constexpr double kOpposite = 0.199824896;
 
 TEST_F(Tables, FacesOfTheCubeHaveTheirPublishedFormFactors) {
   const PatchMesh mesh = cube(4);
-  const NamedFactors table = between(mesh, exactFactors(mesh, 1e-7));
+  const NamedFactors table = between(mesh, test::computed(mesh, test::exactly(1e-7)));
   ASSERT_EQ(table.names, mesh.surface_names);
   const double adjacent = (1 - kOpposite) / 4;
   for (std::size_t a = 0; a < 6; ++a) {
@@ -68,7 +61,8 @@ TEST_F(Tables, FacesOfTheCubeHaveTheirPublishedFormFactors) {
 
 TEST_F(Tables, GroupsFollowViewFactorAlgebra) {
   const PatchMesh mesh = cube(3);
-  const NamedFactors table = between(mesh, exactFactors(mesh, 1e-7), {"walls=[xy]?"});
+  const NamedFactors table =
+      between(mesh, test::computed(mesh, test::exactly(1e-7)), {"walls=[xy]?"});
   ASSERT_EQ(table.names, (std::vector<std::string>{"walls", "z0", "z1"}));
   EXPECT_NEAR(table.matrix->area()[0], 4, 1e-14);
   // Four walls: each sees the opposite one and two others; the floor sees all four.
@@ -174,8 +168,8 @@ TEST_F(Tables, MatricesOnDiskGiveTheSameBits) {
 
 TEST_F(Tables, EntriesAreWithinTheirErrorOfFactorsToAThousandthOfTheTolerance) {
   const PatchMesh mesh = test::roomWithBlock(3).build();
-  const NamedFactors rough = between(mesh, exactFactors(mesh, 3e-2));
-  const NamedFactors fine = between(mesh, exactFactors(mesh, 3e-5));
+  const NamedFactors rough = between(mesh, test::computed(mesh, test::exactly(3e-2)));
+  const NamedFactors fine = between(mesh, test::computed(mesh, test::exactly(3e-5)));
   std::size_t beyond = 0;
   double largest = 0;
   for (std::size_t a = 0; a < rough.size(); ++a) {
