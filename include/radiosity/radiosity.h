@@ -26,4 +26,5 @@
 #include "radiosity/solve.h"
 #include "radiosity/tables.h"
 #include "radiosity/version.h"
+#include "radiosity/volume_skin.h"
 #include "radiosity/vtk.h"

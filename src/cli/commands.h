@@ -70,6 +70,8 @@ void writeCells(Session& session, Pipeline& pipeline, OutputSet& files,
 /// InputError, with the cure as a command line to paste, where nothing in the scene emits.
 void requireLight(const Session& session, const Pipeline& pipeline);
 
+/// The exit code of a solution: 0 where it is usable, else 1, after saying why.
+int exitCode(Session& session, bool usable, const std::string& message);
 /// Solves, where that was not done; 0 where the solution is usable, else 1, after saying why.
 int judgeSolution(Session& session, Pipeline& pipeline);
 

@@ -64,16 +64,13 @@ int runHeat(Session& session) {
   pipeline.factors();
   keepFactors(session, pipeline, files);
   const HeatSummary& summary = pipeline.heat().summary;
-  if (!summary.usable()) {
-    const Note unusable{Severity::loud, summary.message};
-    session.report.notes({&unusable, 1});
-  }
+  const int exit_code = exitCode(session, summary.usable(), summary.message);
   writeStages(session, pipeline, files);
   writeTables(pipeline, files);
   writeCells(session, pipeline, files);
   files.commit(session.report, session.progress);
   noteUnsaved(session, pipeline, files);
-  return summary.usable() ? 0 : 1;
+  return exit_code;
 }
 
 }  // namespace radiosity::cli

@@ -40,10 +40,7 @@ int heatMatrixFile(Session& session, OutputSet& files) {
     writeHeatRows(temporary, heat, names, factors.matrix.area());
   });
   files.commit(session.report, session.progress);
-  if (heat.summary.usable()) return 0;
-  const Note unusable{Severity::loud, heat.summary.message};
-  session.report.notes({&unusable, 1});
-  return 1;
+  return exitCode(session, heat.summary.usable(), heat.summary.message);
 }
 
 }  // namespace radiosity::cli

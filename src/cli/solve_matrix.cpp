@@ -40,10 +40,7 @@ int solveMatrixFile(Session& session, OutputSet& files) {
     });
   }
   files.commit(session.report, session.progress);
-  if (solution.summary.usable()) return 0;
-  const Note unusable{Severity::loud, solution.summary.message};
-  session.report.notes({&unusable, 1});
-  return 1;
+  return exitCode(session, solution.summary.usable(), solution.summary.message);
 }
 
 }  // namespace radiosity::cli

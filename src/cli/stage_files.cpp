@@ -218,19 +218,21 @@ void writeMatrix(Session& session, Pipeline& pipeline, OutputSet& files) {
               });
 }
 
-int judgeSolution(Session& session, Pipeline& pipeline) {
-  const SolveSummary& summary = pipeline.solution().summary;
-  if (summary.usable()) {
-    if (summary.status == SolveStatus::no_light) {
-      const Note dark{Severity::warning,
-                      darknessText(session.request, pipeline.scene(), pipeline.bands())};
-      session.report.notes({&dark, 1});
-    }
-    return 0;
-  }
-  const Note unusable{Severity::loud, summary.message};
+int exitCode(Session& session, bool usable, const std::string& message) {
+  if (usable) return 0;
+  const Note unusable{Severity::loud, message};
   session.report.notes({&unusable, 1});
   return 1;
+}
+
+int judgeSolution(Session& session, Pipeline& pipeline) {
+  const SolveSummary& summary = pipeline.solution().summary;
+  if (summary.status == SolveStatus::no_light) {
+    const Note dark{Severity::warning,
+                    darknessText(session.request, pipeline.scene(), pipeline.bands())};
+    session.report.notes({&dark, 1});
+  }
+  return exitCode(session, summary.usable(), summary.message);
 }
 
 void noteUnsaved(Session& session, const Pipeline& pipeline, const OutputSet& files) {

@@ -147,7 +147,7 @@ class PatchTexture {
       for (int r = 0; r < kParts; ++r) {
         for (int s = 0; r + s < kParts; ++s) {
           const Vec2 corner = part[0] + double(r) * a + double(s) * b;
-          const double area = cross2(a, b);
+          const double area = std::max(0.0, cross2(a, b));  // below 0 by rounding only
           colour += area * texture.at(triangle.map(corner + (a + b) / 3.0));
           total += area;
           if (r + s + 1 == kParts) continue;

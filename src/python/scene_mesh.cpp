@@ -5,6 +5,7 @@
 #include "handles.h"
 #include "long_call.h"
 #include "options.h"
+#include "radiosity/volume_skin.h"
 #include "reports.h"
 
 namespace radiosity::python {
@@ -60,6 +61,30 @@ std::shared_ptr<Scene> sceneOfArrays(const Array<double>& vertices, const Array<
     validate(*scene);
   }
   return scene;
+}
+
+/// The skin of volumes given as `corners` from each `offset` on: its faces as scenes have them, and
+/// the volume of each.
+py::tuple volumeSkin(const Array<double>& vertices, const Array<Index>& corners,
+                     const Array<std::uint64_t>& offset) {
+  std::vector<Index> loops;
+  std::vector<std::uint64_t> loop_offset{0};
+  std::vector<Index> volumes;
+  {
+    const py::gil_scoped_release unlocked;
+    VolumeSkin skin;
+    const std::span<const std::uint64_t> begin = spanOf(offset);
+    for (std::size_t v = 0; v + 1 < begin.size(); ++v) {
+      skin.add(spanOf(corners).subspan(begin[v], begin[v + 1] - begin[v]));
+    }
+    for (const VolumeSkin::Face& face : skin.faces(vectorsOf(vertices))) {
+      loops.insert(loops.end(), face.vertices().begin(), face.vertices().end());
+      loop_offset.push_back(loops.size());
+      volumes.push_back(face.volume);
+    }
+  }
+  return py::make_tuple(taken(std::move(loops)), taken(std::move(loop_offset)),
+                        taken(std::move(volumes)));
 }
 
 py::list materialsOf(const Scene& scene) {
@@ -181,6 +206,7 @@ void bindScene(py::module_& module) {
   });
   module.def("load", &load);
   module.def("scene_of_arrays", &sceneOfArrays);
+  module.def("volume_skin", &volumeSkin);
   bindMesh(module);
 }
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "radiosity/scene.h"
+#include "radiosity/volume_skin.h"
 #include "scene/scene_builder.h"
-#include "scene/volume_skin.h"
 
 namespace radiosity {
 

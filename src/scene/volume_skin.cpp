@@ -1,4 +1,4 @@
-#include "scene/volume_skin.h"
+#include "radiosity/volume_skin.h"
 
 #include <algorithm>
 #include <glm/geometric.hpp>

@@ -130,6 +130,23 @@ double clippedReference(const ElementSet& set) {
   return test::referenceExchange(of_a.outline(), of_b.outline());
 }
 
+// As rounding leaves the corners of an element in the plane that it is cut by.
+TEST(FlatPolygon, HasRoomForAQuadrilateralWithEverySecondCornerBehindThePlane) {
+  const double tiny = 1e-16;
+  const std::array<Vec3, 4> outline = {Vec3(0, 0, tiny), Vec3(1, 0, -tiny), Vec3(1, 1, tiny),
+                                       Vec3(0, 1, -tiny)};
+  const FlatPolygon front = clipToFront(outline, Vec3(0, 0, 1), 0);
+  ASSERT_EQ(front.count, 6U);
+  EXPECT_EQ(front.count, FlatPolygon::kMostCorners);
+  // Two corners and the middles of all four edges.
+  Vec3 area(0.0);
+  for (std::size_t k = 2; k < front.count; ++k) {
+    area += 0.5 * glm::cross(front.corners[k - 1] - front.corners[0],
+                             front.corners[k] - front.corners[0]);
+  }
+  EXPECT_DOUBLE_EQ(area.z, 0.75);
+}
+
 TEST(Unoccluded, PairsThatCrossEachOthersPlaneAreClipped) {
   ElementPairs pairs(23);
   int crossing = 0;

@@ -38,9 +38,39 @@ def test_meshio_reads_the_formats_of_the_data_folder():
     assert np.array_equal(np.sort(mesh.area), np.sort(direct.area))
 
 
-def test_volumes_are_no_faces():
-    mesh = meshio.Mesh(np.eye(4, 3), [("tetra", [[0, 1, 2, 3]])])
-    with pytest.raises(rad.InputError, match="no faces but tetra; extract its surface"):
+def test_volumes_alone_give_their_skin():
+    """Two unit cubes side by side: without the wall between them ten unit squares are left."""
+    grid = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1, 2)], dtype=float)
+    left = [0, 1, 4, 3, 6, 7, 10, 9]
+    right = [1, 2, 5, 4, 7, 8, 11, 10]
+    mesh = meshio.Mesh(grid, [("hexahedron", [left, right]), ("line", [[0, 1]])],
+                       cell_sets={"oven": [[0], []], "tray": [[1], []]})
+    with pytest.warns(UserWarning, match=r"volume cells alone \(2\): .* are the surfaces \(10\)$"):
+        scene = rad.from_meshio(mesh)
+    assert scene.surface_names == ["oven", "tray"]
+    assert list(np.bincount(scene.face_surface)) == [5, 5]
+    assert rad.mesh(scene, patches=40).area.sum() == pytest.approx(10, rel=1e-12)
+
+
+def test_a_mesh_of_a_file_has_the_skin_that_the_file_has(tmp_path):
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]], dtype=float)
+    meshio.Mesh(corners, [("tetra", [[0, 1, 2, 3], [1, 2, 3, 4]])]).write(tmp_path / "two.vtu")
+    with pytest.warns(UserWarning, match="volume"):
+        read = rad.from_meshio(meshio.read(tmp_path / "two.vtu"))
+        loaded = rad.load(str(tmp_path / "two.vtu"))
+    faces = [np.sort(s.corners.reshape(-1, 3), axis=1).tolist() for s in (read, loaded)]
+    assert len(faces[0]) == 6 and sorted(faces[0]) == sorted(faces[1])
+
+
+def test_volumes_of_points_that_are_not_there():
+    mesh = meshio.Mesh(np.eye(3), [("tetra", [[0, 1, 2, 7]])])
+    with pytest.raises(rad.InputError, match="^meshio mesh: volume cell 0 has point 7; there are 3 points"):
+        rad.from_meshio(mesh)
+
+
+def test_a_mesh_of_lines_is_no_scene():
+    mesh = meshio.Mesh(np.eye(4, 3), [("line", [[0, 1]])])
+    with pytest.raises(rad.InputError, match="no faces but line; extract its surface"):
         rad.from_meshio(mesh)
 
 

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <random>
 
-#include "scene/volume_skin.h"
+#include "radiosity/volume_skin.h"
 
 namespace radiosity {
 namespace {

@@ -11,9 +11,11 @@
 
 namespace radiosity {
 
-/// A convex planar polygon of at most five corners: an element cut by one plane.
+/// An element cut by one plane: a convex planar polygon of at most five corners; of six where the
+/// plane is the element's own but for rounding, and every second corner is behind it.
 struct FlatPolygon {
-  std::array<Vec3, 5> corners{};
+  static constexpr std::size_t kMostCorners = 6;
+  std::array<Vec3, kMostCorners> corners{};
   std::size_t count = 0;
 
   std::span<const Vec3> outline() const { return {corners.data(), count}; }

@@ -3,15 +3,22 @@ made is looked at."""
 
 from __future__ import annotations
 
-from typing import Any, Mapping, Optional
+from typing import Any, List, Mapping, Optional, Tuple
 
 import numpy as np
 
+from . import _core
+from ._arrays import numbers
 from ._core import InputError
+from ._notes import warn
 from ._scene import Scene
 
 #: meshio's cells that are faces, and how many of their points are corners
 _FACES = {"triangle": 3, "triangle6": 3, "triangle7": 3, "quad": 4, "quad8": 4, "quad9": 4}
+#: The same of cells that are volumes; corners come first, in the order that VTK has.
+_VOLUMES = {"tetra": 4, "tetra10": 4, "pyramid": 5, "pyramid13": 5, "pyramid14": 5, "wedge": 6,
+            "wedge15": 6, "wedge18": 6, "hexahedron": 8, "hexahedron20": 8, "hexahedron24": 8,
+            "hexahedron27": 8}
 
 
 def from_meshio(mesh: Any, materials: Optional[Mapping[Any, Mapping[str, Any]]] = None,
@@ -19,9 +26,11 @@ def from_meshio(mesh: Any, materials: Optional[Mapping[Any, Mapping[str, Any]]] 
     """A scene of a meshio.Mesh: its triangles, quadrilaterals and polygons, as Scene() takes them.
 
     Groups are its cell sets, else its physical groups (gmsh), else one. A face of no set is in the
-    group "other". Volumes, lines and points are left out. All arrays are copied.
+    group "other". Of a mesh of volumes alone, the sides that no two of them share are the faces, each
+    in its volume's group; a UserWarning says so. Else volumes are left out, as lines and points are.
+    All arrays are copied.
 
-    Errors: InputError for a mesh without faces.
+    Errors: InputError for a mesh without faces and volumes.
 
     >>> import meshio
     >>> square = meshio.Mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]],
@@ -31,24 +40,49 @@ def from_meshio(mesh: Any, materials: Optional[Mapping[Any, Mapping[str, Any]]] 
     """
     if not hasattr(mesh, "cells") or not hasattr(mesh, "points"):
         raise InputError(f"mesh: is of type {type(mesh).__name__}; give a meshio.Mesh")
-    points = np.asarray(mesh.points, dtype=np.float64)
+    points = numbers("points", mesh.points, [(None, 2), (None, 3)], "coordinates")
     if points.shape[1] == 2:
         points = np.column_stack([points, np.zeros(len(points))])
-    faces: list = []
-    groups: list = []
-    for number, block in enumerate(mesh.cells):
-        size = _FACES.get(block.type, 0)
-        if block.type != "polygon" and not size:
-            continue
-        data = [face if not size else face[:size] for face in block.data]
-        faces.extend(data)
-        groups.extend(_groups(mesh, number, len(data)))
+    faces, groups = _cells(mesh, {**_FACES, "polygon": None})
+    if not faces:
+        volumes, volume_groups = _cells(mesh, _VOLUMES)
+        faces, groups = _skin(points, volumes, volume_groups)
+        if faces:
+            warn(f"meshio mesh: no faces, volume cells alone ({len(volumes)}): the sides that no two of "
+                 f"them share are the surfaces ({len(faces)})")
     if not faces:
         kinds = ", ".join(sorted({block.type for block in mesh.cells})) or "no cells"
         raise InputError(f"meshio mesh: has no faces but {kinds}; extract its surface first")
     if len({len(face) for face in faces}) == 1:
         return Scene(points, np.asarray(faces), groups, materials, sky)
     return Scene(points, faces, groups, materials, sky)
+
+
+def _cells(mesh: Any, corners: Mapping[str, Optional[int]]) -> Tuple[list, List[str]]:
+    """Corners and group of each cell of the given types; None: all its points are corners."""
+    cells: list = []
+    groups: List[str] = []
+    for number, block in enumerate(mesh.cells):
+        if block.type in corners:
+            cells.extend(cell[:corners[block.type]] for cell in block.data)
+            groups.extend(_groups(mesh, number, len(block.data)))
+    return cells, groups
+
+
+def _skin(points: np.ndarray, volumes: list, groups: List[str]) -> Tuple[list, List[str]]:
+    """Faces of the skin of volumes, and the group of each."""
+    if not volumes:
+        return [], []
+    corners = np.concatenate(volumes)
+    offset = np.cumsum([0] + [len(volume) for volume in volumes]).astype(np.uint64)
+    wrong = np.flatnonzero((corners < 0) | (corners >= len(points)))
+    if len(wrong):
+        cell = np.searchsorted(offset, wrong[0], side="right") - 1
+        raise InputError(f"meshio mesh: volume cell {cell} has point {corners[wrong[0]]}; there are "
+                         f"{len(points)} points, numbered from 0")
+    loops, begin, of_volume = _core.volume_skin(points, corners.astype(np.uint32), offset)
+    faces = np.split(loops, begin[1:-1].astype(np.int64)) if len(of_volume) else []
+    return faces, [groups[k] for k in of_volume]
 
 
 def _groups(mesh: Any, block: int, count: int) -> list:

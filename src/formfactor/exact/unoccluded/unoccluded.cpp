@@ -82,7 +82,11 @@ void appendFront(const ElementSet& elements, Index element, const FacetFrame& fr
   };
   if (front.count < 3) return;
   append(front.outline().first(std::min<std::size_t>(front.count, 4)));
-  if (front.count == 5) append(std::array{front.corners[3], front.corners[4], front.corners[0]});
+  if (front.count <= 4) return;
+  std::array<Vec3, FlatPolygon::kMostCorners - 2> rest;
+  const auto end = std::ranges::copy(front.outline().subspan(3), rest.begin()).out;
+  *end = front.corners[0];
+  append({rest.begin(), end + 1});
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include "radiosity/base.h"
 
-namespace radiosity {
+namespace [[gnu::visibility("default")]] radiosity {
 
 class VolumeSkin {
  public:
@@ -29,7 +29,8 @@ class VolumeSkin {
   void clear();
 
   /// By volume, then by side, O(n log n). Left out: sides whose corners are less than three, and
-  /// volumes with the corners of an earlier one. `places`: of the vertices.
+  /// volumes with the corners of an earlier one. `places`: of the vertices. Precondition: every
+  /// corner that was added is an index into them.
   std::vector<Face> faces(std::span<const Vec3> places) const;
 
  private:
