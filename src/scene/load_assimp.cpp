@@ -21,13 +21,14 @@
 #include "scene/readers.h"
 #include "scene/scene_builder.h"
 #include "scene/text.h"
+#include "scene/xml_preflight.h"
 
 namespace radiosity {
 
 namespace {
 
-bool is3ds(const std::string& path) {
-  return lowerCase(std::filesystem::path(path).extension().string()) == ".3ds";
+std::string extensionOf(const std::string& path) {
+  return lowerCase(std::filesystem::path(path).extension().string());
 }
 
 class AssimpReader {
@@ -178,7 +179,7 @@ void AssimpReader::addMesh(const aiMesh& mesh, const std::string& object,
 /// Assimp's angle is horizontal, whole, whatever the file had.
 void AssimpReader::addCamera(const aiCamera& given, const aiMatrix4x4& place) {
   // Assimp loses where they look at.
-  if (is3ds(scene_.file)) {
+  if (extensionOf(scene_.file) == ".3ds") {
     notes_.add("cameras of 3DS files are not used", given.mName.C_Str(), Severity::warning);
     return;
   }
@@ -215,7 +216,6 @@ namespace {
 /// Assimp reads what is left of a 3DS file as if it were whole: its first chunk says how long it
 /// is.
 void requireWhole3ds(const std::string& path) {
-  if (!is3ds(path)) return;
   const std::string content = readWholeFile(path);
   MeshCursor cursor(path, content);
   cursor.setEncoding(Encoding::little);
@@ -235,7 +235,9 @@ void requireWhole3ds(const std::string& path) {
 }  // namespace
 
 Scene loadAssimp(const std::string& path, const SceneOptions& options) {
-  requireWhole3ds(path);
+  const std::string extension = extensionOf(path);
+  if (extension == ".3ds") requireWhole3ds(path);
+  if (extension == ".dae" || extension == ".x3d") checkXml(path);
   return AssimpReader(path, options).read();
 }
 

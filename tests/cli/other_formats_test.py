@@ -205,6 +205,32 @@ class OtherFormats(CliTest):
         self.says(": is a cloud of 4 points without faces; make a surface of it first (in MeshLab: Filters, "
                   "Remeshing, Surface Reconstruction)", "a.off", OFF[:OFF.index("3 0 1 2")].replace("4 2 0", "4 0 0"))
 
+    def test_files_that_refer_to_themselves_are_refused(self):
+        copy = '<instance_geometry url="#plate">'
+        self.says(": <node> `wall` refers to itself; take the reference out", "a.dae",
+                  COLLADA.replace(copy, '<instance_node url="#wall"/>' + copy))
+        shape = '<Transform DEF="A"><Shape><Sphere/></Shape><Transform USE="A"/></Transform>'
+        self.says(": <Transform> `A` refers to itself; take the reference out", "a.x3d",
+                  f"<X3D><Scene>{shape}</Scene></X3D>")
+
+    def test_elements_without_end_are_refused(self):
+        deep = "is nested more than 200 deep, references included; export it again, or as .glb"
+        for name, before, tag, after in [("a.x3d", "<X3D><Scene>", "Group", "</Scene></X3D>"),
+                                         ("a.dae", "<COLLADA><library_nodes>", "node", "</library_nodes></COLLADA>")]:
+            nested = f"<{tag}>" * 20000 + f"</{tag}>" * 20000
+            self.says(f": <{tag}> {deep}", name, before + nested + after)
+        nodes = '<node id="n0"/>'
+        chain = nodes + "".join(f'<node id="n{k}"><instance_node url="#n{k - 1}"/></node>' for k in range(1, 200))
+        self.says(f": <node> {deep}", "a.dae", f"<COLLADA><library_nodes>{chain}</library_nodes></COLLADA>")
+        for k in range(1, 9):
+            nodes += f'<node id="n{k}">' + f'<instance_node url="#n{k - 1}"/>' * 8 + "</node>"
+        self.says(": its references stand for 4.4e+07 elements, over 1e+06; export it without instances, or as .glb",
+                  "a.dae", f"<COLLADA><library_nodes>{nodes}</library_nodes></COLLADA>")
+
+    def test_words_where_corners_are_due_are_refused(self):
+        self.says(": <p> holds `inf`, which is no index of a corner; export it again", "a.dae",
+                  COLLADA.replace("<p>0 1 2 3</p>", "<p>0 1 inf 3</p>"))
+
     def test_broken_files_of_assimp_are_one_line(self):
         for name, content in [("a.dae", COLLADA[:900]), ("a.x3d", X3D[:200]), ("a.fbx", FBX[:300]), ("a.dae", "hello"),
                               ("a.x3d", "<X3D/>"), ("a.fbx", b"Kaydara FBX Binary  \0\x1a\0\xff\xff\xff\xff")]:
