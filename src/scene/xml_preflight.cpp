@@ -16,7 +16,7 @@ namespace radiosity {
 
 namespace {
 
-constexpr int kDeepest = 200;  // as in JSON
+constexpr int kDeepestElement = 200;  // as in JSON
 constexpr double kMostCopies = 1e6;
 
 /// The elements that each stands for with those below it and those that it refers to: Collada's
@@ -62,7 +62,7 @@ class References {
     fail(
         fmt::format("<{}> is nested more than {} deep, references included; export it again, or "
                     "as .glb",
-                    element.name(), kDeepest));
+                    element.name(), kDeepestElement));
   }
 
   /// The element after `at` in the file's order; empty behind the last below `root`.
@@ -83,9 +83,7 @@ class References {
   }
 
   double count(const pugi::xml_node& element, int depth) {
-    if (depth > kDeepest) {
-      failForDepth(element);
-    }
+    if (depth > kDeepestElement) failForDepth(element);
     const auto [known, is_new] = known_.try_emplace(element, Known{});
     Known& here = known->second;
     if (is_new) {
@@ -102,7 +100,7 @@ class References {
     } else if (here.open) {
       fail(fmt::format("<{}> `{}{}` refers to itself; take the reference out", element.name(),
                        element.attribute("id").value(), element.attribute("DEF").value()));
-    } else if (depth + here.height > kDeepest) {
+    } else if (depth + here.height > kDeepestElement) {
       failForDepth(element);
     }
     return here.elements;
