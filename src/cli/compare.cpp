@@ -8,6 +8,7 @@
 #include <numeric>
 #include <variant>
 
+#include "base/file_name.h"
 #include "base/input_file.h"
 #include "base/luminance.h"
 #include "cli/commands.h"
@@ -97,9 +98,7 @@ void readResultsSide(Side& side, const std::string& said) {
 }
 
 bool isPictureName(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return char(std::tolower(c)); });
+  const std::string extension = lowerExtension(path);
   const std::string meshes[] = {".glb", ".gltf", ".ply", ".obj"};
   return std::find(std::begin(meshes), std::end(meshes), extension) == std::end(meshes);
 }
@@ -120,7 +119,7 @@ Side readSide(const std::string& label, const std::string& path, const std::stri
   Side side;
   side.label = label;
   side.path = path;
-  if (isResultsFile(path) || extensionOf(path) == ".h5") {
+  if (isResultsFile(path) || lowerExtension(path) == ".h5") {
     readResultsSide(side, said);
   } else if (isPictureName(path)) {
     ImageFile file = readPicture(path, max_image);

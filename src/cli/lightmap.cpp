@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "base/figure_text.h"
+#include "base/file_name.h"
 #include "cli/words.h"
 #include "radiosity/lightmap.h"
 #include "radiosity/names.h"
@@ -27,7 +28,7 @@ void requireMemory(const Request& request, const LightmapOptions& options) {
 
 /// The file whose mesh is kept; empty where there is none.
 std::string meshSource(const std::string& input) {
-  const std::string extension = extensionOf(input);
+  const std::string extension = lowerExtension(input);
   return extension == ".gltf" || extension == ".glb" ? input : std::string();
 }
 

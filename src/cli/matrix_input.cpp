@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/file_name.h"
 #include "cli/matrix_commands.h"
 #include "cli/summaries.h"
 #include "cli/words.h"
@@ -10,7 +11,7 @@
 namespace radiosity::cli {
 
 bool isMatrixInput(const std::string& path) {
-  const std::string extension = extensionOf(path);
+  const std::string extension = lowerExtension(path);
   return extension == ".mtx" || extension == ".vf" || isMatrixFile(path);
 }
 

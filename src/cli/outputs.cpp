@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/figure_text.h"
+#include "base/file_name.h"
 #include "cli/words.h"
 #include "radiosity/results.h"
 
@@ -52,7 +53,7 @@ bool contains(const std::vector<Command>& commands, Command command) {
 }
 
 Format formatOf(const std::string& path, Command command) {
-  const std::string extension = extensionOf(path);
+  const std::string extension = lowerExtension(path);
   std::string list;
   for (const Extension& known : extensions()) {
     if (!contains(known.commands, command)) continue;
@@ -71,7 +72,7 @@ bool sameFile(const std::string& a, const std::string& b) {
 
 /// The map of --lightmap: 8 bits would not do for W/m^2.
 Output lightmapOutput(const std::string& path) {
-  if (extensionOf(path) != ".exr") {
+  if (lowerExtension(path) != ".exr") {
     throw InputError(path + ": --lightmap writes .exr; end the name in it");
   }
   return {path, Format::lightmap};
@@ -79,20 +80,13 @@ Output lightmapOutput(const std::string& path) {
 
 /// The table of --patch-table.
 Output patchTableOutput(const std::string& path) {
-  if (extensionOf(path) != ".csv") {
+  if (lowerExtension(path) != ".csv") {
     throw InputError(path + ": --patch-table writes .csv; end the name in it");
   }
   return {path, Format::patch_table};
 }
 
 }  // namespace
-
-std::string extensionOf(const std::string& path) {
-  std::string extension = fs::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return char(std::tolower(c)); });
-  return extension;
-}
 
 std::vector<Output> parseOutputs(const Request& request) {
   std::vector<Output> outputs;

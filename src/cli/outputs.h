@@ -40,9 +40,6 @@ struct Output {
   Format format;
 };
 
-/// ".png" of "a/B.PNG": formats go by it.
-std::string extensionOf(const std::string& path);
-
 /// The files that -o names for this subcommand, those of --lightmap and --patch-table. InputError:
 /// an extension it cannot write (with the list of those it can), the same file twice, the scene
 /// file itself, an HDF5 file of another program where results would go.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/figure_text.h"
+#include "base/file_name.h"
 #include "base/input_file.h"
 #include "base/made.h"
 #include "base/parallel.h"
@@ -42,9 +43,7 @@ const char* readingOption(const SceneOptions& given) {
 }
 
 /// What such a file holds instead is said by who reads it.
-bool isNamedAsResults(const std::string& path) {
-  return lowerCase(std::filesystem::path(path).extension().string()) == ".h5";
-}
+bool isNamedAsResults(const std::string& path) { return lowerExtension(path) == ".h5"; }
 
 bool overrides(const SceneOptions& options) {
   return !options.set.empty() || !options.materials_file.empty() || !options.one_sided.empty() ||

@@ -12,13 +12,6 @@
 
 namespace radiosity {
 
-std::string lowerExtension(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return char(std::tolower(c)); });
-  return extension;
-}
-
 CheckedFile::CheckedFile(const std::string& path)
     : path_(path), target_(path), file_(std::fopen(target_.temporary().c_str(), "wb")) {
   if (!file_) fail();

@@ -11,9 +11,6 @@
 
 namespace radiosity {
 
-/// ".png" of "a/B.PNG": formats go by it.
-std::string lowerExtension(const std::string& path);
-
 /// Errors: as AtomicFile, and RunError with the system's reason where a write fails.
 class CheckedFile {
  public:

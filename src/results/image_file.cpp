@@ -6,6 +6,7 @@
 #include <cmath>
 #include <new>
 
+#include "base/file_name.h"
 #include "base/image_codec.h"
 #include "base/input_file.h"
 #include "base/srgb.h"

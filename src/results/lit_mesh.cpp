@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/file_name.h"
 #include "base/finite.h"
 #include "results/checked_file.h"
 

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <unordered_map>
 
+#include "base/file_name.h"
 #include "radiosity/results.h"
 #include "results/checked_file.h"
 #include "results/glb.h"

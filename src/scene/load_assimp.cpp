@@ -13,6 +13,7 @@
 #include <numbers>
 #include <string_view>
 
+#include "base/file_name.h"
 #include "base/finite.h"
 #include "base/input_file.h"
 #include "scene/assimp_library.h"
@@ -26,10 +27,6 @@
 namespace radiosity {
 
 namespace {
-
-std::string extensionOf(const std::string& path) {
-  return lowerCase(std::filesystem::path(path).extension().string());
-}
 
 class AssimpReader {
  public:
@@ -179,7 +176,7 @@ void AssimpReader::addMesh(const aiMesh& mesh, const std::string& object,
 /// Assimp's angle is horizontal, whole, whatever the file had.
 void AssimpReader::addCamera(const aiCamera& given, const aiMatrix4x4& place) {
   // Assimp loses where they look at.
-  if (extensionOf(scene_.file) == ".3ds") {
+  if (lowerExtension(scene_.file) == ".3ds") {
     notes_.add("cameras of 3DS files are not used", given.mName.C_Str(), Severity::warning);
     return;
   }
@@ -235,7 +232,7 @@ void requireWhole3ds(const std::string& path) {
 }  // namespace
 
 Scene loadAssimp(const std::string& path, const SceneOptions& options) {
-  const std::string extension = extensionOf(path);
+  const std::string extension = lowerExtension(path);
   if (extension == ".3ds") requireWhole3ds(path);
   if (extension == ".dae" || extension == ".x3d") checkXml(path);
   return AssimpReader(path, options).read();

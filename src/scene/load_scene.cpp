@@ -10,6 +10,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "base/file_name.h"
 #include "base/input_file.h"
 #include "scene/readers.h"
 #include "scene/text.h"
@@ -39,7 +40,7 @@ constexpr std::array kFormats = {
 
 Scene readByExtension(const std::string& path, const SceneOptions& options) {
   requireFile(path);
-  const std::string extension = lowerCase(std::filesystem::path(path).extension().string());
+  const std::string extension = lowerExtension(path);
   for (const Format& format : kFormats) {
     if (extension != format.extension) continue;
     Scene scene = format.load(path, options);

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <numeric>
 
+#include "base/file_name.h"
 #include "base/input_file.h"
 #include "base/made.h"
 #include "radiosity/matrix_functions.h"
@@ -62,7 +63,7 @@ std::string firstLine(const std::string& path) {
 
 /// For a file that begins as none of the formats does; its name says which was meant.
 [[noreturn]] void refuseStart(const std::string& path) {
-  const std::string extension = lowerCase(std::filesystem::path(path).extension().string());
+  const std::string extension = lowerExtension(path);
   const std::string why =
       extension == ".mtx"
           ? fmt::format("it does not begin with {}; write it again", kMatrixMarketMark)
