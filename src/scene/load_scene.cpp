@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <glm/common.hpp>
 #include <new>
 #include <stdexcept>
