@@ -119,6 +119,7 @@ Bodies::Bodies(const Arrangement& arrangement, const Components& components, con
   const std::vector<Component>& list = components.list;
   body_.assign(list.size(), Body::none);
   cavities_.resize(list.size());
+  linings_.resize(list.size());
   std::vector<std::size_t> cell_count(list.size(), 0);
   const Relations relation = relations(arrangement, components, winding, cell_count);
   const TwoSided two_sided(list, relation, cell_count, coincidence);
@@ -135,10 +136,9 @@ Bodies::Bodies(const Arrangement& arrangement, const Components& components, con
     const auto& [solid, other] = pair;
     const Component& within = list[other];
     const bool whole = how.inside + how.on_skin == cell_count[other];
-    if (body_[solid] == Body::solid && within.closed && within.inward && !within.two_sided &&
-        whole) {
-      cavities_[solid].push_back(other);
-    }
+    if (body_[solid] != Body::solid || within.two_sided || !whole) continue;
+    if (!within.closed) linings_[solid].push_back(other);
+    if (within.closed && within.inward) cavities_[solid].push_back(other);
   }
 }
 
@@ -146,6 +146,10 @@ bool Bodies::isWithin(Index solid, Index cell, Side side) const {
   if (body_[solid] != Body::solid || winding_.of(solid, cell, side) < 1) return false;
   return std::none_of(cavities_[solid].begin(), cavities_[solid].end(),
                       [&](Index cavity) { return winding_.of(cavity, cell, side) >= 1; });
+}
+
+bool Bodies::isLining(Index component, Index solid) const {
+  return std::binary_search(linings_[solid].begin(), linings_[solid].end(), component);
 }
 
 bool Bodies::isWithinAny(Index cell, Side side) const {

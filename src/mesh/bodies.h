@@ -29,7 +29,10 @@ class Bodies {
   const std::vector<Index>& rooms() const { return rooms_; }
   /// Whether the space next to a side of a cell is inside a solid, and in none of its cavities.
   bool isWithin(Index solid, Index cell, Side side) const;
-  /// The same of any solid.
+  /// Whether an open one-sided component has no cell outside a solid: a second layer of some of
+  /// its faces, turned inward, is one. A solid does not stand on its lining.
+  bool isLining(Index component, Index solid) const;
+  /// The same as isWithin(), of any solid.
   bool isWithinAny(Index cell, Side side) const;
 
  private:
@@ -37,6 +40,7 @@ class Bodies {
   std::vector<Body> body_;  ///< by component
   std::vector<Index> rooms_;
   std::vector<std::vector<Index>> cavities_;  ///< of solids, by component
+  std::vector<std::vector<Index>> linings_;   ///< of solids, by component, ascending
 };
 
 }  // namespace radiosity

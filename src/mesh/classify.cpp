@@ -98,7 +98,8 @@ void Classifier::dropContacts(Index cell, std::vector<Layer>& layers) const {
     const Side in = opposite(out);
     if (!bodies_.isWithin(skin.component, cell, in)) continue;
     const bool faced = std::any_of(layers.begin(), layers.end(), [&](const Layer& other) {
-      return other.component != skin.component && other.carries[in];
+      return other.component != skin.component && other.carries[in] &&
+             !bodies_.isLining(other.component, skin.component);
     });
     if (faced) skin.kept[out] = false;
   }

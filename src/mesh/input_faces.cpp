@@ -51,7 +51,7 @@ class Cleaner {
   std::vector<Vec3> at(const std::vector<Index>& loop) const;
   std::vector<Index> weldedLoop(std::span<const Index> corners) const;
   void addPlanar(const std::vector<Index>& loop, Index source, double given);
-  void addTriangles(const std::vector<Index>& loop, const Vec3& normal, Index source);
+  void addTriangles(std::vector<Index> loop, Index source);
   double deviation(const std::vector<Index>& loop,
                    const std::vector<std::array<Index, 3>>& triangles) const;
   bool isThin(const std::vector<Vec3>& polygon) const;
@@ -163,14 +163,20 @@ void Cleaner::addPlanar(const std::vector<Index>& loop, Index source, double giv
   out_.faces.push_back(std::move(face));
 }
 
-void Cleaner::addTriangles(const std::vector<Index>& loop, const Vec3& normal, Index source) {
+/// Cuts a polygon that begins with its least corner. One that runs the other way gets the same
+/// triangles turned over, so that the two sheets of a face modelled on both sides do not cross.
+void Cleaner::addTriangles(std::vector<Index> loop, Index source) {
   ++report_.nonplanar_faces;
-  const PlaneImage image(normal);
+  const bool turned = loop.back() < loop[1];
+  if (turned) std::reverse(loop.begin() + 1, loop.end());
+  const Vec3 normal = vectorAreaOf(at(loop));
+  const double size = glm::length(normal);
+  const PlaneImage image(size > 0 ? normal / size : Vec3(0, 0, 1));
   std::vector<Vec2> outline;
   for (const Vec3& p : at(loop)) outline.push_back(image(p));
   const auto triangles = triangulateOutline(outline);
   for (const auto& t : triangles) {
-    std::vector<Index> corners{loop[t[0]], loop[t[1]], loop[t[2]]};
+    std::vector<Index> corners{loop[t[0]], loop[t[turned ? 2 : 1]], loop[t[turned ? 1 : 2]]};
     std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
     addPlanar(corners, source, area(at(corners)));
   }
@@ -221,7 +227,7 @@ void Cleaner::addFace(Index f) {
   const Vec3 normal = vectorAreaOf(at(loop));
   const double size = glm::length(normal);
   if (size > 0 && isPlanar(at(loop), normal / size)) return addPlanar(loop, f, area(given));
-  addTriangles(loop, size > 0 ? normal / size : Vec3(0, 0, 1), f);
+  addTriangles(std::move(loop), f);
 }
 
 void Cleaner::dropDuplicates() {

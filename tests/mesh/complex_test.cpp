@@ -298,6 +298,29 @@ TEST(Contact, ASolidInsideASolidIsGoneAndSaid) {
   });
 }
 
+/// As files from modellers have them that export some faces of a body once for each side: what is
+/// turned inward sees nothing, and what it lies on is seen as if it were not there.
+TEST(Contact, FacesOfASolidModelledOnBothSidesKeepTheirOutside) {
+  const std::vector<Vec3> front{{0, 0, 0}, {0, 0, 2}, {2, 0, 2}, {2, 0, 0}};
+  const std::vector<Vec3> left{{0, 0, 0}, {0, 2, 0}, {0, 2, 2}, {0, 0, 2}};
+  const std::vector<Vec3> bottom{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}};
+  const std::vector<std::vector<Vec3>> inward{front, left, bottom};
+  for (const std::size_t doubled : {1u, 2u, 3u}) {
+    for (const bool one_surface : {true, false}) {
+      SceneBuilder b;
+      const Index body = b.surface("body");
+      const Index lining = one_surface ? body : b.surface("lining");
+      b.box(body, {0, 0, 0}, {2, 2, 2});
+      for (std::size_t k = 0; k < doubled; ++k) b.face(lining, inward[k]);
+      bothWays(b.scene(), [&](const Built& built) {
+        EXPECT_EQ(built.complex.polygons.size(), 6u) << doubled << one_surface;
+        EXPECT_EQ(polygonsOf(built, body), 6u);
+        expectArea(built.report.surfaces[lining].buried, 4.0 * double(doubled));
+      });
+    }
+  }
+}
+
 /// A chamber within walls as thick as `wall`, or as thin as two sheets back to back, with a heater
 /// in it that stands on its floor: all of the chamber is seen but where the heater stands.
 TEST(Contact, AChamberInASolidIsSeenFromInside) {
@@ -514,6 +537,30 @@ TEST(Repair, NonPlanarQuadBecomesTriangles) {
     // or a little less above that of the triangle across the other diagonal.
     EXPECT_NEAR(built.report.largest_deviation, 0.03, 1e-3);
   });
+}
+
+/// The second sheet begins with every corner in turn: both are cut into the same triangles, so
+/// none hides a part of the other.
+TEST(Repair, ANonPlanarPolygonOnBothSidesKeepsBoth) {
+  std::vector<Vec3> rim;
+  for (int k = 0; k < 12; ++k) {
+    const double angle = 30 * kDegree * k;
+    rim.emplace_back(std::cos(angle), std::sin(angle), 0.2 * std::cos(2 * angle + 0.3 * k));
+  }
+  for (std::size_t first = 0; first < rim.size(); ++first) {
+    std::vector<Vec3> reversed(rim.rbegin(), rim.rend());
+    std::rotate(reversed.begin(), reversed.begin() + std::ptrdiff_t(first), reversed.end());
+    SceneBuilder b;
+    const Index front = b.surface("front");
+    const Index back = b.surface("back");
+    b.face(front, rim);
+    b.face(back, reversed);
+    bothWays(b.scene(), [&](const Built& built) {
+      EXPECT_EQ(polygonsOf(built, front), 10u) << first;
+      EXPECT_EQ(polygonsOf(built, back), 10u) << first;
+      for (const CoarsePolygon& p : built.complex.polygons) EXPECT_NE(p.opposite, kNone) << first;
+    });
+  }
 }
 
 TEST(Repair, EachSurfaceIsToldHowFarItsOwnPolygonsAreOff) {
