@@ -113,8 +113,8 @@ class TwoSided {
 
 }  // namespace
 
-Bodies::Bodies(const Arrangement& arrangement, const Components& components, const Winding& winding,
-               double coincidence)
+Bodies::Bodies(const Arrangement& arrangement, const std::vector<Sheet>& sheets,
+               const Components& components, const Winding& winding, double coincidence)
     : winding_(winding) {
   const std::vector<Component>& list = components.list;
   body_.assign(list.size(), Body::none);
@@ -132,14 +132,48 @@ Bodies::Bodies(const Arrangement& arrangement, const Components& components, con
     }
     if (body_[c] == Body::room) rooms_.push_back(c);
   }
+  std::vector<bool> held(list.size(), false);  // by one solid alone
   for (const auto& [pair, how] : relation) {
     const auto& [solid, other] = pair;
     const Component& within = list[other];
     const bool whole = how.inside + how.on_skin == cell_count[other];
     if (body_[solid] != Body::solid || within.two_sided || !whole) continue;
     if (!within.closed) linings_[solid].push_back(other);
-    if (within.closed && within.inward) cavities_[solid].push_back(other);
+    if (within.closed && within.inward) {
+      cavities_[solid].push_back(other);
+      held[other] = true;
+    }
   }
+  const std::vector<bool> shared = lookIntoSolids(arrangement, sheets, components);
+  for (const auto& [pair, how] : relation) {
+    const auto& [solid, other] = pair;
+    if (body_[solid] == Body::solid && shared[other] && !held[other]) {
+      cavities_[solid].push_back(other);
+    }
+  }
+}
+
+/// By component: whether it is a closed one-sided component turned inward of which all fronts look
+/// into a solid.
+std::vector<bool> Bodies::lookIntoSolids(const Arrangement& arrangement,
+                                         const std::vector<Sheet>& sheets,
+                                         const Components& components) const {
+  std::vector<bool> out;
+  out.reserve(components.list.size());
+  for (const Component& c : components.list) {
+    out.push_back(c.closed && c.inward && !c.two_sided);
+  }
+  for (std::size_t k = 0; k < arrangement.cells.size(); ++k) {
+    for (const auto& [sheet, layers] : arrangement.cells[k].cover) {
+      const Index component = components.of_sheet[sheet];
+      if (!out[component]) continue;
+      const auto& before = winding_.at(Index(k), sheets[sheet].facing > 0 ? kAbove : kBelow);
+      out[component] = std::any_of(before.begin(), before.end(), [&](const Winding::Entry& e) {
+        return e.number >= 1 && body_[e.component] == Body::solid;
+      });
+    }
+  }
+  return out;
 }
 
 bool Bodies::isWithin(Index solid, Index cell, Side side) const {

@@ -19,11 +19,13 @@ enum class Body {
 /// nothing else and it is convex. A component that sticks out of a larger one leaves it undecided
 /// which of the two the larger one is, and then it is neither.
 /// A solid is hollow where closed one-sided components turned inward lie within it: an oven's
-/// chamber, the inner sheet of walls that are modelled as two sheets back to back.
+/// chamber, the inner sheet of walls that are modelled as two sheets back to back. Where such walls
+/// part a body into chambers, all of its inner sheets are one component, within no chamber alone:
+/// it makes every solid hollow that it touches if its fronts look into solids everywhere.
 class Bodies {
  public:
-  Bodies(const Arrangement& arrangement, const Components& components, const Winding& winding,
-         double coincidence);
+  Bodies(const Arrangement& arrangement, const std::vector<Sheet>& sheets,
+         const Components& components, const Winding& winding, double coincidence);
 
   /// Ascending.
   const std::vector<Index>& rooms() const { return rooms_; }
@@ -36,6 +38,9 @@ class Bodies {
   bool isWithinAny(Index cell, Side side) const;
 
  private:
+  std::vector<bool> lookIntoSolids(const Arrangement& arrangement, const std::vector<Sheet>& sheets,
+                                   const Components& components) const;
+
   const Winding& winding_;
   std::vector<Body> body_;  ///< by component
   std::vector<Index> rooms_;

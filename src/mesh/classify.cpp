@@ -200,7 +200,7 @@ std::vector<VisibleCell> classify(const Scene& scene, const Arrangement& arrange
                                   const std::vector<Sheet>& sheets, const Components& components,
                                   const InputFaces& input, MeshReport& report) {
   const Winding winding(arrangement, sheets, components, input.coincidence);
-  const Bodies bodies(arrangement, components, winding, input.coincidence);
+  const Bodies bodies(arrangement, sheets, components, winding, input.coincidence);
   Classifier classifier(scene, arrangement, sheets, components, winding, bodies, report);
   std::vector<VisibleCell> out;
   for (std::size_t k = 0; k < arrangement.cells.size(); ++k) classifier.run(Index(k), out);

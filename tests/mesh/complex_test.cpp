@@ -321,6 +321,19 @@ TEST(Contact, FacesOfASolidModelledOnBothSidesKeepTheirOutside) {
   }
 }
 
+/// A lamp head of sheets that are modelled on both sides, with a sheet across it: both chambers are
+/// seen from inside, and all of it from outside.
+TEST(Contact, TwoChambersOfSheetsModelledOnBothSidesAreSeenFromInside) {
+  SceneBuilder b;
+  const Index head = b.surface("head");
+  for (const double low : {0.0, 1.0}) b.box(head, {low, 0, 0}, {low + 1, 1, 1});
+  b.box(head, {0, 0, 0}, {2, 1, 1}, false);
+  bothWays(b.scene(), [&](const Built& built) {
+    EXPECT_EQ(built.report.surfaces[head].buried, 0);
+    EXPECT_EQ(built.report.surfaces[head].overlapped, 0);
+  });
+}
+
 /// A chamber within walls as thick as `wall`, or as thin as two sheets back to back, with a heater
 /// in it that stands on its floor: all of the chamber is seen but where the heater stands.
 TEST(Contact, AChamberInASolidIsSeenFromInside) {
