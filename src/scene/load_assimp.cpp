@@ -1,4 +1,5 @@
 // What Assimp reads and we do not: Collada, FBX, 3DS, X3D, IFC. Nodes are objects.
+#include <assimp/ColladaMetaData.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -11,17 +12,22 @@
 #include <map>
 #include <memory>
 #include <numbers>
+#include <optional>
+#include <sstream>
 #include <string_view>
 
 #include "base/file_name.h"
 #include "base/finite.h"
 #include "base/input_file.h"
+#include "scene/assimp_files.h"
 #include "scene/assimp_library.h"
 #include "scene/assimp_materials.h"
+#include "scene/collada_cameras.h"
 #include "scene/mesh_cursor.h"
 #include "scene/readers.h"
 #include "scene/scene_builder.h"
 #include "scene/text.h"
+#include "scene/x3d_document.h"
 #include "scene/xml_preflight.h"
 
 namespace radiosity {
@@ -36,23 +42,25 @@ class AssimpReader {
   }
 
   Scene read() {
-    const std::unique_ptr<aiPropertyStore, void (*)(aiPropertyStore*)> wishes(
-        library_.createPropertyStore(), library_.releasePropertyStore);
-    // Names as people gave them, not ids.
-    library_.setImportPropertyInteger(wishes.get(), AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, 1);
-    const std::unique_ptr<const aiScene, void (*)(const aiScene*)> file(
-        library_.importFileExWithProperties(
-            scene_.file.c_str(), aiProcess_ValidateDataStructure | aiProcess_TransformUVCoords,
-            nullptr, wishes.get()),
-        library_.releaseImport);
+    const std::string extension = lowerExtension(scene_.file);
+    if (extension == ".dae") collada_.emplace(checkXml(scene_.file), notes_);
+    AssimpFiles rewritten([this](const std::string& path) { return rewrittenX3d(path); });
+    const File file = import(extension == ".x3d" ? rewritten.io() : nullptr);
     if (file == nullptr || file->mRootNode == nullptr) {
-      fail(fmt::format("cannot be read ({}); export it again, or as .obj or .glb",
-                       onOneLine(library_.getErrorString())));
+      rewritten.rethrow();
+      const std::string why = library_.getErrorString();
+      if (why.find("mNumMeshes is 0") != std::string::npos) failWithoutFaces();
+      fail(fmt::format("cannot be read ({}); export it again, or as .obj or .glb", onOneLine(why)));
     }
     materials_ = readAssimpMaterials(*file, options_, scene_, notes_);
-    scale_ = metresPerUnit(*file);
+    scale_ = x3d_.metres_per_unit * metresPerUnit(*file);
     addNodes(*file);
-    if (scene_.faceCount() == 0) fail("no faces; export the scene with its meshes as polygons");
+    for (Camera viewpoint : x3d_.viewpoints) {
+      const Vec3 forward = viewpoint.target - viewpoint.eye;
+      viewpoint.eye *= scale_;
+      addCamera(viewpoint, forward);
+    }
+    if (scene_.faceCount() == 0) failWithoutFaces();
     if (file->mNumLights > 0) {
       scene_.notes.push_back({Severity::warning,
                               "lights without a surface are left out; make a "
@@ -72,11 +80,21 @@ class AssimpReader {
     throw InputError(fmt::format("{}: {}", scene_.file, what));
   }
 
+  [[noreturn]] void failWithoutFaces() const {
+    fail("no faces; export the scene with its meshes as polygons");
+  }
+
+  using File = std::unique_ptr<const aiScene, void (*)(const aiScene*)>;
+
+  File import(aiFileIO* files) const;
+  std::string rewrittenX3d(const std::string& path);
   std::string objectName(const aiNode& node, const aiMesh& mesh) const;
   static double metresPerUnit(const aiScene& file);
   void addNodes(const aiScene& file);
-  void addMesh(const aiMesh& mesh, const std::string& object, const aiMatrix4x4& place);
-  void addCamera(const aiCamera& given, const aiMatrix4x4& place);
+  void addMesh(const aiMesh& mesh, const aiNode& node, const aiMatrix4x4& place);
+  Index twoSided(Index material);
+  void addCameras(const aiNode& node, const aiMatrix4x4& place);
+  void addCamera(Camera camera, const Vec3& forward);
 
   const SceneOptions& options_;
   const AssimpLibrary& library_ = assimpLibrary();
@@ -85,16 +103,60 @@ class AssimpReader {
   std::vector<AssimpMaterial> materials_;  ///< by number in the file
   FeatureNotes notes_;
   double scale_ = 1;
+  std::multimap<std::string, const aiCamera*> camera_of_;  ///< by the node that holds it
+  std::optional<ColladaCameras> collada_;                  ///< in place of camera_of_
+  X3dExtras x3d_;
+  std::map<Index, Index> two_sided_;  ///< by material: the same for both sides
 };
 
-/// Assimp makes up names in angle brackets, and calls what an IFC file has in several places, such
-/// as a window, as the kind of reference: there the node above has the name.
+AssimpReader::File AssimpReader::import(aiFileIO* files) const {
+  const std::unique_ptr<aiPropertyStore, void (*)(aiPropertyStore*)> wishes(
+      library_.createPropertyStore(), library_.releasePropertyStore);
+  // Names as people gave them, not ids.
+  library_.setImportPropertyInteger(wishes.get(), AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, 1);
+  // No octahedra in place of nodes where a file has no meshes.
+  library_.setImportPropertyInteger(wishes.get(), AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
+  return {library_.importFileExWithProperties(
+              scene_.file.c_str(), aiProcess_ValidateDataStructure | aiProcess_TransformUVCoords,
+              files, wishes.get()),
+          library_.releaseImport};
+}
+
+/// Of a file inside another (Inline) only the shapes count.
+std::string AssimpReader::rewrittenX3d(const std::string& path) {
+  if (lowerExtension(path) != ".x3d") return readWholeFile(path);
+  pugi::xml_document document = checkXml(path);
+  if (document.empty()) return readWholeFile(path);
+  X3dExtras extras = rewriteX3d(document, notes_);
+  if (path == scene_.file) x3d_ = std::move(extras);
+  std::ostringstream out;
+  document.save(out, "", pugi::format_raw);
+  return out.str();
+}
+
+/// Whether Assimp made the name up.
+bool isMadeUp(std::string_view name) {
+  return name.empty() || name[0] == '<' || name.starts_with("$ColladaAutoName$");
+}
+
+std::string colladaId(const aiNode& node) {
+  aiString id;
+  const bool known = node.mMetaData != nullptr && node.mMetaData->Get(AI_METADATA_COLLADA_ID, id);
+  return known ? id.C_Str() : "";
+}
+
+/// Assimp calls what an IFC file has in several places, such as a window, as the kind of reference:
+/// there the node above has the name.
 std::string AssimpReader::objectName(const aiNode& node, const aiMesh& mesh) const {
   constexpr std::string_view kReference = "IfcMappedItem";
   const aiNode* named = &node;
   while (named->mParent != nullptr && named->mName.C_Str() == kReference) named = named->mParent;
-  for (const aiString* name : {&named->mName, &mesh.mName}) {
-    if (name->length > 0 && name->data[0] != '<') return name->C_Str();
+  for (std::string name :
+       {std::string(named->mName.C_Str()), colladaId(*named), std::string(mesh.mName.C_Str())}) {
+    for (const std::string_view mark : {kX3dTwoSided, kX3dClockwise}) {
+      if (name.starts_with(mark)) name.erase(0, mark.size());
+    }
+    if (!isMadeUp(name)) return name;
   }
   return std::filesystem::path(scene_.file).stem().string();
 }
@@ -111,9 +173,8 @@ double AssimpReader::metresPerUnit(const aiScene& file) {
 
 /// All nodes, each before its children. (No recursion: a file may have chains of any length.)
 void AssimpReader::addNodes(const aiScene& file) {
-  std::multimap<std::string, const aiCamera*> camera_of;  // by the node that holds it
   for (unsigned c = 0; c < file.mNumCameras; ++c) {
-    camera_of.emplace(file.mCameras[c]->mName.C_Str(), file.mCameras[c]);
+    camera_of_.emplace(file.mCameras[c]->mName.C_Str(), file.mCameras[c]);
   }
   std::vector<std::pair<const aiNode*, aiMatrix4x4>> open = {{file.mRootNode, aiMatrix4x4()}};
   while (!open.empty()) {
@@ -122,16 +183,27 @@ void AssimpReader::addNodes(const aiScene& file) {
     const aiMatrix4x4 place = above * node->mTransformation;
     for (unsigned k = 0; k < node->mNumMeshes; ++k) {
       const aiMesh& mesh = *file.mMeshes[node->mMeshes[k]];
-      addMesh(mesh, objectName(*node, mesh), place);
+      addMesh(mesh, *node, place);
     }
-    const auto [first, last] = camera_of.equal_range(node->mName.C_Str());
-    for (auto camera = first; camera != last; ++camera) addCamera(*camera->second, place);
+    addCameras(*node, place);
     for (unsigned k = node->mNumChildren; k-- > 0;) open.emplace_back(node->mChildren[k], place);
   }
 }
 
-void AssimpReader::addMesh(const aiMesh& mesh, const std::string& object,
-                           const aiMatrix4x4& place) {
+Index AssimpReader::twoSided(Index material) {
+  if (scene_.materials[material].two_sided) return material;
+  const auto [known, is_new] = two_sided_.emplace(material, Index(scene_.materials.size()));
+  if (is_new) {
+    Material both = scene_.materials[material];
+    both.name += " (two-sided)";
+    both.two_sided = true;
+    scene_.materials.push_back(std::move(both));
+  }
+  return known->second;
+}
+
+void AssimpReader::addMesh(const aiMesh& mesh, const aiNode& node, const aiMatrix4x4& place) {
+  const std::string object = objectName(node, mesh);
   const std::size_t first = scene_.vertices.size();
   if (first + mesh.mNumVertices >= kNone) fail("too many vertices; split the scene");
   for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
@@ -144,10 +216,13 @@ void AssimpReader::addMesh(const aiMesh& mesh, const std::string& object,
   if (mesh.mColors[0] != nullptr) {
     notes_.add("colours of vertices do not change the reflectance, in", object, Severity::warning);
   }
+  const std::string_view marks = node.mName.C_Str();
   const bool mirrors = place.Determinant() < 0;
-  const AssimpMaterial& material = materials_[mesh.mMaterialIndex];
-  const Index surface = builder_.surface(object, material.index);
-  const aiVector3D* const texcoords = mesh.mTextureCoords[material.set];
+  const bool clockwise = marks.find(kX3dClockwise) != std::string_view::npos;
+  Index material = materials_[mesh.mMaterialIndex].index;
+  if (marks.starts_with(kX3dTwoSided)) material = twoSided(material);
+  const Index surface = builder_.surface(object, material);
+  const aiVector3D* const texcoords = mesh.mTextureCoords[materials_[mesh.mMaterialIndex].set];
   std::vector<Index> corners;
   std::vector<Vec2> pairs;
   for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
@@ -159,7 +234,7 @@ void AssimpReader::addMesh(const aiMesh& mesh, const std::string& object,
     corners.clear();
     pairs.clear();
     for (unsigned k = 0; k < face.mNumIndices; ++k) {
-      const unsigned vertex = face.mIndices[mirrors ? face.mNumIndices - 1 - k : k];
+      const unsigned vertex = face.mIndices[mirrors != clockwise ? face.mNumIndices - 1 - k : k];
       corners.push_back(Index(first + vertex));
       if (texcoords == nullptr) continue;
       // Assimp's origin is the bottom left corner.
@@ -174,25 +249,43 @@ void AssimpReader::addMesh(const aiMesh& mesh, const std::string& object,
 }
 
 /// Assimp's angle is horizontal, whole, whatever the file had.
-void AssimpReader::addCamera(const aiCamera& given, const aiMatrix4x4& place) {
-  // Assimp loses where they look at.
-  if (lowerExtension(scene_.file) == ".3ds") {
-    notes_.add("cameras of 3DS files are not used", given.mName.C_Str(), Severity::warning);
-    return;
-  }
+void AssimpReader::addCameras(const aiNode& node, const aiMatrix4x4& place) {
   const auto vectorOf = [](const aiVector3D& v) {
     return Vec3(double(v.x), double(v.y), double(v.z));
   };
   const aiMatrix3x3 turn(place);
-  const Vec3 forward = vectorOf(turn * given.mLookAt);
-  Camera camera;
-  camera.name = given.mName.C_Str();
-  camera.eye = scale_ * vectorOf(place * given.mPosition);
-  camera.up = vectorOf(turn * given.mUp);
-  camera.aspect = std::max(0.0, double(given.mAspect));
-  const double width = std::tan(0.5 * double(given.mHorizontalFOV));
-  // Of a picture of which the file does not say how high it is: 4 : 3.
-  camera.vertical_fov = 2 * std::atan(width / (camera.aspect > 0 ? camera.aspect : 4.0 / 3));
+  const auto add = [&](Camera camera, const aiCamera& pose) {
+    const std::string id = colladaId(node);
+    camera.name = isMadeUp(node.mName.C_Str()) && !id.empty() ? id : node.mName.C_Str();
+    camera.eye = scale_ * vectorOf(place * pose.mPosition);
+    camera.up = vectorOf(turn * pose.mUp);
+    addCamera(std::move(camera), vectorOf(turn * pose.mLookAt));
+  };
+  if (collada_) {
+    aiCamera pose;
+    pose.mLookAt = {0, 0, -1};
+    for (const Camera& c : collada_->of(colladaId(node), node.mName.C_Str())) add(c, pose);
+    return;
+  }
+  const auto [first, last] = camera_of_.equal_range(node.mName.C_Str());
+  for (auto it = first; it != last; ++it) {
+    const aiCamera& given = *it->second;
+    // Assimp loses where they look at.
+    if (lowerExtension(scene_.file) == ".3ds") {
+      notes_.add("cameras of 3DS files are not used", given.mName.C_Str(), Severity::warning);
+      continue;
+    }
+    Camera camera;
+    camera.aspect = std::max(0.0, double(given.mAspect));
+    const double width = std::tan(0.5 * double(given.mHorizontalFOV));
+    // Of a picture of which the file does not say how high it is: 4 : 3.
+    camera.vertical_fov = 2 * std::atan(width / (camera.aspect > 0 ? camera.aspect : 4.0 / 3));
+    add(std::move(camera), given);
+  }
+}
+
+/// `camera` has everything but a target.
+void AssimpReader::addCamera(Camera camera, const Vec3& forward) {
   const bool usable = isFinite(camera.eye) && isFinite(forward) &&
                       glm::length(glm::cross(forward, camera.up)) > 0 && camera.vertical_fov > 0 &&
                       camera.vertical_fov < std::numbers::pi;
@@ -203,7 +296,7 @@ void AssimpReader::addCamera(const aiCamera& given, const aiMatrix4x4& place) {
   }
   camera.target = camera.eye + glm::normalize(forward);
   camera.up = glm::normalize(camera.up);
-  scene_.cameras.push_back(camera);
+  scene_.cameras.push_back(std::move(camera));
 }
 
 }  // namespace
@@ -232,9 +325,7 @@ void requireWhole3ds(const std::string& path) {
 }  // namespace
 
 Scene loadAssimp(const std::string& path, const SceneOptions& options) {
-  const std::string extension = lowerExtension(path);
-  if (extension == ".3ds") requireWhole3ds(path);
-  if (extension == ".dae" || extension == ".x3d") checkXml(path);
+  if (lowerExtension(path) == ".3ds") requireWhole3ds(path);
   return AssimpReader(path, options).read();
 }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstring>
 #include <map>
-#include <pugixml.hpp>
 #include <string_view>
 
 #include "base/input_file.h"
@@ -119,12 +118,13 @@ class References {
 
 }  // namespace
 
-void checkXml(const std::string& path) {
+pugi::xml_document checkXml(const std::string& path) {
   const std::string content = readWholeFile(path);
   pugi::xml_document document;
   // Of what is no XML Assimp, which has the same parser, says so.
-  if (!document.load_buffer(content.data(), content.size())) return;
+  if (!document.load_buffer(content.data(), content.size())) return {};
   References(path).check(document.document_element());
+  return document;
 }
 
 }  // namespace radiosity

@@ -2,6 +2,7 @@
 // without a bound and does not get past words where numbers are due.
 #pragma once
 
+#include <pugixml.hpp>
 #include <string>
 
 namespace radiosity {
@@ -9,7 +10,7 @@ namespace radiosity {
 /// Errors: InputError "PATH: what is wrong; cure" for elements nested more than 200 deep,
 /// references included; for an element that refers to itself; where references stand for more than
 /// a million elements; for corners of Collada that are no numbers. Throws what readWholeFile()
-/// throws. What is no XML passes.
-void checkXml(const std::string& path);
+/// throws. Returns the document; an empty one of what is no XML.
+pugi::xml_document checkXml(const std::string& path);
 
 }  // namespace radiosity

@@ -168,6 +168,98 @@ class OtherFormats(CliTest):
         # 60 degrees wide, half as high.
         self.assertAlmostEqual(float(camera["fov_deg"]), math.degrees(2 * math.atan(math.tan(math.pi / 6) / 2)), 3)
 
+    def test_angles_of_collada_cameras_in_every_combination(self):
+        angles = "<xfov>60</xfov><aspect_ratio>2</aspect_ratio>"
+        half = math.tan(math.pi / 6)  # of 60 degrees
+        for given, vertical in [
+                ("<yfov>45</yfov>", 45),
+                ("<yfov>45</yfov><aspect_ratio>2</aspect_ratio>", 45),
+                ("<xfov>60</xfov><yfov>45</yfov>", 45),
+                ("<xfov>60</xfov>", math.degrees(2 * math.atan(half * 3 / 4))),  # taken for 4 : 3
+        ]:
+            with self.subTest(given=given):
+                self.put("a.dae", TEXTURED.replace(angles, given))
+                camera = self.report("info", "a.dae")["scene"]["cameras"][0]
+                self.assertAlmostEqual(float(camera["fov_deg"]), vertical, 3)
+        self.put("a.dae", TEXTURED.replace(angles, ""))
+        run = self.run_program("info", "a.dae")
+        self.assertIn("cameras without a view direction or an angle are not used: above", run.err)
+        self.put("a.dae", TEXTURED.replace("perspective>", "orthographic>"))
+        self.assertIn("cameras without perspective are not used: c", self.run_program("info", "a.dae").err)
+
+    def test_collada_nodes_without_names_go_by_their_ids(self):
+        content = TEXTURED.replace(' name="north wall"', "").replace(' name="above"', "")
+        self.put("a.dae", content)
+        scene = self.report("info", "a.dae")["scene"]
+        self.assertEqual(scene["surfaces"][0]["name"], "wall/paint")
+        self.assertEqual(scene["cameras"][0]["name"], "cam")
+
+    def test_collada_of_cameras_alone_has_no_faces(self):
+        geometry = TEXTURED[TEXTURED.index("<instance_geometry"):TEXTURED.index("</instance_geometry>")]
+        self.says(": no faces; export the scene with its meshes as polygons", "a.dae",
+                  TEXTURED.replace(geometry + "</instance_geometry>", ""))
+
+    def test_x3d_copies_are_all_there(self):
+        """Assimp keeps one of three, and gives the one without Appearance the first one's."""
+        shape = X3D[X3D.index("<Shape>"):X3D.index("</Transform>")].replace("<Shape>", '<Shape DEF="plate">')
+        faces = shape[shape.index("<IndexedFaceSet"):shape.index("</Shape>")]
+        self.put("a.x3d", f"""<X3D><Scene>{shape}<Transform translation="0 0 1"><Shape USE="plate"/></Transform>
+<Anchor><Transform translation="0 0 2" scale="2 1 1"><Shape USE="plate"/></Transform></Anchor>
+<Transform translation="0 0 3"><Shape DEF="bare">{faces.replace("<IndexedFaceSet", '<IndexedFaceSet solid="false"')}
+</Shape></Transform><Shape><Text string="x"/></Shape></Scene></X3D>""")
+        scene = self.report("info", "a.x3d")["scene"]
+        areas = {}
+        for surface in scene["surfaces"]:
+            name = surface["name"].split("/")[0]
+            areas[name] = areas.get(name, 0) + surface["area_m2"]
+        self.assertEqual(areas, {"plate": 4, "bare": 1})
+        material = {m["name"]: m for m in scene["materials"]}
+        bare = material[next(s["material"] for s in scene["surfaces"] if s["name"].startswith("bare"))]
+        self.assertEqual([bare["reflectance"], bare["sides"]], ["0.5, 0.5, 0.5", "two"])
+        self.assertIn("shapes of X3D that are not read: Text", self.run_program("info", "a.x3d").err)
+
+    def test_x3d_cones_cylinders_and_clockwise_faces_are_turned_outward(self):
+        side = 2 * 32 * math.sin(math.pi / 32)  # of the regular polygon of 32 corners in the unit circle
+        base = 16 * math.sin(math.pi / 16)
+        slant = math.hypot(2, math.cos(math.pi / 32))
+        for geometry, area in [("<Cylinder/>", 2 * side + 2 * base), ("<Cone/>", side * slant / 2 + base),
+                               ('<Cylinder bottom="false" height="1"/>', side + base)]:
+            with self.subTest(geometry=geometry):
+                self.put("a.x3d", f"<X3D><Scene><Shape>{geometry}</Shape></Scene></X3D>")
+                run = self.run_program("info", "a.x3d")
+                self.assertNotIn("turn their backs", run.err)
+                scene = self.report("info", "a.x3d")["scene"]
+                self.assertAlmostEqual(scene["surfaces"][0]["area_m2"], area, delta=1e-4)  # six figures
+                self.assertEqual(scene["closed"], "bottom" not in geometry)
+        for ccw, front in [("true", 1), ("false", -1)]:
+            self.put("a.x3d", X3D.replace("<IndexedFaceSet", f'<IndexedFaceSet ccw="{ccw}"'))
+            self.run_program("mesh", "a.x3d", "--patches", "1", "-o", "m.obj")
+            words = [line.split() for line in (self.folder / "m.obj").read_text().splitlines()]
+            points = [np.array(w[1:4], float) for w in words if w[:1] == ["v"]]
+            face = next([points[int(c.split("/")[0]) - 1] for c in w[1:]] for w in words if w[:1] == ["f"])
+            self.assertEqual(np.sign(np.cross(face[1] - face[0], face[2] - face[0])[2]), front)
+
+    def test_x3d_viewpoints_and_units(self):
+        self.put("a.x3d", X3D.replace("<Scene>", """<head><unit category="length" conversionFactor="0.01"/></head><Scene>
+<Transform translation="0 0 100" rotation="0 1 0 1.5707963267949">
+<Viewpoint DEF="side" position="0 0 300" fieldOfView="0.5"/></Transform>"""))
+        scene = self.report("info", "a.x3d")["scene"]
+        self.assertAlmostEqual(scene["surfaces"][0]["area_m2"], 1e-4, 10)
+        camera = scene["cameras"][0]
+        self.assertEqual(camera["name"], "side")
+        np.testing.assert_allclose(np.array(camera["eye_m"].split(", "), float), [3, 0, 1], atol=1e-6)
+        np.testing.assert_allclose(np.array(camera["target_m"].split(", "), float), [2, 0, 1], atol=1e-6)
+        self.assertAlmostEqual(float(camera["fov_deg"]), math.degrees(.5), 3)
+
+    def test_x3d_inline(self):
+        self.put("inner.x3d", X3D)
+        outer = '<X3D><Scene><Transform translation="5 0 0"><Inline url="inner.x3d"/></Transform></Scene></X3D>'
+        surface, _ = self.only_surface("a.x3d", outer)
+        self.assertEqual(surface["area_m2"], 1)
+        self.says(": is in itself (Inline); take the reference out", "a.x3d", outer.replace("inner", "a"))
+        self.assertEqual(self.refuse("info", self.put("a.x3d", outer.replace("inner", "gone"))),
+                         "radiosity: gone.x3d: no such file; check the name and the folder")
+
     def test_x3d(self):
         surface, material = self.only_surface("a.x3d", X3D)
         self.assertEqual([surface["faces"], surface["area_m2"]], [1, 1])
