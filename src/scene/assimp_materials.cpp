@@ -7,32 +7,17 @@
 #include <filesystem>
 #include <map>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 #include "base/srgb.h"
 #include "scene/assimp_library.h"
+#include "scene/image_path.h"
 #include "scene/text.h"
 #include "scene/texture.h"
 
 namespace radiosity {
 
 namespace {
-
-namespace fs = std::filesystem;
-
-/// A file of the same name in `folder`, upper and lower case taken for the same: formats of old
-/// keep names in capitals.
-std::optional<fs::path> sameNameIn(const fs::path& folder, const std::string& name) {
-  std::error_code error;
-  const std::string wanted = lowerCase(name);
-  std::vector<fs::path> found;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    if (lowerCase(entry.path().filename().string()) == wanted) found.push_back(entry.path());
-  }
-  if (found.empty()) return std::nullopt;
-  return *std::ranges::min_element(found);
-}
 
 class AssimpMaterialReader {
  public:
@@ -57,7 +42,6 @@ class AssimpMaterialReader {
   Index texture(const aiMaterial& given, const std::string& material);
   LoadedTexture& loaded(const std::string& name, bool repeat);
   TextureResult readImage(const std::string& name);
-  fs::path pathOf(const std::string& name);
 
   const aiScene& file_;
   const SceneOptions& options_;
@@ -182,7 +166,10 @@ LoadedTexture& AssimpMaterialReader::loaded(const std::string& name, bool repeat
 
 TextureResult AssimpMaterialReader::readImage(const std::string& name) {
   const aiTexture* embedded = file_.GetEmbeddedTexture(name.c_str());
-  if (embedded == nullptr) return readTexture(pathOf(name).string(), options_.max_image);
+  if (embedded == nullptr) {
+    const std::string folder = std::filesystem::path(scene_.file).parent_path().string();
+    return readTexture(findImage(folder, name, ignored_), options_.max_image);
+  }
   if (embedded->mHeight != 0) {
     TextureResult result;
     result.problem = "is embedded as bare texels, which are not read";
@@ -191,22 +178,6 @@ TextureResult AssimpMaterialReader::readImage(const std::string& name) {
   // Compressed, of mWidth bytes.
   const auto* bytes = reinterpret_cast<const unsigned char*>(embedded->pcData);
   return decodeTexture(name, {bytes, embedded->mWidth}, options_.max_image);
-}
-
-/// Exporters write the path that an image had on their machine: where that is not there, a file of
-/// its name beside the scene is taken, and said.
-fs::path AssimpMaterialReader::pathOf(const std::string& name) {
-  std::string slashed = name;
-  std::replace(slashed.begin(), slashed.end(), '\\', '/');
-  const fs::path folder = fs::path(scene_.file).parent_path();
-  fs::path path = folder / slashed;
-  std::error_code error;
-  if (fs::exists(path, error)) return path;
-  const std::optional<fs::path> beside =
-      sameNameIn(folder.empty() ? "." : folder, fs::path(slashed).filename().string());
-  if (!beside) return path;
-  ignored_.add("not where the file says, taken from beside the scene: texture", name);
-  return *beside;
 }
 
 }  // namespace

@@ -34,12 +34,63 @@ std::vector<std::string_view> argumentsOf(const std::vector<std::string_view>& w
   return arguments;
 }
 
+/// Takes the next word off a text.
+std::string_view takeWord(std::string_view& text) {
+  text = trimmed(text);
+  const std::size_t end = std::min(text.find_first_of(kBlanks), text.size());
+  const std::string_view word = text.substr(0, end);
+  text = trimmed(text.substr(end));
+  return word;
+}
+
+/// Takes up to three numbers off a text; whether one of them is not `usual`.
+bool takeNumbers(std::string_view& text, double usual) {
+  bool differs = false;
+  for (int k = 0; k < 3; ++k) {
+    std::string_view rest = text;
+    const std::optional<double> number = parseNumber(takeWord(rest));
+    if (!number) break;
+    differs = differs || *number != usual;
+    text = rest;
+  }
+  return differs;
+}
+
+/// Options and the name of a file, which may have blanks in it, or quotes around it.
+MtlMap mapOf(std::string_view text) {
+  constexpr std::array<std::string_view, 11> kOneWord = {
+      "-blendu", "-blendv", "-boost", "-texres", "-bm",        "-imfchan",
+      "-type",   "-cc",     "-halo",  "-uvset",  "-colorspace"};
+  MtlMap map;
+  text = trimmed(text);
+  while (text.starts_with('-')) {
+    std::string_view rest = text;
+    const std::string option = lowerCase(takeWord(rest));
+    if (option == "-s" || option == "-o" || option == "-t") {
+      if (takeNumbers(rest, option == "-s" ? 1 : 0)) map.moved = true;
+    } else if (option == "-clamp") {
+      map.clamp = lowerCase(takeWord(rest)) == "on";
+    } else if (option == "-mm") {
+      takeWord(rest);
+      takeWord(rest);
+    } else if (std::find(kOneWord.begin(), kOneWord.end(), option) != kOneWord.end()) {
+      takeWord(rest);
+    } else {
+      break;  // a name that begins so
+    }
+    text = rest;
+  }
+  const bool quoted = text.size() > 1 && text.front() == '"' && text.back() == '"';
+  map.file = quoted ? text.substr(1, text.size() - 2) : text;
+  return map;
+}
+
 class MtlScanner {
  public:
   MtlScanner(const std::string& file, FeatureNotes& ignored) : file_(file), ignored_(ignored) {}
 
   void statement(std::size_t line, std::string_view text);
-  MtlScan finish() { return {std::move(materials_), std::move(text_)}; }
+  std::vector<MtlMaterial> finish() { return std::move(materials_); }
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
@@ -53,7 +104,6 @@ class MtlScanner {
   FeatureNotes& ignored_;
   std::size_t line_ = 0;
   std::vector<MtlMaterial> materials_;
-  std::string text_;
 };
 
 void MtlScanner::statement(std::size_t line, std::string_view text) {
@@ -68,8 +118,7 @@ void MtlScanner::statement(std::size_t line, std::string_view text) {
       ignored_.add(fmt::format("newmtl names no material, it is called {}, line", kUnnamed),
                    std::to_string(line), Severity::warning);
     }
-    text_ += fmt::format("newmtl {}\n", name);
-    materials_.push_back({std::move(name), line, {}, {}, false, false});
+    materials_.push_back({std::move(name), line, {}, {}, {}, {}});
     return;
   }
   if (materials_.empty()) {
@@ -77,18 +126,18 @@ void MtlScanner::statement(std::size_t line, std::string_view text) {
                  fmt::format("`{}` in line {}", keyword, line), Severity::warning);
     return;
   }
-  text_.append(text) += '\n';
+  const std::string known = lowerCase(keyword);
   MtlMaterial& material = materials_.back();
-  if (keyword == "Kd") {
+  if (known == "kd") {
     material.reflectance = colour(keyword, words);
     checkReflectance(fmt::format("{}:{}", file_, line), material.name, *material.reflectance);
-  } else if (keyword == "Ke") {
+  } else if (known == "ke") {
     material.radiance = colour(keyword, words);
     checkEmission(fmt::format("{}:{}", file_, line), material.name, *material.radiance);
-  } else if (keyword == "map_Kd") {
-    material.textured = true;
-  } else if (keyword == "map_Ke") {
-    material.glows = true;
+  } else if (known == "map_kd") {
+    material.reflectance_map = mapOf(text.substr(keyword.size()));
+  } else if (known == "map_ke") {
+    material.radiance_map = mapOf(text.substr(keyword.size()));
   } else if (isMap(keyword)) {
     ignored_.add(fmt::format("texture {} is not used, material", keyword), material.name);
   } else if (std::find(kNumeric.begin(), kNumeric.end(), keyword) != kNumeric.end()) {
@@ -149,7 +198,8 @@ void MtlScanner::noteIgnored(std::string_view keyword, const std::vector<double>
 
 }  // namespace
 
-MtlScan scanMtl(const std::string& file, std::string_view text, FeatureNotes& ignored) {
+std::vector<MtlMaterial> scanMtl(const std::string& file, std::string_view text,
+                                 FeatureNotes& ignored) {
   if (text.find('\0') != std::string_view::npos) {
     throw InputError(file + ": is not a text file; export the materials as MTL");
   }

@@ -1,4 +1,4 @@
-// Reads an MTL file token by token before the library does (see obj_scan.h).
+// Reads an MTL file token by token.
 #pragma once
 
 #include <optional>
@@ -10,22 +10,26 @@
 
 namespace radiosity {
 
+/// A map_Kd or map_Ke.
+struct MtlMap {
+  std::string file;    ///< as written, blanks within it included; may be empty
+  bool clamp = false;  ///< else it repeats
+  bool moved = false;  ///< -s, -o or -t is there and changes something
+};
+
 struct MtlMaterial {
   std::string name;
   std::size_t line = 0;
   std::optional<Vec3> reflectance;  ///< Kd as written
   std::optional<Vec3> radiance;     ///< Ke as written
-  bool textured = false;            ///< has a map_Kd
-  bool glows = false;               ///< has a map_Ke
+  std::optional<MtlMap> reflectance_map;
+  std::optional<MtlMap> radiance_map;
 };
 
-struct MtlScan {
-  std::vector<MtlMaterial> materials;  ///< in file order
-  std::string text;                    ///< statements, one a line: what the library gets to see
-};
-
-/// Features that a diffuse solver leaves out go to `ignored`, by material name.
+/// The materials in file order. Features that a diffuse solver leaves out go to `ignored`, by
+/// material name. Kd, Ke and their maps are known in small letters, too.
 /// Errors: InputError "FILE:LINE: what is wrong; cure".
-MtlScan scanMtl(const std::string& file, std::string_view text, FeatureNotes& ignored);
+std::vector<MtlMaterial> scanMtl(const std::string& file, std::string_view text,
+                                 FeatureNotes& ignored);
 
 }  // namespace radiosity

@@ -1,17 +1,16 @@
 #include "scene/obj_materials.h"
 
 #include <fmt/format.h>
-#include <tiny_obj_loader.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <numbers>
 #include <optional>
 #include <set>
-#include <sstream>
 
 #include "base/input_file.h"
 #include "base/srgb.h"
+#include "scene/image_path.h"
 #include "scene/mtl_scan.h"
 #include "scene/text.h"
 #include "scene/texture.h"
@@ -31,15 +30,9 @@ class ObjMaterialReader {
 
  private:
   void readLibrary(const fs::path& path);
-  Material convert(const MtlMaterial& mtl, const tinyobj::material_t& parsed,
-                   const fs::path& folder);
-  struct Map {
-    const char* keyword;
-    TextureUse use;
-    const std::string& file;
-    const tinyobj::texture_option_t& option;
-  };
-  Index texture(const std::string& material, const Map& map, const fs::path& folder);
+  Material convert(const MtlMaterial& mtl, const fs::path& folder);
+  Index texture(const std::string& material, const char* keyword, TextureUse use, const MtlMap& map,
+                const fs::path& folder);
   void noteTextureAlone(const std::string& factor, const std::string& material);
   void note(Severity severity, std::string text) {
     scene_.notes.push_back({severity, std::move(text)});
@@ -85,46 +78,31 @@ void ObjMaterialReader::readLibraries(const ObjScan& scan) {
 
 void ObjMaterialReader::readLibrary(const fs::path& path) {
   const std::string file = path.string();
-  const MtlScan scan = scanMtl(file, readWholeFile(file), ignored_);
-  const std::vector<MtlMaterial>& scanned = scan.materials;
+  const std::vector<MtlMaterial> scanned = scanMtl(file, readWholeFile(file), ignored_);
   if (scanned.empty()) {
     note(Severity::warning, fmt::format("{}: defines no material", file));
     return;
   }
-  std::map<std::string, int> by_name;
-  std::vector<tinyobj::material_t> parsed;
-  std::string warnings;
-  std::string errors;
-  std::istringstream stream(scan.text);
-  tinyobj::LoadMtl(&by_name, &parsed, &stream, &warnings, &errors);
-  if (!errors.empty() || parsed.size() != scanned.size()) {
-    throw InputError(fmt::format("{}: cannot be read as MTL ({}); export the materials again", file,
-                                 onOneLine(errors)));
-  }
-  for (std::size_t m = 0; m < scanned.size(); ++m) {
-    const MtlMaterial& mtl = scanned[m];
+  for (const MtlMaterial& mtl : scanned) {
     if (!index_of_.try_emplace(mtl.name, Index(scene_.materials.size())).second) {
       note(Severity::warning,
            fmt::format("{}:{}: material {} is defined twice; the first definition counts", file,
                        mtl.line, mtl.name));
       continue;
     }
-    scene_.materials.push_back(convert(mtl, parsed[m], path.parent_path()));
+    scene_.materials.push_back(convert(mtl, path.parent_path()));
   }
 }
 
-Material ObjMaterialReader::convert(const MtlMaterial& mtl, const tinyobj::material_t& parsed,
-                                    const fs::path& folder) {
+Material ObjMaterialReader::convert(const MtlMaterial& mtl, const fs::path& folder) {
   Material material = defaultMaterial(mtl.name, options_);
-  if (mtl.textured) {
-    material.texture = texture(
-        mtl.name,
-        {"map_Kd", TextureUse::reflectance, parsed.diffuse_texname, parsed.diffuse_texopt}, folder);
+  if (mtl.reflectance_map) {
+    material.texture =
+        texture(mtl.name, "map_Kd", TextureUse::reflectance, *mtl.reflectance_map, folder);
   }
-  if (mtl.glows) {
-    material.emission_texture = texture(
-        mtl.name, {"map_Ke", TextureUse::emission, parsed.emissive_texname, parsed.emissive_texopt},
-        folder);
+  if (mtl.radiance_map) {
+    material.emission_texture =
+        texture(mtl.name, "map_Ke", TextureUse::emission, *mtl.radiance_map, folder);
   }
   if (material.texture != kNone && mtl.reflectance.value_or(Vec3(0.0)) == Vec3(0.0)) {
     material.reflectance = Vec3(1.0);
@@ -153,37 +131,32 @@ void ObjMaterialReader::noteTextureAlone(const std::string& factor, const std::s
                material);
 }
 
-Index ObjMaterialReader::texture(const std::string& material, const Map& map,
-                                 const fs::path& folder) {
+Index ObjMaterialReader::texture(const std::string& material, const char* keyword, TextureUse use,
+                                 const MtlMap& map, const fs::path& folder) {
   if (!options_.textures) {
     ignored_.add("textures are off; the factor alone counts, material", material);
     return kNone;
   }
-  const auto differs = [](const tinyobj::real_t* v, double expected) {
-    return v[0] != expected || v[1] != expected || v[2] != expected;
-  };
-  if (differs(map.option.scale, 1) || differs(map.option.origin_offset, 0)) {
-    ignored_.add(fmt::format("{} options -s and -o are not used, material", map.keyword), material,
+  if (map.moved) {
+    ignored_.add(fmt::format("{} options -s and -o are not used, material", keyword), material,
                  Severity::warning);
   }
-  std::string name(trimmed(map.file));
-  if (name.empty()) {
+  if (map.file.empty()) {
     note(Severity::warning,
          fmt::format("material {}: {} names no file that can be told from its options; the "
                      "factor alone counts",
-                     material, map.keyword));
+                     material, keyword));
     return kNone;
   }
-  std::replace(name.begin(), name.end(), '\\', '/');
-  const std::string path = (folder / name).string();
-  const auto [place, is_new] = texture_of_.try_emplace({path, !map.option.clamp});
+  const std::string path = findImage(folder.string(), map.file, ignored_);
+  const auto [place, is_new] = texture_of_.try_emplace({path, !map.clamp});
   LoadedTexture& loaded = place->second;
   if (is_new) {
     TextureResult result = readTexture(path, options_.max_image);
     if (result.has_alpha) ignored_.add("alpha is not used, texture", path);
-    loaded = keepTexture(std::move(result), !map.option.clamp, scene_);
+    loaded = keepTexture(std::move(result), !map.clamp, scene_);
   }
-  const std::string problem = loaded.problemAs(map.use);
+  const std::string problem = loaded.problemAs(use);
   if (problem.empty()) return loaded.index;
   noteUnusedTexture(path, problem, "factor", material, ignored_);
   return kNone;

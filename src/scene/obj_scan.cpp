@@ -56,6 +56,7 @@ class ObjScanner {
   void face();
   void corner(std::string_view word);
   Index index(std::string_view word, std::string_view corner, Referenced& list);
+  void noteMissing(const Referenced& list, std::size_t line);
   void object(std::string name);
   void material(std::string_view name);
   void noteNameless(const std::string& what);
@@ -180,15 +181,21 @@ void ObjScanner::corner(std::string_view word) {
   if (parts.size() > 2 && !parts[2].empty()) index(parts[2], word, normals_);
 }
 
-/// An index that counts from 0; only finish() checks it against the end of the file.
+/// An index that counts from 0; only finish() checks it against the end of the file. kNone of what
+/// is not there and need not be.
 Index ObjScanner::index(std::string_view word, std::string_view corner, Referenced& list) {
   const std::optional<long long> value = parseInteger(word);
   if (!value) {
     fail(fmt::format("`{}` is not a corner v, v/vt or v/vt/vn of whole numbers; correct it",
                      corner));
   }
+  const bool before = *value < 0 && -*value > static_cast<long long>(list.count);
+  if (&list != &vertices_ && (*value == 0 || before)) {
+    noteMissing(list, line_);
+    return kNone;
+  }
   if (*value == 0) fail(fmt::format("`{}`: a {} is counted from 1, not 0", corner, list.what));
-  if (*value < 0 && -*value > static_cast<long long>(list.count)) {
+  if (before) {
     fail(fmt::format("{} {} does not exist, there are {} before this line; correct the face",
                      list.what, *value, list.count));
   }
@@ -246,12 +253,29 @@ Index ObjScanner::currentObject() {
   return object_;
 }
 
+void ObjScanner::noteMissing(const Referenced& list, std::size_t line) {
+  ignored_.add(fmt::format("{}s that do not exist are not used, in line", list.what),
+               std::to_string(line), Severity::warning, 3);
+}
+
+/// Normals are not used, and a face without texture coordinates has the colour of its material.
 ObjScan ObjScanner::finish() {
-  for (const Referenced* list : {&vertices_, &texcoords_, &normals_}) {
-    if (list->largest <= static_cast<long long>(list->count)) continue;
-    line_ = list->largest_line;
-    fail(fmt::format("{} {} does not exist, the file has {}; correct the face or export again",
-                     list->what, list->largest, list->count));
+  const auto goesBeyond = [](const Referenced& list) {
+    return list.largest > static_cast<long long>(list.count);
+  };
+  if (goesBeyond(vertices_)) {
+    line_ = vertices_.largest_line;
+    fail(fmt::format("vertex {} does not exist, the file has {}; correct the face or export again",
+                     vertices_.largest, vertices_.count));
+  }
+  if (goesBeyond(normals_)) noteMissing(normals_, normals_.largest_line);
+  for (std::size_t f = 0; f < scan_.faces.size() && goesBeyond(texcoords_); ++f) {
+    for (std::size_t k = scan_.face_offset[f]; k < scan_.face_offset[f + 1]; ++k) {
+      Index& texcoord = scan_.corner_texcoord[k];
+      if (texcoord == kNone || texcoord < texcoords_.count) continue;
+      texcoord = kNone;
+      noteMissing(texcoords_, scan_.faces[f].line);
+    }
   }
   if (scan_.faces.empty()) {
     throw InputError(fmt::format(
@@ -265,12 +289,13 @@ ObjScan ObjScanner::finish() {
 
 void forEachStatement(std::string_view text,
                       const std::function<void(std::size_t, std::string_view)>& visit) {
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // byte order mark
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);                    // byte order mark
+  const char line_end = text.find('\n') == std::string_view::npos ? '\r' : '\n';  // of old Macs
   std::string joined;
   std::size_t line = 0;
   std::size_t first_line = 0;
   for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::size_t end = std::min(text.find(line_end, begin), text.size());
     std::string_view piece = trimmed(text.substr(begin, end - begin));
     begin = end + 1;
     ++line;

@@ -170,13 +170,33 @@ TEST_F(SceneTexture, GoesOnWithTheFactorWhereATextureCannotBeUsed) {
   EXPECT_NOTE(scene.notes, "text.png cannot be decoded (of an unknown image format)",
               Severity::warning);
   write("grey.png", png(1, {"\x40"}, 0, 8));
-  // The library takes the file's name for the second number of -s.
-  scene = load("map_Kd -s 2 grey.png\n");
+  scene = load("map_Kd -s 2\n");
   EXPECT_NOTE(scene.notes, "map_Kd names no file", Severity::warning);
   scene = load("map_Kd -s 2 2 1 grey.png\n");
   EXPECT_NOTE(scene.notes, "map_Kd options -s and -o are not used, material: paint",
               Severity::warning);
   EXPECT_EQ(scene.textures.size(), 1u);
+}
+
+/// As exporters write it: options of one number (MTL specification: v and w may be left out),
+/// blanks behind options, quotes, other letters, and paths of another machine.
+TEST_F(SceneTexture, FindsImagesHoweverTheyAreNamed) {
+  write("two rows.png", png(1, {"\x40"}, 0, 8));
+  write("sub/Grey.PNG", png(1, {"\x40"}, 0, 8));
+  for (const std::string map :
+       {"map_Kd -o 0.1 two rows.png", "map_Kd -s 2 -o 0 0 two rows.png",
+        "map_kd -blendu on -mm 0 1 -bm 0.5 -clamp off two rows.png", "map_Kd \"two rows.png\"",
+        "map_Kd Two Rows.PNG", "map_Kd SUB/grey.png", "map_Kd sub\\grey.png",
+        "map_Kd C:\\work\\two rows.png", "map_Kd /nowhere/of/mine/two rows.png"}) {
+    const Scene scene = load(map + "\n");
+    EXPECT_EQ(scene.textures.size(), 1u) << map << allNotes(scene.notes);
+  }
+  EXPECT_NOTE(
+      load("map_Kd C:\\work\\two rows.png\n").notes,
+      "not where the file says, taken from beside the scene: texture: C:\\work\\two rows.png",
+      Severity::info);
+  EXPECT_NOTE(load("map_Kd Two rows.png\n").notes,
+              "differs in upper and lower case alone: texture: Two rows.png", Severity::info);
 }
 
 TEST_F(SceneTexture, NeedsTextureCoordinatesOnEveryFace) {
