@@ -23,7 +23,7 @@ constexpr double kInsideFov = 76;   // degrees; only a wide lens shows a room fr
 constexpr double kStraight =
     1.2;  // worth of looking along the room: verticals and corners in order
 constexpr double kOutsideFov = 40;  // degrees; little perspective distortion
-constexpr double kBelow = 0.6;      // worth of looking up from below: few things are looked at so
+constexpr double kBelow = 0.3;      // worth of looking up from below, where nothing is looked at
 constexpr double kMargin = 0.95;    // share of the picture that a framed scene fills
 constexpr double kEyeHeight = 1.6;  // metres above the floor, where the scene is as high as a room
 constexpr double kStanding = 1.1;   // worth of standing at that height

@@ -44,12 +44,14 @@ void SceneChecks::reportLight(SceneInfo& info) const {
   }
   // A closed body that faces outwards is lit by the sky all around.
   const bool sky_is_seen = !enclosed();
-  if (!any && !(sky_is_seen && scene_.sky != Vec3(0.0))) {
+  const bool sky_shines = scene_.sky != Vec3(0.0);
+  if (!any && !(sky_is_seen && sky_shines)) {
     info.problems.push_back(
         {Severity::loud,
-         fmt::format("no surface emits light: the result will be dark; make one a lamp, --set "
+         fmt::format("no surface emits light{}: the result will be dark; make one a lamp, --set "
                      "'{}.radiance=10'{}",
-                     likelyLamp(scene_), sky_is_seen ? ", or let the sky shine in, --sky 1" : "")});
+                     sky_shines ? " and the sky does not shine in" : "", likelyLamp(scene_),
+                     sky_is_seen ? ", or let the sky shine in, --sky 1" : "")});
   }
   std::vector<std::string> textured;
   for (const SurfaceInfo& surface : info.surfaces) {
