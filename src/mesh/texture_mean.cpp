@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <limits>
 
 #include "base/geometry/clip.h"
 
@@ -34,6 +35,26 @@ std::vector<float> halveRows(std::span<const float> pixels, long count, long row
   return result;
 }
 
+/// Where a line of constant y runs through a convex polygon; empty (low > high) where it misses it.
+struct Stretch {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+};
+
+Stretch stretchAt(std::span<const Vec2> polygon, double y) {
+  Stretch stretch;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec2& a = polygon[k];
+    const Vec2& b = polygon[(k + 1) % polygon.size()];
+    if (std::min(a.y, b.y) > y || std::max(a.y, b.y) < y) continue;
+    const bool level = a.y == b.y;
+    const double x = level ? a.x : a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x);
+    stretch.low = std::min({stretch.low, x, level ? b.x : x});
+    stretch.high = std::max({stretch.high, x, level ? b.x : x});
+  }
+  return stretch;
+}
+
 std::vector<float> transposed(std::span<const float> pixels, long width, long height) {
   std::vector<float> result(pixels.size());
   for (long j = 0; j < height; ++j) {
@@ -63,7 +84,7 @@ TextureMean::TextureMean(const Texture& texture) : texture_(texture) {
   }
 }
 
-Vec3 TextureMean::texel(const Level& level, long i, long j) const {
+const float* TextureMean::pixel(const Level& level, long i, long j) const {
   if (texture_.repeat) {
     i = (i % level.width + level.width) % level.width;
     j = (j % level.height + level.height) % level.height;
@@ -72,7 +93,11 @@ Vec3 TextureMean::texel(const Level& level, long i, long j) const {
     j = std::clamp(j, 0L, level.height - 1);
   }
   const std::vector<float>& pixels = level.halved.empty() ? texture_.texels : level.halved;
-  const float* p = pixels.data() + (j * level.width + i) * 3;
+  return pixels.data() + (j * level.width + i) * 3;
+}
+
+Vec3 TextureMean::texel(const Level& level, long i, long j) const {
+  const float* p = pixel(level, i, j);
   return {double(p[0]), double(p[1]), double(p[2])};
 }
 
@@ -101,31 +126,69 @@ Vec3 TextureMean::over(std::span<const Vec2> uv) const {
   const Vec2 size(double(level.width), double(level.height));
   std::vector<Vec2> polygon;
   for (const Vec2& p : uv) polygon.push_back(p * size);
-  std::vector<Vec2> row;
+  Sum sum;
+  Stretch above = stretchAt(polygon, std::floor(low.y * size.y));
+  for (double j = std::floor(low.y * size.y); j < high.y * size.y; ++j) {
+    const Stretch below = stretchAt(polygon, j + 1);
+    // Of a convex polygon, what is between both stretches is covered over the whole row.
+    const double from = std::ceil(std::max(above.low, below.low));
+    const double to = std::max(from, std::floor(std::min(above.high, below.high)));
+    addRow(level, polygon, j, from, to, sum);
+    above = below;
+  }
+  return sum.area > 0 ? sum.colour / sum.area : at(0.5 * (low + high));  // lost in rounding
+}
+
+void TextureMean::addRow(const Level& level, const std::vector<Vec2>& polygon, double j,
+                         double from, double to, Sum& sum) const {
+  if (from < to) {
+    sum.colour += texelsBetween(level, long(from), long(to), long(j));
+    sum.area += to - from;
+  }
+  std::vector<Vec2> row = polygon;
   std::vector<Vec2> cell;
   std::vector<Vec2> scratch;
-  Vec3 sum(0.0);
-  double area = 0;
-  for (double j = std::floor(low.y * size.y); j < high.y * size.y; ++j) {
-    row = polygon;
-    clipLoop(row, scratch, [&](const Vec2& p) { return p.y - j; });
-    clipLoop(row, scratch, [&](const Vec2& p) { return j + 1 - p.y; });
-    double left = high.x * size.x;
-    double right = low.x * size.x;
-    for (const Vec2& p : row) {
-      left = std::min(left, p.x);
-      right = std::max(right, p.x);
-    }
-    for (double i = std::floor(left); i < right; ++i) {
-      cell = row;
-      clipLoop(cell, scratch, [&](const Vec2& p) { return p.x - i; });
-      clipLoop(cell, scratch, [&](const Vec2& p) { return i + 1 - p.x; });
-      const double share = std::abs(polygonArea(cell));
-      sum += share * texel(level, long(i), long(j));
-      area += share;
-    }
+  clipLoop(row, scratch, [&](const Vec2& p) { return p.y - j; });
+  clipLoop(row, scratch, [&](const Vec2& p) { return j + 1 - p.y; });
+  double left = std::numeric_limits<double>::infinity();
+  double right = -left;
+  for (const Vec2& p : row) {
+    left = std::min(left, p.x);
+    right = std::max(right, p.x);
   }
-  return area > 0 ? sum / area : at(0.5 * (low + high));  // a sliver lost in rounding
+  for (double i = std::floor(left); i < right; ++i) {
+    if (i == from) i = to;
+    if (i >= right) break;
+    cell = row;
+    clipLoop(cell, scratch, [&](const Vec2& p) { return p.x - i; });
+    clipLoop(cell, scratch, [&](const Vec2& p) { return i + 1 - p.x; });
+    const double share = std::abs(polygonArea(cell));
+    sum.colour += share * texel(level, long(i), long(j));
+    sum.area += share;
+  }
+}
+
+/// The sum of a row's texels from column `i` to `end`, without the last.
+Vec3 TextureMean::texelsBetween(const Level& level, long i, long end, long j) const {
+  Vec3 sum(0.0);
+  while (i < end) {
+    // So far the texture is one piece of memory, or a clamped texel is repeated.
+    const long inside = texture_.repeat ? (i % level.width + level.width) % level.width : i;
+    const bool clamped = inside < 0 || inside >= level.width;
+    if (clamped) {
+      const long next = inside < 0 ? std::min(end, 0L) : end;
+      sum += double(next - i) * texel(level, i, j);
+      i = next;
+      continue;
+    }
+    const long count = std::min(end - i, level.width - inside);
+    const float* p = pixel(level, inside, j);
+    for (long k = 0; k < count; ++k, p += 3) {
+      sum += Vec3(double(p[0]), double(p[1]), double(p[2]));
+    }
+    i += count;
+  }
+  return sum;
 }
 
 }  // namespace radiosity

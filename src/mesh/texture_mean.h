@@ -29,7 +29,16 @@ class TextureMean {
     long height;
     std::vector<float> halved;  ///< empty for the texture itself
   };
+  struct Sum {
+    Vec3 colour{0.0};
+    double area = 0;
+  };
+  const float* pixel(const Level& level, long i, long j) const;
   Vec3 texel(const Level& level, long i, long j) const;
+  Vec3 texelsBetween(const Level& level, long i, long end, long j) const;
+  /// Row j of the polygon, in texels, which covers those from `from` to `to` whole.
+  void addRow(const Level& level, const std::vector<Vec2>& polygon, double j, double from,
+              double to, Sum& sum) const;
 
   const Texture& texture_;
   std::vector<Level> levels_;
