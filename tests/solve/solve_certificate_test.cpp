@@ -12,10 +12,11 @@ using test::kSolvers;
 using test::Matrix;
 
 // 300 systems, rows up to 1.1, some white patches, tolerances from 1e-1 to 1e-14 (below what
-// rounding lets anyone know): the bound is above the true error in every one.
+// rounding lets anyone know), by every solver: the bound is above the true error in each. A proof
+// needs a solution of some accuracy: coarse ones of rows above 1 may go without.
 TEST(Certificate, BoundsTheTrueError) {
   std::vector<double> slack;
-  int certified = 0;
+  int withheld = 0;
   for (unsigned seed = 0; seed < 300; ++seed) {
     test::Random random(1000 + seed);
     const auto n = std::size_t(random(6, 40));
@@ -29,18 +30,22 @@ TEST(Certificate, BoundsTheTrueError) {
       for (double& e : emission) e *= 1e-9;
     }
     const double tolerance = std::pow(10.0, -random(1, 14));
-    const auto solver = kSolvers[seed / 2 % std::size(kSolvers)];
-    Progress quiet;
-    const Solution s = solve(factors, rho, emission, 2, test::options(solver, tolerance), quiet);
-    ASSERT_EQ(s.summary.status, SolveStatus::converged) << seed << ": " << s.summary.message;
-    const double bound = s.summary.error_bound.value_or(0.0);
-    ASSERT_GT(bound, 0.0) << seed;
-    const double error = test::largestDifference(s.radiosity, test::direct(f, rho, emission, 2));
-    EXPECT_LE(error, bound) << "seed " << seed << ", n " << n;
-    if (tolerance > 1e-10 && error > 0) slack.push_back(bound / error);
-    ++certified;
+    const auto truth = test::direct(f, rho, emission, 2);
+    for (const Solver solver : kSolvers) {
+      Progress quiet;
+      const Solution s = solve(factors, rho, emission, 2, test::options(solver, tolerance), quiet);
+      ASSERT_EQ(s.summary.status, SolveStatus::converged) << seed << ": " << s.summary.message;
+      if (!s.summary.error_bound) {
+        EXPECT_TRUE(tolerance > 1e-2 && top > 1) << seed;
+        ++withheld;
+        continue;
+      }
+      const double error = test::largestDifference(s.radiosity, truth);
+      EXPECT_LE(error, *s.summary.error_bound) << "seed " << seed << ", n " << n;
+      if (tolerance > 1e-10 && error > 0) slack.push_back(*s.summary.error_bound / error);
+    }
   }
-  EXPECT_EQ(certified, 300);
+  EXPECT_LE(withheld, 3 * int(std::size(kSolvers)));  // 1% of the systems
   std::sort(slack.begin(), slack.end());
   // Not idle: 1 - max rho rowsum is about 0.05 to 0.1 here and the mean is about 0.5.
   EXPECT_LT(slack[slack.size() / 2], 20.0);
@@ -57,12 +62,14 @@ TEST(Certificate, CoversRounding) {
     const auto rho = random.vector(n, 0.5, 0.9);
     const auto emission = random.vector(n, 0.0, 1.0);
     Progress quiet;
-    const auto options = test::options(kSolvers[seed % std::size(kSolvers)], 1e-300, 500);
-    const Solution s = solve(factors, rho, emission, 1, options, quiet);
-    EXPECT_LT(s.summary.residual, 1e-14);
-    const double bound = s.summary.error_bound.value_or(0.0);
-    EXPECT_LE(test::largestDifference(s.radiosity, test::direct(f, rho, emission, 1)), bound);
-    EXPECT_LT(bound, 1e-11);  // 1e-14 of rounding over 1 - rho, on B of about 3
+    for (const Solver solver : kSolvers) {
+      const auto options = test::options(solver, 1e-300, 500);
+      const Solution s = solve(factors, rho, emission, 1, options, quiet);
+      EXPECT_LT(s.summary.residual, 1e-14);
+      const double bound = s.summary.error_bound.value_or(0.0);
+      EXPECT_LE(test::largestDifference(s.radiosity, test::direct(f, rho, emission, 1)), bound);
+      EXPECT_LT(bound, 1e-11);  // 1e-14 of rounding over 1 - rho, on B of about 3
+    }
   }
 }
 
