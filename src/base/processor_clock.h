@@ -18,6 +18,15 @@ inline double clockSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+/// Measures by the clock from its construction on.
+class Stopwatch {
+ public:
+  double seconds() const { return clockSeconds() - start_; }
+
+ private:
+  double start_ = clockSeconds();
+};
+
 /// Time of some work by both clocks; their ratio says how busy the machine is with other things.
 struct BothClocks {
   double processor = 0;

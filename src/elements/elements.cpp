@@ -5,25 +5,17 @@
 
 #include <bit>
 
+#include "base/require_within.h"
 #include "elements/light_sources.h"
 
 namespace radiosity {
-namespace {
-
-template <class Number>
-void checkRange(const char* option, Number value, Number low, Number high) {
-  if (value >= low && value <= high) return;
-  throw InputError(
-      fmt::format("elements: {} is {}; it must lie between {} and {}", option, value, low, high));
-}
-
-}  // namespace
+namespace {}  // namespace
 
 void ElementOptions::validate() const {
-  checkRange("tolerance", tolerance, 1e-4, 0.5);
-  checkRange("smallest_edge", smallest_edge, 1e-5, 0.1);
-  checkRange("crease", crease, 0.0, 180.0);
-  checkRange("rays", rays, 64, 4096);
+  requireWithin("elements: tolerance", tolerance, 1e-4, 0.5);
+  requireWithin("elements: smallest_edge", smallest_edge, 1e-5, 0.1);
+  requireWithin("elements: crease", crease, 0.0, 180.0);
+  requireWithin("elements: rays", rays, 64, 4096);
   if (!std::has_single_bit(unsigned(rays))) {
     throw InputError(fmt::format("elements: rays is {}; it must be a power of two", rays));
   }

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <optional>
 
 #include "base/parallel.h"
+#include "base/processor_clock.h"
 #include "elements/indirect_light.h"
 
 namespace radiosity {
@@ -58,10 +58,6 @@ constexpr int kMoreRays = 8;
 constexpr double kUneven = 7;
 /// Direct light by rays: its steps are not refined below this.
 constexpr double kAimedTolerance = 0.02;
-
-double since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 double brightness(std::span<const double> values, std::size_t patch, std::size_t bands) {
   double sum = 0;
@@ -155,12 +151,12 @@ LightSources::LightSources(const PatchMesh& mesh, const PatchMaterials& material
   report_.roots = surface_.roots.size();
   const double edge = 0.5 * options_.smallest_edge * surface_.diagonal;
   report_.uniform_vertices = edge > 0 ? area / (edge * edge) : 0;
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch direct;
   findDirect(keep_lights);
-  report_.seconds_direct = since(start);
-  const auto then = std::chrono::steady_clock::now();
+  report_.seconds_direct = direct.seconds();
+  const Stopwatch indirect;
   findSources();
-  report_.seconds_indirect = since(then);
+  report_.seconds_indirect = indirect.seconds();
 }
 
 RefinementRule LightSources::rule(double tolerance, double smallest) const {
@@ -277,7 +273,7 @@ void LightSources::findSources() {
 }
 
 ElementField LightSources::indirectField() {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const int rays = raysFor(kTestedShare * wantedCorners(), options_.rays);
   // Owen-scrambled points: 1,024 rays have about 1% of error.
   const double noise = 0.01 * std::pow(1024.0 / rays, 0.75);
@@ -287,7 +283,7 @@ ElementField LightSources::indirectField() {
   report_.rays += double(second.evaluated) * rays;
   report_.rays_a_vertex = rays;
   report_.indirect_vertices += second.evaluated;
-  report_.seconds_indirect += since(start);
+  report_.seconds_indirect += watch.seconds();
   return std::move(second.field);
 }
 

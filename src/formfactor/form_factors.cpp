@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "base/figure_text.h"
+#include "base/processor_clock.h"
 #include "base/timed_progress.h"
 #include "formfactor/cluster_factors.h"
 #include "formfactor/exact/assembly/exact_factors.h"
@@ -42,12 +42,6 @@ struct FormFactorPlan::Prepared {
 };
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Where no tolerance was asked for, the exact method, which then is far more accurate than rays,
 /// is worth so many times their seconds, or so many seconds.
@@ -177,9 +171,9 @@ void noteRowsByRays(const FormFactorPlan::Prepared& prepared, FormFactorReport& 
 
 void planRays(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {
   progress.begin("preparing", 1);
-  const Clock::time_point start = Clock::now();
+  const Stopwatch watch;
   const RayScene& scene = prepared.rays.emplace(prepared.mesh, prepared.options.seed);
-  const double preparing = secondsSince(start);
+  const double preparing = watch.seconds();
   progress.advance();
   progress.end();
   progress.check();
@@ -276,7 +270,7 @@ FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
   if (!mesh) throw std::logic_error("planFormFactors(): no mesh");
   options.validate();
   requireUnknowns(options.exact_rows, mesh->unknowns());
-  const Clock::time_point start = Clock::now();
+  const Stopwatch watch;
   auto prepared = std::make_shared<FormFactorPlan::Prepared>(std::move(mesh), options);
   FormFactorPlan plan;
   switch (options.method) {
@@ -294,14 +288,14 @@ FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
       break;
   }
   if (plan.method == FormFactorMethod::rays) planExactRows(*prepared, plan, progress);
-  prepared->seconds = secondsSince(start);
+  prepared->seconds = watch.seconds();
   plan.prepared = std::move(prepared);
   return plan;
 }
 
 FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress, RowJournal* journal,
                                Processes* processes) {
-  const Clock::time_point start = Clock::now();
+  const Stopwatch watch;
   if (!plan.prepared) throw std::logic_error("this plan is not from planFormFactors()");
   const FormFactorPlan::Prepared& prepared = *plan.prepared;
   if (processes != nullptr) {
@@ -318,7 +312,7 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress, R
   } else if (prepared.rays) {
     std::vector<KnownRow> known;
     if (prepared.exact_rows) known = prepared.exact_rows->compute(progress);
-    const double seconds_known = secondsSince(start);
+    const double seconds_known = watch.seconds();
     result = rayFactors(prepared.mesh, *prepared.rays, std::move(known), prepared.ray_estimate,
                         prepared.options, progress, journal, processes);
     result.report.rays.seconds_prepare += seconds_known;
@@ -334,7 +328,7 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress, R
   report.seconds_plan = prepared.seconds;
   report.estimated_seconds = plan.seconds;
   report.matrix_bytes = result.matrix.bytes();
-  report.seconds = prepared.seconds + secondsSince(start);
+  report.seconds = prepared.seconds + watch.seconds();
   return result;
 }
 

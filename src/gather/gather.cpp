@@ -4,25 +4,19 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "base/made.h"
 #include "base/parallel.h"
+#include "base/processor_clock.h"
 #include "formfactor/row_accounts.h"
 #include "gather/gpu_gatherer.h"
 #include "gather/passes.h"
 
 namespace radiosity {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // Radiosities are 32-bit floats, and H may exceed E by far in a white room.
 constexpr double kLargest = 1e30;
@@ -69,7 +63,7 @@ class Passes {
   }
 
   GatherPass run(int number, Progress& progress) {
-    const auto start = Clock::now();
+    const Stopwatch watch;
     progress.begin(fmt::format("gathering, pass {}", number), scene_.size());
     std::vector<std::uint8_t> gathered(scene_.size(), 0);
     if (gpu_) gatherByGpu(number == 1, gathered, progress);
@@ -85,7 +79,7 @@ class Passes {
     measure(pass);
     account(pass);
     std::swap(result_.radiosity, next_);
-    pass.seconds = secondsSince(start);
+    pass.seconds = watch.seconds();
     return pass;
   }
 
@@ -300,7 +294,7 @@ void GatherOptions::validate() const {
 
 Gathered gather(const PatchMesh& mesh, const PatchMaterials& materials,
                 const GatherOptions& options, Progress& progress) {
-  const auto start = Clock::now();
+  const Stopwatch watch;
   options.validate();
   checkMaterials(mesh, materials);
   const GatherScene scene(mesh, materials, options);
@@ -309,7 +303,7 @@ Gathered gather(const PatchMesh& mesh, const PatchMaterials& materials,
     eye = openGpuEye(options.eye, scene.rows.scene(), mesh, scene.rows.weights());
   }
   Gathered result = gatherIn(scene, std::move(eye), options, progress);
-  result.summary.seconds = secondsSince(start);
+  result.summary.seconds = watch.seconds();
   return result;
 }
 

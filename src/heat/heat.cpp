@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <numbers>
 
+#include "base/processor_clock.h"
 #include "formfactor/rays/patch_irradiance.h"
 #include "heat/conditions.h"
 #include "heat/heat_solve.h"
@@ -26,10 +26,9 @@ std::vector<Index> twinsOf(const PatchMesh& mesh) {
 
 HeatSolution solved(const FormFactors& factors, const HeatRows& rows, const HeatOptions& options,
                     std::span<const double> more, Progress& progress) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   HeatSolution solution = HeatSolve(factors, rows, options, more, progress).run();
-  solution.summary.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  solution.summary.seconds = watch.seconds();
   return solution;
 }
 

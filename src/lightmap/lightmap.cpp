@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <glm/geometric.hpp>
 
 #include "base/geometry/box.h"
 #include "base/parallel.h"
+#include "base/processor_clock.h"
 #include "lightmap/chart_texels.h"
 #include "lightmap/surface_light.h"
 
@@ -208,10 +208,9 @@ Lightmap makeLightmap(const Scene& scene, const PatchMesh& mesh, const SurfaceLi
   if (bands != 1 && bands != 3) {
     throw InputError(fmt::format("a lightmap has three bands, or one in grey, not {}", bands));
   }
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   Lightmap map = LightmapMaker(scene, mesh, light, options, progress).run();
-  map.report.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  map.report.seconds = watch.seconds();
   return map;
 }
 

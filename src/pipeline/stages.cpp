@@ -2,12 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "base/made.h"
 #include "base/process_memory.h"
 #include "base/processes.h"
+#include "base/processor_clock.h"
 #include "formfactor/shared_factors.h"
 #include "pipeline/journal_file.h"
 #include "pipeline/shared_journal.h"
@@ -23,16 +23,6 @@ namespace {
 /// What the process comes to hold of itself while it computes and writes: code that was not called
 /// before, stacks of its threads. (What was short of the estimate in 15 of 17 runs: 3 to 9 MiB.)
 constexpr std::size_t kLoadedLater = std::size_t(5) << 20;
-
-class Stopwatch {
- public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// The input was good: what a later stage refuses then is no fault of it.
 template <class Compute>

@@ -2,11 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 
 #include "base/parallel.h"
+#include "base/processor_clock.h"
 #include "render/draw.h"
 
 namespace radiosity {
@@ -31,7 +31,7 @@ class Gathering {
   }
 
   Image draw(int every, Progress& progress) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const std::vector<double> radiance = radianceOf(light_.patches);
     PatchField field = makeField(mesh_, radiance, 3, options_);
     const View view = makeView(camera_, options_.width, options_.height);
@@ -47,10 +47,7 @@ class Gathering {
     Image image = drawField(mesh_, field, items, options_,
                             every > 1 ? "time of the picture" : "picture", progress);
     sumUp(tiles);
-    if (every == 1) {
-      report_.seconds =
-          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    }
+    if (every == 1) report_.seconds = watch.seconds();
     return image;
   }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/luminance.h"
+#include "base/require_within.h"
 #include "render/draw.h"
 
 namespace radiosity {
@@ -83,13 +84,6 @@ void checkCorners(const PatchMesh& mesh, std::span<const double> corners) {
   }
 }
 
-template <class Number>
-void checkRange(const char* option, Number value, Number low, Number high, const char* unit = "") {
-  if (value >= low && value <= high) return;
-  throw InputError(
-      fmt::format("{} is {}; it must lie between {} and {}{}", option, value, low, high, unit));
-}
-
 }  // namespace
 
 Image drawField(const PatchMesh& mesh, const PatchField& field, const ItemBuffer& items,
@@ -111,10 +105,10 @@ std::vector<double> radianceOf(std::span<const double> exitance) {
 }
 
 void RenderOptions::validate() const {
-  checkRange("width", width, 1, 16384, " pixels");
-  checkRange("height", height, 1, 16384, " pixels");
-  checkRange("samples", samples, 1, 16);
-  checkRange("crease", crease, 0.0, 180.0, " degrees");
+  requireWithin("width", width, 1, 16384, " pixels");
+  requireWithin("height", height, 1, 16384, " pixels");
+  requireWithin("samples", samples, 1, 16);
+  requireWithin("crease", crease, 0.0, 180.0, " degrees");
 }
 
 PatchField makeField(const PatchMesh& mesh, std::span<const double> values, int bands,

@@ -1,9 +1,8 @@
 // The loop over tiles, pixels and samples that every picture shares.
 #pragma once
 
-#include <chrono>
-
 #include "base/parallel.h"
+#include "base/processor_clock.h"
 #include "radiosity/render.h"
 #include "render/item_buffer.h"
 #include "render/patch_shader.h"
@@ -50,7 +49,7 @@ void forSamples(const PatchMesh& mesh, const ItemBuffer& items, const PatchField
     Index piece = kNone;
     const int count = seen.samples * seen.samples;
     const int every = field.roots != nullptr ? field.roots->every : 1;
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     for (int y = seen.y; y < seen.y + seen.height; ++y) {
       progress.check();
       for (int x = seen.x; x < seen.x + seen.width; ++x) {
@@ -84,8 +83,7 @@ void forSamples(const PatchMesh& mesh, const ItemBuffer& items, const PatchField
     if (field.roots != nullptr && !field.roots->tiles.empty()) {
       PointSums& sums = field.roots->tiles[tile];
       sums = shader.sums();
-      sums.seconds =
-          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      sums.seconds = watch.seconds();
     }
     progress.advance();
   });

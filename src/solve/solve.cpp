@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <string_view>
 
+#include "base/processor_clock.h"
 #include "solve/band_plan.h"
 #include "solve/cluster_solve.h"
 #include "solve/energy.h"
@@ -104,7 +104,7 @@ Solution solveRows(const FormFactors& factors, std::span<const double> reflectan
                    std::span<const double> emission, int bands, const SolveOptions& options,
                    Progress& progress, const PatchNames& names, std::span<const double> sky,
                    std::span<const double> more) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   options.validate();
   checkSizes(factors, reflectance, emission, sky, bands, names);
   checkMaterials(reflectance, emission, bands, names);
@@ -143,7 +143,7 @@ Solution solveRows(const FormFactors& factors, std::span<const double> reflectan
   for (std::size_t k = 0; k < given.size(); ++k) solution.irradiance[k] += given[k];
   summary.energy = energyAccount(factors, reflectance, {emission, from_sky}, solution.radiosity,
                                  solution.irradiance, bands);
-  summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  summary.seconds = watch.seconds();
   return solution;
 }
 

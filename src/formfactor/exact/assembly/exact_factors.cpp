@@ -6,9 +6,9 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
+#include "base/processor_clock.h"
 #include "formfactor/closed_scene.h"
 #include "formfactor/exact/assembly/shared_tasks.h"
 #include "formfactor/exact/assembly/task_journal.h"
@@ -227,8 +227,7 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
                             *processes, std::move(rows.matrix), [&] { progress.check(); }));
   result.backs = std::move(rows.backs);
   result.sky.assign(n, 0.0);
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point finishing = Clock::now();
+  const Stopwatch finishing;
   reportCounts(scene, sums, report.exact);
   noteFallbacks(sums.occluded, report);
   setErrors(scene.order, sums.error, kernels.closed_form, result);
@@ -241,7 +240,7 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   progress.advance();
   progress.end();
   progress.check();
-  report.exact.seconds_finish = std::chrono::duration<double>(Clock::now() - finishing).count();
+  report.exact.seconds_finish = finishing.seconds();
   return result;
 }
 

@@ -11,12 +11,12 @@ namespace radiosity {
 namespace {
 
 /// Adds the processor time of this thread from its making to its end to a sum.
-class Stopwatch {
+class ProcessorTime {
  public:
-  explicit Stopwatch(double& sum) : sum_(sum), start_(processorSeconds()) {}
-  ~Stopwatch() { sum_ += processorSeconds() - start_; }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
+  explicit ProcessorTime(double& sum) : sum_(sum), start_(processorSeconds()) {}
+  ~ProcessorTime() { sum_ += processorSeconds() - start_; }
+  ProcessorTime(const ProcessorTime&) = delete;
+  ProcessorTime& operator=(const ProcessorTime&) = delete;
 
  private:
   double& sum_;
@@ -85,10 +85,10 @@ void RowAssembly::classify(std::span<const ElementRange> ranges, RowSums& sums) 
     const std::size_t first_block = pairs_.blocks.size();
     const std::size_t first_pair = pairs_.occluded_pairs.size();
     {
-      const Stopwatch watch(sums.seconds_visibility);
+      const ProcessorTime watch(sums.seconds_visibility);
       context_.visibility.classify(range, pairs_, sums.visibility);
     }
-    const Stopwatch watch(sums.seconds_unoccluded);
+    const ProcessorTime watch(sums.seconds_unoccluded);
     evaluateUnoccluded(range, first_block, first_pair, sums);
   }
 }
@@ -141,7 +141,7 @@ void RowAssembly::dropPairsWithoutExchange(std::size_t first_pair, RowSums& sums
 }
 
 void RowAssembly::evaluateOccluded(RowSums& sums) {
-  const Stopwatch watch(sums.seconds_occluded);
+  const ProcessorTime watch(sums.seconds_occluded);
   const PatchOrder& order = context_.order;
   const std::vector<OccludedPair>& pairs = pairs_.occluded_pairs;
   occluded_.resize(pairs.size());
@@ -228,7 +228,7 @@ void RowAssembly::storeUncertainRow(std::size_t rank, std::span<Uncertain> entri
 }
 
 void RowAssembly::storePatches(ElementRange rows, RowSums& sums) {
-  const Stopwatch watch(sums.seconds_assembly);
+  const ProcessorTime watch(sums.seconds_assembly);
   const PatchOrder& order = context_.order;
   clearUnmarked();
   const std::size_t end = order.rank[rows.end - 1] + 1;
