@@ -1,14 +1,12 @@
 // The solver's way from E to the light, watched: played at a speed, stepped, and gone back through.
+import { FIRST_METHOD, METHODS, wordsOf, type Method } from "./methods";
 import { drawPlot, type Point } from "./plot";
-import type { Frame, Method } from "./protocol";
+import type { Frame } from "./protocol";
 import { element, input, on, select, short } from "./ui";
 import type { Viewer } from "./viewer";
 
 /** Frames are kept for the slider; a run longer than that stops. */
 const MOST_FRAMES = 500;
-const UNITS: Record<Method, string> = { "jacobi": "bounce", "gauss-seidel": "sweep", "southwell": "frame" };
-
-const NAMES: Record<Method, string> = { "jacobi": "Jacobi", "gauss-seidel": "Gauss-Seidel", "southwell": "Southwell" };
 
 export class ConvergePanel {
   private frames: Frame[] = [];
@@ -19,6 +17,10 @@ export class ConvergePanel {
   private wantsNext = false;
 
   constructor(private readonly viewer: Viewer) {
+    for (const [value, { name, units }] of Object.entries(METHODS)) {
+      select("method").add(new Option(`${name} (${units})`, value));
+    }
+    select("method").value = FIRST_METHOD;
     viewer.onFrame((frame) => this.take(frame));
     on("play", "click", () => this.toggle());
     on("step", "click", () => this.step(1));
@@ -47,7 +49,8 @@ export class ConvergePanel {
   /** Which moment is shown. */
   moment(): string {
     const frame = this.frames[this.shown];
-    return `${NAMES[this.method]}, ${UNITS[this.method]} ${frame?.index ?? 0}`;
+    const { name, unit } = wordsOf(this.method);
+    return `${name}, ${unit} ${frame?.index ?? 0}`;
   }
 
   toggle(): void {
@@ -135,8 +138,7 @@ export class ConvergePanel {
     const { name, history } = this.viewer.data.header.solver;
     const changed = JSON.stringify(this.viewer.states) !== JSON.stringify(this.viewer.storedStates());
     if (name !== this.method || changed || this.frames.length === 0) return [];
-    // Jacobi's first residual is of B = E, Gauss-Seidel's first figure of the first sweep.
-    const first = name === "jacobi" ? 0 : 1;
+    const first = wordsOf(this.method).firstFigure;
     return history.map((y, k) => ({ x: k + first, y }));
   }
 
@@ -145,7 +147,7 @@ export class ConvergePanel {
     slider.max = String(Math.max(0, this.frames.length - 1));
     slider.value = String(this.shown);
     const frame = this.frames[this.shown];
-    const unit = UNITS[this.method];
+    const { unit } = wordsOf(this.method);
     element("iteration-text").textContent = frame ? `${unit} ${frame.index}` : "–";
     slider.setAttribute("aria-valuetext",
       frame ? `${unit} ${frame.index}, residual ${frame.residual.toExponential(2)}` : "no run yet");
@@ -164,13 +166,10 @@ export class ConvergePanel {
       facts.textContent = "From B = E on, with the materials as they are now.";
       return;
     }
-    const words = [`Residual ${short(frame.residual)}`];
-    if (this.method === "southwell") words[0] += " (light not sent on yet)";
+    const { residualNote, figures } = wordsOf(this.method);
+    const words = [`Residual ${short(frame.residual)}${residualNote}`];
     if (Number.isFinite(frame.change)) words.push(`largest change ${short(frame.change)}`);
-    if (told) {
-      words.push(this.method === "jacobi" ? "circles: the program's residuals"
-        : "circles: the program's largest changes, the last one its residual");
-    }
+    if (told) words.push(`circles: the program's ${figures}`);
     facts.textContent = `${words.join("; ")}.`;
   }
 }

@@ -1,8 +1,7 @@
 // What the page and its solver worker say to each other. Values of unknowns: K * 3, row-major.
 import type { SeenData } from "./container";
 import type { StoredFactors } from "./factors";
-
-export type Method = "jacobi" | "gauss-seidel" | "southwell";
+import type { Method } from "./methods";
 
 /** N * 3, row-major. */
 export interface PatchMaterials {

@@ -2,7 +2,8 @@
 // run that is watched. It knows nothing of workers, so that tests call it as they are.
 import type { Rgb } from "./container";
 import { type Factors, denseRow, expand } from "./factors";
-import type { Frame, Load, Materials, Method, Reply } from "./protocol";
+import type { Method } from "./methods";
+import type { Frame, Load, Materials, Reply } from "./protocol";
 import { type Lit, Relight } from "./relight";
 import { SharedRelight } from "./relight_shared";
 import * as solver from "./solver";
@@ -126,15 +127,21 @@ export class Session {
     const run = this.run;
     if (!run || run.id !== id) return null;
     ++run.index;
-    if (run.southwell) return this.shots(run, run.southwell);
-    if (run.method === "jacobi") {
+    return this.steps[run.method](run);
+  }
+
+  private readonly steps: Record<Method, (run: Run) => Frame> = {
+    "jacobi": (run) => {
       run.iterate = solver.jacobiSweep(run.system, run.iterate);
       return this.frame(run, solver.irradianceOf(run.system, run.iterate.radiosity), NaN);
-    }
-    const scale = solver.scales(solver.source(run.system));
-    const change = solver.gaussSeidelSweep(run.system, run.iterate, scale, this.load.order ?? undefined);
-    return this.frame(run, solver.irradianceOf(run.system, run.iterate.radiosity), change);
-  }
+    },
+    "gauss-seidel": (run) => {
+      const scale = solver.scales(solver.source(run.system));
+      const change = solver.gaussSeidelSweep(run.system, run.iterate, scale, this.load.order ?? undefined);
+      return this.frame(run, solver.irradianceOf(run.system, run.iterate.radiosity), change);
+    },
+    "southwell": (run) => this.shots(run, run.southwell!),
+  };
 
   /** A tenth more shots than there were: the first ones are seen one by one. */
   private shots(run: Run, southwell: solver.Southwell): Frame {

@@ -1,5 +1,6 @@
 // The page's side of the solver worker: one question at a time of a kind, the newest wins.
-import type { Frame, Load, Materials, Method, Reply, Request } from "./protocol";
+import type { Method } from "./methods";
+import type { Frame, Load, Materials, Reply, Request } from "./protocol";
 import workerProgram from "worker:worker.ts";
 
 /** A relight is sent back unfinished after this long, shown, and then gone on with. */

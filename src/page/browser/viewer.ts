@@ -8,7 +8,8 @@ import {
   luminance, materialsOfUnknowns, patchIrradiance, radiosityOf, withMaterials, unknownMeans,
   type MaterialState, type PatchLight,
 } from "./light";
-import type { Frame, Materials, Method } from "./protocol";
+import type { Method } from "./methods";
+import type { Frame, Materials } from "./protocol";
 import { SceneMeshes, type Surfaces } from "./scene";
 import { makeUniforms, NO_VALUE } from "./shading";
 import { SolverClient, type Relighting } from "./solver_client";
