@@ -65,6 +65,20 @@ void SceneChecks::reportLight(SceneInfo& info) const {
                                      "of it off: {}",
                                      joinNames(textured))});
   }
+  std::set<std::string> white;
+  for (const Surface& surface : scene_.surfaces) {
+    const Material& material = scene_.materials[surface.material];
+    if (material.texture == kNone && material.reflectance == Vec3(1.0)) white.insert(material.name);
+  }
+  if (!white.empty()) {
+    const std::vector<std::string> names(white.begin(), white.end());
+    info.problems.push_back(
+        {Severity::warning,
+         fmt::format(
+             "reflectance 1: absorbs no light, as nothing real does, and cannot be told from "
+             "an even sky behind it (white paint has 0.8): {}",
+             joinNames(names))});
+  }
   if (!absorbs && info.closed) {
     info.problems.push_back({Severity::loud,
                              "the scene is closed and every surface has reflectance 1: light is "

@@ -108,6 +108,15 @@ TEST(SceneInspect, WeldsWithinTheToleranceOnly) {
   }
 }
 
+TEST(SceneInspect, NamesMaterialsThatAbsorbNothing) {
+  SceneBuilder builder;
+  builder.box(builder.surface("snow", 1.0, 1), {0, 0, 0}, {2, 3, 4});
+  EXPECT_NOTE(inspectScene(builder.scene()).problems, "reflectance 1: absorbs no light",
+              Severity::warning);
+  builder.scene().materials[0].reflectance = Vec3(1.0, 1.0, 0.99);
+  EXPECT_EQ(problemsOf(builder.scene()), "");
+}
+
 TEST(SceneInspect, NamesFacesThatTurnAgainstTheirNeighbours) {
   SceneBuilder builder;
   const Index walls = builder.surface("walls", 0.5, 1);
