@@ -91,6 +91,25 @@ TEST(PatchIrradiance, FollowsTheNormalUnderAnOpenSky) {
   EXPECT_EQ(found[strip], pi);  // an unknown of one patch keeps its own
 }
 
+/// It takes the rays of the first look for those of its own.
+TEST(PatchIrradiance, ASecondLookGivesTheBitsOfAFirstOne) {
+  const PatchMesh mesh = bentStrip();
+  Progress progress;
+  const std::vector<double> sky{1.0};
+  const std::vector<double> dark(mesh.size(), 0.0);
+  std::vector<double> light(mesh.size());
+  for (std::size_t i = 0; i < light.size(); ++i) light[i] = 1.0 + double(i % 3);
+  PatchIrradiance once(mesh, 1, sky);
+  once.look(light, progress);
+  PatchIrradiance twice(mesh, 1, sky);
+  twice.look(dark, progress);
+  const std::vector<double> means(mesh.unknowns(), 2.0);
+  EXPECT_NE(twice.around(means), once.around(means));
+  twice.look(light, progress);
+  EXPECT_EQ(twice.around(means), once.around(means));
+  EXPECT_EQ(twice.beyondMeans(), once.beyondMeans());
+}
+
 TEST(PatchIrradiance, IsTheSameEverywhereInAFurnace) {
   test::MeshBuilder builder;
   builder.box("room", {0, 0, 0}, {1, 1, 1}, 2, true);

@@ -80,6 +80,7 @@ PatchIrradiance::PatchIrradiance(const PatchMesh& mesh, int bands, std::span<con
       beyond_(mesh.unknowns() * bands_, 0.0) {
   for (std::size_t b = 0; b < sky.size(); ++b) sky_[b] = std::numbers::pi * sky[b];
   rays_ = ClusterFeatures::rays(mesh.unknowns());
+  ends_.resize(mesh.unknowns());
 }
 
 void PatchIrradiance::look(std::span<const double> radiosity, Progress& progress) {
@@ -107,7 +108,7 @@ void PatchIrradiance::lookFrom(std::size_t cluster, const View& view) {
   if (origins.empty()) return;
   const ClusterFeatures features(mesh_, caster_, origins);
   Fit fit{int(bands_)};
-  caster_.visitEnds(origins, patchSeed(mesh_, patches[0], 0), rays_,
+  caster_.visitEnds(origins, patchSeed(mesh_, patches[0], 0), rays_, ends_[cluster],
                     [&](const glm::vec3& from, const glm::vec3& normal, std::uint32_t item) {
                       fit.add(features.at(from, normal), &view.radiosity[item * bands_],
                               &view.beyond[item * bands_]);

@@ -21,7 +21,9 @@ class PatchIrradiance {
   /// `mesh` is kept by reference; mesh.clusters is there. `sky`: radiance a band, or empty.
   PatchIrradiance(const PatchMesh& mesh, int bands, std::span<const double> sky);
 
-  /// Looks at patches of this radiosity, N * bands, row-major, W/m^2. Throws Cancelled.
+  /// Looks at patches of this radiosity, N * bands, row-major, W/m^2. The first look traces rays
+  /// and keeps what they end on, 4 bytes a ray, some 64 MiB; later ones look at the same patches.
+  /// Throws Cancelled.
   void look(std::span<const double> radiosity, Progress& progress);
 
   /// N * bands, none below 0: the irradiance of patches whose clusters have `irradiance`, K *
@@ -50,7 +52,8 @@ class PatchIrradiance {
   std::size_t bands_;
   std::vector<double> sky_;  ///< pi times its radiance
   std::uint32_t rays_ = 0;
-  std::vector<double> slopes_;  ///< K * bands * kFeatures
+  std::vector<RayCaster::Ends> ends_;  ///< by cluster
+  std::vector<double> slopes_;         ///< K * bands * kFeatures
   std::vector<double> beyond_;
 };
 

@@ -211,10 +211,10 @@ void RayCaster::tracePacket(const Batch& batch, const std::uint16_t* order, int 
   }
 }
 
-/// Calls visit(batch, ray, item) for rays `first` to `last` of each replicate.
-template <class Visit>
-void RayCaster::trace(const RayOrigins& origins, std::uint64_t seed, std::uint32_t first,
-                      std::uint32_t last, const Visit& visit) const {
+/// Calls packet(batch, order, lanes) for packets of rays `first` to `last` of each replicate.
+template <class Packet>
+void RayCaster::forPackets(const RayOrigins& origins, std::uint64_t seed, std::uint32_t first,
+                           std::uint32_t last, const Packet& packet) const {
   const FlushDenormals flush;
   const auto batch = std::make_unique_for_overwrite<Batch>();
   while (first < last) {
@@ -224,11 +224,21 @@ void RayCaster::trace(const RayOrigins& origins, std::uint64_t seed, std::uint32
     batch->sort();
     for (std::size_t k = 0; k < batch->size(); k += kRayLanes) {
       const int lanes = int(std::min<std::size_t>(batch->size() - k, kRayLanes));
-      tracePacket(*batch, batch->order.data() + k, lanes,
-                  [&](std::size_t ray, std::uint32_t item) { visit(*batch, ray, item); });
+      packet(*batch, batch->order.data() + k, lanes);
     }
     first += std::uint32_t(batch->each);
   }
+}
+
+/// Calls visit(batch, ray, item) for rays `first` to `last` of each replicate.
+template <class Visit>
+void RayCaster::trace(const RayOrigins& origins, std::uint64_t seed, std::uint32_t first,
+                      std::uint32_t last, const Visit& visit) const {
+  forPackets(origins, seed, first, last,
+             [&](const Batch& batch, const std::uint16_t* order, int lanes) {
+               tracePacket(batch, order, lanes,
+                           [&](std::size_t ray, std::uint32_t item) { visit(batch, ray, item); });
+             });
 }
 
 void RayCaster::cast(const RayOrigins& origins, std::uint64_t seed, std::uint32_t first,
@@ -246,14 +256,39 @@ void RayCaster::cast(const RayOrigins& origins, std::uint64_t seed, std::uint32_
   });
 }
 
+void RayCaster::visitEnd(const RayOrigins& origins, const Batch& batch, std::size_t ray,
+                         std::uint32_t item, const EndVisitor& visit) const {
+  if (item == kLost) return;
+  const glm::vec3 from(batch.origin[0][ray], batch.origin[1][ray], batch.origin[2][ray]);
+  visit(from, origins.frame(batch.frame[ray]).z, item == kSky ? std::uint32_t(items()) : item);
+}
+
 void RayCaster::visitEnds(const RayOrigins& origins, std::uint64_t seed, std::uint32_t rays,
                           const EndVisitor& visit) const {
   if (origins.empty()) return;
   trace(origins, seed, 0, rays, [&](const Batch& batch, std::size_t ray, std::uint32_t item) {
-    if (item == kLost) return;
-    const glm::vec3 from(batch.origin[0][ray], batch.origin[1][ray], batch.origin[2][ray]);
-    visit(from, origins.frame(batch.frame[ray]).z, item == kSky ? std::uint32_t(items()) : item);
+    visitEnd(origins, batch, ray, item, visit);
   });
+}
+
+void RayCaster::visitEnds(const RayOrigins& origins, std::uint64_t seed, std::uint32_t rays,
+                          Ends& ends, const EndVisitor& visit) const {
+  if (origins.empty()) return;
+  if (ends.empty()) {
+    ends.reserve(std::size_t(rays) * kReplicates);
+    trace(origins, seed, 0, rays, [&](const Batch& batch, std::size_t ray, std::uint32_t item) {
+      ends.push_back(item);
+      visitEnd(origins, batch, ray, item, visit);
+    });
+    return;
+  }
+  std::size_t next = 0;
+  forPackets(origins, seed, 0, rays,
+             [&](const Batch& batch, const std::uint16_t* order, int lanes) {
+               for (int k = 0; k < lanes; ++k) {
+                 visitEnd(origins, batch, order[k], ends[next++], visit);
+               }
+             });
 }
 
 }  // namespace radiosity

@@ -66,6 +66,11 @@ class RayCaster {
       std::function<void(const glm::vec3& from, const glm::vec3& normal, std::uint32_t item)>;
   void visitEnds(const RayOrigins& origins, std::uint64_t seed, std::uint32_t rays,
                  const EndVisitor& visit) const;
+  /// The same with the items that the rays end on kept in `ends`, in the order of their tracing: an
+  /// empty one is filled. With those of an earlier call for the same rays, none is traced again.
+  using Ends = std::vector<std::uint32_t>;
+  void visitEnds(const RayOrigins& origins, std::uint64_t seed, std::uint32_t rays, Ends& ends,
+                 const EndVisitor& visit) const;
 
   /// A place of the mesh in the coordinates of rays.
   glm::vec3 place(const Vec3& at) const { return embree_.place(at * scene_.scale); }
@@ -92,9 +97,14 @@ class RayCaster {
   std::uint32_t itemAt(const RayTarget& target, float s, float t) const;
   std::uint32_t itemOf(const RTCRayHit16& packet, int k) const;
   std::uint32_t frontAt(const RTCRayHit16& packet, int k) const;
+  template <class Packet>
+  void forPackets(const RayOrigins& origins, std::uint64_t seed, std::uint32_t first,
+                  std::uint32_t last, const Packet& packet) const;
   template <class Visit>
   void trace(const RayOrigins& origins, std::uint64_t seed, std::uint32_t first, std::uint32_t last,
              const Visit& visit) const;
+  void visitEnd(const RayOrigins& origins, const Batch& batch, std::size_t ray, std::uint32_t item,
+                const EndVisitor& visit) const;
   template <class Visit>
   void tracePacket(const Batch& batch, const std::uint16_t* order, int lanes,
                    const Visit& visit) const;
