@@ -107,6 +107,10 @@ Material ObjMaterialReader::convert(const MtlMaterial& mtl, const fs::path& fold
   if (material.texture != kNone && mtl.reflectance.value_or(Vec3(0.0)) == Vec3(0.0)) {
     material.reflectance = Vec3(1.0);
     if (mtl.reflectance) noteTextureAlone("Kd", mtl.name);
+  } else if (mtl.reflectance_map && mtl.reflectance == Vec3(0.0)) {
+    ignored_.add(fmt::format("Kd is 0 beside a map_Kd that is not used: reflectance {}, material",
+                             options_.default_reflectance),
+                 mtl.name, Severity::warning);
   } else if (mtl.reflectance) {
     material.reflectance = *mtl.reflectance;
     if (options_.kd_is_srgb) {

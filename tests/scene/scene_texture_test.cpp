@@ -247,7 +247,11 @@ TEST_F(SceneTexture, AFactorOfZeroBesideATextureMeansTheTexture) {
               Severity::info);
   scene = load("Kd 0 0 .5\nmap_Kd grey.png\n");
   EXPECT_EQ(scene.materialOf(0).reflectance, Vec3(0, 0, .5)) << "a colour";
-  EXPECT_EQ(load("Kd 0 0 0\nmap_Kd lost.png\n").materialOf(0).reflectance, Vec3(0));
+  scene = load("Kd 0 0 0\nmap_Kd lost.png\n");
+  EXPECT_EQ(scene.materialOf(0).reflectance, Vec3(0.5));
+  EXPECT_NOTE(scene.notes,
+              "Kd is 0 beside a map_Kd that is not used: reflectance 0.5, material: paint",
+              Severity::warning);
 }
 
 TEST_F(SceneTexture, AnEmissiveTextureMultipliesKe) {
