@@ -50,8 +50,8 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
     throw InputError(
         fmt::format("{}: the folder {} cannot be written; choose another", path_, folder.string()));
   }
-  // The number tells apart what runs in several threads, or as the same process in several
-  // containers that share a folder.
+  // The number makes the name unique among threads, and among containers that share a folder and
+  // use the same process number.
   temporary_ = (folder / fmt::format(".{}.{}-{:08x}.tmp{}", target.stem().string(), getpid(),
                                      std::random_device()(), target.extension().string()))
                    .string();

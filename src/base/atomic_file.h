@@ -24,11 +24,11 @@ class AtomicFile {
   std::string temporary_;
 };
 
-/// How many files were committed in this process.
+/// The number of files that this process has committed.
 std::size_t committedFiles();
 
-/// Removes the temporaries of all that are not committed, for a process that is about to end as it
-/// is. While what is returned lives nothing is committed, made or removed.
+/// Removes the temporary files that are not committed, for a process that is about to end without
+/// destructors. While the returned lock is held, no file is committed, made or removed.
 std::unique_lock<std::mutex> discardTemporaries();
 
 }  // namespace radiosity

@@ -40,8 +40,8 @@ class ByteWriter {
   std::vector<std::byte> bytes_;
 };
 
-/// What was put comes back in order. Of bytes that end too early, zeros come and nothing is read:
-/// ask isWhole() before the values are used.
+/// Reads values back in the order in which they were put. If the bytes end too early, it returns
+/// zeros and reads nothing: ask isWhole() before you use the values.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::byte> bytes) : rest_(bytes) {}
@@ -75,9 +75,9 @@ class ByteReader {
     short_ = true;
     return 0;
   }
-  /// All of it was read, and nothing beyond.
+  /// Whether all bytes were read, and nothing beyond.
   bool isWhole() const { return !short_ && rest_.empty(); }
-  /// Bytes that are not read yet: no array is longer.
+  /// The number of bytes that are not read yet: no array is longer.
   std::size_t left() const { return rest_.size(); }
 
  private:

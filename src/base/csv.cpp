@@ -18,7 +18,7 @@ std::string withoutBlanks(const std::string& text) {
   return text.substr(begin, text.find_last_not_of(" \t") + 1 - begin);
 }
 
-/// Takes a record at a time; one in quotes may go over several lines.
+/// Reads one record at a time; a quoted field may span several lines.
 class CsvReader {
  public:
   CsvReader(std::string path, std::string_view text) : path_(std::move(path)), text_(text) {
@@ -112,7 +112,8 @@ std::optional<std::size_t> CsvTable::column(std::string_view name) const {
 
 namespace {
 
-/// What spreadsheets write where the decimal comma is the custom.
+/// Refuses semicolons or tabs between columns: spreadsheets write them in countries with a decimal
+/// comma.
 void requireCommas(const CsvReader& reader, const CsvTable::Row& header) {
   if (header.fields.size() > 1) return;
   const std::string& only = header.fields.front();

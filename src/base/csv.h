@@ -9,10 +9,10 @@
 
 namespace radiosity {
 
-/// `text` as a field: in quotes where it has what separates.
+/// `text` as a field: in quotes if it has separators or quotes.
 std::string csvField(std::string_view text);
 
-/// A table with a header line. Lines that are empty or begin with # are passed over.
+/// A table with a header line. Lines that are empty or begin with # are skipped.
 struct CsvTable {
   struct Row {
     std::size_t line = 0;  ///< of the file, from 1

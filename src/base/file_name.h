@@ -5,7 +5,7 @@
 
 namespace radiosity {
 
-/// What a path ends in, in small letters and with its dot: ".png"; or empty.
+/// The extension of a path in small letters, with its dot: ".png"; empty if there is none.
 std::string lowerExtension(const std::string& path);
 
 }  // namespace radiosity

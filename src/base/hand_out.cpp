@@ -35,7 +35,7 @@ void workForOthers(Processes& processes, const BlockWork& work) {
   }
 }
 
-/// Process 0's own share, beside the thread that hands out.
+/// Computes process 0's own share in a thread beside the one that hands out.
 class OwnShare {
  public:
   OwnShare(const BlockWork& work, std::atomic<std::size_t>& next)
@@ -47,7 +47,7 @@ class OwnShare {
   OwnShare(const OwnShare&) = delete;
   OwnShare& operator=(const OwnShare&) = delete;
 
-  /// Hands what was done to take(); throws what the work threw. How many blocks it was.
+  /// Passes finished blocks to take() and returns their number; rethrows exceptions of the work.
   std::size_t collect() {
     std::deque<std::pair<std::size_t, std::vector<std::byte>>> done;
     {
@@ -81,7 +81,7 @@ class OwnShare {
   std::thread thread_;
 };
 
-/// Takes what another process did and gives it the next block. Whether it did one.
+/// Takes the result of another process and gives it the next block. True if it had done a block.
 bool serve(Processes& processes, const BlockWork& work, std::atomic<std::size_t>& next,
            int& working) {
   const Processes::Message message = processes.receive(Processes::kAny);

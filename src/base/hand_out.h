@@ -13,15 +13,16 @@ namespace radiosity {
 
 struct BlockWork {
   std::size_t blocks = 0;
-  /// Does a block and returns what process 0 is to know of it. Called by one thread of each
-  /// process.
+  /// Computes a block and returns its result for process 0. Called by one thread of each process.
   std::function<std::vector<std::byte>(std::size_t block)> run;
-  /// In process 0, on the calling thread: what became of a block, and of which process.
+  /// Takes the result of a block and the process that computed it. Called in process 0, on the
+  /// calling thread.
   std::function<void(std::size_t block, std::span<const std::byte> bytes, int process)> take;
 };
 
-/// By all processes. Blocks are handed out in order, one at a time, so that those who are quick get
-/// more; process 0 works as well. Throws what run() or take() throw in process 0, and Cancelled.
+/// Hands out all blocks in order, one at a time, so that quick processes get more; process 0 works
+/// as well. All processes must call it. Rethrows exceptions of run() and take() in process 0;
+/// throws Cancelled.
 void handOut(Processes& processes, const BlockWork& work, Progress& progress);
 
 }  // namespace radiosity

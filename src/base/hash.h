@@ -39,8 +39,9 @@ class Hash {
   std::uint64_t state_ = 0xcbf29ce484222325ull;
 };
 
-/// A checksum of bytes, eight at a time: a changed one never goes unnoticed, more of them with
-/// 2^-64. Each step, as in FNV-1a, can be undone, and the turn brings high bits down.
+/// A checksum of bytes, eight at a time. It always detects a change of one byte, and misses a
+/// change of more with a probability of 2^-64. Each step is invertible, as in FNV-1a, and the
+/// rotation brings high bits down.
 inline std::uint64_t checksumOf(const void* data, std::size_t size) {
   const auto* p = static_cast<const unsigned char*>(data);
   std::uint64_t state = 0xcbf29ce484222325ull ^ size;

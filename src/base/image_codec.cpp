@@ -10,7 +10,7 @@ namespace radiosity {
 namespace {
 
 const ImageCodec& openCodec() {
-  // Found beside this library, which carries $ORIGIN as its search path. Never closed.
+  // The library is found beside this one, whose search path is $ORIGIN. It is never closed.
   void* library = dlopen("libradiosity_images.so", RTLD_LAZY | RTLD_LOCAL);
   void* entry = library == nullptr ? nullptr : dlsym(library, "radiosityImageCodec");
   if (entry == nullptr) {

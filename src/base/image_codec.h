@@ -1,6 +1,6 @@
-// Image files as numbers. OpenImageIO reads and writes them and brings 250 shared libraries of its
-// own, a fifth of a second to load: they stand in a library apart (src/images), which is opened
-// when the first image is read or written.
+// Image files as numbers. OpenImageIO reads and writes them. It brings 250 shared libraries of its
+// own, which take a fifth of a second to load; so it is in a separate library (src/images), which
+// is opened when the first image is read or written.
 #pragma once
 
 #include <span>
@@ -10,23 +10,23 @@
 
 namespace radiosity {
 
-/// Samples of a file as they stand in it, row by row from the top, the channels of a pixel
-/// together. Whole numbers are mapped to [0, 1]; no curve is undone.
+/// The samples of a file as stored, row by row from the top, the channels of a pixel together.
+/// Integers are mapped to [0, 1]; no transfer function is inverted.
 struct DecodedImage {
   int width = 0;
   int height = 0;
   int channels = 0;
   bool floating = false;    ///< stored as floating-point numbers
   bool linear = false;      ///< the file says that its numbers are linear
-  bool multiplied = false;  ///< the format multiplies colours by alpha, and this one's are
-  std::string quantity;     ///< the attribute of that name; empty where there is none
+  bool multiplied = false;  ///< the colours are multiplied by alpha
+  std::string quantity;     ///< the attribute of that name; empty if there is none
   std::vector<float> samples;
   bool opened = false;    ///< false: no file of a known format
   std::string problem;    ///< why there are no samples, in OpenImageIO's words; else empty
-  std::string too_large;  ///< "has W x H pixels, ...; cure" where the size alone is the reason
+  std::string too_large;  ///< "has W x H pixels, ...; cure" if the size alone is the reason
 };
 
-/// Four channels, R G B A, 32-bit floats or bytes, as the format of the file's name wants them.
+/// Four channels, R G B A, as 32-bit floats or bytes, whichever the file's format takes.
 struct ImageToEncode {
   int width = 0;
   int height = 0;
@@ -37,7 +37,7 @@ struct ImageToEncode {
   std::span<const std::pair<std::string, std::string>> metadata;
 };
 
-/// The bytes of a file, or `problem` says why there are none.
+/// The bytes of a file, or the `problem` if there are none.
 struct EncodedImage {
   std::vector<unsigned char> bytes;
   std::string problem;
@@ -46,8 +46,8 @@ struct EncodedImage {
 class ImageCodec {
  public:
   virtual ~ImageCodec() = default;
-  /// The first four channels of the regular file `path`, its format told by its first bytes. One
-  /// of more than `most_pixels` is not unpacked.
+  /// Reads the first four channels of the regular file `path`; its first bytes tell the format. An
+  /// image of more than `most_pixels` is not unpacked.
   virtual DecodedImage read(const std::string& path, double most_pixels) const = 0;
   /// The same from memory; `name` is for messages.
   virtual DecodedImage decode(const std::string& name, std::span<const unsigned char> bytes,
@@ -56,7 +56,8 @@ class ImageCodec {
   virtual EncodedImage encode(const std::string& path, const ImageToEncode& image) const = 0;
 };
 
-/// Opens the library at the first call. RunError where it is not beside this one or not whole.
+/// Opens the library at the first call. Errors: RunError if it is not beside this one or not
+/// complete.
 const ImageCodec& imageCodec();
 
 }  // namespace radiosity

@@ -1,4 +1,4 @@
-// How bright a colour is.
+// The brightness of colours.
 #pragma once
 
 #include <numeric>
@@ -25,7 +25,7 @@ inline double brightnessOf(std::span<const double> bands) {
   return std::accumulate(bands.begin(), bands.end(), 0.0);
 }
 
-/// Names the value of brightnessOf() for so many bands, to stand behind the name of a quantity.
+/// The words for brightnessOf() with this many bands, which follow the name of a quantity.
 inline std::string brightnessText(int bands) {
   if (bands == 3) return " (Rec. 709 luminance)";
   return bands == 1 ? "" : " (sum of all bands)";

@@ -24,14 +24,14 @@ std::string_view takeFirst(std::string_view& text) {
   return first;
 }
 
-/// A character of a pattern, which may stand behind a backslash.
+/// Takes a character of a pattern, which may follow a backslash.
 std::string_view takeLiteral(std::string_view& pattern) {
   if (pattern.size() > 1 && pattern.front() == '\\') pattern.remove_prefix(1);
   return takeFirst(pattern);
 }
 
-/// Takes "[abc]" from the pattern, and says whether `character` is one of them; nothing where the
-/// bracket is not closed. Bytes of UTF-8 are in the order of the characters.
+/// Takes "[abc]" from the pattern and says whether `character` is one of them; empty if the bracket
+/// is not closed. The bytes of UTF-8 sort like the characters.
 std::optional<bool> takeSet(std::string_view& pattern, std::string_view character) {
   std::string_view rest = pattern.substr(1);
   const bool negated = rest.starts_with('!') || rest.starts_with('^');
@@ -53,8 +53,8 @@ std::optional<bool> takeSet(std::string_view& pattern, std::string_view characte
   return std::nullopt;
 }
 
-/// Takes what stands for one character from the pattern, which is not empty and begins with no *,
-/// and says whether `character` is it.
+/// Takes the item for one character from the pattern, which is not empty and does not begin with *,
+/// and says whether `character` matches it.
 bool takeOne(std::string_view& pattern, std::string_view character) {
   if (pattern.front() == '?') {
     pattern.remove_prefix(1);
@@ -72,10 +72,10 @@ bool isPattern(std::string_view text) {
   return text.find_first_of("*?[") != std::string_view::npos;
 }
 
-// Where a character does not fit, the last * takes one more: what stood before it is settled.
+// If a character does not fit, the last * takes one more; earlier ones need not be tried again.
 bool matchesPattern(std::string_view pattern, std::string_view name) {
   std::optional<std::string_view> after_star;
-  std::string_view from_star;  // the part of the name that begins behind what the * takes
+  std::string_view from_star;  // the rest of the name after the part that the * takes
   while (true) {
     if (pattern.starts_with('*')) {
       pattern.remove_prefix(1);

@@ -1,16 +1,16 @@
-// Patterns of names, as shells have them.
+// Patterns of names, like those of shells.
 #pragma once
 
 #include <string_view>
 
 namespace radiosity {
 
-/// Whether `text` holds a character that means something in a pattern: * ? [
+/// Whether `text` has a character with a meaning in a pattern: * ? [
 bool isPattern(std::string_view text);
 
-/// Whether all of `name` is as `pattern` says: * any text, slashes too; ? a character; [abc] or
-/// [a-c] one of some, [!abc] any other; \ takes the next one as it stands. Characters are those of
-/// UTF-8; a byte that begins none is one by itself.
+/// Whether the whole `name` matches `pattern`: * any text, slashes too; ? one character; [abc] or
+/// [a-c] one of these, [!abc] any other; \ takes the next one literally. Characters are those of
+/// UTF-8; a byte that does not begin one counts as a character.
 bool matchesPattern(std::string_view pattern, std::string_view name);
 
 }  // namespace radiosity

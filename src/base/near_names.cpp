@@ -8,8 +8,8 @@ namespace radiosity {
 
 namespace {
 
-/// Edits between `word` and the part of `name` that is nearest to it (Sellers 1980): a part may
-/// begin anywhere at no cost, and end anywhere.
+/// The fewest edits between `word` and a part of `name` (Sellers 1980). The part may begin and end
+/// anywhere at no cost.
 std::size_t distanceWithin(std::string_view word, std::string_view name) {
   std::vector<std::size_t> row(name.size() + 1, 0);
   for (std::size_t i = 1; i <= word.size(); ++i) {
@@ -23,7 +23,7 @@ std::size_t distanceWithin(std::string_view word, std::string_view name) {
   return *std::min_element(row.begin(), row.end());
 }
 
-/// As small letters, without what means something in a pattern.
+/// `text` in small letters, without the special characters of patterns.
 std::string plainLetters(std::string_view text) {
   std::string letters;
   for (const char c : text) {

@@ -1,4 +1,4 @@
-// Names that are like a word: what may have been meant.
+// Names that are similar to a word, for suggestions.
 #pragma once
 
 #include <cstddef>
@@ -9,12 +9,12 @@
 
 namespace radiosity {
 
-/// Edits that make one of the other: letters inserted, deleted or replaced, neighbours swapped
-/// (optimal string alignment).
+/// The fewest edits that turn one text into the other: letters inserted, deleted or replaced,
+/// neighbours swapped (optimal string alignment).
 std::size_t editDistance(std::string_view a, std::string_view b);
 
-/// All `names`, those first that hold something like `word`, by the fewest edits. Of a pattern its
-/// letters count; capitals are as small letters.
+/// All `names`, sorted by the fewest edits between `word` and a part of the name. Of a pattern only
+/// the letters count; case is ignored.
 std::vector<std::string> nearestFirst(std::string_view word, std::span<const std::string> names);
 
 }  // namespace radiosity

@@ -12,8 +12,8 @@
 
 namespace radiosity {
 
-/// Calls body(i) for 0 <= i < count on all threads setThreads() allows. Bodies must write to
-/// disjoint places; an exception thrown by one reaches the caller.
+/// Calls body(i) for 0 <= i < count on all threads that setThreads() allows. Bodies must write to
+/// disjoint places; an exception that one throws reaches the caller.
 template <class Body>
 void parallelFor(std::size_t count, std::size_t grain, const Body& body) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
@@ -22,20 +22,20 @@ void parallelFor(std::size_t count, std::size_t grain, const Body& body) {
                     });
 }
 
-/// Calls both, side by side where a thread is free.
+/// Calls both, in parallel if a thread is free.
 template <class First, class Second>
 void parallelBoth(const First& first, const Second& second) {
   tbb::parallel_invoke(first, second);
 }
 
-/// Sorts a vector by `less`, which must put no two different values in either order: equal ones may
-/// change places.
+/// Sorts a vector by `less`. Different values must not compare equal, since equal ones may change
+/// places.
 template <class Value, class Less = std::less<Value>>
 void parallelSort(std::vector<Value>& values, const Less& less = {}) {
   tbb::parallel_sort(values.begin(), values.end(), less);
 }
 
-/// How many threads setThreads() allows.
+/// The number of threads that setThreads() allows.
 std::size_t allowedThreads();
 
 }  // namespace radiosity

@@ -19,7 +19,7 @@ std::vector<std::string_view> splitAt(std::string_view text, char separator) {
 }
 
 std::optional<double> parseNumber(std::string_view word) {
-  // from_chars takes no leading plus, files do; "+-1" must stay wrong.
+  // Files may have a leading plus, which from_chars does not take; "+-1" must stay an error.
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);

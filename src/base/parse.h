@@ -1,4 +1,4 @@
-// Reading numbers strictly: a number is a number or it is nothing.
+// Strict parsing of numbers: the whole text must be a number.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace radiosity {
 
-/// Parts between `separator`, empty ones included.
+/// The parts between separators, empty ones included.
 std::vector<std::string_view> splitAt(std::string_view text, char separator);
 
 /// A finite decimal number that fills the whole of `word`, correctly rounded.

@@ -16,7 +16,8 @@ bool isContinuation(std::string_view text, std::size_t k) {
   return k < text.size() && (byteAt(text, k) & 0xc0u) == 0x80u;
 }
 
-/// Bytes of the UTF-8 character that begins at `k`; 0 where none does (overlong ones are none).
+/// The number of bytes of the UTF-8 character that begins at `k`; 0 if none begins there (overlong
+/// forms do not count).
 std::size_t characterLength(std::string_view text, std::size_t k) {
   const unsigned first = byteAt(text, k);
   if (first < 0x80) return 1;
@@ -32,7 +33,7 @@ std::size_t characterLength(std::string_view text, std::size_t k) {
   return overlong ? 0 : length;
 }
 
-/// C1: U+0080 to U+009F, which terminals obey like ESC and a letter.
+/// True for C1, U+0080 to U+009F: terminals interpret them like ESC and a letter.
 bool isControl(std::string_view character) {
   if (character.size() == 1) return character[0] == '\x7f' || byteAt(character, 0) < 0x20;
   return character.size() == 2 && byteAt(character, 0) == 0xc2 && byteAt(character, 1) < 0xa0;

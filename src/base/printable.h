@@ -1,4 +1,4 @@
-// Text from a file made fit for a terminal, which would take control characters for commands.
+// Makes text from files safe for terminals, which would take control characters for commands.
 #pragma once
 
 #include <string>

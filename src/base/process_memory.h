@@ -1,20 +1,20 @@
-// What this process holds.
+// The memory of this process.
 #pragma once
 
 #include <cstddef>
 
 namespace radiosity {
 
-/// Bytes of memory that are this process's now, libraries included; 0 where it is not known.
+/// The resident bytes of this process now, libraries included; 0 if unknown.
 std::size_t residentBytes();
 
-/// Of these, the ones that files hold as well: mapped files, the program itself among them.
+/// The part of these bytes that files hold as well: mapped files and the program itself.
 std::size_t residentFileBytes();
 
-/// The most that were, up to now; 0 where it is not known.
+/// The peak of residentBytes() up to now; 0 if unknown.
 std::size_t peakBytes();
 
-/// Gives memory back that was freed: what comes next then adds to what is held, not to what was.
+/// Returns freed memory to the system. Later allocations then add to the memory in use alone.
 void returnFreedMemory();
 
 }  // namespace radiosity

@@ -12,8 +12,8 @@ namespace radiosity {
 namespace {
 
 Processes& openProcesses() {
-  // Found beside this library, which carries $ORIGIN as its search path. Never closed. Its symbols
-  // stay its own: PETSc brings an HDF5 library that is not the one that writes results files.
+  // The library is found beside this one, whose search path is $ORIGIN. It is never closed. Its
+  // symbols stay private: PETSc brings another HDF5 library than the one that writes results files.
   void* library = dlopen("libradiosity_distributed.so", RTLD_LAZY | RTLD_LOCAL);
   void* entry = library == nullptr ? nullptr : dlsym(library, "radiosityProcesses");
   if (entry == nullptr) {

@@ -1,6 +1,6 @@
-// The processes of one run, which mpirun started, seen from one of them. What speaks MPI is a
-// library of its own (src/distributed), which is opened where there are such processes: the program
-// runs where no MPI is installed.
+// The processes of one run under mpirun, seen from one of them. The code that calls MPI is a
+// library of its own (src/distributed). It is opened only if there are such processes, so the
+// program also runs where no MPI is installed.
 #pragma once
 
 #include <cstddef>
@@ -15,19 +15,19 @@
 
 namespace radiosity {
 
-/// What process 0 asks the others for, between tasks (nextTask()).
+/// The next task that process 0 gives to the others (nextTask()).
 enum class SharedTask : std::uint32_t {
   end,           ///< to finish
   form_factors,  ///< src/formfactor/shared_factors.h
   stored_matrix  ///< to read a share of the rows of a results file
 };
 
-/// What a process does while it waits: called some hundred times a second; may throw.
+/// Called by a waiting process some hundred times a second; may throw.
 using WhileWaiting = std::function<void()>;
 
 class Processes {
  public:
-  /// From any process.
+  /// Stands for any sender.
   static constexpr int kAny = -1;
   struct Message {
     int from = kAny;
@@ -41,18 +41,18 @@ class Processes {
   // ---- Called by one thread at a time. Waiting takes no processor time.
 
   virtual void send(int to, std::span<const std::byte> bytes) = 0;
-  /// Whether a message is there.
+  /// Whether a message has arrived.
   virtual bool hasMessage() = 0;
   virtual Message receive(int from, const WhileWaiting& waiting = {}) = 0;
 
   // ---- Called by all processes, in the same order.
 
-  /// What process 0 has comes to all; all have spans of one length.
+  /// Sends the bytes of process 0 to all; all have spans of one length.
   virtual void broadcast(std::span<std::byte> bytes, const WhileWaiting& waiting = {}) = 0;
   /// Process 0 gets the sums over all processes; the others keep what they have.
   virtual void sum(std::span<double> values, const WhileWaiting& waiting = {}) = 0;
-  /// PETSc's KSP. `solution`: rows * bands, in process 0; empty in the others. RunError where PETSc
-  /// fails.
+  /// Solves with PETSc's KSP. `solution`: rows * bands, in process 0; empty in the others. Errors:
+  /// RunError if PETSc fails.
   virtual KrylovOutcome solve(const KrylovProblem& problem, std::span<double> solution) = 0;
 
   // ---- The end.
@@ -62,8 +62,8 @@ class Processes {
   /// Ends all processes at once.
   [[noreturn]] virtual void abort(int code) = 0;
 
-  /// Whether a step that all do together was left half done: then nothing more can be done
-  /// together, and abort() is the way to end.
+  /// Whether a step of all processes was left half done. Then no further common step is possible,
+  /// and the run must end by abort().
   bool halfDone() const { return half_done_ > 0; }
 
   template <class Value>
@@ -84,7 +84,7 @@ class Processes {
   int half_done_ = 0;
 };
 
-/// Stands for a step that all processes do together, in process 0.
+/// Marks a step that all processes do together, in process 0: an exception leaves it half done.
 class SharedStep {
  public:
   explicit SharedStep(Processes& processes)
@@ -102,11 +102,12 @@ class SharedStep {
   int exceptions_;
 };
 
-/// Whether a launcher of MPI programs started this process (by what it sets in the environment).
+/// Whether a launcher of MPI programs started this process, judged by the environment variables
+/// that it sets.
 bool startedByMpi();
 
-/// This run's processes. Opens the library at the first call; to be called where startedByMpi().
-/// RunError where it is not beside this one.
+/// This run's processes. Opens the library at the first call. Precondition: startedByMpi(). Errors:
+/// RunError if the library is not beside this one.
 Processes& joinProcesses();
 
 }  // namespace radiosity

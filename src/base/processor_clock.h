@@ -1,4 +1,4 @@
-// The time that a thread really had a processor, and the time that passed.
+// Processor time of a thread, and time by the clock.
 #pragma once
 
 #include <chrono>
@@ -6,19 +6,19 @@
 
 namespace radiosity {
 
-/// Processor seconds of this thread: time that other work on the machine takes is not counted.
+/// Processor seconds of this thread: they do not count other work on the machine.
 inline double processorSeconds() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
 }
 
-/// Seconds from some moment on, by the clock.
+/// Seconds by the clock since a fixed moment.
 inline double clockSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Measures by the clock from its construction on.
+/// Measures time by the clock since its construction.
 class Stopwatch {
  public:
   double seconds() const { return clockSeconds() - start_; }
@@ -27,7 +27,7 @@ class Stopwatch {
   double start_ = clockSeconds();
 };
 
-/// Time of some work by both clocks; their ratio says how busy the machine is with other things.
+/// Time of some work by both clocks; their ratio says how busy the machine is with other work.
 struct BothClocks {
   double processor = 0;
   double clock = 0;
@@ -36,11 +36,11 @@ struct BothClocks {
     clock += other.clock;
     return *this;
   }
-  /// 1 at least: clocks tick differently.
+  /// At least 1, although the two clocks tick differently.
   double ratio() const { return clock > processor && processor > 0 ? clock / processor : 1.0; }
 };
 
-/// Measures from its construction on, on this thread.
+/// Measures both times of this thread since its construction.
 class BothWatches {
  public:
   BothClocks elapsed() const { return {processorSeconds() - processor_, clockSeconds() - clock_}; }

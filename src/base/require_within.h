@@ -9,8 +9,8 @@
 
 namespace radiosity {
 
-/// Throws InputError "WHAT is VALUE; it must lie between LOW and HIGH UNIT" unless it does; not a
-/// number does not. `unit` begins with a blank, or is empty.
+/// Throws InputError "WHAT is VALUE; it must lie between LOW and HIGH UNIT" unless the value does;
+/// NaN does not. `unit` begins with a blank, or is empty.
 template <class Number>
 void requireWithin(std::string_view what, Number value, Number low, Number high,
                    std::string_view unit = "") {

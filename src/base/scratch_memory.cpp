@@ -16,15 +16,15 @@ namespace radiosity {
 
 namespace {
 
-/// The file grows by so much, or by one block that is larger.
+/// The file grows by this many bytes, or by the size of a larger block.
 constexpr std::size_t kExtent = std::size_t(1) << 26;
 constexpr std::size_t kPage = std::size_t(1) << 12;
 constexpr std::size_t kAlignment = 64;
-/// How often we look at what is resident, while what may be resident is touched once: the system
-/// maps up to 16 pages around the one that was touched.
+/// We check the resident bytes after each sixteenth of the permitted bytes is touched: the system
+/// maps up to 16 pages around a touched one.
 constexpr std::size_t kLooks = 16;
 
-/// Blocks come in sizes an eighth apart, so that one that was freed serves again.
+/// Rounds up to block sizes an eighth apart, so that freed blocks can be used again.
 std::size_t sizeClass(std::size_t bytes) {
   constexpr std::size_t kSteps = 8;
   const std::size_t step =
@@ -57,7 +57,7 @@ void ScratchMemory::touched(std::size_t bytes) {
   touched_.store(0, std::memory_order_relaxed);
   if (residentFileBytes() < others_ + resident_) return;
   const std::lock_guard lock(mutex_);
-  // The pages of a shared mapping stay in the file, changed ones too: they come back when needed.
+  // The pages of a shared mapping stay in the file, changed ones too, and are read when needed.
   for (const Extent& extent : extents_) madvise(extent.start, extent.bytes, MADV_DONTNEED);
   others_ = residentFileBytes();
 }
@@ -78,7 +78,7 @@ void ScratchMemory::addExtent(std::size_t bytes) {
         "raise --memory-limit or mesh with fewer patches",
         folder_, double(end + bytes) / double(std::size_t(1) << 30), std::strerror(error)));
   };
-  // Space is taken now: a page of a file with holes that finds the disk full would kill us.
+  // We allocate the space now: writing to a hole in the file on a full disk would kill the process.
   if (const int error = posix_fallocate(file_, off_t(end), off_t(bytes)); error != 0) refuse(error);
   void* start = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file_, off_t(end));
   if (start == MAP_FAILED) refuse(errno);

@@ -15,7 +15,7 @@ inline double srgbFromLinear(double linear) {
   return linear <= 0.0031308 ? linear * 12.92 : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
 
-/// Coded values from here on are a byte's largest, which may stand for any brighter light, too.
+/// Coded values from here on round to 255, which may also stand for any brighter light.
 inline constexpr double kBrightestByte = 254.5 / 255;
 
 }  // namespace radiosity

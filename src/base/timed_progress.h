@@ -1,4 +1,4 @@
-// Work that is given up when it takes too long.
+// Progress of work that is given up when it takes too long.
 #pragma once
 
 #include <chrono>
@@ -10,8 +10,8 @@
 
 namespace radiosity {
 
-/// Shows its stages by another progress, and is cancelled with it, or by itself after so many
-/// seconds by the clock, wherever the work is.
+/// Passes its stages on to another progress. It is cancelled when the other is, or after `seconds`
+/// by the clock.
 class TimedProgress : public Progress {
  public:
   TimedProgress(Progress& outer, double seconds)
@@ -29,8 +29,8 @@ class TimedProgress : public Progress {
     is_open_ = false;
     outer_.end();
   }
-  /// After Cancelled: ends the stage that was given up. Throws Cancelled where the other progress
-  /// was what was cancelled.
+  /// Ends the stage that was given up; call it after Cancelled. Throws Cancelled if the other
+  /// progress was cancelled.
   void giveUp() {
     if (is_open_) end();
     outer_.check();
@@ -54,7 +54,7 @@ class TimedProgress : public Progress {
 
   Progress& outer_;
   bool is_open_ = false;
-  std::jthread watch_;  // ends before what it looks at
+  std::jthread watch_;  // the last member, so that it ends before the others
 };
 
 }  // namespace radiosity

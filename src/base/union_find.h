@@ -26,7 +26,7 @@ class UnionFind {
     parent_[b] = a;
     --sets_;
   }
-  /// How many there are.
+  /// The number of sets.
   std::size_t sets() const { return sets_; }
 
  private:

@@ -1,4 +1,4 @@
-// What a solution for each lamp says of itself.
+// The summary of a solution for single lamps.
 #include "base/figure_text.h"
 #include "cli/section.h"
 #include "cli/summaries.h"

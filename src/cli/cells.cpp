@@ -1,4 +1,4 @@
-// Patches with their quantities: for ParaView, and as a table.
+// Writes patches with their quantities: for ParaView, and as a table.
 #include "cli/commands.h"
 #include "radiosity/matrix_files.h"
 #include "radiosity/vtk.h"

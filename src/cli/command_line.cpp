@@ -1,4 +1,4 @@
-// The command line's words: options, help, and what is said when they are wrong.
+// The command line: options, help, and messages for wrong arguments.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -54,7 +54,8 @@ void addCompareOptions(CLI::App& app, Request& r) {
       ->check(nonNegative());
 }
 
-/// Two files are compared as they are; with --gather both sides are made here.
+/// Binds options to --gather, which makes both sides: without it two files are compared as they
+/// are.
 void bindToGather(CLI::App& app) {
   CLI::Option* gather = app.get_option("--gather");
   for (const char* name : {"--a-is", "--b-is"}) app.get_option(name)->excludes(gather);
@@ -89,7 +90,7 @@ void addGeneralOptions(CLI::App& app, Request& r, Command command) {
   app.add_flag("--quiet", r.quiet, "Print errors and loud warnings only")->group("General");
 }
 
-/// Devices are listed without a scene.
+/// Adds --devices, which needs no scene.
 void addDevicesFlag(CLI::App& app, Request& r, CLI::Option& scene) {
   app.add_flag("--devices", r.devices, "List the devices that can draw hemicubes (--eye gl)")
       ->group("General")
@@ -160,7 +161,8 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
   return sub;
 }
 
-/// CLI11 says "A subcommand is required" for a typo in one; say what was typed and what was meant.
+/// Checks the subcommand: for a typo CLI11 only says "A subcommand is required", while we name the
+/// word and suggest the right one.
 void checkCommandWord(int argc, char** argv) {
   std::array<std::string, kCommands.size()> names;
   std::transform(kCommands.begin(), kCommands.end(), names.begin(), commandName);
@@ -186,7 +188,7 @@ void checkCommandWord(int argc, char** argv) {
       fmt::format("'{}' is not a subcommand: {}{}", word, list, suggestion(word, names)));
 }
 
-/// The one line for what CLI11 found.
+/// The message, in one line, for an error of CLI11.
 std::string explain(const CLI::ParseError& error, const CLI::App& sub) {
   const std::string command = "radiosity " + sub.get_name();
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
@@ -203,7 +205,7 @@ std::string explain(const CLI::ParseError& error, const CLI::App& sub) {
     const std::string flag = word.substr(0, word.find('='));
     std::string meant = suggestion(flag, names);
     for (const std::string& name : names) {
-      // "--tolerance" where it is called "--gather-tolerance".
+      // "--tolerance" for an option called "--gather-tolerance".
       if (meant.empty() && name.ends_with(flag.substr(1))) meant = "; did you mean " + name + "?";
     }
     return fmt::format("unknown option {}{}; see {} --help", flag, meant, command);

@@ -6,7 +6,7 @@
 namespace radiosity::cli {
 
 const char* descriptionOf(Command command);
-/// The files it writes and examples, under the options.
+/// The text under the options: files that the subcommand writes, and examples.
 const char* examplesOf(Command command);
 
 }  // namespace radiosity::cli

@@ -20,7 +20,7 @@ namespace radiosity::cli {
 
 namespace {
 
-/// One side as it was read.
+/// One side of the comparison.
 struct Side {
   std::string label;  ///< "A" or "B"
   std::string path;
@@ -53,7 +53,7 @@ std::optional<LightUnit> unitOf(const std::string& word) {
 
 std::string optionOf(const Side& side) { return side.label == "A" ? "--a-is" : "--b-is"; }
 
-/// The unit given; else the one that the file states; else there is nothing to go by.
+/// The unit given, or else that of the file. Errors: InputError if there is neither.
 LightUnit decideUnit(const Side& side, const std::string& said, std::optional<LightUnit> of_file,
                      const std::string& what) {
   const std::optional<LightUnit> word = unitOf(said);
@@ -71,7 +71,8 @@ LightUnit decideUnit(const Side& side, const std::string& said, std::optional<Li
       side.path, what, optionOf(side)));
 }
 
-/// Empty where it is not known: materials of other bands are not what the light was made with.
+/// The emission; empty if it is not known. Materials of another number of bands did not make this
+/// light.
 std::span<const double> emissionOf(const Results& results, int bands) {
   if (!results.materials || results.materials->bands != bands) return {};
   return results.materials->emission;
@@ -173,7 +174,8 @@ void reportSurfaces(Report& report, const Comparison& c) {
   report.table("surfaces", columns, rows);
 }
 
-/// The difference without lamps and the largest difference, in one line: each can hide the other.
+/// Reports the difference without lamps and the largest difference in one line, since each can hide
+/// the other.
 void reportHeadline(Report& report, const Comparison& c) {
   std::string beside;
   if (c.without_emitters) {
@@ -249,7 +251,7 @@ int judge(Session& session, const Comparison& c) {
   return within ? 0 : 1;
 }
 
-/// False colour, the scale from 0.
+/// The legend of false colours, with a scale from 0.
 FalseColour legendOf(int bands, bool pictures, bool relative) {
   return {"|B - A|" + brightnessText(bands), relative ? "" : pictures ? "W/m^2/sr" : "W/m^2"};
 }
@@ -268,7 +270,7 @@ void drawField(Session& session, const LightField& side, const Comparison& c, Pi
   });
 }
 
-/// Pictures are compared pixel by pixel, as they are.
+/// Refuses options that do not apply to pictures, which are compared pixel by pixel.
 void requirePixelOptions(const Request& request) {
   const std::pair<const char*, bool> of_surfaces[] = {{"--camera", !request.camera.empty()},
                                                       {"--width", request.width.has_value()},
@@ -290,7 +292,7 @@ void requirePicture(const OutputSet& files, const Request& request) {
   }
 }
 
-/// Between two files.
+/// Compares two files.
 int compareFiles(Session& session, OutputSet& files) {
   const Request& request = session.request;
   if (request.second.empty()) {
@@ -335,7 +337,7 @@ int compareFiles(Session& session, OutputSet& files) {
   return code;
 }
 
-/// In words; first what outweighs the rest.
+/// The causes of the gap in words, the largest first.
 std::string gapCause(const Gathered& gathered) {
   std::string cause;
   if (gathered.summary.status == GatherStatus::pass_limit) {
@@ -354,7 +356,7 @@ std::string gapCause(const Gathered& gathered) {
          "point what form factors average over a patch, and pixels";
 }
 
-/// The matrix solution and the gather method, both made where they are not there yet.
+/// Compares the matrix solution with the gather method; makes both if necessary.
 int compareWithGather(Session& session, OutputSet& files) {
   const Request& request = session.request;
   if (!request.second.empty()) {

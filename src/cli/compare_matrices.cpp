@@ -1,4 +1,4 @@
-// compare A B of form factors.
+// `compare A B` for form factors.
 #include <fmt/format.h>
 
 #include "cli/matrix_commands.h"
@@ -8,7 +8,7 @@ namespace radiosity::cli {
 
 namespace {
 
-/// Areas farther apart than what files in six digits leave are of other patches.
+/// The largest relative difference of areas of the same patch, in files of six digits.
 constexpr double kSameArea = 1e-5;
 
 void requireNothingElse(const Request& request, const OutputSet& files) {
@@ -88,7 +88,7 @@ void reportMatrixComparison(Report& report, const MatrixComparison& c, const Mat
   reportNames(report, c);
 }
 
-/// Those given are of files that have none of their own.
+/// Reads one side. Areas from --areas are only used for files without areas.
 MatrixFile readMatrixSide(Session& session, const std::string& path) {
   std::vector<double> areas;
   if (!session.request.areas.empty() && isMatrixInput(path)) {

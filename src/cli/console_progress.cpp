@@ -52,7 +52,7 @@ void ConsoleProgress::advance(std::size_t steps) {
 
 void ConsoleProgress::tick() {
   if (style_ == ProgressStyle::silent || elapsed() < next_draw_) return;
-  // While one thread draws, the others go on with their work.
+  // If another thread is drawing, this one continues with its work.
   const std::unique_lock lock(drawing_, std::try_to_lock);
   if (lock.owns_lock() && running_ && elapsed() >= next_draw_) draw();
 }
@@ -61,7 +61,7 @@ void ConsoleProgress::draw() {
   const double seconds = elapsed();
   const std::size_t done = std::min<std::size_t>(done_, total_);
   const double share = total_ > 0 ? double(done) / double(total_) : 0;
-  // What was there when the stage began took none of its time.
+  // Steps that were done before the stage began took none of its time.
   const double here = double(done) - double(done_before_);
   const std::string left =
       here > 0 ? durationText(seconds * double(total_ - done) / here) + " left" : "starting";

@@ -1,4 +1,4 @@
-// Progress on standard error: a bar with the time left on a terminal, a line a minute in a pipe.
+// Progress on standard error: on a terminal a bar with the time left, in a pipe a line a minute.
 #pragma once
 
 #include <atomic>
@@ -12,7 +12,7 @@ namespace radiosity::cli {
 
 enum class ProgressStyle { silent, lines, bar };
 
-/// The style that fits standard error; silent where `quiet`.
+/// The style that suits standard error; silent if `quiet`.
 ProgressStyle progressStyle(bool quiet);
 
 class ConsoleProgress : public Progress {
@@ -33,10 +33,9 @@ class ConsoleProgress : public Progress {
              std::size_t done = 0) override;
   void advance(std::size_t steps = 1) override;
   void end() override;
-  /// Draws anew where that is due, also where a step takes long: from a thread of its own.
+  /// Draws again if it is time. A separate thread calls it, also while a step takes long.
   void tick();
-  /// Takes the bar off the terminal, so that something else can be written there. The stage is
-  /// over.
+  /// Removes the bar from the terminal and ends the stage, so that other text can be written.
   void clear();
 
  private:
@@ -48,8 +47,8 @@ class ConsoleProgress : public Progress {
   ProgressStyle style_;
   LineTimes line_times_;
   std::string stage_;
-  std::string steps_;     ///< what they are called
-  bool running_ = false;  ///< a stage is
+  std::string steps_;     ///< the name of the steps
+  bool running_ = false;  ///< a stage is running
   std::size_t total_ = 0;
   std::size_t done_before_ = 0;  ///< when the stage began
   std::atomic<std::size_t> done_{0};

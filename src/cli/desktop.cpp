@@ -18,7 +18,7 @@ bool hasDisplay() {
   return false;
 }
 
-/// What a browser says is not the run's report.
+/// Silences the output of the browser, which does not belong to the report.
 class Silence {
  public:
   Silence() {

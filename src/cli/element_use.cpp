@@ -11,12 +11,13 @@ bool drawsLight(const OutputSet& files) {
          files.has(Format::page);
 }
 
-/// Seen from anywhere: a picture has those that it shows.
+/// Whether an output can be seen from anywhere and needs all elements; a picture only needs those
+/// that it shows.
 bool showsAllLight(const OutputSet& files) {
   return files.has(Format::glb) || files.has(Format::page);
 }
 
-/// Why no output has elements, and what to do.
+/// The reason why no output has elements, and the cure.
 std::string whyNone(const Request& request, const OutputSet& files) {
   if (!request.show.empty()) return "--show draws what patches have; leave one of the two out";
   if (request.flat) return "--flat draws one colour a patch; leave one of the two out";
@@ -31,7 +32,8 @@ const char* toleranceCure(const Request& request, const OutputSet& files) {
   return files.has(Format::results) ? "add --elements on" : "leave it out";
 }
 
-/// A picture has elements of what it shows in any case.
+/// Refuses --visible-only if it has no effect: a picture always has elements of visible surfaces
+/// only.
 void checkVisibleOnly(const Request& request, const ElementUse& use, const OutputSet& files) {
   if (!request.visible_only) return;
   const char* why = nullptr;

@@ -23,7 +23,7 @@ const char* directText(DirectLight direct) {
   return "with the indirect: there are too many emitters to aim at";
 }
 
-/// Which error is the largest, and what makes it smaller.
+/// The largest error, and the way to reduce it.
 std::string largestError(const ElementReport& r, double of_matrix) {
   const double most = std::max({r.interpolation_error, r.ray_error, of_matrix});
   if (most <= 0) return "none";

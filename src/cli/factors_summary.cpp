@@ -47,7 +47,7 @@ void hemicubeFigures(Report& report, const FormFactorReport& r) {
   report.count("capped", "  rows held at 1", r.capped);
 }
 
-/// Pairs of patches by what became of them, then what it took.
+/// Reports pairs of patches by their treatment, then the work.
 void exactFigures(Report& report, const ExactReport& e) {
   report.count("elements", "elements", e.elements);
   report.count("black_elements", "  and of black backs", e.black_elements);

@@ -6,7 +6,7 @@ namespace radiosity::cli {
 
 namespace {
 
-/// 1 where a limit that nobody asked for came first; 0 otherwise.
+/// The exit code: 1 if the default limit of passes came first; 0 otherwise.
 int judgeGathered(Session& session, const Pipeline& pipeline, const GatherSummary& summary) {
   if (summary.status == GatherStatus::converged) return 0;
   const bool asked = summary.passes.size() != std::size_t(GatherOptions().passes);

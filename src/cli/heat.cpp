@@ -19,7 +19,7 @@ void writeTables(Pipeline& pipeline, OutputSet& files) {
               [&](const std::string& temporary) { writeHeatPatches(temporary, heat, mesh); });
 }
 
-/// Those given; where none are, those that the heat in the results file was solved for.
+/// The given conditions, or else those of the heat in the results file.
 HeatConditions conditionsFor(Session& session, const Pipeline& pipeline) {
   const Request& request = session.request;
   const std::optional<HeatSolution>& stored = pipeline.stored().heat;
@@ -33,7 +33,7 @@ HeatConditions conditionsFor(Session& session, const Pipeline& pipeline) {
   return readHeatConditions(pipeline.scene(), text);
 }
 
-/// Options that change what light does, and nothing of heat.
+/// Notes options that affect light but not heat.
 void noteLightOptions(Session& session) {
   const SceneOptions& scene = session.request.scene;
   std::vector<std::string> unused;
@@ -56,7 +56,7 @@ int runHeat(Session& session) {
   if (takesMatrixFile(session.request)) return heatMatrixFile(session, files);
   Run run(session, files.path(Format::results));
   Pipeline& pipeline = run.pipeline;
-  // Before form factors are computed: what is wrong with the conditions is soon found.
+  // We check the conditions first, so that errors are found before form factors are computed.
   PipelineOptions& options = pipeline.options();
   options.heat_conditions = conditionsFor(session, pipeline);
   validate(options.heat_conditions, options.heat);

@@ -1,4 +1,4 @@
-// heat of a matrix from elsewhere: conditions by the names of its rows, or by their numbers.
+// `heat` on a matrix from a file: conditions name its rows by name or by number.
 #include <fmt/format.h>
 
 #include "cli/matrix_commands.h"

@@ -1,4 +1,4 @@
-// What is said of radiative heat exchange.
+// The summary of radiative heat exchange.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,8 +12,8 @@ namespace radiosity::cli {
 
 namespace {
 
-/// Heat that is lost on backs, or not accounted for, is worth a warning from this share of what all
-/// surfaces give off.
+/// The program warns of heat lost on backs, and of the imbalance, above this share of the radiosity
+/// of all surfaces.
 constexpr double kWorthWarning = 1e-4;
 
 void surfaceTable(Report& report, const std::vector<SurfaceHeat>& surfaces) {
@@ -40,8 +40,8 @@ void surfaceTable(Report& report, const std::vector<SurfaceHeat>& surfaces) {
                rows);
 }
 
-/// W that leave all surfaces: net powers are small differences of it where all has about one
-/// temperature, and say nothing of how much is lost.
+/// The power, W, that leaves all surfaces. Net powers are not a measure for losses: if all surfaces
+/// have about one temperature, they are small differences of it.
 double givenOff(const std::vector<SurfaceHeat>& surfaces) {
   double sum = 0;
   for (const SurfaceHeat& s : surfaces) sum += s.area * s.radiosity;
@@ -62,7 +62,7 @@ void balanceFigures(Report& report, const HeatBalance& b, double given_off) {
   watts("convected_W", "convected to the air", b.convected);
 }
 
-/// How good the form factors are, beside what they lead to.
+/// Reports the accuracy of the form factors and its effect on H.
 void factorError(Report& report, const FormFactors& factors) {
   if (factors.error.empty()) {
     report.text("factor_error", "error of form factors",

@@ -29,7 +29,7 @@ HelpFormatter::HelpFormatter() { column_width(kNameColumn); }
 
 std::string HelpFormatter::make_help(const CLI::App* app, std::string name,
                                      CLI::AppFormatMode mode) const {
-  // The base class ends a group and begins the next with an empty line each.
+  // The base class writes an empty line both at the end of a group and at the start of the next.
   return CLI::detail::find_and_replace(CLI::Formatter::make_help(app, std::move(name), mode),
                                        "\n\n\n", "\n\n");
 }

@@ -14,7 +14,7 @@ namespace radiosity::cli {
 
 namespace {
 
-/// The heat exchange, and what it was solved for.
+/// Describes the heat exchange and its conditions.
 void describeHeat(Report& report, const Results& stored, const HeatOptions& options) {
   const HeatSolution& heat = made(stored.heat);
   const FormFactors& factors = made(stored.factors);
@@ -33,7 +33,7 @@ void describeHeat(Report& report, const Results& stored, const HeatOptions& opti
   }
 }
 
-/// The stages a results file holds, and the options that made them.
+/// Describes the stages in a results file, and the options that made them.
 void describeStages(Session& session, const Pipeline& pipeline) {
   const Results& stored = pipeline.stored();
   Report& report = session.report;

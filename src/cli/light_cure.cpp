@@ -6,7 +6,7 @@ namespace radiosity::cli {
 
 namespace {
 
-/// As a shell takes it for one word.
+/// The word with quotes for a shell, if it needs them.
 std::string quoted(const std::string& word) {
   const bool plain = !word.empty() && word.find_first_not_of(
                                           "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"

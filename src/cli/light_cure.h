@@ -8,12 +8,12 @@
 
 namespace radiosity::cli {
 
-/// Both cures, a lamp and the sky, the lamp as a command line to paste: the one that was typed with
-/// --set for what is likeliest a lamp.
+/// Both cures, a lamp and the sky. The lamp is a command line to paste: the one typed, with --set
+/// for the most likely lamp.
 std::string lightCure(const Request& request, const Scene& scene);
 
-/// A solution of B = 0, why, and both cures; where `bands` are not a scene's three, where the
-/// file's own materials stand.
+/// The reason for a solution of B = 0, and both cures; if `bands` are not a scene's three, the
+/// place of the file's own materials.
 std::string darknessText(const Request& request, const Scene& scene, int bands);
 
 }  // namespace radiosity::cli

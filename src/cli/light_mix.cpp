@@ -14,7 +14,7 @@ namespace {
 /// --basis: a source for each surface that emits.
 constexpr const char* kSurfaces = "surfaces";
 
-/// "NAME=WEIGHT,NAME=WEIGHT": the last = of each part, so that names may have one.
+/// Parses "NAME=WEIGHT,NAME=WEIGHT". The last = of each part counts, so that names may have one.
 std::vector<LightWeight> parseMix(const std::string& text) {
   std::vector<LightWeight> weights;
   for (const std::string_view part : splitAt(text, ',')) {
@@ -29,7 +29,7 @@ std::vector<LightWeight> parseMix(const std::string& text) {
   return weights;
 }
 
-/// The option given that says how materials shine; null: none.
+/// The given option that changes the emission of materials; null if there is none.
 const char* overrideOf(const SceneOptions& scene) {
   if (!scene.set.empty()) return "--set";
   if (!scene.materials_file.empty()) return "--materials";

@@ -26,13 +26,13 @@ void requireMemory(const Request& request, const LightmapOptions& options) {
                   options.size, bytesText(options.bytes()), bytesText(limit)));
 }
 
-/// The file whose mesh is kept; empty where there is none.
+/// The file whose mesh is kept; empty if there is none.
 std::string meshSource(const std::string& input) {
   const std::string extension = lowerExtension(input);
   return extension == ".gltf" || extension == ".glb" ? input : std::string();
 }
 
-/// What of the scene's file the mesh does not have.
+/// Notes properties of the scene's file that the mesh lacks.
 void noteLoss(Session& session, const Scene& scene, const std::string& mesh) {
   std::vector<Note> notes;
   const std::string& input = session.request.input;

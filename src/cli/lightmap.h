@@ -1,4 +1,4 @@
-// --lightmap: light as an image that is laid over the scene's own mesh.
+// --lightmap: light as an image for the scene's own mesh.
 #pragma once
 
 #include "cli/commands.h"
@@ -6,12 +6,12 @@
 
 namespace radiosity::cli {
 
-/// InputError where --lightmap, what goes with it or the other outputs contradict each other:
-/// before the work is done.
+/// Throws InputError if --lightmap, its options or the other outputs contradict each other, before
+/// any work is done.
 void checkLightmap(const Request& request, const ElementUse& elements, const OutputSet& files);
 
-/// Writes the map and the .glb among `files`, and reports the charts. `ev`: exposure that suits
-/// the scene.
+/// Writes the map and the .glb among `files`, and reports the charts. `ev`: the exposure for the
+/// scene.
 void writeLightmap(Session& session, const Scene& scene, const PatchMesh& mesh,
                    const SurfaceLight& light, double ev, OutputSet& files);
 

@@ -1,5 +1,5 @@
-// radiosity: arguments -> one subcommand -> report -> exit code (0 done, 1 the run failed or did
-// not converge, 2 bad input or arguments).
+// radiosity: parses the arguments, runs one subcommand, reports, and returns the exit code (0 done,
+// 1 the run failed or did not converge, 2 bad input or arguments).
 #include <fmt/format.h>
 
 #include <chrono>
@@ -48,7 +48,7 @@ int dispatch(Session& session) {
 
 int run(const Request& request, const TimeLimit& limit, ConsoleProgress& progress,
         Processes* processes) {
-  // Claimed and let go: a report that cannot be written is found before the work is done.
+  // We claim the report and release it, so that an error is found before any work is done.
   if (!request.report.empty()) AtomicFile(request.report);
   setThreads(request.threads);
   Report report(request.quiet);
@@ -80,7 +80,7 @@ int runProgram(int argc, char** argv, Processes* processes) {
       return run(request, limit, progress, processes);
     } catch (...) {
       progress.clear();
-      // A library that stopped half-way because of the signal may report something else.
+      // A library that the signal stopped half-way may report another error.
       if (progress.cancelled()) return fail(interruptedText(), 1);
       throw;
     }
@@ -93,7 +93,7 @@ int runProgram(int argc, char** argv, Processes* processes) {
   }
 }
 
-/// Process 0 of several runs the command; then all end.
+/// Runs the command in process 0 of several; then all end.
 int runFirst(int argc, char** argv, Processes& processes) {
   const int code = runProgram(argc, argv, &processes);
   if (processes.halfDone()) processes.abort(code);
@@ -103,7 +103,8 @@ int runFirst(int argc, char** argv, Processes& processes) {
   return code;
 }
 
-/// What a command line says wrong, or asks to be printed, is for process 0 to say.
+/// Serves process 0 in another process. Only process 0 reports errors of the command line and
+/// prints.
 int runOther(int argc, char** argv, Processes& processes) {
   try {
     Request request;
@@ -115,7 +116,7 @@ int runOther(int argc, char** argv, Processes& processes) {
     }
     return serveCommand(request, processes);
   } catch (const std::exception& error) {
-    // What is wrong in all processes is for process 0 to say, which then ends them.
+    // If all processes have this error, process 0 reports it and ends them, so we wait first.
     constexpr std::chrono::seconds kForFirst{1};
     std::this_thread::sleep_for(kForFirst);
     fail(fmt::format("process {} of {}: {}", processes.rank(), processes.size(), error.what()), 1);

@@ -6,27 +6,28 @@
 
 namespace radiosity::cli {
 
-/// Whether a file holds form factors alone, or ought to by its name (.mtx, .vf).
+/// Whether a file has only form factors, or should have by its name (.mtx, .vf).
 bool isMatrixInput(const std::string& path);
 
-/// Whether the input is a matrix from elsewhere. InputError for its options with a scene.
+/// Whether the input is a matrix from a file. Throws InputError if a scene is given with its
+/// options.
 bool takesMatrixFile(const Request& request);
-/// InputError for options that are about a scene.
+/// Throws InputError for options that apply to scenes.
 void refuseSceneOptions(const Request& request);
 
 /// Reads the matrix, with the areas of --areas.
 MatrixFile readMatrixInput(Session& session);
-/// Its form factors, after saying how many rows there are and what is wrong with them.
+/// Reports the number of rows and their faults, and returns the form factors.
 FormFactors reportedFactors(Session& session, const MatrixFile& file);
 
-/// Whether `compare` is asked about form factors: of files that hold nothing else, or by
-/// --form-factors.
+/// Whether `compare` compares form factors: the files have nothing else, or --form-factors is
+/// given.
 bool comparesMatrices(const Request& request);
 int compareMatrixFiles(Session& session, OutputSet& files);
 
 int solveMatrixFile(Session& session, OutputSet& files);
 int heatMatrixFile(Session& session, OutputSet& files);
-/// What `info` says of a matrix.
+/// Runs `info` for a matrix.
 int describeMatrixFile(Session& session);
 
 }  // namespace radiosity::cli

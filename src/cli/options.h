@@ -1,4 +1,4 @@
-// The options of the command line, a group each: what is typed goes into the request.
+// The options of the command line, in groups; their values go into the request.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -8,7 +8,7 @@
 
 namespace radiosity::cli {
 
-// Each helper names the value as help shows it, and gives it one argument a time, so that
+// Each helper names the value in the help, and lets the option take one argument at a time, so that
 // "-o a.png scene.obj" does not take the scene for an output.
 template <class Value>
 CLI::Option* add(CLI::App& app, const char* group, const std::string& names, Value& value,
@@ -24,15 +24,15 @@ void addMeshOptions(CLI::App& app, Request& r);
 void addFactorOptions(CLI::App& app, Request& r);
 /// Areas of the rows of a matrix from a file.
 void addAreasOption(CLI::App& app, Request& r, const char* group);
-/// Options of a matrix from a file that is solved.
+/// Options for solving with a matrix from a file.
 void addMatrixOptions(CLI::App& app, Request& r);
 void addTableOptions(CLI::App& app, Request& r);
 void addSolveOptions(CLI::App& app, Request& r);
-/// Light of single lamps, solved for; of `solve` alone.
+/// Options for light of single lamps, of `solve` only.
 void addBasisOption(CLI::App& app, Request& r);
 void addMixOption(CLI::App& app, Request& r);
 void addGatherOptions(CLI::App& app, Request& r);
-/// Options shared with the form factors.
+/// Options that gathering shares with form factors.
 void addEyeOptions(CLI::App& app, Request& r);
 
 // heat_options.cpp
@@ -40,9 +40,9 @@ void addHeatOptions(CLI::App& app, Request& r);
 
 // picture_options.cpp
 void addCameraOption(CLI::App& app, Request& r);
-/// With the picture's size.
+/// The camera and the picture's size.
 void addCameraOptions(CLI::App& app, Request& r);
-/// `shown_in`: a sentence's begin, "The page first shows".
+/// `shown_in`: the beginning of a sentence, "The page first shows".
 void addExposureOption(CLI::App& app, Request& r, const char* shown_in);
 void addCreaseOption(CLI::App& app, Request& r);
 void addRenderOptions(CLI::App& app, Request& r);
@@ -50,7 +50,7 @@ void addLightmapOptions(CLI::App& app, Request& r);
 void addElementOptions(CLI::App& app, Request& r);
 void addFinalGatherOption(CLI::App& app, Request& r);
 void addVisibleOnlyOption(CLI::App& app, Request& r);
-/// Options that choose the drawn quantity of the matrix's stages, and its colours.
+/// Options for the quantity to draw, of the stages with a matrix, and its colours.
 void addShowOptions(CLI::App& app, Request& r);
 
 }  // namespace radiosity::cli

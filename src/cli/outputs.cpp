@@ -69,7 +69,7 @@ bool sameFile(const std::string& a, const std::string& b) {
          fs::equivalent(a, b, ignored);
 }
 
-/// The map of --lightmap: 8 bits would not do for W/m^2.
+/// The map of --lightmap. It must have floats: 8 bits are not enough for W/m^2.
 Output lightmapOutput(const std::string& path) {
   if (lowerExtension(path) != ".exr") {
     throw InputError(path + ": --lightmap writes .exr; end the name in it");
@@ -145,7 +145,7 @@ void OutputSet::write(Format format, const std::string& what,
   for (std::size_t k = 0; k < outputs_.size(); ++k) {
     if (outputs_[k].format != format) continue;
     const std::string& temporary = files_[k].file->temporary();
-    // A writer knows only the temporary name; people know the other one.
+    // A writer only knows the temporary name, so we put the final name into its messages.
     const auto named = [&](std::string message) {
       const std::size_t at = message.find(temporary);
       return at == std::string::npos ? message

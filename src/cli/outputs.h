@@ -1,4 +1,4 @@
-// The files a run writes: named by extension, and all of them or none.
+// The output files of a run: the extension tells the format, and either all are written or none.
 #pragma once
 
 #include <functional>
@@ -40,28 +40,29 @@ struct Output {
   Format format;
 };
 
-/// The files that -o names for this subcommand, those of --lightmap and --patch-table. InputError:
-/// an extension it cannot write (with the list of those it can), the same file twice, the scene
-/// file itself, an HDF5 file of another program where results would go.
+/// The files of -o for this subcommand, and those of --lightmap and --patch-table. Errors:
+/// InputError for an extension that it cannot write (with the list of those that it can), the same
+/// file twice, the scene file itself, or an HDF5 file of another program in place of results.
 std::vector<Output> parseOutputs(const Request& request);
 
-/// Writes under temporary names; commit() renames all. Without commit() nothing stays.
+/// Writes files under temporary names; commit() renames all. Without commit() all are removed.
 class OutputSet {
  public:
-  /// Claims every path at once, so that a folder that is missing is found before the work is done.
+  /// Claims every path at once, so that a missing folder is found before any work is done.
   explicit OutputSet(std::vector<Output> outputs);
 
   const std::vector<Output>& all() const { return outputs_; }
   bool has(Format format) const;
   /// The first path of that format; empty if there is none.
   std::string path(Format format) const;
-  /// Claims one more, e.g. the results file that came in. No-op where it is there already.
+  /// Claims one more file, for instance the results file of the input; does nothing if it is
+  /// claimed already.
   void add(Output output);
 
   /// Calls writer(temporary path) for every output of that format; `what` describes it.
   void write(Format format, const std::string& what,
              const std::function<void(const std::string&)>& writer);
-  /// Renames what was written and lists it in the report.
+  /// Renames the written files and lists them in the report.
   void commit(Report& report, const Progress& progress);
 
  private:
@@ -74,7 +75,7 @@ class OutputSet {
   std::vector<File> files_;
 };
 
-/// RunError, with both numbers, where the folder's disk has less than `bytes` free.
+/// Throws RunError, with both numbers, if the folder's disk has less than `bytes` free.
 void requireDiskSpace(const std::string& path, std::size_t bytes);
 
 }  // namespace radiosity::cli

@@ -134,7 +134,7 @@ void writeLitMesh(Report& report, const PatchMesh& mesh, const SurfaceLight& lig
 
 namespace {
 
-/// Automatic exposure makes a picture of anything; the lit part may lie elsewhere.
+/// Warns if the picture only shows dark parts, which automatic exposure would hide.
 void warnOfDarkness(Report& report, const PatchMesh& mesh, const SurfaceLight& light,
                     const Image& radiance) {
   const std::optional<UnlitView> view = unlitView(mesh, light, radiance);

@@ -12,50 +12,49 @@ namespace radiosity::cli {
 
 struct Picture {
   Camera camera;
-  std::string camera_from;  ///< in words: where the camera came from
+  std::string camera_from;  ///< the origin of the camera in words
   Up up = Up::y;            ///< of the scene
   RenderOptions options;
 };
 
 /// The camera asked for, else the scene's first, else none yet (camera_from is empty); the size
-/// asked for, where a side left out follows the camera's shape. InputError where --camera,
-/// --exposure or an option of the picture is wrong: found before the work is done.
+/// asked for, in which a missing side follows from the camera's aspect. Errors: InputError if
+/// --camera, --exposure or an option of the picture is wrong, before any work is done.
 Picture choosePicture(const Request& request, const Scene& scene);
 
-/// InputError where `files` show colours and the bands have none: before the work is done.
+/// Throws InputError if `files` show colours and the bands have none, before any work is done.
 void requireColours(const Pipeline& pipeline, const Request& request, const OutputSet& files);
 
-/// Where no camera was chosen, one that frames the scene and what is lit in it: `reflected`, N
-/// values as reflectedLight(), or none.
+/// If no camera was chosen, chooses one that frames the scene and its lit parts. `reflected`: N
+/// values from reflectedLight(), or none.
 void framePicture(Picture& picture, const PatchMesh& mesh, bool closed,
                   std::span<const double> reflected = {});
 
-/// The picture's part of the report: camera and size.
+/// Reports the camera and size of the picture.
 void reportPicture(Report& report, const Picture& picture);
 
-/// Metadata of an image file.
+/// The metadata of an image file.
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 Metadata metadataOf(const Picture& picture, const std::string& quantity, const std::string& unit);
 
-/// Writes a picture's radiance to the .png and .exr among `files`, the light of elements, or else
-/// of patches, to the .glb (without --lightmap), and reports the exposure, which it
-/// returns.
+/// Writes a picture's radiance to the .png and .exr among `files`, and the light of elements, or
+/// else of patches, to the .glb (without --lightmap). Reports the exposure and returns it.
 double writeLight(Session& session, const PatchMesh& mesh, const SurfaceLight& light,
                   const Image& radiance, const Picture& picture, OutputSet& files);
 
-/// Writes the .glb among `files` as a lit mesh, and reports how many triangles it has.
+/// Writes the .glb among `files` as a lit mesh, and reports its number of triangles.
 void writeLitMesh(Report& report, const PatchMesh& mesh, const SurfaceLight& light,
                   OutputSet& files, double ev, double crease);
 
-/// The picture that `render` draws of light where no more is said, and the EV that it has.
+/// The picture of light that `render` draws by default, with its EV.
 struct ExposedPicture {
   Picture picture;
   double ev = 0;
 };
-/// Draws it, to find its EV.
+/// Draws that picture to find its EV.
 ExposedPicture exposePicture(Session& session, Pipeline& pipeline, const SurfaceLight& light);
 
-/// The EV of --exposure: the number, or what suits the picture.
+/// The EV of --exposure: the number, or the automatic one of the picture.
 double exposureOf(const Request& request, const Image& radiance);
 
 }  // namespace radiosity::cli

@@ -1,4 +1,4 @@
-// Options of what is shown: cameras, pictures, elements, lightmaps.
+// Options of cameras, pictures, elements and lightmaps.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

@@ -17,12 +17,12 @@ namespace radiosity::cli {
 
 namespace {
 
-/// For longer waits the report says what would shorten them.
+/// For longer waits the report suggests options that shorten them.
 constexpr double kLongWait = 60;
-/// The time of rays goes with about this power of 1 / tolerance.
+/// The time of rays grows with about this power of 1 / tolerance.
 constexpr double kRaysOrder = 1.6;
 
-/// Options that shorten a wait, and the shorter time where it is known.
+/// The options that shorten a wait, and the shorter time if it is known.
 std::string cures(const FormFactorPlan& plan) {
   constexpr double kLoosest = 0.1;
   if (plan.method == FormFactorMethod::hemicube) {
@@ -46,7 +46,7 @@ std::string cures(const FormFactorPlan& plan) {
 }
 
 struct StageWords {
-  Command command;  ///< the one that is about this stage
+  Command command;  ///< the subcommand of this stage
   const char* key;
   const char* label;
   const char* kept;
@@ -88,7 +88,7 @@ const char* wordOf(StageAction action) {
   return "dropped";
 }
 
-/// Whether a note on the scene tells of what only light looks at; heat has emissivities instead.
+/// Whether a note on the scene only matters for light; heat has emissivities instead.
 bool isAboutLight(const Note& note) {
   if (note.severity == Severity::loud) return false;
   const std::string_view words[] = {"reflectance", "emission", "radiance", "texture"};
@@ -104,7 +104,7 @@ void PipelineReport::opened(const Pipeline& pipeline) {
 }
 
 void PipelineReport::notes(const Pipeline& pipeline, std::span<const Note> notes) {
-  // Those of a scene file stand at the end of what `info` says.
+  // `info` prints the notes of a scene file at its end.
   if (request_.command == Command::info && !pipeline.fromResultsFile()) return;
   if (request_.command != Command::heat) return report_.notes(notes);
   std::vector<Note> not_of_light;
@@ -117,10 +117,10 @@ void PipelineReport::notReused(const std::string& path, const std::string& why) 
   report_.line("note", fmt::format("nothing is reused from {}: {}", path, oneLine(why)));
 }
 
-/// Options that were given and are about another method than the one that is chosen.
+/// Notes given options that apply to another method than the chosen one.
 void PipelineReport::noteUnused(FormFactorMethod method) {
   const bool hemicubes = method == FormFactorMethod::hemicube;
-  // Gathering has hemicubes of its own.
+  // Gathering uses hemicubes, too.
   const bool gathers = request_.command == Command::gather || request_.command == Command::compare;
   const std::pair<const char*, bool> options[] = {
       {"--resolution", request_.resolution && !hemicubes && !gathers},
@@ -201,7 +201,7 @@ void PipelineReport::stage(const Pipeline& pipeline, const StageEvent& event) {
   if (kept || event.action == StageAction::dropped) return;
   summarize(pipeline, event);
   if (event.stage != Stage::form_factors || event.action != StageAction::reused) return;
-  // Those that are computed are planned before.
+  // Computed form factors were noted when they were planned.
   const std::string& method = made(pipeline.results().factors).method;
   if (const auto known = named(kMethodNames, method)) noteUnused(*known);
 }
@@ -211,7 +211,7 @@ void PipelineReport::summarize(const Pipeline& pipeline, const StageEvent& event
   const Results& results = pipeline.results();
   const PatchMesh& mesh = made(results.mesh).mesh;
   const PipelineOptions& options = pipeline.options();
-  // A mesh or form factors that were there already need no word where they are a step on the way.
+  // A reused mesh or form factors need no report if they are only an intermediate step.
   const Detail light = own ? Detail::full : Detail::brief;
   const Detail step = !own && event.action == StageAction::reused ? Detail::none : light;
   switch (event.stage) {
@@ -231,7 +231,7 @@ void PipelineReport::summarize(const Pipeline& pipeline, const StageEvent& event
     case Stage::basis:
       return summarizeBasis(report_, made(results.basis), light);
     case Stage::elements:
-      return;  // by those who show them: a picture may have some of them alone
+      return;  // outputs report them, since a picture may only have some elements
   }
 }
 

@@ -1,4 +1,4 @@
-// Reports the stages of a run, a line each, as they are made.
+// Reports the stages of a run when they are made, one line each.
 #pragma once
 
 #include <span>
@@ -14,7 +14,7 @@ namespace radiosity::cli {
 
 class PipelineReport : public PipelineObserver {
  public:
-  /// `writes_results`: the run was asked for a results file.
+  /// `writes_results`: the run writes a results file.
   PipelineReport(const Request& request, Report& report, const TimeLimit& limit,
                  bool writes_results)
       : request_(request), report_(report), limit_(limit), writes_results_(writes_results) {}
@@ -22,7 +22,7 @@ class PipelineReport : public PipelineObserver {
   void opened(const Pipeline& pipeline) override;
   void notes(const Pipeline& pipeline, std::span<const Note> notes) override;
   void notReused(const std::string& path, const std::string& why) override;
-  /// RunError where that takes longer than the time limit leaves.
+  /// Throws RunError if the plan takes longer than the time limit allows.
   void planned(const Pipeline& pipeline, const FormFactorPlan& plan) override;
   void keepsRows(const Pipeline& pipeline, const std::string& path) override;
   void rows(const Pipeline& pipeline, const std::string& text) override;

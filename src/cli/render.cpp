@@ -21,7 +21,7 @@ namespace radiosity::cli {
 
 namespace {
 
-/// The quantity that --show names; none: the lit scene itself.
+/// The quantity of --show; empty: the lit scene itself.
 struct Show {
   std::optional<Quantity> quantity;
   std::size_t patch = 0;
@@ -57,7 +57,7 @@ void requirePatch(const Show& show, const PatchMesh& mesh) {
                                show.patch, mesh.size() - 1));
 }
 
-/// Where the patch is whose form factors are drawn.
+/// Reports the place of the patch whose form factors are drawn.
 void describePatch(Report& report, const PatchMesh& mesh, const Show& show) {
   const Vec3 c = mesh.centroid[show.patch];
   const double centroid[] = {c.x, c.y, c.z};
@@ -108,13 +108,13 @@ SurfaceLight litSurfaces(Session& session, Pipeline& pipeline, const Picture& pi
   return light;
 }
 
-/// Whether form factors serve elements alone, and are not kept.
+/// Whether form factors are only needed for elements, and are not kept.
 bool onlySources(const Pipeline& pipeline, const ElementUse& elements, const OutputSet& files) {
   return elements.shown && !pipeline.fromResultsFile() && !files.has(Format::results) &&
          !files.has(Format::matrix_market);
 }
 
-/// Long ones are said before they start.
+/// Announces a long final gather before it starts.
 void foretellGather(Session& session, const PatchMesh& mesh, const SurfaceLight& light,
                     const Picture& picture) {
   constexpr double kWorthSaying = 60;  // seconds

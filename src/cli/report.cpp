@@ -23,12 +23,12 @@ using nlohmann::json;
 
 namespace {
 
-constexpr int kLabelWidth = 32;  // a blank follows, also of longer labels
+constexpr int kLabelWidth = 32;  // a blank follows, also after longer labels
 constexpr int kStageWidth = 15;
 constexpr std::size_t kAlike = 3;       // notes of one shape that are printed
 constexpr std::size_t kMostNotes = 30;  // of one severity, beyond which they are only counted
 
-// fputs, not fmt::print: a reader that closed the pipe is no reason to end the run.
+// fputs instead of fmt::print, so that a closed pipe does not end the run.
 void put(std::FILE* stream, const std::string& text) {
   std::fputs(text.c_str(), stream);
   std::fflush(stream);
@@ -43,7 +43,7 @@ void printNote(Severity severity, const std::string& text) {
   }
 }
 
-/// The text without its names and numbers: notes that share it say the same of several things.
+/// The text without its names and numbers, which is the same for notes of one kind.
 std::string shapeOf(const std::string& text) {
   std::string shape;
   char quote = 0;
@@ -193,9 +193,9 @@ void Report::line(const std::string& label, const std::string& text) {
 
 void Report::notes(std::span<const Note> notes) {
   for (const Severity severity : {Severity::loud, Severity::warning, Severity::info}) {
-    std::map<std::string, std::vector<std::string>> alike;  // by shape, the first few
+    std::map<std::string, std::vector<std::string>> alike;  // the first few, by shape
     std::map<std::string, std::size_t> count;
-    std::vector<std::string> shapes;  // in the order they came
+    std::vector<std::string> shapes;  // in order of the first note
     for (const Note& note : notes) {
       if (note.severity != severity) continue;
       (*root_)["notes"].push_back(

@@ -1,5 +1,5 @@
-// One place that prints a figure and records it: every figure on the terminal stands in the
-// --report file too, under a stable name.
+// Prints figures and records them: every figure on the terminal is also in the --report file, under
+// a stable name.
 #pragma once
 
 #include <cstddef>
@@ -15,29 +15,29 @@ namespace radiosity::cli {
 
 class Report {
  public:
-  /// `quiet`: nothing is printed but warnings of severity loud; all is recorded all the same.
+  /// `quiet`: prints only notes of severity loud, but records everything.
   explicit Report(bool quiet);
   ~Report();
   Report(const Report&) = delete;
   Report& operator=(const Report&) = delete;
 
-  /// A heading, and the object of the file that later figures go to.
+  /// A heading, and the object in the file for the figures that follow.
   void section(const std::string& key, const std::string& title);
   void count(const std::string& key, const std::string& label, std::size_t value);
-  /// One that a double holds, rounded: it may be beyond what can be counted.
+  /// A count in a double, rounded: it may be too large for an integer.
   void largeCount(const std::string& key, const std::string& label, double value);
-  /// `key` ends in the unit where there is one ("area_m2").
+  /// `key` ends in the unit, if there is one ("area_m2").
   void number(const std::string& key, const std::string& label, double value,
               const std::string& unit = "");
   void bytes(const std::string& key, const std::string& label, std::size_t value);
   void seconds(const std::string& key, const std::string& label, double value);
   void text(const std::string& key, const std::string& label, const std::string& value);
   void yesNo(const std::string& key, const std::string& label, bool value);
-  /// One value a band.
+  /// One value for each band.
   void bands(const std::string& key, const std::string& label, std::span<const double> values,
              const std::string& unit);
 
-  /// Recorded only: too long for a line.
+  /// A series of values, which is only recorded: it is too long for a line.
   void series(const std::string& key, std::span<const double> values);
 
   struct Column {
@@ -45,8 +45,8 @@ class Report {
     std::string title;
     bool numeric = true;
   };
-  /// Rows of cells as they are printed; numeric ones are recorded as numbers. At most `most` rows
-  /// are printed, the file has all.
+  /// A table of printed cells; numeric ones are recorded as numbers. Prints at most `most` rows;
+  /// the file has all.
   void table(const std::string& key, const std::vector<Column>& columns,
              const std::vector<std::vector<std::string>>& rows, std::size_t most = 40);
 
@@ -54,18 +54,19 @@ class Report {
   /// dropped, kept. `seconds`: by the clock, for the file only; below 0: none.
   void stage(const std::string& key, const std::string& label, const std::string& action,
              const std::string& detail, double seconds = -1);
-  /// A line of its own, printed only.
+  /// A line that is only printed.
   void line(const std::string& label, const std::string& text);
-  /// Loud ones and warnings go to standard error, worst first; many alike are grouped.
+  /// Prints notes. Loud ones and warnings go to standard error, worst first; similar ones are
+  /// grouped.
   void notes(std::span<const Note> notes);
-  /// A file written again replaces what was recorded of it.
+  /// Records an output file. A file that is written again replaces its record.
   void output(const std::string& path, std::size_t bytes, const std::string& what);
 
-  /// Recorded but not printed while muted.
+  /// While muted, figures are recorded but not printed.
   void mute(bool on) { muted_ = on; }
   bool muted() const { return muted_ || quiet_; }
 
-  /// The top of the file: command line, exit code, version.
+  /// A fact at the top of the file: command line, exit code, version.
   void fact(const std::string& key, const std::string& value);
   void fact(const std::string& key, const std::vector<std::string>& values);
   void exitCode(int code);

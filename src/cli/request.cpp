@@ -34,7 +34,7 @@ const char* commandName(Command command) {
 
 namespace {
 
-/// Sets a field where the option was given, and says which option it was where that is refused.
+/// Sets a field if the option was given; an error names the option.
 template <class Options, class Value, class Given>
 void set(Options& options, Value Options::*field, const std::optional<Given>& given,
          const char* name) {
@@ -43,7 +43,7 @@ void set(Options& options, Value Options::*field, const std::optional<Given>& gi
   nameOption(name, [&] { options.validate(); });
 }
 
-/// Sets a field to the value of a word that the command line let through.
+/// Sets a field to the value of a word that the command line has accepted.
 template <class Table, class Enum>
 void setNamed(Enum& value, const Table& table, const std::optional<std::string>& word) {
   if (word) value = named(table, *word).value_or(value);
@@ -52,7 +52,7 @@ void setNamed(Enum& value, const Table& table, const std::optional<std::string>&
 }  // namespace
 
 MeshOptions Request::apply(MeshOptions options) const {
-  // One of the three says how fine; the one given now replaces the one given before.
+  // Only one of the three sets the resolution; the new one replaces the earlier one.
   if (patches) options.max_edge = 0;
   if (patches || max_edge) options.faces_as_patches = false;
   set(options, &MeshOptions::patches, patches, "--patches");
@@ -110,7 +110,7 @@ JournalOptions Request::journal(const std::string& results_output) const {
   JournalOptions options;
   if (!results_output.empty()) options.path = results_output + ".rows";
   options.resume = resume.value_or(true);
-  if (resume == true) options.from_seconds = 0;  // asked for: also of a short run
+  if (resume == true) options.from_seconds = 0;  // asked for, so also in a short run
   return options;
 }
 

@@ -1,5 +1,5 @@
-// The parsed command line. An option that was not given is empty: then a stage that is there stays
-// as it is.
+// The parsed command line. An option that was not given is empty, so that an existing stage keeps
+// its value.
 #pragma once
 
 #include <cstdint>
@@ -27,13 +27,13 @@ struct Request {
   Command command = Command::info;
   std::vector<std::string> arguments;  ///< as typed, for the report
   std::string input;
-  std::string second;  ///< the file that `compare` compares the input with
+  std::string second;  ///< the second file of `compare`
   std::vector<std::string> outputs;
 
-  bool devices = false;  ///< of `info`: what can draw hemicubes, instead of a scene
+  bool devices = false;  ///< of `info`: list devices for hemicubes, instead of a scene
 
   SceneOptions scene;
-  /// The options given that only apply where a scene file is read ("--unit").
+  /// The given options that only apply to reading a scene file ("--unit").
   std::vector<std::string> reading_options;
 
   std::optional<std::size_t> patches;
@@ -53,7 +53,7 @@ struct Request {
   std::string memory_limit;
   std::optional<bool> resume;
 
-  std::string between;              ///< surfaces, groups or patches; empty: as the output has it
+  std::string between;              ///< surfaces, groups or patches; empty: the output's default
   std::vector<std::string> groups;  ///< "NAME=PATTERN"
   std::string layout;               ///< wide or long; empty: wide
   std::string sky_name = "sky";
@@ -79,7 +79,7 @@ struct Request {
   std::optional<int> heat_iterations;
   std::string patch_table;  ///< the .csv; empty: none
 
-  std::string a_is;  ///< radiosity, radiance or srgb8; empty: as the file says
+  std::string a_is;  ///< radiosity, radiance or srgb8; empty: that of the file
   std::string b_is;
   bool with_gather = false;
   bool fit_scale = false;
@@ -87,8 +87,8 @@ struct Request {
   std::optional<double> match;
   std::optional<double> compare_tolerance;
   bool compare_factors = false;
-  std::string areas;  ///< of the rows of a matrix: a file
-  std::string rows;   ///< what they reflect and emit: a file
+  std::string areas;  ///< a file with areas of the rows of a matrix
+  std::string rows;   ///< a file with their reflectance and emission
 
   std::string camera;
   std::optional<int> width;
@@ -112,7 +112,7 @@ struct Request {
   std::string report;
   bool quiet = false;
 
-  /// `options` with what was given put in; validated.
+  /// `options` with the given values; validated.
   MeshOptions apply(MeshOptions options) const;
   FormFactorOptions apply(FormFactorOptions options) const;
   SolveOptions apply(SolveOptions options) const;
@@ -123,11 +123,11 @@ struct Request {
   /// `results_output`: the .h5 that is written; empty: none.
   JournalOptions journal(const std::string& results_output) const;
   CompareOptions compareOptions() const;
-  /// The picture's options as given, without a size where none was given; validated.
+  /// The given options of the picture, without a size if none was given; validated.
   RenderOptions renderOptions() const;
 };
 
-/// Calls check(); an InputError it throws is passed on with the option's name before it.
+/// Calls check() and prefixes the option's name to an InputError that it throws.
 template <class Check>
 void nameOption(const std::string& option, const Check& check) {
   try {
@@ -139,8 +139,8 @@ void nameOption(const std::string& option, const Check& check) {
 
 const char* commandName(Command command);
 
-/// Parses and checks the arguments. Returns an exit code where there is nothing left to do (help,
-/// version); prints what was asked for. Errors: InputError, with the nearest word for a typo.
+/// Parses and checks the arguments. Help and version are printed, and their exit code is returned.
+/// Errors: InputError, with the nearest word for a typo.
 std::optional<int> parseCommandLine(int argc, char** argv, Request& request);
 
 }  // namespace radiosity::cli

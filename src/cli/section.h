@@ -1,4 +1,4 @@
-// A part of the report that is always recorded and printed where it was asked for.
+// A section of the report that is always recorded, and printed if asked for.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace radiosity::cli {
 
-/// Figures within its lifetime are recorded, and printed only where `detail` is full.
+/// Figures within its lifetime are recorded, and printed only if `detail` is full.
 class Section {
  public:
   Section(Report& report, Detail detail, const std::string& key, const std::string& title)

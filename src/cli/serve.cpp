@@ -1,4 +1,4 @@
-// What processes other than number 0 do under mpirun.
+// The work of processes other than number 0 under mpirun.
 #include <memory>
 
 #include "cli/commands.h"
@@ -7,7 +7,7 @@ namespace radiosity::cli {
 
 namespace {
 
-/// The scene, opened when it is first needed: number 0 then has read it without a fault.
+/// Opens the scene when it is first needed: by then process 0 has read it without a fault.
 class OpenedScene {
  public:
   explicit OpenedScene(const Request& request)

@@ -20,11 +20,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr long kTick = 100'000'000;  // nanoseconds between two looks
+constexpr long kTick = 100'000'000;  // nanoseconds between two checks
 /// Time that a run may take from the signal to its end; with a tick, below half a second.
 constexpr std::chrono::milliseconds kGrace{250};
 
-// The handler may touch these alone: lock-free atomics, and a semaphore to post.
+// The handler may only use these: lock-free atomics, and a semaphore to post.
 std::atomic<Progress*> running{nullptr};
 std::atomic<int> signals{0};
 sem_t wake;
@@ -48,11 +48,11 @@ void waitForATick() {
   sem_timedwait(&wake, &until);
 }
 
-/// A text that names the stages on disk; the watching thread reads it.
+/// A text about the stages on disk; the watching thread reads it.
 struct Kept {
   std::mutex mutex;
   std::string text;
-  std::string path;  ///< of what the text is about
+  std::string path;  ///< of the file that the text is about
   std::string reason = "interrupted";
 };
 Kept& kept() {
@@ -65,7 +65,7 @@ void sayOutOfTime(double seconds) {
   kept().reason = fmt::format("stopped after {}, --time-limit", durationText(seconds));
 }
 
-/// For a run that does not come to its end.
+/// Ends the process of a run that does not end by itself.
 [[noreturn]] void endProcess(ConsoleProgress& progress) {
   progress.clear();
   const std::string text = interruptedText();
@@ -105,7 +105,7 @@ SignalGuard::SignalGuard(ConsoleProgress& progress, const TimeLimit& limit)
   sigaction(SIGTERM, &action, nullptr);
   action.sa_handler = SIG_IGN;
   sigaction(SIGPIPE, &action, nullptr);
-  sigaction(SIGXFSZ, &action, nullptr);  // a file over its limit fails to write and is reported
+  sigaction(SIGXFSZ, &action, nullptr);  // a write over the file size limit fails and is reported
 }
 
 SignalGuard::~SignalGuard() {

@@ -1,4 +1,4 @@
-// Ctrl-C.
+// Handles Ctrl-C and the time limit.
 #pragma once
 
 #include <atomic>
@@ -10,12 +10,11 @@
 
 namespace radiosity::cli {
 
-/// While it lives, SIGINT, SIGTERM and the end of the time limit cancel `progress`: the run ends at
-/// its next step, cleanly.
-/// Where no step ends in time, a thread of its own removes what is half-written, says so, and ends
-/// the process: someone who waits is answered within half a second, whatever is being done. A third
-/// signal ends the process at once. The same thread keeps the progress drawn. SIGPIPE is ignored: a
-/// closed pipe loses lines, not the run.
+/// While it lives, SIGINT, SIGTERM and the end of the time limit cancel `progress`: the run ends
+/// cleanly at its next step. If no step ends in time, a separate thread removes half-written files,
+/// prints a message, and ends the process, so that the user always gets an answer within half a
+/// second. A third signal ends the process at once. The same thread also draws the progress.
+/// SIGPIPE is ignored: a closed pipe loses lines but does not end the run.
 class SignalGuard {
  public:
   explicit SignalGuard(ConsoleProgress& progress, const TimeLimit& limit = TimeLimit(kNoTimeLimit));
@@ -32,11 +31,11 @@ class SignalGuard {
   std::thread watcher_;
 };
 
-/// The message of a run that was interrupted, or out of time: it names what is on disk by then, if
-/// anything.
+/// The message of a run that was interrupted or ran out of time: it names the stages on disk, if
+/// there are any.
 std::string interruptedText();
 
-/// A run that is interrupted from now on prints this text, as long as the file `path` is there.
+/// Sets the text that an interrupted run prints from now on, as long as the file `path` exists.
 void sayIfInterrupted(const std::string& text, const std::string& path);
 
 }  // namespace radiosity::cli

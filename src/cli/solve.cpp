@@ -10,7 +10,8 @@ namespace radiosity::cli {
 
 namespace {
 
-/// Writes the lit mesh, or the one with a lightmap, exposed as the picture of the same light is.
+/// Writes the lit mesh, or the mesh with a lightmap, with the exposure of a picture of the same
+/// light.
 void writeLit(Session& session, Pipeline& pipeline, const SurfaceLight& light, OutputSet& files) {
   const ExposedPicture shown = exposePicture(session, pipeline, light);
   const PatchMesh& mesh = pipeline.mesh().mesh;
@@ -21,7 +22,7 @@ void writeLit(Session& session, Pipeline& pipeline, const SurfaceLight& light, O
   }
 }
 
-/// Writes what --mix asks for; nothing is solved for but the light of single lamps.
+/// Writes the outputs of --mix; only the light of single lamps is solved for.
 int writeMix(Session& session, Pipeline& pipeline, const MixedLight& mix, bool elements,
              OutputSet& files) {
   writeStages(session, pipeline, files);

@@ -1,4 +1,4 @@
-// solve of a matrix from elsewhere: no scene, no mesh, a table of rows.
+// `solve` on a matrix from a file: there is no scene and no mesh, but a table of rows.
 #include <fmt/format.h>
 
 #include "cli/matrix_commands.h"

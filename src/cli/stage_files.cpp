@@ -16,7 +16,7 @@ namespace radiosity::cli {
 
 namespace {
 
-/// Said for every option given, also where it says what is the default.
+/// Refuses every given option for reading scenes, even if its value is the default.
 void refuseReadingOptions(const Request& request) {
   if (request.reading_options.empty() || !isResultsFile(request.input)) return;
   throw InputError(fmt::format(
@@ -24,7 +24,7 @@ void refuseReadingOptions(const Request& request) {
       request.input, request.reading_options.front()));
 }
 
-/// What holds form factors alone is for few subcommands.
+/// Refuses a file with only form factors, which few subcommands take.
 void requireScene(const Request& request) {
   if (!isMatrixInput(request.input)) return;
   requireFile(request.input);
@@ -33,7 +33,8 @@ void requireScene(const Request& request) {
       request.input, commandName(request.command)));
 }
 
-/// Results of one scene are often written over those of its last state, but not of another scene.
+/// Warns if the output has results of another scene. Usually it has those of an earlier state of
+/// this one.
 void warnOfOtherScene(Session& session, const Scene& scene, const std::string& results_output) {
   namespace fs = std::filesystem;
   if (results_output.empty() || results_output == session.request.input) return;
@@ -47,7 +48,7 @@ void warnOfOtherScene(Session& session, const Scene& scene, const std::string& r
   session.report.notes({&loud, 1});
 }
 
-/// Where the output goes there is room for what does not fit into memory.
+/// The folder for scratch memory: that of the output, which has room.
 std::string scratchFolder(const Request& request, const std::string& results_output) {
   const std::string& output =
       !results_output.empty() || request.outputs.empty() ? results_output : request.outputs.front();
@@ -55,7 +56,7 @@ std::string scratchFolder(const Request& request, const std::string& results_out
   return folder.empty() ? "." : folder;
 }
 
-/// Refuses a solver that cannot solve with the form factors to come before they are computed.
+/// Refuses a solver that cannot use the form factors, before these are computed.
 void requireSolver(const PipelineOptions& options) {
   const FormFactorOptions& factors = options.factors;
   const bool raw_rows = factors.method == FormFactorMethod::hemicube && !factors.symmetrize;
@@ -124,7 +125,7 @@ std::string contents(const Results& results) {
   return list;
 }
 
-/// Says how large the file will be; RunError where the disk has no room for it.
+/// Announces the size of the file. Throws RunError if the disk has no room for it.
 void announceResults(Session& session, Pipeline& pipeline, const std::string& path) {
   pipeline.loadMatrix();
   const std::size_t bytes = estimateResultsBytes(pipeline.results());
@@ -168,7 +169,7 @@ void keepFactors(Session& session, Pipeline& pipeline, const OutputSet& files) {
 
 namespace {
 
-/// `kept`: what is in the file then, for whoever interrupts the run.
+/// `kept`: the contents of the file, for the message of an interrupted run.
 void saveNow(Session& session, Pipeline& pipeline, const std::string& path, const char* kept) {
   if (!pipeline.update(path)) {
     announceResults(session, pipeline, path);

@@ -112,7 +112,7 @@ void addFactorOptions(CLI::App& app, Request& r) {
       "hemicube (seen from one point a patch), or auto (default): exact or rays, by what a sample "
       "of rows takes; the report says why")
       ->check(CLI::IsMember(namesIn(kMethodNames)));
-  // Where results are compared, --tolerance is about the difference.
+  // In `compare`, --tolerance is that of the difference.
   const bool compares = app.get_name() == commandName(Command::compare);
   const std::string of_pictures =
       app.get_name() != commandName(Command::render)

@@ -15,9 +15,9 @@ namespace radiosity::cli {
 
 namespace {
 
-// Light lost on backs that is worth a warning, as a share of what is emitted.
+// The program warns of light lost on backs above this share of the emitted light.
 constexpr double kBacksWorthWarning = 1e-3;
-/// Imbalance of the account of gathered light that is worth a warning, as a share of what comes in.
+/// The program warns of an imbalance of gathered light above this share of the incoming power.
 constexpr double kImbalanceWorthWarning = 0.05;
 
 std::string triple(const Vec3& v) {
@@ -209,7 +209,7 @@ double sum(const std::vector<double>& bands) {
 /// Incoming power: emitted, and from the sky.
 double incoming(const EnergyAccount& e) { return sum(e.emitted) + sum(e.from_sky); }
 
-/// Shares of the incoming power are easier to judge than watts.
+/// A part as a share of the incoming power, which is easier to judge than watts.
 std::string shareOf(const std::vector<double>& part, const EnergyAccount& e) {
   return incoming(e) > 0 ? fmt::format("W  ({:.3g}%)", 100 * sum(part) / incoming(e)) : "W";
 }
@@ -224,7 +224,7 @@ void energyFigures(Report& report, const EnergyAccount& e) {
   report.bands("imbalance_W", "imbalance", e.imbalance, shareOf(e.imbalance, e));
 }
 
-/// A warning that names the surfaces whose backs take more than 0.1% of the light.
+/// Warns of surfaces whose backs take more than 0.1% of the light.
 void warnOfBacks(Report& report, const EnergyAccount& e,
                  const std::vector<double>& backs_by_surface, const PatchMesh& mesh) {
   const double lost = sum(e.on_backs);
@@ -257,7 +257,7 @@ void summarizeSolution(Report& report, const Solution& solution, const FormFacto
   {
     const Section section(report, detail, "solution", "Solution");
     report.text("status", "status", nameOf(kSolveStatusNames, s.status));
-    // Files of older programs do not say which solver ran: it was the one asked for.
+    // Older files do not have the solver that ran: it was the one asked for.
     const Solver ran = s.solver == Solver::automatic ? options.solver : s.solver;
     report.text("solver", "solver", nameOf(kSolverNames, ran));
     report.text("solver_asked_for", "  asked for", nameOf(kSolverNames, options.solver));
@@ -278,7 +278,7 @@ void summarizeSolution(Report& report, const Solution& solution, const FormFacto
     }
     report.series("residual_history", s.residual_history);
     report.seconds("seconds", "time", s.seconds);
-    if (!s.energy.emitted.empty()) energyFigures(report, s.energy);  // none where singular
+    if (!s.energy.emitted.empty()) energyFigures(report, s.energy);  // empty if singular
     report.text("message", "in words", oneLine(s.message));
     report.yesNo("usable", "usable", s.usable());
   }
@@ -332,7 +332,8 @@ void gatherFigures(Report& report, const Gathered& gathered, const GatherOptions
   report.text("message", "in words", oneLine(s.message));
 }
 
-/// The view from a point stands for an area: where patches are large, light is lost or made.
+/// Warns of an imbalance. The view from a point represents an area, so large patches lose or gain
+/// light.
 void warnOfImbalance(Report& report, const EnergyAccount& e) {
   const double imbalance = sum(e.imbalance);
   if (!(std::abs(imbalance) > kImbalanceWorthWarning * incoming(e))) return;

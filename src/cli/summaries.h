@@ -1,4 +1,4 @@
-// A summary of each stage: figures with their units, on the terminal and in the report.
+// Summaries of the stages: figures with their units, on the terminal and in the report.
 #pragma once
 
 #include "cli/report.h"
@@ -20,18 +20,18 @@ enum class Detail {
   full    ///< every figure on the terminal
 };
 
-/// One line on the file that was read.
+/// Prints one line on the scene file.
 void summarizeScene(Report& report, const Scene& scene, const std::string& from);
-/// All that `radiosity info` says of a scene.
+/// Prints the output of `radiosity info` for a scene.
 void describeScene(Report& report, const Scene& scene);
 void summarizeMesh(Report& report, const MeshResult& result, Detail detail);
 void summarizeFactors(Report& report, const FormFactors& factors, const PatchMesh& mesh,
                       Detail detail);
 void summarizeSolution(Report& report, const Solution& solution, const FormFactors& factors,
                        const PatchMesh& mesh, const SolveOptions& options, Detail detail);
-/// Beside the error of the matrix, which of the two dominates.
+/// The summary also names the larger error: that of elements or that of the matrix.
 void summarizeElements(Report& report, const Elements& elements, const FormFactors& factors);
-/// `sources`: what the light at points was made from.
+/// `sources`: the report of the sources of light at points.
 void summarizeFinalGather(Report& report, const ElementReport& sources,
                           const PixelGatherReport& gathered, const FormFactors& factors);
 /// heat_summary.cpp

@@ -15,7 +15,7 @@ namespace radiosity::cli {
 
 namespace {
 
-/// Columns of a terminal that a table may take.
+/// The width of a table on the terminal.
 constexpr std::size_t kTerminalWidth = 120;
 constexpr std::size_t kTerminalRows = 40;
 /// Digits on the terminal; files have all.
@@ -24,14 +24,14 @@ constexpr int kTerminalDigits = 4;
 constexpr std::array kTables = {Format::csv,    Format::json,     Format::markdown, Format::idf,
                                 Format::view3d, Format::triplets, Format::hdf5};
 
-/// These are for programs that take the matrix itself.
+/// True for formats of programs that read the matrix itself.
 bool isOfPatches(Format format) { return format == Format::triplets || format == Format::hdf5; }
 
 bool printsTable(const Request& request) {
   return !request.between.empty() || !request.groups.empty();
 }
 
-/// What --between says, else what the format is for.
+/// The value of --between, or else the format's default.
 std::string betweenOf(const Request& request, Format format) {
   if (!request.between.empty()) return request.between;
   return isOfPatches(format) ? "patches" : "groups";
@@ -41,7 +41,7 @@ std::vector<std::string> groupsOf(const Request& request, const std::string& bet
   return between == "surfaces" ? std::vector<std::string>() : request.groups;
 }
 
-/// The tables of one run: each is made once.
+/// The tables of one run; each is made once.
 class Tables {
  public:
   Tables(Session& session, Pipeline& pipeline) : session_(session), pipeline_(pipeline) {
@@ -82,7 +82,7 @@ TableLayout layoutOf(const Request& request) {
   return request.layout == "long" ? TableLayout::tall : TableLayout::wide;
 }
 
-/// For the report file.
+/// Records pairs in the report file.
 void recordPairs(Report& report, const NamedFactors& factors) {
   std::vector<std::vector<std::string>> rows;
   const auto add = [&](std::size_t a, const std::string& to, double value, double error) {
@@ -173,7 +173,7 @@ void writeTable(Session& session, Tables& tables, Format format, OutputSet& file
   }
 }
 
-/// What an open scene loses has no place in a zone, which EnergyPlus takes to be closed.
+/// Notes the light that an open scene loses: EnergyPlus assumes that a zone is closed.
 void noteOpenZone(Session& session, const NamedFactors& factors) {
   double lost = 0;
   std::size_t worst = 0;

@@ -9,12 +9,11 @@
 
 namespace radiosity::cli {
 
-/// InputError for options of tables that nothing asked for uses.
+/// Throws InputError for options of tables if no table was asked for.
 void checkTableOptions(const Request& request, const OutputSet& files);
 
-/// InputError for groups that do not fit the surfaces, and for names and numbers of rows that one
-/// of the tables to come would refuse: before form factors are computed. `unknowns`: 0 where they
-/// are not known yet.
+/// Throws InputError for groups that do not fit the surfaces, and for names and numbers of rows
+/// that a table would refuse, before form factors are computed. `unknowns`: 0 if not known yet.
 void checkTables(const Session& session, const OutputSet& files,
                  std::span<const std::string> surfaces, std::size_t unknowns);
 

@@ -6,10 +6,10 @@
 
 namespace radiosity::cli {
 
-/// Seconds of a run without a limit.
+/// The time limit, in seconds, of a run without one.
 inline constexpr double kNoTimeLimit = std::numeric_limits<double>::infinity();
 
-/// Counts from its making on.
+/// Measures the time since its construction.
 class TimeLimit {
  public:
   explicit TimeLimit(double seconds) : seconds_(seconds) {}

@@ -11,7 +11,7 @@
 namespace radiosity::cli {
 
 const CLI::Validator& wholeNumber() {
-  constexpr std::size_t kDigits = 18;  // always fits 64 bits
+  constexpr std::size_t kDigits = 18;  // always fit into 64 bits
   static const CLI::Validator kValidator(
       [](std::string& text) {
         const bool whole = !text.empty() && text.size() <= kDigits &&

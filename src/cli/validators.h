@@ -8,12 +8,13 @@
 
 namespace radiosity::cli {
 
-/// CLI11 reads "-5" into an unsigned number, and too many digits as the largest, without a word.
+/// Accepts an integer of 0 or more. CLI11 itself silently reads "-5" as an unsigned number, and too
+/// many digits as the largest.
 const CLI::Validator& wholeNumber();
-/// CLI11's own names all digits of the largest double.
+/// Accepts a number of 0 or more. CLI11's own validator prints all digits of the largest double.
 const CLI::Validator& nonNegative();
 
-/// The value of --sky: one number or three with commas. InputError naming the option.
+/// The value of --sky: one number, or three with commas. Errors: InputError naming the option.
 Vec3 parseSky(const std::string& text);
 
 }  // namespace radiosity::cli

@@ -30,7 +30,7 @@ bool isPage(const fs::path& path) {
   return text.find("id=\"radiosity-data\"") != std::string::npos;
 }
 
-/// In the folder at hand; nobody named it, so that what it replaces must be a page, too.
+/// The default page, in the current folder. Nobody named it, so it may only replace another page.
 std::string defaultPage(const std::string& input) {
   std::string name = fs::path(input).stem().string() + ".html";
   std::error_code ignored;
@@ -41,7 +41,7 @@ std::string defaultPage(const std::string& input) {
   return name;
 }
 
-/// Found before the work is done.
+/// Refuses hemicubes with two estimates for each pair, before any work is done.
 void requireOneEstimate(const Request& request, const FormFactorOptions& options) {
   if (options.method != FormFactorMethod::hemicube || options.symmetrize) return;
   throw InputError(request.input +

@@ -52,7 +52,7 @@ std::string bandsText(int bands) {
 
 namespace {
 
-/// A number and what follows it; no number: NaN, and all of the text follows.
+/// A number and the text after it; NaN and the whole text if there is no number.
 std::pair<double, std::string> numberAndUnit(const std::string& text) {
   double value = 0;
   const char* const last = text.data() + text.size();
@@ -118,7 +118,7 @@ std::string suggestion(const std::string& word, std::span<const std::string> can
 
 namespace {
 
-/// A file may hold a word of megabytes: its beginning and its end tell which one it is.
+/// The longest line. A file may have a word of megabytes; its beginning and end identify it.
 constexpr std::size_t kLongestLine = 2000;
 
 std::string shortened(const std::string& text) {

@@ -1,4 +1,4 @@
-// How the program writes figures and how it guesses what was meant.
+// Writes figures as text, and guesses the word that was meant.
 #pragma once
 
 #include <cstddef>
@@ -21,23 +21,24 @@ double degrees(double radians);
 /// "1 patch", "2,034 patches".
 std::string plural(std::size_t count, const std::string& one, const std::string& many);
 
-/// Names of the bands: "R", "G", "B"; where there are not three, "band 1", "band 2", ...
+/// Names of the bands: "R", "G", "B"; if there are not three, "band 1", "band 2", ...
 std::vector<std::string> bandNames(int bands);
-/// All of them behind a figure: "R G B", "band 1", "bands 1 to 8".
+/// All bands, as text after a figure: "R G B", "band 1", "bands 1 to 8".
 std::string bandsText(int bands);
 
-/// "512M", "2G", "1.5GiB", "1000000" (bytes) -> bytes; units are binary. InputError names `option`.
+/// Parses "512M", "2G", "1.5GiB" or "1000000" (bytes); units are binary. Errors: InputError naming
+/// `option`.
 std::size_t parseBytes(const std::string& option, const std::string& text);
 
-/// Seconds: "90", "90s", "10m", "1.5h" (also "min"). InputError naming `option`.
+/// Parses "90", "90s", "10m", "1.5h" (also "min") as seconds. Errors: InputError naming `option`.
 double parseDuration(const std::string& option, const std::string& text);
 
-/// The candidate nearest to `word` by edits (insert, delete, replace, swap of neighbours), where
-/// no more than a third of the letters, and at least one, differ.
+/// The candidate nearest to `word` by edits (insert, delete, replace, swap of neighbours). At most
+/// a third of the letters may differ; one always may.
 std::optional<std::string> nearest(const std::string& word,
                                    std::span<const std::string> candidates);
 
-/// "; did you mean X?" or nothing.
+/// "; did you mean X?", or an empty text.
 std::string suggestion(const std::string& word, std::span<const std::string> candidates);
 
 /// The text on one line: line breaks become "; ".

@@ -75,7 +75,7 @@ void addValue(const LightField& field, std::size_t t, const Vec3& weights, doubl
   const double* v1 = v0 + bands;
   const double* v2 = v1 + bands;
   for (std::size_t b = 0; b < bands; ++b) {
-    // As differences: a constant stays itself.
+    // We sum differences, so that a constant is reproduced exactly.
     sum[b] += area * (v0[b] + weights.y * (v1[b] - v0[b]) + weights.z * (v2[b] - v0[b]));
   }
 }
@@ -92,9 +92,9 @@ bool emits(const LightField& field, std::size_t t) {
 struct Found {
   double area = 0;      ///< compared
   double clipped = 0;   ///< matched, but one side is clipped there
-  double opposite = 0;  ///< not matched, but for something that faces the other way
+  double opposite = 0;  ///< not matched: the other side faces the other way
   Vec3 place{0.0};      ///< integral over the area compared
-  bool emits = false;   ///< on this side or, somewhere, the other
+  bool emits = false;   ///< some part emits, on this side or the other
 };
 
 /// The same for all triangles of one side.
@@ -134,7 +134,7 @@ class Matcher {
     const Triangle triangle = triangleOf(own_, t);
     Found found;
     if (!(triangle.area > 0)) return found;
-    // About four samples a triangle of the other side, at least four of this one's.
+    // About four samples for each triangle of the other side, and at least four for this one.
     constexpr double kMost = 16;
     const double fine = 2 * std::sqrt(triangle.area / mean_area_);
     const int n = int(std::clamp(std::ceil(fine), 2.0, kMost));
@@ -229,7 +229,7 @@ bool sameCells(const LightField& a, const LightField& b) {
          a.triangles == b.triangles && a.cell == b.cell && a.vertices == b.vertices;
 }
 
-/// One pair a cell of `own`; a and b are told apart by `own_is_a`.
+/// One pair for each cell of `own`. `own_is_a`: `own` is side A, the other is B.
 ValuePairs pairsOf(const LightField& own, const AllFound& found, bool own_is_a) {
   ValuePairs pairs(own.cell_surface.size(), own.bands);
   const std::size_t bands = found.bands;
@@ -257,7 +257,7 @@ ValuePairs pairsOf(const LightField& own, const AllFound& found, bool own_is_a) 
   return pairs;
 }
 
-/// The same cells on both sides: nothing has to be searched.
+/// Pairs triangle t with triangle t: both sides have the same cells, so no search is needed.
 AllFound pairUp(const LightField& a, const LightField& b) {
   AllFound found(a.triangles.size(), a.bands);
   const Vec3 first_corner(1, 0, 0);  // values are constant on it

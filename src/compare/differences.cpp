@@ -13,7 +13,8 @@
 namespace radiosity {
 namespace {
 
-/// The factor s that makes sum of weight |a - s b|^2 least, and what is left of |a|.
+/// Finds the factor s that minimises the sum of weight |a - s b|^2, and the relative difference
+/// that it leaves.
 void fit(const ValuePairs& pairs, Comparison& comparison) {
   double ab = 0;
   double bb = 0;
@@ -34,12 +35,12 @@ void fit(const ValuePairs& pairs, Comparison& comparison) {
   comparison.fitted_l2 = sums.relativeL2();
 }
 
-/// A wrong unit makes a difference that one factor takes away.
+/// Notes a likely wrong unit: one factor would then remove the difference.
 void nameFactor(const CompareOptions& options, Comparison& comparison) {
   const double before = comparison.relativeL2();
   const double scale = comparison.fitted_scale;
-  // Most of a difference worth naming goes with the factor: it is no accident of the scene. Of a
-  // factor that means something, half is enough.
+  // The factor must remove most of a difference worth naming: then it is no accident of the scene.
+  // For a factor that has a meaning, half is enough.
   constexpr double kWorthNaming = 0.05;
   const auto near = [&](double factor) { return std::abs(scale / factor - 1) < 0.05; };
   const double left = near(std::numbers::pi) || near(std::numbers::inv_pi) ? 0.5 : 0.2;

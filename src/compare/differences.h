@@ -18,7 +18,7 @@ struct PairWeight {
   bool emits = false;
 };
 
-/// The two values of every cell or pixel, and what they weigh.
+/// The two values of every cell or pixel, and their weights.
 struct ValuePairs {
   ValuePairs(std::size_t count, int band_count)
       : bands(std::size_t(band_count)),
@@ -37,8 +37,8 @@ struct ValuePairs {
   std::vector<double> b;
 };
 
-/// Fills scale, fit, sums, largest, surfaces, difference and cells from the pairs, and names a
-/// factor between them that has a name. `surface_names` may be empty (pictures).
+/// Fills scale, fit, sums, largest, surfaces, difference and cells from the pairs, and names the
+/// factor between them if it is a known one. `surface_names` may be empty (pictures).
 void measureDifferences(ValuePairs& pairs, const CompareOptions& options,
                         const std::vector<std::string>& surface_names, Comparison& comparison);
 

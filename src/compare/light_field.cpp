@@ -1,4 +1,4 @@
-// Light on surfaces, out of everything that holds some.
+// Makes light fields from solutions and from lit meshes.
 #include <fmt/format.h>
 
 #include <algorithm>

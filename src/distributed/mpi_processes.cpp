@@ -13,13 +13,13 @@ namespace radiosity {
 
 namespace {
 
-constexpr int kLength = 1;  // tags: how long a message is,
-constexpr int kBytes = 2;   // and its bytes
-/// MPI counts in ints: more go in parts.
+constexpr int kLength = 1;  // tag of the length of a message
+constexpr int kBytes = 2;   // tag of its bytes
+/// MPI counts in ints, so longer messages are sent in parts.
 constexpr std::size_t kMostBytes = std::size_t(1) << 30;
 
-/// Waits without taking a core from those that compute: short at first, for answers that come at
-/// once.
+/// Waits without taking a core from processes that compute. The first waits are short, for answers
+/// that come at once.
 class Patience {
  public:
   void wait(const WhileWaiting& waiting) {
@@ -51,10 +51,10 @@ MpiProcesses::MpiProcesses() {
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
   MPI_Comm_size(MPI_COMM_WORLD, &size_);
-  // Signals are the program's own; PETSc would print its call stack.
+  // The program handles signals itself; PETSc would print its call stack.
   PetscOptionsSetValue(nullptr, "-no_signal_handler", nullptr);
   PetscInitializeNoArguments();
-  // Its errors become exceptions, which say what is wrong in a line.
+  // PETSc returns its errors, and we throw exceptions that describe them in one line.
   PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
 }
 

@@ -13,7 +13,7 @@ namespace radiosity {
 
 namespace {
 
-/// What PETSc made and is to destroy.
+/// Owns an object of PETSc and destroys it.
 template <class Handle, PetscErrorCode (*destroy)(Handle*)>
 struct Owned {
   Handle handle = nullptr;
@@ -26,9 +26,9 @@ using OwnedMat = Owned<Mat, MatDestroy>;
 using OwnedVec = Owned<Vec, VecDestroy>;
 using OwnedKsp = Owned<KSP, KSPDestroy>;
 
-/// r + W (W^T A W)^-1 W^T r, W the near null vectors, which A keeps apart: so each has an
-/// eigenvalue near 1, as all else has. (The additive coarse correction of Nicolaides, SIAM J.
-/// Numer. Anal. 24, 1987.)
+/// The preconditioner r + W (W^T A W)^-1 W^T r; W are the near null vectors. W^T A W is diagonal,
+/// since A does not couple them. Their eigenvalues become near 1, like all others. (The additive
+/// coarse correction of Nicolaides, SIAM J. Numer. Anal. 24, 1987.)
 class CoarseCorrection {
  public:
   CoarseCorrection(const KrylovProblem& problem, const ShellOperator& shell)
@@ -56,7 +56,7 @@ class CoarseCorrection {
     return 0;
   }
 
-  /// For preconditioners that know what to do with them.
+  /// Gives the near null vectors to the matrix, for preconditioners that use them.
   void attach(Mat matrix) const {
     std::vector<Vec> vectors(problem_.near_nulls, nullptr);
     for (std::size_t n = 0; n < vectors.size(); ++n) {

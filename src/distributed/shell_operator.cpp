@@ -12,7 +12,7 @@ namespace radiosity {
 
 namespace {
 
-/// Reads and writes of a vector's own values.
+/// Reads and writes the values of a vector that this process owns.
 class VecValues {
  public:
   explicit VecValues(Vec vector) : vector_(vector) {
@@ -146,7 +146,7 @@ void ShellOperator::gather(Vec vector, std::span<double> all) const {
 
 Mat ShellOperator::assembled() const {
   const auto bands = std::size_t(problem_.bands);
-  std::vector<double> entries(x_.size(), 1.0 / double(counts_.size()));  // the 1 of I, all together
+  std::vector<double> entries(x_.size(), 1.0 / double(counts_.size()));  // sums to the 1 of I
   problem_.entries([&](std::size_t i, std::size_t /*j*/, double /*value*/) {
     for (std::size_t b = 0; b < bands; ++b) entries[i * bands + b] += 1;
   });

@@ -11,12 +11,12 @@
 
 namespace radiosity {
 
-/// RunError with PETSc's words where it is not 0.
+/// Throws RunError with PETSc's words if `code` is not 0.
 void requireNoError(PetscErrorCode code);
 
-/// Vectors are cut into as many ranges of rows as there are processes, all bands of a row together.
-/// A product gathers x in all processes (rows * bands numbers each), multiplies by the rows that
-/// each has, and adds up the parts of y, each in the process whose range it is.
+/// Vectors are cut into one range of rows for each process, all bands of a row together. A product
+/// gathers x in all processes (rows * bands numbers each), multiplies it by the rows of each, and
+/// adds up the parts of y, each range in the process that owns it.
 class ShellOperator {
  public:
   /// Keeps `problem` by reference.
@@ -26,14 +26,14 @@ class ShellOperator {
   ShellOperator& operator=(const ShellOperator&) = delete;
 
   Mat matrix() const { return matrix_; }
-  /// Places, of rows * bands, that are this process's.
+  /// The range of this process among the rows * bands places: its first place and its length.
   std::size_t first() const { return std::size_t(starts_[std::size_t(rank_)]); }
   std::size_t count() const { return std::size_t(counts_[std::size_t(rank_)]); }
-  /// This process's range of an array of all.
+  /// This process's range of an array of all places.
   std::span<const double> own(std::span<const double> all) const {
     return all.subspan(first(), count());
   }
-  /// All of a vector, in process 0; `all` is empty in the others.
+  /// Gathers a whole vector in process 0; `all` is empty in the others.
   void gather(Vec vector, std::span<double> all) const;
 
   /// The same matrix with its entries (MATMPIAIJ), to be destroyed by the caller.

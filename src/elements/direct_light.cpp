@@ -12,16 +12,16 @@
 namespace radiosity {
 namespace {
 
-/// Rays to emitters from a point.
+/// The number of rays to emitters from a point.
 constexpr std::size_t kLooks = 64;
-/// An element is clipped for where emitters and what is in between are no more than this together:
-/// a point then takes some 50 us, what its rays would take.
+/// Light on an element is clipped if its emitters and occluders together are no more than this. A
+/// point then takes some 50 us, like its rays.
 constexpr std::size_t kMostClips = 64;
-/// Longer lists than this are not thinned out: that would take longer than the rays. The element
-/// and all below it are lit by rays.
+/// The longest list of occluders that is thinned out: beyond, that would take longer than rays. The
+/// element and all below it are then lit by rays.
 constexpr std::size_t kMostThinned = 160;
-/// Farther than this many radii the form factor is taken at the emitter's centre: to 1%, which only
-/// says where rays go.
+/// Beyond this many radii the form factor is taken at the emitter's centre. It is then good to 1%,
+/// and only decides how many rays go there.
 constexpr double kFar = 6;
 
 const std::vector<Occluder>& bodiesOf(const OccluderSet* occluders) {
@@ -36,7 +36,7 @@ FlatPolygon aboveHorizon(const Emitter& emitter, const Vec3& normal, double offs
 
 }  // namespace
 
-/// The emitters that an element may see, and what may be in between.
+/// The emitters that an element may see, and the occluders that may be in between.
 struct EmitterLight::Lights : ElementLights {
   struct Seen {
     Index emitter;
@@ -98,14 +98,14 @@ std::shared_ptr<const ElementLights> EmitterLight::lightsOf(const ElementShape& 
   return lights;
 }
 
-/// All emitters in front of a root that face it, with what the tree of occluders has in between.
-/// False, with the emitters alone, where that is more than can be thinned out.
+/// Finds all emitters in front of a root that face it, with the occluders in between. False, with
+/// the emitters alone, if the occluders are too many to be thinned out.
 bool EmitterLight::findAll(const ElementShape& shape, Lights& lights) const {
   const Index facet = facet_of_patch_[surface_.roots.patch[shape.root]];
   if (facet == kNone || occluders_->hidden_facets[facet] != 0) return true;
   const Facet& own = elements_.facets[facet];
   const double touching = elements_.coincidence;
-  // The horizons of smooth corners are not the root's own.
+  // At smooth corners the horizon is not that of the root's plane.
   const bool curved = surface_.curved[shape.root] != 0;
   const HalfSpace front =
       curved ? HalfSpace{{0.0, 0.0, 0.0}, -1.0} : HalfSpace{own.normal, own.offset + touching};
@@ -157,7 +157,7 @@ bool EmitterLight::findAll(const ElementShape& shape, Lights& lights) const {
   return true;
 }
 
-/// What of the lists concerns an element.
+/// Keeps the emitters and occluders of the lists that matter to an element.
 void EmitterLight::thinOut(const ElementShape& shape, const Lights& from, Lights& lights) const {
   ShapeCorners corners{};
   for (std::size_t k = 0; k < 4; ++k) {
@@ -242,7 +242,7 @@ double EmitterLight::aimed(const SurfacePoint& point, const Lights* lights,
   ++by_rays_;
   struct Aim {
     Index emitter;
-    double end;  ///< of its share
+    double end;  ///< end of its share in the running sum
   };
   thread_local std::vector<Aim> shares;
   shares.clear();
@@ -278,7 +278,7 @@ double EmitterLight::aimed(const SurfacePoint& point, const Lights* lights,
     for (const Lights::Seen& seen : lights->seen) add(seen.emitter);
   }
   if (!(sum > 0)) return 0;
-  // Rays go to emitters by what these give; each stands for as much light.
+  // Emitters get rays in proportion to their light, so each ray stands for the same light.
   std::array<Vec3, kLooks> to;
   std::array<Index, kLooks> polygon;
   std::array<Index, kLooks> emitter_of;

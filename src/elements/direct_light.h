@@ -1,4 +1,4 @@
-// Light of the emitters at points, by exact clipping or by rays to points of them.
+// Light of the emitters at points, by exact clipping or by rays to points on the emitters.
 #pragma once
 
 #include <array>
@@ -18,21 +18,21 @@
 
 namespace radiosity {
 
-/// More emitters than this are not clipped, but aimed at by rays; ...
+/// The most emitters that are clipped; rays are aimed at more than these, ...
 inline constexpr std::size_t kMostClippedEmitters = 128;
-/// ... and of more than this, none is aimed at: a look at each would take longer than rays all over
-/// the hemisphere, which then bring their light.
+/// ... up to this number. If there are more, rays over the whole hemisphere bring their light: they
+/// take less time than a look at each emitter.
 inline constexpr std::size_t kMostAimedEmitters = 8192;
 
-/// The point sees each emitter whole, or past a list of occluders; the list is found for the root
-/// and thinned out for the elements below it, with the proofs that Visibility uses. What is proved
-/// hidden is not looked at again. Where too much is in between for clipping, kLooks rays go to
-/// points of the emitters, spread by what each would give with nothing in between, so that only
-/// visibility is sampled. All vertices aim at the same points: their errors vary as smoothly as
-/// light does.
+/// A point sees each emitter whole, or past a list of occluders. The list is found for the root and
+/// thinned out for the elements below it, with the proofs that Visibility uses. Emitters proved
+/// hidden are not tested again. If there are too many occluders for clipping, kLooks rays go to
+/// points on the emitters. They are spread in proportion to the unoccluded light, so that only
+/// visibility is sampled. All vertices aim at the same points, so that their errors vary as
+/// smoothly as light does.
 class EmitterLight : public FieldLight {
  public:
-  /// All are kept by reference. `occluders`: null: rays alone, for as many emitters as that takes.
+  /// Keeps all by reference. `occluders`: null: rays alone, for many emitters.
   EmitterLight(const PatchMesh& mesh, const PatchMaterials& materials,
                const ElementSurface& surface, const ElementSet& elements,
                const OccluderSet* occluders, const std::vector<Emitter>& emitters,
@@ -43,14 +43,14 @@ class EmitterLight : public FieldLight {
   double irradiance(const SurfacePoint& point, const ElementLights* lights,
                     std::span<double> out) const override;
 
-  /// Points that rays were cast from.
+  /// The number of points from which rays were cast.
   std::size_t byRays() const { return by_rays_; }
 
  private:
   struct Lights;
   struct Candidate {
     Index occluder;
-    bool cuts_emitter;  ///< reaches behind its plane
+    bool cuts_emitter;  ///< reaches behind the emitter's plane
   };
 
   Vec3 scaled(const Vec3& at) const { return (at - elements_.middle) * elements_.scale; }
@@ -69,7 +69,7 @@ class EmitterLight : public FieldLight {
   OccluderTree tree_;
   VisibilityKernels kernels_;
   std::vector<Index> facet_of_patch_;       ///< N; kNone
-  std::vector<std::vector<Index>> own_;     ///< of a facet: occluders that it lies on
+  std::vector<std::vector<Index>> own_;     ///< by facet: the occluders of which it is a part
   std::vector<std::array<float, 4>> aims_;  ///< of the rays, in [0, 1)
   mutable std::atomic<std::size_t> by_rays_ = 0;
 };

@@ -15,7 +15,7 @@ std::uint64_t edgeKey(Index a, Index b) {
 
 ElementCells::ElementCells(const PatchMesh& mesh, const Elements& elements)
     : elements_(elements), positions_(mesh.vertices) {
-  // Once over all, so that every edge knows where it is cut.
+  // The first pass over all cells finds the edges that are cut.
   const Cut cut = [this](Index a, Index b) { return cutEdge(a, b); };
   for (std::size_t r = 0; r < elements.roots.size(); ++r) {
     if (isEvaluated(r)) forCellsOf(r, cut, [](ElementCell) {});
@@ -60,7 +60,7 @@ Vec3 ElementCells::valueAt(std::size_t which, Index vertex) const {
   return bands == 1 ? Vec3(value[0]) : Vec3(value[0], value[1], value[2]);
 }
 
-/// Dark where the field was not evaluated: nothing of its kind shines.
+/// The root's branch of a field; dark if the field was not evaluated, since it has no light.
 ElementCells::Branch ElementCells::rootBranch(std::size_t which, std::size_t root) const {
   Branch branch;
   const Element& element = field(which).elements[root];
@@ -72,7 +72,7 @@ ElementCells::Branch ElementCells::rootBranch(std::size_t which, std::size_t roo
   return branch;
 }
 
-/// A leaf that was tested has light at the corners of its parts, too.
+/// Whether a branch has parts. A tested leaf has them, too: its light is known at their corners.
 bool ElementCells::isCut(std::size_t which, const Branch& branch) const {
   return branch.element != kNone && field(which).elements[branch.element].tested != 0;
 }

@@ -1,5 +1,5 @@
-// The elements of both fields laid over each other, as surfaces are exported: cells that neither
-// field cuts further, and the points that they meet at.
+// The union of both fields' elements, for the export of surfaces: the cells that neither field cuts
+// further, and their corner points.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 
 namespace radiosity {
 
-/// Irradiance of both fields, W/m^2; where there is one band, three times the same. Kept apart
-/// until nothing is interpolated any more: then either side of an edge has the same bits.
+/// Irradiance of both fields, W/m^2; one band is repeated three times. The fields stay apart until
+/// the last interpolation, so that both sides of an edge have the same bits.
 struct CellLight {
   Vec3 direct{0.0};
   Vec3 indirect{0.0};
@@ -42,27 +42,26 @@ inline CellLight between(const CellLight& a, const CellLight& b) {
   return 0.5 * sum;
 }
 
-/// A leaf of the union of both fields' trees: 3 or 4 corners, as its root has them.
+/// A leaf of the union of both fields' trees: 3 or 4 corners, like its root.
 using ElementCell = std::span<const CellCorner>;
 
-/// Points are the vertices of the mesh, then those in the middle of edges. An edge is known by its
-/// ends alone, whichever patches it borders: where one of them is cut at its middle, all may know.
+/// Points are the vertices of the mesh, then the middles of edges. An edge is identified by its
+/// ends alone, for all patches on it: if one patch cuts it at its middle, the others find out.
 class ElementCells {
  public:
   /// Keeps `elements` by reference: of 1 or 3 bands.
   ElementCells(const PatchMesh& mesh, const Elements& elements);
 
   const Vec3& position(Index point) const { return positions_[point]; }
-  /// Whether both fields say what falls on the root.
+  /// Whether both fields have light on the root.
   bool isEvaluated(std::size_t root) const;
   /// Calls `leaf` for the cells of a root that was evaluated, always in one order.
   void forCells(std::size_t root, const std::function<void(ElementCell)>& leaf) const;
-  /// The point in the middle of the edge between two points where some cell is cut there; else
-  /// kNone.
+  /// The point in the middle of the edge between two points if a cell is cut there; else kNone.
   Index middle(Index a, Index b) const;
 
  private:
-  /// A part of a root that one field has: its element, or none where the field is coarser.
+  /// The element of one field that is a part of a root; none if the field is coarser.
   struct Branch {
     Index element = kNone;
     std::array<Vec3, 4> value{};

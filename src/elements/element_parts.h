@@ -1,5 +1,5 @@
-// How the four parts of an element lie among its points: its corners, then the middles of its edges
-// (n + k: from corner k to the next) and, of a quadrilateral, its centre.
+// The four parts of an element by its points: its corners, then the middles of its edges (n + k:
+// from corner k to the next) and, in a quadrilateral, its centre.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace radiosity {
 
-/// Corners of a part, as numbers of points; of a triangle's the fourth repeats the third.
+/// Corners of a part, as numbers of points; in a triangle the fourth repeats the third.
 using PartCorners = std::array<std::uint8_t, 4>;
 
 inline constexpr std::array<PartCorners, 4> kQuarters = {
@@ -21,7 +21,7 @@ constexpr const std::array<PartCorners, 4>& partsOf(std::size_t corners) {
   return corners == 4 ? kQuarters : kTriangleParts;
 }
 
-/// Points of an element: its corners alone, or with those in between.
+/// The number of points of an element: its corners, and if it is tested those in between.
 constexpr std::size_t pointCount(std::size_t corners, bool tested) {
   if (!tested) return corners;
   return corners == 4 ? 9 : 6;

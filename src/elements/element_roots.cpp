@@ -12,7 +12,7 @@ bool isConvexQuad(const PatchMesh& mesh, std::size_t patch) {
     const Vec3& a = mesh.vertices[outline[(k + 3) % 4]];
     const Vec3& b = mesh.vertices[outline[k]];
     const Vec3& c = mesh.vertices[outline[(k + 1) % 4]];
-    // A corner in line with its neighbours would put the map's fold on an edge.
+    // With a corner in line with its neighbours the bilinear map would be singular on an edge.
     const double turn = glm::dot(glm::cross(b - a, c - b), mesh.normal[patch]);
     if (!(turn > 1e-3 * glm::distance(a, b) * glm::distance(b, c))) return false;
   }

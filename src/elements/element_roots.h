@@ -1,4 +1,4 @@
-// Where trees of elements stand.
+// The roots of the trees of elements.
 #pragma once
 
 #include "radiosity/elements.h"

@@ -1,4 +1,4 @@
-// What shines: convex pieces of planar polygons.
+// Emitters: convex pieces of planar polygons.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace radiosity {
 
-/// A convex piece of one side of a polygon, of one exitance. Coordinates are ElementSet's.
+/// A convex piece of one side of a polygon, with one exitance. Coordinates are those of ElementSet.
 struct Emitter {
   std::vector<Vec3> outline;  ///< 3 or 4 corners, counter-clockwise about the normal
   Vec3 normal{0.0};
@@ -19,11 +19,12 @@ struct Emitter {
   double radius = 0;
   double area = 0;
   Index facet = 0;  ///< of the ElementSet
-  Index patch = 0;  ///< one that has the exitance
+  Index patch = 0;  ///< a patch with this exitance
   ShapeCorners shape{};
 };
 
-/// The fewest pieces: those of the polygon where all its patches shine alike, else its elements.
+/// The fewest pieces: those of the polygon if all its patches have the same emission, else its
+/// elements.
 std::vector<Emitter> findEmitters(const PatchMesh& mesh, const ElementSet& elements,
                                   const PatchMaterials& materials);
 

@@ -16,19 +16,19 @@ namespace {
 
 using Lights = std::shared_ptr<const ElementLights>;
 
-/// Where an edge's two halves have values, light between a tested element's points is off by about
-/// a quarter of what it was off by over the whole edge: errors of linear interpolation fall with
-/// the square of the length. At kinks they fall with the length alone; those are cut, as a rule.
+/// The share of an edge's interpolation error that remains once its two halves have values: errors
+/// of linear interpolation fall with the square of the length. At kinks they fall only with the
+/// length, but elements are usually cut there.
 constexpr double kHalvedError = 0.25;
 
-/// An element at work.
+/// An element that is being refined.
 struct Node {
   Index element = 0;
   Index root = 0;
   std::array<Index, 4> vertex{};
   std::array<Index, 4> tag{};  ///< of its edges
   Lights lights;
-  double error = 0;  ///< of interpolation over all of it, over the light there
+  double error = 0;  ///< largest interpolation error over the light there
   bool tested = false;
   bool wants_cut = false;
   bool forced = false;
@@ -114,7 +114,7 @@ class FieldBuilder {
     return nodes;
   }
 
-  /// Each by the first root that has it.
+  /// Evaluates the corners of roots, each by the first root that has it.
   void evaluateCorners(const std::vector<Node>& nodes) {
     pending_.assign(points_.size(), {});
     for (const Node& node : nodes) {
@@ -162,7 +162,7 @@ class FieldBuilder {
     return sum;
   }
 
-  /// How far the corners are apart, over the light there.
+  /// The difference between the brightest and the darkest corner, over the light there.
   double spreadOf(const Node& node) {
     double low = brightness(node.vertex[0]);
     double high = low;
@@ -177,7 +177,7 @@ class FieldBuilder {
     return std::max(own + rule_.other_light[surface_.roots.patch[node.root]], rule_.least_light);
   }
 
-  /// Of both fields, over all bands.
+  /// The light of both fields at each vertex, over all bands.
   std::vector<double> lightAtVertices() {
     std::vector<double> light(points_.size(), 0.0);
     for (std::size_t e = 0; e < out_.field.elements.size(); ++e) {
@@ -191,7 +191,7 @@ class FieldBuilder {
     return light;
   }
 
-  /// Writes the elements' points, with vertices in the middle of those that are tested.
+  /// Writes the elements' points, and adds vertices in the middles of those that are tested.
   void addTests(std::vector<Node>& nodes) {
     for (Node& node : nodes) {
       Element& element = out_.field.elements[node.element];
@@ -268,8 +268,8 @@ class FieldBuilder {
     return addPoint(centre, node);
   }
 
-  /// The largest error of interpolation between the corners at the points in between, over the
-  /// light there.
+  /// Sets the largest interpolation error between corners, over the light there, and decides which
+  /// elements to cut.
   void judge(std::vector<Node>& nodes) {
     parallelFor(nodes.size(), 64, [&](std::size_t i) {
       Node& node = nodes[i];
@@ -305,7 +305,8 @@ class FieldBuilder {
     });
   }
 
-  /// Where cutting all would take more vertices than allowed, those that promise most are cut.
+  /// If all cuts would take more vertices than allowed, cuts only the elements with the largest
+  /// errors.
   void limit(std::vector<Node>& nodes) {
     constexpr std::size_t kNewVertices = 16;  // of four tested children, at most
     std::vector<Index> wanting;
@@ -364,7 +365,7 @@ class FieldBuilder {
     return children;
   }
 
-  /// Vertices between a and b get the values of the straight line.
+  /// Interpolates the vertices between a and b linearly.
   void straighten(Index a, Index b, Index tag) {
     const SurfaceEdge* edge = edges_.find(a, b, tag);
     if (edge == nullptr || edge->middle == kNone) return;
@@ -376,7 +377,8 @@ class FieldBuilder {
     straighten(middle, b, 0);
   }
 
-  /// Coarse elements come first: what they set their finer neighbours to stays.
+  /// Sets values on edges to those of the coarser neighbour. Coarse elements come first, so that
+  /// finer ones do not change these values again.
   void conform() {
     for (std::size_t e = 0; e < out_.field.elements.size(); ++e) {
       const Element& element = out_.field.elements[e];
@@ -397,7 +399,7 @@ class FieldBuilder {
     }
   }
 
-  /// Errors over all leaves.
+  /// Sums the errors over all leaves.
   void measure() {
     out_.shortest_edge = surface_.diagonal;
     for (Index e = 0; e < out_.field.elements.size(); ++e) {

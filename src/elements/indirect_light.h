@@ -1,4 +1,4 @@
-// Light that surfaces reflect, and that of the sky, at points, by rays.
+// Light from surfaces and the sky at points, by rays.
 #pragma once
 
 #include <atomic>
@@ -13,18 +13,18 @@
 
 namespace radiosity {
 
-/// The mean over cosine-distributed rays of what leaves the surfaces where they end. Rays that end
-/// on what they left do not count. A point more than half of whose rays end on black backs lies
-/// behind something. Where few rays bring most of the light, as through a door, it is found anew by
-/// more of them.
+/// The mean, over cosine-distributed rays, of the radiosity of the surfaces where they end. Rays
+/// that end on their own surface do not count. A point is behind a surface if more than half of its
+/// rays end on black backs. If few rays bring most of the light, as through a door, the mean is
+/// computed again with more rays.
 class ReflectedLight : public FieldLight {
  public:
-  /// All are kept by reference.
+  /// Keeps all by reference.
   ReflectedLight(const ElementSurface& surface, const PointRays& rays, const HemisphereSet& set,
                  const SourceMap& sources, std::span<const double> sky, std::uint64_t seed)
       : surface_(surface), rays_(rays), set_(set), sources_(sources), sky_(sky), seed_(seed) {}
-  /// Takes `more` rays, kept by reference, where the standard error that as many random rays would
-  /// have is more than `uneven` of their mean.
+  /// Takes the set `more`, kept by reference, if the standard error of as many random rays would be
+  /// more than `uneven` of their mean.
   void repeat(const HemisphereSet& more, double uneven) {
     more_ = &more;
     uneven_ = uneven;
@@ -37,7 +37,7 @@ class ReflectedLight : public FieldLight {
   double irradiance(const SurfacePoint& point, const ElementLights* lights,
                     std::span<double> out) const override;
 
-  /// Points at which there were more rays.
+  /// The number of points that took more rays.
   std::size_t repeated() const { return repeated_; }
 
  private:

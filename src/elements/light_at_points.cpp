@@ -36,10 +36,10 @@ struct LightAtPoints::Inside {
   std::size_t bands;
   ElementOptions options;
   LightSources sources;
-  std::vector<std::unique_ptr<Rays>> rays;  ///< of kFewestRays, twice as many, ...
+  std::vector<std::unique_ptr<Rays>> rays;  ///< kFewestRays rays, twice as many, ...
 };
 
-/// Where facets meet smoothly, the normal lies between those of the corners.
+/// Where facets meet smoothly, the normal is interpolated between the corners.
 SurfacePoint LightAtPoints::Inside::pointAt(std::size_t root, const Vec3& at,
                                             const Vec2& place) const {
   const ElementSurface& surface = sources.surface();

@@ -18,42 +18,42 @@ namespace {
 
 // Lengths are shares of the scene's diagonal.
 
-/// Direct light changes in steps where bodies touch.
+/// The inset for direct light, which changes in steps where bodies touch.
 constexpr Inset kDirectInset{1e-5, 0.1};
-/// Indirect light falls steeply towards creases. There, and all over what is smaller than elements
-/// get, vertices on the very creases would make lines between them too low; vertices at Gauss'
-/// points of the outermost elements make their means right.
+/// The inset for indirect light, which falls steeply towards creases. With vertices on the creases,
+/// linear interpolation would be too low there, and all over surfaces smaller than an element.
+/// Vertices at the Gauss points of the outermost elements give the right means.
 constexpr Inset kIndirectInset{0.0015, 0.21};
-/// That the tolerance is said of.
+/// The edge to which the tolerance applies.
 constexpr double kReferenceEdge = 0.05;
-/// Elements that something may shade are no longer than this.
+/// The longest edge of elements that may be shaded.
 constexpr double kPartialEdge = 0.0125;
 /// Direct light that only serves as a source is not refined below this.
 constexpr double kSourceEdge = 0.005;
-/// Every root with longer edges is cut.
+/// The longest edge of elements; longer roots are cut.
 constexpr double kLongestEdge = 0.04;
-/// Of indirect light: no element with shorter edges is cut.
+/// Indirect light: no element with shorter edges is cut.
 constexpr double kIndirectEdge = 0.015;
-/// Of indirect light: the tolerance over the noise of the rays, which it would else chase.
+/// Indirect light: the least tolerance over the noise of the rays, so that noise is not refined.
 constexpr double kOverNoise = 3;
-/// Corners that differ by so many tolerances have light between them looked at.
+/// An element is tested if its corners differ by this many tolerances.
 constexpr double kTestedSpread = 2;
-/// On facets of curved bodies, so many times that.
+/// On facets of curved bodies, this many times as much.
 constexpr double kCurvedSpread = 4;
-/// Where corners differ by more than this, edges may be this much shorter.
+/// If corners differ by more than this share, edges may be shorter by the factor below.
 constexpr double kSteepSpread = 0.5;
 constexpr double kSteepFraction = 0.125;
 /// Direct light by rays is not refined below this.
 constexpr double kDearEdge = 0.015;
-/// Where there is less light than this share of the mean, errors count as if there were so much.
+/// The least light to which errors are compared, as a share of the mean.
 constexpr double kLeastLight = 0.1;
-/// most_rays is shared out as if the first pass took half of it, and the second pass had this many
-/// vertices for each corner of a root.
+/// To divide most_rays, the first pass is assumed to take half of it, and the second pass to have
+/// this many vertices for each corner of a root.
 constexpr double kFirstShare = 2;
 constexpr double kTestedShare = 3;
-/// So many times the rays of other points has one where few rays bring most of the light: where
-/// their spread is so many times the tolerance. In rooms it is .02 to .05 with 512 rays, of which
-/// scrambled points leave a third; behind a door .1 and more.
+/// A point where few rays bring most of the light takes this many times the rays of other points:
+/// its spread is kUneven times the tolerance. In rooms the spread is .02 to .05 with 512 rays, and
+/// scrambled points have a third of that error; behind a door it is .1 and more.
 constexpr int kMoreRays = 8;
 constexpr double kUneven = 7;
 /// Direct light by rays: its steps are not refined below this.
@@ -65,8 +65,8 @@ double brightness(std::span<const double> values, std::size_t patch, std::size_t
   return sum;
 }
 
-/// Means of a field over patches, N * bands: over 8 x 8 points of each root; in a
-/// triangle those past its longest side count at their mirror images.
+/// Means of a field over patches, N * bands, from 8 x 8 points of each root. In a triangle, points
+/// beyond its longest side are mirrored into it.
 std::vector<double> patchMeans(const PatchMesh& mesh, const ElementRoots& roots,
                                const ElementLookup& lookup, const ElementField& field,
                                std::size_t bands) {
@@ -217,7 +217,7 @@ void LightSources::findDirect(bool keep_lights) {
                                                   : DirectLight::exact;
 }
 
-/// Rays a vertex, of so many vertices, that most_rays leaves.
+/// The rays a vertex that most_rays allows for this number of vertices.
 int LightSources::raysFor(double vertices, int wanted) const {
   const double most = options_.most_rays / std::max(1.0, vertices);
   constexpr double kFewest = 16;
@@ -227,8 +227,8 @@ int LightSources::raysFor(double vertices, int wanted) const {
 void LightSources::findSources() {
   const std::vector<double> direct =
       patchMeans(mesh_, surface_.roots, lookup_, direct_.field, bands_);
-  // What the patches have beside their direct light; the field's mean stands for that of the
-  // matrix, which may have found it less well.
+  // The light of patches without direct light. We subtract the mean of the direct field, which may
+  // be more accurate than the matrix.
   indirect_.assign(irradiance_.begin(), irradiance_.end());
   for (std::size_t k = 0; k < indirect_.size(); ++k) {
     indirect_[k] = std::max(0.0, indirect_[k] - direct[k]);
@@ -254,9 +254,9 @@ void LightSources::findSources() {
   }
   report_.rays += double(first.evaluated) * first_rays;
   report_.indirect_vertices = first.evaluated;
-  // The first pass has the shape of light within a patch; its mean, which lines between so few
-  // vertices make too low, is the solution's. Of a patch that shares its unknown with others the
-  // solution has a fit alone, and the first pass knows better.
+  // The first pass gives the shape of light within a patch. Linear interpolation between so few
+  // vertices makes its mean too low, so we take the mean of the solution. For a patch that shares
+  // its unknown the solution has only a fit, and the first pass is better.
   std::vector<double> lift = patchMeans(mesh_, surface_.roots, lookup_, first.field, bands_);
   for (std::size_t k = 0; k < lift.size(); ++k) {
     lift[k] = sharesUnknown(mesh_, k / bands_) ? 0.0 : indirect_[k] - lift[k];
@@ -275,7 +275,7 @@ void LightSources::findSources() {
 ElementField LightSources::indirectField() {
   const Stopwatch watch;
   const int rays = raysFor(kTestedShare * wantedCorners(), options_.rays);
-  // Owen-scrambled points: 1,024 rays have about 1% of error.
+  // With Owen-scrambled points 1,024 rays have an error of about 1%.
   const double noise = 0.01 * std::pow(1024.0 / rays, 0.75);
   FieldSummary second =
       onePass(*sources_, rays, std::max(options_.tolerance, kOverNoise * noise), true);
@@ -303,7 +303,7 @@ double LightSources::wantedCorners() const {
 FieldSummary LightSources::onePass(const SourceMap& sources, int rays, double tolerance,
                                    bool wanted_only) {
   const HemisphereSet set(std::size_t(rays), options_.seed);
-  // Only of what is shown, and so many that all points might have them for a fourth of most_rays.
+  // Only for the second pass; so many that all points could take them within a fourth of most_rays.
   const int more_rays =
       wanted_only ? raysFor(4 * kTestedShare * wantedCorners(), std::min(kMoreRays * rays, 4096))
                   : 0;

@@ -1,4 +1,4 @@
-// What lights the points of a solved scene: emitters, and what leaves every surface.
+// The sources of light for points of a solved scene: emitters, and the radiosity of all surfaces.
 #pragma once
 
 #include <memory>
@@ -17,16 +17,16 @@
 
 namespace radiosity {
 
-/// Errors: InputError where sizes do not fit, as computeElements() says.
+/// Errors: InputError if sizes do not fit, see computeElements().
 void requireSizes(const PatchMesh& mesh, const PatchMaterials& materials,
                   std::span<const double> irradiance, std::span<const std::uint8_t> wanted);
 
-/// Direct light on elements, and the sources of all other light: patches, with their direct light
-/// replaced by that of the elements, and the shape of the rest by a first pass of rays.
+/// Direct light on elements, and the sources of all other light. The sources are the patches, with
+/// their direct light taken from the elements, and the shape of the rest from a first pass of rays.
 class LightSources {
  public:
-  /// Arguments as computeElements(), which are kept by reference. `keep_lights`: emitterLight() is
-  /// wanted at points. Fills the report but for the second pass. Throws Cancelled.
+  /// Arguments as in computeElements(); keeps them by reference. `keep_lights`: emitterLight() will
+  /// be used at points. Fills the report but for the second pass. Throws Cancelled.
   LightSources(const PatchMesh& mesh, const PatchMaterials& materials,
                std::span<const double> irradiance, const ElementOptions& options,
                std::span<const std::uint8_t> wanted, bool keep_lights, Progress& progress);
@@ -41,17 +41,17 @@ class LightSources {
   const PointRays& rays() const { return rays_; }
   const SourceMap& sources() const { return *sources_; }
   const ElementField& direct() const { return direct_.field; }
-  /// Of each leaf of direct(), with `keep_lights`.
+  /// The lights of each leaf of direct(), with `keep_lights`.
   std::span<const std::shared_ptr<const ElementLights>> directLights() const {
     return direct_.lights;
   }
-  /// Null: there is no direct light, or it comes with the indirect.
+  /// Null if there is no direct light, or if it comes with the indirect light.
   const EmitterLight* emitterLight() const { return emitter_light_.get(); }
-  /// N * bands: what the patches have beside direct light.
+  /// N * bands: the light of patches without direct light.
   std::span<const double> indirectOfPatches() const { return indirect_; }
   const ElementReport& report() const { return report_; }
 
-  /// Both end what can be asked of this.
+  /// After either of these no other function may be called.
   ElementField takeDirect() { return std::move(direct_.field); }
   ElementRoots takeRoots() { return std::move(surface_.roots); }
 

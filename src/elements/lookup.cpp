@@ -1,4 +1,4 @@
-// Where a point lies in an element, and what light has there.
+// Finds the place of a point in an element, and the light there.
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -10,8 +10,8 @@
 namespace radiosity {
 namespace {
 
-/// A quadrilateral whose fourth corner is this near to where a parallelogram has it, in its own
-/// coordinates, is one.
+/// A quadrilateral counts as a parallelogram if its fourth corner is this near to that of a
+/// parallelogram, in its own coordinates.
 constexpr double kParallelogram = 1e-9;
 
 /// The (s, t) in the unit square that a convex quadrilateral with corners (0, 0), (1, 0), c and
@@ -19,8 +19,8 @@ constexpr double kParallelogram = 1e-9;
 Vec2 inverseBilinear(const Vec2& at, const Vec2& c) {
   const double p = c.x - 1;
   const double q = c.y - 1;
-  // t = y / (1 + s q) into the first: q s^2 + (1 + p y - q x) s - x = 0, the root that is x where
-  // q = 0 and p = 0.
+  // With t = y / (1 + s q) the first equation is q s^2 + (1 + p y - q x) s - x = 0. We take the
+  // root that is x if q = 0 and p = 0.
   const double b = 1 + p * at.y - q * at.x;
   const double root = std::sqrt(std::max(0.0, b * b + 4 * q * at.x));
   const double sum = b + root;
@@ -49,8 +49,8 @@ Weights weightsIn(const std::array<Index, 4>& corner, std::size_t corners, doubl
   return {corner, {1 - u - v, u, v, 0}, 3};
 }
 
-/// The part of a triangle that (b, c) lies in: 0 to 2 at that corner, 3 in the middle; (b, c)
-/// become the place in it.
+/// The part of a triangle that holds (b, c): 0 to 2 at that corner, 3 in the middle. (b, c) become
+/// the place in the part.
 int triangleAt(double& b, double& c) {
   const double a = 1 - b - c;
   if (a > 0.5) {
@@ -73,8 +73,7 @@ int triangleAt(double& b, double& c) {
   return 3;
 }
 
-/// The quarter of the unit square that (u, v) lies in, by its corner; (u, v) become the place in
-/// it.
+/// The quarter of the unit square that holds (u, v), by its corner. (u, v) become the place in it.
 int quarterOf(double& u, double& v) {
   const bool right = u > 0.5;
   const bool upper = v > 0.5;
@@ -84,12 +83,12 @@ int quarterOf(double& u, double& v) {
   return right ? 1 : 0;
 }
 
-/// The part of an element that (u, v) lies in; (u, v) become the place in it.
+/// The part of an element that holds (u, v). (u, v) become the place in it.
 int partAt(std::size_t corners, double& u, double& v) {
   return corners == 4 ? quarterOf(u, v) : triangleAt(u, v);
 }
 
-/// The leaf at a place of a root, which becomes the place in the leaf.
+/// The leaf at a place of a root. `place` becomes the place in the leaf.
 Index leafOf(const ElementField& field, std::size_t root, Vec2& place) {
   auto leaf = Index(root);
   while (field.elements[leaf].first_child != kNone) {

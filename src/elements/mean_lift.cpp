@@ -13,14 +13,15 @@
 namespace radiosity {
 namespace {
 
-/// Of the sum of second differences over all cells at a vertex: see the header.
+/// Factor for the sum of second differences over all cells at a vertex: see the header.
 constexpr double kOfQuarters = 1.0 / 24;
 constexpr double kOfTriangles = 1.0 / 48;
-/// Cells all around a vertex have angles of 2 pi together, a little less on a curved surface;
-/// those at an inner corner of a polygon have 3/2 pi.
+/// A vertex is surrounded if the angles of its cells sum to at least this. They sum to 2 pi all
+/// around a vertex, to a little less on a curved surface, and to 3/2 pi at an inner corner of a
+/// polygon.
 constexpr double kAllAround = 1.75 * std::numbers::pi;
-/// Neighbours balance where the sum of their places, seen from the vertex, is a share of the sum of
-/// distances no larger than this.
+/// Neighbours are balanced if the length of the sum of their offsets is at most this share of the
+/// sum of their distances.
 constexpr double kBalanced = 0.05;
 /// Share of light beyond which a bend is taken for a kink.
 constexpr double kKink = 0.01;
@@ -41,7 +42,7 @@ class MeanLift {
   }
 
  private:
-  /// Calls `cell` with the vertices of each.
+  /// Calls `cell` with the vertices of each cell.
   template <class Call>
   void forCells(const Call& cell) const {
     for (const Element& element : field_.elements) {
@@ -95,7 +96,7 @@ class MeanLift {
     }
   }
 
-  /// Over the lifted corners of each vertex's cells.
+  /// The mean bend over the lifted corners of each vertex's cells.
   std::vector<double> averagedBends() const {
     std::vector<double> sum(bend_.size(), 0.0);
     std::vector<double> count(points_.size(), 0.0);
@@ -118,9 +119,10 @@ class MeanLift {
     return field_.values[vertex * bands_ + band];
   }
 
-  /// What the neighbours of a vertex, each as often as cells have it beside the vertex, look like.
+  /// Sums over the neighbours of a vertex; each counts once for every cell that has it beside the
+  /// vertex.
   struct Surroundings {
-    Vec3 offset{0.0};  ///< sum of their places seen from it, metres
+    Vec3 offset{0.0};  ///< sum of their offsets from the vertex, metres
     double reach = 0;  ///< sum of their distances
     double angle = 0;  ///< of all cells there
   };
@@ -128,7 +130,7 @@ class MeanLift {
   ElementField& field_;
   std::span<const SurfacePoint> points_;
   std::size_t bands_;
-  std::vector<double> bend_;  ///< V * bands: what values are above the mean, W/m^2
+  std::vector<double> bend_;  ///< V * bands: the height of values above the mean, W/m^2
   std::vector<Surroundings> around_;
   std::vector<std::uint8_t> lifted_;
 };

@@ -1,4 +1,4 @@
-// What leaves each part of the surfaces, for rays to bring back.
+// The reflected light of each part of the surfaces, for look-ups by rays.
 #pragma once
 
 #include <algorithm>
@@ -12,9 +12,9 @@
 
 namespace radiosity {
 
-/// Reflectance times irradiance, as means over the cells of a grid on each root: a ray reads one
-/// cell, where a walk down the trees of elements would take longer than the ray. Cells are no
-/// longer than kCellEdge of the scene's diagonal, where that takes no more than kMostSide a side.
+/// Reflectance times irradiance, as means over the cells of a grid on each root. A ray reads one
+/// cell: a walk down the trees of elements would take longer than the ray. Cells are no longer than
+/// kCellEdge of the scene's diagonal, unless that takes more than kMostSide cells a side.
 class SourceMap {
  public:
   static constexpr double kCellEdge = 0.01;
@@ -29,7 +29,7 @@ class SourceMap {
     fill(materials, emission, light);
   }
 
-  /// Adds to `sum` (bands) what leaves a patch at a point of it.
+  /// Adds the light that leaves a patch at one of its points to `sum` (bands).
   void add(std::size_t patch, const Vec3& at, std::span<double> sum) const {
     const ElementRoots& roots = surface_.roots;
     if (roots.of_patch[patch] == roots.of_patch[patch + 1]) return;
@@ -83,7 +83,7 @@ void SourceMap::fill(const PatchMaterials& materials, bool emission, const Light
         const Vec2 at = (corner + in_cell) / double(n);
         if (quad || at.x + at.y <= 1) sample(at);
       }
-      // A cell outside a triangle is read by places that rounding has put there.
+      // Rounding may put a place into a cell outside the triangle.
       if (counted == 0) sample(Vec2(corner.x, n - 1 - corner.x) / double(n));
       float* cell = values_.data() + (first_[r] + std::size_t(c)) * bands_;
       for (std::size_t b = 0; b < bands_; ++b) {

@@ -12,12 +12,12 @@
 namespace radiosity {
 namespace {
 
-/// Inset of what is curved, of the diagonal.
+/// The largest inset on curved surfaces, as a share of the diagonal.
 constexpr double kLeast = 1e-5;
 
 }  // namespace
 
-/// A root's edge between two vertices of the mesh, sorted so that those of one edge come together.
+/// A root's edge between two vertices of the mesh; sorting brings equal edges together.
 struct ElementSurface::RootEdge {
   Index low, high;
   Index root;
@@ -41,7 +41,7 @@ Index ElementSurface::ownersOf(std::vector<Index> polygons) {
   return Index(owners.size() - 1);
 }
 
-/// One vertex a corner group, then those inside patches.
+/// Adds one vertex for each corner group, then the vertices inside patches.
 void ElementSurface::addVertices(const PatchMesh& mesh, const CornerGroups& groups) {
   for (std::size_t g = 0; g < groups.size(); ++g) {
     SurfacePoint point;
@@ -73,7 +73,7 @@ void ElementSurface::addVertices(const PatchMesh& mesh, const CornerGroups& grou
         if (points[vertex[r][k]].owners >= mesh.polygons.size()) curved[r] = 1;
         continue;
       }
-      // Inside the patch: the roots of one patch stand side by side.
+      // A vertex inside the patch: the roots of one patch are consecutive.
       vertex[r][k] = kNone;
       for (std::size_t other = roots.of_patch[patch]; other < r; ++other) {
         for (std::size_t j = 0; j < 3; ++j) {
@@ -89,8 +89,8 @@ void ElementSurface::addVertices(const PatchMesh& mesh, const CornerGroups& grou
   }
 }
 
-/// The edge across which the root of `of` goes on: the one other that runs against it on the same
-/// smooth side, if nothing else stands there.
+/// The matching edge of the neighbour: the only other edge that runs in the opposite direction on
+/// the same smooth side, if no other patch touches it.
 const ElementSurface::RootEdge* ElementSurface::partner(const PatchMesh& mesh,
                                                         std::span<const RootEdge> run,
                                                         const RootEdge& of, double cosine) const {
@@ -188,7 +188,7 @@ void ElementSurface::addEdges(const PatchMesh& mesh, double crease) {
   }
 }
 
-/// Corners on borders move to the inner side of all of them.
+/// Moves corners on borders to the inner side of all their borders.
 void ElementSurface::insetCorners(const PatchMesh& mesh) {
   std::vector<Vec3> inward(points.size(), Vec3(0.0));
   std::vector<double> most(points.size(), inset_.of_diagonal * diagonal);  // distance
@@ -205,7 +205,7 @@ void ElementSurface::insetCorners(const PatchMesh& mesh) {
       }
     }
   }
-  // Where borders face each other, as around the end of a wall, any root's middle will do.
+  // If opposite borders cancel, as around the end of a wall, we move towards any root's middle.
   const double least = 1e-3 * inset_.of_diagonal * diagonal;
   for (Index r = 0; r < roots.size(); ++r) {
     for (std::size_t k = 0; k < roots.cornerCount(r); ++k) {
@@ -218,7 +218,7 @@ void ElementSurface::insetCorners(const PatchMesh& mesh) {
   for (std::size_t v = 0; v < points.size(); ++v) {
     const double length = glm::length(inward[v]);
     points[v].position = points[v].place;
-    // Where facets meet smoothly, one's plane soon leaves the other's surface.
+    // Where facets meet smoothly, the plane of one soon leaves the surface of the other.
     if (points[v].owners >= mesh.polygons.size()) most[v] = std::min(most[v], kLeast * diagonal);
     if (length > 0) points[v].position += inward[v] * (most[v] / length);
   }

@@ -1,4 +1,5 @@
-// The points at which light is evaluated: where they lie, which way they face, and who shares them.
+// The points at which light is evaluated: their places, their normals, and the elements that share
+// them.
 #pragma once
 
 #include <array>
@@ -12,8 +13,8 @@
 
 namespace radiosity {
 
-/// How far inside borders, creases and contacts light is evaluated; on them, what it sees would be
-/// decided by rounding.
+/// The distance from borders, creases and contacts at which light is evaluated. On them, rounding
+/// would decide what a point sees.
 struct Inset {
   double of_diagonal;  ///< of the scene, ...
   double of_height;    ///< ... but at most of a root's least height: a sliver's vertices stay on it
@@ -27,15 +28,15 @@ struct SurfacePoint {
   Index owners = 0;    ///< into ElementSurface::owners
 };
 
-/// An edge of elements that has a middle, or may get one.
+/// An edge of elements, with or without a middle.
 struct SurfaceEdge {
   Index middle = kNone;  ///< vertex
   Index owners = 0;
   Vec3 inset{0.0};
 };
 
-/// The edges of one field's elements by their ends. Roots on either side of a border or a crease
-/// may have both ends in common, but not the edge: such an edge has a tag of its own.
+/// The edges of one field's elements, by their ends. Roots on either side of a border or a crease
+/// may share both ends but not the edge: such an edge has a tag of its own.
 class EdgeMap {
  public:
   SurfaceEdge* find(Index a, Index b, Index tag = 0) {
@@ -65,7 +66,7 @@ class EdgeMap {
 };
 
 /// The roots of elements over a mesh, and the vertices at their corners. Neighbours share a vertex
-/// where they are a smooth side (cornerGroups()), and an edge where nothing else stands on it.
+/// if they are on one smooth side (cornerGroups()), and an edge if nothing else touches it.
 struct ElementSurface {
   ElementSurface(const PatchMesh& mesh, double crease, const Inset& inset);
 

@@ -43,7 +43,7 @@ Split splitBy(const std::vector<CellPart>& parts, const Line& line) {
   return split;
 }
 
-/// Parts that reach to a side of a line, of the side with more; slivers count.
+/// The number of parts that reach to one side of a line, on the side with more; slivers count.
 std::size_t largerSide(const std::vector<CellPart>& parts, const Line& line) {
   std::size_t inside = 0;
   std::size_t outside = 0;
@@ -62,9 +62,9 @@ std::size_t largerSide(const std::vector<CellPart>& parts, const Line& line) {
   return std::max(inside, outside);
 }
 
-/// Splits along the edge of a part whose larger half is smallest; an empty split where no edge
-/// makes both halves smaller than the whole. `thorough`: all edges are tried, also those that seem
-/// no better before slivers are dropped.
+/// Splits along the edge of a part whose larger half is smallest; an empty split if no edge makes
+/// both halves smaller than the whole. `thorough`: all edges are tried, also those that seem no
+/// better before slivers are dropped.
 std::pair<Line, Split> bestSplit(const std::vector<CellPart>& parts, bool thorough) {
   std::pair<Line, Split> best;
   std::size_t best_size = parts.size();

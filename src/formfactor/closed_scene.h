@@ -6,8 +6,8 @@
 
 namespace radiosity {
 
-/// True where no small hemicube (32 pixels) on any patch has a pixel of sky, for scenes that are
-/// not proved closed (Enclosures::proved_closed). Stops at the first that has one. Throws
+/// True if no small hemicube (32 pixels) on any patch has a pixel of sky, for scenes that are not
+/// proved closed (Enclosures::proved_closed). Stops at the first hemicube that has one. Throws
 /// Cancelled.
 bool closedByEye(const PatchMesh& mesh, Progress& progress);
 

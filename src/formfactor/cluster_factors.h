@@ -6,11 +6,11 @@
 namespace radiosity {
 
 /// Form factors of a mesh's patches, summed over its clusters (PatchMesh::clusters, which it has):
-/// the matrix by aggregated(), the accounts as means by area. The report goes on speaking of the
-/// rows that were computed, those of patches.
+/// the matrix by aggregated(), the accounts as means by area. The report still describes the rows
+/// that were computed, those of patches.
 ///
-/// Error figures. Let d_ij be the error of F_ij, and |J| the patches of cluster J. What a patch's
-/// row is off by, summed over clusters, is by Cauchy and Schwarz at most
+/// Error figures. Let d_ij be the error of F_ij, and |J| the patches of cluster J. The error of a
+/// patch's row, summed over clusters, is by Cauchy and Schwarz at most
 ///
 ///     sqrt(sum_J (sum_j in J d_ij)^2) <= sqrt(max_J |J|) sqrt(sum_j d_ij^2),
 ///
@@ -22,8 +22,8 @@ FormFactors clusterFactors(const FormFactors& factors, const PatchMesh& mesh, Pr
 
 /// Bytes of the matrix between clusters, at most; `symmetric` or not.
 std::size_t clusterMatrixBytes(const PatchMesh& mesh, bool symmetric, Precision precision);
-/// What clusterFactors() holds at most beside the matrix of the patches of `patch_bytes`, that one
-/// included: there are no more pairs of clusters than of their patches.
+/// The most bytes that clusterFactors() holds beside the patches' matrix of `patch_bytes`, its own
+/// matrix included: there are no more pairs of clusters than of their patches.
 std::size_t clusterFactorsBytes(const PatchMesh& mesh, bool symmetric, Precision precision,
                                 std::size_t patch_bytes);
 

@@ -26,25 +26,25 @@ struct FormFactorPlan::Prepared {
   Prepared(std::shared_ptr<const PatchMesh> of, const FormFactorOptions& with)
       : kept(std::move(of)), mesh(*kept), options(with) {}
   std::shared_ptr<const PatchMesh> kept;
-  const PatchMesh& mesh;  ///< the one that is kept
+  const PatchMesh& mesh;  ///< in `kept`
   FormFactorOptions options;
-  // Where the method is exact:
+  // For the exact method:
   std::optional<ExactScene> scene;
   std::optional<ExactKernels> kernels;  ///< of the scene
   ExactEstimate estimate;
-  // Where it is not:
+  // For the other methods:
   std::optional<HemicubeScene> hemicubes;
   HemicubeEstimate hemicube_estimate;
   std::optional<RayScene> rays;
   RayEstimate ray_estimate;
-  std::optional<LeadingRows> exact_rows;  ///< beside rays
-  double seconds = 0;                     ///< that this took
+  std::optional<LeadingRows> exact_rows;  ///< computed beside rays
+  double seconds = 0;                     ///< of planning
 };
 
 namespace {
 
-/// Where no tolerance was asked for, the exact method, which then is far more accurate than rays,
-/// is worth so many times their seconds, or so many seconds.
+/// Without a tolerance, exact, which then is far more accurate than rays, may take this many times
+/// their seconds, or this many seconds.
 constexpr double kWorthTimes = 2;
 constexpr double kWorthSeconds = 5;
 
@@ -54,21 +54,21 @@ std::string secondsText(double seconds) {
   return fmt::format("about {} s", countText(std::size_t(std::llround(seconds))));
 }
 
-/// A look at what exact would take may take so much of what that may be, by the clock, so that it
-/// stays small beside the work; and this much at first. What then turns out to take no longer than
-/// a few such looks needs no look at rays.
+/// A look at exact samples its rows. It may take this share of the seconds that exact may take, so
+/// that it stays small beside the work, and this long the first time. If exact is then foreseen to
+/// take no more than kNoFurtherLookSeconds, rays are not looked at.
 constexpr double kLookShare = 0.15;
 constexpr double kFirstLookSeconds = 0.2;
 constexpr double kNoFurtherLookSeconds = 0.5;
 
-/// What exact may take and be the right one. Where patches share unknowns, an error of their light
-/// is larger than that of either's form factors.
+/// The seconds that exact may take and still be chosen. With shared unknowns it must be the faster
+/// one: an error of their light is larger than that of either method's form factors.
 double secondsExactMayTake(const FormFactorPlan::Prepared& prepared, double ray_seconds) {
   if (prepared.options.tolerance || prepared.mesh.clusters) return ray_seconds;
   return std::max(kWorthTimes * ray_seconds, kWorthSeconds);
 }
 
-/// Rows of patches are summed over clusters once they are there: what is held then, and what stays.
+/// With clusters, adds the memory for summing rows over them, and adapts the matrix's size.
 template <class Estimate>
 void addClusters(const FormFactorPlan::Prepared& prepared, bool symmetric, Estimate& estimate) {
   const PatchMesh& mesh = prepared.mesh;
@@ -117,16 +117,16 @@ void planHemicubes(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Pro
   plan.method = FormFactorMethod::hemicube;
 }
 
-/// Errors of a pair, relative to the mean form factor, that rows beside rays aim at: the first that
-/// is not too much work. (The furnished room, 2,000 unknowns: what they see of its lamp differs by
-/// .05% rms between the two, and by rays to 1e-2 it is 3.7% off; the first takes four times as long
-/// as the second.)
+/// Tolerances of exact rows beside rays: errors of a pair, relative to the mean form factor. The
+/// first that is not too much work is taken. (Furnished room, 2,000 unknowns: their view of its
+/// lamp differs by .05% rms between the two, and is 3.7% off by rays to 1e-2; the first takes four
+/// times as long as the second.)
 constexpr std::array<double, 2> kExactRowTolerances{FormFactorOptions::kExactTolerance, 1e-2};
-/// They may be so much work (foreseen_work.h) for each ray, about half of what all rays take, and
-/// this much in any case, two seconds or so of a core; ...
+/// Exact rows may be this much work (foreseen_work.h) for each ray, about half that of all rays,
+/// and in any case kLittleExactRowWork, about two seconds of a core.
 constexpr double kExactRowWork = 7;
 constexpr double kLittleExactRowWork = 2e8;
-/// ... and no more pairs, which are held at once, in 112 bytes each.
+/// At most this many pairs may be in exact rows: all are held at once, in 112 bytes each.
 constexpr std::size_t kMostExactPairs = 1'000'000;
 
 void requireUnknowns(const std::vector<Index>& rows, std::size_t unknowns) {
@@ -189,7 +189,7 @@ void planRays(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress
   }
 }
 
-/// What exact would take; nothing where finding out takes longer than `seconds`.
+/// The plan of exact; nothing if making it takes longer than `seconds`.
 std::optional<FormFactorPlan> lookAtExact(FormFactorPlan::Prepared& prepared, double seconds,
                                           Progress& progress) {
   TimedProgress timed(progress, seconds);
@@ -203,8 +203,8 @@ std::optional<FormFactorPlan> lookAtExact(FormFactorPlan::Prepared& prepared, do
   return exact;
 }
 
-/// Both are looked at, and one is kept. Where the look at exact takes long beside what rays take,
-/// exact is not the faster one: a look takes a hundredth of the whole or so.
+/// Plans both methods and keeps one. If the look at exact takes long beside what rays take, exact
+/// is not the faster one: a look takes about a hundredth of the whole.
 void planEither(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {
   const std::size_t limit = prepared.options.memory_limit;
   const auto fits = [&](const FormFactorPlan& exact) { return limit == 0 || exact.bytes <= limit; };
@@ -320,7 +320,7 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress, R
   } else {
     throw std::logic_error("this plan was not prepared");
   }
-  if (prepared.mesh.clusters && !prepared.rays) {  // rays count between clusters themselves
+  if (prepared.mesh.clusters && !prepared.rays) {  // rays are counted between clusters
     result = clusterFactors(result, prepared.mesh, progress);
   }
   FormFactorReport& report = result.report;
@@ -334,7 +334,7 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress, R
 
 FormFactors computeFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
                                Progress& progress) {
-  // The plan does not outlive this call, and the mesh does: it is not copied.
+  // The mesh outlives the plan, which ends with this call: it is not copied.
   const std::shared_ptr<const PatchMesh> here(std::shared_ptr<const void>(), &mesh);
   return computeFormFactors(planFormFactors(here, options, progress), progress);
 }

@@ -20,13 +20,13 @@ class HiddenBacks {
   /// Both are kept by reference.
   HiddenBacks(const ViewScene& scene, const PatchMesh& mesh);
 
-  /// By position in ViewScene::polygons: hidden[p] = 1 where the back of polygon p cannot be seen
-  /// by an eye (metres) on the front of the mesh's polygon `own` (kNone: an eye in free space).
+  /// By position in ViewScene::polygons: hidden[p] = 1 if the back of polygon p cannot be seen by
+  /// an eye (metres) on the front of the mesh's polygon `own` (kNone: an eye in free space).
   void fromEye(const Vec3& eye, Index own, std::vector<std::uint8_t>& hidden) const;
 
  private:
   const PatchMesh& mesh_;
-  std::optional<Enclosures> found_;  ///< where the mesh does not bring them
+  std::optional<Enclosures> found_;  ///< if the mesh does not have them
   const Enclosures& enclosures_;
   std::vector<std::uint8_t> covered_;         ///< by position
   std::vector<std::vector<Index>> surfaces_;  ///< positions of each closed surface's polygons

@@ -9,14 +9,14 @@
 
 namespace radiosity {
 
-/// What one unknown exchanges with another, m^2.
+/// The exchange area of an unknown with another, m^2.
 struct KnownExchange {
   Index unknown;
   double exchange;  ///< G, above 0
   double error;     ///< of it, absolute; 0 or more
 };
 
-/// All that an unknown sees.
+/// The exchange of an unknown with all others, and the backs that it sees.
 struct KnownRow {
   Index unknown;
   std::vector<KnownExchange> entries;  ///< unknowns ascending

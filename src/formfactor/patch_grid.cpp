@@ -10,7 +10,7 @@ namespace {
 
 /// Shares of a cell below which an overlap is rounding (see PatchGrid).
 constexpr double kSliverPatch = 1e-6;
-/// Along one axis; their product stays below 2^24 (see RowMap).
+/// Along one axis; their product is at most 2^24 (see RowMap).
 constexpr double kMostCells = 4096;
 constexpr std::int32_t kEmpty = std::numeric_limits<std::int32_t>::max();
 

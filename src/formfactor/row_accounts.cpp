@@ -13,7 +13,7 @@ namespace {
 
 /// Share of the view on black backs above which normals are suspect.
 constexpr double kSuspectBacks = 1e-3;
-/// Surfaces that the warning names, if there are as many, however small the share of each.
+/// The warning names at least this many surfaces, if there are as many, however small their shares.
 constexpr std::size_t kNamedBacks = 3;
 
 void noteBacks(const PatchMesh& mesh, FormFactors& result) {
@@ -27,7 +27,7 @@ void noteBacks(const PatchMesh& mesh, FormFactors& result) {
   std::string names;
   std::size_t named = 0;
   for (const std::size_t s : worst) {
-    // Name what makes up the warning, not every sliver; of many alike the first few.
+    // Name the surfaces that make up the warning, not every sliver; of many alike the first few.
     if (share[s] < 0.1 * total && (named >= kNamedBacks || share[s] <= 0)) break;
     names += fmt::format("{}{} ({:.2f}%)", names.empty() ? "" : ", ", mesh.surface_names[s],
                          100 * share[s]);

@@ -10,15 +10,15 @@
 
 namespace radiosity {
 
-/// Black backs one row sees.
+/// Black backs of one surface that one row sees.
 struct SeenBack {
   Index surface;
   double share;
 };
 
-/// Fills backs_by_surface from what each row saw and warns, by name, of surfaces whose backs take
-/// more than 0.1% of the view. Needs the accounts. `area` and `seen_backs`: a value a row; `order`:
-/// each row once.
+/// Fills backs_by_surface from the backs that each row saw, and warns, by name, of surfaces whose
+/// backs take more than 0.1% of the view. Needs the accounts. `area` and `seen_backs`: a value a
+/// row; `order`: each row once.
 void accountForBacks(const PatchMesh& mesh, std::span<const Index> order,
                      std::span<const double> area,
                      const std::vector<std::vector<SeenBack>>& seen_backs, FormFactors& result);

@@ -11,10 +11,10 @@ namespace radiosity {
 
 namespace {
 
-/// Of scratch memory, in memory at a time: less would be the disk's speed at every step.
+/// The least of scratch memory to keep in memory: with less, every step runs at the disk's speed.
 constexpr std::size_t kLeastResident = std::size_t(1) << 24;
-/// What is resident is there three times at most: as panels, and while other threads look at more
-/// of it before all is let go.
+/// Resident rows are in memory three times at most: panels copy them, and other threads look at
+/// more of them before all are released.
 constexpr std::size_t kTimesResident = 3;
 
 }  // namespace
@@ -27,7 +27,7 @@ RowMemory planRowMemory(std::size_t whole, std::size_t beside, std::size_t rows,
   if (limit == 0 || memory.bytes <= limit || options.scratch_folder.empty()) return memory;
   const std::size_t left = limit > beside ? limit - beside : 0;
   const std::size_t resident = std::max(kLeastResident, left / kTimesResident);
-  // Where the rows are hardly more than what of them is in memory, the disk is no help.
+  // The disk is no help if the rows are hardly more than their part in memory.
   if (kTimesResident * resident >= rows) return memory;
   memory.bytes = beside + kTimesResident * resident;
   memory.scratch_bytes = rows;
@@ -44,7 +44,7 @@ RowMemory shareOf(const RowMemory& memory, std::size_t matrix_bytes, int process
 }
 
 std::size_t panelsOf(std::size_t matrix_bytes, Precision precision) {
-  // Both entries of a pair, where the matrix stores one.
+  // Panels hold both entries of a pair, the matrix one.
   const std::size_t entries = 2 * matrix_bytes / valueBytes(precision);
   return std::min(ExchangeMatrix::panelBytes(matrix_bytes), entries * RowPanel::kEntryBytes);
 }

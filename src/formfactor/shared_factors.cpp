@@ -11,7 +11,7 @@ namespace radiosity {
 
 namespace {
 
-/// Of the options, those that rows depend on.
+/// The method and the options that rows depend on, and the mesh.
 struct Task {
   FormFactorMethod method = FormFactorMethod::exact;
   double tolerance = 0;

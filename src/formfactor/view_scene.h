@@ -41,8 +41,8 @@ struct ViewScene {
   std::size_t patches;  ///< N
   std::size_t items;    ///< N + surfaces
   double scale;         ///< power of two
-  /// A polygon none of whose corners is farther than this from the eye's plane is coplanar with
-  /// it: the mesh's default coincidence, 1e-7 of the scene's diagonal, scaled. No other use.
+  /// Corners no farther than this from the eye's plane lie in it, vertices no farther from an edge
+  /// on it: the mesh's default coincidence, 1e-7 of the scene's diagonal, scaled.
   double coincidence;
   std::vector<Vec3> vertices;
   std::vector<std::uint32_t> loop_offset;  ///< L + 1, into corners

@@ -25,7 +25,7 @@ ViewTriangles::ViewTriangles(const ViewScene& scene, const PatchMesh& mesh)
 
 void ViewTriangles::addTiles(const ViewScene& scene, const PatchMesh& mesh,
                              const std::vector<Index>& without_triangles) {
-  std::vector<Index> place(mesh.polygons.size(), kNone);  // of those without triangles
+  std::vector<Index> place(mesh.polygons.size(), kNone);  // of polygons without triangles
   for (const Index p : without_triangles) place[scene.polygons[p].source] = p;
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     // A back has the tiles of its front.

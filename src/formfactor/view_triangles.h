@@ -1,4 +1,4 @@
-// The polygons of a view scene as triangles, for what draws or traces no other shapes.
+// The polygons of a view scene as triangles, for code that draws or traces no other shapes.
 #pragma once
 
 #include <array>
@@ -9,11 +9,11 @@
 namespace radiosity {
 
 struct ViewTriangles {
-  /// `mesh`: whose ViewScene that is. A polygon whose outlines cross is taken as the triangles that
-  /// tile its patches.
+  /// `mesh`: the one that `scene` was made from. A polygon whose outlines cross is taken as the
+  /// triangles that tile its patches.
   ViewTriangles(const ViewScene& scene, const PatchMesh& mesh);
 
-  /// In the coordinates of the ViewScene: its vertices, and those of such tiles.
+  /// The vertices of the ViewScene and of such tiles, in its coordinates.
   std::vector<Vec3> vertices;
   std::vector<std::array<Index, 3>> triangles;  ///< corners, into vertices
   std::vector<Index> polygon_of;  ///< position in ViewScene::polygons of each triangle

@@ -35,7 +35,7 @@ class VertexSide {
     for (std::size_t k = 0; k < corners.size(); ++k) addWedge(patches[k], corners[k]);
   }
 
-  /// `coincidence`: how far off a plane still lies in it, metres.
+  /// `coincidence`: points within this distance of a plane count as in it, metres.
   Eye eye(double inset, double coincidence) const {
     Eye eye;
     eye.position = mesh_.vertices[vertex_];
@@ -49,8 +49,8 @@ class VertexSide {
       eye.own = mesh_.polygon[patch];
       return eye;
     }
-    // A side that bends: the horizon about the mean normal cuts through its patches, so the eye
-    // stands a step above them and sees them as it sees all else.
+    // The side bends, so the horizon about the mean normal cuts through its patches. The eye stands
+    // a step above them and sees them like all other patches.
     Vec3 normal(0.0);
     for (const Wedge& wedge : wedges_) normal += mesh_.normal[wedge.patch] * wedge.angle;
     eye.normal = glm::normalize(normal);
@@ -82,8 +82,8 @@ class VertexSide {
     }
   }
 
-  /// The unit direction half-way round an open fan of patches, and the patch it points into; 0
-  /// where the fan is closed and the vertex lies inside the sheet.
+  /// The unit direction half-way round an open fan of patches, and the patch that it points into; 0
+  /// if the fan is closed and the vertex lies inside the sheet.
   Vec3 inward(Index& patch) const {
     const Wedge* first = nullptr;
     double total = 0;
@@ -141,7 +141,7 @@ double coincidenceOf(const PatchMesh& mesh) {
   return mesh.vertices.empty() ? 0 : MeshOptions().weld * glm::distance(lower, upper);
 }
 
-/// Another seed for each corner of a patch, so that eyes of one patch turn apart.
+/// A different seed for each corner of a patch, so that the eyes of one patch have different turns.
 std::uint64_t cornerSeed(std::uint64_t seed, std::size_t corner) {
   return seed + 0x9e3779b97f4a7c15ull * (corner + 1);
 }

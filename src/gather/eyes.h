@@ -1,4 +1,4 @@
-// Where the eyes of the gather method stand.
+// The positions of the eyes of the gather method.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace radiosity {
 
-/// An eye looks along a unit normal; `own` is the polygon it lies in, or kNone for one that stands
+/// An eye looks along a unit normal. `own` is the polygon that it lies in, or kNone if it stands
 /// off the surface.
 struct Eye {
   Vec3 position{0.0};
@@ -19,7 +19,7 @@ struct Eye {
   bool looks = false;  ///< false: stands for no area
 };
 
-/// One eye a patch: those of the form-factor matrix, with the same turns.
+/// One eye a patch: the eyes of the form-factor matrix, with the same turns.
 std::vector<Eye> patchEyes(const PatchMesh& mesh, const GatherOptions& options);
 
 /// One eye a corner group.

@@ -83,8 +83,8 @@ class Passes {
     return pass;
   }
 
-  /// The bound of the last pass over the largest emission, worst band; infinite where there is
-  /// none.
+  /// The error bound of the last pass over the largest emission, worst band; infinite if there is
+  /// no bound.
   double relativeBound() const { return relative_bound_; }
 
   HemicubeCounts counts() const {
@@ -112,7 +112,8 @@ class Passes {
     receive(k, received);
   }
 
-  /// Marks what it has gathered at. Where the device gives up, the CPU's eye goes on.
+  /// Gathers by the GPU and marks the eyes done in `gathered`. If the device gives up, the CPU's
+  /// eye does the others.
   void gatherByGpu(bool first, std::vector<std::uint8_t>& gathered, Progress& progress) {
     GpuGatherer& gpu = made(gpu_);
     const std::string problem = gpu.pass(
@@ -150,12 +151,13 @@ class Passes {
     }
   }
 
-  /// Lambert's law over the part of the view that ends on the sky; once the eye has looked.
+  /// Irradiance from the part of the view that ends on the sky, by Lambert's law. The eye must have
+  /// looked.
   double fromSky(std::size_t k, std::size_t b) const {
     return std::numbers::pi * scene_.sky[b] * result_.sky[k];
   }
 
-  /// All passes see the same.
+  /// Averages the shares of backs over all eyes. All passes see the same backs.
   void accountForBacks() {
     std::vector<double>& share = result_.backs_by_surface;
     double area = 0;
@@ -171,8 +173,8 @@ class Passes {
 
   /// B* = E + R F B* and B_k = E + R F B_(k-1) + rounding give
   ///     |B* - B_k| <= q |B* - B_(k-1)| + u |B_k| <= q (|B* - B_k| + change) + u |B_k|
-  /// in the largest norm, q = max rho_i fronts_i, since no eye weighs what it sees by more than its
-  /// fronts and interpolation weights are positive and sum to 1.
+  /// in the maximum norm with q = max rho_i fronts_i: the weights of an eye sum to its fronts, and
+  /// interpolation weights are positive and sum to 1.
   void measure(GatherPass& pass) {
     constexpr double kRounding = std::numeric_limits<float>::epsilon();
     double bound = 0;
@@ -189,7 +191,7 @@ class Passes {
         q = std::max(q, double(scene_.materials.reflectance[k]) * fronts_[k / bands_]);
       }
       pass.change = std::max(pass.change, change / emission);
-      // fronts are floats: a closed room with rho = 1 must not be bounded by rounding.
+      // fronts are floats: rounding must not give a closed room with rho = 1 a bound.
       const bool bounded = q < 1 - 2 * kRounding;
       const double in_band = bounded ? (q * change + kRounding * largest) / (1 - q) : HUGE_VAL;
       bound = std::max(bound, in_band);
@@ -230,7 +232,7 @@ class Passes {
   std::vector<std::vector<SeenBack>> seen_backs_;  ///< L, during the first pass
   double relative_bound_ = HUGE_VAL;
   std::optional<GpuGatherer> gpu_;
-  HemicubeCounts gpu_counts_;  ///< of one that gave up
+  HemicubeCounts gpu_counts_;  ///< of a device that gave up
   tbb::enumerable_thread_specific<Gatherer> workers_;
 };
 

@@ -10,7 +10,7 @@
 namespace radiosity {
 namespace {
 
-/// Facets and the means of corners that they name.
+/// Adds the facets of all patches, and the means of corners that they refer to.
 void addFacets(const GatherScene& scene, GpuField& field) {
   const PatchMesh& mesh = scene.mesh;
   for (const Vec3& vertex : mesh.vertices) {

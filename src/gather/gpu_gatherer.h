@@ -12,19 +12,20 @@
 
 namespace radiosity {
 
-/// Gathers at all eyes of a scene, pass by pass; what eyes reflect stays on the device and is
-/// gathered in the next pass. It is also what Gatherer would find, to rounding.
+/// Gathers at all eyes of a scene, pass by pass. The reflected light stays on the device for the
+/// next pass. Results are those of Gatherer, to rounding.
 class GpuGatherer {
  public:
-  /// `scene` is kept by reference. Where its light finds no room on the device, pass() says so.
+  /// Keeps `scene` by reference. If the device has no room for its light, pass() says so.
   GpuGatherer(const GatherScene& scene, std::unique_ptr<GpuEye> eye);
 
   struct Seen {
     Gatherer::Received received;
     std::span<const double> backs;  ///< the share of the view on each surface's back
   };
-  /// Calls take(eye, seen) on all threads for every eye that looks, and advances `progress`. Empty,
-  /// or why the device gave up: then some were not called, and there are no further passes.
+  /// Calls take(eye, seen) on all threads for every eye that looks, and advances `progress`.
+  /// Returns an empty text, or the reason why the device gave up: then some eyes were left out, and
+  /// there are no further passes.
   std::string pass(const std::function<void(std::size_t, const Seen&)>& take, Progress& progress);
 
   const HemicubeCounts& counts() const { return counts_; }
@@ -34,7 +35,7 @@ class GpuGatherer {
  private:
   const GatherScene& scene_;
   std::unique_ptr<GpuEye> eye_;
-  std::string problem_;         ///< why there are no passes; empty: there are
+  std::string problem_;         ///< why no pass is possible; empty: passes are possible
   std::vector<Index> looking_;  ///< eyes
   HemicubeCounts counts_;
 };

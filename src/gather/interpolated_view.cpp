@@ -6,7 +6,7 @@
 namespace radiosity {
 namespace {
 
-/// In a fixed order.
+/// The sum of all lanes, in a fixed order.
 double total(const std::array<double, kLanes>& lanes) {
   double sum = 0;
   for (const double lane : lanes) sum += lane;
@@ -91,13 +91,14 @@ void InterpolatedView::place(const BasisFacet& facet, SeenFacet& seen) const {
     corner[k] = frame_.toEye(mesh_.vertices[facet.vertex[k]] * scale_);
   }
   for (std::size_t k = 0; k < seen.count; ++k) {
-    // det(b, a, r), from the edge itself: b x a = (b - a) x a. Of a front it is positive inside.
+    // det(b, a, r) from the edge itself: b x a = (b - a) x a. It is positive inside a front.
     const Vec3& next = corner[(k + 1) % seen.count];
     seen.edge[k] = glm::cross(next - corner[k], corner[k]);
   }
 }
 
-/// Differences to corner 0: a constant field stays that constant. True if all bands are constant.
+/// Stores differences to corner 0, so that a constant field stays constant. True if all bands are
+/// constant.
 bool InterpolatedView::setValues(std::size_t patch, const BasisFacet& facet, std::size_t seen) {
   std::array<double, 4>* rise = facet_rise_.data() + seen * bands_;
   facets_[seen].row.rise = {rise, bands_};
@@ -115,7 +116,7 @@ bool InterpolatedView::setValues(std::size_t patch, const BasisFacet& facet, std
   return constant;
 }
 
-/// Edges as linear functions along the row of the run.
+/// Sets the edges as linear functions along the row of the run.
 void InterpolatedView::alongRow(SeenFacet& facet, const ItemRun& run) const {
   const double pixel = 2.0 / resolution_;  // in units of half a face
   for (std::size_t k = 0; k < facet.count; ++k) {
@@ -128,7 +129,7 @@ void InterpolatedView::alongRow(SeenFacet& facet, const ItemRun& run) const {
 void InterpolatedView::visit(const ItemRun& run) {
   if (run.begin >= run.end) return;
   const std::size_t patch = run.item;
-  if (patch >= mesh_.size()) {  // backs are black; what comes after them is the sky
+  if (patch >= mesh_.size()) {  // backs, which are black, and after them the sky
     const std::size_t surface = patch - mesh_.size();
     if (surface < backs_.size()) backs_[surface] += run.weights[run.end] - run.weights[run.begin];
     return;
@@ -150,7 +151,8 @@ void InterpolatedView::addRun(const SeenFacet& facet, const ItemRun& run, int be
   (facet.count == 4 ? kernels_.addQuad : kernels_.addTriangle)(facet.row, pixels, above_.data());
 }
 
-/// Each pixel belongs to the facet it lies deepest in: edges' values measured against their sum.
+/// Each pixel belongs to the facet in which it lies deepest: edge values are compared after
+/// division by their sum.
 void InterpolatedView::addManyFacets(std::size_t patch, const ItemRun& run) {
   const std::span facets(facets_.data() + basis_.facetBegin(patch), basis_.facets(patch).size());
   for (SeenFacet& facet : facets) alongRow(facet, run);

@@ -14,16 +14,16 @@
 
 namespace radiosity {
 
-/// Adds up, pixel by pixel, weight times the radiosity interpolated at the pixel's point of the
-/// patch seen. Scratch memory: one a thread.
+/// Sums over pixels the weight times the radiosity, interpolated at the pixel's point of the patch
+/// seen. Scratch memory: one object a thread.
 ///
 /// The areas A_k of the interpolation are, up to one factor that cancels, the determinants
 /// det(b, a, r) of an edge's ends, seen from the eye, and the pixel's ray r = (x, y, 1): linear
 /// along a row, so that perspective costs one division a pixel.
 class InterpolatedView : public RunVisitor {
  public:
-  /// All are kept by reference. `scale`: of the view scene the eye's frame is given in. `radiosity`
-  /// (eyes * bands) may change between views.
+  /// Keeps all by reference. `scale`: of the view scene in which the eye's frame is given.
+  /// `radiosity` (eyes * bands) may change between views.
   InterpolatedView(const PatchMesh& mesh, const PatchBasis& basis, double scale, int resolution,
                    bool simd, const std::vector<Index>& eye_of_corner,
                    const std::vector<float>& radiosity, std::size_t bands);
@@ -41,7 +41,7 @@ class InterpolatedView : public RunVisitor {
   struct SeenFacet {
     std::size_t count = 3;
     std::array<Vec3, 4> edge{};  ///< in the eye's frame; dot(edge k, r) is A_k
-    FacetRow row;                ///< slopes and bases are those of the row seen last
+    FacetRow row;                ///< its slopes and bases are those of the last row seen
   };
 
   void prepare(std::size_t patch);
@@ -62,11 +62,11 @@ class InterpolatedView : public RunVisitor {
   const std::vector<float>& radiosity_;
   std::size_t bands_;
   EyeFrame frame_;
-  std::vector<double> level_;    ///< bands; from corner 0's values
+  std::vector<double> level_;    ///< bands; the part of corner 0's values
   std::vector<double> backs_;    ///< by surface
-  std::vector<LaneSums> above_;  ///< bands; what the others add
+  std::vector<LaneSums> above_;  ///< bands; the part of the differences to corner 0
   std::uint32_t view_ = 0;
-  std::vector<std::uint32_t> prepared_;  ///< N, the view a patch was prepared for
+  std::vector<std::uint32_t> prepared_;  ///< N, the view for which a patch was prepared
   std::vector<std::uint8_t> constant_;   ///< N, of that view: the same value at all corners
   std::vector<SeenFacet> facets_;        ///< as PatchBasis numbers them
   /// facets * bands: FacetRow::rise, and in place 0 the value of corner 0.

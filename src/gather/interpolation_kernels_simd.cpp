@@ -1,11 +1,11 @@
 #include "gather/interpolation_kernels.h"
 
-// Vectors without a fixed size cannot stand in arrays.
+// Vectors without a fixed size cannot be array elements.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "gather/interpolation_kernels_simd.cpp"
 #include <hwy/foreach_target.h>
-// After foreach_target.h, which compiles this file once per instruction set.
+// Included after foreach_target.h, which compiles this file once per instruction set.
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -54,7 +54,7 @@ struct Broadcast {
     }
   }
 
-  /// Corners' weights without their C_k, and returns the sum of them with it.
+  /// Computes the corners' weights without C_k, and returns the sum of the weights with C_k.
   HWY_INLINE Vector weigh(Vector centre, Vector* w) const {
     Vector a[kCorners];
     for (std::size_t k = 0; k < kCorners; ++k) {
@@ -102,7 +102,7 @@ HWY_INLINE void addBands(const FacetRow& facet, std::size_t first_band, const Pi
   }
 }
 
-/// Three bands at a time: colours are one turn.
+/// Handles three bands at a time, so that colours take one turn.
 template <std::size_t kCorners>
 void add(const FacetRow& facet, const PixelRow& pixels, LaneSums* sums) {
   const std::size_t bands = facet.rise.size();

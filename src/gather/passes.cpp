@@ -61,7 +61,7 @@ void GatherScene::standAtVertices(const PatchMaterials& of_patches, const Gather
   for (std::size_t g = 0; g < groups.size(); ++g) {
     for (const std::size_t corner : groups.cornersOf(g)) area[g] += weights[corner];
   }
-  // As differences to the first patch: what is the same all round stays it to the bit.
+  // We average differences to the first patch, so that a constant keeps its bits.
   const auto meanOf = [&](const std::vector<double>& values, std::size_t g, std::size_t band) {
     const double first = values[bands * groups.patchesOf(g).front() + band];
     double sum = 0;

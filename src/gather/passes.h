@@ -14,14 +14,14 @@
 
 namespace radiosity {
 
-/// Emission and reflectance of each eye, L * bands: the mean over what its value stands for.
+/// Emission and reflectance of each eye, L * bands: means over the patches for which it stands.
 struct EyeMaterials {
   std::vector<float> emission;
   std::vector<float> reflectance;
   std::vector<double> largest_emission;  ///< bands
 };
 
-/// The scene as the passes need it; made once.
+/// The data of the scene that all passes need; made once.
 class GatherScene {
  public:
   /// `mesh` is kept by reference.
@@ -44,10 +44,10 @@ class GatherScene {
   std::optional<PatchBasis> basis;   ///< at vertices
   EyeMaterials materials;
   std::vector<double> sky;  ///< bands; radiance, W/m^2/sr
-  /// The largest emission of a band, or the exitance of the sky where that is more: what changes
-  /// are relative to.
+  /// The largest emission of a band, or the exitance of the sky if that is more. Changes are
+  /// relative to it.
   double largestSource(std::size_t band) const;
-  /// Something emits, or the sky shines, in some band.
+  /// Whether a patch emits or the sky shines in some band.
   bool isLit() const;
 
  private:
@@ -59,7 +59,7 @@ class GatherScene {
 Gathered gatherIn(const GatherScene& scene, std::unique_ptr<GpuEye> eye,
                   const GatherOptions& options, Progress& progress);
 
-/// One thread's hemicube and what it adds up.
+/// One thread's hemicube and sums.
 class Gatherer {
  public:
   /// Both are kept by reference.

@@ -7,7 +7,8 @@ namespace radiosity {
 namespace {
 
 /// Gauss-Legendre on [0, 1], four points: abscissae and weights (Abramowitz & Stegun, table 25.4).
-/// Parallelograms are exact; a corner of 60 degrees leaves 1e-4 of the area on the wrong corner.
+/// Parallelograms are exact; with a corner of 60 degrees, 1e-4 of the area goes to the wrong
+/// corner.
 constexpr std::array<double, 4> kAbscissa = {0.06943184420297371, 0.33000947820757187,
                                              0.66999052179242813, 0.93056815579702629};
 constexpr std::array<double, 4> kWeight = {0.17392742256872692, 0.32607257743127308,
@@ -27,7 +28,7 @@ PatchBasis::PatchBasis(const PatchMesh& mesh) : mesh_(mesh) {
   }
 }
 
-/// False unless the patch is a quadrilateral all of whose corners bend one way.
+/// Adds a convex quadrilateral as one facet. False, and nothing is added, for any other patch.
 bool PatchBasis::addQuad(std::size_t patch) {
   const std::span<const Index> outline = mesh_.outline(patch);
   if (outline.size() != 4) return false;
@@ -62,8 +63,8 @@ void PatchBasis::addTriangles(std::size_t patch) {
   }
 }
 
-/// Integrals of the facet's weights. Of a triangle, a third of its area each. A quadrilateral is
-/// mapped from the unit square bilinearly, whose Jacobian is bilinear too.
+/// Integrals of the facet's weights: a third of the area for each corner of a triangle. A
+/// quadrilateral is mapped bilinearly from the unit square; the Jacobian is bilinear, too.
 std::array<double, 4> PatchBasis::integrals(const BasisFacet& facet) const {
   std::array<Vec3, 4> p{};
   for (std::size_t k = 0; k < 4; ++k) p[k] = mesh_.vertices[facet.vertex[k]];
@@ -97,7 +98,7 @@ std::array<double, 4> PatchBasis::integrals(const BasisFacet& facet) const {
 std::vector<double> PatchBasis::areaWeights() const {
   std::vector<double> weights(mesh_.corners.size(), 0.0);
   for (std::size_t i = 0; i < mesh_.size(); ++i) {
-    double inside = 0;  // goes to all corners alike
+    double inside = 0;  // shared equally by all corners
     for (const BasisFacet& facet : facets(i)) {
       const std::array<double, 4> part = integrals(facet);
       for (std::size_t k = 0; k < std::size_t(facet.count); ++k) {

@@ -1,4 +1,4 @@
-// What batches of hemicubes are drawn into and read from.
+// The buffers into which batches of hemicubes are drawn and from which they are read.
 #pragma once
 
 #include <array>
@@ -12,15 +12,15 @@
 
 namespace radiosity::gl {
 
-/// As kClipTriangles writes a corner.
+/// The size of a corner that kClipTriangles writes.
 inline constexpr std::size_t kCornerBytes = 20;
 
-/// How many hemicubes are drawn at once, and what they take. The faces of one fill a tile of
-/// 2 x 3/2 resolutions.
+/// The number of hemicubes drawn at once and their room. The faces of one fill a tile of 2 x 3/2
+/// resolutions.
 struct BatchPlan {
   std::uint32_t views = 0;
   std::uint32_t across = 0, down = 0;  ///< tiles of the target
-  std::size_t triangles = 0;           ///< that there is room for after clipping
+  std::size_t triangles = 0;           ///< the most triangles after clipping
 };
 
 class Texture {
@@ -41,7 +41,7 @@ class Texture {
   GLuint name_ = 0;
 };
 
-/// What is drawn to: polygons and depths of all tiles.
+/// The framebuffer: polygons and depths of all tiles.
 class Target {
  public:
   Target(std::uint32_t width, std::uint32_t height)
@@ -61,7 +61,7 @@ class Target {
   Target(const Target&) = delete;
   Target& operator=(const Target&) = delete;
 
-  /// All sky, infinitely far.
+  /// Sets all pixels to the sky, infinitely far.
   void clear() const {
     const std::array<GLuint, 4> sky = {kNone, 0, 0, 0};
     const GLfloat far = 0;
@@ -104,7 +104,7 @@ class CornerArray {
   GLuint name_ = 0;
 };
 
-/// What goes to the device and comes back for one batch under way.
+/// The input and output of one batch on the device.
 struct Slot {
   explicit Slot(std::size_t bytes) : rows(bytes) {}
   Buffer views;
@@ -113,7 +113,7 @@ struct Slot {
   Fence done;
 };
 
-/// All that depends on the size of batches.
+/// All buffers whose size depends on the batches.
 struct Room {
   Room(const BatchPlan& plan, int resolution)
       : target(plan.across * 2 * std::uint32_t(resolution),

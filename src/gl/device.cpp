@@ -13,7 +13,8 @@ namespace radiosity::gl {
 
 namespace {
 
-/// libepoxy ends the program where a library that it wants is missing: that is found out before.
+/// The library that is missing, in words; empty if none is. We look first, since libepoxy ends the
+/// program if it misses a library.
 std::string missingLibrary() {
   const auto opens = [](const char* name) {
     return dlopen(name, RTLD_LAZY | RTLD_LOCAL) != nullptr;
@@ -67,7 +68,7 @@ std::vector<FoundDisplay> findDisplays() {
 
 const char* text(GLenum name) { return reinterpret_cast<const char*>(glGetString(name)); }
 
-/// What the current context lacks; null: nothing.
+/// The feature that the current context lacks; null if it has all.
 const char* lacking() {
   if (epoxy_gl_version() < 43) return "OpenGL 4.3";
   if (epoxy_gl_version() >= 45) return nullptr;
@@ -119,7 +120,7 @@ FoundDevices lookForDevices() {
   return all;
 }
 
-/// False, too, where the driver of the current context cannot tell.
+/// Whether the device is lost. False, too, if the driver of the current context cannot tell.
 bool isLost() {
   if (epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_KHR_robustness")) {
     return glGetGraphicsResetStatus() != GL_NO_ERROR;
@@ -150,7 +151,7 @@ Context::Context(EGLDisplay display) : display_(display) {
                                           EGL_NONE};
     return eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted.data());
   };
-  // Where a driver can say that the device is lost, it shall.
+  // We first ask for a context that reports the loss of the device, which not every driver has.
   context_ = create(EGL_LOSE_CONTEXT_ON_RESET);
   if (context_ == EGL_NO_CONTEXT) context_ = create(EGL_NO_RESET_NOTIFICATION);
   if (context_ == EGL_NO_CONTEXT) {

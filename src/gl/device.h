@@ -11,7 +11,7 @@
 
 namespace radiosity::gl {
 
-/// OpenGL does not do what it should: out of memory, a lost device, an error of the driver.
+/// A failure of OpenGL: out of memory, a lost device, or an error of the driver.
 class Failure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -22,14 +22,14 @@ struct Device {
   EyeDevice about;
 };
 
-/// Devices with what the eye needs, hardware first; looked for once. Where there are none `problem`
-/// says why. Displays stay open.
+/// The devices that have the features for the eye, hardware first. The search runs once. If there
+/// are none, `problem` says why. Displays stay open.
 const std::vector<Device>& findDevices(std::string& problem);
 
 /// A core profile of OpenGL 4.3 or later, without a surface.
 class Context {
  public:
-  /// Failure where the display gives none.
+  /// Throws Failure if the display gives no context.
   explicit Context(EGLDisplay display);
   ~Context();
   Context(const Context&) = delete;
@@ -52,7 +52,7 @@ class Context {
   EGLContext context_;
 };
 
-/// Failure where OpenGL has noted an error or lost the device since the last call. Of the current
+/// Throws Failure if OpenGL has had an error or lost the device since the last call, in the current
 /// context.
 void check(const std::string& doing);
 

@@ -13,16 +13,17 @@ namespace radiosity::gl {
 namespace {
 
 constexpr GpuPace kHardware{3, std::size_t(1) << 24};
-/// The processor has nothing to gain from more at once, and an interrupt waits for all of it.
+/// In software larger batches gain nothing, and an interrupt waits for a whole batch.
 constexpr GpuPace kSoftware{1, std::size_t(1) << 16};
 
 /// Bytes of a batch; one hemicube may take more.
 constexpr std::size_t kBatchBytes = std::size_t(256) << 20;
 constexpr std::size_t kMostSide = std::size_t(1) << 15;  // of the target, pixels
-constexpr std::size_t kMostViews = 4096;  // groups of a dispatch are no fewer than 65,535
-/// A triangle that four planes clip has seven corners, five triangles; a hemicube has five faces.
+constexpr std::size_t kMostViews = 4096;  // a dispatch may have at least 65,535 groups
+/// The most triangles that clipping makes of one: four planes leave seven corners, that is five
+/// triangles, on each of the five faces of a hemicube.
 constexpr std::size_t kMostPieces = 25;
-/// Room that clipped triangles get at first: most are seen on one face or none.
+/// The room for clipped triangles at first, a triangle: most are seen on one face or none.
 constexpr std::size_t kPieces = 1;
 constexpr std::size_t kLittleRoom = 256;
 
@@ -39,7 +40,7 @@ std::size_t limitOf(GLenum name) {
   return std::size_t(limit);
 }
 
-/// As kClipTriangles has it.
+/// The same layout as in kClipTriangles.
 struct DrawCall {
   std::uint32_t count, instances, first, base_instance, needed;
 };
@@ -59,7 +60,7 @@ struct GlEye::OnDevice {
   std::unique_ptr<Room> room;
 };
 
-/// Of GpuField.
+/// A GpuField on the device.
 struct GlEye::Light {
   explicit Light(const GpuField& field, int resolution)
       : bands(field.bands),
@@ -91,7 +92,7 @@ struct GlEye::Light {
   Program interpolate{{GL_COMPUTE_SHADER, {kTypes, kPixels, kInterpolate}}};
   Program gather{{GL_COMPUTE_SHADER, {kTypes, kGather}}};
   Buffer vertices, facets, first_facet, mean_of, first_of_mean, materials;
-  std::array<Buffer, 2> radiosity;  ///< that is gathered, and the next
+  std::array<Buffer, 2> radiosity;  ///< the one that is gathered, and the next
   std::size_t now = 0;
   Buffer parts, irradiance;
 };
@@ -115,7 +116,7 @@ GlEye::GlEye(const Device& device, const GpuScene& scene, const GpuWeights& weig
     store(scene, weights);
     makeRoom();
   } catch (...) {
-    on_device_.reset();  // while the context is current
+    on_device_.reset();  // needs a current context
     throw;
   }
 }
@@ -126,7 +127,7 @@ GlEye::~GlEye() {
     light_.reset();
     on_device_.reset();
   } catch (const Failure&) {
-    // The context is lost, and with it goes what it held: nothing is there to be deleted.
+    // The context is lost together with its objects, so there is nothing to delete.
     static_cast<void>(light_.release());
     static_cast<void>(on_device_.release());
   }
@@ -153,7 +154,7 @@ void GlEye::store(const GpuScene& scene, const GpuWeights& weights) {
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
 }
 
-/// Bytes of the largest buffer that shaders read and whose size does not go with the views.
+/// The bytes of the largest buffer of the shaders whose size does not depend on the views.
 std::size_t GlEye::largestBlock() const {
   const OnDevice& on = *on_device_;
   std::size_t largest = 0;
@@ -169,14 +170,14 @@ std::size_t GlEye::largestBlock() const {
   return largest;
 }
 
-/// What a view adds to the buffer of which it takes most.
+/// The most bytes that a view adds to one buffer.
 std::size_t GlEye::largestBlockOfAView() const {
   return std::max({4 * rowWeights(1), kCandidateBytes * polygons_,
                    3 * kCornerBytes * triangle_room_, sizeof(GpuView),
                    4 * std::size_t(hidden_words_), irradianceBytes(1), partBytes(1)});
 }
 
-/// In all buffers.
+/// The bytes that a view adds to all buffers together.
 std::size_t GlEye::bytesOfAView() const {
   const std::size_t row = 8 * rowWeights(1) + irradianceBytes(1);
   return pixelsOf(resolution_) * kPixelBytes + kCandidateBytes * polygons_ +
@@ -184,7 +185,7 @@ std::size_t GlEye::bytesOfAView() const {
 }
 
 BatchPlan GlEye::plan() const {
-  // Powers of two, so that a viewport that is one is not larger than the device allows.
+  // A power of two: rounding the viewport up to one then stays within the device's limit.
   const std::size_t side = std::bit_floor(std::min(limitOf(GL_MAX_TEXTURE_SIZE), kMostSide));
   const std::size_t across = side / (2 * std::size_t(resolution_));
   const std::size_t down = side / (3 * std::size_t(resolution_) / 2);
@@ -204,7 +205,8 @@ BatchPlan GlEye::plan() const {
   return plan;
 }
 
-/// For batches as large as they may be now. Failure where the device has no room for one hemicube.
+/// Makes room for batches as large as the plan allows. Throws Failure if the device has no room for
+/// one hemicube.
 void GlEye::makeRoom() {
   plan_ = plan();
   OnDevice& on = *on_device_;
@@ -284,7 +286,7 @@ void GlEye::draw(const Batch& batch) {
                   GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 
   room.target.clear();
-  // Powers of two: places of corners are then exact on the way through them.
+  // With powers of two the viewport transform of corners is exact.
   const std::uint32_t width = std::bit_ceil(room.target.width());
   const std::uint32_t height = std::bit_ceil(room.target.height());
   glViewport(0, 0, GLsizei(width), GLsizei(height));
@@ -316,7 +318,7 @@ void GlEye::sum(const Batch& batch) {
                   GL_FRAMEBUFFER_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-/// After sum(), which has left items in the picture.
+/// Gathers light. Call it after sum(), which leaves items in the picture.
 void GlEye::gatherLight(const Batch& batch) {
   const OnDevice& on = *on_device_;
   Room& room = *on.room;
@@ -345,7 +347,7 @@ void GlEye::gatherLight(const Batch& batch) {
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-/// Of the radiosity that is gathered.
+/// Computes the means of the radiosity that is gathered.
 void GlEye::takeMeans() {
   const Light& light = *light_;
   if (light.means == 0) return;
@@ -394,7 +396,7 @@ GpuRows GlEye::rowsOf(const Batch& batch) const {
   return rows;
 }
 
-/// Whether clipped triangles found no room; the next batches are then smaller, or have more.
+/// Whether the clipped triangles did not fit. The next batches are then smaller or have more room.
 bool GlEye::hasOverflowed(const Batch& batch) {
   DrawCall made{};
   const std::size_t at =
@@ -403,7 +405,7 @@ bool GlEye::hasOverflowed(const Batch& batch) {
   if (made.needed <= 3 * plan_.triangles) return false;
   if (batch.count > 1) {
     most_views_ = batch.count / 2;
-    // All of the room for fewer.
+    // Half of the views get twice the room each.
     triangle_room_ = std::min(kMostPieces * triangles_, 2 * triangle_room_);
   } else {
     triangle_room_ = std::min(kMostPieces * triangles_, std::size_t(made.needed) / 3);
@@ -445,7 +447,8 @@ void GlEye::lookAtAll(std::size_t count, const Describe& describe_view, const Ta
   glFinish();
 }
 
-/// Does `work` with the context current. Empty, or why the device gave up, then or before.
+/// Does `work` with the context current. Returns an empty text, or the reason why the device gave
+/// up, now or before.
 std::string GlEye::onDevice(const std::function<void()>& work) {
   if (!failure_.empty()) return failure_;
   try {
@@ -489,7 +492,7 @@ std::vector<Index> GlEye::pictures(const Describe& describe_view) {
     check("reading pictures");
   });
   if (!problem.empty()) throw RunError(problem);
-  // As kClipTriangles places the faces.
+  // The faces lie where kClipTriangles places them.
   const int r = resolution_;
   const std::array<std::array<int, 2>, kFaces> corners = {
       {{0, 0}, {r, 0}, {r, r / 2}, {0, r}, {r, r}}};

@@ -13,12 +13,12 @@
 
 namespace radiosity::gl {
 
-/// What suits a device.
+/// The pace that suits a device.
 const GpuPace& paceOf(const EyeDevice& device);
 
 class GlEye final : public GpuEye {
  public:
-  /// Failure where the device does not hold the scene and one hemicube.
+  /// Throws Failure if the device cannot hold the scene and one hemicube.
   GlEye(const Device& device, const GpuScene& scene, const GpuWeights& weights,
         const GpuPace& pace);
   ~GlEye() override;
@@ -35,7 +35,7 @@ class GlEye final : public GpuEye {
  private:
   struct OnDevice;
   struct Light;
-  /// Hemicubes that the device works on: views [first, first + count).
+  /// A batch of hemicubes on the device: views [first, first + count).
   struct Batch {
     std::size_t first = 0;
     std::uint32_t count = 0;
@@ -60,9 +60,9 @@ class GlEye final : public GpuEye {
   GpuRows rowsOf(const Batch& batch) const;
   void lookAtAll(std::size_t count, const Describe& describe, const Take& take, bool gathers);
   std::size_t rowWeights(std::size_t views) const { return views * (std::size_t(items_) + 1); }
-  /// Of irradiance in a slot of the ring.
+  /// The bytes of irradiance in a slot of the ring.
   std::size_t irradianceBytes(std::size_t views) const;
-  /// Of sums of 128 pixels.
+  /// The bytes of the sums of 128 pixels.
   std::size_t partBytes(std::size_t views) const;
 
   EyeDevice about_;
@@ -74,12 +74,12 @@ class GlEye final : public GpuEye {
   std::uint32_t polygons_;
   std::uint32_t triangles_;
   std::uint32_t hidden_words_;                ///< a view
-  std::size_t most_views_ = ~std::size_t(0);  ///< as far as rooms for triangles sufficed
+  std::size_t most_views_ = ~std::size_t(0);  ///< lowered when triangles did not fit
   std::size_t triangle_room_ = 0;             ///< of a view
   BatchPlan plan_;
   std::unique_ptr<OnDevice> on_device_;
-  std::unique_ptr<Light> light_;  ///< null: none is gathered
-  std::string failure_;           ///< why the device gave up; empty: it has not
+  std::unique_ptr<Light> light_;  ///< null: no light is gathered
+  std::string failure_;           ///< why the device gave up; empty: it works
 };
 
 }  // namespace radiosity::gl

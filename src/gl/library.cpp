@@ -1,4 +1,4 @@
-// What the library offers to the program.
+// The interface of the library to the program.
 #include <new>
 
 #include "gl/device.h"

@@ -1,4 +1,4 @@
-// OpenGL's objects, deleted with their owners. All are of the context that is current.
+// OpenGL's objects, deleted with their owners. All belong to the current context.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -22,7 +22,7 @@ class Buffer {
   GLuint name() const { return name_; }
   std::size_t bytes() const { return bytes_; }
 
-  /// What it holds is then undefined. At least four bytes: none cannot be bound.
+  /// The contents become undefined. Reserves at least four bytes: an empty buffer cannot be bound.
   void reserve(std::size_t bytes, GLenum usage = GL_DYNAMIC_COPY) {
     bytes_ = bytes < 4 ? 4 : bytes;
     glBindBuffer(GL_COPY_WRITE_BUFFER, name_);
@@ -64,7 +64,7 @@ class MappedBuffer {
   MappedBuffer(const MappedBuffer&) = delete;
   MappedBuffer& operator=(const MappedBuffer&) = delete;
 
-  /// Null where it could not be mapped.
+  /// Null if the memory could not be mapped.
   const std::byte* data() const { return static_cast<const std::byte*>(data_); }
   /// Copies the first `bytes` of `from` to place `at`.
   void copy(const Buffer& from, std::size_t at, std::size_t bytes) {
@@ -79,7 +79,7 @@ class MappedBuffer {
   void* data_ = nullptr;
 };
 
-/// Passed once all that was asked for before it is done.
+/// Passed once all earlier commands are done.
 class Fence {
  public:
   Fence() = default;
@@ -90,7 +90,7 @@ class Fence {
     glDeleteSync(std::exchange(sync_, glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0)));
     glFlush();
   }
-  /// False where it is not passed within a tenth of a second.
+  /// Waits up to a tenth of a second; false if the fence is not passed by then.
   bool wait() const {
     constexpr GLuint64 kNanoseconds = 100'000'000;
     const GLenum state = glClientWaitSync(sync_, GL_SYNC_FLUSH_COMMANDS_BIT, kNanoseconds);
@@ -101,14 +101,14 @@ class Fence {
   GLsync sync_ = nullptr;
 };
 
-/// Shaders, linked.
+/// Linked shaders.
 class Program {
  public:
   struct Stage {
     GLenum kind;
     std::vector<const char*> source;  ///< one after the other
   };
-  /// Failure with the driver's words where a stage does not compile.
+  /// Throws Failure with the driver's words if a stage does not compile.
   explicit Program(std::initializer_list<Stage> stages);
   ~Program() { glDeleteProgram(name_); }
   Program(const Program&) = delete;
@@ -116,7 +116,7 @@ class Program {
 
   void use() const { glUseProgram(name_); }
   GLint uniform(const char* name) const { return glGetUniformLocation(name_, name); }
-  /// Uses it, with these buffers as its storage blocks 0, 1, ...
+  /// Uses the program, with these buffers as its storage blocks 0, 1, ...
   void useWith(std::initializer_list<const Buffer*> blocks) const;
 
  private:

@@ -5,13 +5,13 @@ namespace radiosity::gl {
 
 // Storage blocks are numbered as the comments list them; 64 or 128 invocations make a group.
 
-/// What comes before each of the others that computes: types as in gpu_scene.h and gpu_eye.h, faces
-/// as in face_geometry.h.
+/// The start of all compute shaders: types as in gpu_scene.h and gpu_eye.h, faces as in
+/// face_geometry.h.
 extern const char* const kTypes;
 
-/// A candidate for every view and polygon: is it seen at all, from which side, and how its pixels
-/// are found in its grid. Groups: polygons / 64, views. Blocks: vertices, corners, polygons, grids,
-/// views, hidden bits, candidates, counts.
+/// Makes a candidate for every view and polygon: whether and from which side it is seen, and the
+/// functions that map pixels to its grid. Groups: polygons / 64, views. Blocks: vertices, corners,
+/// polygons, grids, views, hidden bits, candidates, counts.
 extern const char* const kFindCandidates;
 
 /// Clips triangles to faces and projects them to pixels of the target. Groups: faces, views.
@@ -23,22 +23,22 @@ extern const char* const kClipTriangles;
 extern const char* const kDrawCorner;
 extern const char* const kDrawPixel;
 
-/// What comes after kTypes in steps that work pixel by pixel. Groups: pixels / 128, rows of all
-/// faces, views. Image 0: polygons drawn.
+/// Follows kTypes in steps that work pixel by pixel. Groups: pixels / 128, rows of all faces,
+/// views. Image 0: polygons drawn.
 extern const char* const kPixels;
 
-/// Finds the item of every pixel and adds up weights; where items are kept, they replace polygons
-/// in the image. Blocks: candidates, grids, cells, nodes, running sums of the top face and of a
-/// side face, low and high halves of the rows.
+/// Finds the item of every pixel and adds up weights. If items are kept, they replace polygons in
+/// the image. Blocks: candidates, grids, cells, nodes, running sums of the top face and of a side
+/// face, low and high halves of the rows.
 extern const char* const kSumRows;
 
-/// Means of sources (GpuField). Groups: means * bands / 64. Blocks: sources, where each mean's
-/// begin, radiosity. Stands alone.
+/// Means of sources (GpuField). Groups: means * bands / 64. Blocks: sources, the first source of
+/// each mean, radiosity. Does not need kTypes.
 extern const char* const kMeans;
 
-/// Weight times interpolated radiosity, summed over 128 pixels of a row; pixels as kSumRows with
-/// items kept. Blocks: running sums of the top face and of a side face, views, vertices, where each
-/// patch's facets begin, facets, radiosity, sums.
+/// Weight times interpolated radiosity, summed over 128 pixels of a row; the image must hold items
+/// (kSumRows). Blocks: running sums of the top face and of a side face, views, vertices, the first
+/// facet of each patch, facets, radiosity, sums.
 extern const char* const kInterpolate;
 
 /// Irradiance of views, from these sums or from rows, and the next radiosity of their sources.

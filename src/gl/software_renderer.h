@@ -1,4 +1,4 @@
-// Which of OpenGL's renderers draw on the processor.
+// Recognises OpenGL's renderers that draw on the processor.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 namespace radiosity::gl {
 
-/// Whether Mesa draws in software behind this name (GL_RENDERER), directly or, as "zink (llvmpipe
-/// ...)", through another driver: whatever EGL says of the device.
+/// Whether the renderer of this name (GL_RENDERER) is Mesa's software, directly or through another
+/// driver, as "zink (llvmpipe ...)". It does not depend on what EGL says of the device.
 inline bool isSoftwareRenderer(std::string_view name) {
   std::string small(name);
   std::ranges::transform(small, small.begin(), [](unsigned char c) { return std::tolower(c); });

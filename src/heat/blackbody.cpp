@@ -14,7 +14,7 @@ constexpr double kSecondRadiation = 14387.768775039338;
 constexpr double kSeriesFactor =
     15 / (std::numbers::pi * std::numbers::pi * std::numbers::pi * std::numbers::pi);
 
-/// Where the one series takes over from the other: both hold 16 digits with few terms.
+/// The z that separates the two series: there both give 16 digits with few terms.
 constexpr double kShort = 1;
 
 /// B_2m of the expansion z / (e^z - 1) = sum B_n z^n / n!.
@@ -22,8 +22,8 @@ constexpr std::array kBernoulli = {1.0 / 6,       -1.0 / 30,      1.0 / 42, -1.0
                                    5.0 / 66,      -691.0 / 2730,  7.0 / 6,  -3617.0 / 510,
                                    43867.0 / 798, -174611.0 / 330};
 
-/// The share below z = h c / (k wavelength T) where z is large: short waves. With
-/// z^3 / (e^z - 1) = sum_n z^3 e^(-n z), integrated term by term from z on (Chang & Rhee 1984).
+/// The share of wavelengths shorter than that of z = h c / (k wavelength T), for large z. We
+/// integrate z^3 / (e^z - 1) = sum_n z^3 e^(-n z) term by term from z on (Chang & Rhee 1984).
 double ofShortWaves(double z) {
   double sum = 0;
   for (int n = 1; n <= 40; ++n) {
@@ -36,7 +36,7 @@ double ofShortWaves(double z) {
   return kSeriesFactor * sum;
 }
 
-/// The share above, where z is small: z^2 sum B_n z^n / n! integrated from 0 to z.
+/// The share of longer wavelengths, for small z: z^2 sum B_n z^n / n! integrated from 0 to z.
 double ofLongWaves(double z) {
   double sum = 1.0 / 3 - z / 8;
   double power = 1;  // z^n / n!
@@ -48,7 +48,7 @@ double ofLongWaves(double z) {
   return kSeriesFactor * z * z * z * sum;
 }
 
-/// d fraction / d T times T / 4: what a band's emissive power gains beside its share of x.
+/// d fraction / d T times T / 4: the slope of a band's emissive power in addition to its share.
 double shift(double wavelength, double temperature) {
   const double z = kSecondRadiation / (wavelength * temperature);
   if (!(z < 700)) return 0;

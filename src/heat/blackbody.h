@@ -1,15 +1,15 @@
-// What black surfaces give off in each band.
+// The emissive power of black surfaces in each band.
 #pragma once
 
 #include "radiosity/heat.h"
 
 namespace radiosity {
 
-/// Emissive power of black surfaces. `x` = sigma T^4 is what heat balances are solved for: without
-/// bands of wavelengths they are linear in it.
+/// Emissive power of black surfaces. Heat balances are solved for `x` = sigma T^4: without bands of
+/// wavelengths they are linear in it.
 class BlackBands {
  public:
-  /// Kept by reference.
+  /// Keeps `options` by reference.
   explicit BlackBands(const HeatOptions& options) : options_(options) {}
 
   int count() const { return options_.bands.count(); }
@@ -17,7 +17,7 @@ class BlackBands {
   double temperatureOf(double total) const;
   /// The share of `total(temperature)` in a band.
   double fraction(int band, double temperature) const;
-  /// d E_band / d x at that temperature, which is above 0 where bands have edges.
+  /// d E_band / d x at that temperature, which must be above 0 if bands have edges.
   double slope(int band, double temperature) const;
   bool linear() const { return options_.bands.edges.empty(); }
 

@@ -1,4 +1,4 @@
-// What conditions may name: surfaces of a scene, or rows of a matrix.
+// The targets of conditions: surfaces of a scene, or rows of a matrix.
 #pragma once
 
 #include <optional>
@@ -17,20 +17,20 @@ class ConditionTargets {
  public:
   virtual ~ConditionTargets() = default;
   virtual std::size_t size() const = 0;
-  /// For messages.
+  /// The name of a target in messages.
   virtual std::string nameOf(Index target) const = 0;
-  /// What a name may be of: "surface, material or object with faces".
+  /// The kinds of things that have names: "surface, material or object with faces".
   virtual std::string_view kinds() const = 0;
-  /// Those that `name` stands for as it is, ascending.
+  /// The targets that `name` stands for literally, ascending.
   virtual std::vector<Index> named(const std::string& name) const = 0;
-  /// Those with a name that a pattern matches, ascending.
+  /// The targets with a name that matches `pattern`, ascending.
   virtual std::vector<Index> matching(const std::string& pattern) const = 0;
   virtual std::vector<std::string> knownNames() const = 0;
-  /// Emissivity where no condition gives one.
+  /// The emissivity if no condition gives one.
   virtual std::optional<double> emissivityOf(Index target) const = 0;
 };
 
-/// Surfaces go by their own name, their material's and their object's.
+/// Surfaces have three names: their own, their material's and their object's.
 class SurfaceTargets : public ConditionTargets {
  public:
   explicit SurfaceTargets(const Scene& scene) : scene_(scene) {}
@@ -46,10 +46,10 @@ class SurfaceTargets : public ConditionTargets {
   const Scene& scene_;
 };
 
-/// Rows go by their name, or by their number from 1.
+/// Rows are named by their name or by their number from 1.
 class RowTargets : public ConditionTargets {
  public:
-  /// Both are kept by reference. `names`: N, empty where a row has none; `emissivity`: N, or empty.
+  /// Keeps both by reference. `names`: N, empty for a row without one; `emissivity`: N, or empty.
   RowTargets(std::span<const std::string> names, std::span<const double> emissivity);
   std::size_t size() const override { return names_.size(); }
   std::string nameOf(Index target) const override;

@@ -199,8 +199,8 @@ std::vector<GivenCondition> parseConditionTable(const std::string& origin, std::
 GivenCondition parseSetting(const std::string& text) {
   GivenCondition given;
   given.origin = "--condition " + text;
-  // Names may hold dots and equals signs: the value begins at the last '=', the property at the
-  // last '.' before it.
+  // Names may contain dots and equals signs: the value begins after the last '=', the property
+  // after the last '.' before it.
   const std::size_t equals = text.rfind('=');
   const std::size_t dot = equals == std::string::npos ? equals : text.rfind('.', equals);
   if (dot == std::string::npos || dot == 0) {

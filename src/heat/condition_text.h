@@ -10,7 +10,7 @@
 
 namespace radiosity {
 
-/// What one line says of the surfaces it names; what it leaves out is empty.
+/// The values that one line gives for the surfaces that it names; missing ones are empty.
 struct GivenCondition {
   std::string origin;  ///< "walls.csv:3", "--condition lamp.power=60"
   std::string name;
@@ -25,11 +25,11 @@ struct GivenCondition {
   bool heated() const { return temperature || flux || power; }
 };
 
-/// The name for all surfaces that no other one names.
+/// The name for all surfaces that no other line names.
 inline constexpr std::string_view kOthers = "*";
 
-/// Errors of both: InputError, with the origin: for what is not written like this, not within its
-/// range or said twice.
+/// Both throw InputError, with the origin, for a text that is not in this form, for a value out of
+/// range, and for one that is given twice.
 /// `origin`: of the table, for messages.
 std::vector<GivenCondition> parseConditionTable(const std::string& origin, std::string_view table);
 GivenCondition parseSetting(const std::string& text);

@@ -10,7 +10,7 @@ namespace radiosity {
 
 namespace {
 
-/// How far the shares of bands may be from 1 in sum: a handful of rounded decimals.
+/// The tolerance for the sum of the bands' shares, which should be 1: a few rounded decimals.
 constexpr double kSharesTolerance = 1e-9;
 
 void require(bool good, const std::string& name, const std::string& what) {

@@ -1,4 +1,4 @@
-// What may be asked of surfaces.
+// Checks of conditions.
 #pragma once
 
 #include <span>
@@ -7,8 +7,8 @@
 
 namespace radiosity {
 
-/// The hottest that is taken for a temperature, K: far beyond what solid surfaces have, and
-/// sigma T^4 keeps all its digits. Heat a square metre is at most what a black surface of it emits.
+/// The highest temperature that is accepted, K: far above that of solid surfaces, and sigma T^4
+/// keeps all its digits. The largest heat flux is that of a black surface at this temperature.
 inline constexpr double kHottest = 1e8;
 inline constexpr double kMostFlux = 5.67e24;
 /// W, W/m^2/K.
@@ -19,7 +19,7 @@ inline constexpr double kMostConvection = 1e15;
 /// and power, and for emissivities that are neither one nor `bands`.
 void validate(std::span<const HeatCondition> conditions, int bands);
 
-/// True where flux, power or convection decide the temperature.
+/// True if flux, power or convection decide the temperature.
 inline bool isFree(const HeatCondition& condition) { return !condition.temperature; }
 
 inline const Emissivity& emissivityIn(const HeatCondition& condition, std::size_t band) {

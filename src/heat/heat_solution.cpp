@@ -1,4 +1,4 @@
-// What a finished solve gives back: figures of rows, and where the heat goes.
+// The results of a finished solve: figures of rows and the balance of heat.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace radiosity {
 
-/// A temperature beyond its table says that the emissivity there is not known.
+/// Refuses temperatures outside their tables of emissivity: the emissivity is not known there.
 void HeatSolve::requireTables() const {
   for (std::size_t i = 0; i < n_; ++i) {
     const Index node = nodes_.of_row[i];
@@ -50,9 +50,9 @@ HeatSolution HeatSolve::solutionOf(HeatFields fields) const {
   return solution;
 }
 
-// What leaves row i and is not seen by fronts ends on the sky or on backs, so with reciprocity and
-// rows that sum to 1, sum A (J - H) = sum A sky (J - E_sky) + sum A backs J. What falls on fronts
-// beyond what the matrix gives does not get out.
+// The radiosity of row i that does not reach fronts ends on the sky or on backs. So with
+// reciprocity and rows that sum to 1, sum A (J - H) = sum A sky (J - E_sky) + sum A backs J.
+// Irradiance on fronts beyond that of the matrix is subtracted from the heat to the sky.
 HeatBalance HeatSolve::balanceOf(const HeatSolution& solution) const {
   HeatBalance balance;
   std::vector<double> of_condition(rows_.conditions.size(), 0.0);

@@ -15,11 +15,11 @@ namespace radiosity {
 
 namespace {
 
-/// The linear system is solved so much closer than asked for.
+/// The tolerance of the linear system, as a share of the tolerance asked for.
 constexpr double kLinearShare = 0.01;
 constexpr double kRounding = 1e-14;
-/// A step in x = sigma T^4 does not fall below this part of it where x enters by roots or
-/// exponentials: T falls to a quarter at most.
+/// If the equations are not linear in x = sigma T^4, a step keeps at least this share of x, so that
+/// T falls to a quarter at most.
 constexpr double kLargestFall = 1.0 / 256;
 
 double largest(const std::vector<double>& values) {
@@ -81,7 +81,7 @@ HeatSolve::HeatSolve(const FormFactors& factors, const HeatRows& rows, const Hea
   }
 }
 
-/// Heat that is supplied to what neither emits nor convects has no way out.
+/// Refuses heat that is supplied to a node without emission and convection: it has no way out.
 void HeatSolve::requireEmitters() const {
   for (const HeatNode& node : nodes_.nodes) {
     const HeatCondition& c = rows_.conditions[node.condition];
@@ -101,7 +101,7 @@ bool HeatSolve::isLinear() const {
                       [](const auto& c) { return isFree(c) && (c.convection > 0 || hasTable(c)); });
 }
 
-/// Emission at the temperature that the row has.
+/// Sets the row's temperature, and its emissivity and emission there.
 void HeatSolve::placeAt(double temperature, std::size_t row) {
   temperature_[row] = temperature;
   const double total = black_.total(temperature);
@@ -119,7 +119,8 @@ void HeatSolve::place() {
   }
 }
 
-/// Where one step is exact it starts from 0 K, else from the mean of what is given.
+/// Starts from 0 K if one step is exact. Otherwise x starts from the mean of the given
+/// temperatures, or from the largest flux supplied if that is more.
 void HeatSolve::start() {
   double sum = 0;
   double weight = 0;
@@ -142,7 +143,7 @@ void HeatSolve::start() {
   for (const HeatNode& node : nodes_.nodes) {
     if (node.area > 0) from = std::max(from, node.supplied / node.area);
   }
-  if (!(from > 0)) from = 1;  // any will do
+  if (!(from > 0)) from = 1;  // any positive value will do
   x_.assign(nodes_.nodes.size(), isLinear() ? 0 : from);
   place();
 }
@@ -159,9 +160,9 @@ std::string HeatSolve::namesOf(const std::vector<double>& marks) const {
   return joinNames(names, 20);
 }
 
-/// Marks every row and band whose light has a way to what fixes its level: a temperature that is
-/// given, convection, the sky, a back. Where emission is left without one, there is no solution;
-/// where nothing emits, all stays dark.
+/// Marks every row and band whose light reaches something that fixes its level: a given
+/// temperature, convection, the sky or a back. An emitter that is not marked has no solution. Other
+/// rows that are not marked stay dark.
 void HeatSolve::findDark() {
   std::vector<double> marks(n_ * width_, 0.0);
   const auto emits = [&](std::size_t k) {
@@ -202,7 +203,7 @@ void HeatSolve::refuseClosed(const std::vector<double>& lost, double supplied) c
       namesOf(lost), supplied));
 }
 
-/// Where one of a node's rows and bands that emit is marked, the others are.
+/// If one of the emitting rows and bands of a node is marked, marks the others. True if any is new.
 bool HeatSolve::markNode(const HeatNode& node, std::vector<double>& marks) const {
   std::vector<std::size_t> emitting;
   for (const Index i : node.rows) {
@@ -218,7 +219,7 @@ bool HeatSolve::markNode(const HeatNode& node, std::vector<double>& marks) const
   return true;
 }
 
-/// W that the node does not get rid of at its temperature while nothing falls on it.
+/// The heat, W, that the node gains at its temperature without irradiance.
 double HeatSolve::heatWithoutLight(std::size_t n) const {
   const HeatNode& node = nodes_.nodes[n];
   const HeatCondition& c = rows_.conditions[node.condition];
@@ -252,7 +253,7 @@ HeatSystem HeatSolve::system() {
   return s;
 }
 
-/// The node's part of the system, around its temperature.
+/// Linearises the node's part of the system around its temperature.
 void HeatSolve::linearize(std::size_t n, HeatSystem& s) {
   const HeatNode& node = nodes_.nodes[n];
   const double convection = rows_.conditions[node.condition].convection;
@@ -274,7 +275,8 @@ void HeatSolve::linearize(std::size_t n, HeatSystem& s) {
   }
 }
 
-/// Temperatures from what falls on their nodes. Errors: InputError where that is too little.
+/// Computes temperatures from the irradiance of their nodes. Errors: InputError if more heat is
+/// taken out of a node than it can take up.
 void HeatSolve::step(const HeatSystem& s, const HeatFields& fields) {
   const double scale = largest(fields.radiosity);
   const bool linear = isLinear();
@@ -305,7 +307,7 @@ void HeatSolve::refuseCold(std::size_t n) const {
       rows_.conditions[node.condition].name, -node.supplied / node.area));
 }
 
-/// H is multiplied anew. What is no number is infinitely far off.
+/// The true residuals: H is multiplied anew. Values that are not finite give infinity.
 HeatSolve::Residuals HeatSolve::residuals(HeatFields& fields) const {
   factors_.matrix.product(fields.radiosity, int(width_), fields.irradiance);
   for (std::size_t k = 0; k < falling_.size(); ++k) fields.irradiance[k] += falling_[k];

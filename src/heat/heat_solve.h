@@ -21,12 +21,12 @@ namespace radiosity {
 ///
 ///   y = [supplied + h A (T_inf - T) - sum A eps (E_k - H_ik)] / [sum A eps E_k' + h A T'].
 ///
-/// Put into J this leaves a linear system in H, which couples the rows and bands of a node. Without
-/// convection, edges of bands and tables of emissivity one step is exact, and y needs no start.
+/// Inserted into J this gives a linear system in H, which couples the rows and bands of a node.
+/// Without convection, edges of bands and tables of emissivity one step from any start is exact.
 class HeatSolve {
  public:
-  /// All are kept by reference. `more`: N * bands, W/m^2, irradiance beyond what matrix and sky
-  /// give; or empty. Errors: as solveHeat().
+  /// Keeps all by reference. `more`: additional irradiance beyond that of matrix and sky,
+  /// N * bands, W/m^2; or empty. Errors: as solveHeat().
   HeatSolve(const FormFactors& factors, const HeatRows& rows, const HeatOptions& options,
             std::span<const double> more, Progress& progress);
   HeatSolution run();
@@ -71,11 +71,11 @@ class HeatSolve {
   HeatNodes nodes_;
   std::vector<double> x_;            ///< of each node
   std::vector<double> temperature_;  ///< of each row
-  std::vector<double> emissivity_;   ///< N * bands, at it
+  std::vector<double> emissivity_;   ///< N * bands, at that temperature
   std::vector<double> emitted_;      ///< N * bands: eps E(T)
-  std::vector<double> falling_;      ///< N * bands, from the sky, and what is more
-  std::vector<std::uint8_t> dark_;   ///< N * bands: nothing emits there
-  // Of each node in the step at hand: what divides y, and its part without H.
+  std::vector<double> falling_;      ///< N * bands, from the sky, and `more`
+  std::vector<std::uint8_t> dark_;   ///< N * bands: no light reaches it
+  // The denominator of y in the current step, by node, and the numerator without H.
   std::vector<double> gain_;
   std::vector<double> lack_;
 };

@@ -11,13 +11,13 @@ namespace radiosity {
 
 namespace {
 
-/// Steps of GMRES between two restarts, as many as its vectors have room for: a chain of n rooms,
-/// or of n sheets, needs n of them.
+/// The steps of GMRES between two restarts: as many as there is room for vectors. A chain of n
+/// rooms, or of n sheets, needs n steps.
 int mostSteps(std::size_t unknowns) {
   constexpr std::size_t kNumbers = std::size_t(1) << 25;  // 256 MiB
   return int(std::clamp<std::size_t>(kNumbers / std::max<std::size_t>(unknowns, 1), 30, 300));
 }
-/// Restarts; a round that does not halve the residual ends them: rounding is all there is.
+/// The most restarts. A round that does not halve the residual ends them: the rest is rounding.
 constexpr int kMostRounds = 50;
 
 Eigen::Map<const Eigen::VectorXd> asVector(const std::vector<double>& values) {
@@ -31,8 +31,8 @@ std::vector<double> received(const ExchangeMatrix& matrix, const std::vector<dou
   return irradiance;
 }
 
-/// Column by column, H_ik = sum over j, l of [F_ij reflected_jk (k = l) + P_ik absorbs_jl] H_jl,
-/// P_ik = sum over the rows m of j's node of F_im emits_mk.
+/// The dense matrix, column by column: H_ik = sum over j, l of [F_ij reflected_jk (k = l) + P_ik
+/// absorbs_jl] H_jl, with P_ik = sum over the rows m of j's node of F_im emits_mk.
 class DenseSystem {
  public:
   DenseSystem(const ExchangeMatrix& matrix, const HeatSystem& system)
@@ -90,7 +90,7 @@ class DenseSystem {
   std::vector<std::vector<Eigen::Index>> members_;  ///< rows of each node
 };
 
-/// c of H = L H + c.
+/// The constant c of H = L H + c.
 std::vector<double> constantOf(const ExchangeMatrix& matrix, const HeatSystem& system) {
   std::vector<double> constant = received(matrix, system.source, system.bands);
   for (std::size_t k = 0; k < constant.size(); ++k) constant[k] += system.falling[k];

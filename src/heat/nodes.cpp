@@ -28,7 +28,7 @@ void checkRows(const HeatRows& rows, std::size_t n) {
   }
 }
 
-/// What belongs together, by its first row.
+/// Joins the rows that have one temperature, by the first of them.
 UnionFind together(const HeatRows& rows) {
   UnionFind sets(rows.of_row.size());
   std::vector<Index> first(rows.conditions.size(), kNone);

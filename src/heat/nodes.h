@@ -1,4 +1,4 @@
-// Rows that have one temperature, which their heat decides.
+// Nodes: sets of rows with one unknown temperature.
 #pragma once
 
 #include <span>
@@ -18,10 +18,10 @@ struct HeatNode {
 
 struct HeatNodes {
   std::vector<HeatNode> nodes;  ///< by their first row
-  std::vector<Index> of_row;    ///< N; kNone where a temperature is given
+  std::vector<Index> of_row;    ///< N; kNone if a temperature is given
 };
 
-/// `area`: N. Errors: InputError where rows have no condition, or two sides of a sheet differ.
+/// `area`: N. Errors: InputError if a row has no condition, or if two sides of a sheet differ.
 HeatNodes heatNodes(const HeatRows& rows, std::span<const double> area);
 
 }  // namespace radiosity

@@ -1,4 +1,4 @@
-// Conditions of surfaces or rows from what lines say by name.
+// Makes conditions of surfaces or rows from lines that name them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace radiosity {
 
 namespace {
 
-/// How messages list names that there are, and names that lack something.
+/// The most names that a message lists.
 constexpr std::size_t kMostNames = 40;
 constexpr std::size_t kFewNames = 12;
 
@@ -24,7 +24,7 @@ constexpr std::size_t kFewNames = 12;
   throw InputError(fmt::format("{}: {}", given.origin, what));
 }
 
-/// All lines, those of the table first, and which of them each target is named by.
+/// All lines, those of the table first, and the lines that name each target.
 class Lines {
  public:
   Lines(const ConditionTargets& targets, const ConditionText& text)
@@ -63,14 +63,14 @@ class Lines {
   }
 
  private:
-  /// Targets of which the same is said have one condition.
+  /// The lines that targets with one condition have in common.
   struct Same {
     std::vector<std::size_t> named_by;
-    std::optional<double> emissivity;  ///< where no line gives one
+    std::optional<double> emissivity;  ///< used if no line gives one
     auto operator<=>(const Same&) const = default;
   };
 
-  /// There is one line of a table for all others, and it says nothing of one surface.
+  /// A table may have one line for all others, which must not give properties of a single surface.
   void checkOthers() const {
     bool there = false;
     for (std::size_t k = 0; k < lines_.size(); ++k) {
@@ -84,12 +84,12 @@ class Lines {
     }
   }
 
-  /// Targets named by exactly these lines.
+  /// The number of targets that exactly these lines name.
   std::size_t countNamedBy(const std::vector<std::size_t>& named_by) const {
     return std::size_t(std::ranges::count(of_target_, named_by));
   }
 
-  /// What each line names; a name as it stands goes before a pattern.
+  /// Finds the targets of each line; a literal name has precedence over a pattern.
   void find() {
     found_.resize(lines_.size());
     by_pattern_.assign(lines_.size(), false);
@@ -111,7 +111,7 @@ class Lines {
     fail(line, fmt::format("{}; there are: {}", what, joinNames(known, kMostNames)));
   }
 
-  /// Lines from `first` on: what patterns say, then what is said by name.
+  /// Assigns lines from `first` on to their targets: patterns first, then literal names.
   void placeAll(std::size_t first, std::size_t last) {
     for (const bool pattern : {true, false}) {
       for (std::size_t k = first; k < last; ++k) {
@@ -146,7 +146,7 @@ class Lines {
     if (line.isothermal) to.isothermal = line.isothermal;
   }
 
-  /// What all lines say that name a target; where they are silent, what is said of all others.
+  /// Combines all lines that name a target; the line for all others fills the gaps.
   GivenCondition together(const Same& same) {
     GivenCondition out;
     for (const GivenCondition& line : lines_) {
@@ -210,11 +210,11 @@ class Lines {
 
   const ConditionTargets& targets_;
   std::vector<GivenCondition> lines_;
-  std::size_t table_ = 0;                            ///< how many are of the table
+  std::size_t table_ = 0;                            ///< number of lines of the table
   std::vector<std::vector<Index>> found_;            ///< by line
   std::vector<bool> by_pattern_;                     ///< by line
-  std::vector<std::vector<std::size_t>> of_target_;  ///< lines, those that go before others last
-  std::map<std::size_t, Same> shared_;               ///< by line: who shares its power
+  std::vector<std::vector<std::size_t>> of_target_;  ///< lines, in order of rising precedence
+  std::map<std::size_t, Same> shared_;               ///< by line: the targets that share its power
   std::vector<std::string> without_condition_;
   std::vector<std::string> without_emissivity_;
 };

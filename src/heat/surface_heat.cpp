@@ -1,4 +1,4 @@
-// Figures of surfaces from those of their patches.
+// Computes the figures of surfaces from those of their patches.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace radiosity {
 
 namespace {
 
-/// What a solution is of: patches, or rows of a matrix.
+/// The parts of a solution: patches, or rows of a matrix.
 struct Parts {
   std::span<const double> area;
   std::span<const Index> surface;  ///< into names

@@ -1,5 +1,5 @@
-// Which format an image file has and how large it is, by its first bytes: some of OpenImageIO's
-// readers unpack a whole image before they say.
+// Finds the format and size of an image file from its first bytes: some of OpenImageIO's readers
+// unpack the whole image before they tell the size.
 #pragma once
 
 #include <cstddef>
@@ -10,15 +10,15 @@
 
 namespace radiosity {
 
-/// Enough of a file for the two below.
+/// The number of bytes of a file that the functions below need.
 inline constexpr std::size_t kImageHeaderBytes = 64;
 
-/// OpenImageIO's name of the format; empty where it is none that is read. Targa has no mark of its
-/// own: it is told by the extension of `name`.
+/// OpenImageIO's name of the format; empty for a format that we do not read. Targa has no
+/// signature: it is recognised by the extension of `name`.
 std::string imageFormatOf(std::span<const unsigned char> start, const std::string& name);
 
-/// Width and height where the format is one that is unpacked when it is opened (BMP, GIF, PSD,
-/// WebP); of the others OpenImageIO tells them before it reads pixels.
+/// Width and height of an image in a format that OpenImageIO unpacks when it opens the file (BMP,
+/// GIF, PSD, WebP). For other formats OpenImageIO tells the size before it reads pixels.
 std::optional<std::pair<std::size_t, std::size_t>> imageSizeOf(std::span<const unsigned char> start,
                                                                const std::string& format);
 

@@ -1,4 +1,4 @@
-// The one place that knows OpenImageIO.
+// The only file that uses OpenImageIO.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fcntl.h>
@@ -18,7 +18,7 @@ namespace radiosity {
 namespace {
 
 OIIO::ImageSpec readingHints() {
-  // Colours as they are stored: not multiplied by an alpha that has no meaning here.
+  // We read colours as stored, not multiplied by alpha, which has no meaning here.
   OIIO::ImageSpec hints;
   hints.attribute("oiio:UnassociatedAlpha", 1);
   return hints;
@@ -33,8 +33,8 @@ DecodedImage unopened(std::string problem) {
   return image;
 }
 
-/// Why an image of this size is not read; empty where it is. More than four channels count as so
-/// many pixels more: a reader holds them all for a moment.
+/// The reason why an image of this size is refused; empty if it is not. Channels beyond four count
+/// as additional pixels: a reader holds all channels for a moment.
 std::string tooLarge(double width, double height, double channels, double most) {
   if (width * height * std::max(channels / kMostChannels, 1.0) <= most) return {};
   return OIIO::Strutil::fmt::format(
@@ -67,8 +67,8 @@ DecodedImage samplesOf(OIIO::ImageInput& input, double most_pixels) {
   return image;
 }
 
-/// While it lives nothing reaches standard error: libpng writes there, before OpenImageIO has told
-/// it not to, what comes back as the reason anyway.
+/// Silences standard error while it lives: libpng writes errors there before OpenImageIO stops it,
+/// and we get the same text as the reason anyway.
 class QuietErrors {
  public:
   QuietErrors() : saved_(dup(STDERR_FILENO)) {
@@ -93,7 +93,7 @@ class QuietErrors {
 
 using Bytes = std::span<const unsigned char>;
 
-/// Opens the image named `name` with `hints`, once its format and size are known to be fine.
+/// Opens the image named `name` with `hints` if its format and size are accepted.
 DecodedImage decodeChecked(const std::string& name, Bytes start, double most_pixels,
                            const OIIO::ImageSpec& hints) {
   const std::string format = imageFormatOf(start, name);
@@ -104,8 +104,8 @@ DecodedImage decodeChecked(const std::string& name, Bytes start, double most_pix
     image.too_large = tooLarge(double(size->first), double(size->second), 1, most_pixels);
     if (!image.too_large.empty()) return image;
   }
-  // By the format's name: given a file's name, OpenImageIO 2.4 tries all formats it has, some of
-  // which unpack everything at once.
+  // We ask for the format by name: given a file's name, OpenImageIO 2.4 tries all its formats, and
+  // some of them unpack everything at once.
   const QuietErrors quiet;
   const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(format);
   if (!input) return unopened(OIIO::geterror());

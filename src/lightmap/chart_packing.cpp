@@ -13,7 +13,8 @@ int texelsOf(double metres, double texels_per_metre) {
   return std::max(1, int(std::ceil(metres * texels_per_metre))) + 2 * kLightmapPadding;
 }
 
-/// `order`: from the highest chart to the lowest. False where they do not fit.
+/// Fills shelves with the charts in `order`, from the highest to the lowest. False if they do not
+/// fit.
 bool fillShelves(std::span<const Chart> charts, std::span<const Index> order, int size,
                  ChartPacking& packing) {
   packing.places.resize(charts.size());
@@ -55,8 +56,8 @@ std::optional<ChartPacking> packCharts(std::span<const Chart> charts, int size) 
   double area = 0;
   for (const Chart& chart : charts) area += chart.size.x * chart.size.y;
   if (!(area > 0)) return best;
-  // Nothing is denser than the whole map filled. Halved so often, what is left is far below the
-  // hundredth of a texel.
+  // The density of a completely filled map is an upper bound. After this many halvings the interval
+  // is far below a hundredth of a texel.
   constexpr int kHalvings = 40;
   double none = 1.01 * double(size) / std::sqrt(area);
   for (int k = 0; k < kHalvings; ++k) {

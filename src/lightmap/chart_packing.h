@@ -1,4 +1,4 @@
-// Where charts lie in the map.
+// The places of charts in the map.
 #pragma once
 
 #include <optional>
@@ -19,16 +19,16 @@ struct ChartPlace {
 
 struct ChartPacking {
   double texels_per_metre = 0;
-  std::vector<ChartPlace> places;  ///< of each chart; none share a texel
+  std::vector<ChartPlace> places;  ///< of each chart; no two share a texel
 };
 
-/// The density, the same for all, at which shelves of charts fill a square of `size` texels. None
-/// where charts of a single texel with their padding do not fit. Shelves are filled from the
-/// highest chart to the lowest (next fit, decreasing height: Coffman, Garey, Johnson & Tarjan
-/// 1980, which leaves at most about half empty); n log n.
+/// Packs charts on shelves into a square of `size` texels, at the largest common density that fits.
+/// Empty if charts of a single texel with their padding do not fit. Shelves are filled from the
+/// highest chart to the lowest (next fit, decreasing height: Coffman, Garey, Johnson & Tarjan 1980,
+/// which leaves at most about half empty). O(n log n).
 std::optional<ChartPacking> packCharts(std::span<const Chart> charts, int size);
 
-/// The least size that has room for so many charts.
+/// The least size of a map with room for this number of charts.
 int leastMapSize(std::size_t charts);
 
 }  // namespace radiosity

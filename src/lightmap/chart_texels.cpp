@@ -39,11 +39,11 @@ Span spanBetween(const std::array<Vec3, 3>& p, double top, double bottom) {
 }
 
 struct Nearest {
-  double square = kReach * kReach;  ///< of the distance, texels
+  double square = kReach * kReach;  ///< square of the distance, texels
   Index triangle = kNone;
 };
 
-/// The texels of a chart's place, row by row; each keeps the triangle that is nearest.
+/// The texels of a chart's place, row by row; each keeps the nearest triangle.
 class TexelGrid {
  public:
   explicit TexelGrid(const ChartPlace& place)

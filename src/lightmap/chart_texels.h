@@ -1,4 +1,4 @@
-// The texels of a chart: which point of which triangle each of them shows.
+// The texels of a chart, each with the point and triangle that it shows.
 #pragma once
 
 #include <span>
@@ -14,15 +14,15 @@ struct ChartTexel {
   int y = 0;
   Index triangle = 0;   ///< the nearest
   bool inside = false;  ///< its centre is in the chart
-  Vec3 position{0.0};   ///< the point of the triangle that is nearest to the centre
+  Vec3 position{0.0};   ///< the point of the triangle nearest to the centre
 };
 
-/// Where a point of a chart lies in the map, in texels from its top left.
+/// The place of a chart's point in the map, in texels from the top left.
 Vec2 texelPlace(const Chart& chart, const ChartPlace& place, double texels_per_metre,
                 const Vec3& p);
 
-/// Appends the texels whose centre is kLightmapPadding texels from the chart or nearer; all are in
-/// its place. Linear in the texels that the triangles' surroundings cover.
+/// Appends the texels whose centre is within kLightmapPadding texels of the chart; all are in its
+/// place. The time is linear in the texels that the triangles and their padding cover.
 void appendTexels(std::span<const FaceTriangle> triangles, const Chart& chart,
                   const ChartPlace& place, double texels_per_metre,
                   std::vector<ChartTexel>& texels);

@@ -14,18 +14,18 @@ namespace {
 
 using Triangle2 = std::array<Vec2, 3>;
 
-/// Degrees; the rest of a chart that still lies over itself is taken apart.
+/// The narrowest cone, degrees. A chart that still overlaps itself is split into single triangles.
 constexpr double kLeastCone = 1;
-/// Of a chart's box: so far from a plane faces count as in it, and so far triangles may lie over
-/// each other.
+/// Share of a chart's box. Faces within this distance of a plane count as in it, and triangles may
+/// overlap by as much.
 constexpr double kFlat = 1e-6;
 
-/// Of a cosine: faces of a plane whose corners are floats bend by about 1e-6 radians.
+/// Tolerance of a cosine: faces in a plane with corners in floats bend by about 1e-6 radians.
 constexpr double kRounding = 1e-9;
 
 double cosineOf(double degrees) { return std::cos(degrees * std::numbers::pi / 180); }
 
-/// Whether some edge of `a` has all of `b` on its other side, or nearly.
+/// Whether all of `b` lies on the outer side of an edge of `a`, within `slack`.
 bool isApartAlong(const Triangle2& a, const Triangle2& b, double slack) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec2 edge = a[(k + 1) % 3] - a[k];
@@ -37,7 +37,8 @@ bool isApartAlong(const Triangle2& a, const Triangle2& b, double slack) {
   return false;
 }
 
-/// Both counter-clockwise. Two convex shapes are apart where an edge of one separates them.
+/// Both must be counter-clockwise. Two convex shapes do not overlap if an edge of one separates
+/// them.
 bool overlap(const Triangle2& a, const Triangle2& b, double slack) {
   return !isApartAlong(a, b, slack) && !isApartAlong(b, a, slack);
 }
@@ -67,15 +68,15 @@ class ChartMaker {
   std::span<const FaceTriangle> triangles_;
   double crease_;
   const Progress& progress_;
-  /// The mark of each triangle's region; kNone: it is in none yet, and those of other regions
-  /// cannot be reached.
+  /// The mark of each triangle's region; kNone: it is in no region yet. A new region takes only
+  /// triangles without one.
   std::vector<Index> chart_of_;
   Index marks_ = 0;
   std::vector<Chart> charts_;
 };
 
-/// Charts over triangles that are in none. What lies over itself is laid again in narrower cones,
-/// at the end each triangle alone.
+/// Makes charts of the triangles that are in none. A chart that overlaps itself is made again in
+/// narrower cones; at the end each triangle is a chart.
 void ChartMaker::cover(std::span<const Index> triangles, double cone) {
   for (const Index seed : triangles) {
     if (chart_of_[seed] != kNone) continue;
@@ -114,7 +115,7 @@ std::vector<Index> ChartMaker::grow(Index seed, double cone, Index mark) {
   return region;
 }
 
-/// The longest edge across which the chart does not go on; of a closed one the first edge there is.
+/// The longest edge on the border of the chart; the first edge of all if it is closed.
 Vec3 ChartMaker::longestBorder(const Chart& chart) const {
   const auto has = [&](Index t) {
     return std::binary_search(chart.triangles.begin(), chart.triangles.end(), t);
@@ -164,8 +165,8 @@ Chart ChartMaker::lay(std::vector<Index> triangles, Index seed) const {
   return chart;
 }
 
-/// Of a planar chart never: faces that lie over each other there are at the same place, with the
-/// same light. Where too many boxes meet to look at all pairs, as if it did.
+/// Whether two triangles of the chart overlap. False for a planar chart: overlapping faces are
+/// there at the same place, with the same light. True if too many boxes meet to test all pairs.
 bool ChartMaker::liesOverItself(const Chart& chart) const {
   const double slack = kFlat * glm::length(chart.size);
   double height = 0;
@@ -184,7 +185,7 @@ bool ChartMaker::liesOverItself(const Chart& chart) const {
     boxes.push_back(box);
   }
   if (height <= slack) return false;
-  constexpr std::size_t kPairs = 64;  // a triangle meets its neighbours and theirs, as a rule
+  constexpr std::size_t kPairs = 64;  // a triangle usually meets its neighbours and theirs
   std::size_t left = kPairs * flat.size();
   const BoxTree tree(boxes);
   for (std::size_t a = 0; a < flat.size(); ++a) {

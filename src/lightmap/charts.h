@@ -1,4 +1,4 @@
-// Charts: connected faces that are laid flat by one projection, so that no two lie over each other.
+// Charts: connected faces that one projection flattens without overlap.
 #pragma once
 
 #include <span>
@@ -23,12 +23,12 @@ struct Chart {
   }
 };
 
-/// Every triangle is in one chart. Neighbours share one where they bend less than `crease` degrees
-/// and stay within a cone of kChartCone about the triangle that the chart began with.
+/// Puts every triangle into one chart. Neighbours share a chart if the edge between them bends less
+/// than `crease` degrees and both are within a cone of kChartCone about the chart's first triangle.
 std::vector<Chart> makeCharts(std::span<const FaceTriangle> triangles, double crease,
                               const Progress& progress);
 
-/// Degrees: what a chart's projection shortens is at least the cosine of it long.
+/// Degrees. A chart's projection keeps at least the cosine of this of every length.
 inline constexpr double kChartCone = 30;
 
 }  // namespace radiosity

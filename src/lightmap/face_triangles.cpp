@@ -26,7 +26,7 @@ std::vector<std::array<Index, 3>> cut(const Scene& scene, std::span<const Index>
   return triangulateOutline(outline);
 }
 
-/// An edge of a triangle, sorted so that those of one edge come together.
+/// An edge of a triangle; sorting brings equal edges together.
 struct Edge {
   Index low, high;
   Index triangle;

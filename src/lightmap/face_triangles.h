@@ -1,4 +1,4 @@
-// The triangles of a scene's faces, side by side, and who is next to whom.
+// The triangles of each side of a scene's faces, with their neighbours.
 #pragma once
 
 #include <array>
@@ -17,12 +17,12 @@ struct FaceTriangle {
   std::array<Index, 3> corner{};  ///< of the face, counter-clockwise seen from this side
   std::array<Vec3, 3> position{};
   Vec3 normal{0.0};  ///< unit, of this side
-  /// Triangles across edge k (from corner k to the next) of the same surface, where these two
-  /// alone have it; kNone: a border.
+  /// The triangle of the same surface across edge k (from corner k to the next), if no third has
+  /// this edge; kNone: a border.
   std::array<Index, 3> neighbour{kNone, kNone, kNone};
 };
 
-/// Fronts of all faces with area, by face.
+/// The fronts of all faces with area, by face.
 std::vector<FaceTriangle> frontTriangles(const Scene& scene);
 
 /// The same triangles seen from behind.

@@ -37,17 +37,17 @@ struct Side {
   std::vector<Chart> charts;
 };
 
-/// Of the scene's diagonal: closer corners are one, as MeshOptions has it.
+/// Share of the scene's diagonal: closer corners are one. It is the default of MeshOptions.
 constexpr double kWeld = 1e-7;
 
-/// What a patch on the back of the face lies within.
+/// The largest distance of a corner from the centre: a patch on the face's back is within it.
 double reachOf(const FaceTriangle& t, const Vec3& centre) {
   double reach = 0;
   for (const Vec3& p : t.position) reach = std::max(reach, glm::distance(p, centre));
   return reach;
 }
 
-/// Backs that have patches: of one-sided surfaces, and those that see nothing, have none.
+/// The backs that have patches. Backs of one-sided surfaces and backs that see nothing have none.
 std::vector<FaceTriangle> backTriangles(const std::vector<FaceTriangle>& fronts,
                                         const LightOnSurfaces& light) {
   std::vector<FaceTriangle> backs = turnedOver(fronts);
@@ -151,7 +151,7 @@ void LightmapMaker::addTriangles(const Side& side) {
   }
 }
 
-/// Charts are evaluated in batches: enough texels for all threads, soon enough to be stopped.
+/// Evaluates charts in batches: large enough for all threads, small enough to be stopped soon.
 void LightmapMaker::draw() {
   constexpr std::size_t kBatch = 65536;
   const auto size = std::size_t(options_.size);

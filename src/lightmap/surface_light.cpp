@@ -8,8 +8,8 @@
 namespace radiosity {
 namespace {
 
-/// The cosine of 15 degrees. A face that is not planar is cut into triangles here and by the mesh,
-/// perhaps along another diagonal.
+/// The cosine of 15 degrees, the tolerance for faces that are not planar: the mesh may cut them
+/// into triangles along another diagonal.
 constexpr double kSameFace = 0.966;
 
 }  // namespace
@@ -22,7 +22,7 @@ LightOnSurfaces::LightOnSurfaces(const PatchMesh& mesh, const SurfaceLight& ligh
       found;
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     const std::size_t root = elements.roots.of_patch[i];
-    // All roots of a patch were evaluated, or none.
+    // Either all roots of a patch were evaluated or none.
     if (root == elements.roots.of_patch[i + 1] || elements.indirect.elements[root].corners == 0)
       continue;
     auto& [triangles, patches] = found[{mesh.surface[i], int(mesh.side[i])}];

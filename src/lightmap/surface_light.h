@@ -1,4 +1,4 @@
-// Light of the elements at any point of a surface.
+// The light of the elements at any point of a surface.
 #pragma once
 
 #include <map>
@@ -13,16 +13,16 @@
 
 namespace radiosity {
 
-/// The patches of each surface and side that have elements. All is kept by reference.
+/// The patches of each surface and side that have elements. Keeps all by reference.
 class LightOnSurfaces {
  public:
   LightOnSurfaces(const PatchMesh& mesh, const SurfaceLight& light, LightmapShows shows);
 
-  /// Light where a patch of the surface and side is nearest to the point: of those that face as
-  /// `normal` does, else of others turned by up to 60 degrees. False, and black, where there is
-  /// none.
+  /// The light at the nearest point of the patches of this surface and side that face as `normal`
+  /// does; if there is none, of patches turned by up to 60 degrees. False, and black, if there is
+  /// none either.
   bool at(Index surface, int side, const Vec3& point, const Vec3& normal, Vec3& value) const;
-  /// Whether a patch of the surface and side that faces as `normal` does is so near.
+  /// Whether a patch of this surface and side that faces as `normal` does is within `reach`.
   bool isNear(Index surface, int side, const Vec3& point, const Vec3& normal, double reach) const;
 
  private:

@@ -1,4 +1,4 @@
-// From form factors between patches to form factors between groups of patches.
+// Makes form factors between groups of patches from those between patches.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -71,8 +71,8 @@ ExchangeMatrix aggregatedRows(const ExchangeMatrix& matrix, std::span<const Inde
   return result;
 }
 
-/// Groups in the order in which the patches of a symmetric matrix come upon them; those without
-/// patches last. Groups that do not see each other stay neighbours that way.
+/// The groups in the order in which they first occur among the patches of a symmetric matrix;
+/// groups without patches last. As with patches, groups that do not see each other stay neighbours.
 std::vector<Index> orderOfGroups(std::span<const Index> patches, std::span<const Index> group_of,
                                  std::size_t groups) {
   std::vector<Index> order;
@@ -102,8 +102,8 @@ class Triangle {
   std::vector<double> values_;
 };
 
-/// The sum over the pairs of a symmetric matrix, each counted from both its ends within a group.
-/// `place`: of the group, by the position of the patch.
+/// Sums exchange areas over the pairs of a symmetric matrix; a pair within one group counts from
+/// both ends. `place`: the place of the group, by the position of the patch.
 Triangle exchangeOfGroups(const ExchangeMatrix& matrix, std::span<const Index> place,
                           std::size_t groups, Progress& progress) {
   Triangle triangle(groups);

@@ -1,4 +1,4 @@
-// Both estimates of every pair: a walk along the rows of a matrix and its columns, side by side.
+// Both estimates of every pair: a walk along the rows and columns of a matrix, side by side.
 #pragma once
 
 #include <algorithm>
@@ -12,17 +12,17 @@
 
 namespace radiosity {
 
-/// Columns gathered at once by forBothEstimates().
+/// The number of columns that forBothEstimates() gathers at once.
 inline constexpr std::size_t kColumnsAtOnce = 128;
 
-/// Bytes that it takes of N rows.
+/// The bytes that it takes for N rows.
 inline std::size_t bothEstimatesBytes(std::size_t n, std::size_t threads) {
   return (std::min(kColumnsAtOnce, n) + threads) * n * sizeof(double);
 }
 
 /// Calls visit(i, row, column) for every i, row[j] = F_ij and column[j] = F_ji, both N values with
-/// zeros where nothing is stored. Calls run in parallel. Columns are gathered a block at a time, so
-/// that memory beyond the matrix is kColumnsAtOnce * N values, not a transposed copy of it. Row
+/// zeros where nothing is stored. Calls run in parallel. It gathers columns a block at a time, so
+/// that memory beyond the matrix is kColumnsAtOnce * N values instead of a transposed copy. Row
 /// form only.
 template <class Visit>
 void forBothEstimates(const ExchangeMatrix& matrix, const Visit& visit) {

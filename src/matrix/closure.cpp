@@ -26,41 +26,42 @@ namespace radiosity {
 namespace {
 
 constexpr std::size_t kClosureGrain = 16;
-/// Newton steps; one where no entry turns negative, else a handful.
+/// The most Newton steps. One is needed if no entry turns negative, else a handful.
 constexpr int kMostRounds = 30;
 constexpr std::size_t kMostSteps = 2000;
-/// Each step is solved to this share of the rows' shortfall while entries reach 0 or leave it: they
-/// would spoil a more exact step (inexact Newton: Dembo, Eisenstat & Steihaug, SIAM J. Numer. Anal.
-/// 19, 1982). Where the last step held and freed none, the next is solved to the end.
+/// While entries reach 0 or leave it, each step is solved to this share of the rows' shortfall:
+/// such entries would spoil a more exact step (inexact Newton: Dembo, Eisenstat & Steihaug, SIAM J.
+/// Numer. Anal. 19, 1982). If the last step held and freed no entry, the next is solved to the
+/// tolerance.
 constexpr double kForcing = 0.1;
-/// A residual r counts as a null vector where <r, (D + W) r>, with D scaled to 1, is below this
-/// share of its square.
+/// A residual r counts as a null vector if <r, (D + W) r>, with D scaled to 1, is below this share
+/// of its square.
 constexpr double kNull = 1e-10;
-/// Steps within which the residual must at least halve; else the target is out of reach.
+/// The residual must halve within this number of steps; otherwise the target is out of reach.
 constexpr std::size_t kStagnantSteps = 50;
-/// Shortest part of a Newton step that is tried.
+/// The shortest part of a Newton step that we try.
 constexpr double kShortestStep = 1e-6;
-/// This, times what rows lack, is the share of each row's own weight that is added to it once
-/// entries are held at 0: a row that lost all its free entries then still finds its way back.
+/// Once entries are held at 0, each row's own weight grows by this factor times the largest
+/// shortfall. A row without free entries can then still recover.
 constexpr double kDamping = 1e-2;
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
-/// The problem, by position. With e_kq the error of F_kq and w_kq = (A_k e_kq)^2 the squared error
-/// of the exchange area, the least sum of d_kq^2 / (2 w_kq) over pairs under sum_q d_kq = r_k and
-/// d_kq >= -G_kq has
+/// The problem, by position. Let e_kq be the error of F_kq and w_kq = (A_k e_kq)^2 the squared
+/// error of the exchange area. The minimum of the sum of d_kq^2 / (2 w_kq) over pairs, under sum_q
+/// d_kq = r_k and d_kq >= -G_kq, has
 ///     d_kq = max(-G_kq, w_kq (m_k + m_q))
 /// with a multiplier m per row (the conditions of Karush, Kuhn and Tucker). The m minimise the dual
 ///     f(m) = sum over pairs of phi_kq(m_k + m_q) - sum_k r_k m_k,   phi' = d,
-/// convex and piecewise quadratic; its slope is what the rows still lack, with the sign turned. One
+/// which is convex and piecewise quadratic. Its gradient is the negative shortfall of the rows. One
 /// Newton step solves
-///     (D + W) step = what the rows lack,   D_k = sum_q w_kq over the entries that are not at 0,
-/// symmetric and positive semi-definite. Where no entry turns negative one step is all there is.
+///     (D + W) step = shortfall,   D_k = sum_q w_kq over the entries that are not at 0,
+/// which is symmetric and positive semi-definite. If no entry turns negative, one step suffices.
 ///
-/// What a row sees beside the matrix is one more entry of it, which no other row shares:
-/// d_k = max(-A_k share_k, w_k m_k) with w_k = (A_k e_k)^2.
+/// The share of a row beside the matrix is one more entry, which no other row has: d_k = max(-A_k
+/// share_k, w_k m_k) with w_k = (A_k e_k)^2.
 class LeastSquaresClosure {
  public:
   LeastSquaresClosure(ExchangeMatrix& matrix, const UncertainEntries& uncertain,
@@ -68,7 +69,7 @@ class LeastSquaresClosure {
                       Progress& progress);
 
   void findMultipliers(double tolerance);
-  /// Changes the matrix as they say.
+  /// Changes the matrix according to the multipliers.
   void apply();
   /// Residuals and moves before and after.
   ClosureReport report(double tolerance) const;
@@ -90,7 +91,7 @@ class LeastSquaresClosure {
   TrianglePass pass_;
   std::array<double, 256> squared_{};  // e^2 by code
   std::vector<double> area_;           // in a unit that keeps its squares in range
-  // As uncertain_.row(k).codes, 0 where held at 0:
+  // Like uncertain_.row(k).codes, but 0 for entries held at 0:
   std::vector<std::pmr::vector<std::uint8_t>> free_;
   struct Beside {
     double share = 0;
@@ -98,11 +99,11 @@ class LeastSquaresClosure {
     bool held = false;
   };
   std::vector<Beside> beside_;     // N, or none
-  std::vector<double> goal_;       // what rows are to sum to
+  std::vector<double> goal_;       // the target sum of each row
   std::vector<double> shortfall_;  // goal - row sum before
   std::vector<double> root_;       // of D while all are free
   std::vector<double> multiplier_;
-  // As evaluate() found them for the multipliers:
+  // Set by evaluate() for the current multipliers:
   std::vector<double> lacking_;  // goal - row sum after
   double dual_ = 0;              // f
   std::size_t held_ = 0;         // entries at 0
@@ -138,7 +139,7 @@ LeastSquaresClosure::LeastSquaresClosure(ExchangeMatrix& matrix, const Uncertain
     const auto& codes = uncertain.row(k).codes;
     free_.emplace_back(codes, codes.get_allocator());
     area_[k] = std::ldexp(area[patch], -exponent);
-    // A row that sums to 0 sees nothing or has no area: nothing is asked of it.
+    // A row that sums to 0 sees nothing or has no area: it keeps this sum.
     goal_[k] = sums[patch] > 0 ? target[patch] : 0.0;
     shortfall_[k] = goal_[k] - sums[patch];
     if (beside_.empty() || !(sums[patch] > 0)) continue;
@@ -147,7 +148,7 @@ LeastSquaresClosure::LeastSquaresClosure(ExchangeMatrix& matrix, const Uncertain
   report_.adjustable = uncertain.entries();
   root_ = diagonal();
   for (double& d : root_) d = std::sqrt(d);
-  // The shortfall that evaluate() would find while nothing is moved.
+  // The shortfall as long as no entry is changed.
   lacking_ = shortfall_;
 }
 
@@ -193,7 +194,7 @@ std::vector<double> LeastSquaresClosure::timesWeights(const std::vector<double>&
   return out;
 }
 
-/// D.
+/// The diagonal D.
 std::vector<double> LeastSquaresClosure::diagonal() {
   std::vector<double> sums = timesWeights(std::vector<double>(area_.size(), 1.0));
   for (std::size_t k = 0; k < beside_.size(); ++k) {
@@ -202,7 +203,7 @@ std::vector<double> LeastSquaresClosure::diagonal() {
   return sums;
 }
 
-/// Of D + W, scaled by the root of D; `own`: its diagonal.
+/// The strong pairs of D + W, scaled by the root of D. `own`: its diagonal.
 StrongPairs LeastSquaresClosure::strongPairs(const std::vector<double>& own) {
   std::vector<std::vector<StrongPairs::Pair>> of_row(own.size());
   std::vector<double> diagonal = own;
@@ -234,8 +235,8 @@ void LeastSquaresClosure::evaluate() {
   std::vector<std::size_t> turned(n, 0);
   std::vector<double> value(n, 0.0);
   lacking_ = shortfall_;
-  // Moves an entry of row k with the sum of its multipliers; returns its change, and whether it is
-  // held at 0.
+  // Changes an entry of row k by the sum of its multipliers. Returns the change, and whether the
+  // entry is held at 0.
   const auto move = [&](std::size_t k, double f, double squared_error, double sum, bool was_held) {
     const double slope = area_[k] * squared_error;  // of the change of F
     const bool held = slope * sum < -f;
@@ -270,8 +271,8 @@ void LeastSquaresClosure::evaluate() {
 }
 
 /// Conjugate residuals (Stiefel 1955) on the system scaled by the root of D from both sides, with
-/// strong pairs solved directly. It costs what conjugate gradients do, and its residual falls in
-/// every step also where the rows ask for what cannot be had (the matrix is singular where a set of
+/// strong pairs solved directly. The method costs as much as conjugate gradients. Its residual
+/// falls in every step, even if the targets cannot be reached (the matrix is singular if a set of
 /// rows shares uncertain entries only with another set).
 std::vector<double> LeastSquaresClosure::newtonStep(double tolerance) {
   const std::size_t n = area_.size();
@@ -315,8 +316,8 @@ std::vector<double> LeastSquaresClosure::newtonStep(double tolerance) {
     return history.size() > kStagnantSteps &&
            history.back() > 0.5 * history[history.size() - 1 - kStagnantSteps];
   };
-  // Where no matrix has the row sums asked for, the residual ends as a null vector; further steps
-  // would follow rounding.
+  // If no matrix has the target sums, the residual ends as a null vector, and further steps would
+  // follow rounding.
   const auto ends = [&] { return !(weight > kNull * dot(residual, corrected)); };
   while (history.back() > tolerance && !ends() && history.size() < kMostSteps && !stalls()) {
     const std::vector<double> moved = strong.solve(of_direction);
@@ -359,7 +360,7 @@ void LeastSquaresClosure::findMultipliers(double tolerance) {
     const std::vector<double> start = multiplier_;
     const double dual = dual_;
     const double lack = largestLack();
-    // Near the end f changes by less than its rounding; there the rows themselves tell.
+    // Near the end f changes by less than its rounding, so we also look at the rows themselves.
     const auto better = [&] { return dual_ < dual || largestLack() < lack / 2; };
     for (double part = 1; part >= kShortestStep; part /= 2) {
       progress_.check();
@@ -490,7 +491,7 @@ ClosureReport closeRows(ExchangeMatrix& matrix, const UncertainEntries& uncertai
                                  matrix.isSymmetric() ? "symmetric" : "row by row", matrix.size()));
   }
   LeastSquaresClosure closure(matrix, uncertain, target_row_sums, beside, progress);
-  // Half: the other half is left for the sums of what is stored.
+  // Half of the tolerance is left for the rounding of stored values.
   closure.findMultipliers(tolerance / 2);
   closure.apply();
   return closure.report(tolerance);

@@ -11,7 +11,7 @@ namespace radiosity {
 
 namespace {
 
-/// Of a message with rows, about.
+/// The approximate size of a message with rows.
 constexpr std::size_t kMessageBytes = std::size_t(1) << 24;
 
 /// The first row of each process's share, and the end.
@@ -39,7 +39,7 @@ void putRow(const ExchangeMatrix& whole, std::size_t k, ByteWriter& bytes) {
   bytes.putArray(std::span(row.factors));
 }
 
-/// Rows `first` to `last` - 1 in messages, and an empty one.
+/// Sends rows `first` to `last` - 1 in messages, and an empty message at the end.
 void sendRows(Processes& processes, int to, const ExchangeMatrix& whole, std::size_t first,
               std::size_t last, const WhileWaiting& waiting) {
   while (first < last) {

@@ -1,4 +1,4 @@
-// A matrix that one process made, its rows dealt out to all of them.
+// Deals the rows of a matrix of one process out to all processes.
 #pragma once
 
 #include "base/processes.h"
@@ -6,12 +6,13 @@
 
 namespace radiosity {
 
-/// By process 0, while the others call receiveRows(). `whole`: in the symmetric form. Returns the
-/// rows that stay, a share of about equal work; all others are empty. Values keep their bits.
+/// Process 0 calls this while the others call receiveRows(). `whole`: in the symmetric form.
+/// Returns the rows that stay, a share of about equal work; all others are empty. Values keep their
+/// bits.
 ExchangeMatrix dealRows(Processes& processes, const ExchangeMatrix& whole,
                         const WhileWaiting& waiting);
 
-/// By the others: their share.
+/// The other processes call this. Returns their share.
 ExchangeMatrix receiveRows(Processes& processes);
 
 }  // namespace radiosity

@@ -1,4 +1,4 @@
-// How many bytes a matrix will take.
+// Estimates of the bytes that a matrix will take.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -31,7 +31,7 @@ std::size_t estimateSymmetricBytes(std::size_t n, double entries_per_row, Precis
 
 namespace {
 
-/// Share of a row's places that no entry nearby fills.
+/// The share of a row's places without an entry nearby.
 double gapShare(std::size_t n, double entries_per_row) {
   constexpr double kClose = 1.5;
   return n == 0 ? 0 : std::max(0.0, 1 - kClose * entries_per_row / double(n));

@@ -50,7 +50,7 @@ ExchangeMatrix& ExchangeMatrix::operator=(const ExchangeMatrix& other) {
   return *this = ExchangeMatrix(other);
 }
 ExchangeMatrix& ExchangeMatrix::operator=(ExchangeMatrix&& other) noexcept {
-  // Rows end before the scratch memory that they are in: as they do when a matrix ends.
+  // The destructor frees the rows before the scratch memory that they are in.
   if (this == &other) return *this;
   std::destroy_at(this);
   return *std::construct_at(this, std::move(other));
@@ -79,7 +79,7 @@ ExchangeMatrix ExchangeMatrix::shared(std::shared_ptr<const SharedRows> rows) {
   matrix.symmetric_ = own.symmetric_;
   matrix.order_ = own.order_;
   matrix.position_ = own.position_;
-  if (matrix.symmetric_) matrix.diagonal_.assign(matrix.size(), 0.0);  // nobody is to read it
+  if (matrix.symmetric_) matrix.diagonal_.assign(matrix.size(), 0.0);  // must not be read
   matrix.shared_ = std::move(rows);
   return matrix;
 }

@@ -1,4 +1,4 @@
-// A row of the row form as it is stored.
+// A stored row of the row form.
 #pragma once
 
 #include <cstddef>

@@ -11,13 +11,13 @@ namespace radiosity {
 
 namespace {
 
-/// The sums of one chunk of rows, which are with one process at a time.
+/// The sums of one chunk of rows. One process has them at a time.
 class PassedSums {
  public:
   PassedSums(Processes& processes, std::size_t places, const WhileWaiting& waiting)
       : processes_(processes), waiting_(waiting), sums_(places, 0.0) {}
 
-  /// They go to `next`, from whoever has them.
+  /// Sends the sums to process `next` from the process that has them.
   void passTo(int next) {
     const int before = std::exchange(holder_, next);
     if (before == RowOwners::kNobody || before == next) return;

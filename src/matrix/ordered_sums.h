@@ -1,4 +1,4 @@
-// Row sums of a matrix in several processes, to the bit those of one.
+// Row sums of a matrix in several processes, with the same bits as in one process.
 #pragma once
 
 #include <vector>
@@ -7,10 +7,10 @@
 
 namespace radiosity {
 
-/// By all processes. Process 0 gets the sums, all others an empty vector. In the symmetric form a
-/// row hands numbers on to later ones, and they are added up in chunks of rows (TrianglePass): the
-/// sums of a chunk pass through the processes in the order of its rows, N numbers wherever one row
-/// is another process's than the one before.
+/// All processes call this. Process 0 gets the sums, all others an empty vector. In the symmetric
+/// form a row hands numbers on to later rows, and chunks of rows add them up (TrianglePass). The
+/// sums of a chunk pass through the processes in the order of its rows: N numbers wherever a row is
+/// in another process than the row before.
 std::vector<double> orderedRowSums(Processes& processes, const ExchangeMatrix& own,
                                    const RowOwners& owners, const WhileWaiting& waiting);
 

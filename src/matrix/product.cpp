@@ -10,10 +10,10 @@ namespace radiosity {
 
 namespace {
 
-/// Rows a thread takes at a time: enough work to hide the scheduling of sparse rows.
+/// The rows that a thread takes at a time: enough work to hide the scheduling of sparse rows.
 constexpr std::size_t kProductGrain = 16;
 
-/// Bands summed in one walk along a row; more bands take another walk, from the cache.
+/// The bands summed in one walk along a row; further bands take another walk, from the cache.
 constexpr int kBandsAWalk = 4;
 
 /// Values of one stored row. `columns` is null for a dense row.

@@ -1,4 +1,4 @@
-// A_i F_ij = A_j F_ji: how well a matrix keeps it, and how to make it keep it.
+// Reciprocity, A_i F_ij = A_j F_ji: measures its error in a matrix and enforces it.
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -11,9 +11,9 @@ namespace radiosity {
 
 namespace {
 
-/// A_other^2 / (A_own^2 + A_other^2), safe from overflow. The one-point estimate made at a patch is
-/// biased as its area over the squared distance, so the squared error of the estimate from the
-/// other end goes as the other's area squared; weighting by inverse squared errors follows.
+/// A_other^2 / (A_own^2 + A_other^2), safe from overflow. The bias of a one-point estimate at a
+/// patch grows as the patch's area over the squared distance, so the squared error of the estimate
+/// at the other end grows as the other's area squared. The weights are the inverse squared errors.
 double estimateWeight(double own_area, double other_area) {
   const double ratio = own_area / other_area;
   return 1 / (1 + ratio * ratio);
@@ -24,8 +24,8 @@ double estimateWeight(double own_area, double other_area) {
 double reciprocityResidual(const ExchangeMatrix& matrix) {
   if (matrix.isSymmetric()) return 0;
   const std::span<const double> area = matrix.area();
-  std::vector<double> difference(matrix.size());  // a row each, summed in order at the end:
-  std::vector<double> total(matrix.size());       // the same bits for any thread count
+  std::vector<double> difference(matrix.size());  // by row, summed in order at the end, so that
+  std::vector<double> total(matrix.size());       // any thread count gives the same bits
   forBothEstimates(matrix, [&](std::size_t i, auto row, auto column) {
     for (std::size_t j = 0; j < row.size(); ++j) {
       const double g_ij = area[i] * row[j];
@@ -52,7 +52,7 @@ ExchangeMatrix symmetrized(const ExchangeMatrix& matrix) {
       if (row[j] == 0 && column[j] == 0) continue;
       const double g = estimateWeight(area[i], area[j]) * (area[i] * row[j]) +
                        estimateWeight(area[j], area[i]) * (area[j] * column[j]);
-      if (g > 0) factors[j - i] = g / area[i];  // else an area of 0: nothing is exchanged
+      if (g > 0) factors[j - i] = g / area[i];  // g is 0 if an area is 0
     }
     merged.setUpperRow(i, factors);
   });

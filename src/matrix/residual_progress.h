@@ -9,8 +9,8 @@
 
 namespace radiosity {
 
-/// Each power of ten that the residual has to fall takes about as long as another, so the share
-/// that is done is one of logarithms.
+/// The residual falls about as fast from each power of ten to the next, so progress is measured by
+/// its logarithm.
 class ResidualProgress {
  public:
   ResidualProgress(Progress& progress, const std::string& stage, double start, double goal)

@@ -1,4 +1,4 @@
-// Rows of the symmetric form, put together from the triangle.
+// Assembles rows of the symmetric form from the triangle.
 #include "radiosity/row_panel.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -15,8 +15,8 @@ namespace {
 /// Blocks of the triangle that are walked side by side.
 constexpr std::size_t kBlocks = 32;
 
-/// What rows first to last - 1 of F hold: row i what row position(i) of the triangle stores, and,
-/// from every row before it, the one value at its own position.
+/// Gathers rows first to last - 1 of F. Row i has the values of row position(i) of the triangle,
+/// and from every earlier row of the triangle the one value at its own position.
 class Gathering {
  public:
   Gathering(const ExchangeMatrix& matrix, std::size_t first, std::size_t last)
@@ -32,10 +32,10 @@ class Gathering {
     for (std::size_t b = 0; b <= blocks; ++b) ends_.push_back(blocks > 0 ? b * end / blocks : 0);
   }
 
-  /// Sorted rows, compressed.
+  /// Returns the rows in compressed form, sorted.
   void run(std::vector<std::size_t>& starts, std::vector<Index>& columns,
            std::vector<double>& values) {
-    // Where each block puts its entries of each row.
+    // The place of each block's next entry in each row.
     const std::size_t blocks = ends_.size() - 1;
     std::vector<std::size_t> next(blocks * rows_, 0);
     parallelFor(blocks, 1, [&](std::size_t b) {
@@ -69,8 +69,8 @@ class Gathering {
   }
 
  private:
-  /// Calls visit(row of the panel, column, value) for the entries that rows of a block of the
-  /// triangle hold or hand on.
+  /// Calls visit(row of the panel, column, value) for the entries that a block of rows of the
+  /// triangle holds or hands on.
   template <class Visit>
   void forEntries(std::size_t block, const Visit& visit) const {
     const std::span<const Index> order = matrix_.order();
@@ -126,7 +126,7 @@ std::vector<std::size_t> ExchangeMatrix::panelEnds() const {
     if (size() > 0) ends.push_back(size());
     return ends;
   }
-  // Of shared rows a panel is not to be more than a process has of them.
+  // A panel of shared rows must not be larger than the share of a process.
   const std::size_t share = shared_ ? std::size_t(shared_->processes()) : 1;
   const std::size_t most = panelBytes(bytes() / share) / RowPanel::kEntryBytes;
   std::size_t held = 0;

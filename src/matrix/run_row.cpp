@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t kLongest = std::numeric_limits<std::uint16_t>::max();
 
-/// Values looked at together, as whole numbers: loops without an exit, which the compiler makes
-/// vectors of.
+/// The number of values tested together, as integers, in loops without an exit, which the compiler
+/// vectorises.
 constexpr std::size_t kBlock = 16;
 
 template <class Value>
@@ -53,7 +53,7 @@ std::pmr::vector<Run> findRuns(const Value* values, std::size_t n) {
   return finder.take();
 }
 
-/// Rounds before it looks for zeros: what rounds to 0 is 0.
+/// Rounds before it looks for zeros: values that round to 0 are not stored.
 template <class Value>
 void pack(std::span<const double> values, std::pmr::vector<Run>& runs,
           std::pmr::vector<Value>& stored) {
@@ -74,7 +74,7 @@ void pack(std::span<const double> values, std::pmr::vector<Run>& runs,
   stored.resize(total + kOverrun, Value(0));
 }
 
-/// The same of the values at some places.
+/// The same for values at some places.
 template <class Value>
 void pack(std::span<const Index> places, std::size_t first, std::span<const double> values,
           std::pmr::vector<Run>& runs, std::pmr::vector<Value>& stored) {

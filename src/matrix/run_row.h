@@ -1,4 +1,4 @@
-// A row of a triangle as runs of stored values between zeros that are left out.
+// A row of a triangle as runs of stored values; the zeros between them are left out.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ struct Run {
 /// One row of a triangle as runs. The values are in `floats` or in `doubles`, by precision.
 struct RunRow {
   RunRow() = default;
-  /// Its memory stays `memory`'s, whatever is assigned to it.
+  /// The row keeps the resource `memory` when another row is assigned to it.
   explicit RunRow(std::pmr::memory_resource* memory)
       : runs(memory), floats(memory), doubles(memory) {}
 
@@ -30,11 +30,11 @@ struct RunRow {
   std::pmr::vector<double> doubles;
 };
 
-/// The smallest RunRow of `values`: zeros between two stored values are stored only where that is
-/// no longer than a new run. kOverrun zeros follow the values (triangle_kernels.h).
+/// The smallest RunRow of `values`: zeros between two stored values are stored only if that is no
+/// longer than a new run. kOverrun zeros follow the values (triangle_kernels.h).
 RunRow packRuns(std::span<const double> values, Precision precision);
 
-/// The same of a row whose values stand at `places`, strictly increasing and counted from `first`
+/// The same for a row with values at `places`, which strictly increase and are counted from `first`
 /// on; all others are 0. O(values).
 RunRow packRuns(std::span<const Index> places, std::size_t first, std::span<const double> values,
                 Precision precision);
@@ -42,9 +42,9 @@ RunRow packRuns(std::span<const Index> places, std::size_t first, std::span<cons
 /// Collects the stretches of values to store, in order, as the shortest list of runs.
 class RunFinder {
  public:
-  /// Zeros are stored where that takes no more bytes than a new run.
+  /// Zeros are stored if that takes no more bytes than a new run.
   explicit RunFinder(std::size_t value_bytes) : bridge_(sizeof(Run) / value_bytes) {}
-  /// Values [first, last) are to be stored, those since the last call are 0.
+  /// Adds values [first, last) to store; all values between the last call and these are 0.
   void add(std::size_t first, std::size_t last);
   std::pmr::vector<Run> take();
 
@@ -107,7 +107,7 @@ class RunReader {
 
 std::size_t bytesOf(const RunRow& row);
 
-/// How much there is to do in a walk along the row; 0 where nothing is stored.
+/// The work of a walk along the row; 0 if nothing is stored.
 inline std::size_t workOf(const RunRow& row) {
   return row.floats.size() + row.doubles.size() + row.runs.size();
 }

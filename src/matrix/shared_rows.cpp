@@ -35,7 +35,7 @@ struct Order {
   std::uint64_t last = 0;
 };
 
-/// Row entries, then bytes and dense rows: whole numbers, which sums of doubles keep.
+/// Row entries, then bytes and dense rows: integers, which sums of doubles keep exactly.
 std::vector<double> sizesOf(const ExchangeMatrix& own) {
   const std::vector<Index> entries = own.rowEntries();
   std::vector<double> sizes(entries.begin(), entries.end());
@@ -108,7 +108,7 @@ PanelRows receive(Processes& processes, int from, const WhileWaiting& waiting) {
   return rows;
 }
 
-/// What all processes know of a problem, and then their own parts of it.
+/// The part of a problem that process 0 sends to all, joined with the parts of this process.
 class SharedProblem {
  public:
   SharedProblem(Processes& processes, const ExchangeMatrix& own, const KrylovProblem& given,

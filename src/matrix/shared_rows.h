@@ -1,6 +1,6 @@
-// A matrix whose rows lie in several processes. Each holds an ExchangeMatrix of all unknowns with
-// rows of its own; all others are empty there. Process 0 has, besides, a matrix that stands for the
-// whole one (ExchangeMatrix::shared()): what it is asked for, all processes do together.
+// A matrix whose rows lie in several processes. Each has an ExchangeMatrix of all unknowns with
+// only its own rows; the other rows are empty. Process 0 also has a matrix that stands for the
+// whole one (ExchangeMatrix::shared()); all processes compute its results together.
 #pragma once
 
 #include <cstdint>
@@ -13,19 +13,19 @@
 
 namespace radiosity {
 
-/// Of the symmetric form: how much there is to do in row k, and the process that has it.
+/// Symmetric form: the work of each row and the process that has it.
 struct RowOwners {
   static constexpr int kNobody = -1;
   std::vector<std::size_t> work;
-  std::vector<int> owner;  ///< kNobody where nothing is stored after the diagonal
+  std::vector<int> owner;  ///< kNobody if nothing is stored after the diagonal
 };
 
 /// Process 0's side. All functions wait for the others; `waiting` is called meanwhile.
 class SharedRows {
  public:
-  /// While all others call serveRows(). `own`: this process's rows.
+  /// All other processes must call serveRows(). `own`: the rows of this process.
   SharedRows(Processes& processes, ExchangeMatrix own, WhileWaiting waiting);
-  /// The others forget their rows.
+  /// Tells the others to drop their rows.
   ~SharedRows();
   SharedRows(const SharedRows&) = delete;
   SharedRows& operator=(const SharedRows&) = delete;
@@ -33,14 +33,14 @@ class SharedRows {
   const ExchangeMatrix& own() const { return own_; }
   int processes() const { return processes_.size(); }
 
-  /// As ExchangeMatrix::product(). Sums are made process by process: their last bits depend on how
-  /// many there are.
+  /// Like ExchangeMatrix::product(). It sums process by process, so the last bits depend on the
+  /// number of processes.
   void product(std::span<const double> x, int bands, std::span<double> y,
                std::span<const std::uint8_t> wanted) const;
-  /// To the bit those of one process: the partial sums pass from process to process in the order
-  /// of the rows.
+  /// The row sums, with the same bits as in one process: partial sums pass from process to process
+  /// in the order of the rows.
   std::vector<double> rowSums() const;
-  /// Of all rows together.
+  /// Sizes of all rows together.
   struct Sizes {
     std::vector<Index> row_entries;
     std::size_t bytes = 0;
@@ -50,13 +50,12 @@ class SharedRows {
   /// Rows first to last - 1, compressed and sorted.
   void panel(std::size_t first, std::size_t last, std::vector<std::size_t>& starts,
              std::vector<Index>& columns, std::vector<double>& values) const;
-  /// Row form: dense[(j - first) * N + i] = F_ij for columns j from first to last - 1. `dense`:
-  /// (last
-  /// - first) * N zeros.
+  /// Row form: sets dense[(j - first) * N + i] = F_ij for columns j from first to last - 1. `dense`
+  /// must hold (last - first) * N zeros.
   void columns(std::size_t first, std::size_t last, std::span<double> dense) const;
-  /// Symmetric form, by position: the first of those that it is joined to by exchange.
+  /// Symmetric form, by position: the first position of its connected component.
   std::vector<Index> joined() const;
-  /// `problem`: without what the processes hold.
+  /// `problem`: without the processes' own parts.
   KrylovOutcome solve(const KrylovProblem& problem, std::span<double> solution) const;
 
  private:
@@ -66,7 +65,7 @@ class SharedRows {
   RowOwners owners_;
 };
 
-/// The side of the others: does what process 0 asks for, until its matrix is gone.
+/// The loop of the other processes: serves process 0 until its matrix is destroyed.
 void serveRows(Processes& processes, const ExchangeMatrix& own);
 
 }  // namespace radiosity

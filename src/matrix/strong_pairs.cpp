@@ -3,7 +3,7 @@
 namespace radiosity {
 namespace {
 
-/// Added to the diagonal: two rows that have nothing but each other are singular.
+/// Added to the diagonal: two rows that are coupled only to each other are singular.
 constexpr double kHeld = 1e-4;
 
 }  // namespace

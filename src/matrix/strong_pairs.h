@@ -1,4 +1,4 @@
-// Pairs of rows that an iteration would not get apart, solved directly.
+// Direct solution of strongly coupled pairs of rows, at which an iteration converges slowly.
 #pragma once
 
 #include <Eigen/SparseCholesky>
@@ -11,13 +11,13 @@
 namespace radiosity {
 
 /// A preconditioner of symmetric systems whose diagonal is about 1 and no smaller than the sum of
-/// the row's other values. Where a row's weight is mostly one partner's, as of two patches close
-/// together, what the two lack goes to and fro between them: the system is nearly singular there,
-/// and such pairs are what takes most steps. They are few: the diagonal and the values of at least
-/// kStrong are factorised (sparse, LDL^T), the rest is left to the iteration.
+/// the row's other values. If most of a row's weight is with one partner, as for two patches close
+/// together, the residual oscillates between the two: the system is nearly singular there, and such
+/// pairs take most of the steps. They are few. So we factorise the diagonal and the values of at
+/// least kStrong (sparse, LDL^T) and leave the rest to the iteration.
 class StrongPairs {
  public:
-  /// A value is strong from here on; a lower bound would save a few steps more.
+  /// The least strong value; a lower one would save a few more steps.
   static constexpr double kStrong = 0.1;
 
   struct Pair {

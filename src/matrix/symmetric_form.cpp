@@ -1,4 +1,4 @@
-// The symmetric form of the exchange matrix: what goes in and how it is read entry by entry.
+// The symmetric form of the exchange matrix: how rows are set and read entry by entry.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace radiosity {
 
 namespace {
 
-/// Largest stored value, so that a sum of N of them cannot overflow.
+/// The largest value that may be stored: a sum of N of them cannot overflow.
 constexpr double kLargest = 1e30;
 
 }  // namespace
@@ -61,9 +61,9 @@ void ExchangeMatrix::checkFactors(std::size_t k, std::span<const double> factors
     throw InputError(fmt::format("exchange matrix: {} is no form factor from patch {} to patch {}",
                                  factors[m], order_[k], order_[k + m]));
   };
-  // The top bit of `bad` is set by a negative value and by one above the largest, infinity and NaN
-  // included: numbers of one sign are ordered as their bits are. No exit and no comparison: this
-  // loop runs over every entry there is, and so it is made of vectors.
+  // A negative value sets the top bit of `bad`, and so does one above the largest, infinity and NaN
+  // included: numbers of one sign are ordered like their bits. The loop runs over every entry, so
+  // it has no exit and no comparison: the compiler vectorises it.
   std::uint64_t bad = 0;
   for (const double value : factors) {
     const auto bits = std::bit_cast<std::uint64_t>(value);

@@ -13,8 +13,8 @@ namespace radiosity {
 
 namespace {
 
-/// Bands that one pass over the matrix serves: more of them would take more memory for what is
-/// handed on, and no less time.
+/// The bands that one pass over the matrix serves. More would need more memory for the sums handed
+/// on and would not save time.
 constexpr int kBandsAtOnce = 16;
 
 /// Bands [first, last) of N * bands values, a plane each, by position instead of patch.
@@ -44,8 +44,8 @@ bool isWanted(std::span<const std::uint8_t> wanted, Index patch) {
   return wanted.empty() || wanted[patch] != 0;
 }
 
-/// sums[r * bands + b]: what the rows gather, where any of them is wanted (`gathers`), else 0;
-/// factor: as of TriangleKernels.
+/// `sums`: gathered sums by r * bands + b if any row is wanted (`gathers`), else 0. `factor`: as in
+/// TriangleKernels.
 void multiplyBlock(const TriangleKernels& kernels, const RowBlock& block,
                    const RowOperands& operands, std::span<const double> factor, bool gathers,
                    double* sums) {
@@ -60,7 +60,7 @@ void multiplyBlock(const TriangleKernels& kernels, const RowBlock& block,
   }
 }
 
-/// The sum handed on to a row, divided by its area; a patch without area was handed nothing.
+/// The sum handed on to a row, divided by its area; 0 for a patch without area.
 double perArea(double handed, double area) { return area > 0 ? handed / area : 0.0; }
 
 }  // namespace
@@ -75,7 +75,7 @@ void ExchangeMatrix::symmetricProduct(std::span<const double> x, int bands, std:
     Planes in(n, first, std::min(first + kBandsAtOnce, bands));
     in.take(x, width, order_);
     std::vector<double> gathered(n * in.bands);
-    // Positions are counted from `begin`, the first of a range of rows.
+    // Positions count from `begin`, the first of a range of rows.
     const auto block = [&](std::size_t k, std::size_t count, std::size_t begin, double* handed,
                            std::size_t stride) {
       const RowBlock rows{.rows = {&upper_[k], count}, .first = k + 1 - begin};
@@ -119,9 +119,9 @@ void ExchangeMatrix::symmetricProduct(std::span<const double> x, int bands, std:
   }
 }
 
-// Row k's sum over earlier patches was handed on by them just after they were updated; its sum over
-// later ones is gathered from values not updated yet. So a sweep, too, passes over the triangle
-// once.
+// Earlier patches handed their part of row k's sum on just after their update; the part of later
+// patches is gathered from values that are not updated yet. So a sweep, too, passes over the
+// triangle once.
 void ExchangeMatrix::symmetricSweep(std::span<double> x, int bands, const Update& update,
                                     std::span<const std::uint8_t> wanted) const {
   const std::size_t n = size();

@@ -1,4 +1,4 @@
-// The inner loops over rows of the triangle: what they gather and what they hand on.
+// The inner loops over rows of the triangle, which gather sums and hand values on to later rows.
 #pragma once
 
 #include <cstddef>
@@ -8,25 +8,25 @@
 
 namespace radiosity {
 
-/// Bands that a kernel serves at once.
+/// The most bands that a kernel serves at once.
 inline constexpr int kMaxBands = 4;
 
-/// Rows that a kernel serves at once: where all of them have values, x and z are loaded once for
-/// several rows.
+/// The most rows that a kernel serves at once. Where all of them have values, x and z are loaded
+/// once for several rows.
 inline constexpr std::size_t kMaxRows = 8;
 
-/// Running sums a row and band: what is gathered from place q goes to sum q modulo kSums, places
-/// increasing, and the sums are added up in a fixed order. So every instruction set gives the same
-/// bits, whatever it holds in a vector, and so does any number of rows at once.
+/// The running sums for each row and band. The product at place q is added to sum q modulo kSums,
+/// in the order of places, and the sums are added up in a fixed order. So every vector length and
+/// any number of rows at once give the same bits.
 inline constexpr std::size_t kSums = 8;
 
-/// Kernels work on whole vectors: places from one multiple of kSums to the next, of which a row
-/// has some, may all be read (they must hold finite numbers) and written back unchanged. So many
-/// values beyond a row's last are read.
+/// Kernels read up to this many values beyond a row's last. They work on whole vectors: if a row
+/// has some of the places from one multiple of kSums to the next, all of them may be read (they
+/// must hold finite numbers) and written back unchanged.
 inline constexpr std::size_t kOverrun = kSums - 1;
 
-/// Vectors of some bands, one plane of values a band, `..._stride` apart, by place. Walks are
-/// fastest where planes are aligned to a cache line.
+/// Vectors of some bands, by place: one plane of values a band, `..._stride` apart. Walks are
+/// fastest if planes are aligned to a cache line.
 struct RowOperands {
   const double* x = nullptr;  ///< gathered from
   std::size_t x_stride = 0;
@@ -48,12 +48,12 @@ struct TriangleKernels {
   void (*gather)(const RowBlock& block, const RowOperands& operands, double* sums);
   /// z_b[place] += value * factor[r * bands + b], row after row.
   void (*hand_on)(const RowBlock& block, const RowOperands& operands, const double* factor);
-  /// Both in one pass. Several rows at once are faster here than one after the other.
+  /// Does both in one pass. Here several rows at once are faster than one after the other.
   void (*gather_and_hand_on)(const RowBlock& block, const RowOperands& operands,
                              const double* factor, double* sums);
 };
 
-/// For the best instruction set this machine has.
+/// The kernels for the best instruction set of this machine.
 TriangleKernels triangleKernels();
 
 }  // namespace radiosity

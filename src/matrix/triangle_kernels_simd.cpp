@@ -4,12 +4,12 @@
 #include "matrix/run_row.h"
 #include "matrix/triangle_kernels.h"
 
-// Vectors without a fixed size cannot stand in arrays.
+// Vectors without a fixed size cannot be array elements.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "matrix/triangle_kernels_simd.cpp"
 #include <hwy/foreach_target.h>
-// After foreach_target.h, which compiles this file once per instruction set.
+// Included after foreach_target.h, which compiles this file once per instruction set.
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
@@ -25,8 +25,8 @@ using Vector = hn::Vec<Doubles>;
 constexpr std::size_t kWidth = hn::MaxLanes(Doubles());
 constexpr std::size_t kVectors = kSums / kWidth;
 
-/// Rows whose running sums stay in registers: vectors of 8 lanes come with 32 registers, shorter
-/// ones with 16, and half of them are sums.
+/// The number of rows whose running sums fit in registers. Machines with vectors of 8 lanes have 32
+/// registers, others 16, and half of them hold sums.
 constexpr std::size_t rowsAtOnce(int bands) {
   const std::size_t sums = kWidth == kSums ? 16 : 8;
   const std::size_t rows = sums / std::size_t(bands);
@@ -35,8 +35,8 @@ constexpr std::size_t rowsAtOnce(int bands) {
 
 /// The fewest places worth walking over with all rows at once.
 constexpr std::size_t kShortest = 4 * kSums;
-/// The most that some rows walk over before others follow: x and z stay in the nearest cache
-/// meanwhile, and the values that come next are on their way.
+/// The most places that a group of rows walks over before the next group follows. Meanwhile x and z
+/// stay in the nearest cache, and the next values are prefetched.
 constexpr std::size_t kTile = 16 * kSums;
 constexpr std::size_t kCacheLine = 64;  // bytes
 
@@ -45,7 +45,7 @@ Vector load(const float* values) {
   return hn::PromoteTo(Doubles(), hn::LoadU(hn::Rebind<float, Doubles>(), values));
 }
 
-/// Where a walk along a row is: at the next value, `left` of which follow each other.
+/// The state of a walk along a row: the next value, and the number `left` of consecutive ones.
 template <class Value>
 struct Cursor {
   const Run* run = nullptr;  // the next one
@@ -97,7 +97,7 @@ struct Walk {
 /// The values of lanes [first, last) of kSums, others 0; `values` is that of lane `first`.
 template <class Value>
 struct Lanes {
-  /// `row`: values before it are not to be read.
+  /// Values before `row` must not be read.
   Lanes(const Value* row, const Value* values, std::size_t first, std::size_t last)
       : from_(values - (std::size_t(values - row) < first ? 0 : first)),
         first_(first),
@@ -124,8 +124,8 @@ struct Lanes {
   std::size_t last_;
 };
 
-/// Row r by itself, up to place `stop`. Everything is a local variable: through members the
-/// compiler would have to expect that writing z changes them.
+/// Walks along row r alone, up to place `stop`. All state is in local variables: with members the
+/// compiler would have to assume that writing z changes them.
 template <int kBands, bool kGather, bool kHandOn, class Value>
 void walkAlone(Walk<kBands, Value>& walk, std::size_t r, std::size_t stop) {
   const Doubles d;
@@ -186,9 +186,9 @@ void walkAlone(Walk<kBands, Value>& walk, std::size_t r, std::size_t stop) {
   }
 }
 
-/// Rows r to r + kRows, all of which have values at the `count` places from `place` on, multiples
-/// of kSums both: gathers and hands on. Of each kSums places it takes vector v: so many sums at
-/// once stay in registers.
+/// Gathers and hands on for rows r to r + kRows - 1, all of which have values at the `count` places
+/// from `place` on; both are multiples of kSums. Of each kSums places it handles only vector v, so
+/// that all sums fit in registers.
 template <std::size_t kRows, int kBands, class Value>
 void walkTogether(Walk<kBands, Value>& walk, std::size_t r, std::size_t v, std::size_t place,
                   std::size_t count) {
@@ -236,8 +236,8 @@ struct Stretch {
   std::size_t last = 0;
 };
 
-/// The next stretch, of kShortest places or more, at which all rows have values; empty where none
-/// is left.
+/// The next stretch of kShortest places or more at which all rows have values; empty if none is
+/// left.
 template <int kBands, class Value>
 Stretch nextStretch(const Walk<kBands, Value>& walk) {
   Cursor<Value> ahead[kMaxRows];
@@ -257,8 +257,9 @@ Stretch nextStretch(const Walk<kBands, Value>& walk) {
   }
 }
 
-/// Together where all rows have values, one after the other elsewhere: each place gets what rows
-/// hand on in their order, and each row's sums what it gathers in the order of places.
+/// Walks along all rows together where all have values, and one after the other elsewhere. Each
+/// place adds the values handed on in the order of rows; each row adds the values gathered in the
+/// order of places.
 template <int kBands, class Value>
 void walkBlock(Walk<kBands, Value>& walk) {
   constexpr std::size_t kRows = rowsAtOnce(kBands);
@@ -310,7 +311,7 @@ void walkRows(const RowBlock& block, const RowOperands& operands, const double* 
 template <int kBands, bool kGather, bool kHandOn>
 void walkValues(const RowBlock& block, const RowOperands& operands, const double* factor,
                 double* sums) {
-  // A row without values has neither.
+  // A row without values has neither floats nor doubles.
   const bool doubles = std::any_of(block.rows.begin(), block.rows.end(),
                                    [](const RunRow& row) { return !row.doubles.empty(); });
   if (doubles) {

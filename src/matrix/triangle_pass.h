@@ -1,4 +1,4 @@
-// A pass over the triangle, by many threads, in which every row hands something on to later ones.
+// A pass over the triangle, by many threads, in which every row hands values on to later rows.
 #pragma once
 
 #include <algorithm>
@@ -10,13 +10,13 @@
 
 namespace radiosity {
 
-/// Rows handed on by different threads meet in the same places. So rows are dealt out in chunks of
+/// Rows of different threads hand values on to the same places. So rows are divided into chunks of
 /// about equal work, each with sums of its own, which are added up in order. The chunks depend on
-/// the work alone, never on the threads: the same bits for any number of them.
+/// the work alone, so any number of threads gives the same bits.
 class TrianglePass {
  public:
-  /// `work(k)`: of row k, in any unit. Chunks start at multiples of `lanes`, and sums have room for
-  /// whole lanes after the last row.
+  /// `work(k)`: the work of row k, in any unit. Chunks start at multiples of `lanes`, and sums have
+  /// room for whole lanes after the last row.
   template <class Work>
   TrianglePass(std::size_t rows, std::size_t lanes, const Work& work) : rows_(rows), lanes_(lanes) {
     std::size_t total = 0;
@@ -33,15 +33,15 @@ class TrianglePass {
     starts_.push_back(rows);
   }
 
-  /// Calls rows(first, last, sums, stride) for ranges that together are all rows: it may add to
-  /// sums[p * stride + q - first], plane p < `planes`, what they hand on to row q after them. Then
-  /// finish(k, handed) for every k, handed[p] being the total. Calls run in parallel; all of rows()
+  /// Calls rows(first, last, sums, stride) for ranges that together are all rows. It may add the
+  /// values for a later row q in plane p < `planes` to sums[p * stride + q - first]. Then calls
+  /// finish(k, handed) for every k; handed[p] is the total. Calls run in parallel; all of rows()
   /// come before those of finish(). `first` and `stride` are multiples of the lanes; sums are
   /// aligned to a cache line.
   template <class Rows, class Finish>
   void runRanges(std::size_t planes, const Rows& rows, const Finish& finish) const {
     const std::size_t chunks = starts_.size() - 1;
-    std::vector<AlignedBuffer<double>> sums(chunks);  // of chunk c: from row starts_[c] on
+    std::vector<AlignedBuffer<double>> sums(chunks);  // sums[c]: from row starts_[c] on
     parallelFor(chunks, 1, [&](std::size_t c) {
       const std::size_t stride = strideOf(c);
       sums[c].reserve(stride * planes);
@@ -63,8 +63,8 @@ class TrianglePass {
     });
   }
 
-  /// The same row by row: calls row(k, sums, stride) for every k: it may add to sums[p * stride +
-  /// m] what row k hands on to row k + 1 + m.
+  /// The same row by row. Calls row(k, sums, stride) for every k; it may add the value for row
+  /// k + 1 + m to sums[p * stride + m].
   template <class Row, class Finish>
   void run(std::size_t planes, const Row& row, const Finish& finish) const {
     const auto rows = [&](std::size_t first, std::size_t last, double* sums, std::size_t stride) {
@@ -76,7 +76,7 @@ class TrianglePass {
   /// The first row of each chunk, and the end.
   const std::vector<std::size_t>& starts() const { return starts_; }
 
-  /// The most that run() takes.
+  /// The most bytes that run() takes.
   static std::size_t bytes(std::size_t rows, std::size_t planes) {
     return kMostChunks * rows * planes * sizeof(double);
   }

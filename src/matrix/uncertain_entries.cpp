@@ -1,4 +1,4 @@
-// Which entries are estimates, a byte each.
+// The errors of the entries that are estimates, a byte each.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ constexpr std::array<double, 4> kRoundedUp = {0.5452538663326288, 0.648419777325
 
 std::uint8_t codeOf(double error) {
   if (error == 0) return 0;
-  // A logarithm to a quarter of an octave needs no more than the exponent and four comparisons.
+  // The exponent and four comparisons give the logarithm to a quarter of an octave.
   int exponent = 0;
   const double fraction = std::frexp(error, &exponent);  // 1/2 to 1
   int step = 0;

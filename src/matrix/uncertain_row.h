@@ -20,7 +20,7 @@ struct UncertainEntries::Row {
 
 std::size_t bytesOf(const UncertainEntries::Row& row);
 
-/// The error a code stands for, rounded.
+/// The rounded error that a code stands for.
 double errorOfCode(std::uint8_t code);
 
 }  // namespace radiosity

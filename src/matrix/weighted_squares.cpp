@@ -1,4 +1,4 @@
-// The size of F in the norm its errors are measured in.
+// The norm of F in which its errors are measured.
 #include <numeric>
 #include <vector>
 
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kSquaresGrain = 16;
 
-/// sum_m values[m]^2 (1 + area * inverse[m]), in running sums that do not wait for each other.
+/// sum_m values[m]^2 (1 + area * inverse[m]), in independent running sums.
 template <class Value>
 double sumOfSquares(const Value* values, double area, const double* inverse, std::size_t count) {
   constexpr std::size_t kLanes = 8;
@@ -40,7 +40,7 @@ double ofRows(const ExchangeMatrix& matrix) {
 
 }  // namespace
 
-// Both ends of a pair: A_k F_kq^2 + A_q F_qk^2 = A_k F_kq^2 (1 + A_k / A_q).
+// Both ends of a pair give A_k F_kq^2 + A_q F_qk^2 = A_k F_kq^2 (1 + A_k / A_q).
 double weightedSquares(const ExchangeMatrix& matrix) {
   if (!matrix.isSymmetric()) return ofRows(matrix);
   const std::size_t n = matrix.size();

@@ -1,4 +1,4 @@
-// The memory that writing and solving take beside the matrix.
+// The memory needed beside the matrix for writing and solving.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace radiosity {
 
-/// Chunks of indices and values on their way into a file, HDF5's own among them.
+/// Bytes of the chunks of indices and values that are being written, HDF5's own included.
 inline constexpr std::size_t kFileChunks = std::size_t(4) << 20;
 
 /// The most bytes that writing a symmetric matrix of N rows or solving in three bands takes at
@@ -19,7 +19,7 @@ inline std::size_t matrixWorkingMemory(std::size_t n, std::size_t threads) {
   const std::size_t row = n * sizeof(double);
   const std::size_t all = n * row;
   const std::size_t chunks = std::min(2 * all, kFileChunks);
-  const std::size_t starts = 2 * row;           // where rows start in the file, how long they are
+  const std::size_t starts = 2 * row;           // start and length of the rows in the file
   const std::size_t fields = 8 * kBands * row;  // B, H, E, reflectance, and by position
   return std::max(threads * row + starts + chunks, TrianglePass::bytes(n, kBands) + fields);
 }

@@ -1,4 +1,4 @@
-// Putting things together that lie near each other and face alike, the cheapest pair first.
+// Greedy agglomeration of pieces that are near each other and face alike, the cheapest pair first.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace radiosity {
 
-/// A planar piece of a surface, and what pieces put together are: sums over pieces.
+/// A planar piece of a surface, or a whole of several pieces: sums over pieces.
 struct Agglomerate {
   double area = 0;
   Vec3 moment{0.0};   ///< area times centroid
@@ -25,31 +25,31 @@ struct Agglomerate {
 
 /// Greedy agglomeration by Ward's criterion ("Hierarchical Grouping to Optimize an Objective
 /// Function", J. Am. Stat. Assoc. 58, 1963) in six dimensions, centroid and `bend` times normal,
-/// with areas as weights: what putting I and J together adds to the area-weighted squares is
+/// with areas as weights. The union of I and J adds to the area-weighted squares
 ///
 ///     A_I A_J / (A_I + A_J) * (|c_I - c_J|^2 + bend^2 |n_I - n_J|^2).
 ///
-/// Pairs stand in a heap by this cost. One whose cost has risen since is put back; one whose cost
-/// has fallen is taken when its turn comes. No lists of neighbours are kept: where run() is called
-/// for half as many each time, pairs are as many as wholes, and all takes n log n. Ties go by
-/// number: the first, then the second of the pair.
+/// A heap has the pairs by this cost. A pair whose cost has risen since is put back; a pair whose
+/// cost has fallen is taken when its turn comes. There are no lists of neighbours: if each run()
+/// halves the number, there are as many pairs as wholes, and all takes O(n log n). Ties are broken
+/// by the number of the first, then of the second of the pair.
 class Agglomeration {
  public:
-  /// `unit`: a length that costs are of the order of, so that they fit into 32 bits.
+  /// `unit`: a typical length of the costs, so that they fit into 32 bits.
   Agglomeration(std::vector<Agglomerate> pieces, double bend, double unit);
 
-  /// Two that may be put together; numbers of pieces.
+  /// Offers a pair that may be joined, by the numbers of two pieces.
   void offer(Index a, Index b);
-  /// Puts together what was offered, the cheapest pair first, until `wanted` are left or no pair
-  /// is. What is not used up waits for another run. Throws Cancelled.
+  /// Joins offered pairs, the cheapest first, until `wanted` wholes or no pairs are left. Unused
+  /// pairs stay for the next run. Throws Cancelled.
   void run(std::size_t wanted, Progress& progress);
 
   std::size_t size() const { return size_; }
-  /// The smallest piece of what piece k is part of: it stands for the whole.
+  /// The lowest piece of the whole that has piece k: it represents the whole.
   Index of(Index k) { return parts_.find(k); }
-  /// Of a piece that stands for a whole.
+  /// The sums of a whole, by the piece that represents it.
   const Agglomerate& at(Index k) const { return sums_[k]; }
-  /// |c_I - c_J|^2 + bend^2 |n_I - n_J|^2 of two that stand for wholes, with any `bend`.
+  /// |c_I - c_J|^2 + bend^2 |n_I - n_J|^2 of two wholes, with any `bend`.
   double distance2(Index a, Index b, double bend) const;
 
  private:
@@ -62,7 +62,7 @@ class Agglomeration {
     }
   };
   float cost(Index a, Index b) const;
-  /// Each pair once, at its cost now: clusters meet along many edges.
+  /// Keeps each pair once, with its present cost: clusters meet along many edges.
   void renew();
 
   std::vector<Agglomerate> sums_;

@@ -19,7 +19,7 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<Index, Kernel>;
-/// The region a triangle belongs to: triangles with no edge of ours between them.
+/// The region of a triangle: triangles without one of our edges between them.
 using RegionFaceBase =
     CGAL::Triangulation_face_base_with_info_2<Index, Kernel,
                                               CGAL::Constrained_triangulation_face_base_2<Kernel>>;
@@ -30,7 +30,7 @@ using Cover = std::vector<std::pair<Index, int>>;
 
 Kernel::Point_2 toKernel(const Vec2& p) { return {p.x, p.y}; }
 
-/// One plane at work.
+/// Cuts one plane.
 class PlaneCutter {
  public:
   PlaneCutter(const WeldedPoints& points, const Plane& plane, Index number,
@@ -82,14 +82,14 @@ void PlaneCutter::run() {
   if (!insertEdges()) return reportCrossings();
   if (reportTouches()) return;
   out_.done = true;
-  if (triangulation_.dimension() < 2) return;  // welding has left nothing wider than a line
+  if (triangulation_.dimension() < 2) return;  // after welding, all points are on one line
   findRegions();
   coverRegions();
   makeCells();
   recordSides();
 }
 
-/// False if two vertices have one image: one above the other within the slab that is the plane.
+/// False if two vertices have the same image: one above the other within the plane's slab.
 bool PlaneCutter::insertVertices() {
   bool distinct = true;
   ArrangementTriangulation::Face_handle near;
@@ -122,7 +122,7 @@ bool PlaneCutter::insertEdges() {
   return true;
 }
 
-/// An edge that passes exactly through a vertex of the image has become a path over it.
+/// Reports vertices that lie exactly on an edge in the image: the edge has become a path over them.
 bool PlaneCutter::reportTouches() {
   bool any = false;
   for (const Index e : own_) {
@@ -141,8 +141,8 @@ bool PlaneCutter::reportTouches() {
   return any;
 }
 
-/// Rare: edges that pass each other in space at more than coincidence, but cross in the image,
-/// both being within the slab that is the plane. They are made to meet.
+/// Reports edges that cross in the image although they pass each other in space at more than
+/// coincidence, both within the plane's slab. This is rare. They are then made to meet.
 void PlaneCutter::reportCrossings() {
   std::vector<Box3> boxes;
   for (const Index e : own_) {
@@ -202,7 +202,7 @@ Cover PlaneCutter::stepOver(const Cover& from, Index edge, bool to_left) const {
   std::map<Index, int> counts(from.begin(), from.end());
   for (const EdgeUse& use : edges_[edge].uses) {
     if (sheets_[use.sheet].plane != number_) continue;
-    // Layers of a sheet that faces down count negative.
+    // Layers of a sheet that faces down have a negative count.
     counts[use.sheet] += to_left ? use.count : -use.count;
   }
   Cover out;
@@ -212,8 +212,8 @@ Cover PlaneCutter::stepOver(const Cover& from, Index edge, bool to_left) const {
   return out;
 }
 
-/// Walks from the outside, where nothing is, over edges into every region. It uses no coordinates,
-/// so no rounding can make a hole or a second layer.
+/// Finds the covers by a walk from the empty outside over edges into every region. It uses no
+/// coordinates, so rounding cannot make a hole or a second layer.
 void PlaneCutter::coverRegions() {
   struct Step {
     Index region;
@@ -266,7 +266,7 @@ void PlaneCutter::makeCells() {
     const Vec3& a = points_[face->vertex(0)->info()];
     const Vec3& b = points_[face->vertex(1)->info()];
     const Vec3& c = points_[face->vertex(2)->info()];
-    // Seen along the plane's normal, so that parts add up to the whole to the last bits.
+    // Areas along the plane's normal, so that parts add up to the whole to the last bits.
     const double area = 0.5 * glm::dot(glm::cross(b - a, c - a), plane_.normal);
     cell.area += area;
     const double rim = glm::distance(a, b) + glm::distance(b, c) + glm::distance(c, a);

@@ -12,14 +12,14 @@ namespace radiosity {
 /// A connected part of one plane that no edge divides and at least one sheet covers.
 struct PlaneCell {
   Index plane = kNone;
-  std::vector<std::pair<Index, int>> cover;  ///< sheets over it, ascending, and how many times
+  std::vector<std::pair<Index, int>> cover;  ///< sheets over it, ascending, with layers of each
   double area = 0;                           ///< m^2
   Vec3 sample{0.0};                          ///< a point well inside
-  double room = 0;                           ///< metres from `sample` to the cell's border, about
+  double room = 0;                           ///< about the metres from `sample` to the border
 };
 
 /// The cells on both sides of an edge in one plane, seen from a to b and from above the plane;
-/// kNone where nothing covers it.
+/// kNone for a side without a cell.
 struct EdgeSides {
   Index plane = kNone;
   Index left = kNone;
@@ -29,11 +29,11 @@ struct EdgeSides {
 struct Arrangement {
   std::vector<PlaneCell> cells;               ///< plane by plane
   std::vector<std::vector<EdgeSides>> sides;  ///< by edge
-  /// Sheets with a polygon that crosses itself: a part is turned over.
+  /// Sheets with a polygon that crosses itself, so that a part is turned over.
   std::vector<Index> inverted;
 };
 
-/// Two edges that cross in the image of a plane, and where on the first of them.
+/// Two edges that cross in the image of a plane, and the point on the first.
 struct ImageCrossing {
   Index first = kNone;
   Index second = kNone;
@@ -42,9 +42,9 @@ struct ImageCrossing {
 
 /// The regions into which the edges in one plane cut it.
 struct PlaneCut {
-  bool done = false;  ///< if not, only `unresolved` and `crossings` say something
+  bool done = false;  ///< if false, only `unresolved` and `crossings` are valid
   std::vector<PlaneCell> cells;
-  /// Edges and what lies beside them, cells counted from the first of this plane.
+  /// Edges and the cells beside them, counted from the first of this plane.
   std::vector<std::pair<Index, EdgeSides>> sides;
   std::vector<Index> inverted;
   /// Vertices that fall on each other or on an edge in the image of the plane.

@@ -16,7 +16,7 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-/// How the cells of another component lie to a closed one.
+/// The places of another component's cells relative to a closed one.
 struct Relation {
   std::size_t inside = 0;
   std::size_t on_skin = 0;
@@ -45,8 +45,8 @@ Relations relations(const Arrangement& arrangement, const Components& components
   return out;
 }
 
-/// A closed surface is convex if it encloses what its convex hull does, but for a shell one
-/// coincidence thick: n log n.
+/// Whether a closed surface is convex: its volume is that of its convex hull, but for a shell one
+/// coincidence thick. O(n log n).
 bool isConvex(const Component& component, double coincidence) {
   std::vector<Kernel::Point_3> points;
   const Vec3& base = component.triangles.front()[0];
@@ -74,7 +74,7 @@ bool isConvex(const Component& component, double coincidence) {
 
 double diagonal(const Component& c) { return glm::distance(c.box.low, c.box.high); }
 
-/// What a closed two-sided component is, by what lies in it.
+/// Decides what a closed two-sided component is by the components inside it.
 class TwoSided {
  public:
   TwoSided(const std::vector<Component>& list, const Relations& relation,
@@ -132,7 +132,7 @@ Bodies::Bodies(const Arrangement& arrangement, const std::vector<Sheet>& sheets,
     }
     if (body_[c] == Body::room) rooms_.push_back(c);
   }
-  std::vector<bool> held(list.size(), false);  // by one solid alone
+  std::vector<bool> held(list.size(), false);  // only one solid holds it
   for (const auto& [pair, how] : relation) {
     const auto& [solid, other] = pair;
     const Component& within = list[other];
@@ -153,8 +153,8 @@ Bodies::Bodies(const Arrangement& arrangement, const std::vector<Sheet>& sheets,
   }
 }
 
-/// By component: whether it is a closed one-sided component turned inward of which all fronts look
-/// into a solid.
+/// By component: whether it is one-sided, closed and turned inward, and all its fronts look into a
+/// solid.
 std::vector<bool> Bodies::lookIntoSolids(const Arrangement& arrangement,
                                          const std::vector<Sheet>& sheets,
                                          const Components& components) const {

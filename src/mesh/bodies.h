@@ -1,4 +1,4 @@
-// Which closed components are solid bodies, which are rooms, and which sides see nothing.
+// Finds the closed components that are solids or rooms, and the sides that see nothing.
 #pragma once
 
 #include <vector>
@@ -8,20 +8,19 @@
 namespace radiosity {
 
 enum class Body {
-  none,   ///< open, or a room turned inward, or not to be told: nothing follows from it
-  solid,  ///< nothing is to be seen inside
-  room,   ///< nothing is to be seen outside
+  none,   ///< open, a one-sided room turned inward, or undecided: no side is hidden by it
+  solid,  ///< sides inside it are hidden
+  room,   ///< sides outside it are hidden
 };
 
-/// The bodies of a scene. One-sided components: solid if closed and turned outward. The file's
-/// orientation of two-sided ones means nothing, so what else there is decides: solid if no other
-/// component is inside and something is outside; room if everything else is inside, or if there is
-/// nothing else and it is convex. A component that sticks out of a larger one leaves it undecided
-/// which of the two the larger one is, and then it is neither.
-/// A solid is hollow where closed one-sided components turned inward lie within it: an oven's
-/// chamber, the inner sheet of walls that are modelled as two sheets back to back. Where such walls
-/// part a body into chambers, all of its inner sheets are one component, within no chamber alone:
-/// it makes every solid hollow that it touches if its fronts look into solids everywhere.
+/// The bodies of a scene. A one-sided component is a solid if it is closed and turned outward. The
+/// file's orientation of two-sided ones has no meaning, so the other components decide. It is a
+/// solid if no other component is inside and one is outside. It is a room if all others are inside,
+/// or if there are no others and it is convex. If a component sticks out of it, it is neither. A
+/// solid is hollow if closed one-sided components turned inward lie within it: an oven's chamber,
+/// or the inner sheet of walls that are modelled as two sheets back to back. If such walls divide a
+/// body into chambers, all its inner sheets are one component, which lies within no single chamber:
+/// it makes every solid that it touches hollow if its fronts look into solids everywhere.
 class Bodies {
  public:
   Bodies(const Arrangement& arrangement, const std::vector<Sheet>& sheets,
@@ -31,10 +30,10 @@ class Bodies {
   const std::vector<Index>& rooms() const { return rooms_; }
   /// Whether the space next to a side of a cell is inside a solid, and in none of its cavities.
   bool isWithin(Index solid, Index cell, Side side) const;
-  /// Whether an open one-sided component has no cell outside a solid: a second layer of some of
-  /// its faces, turned inward, is one. A solid does not stand on its lining.
+  /// Whether an open one-sided component has no cell outside a solid, such as a second layer of
+  /// some of its faces, turned inward. A solid does not stand on its lining.
   bool isLining(Index component, Index solid) const;
-  /// The same as isWithin(), of any solid.
+  /// Whether isWithin() is true for any solid.
   bool isWithinAny(Index cell, Side side) const;
 
  private:

@@ -8,7 +8,7 @@ namespace radiosity {
 namespace {
 
 constexpr int kCells = 256;         // along each axis
-constexpr double kMostCells = 512;  // that one box is looked up in
+constexpr double kMostCells = 512;  // in which one box is looked up
 
 }  // namespace
 

@@ -11,7 +11,7 @@ namespace {
 
 using Pairs = std::vector<std::pair<Index, Index>>;
 
-constexpr std::size_t kAtATime = 256;  // a task of a thread
+constexpr std::size_t kAtATime = 256;  // for each task of a thread
 
 /// Pairs that visit(k, found) appends for each k below `count`, in ascending order.
 template <class Visit>
@@ -35,8 +35,8 @@ Pairs pairsOf(std::size_t count, const Progress* progress, const Visit& visit) {
   return out;
 }
 
-/// Calls visit(i, j) for the boxes i of a leaf and j that overlap, where j comes after i in the
-/// tree's order: every pair is met in one leaf.
+/// Calls visit(i, j) for the overlapping boxes i of a leaf and j, with j after i in the tree's
+/// order, so that every pair is visited in one leaf.
 template <class Visit>
 void forPairsOfLeaf(const BoxTree& tree, const BoxTree::Node& leaf, const Visit& visit) {
   struct Place {

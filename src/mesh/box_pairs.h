@@ -1,4 +1,4 @@
-// Which axis-aligned boxes overlap.
+// Finds axis-aligned boxes that overlap.
 #pragma once
 
 #include <functional>
@@ -10,18 +10,17 @@
 
 namespace radiosity {
 
-/// Whether a pair of boxes is wanted; asked on all threads.
+/// Whether a pair of boxes is wanted; called on all threads.
 using PairFilter = std::function<bool(Index, Index)>;
 
-/// Pairs (i, j), i < j, of boxes that overlap or touch, in ascending order; those alone that
-/// `wanted`, if given, says yes to. `progress`, if given, is asked now and then whether the run was
-/// cancelled.
+/// Pairs (i, j), i < j, of boxes that overlap or touch, in ascending order; if `wanted` is given,
+/// only the pairs for which it is true. Checks `progress`, if given, now and then for cancellation.
 std::vector<std::pair<Index, Index>> overlappingPairs(const std::vector<Box3>& boxes,
                                                       const Progress* progress = nullptr,
                                                       const PairFilter& wanted = {});
 
-/// Pairs (i, j) of overlapping boxes with i from `some`; where both are in `some`, i < j.
-/// Ascending; each pair once, as (smaller, larger).
+/// Pairs of overlapping boxes with at least one from `some`. Ascending; each pair once, as
+/// (smaller, larger).
 std::vector<std::pair<Index, Index>> overlappingPairs(const std::vector<Box3>& boxes,
                                                       const std::vector<Index>& some,
                                                       const Progress* progress = nullptr,

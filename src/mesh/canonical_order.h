@@ -1,4 +1,4 @@
-// An order of patches that does not depend on how they are numbered.
+// An order of patches that does not depend on their numbers.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 namespace radiosity {
 
 /// Patches by surface name, index within the surface and side: sums in this order do not depend on
-/// how patches are numbered. Patches of one surface stand together.
+/// the numbers of patches. Patches of one surface are consecutive.
 std::vector<Index> canonicalOrder(const PatchMesh& mesh);
 
 }  // namespace radiosity

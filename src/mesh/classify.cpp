@@ -18,15 +18,15 @@ namespace {
 
 Side opposite(Side side) { return side == kAbove ? kBelow : kAbove; }
 
-/// A sheet of the cell at hand.
+/// A sheet of the present cell.
 struct Layer {
   Index sheet;
   int layers;
   Side front;
   bool two_sided;
   Index component;
-  std::array<bool, 2> carries;  ///< by Side: patches, as the file has it
-  std::array<bool, 2> kept;     ///< by Side: what is left of `carries`
+  std::array<bool, 2> carries;  ///< by Side: has patches in the file
+  std::array<bool, 2> kept;     ///< by Side: of `carries`, those not dropped
   bool outdone = false;         ///< lost a side to a sheet that faces alike
 };
 
@@ -89,8 +89,8 @@ bool Classifier::seesNothing(Index cell, Side side) const {
                      [&](Index room) { return winding_.of(room, cell, side) == 0; });
 }
 
-/// The skin of a solid goes where something faces it from within the solid: the two are in
-/// contact, and it is that something's place the solid stands on.
+/// Drops the skin of a solid where a sheet faces it from within the solid: the two are in contact,
+/// and the solid stands on that sheet.
 void Classifier::dropContacts(Index cell, std::vector<Layer>& layers) const {
   for (Layer& skin : layers) {
     const bool outward_above = sheets_[skin.sheet].facing * components_.outward[skin.sheet] > 0;
@@ -114,8 +114,8 @@ bool Classifier::wins(const Layer& a, const Layer& b) const {
   return rank(a) < rank(b);
 }
 
-/// One of several sheets that face alike is seen. A two-sided winner lies on the one-sided sheets
-/// it covers, so its far side is in contact with them.
+/// Keeps one of several sheets that face alike. A two-sided winner lies on the one-sided sheets
+/// that it covers, so its far side is in contact with them.
 void Classifier::dropOutdone(const PlaneCell& cell, Side side, std::vector<Layer>& layers) {
   Layer* winner = nullptr;
   for (Layer& l : layers) {
@@ -178,7 +178,7 @@ void Classifier::writeNotes() {
   }
   for (const auto& [names, area] : outdone_) {
     const auto& [loser, winner] = names;
-    // A lamp panel on an uncut ceiling is the usual way to draw one, and nothing to warn of.
+    // No warning for a lamp: a panel on an uncut ceiling is the usual way to model one.
     const bool lamp = emitters.contains(winner) && !emitters.contains(loser);
     report_.notes.push_back(
         {lamp ? Severity::info : Severity::warning,

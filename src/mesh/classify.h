@@ -1,4 +1,4 @@
-// Which sides of which cells carry patches.
+// Decides which sides of cells carry patches.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace radiosity {
 
-/// A sheet on a cell, as it is seen: from the side(s) that are kept.
+/// A sheet on a cell, with the sides from which it is seen.
 struct VisibleCell {
   Index cell = kNone;
   Index sheet = kNone;
@@ -16,10 +16,10 @@ struct VisibleCell {
   bool below = false;
 };
 
-/// Decides by the space next to each side and by what else lies in the same place:
-/// - a side inside a closed outward solid, and in no cavity of it, is buried; what faces that
-///   solid's skin from inside it is in contact with the skin, and takes it along (a block's bottom
-///   goes with the floor);
+/// Decides by the space next to each side and by the other sheets in the same place:
+/// - a side inside a closed outward solid, and in no cavity of it, is buried; if it faces the
+///   solid's skin, the two are in contact and the skin is dropped, too (a block's bottom on a
+///   floor);
 /// - the sides of a two-sided closed component that see nothing are hidden;
 /// - of sheets that face alike the emitter wins, else the smaller surface, else the first name;
 /// - the far side of a two-sided sheet that lies on a one-sided one is in contact.

@@ -21,12 +21,12 @@ namespace radiosity {
 
 namespace {
 
-/// What a turn of the normal by 1 counts for, in sides of a square that has its share of the area.
-/// With half of it or twice of it surfaces of six scenes have about the same power.
+/// The weight of a change of the normal by 1, in sides of a square with the mean area of a cluster.
+/// With half or twice this weight, surfaces of six scenes have about the same power.
 constexpr double kBend = 1.0;
-/// Nearest neighbours that each cluster is offered to, beside those at its edges.
+/// The number of nearest neighbours that each cluster is paired with, beside those at its edges.
 constexpr std::size_t kNearest = 3;
-/// Patches at an edge are offered to so many that come next there: all, but where very many meet.
+/// Each patch at an edge is paired with this many that follow there: all, unless very many meet.
 constexpr std::size_t kAtAnEdge = 4;
 
 std::vector<Index> frontsInOrder(const PatchMesh& mesh) {
@@ -46,7 +46,7 @@ std::vector<Agglomerate> agglomeratesOf(const PatchMesh& mesh, std::span<const I
   return pieces;
 }
 
-/// What ends at a vertex, of all edges from it to a vertex of a higher number.
+/// The other end of an edge from a vertex to one with a higher number, with a front at it.
 struct EdgeEnd {
   Index other;  ///< vertex
   Index front;
@@ -55,8 +55,8 @@ struct EdgeEnd {
   }
 };
 
-/// Calls visit(fronts) with the fronts at each edge, ascending. Their outlines are `fronts`' of the
-/// mesh; a front is named by its place in `fronts`.
+/// Calls visit(fronts) with the fronts at each edge, ascending. A front is given by its place in
+/// `fronts`.
 template <class Visit>
 void forEdges(const PatchMesh& mesh, std::span<const Index> fronts, const Visit& visit) {
   const auto forSides = [&](const auto& side) {
@@ -96,24 +96,24 @@ class FrontClusters {
     parts_ = Agglomeration(std::move(pieces), kBend * sideOf(wanted), sideOf(wanted));
   }
 
-  /// Neighbours are found anew whenever half of the clusters are gone. Every cluster that is not
-  /// alone in its surface has some, so this ends with as many as wanted, or one a surface.
+  /// Finds neighbours anew whenever half of the clusters are gone. Every cluster that is not alone
+  /// in its surface has some, so this ends with the wanted number, or with one cluster a surface.
   void run(Progress& progress) {
     offerAtEdges();
     for (std::size_t before = 0; parts_.size() > wanted_ && parts_.size() != before;) {
       before = parts_.size();
-      // What is near goes by the clusters there are, so that few are looked at.
+      // The metric depends on the present number of clusters, so that searches stay short.
       bend_ = kBend * sideOf(before);
       offerNearest(progress);
       parts_.run(std::max(wanted_, before / 2), progress);
     }
   }
 
-  /// Of the front at a place: the place of the first in its cluster.
+  /// The place of the first front in the cluster of the front at place k.
   Index of(Index k) { return parts_.of(k); }
 
  private:
-  /// Of a square, if so many shared out all area evenly.
+  /// The side of a square with a `count`-th of all area.
   double sideOf(std::size_t count) const { return std::sqrt(area_ / double(count)); }
 
   void offerAtEdges() {
@@ -138,7 +138,7 @@ class FrontClusters {
     offerNearestOf(clusters, progress);
   }
 
-  /// All clusters of one surface.
+  /// Offers the nearest pairs of all clusters of one surface.
   void offerNearestOf(const std::vector<Index>& clusters, Progress& progress) {
     if (clusters.size() < 2) return;
     progress.check();
@@ -156,8 +156,8 @@ class FrontClusters {
     }
   }
 
-  /// Within a reach that grows until there are enough: a tree is searched from one end, wherever
-  /// the nearest may be.
+  /// Searches within a reach that grows until there are enough: a tree search does not visit the
+  /// nearest first.
   std::vector<Index> nearestOf(const std::vector<Index>& clusters, Index c,
                                const BoxTree& tree) const {
     const double all = tree.bound().diagonal() + 2 * bend_;
@@ -203,7 +203,7 @@ class FrontClusters {
   Agglomeration parts_;
 };
 
-/// Numbers keys in the order in which they first come; returns how many there are.
+/// Numbers keys in the order of their first occurrence; returns the number of different keys.
 std::size_t renumber(std::vector<Index>& keys, std::size_t limit) {
   std::vector<Index> number(limit, kNone);
   Index count = 0;
@@ -214,7 +214,7 @@ std::size_t renumber(std::vector<Index>& keys, std::size_t limit) {
   return count;
 }
 
-/// Degrees; the most that the normal of a patch is off the mean of its cluster.
+/// The largest angle, in degrees, between the normal of a patch and the mean normal of its cluster.
 double widestCone(const PatchMesh& mesh, const PatchClusters& clusters) {
   double widest = 0;
   for (std::size_t c = 0; c < clusters.size(); ++c) {

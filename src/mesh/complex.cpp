@@ -25,12 +25,13 @@ namespace radiosity {
 
 namespace {
 
-// After so many attempts faces that are in the way are taken as they are at once, and after so
-// many, which nothing is known to need, all faces.
+// After kAttemptsAlone attempts, faces that cannot be cut are taken as they are at once. After
+// kAttempts, which no known scene needs, all faces are.
 constexpr int kAttemptsAlone = 3;
 constexpr int kAttempts = 8;
 
-/// Edges of the scene that were split at vertices on them; `before` are the ones there were.
+/// The number of edges of the scene that were split at vertices on them. `before`: the number of
+/// edges before.
 std::size_t countSplits(const EdgeTable& edges, std::size_t before,
                         const std::vector<bool>& from_file) {
   std::size_t count = 0;
@@ -50,7 +51,7 @@ std::size_t countNonManifold(const EdgeTable& edges) {
   return count;
 }
 
-/// Area of each sheet within its border as welded and split.
+/// The area of each sheet within its welded and split border.
 std::vector<double> sheetAreas(const InputFaces& input, const std::vector<Plane>& planes,
                                const std::vector<Sheet>& sheets, const EdgeTable& edges) {
   std::vector<Vec3> doubled(sheets.size(), Vec3(0.0));
@@ -105,8 +106,8 @@ void accountForWelding(const InputFaces& input, const std::vector<Plane>& planes
   for (std::size_t s = 0; s < moved.size(); ++s) addMovedArea(report.surfaces[s], moved[s]);
 }
 
-/// A surface that is gone altogether is worth a loud word: a room modelled inside out is a solid,
-/// and swallows its furniture.
+/// Notes surfaces that were dropped altogether, loudly: a room modelled inside out is a solid and
+/// buries its furniture.
 void noteBuriedSurfaces(const CoarseComplex& complex, MeshReport& report) {
   std::vector<bool> seen(report.surfaces.size(), false);
   for (const CoarsePolygon& p : complex.polygons) seen[p.surface] = true;
@@ -130,9 +131,9 @@ class Attempt {
         progress_(progress),
         input_(cleanFaces(scene, options, handling, report_)) {}
 
-  /// Fills `complex` and returns true, or gives the faces of the scene that are in the way, in
-  /// planes that cannot be cut or under polygons that came out broken, their next handling: alone
-  /// if they were merged with others and `some_alone`, else as they are.
+  /// Fills `complex` and returns true. If planes cannot be cut or polygons come out broken, it
+  /// returns false and gives their faces the next handling: alone if they were merged with others
+  /// and `some_alone` is set, else as they are.
   bool run(CoarseComplex& complex, bool some_alone, std::vector<Handling>& handling);
   const MeshReport& report() const { return report_; }
 
@@ -157,7 +158,7 @@ std::vector<Index> Attempt::cut() {
   sheets_ = findSheets(input_, planes_);
   std::size_t sides = 0;
   for (const Sheet& sheet : sheets_) sides += sheet.edges.size();
-  edges_.reserve(sides / 2 + sides / 8);  // most have two sides; some are open, some will be cut
+  edges_.reserve(sides / 2 + sides / 8);  // most have two sides; a few are open or will be cut
   for (std::size_t s = 0; s < sheets_.size(); ++s) {
     for (const auto& [from, to] : sheets_[s].edges) edges_.addUse(from, to, Index(s), 1);
   }

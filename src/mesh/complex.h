@@ -1,4 +1,4 @@
-// The coarse complex: what the contact stage hands to the subdivision stage.
+// The coarse complex: the output of the contact stage and the input of the subdivision stage.
 #pragma once
 
 #include <array>
@@ -18,12 +18,12 @@ struct CoarsePolygon {
   std::vector<std::array<Index, 2>> inner_edges;
   Vec3 normal{0.0};
   Index surface = kNone;
-  bool front = true;  ///< the front carries patches (always: a lone back is turned over)
+  bool front = true;  ///< the front carries patches (always, since a lone back is turned over)
   bool back = false;  ///< the back carries patches
-  /// Polygon on the same area that faces the other way (a plate without thickness), or kNone. Its
-  /// loops are these reversed, its inner edges are these.
+  /// The polygon on the same area that faces the other way (a plate without thickness), or kNone.
+  /// It has the same loops, reversed, and the same inner edges.
   Index opposite = kNone;
-  /// Faces of the scene this polygon was merged from (for source_face and textures).
+  /// Faces of the scene from which this polygon was merged (for source_face and textures).
   std::vector<Index> faces;
 };
 
@@ -32,19 +32,19 @@ struct CoarsePolygon {
 /// coincide whole, back to back, name each other as `opposite`).
 struct CoarseComplex {
   std::vector<Vec3> vertices;  ///< recentred on `origin`
-  Vec3 origin{0.0};            ///< add to a vertex to be back in the scene
+  Vec3 origin{0.0};            ///< add it to a vertex to get the place in the scene
   double coincidence = 0;      ///< metres: the one length tolerance
   std::vector<CoarsePolygon> polygons;
 };
 
-/// Weld, merge, cut at contacts, drop what is buried. Fills the report's repair figures and the
-/// surfaces' areas except `kept`.
+/// Welds and merges faces, cuts them at contacts, and drops buried parts. Fills the report's repair
+/// figures and the surfaces' areas except `kept`.
 CoarseComplex buildComplex(const Scene& scene, const MeshOptions& options, MeshReport& report,
                            Progress& progress);
 
-/// Cuts a complex into triangles and convex quads, conforming across polygons; where those are more
-/// than the options ask for, cells of a polygon are joined. Fills the report's patch figures and
-/// `kept`.
+/// Cuts a complex into triangles and convex quadrilaterals, conforming across polygons. If there
+/// are more than the options ask for, joins cells of a polygon. Fills the report's patch figures
+/// and `kept`.
 PatchMesh subdivide(const CoarseComplex& complex, const Scene& scene, const MeshOptions& options,
                     MeshReport& report, Progress& progress);
 

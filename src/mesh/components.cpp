@@ -54,7 +54,7 @@ class SignedUnionFind {
 /// One layer of a sheet at an edge, as a half-plane that ends there.
 struct HalfPlane {
   Index sheet;
-  bool forward;  ///< the sheet runs along the edge from a to b
+  bool forward;  ///< the sheet's border runs along the edge from a to b
   double angle;  ///< about the edge, from an arbitrary start
   Index plane;
   int side;  ///< with `plane`: equal for half-planes that coincide
@@ -91,9 +91,9 @@ class Joiner {
   std::vector<bool> open_;  ///< by sheet
 };
 
-/// All half-planes at an edge in the order of their angles about it (a to b, right-handed).
-/// Coincident ones: first those with the space behind them at smaller angles, then those with it
-/// at larger ones, so that no body of thickness zero is seen between them.
+/// All half-planes at an edge in the order of their angles about it (a to b, right-handed). Of
+/// coincident ones, those with the space behind them at smaller angles come first, so that there is
+/// no body of thickness zero between them.
 std::vector<HalfPlane> Joiner::around(const Edge& edge) const {
   const Vec3 axis = glm::normalize(input_.points[edge.b] - input_.points[edge.a]);
   const PlaneFrame across = makeFrame(Vec3(0.0), axis, axisAcross(axis));
@@ -113,15 +113,15 @@ std::vector<HalfPlane> Joiner::around(const Edge& edge) const {
     }
     for (int layer = 0; layer < std::abs(use.count); ++layer) ring.push_back(half);
   }
-  // Running from a to b, a sheet has its front at larger angles and what is behind at smaller.
+  // A sheet that runs from a to b has its front at larger angles and its back at smaller ones.
   std::stable_sort(ring.begin(), ring.end(), [](const HalfPlane& x, const HalfPlane& y) {
     return x.angle != y.angle ? x.angle < y.angle : x.forward && !y.forward;
   });
   return ring;
 }
 
-/// A sheet running back opens the space behind it, one running forward closes it: brackets
-/// around a circle. What stays unmatched is an open border.
+/// Matches half-planes like brackets around a circle: a sheet that runs back opens the space behind
+/// it, one that runs forward closes it. Unmatched ones are open borders.
 void Joiner::match(const std::vector<HalfPlane>& ring) {
   std::vector<bool> matched(ring.size(), false);
   std::vector<std::size_t> opened;
@@ -161,7 +161,7 @@ void Joiner::join(const Edge& edge) {
 void Joiner::addTriangles(Index sheet, Component& component, int sign) const {
   for (const Index f : sheets_[sheet].faces) {
     const auto& loop = input_.faces[f].loop;
-    // A fan is enough, even for a concave polygon: it is only ever summed with signs.
+    // A fan is enough, even for a concave polygon: its triangles are only summed with signs.
     for (std::size_t k = 1; k + 1 < loop.size(); ++k) {
       std::array<Vec3, 3> t{input_.points[loop[0]], input_.points[loop[k]],
                             input_.points[loop[k + 1]]};
@@ -172,7 +172,7 @@ void Joiner::addTriangles(Index sheet, Component& component, int sign) const {
   }
 }
 
-/// Decides which way is out, and whether there is anything inside.
+/// Decides which way is out, and whether there is a volume inside.
 void Joiner::close(Component& component, Components& all) const {
   const Vec3 centre = 0.5 * (component.box.low + component.box.high);
   double volume = 0;

@@ -1,4 +1,4 @@
-// Which sheets together bound a body.
+// Finds the sheets that together bound a body.
 #pragma once
 
 #include <array>
@@ -8,29 +8,28 @@
 
 namespace radiosity {
 
-/// Sheets that hang together by edges.
+/// Sheets that are connected by edges.
 struct Component {
   std::vector<Index> sheets;
   std::vector<std::array<Vec3, 3>> triangles;  ///< of its faces, outward where `closed`
   std::vector<Index> triangle_plane;
   Box3 box;
-  bool closed = false;     ///< every edge is matched, and it has a volume: it bounds a body
-  bool two_sided = false;  ///< all of it
+  bool closed = false;     ///< every edge is matched and it has a volume, so it bounds a body
+  bool two_sided = false;  ///< all sheets are two-sided
   bool inward = false;     ///< closed, and the file has its faces turned inward
 };
 
 struct Components {
   std::vector<Component> list;
   std::vector<Index> of_sheet;
-  /// By sheet: +1, or -1 where its faces have to be turned to look out of the closed component.
+  /// By sheet: +1, or -1 if its faces have to be turned to look out of the closed component.
   std::vector<int> outward;
 };
 
-/// Sheets are joined where they meet along an edge as front to front around the space behind
-/// them: of more than two faces at an edge each is matched with the next one behind it, so that
-/// bodies which share an edge stay apart. Two-sided sheets may be turned over to match.
-/// A component is closed if all its edges are matched and the volume inside, over half its area,
-/// is thicker than coincidence.
+/// Joins sheets along an edge if they bound the same space behind their fronts. If more than two
+/// faces meet at an edge, each is matched with the next one behind it, so that bodies which share
+/// an edge stay apart. Two-sided sheets may be turned over to match. A component is closed if all
+/// its edges are matched and the volume inside, over half its area, is thicker than coincidence.
 Components findComponents(const InputFaces& input, const std::vector<Plane>& planes,
                           const std::vector<Sheet>& sheets, const EdgeTable& edges,
                           const Scene& scene);

@@ -19,11 +19,11 @@ namespace {
 
 enum class Place { outside, border, inside };
 
-constexpr std::size_t kPairsAtATime = 256;  // of sheets: a task of a thread
-// Sheets with more edges than this are looked at by rows.
+constexpr std::size_t kPairsAtATime = 256;  // of sheets, for each task of a thread
+// For sheets with more edges than this we search by rows.
 constexpr std::size_t kManyEdges = 64;
 
-/// Where the points of a sheet lie to a plane.
+/// The places of a sheet's points relative to a plane.
 struct Sides {
   bool above = false;
   bool below = false;
@@ -34,11 +34,11 @@ struct Sides {
     below = below || distance < -eps;
     on = on || std::abs(distance) <= eps;
   }
-  /// Not all on one side, and not all along the plane.
+  /// Whether the points are neither all on one side nor all in the plane.
   bool meets() const { return (above && below) || (on && (above || below)); }
 };
 
-/// A line along which the sheets of a plane are touched or crossed.
+/// A line along which another sheet touches or crosses the sheets of a plane.
 struct Contact {
   Vec3 from{0.0};
   Vec3 to{0.0};
@@ -67,7 +67,7 @@ class ContactFinder {
   const std::vector<Sheet>& sheets_;
   EdgeTable& edges_;
   std::unordered_map<Index, EdgeRows> rows_;  ///< of sheets with many edges
-  std::vector<Index> all_;                    ///< 0, 1, 2, ...: all edges of any other sheet
+  std::vector<Index> all_;                    ///< 0, 1, 2, ...: all edges of a sheet without rows
 };
 
 ContactFinder::ContactFinder(InputFaces& input, const std::vector<Plane>& planes,
@@ -86,7 +86,7 @@ bool ContactFinder::mayMeet(Index f, Index g) const {
          sidesOf(g, planes_[sheets_[f].plane]).meets();
 }
 
-/// The edges of a sheet that may meet a box; `some` may hold them.
+/// The edges of a sheet that may meet a box; `some` is storage for them.
 std::span<const Index> ContactFinder::edgesBeside(Index sheet, const Box3& box,
                                                   std::vector<Index>& some) const {
   const auto rows = rows_.find(sheet);
@@ -97,16 +97,16 @@ std::span<const Index> ContactFinder::edgesBeside(Index sheet, const Box3& box,
   return some;
 }
 
-/// The edges of a sheet that may be near a point of its image, or to the right of it.
+/// The edges of a sheet that may be near a point of its image, or to the right of the point.
 std::span<const Index> ContactFinder::edgesAt(Index sheet, const Vec2& q) const {
   const auto rows = rows_.find(sheet);
   if (rows == rows_.end()) return std::span(all_).first(sheets_[sheet].edges.size());
   return rows->second.at(q.y);
 }
 
-/// For a sheet with many edges the four corners of its box, taken in the sheet's plane, are enough,
-/// unless the sheet is nearly parallel to the other plane: the box reaches a few times as far as
-/// the sheet.
+/// For a sheet with many edges, the four corners of its box in the sheet's plane are enough, unless
+/// the sheet is nearly parallel to the other plane: the box extends a few times as far as the
+/// sheet.
 Sides ContactFinder::sidesOf(Index number, const Plane& plane) const {
   const double eps = input_.coincidence;
   const Sheet& sheet = sheets_[number];
@@ -129,8 +129,8 @@ Sides ContactFinder::sidesOf(Index number, const Plane& plane) const {
   return out;
 }
 
-/// The points where the border of a sheet meets the plane of another one, as far as it is beside
-/// that: vertices within coincidence of it, and crossings of edges.
+/// Adds the points where the border of a sheet meets the plane of another one near that sheet:
+/// vertices within coincidence of the plane, and crossings of edges.
 void ContactFinder::addTraces(Index number, Index other, std::vector<Vec3>& points) const {
   const double eps = input_.coincidence;
   const Sheet& sheet = sheets_[number];
@@ -151,7 +151,8 @@ void ContactFinder::addTraces(Index number, Index other, std::vector<Vec3>& poin
   }
 }
 
-/// Even-odd in the plane's image; the border is everything closer than coincidence to an edge.
+/// The place of a point relative to a sheet: even-odd in the plane's image. Points closer than
+/// coincidence to an edge are on the border.
 Place ContactFinder::place(const Vec3& p, Index number) const {
   const Sheet& sheet = sheets_[number];
   if (!sheet.box.grown(input_.coincidence).contains(p)) return Place::outside;
@@ -177,8 +178,8 @@ void ContactFinder::add(const Contact& contact) {
   if (a != b) edges_.addContact(a, b, contact.plane);
 }
 
-/// Both sheets' traces lie on one line, where the planes meet. Between neighbouring traces
-/// neither sheet begins or ends, so one look in the middle tells what is there.
+/// Both sheets' traces lie on the line where the planes meet. Between neighbouring traces neither
+/// sheet begins or ends, so a test at the middle decides for the whole segment.
 void ContactFinder::pair(Index f, Index g, std::vector<Contact>& out) const {
   std::vector<Vec3> points;
   addTraces(f, g, points);

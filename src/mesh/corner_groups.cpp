@@ -1,4 +1,4 @@
-// The corners at each vertex, grouped by the smooth sides of the sheets that meet there.
+// Groups the corners at each vertex by the smooth sides of the sheets that meet there.
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -50,7 +50,7 @@ class Fan {
 
   void append(std::span<const Incidence> at, CornerGroups& groups) {
     at_.assign(at.begin(), at.end());
-    // An order that the order of the patches in the mesh does not change.
+    // This order does not depend on the order of the patches in the mesh.
     std::sort(at_.begin(), at_.end(),
               [&](const Incidence& a, const Incidence& b) { return key(a) < key(b); });
     link();
@@ -71,7 +71,7 @@ class Fan {
     return {mesh_.surface[a.patch], mesh_.index_in_surface[a.patch], mesh_.side[a.patch], a.corner};
   }
 
-  /// Two patches that share an edge, oppositely oriented: the same side of one sheet.
+  /// Whether two patches share an edge in opposite directions and are the same side of one sheet.
   bool smooth(Index a, Index b) const {
     if (mesh_.surface[a] != mesh_.surface[b] || mesh_.twin[a] == b) return false;
     if (!(mesh_.area[a] > 0) || !(mesh_.area[b] > 0)) return false;
@@ -79,8 +79,8 @@ class Fan {
            glm::dot(mesh_.normal[a], mesh_.normal[b]) >= cosine_;
   }
 
-  /// Nothing else ends on the edge to `neighbour` that patches a and b share: where a wall stands
-  /// on a floor, the floor before it and the floor behind it have light of their own.
+  /// Whether no other patch touches the edge to `neighbour` that patches a and b share. If a wall
+  /// stands on a floor, the floor before and behind it have different light.
   bool isFree(Index neighbour, Index a, Index b) const {
     return std::all_of(at_.begin(), at_.end(), [&](const Incidence& other) {
       const Index p = other.patch;

@@ -9,12 +9,12 @@ namespace radiosity {
 
 namespace {
 
-/// Rounds of making edges meet that cross only in the image of a plane: one is the rule, more are
-/// rare. From kRoundsOfSnapping on, a vertex that an edge is to be led through becomes one with the
-/// edge's end if that is as near as a coincidence or two, so that the number of vertices falls.
-/// Planes that still need repairs after kRoundsOfRepair are given up, and so are planes whose
-/// repairs grow in number: where many edges are about as long as the coincidence, each edge that is
-/// made to meet another crosses two more.
+/// The rounds in which edges that cross only in the image of a plane are made to meet. Usually
+/// there is one; more are rare. From round kRoundsOfSnapping on, a vertex through which an edge
+/// should pass is merged with the edge's end if that is within a coincidence or two, so that the
+/// number of vertices falls. Planes that still need repairs after kRoundsOfRepair are given up. So
+/// are planes whose repairs grow in number: if many edges are about as long as the coincidence,
+/// each edge that is made to meet another crosses two more.
 constexpr int kRoundsOfSnapping = 4;
 constexpr int kRoundsOfRepair = 40;
 constexpr double kMostRepairGrowth = 2.0;

@@ -1,4 +1,4 @@
-// Every plane cut along the edges in it, edges being made to meet where that takes it.
+// Cuts every plane along its edges, and makes edges meet where this needs it.
 #pragma once
 
 #include <vector>
@@ -8,9 +8,9 @@
 namespace radiosity {
 
 /// Splits and merges edges and vertices until edges meet only at vertices, in space and in the
-/// image of every plane, and cuts the planes along them. Returns the planes for which that cannot
-/// be had (details about as large as the coincidence may never come apart); if there are any,
-/// `out` is not to be used. Planes are cut in parallel, and again only if their edges changed.
+/// image of every plane, and cuts the planes along them. Returns the planes for which this fails
+/// (details about as large as the coincidence may never separate); if there are any, `out` must not
+/// be used. Planes are cut in parallel, and again only if their edges changed.
 std::vector<Index> cutPlanes(InputFaces& input, const std::vector<Plane>& planes,
                              const std::vector<Sheet>& sheets, EdgeTable& edges, Arrangement& out,
                              Progress& progress);

@@ -1,4 +1,4 @@
-// Edges that are cut alike, so that quadrilaterals between them can become grids.
+// Classes of edges that are cut alike, so that quadrilaterals between them can become grids.
 #pragma once
 
 #include <vector>
@@ -19,8 +19,8 @@ class EdgeClasses {
         opposed_(lengths.size(), 0),
         twisted_(lengths.size(), 0) {}
 
-  /// Puts two edges into one class, unless lengths in it would then differ by more than a factor
-  /// of two: along a chain of quadrilaterals that narrow (the rings of a sphere) one end would
+  /// Puts two edges into one class, unless lengths in the class would then differ by more than a
+  /// factor of two: along a chain of narrowing quadrilaterals (the rings of a sphere) one end would
   /// become far too fine.
   void join(Index a, Index b, bool opposed);
 
@@ -30,8 +30,7 @@ class EdgeClasses {
   Index of(Index edge) { return sets_.find(edge); }
   double longest(Index cls) const { return longest_[cls]; }
   bool opposed(Index edge) const { return opposed_[edge] != 0; }
-  /// An edge is joined to itself the other way round (a Moebius strip): only cuts that are the
-  /// same from both ends are alike.
+  /// Whether an edge is joined to itself in reverse (a Moebius strip): then cuts must be symmetric.
   bool twisted(Index cls) const { return twisted_[cls] != 0; }
 
  private:

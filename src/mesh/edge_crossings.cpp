@@ -14,7 +14,7 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_2;
 
-constexpr std::size_t kFewEdges = 8;  // so many are looked at pair by pair
+constexpr std::size_t kFewEdges = 8;  // up to this number we test all pairs
 
 /// Two edges that leave `shared` overlap if they leave it in the same direction.
 bool overlap(const Point& shared, const Point& p, const Point& q) {

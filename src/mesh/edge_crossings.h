@@ -1,4 +1,4 @@
-// Whether edges in a plane meet only at their ends.
+// Tests whether edges in a plane meet only at their ends.
 #pragma once
 
 #include <array>
@@ -9,8 +9,8 @@
 
 namespace radiosity {
 
-/// Whether any two of `edges` cross, touch or overlap in the image of a plane other than at an end
-/// they share. Decided by exact predicates; n log n in the number of edges.
+/// Whether any two of `edges` cross, touch or overlap in the image of a plane other than at a
+/// common end. Uses exact predicates; O(n log n) in the number of edges.
 bool anyCross(const WeldedPoints& points, const PlaneImage& image,
               const std::vector<std::array<Index, 2>>& edges);
 

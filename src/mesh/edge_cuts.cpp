@@ -17,10 +17,11 @@ namespace {
 
 // A piece may be this much longer than the one next to it along a polygon's outline.
 constexpr double kLargestStep = 3.0;
-// Parts of a polygon narrower than this, in sizes, have no room for points inside that would part
-// the vertices on one side from far points on the other.
+// Parts of a polygon narrower than this, in sizes, have no room for inner points that would
+// separate the vertices on one side from far points on the other.
 constexpr double kNarrow = 0.25;
-// A vertex is hidden by an edge before it; one at nearly its own distance starts there.
+// An edge hides a vertex if it is nearer than this share of the vertex's distance. An edge at
+// nearly the same distance may start at the vertex.
 constexpr double kHidden = 0.8;
 
 }  // namespace
@@ -80,14 +81,14 @@ void EdgeCuts::joinOpposite(const FourSides& sides) {
     for (std::size_t i = 0; i < side.size(); ++i) {
       const DirectedEdge& a = side[i];
       const DirectedEdge& b = opposite[opposite.size() - 1 - i];
-      // Around the loop opposite sides run against each other.
+      // Around the loop opposite sides run in opposite directions.
       classes_.join(a.edge, b.edge, a.reversed == b.reversed);
     }
   }
 }
 
-/// Where two edges leave a vertex at a small angle, points on them must keep so far from it that
-/// they do not lie on the other edge, whatever polygons the two belong to.
+/// Sets the least distance of points from a vertex that two edges leave at a small angle, so that
+/// points on one do not lie on the other. The edges may belong to different polygons.
 void EdgeCuts::limitAtSharpCorners() {
   least_start_.assign(ends_.size(), 0.0);
   const std::vector<double> sines = sharpestSines(complex_.vertices, ends_);
@@ -104,7 +105,7 @@ void EdgeCuts::findOpposites(double largest) {
   std::vector<PolygonEdge> edges;
   std::vector<DirectedEdge> names;
   for (std::size_t p = 0; p < loops_.size(); ++p) {
-    // The sides of a grid may be as near to each other as they like.
+    // The sides of a grid may be arbitrarily near to each other.
     if (four_sides_[p]) continue;
     edges.clear();
     names.clear();
@@ -130,7 +131,7 @@ void EdgeCuts::findOpposites(double largest) {
   }
 }
 
-/// Keeps the vertices at the ends of gaps that nothing else hides from the edge.
+/// Keeps the vertices at the ends of gaps that no other edge hides from this one.
 void EdgeCuts::noteGaps(DirectedEdge edge, const std::vector<Gap>& gaps) {
   const double length = length_[edge.edge];
   const Index cls = classes_.of(edge.edge);
@@ -152,7 +153,8 @@ void EdgeCuts::noteGaps(DirectedEdge edge, const std::vector<Gap>& gaps) {
   }
 }
 
-/// The narrowest come first: where there is no room for all, they need them most.
+/// The cuts opposite of vertices. The narrowest gaps come first, since they need cuts most if there
+/// is no room for all.
 std::vector<double> EdgeCuts::stopsFor(Index cls, double size, double spacing) const {
   std::vector<double> stops;
   if (opposites_.empty()) return stops;
@@ -222,7 +224,7 @@ void EdgeCuts::wantAtEnd(DirectedEdge edge, bool at_last, double size) {
   if (!at_end || classes_.twisted(cls)) s.start = std::min(s.start, wanted);
 }
 
-/// Edges that are not cut at all are features themselves and stay whole.
+/// Edges without any cut are features themselves and stay whole.
 void EdgeCuts::gradeTowardsShortPieces(Rounding rounding) {
   const auto pieceAt = [&](DirectedEdge e, bool at_last) {
     if (whole_[e.edge]) return length_[e.edge];

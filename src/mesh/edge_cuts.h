@@ -1,4 +1,4 @@
-// The edges of a coarse complex and where they are cut: once for all polygons that share them.
+// The edges of a coarse complex and their cuts, which all polygons at an edge share.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace radiosity {
 
-/// An edge as a polygon runs through it.
+/// An edge in the direction in which a polygon runs through it.
 struct DirectedEdge {
   Index edge = kNone;
   bool reversed = false;
@@ -29,35 +29,35 @@ struct FourSides {
 };
 
 /// Every distinct edge (of loops and inner edges) of a complex, cut once for all polygons. Pieces
-/// are equal, except beside narrow parts of polygons and where one more than three times as long as
-/// its neighbour along the outline of a polygon that cannot be a grid would force flat triangles on
-/// it: there they grow by steps. Opposite edges of four-sided polygons are cut alike, so that these
-/// can become grids.
+/// are equal, with two exceptions: beside narrow parts of polygons, and where a piece would be more
+/// than three times as long as its neighbour along the outline of a polygon that cannot be a grid.
+/// That would force flat triangles on it, so pieces grow by steps there. Opposite edges of
+/// four-sided polygons are cut alike, so that these can become grids.
 class EdgeCuts {
  public:
   explicit EdgeCuts(const CoarseComplex& complex);
 
-  /// Pieces no longer than `size`, or as near to it as can be; an edge at a corner so sharp that
-  /// its first point would lie on the other edge (within the coincidence) gets fewer. Throws
-  /// InputError where that makes more than kMostPatches pieces.
-  /// Across parts of a polygon narrower than a quarter of the size, edges are also cut opposite of
-  /// the vertices there, if findOpposites() came before: patches then go straight across instead of
-  /// fanning out to far points. Such cuts keep `spacing` times the width there from each other.
+  /// Cuts edges into pieces no longer than `size`, or as near to it as possible. An edge at a sharp
+  /// corner gets fewer pieces if its first point would lie on the other edge (within the
+  /// coincidence). Throws InputError if that makes more than kMostPatches pieces. After
+  /// findOpposites(), edges are also cut opposite of vertices across parts of a polygon narrower
+  /// than a quarter of the size: patches then go straight across instead of fanning out to far
+  /// points. Such cuts keep a distance of `spacing` times the width there.
   void cut(double size, Rounding rounding, double spacing);
 
-  /// Finds the vertices that lie opposite of each edge across narrow parts of a polygon that is no
-  /// grid, for sizes up to `largest`.
+  /// Finds the vertices opposite of each edge across narrow parts of polygons that are no grids,
+  /// for sizes up to `largest`.
   void findOpposites(double largest);
   bool hasOpposites() const;
 
-  /// Later cuts leave the edges of a polygon uncut.
+  /// Keeps the edges of a polygon whole in later cuts.
   void keepWhole(std::size_t polygon);
 
   /// Whether the current cut leaves all edges of a polygon whole, inner ones included.
   bool isUncut(std::size_t polygon) const;
 
-  /// Points of the current cut: ids below the number of the complex's vertices are these, the
-  /// others are points inside edges.
+  /// A point of the current cut. Ids below the number of the complex's vertices are these vertices,
+  /// the others are points inside edges.
   Vec3 point(Index id) const;
   std::size_t pointCount() const { return complex_.vertices.size() + edge_points_.size(); }
   std::span<const Vec3> edgePoints() const { return edge_points_; }
@@ -72,7 +72,7 @@ class EdgeCuts {
   DirectedEdge find(Index from, Index to) const;
   Index lastOf(DirectedEdge e) const { return ends_[e.edge][e.reversed ? 0 : 1]; }
 
-  /// Set where the polygon is a convex quadrilateral, opposite sides nearly alike, without holes
+  /// Set if the polygon is a convex quadrilateral with nearly equal opposite sides, without holes
   /// or inner edges.
   const std::optional<FourSides>& fourSides(std::size_t polygon) const {
     return four_sides_[polygon];
@@ -98,8 +98,8 @@ class EdgeCuts {
   EdgeClasses classes_{{}};
   std::vector<EdgeSize> wanted_;  ///< by class
   struct Opposite {
-    double place;  ///< part of the length, in the direction of the class
-    double gap;    ///< metres, at the longest of the class
+    double place;  ///< as a share of the length, in the direction of the class
+    double gap;    ///< metres, at the longest edge of the class
   };
   std::vector<std::vector<Opposite>> opposites_;  ///< by class, narrowest first
   std::vector<double> least_start_;  ///< by class: first piece at a sharp corner, metres
@@ -109,7 +109,7 @@ class EdgeCuts {
   std::vector<Vec3> edge_points_;
 };
 
-/// More patches than this are refused: their indices and form factors could not be handled.
+/// The most patches: indices and form factors of more could not be handled.
 inline constexpr double kMostPatches = 20e6;
 
 }  // namespace radiosity

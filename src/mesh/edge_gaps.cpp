@@ -18,7 +18,7 @@ struct Segment {
 
 double lengthOf(const Segment& s) { return glm::length(s.end - s.start); }
 
-/// A segment seen from another one: along it and to its left.
+/// The view from a segment: coordinates along it and to its left.
 class View {
  public:
   View(const Segment& from, const Vec3& normal)
@@ -38,7 +38,8 @@ class View {
   Vec3 left_;
 };
 
-/// The part of b that lies over the length of the segment seen from, `side` times to its left.
+/// The part of b beside the viewing segment, within its length. `side`: 1 for its left, -1 for its
+/// right.
 std::optional<Gap> gapTo(const View& view, const Segment& b, double side, double reach) {
   Vec2 p = view(b.start);
   Vec2 q = view(b.end);
@@ -66,7 +67,7 @@ void forGaps(const std::vector<Vec3>& vertices, const Vec3& normal,
   const auto segmentOf = [&](std::size_t k) {
     return Segment{vertices[edges[k].ends[0]], vertices[edges[k].ends[1]]};
   };
-  // The edges' boxes, and once more, grown by how far each one looks.
+  // The edges' boxes, and the same boxes grown by the distance that each edge looks.
   std::vector<Box3> boxes(2 * edges.size());
   std::vector<Index> looking(edges.size());
   for (std::size_t k = 0; k < edges.size(); ++k) {
@@ -76,7 +77,7 @@ void forGaps(const std::vector<Vec3>& vertices, const Vec3& normal,
     boxes[edges.size() + k] = boxes[k].grown(std::min(reach, 0.5 * lengthOf(segment)));
     looking[k] = Index(edges.size() + k);
   }
-  /// Whether some of b lies where the inside of the polygon at a is.
+  // Whether a part of b lies on the inner side of the polygon at a.
   const auto faces = [&](std::size_t a, std::size_t b) {
     if (edges[a].both_sides) return true;
     const View view(segmentOf(a), normal);

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kSizeGrowth = std::numbers::ln2;
 
-/// The measure m(t) = integral of 1/s from 0 to t and its inverse. s has up to three parts: rising
-/// from `start` until t = rise, constant, falling from t = fall on to `end`.
+/// The measure m(t) = integral of 1/s from 0 to t, and its inverse. s has up to three parts: it
+/// rises from `start` until t = rise, is constant, and falls from t = fall on to `end`.
 class Measure {
  public:
   Measure(double length, const EdgeSize& wanted)
@@ -80,7 +80,7 @@ double pieceCount(double length, const EdgeSize& wanted, Rounding rounding) {
     return sum;
   }
   const double pieces = isGraded(wanted) ? Measure(length, wanted).total() : length / wanted.size;
-  // A length that is a multiple of the size but for rounding must not get a piece more.
+  // A length that is a multiple of the size but for rounding must not get one piece more.
   const double whole = rounding == Rounding::at_most ? std::ceil(pieces * (1 - 1e-12))
                                                      : std::round(pieces * (1 + 1e-12));
   return std::max(1.0, std::min(whole, std::floor(wanted.most_pieces)));

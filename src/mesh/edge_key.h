@@ -1,4 +1,4 @@
-// Names of edges in hash tables.
+// Keys of edges in hash tables.
 #pragma once
 
 #include <algorithm>
@@ -8,10 +8,10 @@
 
 namespace radiosity {
 
-/// One number for the edge from `a` to `b`; another one for b to a.
+/// A key for the edge from `a` to `b`; the edge from b to a has another.
 inline std::uint64_t directedKey(Index a, Index b) { return (std::uint64_t(a) << 32) | b; }
 
-/// One number for the edge between two vertices, whichever comes first.
+/// A key for the edge between two vertices, in either order.
 inline std::uint64_t edgeKey(Index a, Index b) {
   return directedKey(std::min(a, b), std::max(a, b));
 }

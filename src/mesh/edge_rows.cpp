@@ -8,7 +8,7 @@ namespace radiosity {
 
 namespace {
 
-// How often an edge may stand in the rows, on average.
+// The number of rows that an edge may be in, on average.
 constexpr std::size_t kCopies = 8;
 
 struct Range {

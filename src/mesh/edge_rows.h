@@ -1,5 +1,5 @@
-// The edges of one sheet by rows of its plane's image, so that a look at a place costs the edges in
-// its row and not all of them.
+// The edges of one sheet by rows of its plane's image, so that a search at a place only tests the
+// edges in its row.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@ namespace radiosity {
 
 class EdgeRows {
  public:
-  /// `margin`, metres: an edge belongs to all rows it is that near to. Rows are narrow enough to
-  /// hold few edges each, as long as all together hold each edge a few times.
+  /// An edge belongs to all rows within `margin` metres. Rows are so narrow that each holds few
+  /// edges, but wide enough that an edge is only in a few rows.
   EdgeRows(const WeldedPoints& points, const PlaneImage& image,
            const std::vector<std::array<Index, 2>>& edges, double margin);
 

@@ -20,7 +20,7 @@
 namespace radiosity {
 namespace {
 
-/// The proof that a scene is closed may take this many solid angles of triangles, about a second.
+/// The most solid angles of triangles in the proof that a scene is closed: about a second.
 constexpr std::size_t kMostSolidAngles = 10000000;
 
 /// A polygon that runs along an edge, from its smaller vertex to the larger or back.
@@ -33,7 +33,8 @@ struct EdgeUser {
   auto operator<=>(const EdgeUser&) const = default;
 };
 
-/// Calls visit(from, to) for all runs of 0 .. count - 1 whose members are the `same` as the first.
+/// Calls visit(from, to) for all runs of 0 .. count - 1 whose members are the `same` as their
+/// first.
 template <class Same, class Visit>
 void forRuns(std::size_t count, const Same& same, const Visit& visit) {
   for (std::size_t from = 0; from < count;) {
@@ -53,7 +54,8 @@ void forCorners(const PatchMesh& mesh, Index p, const Visit& visit) {
   }
 }
 
-/// Triangles (first corner of the loop, edge) whose signed sum is the polygons, holes included.
+/// Visits triangles (first corner of the loop, edge) whose signed sum is the polygons, holes
+/// included.
 template <class Visit>
 void forFans(const PatchMesh& mesh, std::span<const Index> polygons, const Visit& visit) {
   const PlanarPolygons& all = mesh.polygons;
@@ -120,9 +122,9 @@ class EnclosureSearch {
         });
   }
 
-  /// Joins polygons across edges that exactly two of them share, once each way. A set of one-sided
-  /// polygons all of whose edges are such is a closed oriented surface; embedded, it separates two
-  /// regions.
+  /// Joins polygons across edges that exactly two of them share, once each way. If a set of
+  /// one-sided polygons has only such edges, it is a closed oriented surface; if embedded, it
+  /// separates two regions.
   void findSurfaces() {
     std::vector<EdgeUser> users;
     const PlanarPolygons& all = mesh_.polygons;
@@ -191,9 +193,9 @@ class EnclosureSearch {
     found_.surfaces.push_back(std::move(surface));
   }
 
-  /// Whether every patch lies on a room or in one. A set of polygons joined by vertices that are
-  /// not on the rooms lies on one side of each, since polygons are cut where they cross: one point
-  /// of it tells.
+  /// Whether every patch lies on a room or in one. Polygons are cut where they cross. So a set of
+  /// polygons that are joined by vertices not on the rooms lies on one side of each room, and one
+  /// of its points decides.
   bool provesClosed() {
     std::vector<const ClosedSurface*> rooms;
     std::vector<std::uint8_t> on_room(mesh_.polygons.size(), 0);
@@ -212,7 +214,7 @@ class EnclosureSearch {
     return std::all_of(points.begin(), points.end(), [&](const Vec3& point) {
       progress_.check();
       return std::any_of(rooms.begin(), rooms.end(), [&](const ClosedSurface* room) {
-        // -1 within a room but for rounding; on its surface there is no such value.
+        // The number is -1 within a room, but for rounding; on its surface it is not.
         return std::abs(windingNumber(mesh_, room->polygons, point) + 1) < 0.01;
       });
     });
@@ -291,8 +293,8 @@ bool isOnFrontSide(const PatchMesh& mesh, const ClosedSurface& surface, const Ve
   const bool outside_box = glm::any(glm::lessThan(point, surface.lower)) ||
                            glm::any(glm::greaterThan(point, surface.upper));
   if (outside_box) return surface.is_solid;
-  // The value is a whole number but for rounding, unless the point lies on the surface: then no
-  // claim.
+  // The value is an integer but for rounding, unless the point lies on the surface: then we return
+  // false.
   const double front = surface.is_solid ? 0 : -1;
   return std::abs(windingNumber(mesh, surface.polygons, point) - front) < 0.01;
 }

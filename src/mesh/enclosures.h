@@ -1,4 +1,4 @@
-// Points and polygons against the closed surfaces of a mesh (findEnclosures(), patch_mesh.h).
+// Tests of points and polygons against closed surfaces of a mesh (findEnclosures(), patch_mesh.h).
 #pragma once
 
 #include <optional>
@@ -9,26 +9,27 @@
 
 namespace radiosity {
 
-/// The coincidence of a mesh whose scene is not at hand: the default share of its diagonal, metres.
+/// The coincidence of a mesh without its scene: the default share of its diagonal, metres.
 double coincidenceOf(const PatchMesh& mesh);
 
-/// For every vertex the first of those at the very same point (faces_as_patches gives each face its
-/// own).
+/// For every vertex the first one at exactly the same point (faces_as_patches gives each face its
+/// own vertices).
 std::vector<Index> firstAtSamePoint(const PatchMesh& mesh);
 
-/// The mesh's own enclosures; where it has none, they are found now and kept in `found`.
+/// The mesh's own enclosures; if it has none, finds them and keeps them in `found`.
 const Enclosures& enclosuresOf(const PatchMesh& mesh, std::optional<Enclosures>& found);
 
-/// How often polygons wind about a point: 1 inside an outward solid, -1 inside a room, 0 outside of
-/// either. Their signed solid angles over 4 pi, no whole number on a polygon.
+/// The winding number of polygons about a point: 1 inside an outward solid, -1 inside a room, 0
+/// outside of both. It is the sum of signed solid angles over 4 pi, not an integer on a polygon.
 double windingNumber(const PatchMesh& mesh, std::span<const Index> polygons, const Vec3& point);
 
 /// Whether a point lies on the side that the fronts of a closed surface face. On the surface:
 /// false.
 bool isOnFrontSide(const PatchMesh& mesh, const ClosedSurface& surface, const Vec3& point);
 
-/// True if no two of the polygons cross or touch, except at points that both have as corners
-/// (`first`, of firstAtSamePoint()). Doubtful cases, closer than `coincidence`, count as touching.
+/// True if no two of the polygons cross or touch, except at points that are corners of both
+/// (`first`: from firstAtSamePoint()). Doubtful cases, closer than `coincidence`, count as
+/// touching.
 bool isEmbedded(const PatchMesh& mesh, std::span<const Index> first,
                 std::span<const Index> polygons, double coincidence);
 

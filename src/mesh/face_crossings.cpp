@@ -19,7 +19,8 @@ struct Chord {
 
 Vec3 unitNormal(const Triangle& t) { return glm::normalize(glm::cross(t[1] - t[0], t[2] - t[0])); }
 
-/// Where `t` meets the plane through `base` with normal `n`. Empty: nowhere, or in a point.
+/// The segment where `t` meets the plane through `base` with normal `n`; empty if there is none or
+/// only a point.
 std::optional<Chord> chord(const Triangle& t, const Vec3& base, const Vec3& n) {
   std::array<double, 3> height{};
   for (std::size_t k = 0; k < 3; ++k) height[k] = glm::dot(t[k] - base, n);
@@ -71,7 +72,7 @@ class CrossingTest {
 
  private:
   Triangle corners(const FacePiece& piece) const {
-    // Relative to a vertex of the scene: differences lose nothing far from the origin.
+    // Relative to a vertex of the scene, so that nothing is lost far from the origin.
     const Vec3& base = scene_.vertices[scene_.corners[0]];
     return {scene_.vertices[piece.corners[0]] - base, scene_.vertices[piece.corners[1]] - base,
             scene_.vertices[piece.corners[2]] - base};

@@ -1,4 +1,4 @@
-// Faces of a scene that pass through each other.
+// Finds faces of a scene that pass through each other.
 #pragma once
 
 #include <array>
@@ -10,8 +10,8 @@
 
 namespace radiosity {
 
-/// The triangles of one face: indices of scene vertices; `rim` bit k is set where the edge from
-/// corner k to k + 1 belongs to the face's outline.
+/// A triangle of a face: indices of scene vertices. Bit k of `rim` is set if the edge from corner k
+/// to k + 1 belongs to the face's outline.
 struct FacePiece {
   Index face = kNone;
   std::array<Index, 3> corners{};

@@ -1,4 +1,4 @@
-// Which face of the scene lies under a point of a planar polygon.
+// Finds the face of the scene under a point of a planar polygon.
 #pragma once
 
 #include <array>
@@ -24,9 +24,9 @@ class FaceLocator {
     std::array<double, 3> weights{};
   };
 
-  /// The face under `p` (relative to the origin): of those whose outline holds it, the nearest to
-  /// the plane through p; where none does, the one whose outline is nearest. `preferred` wins
-  /// where it holds p. Needs at least one face.
+  /// The face under `p` (relative to the origin): of the faces whose outline contains p, the
+  /// nearest to the plane through p; if there is none, the face with the nearest outline.
+  /// `preferred` wins if it contains p. Needs at least one face.
   Place locate(const Vec3& p, Index preferred = kNone) const;
 
  private:

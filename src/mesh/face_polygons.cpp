@@ -12,7 +12,7 @@ namespace radiosity {
 
 namespace {
 
-/// Which face runs along a directed edge: kNone if several do.
+/// The face along each directed edge; kNone if there are several.
 using EdgeFaces = std::unordered_map<std::uint64_t, Index>;
 
 EdgeFaces facesOfEdges(const Scene& scene, std::span<const FaceShape> shapes) {
@@ -40,7 +40,7 @@ class FaceMerger {
 
   /// The group of every face, numbered by first face; kNone for degenerate ones.
   std::vector<Index> groups() {
-    // Planes are taken from the largest faces, which define them best.
+    // We take planes from the largest faces, which define them best.
     std::vector<Index> order(scene_.faceCount());
     std::iota(order.begin(), order.end(), 0u);
     std::stable_sort(order.begin(), order.end(),
@@ -99,8 +99,8 @@ class FaceMerger {
   std::vector<Index> group_;
 };
 
-/// Closed loops over directed edges no two of which are each other's reverse. Where several leave
-/// a vertex any will do: the inside is even-odd.
+/// Makes closed loops of directed edges, of which no two are each other's reverse. If several leave
+/// a vertex, any will do: the inside is even-odd.
 std::vector<std::vector<Index>> outlineLoops(const std::vector<std::array<Index, 2>>& edges) {
   std::unordered_multimap<Index, std::size_t> leaving;
   for (std::size_t e = edges.size(); e > 0; --e) leaving.emplace(edges[e - 1][0], e - 1);

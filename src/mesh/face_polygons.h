@@ -1,4 +1,4 @@
-// Planar polygons over faces that stay as they are.
+// Planar polygons over unchanged faces.
 #pragma once
 
 #include <span>
@@ -15,11 +15,11 @@ struct FaceShape {
   bool planar = true;  ///< within the coincidence
 };
 
-/// Merges faces that share an edge (the same two vertices, run oppositely, by these two faces
-/// alone), lie in one plane within `coincidence` and belong to one surface. A polygon keeps every
-/// vertex of its outline, so that it meets its neighbours vertex for vertex as the faces do.
-/// Degenerate faces get none, faces that are not planar one of their own. Fills mesh.polygon and
-/// mesh.polygons (but index_in_surface), polygons in the order of their first faces.
+/// Merges faces that share an edge (the same two vertices in opposite directions, and no third
+/// face), lie in one plane within `coincidence` and belong to one surface. A polygon keeps every
+/// vertex of its outline, so that it meets its neighbours vertex for vertex, like the faces.
+/// Degenerate faces get no polygon, faces that are not planar one of their own. Fills mesh.polygon
+/// and mesh.polygons (except index_in_surface), polygons in the order of their first faces.
 void mergeFaces(const Scene& scene, std::span<const FaceShape> shapes, double coincidence,
                 PatchMesh& mesh);
 

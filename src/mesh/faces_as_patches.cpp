@@ -99,8 +99,8 @@ class FacePatches {
     SurfaceAreas& surface = report_.surfaces[scene_.face_surface[f]];
     surface.given += glm::length(area);
     FaceShape shape;
-    // A face that fits between two parallel lines a coincidence apart has no area that can be
-    // told from rounding; its longest diagonal from one corner is at least half its diameter.
+    // The area of a face that fits between two parallel lines a coincidence apart cannot be told
+    // from rounding. Its longest diagonal from one corner is at least half its diameter.
     const bool degenerate = glm::length(area) <= 0.5 * coincidence_ * longest;
     if (degenerate) {
       surface.degenerate += glm::length(area);
@@ -161,7 +161,7 @@ class FacePatches {
     }
     Vec2 centroid = moment / total;
     if (!insideEvenOdd(centroid, flat) || distanceToOutline(centroid, flat) <= coincidence_) {
-      // A concave face: the middle of the piece that is nearest.
+      // The face is concave: we take the middle of the nearest piece.
       centroid = *std::ranges::min_element(middles, [&](const Vec2& a, const Vec2& b) {
         return glm::length(a - centroid) < glm::length(b - centroid);
       });

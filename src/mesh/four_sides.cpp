@@ -19,7 +19,7 @@ double distanceToLine(const Vec3& p, const Vec3& a, const Vec3& b) {
   return glm::length(glm::cross(along, p - a)) / glm::length(along);
 }
 
-/// Where the loop turns: places in it.
+/// The places in the loop where it turns.
 std::vector<std::size_t> turnsOf(const CoarseComplex& complex, std::span<const Index> loop) {
   std::vector<std::size_t> corners;
   const std::size_t n = loop.size();
@@ -88,7 +88,7 @@ std::optional<FourSides> findFourSides(const CoarseComplex& complex, std::span<c
   for (std::size_t k = 0; k < 4; ++k) {
     const std::size_t end = corners[(k + 1) % 4];
     for (std::size_t i = corners[k]; i != end; i = (i + 1) % n) {
-      // Vertices each in line with their neighbours may still add up to a curve.
+      // Vertices that are each in line with their neighbours may still form a curve.
       if (distanceToLine(complex.vertices[loop[i]], p[k], p[(k + 1) % 4]) > complex.coincidence) {
         return std::nullopt;
       }

@@ -1,4 +1,4 @@
-// Which polygons are quadrilaterals good enough for a grid.
+// Finds polygons that are quadrilaterals suited for a grid.
 #pragma once
 
 #include <optional>

@@ -22,8 +22,8 @@ namespace radiosity {
 
 namespace {
 
-/// A distance no tolerance can be below: what is left of a coordinate after a rotation or a
-/// translation has been rounded, with room for the few operations of a contact (2^-44 = 6e-14).
+/// The smallest tolerance, relative: the rounding of a coordinate by a rotation or translation,
+/// with room for the few operations of a contact (2^-44 = 6e-14).
 constexpr double kRounding = 0x1p-44;
 
 Vec3 vectorAreaOf(const std::vector<Vec3>& polygon) {
@@ -36,7 +36,7 @@ bool lexicographic(const Vec3& a, const Vec3& b) {
   return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
 
-/// Works through the faces of one scene.
+/// Cleans the faces of one scene.
 class Cleaner {
  public:
   Cleaner(const Scene& scene, MeshReport& report, InputFaces& out)
@@ -93,7 +93,7 @@ void Cleaner::weld(double weld) {
   out_.coincidence = std::max(weld, kRounding) * glm::distance(box.low, box.high);
   if (out_.coincidence <= 0) return;
   out_.points = WeldedPoints(out_.coincidence);
-  // In lexicographic order, so that the points do not depend on the order in the file.
+  // Lexicographic order, so that the points do not depend on the order in the file.
   std::sort(used.begin(), used.end(), [&](Index a, Index b) {
     return lexicographic(scene_.vertices[a], scene_.vertices[b]);
   });
@@ -118,7 +118,8 @@ std::vector<Index> Cleaner::weldedLoop(std::span<const Index> corners) const {
   return loop;
 }
 
-/// All corners closer than coincidence to the line through the two that are about farthest apart.
+/// Whether all corners are closer than coincidence to the line through two that are about farthest
+/// apart.
 bool Cleaner::isThin(const std::vector<Vec3>& polygon) const {
   const auto farthest = [&](const Vec3& from) {
     return *std::max_element(polygon.begin(), polygon.end(), [&](const Vec3& a, const Vec3& b) {
@@ -133,7 +134,7 @@ bool Cleaner::isThin(const std::vector<Vec3>& polygon) const {
   });
 }
 
-/// Within a slab one coincidence thick.
+/// Whether the polygon is within a slab one coincidence thick.
 bool Cleaner::isPlanar(const std::vector<Vec3>& polygon, const Vec3& normal) const {
   double low = 0;
   double high = 0;
@@ -163,8 +164,9 @@ void Cleaner::addPlanar(const std::vector<Index>& loop, Index source, double giv
   out_.faces.push_back(std::move(face));
 }
 
-/// Cuts a polygon that begins with its least corner. One that runs the other way gets the same
-/// triangles turned over, so that the two sheets of a face modelled on both sides do not cross.
+/// Cuts a polygon into triangles; it begins with its lowest corner. The same polygon in the
+/// opposite direction gets the same triangles turned over, so that the two sheets of a face
+/// modelled on both sides do not cross.
 void Cleaner::addTriangles(std::vector<Index> loop, Index source) {
   ++report_.nonplanar_faces;
   const bool turned = loop.back() < loop[1];
@@ -187,7 +189,7 @@ void Cleaner::addTriangles(std::vector<Index> loop, Index source) {
   bent.deviation = std::max(bent.deviation, off);
 }
 
-/// How far corners are off the planes of the triangles beside theirs, at most.
+/// The largest distance of corners from the planes of the triangles beside theirs.
 double Cleaner::deviation(const std::vector<Index>& loop,
                           const std::vector<std::array<Index, 3>>& triangles) const {
   double most = 0;
@@ -219,7 +221,7 @@ void Cleaner::addFace(Index f) {
   std::vector<Vec3> given;
   for (const Index c : scene_.face(f)) given.push_back(scene_.vertices[c] - out_.origin);
   std::vector<Index> loop = weldedLoop(scene_.face(f));
-  // So that triangles do not depend on the corner the file begins with.
+  // Triangles must not depend on the corner with which the file begins.
   if (!loop.empty()) {
     std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
   }

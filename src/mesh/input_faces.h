@@ -1,4 +1,4 @@
-// The faces of a scene made fit for meshing: recentred, welded, planar, none twice.
+// Cleans the faces of a scene for meshing: recentred, welded, planar, without duplicates.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,10 @@
 
 namespace radiosity {
 
-/// How a face of the scene goes into the complex. What cannot be had for one is had for the next.
+/// The handling of a face of the scene in the complex. If one fails, the next is tried.
 enum class Handling : std::uint8_t {
   merged,   ///< with the coplanar faces around it
-  alone,    ///< as a plane of its own, cut where others touch it
+  alone,    ///< a plane of its own, cut where others touch it
   as_it_is  ///< uncut: others may touch or cross it
 };
 
@@ -22,7 +22,7 @@ struct InputFace {
   Index surface = kNone;
   Index source = kNone;  ///< face of the scene
   Vec3 normal{0.0};      ///< unit
-  double area = 0;       ///< m^2, as the file has it (before welding)
+  double area = 0;       ///< m^2, in the file (before welding)
   Handling handling = Handling::merged;
 };
 
@@ -31,13 +31,13 @@ struct InputFaces {
   double coincidence = 0;
   WeldedPoints points{1.0};
   std::vector<InputFace> faces;  ///< sorted by loop: independent of the order in the file
-  std::vector<InputFace> uncut;  ///< those to be taken as they are, sorted likewise
+  std::vector<InputFace> uncut;  ///< faces that are taken as they are, sorted likewise
 };
 
 /// Recentres and welds; splits polygons that are not planar; drops faces thinner than coincidence
-/// and faces that are there twice. Fills the report's figures and notes on these, and the
-/// surfaces' `given`, `degenerate` and (duplicates) `overlapped`. `handling`: by face of the scene.
-/// Errors: InputError for a coordinate that is not finite, or a scene without area.
+/// and duplicate faces. Fills the report's figures and notes on these, and the surfaces' `given`,
+/// `degenerate` and (duplicates) `overlapped`. `handling`: by face of the scene. Errors: InputError
+/// for a coordinate that is not finite, or a scene without area.
 InputFaces cleanFaces(const Scene& scene, const MeshOptions& options,
                       const std::vector<Handling>& handling, MeshReport& report);
 

@@ -16,8 +16,8 @@ namespace {
 
 using CornerPair = std::pair<Index, Index>;
 
-/// Squared perimeter over area of what is compact enough: a square has 16, a rectangle 1 : 3 and an
-/// L of three squares 21.3. Worse shapes come only of worse ones.
+/// The largest squared perimeter over area of a compact patch: a square has 16, a rectangle 1 : 3
+/// and an L of three squares 21.3. A worse patch may only come from worse parts.
 constexpr double kCompact = 22;
 
 class CellJoiner {
@@ -49,9 +49,9 @@ class CellJoiner {
   }
 
  private:
-  using Turn = std::pair<double, Index>;  ///< area of a patch, and which
+  using Turn = std::pair<double, Index>;  ///< area and number of a patch
   struct Patch {
-    CellGroup group;  ///< no cells: it has become part of another
+    CellGroup group;  ///< no cells: the patch has become part of another
     double area = 0;
     Vec3 moment{0.0};  ///< area times centroid
     double shape = 0;  ///< see shapeOf()
@@ -81,15 +81,15 @@ class CellJoiner {
     }
   }
 
-  /// A patch and a neighbour made one.
+  /// The union of a patch and a neighbour.
   struct Union {
     Index other = kNone;
     std::vector<Index> outline;
     double shape = 0;
   };
 
-  /// Joins a patch with the neighbour with which it is most compact; false if there is none with
-  /// which it may be.
+  /// Joins a patch with the neighbour that gives the most compact union; false if no neighbour is
+  /// allowed.
   bool joinOne(Index k) {
     Union best;
     for (const Index other : neighbours(k)) {
@@ -110,7 +110,7 @@ class CellJoiner {
     return true;
   }
 
-  /// Without an outline if they may not be joined.
+  /// The union of two patches; it has no outline if they may not be joined.
   Union unionWith(Index k, Index other) const {
     const Patch& a = patches_[k];
     const Patch& b = patches_[other];
@@ -154,11 +154,11 @@ class CellJoiner {
   double size_;
   std::set<CornerPair> kept_;
   std::vector<Patch> patches_;
-  std::map<CornerPair, Index> owner_;  ///< of directed edges: the patch on the left
+  std::map<CornerPair, Index> owner_;  ///< by directed edge: the patch on the left
 };
 
-/// Where a corner of the cells lies inside the patch: triangles between the corners of its outline,
-/// so that values at these are all that is needed.
+/// If a corner of the cells is inside the patch, sets triangles between the corners of its outline,
+/// so that only values at these are needed.
 void dropInnerCorners(CellGroup& group, std::span<const Cell> cells, std::span<const Vec3> points) {
   std::vector<Index> corners = group.outline;
   std::sort(corners.begin(), corners.end());

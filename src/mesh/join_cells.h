@@ -1,4 +1,4 @@
-// Cells of a polygon joined to patches of several.
+// Joins cells of a polygon to larger patches.
 #pragma once
 
 #include <span>
@@ -8,12 +8,12 @@
 
 namespace radiosity {
 
-/// Joins cells across their edges, the smallest first and with the neighbour that makes the most
-/// compact patch, to patches of up to size^2 whose corners lie no farther than `size` from their
-/// centroid, and which are compact or more so than their parts. Edges in
-/// `inner`, where something stands on the polygon, are kept, and so is the polygon's outline as it
-/// is cut: what conforms goes on conforming. A patch is one loop around cells. `points`: of the
-/// cells' corners. Returns the patches in the order of their first cells.
+/// Joins cells across their edges, the smallest first, with the neighbour that makes the most
+/// compact patch. Patches have up to size^2 of area and corners within `size` of their centroid,
+/// and are compact or more compact than their parts. Edges in `inner`, where other polygons stand,
+/// are kept, and so is the cut outline of the polygon: the mesh stays conforming. A patch is one
+/// loop around cells. `points`: the cells' corners. Returns the patches in the order of their first
+/// cells.
 std::vector<CellGroup> joinCells(std::span<const Cell> cells,
                                  std::span<const std::array<Index, 2>> inner,
                                  std::span<const Vec3> points, double size);

@@ -1,4 +1,4 @@
-// Two outlines that share edges made one.
+// Joins two outlines that share edges.
 #pragma once
 
 #include <vector>
@@ -7,9 +7,9 @@
 
 namespace radiosity {
 
-/// The outline of two regions of one plane together, both given counter-clockwise by the numbers of
-/// their vertices: their edges but for those that run both ways. It begins with its lowest vertex.
-/// Empty if it is no single loop that meets each vertex once. n log n.
+/// The outline of the union of two regions of one plane, both given counter-clockwise by the
+/// numbers of their vertices: all their edges except those that run both ways. It begins with its
+/// lowest vertex. Empty if it is not a single loop that meets each vertex once. O(n log n).
 std::vector<Index> joinLoops(const std::vector<Index>& a, const std::vector<Index>& b);
 
 }  // namespace radiosity

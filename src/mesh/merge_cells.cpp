@@ -18,24 +18,24 @@ namespace radiosity {
 
 namespace {
 
-/// Two visible cells may become one polygon only if they are equal in all of this.
+/// Two visible cells may become one polygon only if all members are equal.
 struct Kind {
   Index surface = kNone;
   bool up = true;        ///< the polygon's front is above the plane
-  bool both = false;     ///< and its back is kept too
+  bool both = false;     ///< its back is kept, too
   Index behind = kNone;  ///< surface of another polygon on the other side
 
   bool operator==(const Kind&) const = default;
 };
 
-/// A polygon in the making.
+/// A polygon that is being built.
 struct Draft {
   Index plane = kNone;
   Kind kind;
   std::vector<Index> records;
   std::vector<Index> border;  ///< edges with the polygon on one side
   std::vector<bool> on_left;  ///< by border edge
-  std::vector<Index> inner;   ///< edges with the polygon on both sides, met by another plane's
+  std::vector<Index> inner;   ///< edges with the polygon on both sides, which other planes meet
   std::vector<std::vector<Index>> loops;
 };
 
@@ -97,7 +97,7 @@ class Merger {
   std::vector<Kind> kind_;                   ///< by record
   std::vector<Index> draft_of_;              ///< by record
   std::vector<Draft> drafts_;
-  std::vector<Index> needed_;         ///< edges of some polygon
+  std::vector<Index> needed_;         ///< edges of any polygon
   std::vector<Index> needed_number_;  ///< by edge: place in needed_
   StraightEdges straight_;
   std::vector<Index> number_;  ///< by point: vertex of the complex
@@ -182,7 +182,7 @@ void Merger::sortEdges() {
   }
 }
 
-/// By needed edge which polygons it borders and which it runs through.
+/// By needed edge, the polygons that it borders and those that it runs through.
 EdgeUses Merger::usesOfNeeded() const {
   EdgeUses out;
   out.begin.assign(needed_.size() + 1, 0);
@@ -201,8 +201,8 @@ EdgeUses Merger::usesOfNeeded() const {
 }
 
 /// Straightening moves edges by up to a coincidence, and other edges of a polygon may be hardly
-/// farther away: where a polygon's edges then cross, its vertices are kept. With all of them kept
-/// the edges are those of the arrangement, which cross nowhere.
+/// farther away. If a polygon's edges then cross, its vertices are kept. With all vertices kept,
+/// the edges are those of the arrangement, which do not cross.
 void Merger::straightenEdges() {
   std::vector<std::array<Index, 2>> ends;
   ends.reserve(needed_.size());
@@ -263,7 +263,7 @@ bool Merger::isSound(const Draft& draft) const {
   return !anyCross(input_.points, PlaneImage(planes_[draft.plane].normal), edgesOf(draft));
 }
 
-/// Keeps all vertices of a draft; appends those that had gone.
+/// Keeps all vertices of a draft; appends those that had been removed.
 void Merger::keepCorners(const Draft& draft, std::vector<bool>& keep,
                          std::vector<Index>& kept) const {
   for (const auto* list : {&draft.border, &draft.inner}) {
@@ -299,14 +299,14 @@ void Merger::traceDraft(Draft& draft) const {
     std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
     loops.emplace_back(-glm::dot(area, planes_[draft.plane].normal), std::move(loop));
   }
-  // The outer loop is the one that counts positive, and the largest. If none does, welding has
-  // bent a sliver out of its plane.
+  // The outer loop has the largest positive area. If no area is positive, welding has bent a sliver
+  // out of its plane.
   std::sort(loops.begin(), loops.end());
   if (loops.empty() || loops[0].first >= 0) return;
   for (auto& [key, loop] : loops) draft.loops.push_back(std::move(loop));
 }
 
-/// A sheet goes on on both sides of the edge, and the edge is needed there: it cuts the sheet.
+/// Whether the edge cuts a sheet: the sheet continues on both sides, and the edge is needed there.
 bool Merger::isCutThere(const EdgeSides& s) const {
   if (s.left == kNone || s.right == kNone) return false;
   if (recordsOf(s.left).empty() && recordsOf(s.right).empty()) return false;
@@ -341,8 +341,8 @@ double Merger::movedArea(const Draft& draft) const {
   return area - std::abs(glm::dot(kept, planes_[draft.plane].normal));
 }
 
-/// The most that straightening can move: a strip of two coincidences along the border. Twice that,
-/// for what is rounded.
+/// The most area that straightening can move: a strip of two coincidences along the border, times
+/// two for rounding.
 double Merger::areaInReach(const Draft& draft) const {
   double length = 0;
   for (const Index e : draft.border) {
@@ -366,7 +366,7 @@ std::vector<Index> Merger::sheetsOf(const Draft& draft) const {
   return out;
 }
 
-/// By draft the scene's faces under it: of a sheet that several drafts share, those beside it.
+/// By draft, the scene's faces under it; for a sheet that several drafts share, the faces near it.
 std::vector<std::vector<Index>> Merger::facesByDraft() const {
   std::vector<std::vector<Index>> drafts_of(sheets_.size());
   for (std::size_t d = 0; d < drafts_.size(); ++d) {
@@ -416,7 +416,7 @@ std::vector<std::pair<Index, Index>> Merger::facesBeside(const std::vector<Index
   return out;
 }
 
-/// Numbers the vertices that are left by their place in space, not by how they came about.
+/// Numbers the remaining vertices by their place in space, not by their history.
 std::vector<Vec3> Merger::numberVertices() {
   std::vector<Index> used;
   for (const auto& edge : straight_.edges) used.insert(used.end(), edge.begin(), edge.end());

@@ -14,7 +14,7 @@ namespace radiosity {
 
 namespace {
 
-/// The smallest interior angle and the patch that has it (kNone: no patch has an area).
+/// The smallest interior angle and its patch (kNone: no patch has an area).
 std::pair<double, Index> smallestCorner(const PatchMesh& mesh) {
   std::pair<double, Index> smallest = {360.0, kNone};
   for (Index i = 0; i < mesh.size(); ++i) {
@@ -52,7 +52,7 @@ void fillFigures(const PatchMesh& mesh, MeshReport& report) {
   for (std::size_t s = report.surfaces.size(); s < mesh.surface_names.size(); ++s) {
     report.surfaces.emplace_back().name = mesh.surface_names[s];
   }
-  // More digits than a double: with 10^6 patches a plain sum loses the twelfth digit.
+  // A long double: with 10^6 patches a sum in doubles loses the twelfth digit.
   std::vector<long double> kept(mesh.surface_names.size(), 0.0L);
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     const auto outline = mesh.outline(i);

@@ -12,12 +12,12 @@ namespace radiosity {
 
 namespace {
 
-// A triangle whose height over a side is a smaller part of that side lies on it but for rounding:
-// its area, and with it its centroid, may come out as anything.
+// The least height of a triangle over a side, as a share of the side. Below, the triangle lies on
+// the side but for rounding, and its area and centroid are arbitrary.
 constexpr double kNoArea = 0x1p-44;
 
-/// Gives the points of the cut complex their places in the mesh: only those in use, vertices of
-/// the complex first, then edge points, then the points inside polygons.
+/// Numbers the points of the cut complex that are in use: vertices of the complex first, then edge
+/// points, then points inside polygons.
 class VertexNumbers {
  public:
   VertexNumbers(const CoarseComplex& complex, const EdgeCuts& cuts,
@@ -73,7 +73,7 @@ std::span<const Index> cornersOf(const Cell& cell) {
   return {cell.data(), cell[3] == kNone ? std::size_t(3) : std::size_t(4)};
 }
 
-/// Convex cells as fans of triangles.
+/// Divides convex cells into fans of triangles.
 struct CellTriangles {
   std::vector<std::array<Index, 3>> triangles;
   double area = 0;
@@ -105,7 +105,7 @@ struct CellTriangles {
   }
 };
 
-/// The corners of a cell as the mesh numbers them.
+/// The corners of a cell by the numbers of the mesh.
 class CellCorners {
  public:
   CellCorners(const VertexNumbers& numbers, const PolygonCells& polygon, std::size_t source,
@@ -127,8 +127,8 @@ class CellCorners {
   bool flip_;
 };
 
-/// Where a patch is looked from: its centroid, or, where that is outside of it, the middle of the
-/// triangle that is nearest.
+/// A point that represents a patch: its centroid or, if that is outside, the middle of the nearest
+/// triangle.
 Vec3 middleOf(const CellTriangles& patch, const Vec3& normal, std::span<const Vec3> points) {
   const Vec3 centroid = patch.centroid();
   Vec3 nearest = centroid;
@@ -147,8 +147,8 @@ Vec3 middleOf(const CellTriangles& patch, const Vec3& normal, std::span<const Ve
   return nearest;
 }
 
-/// Appends a patch of one cell or several; positions are still near the origin. False, and nothing
-/// appended, if rounding leaves it no area.
+/// Appends a patch of one or several cells; positions are still near the origin. False, and nothing
+/// is appended, if rounding leaves it no area.
 bool appendPatch(PatchMesh& mesh, const PolygonCells& polygon, Index number,
                  const CellCorners& corners, std::span<const Vec3> points) {
   const Vec3 normal = mesh.polygons.normal.back();

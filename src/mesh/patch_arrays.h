@@ -1,4 +1,4 @@
-// From cells of polygons to the arrays of a PatchMesh.
+// Makes the arrays of a PatchMesh from cells of polygons.
 #pragma once
 
 #include <span>
@@ -8,16 +8,16 @@
 
 namespace radiosity {
 
-/// The polygon whose cells polygon `p` has: its own, or, reversed, those of the one it lies back to
-/// back with, so that both are cut alike.
+/// The polygon whose cells polygon `p` uses: itself or, reversed, the polygon back to back with it,
+/// so that both are cut alike.
 inline std::size_t cellSource(const CoarseComplex& complex, std::size_t p) {
   const Index opposite = complex.polygons[p].opposite;
   return opposite != kNone && opposite < p ? opposite : p;
 }
 
-/// All fronts polygon by polygon, then the backs. Areas are measured along the polygon's normal, so
-/// that the patches of a polygon sum up to it although its vertices leave the plane by up to the
-/// coincidence. `cells`: of every polygon that is its own cellSource().
+/// Makes all fronts polygon by polygon, then the backs. Areas are measured along the polygon's
+/// normal, so that the patches of a polygon sum to its area although vertices are off the plane by
+/// up to the coincidence. `cells`: those of every polygon that is its own cellSource().
 PatchMesh assemblePatches(const CoarseComplex& complex, const Scene& scene, const EdgeCuts& cuts,
                           std::span<const PolygonCells> cells, Progress& progress);
 

@@ -30,14 +30,14 @@ struct Mapped {
   }
 };
 
-/// A face seen along a patch's normal: its triangles, and how far from the patch's plane it is.
+/// A face seen along a patch's normal: its triangles, and its distance from the patch's plane.
 struct Candidate {
   Index face;
   double distance;
 };
 
-// The part of a patch that must be covered by faces before farther ones are left out of account:
-// welding may leave slits of the width of the coincidence.
+// Once faces cover this share of a patch, farther ones are ignored: welding may leave slits as wide
+// as the coincidence.
 constexpr double kCovered = 0.999;
 
 class PatchTexture {
@@ -45,7 +45,8 @@ class PatchTexture {
   PatchTexture(const Scene& scene, const PatchMesh& mesh, std::span<const TextureMean> textures)
       : scene_(scene), mesh_(mesh), textures_(textures) {}
 
-  /// The area mean of a texture of the scene over patch i. `faces`: those that may lie under it.
+  /// The area mean of a texture of the scene over patch i. `faces`: the faces that may lie under
+  /// it.
   Vec3 mean(std::size_t i, Index texture_index, const std::vector<Index>& faces) const {
     const TextureMean& texture = textures_[texture_index];
     const PlaneFrame frame =
@@ -60,7 +61,7 @@ class PatchTexture {
       if (sum.area >= kCovered * mesh_.area[i]) break;
     }
     if (sum.area > 0) return sum.colour / sum.area;
-    // Nothing lies under the patch (a face turned almost across it): one corner's texel.
+    // No face lies under the patch (the face is almost perpendicular): we take one corner's texel.
     return texture.at(scene_.texcoords[scene_.face_offset[mesh_.source_face[i]]]);
   }
 
@@ -70,7 +71,8 @@ class PatchTexture {
     double area = 0;
   };
 
-  /// Faces that look the same way, the source face first, then the nearest to the patch's plane.
+  /// The faces that look the same way: the source face first, then by distance from the patch's
+  /// plane.
   std::vector<Candidate> nearestFirst(std::size_t i, const PlaneFrame& frame,
                                       const std::vector<Index>& faces) const {
     std::vector<Candidate> result = {{mesh_.source_face[i], -1.0}};
@@ -80,7 +82,7 @@ class PatchTexture {
       const auto corner = [&](std::size_t k) { return scene_.vertices[outline[k]]; };
       const Vec3 area = vectorArea(outline.size(), corner);
       if (glm::dot(area, frame.n) <= 0) continue;
-      // The face's plane where it meets the normal through the patch's centroid.
+      // The point of the face's plane on the normal through the patch's centroid.
       const double height = glm::dot(corner(0) - frame.origin, area) / glm::dot(area, frame.n);
       result.push_back({f, std::abs(height)});
     }
@@ -136,8 +138,8 @@ class PatchTexture {
     }
     const Vec2 extent = high - low;
     if (std::abs(polygonArea(uv)) > 1e-6 * glm::dot(extent, extent)) return texture.over(uv);
-    // Mapped onto a line or a point (palettes, gradients): the texels at the middles of equal
-    // parts of the polygon's fan.
+    // The map is a line or a point (palettes, gradients): we take the texels at the middles of
+    // equal parts of the polygon's fan.
     constexpr int kParts = 32;
     Vec3 colour(0.0);
     double total = 0;
@@ -179,7 +181,7 @@ std::vector<std::vector<Index>> facesNear(const Scene& scene, const PatchMesh& m
     if (mesh.side[i] != 0 || !(mesh.area[i] > 0) || !isTextured(scene, mesh.surface[i])) continue;
     Box3 box;
     for (const Index v : mesh.outline(i)) box.add(mesh.vertices[v]);
-    // Patch and face may be a rounding or a weld apart: a little of the patch's own size.
+    // Rounding or welding may separate patch and face, so we add a little of the patch's own size.
     first_boxes.push_back(Index(boxes.size()));
     boxes.push_back(box.grown(1e-3 * glm::length(box.high - box.low)));
     patches.push_back(i);

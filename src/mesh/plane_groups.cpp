@@ -38,8 +38,9 @@ class Grower {
         taken_(input.faces.size(), false),
         visit_(input.faces.size(), 0) {}
 
-  /// The plane of `seed` and all free faces it reaches. The plane is fitted again to what was
-  /// found, since the normal of a small seed does not reach far, until nothing more is found.
+  /// The plane of `seed` and of all free faces that it reaches. The normal of a small seed is not
+  /// accurate enough for far faces, so the plane is fitted to the faces again until no more are
+  /// found.
   Plane grow(Index seed) {
     Plane plane;
     plane.normal = input_.faces[seed].normal;
@@ -156,7 +157,7 @@ class Grower {
 }  // namespace
 
 std::vector<Plane> groupByPlane(const InputFaces& input) {
-  // Large faces first: they fix their plane best.
+  // Large faces come first, since they define their plane best.
   std::vector<Index> order(input.faces.size());
   std::iota(order.begin(), order.end(), Index(0));
   std::stable_sort(order.begin(), order.end(),

@@ -1,4 +1,4 @@
-// Faces that lie in one plane.
+// Groups faces that lie in one plane.
 #pragma once
 
 #include <glm/geometric.hpp>
@@ -8,7 +8,7 @@
 
 namespace radiosity {
 
-/// n.x = offset for points of the plane; the faces may lie either way up.
+/// n.x = offset for points of the plane; the faces may face either way.
 struct Plane {
   Vec3 normal{0.0};  ///< unit
   double offset = 0;
@@ -17,10 +17,10 @@ struct Plane {
   double distance(const Vec3& p) const { return glm::dot(normal, p) - offset; }
 };
 
-/// Puts every face into exactly one plane, together with the coplanar faces it is connected to
-/// (boxes that overlap, from face to face). Coplanar: every vertex of every face lies within half
-/// the coincidence of the plane, so a plane is a slab one coincidence thick and cannot drift. Faces
-/// to be handled alone have a plane each.
+/// Puts every face into exactly one plane, together with the coplanar faces connected to it (boxes
+/// that overlap, from face to face). Coplanar: every vertex of every face lies within half the
+/// coincidence of the plane, so a plane is a slab one coincidence thick and cannot drift. Faces
+/// with the handling `alone` have a plane each.
 std::vector<Plane> groupByPlane(const InputFaces& input);
 
 }  // namespace radiosity

@@ -7,9 +7,9 @@
 
 namespace radiosity {
 
-/// Leaves out the coordinate along which the normal is largest: no rounding, so a point has one
-/// and the same image in every use, and what is straight or crosses stays so. Counter-clockwise
-/// about the normal is counter-clockwise in the image.
+/// Leaves out the coordinate along which the normal is largest. There is no rounding, so a point
+/// always has the same image, and lines stay straight and crossings stay crossings.
+/// Counter-clockwise about the normal is counter-clockwise in the image.
 class PlaneImage {
  public:
   explicit PlaneImage(const Vec3& normal) {
@@ -25,7 +25,7 @@ class PlaneImage {
   }
   Vec2 operator()(const Vec3& p) const { return {p[first_], p[second_]}; }
 
-  /// The point of the plane through `origin` with `normal`, the image's, that has the image `q`.
+  /// The point with image `q` in the plane through `origin` with the image's `normal`.
   Vec3 lift(const Vec2& q, const Vec3& origin, const Vec3& normal) const {
     const int dropped = 3 - first_ - second_;
     Vec3 p = origin;

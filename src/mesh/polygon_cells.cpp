@@ -21,7 +21,7 @@ std::vector<Index> sidePoints(const EdgeCuts& cuts, const std::vector<DirectedEd
   return ids;
 }
 
-/// Where the points of a side lie between its ends, 0 to 1.
+/// The places of a side's points between its ends, 0 to 1.
 std::vector<double> fractions(const EdgeCuts& cuts, const std::vector<Index>& side) {
   const Vec3 start = cuts.point(side.front());
   const double length = glm::length(cuts.point(side.back()) - start);
@@ -39,7 +39,7 @@ bool cutAlike(const CoarseComplex& complex, const EdgeCuts& cuts, const std::vec
   const std::vector<double> t = fractions(cuts, {opposite.rbegin(), opposite.rend()});
   const double length = glm::length(cuts.point(side.back()) - cuts.point(side.front()));
   for (std::size_t k = 0; k < s.size(); ++k) {
-    // Sides divided alike within the coincidence, or by the same fractions but for rounding.
+    // The sides are divided alike within the coincidence, or by equal fractions but for rounding.
     if (std::abs(s[k] - t[k]) * length > complex.coincidence + 1e-12 * length) return false;
   }
   return true;
@@ -86,8 +86,8 @@ PolygonCells gridCells(const EdgeCuts& cuts, const FourSides& sides,
   return result;
 }
 
-/// The plane of a polygon made flat: by a frame, in which lengths and angles are true, or by the
-/// image in which the polygon is known not to cross itself.
+/// Flattens a polygon: by a frame, in which lengths and angles are true, or by the image, in which
+/// the polygon is known not to cross itself.
 class Flattening {
  public:
   Flattening(const PlaneFrame& frame, bool exact) : frame_(frame), image_(frame.n), exact_(exact) {}
@@ -134,7 +134,7 @@ class RegionBuilder {
   std::vector<Index>& boundary() { return boundary_; }
 
  private:
-  /// Along the longest edge.
+  /// A frame along the longest edge.
   static PlaneFrame frameOf(const CoarseComplex& complex, const CoarsePolygon& polygon) {
     Vec3 longest(0.0);
     for (const auto& loop : polygon.loops) {
@@ -162,7 +162,7 @@ class RegionBuilder {
   std::unordered_map<Index, Index> local_;
 };
 
-/// Empty where the pieces of the polygon's boundary cross.
+/// The cells of a polygon; empty if the pieces of its boundary cross.
 std::optional<PolygonCells> regionCells(const CoarseComplex& complex, const EdgeCuts& cuts,
                                         std::size_t polygon, const CellSize& size, bool exact) {
   RegionBuilder builder(complex, cuts, polygon, exact);

@@ -1,4 +1,4 @@
-// Triangulating a planar region without touching its boundary, in the plane's own coordinates.
+// Triangulates a planar region without changing its boundary, in the plane's own coordinates.
 #pragma once
 
 #include <array>
@@ -31,13 +31,13 @@ struct RegionMesh {
   std::vector<Cell> cells;
 };
 
-/// Points of a square grid of about `region.size` inside the region, none closer to a piece than
-/// 0.6 of the spacing. `inside` is decided by even-odd over the loops.
+/// The points inside the region of a square grid of about `region.size`; none is closer to a piece
+/// than 0.6 of the spacing. Inside is decided by even-odd over the loops.
 std::vector<Vec2> backgroundGrid(const Region& region);
 
-/// Constrained Delaunay triangulation of the region's pieces and a background grid, improved by
-/// points and moves inside until all angles are at least 25 degrees, or those that the boundary
-/// allows; then pairs of triangles are joined. Pieces are never split. Empty where pieces cross or
+/// Constrained Delaunay triangulation of the region's pieces and a background grid. It is improved
+/// by inner points and moves until all angles are at least 25 degrees, or as large as the boundary
+/// allows; then pairs of triangles are joined. Pieces are never split. Empty if pieces cross or
 /// loops touch.
 std::optional<RegionMesh> meshRegion(const Region& region);
 

@@ -10,8 +10,8 @@ namespace radiosity {
 
 namespace {
 
-// A point nearer to a piece of the boundary than this, in grid spacings, would make a flat
-// triangle over it; farther than that plus one spacing a neighbour is always kept.
+// The least distance of a point from a piece of the boundary, in grid spacings: nearer points would
+// make flat triangles. Within this plus one spacing there is always a point.
 constexpr double kClearance = 0.6;
 
 struct FlatSegment {
@@ -22,7 +22,7 @@ struct FlatSegment {
 /// Grid points (i, j), i along rows: origin + (i * step.x, j * step.y), in turned coordinates.
 class Grid {
  public:
-  /// `fine`: steps of at most `size`; else as near to it as can be.
+  /// `fine`: steps of at most `size`; else as near to it as possible.
   Grid(Vec2 lower, Vec2 upper, double size, bool fine) : lower_(lower) {
     for (int axis = 0; axis < 2; ++axis) {
       const double extent = upper[axis] - lower[axis];

@@ -33,7 +33,7 @@ using RegionTriangulation =
 using Face = RegionTriangulation::Face_handle;
 using Vertex = RegionTriangulation::Vertex_handle;
 
-const AngleLimit kWantedAngle(25.0);           // triangles below are worked on
+const AngleLimit kWantedAngle(25.0);           // triangles below are improved
 const AngleLimit kAcceptedAngle(18.0);         // a new point must reach this around itself
 const double kWorthwhile = glm::radians(2.0);  // and gain this much
 constexpr int kRounds = 4;                     // refine, smooth, triangulate anew
@@ -41,13 +41,13 @@ constexpr int kSweeps = 4;                     // of smoothing, a round
 
 Vec2 positionOf(Vertex v) { return {v->point().x(), v->point().y()}; }
 RegionTriangulation::Point pointOf(const Vec2& p) { return {p.x, p.y}; }
-/// Whether rounding or a move has left a triangle no area, or turned it over.
+/// Whether a triangle has no area or is turned over, after rounding or a move.
 bool isTurnedOver(Face f) {
   const Vec2 a = positionOf(f->vertex(0));
   return cross2(positionOf(f->vertex(1)) - a, positionOf(f->vertex(2)) - a) <= 0;
 }
 
-/// The smallest angle that points and moves inside can change: those between two constraints are
+/// The smallest angle that inner points and moves can change: angles between two constraints are
 /// given.
 Angle smallestFreeAngle(Face f) {
   const Vec2 p[3] = {positionOf(f->vertex(0)), positionOf(f->vertex(1)), positionOf(f->vertex(2))};
@@ -61,7 +61,7 @@ Angle smallestFreeAngle(Face f) {
   return smallest;
 }
 
-/// The smallest free angle of some triangles; below all angles where a triangle is turned over.
+/// The smallest free angle of some triangles; less than any angle if a triangle is turned over.
 class Worst {
  public:
   void add(Face f) {
@@ -75,7 +75,7 @@ class Worst {
   bool isBelow(const Worst& other) const {
     return !other.turned_over_ && (turned_over_ || smallest_.isBelow(other.smallest_));
   }
-  /// -1: one is turned over.
+  /// The angle; -1 if a triangle is turned over.
   double radians() const { return turned_over_ ? -1.0 : smallest_.radians(); }
 
  private:
@@ -126,9 +126,9 @@ class RegionMesher {
   void refine();
   bool improve(Face bad, std::vector<Face>& changed);
   struct Trial {
-    Face where;          ///< holds the point
-    double gain = 0;     ///< the smallest angle around it, if that is worth a point; else 0
-    bool clear = false;  ///< removes the bad face and keeps out of the circles over constraints
+    Face where;          ///< the face that contains the point
+    double gain = 0;     ///< the smallest angle around the point if it is worthwhile; else 0
+    bool clear = false;  ///< removes the bad face and is outside the circles over constraints
   };
   Trial tryPoint(const RegionTriangulation::Point& p, Face bad);
   Vertex insert(const RegionTriangulation::Point& p, Face where);
@@ -151,8 +151,9 @@ class RegionMesher {
   std::size_t budget_ = 0;
 };
 
-/// A triangle without points inside is its own triangulation: all its angles are given, and none of
-/// its edges may be cut or turned. Its corners begin where the triangulation of three points does.
+/// Whether the region is a triangle without inner points. It is its own triangulation: all its
+/// angles are given, and none of its edges may be cut or flipped. Its first corner is that of the
+/// triangulation of three points.
 bool RegionMesher::isPlainTriangle() const {
   if (region_.points.size() != 3 || region_.loops.size() != 1 || !region_.inner.empty() ||
       !std::ranges::equal(region_.loops[0], std::array<Index, 3>{0, 1, 2}) || !interior_.empty() ||
@@ -160,8 +161,8 @@ bool RegionMesher::isPlainTriangle() const {
     return false;
   }
   const auto& p = region_.points;
-  // As corners come, to the bit: rounding may turn a sliver over from one corner and not from
-  // another.
+  // The order of corners matters to the bit: rounding may turn a sliver over in one order and not
+  // in another.
   return CGAL::orientation(pointOf(p[0]), pointOf(p[1]), pointOf(p[2])) == CGAL::LEFT_TURN &&
          cross2(p[1] - p[0], p[2] - p[0]) > 0 && cross2(p[2] - p[1], p[0] - p[1]) > 0 &&
          cross2(p[0] - p[2], p[1] - p[2]) > 0;
@@ -184,7 +185,7 @@ bool RegionMesher::insertPieces(const std::vector<Vertex>& vertices) {
   return true;
 }
 
-/// False if pieces cross; no points inside can change that.
+/// Triangulates. False if pieces cross, which inner points cannot change.
 bool RegionMesher::triangulate() {
   cdt_.clear();
   const auto add = [&](const Vec2& p, std::size_t id, Face hint) {
@@ -192,8 +193,8 @@ bool RegionMesher::triangulate() {
     v->info() = Index(id);
     return v;
   };
-  // Every second of the points between those already in, again and again: points in a row, one
-  // after the other, would make each insertion flip all edges of the row so far.
+  // We insert every second of the points between those already in, repeatedly. Points in a row,
+  // inserted one after the other, would make each insertion flip all edges of the row so far.
   const std::size_t count = region_.points.size();
   std::vector<Vertex> vertices(count);
   vertices[0] = add(region_.points[0], 0, Face());
@@ -211,7 +212,7 @@ bool RegionMesher::triangulate() {
   return true;
 }
 
-/// Faces reached from the left of the loops' pieces without crossing any of them.
+/// Marks the faces that are reached from the left of the loops' pieces without crossing any piece.
 void RegionMesher::markInside() {
   for (Face f : cdt_.all_face_handles()) f->info() = false;
   std::vector<Face> stack;
@@ -242,8 +243,8 @@ void RegionMesher::markInside() {
   }
 }
 
-/// Whether the triangles inside have the area of the loops: not where the loops touch, or where
-/// rounding has turned one over.
+/// Whether the triangles inside have the area of the loops. They have not if loops touch, or if
+/// rounding has turned a triangle over.
 bool RegionMesher::tiles() const {
   long double area = 0;
   double terms = 0;
@@ -263,8 +264,8 @@ bool RegionMesher::tiles() const {
     const Vec2 a = positionOf(f->vertex(0));
     add(positionOf(f->vertex(1)) - a, positionOf(f->vertex(2)) - a, -1.0);
   }
-  // Products and the coordinates they are made of are rounded some times each; a triangle that is
-  // turned over or there twice counts far more.
+  // Products and their coordinates are rounded a few times each. A triangle that is turned over or
+  // there twice makes a far larger difference.
   return std::abs(double(area)) <= 0x1p-46 * terms;
 }
 
@@ -277,8 +278,8 @@ Worst RegionMesher::worst() const {
   return out;
 }
 
-/// Delaunay refinement without encroachment rules: instead of reasoning about where a point may
-/// go, candidates are judged by the triangles they would make.
+/// Delaunay refinement without encroachment rules: candidate points are judged by the triangles
+/// that they would make.
 void RegionMesher::refine() {
   std::vector<std::array<Vertex, 3>> worst;
   const auto note = [&](Face f) {
@@ -298,8 +299,8 @@ void RegionMesher::refine() {
   }
 }
 
-/// Judges a point at p that would remove `bad` by the triangles it would make, which are known
-/// beforehand: p joined to the boundary of the zone it is in conflict with (Bowyer-Watson).
+/// Judges a point at p, which would remove `bad`, by the triangles that it would make. They are
+/// known beforehand: p joined to the boundary of its conflict zone (Bowyer-Watson).
 RegionMesher::Trial RegionMesher::tryPoint(const RegionTriangulation::Point& p, Face bad) {
   Trial trial;
   Face& where = trial.where;
@@ -354,8 +355,8 @@ bool RegionMesher::improve(Face bad, std::vector<Face>& changed) {
     const RegionTriangulation::Point q = pointOf(candidate);
     if (!std::isfinite(q.x()) || !std::isfinite(q.y())) continue;
     const Trial trial = tryPoint(q, bad);
-    // The first candidate is the circumcentre. Clear of the boundary it may go in without a gain of
-    // its own: no edge it makes is shorter than the triangle's radius, so that points spread out
+    // The first candidate is the circumcentre. If it is clear of the boundary, we insert it even
+    // without a gain: no new edge is shorter than the triangle's radius, so that points spread out
     // from small features, farther and farther apart (Ruppert 1995).
     const bool spread = first && trial.clear;
     first = false;
@@ -384,7 +385,7 @@ Worst RegionMesher::worstAround(Vertex v) {
   return out;
 }
 
-/// Moves a free vertex towards the mean of its neighbours as far as its smallest angle grows.
+/// Moves a free vertex towards the mean of its neighbours, as far as its smallest angle grows.
 bool RegionMesher::relax(Vertex v) {
   const Worst before = worstAround(v);
   if (!before.isBelow(kWantedAngle)) return false;
@@ -427,15 +428,15 @@ bool RegionMesher::isFlippable(Face f, int i) const {
          CGAL::orientation(apex, other, to) == CGAL::LEFT_TURN;
 }
 
-/// Where the boundary bends by hardly more than nothing, the Delaunay triangulation puts triangles
-/// over the bend that are flatter than a coincidence: their corner lies on their longest edge. That
-/// edge is turned to lead from the corner.
+/// Flips the longest edges of triangles flatter than a coincidence, so that the edge starts at the
+/// opposite corner. The Delaunay triangulation makes such triangles where the boundary is nearly
+/// straight.
 void RegionMesher::flipFlat() {
   std::vector<Face> stack;
   for (Face f : cdt_.finite_face_handles()) {
     if (f->info()) stack.push_back(f);
   }
-  // Every flip takes a flat triangle away; where four points are nearly in line it may come back.
+  // Every flip removes a flat triangle; if four points are nearly in line, it may come back.
   for (std::size_t left = 2 * stack.size(); !stack.empty() && left > 0;) {
     Face f = stack.back();
     stack.pop_back();
@@ -483,13 +484,13 @@ bool RegionMesher::isClear(const Vec2& p, Face near) {
   });
 }
 
-/// Cuts inside edges of cells that are too long at their middle. False: there are none.
+/// Cuts inner edges of cells that are too long at their middle. False if there are none.
 bool RegionMesher::shorten(const std::vector<Cell>& cells) {
   if (!std::isfinite(region_.longest)) return false;
   std::vector<Vertex> vertices(region_.points.size() + interior_.size());
   for (Vertex v : cdt_.finite_vertex_handles()) vertices[v->info()] = v;
-  // Edges that were meant to be as long, but for rounding, and edges beside pieces that are longer
-  // (of corners too sharp to be cut), stay.
+  // Edges of this length but for rounding stay, and so do edges beside longer pieces (at corners
+  // too sharp to be cut).
   const double limit = std::max(region_.longest * (1 + 1e-9), longestPiece());
   bool found = false;
   for (const Cell& cell : cells) {

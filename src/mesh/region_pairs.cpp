@@ -16,7 +16,7 @@ namespace {
 const double kRightAngle = glm::radians(90.0);
 const double kLargestDeviation = glm::radians(45.0);
 
-/// How far the corners of a quadrilateral are from right angles: the largest deviation, radians.
+/// The largest deviation of a quadrilateral's corners from right angles, radians.
 double deviation(const std::array<Vec2, 4>& p) {
   double largest = 0;
   for (std::size_t k = 0; k < 4; ++k) {

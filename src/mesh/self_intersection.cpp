@@ -1,4 +1,4 @@
-// Do polygons of one surface cross or touch each other?
+// Tests whether polygons of one surface cross or touch each other.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -42,8 +42,8 @@ struct Polygons {
   }
 };
 
-/// Is a point of the polygon's plane inside it or on its rim? Seen along the normal's largest
-/// axis.
+/// Whether a point of the polygon's plane is inside it or on its rim, projected along the normal's
+/// largest axis.
 bool contains(const Polygons& all, Index p, const Vec3& point) {
   const Vec3 size = glm::abs(all.mesh.polygons.normal[p]);
   const int drop = size.x > size.y && size.x > size.z ? 0 : (size.y > size.z ? 1 : 2);
@@ -65,11 +65,11 @@ bool contains(const Polygons& all, Index p, const Vec3& point) {
   return inside;
 }
 
-/// Does an edge or corner of p pierce or touch q? What p and q share does not count.
+/// Whether an edge or corner of p pierces or touches q. Common points do not count.
 bool meets(const Polygons& all, Index p, Index q) {
   const Vec3& normal = all.mesh.polygons.normal[q];
   const Vec3& origin = all.mesh.polygons.origin[q];
-  // 1 above the plane of q, -1 below, 0 in it; what q has itself is in it, and is harmless.
+  // 1 above the plane of q, -1 below, 0 in it. Points of q are in it and do not count.
   const auto sideOf = [&](Index v, bool& shared) {
     shared = all.hasCorner(q, v);
     if (shared) return 0;

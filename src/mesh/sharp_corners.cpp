@@ -7,15 +7,15 @@ namespace radiosity {
 
 namespace {
 
-/// An edge as it leaves a vertex.
+/// An edge that leaves a vertex.
 struct Leaving {
   Vec3 direction;
   Index edge;
 };
 
-/// Looks at pairs whose directions are near each other along one axis, nearest first, until no
-/// pair can be sharper than what was found. Directions at less than a right angle are at most
-/// sqrt(2) times the sine apart.
+/// Tests pairs whose directions are near each other along one axis, nearest first, until no pair
+/// can be sharper than those found. Directions at less than a right angle are at most sqrt(2) times
+/// the sine apart.
 void lookAround(std::vector<Leaving>& at, std::vector<double>& sines) {
   std::sort(at.begin(), at.end(), [](const Leaving& a, const Leaving& b) {
     return a.direction.x != b.direction.x ? a.direction.x < b.direction.x : a.edge < b.edge;

@@ -1,4 +1,4 @@
-// How sharply edges leave their ends beside each other.
+// The angles between edges at their ends.
 #pragma once
 
 #include <array>
@@ -8,9 +8,9 @@
 
 namespace radiosity {
 
-/// For every edge (two vertices) the smallest sine of the angles at which other edges leave either
-/// of its ends beside it; 1 where none does at less than a right angle. Edges have a length. Takes
-/// about n log n, whatever the number of edges at a vertex.
+/// For every edge (two vertices) the smallest sine of its angles to other edges at either end; 1 if
+/// no angle is less than a right angle. Precondition: edges have a length. About O(n log n) for any
+/// number of edges at a vertex.
 std::vector<double> sharpestSines(const std::vector<Vec3>& vertices,
                                   const std::vector<std::array<Index, 2>>& edges);
 

@@ -17,7 +17,7 @@ struct SharedEdge {
   std::vector<Index> forward;
   std::vector<Index> backward;
 
-  /// Exactly two faces that meet: the edge is inside a sheet.
+  /// Whether exactly two faces meet, so that the edge is inside a sheet.
   bool isInside() const { return forward.size() == 1 && backward.size() == 1; }
 };
 
@@ -37,7 +37,7 @@ SharedEdges sharedEdges(const InputFaces& input, const std::vector<Index>& faces
   return out;
 }
 
-/// The sheets of faces that already agree in plane, surface and facing.
+/// Adds the sheets of faces that already agree in plane, surface and facing.
 void addSheets(const InputFaces& input, const std::vector<Index>& faces, const Sheet& common,
                std::vector<Sheet>& out) {
   std::map<Index, Index> local;

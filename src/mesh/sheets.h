@@ -1,4 +1,4 @@
-// Sheets: what the arrangement of a plane is made of, and the edges they share.
+// Sheets, from which the arrangement of a plane is made, and the edges that they share.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@
 
 namespace radiosity {
 
-/// Coplanar faces of one surface, facing alike, that hang together by edges. The edges between
-/// them are gone; what is left is the boundary.
+/// Coplanar faces of one surface that face alike and are connected by edges. A sheet has no edges
+/// between its faces, only the boundary.
 struct Sheet {
   Index plane = kNone;
   Index surface = kNone;
@@ -25,8 +25,8 @@ struct Sheet {
 
 std::vector<Sheet> findSheets(const InputFaces& input, const std::vector<Plane>& planes);
 
-/// A sheet along an edge: `count` > 0 runs from the smaller to the larger vertex, < 0 back; more
-/// than 1 where a sheet overlaps itself.
+/// A sheet along an edge. `count` > 0: it runs from the smaller to the larger vertex; < 0: back.
+/// The magnitude is more than 1 if a sheet overlaps itself.
 struct EdgeUse {
   Index sheet = kNone;
   int count = 0;
@@ -43,28 +43,28 @@ struct Edge {
   bool alive() const { return !uses.empty() || !contacts.empty(); }
 };
 
-/// All edges, each once. Edges that were split stay as dead entries.
+/// All edges, each once. Split edges stay as dead entries.
 class EdgeTable {
  public:
-  /// Room for so many edges.
+  /// Reserves room for `count` edges.
   void reserve(std::size_t count);
   Index find(Index a, Index b) const;
-  /// The edge between a and b (a != b), made if need be.
+  /// The edge between a and b (a != b); made if there is none.
   Index obtain(Index a, Index b);
   void addUse(Index from, Index to, Index sheet, int count);
   void addContact(Index a, Index b, Index plane);
   /// Replaces an edge by the path over `between` (from a to b); returns the path's edges.
   std::vector<Index> split(Index edge, const std::vector<Index>& between);
-  /// Replaces every vertex v by target[v]; returns the edges that came of it.
+  /// Replaces every vertex v by target[v]; returns the resulting edges.
   std::vector<Index> merge(const std::vector<Index>& target);
-  /// Edges that have been replaced since the last call, as they were, in no order.
+  /// The edges replaced since the last call, in their old state, in no order.
   std::vector<Edge> takeReplaced() { return std::exchange(replaced_, {}); }
 
   const Edge& operator[](Index e) const { return edges_[e]; }
   std::size_t size() const { return edges_.size(); }
 
  private:
-  /// Moves what an edge carries to the path from its a to its b.
+  /// Moves the uses and contacts of an edge to the path from its a to its b.
   std::vector<Index> replace(Index edge, const std::vector<Index>& path);
 
   std::vector<Edge> edges_;

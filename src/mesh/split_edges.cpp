@@ -13,8 +13,8 @@ namespace radiosity {
 
 namespace {
 
-/// The closest points of two segments, where both lie inside. Ericson, Real-Time Collision
-/// Detection (2005), section 5.1.9; ends are another test's business here.
+/// The closest points of two segments, if both lie inside them. Ericson, Real-Time Collision
+/// Detection (2005), section 5.1.9; another test handles ends.
 struct Approach {
   Vec3 on_first{0.0};
   Vec3 on_second{0.0};
@@ -42,7 +42,7 @@ class Splitter {
   Splitter(WeldedPoints& points, double coincidence, EdgeTable& edges)
       : points_(points), coincidence_(coincidence), edges_(edges) {}
 
-  /// Looks at all pairs with an edge of `changed`; returns the edges that came of splitting.
+  /// Tests all pairs with an edge of `changed`; returns the edges that splitting made.
   std::vector<Index> pass(const std::vector<Index>& changed, Progress& progress);
   std::vector<Index> apply(const std::vector<ForcedSplit>& splits);
   std::vector<Index> apply(const Repairs& repairs);
@@ -61,9 +61,9 @@ class Splitter {
   std::vector<ForcedSplit> splits_;
 };
 
-/// Closer than coincidence to the edge, and seeing it under an obtuse angle: then both parts are
-/// shorter than the whole by a fixed amount, so that splitting ends. (Without this a triangle of
-/// about one coincidence could split its sides for ever.)
+/// Whether a vertex is closer than coincidence to the edge and sees it under an obtuse angle. Both
+/// parts are then shorter than the whole by a fixed amount, so that splitting ends. (Otherwise a
+/// triangle of about one coincidence could split its sides for ever.)
 bool Splitter::isInside(Index vertex, const Edge& edge) const {
   if (vertex == edge.a || vertex == edge.b) return false;
   const Vec3& p = points_[vertex];
@@ -74,7 +74,7 @@ bool Splitter::isInside(Index vertex, const Edge& edge) const {
   return glm::length(glm::cross(to_a, to_b)) < coincidence_ * length;
 }
 
-/// Where two edges without a common vertex pass each other closer than coincidence.
+/// The points where two edges without a common vertex pass each other closer than coincidence.
 std::optional<Approach> Splitter::passOf(const Edge& f, const Edge& g) const {
   if (f.a == g.a || f.a == g.b || f.b == g.a || f.b == g.b) return std::nullopt;
   const auto approach = interiorApproach(points_[f.a], points_[f.b], points_[g.a], points_[g.b]);
@@ -84,7 +84,7 @@ std::optional<Approach> Splitter::passOf(const Edge& f, const Edge& g) const {
   return approach;
 }
 
-/// Whether pair() has anything to do.
+/// Whether pair() would split one of the two edges.
 bool Splitter::meet(Index first, Index second) const {
   const Edge& f = edges_[first];
   const Edge& g = edges_[second];
@@ -138,7 +138,7 @@ std::vector<Index> Splitter::apply(const std::vector<ForcedSplit>& splits) {
   return changed;
 }
 
-/// Merging first: a split may then be through an end of its edge, and is not needed.
+/// Merges first: a split may then be at an end of its edge, and is not needed.
 std::vector<Index> Splitter::apply(const Repairs& repairs) {
   UnionFind together(points_.size());
   for (const auto& [v, w] : repairs.merges) together.unite(v, w);
@@ -187,8 +187,8 @@ std::vector<Index> Splitter::pass(const std::vector<Index>& changed, Progress& p
   return apply(splits_);
 }
 
-/// The living edges, ascending, that may meet one of `changed`; those that are far from all of them
-/// are left out where that takes little.
+/// The living edges, ascending, that may meet one of `changed`. A quick filter leaves out most of
+/// those that are far from all of them.
 std::vector<Index> Splitter::edgesBeside(const std::vector<Index>& changed) const {
   std::vector<Box3> near;
   near.reserve(changed.size());

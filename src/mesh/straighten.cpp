@@ -28,7 +28,7 @@ class Straightener {
   }
 
   StraightEdges run() {
-    // Chains between vertices where something else meets, then what is left: rings.
+    // First the chains between vertices where other edges meet, then the rings that are left.
     for (std::size_t v = 0; v < at_.size(); ++v) {
       if (at_[v].empty() || !endsChain(Index(v))) continue;
       for (const Index e : at_[v]) {
@@ -47,7 +47,8 @@ class Straightener {
     std::vector<Index> edges;
   };
 
-  /// Nothing but the chain meets at a vertex inside it, and the chain is the same on both sides.
+  /// Whether a chain ends at a vertex: other edges meet there, it is kept, or the uses of the two
+  /// edges differ.
   bool endsChain(Index v) const {
     return at_[v].size() != 2 || keep_[v] ||
            !std::ranges::equal(uses_.of(at_[v][0]), uses_.of(at_[v][1]));
@@ -66,7 +67,8 @@ class Straightener {
     }
   }
 
-  /// Whether the chain from `begin` to `end` runs straight on, within coincidence of its chord.
+  /// Whether the chain from `begin` to `end` is straight: it advances along its chord and stays
+  /// within coincidence of it.
   bool isStraight(const std::vector<Index>& v, std::size_t begin, std::size_t end) const {
     const Vec3& a = points_[v[begin]];
     const Vec3 chord = points_[v[end]] - a;
@@ -96,7 +98,7 @@ class Straightener {
     }
   }
 
-  /// A ring has no end to begin at: begin at the first corner that is not straight.
+  /// Shortens a ring. It has no end, so we begin at the first corner that is not straight.
   void shortenRing(Index edge) {
     Chain ring = chain(edges_[edge][0], edge);
     ring.vertices.pop_back();

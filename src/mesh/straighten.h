@@ -1,4 +1,4 @@
-// Chains of edges without their straight vertices.
+// Removes straight vertices from chains of edges.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace radiosity {
 
-/// By edge a list of numbers.
+/// A list of numbers for each edge.
 struct EdgeUses {
   std::vector<std::size_t> begin;  ///< edges + 1, into numbers
   std::vector<Index> numbers;
@@ -21,13 +21,13 @@ struct EdgeUses {
 
 struct StraightEdges {
   std::vector<std::array<Index, 2>> edges;  ///< the remaining edges
-  std::vector<Index> edge_of;               ///< by given edge: the one it became a part of
+  std::vector<Index> edge_of;               ///< by given edge: the edge of which it is now a part
   std::vector<bool> removed;                ///< by vertex
 };
 
-/// Removes vertices at which exactly two of `edges` meet in a straight line: all that is removed
-/// between two neighbours that stay lies within coincidence of the line between them. Two edges
-/// become one only where both have the same `uses`: they border or cut the same polygons. Vertices
+/// Removes vertices at which exactly two of `edges` meet in a straight line: all vertices removed
+/// between two neighbours that stay lie within coincidence of the line between them. Two edges
+/// become one only if both have the same `uses`: they border or cut the same polygons. Vertices
 /// marked in `keep` stay.
 StraightEdges straighten(const WeldedPoints& points, double coincidence,
                          const std::vector<std::array<Index, 2>>& edges, const EdgeUses& uses,

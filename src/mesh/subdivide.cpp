@@ -23,19 +23,19 @@ namespace radiosity {
 
 namespace {
 
-// Where thousands of small polygons use up the patches asked for, walls are still cut: cells are at
-// most this much larger than if all area were shared out evenly.
+// The largest cells, relative to an even division of all area. So walls are still cut if thousands
+// of small polygons use up the patches asked for.
 constexpr double kLargestSize = 3.0;
 constexpr double kMuchMore = 1.15;
-// Where patches share unknowns, cells are so much larger than if all area were shared out evenly: a
-// wall still has a cluster every so often, and other patches grow by a tenth or two.
+// The size of cells if patches share unknowns, relative to an even division of all area: a wall
+// still has several clusters, and other patches grow by a tenth or two.
 constexpr double kSharedSize = 1.5;
-// Cuts opposite of vertices across narrow strips lie at least so many widths apart: patches there
-// lean over to a far point less, from atan(1 / spacing) on. The first that can be afforded.
+// The least distances of cuts opposite of vertices across narrow strips, in widths: angles of
+// patches there are at least atan(1 / spacing). We take the first that is affordable.
 constexpr double kSpacings[] = {1.0, 1.5, 2.0, 2.5, 3.0, 4.0};
-constexpr double kCoarser = 1.5;  // what they may cost: other cells at most this much larger
-// The background grid has as many steps as the polygon is sizes wide, rounded, and at least one:
-// one across all polygons of less than a step and a half. A little less, for what is rounded.
+constexpr double kCoarser = 1.5;  // the most by which these cuts may enlarge other cells
+// The background grid has one step across polygons of less than 1.5 sizes: the number of steps is
+// the polygon's width over the size, rounded, and at least one. A little less allows for rounding.
 constexpr double kPlainDiameter = 1.49;
 constexpr double kNoOpposites = std::numeric_limits<double>::infinity();
 
@@ -67,7 +67,7 @@ double outlineOf(const CoarseComplex& complex) {
   return length;
 }
 
-/// Diameter of the box around a polygon: an upper bound of the polygon's own.
+/// The diameter of the box around a polygon, an upper bound of the polygon's own.
 double diameterOf(const CoarseComplex& complex, const CoarsePolygon& polygon) {
   Box3 box;
   for (const auto& loop : polygon.loops) {
@@ -86,7 +86,7 @@ class Subdivision {
     }
   }
 
-  /// Cells of every polygon; returns how many there are.
+  /// Makes the cells of every polygon; returns their number.
   std::size_t run(const CellSize& size, Rounding rounding, double spacing) {
     for (;;) {
       cuts_.cut(std::isfinite(size.longest) ? size.longest : size.size, rounding, spacing);
@@ -101,7 +101,7 @@ class Subdivision {
     return recount();
   }
 
-  /// Joins cells to patches of up to size^2; returns how many patches there are.
+  /// Joins cells to patches of up to size^2; returns the number of patches.
   std::size_t join(double size) {
     parallelFor(cells_.size(), 16, [&](std::size_t p) {
       PolygonCells& polygon = cells_[p];
@@ -116,7 +116,7 @@ class Subdivision {
     return recount();
   }
 
-  /// Polygons whose edges are not cut, for they lie too near to each other.
+  /// The polygons whose edges are not cut, since they are too near to each other.
   const std::set<Index>& whole() const { return whole_; }
   void findOpposites(double largest) { cuts_.findOpposites(largest); }
   bool hasOpposites() const { return cuts_.hasOpposites(); }
@@ -133,7 +133,8 @@ class Subdivision {
     return count_;
   }
 
-  /// Fills cells_; returns the polygons, ascending, that have none, since their edges cross as cut.
+  /// Fills cells_; returns the polygons, ascending, that have no cells because their cut edges
+  /// cross.
   std::vector<Index> cutPolygons(const CellSize& size) {
     progress_.check();
     progress_.begin("cutting into patches", complex_.polygons.size());
@@ -167,8 +168,8 @@ class Subdivision {
     return out;
   }
 
-  /// No edge of the polygon is cut and no step of its background grid is shorter than the polygon:
-  /// then its cells are the same at any such size.
+  /// Whether no edge of the polygon is cut and no step of its background grid is shorter than the
+  /// polygon: then its cells are the same for any such size.
   bool isPlain(std::size_t p, const CellSize& size) const {
     return std::isinf(size.longest) && diameter_[p] < kPlainDiameter * size.size &&
            cuts_.isUncut(p);
@@ -178,14 +179,14 @@ class Subdivision {
   Progress& progress_;
   EdgeCuts cuts_;
   std::set<Index> whole_;
-  std::vector<double> diameter_;  ///< by polygon, at least
+  std::vector<double> diameter_;  ///< by polygon, an upper bound
   std::vector<PolygonCells> cells_;
   std::vector<char> is_plain_;  ///< by polygon: its cells are those of isPlain()
   std::size_t count_ = 0;
 };
 
-/// Leaves the subdivision at about `wanted` cells. Cuts opposite of vertices cost cells: they may
-/// neither cost the count that is had without them nor much coarser cells elsewhere.
+/// Subdivides to about `wanted` cells. Cuts opposite of vertices take cells: they must not raise
+/// the count much above that without them, nor make cells elsewhere much coarser.
 void meetCount(Subdivision& subdivision, double start, double wanted) {
   const double largest = kLargestSize * start;
   double spacing = kNoOpposites;
@@ -217,7 +218,7 @@ void meetCount(Subdivision& subdivision, double start, double wanted) {
   count(plain);
 }
 
-/// The same where outlines alone take more cells than that, by joining cells.
+/// The same by joining cells, for outlines that alone take more cells.
 void meetCountJoined(Subdivision& subdivision, double start, double wanted) {
   const double largest = kLargestSize * start;
   double last = 0;
@@ -232,15 +233,15 @@ void meetCountJoined(Subdivision& subdivision, double start, double wanted) {
   if (size != last) count(size);
 }
 
-/// Where patches will share unknowns: neither does a small polygon need more than one, nor is a
-/// large one to be cut coarser for it.
+/// Subdivides for patches that will share unknowns: a small polygon needs only one patch, and large
+/// polygons must not be cut more coarsely because of small ones.
 void cutToShare(Subdivision& subdivision, double size) {
   subdivision.run({size, std::numeric_limits<double>::infinity()}, Rounding::nearest, kNoOpposites);
   subdivision.join(size);
 }
 
-/// Enters what the patches have less than their polygons: cells without area in details as small as
-/// rounding, and polygons that could not be cut at all.
+/// Enters the area that patches lack compared with their polygons: cells without area in details as
+/// small as rounding, and polygons that could not be cut at all.
 void accountForCells(const CoarseComplex& complex, const PatchMesh& mesh, MeshReport& report) {
   std::vector<double> missing(complex.polygons.size());
   for (std::size_t p = 0; p < missing.size(); ++p)
@@ -290,8 +291,8 @@ PatchMesh subdivide(const CoarseComplex& complex, const Scene& scene, const Mesh
     subdivision.run({options.max_edge, options.max_edge}, Rounding::at_most, kSpacings[0]);
   } else {
     const double wanted = double(options.patches);
-    // A wide polygon has area / size^2 cells, a thin one half its outline / size: as many as a
-    // square at a quarter.
+    // A wide polygon has area / size^2 cells, a thin one has half its outline / size. A quarter of
+    // the outline suits a single square, too.
     const double start = std::max(std::sqrt(area / wanted), outlineOf(complex) / (4 * wanted));
     const double most = kMostPatchesKept * wanted;
     if (double(complex.polygons.size()) <= most) {

@@ -16,9 +16,9 @@ namespace radiosity {
 
 namespace {
 
-constexpr std::size_t kEdgesAtATime = 1024;  // a task of a thread
+constexpr std::size_t kEdgesAtATime = 1024;  // for each task of a thread
 
-/// Points by the cell of a cubic grid they lie in, cells by a hash of theirs.
+/// Points by their cell in a cubic grid, and cells by a hash.
 class PointGrid {
  public:
   PointGrid(const PatchMesh& mesh, const std::vector<Index>& points, const Vec3& lower, double cell)
@@ -48,7 +48,7 @@ class PointGrid {
         for (long x = a[0]; x <= b[0]; ++x) {
           const std::size_t at = slot(x, y, z);
           for (std::size_t k = begin_[at]; k < begin_[at + 1]; ++k) {
-            // Cells share slots.
+            // Several cells may share a slot.
             const Index vertex = points_[k];
             if (cellOf(mesh_.vertices[vertex]) == std::array<long, 3>{x, y, z}) visit(vertex);
           }
@@ -79,14 +79,14 @@ class PointGrid {
 
 struct Edges {
   std::vector<std::array<Index, 2>> ends;
-  std::vector<Index> patch;  ///< one that has the edge
+  std::vector<Index> patch;  ///< a patch with the edge
   double mean_length = 0;
 };
 
 Edges distinctEdges(const PatchMesh& mesh) {
   struct Side {
     std::uint64_t key;
-    std::size_t corner;  ///< that it begins at
+    std::size_t corner;  ///< where it begins
     auto operator<=>(const Side&) const = default;
   };
   std::vector<Side> sides;
@@ -143,7 +143,8 @@ std::vector<Index> patchesAtTJunctions(const PatchMesh& mesh, double tolerance) 
     const Vec3 along = mesh.vertices[to] - a;
     const double length = glm::length(along);
     if (length <= 2 * tolerance) return;
-    // Long edges are walked in steps of a cell; a point belongs to the step it projects onto.
+    // We walk along long edges in steps of a cell; a point belongs to the step onto which it
+    // projects.
     const double steps = std::ceil(length / cell);
     for (double step = 0; step < steps; ++step) {
       const Vec3 p = a + along * (step / steps);

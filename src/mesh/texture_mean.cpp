@@ -11,8 +11,8 @@ namespace radiosity {
 
 namespace {
 
-/// Resamples rows of `count` pixels of `stride` floats to half as many (at least one), each the
-/// area mean of what it covers: an odd row's pixels are shared between two.
+/// Halves rows of pixels (to at least one), each the area mean of the pixels that it covers. In a
+/// row of odd length, pixels are shared between two.
 std::vector<float> halveRows(std::span<const float> pixels, long count, long rows) {
   const long half = std::max(1L, count / 2);
   const double ratio = double(count) / double(half);
@@ -35,7 +35,7 @@ std::vector<float> halveRows(std::span<const float> pixels, long count, long row
   return result;
 }
 
-/// Where a line of constant y runs through a convex polygon; empty (low > high) where it misses it.
+/// The part of a line of constant y within a convex polygon; empty (low > high) if it misses it.
 struct Stretch {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
@@ -130,13 +130,13 @@ Vec3 TextureMean::over(std::span<const Vec2> uv) const {
   Stretch above = stretchAt(polygon, std::floor(low.y * size.y));
   for (double j = std::floor(low.y * size.y); j < high.y * size.y; ++j) {
     const Stretch below = stretchAt(polygon, j + 1);
-    // Of a convex polygon, what is between both stretches is covered over the whole row.
+    // In a convex polygon, columns within both stretches are covered over the whole row.
     const double from = std::ceil(std::max(above.low, below.low));
     const double to = std::max(from, std::floor(std::min(above.high, below.high)));
     addRow(level, polygon, j, from, to, sum);
     above = below;
   }
-  return sum.area > 0 ? sum.colour / sum.area : at(0.5 * (low + high));  // lost in rounding
+  return sum.area > 0 ? sum.colour / sum.area : at(0.5 * (low + high));  // no area, by rounding
 }
 
 void TextureMean::addRow(const Level& level, const std::vector<Vec2>& polygon, double j,
@@ -172,7 +172,7 @@ void TextureMean::addRow(const Level& level, const std::vector<Vec2>& polygon, d
 Vec3 TextureMean::texelsBetween(const Level& level, long i, long end, long j) const {
   Vec3 sum(0.0);
   while (i < end) {
-    // So far the texture is one piece of memory, or a clamped texel is repeated.
+    // Up to here the texture is contiguous in memory, or a clamped texel is repeated.
     const long inside = texture_.repeat ? (i % level.width + level.width) % level.width : i;
     const bool clamped = inside < 0 || inside >= level.width;
     if (clamped) {

@@ -8,15 +8,15 @@
 
 namespace radiosity {
 
-/// A texture taken as texels of constant colour, with box-filtered halves of it.
+/// A texture of texels with constant colour, with box-filtered half-size versions.
 class TextureMean {
  public:
   explicit TextureMean(const Texture& texture);
 
-  /// The mean over a convex polygon of texture coordinates: every texel weighted by its area in
-  /// the polygon, exact to rounding as long as the polygon's box has at most kMostTexels texels.
-  /// Larger ones are summed over the first halved texture that has few enough; that widens the
-  /// polygon's edge by less than 1/256 of its box.
+  /// The mean over a convex polygon of texture coordinates: every texel is weighted by its area in
+  /// the polygon. It is exact to rounding if the polygon's box has at most kMostTexels texels.
+  /// Larger polygons are summed over the first halved texture with few enough texels; that widens
+  /// the polygon's edge by less than 1/256 of its box.
   Vec3 over(std::span<const Vec2> uv) const;
 
   /// The texel at (u, v).
@@ -36,7 +36,7 @@ class TextureMean {
   const float* pixel(const Level& level, long i, long j) const;
   Vec3 texel(const Level& level, long i, long j) const;
   Vec3 texelsBetween(const Level& level, long i, long end, long j) const;
-  /// Row j of the polygon, in texels, which covers those from `from` to `to` whole.
+  /// Adds row j of the polygon, in texels; texels from `from` to `to` are covered completely.
   void addRow(const Level& level, const std::vector<Vec2>& polygon, double j, double from,
               double to, Sum& sum) const;
 

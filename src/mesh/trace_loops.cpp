@@ -24,8 +24,8 @@ class Tracer {
   }
 
  private:
-  /// How far to turn clockwise at `at` from looking back to `back` to looking at `to`, in
-  /// (0, 2 pi]. The inside lies in between.
+  /// The clockwise turn at `at` from the direction of `back` to that of `to`, in (0, 2 pi]. The
+  /// inside lies in between.
   double turn(Index back, Index at, Index to) const {
     const Vec2 o = frame_(points_[at]);
     const Vec2 b = frame_(points_[back]) - o;
@@ -48,8 +48,8 @@ class Tracer {
     return best;
   }
 
-  /// Follows the border around the inside; whenever it comes back to a vertex, what lies between
-  /// is a loop of its own.
+  /// Follows the border around the inside. Whenever it returns to a vertex, the part in between is
+  /// a loop.
   void trace(Index edge) {
     std::vector<Index> path;
     std::map<Index, std::size_t> position;

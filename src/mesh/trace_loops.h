@@ -1,4 +1,4 @@
-// Loops of a polygon from its loose edges.
+// Makes the loops of a polygon from its edges.
 #pragma once
 
 #include <array>
@@ -9,9 +9,8 @@
 
 namespace radiosity {
 
-/// Puts directed edges, the inside on their left seen along `frame`, together into loops that
-/// visit no vertex twice. Where several loops touch at a vertex they are kept apart, so that none
-/// crosses another.
+/// Joins directed edges, with the inside on their left in the image `frame`, into loops that visit
+/// no vertex twice. Loops that touch at a vertex are kept apart, so that none crosses another.
 std::vector<std::vector<Index>> traceLoops(const WeldedPoints& points, const PlaneImage& frame,
                                            const std::vector<std::array<Index, 2>>& edges);
 

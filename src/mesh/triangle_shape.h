@@ -1,4 +1,4 @@
-// Shapes of triangles in the plane, and points that would better them.
+// Shapes of triangles in the plane, and points that would improve them.
 #pragma once
 
 #include <array>
@@ -11,11 +11,11 @@
 
 namespace radiosity {
 
-/// An angle from 0 to pi as the sides of a right triangle: of a triangle's corner they are what
-/// angleAt() gives to std::atan2(). Most angles can be told apart without taking the arctangent.
+/// An angle from 0 to pi as the sides of a right triangle: the arguments that angleAt() passes to
+/// std::atan2(). Most angles can be compared without the arctangent.
 struct Angle {
   double opposite = 0;
-  double adjacent = -1;  ///< as made without arguments: half a turn
+  double adjacent = -1;  ///< the default is half a turn
 
   Angle() = default;
   Angle(double sine, double cosine) : opposite(sine), adjacent(cosine) {}
@@ -29,8 +29,8 @@ struct Angle {
   }
 
  protected:
-  /// Two angles differ by the arcsine of their cross product over the product of their lengths:
-  /// where that is more than 1e-12, arctangents, good to 1e-15, say the same.
+  /// Two angles differ by the arcsine of their cross product over the product of their lengths. If
+  /// that is more than 1e-12, arctangents, good to 1e-15, give the same order.
   template <class Radians>
   bool isBelow(const Angle& limit, const Radians& radians_of_limit) const {
     const double cross = adjacent * limit.opposite - opposite * limit.adjacent;
@@ -72,8 +72,8 @@ inline double heightOver(const Vec2& p, const Vec2& a, const Vec2& b) {
   return std::abs(cross2(b - a, p - a)) / glm::length(b - a);
 }
 
-/// Where a point might mend the triangle p: its circumcentre, its centroid, and apexes of good
-/// triangles over its shortest edge (the off-centres of Uengoer 2009).
+/// Candidate points that may improve the triangle p: its circumcentre, its centroid, and apexes of
+/// good triangles over its shortest edge (the off-centres of Uengoer 2009).
 inline std::array<Vec2, 6> candidatesFor(const Vec2 (&p)[3]) {
   const auto heightOf = [](double angle) { return 0.5 / std::tan(0.5 * glm::radians(angle)); };
   static const std::array<double, 4> heights{heightOf(30.0), heightOf(45.0), heightOf(60.0),

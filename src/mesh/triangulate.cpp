@@ -20,14 +20,14 @@ namespace radiosity {
 
 namespace {
 
-// Outlines with more corners are not clipped ear by ear if they need not be.
+// Outlines with more corners than this are clipped ear by ear only if necessary.
 constexpr std::size_t kManyCorners = 64;
 
 using Triangles = std::vector<std::array<Index, 3>>;
 
 double turn(const Vec2& a, const Vec2& b, const Vec2& c) { return cross2(b - a, c - a); }
 
-/// Whether the corner `k` of the remaining outline can be cut off: convex, and no other corner
+/// Whether corner `k` of the remaining outline can be cut off: it is convex, and no other corner is
 /// inside or on the triangle (repeats of its own corners do not count).
 bool isEar(std::span<const Vec2> p, const std::vector<Index>& rest, std::size_t k, double sign) {
   const std::size_t n = rest.size();
@@ -45,7 +45,7 @@ bool isEar(std::span<const Vec2> p, const std::vector<Index>& rest, std::size_t 
   return true;
 }
 
-/// Whether the corner `k` lies in line with its neighbours: cutting it off takes no area away.
+/// Whether corner `k` lies in line with its neighbours, so that cutting it off removes no area.
 bool isFlat(std::span<const Vec2> p, const std::vector<Index>& rest, std::size_t k) {
   const std::size_t n = rest.size();
   return turn(p[rest[(k + n - 1) % n]], p[rest[k]], p[rest[(k + 1) % n]]) == 0;
@@ -75,7 +75,7 @@ Triangles clipEars(std::span<const Vec2> outline) {
     for (std::size_t flat = 0; flat < n && ear == n; ++flat) {
       if (isFlat(outline, rest, flat)) ear = flat;
     }
-    if (ear == n) ear = 0;  // the outline crosses itself: any triangle is as good as another
+    if (ear == n) ear = 0;  // the outline crosses itself, so any triangle will do
     triangles.push_back({rest[(ear + n - 1) % n], rest[ear], rest[(ear + 1) % n]});
     rest.erase(rest.begin() + std::ptrdiff_t(ear));
     k = ear < rest.size() ? ear : 0;
@@ -95,7 +95,7 @@ using MarkedTriangulation = CGAL::Constrained_Delaunay_triangulation_2<
     CGAL::No_constraint_intersection_requiring_constructions_tag>;
 constexpr int kUnknown = std::numeric_limits<int>::min();
 
-/// Loops in the plane: the corners of one after those of another.
+/// Loops in the plane, with the corners of all loops in one array.
 struct FlatLoops {
   std::vector<Vec2> corners;
   std::vector<std::size_t> ends;  ///< of each loop, into corners
@@ -105,7 +105,7 @@ class LoopTriangulation {
  public:
   explicit LoopTriangulation(const FlatLoops& loops) : loops_(loops) {}
 
-  /// Nothing if loops cross, or wind around anything but 0 or `winding` times.
+  /// The triangles; empty if loops cross, or if a winding number is neither 0 nor `winding`.
   std::optional<Triangles> run(int winding) {
     insertCorners();
     if (!insertLoops()) return std::nullopt;
@@ -123,7 +123,7 @@ class LoopTriangulation {
   }
 
  private:
-  /// Corners in one place become one vertex, which has the name of the first.
+  /// Inserts corners; those in one place become one vertex with the number of the first.
   void insertCorners() {
     const std::vector<Vec2>& p = loops_.corners;
     std::vector<Index> order(p.size());
@@ -147,7 +147,7 @@ class LoopTriangulation {
     for (Index k = 0; k < p.size(); ++k) vertices_[k] = vertices_[first[k]];
   }
 
-  /// False if they cross.
+  /// Inserts the loops as constraints; false if they cross.
   bool insertLoops() {
     std::size_t begin = 0;
     for (const std::size_t end : loops_.ends) {
@@ -167,7 +167,7 @@ class LoopTriangulation {
     return true;
   }
 
-  /// Counts the edges that a b consists of: other corners may lie on it.
+  /// Counts the loops along the edges of a b, on which other corners may lie.
   void countAlong(MarkedTriangulation::Vertex_handle a, MarkedTriangulation::Vertex_handle b) {
     while (a != b) {
       MarkedTriangulation::Vertex_handle next;
@@ -180,8 +180,8 @@ class LoopTriangulation {
     }
   }
 
-  /// Finds the winding of every triangle, starting outside, where it is 0: across an edge it
-  /// changes by the number of loops that run along the edge.
+  /// Finds the winding number of every triangle. It starts outside, where it is 0; across an edge
+  /// it changes by the number of loops that run along the edge.
   void wind() {
     for (const auto f : cdt_.all_face_handles()) f->info() = kUnknown;
     std::vector<MarkedTriangulation::Face_handle> open{cdt_.infinite_face()};
@@ -208,7 +208,7 @@ class LoopTriangulation {
   std::unordered_map<std::uint64_t, int> along_;  ///< loops along a directed edge, less those back
 };
 
-/// Cuts a quadrilateral along the shorter of the diagonals inside it; nothing if neither is inside.
+/// Cuts a quadrilateral along the shorter of its inner diagonals; empty if neither is inside.
 std::optional<Triangles> halves(std::span<const Index> loop, const std::array<Vec2, 4>& p) {
   const bool first = turn(p[0], p[1], p[2]) > 0 && turn(p[0], p[2], p[3]) > 0;
   const bool second = turn(p[0], p[1], p[3]) > 0 && turn(p[1], p[2], p[3]) > 0;

@@ -26,11 +26,11 @@ struct Sum {
   }
 };
 
-/// Returns the area that was appended.
+/// Appends a triangle and returns its area.
 double appendTriangle(const std::array<Vec3, 3>& corners, const InputFace& face, bool back,
                       CoarseComplex& complex) {
   const Vec3 area = vectorArea(3, [&](std::size_t k) { return corners[k]; });
-  // Thinner than rounding can tell: no patch has a normal there.
+  // The triangle is thinner than rounding, so it has no normal.
   if (!(glm::dot(area, face.normal) > 0)) return 0;
   CoarsePolygon p;
   auto& loop = p.loops.emplace_back();

@@ -1,4 +1,4 @@
-// Faces that could not be merged or cut with the others.
+// Handles faces that could not be merged or cut with the others.
 #pragma once
 
 #include "mesh/complex.h"
@@ -6,13 +6,13 @@
 
 namespace radiosity {
 
-/// Appends `input.uncut` to a complex as triangles on vertices of their own. What they touch is not
-/// cut there, nor are they. Area that welding or a crossing of its own moves off a face goes to its
-/// surface's `degenerate`.
+/// Appends `input.uncut` to a complex as triangles with vertices of their own. Neither they nor the
+/// faces that they touch are cut there. Area that a face loses by welding or by crossing itself is
+/// added to its surface's `degenerate`.
 void addUncut(const Scene& scene, const InputFaces& input, CoarseComplex& complex,
               MeshReport& report);
 
-/// Says by surface which faces are not merged with their neighbours, and which are not cut.
+/// Notes, by surface, faces that are not merged with their neighbours and faces that are not cut.
 void noteHandling(const InputFaces& input, MeshReport& report);
 
 }  // namespace radiosity

@@ -22,7 +22,7 @@ Index WeldedPoints::find(const Vec3& p) const {
     const auto [begin, end] = cells_.equal_range(key(cell));
     for (auto it = begin; it != end; ++it) {
       const double d = glm::distance(points_[it->second], p);
-      // Ties go to the older point, so that the order within a bucket does not matter.
+      // Of equally near points the older wins, so that the order within a bucket does not matter.
       if (d < best_distance || (d == best_distance && best != kNone && it->second < best)) {
         best = it->second;
         best_distance = d;

@@ -1,4 +1,4 @@
-// Points of which no two are closer than the weld radius.
+// A set of points in which no two are closer than the weld radius.
 #pragma once
 
 #include <cstdint>
@@ -15,10 +15,11 @@ class WeldedPoints {
 
   /// The nearest point closer than the radius, or kNone.
   Index find(const Vec3& p) const;
-  /// find(), or else a new point at `p`. A point never moves: chains of close points do not creep.
+  /// find(), or else a new point at `p`. A point never moves, so chains of close points do not
+  /// drift.
   Index insert(const Vec3& p);
 
-  /// find() and insert() no longer return point `i`; its place stays readable.
+  /// Retires point `i`: find() and insert() no longer return it; its place stays readable.
   void retire(Index i);
 
   const Vec3& operator[](Index i) const { return points_[i]; }

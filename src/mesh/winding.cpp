@@ -12,22 +12,21 @@ namespace radiosity {
 
 namespace {
 
-/// A cell at an edge, with the space on its side of larger angles about the edge and the one on
-/// its side of smaller angles.
+/// A cell at an edge, with the spaces on its sides of larger and of smaller angles about the edge.
 struct Wing {
   Index after;
   Index before;
 };
 
-/// Joins the sides that look into one space. Around an edge with just two cells there are just
-/// two spaces: each cell's one side shares one with the other cell's opposite side. Every contact
-/// is an edge, so nothing else passes there.
+/// Joins the sides that look into one space. Around an edge with just two cells there are just two
+/// spaces: one side of each cell shares a space with the opposite side of the other. Every contact
+/// is an edge, so no other cell passes there.
 UnionFind joinSpaces(const Arrangement& arrangement) {
   UnionFind spaces(2 * arrangement.cells.size());
   for (const auto& at_edge : arrangement.sides) {
     std::vector<Wing> wings;
     for (const EdgeSides& s : at_edge) {
-      // About the edge from a to b, a cell on the left of it has larger angles above it.
+      // About the edge from a to b, a cell on its left has larger angles above.
       if (s.left != kNone) wings.push_back({2 * s.left + kAbove, 2 * s.left + kBelow});
       if (s.right != kNone) wings.push_back({2 * s.right + kBelow, 2 * s.right + kAbove});
     }
@@ -38,7 +37,8 @@ UnionFind joinSpaces(const Arrangement& arrangement) {
   return spaces;
 }
 
-/// The part of the cell's own plane in its winding number: half of it, behind or in front.
+/// The part of the winding number that comes from the cell's own plane: one half, behind or in
+/// front.
 double ownPlane(const PlaneCell& cell, Side side, Index component, const std::vector<Sheet>& sheets,
                 const Components& components) {
   double sum = 0;
@@ -66,7 +66,7 @@ Winding::Winding(const Arrangement& arrangement, const std::vector<Sheet>& sheet
                  const Components& components, double coincidence) {
   const auto& cells = arrangement.cells;
   UnionFind joined = joinSpaces(arrangement);
-  // Each space is looked at from the roomiest of its cells.
+  // The eye of each space is at the roomiest of its cells.
   std::vector<Index> best(2 * cells.size(), kNone);
   for (Index k = 0; k < 2 * cells.size(); ++k) {
     Index& b = best[joined.find(k)];
@@ -87,7 +87,7 @@ Winding::Winding(const Arrangement& arrangement, const std::vector<Sheet>& sheet
   lookAround(eyes, arrangement, sheets, components, coincidence);
 }
 
-/// Fills spaces_ by what is seen from each space's eye.
+/// Fills spaces_ with the winding numbers at each space's eye.
 void Winding::lookAround(const std::vector<Index>& eyes, const Arrangement& arrangement,
                          const std::vector<Sheet>& sheets, const Components& components,
                          double coincidence) {
@@ -104,7 +104,7 @@ void Winding::lookAround(const std::vector<Index>& eyes, const Arrangement& arra
   }
   std::vector<Index> bodies(closed.size());
   std::iota(bodies.begin(), bodies.end(), Index(eyes.size()));
-  // Pairs come by eye first, then by component: entries ascend.
+  // Pairs are sorted by eye, then by component, so entries ascend.
   for (const auto& [eye, box] : overlappingPairs(boxes, bodies)) {
     if (eye >= eyes.size() || box < eyes.size()) continue;
     const std::size_t k = box - eyes.size();

@@ -11,14 +11,14 @@ namespace radiosity {
 /// The two sides of a cell.
 enum Side : int { kAbove = 0, kBelow = 1 };
 
-/// For each side of each cell, the closed components it looks into and how many times.
+/// For each side of each cell, the closed components into which it looks, with the number of times.
 class Winding {
  public:
   Winding(const Arrangement& arrangement, const std::vector<Sheet>& sheets,
           const Components& components, double coincidence);
 
-  /// Winding number of closed component `c` in the space next to a side of a cell: 1 inside,
-  /// 0 outside (other numbers where it overlaps itself).
+  /// Winding number of closed component `component` in the space next to a side of a cell: 1
+  /// inside, 0 outside (other numbers where the component overlaps itself).
   int of(Index component, Index cell, Side side) const;
 
   struct Entry {

@@ -29,13 +29,13 @@ std::string Container::headerText(std::size_t first_array) const {
     header["arrays"][array.name] = {
         {"type", array.type}, {"offset", first_array + array.begin}, {"length", array.length}};
   }
-  // A name need not be valid UTF-8 in an OBJ; JSON must be.
+  // A name from an OBJ file need not be valid UTF-8, but JSON must be.
   return header.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::vector<std::byte> Container::bytes() const {
-  // Offsets stand in the header, and its length in them: room is made for offsets with as many
-  // digits as there can be.
+  // The header contains offsets, which depend on its length. So we reserve room for offsets with
+  // the most digits.
   constexpr std::size_t kMostDigits = 9'999'999'999;
   const std::size_t length = padded(headerText(kMostDigits).size());
   std::string header = headerText(kHeadBytes + length);

@@ -1,4 +1,4 @@
-// Named arrays behind a header that says where each lies: what a page holds of the scene.
+// The scene's data in a page: a header, and named arrays whose places are in the header.
 #pragma once
 
 #include <bit>
@@ -19,10 +19,10 @@ class Container {
  public:
   using Json = nlohmann::ordered_json;
 
-  /// What the header says besides "arrays".
+  /// The header without "arrays".
   Json& header() { return header_; }
 
-  /// Errors: RunError naming the array where a value is not finite.
+  /// Adds an array. Errors: RunError naming the array if a value is not finite.
   void add(const std::string& name, std::span<const float> values) {
     requireFinite(name, values);
     append(name, "f32", values);

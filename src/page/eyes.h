@@ -1,4 +1,4 @@
-// Where the eyes of gathering stand: a page gathers with those of `radiosity gather`.
+// The eyes of gathering: a page uses those of `radiosity gather`.
 #pragma once
 
 #include "page/container.h"
@@ -6,9 +6,9 @@
 
 namespace radiosity::page {
 
-/// eye_position (less `origin`), eye_normal, eye_axis: one eye a corner group, in the order of the
-/// first shading vertices. Insets and turns are those of GatherOptions. Normal and axis are 0 for
-/// an eye that stands for no area.
+/// Adds eye_position (less `origin`), eye_normal and eye_axis: one eye for each corner group, in
+/// the order of the first shading vertices. Insets and turns are those of GatherOptions. Normal and
+/// axis are 0 for an eye that represents no area.
 void addEyes(const PatchMesh& mesh, double crease, const Vec3& origin, Container& container);
 
 }  // namespace radiosity::page

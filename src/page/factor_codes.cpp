@@ -9,7 +9,7 @@ namespace radiosity::page {
 
 namespace {
 
-/// All pairs of a row that are left out together stay below this.
+/// The most that all omitted pairs of a row sum to.
 constexpr double kNegligibleRow = 1e-9;
 
 /// Calls visit(i, j, F_ij) for j >= i, row by row, columns increasing.
@@ -24,7 +24,7 @@ void forUpper(const ExchangeMatrix& matrix, Progress& progress, const Visit& vis
   });
 }
 
-/// Looks at all pairs, then gives each its code.
+/// Finds the range of all pairs, then gives each pair its code.
 class Encoder {
  public:
   Encoder(const ExchangeMatrix& matrix, Progress& progress)
@@ -51,7 +51,7 @@ class Encoder {
     return std::max(factor, backwards(i, j, factor)) >= negligible_;
   }
 
-  /// Code 1 is the smallest that is kept, the last code the largest.
+  /// Chooses the scale: code 1 is the smallest value that is kept, the last code the largest.
   void chooseScale() {
     double smallest = std::numeric_limits<double>::infinity();
     double largest = 0;
@@ -92,7 +92,7 @@ class Encoder {
     codes_.begin.assign(n + 1, 0);
     codes_.code.reserve(dense ? n * (n + 1) / 2 : codes_.pairs);
     if (!dense) codes_.column.reserve(codes_.pairs);
-    // Where the codes of row i begin: dense rows before it have n, n - 1, ... of them.
+    // The first code of row i: dense rows before it have n, n - 1, ... codes.
     const auto denseBegin = [&](std::size_t i) { return i * (2 * n + 1 - i) / 2; };
     if (dense) codes_.code.assign(denseBegin(n), 0);
     forUpper(matrix_, progress_, [&](std::size_t i, Index j, double factor) {

@@ -1,4 +1,4 @@
-// Form factors in 16 bits each, one a pair.
+// Form factors in 16 bits each, one for each pair.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 namespace radiosity::page {
 
 /// F_ij of all pairs i <= j, row by row; F_ji = F_ij A_i / A_j. Logarithms are rounded to 65,535
-/// equal steps, so that every form factor has the same relative error and none is favoured.
+/// equal steps, so that every form factor has the same relative error.
 struct FactorCodes {
   std::vector<std::uint32_t> begin;   ///< K + 1, into the others
   std::vector<std::uint32_t> column;  ///< increasing in a row; empty: rows hold every j >= i
@@ -23,7 +23,7 @@ struct FactorCodes {
 };
 
 /// The codes of a symmetric matrix (ExchangeMatrix::isSymmetric()) of at most kMostPageUnknowns
-/// rows. Rows are dense where more than half of all pairs are kept. Throws Cancelled.
+/// rows. Rows are dense if more than half of all pairs are kept. Throws Cancelled.
 FactorCodes encodeFactors(const ExchangeMatrix& matrix, Progress& progress);
 
 }  // namespace radiosity::page

@@ -59,7 +59,7 @@ Json materialsOf(const Scene& scene, const std::vector<MaterialColours>& colours
   return materials;
 }
 
-/// What the method worked to; a hemicube works to no tolerance.
+/// The tolerance of the method; null for hemicubes, which have none.
 Json toleranceOf(const FormFactors& factors, const FormFactorOptions& options) {
   const auto method = named(kMethodNames, factors.method);
   if (!method || *method == FormFactorMethod::hemicube) return nullptr;

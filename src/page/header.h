@@ -1,4 +1,4 @@
-// What the header of a page's container says of a lit scene, besides where its arrays lie.
+// The description of a lit scene in the header of a page's container.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace radiosity::page {
 
-/// Colours of patches, N * 3 each, whatever the number of bands: one band three times.
+/// Colours of patches, N * 3 each; one band is repeated three times.
 struct PatchColours {
   std::vector<double> reflectance;
   std::vector<double> emission;    ///< W/m^2
@@ -19,20 +19,20 @@ struct PatchColours {
 /// Errors: as rgbOf().
 PatchColours patchColours(const PatchMaterials& materials, const Solution& solution);
 
-/// The mean over the area of the patches that have it, or what they all have, to the bit.
+/// The colours of a material: the common value of its patches, to the bit, or their mean by area.
 struct MaterialColours {
   Vec3 reflectance{0.0};
   Vec3 emission{0.0};     ///< W/m^2
   bool textured = false;  ///< patches differ
 };
-/// One a material of the scene; of those without patches, as the scene says.
+/// The colours of each material of the scene; those of the scene itself if it has no patches.
 std::vector<MaterialColours> materialColours(const Scene& scene, const PatchMesh& mesh,
                                              const PatchColours& patches);
 
-/// Title, view, surfaces and materials.
+/// Writes title, view, surfaces and materials.
 void describeScene(Container::Json& header, const Scene& scene, const PatchMesh& mesh,
                    const PatchColours& patches, const PageOptions& options);
-/// Method, solver and what they say of their errors.
+/// Writes the method, the solver and their errors.
 void describeSolution(Container::Json& header, const FormFactors& factors, const Solution& solution,
                       const PipelineOptions& options);
 void describe(Container::Json& header, const FactorQuantisation& quantisation);

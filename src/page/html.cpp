@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kChunk = std::size_t(1) << 20;
 
-/// zlib's compressor, ended whatever happens.
+/// Owns zlib's compressor and ends it in any case.
 class Deflate {
  public:
   Deflate() {
@@ -31,7 +31,7 @@ class Deflate {
   Deflate& operator=(const Deflate&) = delete;
 
   void append(std::span<const std::byte> chunk, bool is_last, std::string& out) {
-    // The interface is older than const.
+    // zlib's interface has no const here.
     stream_.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(chunk.data()));
     stream_.avail_in = uInt(chunk.size());
     do {

@@ -1,4 +1,4 @@
-// The page itself: the browser's half, made beforehand, with a scene's data put in.
+// The page itself: the template, which is built beforehand, with a scene's data.
 #pragma once
 
 #include <cstddef>
@@ -10,18 +10,17 @@
 
 namespace radiosity::page {
 
-/// The page without data, in which kDataMark stands once; empty where the program was built
-/// without node and npm.
+/// The page without data, with kDataMark once; empty if the program was built without node and npm.
 std::string_view pageTemplate();
 
 inline constexpr std::string_view kDataMark = "<!--radiosity-data-->";
 
-/// gzip (RFC 1952), the same bytes for the same data. Throws Cancelled.
+/// Compresses by gzip (RFC 1952), with the same bytes for the same data. Throws Cancelled.
 std::string gzipped(std::span<const std::byte> data, Progress& progress);
 
-/// Writes `before` the mark, the data in a script element of its own, and what is after it. Returns
-/// how many bytes the data takes. Errors: RunError where the template lacks the mark and as
-/// CheckedFile; Cancelled.
+/// Writes the template with the data, in a script element, in place of the mark. Returns the number
+/// of bytes of the data. Errors: RunError if the template lacks the mark, and those of CheckedFile;
+/// Cancelled.
 std::size_t writeHtml(const std::string& path, std::string_view page_template,
                       std::span<const std::byte> data, Progress& progress);
 

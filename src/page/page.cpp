@@ -43,7 +43,7 @@ void addPatches(const PatchMesh& mesh, const PatchColours& colours, const Vec3& 
   container.add("irradiance", floats(colours.irradiance));
 }
 
-/// As solve() takes them: an exact row's account of the sky may be a little below 0.
+/// The shares of the sky, as in solve(): an exact row's account may be a little below 0.
 std::vector<float> skyShares(const FormFactors& factors) {
   std::vector<float> shares;
   shares.reserve(factors.sky.size());

@@ -1,4 +1,4 @@
-// A pipeline's stages as the data of a page.
+// Packs a pipeline's stages as the data of a page.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@
 
 namespace radiosity::page {
 
-/// The container (src/page/README.md). `report` gets all but the packed size. Errors: as
-/// writePage(), but for those of the file.
+/// The bytes of the container (src/page/README.md). `report` gets everything but the packed size.
+/// Errors: those of writePage(), except those of the file.
 std::vector<std::byte> pageData(Pipeline& pipeline, const SurfaceLight& light,
                                 const PageOptions& options, Progress& progress, PageReport& report);
 

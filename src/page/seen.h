@@ -1,4 +1,4 @@
-// What a page needs to find light within unknowns that patches share.
+// The data with which a page finds light within unknowns that patches share.
 #pragma once
 
 #include "page/container.h"
@@ -6,8 +6,8 @@
 
 namespace radiosity::page {
 
-/// seen_*: seenPatches(), values of axes of items in 16 bits. All have length 0 where each patch is
-/// an unknown. Throws Cancelled.
+/// Adds seen_*: seenPatches(), with values of axes of items in 16 bits. All have length 0 if each
+/// patch is an unknown. Throws Cancelled.
 void addSeenPatches(const PatchMesh& mesh, Progress& progress, Container& container);
 
 }  // namespace radiosity::page

@@ -15,7 +15,8 @@ class ShadingBuilder {
  public:
   explicit ShadingBuilder(const PatchMesh& mesh) : mesh_(mesh) { made_.begin.push_back(0); }
 
-  /// Each patch once, though it may have several corners side by side in the group.
+  /// Appends a vertex. A patch counts once, although it may have several adjacent corners in the
+  /// group.
   void appendGroup(std::span<const Index> patches) {
     const std::size_t first = made_.patch.size();
     double area = 0;
@@ -25,14 +26,14 @@ class ShadingBuilder {
       area += mesh_.area[patch];
     }
     for (std::size_t k = first; k < made_.patch.size(); ++k) {
-      // Of patches without area the first stands for all.
+      // If all patches lack area, the first has all the weight.
       const double share = area > 0 ? mesh_.area[made_.patch[k]] / area : double(k == first);
       made_.weight.push_back(float(share));
     }
     made_.begin.push_back(std::uint32_t(made_.patch.size()));
   }
 
-  /// Every corner of every triangle: a group's vertex, or, within a patch, the patch's own.
+  /// Gives every corner of every triangle its group's vertex or, within a patch, the patch's own.
   ShadingVertices run(const CornerGroups& groups) {
     for (std::size_t g = 0; g < groups.size(); ++g) appendGroup(groups.patchesOf(g));
     made_.corner.reserve(3 * mesh_.pieces.size());

@@ -1,4 +1,4 @@
-// What of a mesh a page draws: triangles, what each of their corners shows, and outlines.
+// The parts of a mesh that a page draws: triangles, the shading of their corners, and outlines.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace radiosity::page {
 
-/// What smooth shading mixes: a shading vertex shows the mean of some patches by area, as
-/// cornerValues() does.
+/// The weights of smooth shading: a shading vertex shows the mean of some patches by area, like
+/// cornerValues().
 struct ShadingVertices {
   std::vector<std::uint32_t> begin;  ///< S + 1, into the others
   std::vector<std::uint32_t> patch;
@@ -19,19 +19,19 @@ struct ShadingVertices {
 };
 ShadingVertices shadingVertices(const PatchMesh& mesh, double crease);
 
-/// Pairs of vertices, each once: edges of all outlines, the smaller vertex first.
+/// The edges of all outlines as pairs of vertices, each once, the smaller vertex first.
 std::vector<std::uint32_t> outlineEdges(const PatchMesh& mesh);
 
-/// position, patch_triangle, triangle_patch, triangle_corner, shading_*, edge. Positions are less
-/// `origin`.
+/// Adds position, patch_triangle, triangle_patch, triangle_corner, shading_* and edge. Positions
+/// are less `origin`.
 void addSurfaces(const PatchMesh& mesh, double crease, const Vec3& origin, Container& container);
 
-/// element_*: the lit mesh of elements, as writeLitGlb() has it. Returns how many triangles; 0 and
-/// empty arrays where `light` has no elements.
+/// Adds element_*: the lit mesh of elements, the same as that of writeLitGlb(). Returns the number
+/// of triangles. If `light` has no elements, the arrays are empty and the result is 0.
 std::size_t addElements(const PatchMesh& mesh, const SurfaceLight& light, double crease,
                         const Vec3& origin, Container& container);
 
-/// Three floats a point, less `origin`.
+/// Three floats for each point, less `origin`.
 std::vector<float> packed(std::span<const Vec3> points, const Vec3& origin = Vec3(0.0));
 
 }  // namespace radiosity::page

@@ -1,6 +1,6 @@
 # cmake -DSOURCE=src/page/browser -DFOLDER=build/.../page -DNODE=... -DNPM=... -P template.cmake
-# Makes FOLDER/template.html: the browser's half of a page, without data. Everything is written in
-# FOLDER; packages are fetched (npm, the network) only where the lock file is another than the last
+# Makes FOLDER/template.html: the browser's half of a page, without data. All files are written to
+# FOLDER; packages are fetched (npm, the network) only if the lock file has changed since the last
 # time.
 file(GLOB old LIST_DIRECTORIES true ${FOLDER}/*)
 list(FILTER old EXCLUDE REGEX "/(node_modules|installed-lock\\.json|template\\.html)$")

@@ -1,4 +1,4 @@
-// The template as the assembler takes it in: a compiler would take megabytes of it as numbers.
+// The assembler includes the template: a compiler would need megabytes of numbers in the source.
 #include "page/html.h"
 
 #ifdef RADIOSITY_PAGE_TEMPLATE

@@ -24,7 +24,7 @@ constexpr std::uint64_t kBlockMagic = 0x4b434f4c42444152ULL;  // "RADBLOCK"
 constexpr std::uint32_t kByteOrder = 0x01020304;
 constexpr std::uint32_t kVersion = 1;
 constexpr std::uint64_t kAlignment = 8;
-/// Between two times that what was written is sent to the disk.
+/// The time between two synchronisations of the file with the disk.
 constexpr std::chrono::seconds kSyncInterval{5};
 
 struct FileHeader {
@@ -41,7 +41,7 @@ struct BlockHeader {
   std::uint64_t number = 0;
   std::uint64_t length = 0;
   std::uint64_t payload_checksum = 0;
-  std::uint64_t checksum = 0;  ///< of what is before
+  std::uint64_t checksum = 0;  ///< of the members above
 
   std::uint64_t ownChecksum() const { return checksumOf(this, sizeof *this - sizeof checksum); }
 };
@@ -92,7 +92,7 @@ KeyFound readKey(int file) {
   return found;
 }
 
-/// All parts in one call; false, with errno, where not all of it could be written.
+/// Writes all parts in one call. False, with errno set, if not all of it could be written.
 bool writeAt(int file, std::uint64_t offset, std::span<const iovec> parts) {
   std::size_t size = 0;
   for (const iovec& part : parts) size += part.iov_len;
@@ -165,9 +165,9 @@ JournalFile::~JournalFile() {
   if (kept_ == 0 && found_.blocks == 0) remove();
 }
 
-/// The lock belongs to the file, not to its name: who held it before may have taken the name away.
+/// The lock belongs to the file, not to its name: the last holder may have removed the name.
 void JournalFile::openLocked() {
-  constexpr mode_t kMode = 0666;  // less what the user's mask takes off
+  constexpr mode_t kMode = 0666;  // less the bits in the user's mask
   for (;;) {
     const int number = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kMode);
     if (number < 0) throw RunError(fmt::format("{}: {}", path_, std::strerror(errno)));
@@ -187,7 +187,7 @@ void JournalFile::openLocked() {
   }
 }
 
-/// An empty journal of this key.
+/// Makes the file an empty journal with this key.
 void JournalFile::begin() {
   const int file = file_->number();
   FileHeader header;
@@ -281,8 +281,8 @@ void JournalFile::keep(RowBlock kind, std::uint64_t number, std::span<const std:
   if (!failure_.empty() || removed_) return;
   if (!writeAt(file_->number(), end_, parts)) {
     failure_ = std::strerror(errno);
-    // A part of a block is of no use, and space on a full disk is. Where that fails, too, the next
-    // run leaves the part out.
+    // We cut off the incomplete block, which frees space on a full disk. If that fails, too, the
+    // next run skips the block.
     if (ftruncate(file_->number(), off_t(end_)) == 0) unsynced_ = true;
     return;
   }
@@ -295,7 +295,7 @@ void JournalFile::found(std::size_t rows, std::size_t of) {
   if (told_) told_(rows, of);
 }
 
-/// In a thread of its own: a slow disk holds up nobody who computes.
+/// Runs in a thread of its own, so that a slow disk does not delay the computation.
 void JournalFile::sync() {
   std::unique_lock lock(writing_);
   while (!closing_signal_.wait_for(lock, kSyncInterval, [this] { return closing_; })) {

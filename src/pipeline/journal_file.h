@@ -19,38 +19,39 @@
 
 namespace radiosity {
 
-/// Appended to only, so that it is good up to its last whole block whenever the process ends:
+/// The file is only appended to, so it is good up to its last whole block whenever the process
+/// ends:
 ///
 ///     header   "RADROWS\n", 0x01020304 as this machine writes it, version of the format; length
 ///              and checksum of the key; the key
 ///     block    "RADBLOCK", kind, number, length and checksum of the payload; checksum of all
 ///              these; the payload
 ///
-/// each part a multiple of 8 bytes long. Blocks are written in one piece and reach the disk some
-/// seconds later at most; what was written is safe from the end of the process at once, and from
-/// the end of the machine then. A damaged block is passed over; the next is found by its first
-/// word. The file is locked while it is open: it belongs to one process.
+/// each part a multiple of 8 bytes long. A block is written in one piece: from then on it survives
+/// the end of the process. It reaches the disk some seconds later at most: from then on it survives
+/// a crash of the machine. Readers skip a damaged block and find the next by its first word. The
+/// file is locked while it is open: it belongs to one process.
 class JournalFile : public RowJournal {
  public:
-  /// What was found when it was opened.
+  /// The contents of the file when it was opened.
   struct Found {
     std::size_t blocks = 0;   ///< good ones
-    std::size_t damaged = 0;  ///< stretches that are none, the cut end among them
-    bool other_key = false;   ///< there were rows of other form factors: they are gone
+    std::size_t damaged = 0;  ///< stretches without a good block, the cut-off end among them
+    bool other_key = false;   ///< the file held rows of other form factors, which were removed
   };
-  /// Opens `path` or makes it. `resume`: what is there is used where its key is `key`; else it
-  /// goes. Errors: RunError, with the reason, where the file cannot be used: another process holds
-  /// it, it is no journal (then it stays as it is), or cannot be written.
+  /// Opens or creates `path`. Keeps its blocks if `resume` is set and its key is `key`; otherwise
+  /// empties it. Errors: RunError, with the reason, if another process holds the file, if it is not
+  /// a journal (then it stays as it is), or if it cannot be written.
   JournalFile(std::string path, std::string key, bool resume);
-  /// Removes the file where there is nothing in it.
+  /// Removes the file if it has no blocks.
   ~JournalFile() override;
 
-  /// One that another process holds, or held, to look up what is there: keep() is not for it. Null
-  /// where there is none of that key.
+  /// Opens the journal of another process, which may still hold it, to look up its blocks; keep()
+  /// must not be called. Null if `path` has no journal with that key.
   static std::unique_ptr<JournalFile> openForReading(const std::string& path,
                                                      const std::string& key);
 
-  /// The key of the journal `path`; empty where there is none.
+  /// The key of the journal `path`; empty if there is no journal.
   static std::optional<std::string> keyIn(const std::string& path);
 
   const std::string& path() const { return path_; }
@@ -58,11 +59,11 @@ class JournalFile : public RowJournal {
   const Found& atOpening() const { return found_; }
   /// Why blocks are not kept any more ("no space left on device"); empty while they are.
   std::string failure() const;
-  /// Called with what the computation finds: RowJournal::found().
+  /// Sets the function that RowJournal::found() calls.
   void onFound(std::function<void(std::size_t rows, std::size_t of)> told) {
     told_ = std::move(told);
   }
-  /// Takes the file away. Blocks are not kept any more.
+  /// Removes the file. Later blocks are not kept.
   void remove();
 
   bool has(RowBlock kind, std::uint64_t number) const override;
@@ -73,7 +74,7 @@ class JournalFile : public RowJournal {
  private:
   class Descriptor;
   JournalFile(std::string path, std::string key, std::unique_ptr<Descriptor> file);
-  /// Of a payload in the file.
+  /// The place of a payload in the file.
   struct Place {
     std::uint64_t offset;
     std::uint64_t length;

@@ -1,4 +1,4 @@
-// Rows of form factors in a file, from the first that is computed until all are in the results.
+// Keeps rows of form factors in a journal while they are computed, until the results file has all.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -17,7 +17,7 @@ namespace radiosity {
 
 namespace {
 
-/// Of rows by `method`. Another version of the program may compute them otherwise.
+/// The key of rows by `method`. It has the program's version, since others may compute other rows.
 std::string journalKey(const StageKey& factors_key, std::string_view method) {
   return fmt::format("radiosity={} {}", RADIOSITY_VERSION, usedKey(factors_key, method).text());
 }
@@ -32,7 +32,7 @@ std::string resumedText(const JournalFile::Found& at_opening, std::size_t rows, 
   return text;
 }
 
-/// Those of other processes.
+/// Removes the journals of other processes that have this key.
 void removeJournalsBeside(const std::string& path, const std::string& key) {
   for (const std::string& beside : journalsBeside(path)) {
     std::error_code ignored;
@@ -42,7 +42,8 @@ void removeJournalsBeside(const std::string& path, const std::string& key) {
 
 }  // namespace
 
-/// `auto` goes on with what an earlier run chose: its choice rests on how fast the machine was.
+/// The method that an earlier run chose for `auto`. We keep it, since the choice depends on how
+/// fast the machine was.
 std::optional<FormFactorMethod> Pipeline::methodOfKeptRows(const StageKey& key) const {
   const JournalOptions& journal = options_.journal;
   if (journal.path.empty() || !journal.resume) return std::nullopt;
@@ -55,7 +56,7 @@ std::optional<FormFactorMethod> Pipeline::methodOfKeptRows(const StageKey& key) 
   return std::nullopt;
 }
 
-/// Where it cannot be opened, rows are computed without one: they are what was asked for.
+/// If the journal cannot be opened, the rows are computed without it.
 void Pipeline::openJournal(const FormFactorPlan& plan, const StageKey& key) {
   journal_.reset();
   const JournalOptions& options = options_.journal;
@@ -87,7 +88,7 @@ void Pipeline::discardKeptRows() {
     journal_.reset();
     return;
   }
-  // Left by a run that was ended between writing the results and removing them.
+  // An earlier run may have ended after it wrote the results and before it removed its journals.
   const std::string& path = options_.journal.path;
   if (path.empty() || !results_.factors) return;
   const std::string key = journalKey(StageKey(results_.factors_key), results_.factors->method);

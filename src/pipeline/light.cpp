@@ -1,4 +1,4 @@
-// What is drawn of the stages.
+// The quantities of the stages that pictures show.
 #include <fmt/format.h>
 
 #include "base/luminance.h"
@@ -24,7 +24,7 @@ ScalarField brightnessField(const char* title, std::span<const double> values, i
   return {brightnessOfEach(values, bands), {title + brightnessText(bands), "W/m^2"}};
 }
 
-/// A value of each unknown as that of every patch that shares it.
+/// Gives every patch the value of its unknown.
 std::vector<double> ofPatches(const PatchMesh& mesh, std::span<const double> of_unknowns) {
   std::vector<double> values;
   values.reserve(mesh.size());

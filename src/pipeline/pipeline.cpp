@@ -1,4 +1,4 @@
-// Where stages come from, and the file they go to.
+// Reads stages from a results file, keeps those that still fit, and writes all back.
 #include "radiosity/pipeline.h"
 
 #include <fmt/format.h>
@@ -29,10 +29,10 @@ namespace radiosity {
 
 namespace {
 
-/// Red, green and blue: all that scene files say.
+/// Red, green and blue: scene files have no other bands.
 constexpr int kSceneBands = 3;
 
-/// The option given that only a scene file has use for; null where there is none.
+/// The first option given that applies only to scene files; null if there is none.
 const char* readingOption(const SceneOptions& given) {
   const SceneOptions defaults;
   if (!given.unit.empty()) return "--unit";
@@ -42,7 +42,7 @@ const char* readingOption(const SceneOptions& given) {
   return nullptr;
 }
 
-/// What such a file holds instead is said by who reads it.
+/// Judges by the name alone; the reader reports a file with other contents.
 bool isNamedAsResults(const std::string& path) { return lowerExtension(path) == ".h5"; }
 
 bool overrides(const SceneOptions& options) {
@@ -83,7 +83,7 @@ void Pipeline::open(Scene scene, const std::string& reuse) {
   openReused(reuse);
 }
 
-/// Reads the stages of `path`, all but the matrix, and remembers in which state it was.
+/// Reads the stages of `path`, all but the matrix, and remembers the state of the file.
 void Pipeline::openSource(const std::string& path) {
   source_state_ = fileState(path);
   stored_ = readResults(path, false);
@@ -165,10 +165,10 @@ int Pipeline::bands() const {
   return from_results_ && stored_.materials ? stored_.materials->bands : kSceneBands;
 }
 
-/// Whether the materials are the results file's, of bands that no scene says.
+/// Whether the materials are those of the results file, since their bands are not those of a scene.
 bool Pipeline::hasOwnMaterials() const { return bands() != kSceneBands; }
 
-/// The file's own materials belong to its mesh alone, which is `reused` or not.
+/// The file's own materials belong to its mesh alone. `reused`: whether that mesh is reused.
 void Pipeline::requireOwnMesh(bool reused) const {
   if (reused || !hasOwnMaterials()) return;
   throw InputError(
@@ -195,7 +195,7 @@ bool Pipeline::isUpToDate(const std::string& path) const {
   return !changed_ && (path == source_ || path == saved_);
 }
 
-/// Null where it fits into memory.
+/// Scratch memory for the stored matrix; null if the matrix fits into memory.
 std::shared_ptr<ScratchMemory> Pipeline::memoryOfStoredMatrix() const {
   const FormFactorOptions& options = options_.factors;
   const std::size_t n = made(results_.factors).fronts.size();
@@ -209,7 +209,7 @@ std::shared_ptr<ScratchMemory> Pipeline::memoryOfStoredMatrix() const {
   return makeRowMemory(memory, options, n);
 }
 
-/// Each process reads a share of the rows; what process 0 has read besides stays.
+/// Each process reads a share of the rows. Process 0 keeps the rest of its form factors.
 void Pipeline::shareStoredMatrix() {
   SharedTask task = SharedTask::stored_matrix;
   processes_->broadcastValue(task);
@@ -221,7 +221,7 @@ void Pipeline::shareStoredMatrix() {
       std::make_shared<SharedRows>(*processes_, std::move(own), [this] { progress_.check(); }));
 }
 
-/// A share of the form factors.
+/// Computes this process's share of the form factors.
 ExchangeMatrix Pipeline::shareRows(Processes& processes) {
   JournalTold told;
   told.broadcast(processes);
@@ -260,8 +260,8 @@ void Pipeline::loadMatrix() {
   progress_.check();
 }
 
-/// Takes a stage of the results file that nobody asked for, where it still `fits`; else says why it
-/// does not. True where it is dropped.
+/// Keeps a stage of the results file that nobody asked for if it still `fits`; otherwise drops it
+/// and tells the observer why. True if the stage is dropped.
 template <class T>
 bool Pipeline::keep(Stage stage, std::optional<T> Results::*value, std::string Results::*value_key,
                     bool fits, const std::string& why_not) {
@@ -276,7 +276,7 @@ bool Pipeline::keep(Stage stage, std::optional<T> Results::*value, std::string R
   return false;
 }
 
-/// The same where it was made by `key` and what it stands on is `there`.
+/// The same; the stage fits if it was made by `key` and the stages that it depends on are `there`.
 template <class T>
 bool Pipeline::keep(Stage stage, std::optional<T> Results::*value, std::string Results::*value_key,
                     const StageKey& key, bool there) {
@@ -337,7 +337,7 @@ void Pipeline::dropEmptySolution() {
 void Pipeline::keepLaterStages() {
   if (!results_.mesh) mesh();
   dropEmptySolution();
-  // In this order: a solution stands on its form factors, elements on their solution.
+  // The order matters: a solution depends on its form factors, elements on their solution.
   bool dropped = keepFactors();
   dropped = keepSolution() || dropped;
   dropped = keepElements() || dropped;
@@ -358,7 +358,7 @@ bool Pipeline::update(const std::string& path) {
   const auto stored = [](bool there, const std::string& key, const std::string& on_disk) {
     return there ? key == on_disk : on_disk.empty();
   };
-  // Without a solution there may be materials all the same.
+  // The results may have materials without a solution.
   const bool solution = results_.solution && results_.solution_key == on_disk_.solution_key;
   const StagesAsStored as_stored = {
       on_disk_.scene,
@@ -369,7 +369,7 @@ bool Pipeline::update(const std::string& path) {
       stored(results_.basis.has_value(), results_.basis_key, on_disk_.basis_key)};
   if (!updateResults(path, results_, as_stored)) return false;
   on_disk_ = onDisk(path, results_, true);
-  // The form factors in it are those that were there.
+  // The file still has the form factors that we read from it.
   if (path == source_) source_state_ = on_disk_.state;
   discardKeptRows();
   saved_ = path;
@@ -390,7 +390,7 @@ void Pipeline::save(const std::string& path) {
 void Pipeline::checkpoint(const std::string& path) {
   dropEmptySolution();
   loadMatrix();
-  // What was gathered on the same mesh stays: its key says what it was made of.
+  // Gathered light on the same mesh stays in the file: its key says whether it still fits.
   const bool lend = mesh_reused_ && stored_.gathered && !results_.gathered;
   if (lend) {
     results_.gathered = std::exchange(stored_.gathered, std::nullopt);

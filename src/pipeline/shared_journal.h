@@ -1,4 +1,4 @@
-// The journals of rows that the processes of a run keep.
+// The journals of rows of all processes of a run.
 #pragma once
 
 #include <memory>
@@ -10,11 +10,12 @@
 
 namespace radiosity {
 
-/// What a process keeps goes to a file of its own, since a file belongs to one process; what is
-/// found is looked up in those of all: of any number of processes, whoever has rows to do now.
+/// Each process keeps blocks in a journal of its own, since a file belongs to one process. It looks
+/// blocks up in the journals of all processes, also of an earlier run with another number of them.
 class SharedJournal : public RowJournal {
  public:
-  /// `own`: this process's, `first`: the path of process 0's. `resume`: others are looked at.
+  /// `own`: the journal of this process. `first`: the path of that of process 0. `resume`: also
+  /// reads the journals of other processes.
   SharedJournal(JournalFile& own, const std::string& first, bool resume);
 
   bool has(RowBlock kind, std::uint64_t number) const override;
@@ -27,19 +28,19 @@ class SharedJournal : public RowJournal {
   std::vector<std::unique_ptr<JournalFile>> others_;
 };
 
-/// What process 0 tells the others of the journal that it keeps.
+/// The description of process 0's journal that it sends to the other processes.
 struct JournalTold {
-  std::string path;  ///< of process 0's; empty: rows are not kept
+  std::string path;  ///< of process 0's journal; empty: rows are not kept
   std::string key;
   bool resume = true;
 
-  /// By all; what process 0 has comes to the others.
+  /// Sends the values of process 0 to the others. All processes must call it.
   void broadcast(Processes& processes);
-  /// Of another process; null where it cannot be opened: its rows are not kept then.
+  /// Opens the journal of process `rank`. Null if it cannot be opened: then its rows are not kept.
   std::unique_ptr<JournalFile> open(int rank) const;
 };
 
-/// The files of other processes than number 0 beside its own, `first`, that are there.
+/// The existing journals of processes other than 0; `first` is the path of process 0's.
 std::vector<std::string> journalsBeside(const std::string& first);
 
 }  // namespace radiosity

@@ -15,7 +15,7 @@ namespace radiosity {
 
 namespace {
 
-// Names whose values are identities, and how a change of one reads.
+// The names whose values are hashes, and the words for a change of each.
 constexpr std::pair<std::string_view, std::string_view> kIdentities[] = {
     {"scene", "geometry changed"},          {"mesh", "mesh changed"},
     {"materials", "materials changed"},     {"factors", "form factors changed"},
@@ -37,7 +37,7 @@ void read(const StageKey& key, std::string_view name, Number& value) {
   }
 }
 
-/// Arrays count as rows of all bands.
+/// Hashes each array as rows of all bands.
 std::string materialsHash(const PatchMaterials& materials) {
   Hash hash;
   for (const std::vector<double>* values : {&materials.reflectance, &materials.emission}) {
@@ -65,26 +65,26 @@ std::string sourcesHash(std::span<const LightSource> sources) {
   return hash.hex();
 }
 
-/// One number where all bands have the same.
+/// One number if all bands have the same.
 std::string skyText(const std::vector<double>& sky) {
   if (sky.empty()) return "0";
   const bool grey = std::all_of(sky.begin(), sky.end(), [&](double s) { return s == sky[0]; });
   return grey ? fmt::format("{}", sky[0]) : fmt::format("{}", fmt::join(sky, ","));
 }
 
-/// The option that a key names; as it was where it names none.
+/// Reads an option from a key; leaves `value` as it is if the key does not name it.
 template <class Table, class Enum>
 void readNamed(const StageKey& key, std::string_view name, const Table& table, Enum& value) {
   if (const auto found = named(table, key.get(name).value_or(""))) value = *found;
 }
 
-/// Options that the command line does not have, or not always had, are named where they are not as
-/// by default, so that the keys in older files stay what they are.
+/// True for options that are in a key only if they differ from the default: the command line does
+/// not have them, or did not always have them, and keys in older files must stay valid.
 bool isNamedIfSet(std::string_view name) {
   return name == "random-turns" || name == "inset" || name == "eye";
 }
 
-/// The tolerance of form factors that are only sources, where none was asked for.
+/// The default tolerance of form factors that serve only as sources.
 constexpr const char* kOfSources = "sources";
 
 void addTurns(StageKey& key, bool random_turns) {
@@ -181,8 +181,8 @@ StageKey meshKey(const MeshOptions& options, const Scene& scene) {
 
 namespace {
 
-// Every option the result may depend on, as asked for: another mesh may make `auto` pick the other
-// method.
+// The key has every option that the result may depend on, with its value as asked for: on another
+// mesh `auto` may pick another method.
 StageKey factorsKeyOf(const FormFactorOptions& options, const std::string& mesh_hash) {
   StageKey key;
   key.add("method", nameOf(kMethodNames, options.method));
@@ -292,7 +292,7 @@ void readList(const StageKey& key, std::string_view name, std::vector<double>& v
   }
 }
 
-/// Of what is given and of what is left out.
+/// Hashes a value such that a missing one differs from every number.
 void addOptional(const std::optional<double>& value, Hash& hash) {
   hash.array(value ? std::vector<double>{*value} : std::vector<double>{});
 }

@@ -1,5 +1,5 @@
-// Keys: a text of the options that made a stage and of what it was made from. A stage is reused
-// only where its key is the same.
+// Keys: the options that made a stage and hashes of its inputs, as text. A stage is reused only if
+// its key is the same.
 #pragma once
 
 #include <optional>
@@ -20,7 +20,8 @@
 
 namespace radiosity {
 
-/// "name=value name=value ...": readable in the results file, and options can be had back.
+/// "name=value name=value ...": people can read it in the results file, and the options can be read
+/// back from it.
 class StageKey {
  public:
   StageKey() = default;
@@ -28,45 +29,43 @@ class StageKey {
   void add(std::string name, std::string value);
   std::optional<std::string> get(std::string_view name) const;
   std::string text() const;
-  /// What changed, in words: "resolution 256 -> 512, form factors changed". Empty where nothing
-  /// did.
+  /// The changes in words: "resolution 256 -> 512, form factors changed". Empty if nothing changed.
   static std::string difference(const StageKey& before, const StageKey& after);
 
  private:
   std::vector<std::pair<std::string, std::string>> pairs_;
 };
 
-/// `scene` enters with all that meshing looks at: vertices, faces, surfaces with their sides, and
-/// which surfaces emit (an emitter wins a coplanar overlap).
+/// The key has all properties of the scene that meshing uses: vertices, faces, surfaces with their
+/// sides, and which surfaces emit (an emitter wins a coplanar overlap).
 StageKey meshKey(const MeshOptions& options, const Scene& scene);
 StageKey factorsKey(const FormFactorOptions& options, const PatchMesh& mesh);
-/// What of a key of form factors made them, where the method used, "exact" or "hemicube", is known:
-/// `auto` was asked for with the options of both.
+/// The part of a key that the method used depends on: `auto` has the options of all methods.
+/// Method: "exact", "rays" or "hemicube".
 StageKey usedKey(const StageKey& factors_key, std::string_view method);
-/// `factors_key`: as used.
+/// `factors_key`: a key that usedKey() returned; so, too, below.
 StageKey solutionKey(const SolveOptions& options, const PatchMaterials& materials,
                      const StageKey& factors_key);
 
-/// `solution_key`: of the solution that they refine.
+/// `solution_key`: that of the solution that the elements refine.
 StageKey elementsKey(const ElementOptions& options, const std::string& solution_key);
 
 StageKey gatherKey(const GatherOptions& options, const PatchMaterials& materials,
                    const PatchMesh& mesh);
 
-/// `factors_key`: as used.
 StageKey heatKey(const HeatOptions& options, const HeatConditions& conditions,
                  const StageKey& factors_key);
-/// Whether heat with that key was exchanged by these form factors, as used.
+/// Whether the heat exchange with that key was made from these form factors.
 bool isHeatOf(const StageKey& heat_key, const StageKey& factors_key);
 
-/// `materials`: their reflectance alone counts, what shines is in `sources`.
+/// Of `materials` only the reflectance is in the key; `sources` have the emission.
 StageKey basisKey(const SolveOptions& options, const PatchMaterials& materials,
                   std::span<const LightSource> sources, const StageKey& factors_key);
-/// Whether light with that key is of these form factors, as used, and this reflectance.
+/// Whether the light with that key was made from these form factors and this reflectance.
 bool isBasisOf(const StageKey& basis_key, const PatchMaterials& materials,
                const StageKey& factors_key);
 
-/// The options in a key; defaults where it says nothing.
+/// The options in a key; defaults for those that it does not have.
 MeshOptions meshOptionsOf(const StageKey& key);
 FormFactorOptions factorOptionsOf(const StageKey& key);
 SolveOptions solveOptionsOf(const StageKey& key);

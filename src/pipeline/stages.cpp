@@ -20,11 +20,12 @@ namespace radiosity {
 
 namespace {
 
-/// What the process comes to hold of itself while it computes and writes: code that was not called
-/// before, stacks of its threads. (What was short of the estimate in 15 of 17 runs: 3 to 9 MiB.)
+/// The memory that the process takes besides while it computes and writes: newly called code and
+/// thread stacks. (Without it the estimate was 3 to 9 MiB short in 15 of 17 runs.)
 constexpr std::size_t kLoadedLater = std::size_t(5) << 20;
 
-/// The input was good: what a later stage refuses then is no fault of it.
+/// Turns an InputError of `compute` into a RunError: the scene was read without a fault, so the
+/// input is not to blame.
 template <class Compute>
 auto computedStage(const char* name, const Compute& compute) {
   try {
@@ -35,7 +36,7 @@ auto computedStage(const char* name, const Compute& compute) {
   }
 }
 
-/// Takes a stage out of `from`, where its key stays.
+/// Moves a stage out of `from`; its key stays there.
 template <class Value>
 std::optional<Value> taken(std::optional<Value>& from) {
   return std::exchange(from, std::nullopt);
@@ -43,7 +44,7 @@ std::optional<Value> taken(std::optional<Value>& from) {
 
 }  // namespace
 
-/// Why a stage has to be computed although there was one; empty where there was none.
+/// The reason why a stored stage has to be computed again; empty if none was stored.
 std::string Pipeline::why(const std::string& stored_key, const StageKey& key) const {
   if (stored_key.empty()) return {};
   const std::string difference = StageKey::difference(StageKey(stored_key), key);
@@ -61,7 +62,7 @@ void Pipeline::computed(Stage stage, const std::string& reason, double seconds) 
   progress_.check();
 }
 
-/// Discards a stage that was made and what stands on it; their keys stay, to say what changed.
+/// Discards a stage and the stages that depend on it. Their keys stay, to say what changed.
 void Pipeline::discardFrom(Stage first) {
   const auto discard = [this](auto& stage, std::string& key, std::string& stored_key) {
     if (!stage) return;
@@ -118,8 +119,8 @@ const MeshResult& Pipeline::mesh() {
   return made(results_.mesh);
 }
 
-/// Whether form factors are what was asked for: other options than those that made them may differ.
-/// `plan` is set where it had to be made to tell.
+/// Whether form factors are as asked for; options that their method does not use may differ. Sets
+/// `plan` if a plan is needed to decide.
 bool Pipeline::factorsFit(const FormFactors& factors, const std::string& factors_key,
                           const StageKey& key, std::optional<FormFactorPlan>& plan) const {
   if (factors_key == key.text()) return true;
@@ -131,7 +132,7 @@ bool Pipeline::factorsFit(const FormFactors& factors, const std::string& factors
   if (options_.factors.method != FormFactorMethod::automatic) {
     return options_.factors.method == made_by;
   }
-  // Once they are there, exact ones are better whatever would be picked.
+  // Exact form factors that are there are better than those of any method that `auto` might pick.
   if (made_by == FormFactorMethod::exact) return true;
   plan = planFactors();
   return plan->method == made_by;
@@ -154,7 +155,7 @@ FormFactorPlan Pipeline::planFactors() const {
   FormFactorPlan plan = planFormFactors(patches, options, progress_);
   if (kept) plan.reason = "rows of an earlier run are there";
   if (only_rays) plan.reason = "processes share them where patches share unknowns";
-  // Planning may have tried the exact method, which takes more than hemicubes then do.
+  // Planning may have tried the exact method, which takes more memory than hemicubes do afterwards.
   plan.bytes = std::max(plan.bytes, peakBytes());
   return plan;
 }
@@ -270,14 +271,14 @@ const Solution& Pipeline::solution() {
   return made(results_.solution);
 }
 
-/// After solution(): the key that elements must have now.
+/// The key that elements must have now. Call it after solution().
 StageKey Pipeline::elementsKeyNow() const {
   options_.elements.validate();
   return elementsKey(options_.elements, results_.solution_key);
 }
 
-/// Elements of some patches, which are not kept. Those in the file are of no use then; it is said
-/// why.
+/// Computes elements of some patches; they are not kept. If the file has elements, their key does
+/// not fit: the observer is told why.
 Elements Pipeline::elementsOf(std::span<const std::uint8_t> wanted, const StageKey& key) {
   const Stopwatch watch;
   Elements some =
@@ -336,7 +337,7 @@ const Gathered& Pipeline::gathered() {
   return made(results_.gathered);
 }
 
-/// What is refused is wrong with the conditions: an error of input.
+/// Throws an InputError unchanged: the fault is in the conditions.
 const HeatSolution& Pipeline::heat() {
   factors();
   options_.heat.validate();
@@ -360,7 +361,7 @@ const HeatSolution& Pipeline::heat() {
   return made(results_.heat);
 }
 
-/// What is refused is wrong with the sources: an error of input.
+/// Throws an InputError unchanged: the fault is in the sources.
 const LightBasis& Pipeline::basis() {
   factors();
   options_.solve.validate();

@@ -13,8 +13,8 @@ namespace radiosity::python {
 
 namespace py = pybind11;
 
-/// Values as they stand in memory: read only, and with them lives `owner`, the Python object that
-/// holds them. No copy.
+/// A read-only view of values in memory, without a copy. It keeps `owner`, the Python object that
+/// has them, alive.
 template <class T>
 py::array view(const T* values, std::vector<py::ssize_t> shape, const py::object& owner) {
   py::array array(py::dtype::of<T>(), std::move(shape), values, owner);
@@ -40,12 +40,12 @@ py::array rows(const std::vector<T>& values, int bands, const py::object& owner)
   return view(values.data(), {py::ssize_t(values.size()) / bands, bands}, owner);
 }
 
-/// A vector as Python gives and takes a single one.
+/// A single vector as an argument or result in Python.
 using Triple = std::array<double, 3>;
 inline Vec3 vec(const Triple& t) { return {t[0], t[1], t[2]}; }
 inline Triple triple(const Vec3& v) { return {v.x, v.y, v.z}; }
 
-/// A new array that takes the values over. No copy.
+/// A new array that takes over the values without a copy.
 template <class T>
 py::array taken(std::vector<T>&& values) {
   auto* kept = new std::vector<T>(std::move(values));
@@ -53,7 +53,7 @@ py::array taken(std::vector<T>&& values) {
   return py::array(py::dtype::of<T>(), {py::ssize_t(kept->size())}, kept->data(), owner);
 }
 
-/// Contiguous arrays of one type; the package's functions have made them so.
+/// A contiguous array of one type; the package's functions have converted it.
 template <class T>
 using Array = py::array_t<T, py::array::c_style>;
 

@@ -1,4 +1,4 @@
-// Form factors: of meshes, of matrices from elsewhere, between surfaces, from points.
+// Form factors: of meshes, of other matrices, between surfaces, from points.
 #include <pybind11/stl.h>
 
 #include <limits>
@@ -53,7 +53,7 @@ std::shared_ptr<FactorsHandle> formFactors(std::shared_ptr<MeshHandle> mesh, con
   return handle;
 }
 
-/// Rows as scipy has them, compressed.
+/// Compressed rows in scipy's layout.
 template <class Value, class Place>
 struct CompressedRows {
   std::vector<Value> data;
@@ -84,7 +84,7 @@ template <class Value>
 using EitherRows =
     std::variant<CompressedRows<Value, std::int32_t>, CompressedRows<Value, std::int64_t>>;
 
-/// With places of 32 bits where they suffice.
+/// Uses indices of 32 bits if they suffice.
 template <class Value>
 py::tuple rowsOf(const ExchangeMatrix& matrix, const py::object& report) {
   EitherRows<Value> rows;

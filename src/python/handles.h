@@ -1,5 +1,5 @@
-// What the Python objects hold. All is made once and then read only, so that views of it last and
-// threads may share it.
+// The contents of the Python objects. They are made once and then only read, so that views stay
+// valid and threads may share them.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -13,8 +13,8 @@
 
 namespace radiosity::python {
 
-/// The key of a stage as Results has it, made when it is asked for: what it hashes may take longer
-/// than the stage.
+/// The key of a stage as in Results. It is computed on demand: hashing may take longer than the
+/// stage.
 using Key = std::function<std::string()>;
 
 struct MeshHandle {
@@ -26,7 +26,7 @@ struct MeshHandle {
 
 struct FactorsHandle {
   std::shared_ptr<const MeshHandle> mesh;  ///< null: a matrix from elsewhere
-  std::vector<std::string> names;          ///< of the rows of such a matrix, or empty
+  std::vector<std::string> names;          ///< of the rows of a matrix from elsewhere, or empty
   FormFactors factors;
   Key key;
 };
@@ -56,7 +56,8 @@ void bindFactors(pybind11::module_& module);
 void bindLight(pybind11::module_& module);
 void bindGather(pybind11::module_& module);
 
-/// The mesh of form factors; InputError where they are a matrix alone, with what `asks` for it.
+/// The mesh of form factors. Errors: InputError if they are a matrix alone; it names `asks`, the
+/// feature that needs the mesh.
 const MeshHandle& meshOf(const FactorsHandle& factors, const char* asks);
 
 }  // namespace radiosity::python

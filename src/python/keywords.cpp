@@ -7,7 +7,7 @@
 namespace radiosity::python {
 namespace {
 
-/// Options whose keywords are other words, or whose values follow them. The first that fits counts.
+/// Options with another keyword, or followed by a value. The first that fits counts.
 constexpr std::pair<std::string_view, std::string_view> kRenamed[] = {
     {"--set or", "set or"},
     {"--set ", "set: "},
@@ -23,7 +23,7 @@ constexpr std::pair<std::string_view, std::string_view> kRenamed[] = {
 
 bool isLetter(char c) { return c >= 'a' && c <= 'z'; }
 
-/// Where the next option begins: "--" and a letter, at the start of a word.
+/// The place of the next option: "--" and a letter, at the start of a word.
 std::size_t findOption(const std::string& text, std::size_t from) {
   for (std::size_t at = from; (at = text.find("--", at)) != std::string::npos; ++at) {
     const bool starts = at == 0 || text[at - 1] == ' ' || text[at - 1] == '(';
@@ -32,7 +32,7 @@ std::size_t findOption(const std::string& text, std::size_t from) {
   return std::string::npos;
 }
 
-/// The option at `at` by the same word: "--max-iterations" is max_iterations.
+/// Turns the option at `at` into a keyword: "--max-iterations" becomes max_iterations.
 void dropDashes(std::string& text, std::size_t at) {
   text.erase(at, 2);
   for (; at < text.size() && (isLetter(text[at]) || text[at] == '-'); ++at) {

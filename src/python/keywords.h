@@ -1,11 +1,11 @@
-// What options of the command line are called here.
+// The keywords for options of the command line.
 #pragma once
 
 #include <string>
 
 namespace radiosity::python {
 
-/// A message of the library with keywords in place of the options that it names.
+/// Replaces the options in a message of the library by keywords.
 std::string withKeywords(std::string text);
 
 }  // namespace radiosity::python

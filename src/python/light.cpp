@@ -14,7 +14,7 @@
 namespace radiosity::python {
 namespace {
 
-/// `reflectance`, `emission`: (rows, bands), rows being patches of the mesh or rows of the matrix.
+/// `reflectance`, `emission`: (rows, bands); a row is a patch of the mesh or a row of the matrix.
 std::shared_ptr<SolutionHandle> solveLight(std::shared_ptr<FactorsHandle> factors,
                                            const Array<double>& reflectance,
                                            const Array<double>& emission,
@@ -58,7 +58,7 @@ HeatOptions heatOptions(const py::dict& given) {
   return options;
 }
 
-/// `settings`: as readHeatConditions() takes them.
+/// `settings`: see readHeatConditions().
 std::shared_ptr<HeatHandle> heat(std::shared_ptr<FactorsHandle> factors,
                                  const std::string& table_path,
                                  const std::vector<std::string>& settings, const py::dict& given,
@@ -132,8 +132,8 @@ py::dict cameraProperties(const py::object& given) {
   return properties;
 }
 
-/// A camera of a dictionary as Scene.cameras has them, a text, or a name of the scene's; nothing
-/// for None in a scene without cameras.
+/// Makes a camera from a dictionary like those of Scene.cameras, from a text, or from the name of
+/// one in the scene. Empty for None in a scene without cameras.
 std::optional<Camera> cameraOf(const py::object& given, const Scene* scene) {
   if (given.is_none()) {
     if (scene == nullptr || scene->cameras.empty()) return std::nullopt;
@@ -167,7 +167,7 @@ std::optional<Camera> cameraOf(const py::object& given, const Scene* scene) {
 
 int otherSide(double pixels) { return std::max(1, int(std::lround(pixels))); }
 
-/// The size of the picture: the side that is not given follows from the camera.
+/// Sets the size of the picture; a side that is not given follows from the camera.
 void takeSize(const KeywordOptions& take, const std::optional<Camera>& camera,
               RenderOptions& options) {
   take("width", options.width);
@@ -177,7 +177,7 @@ void takeSize(const KeywordOptions& take, const std::optional<Camera>& camera,
   if (!take.has("width") && take.has("height")) options.width = otherSide(options.height * aspect);
 }
 
-/// Light at points of what the picture shows, as the command line draws it.
+/// Adds elements of the visible surfaces, like the command line.
 void addElements(const PatchMesh& mesh, const SolutionHandle& light, const Camera& camera,
                  const RenderOptions& options, const ElementOptions& elements, SurfaceLight& drawn,
                  Progress& progress) {
@@ -188,7 +188,7 @@ void addElements(const PatchMesh& mesh, const SolutionHandle& light, const Camer
   drawn.emission = light.materials.emission;
 }
 
-/// The picture of a solution, or of radiosities (N, bands) where `light` is null.
+/// The picture of a solution, or of radiosities (N, bands) if `light` is null.
 py::array render(const MeshHandle& mesh, const SolutionHandle* light,
                  const Array<double>& radiosity, const py::object& from, const py::dict& given,
                  const py::object& report) {

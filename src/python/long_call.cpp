@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kBetweenLooks{50};
 
-/// Keeps where the work is, to be asked from another thread.
+/// Keeps the progress of the work for another thread to ask.
 class WatchedProgress : public Progress {
  public:
   void begin(const std::string& stage, std::size_t total, const std::string& steps,
@@ -52,8 +52,8 @@ class WatchedProgress : public Progress {
   std::atomic<std::size_t> done_{0};
 };
 
-/// A thread that does one piece of work after the other. Threads that are kept know their share of
-/// TBB's and of the heap's; starting one anew takes longer than a small solve may.
+/// A thread that does one piece of work after the other. A kept thread is already known to TBB and
+/// to the heap; to start a new one may take longer than a small solve.
 class Worker {
  public:
   ~Worker() {
@@ -62,9 +62,9 @@ class Worker {
       ended_ = true;
     }
     changed_.notify_one();
-  }  // and joins
+  }  // the thread's own destructor joins it
 
-  /// Both are there until the work is over.
+  /// Both arguments must live until the work is over.
   void start(const std::function<void(Progress&)>& work, Progress& progress) {
     {
       const std::lock_guard lock(mutex_);
@@ -81,7 +81,7 @@ class Worker {
     return over_.wait_for(lock, kBetweenLooks, [this] { return work_ == nullptr; });
   }
 
-  /// What the work threw, once it is over.
+  /// The exception that the work threw; call it once the work is over.
   std::exception_ptr failure() { return std::exchange(failure_, nullptr); }
 
  private:
@@ -105,8 +105,8 @@ class Worker {
   }
 
   std::mutex mutex_;
-  std::condition_variable changed_;  // for the thread
-  std::condition_variable over_;     // for its caller
+  std::condition_variable changed_;  // the thread waits for it
+  std::condition_variable over_;     // the caller waits for it
   const std::function<void(Progress&)>* work_ = nullptr;
   Progress* progress_ = nullptr;
   std::exception_ptr failure_;
@@ -114,7 +114,7 @@ class Worker {
   std::jthread thread_{[this] { run(); }};  // starts last, ends first
 };
 
-/// The workers that wait for work: as many as there were calls at once.
+/// The idle workers: at most as many as there were calls at once.
 class IdleWorkers {
  public:
   std::unique_ptr<Worker> take() {
@@ -131,7 +131,7 @@ class IdleWorkers {
   }
 
  private:
-  /// A process that forked off has copies of them without their threads, which cannot be joined.
+  /// A forked process has copies of the workers without their threads, which cannot be joined.
   void forgetThoseOfTheParent() {
     if (std::exchange(process_, getpid()) == getpid()) return;
     for (std::unique_ptr<Worker>& worker : idle_) static_cast<void>(worker.release());

@@ -1,5 +1,5 @@
-// The extension module radiosity._core: what the package in radiosity/ is made of. Arguments are as
-// that package passes them: arrays contiguous, of the type and shape that each function names.
+// The extension module radiosity._core, on which the package in radiosity/ is built. The package
+// passes contiguous arrays of the type and shape that each function names.
 #include <pybind11/stl.h>
 
 #include <cstdint>
@@ -15,9 +15,9 @@
 namespace radiosity::python {
 namespace {
 
-/// What a results file holds, as handles that share the mesh and the form factors.
+/// Reads a results file into handles that share the mesh and the form factors.
 py::dict read(const std::string& path, const py::object& report) {
-  // A key as the file has it.
+  // Returns the key of the file.
   const auto kept = [](const std::string& text) { return [text] { return text; }; };
   Results results;
   auto mesh = std::make_shared<MeshHandle>();
@@ -57,8 +57,8 @@ py::dict read(const std::string& path, const py::object& report) {
   return dict;
 }
 
-/// Scene, mesh and form factors, and light and heat on them where there are some. The matrix is not
-/// copied.
+/// Writes scene, mesh and form factors, and light and heat if there are any. Does not copy the
+/// matrix.
 void save(const std::string& path, const FactorsHandle& factors, const SolutionHandle* light,
           const HeatHandle* heat, const py::object& report) {
   const MeshHandle& mesh = meshOf(factors, "a results file");
@@ -90,7 +90,7 @@ PyObject* exceptionType(py::module_& module, const char* name, PyObject* base, c
 }
 
 void bindErrors(py::module_& module) {
-  // They live as long as the process.
+  // The exception types live as long as the process.
   static PyObject* const run_error =
       exceptionType(module, "RunError", PyExc_RuntimeError,
                     "The run itself failed: the disk is full, a memory limit is exceeded.");

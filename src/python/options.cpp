@@ -5,7 +5,7 @@
 namespace radiosity::python {
 namespace {
 
-/// How a value looks, on one line.
+/// The text of a value on one line.
 std::string shown(const py::handle& given) {
   constexpr std::size_t kLongest = 60;  // characters
   const py::str line = py::str(" ").attr("join")(py::repr(given).attr("split")());

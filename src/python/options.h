@@ -1,4 +1,4 @@
-// Keyword arguments that become options.
+// Converts keyword arguments to options.
 #pragma once
 
 #include <fmt/format.h>
@@ -22,11 +22,11 @@ namespace py = pybind11;
 [[noreturn]] void refuse(const std::string& name, const py::handle& given,
                          const std::string& wanted);
 
-/// The Python int of a whole number of any type (int, numpy's, a float without a fraction); null
-/// for all else.
+/// The Python int for an integer of any type (int, numpy's, a float without a fraction); null for
+/// other values.
 py::object wholeNumber(const py::handle& given);
 
-/// What to give, in words.
+/// The words for values of this type.
 template <class Value>
 inline constexpr const char* kWanted = "a number";
 template <>
@@ -40,7 +40,7 @@ inline constexpr const char* kWanted<std::vector<double>> = "a list of numbers";
 template <>
 inline constexpr const char* kWanted<std::array<double, 3>> = "three numbers";
 
-/// What a caller gave for `name`. Errors: InputError where it is no such value.
+/// Converts the value that a caller gave for `name`. Errors: InputError if it has another type.
 template <class Value>
 Value valueOf(const std::string& name, const py::handle& given) {
   try {
@@ -62,10 +62,10 @@ Value valueOf(const std::string& name, const py::handle& given) {
   }
 }
 
-/// Takes the keyword arguments of a call one by one; None leaves what there is.
+/// Takes the keyword arguments of a call one by one; None leaves an option unchanged.
 class KeywordOptions {
  public:
-  /// `of`: what they are properties of, for messages ("camera"); empty: of the call itself.
+  /// `of`: the owner of the arguments in messages ("camera"); empty: the call itself.
   explicit KeywordOptions(py::dict given, std::string of = {})
       : given_(std::move(given)), of_(std::move(of)) {}
 

@@ -10,7 +10,7 @@ namespace py = pybind11;
 namespace radiosity::python {
 namespace {
 
-/// Fields of one value, by name.
+/// The fields of one record, by name.
 template <class Record>
 class Fields {
  public:

@@ -63,8 +63,8 @@ std::shared_ptr<Scene> sceneOfArrays(const Array<double>& vertices, const Array<
   return scene;
 }
 
-/// The skin of volumes given as `corners` from each `offset` on: its faces as scenes have them, and
-/// the volume of each.
+/// The skin of volumes given as `corners` from each `offset` on: its faces in the layout of scenes,
+/// and the volume of each.
 py::tuple volumeSkin(const Array<double>& vertices, const Array<Index>& corners,
                      const Array<std::uint64_t>& offset) {
   std::vector<Index> loops;
@@ -130,7 +130,7 @@ std::shared_ptr<MeshHandle> mesh(std::shared_ptr<Scene> scene, const py::dict& g
   return handle;
 }
 
-/// Views of an array of a handle.
+/// A function that returns a view of an array of a handle.
 template <class Handle, class Get>
 auto viewed(Get get) {
   return [get](const py::object& self) { return view(get(self.cast<const Handle&>()), self); };

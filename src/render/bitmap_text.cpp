@@ -7,8 +7,8 @@
 namespace radiosity {
 namespace {
 
-/// Rows from the top, seven and a descender; bit 4 is the leftmost of five columns. ASCII from the
-/// space on, then what lies outside it.
+/// Glyphs of ASCII from the space on, then the two others. A glyph has seven rows from the top and
+/// one for descenders; bit 4 is the leftmost of five columns.
 constexpr std::array<std::array<std::uint8_t, kGlyphHeight>, 97> kFont = {{
     // clang-format off
     {0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00},  // space
@@ -112,7 +112,7 @@ constexpr std::array<std::array<std::uint8_t, kGlyphHeight>, 97> kFont = {{
 constexpr std::size_t kSuperscriptTwo = 95;
 constexpr std::size_t kBox = 96;
 
-/// Glyph indices of UTF-8 text, one a code point.
+/// The glyph indices of a UTF-8 text, one for each code point.
 std::vector<std::size_t> glyphs(const std::string& text) {
   std::vector<std::size_t> found;
   for (std::size_t k = 0; k < text.size(); ++k) {
@@ -121,7 +121,7 @@ std::vector<std::size_t> glyphs(const std::string& text) {
       found.push_back(byte - 0x20u);
     } else if (text.compare(k, 2, "\xc2\xb2") == 0) {
       found.push_back(kSuperscriptTwo);
-    } else if ((byte & 0xc0) != 0x80) {  // not a continuation byte: a character begins
+    } else if ((byte & 0xc0) != 0x80) {  // the first byte of a character
       found.push_back(kBox);
     }
   }

@@ -8,8 +8,8 @@
 namespace radiosity {
 namespace {
 
-/// Every 16th of the 256 published colours, and the last: sRGB, 8 bits a channel. Between them the
-/// map is so nearly straight that linear interpolation stays within 2/255 of it.
+/// Every 16th of the 256 published colours, and the last: sRGB, 8 bits a channel. Linear
+/// interpolation between them stays within 2/255 of the map.
 constexpr std::array<std::uint32_t, 17> kViridis = {
     0x440154, 0x48186a, 0x472d7b, 0x424086, 0x3b528b, 0x33638d, 0x2c728e, 0x26828e, 0x21918c,
     0x1fa088, 0x28ae80, 0x3fbc73, 0x5ec962, 0x84d44b, 0xaddc30, 0xd8e219, 0xfde725};
@@ -19,7 +19,7 @@ Vec3 coded(std::uint32_t hex) {
 }
 
 Vec3 viridis(double t) {
-  // The control points stand at 0, 16/255, 32/255, ... 240/255, 1.
+  // The control points are at 0, 16/255, 32/255, ... 240/255, 1.
   const double position = t * 255 / 16;
   const auto k = std::min(std::size_t(position), kViridis.size() - 2);
   const double end = k + 2 == kViridis.size() ? 255.0 / 16 : double(k + 1);

@@ -1,12 +1,12 @@
-// Patch values -> values at the corners of patches, shared across smooth neighbours.
+// Computes values at the corners of patches, shared by smooth neighbours, from values of patches.
 #include "base/parallel.h"
 #include "radiosity/render.h"
 
 namespace radiosity {
 namespace {
 
-/// Area-weighted mean over a group's patches, each once, as a difference to the first: a constant
-/// stays that constant to the bit.
+/// The area-weighted mean over a group's patches, each once. It averages differences to the first,
+/// so that a constant keeps its bits.
 double groupMean(const PatchMesh& mesh, std::span<const Index> patches,
                  std::span<const double> values, std::size_t bands, std::size_t band) {
   const auto value = [&](Index patch) { return values[patch * bands + band]; };

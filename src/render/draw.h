@@ -1,4 +1,4 @@
-// What pictures of radiance have in common.
+// Functions that all pictures of radiance use.
 #pragma once
 
 #include <string>
@@ -7,11 +7,12 @@
 
 namespace radiosity {
 
-/// The picture of a field of three bands: every pixel the mean of the samples that hit something.
+/// The picture of a field of three bands: every pixel is the mean of the samples that hit a
+/// surface.
 Image drawField(const PatchMesh& mesh, const PatchField& field, const ItemBuffer& items,
                 const RenderOptions& options, const std::string& stage, Progress& progress);
 
-/// Of values of exitance: B / pi.
+/// The radiance for values of exitance: B / pi.
 std::vector<double> radianceOf(std::span<const double> exitance);
 
 }  // namespace radiosity

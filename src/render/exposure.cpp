@@ -1,4 +1,4 @@
-// From linear values to a display's range.
+// Maps linear values to the range of a display.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,7 +12,7 @@ namespace radiosity {
 
 namespace {
 
-/// The brightest that more than a hundredth of the picture shows.
+/// The 99th percentile of luminance over all pixels.
 double brightest(const Image& image) {
   std::vector<double> values;
   for (std::size_t k = 0; k < image.rgba.size(); k += 4) {
@@ -35,8 +35,8 @@ double autoExposure(const Image& image) {
   if (luminance.empty()) return 0;
   const double bright = percentile(luminance, 0.99);
   if (!(bright > 0)) return 0;
-  // A lamp that fills more than 1% of the picture would set the exposure for itself and leave the
-  // room black: the middle of what is lit stays at a tenth of the range or above.
+  // A lamp that fills more than 1% of the picture would set the exposure alone and leave the room
+  // black. So the median of the lit pixels stays at a tenth of the range or above.
   std::erase_if(luminance, [](double value) { return !(value > 0); });
   const double middle = percentile(luminance, 0.5);
   return std::log2(0.8 / std::min(bright, 8 * middle));
@@ -44,7 +44,7 @@ double autoExposure(const Image& image) {
 
 std::optional<UnlitView> unlitView(const PatchMesh& mesh, const SurfaceLight& light,
                                    const Image& radiance) {
-  constexpr double kDark = 1e-3;  // ten stops: it would be black in a picture of what is lit
+  constexpr double kDark = 1e-3;  // ten stops: black in a picture exposed for the lit part
   const double lit = typicalLight(mesh, light.reflected) / std::numbers::pi;
   const double seen = brightest(radiance);
   if (!(lit > 0) || seen >= kDark * lit) return std::nullopt;

@@ -1,4 +1,4 @@
-// A scalar field in false colour, its legend below.
+// Draws a scalar field in false colour, with a legend below.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,11 +13,11 @@
 namespace radiosity {
 namespace {
 
-// Linear light of what has no value: greys, which the colour map has none of.
+// Linear light of pixels without a value: greys, since the colour map has none.
 constexpr double kMiss = 0.25;
 constexpr double kBack = 0.06;
 
-/// The values in view: their extent over all samples, and one value a pixel.
+/// The values in view: their range over all samples, and one value a pixel.
 struct InView {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
@@ -42,8 +42,8 @@ class InViewPixel {
   bool first_ = true;
 };
 
-/// Colours are averaged as light, not as numbers: where two surfaces meet in a pixel, a mean of
-/// their values would be a value that is nowhere in the scene.
+/// Averages colours as light, not as numbers: where two surfaces meet in a pixel, the mean of their
+/// values would be a value that no surface has.
 class ColourPixel {
  public:
   ColourPixel(Image& image, const ColourMap& map, const ColourRange& range)
@@ -73,9 +73,10 @@ class ColourPixel {
   Vec3 sum_{0.0};
 };
 
-/// The range of the colours: the one asked for, or that of the values in view. A lamp, or the patch
-/// next to the one whose form factors are shown, would leave all else in one dark colour: where the
-/// highest value is more than twice the 99th percentile of the pixels, the range ends there.
+/// The range of the colours: the one asked for, or that of the values in view. If the highest value
+/// is more than twice the 99th percentile of the pixels, the range ends at the percentile.
+/// Otherwise a lamp, or the patch next to the one whose form factors are shown, would leave all
+/// else dark.
 std::optional<ColourRange> rangeInView(const FalseColour& asked, const std::vector<InView>& tiles) {
   InView seen;
   for (const InView& tile : tiles) {
@@ -135,7 +136,8 @@ Image falseColourPixels(int width, int height, std::span<const double> values,
     range_pixel.sample(Seen::front, {value, 0, 0});
   }
   const std::optional<ColourRange> range = rangeInView(legend, seen);
-  // A strip may take half of a picture: of one twice as high it takes what it needs, if it fits.
+  // The strip is added below the picture and may be as high: Legend takes half of the height at
+  // most.
   const Legend strip(legend, width, 2 * height);
   Image image{width, height + strip.height(), {}};
   image.rgba.assign(std::size_t(image.width) * std::size_t(image.height) * 4, 1.0F);

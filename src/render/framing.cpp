@@ -1,4 +1,4 @@
-// The default camera: tries viewpoints with a tiny render each and takes the one that shows most.
+// The default camera: renders a tiny picture from each viewpoint and takes the one that shows most.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,22 +17,22 @@ namespace radiosity {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr int kTrialPixels = 3600;  // of a trial render, 60 x 60 where the picture is square
+constexpr int kTrialPixels = 3600;  // of a trial render, 60 x 60 if the picture is square
 constexpr double kBetter = 1.01;    // a later candidate must show 1% more than an earlier one
 constexpr double kInsideFov = 76;   // degrees; only a wide lens shows a room from within
 constexpr double kStraight =
     1.2;  // worth of looking along the room: verticals and corners in order
 constexpr double kOutsideFov = 40;  // degrees; little perspective distortion
-constexpr double kBelow = 0.3;      // worth of looking up from below, where nothing is looked at
+constexpr double kBelow = 0.3;      // worth of looking up from below
 constexpr double kMargin = 0.95;    // share of the picture that a framed scene fills
-constexpr double kEyeHeight = 1.6;  // metres above the floor, where the scene is as high as a room
+constexpr double kEyeHeight = 1.6;  // metres above the floor, if the scene is as high as a room
 constexpr double kStanding = 1.1;   // worth of standing at that height
 constexpr double kEnclosed = 0.75;  // share of all directions that end on fronts within a room
 constexpr double kRoom = 1.5;       // worth of being in a room that has an outside too
 
-/// The same mesh, or camera, turned about the x axis so that z is y.
+/// Turn vectors about the x axis so that the scene's z becomes y, and back.
 Vec3 turnedUp(const Vec3& v) { return {v.x, v.z, -v.y}; }
-Vec3 turnedBack(const Vec3& v) { return {v.x, 0 - v.z, v.y}; }  // no -0, which would be printed
+Vec3 turnedBack(const Vec3& v) { return {v.x, 0 - v.z, v.y}; }  // avoids -0, which would be printed
 
 PatchMesh turnedUp(const PatchMesh& mesh) {
   PatchMesh turned = mesh;
@@ -57,13 +57,14 @@ Box3 boundingBox(const PatchMesh& mesh) {
   return box;
 }
 
-/// A camera to try, and how much it is liked for other reasons than what it shows.
+/// A camera to try, and its worth apart from the view.
 struct Candidate {
   Camera camera;
   double liked = 1;
 };
 
-/// The mesh and how brightly each patch is lit: 1 as is typical of what is lit, or more.
+/// The mesh and the brightness of each patch: 1 for the typical light of lit patches, or more
+/// light.
 struct LitMesh {
   const PatchMesh& mesh;
   std::vector<double> brightness;  ///< N, 0 to 1
@@ -72,7 +73,7 @@ struct LitMesh {
     brightness.assign(mesh.size(), 1.0);
     const double typical = light.empty() ? 0 : typicalLight(mesh, light);
     if (!(typical > 0)) return;
-    // A root, as eyes judge: half as bright is three quarters as well lit.
+    // A root, as in human vision: half of the typical light counts as 0.7.
     for (std::size_t i = 0; i < light.size(); ++i) {
       brightness[i] = std::sqrt(std::min(1.0, light[i] / typical));
     }
@@ -87,10 +88,10 @@ struct Glimpse {
   double shown = 0;   ///< of the scene, see shown()
 };
 
-/// How much of the scene is shown where `seen` is the area seen of each patch: the sum over the
-/// planar polygons of sqrt(area seen * area), over their area. With the root, a tenth of the
-/// ceiling is worth a third of it: a view that shows something of everything wins over one that
-/// shows all of half the scene.
+/// The share of the scene that is shown: the sum over planar polygons of sqrt(area seen * area),
+/// over their area. `seen`: the visible area of each patch. With the root, a tenth of the ceiling
+/// counts as a third of it: a view that shows a part of everything wins over one that shows all of
+/// half the scene.
 double shown(const PatchMesh& mesh, const std::vector<double>& seen) {
   std::vector<std::array<double, 2>> polygons;  // area, area seen
   for (std::size_t i = 0; i < mesh.size(); ++i) {
@@ -109,7 +110,7 @@ double shown(const PatchMesh& mesh, const std::vector<double>& seen) {
 }
 
 /// A pixel at depth z sees the area z^2 / (f^2 |n . d|) of a surface with normal n along the ray d
-/// (d.z = 1), f the focal length in pixels; a patch is never counted for more than it has.
+/// (d.z = 1); f is the focal length in pixels. The visible area of a patch is at most its area.
 Glimpse look(const LitMesh& scene, const Camera& camera, double aspect, double diagonal) {
   const PatchMesh& mesh = scene.mesh;
   const int width = std::max(8, int(std::lround(std::sqrt(kTrialPixels * aspect))));
@@ -144,8 +145,8 @@ Glimpse look(const LitMesh& scene, const Camera& camera, double aspect, double d
   return glimpse;
 }
 
-/// The share of all directions from a point that end on fronts: the six faces of a cube, a pixel
-/// counted as if all were as far away.
+/// The share of all directions from a point that end on fronts: the share of pixels on the six
+/// faces of a cube, which all count the same.
 double enclosure(const PatchMesh& mesh, const Vec3& eye) {
   constexpr int kPixels = 16;
   double fronts = 0;
@@ -173,14 +174,14 @@ struct Scored {
   double score = 0;
 };
 
-/// The first allowed candidate whose score no later one beats by 1%; score 0: none shows anything.
+/// The first allowed candidate whose score no later one beats by 1%; score 0: none shows a surface.
 template <class Score, class Allowed>
 Scored best(const std::vector<Candidate>& candidates, const Score& score, const Allowed& allowed) {
   std::vector<double> scores(candidates.size());
   parallelFor(candidates.size(), 1, [&](std::size_t k) {
     scores[k] = candidates[k].liked * score(candidates[k].camera);
   });
-  // Where the likeliest ones are not allowed, others hardly are.
+  // If the best candidates are not allowed, others hardly are.
   constexpr int kTries = 12;
   for (int tried = 0; tried < kTries && !scores.empty(); ++tried) {
     std::size_t chosen = 0;
@@ -194,8 +195,8 @@ Scored best(const std::vector<Candidate>& candidates, const Score& score, const 
   return {};
 }
 
-/// Shares of the box's height at which to stand, with what each is worth: where a person's eyes
-/// would be, if the box has the height of a room or a hall, and near the middle.
+/// The eye heights to try, as shares of the box's height, with the worth of each: that of a
+/// person's eyes, if the box has the height of a room or a hall, and heights near the middle.
 std::vector<std::pair<double, double>> eyeHeights(double height) {
   std::vector<std::pair<double, double>> shares = {{0.5, 1.0}, {0.62, 1.0}, {0.38, 1.0}};
   if (height > 1.2 * kEyeHeight && height < 40 * kEyeHeight) {
@@ -213,14 +214,14 @@ Camera insideCamera(const Vec3& eye, const Vec3& target, double aspect) {
   return camera;
 }
 
-/// Whether a way leads anywhere but up and down, to something that is not at the eye's feet.
+/// Whether a direction is level enough, and its target is not at the eye's feet.
 bool isLevel(const Vec3& way, const Box3& box) {
   return std::hypot(way.x, way.z) > 0.02 * glm::length(box.size());
 }
 
 /// Viewpoints near the ends of the horizontal extents, the longer one first, each looking at the
-/// middle of the opposite end. Further steps into the room and to the side find a place where the
-/// room is not a box or furniture stands at its end.
+/// middle of the opposite end. Further ones lie deeper in the room and to the side, for rooms that
+/// are not boxes or have furniture at the end.
 std::vector<Candidate> viewpointsInside(const Box3& box, double aspect) {
   const Vec3 size = box.size();
   const int longer = size.x > size.z ? 0 : 2;
@@ -245,7 +246,8 @@ std::vector<Candidate> viewpointsInside(const Box3& box, double aspect) {
   return candidates;
 }
 
-/// Viewpoints all over the box that look at the middle of what is lit: light in one room of many.
+/// Viewpoints all over the box that look at the middle of the lit patches, for scenes with light in
+/// one room of many.
 std::vector<Candidate> viewpointsAtLight(const LitMesh& scene, const Box3& box, double aspect) {
   Vec3 middle(0.0);
   double total = 0;
@@ -269,7 +271,8 @@ std::vector<Candidate> viewpointsAtLight(const LitMesh& scene, const Box3& box, 
   return candidates;
 }
 
-/// Looks at the box's centre from `direction`, from so far that every vertex is in the picture.
+/// A camera that looks at the box's centre from `direction`, so far away that every vertex is in
+/// the picture.
 Camera framed(const PatchMesh& mesh, const Box3& box, const Vec3& direction, double aspect) {
   Camera camera;
   camera.target = box.at(Vec3(0.5));

@@ -12,7 +12,7 @@ namespace radiosity {
 namespace {
 
 constexpr int kTile = 64;  // pixels; with 4 x 4 samples a tile's buffers fit a core's cache
-constexpr std::size_t kGrain = 512;  // vertices or pieces a task
+constexpr std::size_t kGrain = 512;  // vertices or pieces in a task
 
 std::vector<Index> ranksByName(const std::vector<std::string>& names) {
   std::vector<Index> order(names.size());
@@ -42,15 +42,15 @@ void clip(std::vector<Vec3>& polygon, const Function& f) {
 
 }  // namespace
 
-/// Everything the inner loop needs, linear over pixels: value = c.x * x + c.y * y + c.z.
+/// The data of the inner loop; values are linear over pixels: c.x * x + c.y * y + c.z.
 struct ItemBuffer::Triangle {
   std::array<Vec3, 3> edge;  ///< >= 0 inside
   Vec3 inverse_depth;
 
-  /// Narrows [x0, x1) to the pixels of row y that may hold a sample inside: long thin triangles
-  /// cost their area, not that of their box. Each edge is taken where in the row it lets most
-  /// through, a whole sample's distance from any sample, and one pixel is added: no rounding can
-  /// take away a sample that the test proper lets in.
+  /// Narrows [x0, x1) to the pixels of row y that may hold a sample inside, so that long thin
+  /// triangles cost their area, not that of their box. Each edge is evaluated where it is largest
+  /// in the row, a whole sample's distance from any sample, and one pixel is added. So rounding
+  /// cannot remove a sample that the exact test accepts.
   void narrow(int y, int& x0, int& x1) const {
     for (const Vec3& e : edge) {
       const double most = std::max(e.y * y, e.y * (y + 1)) + e.z;
@@ -91,7 +91,7 @@ void ItemBuffer::transform() {
   });
 }
 
-/// Decides whether the piece is drawn, which side is seen, and where in the picture.
+/// Decides whether the piece is drawn, which side is seen, and its bounds in the picture.
 void ItemBuffer::classify(Index piece, bool show_backs) {
   const auto& [a, b, c] = mesh_.pieces[piece];
   const Vec3 normal = glm::cross(camera_[b] - camera_[a], camera_[c] - camera_[a]);
@@ -109,9 +109,9 @@ void ItemBuffer::classify(Index piece, bool show_backs) {
   }
 }
 
-/// Pixels the piece may touch, at least. The frustum's four sides go through the eye: they are
-/// linear and homogeneous in pixel space (0 <= X <= width z, 0 <= Y <= height z), so clipping to
-/// them takes no near plane.
+/// Bounds of the pixels that the piece may touch. The frustum's four sides go through the eye: they
+/// are linear and homogeneous in pixel space (0 <= X <= width z, 0 <= Y <= height z), so clipping
+/// to them needs no near plane.
 ItemBuffer::Bounds ItemBuffer::boundsOf(const std::array<Index, 3>& piece) const {
   const double w = view_.width;
   const double h = view_.height;
@@ -131,7 +131,7 @@ ItemBuffer::Bounds ItemBuffer::boundsOf(const std::array<Index, 3>& piece) const
   clip(polygon, [w](const Vec3& p) { return w * p.z - p.x; });
   clip(polygon, [h](const Vec3& p) { return h * p.z - p.y; });
   if (polygon.empty()) return nothing;
-  // The rest lies in the frustum, where z = 0 only at the eye: then it fills the picture.
+  // The rest lies in the frustum, where z = 0 only at the eye: then the piece fills the picture.
   for (const Vec3& p : polygon) {
     if (!(p.z > 0)) return {0, 0, view_.width, view_.height};
   }
@@ -147,7 +147,7 @@ ItemBuffer::Bounds ItemBuffer::boundsInFront(std::span<const Vec3> corners) cons
     low = glm::min(low, seen);
     high = glm::max(high, seen);
   }
-  // One pixel more on each side: rounding never loses a sample, and nothing else depends on it.
+  // One more pixel on each side, so that rounding never loses a sample; nothing else depends on it.
   return {std::max(int(low.x) - 1, 0), std::max(int(low.y) - 1, 0),
           std::min(int(high.x) + 2, view_.width), std::min(int(high.y) + 2, view_.height)};
 }

@@ -1,4 +1,4 @@
-// Which triangle is seen through each sample of a picture: a z-buffer over tiles.
+// A z-buffer over tiles: the triangle that each sample of a picture sees.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ inline Vec2 sampleOffset(int sample, int samples) {
   return {(i + (j + 0.5) / samples) / samples, (j + (i + 0.5) / samples) / samples};
 }
 
-/// The samples of one tile: what is nearest along each.
+/// The samples of one tile, each with its nearest piece.
 struct TileItems {
   int x = 0;  ///< first pixel
   int y = 0;
@@ -30,7 +30,8 @@ struct TileItems {
   std::vector<Index> piece;           ///< into PatchMesh::pieces, or kNone
   std::vector<double> inverse_depth;  ///< 1 / z, 0 where nothing is hit
 
-  /// Samples of one index lie side by side along x: neighbours mostly see the same piece.
+  /// The samples of one index are stored together along x, since neighbours mostly see the same
+  /// piece.
   std::size_t at(int px, int py, int sample) const {
     return (std::size_t(py - y) * (samples * samples) + sample) * width + (px - x);
   }
@@ -39,20 +40,20 @@ struct TileItems {
 /// Visibility of a mesh from an eye. Triangles are rasterised in homogeneous coordinates (Olano &
 /// Greer, "Triangle scan conversion using 2D homogeneous coordinates", Graphics Hardware 1997): the
 /// edge function of a, b at the ray d is det(a, b, d). No vertex is divided by its depth, so there
-/// is no near plane, and what passes behind the eye needs no special case.
+/// is no near plane, and triangles that reach behind the eye need no special case.
 ///
 /// Conventions. A sample exactly on an edge belongs to both sides; edge functions of a shared edge
 /// are each other's negative to the bit, so no sample falls between two pieces that share their
-/// vertices. Equal depths go to the front, then to the surface first by name, the lower index in
-/// it, the front side: the order of the patches in the mesh does not matter.
+/// vertices. Of equal depths the front wins, then the surface that is first by name, the lower
+/// index in it, and the front side: the order of the patches in the mesh does not matter.
 class ItemBuffer {
  public:
   ItemBuffer(const PatchMesh& mesh, const View& view, int samples, bool show_backs);
 
   const View& view() const { return view_; }
   int tileCount() const { return tiles_x_ * tiles_y_; }
-  /// Resolves one tile. Different tiles may be resolved by different threads at once; `items` is
-  /// scratch memory that may come from any tile before.
+  /// Resolves one tile. Different threads may resolve different tiles at once. `items` is scratch
+  /// memory and may have been used for another tile.
   void resolve(int tile, TileItems& items) const;
 
   Index patchOf(Index piece) const { return patch_of_piece_[piece]; }
@@ -61,7 +62,7 @@ class ItemBuffer {
   /// n . p < 0, and pixel space (y down, z away) is as right-handed as the world.
   /// edgeFunction(b, a) is the negative of edgeFunction(a, b) to the bit.
   Vec3 edgeFunction(Index from, Index to) const { return glm::cross(pixels_[to], pixels_[from]); }
-  /// True where the eye sees the piece's back.
+  /// True if the eye sees the piece's back.
   bool seenFromBehind(Index piece) const { return facing_[piece] < 0; }
 
  private:

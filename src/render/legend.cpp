@@ -11,7 +11,7 @@
 namespace radiosity {
 namespace {
 
-// Display values of the strip: light on dark reads on any page around it.
+// Display values of the strip: light on dark, which is legible on any page.
 constexpr float kPanel = 0.10f;
 constexpr float kInk = 0.93f;
 
@@ -61,8 +61,8 @@ Tick makeTick(int x, const std::string& text, int scale, int low, int high) {
   return {x, left, left + w, text};
 }
 
-/// `digits` significant ones tell the ends of the range apart, whatever it stands on: row sums from
-/// 0.99998 to 1.00001 read so.
+/// A number with enough digits to tell the ends of the range apart at any offset, as for row sums
+/// from 0.99998 to 1.00001.
 std::string number(double value, const ColourRange& range) {
   const double size = std::max(std::abs(range.low), std::abs(range.high));
   const double lost = range.high > range.low ? std::log10(size / (range.high - range.low)) : 2;
@@ -70,8 +70,8 @@ std::string number(double value, const ColourRange& range) {
   return fmt::format("{:.{}g}", value, digits);
 }
 
-/// Multiples of `step` strictly between the ends; those without room beside the end numbers stay
-/// bare marks. Empty where two numbers would touch, or none fits.
+/// The multiples of `step` strictly between the ends; those without room beside the end numbers are
+/// marks without a number. Empty if two numbers would touch, or if none fits.
 std::vector<Tick> innerTicks(double step, const ColourRange& range, const Tick& first,
                              const Tick& last, int scale) {
   std::vector<Tick> ticks;

@@ -1,4 +1,4 @@
-// The strip under a false-colour picture that says what its colours mean.
+// The strip under a false-colour picture that explains its colours.
 #pragma once
 
 #include <optional>
@@ -12,18 +12,18 @@ namespace radiosity {
 struct ColourRange {
   double low = 0;
   double high = 0;     ///< == low: one colour, the middle of the map
-  bool below = false;  ///< values under `low` are in view and wear its colour
+  bool below = false;  ///< values under `low` are in view and have its colour
   bool above = false;
 
   double position(double value) const { return high > low ? (value - low) / (high - low) : 0.5; }
 };
 
-/// Title (with the unit), colour bar and numbers; sized to be read in the picture as it is.
+/// Title (with the unit), colour bar and numbers, in a size that is legible in the picture.
 class Legend {
  public:
   Legend(const FalseColour& text, int width, int height);
 
-  /// Rows the strip takes at the bottom; 0 where the picture is too small for a readable one.
+  /// The rows of the strip at the bottom; 0 if the picture is too small for a legible one.
   int height() const { return height_; }
   /// Draws the strip into the bottom rows. No range: nothing is in view.
   void draw(Image& image, const ColourMap& map, const std::optional<ColourRange>& range) const;
@@ -33,7 +33,7 @@ class Legend {
   void drawTicks(Image& image, int top, const ColourRange& range) const;
 
   int width_;
-  int scale_;  ///< picture pixels a font pixel
+  int scale_;  ///< picture pixels for each font pixel
   int margin_;
   std::vector<std::string> lines_;  ///< of the title
   int height_ = 0;

@@ -11,7 +11,7 @@ namespace radiosity {
 
 Camera parseCamera(const std::string& text, Up up) {
   Camera camera = readCamera(text, ';', up);
-  makeView(camera, 1, 1);  // the checks every camera has to pass
+  makeView(camera, 1, 1);  // checks the camera
   return camera;
 }
 

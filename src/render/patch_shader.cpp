@@ -36,7 +36,7 @@ void PatchShader::setRoot(Index patch, Index piece) {
   const std::size_t first = roots.of_patch[patch];
   const std::size_t count = roots.of_patch[patch + 1] - first;
   if (count == 0) return;
-  // A patch of several roots has one a piece.
+  // A patch with several roots has one for each piece.
   const std::size_t root = count == 1 ? first : first + (piece - mesh_.piece_offset[patch]);
   const Elements* elements = field_.roots->elements;
   if (elements != nullptr && elements->indirect.elements[root].corners == 0) return;
@@ -80,7 +80,7 @@ std::array<double, 3> PatchShader::rootAt(double x, double y) {
   return light;
 }
 
-/// Fills the corner areas; false unless the patch is a quad with all corners bending one way.
+/// Fills the corner areas; false unless the patch is a convex quadrilateral.
 bool PatchShader::convexQuad(Index patch) {
   const auto outline = mesh_.outline(patch);
   if (outline.size() != 4) return false;
@@ -116,7 +116,7 @@ void PatchShader::setTriangle(Index patch, Index piece) {
   for (int k = 0; k < 3; ++k) {
     edge_[k] = items_.edgeFunction(p[k], p[(k + 1) % 3]);
     const auto found = std::find(outline.begin(), outline.end(), p[k]);
-    // A piece may have a vertex inside the patch; there the patch's own value stands.
+    // A piece may have a vertex inside the patch, which has the patch's own value.
     const bool on_outline = found != outline.end();
     const std::size_t corner = first + std::size_t(found - outline.begin());
     for (int b = 0; b < field_.bands; ++b) {
@@ -134,7 +134,7 @@ std::array<double, 3> PatchShader::at(double x, double y) {
   if (corners_ == 0) return value;
   std::array<double, 4> a{};
   for (int k = 0; k < corners_; ++k) {
-    // A corner of a quad that is planar only up to coincidence may lie outside by a rounding error.
+    // In a quadrilateral that is planar only up to coincidence, rounding may put a point outside.
     a[k] = std::max(edge_[k].x * x + edge_[k].y * y + edge_[k].z, 0.0);
   }
   std::array<double, 4> w{};
@@ -144,7 +144,7 @@ std::array<double, 3> PatchShader::at(double x, double y) {
     sum += w[k];
   }
   if (!(sum > 0)) return value;  // the patch is seen as a point
-  // Differences to one corner: a constant field stays that constant to the bit.
+  // Differences to one corner, so that a constant field keeps its bits.
   for (int k = 1; k < corners_; ++k) {
     for (int b = 0; b < field_.bands; ++b) value[b] += w[k] / sum * rise_[k][b];
   }

@@ -1,4 +1,4 @@
-// The value of a field at a point of a patch, seen through a sample.
+// The value of a field at a point of a patch that a sample sees.
 #pragma once
 
 #include <array>
@@ -10,35 +10,35 @@
 
 namespace radiosity {
 
-/// What the evaluation of light at points took.
+/// The cost and accuracy of light evaluated at points.
 struct PointSums {
   std::size_t points = 0;
   double rays = 0;
-  double noise_square = 0;  ///< of pixels: of the standard error of their mean
-  double light_square = 0;  ///< of pixels, likewise over all bands
-  double seconds = 0;       ///< of the thread's
+  double noise_square = 0;  ///< sum over pixels of the squared standard error of their mean
+  double light_square = 0;  ///< sum over pixels of the squared light, over all bands
+  double seconds = 0;       ///< of the thread's time
 };
 
-/// Irradiance on roots, as it is drawn: what leaves a point is emission + reflectance times
-/// irradiance there, in bands that are red, green and blue, or one in grey.
+/// Irradiance on roots for drawing. The radiosity of a point is emission + reflectance times the
+/// irradiance there, in bands of red, green and blue, or one in grey.
 struct ShadedRoots {
   const ElementRoots& roots;
   int bands;
   std::span<const double> reflectance;  ///< N * bands
   std::span<const double> emission;     ///< N * bands
-  double factor = 1;                    ///< that the result is multiplied by
+  double factor = 1;                    ///< multiplies the result
   /// Elements, with their lookup; ...
   const Elements* elements = nullptr;
   const ElementLookup* lookup = nullptr;
   /// ... or light at every sample's own point.
   const LightAtPoints* points = nullptr;
   int rays = 0;                     ///< of a pixel
-  int every = 1;                    ///< one pixel in so many, across and down, is drawn
+  int every = 1;                    ///< draws only each pixel of this number, across and down
   std::span<PointSums> tiles = {};  ///< of each tile of the item buffer
 };
 
-/// A field over the patches: constant on each, or interpolated from values at the corners; or,
-/// where there are elements, from theirs.
+/// A field over the patches: constant on each, interpolated from values at the corners, or taken
+/// from elements.
 struct PatchField {
   std::span<const double> values;  ///< N * bands, row-major
   std::vector<double> corners;     ///< mesh.corners.size() * bands, or empty: constant patches
@@ -48,13 +48,14 @@ struct PatchField {
 };
 
 /// Interpolates with Wachspress' coordinates (Wachspress, "A Rational Finite Element Basis", 1975;
-/// Meyer, Lee, Barr & Desbrun 2002): in a convex polygon corner i weighs
+/// Meyer, Lee, Barr & Desbrun 2002). In a convex polygon the weight of corner i is
 ///   w_i = C_i * product of A_j over the edges j that do not touch corner i,
-/// C_i the area of the triangle of corner i and its two neighbours, A_j the area of the triangle of
-/// edge j and the point. On a triangle these are the barycentric coordinates, on a parallelogram
-/// the bilinear ones; linear fields come out exactly, the field is smooth inside a quad and linear
-/// along its edges, so neighbours agree there. A quad split into two triangles has a crease along
-/// its diagonal, one split into four has two; both show as Mach bands, this has none.
+/// with C_i the area of the triangle of corner i and its two neighbours, and A_j the area of the
+/// triangle of edge j and the point. On a triangle these are the barycentric coordinates, on a
+/// parallelogram the bilinear ones. Linear fields are reproduced exactly. The field is smooth
+/// inside a quadrilateral and linear along its edges, so neighbours agree there. A quadrilateral
+/// split into two or four triangles would have creases along its diagonals, which show as Mach
+/// bands.
 ///
 /// The areas A_j are the edge functions det(a, b, d) of the rasteriser up to one common factor,
 /// which cancels: the interpolation is perspective-correct without a division by depth.
@@ -62,11 +63,11 @@ class PatchShader {
  public:
   PatchShader(const PatchMesh& mesh, const ItemBuffer& items, const PatchField& field);
 
-  /// A new pixel, of so many samples.
+  /// Begins a new pixel with this number of samples.
   void setSamples(int samples);
-  /// With light at points: what was evaluated so far.
+  /// With light at points: the sums so far.
   PointSums sums() const { return sums_; }
-  /// The patch and piece the next samples lie on.
+  /// Sets the piece, and so the patch, of the next samples.
   void setPiece(Index piece);
   /// `field.bands` values at pixel position (x, y), inside the piece.
   std::array<double, 3> at(double x, double y);
@@ -85,7 +86,7 @@ class PatchShader {
   const PatchField& field_;
   int samples_ = 1;  ///< of the pixel
   PointSums sums_;
-  std::size_t root_ = kNone;  ///< kNone: the patch has none, or none with light
+  std::size_t root_ = kNone;  ///< kNone: the patch has no root, or no root with light
   Vec3 normal_{0.0};          ///< of the patch
   double height_ = 0;         ///< of its plane, seen from the eye
   Index patch_ = 0;

@@ -14,10 +14,10 @@ namespace {
 
 constexpr int kFewestRays = 64;
 constexpr int kMostRays = 65536;
-/// A forecast looks at one pixel in so many, across and down.
+/// A forecast draws only each pixel of this number, across and down.
 constexpr int kForecastStep = 16;
 
-/// One picture, or what a forecast draws of it.
+/// One picture, or the pixels of its forecast.
 class Gathering {
  public:
   Gathering(const PatchMesh& mesh, const SurfaceLight& light, const Camera& camera,
@@ -59,7 +59,7 @@ class Gathering {
     return int(std::clamp(gather.most_rays / pixels, double(kFewestRays), double(gather.rays)));
   }
 
-  /// In the tiles' order: no sum depends on threads.
+  /// Adds in the order of tiles, so that no sum depends on threads.
   void sumUp(const std::vector<PointSums>& tiles) {
     double noise = 0;
     double light = 0;

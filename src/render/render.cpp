@@ -1,4 +1,4 @@
-// The picture of a field: every pixel the mean of the samples that hit something.
+// Draws a field: every pixel is the mean of the samples that hit a surface.
 #include "radiosity/render.h"
 
 #include <fmt/format.h>
@@ -16,9 +16,9 @@
 namespace radiosity {
 namespace {
 
-/// Colour: the mean over the samples that hit something, a background too; alpha: the share of
-/// them. The mean is taken as a difference to the first hit, so that a constant field keeps its
-/// value to the bit.
+/// Colour: the mean over the samples that hit a surface or a background. Alpha: the share of these
+/// samples. The mean is that of differences to the first hit, so that a constant field keeps its
+/// bits.
 class RgbPixel {
  public:
   RgbPixel(Image& image, const std::optional<Vec3>& background) : image_(image) {

@@ -1,4 +1,4 @@
-// The loop over tiles, pixels and samples that every picture shares.
+// The loop over tiles, pixels and samples for all pictures.
 #pragma once
 
 #include "base/parallel.h"
@@ -12,8 +12,9 @@ namespace radiosity {
 /// The side of a patch that one sample sees.
 enum class Seen { nothing, front, back };
 
-/// Whether all samples of a pixel see one patch with roots: four then do for its light, which
-/// costs more than what a patch's corners have. (Samples are for edges of what is seen.)
+/// Whether all samples of a pixel see one patch with roots. Four samples are then enough for its
+/// light, which costs more than interpolation between a patch's corners. (More samples only improve
+/// the edges of patches.)
 inline bool shadesWhole(const ItemBuffer& items, const PatchField& field, const TileItems& seen,
                         int x, int y) {
   const int count = seen.samples * seen.samples;
@@ -21,7 +22,7 @@ inline bool shadesWhole(const ItemBuffer& items, const PatchField& field, const 
   const Index first = seen.piece[seen.at(x, y, 0)];
   if (first == kNone || items.seenFromBehind(first)) return false;
   const Index patch = items.patchOf(first);
-  // Pieces of a triangulated patch are roots of their own.
+  // Each piece of a triangulated patch is a root.
   const ElementRoots& roots = field.roots->roots;
   const bool one_root = roots.of_patch[patch + 1] - roots.of_patch[patch] == 1;
   for (int s = 1; s < count; ++s) {
@@ -89,8 +90,8 @@ void forSamples(const PatchMesh& mesh, const ItemBuffer& items, const PatchField
   });
 }
 
-/// The field as a picture with these options needs it. Throws InputError unless there are `bands`
-/// finite values a patch.
+/// Prepares the field for a picture with these options. Throws InputError unless there are `bands`
+/// finite values for each patch.
 PatchField makeField(const PatchMesh& mesh, std::span<const double> values, int bands,
                      const RenderOptions& options);
 

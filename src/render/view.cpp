@@ -38,7 +38,7 @@ View makeView(const Camera& camera, int width, int height) {
   view.eye = camera.eye;
   view.forward = glm::normalize(camera.target - camera.eye);
   const Vec3 right = glm::cross(view.forward, camera.up);
-  // A sine below 1e-6: the sideways direction would be made of rounding errors.
+  // With a sine below 1e-6 the sideways direction would consist of rounding errors.
   if (!(glm::length(right) > 1e-6 * glm::length(camera.up))) {
     throw InputError(
         fmt::format("camera{}: it looks along its up vector ({:g}, {:g}, {:g}); give another up",

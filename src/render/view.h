@@ -1,4 +1,4 @@
-// A camera and a picture size, as the homogeneous transform the rasteriser works in.
+// A camera and a picture size as the homogeneous transform of the rasteriser.
 #pragma once
 
 #include <glm/geometric.hpp>
@@ -10,8 +10,8 @@ namespace radiosity {
 
 /// World -> camera -> pixels. Camera space: x right, y up, z the depth along the view. Pixel space
 /// is homogeneous: (X, Y, z) is seen at X / z pixels from the left and Y / z from the top of the
-/// picture, pixel centres at halves. Nothing is divided here, so a point behind the eye (z < 0) or
-/// beside it (z = 0) is as good as any other.
+/// picture, pixel centres at halves. There is no division, so points behind the eye (z < 0) or
+/// beside it (z = 0) need no special case.
 struct View {
   Vec3 eye{0.0};
   Vec3 right{1.0, 0.0, 0.0};
@@ -42,10 +42,10 @@ struct View {
   }
 };
 
-/// Pixels are square. Where the picture is narrower than the camera's own aspect, the vertical
-/// field grows so that the camera's horizontal field stays in the picture.
-/// Errors: InputError naming the camera, if it looks nowhere, along its up vector, or if its field
-/// of view is not between 0 and 180 degrees.
+/// Pixels are square. If the picture is narrower than the camera's own aspect, the vertical field
+/// grows so that the camera's horizontal field stays in the picture. Errors: InputError naming the
+/// camera if its eye is its target, if it looks along its up vector, or if its field of view is not
+/// between 0 and 180 degrees.
 View makeView(const Camera& camera, int width, int height);
 
 }  // namespace radiosity

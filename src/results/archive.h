@@ -1,4 +1,5 @@
-// One list of fields a struct (fields.h), three readings of it: write, read, count the bytes.
+// Each struct has one list of fields (fields.h), which is used to write, to read and to count
+// bytes.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,7 @@
 
 namespace radiosity::h5 {
 
-/// How a type of ours is spelled in an attribute: `count` numbers.
+/// The representation of a type in an attribute: `count` numbers.
 template <class T>
 struct Scalar {
   using Stored = std::conditional_t<std::is_same_v<T, bool>, std::uint8_t, T>;
@@ -56,7 +57,7 @@ class FieldWriter {
   void operator()(const char* name, const std::vector<std::string>& values) {
     sink_->strings(name, values);
   }
-  /// A vector of numbers shown as rows of `columns`.
+  /// A vector of numbers, stored as rows of `columns`.
   template <class T>
   void rows(const char* name, const std::vector<T>& values, std::size_t columns,
             const char* unit = "") {
@@ -65,7 +66,7 @@ class FieldWriter {
     const Shape shape{numberOf<Component>(), columns == 0 ? numbers : numbers / columns, columns};
     sink_->dataset(name, shape, values.data(), unit);
   }
-  /// A few numbers as one attribute; none where there are none.
+  /// A few numbers as one attribute; no attribute if there are none.
   void numbers(const char* name, const std::vector<double>& values, std::size_t /*count*/) {
     if (!values.empty()) sink_->attribute(name, Number::f64, values.size(), values.data());
   }
@@ -74,20 +75,20 @@ class FieldWriter {
   void choice(const char* name, const Enum& value, const NameTable<Enum, N>& names) {
     sink_->text(name, nameOf(names, value));
   }
-  /// One that older files lack: reading, it stays as it is there.
+  /// The same for a field that older files lack: reading them leaves the value unchanged.
   template <class Enum, std::size_t N>
   void laterChoice(const char* name, const Enum& value, const NameTable<Enum, N>& names) {
     choice(name, value, names);
   }
-  /// Texts that older files lack; none where there is nothing to say.
+  /// Texts that older files lack; not written if there are none.
   void later(const char* name, const std::vector<std::string>& values) {
     if (!values.empty()) sink_->strings(name, values);
   }
-  /// One that may be longer than an attribute.
+  /// A text that older files lack and that may be longer than an attribute.
   void laterText(const char* name, const std::string& value) {
     if (!value.empty()) sink_->strings(name, {value});
   }
-  /// Whether there is a group of what may be absent; reading, it is made where there is.
+  /// Whether an optional value has a group; reading makes the value if it has.
   template <class T>
   bool present(const char* /*name*/, const std::optional<T>& value) {
     return value.has_value();
@@ -98,7 +99,7 @@ class FieldWriter {
     FieldWriter inner(inner_sink);
     body(inner);
   }
-  /// A vector of structs as one column a member.
+  /// A vector of structs as a group with one column for each member.
   template <class Record, class Body>
   void table(const char* name, const std::vector<Record>& records, const Body& body) {
     group(name, [&](FieldWriter& inner) {
@@ -176,7 +177,7 @@ class FieldReader {
     values.resize(numbers / kNumbersIn<T>);
     if (!values.empty()) source_->readAll(name, dataset, numberOf<Component>(), values.data());
   }
-  /// How many columns the rows of a dataset have.
+  /// The number of columns of a dataset.
   int columns(const char* name) const { return source_->columns(name); }
   void numbers(const char* name, std::vector<double>& values, std::size_t count) {
     values.assign(source_->hasAttribute(name) ? count : 0, 0.0);
@@ -246,7 +247,7 @@ class FieldReader {
         (*records)[k].*member = reader->parse(name, column[k], names);
       }
     }
-    /// The first column says how many records there are.
+    /// Sets the number of records by the first column.
     void fit(const char* name, std::size_t count) {
       if (std::exchange(first, false)) records->resize(count);
       if (records->size() != count) reader->source_->fail(name, "is not as long as its table");
@@ -263,7 +264,7 @@ class FieldReader {
   const InputGroup* source_;
 };
 
-/// The type of a described struct: const unless it is read into.
+/// The type of a described struct: const unless it is being read.
 template <class Archive, class T>
 using Described = std::conditional_t<Archive::kReading, T, const T>;
 

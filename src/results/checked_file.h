@@ -1,4 +1,4 @@
-// A file written from start to end, whole or not at all, every write checked.
+// A file that is written from start to end, whole or not at all, with every write checked.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +11,13 @@
 
 namespace radiosity {
 
-/// Errors: as AtomicFile, and RunError with the system's reason where a write fails.
+/// Errors: as AtomicFile, and RunError with the system's reason if a write fails.
 class CheckedFile {
  public:
   explicit CheckedFile(const std::string& path);
   void write(const void* data, std::size_t size);
   void write(std::string_view text) { write(text.data(), text.size()); }
-  /// Closes and gives the file its name; without it nothing stays.
+  /// Closes the file and gives it its name; without this call the file is removed.
   void commit();
 
  private:
@@ -27,7 +27,7 @@ class CheckedFile {
   [[noreturn]] void fail() const;
 
   std::string path_;
-  AtomicFile target_;  // before file_: closed first, then removed
+  AtomicFile target_;  // before file_, so that it is removed after file_ is closed
   std::unique_ptr<std::FILE, Closer> file_;
 };
 

@@ -9,8 +9,8 @@
 
 namespace radiosity::h5 {
 
-/// Fills a dataset of one dimension in order, a chunk at a time: HDF5 makes the checksum of each
-/// chunk once and reads none back.
+/// Fills a dataset of one dimension in order, a chunk at a time, so that HDF5 computes the checksum
+/// of each chunk once and reads none back.
 template <class T>
 class ColumnWriter {
  public:

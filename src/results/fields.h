@@ -374,13 +374,13 @@ void describe(Archive& a, Described<Archive, LightBasis>& l) {
   a("bands", l.bands);
   describe(a, l.materials);
   if constexpr (Archive::kReading) l.solution.bands = l.materials.bands;
-  const auto columns = std::size_t(std::max(l.solution.bands, 1));  // results_check.cpp: others
+  const auto columns = std::size_t(std::max(l.solution.bands, 1));  // see results_check.cpp
   a.rows("radiosity", l.solution.radiosity, columns, "W/m^2");
   a.rows("irradiance", l.solution.irradiance, columns, "W/m^2");
   a.group("summary", [&](auto& summary) { describe(summary, l.solution.summary); });
 }
 
-/// Passes as they are stored: a row each.
+/// Passes in the file's layout: one row each.
 struct PassColumns {
   std::size_t bands;
   std::vector<double> seconds, change, bound;  // P
@@ -405,7 +405,7 @@ struct PassColumns {
       append(in_flight, pass.in_flight);
     }
   }
-  /// Columns of unequal length end the list: results_check.cpp says so.
+  /// The list ends with the shortest column; results_check.cpp refuses unequal ones.
   std::vector<GatherPass> passes() const {
     const auto bandsOf = [&](const std::vector<double>& from, std::size_t pass) {
       const auto first = from.begin() + std::ptrdiff_t(bands * pass);

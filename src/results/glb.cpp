@@ -113,7 +113,7 @@ void writeGlb(const std::string& path, nlohmann::ordered_json document,
               std::span<const char> binary) {
   using Json = nlohmann::ordered_json;
   document["buffers"] = Json::array({{{"byteLength", binary.size()}}});
-  // A name need not be valid UTF-8 in an OBJ; JSON must be.
+  // A name from an OBJ file need not be valid UTF-8, but JSON must be.
   std::string json = document.dump(-1, ' ', false, Json::error_handler_t::replace);
   json.resize(paddedTo4(json.size()), ' ');
   const std::size_t total = 12 + 8 + json.size() + 8 + binary.size();

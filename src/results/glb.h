@@ -11,13 +11,13 @@
 
 namespace radiosity {
 
-/// Where the file's coordinates start: 0, or the middle of the vertices where that is farther from
-/// 0 than they are apart. Positions are 32-bit floats; the rest goes into node translations, which
-/// are 64-bit numbers.
+/// The origin of the file's coordinates: 0, or the middle of the vertices if it is farther from 0
+/// than they are apart. Positions are 32-bit floats relative to it; it becomes the translation of
+/// nodes, which has 64-bit numbers.
 Vec3 floatOrigin(std::span<const Vec3> vertices);
 
-/// A binary file of a glTF document and its buffer, which becomes the document's only one. Errors:
-/// RunError where it cannot be written or passes 4 GiB.
+/// Writes a glTF document and its buffer, which becomes the document's only one, as a binary file.
+/// Errors: RunError if it cannot be written or is larger than 4 GiB.
 void writeGlb(const std::string& path, nlohmann::ordered_json document,
               std::span<const char> binary);
 
@@ -27,15 +27,15 @@ inline constexpr int kGltfUnsignedInt = 5125;
 inline constexpr int kGltfArrayBuffer = 34962;
 inline constexpr int kGltfElementArrayBuffer = 34963;
 
-/// The next multiple of 4: where chunks end and attributes begin.
+/// The next multiple of 4: chunks end and attributes begin there.
 constexpr std::size_t paddedTo4(std::size_t size) { return (size + 3) / 4 * 4; }
 
-/// Attributes of the vertices of one primitive; those after the position are empty or as many.
+/// Attributes of the vertices of one primitive; all but the position may be empty.
 struct GlbVertices {
   std::vector<std::array<float, 3>> position;
   std::vector<std::array<float, 3>> colour;     ///< COLOR_0, linear
   std::vector<std::array<float, 3>> radiosity;  ///< _RADIOSITY, W/m^2
-  std::vector<std::array<float, 2>> lightmap;   ///< TEXCOORD_1, and 0: sets begin with that
+  std::vector<std::array<float, 2>> lightmap;   ///< TEXCOORD_1, and 0, since sets begin at 0
   std::size_t count() const { return position.size(); }
 };
 
@@ -46,12 +46,12 @@ class GlbWriter {
   explicit GlbWriter(const Vec3& origin);
   int addMaterial(Json material);
   void useExtension(const std::string& name) { document_["extensionsUsed"].push_back(name); }
-  /// Facts about the whole file, where Blender shows them: on the scene.
+  /// Sets facts about the whole file on the scene, where Blender shows them.
   void setExtras(Json extras) { document_["scenes"][0]["extras"] = std::move(extras); }
   void addPosition(GlbVertices& vertices, const Vec3& metres) const;
-  /// Returns what addNode() takes. `triangles`: three vertices each, at least one triangle.
+  /// Returns a primitive for addNode(). `triangles`: three vertices each, at least one triangle.
   Json addPrimitive(const GlbVertices& vertices, std::span<const Index> triangles, int material);
-  /// A node with a mesh of these primitives.
+  /// Adds a node with a mesh of these primitives.
   void addNode(const std::string& name, std::vector<Json> primitives);
   /// Errors: InputError for an empty file, and those of writeGlb().
   void write(const std::string& path) const;

@@ -49,7 +49,7 @@ std::string gltfTypeName(int type) {
     case TINYGLTF_TYPE_VEC3:
       return "VEC3";
     default:
-      return "VEC4";  // attributes are no matrices
+      return "VEC4";  // attributes are never matrices
   }
 }
 

@@ -11,7 +11,7 @@ struct Innermost {
 };
 
 herr_t keepInnermost(unsigned /*depth*/, const H5E_error2_t* error, void* data) {
-  // Walking downward, the last call is the place where it went wrong.
+  // We walk downward, so the last call has the place of the error.
   if (error->desc != nullptr) static_cast<Innermost*>(data)->text = error->desc;
   return 0;
 }
@@ -21,7 +21,7 @@ herr_t keepInnermost(unsigned /*depth*/, const H5E_error2_t* error, void* data) 
 std::string lastError() {
   Innermost innermost;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, keepInnermost, &innermost);
-  // A failed system call is described with time, descriptor and buffer; the user needs its message.
+  // HDF5 describes a failed system call with time, descriptor and buffer; we only show its message.
   constexpr std::string_view kMessage = "error message = '";
   const std::size_t begin = innermost.text.find(kMessage);
   if (begin != std::string::npos) {

@@ -1,4 +1,4 @@
-// HDF5's C API made safe: handles that close themselves, errors as one line, no printing.
+// A safe layer over HDF5's C API: handles that close themselves, errors as one line, no printing.
 #pragma once
 
 #include <hdf5.h>
@@ -28,7 +28,7 @@ class Handle {
   ~Handle() { close(); }
   hid_t get() const { return id_; }
   explicit operator bool() const { return id_ >= 0; }
-  /// False where HDF5 could not close it (a file that could not be flushed).
+  /// Closes the identifier; false if HDF5 could not (a file that could not be flushed).
   bool close() { return id_ < 0 || close_(std::exchange(id_, -1)) >= 0; }
 
  private:
@@ -36,9 +36,9 @@ class Handle {
   Close close_ = nullptr;
 };
 
-/// While it lives HDF5 keeps its error stack to itself; afterwards it does what it did before,
-/// unless it met damage: then HDF5 1.10 has leaked what it held and would complain about that on
-/// stderr when the process ends, so it stays silent.
+/// Stops HDF5 from printing its error stack while this object lives. Afterwards HDF5 prints again,
+/// unless it met damage: then HDF5 1.10 has leaked objects and would complain about them on stderr
+/// when the process ends, so it stays silent.
 class Silence {
  public:
   Silence() {
@@ -58,16 +58,16 @@ class Silence {
   bool for_good_ = false;
 };
 
-/// The innermost reason on HDF5's error stack, e.g. "No space left on device". To be asked at once:
-/// the next call of HDF5, be it a close, empties the stack.
+/// The innermost reason on HDF5's error stack, e.g. "No space left on device". Call it at once: the
+/// next call of HDF5, even a close, empties the stack.
 std::string lastError();
 
-/// The numbers a file holds.
+/// The kinds of numbers in a file.
 enum class Number { u8, i32, u32, i64, u64, f32, f64 };
 
 hid_t typeOf(Number number);
 std::size_t sizeOf(Number number);
-/// In words, for messages: "32-bit float".
+/// The name of a kind in messages: "32-bit float".
 const char* nameOf(Number number);
 
 template <class T>
@@ -101,7 +101,7 @@ constexpr Number numberOf<double>() {
   return Number::f64;
 }
 
-/// How an element of a vector lies in memory: so many numbers of one kind, a row of the dataset.
+/// The layout of a vector's element in memory: numbers of one kind, a row of the dataset.
 template <class T>
 struct Element {
   using Scalar = T;
@@ -137,13 +137,13 @@ struct Shape {
   std::size_t bytes() const { return count() * sizeOf(number); }
 };
 
-/// Datasets up to this many bytes lie in their object header, which HDF5 checks by itself.
+/// Datasets up to this many bytes are stored in their object header, whose checksum HDF5 tests.
 inline constexpr std::size_t kCompactBytes = 4096;
-/// Others lie in chunks of about this many bytes, each with its own checksum. A megabyte is what
-/// h5py and other readers cache by default.
+/// Other datasets have chunks of about this many bytes, each with its own checksum. By default h5py
+/// and other readers cache a megabyte.
 inline constexpr std::size_t kChunkBytes = std::size_t(1) << 20;
 
-/// Rows of a chunk: all chunks nearly equal, so that the last one wastes next to nothing.
+/// The rows of a chunk. All chunks are nearly equal, so that the last one wastes almost nothing.
 std::size_t chunkRows(const Shape& shape);
 
 }  // namespace radiosity::h5

@@ -17,7 +17,7 @@ namespace radiosity::h5 {
 
 namespace {
 
-/// What the system writes to the disk in one piece.
+/// The number of bytes that the system writes to the disk in one piece.
 constexpr std::size_t kPage = 4096;
 using Page = std::array<char, kPage>;
 
@@ -30,12 +30,12 @@ bool readAll(int descriptor, haddr_t address, char* bytes, std::size_t size) {
     address += haddr_t(count);
     size -= std::size_t(count);
   }
-  std::memset(bytes, 0, size);  // HDF5 takes what was never written for zeros
+  std::memset(bytes, 0, size);  // HDF5 expects zeros where nothing was written
   return size == 0;
 }
 
-/// The end of the file as its superblock has it ("HDF5 File Format Specification", II.A, versions 2
-/// and 3 with addresses of 8 bytes); nothing for others.
+/// The end of the file according to its superblock ("HDF5 File Format Specification", II.A,
+/// versions 2 and 3 with addresses of 8 bytes); empty for other files.
 std::optional<haddr_t> endInSuperblock(int descriptor) {
   std::array<char, 48> block{};
   if (!readAll(descriptor, 0, block.data(), block.size())) return std::nullopt;
@@ -47,14 +47,14 @@ std::optional<haddr_t> endInSuperblock(int descriptor) {
 
 }  // namespace
 
-/// HDF5 sees the first member only; it must be the first.
+/// HDF5 only knows the first member, which must stay the first.
 struct DiskFile {
   H5FD_t base{};
   Disk* disk = nullptr;
   int descriptor = -1;
-  haddr_t allocated = 0;          ///< "end of allocation": how long HDF5 wants the file
-  haddr_t end = 0;                ///< how long it is
-  std::map<haddr_t, Page> pages;  ///< extended files: before their old end, what HDF5 changes
+  haddr_t allocated = 0;          ///< "end of allocation": the length that HDF5 wants
+  haddr_t end = 0;                ///< the present length
+  std::map<haddr_t, Page> pages;  ///< extended files: pages before the old end that HDF5 changed
   struct stat before_extending {};
 
   static DiskFile* of(H5FD_t* file) { return reinterpret_cast<DiskFile*>(file); }
@@ -84,7 +84,7 @@ struct DiskFile {
     return &file->base;
   }
 
-  /// False where another run extends the file, or it is not of a form that can be.
+  /// False if another run extends the file, or if its form does not allow extension.
   bool findOldEnd() {
     const std::optional<haddr_t> known = endInSuperblock(descriptor);
     if (!known || flock(descriptor, LOCK_EX | LOCK_NB) != 0 ||
@@ -96,7 +96,7 @@ struct DiskFile {
     return true;
   }
 
-  /// Leaves what is behind the old end to be overwritten where nothing may be switched.
+  /// Switches to the new state, or cuts off everything behind the old end if it must not switch.
   void finishExtending() {
     Page before{};
     for (auto page = pages.begin(); page != pages.end();) {
@@ -105,7 +105,7 @@ struct DiskFile {
     }
     const bool first_page_alone = pages.size() == 1 && pages.begin()->first == 0;
     if (!disk->may_switch_ || disk->error_ != 0 || !first_page_alone) {
-      // Nor is it to look like another file.
+      // We restore the times, too, so that the file does not look changed.
       const timespec times[] = {before_extending.st_atim, before_extending.st_mtim};
       if (ftruncate(descriptor, before_extending.st_size) != 0 ||
           futimens(descriptor, times) != 0) {
@@ -113,7 +113,7 @@ struct DiskFile {
       }
       return;
     }
-    // What the page leads to must be on the disk before it.
+    // The data to which the page refers must be on the disk before it.
     const Page& page = pages.begin()->second;
     if (fdatasync(descriptor) != 0 || pwrite(descriptor, page.data(), kPage, 0) != kPage ||
         fdatasync(descriptor) != 0) {
@@ -143,7 +143,7 @@ struct DiskFile {
     return 0;
   }
 
-  /// The part of a write that is before the old end stays in memory. Returns its length.
+  /// Keeps the part of a write that is before the old end in memory. Returns its length.
   std::size_t keepInMemory(haddr_t address, std::size_t size, const char* bytes) {
     const haddr_t last = std::min<haddr_t>(address + size, disk->old_end_);
     for (haddr_t at = address; at < last;) {

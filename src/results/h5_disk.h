@@ -1,4 +1,4 @@
-// How HDF5 reaches the disk when we write.
+// Our file driver for HDF5, for writing.
 #pragma once
 
 #include <cstdint>
@@ -7,32 +7,33 @@
 
 namespace radiosity::h5 {
 
-/// A file driver for HDF5 that cannot fail. The first write the system refuses is remembered, what
-/// comes after it is dropped, and HDF5 is told that all went well. HDF5 1.10 does not get over a
-/// file it cannot flush: it stays half open, and the process crashes when the library shuts down.
-/// The writer asks error() and throws the file away.
+/// A file driver for HDF5 that never fails. It remembers the first write that the system refuses,
+/// drops all later ones, and reports success to HDF5. HDF5 1.10 cannot handle a file that it cannot
+/// flush: the file stays half open, and the process crashes when the library shuts down. The writer
+/// asks error() and discards the file.
 ///
-/// An existing file is extended so that it is whole at every moment, also for one who kills the
-/// process: what is new goes behind its end, where nobody looks; what HDF5 changes before that
-/// stays in memory. The file's first page has its end and the table of its groups: written last, in
-/// one piece, it switches from the old state to the new. Where HDF5 changed more than that page
-/// nothing is switched.
+/// An existing file is extended such that it is valid at every moment, even if the process is
+/// killed: new data goes behind its end, where no reader looks; changes before the end stay in
+/// memory. The file's first page has its end and the table of its groups. It is written last, in
+/// one piece, and so switches from the old state to the new. If HDF5 changed more than that page,
+/// the old state stays.
 class Disk {
  public:
   enum class Mode { create, extend };
   explicit Disk(Mode mode = Mode::create);
   Disk(const Disk&) = delete;  // HDF5 holds its address
   Disk& operator=(const Disk&) = delete;
-  /// Makes files that are created with the property list `access` go through this object, which
-  /// must outlive them.
+  /// Makes files that are created with the property list `access` use this object, which must
+  /// outlive them.
   void serve(hid_t access);
-  /// errno of the first refusal; 0: none so far.
+  /// errno of the first refused write; 0: none so far.
   int error() const { return error_; }
-  /// From now on closing an extended file switches to its new state; without it the old one stays.
+  /// From now on closing an extended file switches to its new state. Without this call the old
+  /// state stays.
   void allowSwitch() { may_switch_ = true; }
-  /// Whether closing did.
+  /// Whether closing switched to the new state.
   bool switched() const { return switched_; }
-  /// Where an extended file ended.
+  /// The old end of an extended file.
   std::uint64_t oldEnd() const { return old_end_; }
 
  private:

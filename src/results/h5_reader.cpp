@@ -24,8 +24,8 @@ InputFile::InputFile(const std::string& path) : path_(path) {
   }
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
-  // A finished results file is replaced, or extended behind its end and switched over in one write
-  // (h5_disk.h): no lock is needed.
+  // No lock is needed: a finished results file is replaced, or extended behind its end and switched
+  // in one write (h5_disk.h).
   H5Pset_file_locking(access.get(), false, true);
   file_ = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
   if (!file_) {
@@ -97,7 +97,7 @@ std::string InputGroup::text(const std::string& name) const {
   }
   std::string value(H5Tget_size(type.get()), '\0');
   if (H5Aread(id.get(), type.get(), value.data()) < 0) file_->failDamaged(pathOf(name));
-  value.resize(value.find_last_not_of('\0') + 1);  // the padding; npos + 1 is 0
+  value.resize(value.find_last_not_of('\0') + 1);  // removes the padding; npos + 1 is 0
   return value;
 }
 
@@ -112,13 +112,14 @@ Handle InputGroup::openAny(const std::string& name, std::vector<hsize_t>& extent
   return id;
 }
 
-/// Memory is asked for only where the file can hold that much: an extent is easily forged.
+/// Refuses a dataset that the file cannot hold, before memory is allocated: an extent is easily
+/// forged.
 void InputGroup::checkStorage(const std::string& name, const Handle& dataset, std::size_t rows,
                               std::size_t row_bytes) const {
   // deflate, HDF5's strongest common filter, packs at most 1032 to 1 (a file repacked by h5repack)
   constexpr std::size_t kStrongestPacking = 1032;
   const std::size_t stored = H5Dget_storage_size(dataset.get());
-  // In doubles: a forged product overflows integers.
+  // We compare doubles, since a forged product overflows integers.
   if (double(rows) * double(row_bytes) > double(kStrongestPacking) * double(stored)) {
     fail(name, fmt::format("claims {} rows in {} bytes", rows, stored));
   }
@@ -142,7 +143,7 @@ Handle InputGroup::open(const std::string& name, Number number, std::size_t colu
 }
 
 int InputGroup::columns(const std::string& name) const {
-  constexpr hsize_t kMost = 1U << 20U;  // no row of numbers is as long
+  constexpr hsize_t kMost = 1U << 20U;  // more numbers than in any row
   std::vector<hsize_t> extent;
   openAny(name, extent);
   if (extent.size() != 2 || extent[1] < 1 || extent[1] > kMost) fail(name, "has no rows of bands");

@@ -1,4 +1,4 @@
-// A group of an HDF5 file being read: everything is checked before it is believed.
+// Reads groups of an HDF5 file; everything is checked before it is used.
 #pragma once
 
 #include <optional>
@@ -27,12 +27,12 @@ class InputFile {
   Handle file_;
 };
 
-/// What `read` makes of the file at `path`. Another run may switch the file to its new state
-/// between two reads of HDF5's (h5_disk.h): of its length and of its first page, say. What looks
-/// damaged then is whole for who begins again.
+/// Returns the result of `read` for the file at `path`, and tries again if the file seems damaged
+/// and has changed. Another run may switch the file to a new state between two reads of HDF5
+/// (h5_disk.h), for instance of its length and of its first page.
 template <class Read>
 auto readSettled(const std::string& path, const Read& read) {
-  constexpr int kMostTries = 100;  // a file that runs replace all the time
+  constexpr int kMostTries = 100;  // other runs may replace the file all the time
   for (int tries = 1;; ++tries) {
     const std::string state = fileState(path);
     try {
@@ -50,19 +50,19 @@ class InputGroup {
   bool has(const std::string& name) const;
   bool hasAttribute(const std::string& name) const;
   InputGroup group(const std::string& name) const;
-  /// Exactly `count` numbers of that kind.
+  /// Reads an attribute of exactly `count` numbers of that kind.
   void attribute(const std::string& name, Number number, std::size_t count, void* data) const;
   std::string text(const std::string& name) const;
   std::vector<std::string> strings(const std::string& name) const;
 
   /// Opens a dataset of numbers and checks kind and number of columns; sets `rows`.
   Handle open(const std::string& name, Number number, std::size_t columns, std::size_t& rows) const;
-  /// How many columns a dataset of rows has, 1 or more.
+  /// The number of columns of a dataset of rows, 1 or more.
   int columns(const std::string& name) const;
-  /// The type of the numbers in a dataset; nothing if it is none of ours.
+  /// The kind of the numbers in a dataset; empty if it is none of ours.
   std::optional<Number> numberOfDataset(const std::string& name) const;
   void readAll(const std::string& name, const Handle& dataset, Number number, void* data) const;
-  /// Rows [first, first + count) of a dataset of one dimension.
+  /// Reads rows [first, first + count) of a dataset of one dimension.
   void readRows(const std::string& name, const Handle& dataset, Number number, std::size_t first,
                 std::size_t count, void* data) const;
 

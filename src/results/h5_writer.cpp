@@ -9,8 +9,8 @@ namespace radiosity::h5 {
 
 namespace {
 
-/// Fixed-length UTF-8, padded with zeros. Strings of variable length would lie in HDF5's global
-/// heap, the one place without a checksum.
+/// Fixed-length UTF-8, padded with zeros. Strings of variable length would be in HDF5's global
+/// heap, the only part without a checksum.
 Handle stringType(std::size_t width) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type.get(), std::max<std::size_t>(width, 1));
@@ -24,10 +24,10 @@ Handle spaceOf(const Shape& shape) {
   return {H5Screate_simple(shape.columns == 0 ? 1 : 2, extent, nullptr), H5Sclose};
 }
 
-/// Compact where small; else chunked with a checksum a chunk.
+/// Compact if small; else chunked, with a checksum for each chunk.
 Handle layoutOf(const Shape& shape, std::size_t bytes, std::size_t chunk_rows) {
   Handle list(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  H5Pset_obj_track_times(list.get(), false);  // the same results give the same file
+  H5Pset_obj_track_times(list.get(), false);  // so that the same results give the same file
   if (bytes <= kCompactBytes) {
     H5Pset_layout(list.get(), H5D_COMPACT);
     return list;
@@ -43,8 +43,8 @@ Handle layoutOf(const Shape& shape, std::size_t bytes, std::size_t chunk_rows) {
 
 namespace {
 
-/// Room for the groups and attributes of the root, in the file's first page (Disk): HDF5 takes the
-/// product. Without it a group that is added lies elsewhere, and the next one cannot be.
+/// Room for the groups and attributes of the root in the file's first page (Disk); HDF5 uses the
+/// product. Without it an added group would be elsewhere, and the next one could not be added.
 constexpr unsigned kRootLinks = 8;
 constexpr unsigned kRootNames = 160;
 
@@ -242,8 +242,8 @@ bool OutputGroup::says(const std::string& group, const std::string& name,
   return found.substr(0, found.find_last_not_of('\0') + 1) == value;
 }
 
-// Bytes that HDF5 1.10 spends on each object besides its data, measured on files of ours.
-// (Object header with its messages; link in the group that holds it.)
+// The bytes that HDF5 1.10 takes for each object besides its data, measured on files of ours: the
+// object header with its messages, and the link in its group.
 namespace {
 constexpr std::size_t kGroupBytes = 150;
 constexpr std::size_t kAttributeBytes = 60;

@@ -1,4 +1,4 @@
-// A group of an HDF5 file being written, and a counter that stands in for one.
+// Writes groups of an HDF5 file, or only counts their bytes.
 #pragma once
 
 #include <cstdint>
@@ -12,20 +12,20 @@
 
 namespace radiosity::h5 {
 
-/// An HDF5 file being written. Every method throws RunError where HDF5 cannot write.
-/// The format is that of HDF5 1.10 (2016): there every piece of metadata carries a checksum.
+/// An HDF5 file being written. Every method throws RunError if HDF5 cannot write. The format is
+/// that of HDF5 1.10 (2016), in which every piece of metadata has a checksum.
 class OutputFile {
  public:
-  /// `path` is what is written, `shown` what messages call it.
+  /// Writes `path`; messages call it `shown`.
   OutputFile(const std::string& path, std::string shown);
-  /// Opens an existing file to be extended (Disk); nothing where that cannot be.
+  /// Opens an existing file for extension (Disk); null if that is not possible.
   static std::unique_ptr<OutputFile> extend(const std::string& path);
-  /// Flushes and closes. Without it the destructor closes and keeps quiet.
+  /// Flushes and closes. Without this call the destructor closes and ignores errors.
   void close();
-  /// Closes an extended file. False where it could not be switched to its new state: it is as it
-  /// was.
+  /// Closes an extended file. False if it could not be switched to its new state: then it is
+  /// unchanged.
   bool closeExtended();
-  /// Where an extended file ended.
+  /// The old end of an extended file.
   std::uint64_t oldEnd() const { return disk_.oldEnd(); }
   hid_t id() const { return file_.get(); }
   [[noreturn]] void fail(const std::string& object) const;
@@ -54,17 +54,17 @@ class OutputGroup {
   void dataset(const std::string& name, const Shape& shape, const void* data,
                const std::string& unit);
   void strings(const std::string& name, const std::vector<std::string>& values);
-  /// A second name for what `target` holds; no bytes.
+  /// A second name for an object of `target`; takes no data.
   void link(const std::string& name, const OutputGroup& target, const std::string& target_name);
   bool has(const std::string& name) const;
-  /// `name` now names what `fresh` did. What it named before is nobody's.
+  /// Gives the object `fresh` the name `name`. The object that had the name is lost.
   void replace(const std::string& name, const std::string& fresh);
   void remove(const std::string& name);
-  /// The number that an attribute holds; nothing where there is none.
+  /// The number in an attribute; empty if there is none.
   std::optional<std::uint64_t> number(const std::string& name) const;
   /// Whether the text `name` of the group `group` in this one is `value`.
   bool says(const std::string& group, const std::string& name, const std::string& value) const;
-  /// An empty dataset of one dimension, to be filled in order by writeRows().
+  /// Creates an empty dataset of one dimension, to be filled in order by writeRows().
   Handle create(const std::string& name, const Shape& shape, const std::string& unit);
   /// Writes rows [first, first + count) of a dataset of one dimension.
   void writeRows(const std::string& name, const Handle& dataset, Number number, std::size_t first,
@@ -81,7 +81,7 @@ class OutputGroup {
   std::string path_;
 };
 
-/// Takes the same calls as OutputGroup and adds up the bytes they would put on disk.
+/// Takes the same calls as OutputGroup and adds up the bytes that they would write.
 class SizeCounter {
  public:
   explicit SizeCounter(std::size_t& bytes) : bytes_(&bytes) {}
@@ -98,7 +98,7 @@ class SizeCounter {
   std::size_t* bytes_;
 };
 
-/// Width of the fixed-length column that holds all of `values`; at least 1.
+/// The width of the fixed-length column for all of `values`; at least 1.
 std::size_t columnWidth(const std::vector<std::string>& values);
 
 }  // namespace radiosity::h5

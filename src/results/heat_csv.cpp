@@ -1,4 +1,4 @@
-// Heat exchange as tables with commas (RFC 4180), for spreadsheets and other programs.
+// Writes heat exchange as comma-separated tables (RFC 4180), for spreadsheets and other programs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace radiosity {
 
 namespace {
 
-/// All digits of a number; nothing where there is none.
+/// All digits of a number; empty if it is not a number.
 std::string cell(double value) {
   return std::isnan(value) ? std::string() : fmt::format("{}", value);
 }
@@ -24,7 +24,7 @@ std::string bandColumns(const char* name, int bands) {
   return columns;
 }
 
-/// The columns that patches and rows have alike.
+/// The columns that patches and rows have in common.
 std::string commonColumns(int bands) {
   return fmt::format("area_m2,temperature_K,net_flux_W_per_m2,convection_W_per_m2{}{}\n",
                      bandColumns("radiosity", bands), bandColumns("irradiance", bands));

@@ -1,4 +1,4 @@
-// Pictures out and in.
+// Writes and reads pictures.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ std::uint8_t toByte(double value) {
   return std::uint8_t(std::lround(std::clamp(value, 0.0, 1.0) * 255));
 }
 
-/// OpenImageIO's reasons may have several lines; our errors have one.
+/// Joins the lines of OpenImageIO's reasons; our errors have one line.
 std::string reason(std::string text) {
   while (!text.empty() && text.back() == '\n') text.pop_back();
   std::replace(text.begin(), text.end(), '\n', ';');
@@ -44,7 +44,7 @@ void checkImage(const std::string& path, const Image& image) {
   }
 }
 
-/// OpenEXR asks for colours multiplied by alpha: a pixel is then the radiance that reaches it.
+/// Colours multiplied by alpha, as OpenEXR requires: a pixel is then the radiance that reaches it.
 std::vector<float> associated(const Image& image) {
   std::vector<float> pixels = image.rgba;
   for (std::size_t k = 0; k < pixels.size(); k += 4) {
@@ -53,7 +53,7 @@ std::vector<float> associated(const Image& image) {
   return pixels;
 }
 
-/// PNG wants them as they are; alpha is linear in both.
+/// Colours for PNG, not multiplied by alpha; alpha is linear in both formats.
 std::vector<std::uint8_t> encoded(const Image& image, bool display_referred) {
   std::vector<std::uint8_t> pixels(image.rgba.size());
   for (std::size_t k = 0; k < pixels.size(); ++k) {
@@ -128,7 +128,7 @@ ImageFile readImageFile(const std::string& path, double max_image) {
   const std::size_t count = std::size_t(decoded.width) * std::size_t(decoded.height);
   const bool grey = channels < 3;
   const bool has_alpha = channels == 2 || channels >= 4;
-  // EXR (and whatever else multiplies by alpha) back to colours that stand alone.
+  // EXR and other formats multiply colours by alpha; we divide by it again.
   const bool multiplied = has_alpha && decoded.multiplied;
   ImageFile file;
   file.bytes = !decoded.floating;

@@ -1,4 +1,4 @@
-// The scene's own mesh with the coordinates of a lightmap.
+// Writes the scene's own mesh with the coordinates of a lightmap.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -23,7 +23,7 @@ Json extrasOf(const Lightmap& map, const LightmapFile& file, int set) {
           {"exposure_ev", file.ev}};
 }
 
-/// Base colour and emission; what is brighter than 1 needs the extension.
+/// Base colour and emission; emission above 1 needs the extension (`brighter`).
 Json materialOf(const Material& material, bool& brighter) {
   const auto list = [](const Vec3& v) { return Json{v.x, v.y, v.z}; };
   const Vec3& rho = material.reflectance;
@@ -62,7 +62,7 @@ struct Primitive {
   }
 };
 
-/// A node a surface, a primitive a side.
+/// Writes a node for each surface and a primitive for each side.
 void writePlain(const std::string& path, const Scene& scene, const Lightmap& map,
                 const Json& extras) {
   GlbWriter glb(floatOrigin(scene.vertices));

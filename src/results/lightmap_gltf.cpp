@@ -20,7 +20,7 @@ namespace {
 
 using Json = LightmapGltf::Json;
 
-/// Of the file's coordinates, as floats are.
+/// The relative tolerance of the file's coordinates, which are floats.
 constexpr double kSamePlace = 1e-5;
 
 Json documentOf(const std::string& source) {
@@ -51,8 +51,8 @@ LightmapGltf::LightmapGltf(const std::string& source, const Scene& scene, const 
   document_["asset"]["generator"] = "radiosity";
 }
 
-/// A binary file has one buffer; what extensions say of the others (a second, compressed form) is
-/// of no use any more.
+/// Joins all buffers, since a binary file has one. Drops what extensions say of the others (a
+/// second, compressed form).
 void LightmapGltf::joinBuffers() {
   std::vector<std::size_t> begin;
   for (const tinygltf::Buffer& buffer : file_.model.buffers) {
@@ -60,7 +60,7 @@ void LightmapGltf::joinBuffers() {
     begin.push_back(binary_.size());
     binary_.insert(binary_.end(), buffer.data.begin(), buffer.data.end());
   }
-  // Made now: a list that is added later moves the others.
+  // We add the lists now, since a list that is added later moves the others.
   for (const char* list : {"bufferViews", "accessors"}) {
     if (!document_.contains(list)) document_[list] = Json::array();
   }
@@ -73,7 +73,7 @@ void LightmapGltf::joinBuffers() {
   }
 }
 
-/// The new file may stand in another folder. Those that are not there keep their names.
+/// Embeds images, since the new file may be in another folder. Missing images keep their names.
 void LightmapGltf::embedImages() {
   for (std::size_t k = 0; k < file_.model.images.size(); ++k) {
     Json& image = document_["images"][k];
@@ -98,7 +98,8 @@ void LightmapGltf::chooseSet() {
   }
 }
 
-/// In the order in which the scene was read. A mesh that several nodes have becomes one of each.
+/// Adds meshes in the order in which the scene was read. A mesh of several nodes becomes one mesh
+/// for each node.
 void LightmapGltf::addMeshes() {
   const Json given = document_.value("meshes", Json::array());
   std::vector<bool> used(given.size(), false);
@@ -148,7 +149,7 @@ void LightmapGltf::addMeshes() {
   }
 }
 
-/// The front's primitive and, where backs have light of their own, the back's.
+/// The front's primitive and, if backs have light of their own, the back's.
 LightmapGltf::Json LightmapGltf::addPrimitives(const Json& given, const Placed& placed) {
   const Part front = partOf(placed, 0);
   const Part back = partOf(placed, 1);
@@ -174,15 +175,16 @@ void LightmapGltf::addCorner(Part& part, Index vertex, const LightmapTriangle* t
   part.corners.push_back(place->second);
 }
 
-/// Fronts are all there; those without area have no chart. Of the backs those that have one.
+/// The part of one side: all fronts, although those without area have no chart, or the backs that
+/// have one.
 LightmapGltf::Part LightmapGltf::partOf(const Placed& placed, int side) const {
   Part part;
   for (std::size_t t = 0; t < placed.corners.size() / 3; ++t) {
     const Index number = of_face_[std::size_t(side)][placed.first_face + t];
     if (number == kNone && side == 1) continue;
     const LightmapTriangle* triangle = number == kNone ? nullptr : &map_.triangles[number];
-    // As the file winds its fronts: a mirrored node turns them over, and so does looking from
-    // behind.
+    // Corners in the order of the file's fronts: a mirrored node turns it over, and so does the
+    // view from behind.
     std::array<std::size_t, 3> order = {0, 1, 2};
     if (triangle != nullptr) {
       for (std::size_t k = 0; k < 3; ++k) order[k] = triangle->corner[k];
@@ -195,7 +197,7 @@ LightmapGltf::Part LightmapGltf::partOf(const Placed& placed, int side) const {
   return part;
 }
 
-/// Whether every vertex lies in one chart, so that the file's own can be kept.
+/// Whether every vertex is in one chart, so that the file's own vertices can be kept.
 bool LightmapGltf::isOneToOne(const Part& part, std::size_t vertices) {
   std::vector<std::uint8_t> seen(vertices);
   for (const Index v : part.copy_of) {
@@ -224,14 +226,14 @@ LightmapGltf::Json LightmapGltf::newPrimitive(Json primitive, const Placed& plac
   }
   primitive["indices"] = addIndices(part.corners);
   if (primitive.contains("extensions")) {
-    primitive["extensions"].erase("KHR_draco_mesh_compression");  // of the vertices that were
+    primitive["extensions"].erase("KHR_draco_mesh_compression");  // it has the old vertices
     if (primitive["extensions"].empty()) primitive.erase("extensions");
   }
   return primitive;
 }
 
-/// Normals and tangents of backs point the other way: a tangent's fourth number, the sign of its
-/// bitangent, changes with them.
+/// Copies attributes. Normals and tangents of backs are reversed, and so is a tangent's fourth
+/// number, the sign of its bitangent.
 void LightmapGltf::copyAttributes(Json& attributes, const std::map<std::string, int>& given,
                                   const Placed& placed, const Part& part, bool turned) {
   for (const auto& [name, accessor] : given) {
@@ -255,8 +257,8 @@ void LightmapGltf::copyAttributes(Json& attributes, const std::map<std::string, 
   }
 }
 
-/// Sets are numbered without gaps (glTF 2.0, 3.7.2.1): where earlier ones are missing, they are
-/// this one, too.
+/// Sets are numbered without gaps (glTF 2.0, 3.7.2.1): missing earlier sets get these coordinates,
+/// too.
 void LightmapGltf::nameSets(Json& attributes, int texcoords) const {
   for (int k = 0; k <= set_; ++k) {
     const std::string name = fmt::format("TEXCOORD_{}", k);
@@ -264,7 +266,7 @@ void LightmapGltf::nameSets(Json& attributes, int texcoords) const {
   }
 }
 
-/// The material as it is, but for one side: the other has a primitive of its own.
+/// A one-sided copy of the material: the other side has a primitive of its own.
 int LightmapGltf::oneSided(int material) {
   const auto [copy, fresh] = one_sided_.try_emplace(material, 0);
   if (!fresh) return copy->second;
@@ -276,7 +278,7 @@ int LightmapGltf::oneSided(int material) {
   return copy->second;
 }
 
-/// `target` and `stride`: 0: none is said.
+/// `target`, `stride`: 0 to leave them out.
 int LightmapGltf::addView(const std::vector<char>& bytes, int target, std::size_t stride) {
   binary_.resize(paddedTo4(binary_.size()));
   Json view = {{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", bytes.size()}};
@@ -287,7 +289,7 @@ int LightmapGltf::addView(const std::vector<char>& bytes, int target, std::size_
   return int(document_["bufferViews"].size()) - 1;
 }
 
-/// Attributes begin at multiples of 4 bytes, each (glTF 2.0, 3.6.2.4).
+/// Each attribute begins at a multiple of 4 bytes (glTF 2.0, 3.6.2.4).
 int LightmapGltf::addAccessor(std::span<const double> values, const tinygltf::Accessor& like,
                               bool with_bounds) {
   const auto width = std::size_t(tinygltf::GetNumComponentsInType(std::uint32_t(like.type)));
@@ -337,7 +339,7 @@ int LightmapGltf::addIndices(std::span<const Index> values) {
   return int(document_["accessors"].size()) - 1;
 }
 
-/// Beside what the scene's own extras say.
+/// Adds the lightmap to the scene's own extras.
 void LightmapGltf::setExtras(const Json& extras) {
   if (!document_.contains("scenes") || document_["scenes"].empty()) {
     document_["asset"]["extras"]["lightmap"] = extras;

@@ -15,37 +15,37 @@
 
 namespace radiosity {
 
-/// Edits the file's own JSON, so that all that stands in it stays. Meshes get coordinates, one mesh
-/// a node; vertices on the border of charts become several; a primitive whose backs have charts
-/// becomes two, one a side.
+/// Edits the file's own JSON, so that everything else in it stays. Meshes get coordinates, one mesh
+/// for each node. Vertices on the border of charts are split. A primitive whose backs have charts
+/// becomes two, one for each side.
 class LightmapGltf {
  public:
   using Json = nlohmann::ordered_json;
 
-  /// `map`: of the scene that was read from `source`. Errors: as parseGltf(), and InputError where
-  /// the file is no longer that scene.
+  /// `map`: of the scene that was read from `source`. Errors: as parseGltf(), and InputError if the
+  /// file no longer has that scene.
   LightmapGltf(const std::string& source, const Scene& scene, const Lightmap& map);
 
-  /// Of TEXCOORD_: the first that no primitive of the file has, at least 1.
+  /// The n of TEXCOORD_n: the first that no primitive of the file has, at least 1.
   int set() const { return set_; }
   void setExtras(const Json& extras);
   /// Errors: as writeGlb().
   void write(const std::string& path) const;
 
  private:
-  /// The triangles of one side of a primitive; its vertices are copies of those of the file.
+  /// The triangles of one side of a primitive; its vertices are copies of the file's.
   struct Part {
     std::vector<Index> copy_of;
     std::vector<std::array<float, 2>> texcoord;
     std::vector<Index> corners;
     std::map<std::pair<Index, Index>, Index> known;  ///< by vertex of the file and chart
   };
-  /// A primitive in its place: triangles of it are faces of the scene from `first_face`.
+  /// A primitive with its place in the scene: its triangles are faces from `first_face` on.
   struct Placed {
     const tinygltf::Primitive& primitive;
     std::size_t vertices = 0;
     std::vector<Index> corners;  ///< three a face, in the scene's order
-    bool mirrored = false;       ///< the file winds them the other way
+    bool mirrored = false;       ///< the file has them in reverse order
     std::size_t first_face = 0;
     std::string what;
   };

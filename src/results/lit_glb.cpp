@@ -1,4 +1,4 @@
-// The solution as a glTF mesh that shows it in any viewer, without lights.
+// Writes the solution as a glTF mesh that any viewer shows without lights.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -89,7 +89,7 @@ void checkFinite(const std::string& path, const PatchMesh& mesh, Index patch,
   }
 }
 
-/// Returns how many triangles.
+/// Writes all triangles and returns their number.
 std::size_t writeTriangles(const std::string& path, const PatchMesh& mesh, LitTriangles& lit,
                            double ev) {
   GlbWriter glb(floatOrigin(mesh.vertices));
@@ -97,7 +97,7 @@ std::size_t writeTriangles(const std::string& path, const PatchMesh& mesh, LitTr
   glb.setExtras({{"exposure_ev", ev},
                  {"COLOR_0", "min(1, B / pi * 2^exposure_ev), linear Rec. 709"},
                  {"_RADIOSITY", "B in W/m^2, linear Rec. 709"}});
-  // White, since a reader multiplies COLOR_0 by it; rough and no metal for readers without unlit.
+  // White, since readers multiply COLOR_0 by it; rough and not metallic, for readers without unlit.
   const int material =
       glb.addMaterial({{"name", "radiosity"},
                        {"pbrMetallicRoughness",
@@ -105,7 +105,7 @@ std::size_t writeTriangles(const std::string& path, const PatchMesh& mesh, LitTr
                          {"metallicFactor", 0.0},
                          {"roughnessFactor", 1.0}}},
                        {"extensions", {{"KHR_materials_unlit", GlbWriter::Json::object()}}}});
-  // The picture shows radiance L = B / pi; the same exposure makes both look the same.
+  // Pictures show radiance L = B / pi, so with the same exposure both look the same.
   const double scale = std::exp2(ev) / std::numbers::pi;
   std::array<std::vector<std::vector<Index>>, 2> by_side;
   for (int side = 0; side < 2; ++side) {

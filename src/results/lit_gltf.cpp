@@ -1,4 +1,4 @@
-// glTF meshes with COLOR_0, or with the _RADIOSITY that lit meshes of this program have.
+// Reads glTF meshes with COLOR_0, or with the _RADIOSITY of this program's lit meshes.
 #include "results/lit_mesh.h"
 #include "scene/gltf_nodes.h"
 
@@ -6,7 +6,7 @@ namespace radiosity {
 
 namespace {
 
-/// RGB of a colour attribute; an alpha is not used.
+/// The RGB values of a colour attribute; alpha is ignored.
 std::vector<Vec3> readColours(const GltfFile& file, int accessor, const std::string& what) {
   const auto& stored = file.at(file.model.accessors, accessor, "accessor", what);
   const int components = stored.type == TINYGLTF_TYPE_VEC4 ? 4 : 3;

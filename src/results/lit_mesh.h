@@ -1,4 +1,4 @@
-// The readers of meshes with vertex colours, one a format.
+// The readers of meshes with vertex colours, one for each format.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// Wavefront OBJ with colours after the coordinates of a vertex, as MeshLab, ZBrush and others write
-// them: `v x y z r g b`.
+// Reads Wavefront OBJ with colours after the coordinates of a vertex, as MeshLab, ZBrush and others
+// write them: `v x y z r g b`.
 #include <fmt/format.h>
 
 #include <map>

@@ -1,5 +1,5 @@
-// PLY (G. Turk, "The PLY Polygon File Format", 1994): ASCII and binary, vertices with red, green
-// and blue, faces as lists of vertex indices.
+// Reads PLY (G. Turk, "The PLY Polygon File Format", 1994): ASCII and binary, vertices with red,
+// green and blue, faces as lists of vertex indices.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ enum class PlyNumber { i8, u8, i16, u16, i32, u32, f32, f64 };
 struct Property {
   std::string name;
   PlyNumber type = PlyNumber::f32;
-  std::optional<PlyNumber> list_count;  ///< the type of a list's length; none: one number
+  std::optional<PlyNumber> list_count;  ///< the type of a list's length; empty: a single number
 };
 
 struct PlyElement {
@@ -108,8 +108,8 @@ class PlyReader {
                      fmt::join(words, " ")));
   }
 
-  /// A count is believed where the rest of the file may hold that many: a digit and a blank a
-  /// number in text (an empty list is the length 0), else the bytes of the numbers.
+  /// Refuses a count for which the rest of the file is too short: in text a number takes a digit
+  /// and a blank (an empty list is the length 0), else its bytes.
   void requireRoom(const PlyElement& element) const {
     if (element.count == 0) return;
     if (element.properties.empty()) {
@@ -119,7 +119,7 @@ class PlyReader {
     for (const Property& property : element.properties) {
       least += ascii_ ? 2 : sizeOf(property.list_count.value_or(property.type));
     }
-    // The last number of a text needs no blank after it.
+    // In text the last number needs no blank after it.
     if (element.count <= (text_.size() - at_ + 1) / least) return;
     fail(fmt::format("claims {} `{}` elements and ends before; export it again", element.count,
                      element.name));
@@ -208,7 +208,7 @@ class PlyReader {
     return binary<double>();
   }
 
-  /// The numbers of one record: one a property, or a list's.
+  /// The numbers of one record: one for each property, or those of a list.
   const std::vector<std::vector<double>>& record(const PlyElement& element) {
     record_.resize(element.properties.size());
     for (std::size_t p = 0; p < element.properties.size(); ++p) {

@@ -15,8 +15,8 @@ double brightness(const CellLight& light) {
   return sum.x + sum.y + sum.z;
 }
 
-/// Whether light differs less between corners 0 and 2 of a quadrilateral than between the others: a
-/// diagonal along which light is alike makes no ridge.
+/// Whether light differs less between corners 0 and 2 of a quadrilateral than between the others. A
+/// diagonal between similar values does not show as a ridge.
 bool splitsAtFirst(ElementCell cell) {
   const auto apart = [&](std::size_t a, std::size_t b) {
     return std::abs(brightness(cell[a].light) - brightness(cell[b].light));
@@ -37,7 +37,7 @@ const Vec3& LitTriangles::position(Index point) const {
   return cells_ ? cells_->position(point) : mesh_.vertices[point];
 }
 
-/// All roots of a patch were evaluated, or none.
+/// Whether a patch has elements with light: either all its roots were evaluated or none.
 bool LitTriangles::hasElements(Index patch) const {
   if (!cells_) return false;
   const ElementRoots& roots = light_->elements->roots;
@@ -54,7 +54,7 @@ LitTriangles::Material LitTriangles::materialOf(Index patch) const {
   return {of(light_->emission), of(light_->reflectance)};
 }
 
-/// A piece may have a vertex inside the patch; there the patch's own value stands.
+/// The value at a vertex of a piece. A vertex inside the patch has the patch's own value.
 Vec3 LitTriangles::cornerValue(Index patch, Index vertex) const {
   const auto outline = mesh_.outline(patch);
   const auto found = std::find(outline.begin(), outline.end(), vertex);
@@ -93,7 +93,8 @@ void LitTriangles::appendEdge(const CellCorner& from, const CellCorner& to) {
   appendEdge(between_them, to);
 }
 
-/// The mean of its corners, a point of its own; those are numbered from the end.
+/// A new point in the middle of a cell, with the mean of its corners. Such points are numbered from
+/// the end.
 CellCorner LitTriangles::middleOf(ElementCell cell) {
   Vec3 place(0.0);
   CellLight light;
@@ -106,7 +107,7 @@ CellCorner LitTriangles::middleOf(ElementCell cell) {
   return {Index(kNone - middles_.size()), share * light};
 }
 
-/// A cell whose edges neighbours cut is cut from its middle, others along a diagonal.
+/// Appends a cell: if neighbours cut its edges, it is cut from its middle, else along a diagonal.
 void LitTriangles::appendCell(ElementCell cell, const Material& material,
                               std::vector<LitCorner>& out) {
   const auto add = [&](const CellCorner& corner) {

@@ -1,5 +1,5 @@
-// What a lit mesh is made of: triangles with radiosity at their corners, of elements where there
-// are some, else of patches.
+// The triangles of a lit mesh, with radiosity at their corners: those of elements where there are
+// some, else those of patches.
 #pragma once
 
 #include <optional>
@@ -18,13 +18,13 @@ struct LitCorner {
   Vec3 radiosity{0.0};  ///< W/m^2
 };
 
-/// The triangles of patches, one patch after the other. No corner of one lies inside an edge of
-/// another, unless the mesh has such T-junctions; where elements share a smooth side of one
-/// material, they have the same radiosity at the points they share, to the bit.
+/// The triangles of patches, one patch after the other. No corner of a triangle lies inside an edge
+/// of another, unless the mesh has such T-junctions. Elements on a smooth side of one material have
+/// the same radiosity at common points, to the bit.
 class LitTriangles {
  public:
-  /// Radiosity of patches (N * 3) and at their corners (mesh.corners.size() * 3). All are kept by
-  /// reference. `elements`: light with elements, which are taken instead where they were evaluated;
+  /// Radiosity of patches (N * 3) and at their corners (mesh.corners.size() * 3). Keeps all by
+  /// reference. `elements`: light with elements, which replace patches where they were evaluated;
   /// null: none.
   LitTriangles(const PatchMesh& mesh, std::span<const double> patches,
                std::span<const double> corners, const SurfaceLight* elements = nullptr);
@@ -56,7 +56,7 @@ class LitTriangles {
   const SurfaceLight* light_;
   std::optional<ElementCells> cells_;
   std::vector<Vec3> middles_;     ///< of cells that are cut from there; points from the last one
-  std::vector<CellCorner> ring_;  ///< of the cell at work: its corners and what lies on its edges
+  std::vector<CellCorner> ring_;  ///< of the present cell: its corners and the points on its edges
 };
 
 }  // namespace radiosity

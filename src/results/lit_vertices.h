@@ -1,4 +1,4 @@
-// Corners of lit triangles as numbered vertices.
+// Numbers the corners of lit triangles as vertices.
 #pragma once
 
 #include <array>
@@ -10,13 +10,13 @@
 
 namespace radiosity {
 
-/// Corners that meet at a point with the same radiosity are one vertex; where the values part (at a
-/// crease) there are as many as values.
+/// Corners at one point with the same radiosity are one vertex. If values differ (at a crease),
+/// there is one vertex for each value.
 class LitVertices {
  public:
   using Triple = std::array<float, 3>;
 
-  /// The corner's vertex, and whether it is a new one: then it is the last.
+  /// The corner's vertex, and whether it is new: then it is the last.
   std::pair<Index, bool> of(const LitCorner& corner) {
     const Vec3& b = corner.radiosity;
     const Triple value = {float(b.x), float(b.y), float(b.z)};

@@ -1,4 +1,4 @@
-// The NIST Matrix Market exchange format (Boisvert, Pozo & Remington 1996, NISTIR 5935).
+// Writes the NIST Matrix Market exchange format (Boisvert, Pozo & Remington 1996, NISTIR 5935).
 #include "results/matrix_market.h"
 
 #include <fmt/format.h>
@@ -14,10 +14,10 @@ namespace radiosity {
 
 namespace {
 
-/// Entries one task formats at a time, about 2 MB of text.
+/// The number of entries that one task formats at a time, about 2 MB of text.
 constexpr std::size_t kTaskEntries = std::size_t(1) << 16;
-/// Tasks whose text is held before it is written; fixed, so that memory is the same for any number
-/// of threads.
+/// The number of tasks whose text is held before it is written. It is fixed, so that memory is the
+/// same for any number of threads.
 constexpr std::size_t kTasks = 16;
 
 std::size_t entriesOf(const RowPanel& rows, std::size_t i) {
@@ -26,8 +26,8 @@ std::size_t entriesOf(const RowPanel& rows, std::size_t i) {
   return entries;
 }
 
-/// With the very values that a results file holds, rounded to the matrix's precision: the far side
-/// of a pair of a symmetric matrix is computed, not stored.
+/// Formats a row with exactly the values of a results file, rounded to the matrix's precision: one
+/// side of each pair of a symmetric matrix is computed, not stored.
 void formatRow(const RowPanel& rows, bool single, std::size_t i, fmt::memory_buffer& text) {
   const fmt::format_int row(i + 1);
   rows.forRow(i, [&](Index column, double value) {
@@ -40,8 +40,8 @@ void formatRow(const RowPanel& rows, bool single, std::size_t i, fmt::memory_buf
   });
 }
 
-/// Formats rows from `first` on in up to kTasks tasks at once and writes them in order; returns the
-/// first row that is left.
+/// Formats rows from `first` on in up to kTasks parallel tasks and writes them in order; returns
+/// the first row that is left.
 std::size_t writeBatch(CheckedFile& file, const RowPanel& rows, bool single, std::size_t first,
                        std::vector<fmt::memory_buffer>& texts) {
   std::vector<std::size_t> starts = {first};

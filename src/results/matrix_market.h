@@ -1,4 +1,4 @@
-// MatrixMarket out, with more to say of each row than the format has a place for.
+// Writes MatrixMarket with comments on rows, for data that the format has no place for.
 #pragma once
 
 #include <functional>
@@ -8,10 +8,10 @@
 
 namespace radiosity {
 
-/// What a comment says of row i, without the leading "% ".
+/// The text of the comment on row i, without the leading "% ".
 using CommentOfRow = std::function<std::string(std::size_t i)>;
 
-/// writeMatrixMarket() of results.h, with a comment line a row; `comment` empty: none.
+/// writeMatrixMarket() of results.h, with a comment line for each row; `comment` empty: none.
 void writeMatrixMarket(const std::string& path, const ExchangeMatrix& matrix,
                        const CommentOfRow& comment, Progress& progress);
 

@@ -1,4 +1,4 @@
-// Reading the matrix: everything is checked before it is believed.
+// Reads the matrix; everything is checked before it is used.
 #include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
 
@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kRowGrain = 64;
 
-/// The patches in the order a symmetric matrix stores them: each once.
+/// The order in which a symmetric matrix stores the patches: each once.
 std::vector<Index> readOrder(const h5::InputGroup& group, std::size_t n) {
   std::size_t rows = 0;
   const h5::Handle dataset = group.open("order", h5::numberOf<Index>(), 0, rows);
@@ -36,14 +36,14 @@ std::vector<Index> readOrder(const h5::InputGroup& group, std::size_t n) {
   return order;
 }
 
-/// Compressed rows as they stand in a group: all but the entries themselves, checked.
+/// The compressed rows of a group without the entries themselves, checked.
 struct StoredRows {
   Number number = Number::f32;  ///< of data
   std::vector<std::int64_t> indptr;
   std::size_t first = 0;  ///< to be read
   std::size_t last = 0;   ///< one beyond
 
-  /// About as many entries as in each other part.
+  /// Chooses the rows of a part, so that all parts have about as many entries.
   void choose(const MatrixPart& part) {
     const auto rowAt = [&](std::size_t k) {
       const std::int64_t before =
@@ -58,7 +58,7 @@ struct StoredRows {
   }
 };
 
-/// Row starts: from 0 upward to the number of entries, no row longer than the matrix.
+/// The row starts: they rise from 0 to the number of entries, and no row is longer than the matrix.
 std::vector<std::int64_t> readRowStarts(const h5::InputGroup& group, std::size_t n,
                                         std::size_t entries) {
   std::size_t rows = 0;
@@ -116,7 +116,7 @@ class BlockReader {
   }
 
   void readAll() {
-    // About four chunks: wide enough for all threads, small beside any matrix worth storing.
+    // About four chunks: enough for all threads, and small compared with a matrix worth storing.
     const auto block = std::int64_t(4 * h5::kChunkBytes / sizeof(std::int32_t));
     for (std::size_t first = first_; first < last_;) {
       std::size_t last = first + 1;
@@ -149,7 +149,7 @@ class BlockReader {
   void check(std::size_t i, std::span<const std::int32_t> columns,
              std::span<const T> values) const {
     for (std::size_t k = 0; k < columns.size(); ++k) {
-      // A negative column is a large one once it is unsigned.
+      // As an unsigned number a negative column is a large one.
       if (Index(columns[k]) >= indptr_->size() - 1 || (k > 0 && columns[k] <= columns[k - 1])) {
         group_->fail("indices", fmt::format("has a row ({}) whose columns do not increase", i));
       }
@@ -177,8 +177,8 @@ void readByRows(const h5::InputGroup& group, const StoredRows& rows, ExchangeMat
   }).readAll();
 }
 
-/// A symmetric matrix keeps one entry of each pair: that in the row of the patch that comes first
-/// in the order. Calls store(k, positions, values) for every position k.
+/// Reads a symmetric matrix. It keeps one entry of each pair: the one in the row of the patch that
+/// is first in the order. Calls store(k, positions, values) for every position k.
 template <class T, class StoreUpper>
 void readTriangle(const h5::InputGroup& group, const StoredRows& rows, std::span<const Index> order,
                   const StoreUpper& store) {
@@ -204,7 +204,7 @@ void readTriangle(const h5::InputGroup& group, const StoredRows& rows, std::span
     surplus.fetch_add(more, std::memory_order_relaxed);
   };
   BlockReader<T>(group, rows, keepUpper).readAll();
-  // Of all rows together there is none.
+  // All rows together must have no surplus.
   if (rows.first == 0 && rows.last == order.size() && surplus != 0)
     group.fail("indices", "is not that of a symmetric matrix");
 }

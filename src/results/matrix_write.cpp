@@ -1,4 +1,4 @@
-// Writing the matrix.
+// Writes the matrix.
 #include <algorithm>
 #include <vector>
 
@@ -41,7 +41,7 @@ void writeEntries(h5::OutputGroup& group, const ExchangeMatrix& matrix, std::siz
   progress.end();
 }
 
-/// shape, indptr, indices and data.
+/// Writes shape, indptr, indices and data.
 void writeRows(h5::OutputGroup& group, const ExchangeMatrix& matrix, Progress& progress) {
   const std::int64_t n = std::int64_t(matrix.size());
   const std::int64_t shape[2] = {n, n};

@@ -16,15 +16,15 @@ namespace radiosity {
 
 namespace {
 
-/// Names are lines of an OBJ: a line break in one would start a statement.
+/// A name without line breaks: in an OBJ file a line break would start a statement.
 std::string oneLine(std::string name) {
   std::replace_if(
       name.begin(), name.end(), [](unsigned char c) { return c < 0x20; }, '_');
   return name.empty() ? "_" : name;
 }
 
-/// "object/material" as the statements that make that surface again when the file is read. Without
-/// a slash object and material have one name.
+/// Appends the statements from which a reader makes the surface "object/material" again. Without a
+/// slash, object and material have the same name.
 void appendSurface(const std::string& name, fmt::memory_buffer& text) {
   const std::size_t slash = name.rfind('/');
   const std::string material = slash == std::string::npos ? name : name.substr(slash + 1);
@@ -47,7 +47,7 @@ void writeObj(const std::string& path, const PatchMesh& mesh) {
       "# {} patches are two-sided: one face, their backs are the patches after the fronts.\n",
       twins);
   for (const Vec3& v : mesh.vertices) {
-    fmt::format_to(out, "v {} {} {}\n", v.x, v.y, v.z);  // the shortest text that reads back alike
+    fmt::format_to(out, "v {} {} {}\n", v.x, v.y, v.z);  // the shortest exact text
   }
   Index surface = kNone;
   for (std::size_t i = 0; i < mesh.size(); ++i) {
@@ -66,7 +66,7 @@ void writeObj(const std::string& path, const PatchMesh& mesh) {
 
 void writePlainGlb(const std::string& path, const PatchMesh& mesh) {
   GlbWriter glb(floatOrigin(mesh.vertices));
-  // Without normals a reader shades flat, as the specification asks (glTF 2.0, 3.7.2.1).
+  // Without normals readers shade flat, as the specification requires (glTF 2.0, 3.7.2.1).
   std::array<int, 2> materials{};
   for (const bool two_sided : {false, true}) {
     materials[two_sided ? 1 : 0] = glb.addMaterial({{"name", two_sided ? "two-sided" : "one-sided"},

@@ -1,4 +1,4 @@
-// Parts shared by the mesh writers.
+// Functions that all mesh writers use.
 #pragma once
 
 #include <string>
@@ -8,17 +8,17 @@
 
 namespace radiosity {
 
-/// Wavefront OBJ: outlines, one object a surface.
+/// Writes Wavefront OBJ: outlines, one object a surface.
 void writeObj(const std::string& path, const PatchMesh& mesh);
-/// glTF 2.0 binary: triangles, one node a surface, flat.
+/// Writes glTF 2.0 binary: triangles, one node a surface, flat.
 void writePlainGlb(const std::string& path, const PatchMesh& mesh);
 
-/// False for the back of a patch whose front is there as well: the same outline once more.
+/// False for the back of a patch whose front is in the mesh as well, since it has the same outline.
 inline bool isOwnSheet(const PatchMesh& mesh, std::size_t i) {
   return mesh.side[i] == 0 || mesh.twin[i] == kNone;
 }
 
-/// Patches by surface, in mesh order, that `wanted(i)` keeps.
+/// The patches with `wanted(i)`, by surface, in mesh order.
 template <class Wanted>
 std::vector<std::vector<Index>> patchesBySurface(const PatchMesh& mesh, const Wanted& wanted) {
   std::vector<std::vector<Index>> patches(mesh.surface_names.size());

@@ -22,7 +22,7 @@ class Checker {
     throw InputError(fmt::format("{}: {} {}; make the file again with the command that wrote it",
                                  path_, object, what));
   }
-  /// `offset` cuts [0, count) into `parts` ranges.
+  /// Checks that `offset` cuts [0, count) into `parts` ranges.
   void offsets(const std::vector<std::size_t>& offset, std::size_t parts, std::size_t count,
                std::string_view object) const {
     require(offset.size() == parts + 1 && offset.front() == 0 && offset.back() == count &&
@@ -83,8 +83,8 @@ void checkPolygons(const Checker& check, const PatchMesh& m) {
   check.length(p.back_is_patch, p.size(), "/mesh/polygons/back_is_patch");
 }
 
-/// The numbers are those of clusters, none is left out, and a cluster lies on one side of one
-/// surface.
+/// Checks that cluster numbers are valid, that no cluster is empty, and that each lies on one side
+/// of one surface.
 void checkClusters(const Checker& check, const PatchMesh& m) {
   constexpr const char* kObject = "/mesh/clusters/of_patch";
   const std::vector<Index>& of_patch = made(m.clusters).of_patch;
@@ -131,8 +131,8 @@ void checkSolution(const Checker& check, const Solution& s) {
   check.length(s.irradiance, empty ? 0 : s.radiosity.size(), "/solution/irradiance");
 }
 
-/// A row of /elements/direct/elements or its like: its points are there, and those of its parts are
-/// its own.
+/// Checks a row of /elements/direct/elements or the like: its points exist, and the points of its
+/// parts are its own.
 void checkElement(const Checker& check, const ElementField& field, std::size_t e,
                   const std::string& object) {
   const Element& element = field.elements[e];
@@ -160,7 +160,8 @@ void checkElement(const Checker& check, const ElementField& field, std::size_t e
   }
 }
 
-/// A forest over `roots`: every other element is a part of exactly one.
+/// Checks that the elements are a forest over `roots`: every other element is a part of exactly
+/// one.
 void checkField(const Checker& check, const ElementField& field, const Elements& all,
                 const std::string& object) {
   const std::string elements = object + "/elements";
@@ -193,7 +194,7 @@ void checkElements(const Checker& check, const Elements& e, const Results& resul
   check.require(results.mesh && results.solution, "/elements", "comes without mesh and solution");
   check.require(e.bands == made(results.solution).bands, "/elements/bands",
                 "is not that of /solution");
-  // The mesh says where its roots are.
+  // The mesh determines the roots.
   const ElementRoots roots = elementRoots(made(results.mesh).mesh);
   check.require(e.roots.patch == roots.patch && e.roots.corner == roots.corner &&
                     e.roots.of_patch == roots.of_patch,
@@ -247,7 +248,7 @@ void checkBasis(const Checker& check, const LightBasis& basis, std::size_t patch
   }
 }
 
-/// A row an unknown.
+/// Checks that there is one row for each unknown.
 void checkFactors(const Checker& check, const FormFactors& factors, const Results& results) {
   const std::size_t rows = results.mesh ? unknownsOf(results.mesh->mesh) : factors.fronts.size();
   check.length(factors.fronts, rows, "/form_factors/fronts");
@@ -283,7 +284,7 @@ void checkResults(const std::string& path, const Results& results) {
     if (results.mesh) checkBasis(check, *results.basis, results.mesh->mesh.size());
   }
 
-  // All stages are about the same N patches.
+  // All stages must have the same N patches.
   std::optional<std::size_t> n;
   const auto same = [&](std::size_t count, std::string_view object) {
     if (!n) n = count;

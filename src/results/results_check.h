@@ -1,15 +1,15 @@
-// Whether what a file says hangs together: every index points at something, every length fits.
+// Checks that the data of a file is consistent: every index is valid, every length fits.
 #pragma once
 
 #include "radiosity/results.h"
 
 namespace radiosity {
 
-/// Throws InputError naming file, dataset and what is wrong with it. Checksums catch damage; this
-/// catches files that another program has edited.
+/// Throws InputError naming the file, the dataset and its error. Checksums detect damage; this
+/// detects wrong edits by other programs.
 void checkResults(const std::string& path, const Results& results);
 
-/// As PatchMesh::unknowns(), of a mesh of whose clusters of_patch alone is filled in.
+/// PatchMesh::unknowns() for a mesh whose clusters only have of_patch.
 std::size_t unknownsOf(const PatchMesh& mesh);
 
 }  // namespace radiosity

@@ -1,4 +1,4 @@
-// The results file as a whole: which groups there are and in which order.
+// The results file as a whole: its groups and their order.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,8 +34,8 @@ constexpr const char* kFormat = "radiosity results";
 /// Raised whenever an older program could misread the file.
 constexpr std::int32_t kFormatVersion = 7;
 
-/// Everything but the matrix and the links, into a group or a counter. `suffix`: of the names of
-/// groups.
+/// Writes everything but the matrix and the links into a group or a counter. `suffix`: appended to
+/// the names of groups.
 template <class Sink>
 class StageWriter {
  public:
@@ -121,8 +121,8 @@ class StageWriter {
   std::string geometry_hash_;  ///< empty without a mesh
 };
 
-/// Arrays of the mesh that /form_factors links to, so that a reader needs no other group: those of
-/// patches or of clusters, whichever its rows are.
+/// The arrays of the mesh to which /form_factors links, so that a reader needs no other group:
+/// those of the rows, which are patches or clusters.
 using MeshLinks = std::span<const std::array<const char*, 2>>;
 constexpr std::array<std::array<const char*, 2>, 4> kPatchLinks = {
     {{"normal", "normal"},
@@ -145,7 +145,7 @@ void requireMatrix(const std::string& path, const FormFactors* factors) {
   }
 }
 
-/// Rows of another length would be cut short in the file.
+/// Refuses rows of a wrong length, which the file would cut short.
 void requireRows(const Results& results) {
   if (!results.materials) return;
   const PatchMaterials& materials = *results.materials;
@@ -293,7 +293,7 @@ bool isForeignHdf5(const std::string& path) {
   try {
     return h5::readSettled(path, [&] { return !isOurs(InputGroup(h5::InputFile(path))); });
   } catch (const InputError&) {
-    return false;  // damaged: nobody's
+    return false;  // damaged, so not ours
   }
 }
 
@@ -355,13 +355,15 @@ void writeResults(const std::string& path, const Results& results, const FormFac
 
 namespace {
 
-/// An extended file is written whole once it is so much longer than when it was.
+/// An extended file is written anew if it is longer than this times its length when last written
+/// whole.
 constexpr double kMostGrowth = 1.5;
-/// The attribute that says how long it was.
+/// The attribute with that length.
 constexpr const char* kWholeBytes = "whole_bytes";
 constexpr const char* kFresh = ".new";
 
-/// Another run may have replaced the file since the caller looked.
+/// Whether the file has these form factors: another run may have replaced it since the caller
+/// looked.
 bool isOfTheSameFactors(const OutputGroup& root, const Results& results) {
   if (!root.says("mesh", "key", results.mesh_key)) return false;
   return root.says("form_factors", "key", results.factors_key) &&
@@ -370,7 +372,7 @@ bool isOfTheSameFactors(const OutputGroup& root, const Results& results) {
 
 }  // namespace
 
-// What a stage replaces is given up last: its room, which HDF5 could fill again, is before the end.
+// Replaced stages are removed last: HDF5 could reuse their room, which is before the old end.
 bool updateResults(const std::string& path, const Results& results, const StagesAsStored& stored) {
   requireRows(results);
   const std::unique_ptr<h5::OutputFile> file = h5::OutputFile::extend(path);
@@ -407,7 +409,7 @@ bool updateResults(const std::string& path, const Results& results, const Stages
 }
 
 std::size_t estimateResultsBytes(const Results& results) {
-  // The superblock, the root and what is left over of the blocks of 2 KiB HDF5 takes for metadata.
+  // The superblock, the root, and the unused rest of HDF5's metadata blocks of 2 KiB.
   std::size_t bytes = 2048;
   SizeCounter root(bytes);
   StageWriter<SizeCounter> stages(root, results);

@@ -1,5 +1,5 @@
-// VTK's XML PolyData (docs.vtk.org, "XML File Formats"): arrays are base64, each after the count of
-// its bytes in 64 bits.
+// Writes VTK's XML PolyData (docs.vtk.org, "XML File Formats"): arrays are base64, each after the
+// count of its bytes in 64 bits.
 #include <fmt/format.h>
 
 #include <bit>
@@ -16,8 +16,8 @@ namespace radiosity {
 
 namespace {
 
-/// What of `text` would be markup is written as entities. Control characters, which XML has no way
-/// to write, become '_'.
+/// Writes markup characters of `text` as entities. Control characters, which XML cannot represent,
+/// become '_'.
 std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {
@@ -69,7 +69,7 @@ class VtpFile {
     write("</DataArray>\n");
   }
 
-  /// Each ends in a 0.
+  /// Writes strings, each with a final 0.
   void strings(const std::string& name, const std::vector<std::string>& values) {
     std::string text;
     for (const std::string& value : values) {

@@ -59,11 +59,11 @@ void AssimpFiles::rethrow() const {
   if (failed_) std::rethrow_exception(failed_);
 }
 
-/// No exception passes through Assimp's C functions.
+/// Opens a file for Assimp. Exceptions must not pass through Assimp's C functions.
 aiFile* AssimpFiles::open(aiFileIO* io, const char* path, const char* /*mode*/) {
   AssimpFiles& self = *reinterpret_cast<AssimpFiles*>(io->UserData);
   try {
-    constexpr int kMostAtOnce = 4;  // Assimp's own: it looks into a file before it reads it
+    constexpr int kMostAtOnce = 4;  // Assimp inspects a file before it reads it
     if (self.open_[path] >= kMostAtOnce) {
       throw InputError(fmt::format("{}: is in itself (Inline); take the reference out", path));
     }

@@ -1,4 +1,4 @@
-// Files in memory that Assimp reads in place of those on disk.
+// Files in memory that Assimp reads instead of those on disk.
 #pragma once
 
 #include <assimp/cfileio.h>
@@ -10,19 +10,19 @@
 
 namespace radiosity {
 
-/// What Assimp opens, each path asked for once.
+/// The files that Assimp opens; each path is read once.
 class AssimpFiles {
  public:
-  /// The content that a path stands for; what it throws is kept for rethrow().
+  /// Returns the content of a path; exceptions are kept for rethrow().
   using Read = std::function<std::string(const std::string& path)>;
 
   explicit AssimpFiles(Read read);
   AssimpFiles(const AssimpFiles&) = delete;
   AssimpFiles& operator=(const AssimpFiles&) = delete;
 
-  /// For aiImportFileExWithProperties(); valid as long as this is.
+  /// For aiImportFileExWithProperties(); valid as long as this object lives.
   aiFileIO* io() { return &io_; }
-  /// Throws the first of what reading threw, if anything did.
+  /// Throws the first exception of reading, if there was one.
   void rethrow() const;
 
  private:
@@ -32,7 +32,7 @@ class AssimpFiles {
   Read read_;
   aiFileIO io_{};
   std::map<std::string, std::string> content_;  ///< by path
-  std::map<std::string, int> open_;             ///< by path: how many times at this moment
+  std::map<std::string, int> open_;             ///< by path: how many times it is open now
   std::exception_ptr failed_;
 };
 

@@ -1,5 +1,5 @@
-// Assimp by its C functions. It brings libraries of its own, a fifth of the time that the program
-// takes to start: it is opened when the first file that needs it is read.
+// Assimp by its C functions. It brings libraries of its own, which take a fifth of the program's
+// start-up time; so it is opened when the first file that needs it is read.
 #pragma once
 
 #include <assimp/cimport.h>
@@ -29,7 +29,7 @@ struct AssimpLibrary {
                                  aiTextureMapMode*, unsigned*);
 };
 
-/// Opens the library at the first call. RunError where it is not installed.
+/// Opens the library at the first call. Errors: RunError if it is not installed.
 const AssimpLibrary& assimpLibrary();
 
 }  // namespace radiosity

@@ -51,10 +51,10 @@ class AssimpMaterialReader {
   UniqueNames names_;
   std::map<std::pair<std::string, bool>, LoadedTexture> texture_of_;  ///< by name, repeat
   std::map<std::string, std::vector<Index>> added_;                   ///< by the name in the file
-  unsigned set_ = 0;  ///< of texture coordinates, of the material in hand
+  unsigned set_ = 0;  ///< of texture coordinates, of the present material
 };
 
-// Keys of materials are written out where AI_MATKEY macros give three arguments at once.
+// We write out keys of materials, since AI_MATKEY macros expand to three arguments at once.
 
 Vec3 AssimpMaterialReader::colour(const aiMaterial& given, const char* key,
                                   const Vec3& otherwise) const {
@@ -68,7 +68,7 @@ Material AssimpMaterialReader::convert(const aiMaterial& given, unsigned number)
   aiString text;
   std::string name;
   if (library_.getMaterialString(&given, AI_MATKEY_NAME, &text) == AI_SUCCESS) name = text.C_Str();
-  // Assimp makes up a grey material for meshes without one.
+  // Assimp adds a grey material for meshes without one.
   if (name == AI_DEFAULT_MATERIAL_NAME) return defaultMaterial("default", options_);
   if (name.empty()) name = fmt::format("material {}", number);
   Material material = defaultMaterial(name, options_);
@@ -100,7 +100,8 @@ Material AssimpMaterialReader::convert(const aiMaterial& given, unsigned number)
   return material;
 }
 
-/// Some formats give each object a material of its own.
+/// Adds a material, or returns an equal one of the same name: some formats give each object its
+/// own.
 Index AssimpMaterialReader::added(Material material) {
   std::vector<Index>& of_name = added_[material.name];
   for (const Index index : of_name) {

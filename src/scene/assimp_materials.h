@@ -1,4 +1,4 @@
-// Materials of a file that Assimp reads, with the textures of their diffuse colours.
+// Reads the materials of Assimp's files, with the textures of their diffuse colours.
 #pragma once
 
 #include <vector>
@@ -10,16 +10,16 @@ struct aiScene;
 
 namespace radiosity {
 
-/// What has become of a material of the file.
+/// A material of the file in the scene.
 struct AssimpMaterial {
   Index index;   ///< into Scene::materials
-  unsigned set;  ///< of texture coordinates, which its texture takes
+  unsigned set;  ///< the set of texture coordinates for its texture
 };
 
-/// Adds all materials to `scene` and returns what has become of each, in the file's order: those of
-/// one name that are alike in all that is used are one. What is not used goes to `ignored`. Diffuse
-/// and emissive colours are read as those of an MTL file; a reflectance is the colour's, also
-/// beside a texture. Errors: InputError naming the material.
+/// Adds all materials to `scene` and returns the scene's material of each, in the file's order.
+/// Materials of one name are one if all properties that we use are equal. Unused properties go to
+/// `ignored`. Diffuse and emissive colours are read as in an MTL file; the reflectance is the
+/// colour's, also beside a texture. Errors: InputError naming the material.
 std::vector<AssimpMaterial> readAssimpMaterials(const aiScene& file, const SceneOptions& options,
                                                 Scene& scene, FeatureNotes& ignored);
 

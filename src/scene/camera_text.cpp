@@ -77,7 +77,7 @@ Camera readCamera(std::string_view text, char separator, Up up) {
         camera.eye.x == camera.target.x && camera.eye[across] == camera.target[across];
     camera.up = Vec3(0.0);
     if (straight) {
-      camera.up[across] = up == Up::y ? -1 : 1;  // up or down, as on a map
+      camera.up[across] = up == Up::y ? -1 : 1;  // the view is vertical, as on a map
     } else {
       camera.up[up == Up::y ? 1 : 2] = 1;
     }

@@ -1,4 +1,4 @@
-// Which way faces face: against their neighbours, or a whole part inside out.
+// Finds faces that are turned against their neighbours, and parts that are inside out.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ bool boxContains(const ConnectedPart& outer, const ConnectedPart& inner, double 
   return within(0) && within(1) && within(2);
 }
 
-/// Fans are enough, even of concave faces: they are only ever summed with signs.
+/// Fans are enough, even of concave faces, since their triangles are only summed with signs.
 std::vector<WindingTree::Triangle> trianglesOf(const WeldedFaces& faces,
                                                const ConnectedPart& part) {
   std::vector<WindingTree::Triangle> out;
@@ -37,8 +37,8 @@ std::vector<WindingTree::Triangle> trianglesOf(const WeldedFaces& faces,
 
 }  // namespace
 
-/// Relative to the centre of the welded faces. `on`: so close to the part's faces that neither side
-/// is certain.
+/// The place of a point, given relative to the centre of the welded faces. `on`: so close to the
+/// part's faces that neither side is certain.
 Place SceneChecks::placeOf(const Vec3& point, const ConnectedPart& outer) const {
   auto tree = winding_.find(&outer);
   if (tree == winding_.end()) {
@@ -49,8 +49,8 @@ Place SceneChecks::placeOf(const Vec3& point, const ConnectedPart& outer) const 
   return winding > 0.25 ? Place::on : Place::outside;
 }
 
-/// `on`: every face of `inner` lies on `outer` (a lamp panel on a ceiling). Faces in contact decide
-/// nothing as long as there are others (a block on a floor).
+/// The place of a part. `on`: every face of `inner` lies on `outer` (a lamp panel on a ceiling).
+/// Faces in contact do not count if there are others (a block on a floor).
 Place SceneChecks::placeOf(const ConnectedPart& inner, const ConnectedPart& outer) const {
   if (!boxContains(outer, inner, faces_.tolerance)) return Place::outside;
   for (const Index f : inner.faces) {
@@ -74,7 +74,7 @@ bool SceneChecks::enclosed() const {
     upper = glm::max(upper, part.upper);
   }
   return std::any_of(parts.begin(), parts.end(), [&](const ConnectedPart& room) {
-    // Where many bodies are inside out, only one that reaches as far as all of them is examined.
+    // If many bodies are inside out, we only examine one that extends as far as all of them.
     return room.closed && room.volume < 0 && room.lower == lower && room.upper == upper &&
            std::all_of(parts.begin(), parts.end(), [&](const ConnectedPart& part) {
              return &part == &room || placeOf(part, room) != Place::outside;
@@ -90,7 +90,7 @@ void SceneChecks::reportOrientation(SceneInfo& info) const {
 void SceneChecks::reportFlippedFaces(SceneInfo& info) const {
   std::vector<std::size_t> flipped(scene_.surfaces.size(), 0);
   for (std::size_t f = 0; f < faces_.size(); ++f) {
-    // The winding of a two-sided face decides nothing.
+    // The winding of a two-sided face does not matter.
     if (topology_.flipped[f] != 0 && !scene_.materialOf(f).two_sided) {
       ++flipped[scene_.face_surface[f]];
     }
@@ -174,9 +174,9 @@ std::vector<std::string> SceneChecks::contentsOf(const ConnectedPart& outer,
   return contents;
 }
 
-/// A closed part that faces inwards is a room, and has something in it, or a solid's cavity; one
-/// that faces outwards is a solid, and has nothing in it but in its cavities. A part that is alone
-/// may be either.
+/// Reports a closed part that seems to be inside out. A part that faces inwards is a room, with
+/// parts inside, or a solid's cavity. A part that faces outwards is a solid, with parts only in its
+/// cavities. A part that is alone may be either.
 void SceneChecks::reportPart(const ConnectedPart& part, SceneInfo& info) const {
   const bool has_others = topology_.parts.size() > 1;
   const std::vector<const ConnectedPart*> cavities = cavitiesOf(part);

@@ -1,4 +1,4 @@
-// Surfaces that lie in one plane, summed over pairs of surfaces.
+// Finds surfaces that overlap in one plane, summed over pairs of surfaces.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace radiosity {
 
 namespace {
 
-/// Pairs named before the rest is only counted.
+/// The most pairs that are named; the rest is counted.
 constexpr std::size_t kNamedPairs = 10;
 
 }  // namespace
@@ -33,7 +33,7 @@ void SceneChecks::reportOverlaps(SceneInfo& info) const {
       alike[std::minmax(first, second)] += overlap.area;
       continue;
     }
-    // Faces in contact (a block on a floor) are the rule; a lamp whose front is covered is not.
+    // Faces in contact (a block on a floor) are usual, but a lamp whose front is covered is not.
     for (const Index face : {overlap.first, overlap.second}) {
       if (emits(face) && !materialOf(face).two_sided) {
         covered[scene_.face_surface[face]] += overlap.area;
@@ -68,7 +68,7 @@ void SceneChecks::reportOverlaps(SceneInfo& info) const {
                                                             largest.size() - kNamedPairs)});
   }
   for (const auto& [surface, area] : covered) {
-    // Half of it: the underside of a lamp that stands on a table is no mistake.
+    // We require half of the area: the underside of a lamp on a table is no mistake.
     if (area < 0.5 * info.surfaces[surface].area) continue;
     info.problems.push_back(
         {Severity::loud,

@@ -1,4 +1,4 @@
-// Light, size and single faces; see check_orientation.cpp and check_overlaps.cpp for the rest.
+// Checks light, size and single faces; check_orientation.cpp and check_overlaps.cpp check the rest.
 #include "scene/checks.h"
 
 #include <fmt/format.h>
@@ -88,7 +88,7 @@ void SceneChecks::reportLight(SceneInfo& info) const {
 
 void SceneChecks::reportExtent(SceneInfo& info) const {
   const double diagonal = glm::distance(info.lower, info.upper);
-  // A room is a few metres; what is far off is more likely drawn in another unit.
+  // A room has a few metres; a scene of a very different size is probably in another unit.
   constexpr double kLargest = 200;
   constexpr double kSmallest = 0.02;
   if (diagonal > kLargest || diagonal < kSmallest) {

@@ -1,4 +1,4 @@
-// Checks of a scene: notes on surfaces that look wrong, by name.
+// Checks a scene and notes surfaces that look wrong, by name.
 #pragma once
 
 #include <map>
@@ -14,28 +14,29 @@
 
 namespace radiosity {
 
-/// Where something is with respect to a closed part.
+/// A place with respect to a closed part.
 enum class Place { inside, on, outside };
 
 class SceneChecks {
  public:
   SceneChecks(const Scene& scene, const WeldedFaces& faces);
 
-  /// Every edge is shared by two faces, oppositely, or one closed part encloses all others.
+  /// Whether every edge is shared by two faces in opposite directions, or one closed part encloses
+  /// all others.
   bool closed() const;
-  /// One closed part that faces inwards holds all others: no sky is seen.
+  /// Whether a closed part that faces inwards holds all others, so that no face sees the sky.
   bool enclosed() const;
   std::size_t openEdges() const { return topology_.open_edges; }
 
-  /// No emitter, emitters without area, a closed room that absorbs nothing.
+  /// Notes that there is no emitter, emitters without area, and a closed room that absorbs nothing.
   void reportLight(SceneInfo& info) const;
-  /// A size that speaks for another unit, a place too far from the origin.
+  /// Notes a size that suggests another unit, and a place too far from the origin.
   void reportExtent(SceneInfo& info) const;
-  /// Degenerate, doubled and non-planar faces.
+  /// Notes degenerate, doubled and non-planar faces.
   void reportFaces(SceneInfo& info) const;
-  /// Faces wound against their neighbours, solids and rooms that are inside out.
+  /// Notes faces wound against their neighbours, and solids and rooms that are inside out.
   void reportOrientation(SceneInfo& info) const;
-  /// Faces of different surfaces in one plane.
+  /// Notes overlapping faces of different surfaces in one plane.
   void reportOverlaps(SceneInfo& info) const;
 
  private:
@@ -44,20 +45,20 @@ class SceneChecks {
     return scene_.surfaces[scene_.face_surface[face]].name;
   }
   bool emits(Index face) const { return materialOf(face).emission != Vec3(0.0); }
-  /// The surfaces a part has faces of, each once.
+  /// The surfaces of a part's faces, each once.
   std::vector<std::string> surfacesOf(const ConnectedPart& part) const;
-  /// "a/b, c/d" of them.
+  /// Their names: "a/b, c/d".
   std::string namesOf(const ConnectedPart& part) const;
   Place placeOf(const Vec3& point, const ConnectedPart& outer) const;
   Place placeOf(const ConnectedPart& inner, const ConnectedPart& outer) const;
-  /// Parts whose boxes meet that of `part`, ascending.
+  /// The parts whose boxes meet that of `part`, ascending.
   std::vector<std::size_t> partsNear(const ConnectedPart& part) const;
-  /// Closed parts turned inward within a solid: they make it hollow.
+  /// The closed parts turned inward within a solid, which make it hollow.
   std::vector<const ConnectedPart*> cavitiesOf(const ConnectedPart& solid) const;
   /// Whether a part that is turned inward lies within a solid.
   bool isCavity(const ConnectedPart& part) const;
-  /// Surfaces of parts that lie within `outer` and not in one of its `cavities`, each once, in the
-  /// order of the parts; no more are looked for once there are `most`.
+  /// The surfaces of parts within `outer` but not in one of its `cavities`, each once, in the order
+  /// of the parts. The search stops once there are `most`.
   std::vector<std::string> contentsOf(const ConnectedPart& outer,
                                       std::span<const ConnectedPart* const> cavities,
                                       std::size_t most) const;
@@ -71,7 +72,7 @@ class SceneChecks {
   std::vector<std::uint8_t> is_double_;  ///< F
   Topology topology_;
   BoxTree part_boxes_;                                           ///< by part
-  mutable std::map<const ConnectedPart*, WindingTree> winding_;  ///< of the parts asked about
+  mutable std::map<const ConnectedPart*, WindingTree> winding_;  ///< of the parts tested so far
 };
 
 }  // namespace radiosity

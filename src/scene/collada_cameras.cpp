@@ -9,7 +9,7 @@ namespace radiosity {
 
 namespace {
 
-/// The tangent of half an angle; 0 where the file does not give it.
+/// The tangent of half an angle; 0 if the file does not give it.
 double halfTangent(const pugi::xml_node& perspective, const char* name) {
   return std::tan(0.5 * perspective.child(name).text().as_double(0) * std::numbers::pi / 180);
 }
@@ -20,7 +20,7 @@ Camera viewOf(const pugi::xml_node& perspective) {
   Camera camera;
   camera.aspect = perspective.child("aspect_ratio").text().as_double(0);
   if (!(camera.aspect > 0)) camera.aspect = wide > 0 && high > 0 ? wide / high : 0;
-  // Of a picture of which the file does not say how high it is: 4 : 3.
+  // If the file does not give the height of the picture, we take 4 : 3.
   if (!(high > 0)) high = wide / (camera.aspect > 0 ? camera.aspect : 4.0 / 3);
   camera.vertical_fov = 2 * std::atan(high);
   return camera;
@@ -29,7 +29,7 @@ Camera viewOf(const pugi::xml_node& perspective) {
 }  // namespace
 
 ColladaCameras::ColladaCameras(const pugi::xml_document& document, FeatureNotes& notes) {
-  std::map<std::string_view, std::optional<Camera>> cameras;  // nothing: without perspective
+  std::map<std::string_view, std::optional<Camera>> cameras;  // empty: without perspective
   const pugi::xml_node root = document.document_element();
   for (const pugi::xml_node camera : root.child("library_cameras").children("camera")) {
     const pugi::xml_node perspective =

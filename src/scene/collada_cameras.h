@@ -1,4 +1,4 @@
-// Cameras of Collada files, whose angles Assimp gets wrong unless xfov is there.
+// Reads the cameras of Collada files: Assimp gets their angles wrong unless the file has xfov.
 #pragma once
 
 #include <map>
@@ -11,16 +11,16 @@
 
 namespace radiosity {
 
-/// The cameras that each <node> holds, by <instance_camera>. They look along -z, with +y up.
+/// The cameras of each <node>, by <instance_camera>. They look along -z, with +y up.
 class ColladaCameras {
  public:
-  /// Notes cameras that are not used: without perspective, or in a node that has neither id nor
-  /// name. `document` may go.
+  /// Notes unused cameras: those without perspective, or in a node that has neither id nor name.
+  /// `document` is not needed afterwards.
   ColladaCameras(const pugi::xml_document& document, FeatureNotes& notes);
 
-  /// Vertical angle (0 where the file gives none) and aspect ratio (COLLADA 1.4.1, <perspective>)
-  /// of the cameras in the node with this id, or without an id, with this name. The rest of a
-  /// Camera follows from the node.
+  /// The cameras in the node with this id or, if it has no id, with this name. They have the
+  /// vertical angle (0 if the file gives none) and the aspect ratio (COLLADA 1.4.1, <perspective>);
+  /// the rest follows from the node.
   const std::vector<Camera>& of(const std::string& id, const std::string& name) const;
 
  private:

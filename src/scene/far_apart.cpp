@@ -12,7 +12,7 @@
 namespace radiosity {
 namespace {
 
-/// Gaps this much longer than what they part.
+/// The least gap, relative to the larger of the groups that it separates.
 constexpr double kFarApart = 1000;
 
 struct FaceBox {
@@ -36,9 +36,9 @@ struct Parted {
   double gap;
 };
 
-/// Where boxes in order of their lower ends fall into two groups along an axis.
+/// Finds the gap along an axis that separates boxes, sorted by their lower ends, into two groups.
 std::optional<Parted> partAlong(const std::vector<FaceBox>& boxes, glm::length_t axis) {
-  std::vector<Box3> rest(boxes.size());  // all from one on
+  std::vector<Box3> rest(boxes.size());  // rest[k]: the union of boxes from k on
   for (std::size_t k = boxes.size(); k-- > 0;) {
     if (k + 1 < boxes.size()) rest[k] = rest[k + 1];
     rest[k].add(boxes[k].box);

@@ -1,4 +1,4 @@
-// Scenes of which a part lies so far off that lengths of the rest are lost.
+// Finds parts of a scene that are so far away that details of the rest are lost.
 #pragma once
 
 #include <optional>
@@ -8,9 +8,9 @@
 
 namespace radiosity {
 
-/// Coincidence is a share of the whole scene's diagonal (`weld`). One forgotten object far away
-/// makes it as long as a room's details. A note that names it and what it does, where the gap is
-/// longer than a thousand times what lies on either side of it. Takes n log n time.
+/// Coincidence is a share of the whole scene's diagonal (`weld`). A forgotten object far away makes
+/// it as long as a room's details. Returns a note that names the object and its effect, if the gap
+/// is longer than a thousand times the parts on both sides of it. O(n log n).
 std::optional<Note> noteFarApart(const Scene& scene, double weld);
 
 }  // namespace radiosity

@@ -15,8 +15,8 @@ namespace radiosity {
 
 namespace {
 
-/// Keeps the encoded bytes of an image file: which are needed is known later. Those in a buffer are
-/// not touched here, since the library has not checked that they lie within it.
+/// Keeps the encoded bytes of an image file, since we know only later which images are needed. Does
+/// not touch images in a buffer: the library has not checked that they are within it.
 bool keepEncoded(tinygltf::Image* image, const int /*index*/, std::string* /*error*/,
                  std::string* /*warning*/, int /*width*/, int /*height*/,
                  const unsigned char* bytes, int size, void* /*user*/) {
@@ -79,8 +79,8 @@ bool isIndexType(int type) {
          type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
 }
 
-// How the library gets at files beside the scene: regular ones only, names as they stand (its own
-// way expands them as a shell would).
+// The library's access to files beside the scene: only regular files, with literal names (its own
+// functions expand names like a shell).
 bool isFile(const std::string& path, void* /*user*/) { return whyNotAFile(path).empty(); }
 
 std::string asItStands(const std::string& path, void* /*user*/) { return path; }
@@ -102,7 +102,7 @@ bool writeNothing(std::string* /*error*/, const std::string& /*path*/,
   return false;
 }
 
-/// The library's reason in our words where it is about a file of a buffer.
+/// The library's reason, in our words if it is about the file of a buffer.
 std::string reasonFor(const std::string& error, const std::string& folder) {
   const std::string line = onOneLine(error.substr(0, error.find('\n')));
   constexpr std::string_view kNotFound = "File not found : ";
@@ -139,7 +139,7 @@ void parse(const std::string& content, GltfFile& file) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception&) {
-    // Mostly an error of the standard library (an index out of range), whose text helps nobody.
+    // Mostly an error of the standard library (an index out of range), whose text does not help.
     file.fail(
         "cannot be read as glTF 2.0 (a size or a number in it is impossible); export the "
         "scene again");
@@ -175,7 +175,7 @@ const unsigned char* GltfFile::viewBytes(int view_index, std::size_t offset, std
   const tinygltf::Buffer& buffer = at(model.buffers, view.buffer, "buffer", what);
   const bool view_fits = view.byteOffset <= buffer.data.size() &&
                          view.byteLength <= buffer.data.size() - view.byteOffset;
-  // Written so that nothing overflows, whatever the file claims.
+  // The comparisons cannot overflow for any values in the file.
   const bool fits = view_fits && offset <= view.byteLength && element <= view.byteLength - offset &&
                     (count - 1) <= (view.byteLength - offset - element) / stride;
   if (!fits) fail(what + " reaches beyond the end of its buffer; export the scene again");
@@ -225,8 +225,8 @@ std::vector<double> GltfFile::readNumbers(int accessor_index, int components,
   return values;
 }
 
-/// An accessor without a buffer view is zeros but for its sparse values: all zeros are no data, and
-/// more elements than the buffers have bytes are no mesh.
+/// An accessor without a buffer view is zeros but for its sparse values. Refuses one without sparse
+/// values, which has no data, and one with more elements than the buffers have bytes.
 void GltfFile::requireData(const tinygltf::Accessor& accessor, const std::string& what) const {
   if (!accessor.sparse.isSparse) {
     fail(what + " has no data (no buffer view); export the scene again, without compression");

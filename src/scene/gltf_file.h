@@ -1,4 +1,4 @@
-// A parsed glTF file with every reference checked: the library checks few of them.
+// A parsed glTF file with every reference checked, since the library checks few of them.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 
 namespace radiosity {
 
-/// Extensions that are read; a file may require these and no others.
+/// Whether we read an extension; a file must not require any other.
 bool isSupportedGltfExtension(const std::string& name);
 
 struct GltfFile {
@@ -39,7 +39,7 @@ struct GltfFile {
   /// All values of an index accessor.
   std::vector<Index> readIndices(int accessor, const std::string& what) const;
 
-  /// The encoded image (PNG, JPEG); empty where its file is missing.
+  /// The encoded image (PNG, JPEG); empty if its file is missing.
   std::span<const unsigned char> imageBytes(const tinygltf::Image& image,
                                             const std::string& what) const;
 
@@ -52,8 +52,8 @@ struct GltfFile {
                    const std::string& what) const;
 };
 
-/// Parses and checks version and required extensions. Images stay encoded. Binary or JSON is told
-/// by the content.
+/// Parses a file and checks its version and required extensions. Images stay encoded. The content
+/// tells whether the file is binary or JSON.
 GltfFile parseGltf(const std::string& path);
 
 }  // namespace radiosity

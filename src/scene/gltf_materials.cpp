@@ -17,8 +17,8 @@ Vec2 pairOf(const tinygltf::Value& value, const Vec2& otherwise) {
   return {value.Get(0).GetNumberAsDouble(), value.Get(1).GetNumberAsDouble()};
 }
 
-/// The image of a texture: a WebP (EXT_texture_webp) where there is no PNG or JPEG. -1: neither, as
-/// where KHR_texture_basisu holds the only one.
+/// The image of a texture: a WebP (EXT_texture_webp) if there is no PNG or JPEG. -1: neither, for
+/// instance if KHR_texture_basisu has the only one.
 int imageOf(const tinygltf::Texture& texture) {
   const auto webp = texture.extensions.find("EXT_texture_webp");
   if (texture.source >= 0 || webp == texture.extensions.end()) return texture.source;
@@ -93,7 +93,8 @@ Material GltfMaterialReader::convert(const tinygltf::Material& gltf, const std::
   return material;
 }
 
-/// A corner of a face has one pair of texture coordinates here.
+/// The emission texture, if it can be used: a corner of a face has only one pair of texture
+/// coordinates.
 Index GltfMaterialReader::emissionTexture(const tinygltf::Material& gltf,
                                           const Material& material) {
   if (gltf.emissiveTexture.index < 0 || material.emission == Vec3(0.0)) return kNone;

@@ -1,4 +1,4 @@
-// Materials and textures of a glTF file.
+// Reads materials and textures of a glTF file.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace radiosity {
 
-/// Where a material's texture coordinates come from: TEXCOORD_set, then KHR_texture_transform.
+/// The source of a material's texture coordinates: TEXCOORD_set, then KHR_texture_transform.
 struct TexcoordSource {
   int set = 0;
   Vec2 offset{0.0};
@@ -24,7 +24,7 @@ struct GltfMaterials {
   Index none = kNone;                     ///< the default material; kNone until one is needed
 };
 
-/// Fills scene.materials (as in the file, in order, with unique names) and scene.textures.
+/// Fills scene.materials (in the file's order, with unique names) and scene.textures.
 GltfMaterials readGltfMaterials(const GltfFile& file, const SceneOptions& options, Scene& scene,
                                 FeatureNotes& ignored);
 

@@ -36,7 +36,7 @@ std::vector<int> rootNodes(const GltfFile& file) {
   if (!model.scenes.empty()) {
     return file.at(model.scenes, std::max(model.defaultScene, 0), "scene", "the file").nodes;
   }
-  // Without scenes every node that is no child is a root.
+  // Without scenes every node that is not a child is a root.
   std::vector<bool> is_child(model.nodes.size(), false);
   for (const tinygltf::Node& node : model.nodes) {
     for (const int child : node.children) {
@@ -70,7 +70,7 @@ Transform localTransform(const GltfFile& file, const tinygltf::Node& node,
     const glm::dquat turn(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
     const double length = glm::length(turn);
     if (!(length > 0)) file.fail(what + ": rotation is the zero quaternion; correct it");
-    // Written with 7 digits as a rule: made unit again so that lengths are kept in double.
+    // Files usually have 7 digits; we normalise the rotation again so that it keeps lengths.
     transform = glm::mat4_cast(turn / length);
   }
   if (sized(node.scale, 3, "scale")) {
@@ -89,7 +89,7 @@ void forEachGltfNode(const GltfFile& file,
   const tinygltf::Model& model = file.model;
   std::vector<bool> visited(model.nodes.size(), false);
   for (const int root : rootNodes(file)) {
-    // An explicit stack: a chain of nodes may be longer than the call stack is deep.
+    // We use an explicit stack, since a chain of nodes may be longer than the call stack allows.
     std::vector<std::pair<int, Transform>> waiting = {{root, Transform(1.0)}};
     while (!waiting.empty()) {
       const auto [current, outer] = waiting.back();
@@ -103,7 +103,7 @@ void forEachGltfNode(const GltfFile& file,
       visited[std::size_t(current)] = true;
       const Transform transform = outer * localTransform(file, node, what);
       visit(current, transform, what);
-      // The last one in is the first one out: children are read in their order.
+      // We push children in reverse, so that they are read in their order.
       for (std::size_t k = node.children.size(); k-- > 0;) {
         waiting.emplace_back(node.children[k], transform);
       }

@@ -13,22 +13,21 @@
 namespace radiosity {
 
 /// Calls visit(node number, transform to the world, "node NAME") for every node of the default
-/// scene (of all roots, where there is none), parents first, children in their order. Errors: a
-/// node that is reached twice, a malformed transform.
+/// scene (of all roots if there is none), parents first, children in their order. Errors: a node
+/// that is reached twice, a malformed transform.
 void forEachGltfNode(const GltfFile& file,
                      const std::function<void(int, const glm::dmat4&, const std::string&)>& visit);
 
-/// True for a primitive made of triangles, in whatever mode.
+/// True for a primitive of triangles, in any mode.
 bool hasTriangles(const tinygltf::Primitive& primitive);
 
-/// Vertices of the triangles of such a primitive, three each, of `vertices` there are; wound so
-/// that fronts stay fronts under `transform`: a mirrored node winds them the other way
-/// (glTF 2.0, 3.7.4).
+/// The vertices, three each, of the triangles of such a primitive, which has `vertices` vertices.
+/// Fronts stay fronts under `transform`: a mirrored node reverses triangles (glTF 2.0, 3.7.4).
 std::vector<Index> readGltfTriangles(const GltfFile& file, const tinygltf::Primitive& primitive,
                                      std::size_t vertices, const glm::dmat4& transform,
                                      const std::string& what);
 
-/// POSITION under `transform`, all finite.
+/// The positions under `transform`, all finite.
 std::vector<Vec3> readGltfPositions(const GltfFile& file, const tinygltf::Primitive& primitive,
                                     const glm::dmat4& transform, const std::string& what);
 

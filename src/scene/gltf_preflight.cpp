@@ -53,7 +53,7 @@ std::string_view jsonChunk(const std::string& path, std::string_view content) {
   return content.substr(kGlbHeader + kChunkHeader, wordAt(content, kGlbHeader));
 }
 
-/// Version and required extensions that the JSON names.
+/// The version and required extensions in the JSON.
 struct Claims {
   bool is_object = false;
   std::string version;

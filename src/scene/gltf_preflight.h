@@ -1,4 +1,4 @@
-// Checks of a glTF file before the library reads it, for the library trusts sizes and nesting.
+// Checks a glTF file before the library reads it, since the library trusts sizes and nesting.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace radiosity {
 
-/// True for a binary file, whatever its name ends in.
+/// True for a binary file, with any extension.
 bool isGlb(std::string_view content);
 
 /// The JSON of a .gltf or, once checkGltf() has seen it, of a .glb.

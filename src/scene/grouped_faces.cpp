@@ -60,7 +60,7 @@ void GroupedFaces::addVolume(const ElementShape& shape, std::span<const Index> n
   skin_volumes_.push_back({Index(volume_groups_.size() - 1), element});
 }
 
-/// What bounds the volumes is what light and heat see of them.
+/// Adds the skin of the volumes, since light and heat only see their boundary.
 void GroupedFaces::addSkin() {
   for (const VolumeSkin::Face& face : skin_.faces(scene_.vertices)) {
     const Volume& volume = skin_volumes_[face.volume];

@@ -1,4 +1,5 @@
-// Meshes without materials: faces by the names of their groups, elements of analysis programs.
+// Makes scenes of meshes without materials: faces by the names of their groups, and elements of
+// analysis programs.
 #pragma once
 
 #include <map>
@@ -15,15 +16,15 @@
 
 namespace radiosity {
 
-/// What an element of a mesh is; the first `corners` of its nodes are its corners, in order.
+/// The shape of an element; the first `corners` of its nodes are its corners, in order.
 struct ElementShape {
   int dimension;  ///< 0 point, 1 line, 2 face, 3 volume
-  int corners;    ///< of a face, of a volume (0: one whose sides are not known)
+  int corners;    ///< of a face or a volume (0: a volume whose sides are not known)
   int nodes;      ///< 0: any number, and all are corners
 };
 
 /// Makes a scene of faces with names. Each name is a surface with a material of the same name and
-/// the default reflectance, so that a surface is called in the program as it is in its file.
+/// the default reflectance, so that a surface has the same name in the program as in its file.
 class GroupedFaces {
  public:
   /// `options` must outlive it.
@@ -32,22 +33,24 @@ class GroupedFaces {
   /// The scene so far, for notes and cameras.
   Scene& scene() { return scene_; }
 
-  /// Adds a vertex of finite coordinates, in file units. InputError beyond what an Index counts.
+  /// Adds a vertex of finite coordinates, in file units. Errors: InputError if there are too many
+  /// for an Index.
   Index addVertex(const Vec3& place);
-  /// `element`: how the file calls the face, for Scene::face_element.
+  /// `element`: the number of the face in the file, for Scene::face_element.
   void addFace(std::span<const Index> corners, const std::string& group, std::size_t element);
-  /// The same for an element of any shape: lines and points are left out, of curved faces the
-  /// corners count, of volumes the skin where there are no faces; finish() says so.
+  /// The same for an element of any shape. Lines and points are left out; of curved faces only the
+  /// corners count; of volumes the skin counts if there are no faces. finish() notes this.
   void addElement(const ElementShape& shape, std::span<const Index> nodes, const std::string& group,
                   std::size_t element);
-  /// A side of a volume is of a group of its own: as VolumeSkin::Face counts them.
+  /// Gives a side of a volume a group of its own. Volumes and sides are counted as in
+  /// VolumeSkin::Face.
   void nameSide(Index volume, int side, const std::string& group) {
     side_groups_[{volume, side}] = group;
   }
 
-  /// InputError where there are vertices alone, as scanners write them.
+  /// Throws InputError if there are only vertices, as in files of scanners.
   void refuseCloud() const;
-  /// InputError, with `cure`, where there are no faces.
+  /// Returns the scene. Errors: InputError, with `cure`, if there are no faces.
   Scene finish(const std::string& cure);
 
  private:
@@ -62,7 +65,7 @@ class GroupedFaces {
   std::map<std::string, Index> surface_of_;
   std::size_t curved_ = 0;
   std::size_t volumes_ = 0;
-  VolumeSkin skin_;  ///< while there are no faces
+  VolumeSkin skin_;  ///< used if there are no faces
   struct Volume {
     Index group;  ///< into volume_groups_
     std::size_t element;
@@ -74,17 +77,17 @@ class GroupedFaces {
   std::size_t lines_ = 0;
 };
 
-/// Whether an array of numbers or names of faces, called `array`, says which part of the scene they
-/// belong to ("group", "RegionId", "PhysicalIds", "material_index" and the like): how far down it
-/// stands in the list of such names, the likeliest first. None: it does not.
+/// The rank of an array of numbers or names of faces, called `array`, among names that usually
+/// stand for parts of a scene ("group", "RegionId", "PhysicalIds", "material_index" and the like),
+/// the likeliest first. Empty for other names.
 std::optional<std::size_t> groupArrayRank(std::string_view array);
 
 /// Nodes by their numbers, which need not be consecutive.
 class NodeNumbers {
  public:
-  /// False where there is a node of that number already.
+  /// Adds a node; false if there is a node of that number already.
   bool add(long long number, Index vertex) { return vertex_of_.emplace(number, vertex).second; }
-  /// kNone where there is none.
+  /// The vertex of a node; kNone if there is none.
   Index find(long long number) const {
     const auto found = vertex_of_.find(number);
     return found == vertex_of_.end() ? kNone : found->second;

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What `folder` calls `name`, upper and lower case taken for the same.
+/// The file in `folder` called `name`, without regard to case.
 std::optional<fs::path> sameNameIn(const fs::path& folder, const std::string& name) {
   std::error_code error;
   const std::string wanted = lowerCase(name);

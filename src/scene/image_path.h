@@ -1,4 +1,4 @@
-// Where the images of a scene are.
+// Finds the images of a scene.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace radiosity {
 
-/// The path of the image that a file in `folder` calls `name`. Backslashes are taken for slashes.
-/// Exporters write the path that an image had on their machine, and names in other letters than
-/// the image's: where nothing is there, a file whose path differs in upper and lower case alone is
-/// taken, or one of the same name in `folder`, which is noted. Nothing found: the path as named.
+/// The path of the image that a file in `folder` calls `name`. Backslashes count as slashes.
+/// Exporters often write the path on their own machine, or a name in another case. If there is no
+/// file at the path, we take one whose path differs only in case, or one of the same name in
+/// `folder`, and note it. If none is found, returns the path as named.
 std::string findImage(const std::string& folder, const std::string& name, FeatureNotes& notes);
 
 }  // namespace radiosity

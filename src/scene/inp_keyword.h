@@ -1,4 +1,4 @@
-// Lines of keywords in input of CalculiX and Abaqus, and the types of elements that they name.
+// Keyword lines in input of CalculiX and Abaqus, and the element types in them.
 #pragma once
 
 #include <map>
@@ -22,15 +22,15 @@ struct InpKeyword {
   bool has(const std::string& name) const { return parameters.contains(name); }
 };
 
-/// `line` begins with a star.
+/// Parses a keyword line; `line` begins with a star.
 InpKeyword inpKeyword(std::string_view line);
 
-/// Shells, membranes, rigid and other surfaces by their types, and flat solids, as which Gmsh
-/// writes faces; `type` in small letters. Nothing for volumes, beams and the rest.
+/// The shape of shells, membranes, rigid and other surfaces, and of flat solids, which Gmsh writes
+/// for faces. `type`: in small letters. Empty for volumes, beams and the rest.
 std::optional<ElementShape> inpFace(const std::string& type);
 
-/// Volumes of solids, heat transfer (D), acoustics (A) and fluids (F), whatever the letters behind
-/// their number of nodes (C3D20RBR) say of their integration.
+/// The shape of volumes: solids, heat transfer (D), acoustics (A) and fluids (F). The letters after
+/// the number of nodes (C3D20RBR), which specify the integration, are ignored.
 std::optional<ElementShape> inpVolume(const std::string& type);
 
 }  // namespace radiosity

@@ -21,18 +21,18 @@ namespace radiosity {
 
 namespace {
 
-constexpr int kMostIncludes = 16;  // a file that includes itself never ends
-/// Sets of sets of sets: what no person means is refused before it fills the memory.
+constexpr int kMostIncludes = 16;  // a file that includes itself would never end
+/// The most members of sets: nested sets that no person means are refused before they fill memory.
 constexpr std::size_t kMostMembers = std::size_t(1) << 24U;
 
-/// Where an instance of a part lies.
+/// The place of an instance of a part.
 struct InstancePlacement {
   Vec3 shift{0.0};
   Vec3 from{0.0};  ///< axis of the turn
   Vec3 to{0.0};
   double degrees = 0;
 
-  /// Shifted, then turned about the axis (Rodrigues).
+  /// Shifts a point, then turns it about the axis (Rodrigues).
   Vec3 of(const Vec3& place) const {
     const Vec3 shifted = place + shift;
     if (degrees == 0) return shifted;
@@ -69,7 +69,7 @@ class InpScanner {
   void beginInstance(const InpKeyword& keyword);
   void place(const std::vector<std::string_view>& fields);
   void endInstance();
-  /// The instance of that name in small letters, or null.
+  /// The instance with this name in small letters, or null.
   InpBody* instanceNamed(const std::string& name);
   double coordinate(std::string_view field) const;
   void data(std::string_view line);
@@ -80,7 +80,7 @@ class InpScanner {
   void addMembersNamed(std::string_view field);
   void range(const std::vector<std::string_view>& fields);
   void addMember(InpSet& set, const InpRange& range);
-  /// As sets of the instance at hand are called in small letters.
+  /// The name of a set of the present instance, in small letters.
   std::string ownName(const std::string& name) const;
   std::size_t setNamed(const std::string& name);
   static std::size_t setIn(InpBody& body, const std::string& name);
@@ -90,23 +90,23 @@ class InpScanner {
   std::string where() const { return fmt::format("{}:{}", *file_, cursor_->line()); }
 
   InpElements kind_;
-  const MeshCursor* cursor_ = nullptr;  ///< of the file at hand
+  const MeshCursor* cursor_ = nullptr;  ///< of the present file
   const std::string* file_ = nullptr;
   InpScan scan_;
-  InpBody* body_;                         ///< that things are added to
+  InpBody* body_;                         ///< receives all that is read
   std::map<std::string, InpBody> parts_;  ///< by name in small letters
   bool in_part_ = false;
   bool in_instance_ = false;
-  std::vector<InstancePlacement> placements_;  ///< of the instance at hand: none or one
-  std::size_t placing_lines_ = 0;              ///< of its data, read
-  InpBody* set_body_ = nullptr;                ///< that set_ is of
-  InpKeyword current_;                         ///< whose data lines come
-  std::optional<ElementShape> shape_;          ///< of the elements that come
-  bool unfinished_ = false;                    ///< the last element goes on in the next line
-  std::size_t set_ = 0;                        ///< that *ELSET or *ELEMENT adds to
+  std::vector<InstancePlacement> placements_;  ///< of the present instance: none or one
+  std::size_t placing_lines_ = 0;              ///< lines of its placement that were read
+  InpBody* set_body_ = nullptr;                ///< the body of set_
+  InpKeyword current_;                         ///< the keyword of the data lines that follow
+  std::optional<ElementShape> shape_;          ///< of the elements that follow
+  bool unfinished_ = false;                    ///< the last element continues in the next line
+  std::size_t set_ = 0;                        ///< the set to which *ELSET or *ELEMENT adds
   bool in_set_ = false;
   std::size_t member_count_ = 0;
-  bool has_system_ = false;  ///< coordinates of nodes are another system's
+  bool has_system_ = false;  ///< coordinates of nodes are in another system
   FeatureNotes notes_;
 };
 
@@ -171,7 +171,7 @@ void InpScanner::keyword(const InpKeyword& keyword, int depth) {
   if (keyword.word == "end instance") endInstance();
 }
 
-/// A set of the assembly is one of the instance whose elements it lists.
+/// Begins a set. A set of the assembly belongs to the instance whose elements it lists.
 void InpScanner::beginSet() {
   if (current_.get("elset").empty()) fail("*ELSET names no set; add ELSET=NAME");
   InpBody* const outer = body_;
@@ -222,7 +222,8 @@ void InpScanner::beginInstance(const InpKeyword& keyword) {
   placing_lines_ = 0;
 }
 
-/// The first line shifts an instance, the second turns it about an axis of two points.
+/// Reads the placement of an instance: the first line shifts it, the second turns it about an axis
+/// through two points.
 void InpScanner::place(const std::vector<std::string_view>& fields) {
   const std::size_t expected = placing_lines_ == 0 ? 3 : 7;
   if (placing_lines_ > 1 || fields.size() != expected) {
@@ -261,8 +262,8 @@ InpBody* InpScanner::instanceNamed(const std::string& name) {
   return nullptr;
 }
 
-/// What is made of shells is missed in the scene, and nodes may be missed by a shell: both are for
-/// the reader to tell.
+/// Notes a keyword that makes elements or nodes: the scene would lack such shells, and shells would
+/// lack such nodes. The reader reports both.
 void InpScanner::noteMaker(const InpKeyword& keyword) {
   const std::string& word = keyword.word;
   if (word == "ngen" || word == "nfill" || word == "ncopy") body_->node_makers.push_back(word);
@@ -301,18 +302,18 @@ void InpScanner::beginElements() {
                type, Severity::warning);
   }
   if (current_.get("elset").empty()) return;
-  set_ = setNamed(current_.get("elset"));  // also of no faces: sets of sets may name it
+  set_ = setNamed(current_.get("elset"));  // also if it has no faces: other sets may name it
   set_body_ = body_;
   in_set_ = shape_.has_value();
 }
 
-/// Surfaces of nodes, and those that others are cut of, say nothing of sides.
+/// Begins a surface. Surfaces of nodes, and combinations of other surfaces, do not list sides.
 void InpScanner::beginSurface() {
   const std::string type = lowerCase(current_.get("type"));
   if (kind_ != InpElements::volumes || (!type.empty() && type != "element")) {
     current_.word.clear();
   } else {
-    // Of the assembly: a share for each instance.
+    // A surface of the assembly has a part in each instance.
     const std::string own = in_instance_ ? body_->name + "." : "";
     const auto begin = [&](InpBody& body) {
       body.surfaces.push_back({own + current_.get("name"), {}});
@@ -371,7 +372,7 @@ void InpScanner::node(const std::vector<std::string_view>& fields) {
   if (fields.empty()) return;
   InpNode node{integer(fields[0], "node number"), Vec3(0.0), where()};
   for (std::size_t k = 1; k < std::min<std::size_t>(fields.size(), 4); ++k) {
-    if (fields[k].empty()) continue;  // a coordinate that is left out is 0
+    if (fields[k].empty()) continue;  // a missing coordinate is 0
     node.place[int(k) - 1] = coordinate(fields[k]);
   }
   body_->nodes.push_back(std::move(node));
@@ -406,7 +407,7 @@ void InpScanner::element(const std::vector<std::string_view>& fields, const Elem
   unfinished_ = nodes.size() < expected;
 }
 
-/// "12, S3" or "SET, S3". Other labels (SPOS, EDGE1) are no sides of volumes.
+/// Reads "12, S3" or "SET, S3". Other labels (SPOS, EDGE1) are not sides of volumes.
 void InpScanner::sides(const std::vector<std::string_view>& fields) {
   if (fields.size() != 2) return;
   const std::string label = lowerCase(fields[1]);
@@ -416,7 +417,7 @@ void InpScanner::sides(const std::vector<std::string_view>& fields) {
   for (InpBody& body : scan_.bodies) addSides(body, fields[0], side);
 }
 
-/// `members`: a set or an element of the body, "INSTANCE.12" where it is an instance.
+/// `members`: a set or an element of the body; "INSTANCE.12" if the body is an instance.
 void InpScanner::addSides(InpBody& body, std::string_view members, int side) {
   InpSides sides{{}, side};
   const std::string name = lowerCase(members);
@@ -443,8 +444,8 @@ void InpScanner::members(const std::vector<std::string_view>& fields) {
   }
 }
 
-/// A set; of the assembly's sets also "INSTANCE.12" and "INSTANCE.SET", which go to a set of that
-/// instance.
+/// Adds the members of a set. Sets of the assembly may also have "INSTANCE.12" and "INSTANCE.SET",
+/// which go to a set of that instance.
 void InpScanner::addMembersNamed(std::string_view field) {
   const std::string name = lowerCase(field);
   const std::size_t dot = name.find('.');

@@ -19,7 +19,7 @@ struct InpNode {
   std::string where;  ///< "FILE:LINE", for errors
 };
 
-/// A shell or another element that is a face; or a volume.
+/// An element that is a face, such as a shell, or a volume.
 struct InpElement {
   long long number;
   ElementShape shape;
@@ -35,20 +35,20 @@ struct InpRange {
 };
 
 struct InpSet {
-  std::string name;  ///< as it is first written; case does not count
+  std::string name;  ///< in its first spelling; case does not matter
   std::vector<InpRange> members;
   bool chosen = false;    ///< by *ELSET, not on the line *ELEMENT
-  bool internal = false;  ///< a program's own, to make surfaces of: names nothing
+  bool internal = false;  ///< made by a program for surfaces: its name is not used
 };
 
-/// A statement that makes elements of others, as *ELGEN.
+/// A statement that makes elements from others, such as *ELGEN.
 struct InpMaker {
   std::string keyword;
   std::vector<InpRange> originals;
   std::string where;  ///< "FILE:LINE"
 };
 
-/// Some sides of elements, as *SURFACE lists them.
+/// Sides of elements in a *SURFACE.
 struct InpSides {
   std::vector<InpRange> elements;
   int side;  ///< from 1
@@ -58,14 +58,14 @@ struct InpSurface {
   std::vector<InpSides> sides;
 };
 
-/// What has numbers of its own: what the file has outside of all parts, or an instance of a part,
-/// moved to where it lies. Sets and surfaces of the part are called "INSTANCE.SET", as Abaqus does.
+/// A body with its own numbering: the contents of the file outside of parts, or an instance of a
+/// part, moved to its place. Sets and surfaces of a part are called "INSTANCE.SET", as in Abaqus.
 struct InpBody {
   std::string name;  ///< of the instance
   std::vector<InpNode> nodes;
   std::vector<InpElement> elements;
   std::vector<InpMaker> makers;                  ///< of elements
-  std::vector<std::string> node_makers;          ///< keywords that make nodes, which are not there
+  std::vector<std::string> node_makers;          ///< keywords that make nodes, which we do not
   std::vector<InpSet> sets;                      ///< of elements, in the order they come
   std::map<std::string, std::size_t> set_index;  ///< by name in small letters
   std::vector<InpSurface> surfaces;              ///< of sides of volumes
@@ -73,7 +73,7 @@ struct InpBody {
 
 struct InpScan {
   std::deque<InpBody> bodies;         ///< the file's own first
-  std::vector<std::string> left_out;  ///< types of elements that are none of those asked for
+  std::vector<std::string> left_out;  ///< types of elements that were not asked for
   std::size_t volumes = 0;            ///< blocks of volumes among them
   std::vector<Note> notes;
   bool hasElements() const;
@@ -82,8 +82,8 @@ struct InpScan {
 
 enum class InpElements { faces, volumes };
 
-/// Reads the file and those that it includes: elements of one kind. Errors: InputError "FILE:LINE:
-/// what is wrong; cure".
+/// Reads the elements of one kind in the file and in those that it includes. Errors: InputError
+/// "FILE:LINE: what is wrong; cure".
 InpScan scanInp(const std::string& path, InpElements kind);
 
 }  // namespace radiosity

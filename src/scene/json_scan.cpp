@@ -14,10 +14,10 @@ namespace {
 using Json = nlohmann::json;
 using Visit = std::function<void(std::span<const JsonStep>, const JsonValue&)>;
 
-/// glTF needs about ten levels. Libraries use the call stack for each.
+/// The deepest nesting. glTF needs about ten levels; libraries use the call stack for each.
 constexpr std::size_t kDeepest = 200;
 
-/// Receives the events of nlohmann's parser, which keeps no call stack itself.
+/// Receives the events of nlohmann's parser, which itself does not recurse.
 class Events : public nlohmann::json_sax<Json> {
  public:
   Events(const std::string& file, std::string_view text, const Visit& visit)
@@ -41,7 +41,7 @@ class Events : public nlohmann::json_sax<Json> {
 
   bool parse_error(std::size_t position, const std::string& /*token*/,
                    const Json::exception& error) override {
-    // 406: a number that no double can hold.
+    // 406: a number outside the range of a double.
     fail(position, error.id == 406 ? "a number is too large" : "it is cut off or damaged");
   }
 

@@ -1,4 +1,4 @@
-// Which lamp to name.
+// Suggests a surface that is probably a lamp.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -19,7 +19,7 @@ constexpr std::array<std::string_view, 10> kLampWords = {
     "emissive", "luminaire", "lantern", "chandelier", "neon"};
 constexpr std::array<std::string_view, 2> kCeilingWords = {"ceiling", "ceil"};
 
-/// The words of a name in lower case: "DeskLamp_02" -> desk, lamp.
+/// The words of a name in lower case: "DeskLamp_02" gives desk, lamp.
 std::vector<std::string> wordsOf(const std::string& name) {
   std::vector<std::string> words;
   bool inside = false;
@@ -43,8 +43,8 @@ bool isOneOf(std::string_view word, std::span<const std::string_view> known) {
   });
 }
 
-/// Whether "light" at the end of these words is a shade: another material is the same in dark, or
-/// without a shade ("metalLight" beside "metalDark" or "metal").
+/// Whether "light" at the end of these words is a shade: another material has the same name with
+/// "dark", or without a shade ("metalLight" beside "metalDark" or "metal").
 bool isShade(const Scene& scene, std::vector<std::string> words) {
   if (words.size() < 2 || words.back() != "light") return false;
   std::vector<std::string> plain(words.begin(), words.end() - 1);
@@ -55,8 +55,8 @@ bool isShade(const Scene& scene, std::vector<std::string> words) {
   });
 }
 
-/// 2: the name has such a word; 1: it has "light" before others, which may be a shade: "light
-/// wood"; 0: neither.
+/// 2: the name has a known word; 1: it has "light" before other words, where it may be a shade
+/// ("light wood"); 0: neither.
 int match(const Scene& scene, const std::string& name, std::span<const std::string_view> known) {
   const std::vector<std::string> words = wordsOf(name);
   if (isShade(scene, words)) return 0;
@@ -68,7 +68,7 @@ int match(const Scene& scene, const std::string& name, std::span<const std::stri
   return found;
 }
 
-/// The surface that matches best: its material's name, which counts more, or its own.
+/// The surface that matches best, by its material's name, which counts more, or by its own.
 std::string bestMatch(const Scene& scene, std::span<const std::string_view> known) {
   int most = 0;
   std::string name;
@@ -83,8 +83,8 @@ std::string bestMatch(const Scene& scene, std::span<const std::string_view> know
   return name;
 }
 
-/// The surface with most area that faces down, if most of its area does and it is in the upper
-/// half: the underside of a table is no ceiling.
+/// The surface with most area facing down, if most of its area faces down and it is in the upper
+/// half of the scene: the underside of a table is not a ceiling.
 std::string facingDown(const Scene& scene) {
   const auto up = scene.up == Up::z ? 2 : 1;
   std::vector<double> area(scene.surfaces.size(), 0.0);

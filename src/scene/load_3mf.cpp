@@ -1,6 +1,6 @@
-// 3MF, the format of programs for CAD and printing (3MF Consortium, "3MF Core Specification" 1.3):
-// what the build names, with its components, placed. Components in other files of the package
-// ("Production Extension Specification") are read, too.
+// Reads 3MF, the format of programs for CAD and printing (3MF Consortium, "3MF Core Specification"
+// 1.3): the placed objects of the build with their components. Components in other files of the
+// package ("Production Extension Specification") are read, too.
 #include <fmt/format.h>
 
 #include <array>
@@ -21,18 +21,19 @@ namespace radiosity {
 
 namespace {
 
-/// Files whose components refer to one another in a ring, or double from level to level, never end.
+/// The deepest nesting of components. Components that refer to each other in a ring, or double at
+/// each level, would never end.
 constexpr int kMostLevels = 64;
 constexpr std::size_t kMostParts = std::size_t(1) << 20U;
 
 using Placement = glm::dmat4;
 
-/// An object where an item of the build, or a component, puts it.
+/// An object in the place of an item of the build, or of a component.
 struct PlacedObject {
   const ThreeMfModel* model;
   std::string id;
   Placement place;
-  std::string name;  ///< of what it is a component of
+  std::string name;  ///< of the object of which it is a component
   int level;
 };
 
@@ -66,7 +67,7 @@ class ThreeMfReader {
   std::set<pugi::xml_node> placed_;  ///< objects
   std::size_t parts_ = 0;
 
-  // The mesh at hand.
+  // The present mesh.
   const ThreeMfModel* model_ = nullptr;
   pugi::xml_node object_;
   std::string name_;
@@ -96,7 +97,7 @@ Scene ThreeMfReader::read() {
   return std::move(scene_);
 }
 
-/// Sets the scene's unit and returns how many of it the model's has.
+/// Sets the scene's unit and returns the length of the model's unit in it.
 double ThreeMfReader::readUnit(const pugi::xml_node& model) {
   struct Unit {
     std::string_view name;
@@ -121,7 +122,7 @@ double ThreeMfReader::readUnit(const pugi::xml_node& model) {
                   name));
 }
 
-/// A file says which extensions one has to know to read it rightly.
+/// Notes the extensions that a reader must know to read the file correctly.
 void ThreeMfReader::noteExtensions(const pugi::xml_node& model) {
   for (const std::string_view prefix : splitWords(model.attribute("requiredextensions").value())) {
     const std::string space = model.attribute(fmt::format("xmlns:{}", prefix).c_str()).value();
@@ -134,7 +135,7 @@ void ThreeMfReader::noteExtensions(const pugi::xml_node& model) {
   }
 }
 
-/// Twelve numbers, of the images of the axes and of the origin.
+/// Reads twelve numbers: the images of the axes and of the origin.
 Placement ThreeMfReader::placementOf(const pugi::xml_node& node) const {
   const std::string_view text = node.attribute("transform").value();
   Placement place(1.0);
@@ -154,7 +155,7 @@ Placement ThreeMfReader::placementOf(const pugi::xml_node& node) const {
   return place;
 }
 
-/// Puts what an item or a component refers to on the list of what is to be taken.
+/// Appends the object to which an item or a component refers to the list of objects to read.
 void ThreeMfReader::refer(const pugi::xml_node& to, const PlacedObject& from,
                           std::vector<PlacedObject>& open) {
   const ThreeMfModel* model = from.model;
@@ -259,8 +260,8 @@ void ThreeMfReader::addTriangle(const pugi::xml_node& triangle, std::size_t numb
   builder_.addFace(corners, {}, builder_.surface(name_, material), number);
 }
 
-/// The group that a triangle names, or its object's, and the member that it names; where it names
-/// none, both are its object's. kNone: none that is read.
+/// The material of a triangle: its member and its group, or its object's group if it names none. If
+/// it names no member, both are its object's. kNone: a kind of material that is not read.
 Index ThreeMfReader::materialOf(const pugi::xml_node& triangle) {
   const std::string member = triangle.attribute("p1").value();
   const pugi::xml_attribute group = triangle.attribute("pid");

@@ -1,4 +1,4 @@
-// What Assimp reads and we do not: Collada, FBX, 3DS, X3D, IFC. Nodes are objects.
+// Reads Collada, FBX, 3DS, X3D and IFC by Assimp. Nodes are objects.
 #include <assimp/ColladaMetaData.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
@@ -68,7 +68,7 @@ class AssimpReader {
     }
     notes_.appendTo(scene_.notes);
     builder_.finish();
-    // In all of these formats a texture stands in place of the colour.
+    // In all of these formats a texture replaces the colour.
     for (Material& material : scene_.materials) {
       if (material.texture != kNone) material.reflectance = Vec3(1.0);
     }
@@ -103,8 +103,8 @@ class AssimpReader {
   std::vector<AssimpMaterial> materials_;  ///< by number in the file
   FeatureNotes notes_;
   double scale_ = 1;
-  std::multimap<std::string, const aiCamera*> camera_of_;  ///< by the node that holds it
-  std::optional<ColladaCameras> collada_;                  ///< in place of camera_of_
+  std::multimap<std::string, const aiCamera*> camera_of_;  ///< by its node
+  std::optional<ColladaCameras> collada_;                  ///< replaces camera_of_
   X3dExtras x3d_;
   std::map<Index, Index> two_sided_;  ///< by material: the same for both sides
 };
@@ -112,9 +112,9 @@ class AssimpReader {
 AssimpReader::File AssimpReader::import(aiFileIO* files) const {
   const std::unique_ptr<aiPropertyStore, void (*)(aiPropertyStore*)> wishes(
       library_.createPropertyStore(), library_.releasePropertyStore);
-  // Names as people gave them, not ids.
+  // We want the names that people gave, not ids.
   library_.setImportPropertyInteger(wishes.get(), AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, 1);
-  // No octahedra in place of nodes where a file has no meshes.
+  // Assimp must not add octahedra for nodes if a file has no meshes.
   library_.setImportPropertyInteger(wishes.get(), AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
   return {library_.importFileExWithProperties(
               scene_.file.c_str(), aiProcess_ValidateDataStructure | aiProcess_TransformUVCoords,
@@ -122,7 +122,7 @@ AssimpReader::File AssimpReader::import(aiFileIO* files) const {
           library_.releaseImport};
 }
 
-/// Of a file inside another (Inline) only the shapes count.
+/// The rewritten X3D. Of a file inside another (Inline) only the shapes count.
 std::string AssimpReader::rewrittenX3d(const std::string& path) {
   if (lowerExtension(path) != ".x3d") return readWholeFile(path);
   pugi::xml_document document = checkXml(path);
@@ -134,7 +134,7 @@ std::string AssimpReader::rewrittenX3d(const std::string& path) {
   return out.str();
 }
 
-/// Whether Assimp made the name up.
+/// Whether Assimp invented the name.
 bool isMadeUp(std::string_view name) {
   return name.empty() || name[0] == '<' || name.starts_with("$ColladaAutoName$");
 }
@@ -145,8 +145,8 @@ std::string colladaId(const aiNode& node) {
   return known ? id.C_Str() : "";
 }
 
-/// Assimp calls what an IFC file has in several places, such as a window, as the kind of reference:
-/// there the node above has the name.
+/// The name of an object. If an IFC file has an object in several places, such as a window, Assimp
+/// names it after the kind of reference; then the node above has the name.
 std::string AssimpReader::objectName(const aiNode& node, const aiMesh& mesh) const {
   constexpr std::string_view kReference = "IfcMappedItem";
   const aiNode* named = &node;
@@ -161,7 +161,7 @@ std::string AssimpReader::objectName(const aiNode& node, const aiMesh& mesh) con
   return std::filesystem::path(scene_.file).stem().string();
 }
 
-/// FBX says how many centimetres its unit has; Collada's is in its root node.
+/// The unit of a file in metres. FBX gives it in centimetres; Collada's is in its root node.
 double AssimpReader::metresPerUnit(const aiScene& file) {
   double centimetres = 0;
   float single = 0;
@@ -171,7 +171,8 @@ double AssimpReader::metresPerUnit(const aiScene& file) {
   return 1;
 }
 
-/// All nodes, each before its children. (No recursion: a file may have chains of any length.)
+/// Adds all nodes, each before its children. (There is no recursion, since chains may have any
+/// length.)
 void AssimpReader::addNodes(const aiScene& file) {
   for (unsigned c = 0; c < file.mNumCameras; ++c) {
     camera_of_.emplace(file.mCameras[c]->mName.C_Str(), file.mCameras[c]);
@@ -248,7 +249,7 @@ void AssimpReader::addMesh(const aiMesh& mesh, const aiNode& node, const aiMatri
   }
 }
 
-/// Assimp's angle is horizontal, whole, whatever the file had.
+/// Adds the cameras of a node. Assimp's angle is the full horizontal one for all formats.
 void AssimpReader::addCameras(const aiNode& node, const aiMatrix4x4& place) {
   const auto vectorOf = [](const aiVector3D& v) {
     return Vec3(double(v.x), double(v.y), double(v.z));
@@ -270,7 +271,7 @@ void AssimpReader::addCameras(const aiNode& node, const aiMatrix4x4& place) {
   const auto [first, last] = camera_of_.equal_range(node.mName.C_Str());
   for (auto it = first; it != last; ++it) {
     const aiCamera& given = *it->second;
-    // Assimp loses where they look at.
+    // Assimp loses their targets.
     if (lowerExtension(scene_.file) == ".3ds") {
       notes_.add("cameras of 3DS files are not used", given.mName.C_Str(), Severity::warning);
       continue;
@@ -278,7 +279,7 @@ void AssimpReader::addCameras(const aiNode& node, const aiMatrix4x4& place) {
     Camera camera;
     camera.aspect = std::max(0.0, double(given.mAspect));
     const double width = std::tan(0.5 * double(given.mHorizontalFOV));
-    // Of a picture of which the file does not say how high it is: 4 : 3.
+    // If the file does not give the height of the picture, we take 4 : 3.
     camera.vertical_fov = 2 * std::atan(width / (camera.aspect > 0 ? camera.aspect : 4.0 / 3));
     add(std::move(camera), given);
   }
@@ -303,8 +304,8 @@ void AssimpReader::addCamera(Camera camera, const Vec3& forward) {
 
 namespace {
 
-/// Assimp reads what is left of a 3DS file as if it were whole: its first chunk says how long it
-/// is.
+/// Refuses a truncated 3DS file, which Assimp reads as if it were complete. The first chunk has the
+/// length.
 void requireWhole3ds(const std::string& path) {
   const std::string content = readWholeFile(path);
   MeshCursor cursor(path, content);

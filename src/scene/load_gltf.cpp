@@ -139,7 +139,7 @@ Index Reader::materialOf(const tinygltf::Primitive& primitive, const std::string
   return materials_.none;
 }
 
-/// Appends the vertices; returns the scene's number of each.
+/// Appends the vertices; returns their numbers in the scene.
 std::vector<Index> Reader::readPositions(const tinygltf::Primitive& primitive,
                                          const std::string& what, const Transform& transform) {
   std::vector<Index> vertex_of;
@@ -157,7 +157,8 @@ std::vector<Index> Reader::readPositions(const tinygltf::Primitive& primitive,
   return vertex_of;
 }
 
-/// One per vertex, transformed as the material asks; empty where there are none or none is needed.
+/// Texture coordinates for each vertex, transformed for the material; empty if there are none or if
+/// they are not needed.
 std::vector<Vec2> Reader::readTexcoords(const tinygltf::Primitive& primitive, Index material,
                                         std::size_t vertices, const std::string& what) const {
   if (!isTextured(scene_.materials[material])) return {};
@@ -232,7 +233,7 @@ void Reader::noteUnused() {
   }
 }
 
-/// Whether materials or nodes that have it are named beside it.
+/// Whether the note on an extension names the materials or nodes that have it.
 bool Reader::isNoted(const std::string& extension) const {
   for (std::size_t k = 0; k < visited_.size(); ++k) {
     if (visited_[k] && model_.nodes[k].extensions.contains(extension)) return true;

@@ -1,5 +1,5 @@
-// Gmsh meshes (Geuzaine & Remacle, "Gmsh Reference Manual", section "MSH file format"):
-// versions 2.2 and 4.1, ASCII and binary. Faces are surfaces by their physical groups.
+// Reads Gmsh meshes (Geuzaine & Remacle, "Gmsh Reference Manual", section "MSH file format"):
+// versions 2.2 and 4.1, ASCII and binary. Surfaces are the physical groups of faces.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ using enum NumberType;
 constexpr const char* kSeveralGroups =
     "in several physical groups, they count to the first: faces also in";
 
-/// By Gmsh's number of the type; nothing for what it does not name or we do not know.
+/// The shape of Gmsh's element type; empty for types that we do not know.
 std::optional<ElementShape> gmshShape(long long type) {
   static const std::map<long long, ElementShape> kShapes = {
       {1, {1, 2, 2}},   {2, {2, 3, 3}},   {3, {2, 4, 4}},   {4, {3, 4, 4}},    {5, {3, 8, 8}},
@@ -86,8 +86,8 @@ class GmshReader {
   FeatureNotes notes_;
   int version_ = 0;
   NodeNumbers nodes_;
-  std::vector<Index> corners_;                               ///< of the element at hand
-  using Tag = std::pair<int, long long>;                     ///< of a dimension: 2 or 3
+  std::vector<Index> corners_;                               ///< of the present element
+  using Tag = std::pair<int, long long>;                     ///< with the dimension: 2 or 3
   std::map<Tag, std::string> physical_;                      ///< names of groups
   std::map<Tag, std::vector<long long>> tags_;               ///< groups of an entity (4.1)
   std::set<std::pair<long long, std::vector<Index>>> seen_;  ///< faces of an entity (2.2)
@@ -147,7 +147,7 @@ void GmshReader::section() {
   expectEnd(name);
 }
 
-/// Periodic nodes, data on nodes and the like are nothing to us.
+/// Skips a section that we do not use: periodic nodes, data on nodes and the like.
 void GmshReader::passSection(const std::string& name) {
   if (!cursor_.passBehind("$End" + name)) {
     cursor_.fail(fmt::format("section ${} has no end; the file is cut off, save it again", name));
@@ -251,7 +251,7 @@ std::string GmshReader::physicalName(int dimension, long long tag) const {
   return found == physical_.end() ? fmt::format("physical {}", tag) : found->second;
 }
 
-/// Version 2.2 writes a face once for each of its physical groups.
+/// Whether a face is new: version 2.2 writes a face once for each of its physical groups.
 bool GmshReader::isNewFace(const ElementShape& shape, long long entity) {
   if (shape.dimension != 2) return true;
   std::vector<Index> loop(corners_.begin(), corners_.begin() + shape.corners);
@@ -294,8 +294,9 @@ std::string GmshReader::volumeGroup(long long entity) const {
   return physicalName(3, std::abs(found->second.front()));
 }
 
-/// Each side of a surface counts to the first of its groups; one with a negative tag takes the
-/// surface turned over. (Version 2.2 writes the faces of such groups turned already, 4.1 does not.)
+/// The sides of an entity with their groups. Each side of a surface belongs to its first group; a
+/// group with a negative tag has the surface turned over. (Version 2.2 writes the faces of such
+/// groups already turned, 4.1 does not.)
 std::vector<GmshReader::Side> GmshReader::sidesOf(long long entity) {
   const auto found = tags_.find({2, entity});
   if (found == tags_.end() || found->second.empty()) {

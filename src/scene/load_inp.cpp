@@ -1,4 +1,4 @@
-// CalculiX and Abaqus: shells are faces, or the skin of volumes; element sets are surfaces.
+// Reads CalculiX and Abaqus: faces are shells, or the skin of volumes; element sets are surfaces.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace radiosity {
 
 namespace {
 
-/// Numbers that sets name may be those of many elements each; nobody means more in all.
+/// The most elements in all sets together. A number in a set may stand for many elements.
 constexpr std::size_t kMostVisits = std::size_t(1) << 28U;
 
 [[noreturn]] void fail(const std::string& where, const std::string& what) {
@@ -35,13 +35,13 @@ void requireElements(const std::string& path, const InpScan& scan) {
                                        : "elements of type " + joinNames(types) + " alone"));
 }
 
-/// What the bodies of a file are put into.
+/// The scene to which the bodies of a file are added.
 struct InpScene {
   const std::string& path;
   GroupedFaces faces;
   FeatureNotes notes;
-  std::size_t visits = 0;    ///< of elements, by numbers of sets
-  std::size_t elements = 0;  ///< of the bodies that are in it
+  std::size_t visits = 0;    ///< elements visited for numbers in sets
+  std::size_t elements = 0;  ///< of the bodies added so far
 };
 
 /// Adds the elements of one body.
@@ -113,7 +113,7 @@ class BodyReader {
   }
   long long number(Index e) const { return body_.elements[e].number; }
 
-  /// Elements of these numbers, each once, in any order.
+  /// The elements with these numbers, each once, in any order.
   std::vector<Index> elementsOf(const std::vector<InpRange>& numbers) {
     std::vector<Index> found;
     for (const InpRange& range : numbers) {
@@ -133,9 +133,9 @@ class BodyReader {
     return found;
   }
 
-  /// An element of several sets counts to the one that says most of it. Meshers put all elements
-  /// in a set, and name those of a line *ELEMENT by themselves, where a person writes *ELSET: such
-  /// a set goes first, unless it has all elements; then the smaller one; then the one that came
+  /// The rank of a set: an element of several sets belongs to the most specific. Meshers put all
+  /// elements into a set and name the set of a line *ELEMENT themselves, while people write *ELSET.
+  /// So a set of *ELSET goes first, unless it has all elements; then the smaller set; then the
   /// first.
   std::tuple<int, std::size_t> rankOf(const InpSet& set, std::size_t size) const {
     const bool is_all = size == body_.elements.size();
@@ -169,7 +169,7 @@ class BodyReader {
     }
   }
 
-  /// Sides of volumes that *SURFACE names; a side of several counts to the first.
+  /// Names the sides of volumes in *SURFACE; a side in several belongs to the first.
   void nameSides() {
     std::map<std::pair<Index, int>, const std::string*> named;
     for (const InpSurface& surface : body_.surfaces) {
@@ -191,7 +191,7 @@ class BodyReader {
   const InpBody& body_;
   InpScene& scene_;
   NodeNumbers nodes_;
-  std::vector<Index> order_;   ///< elements by their numbers
+  std::vector<Index> order_;   ///< elements, sorted by their numbers
   std::vector<Index> set_of_;  ///< by element; kNone: in no set
 };
 
@@ -199,7 +199,7 @@ class BodyReader {
 
 Scene loadInp(const std::string& path, const SceneOptions& options) {
   InpScan scan = scanInp(path, InpElements::faces);
-  // Where there are faces, they are what a mesher made of the sides of volumes.
+  // If there are faces, a mesher made them from the sides of volumes.
   if (!scan.hasElements() && scan.volumes > 0) scan = scanInp(path, InpElements::volumes);
   requireElements(path, scan);
   InpScene scene{path, GroupedFaces(path, options), {}, 0, 0};

@@ -40,8 +40,8 @@ void addFaces(const ObjScan& scan, std::span<const Index> material_of, Index no_
   }
 }
 
-/// Objects with a face that names no material at all share one default material. Returns it, or
-/// kNone where there are none.
+/// Adds the default material for faces without any material; all objects share it. kNone if there
+/// are no such faces.
 Index addNoMaterial(const ObjScan& scan, const SceneOptions& options, Scene& scene) {
   std::vector<bool> bare(scan.objects.size(), false);
   for (const ObjFace& face : scan.faces) {

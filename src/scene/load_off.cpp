@@ -1,5 +1,5 @@
-// OFF, the object file format of Geomview: vertices and faces in text, with numbers of the vertices
-// from 0 (Phillips, Levy & Munzner, "Geomview Manual", section "OFF Files").
+// Reads OFF, the object file format of Geomview: vertices and faces in text, with numbers of
+// vertices from 0 (Phillips, Levy & Munzner, "Geomview Manual", section "OFF Files").
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -40,7 +40,7 @@ class OffReader {
   }
 
  private:
-  /// Words of the next line that has some; # comments out the rest of a line.
+  /// Reads the words of the next line with words; # comments out the rest of a line.
   void nextWords() {
     do {
       if (cursor_.atEnd()) cursor_.fail("the file ends too early; export it again");
@@ -59,7 +59,7 @@ class OffReader {
     return *value;
   }
 
-  /// Each takes `least` characters or more.
+  /// Reads a count. It is refused if the file is too short for items of `least` characters each.
   std::size_t count(std::size_t k, const char* what, std::size_t least) const {
     const auto found = std::size_t(integer(k, what));
     cursor_.require(found, what, NumberType::u8, least / 2);
@@ -83,7 +83,7 @@ class OffReader {
     faces_.addVertex(place);
   }
 
-  /// What follows the corners is a colour, which may mean anything.
+  /// Reads a face. The colour after the corners is ignored, since it may mean anything.
   void face(std::size_t number) {
     nextWords();
     const auto corners = std::size_t(integer(0, "number of corners"));
@@ -106,7 +106,7 @@ class OffReader {
   MeshCursor cursor_;
   GroupedFaces faces_;
   std::string stem_;
-  std::vector<std::string_view> words_;  ///< of the line at hand
+  std::vector<std::string_view> words_;  ///< of the present line
   std::vector<Index> corners_;
 };
 

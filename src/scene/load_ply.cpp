@@ -1,5 +1,5 @@
-// PLY (Turk, "The PLY Polygon File Format", 1994): ASCII, binary of both byte orders. Faces are one
-// surface, or one for each value of a property such as `group` or `material_index`.
+// Reads PLY (Turk, "The PLY Polygon File Format", 1994): ASCII, and binary in both byte orders.
+// Faces are one surface, or one for each value of a property such as `group` or `material_index`.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -86,7 +86,7 @@ class PlyReader {
   std::string stem_;
   std::vector<PlyElement> elements_;
   std::optional<Encoding> encoding_;
-  std::vector<Index> corners_;  ///< of the face at hand
+  std::vector<Index> corners_;  ///< of the present face
 };
 
 void PlyReader::header() {
@@ -150,7 +150,7 @@ void PlyReader::property(const std::vector<std::string_view>& words) {
   elements_.back().properties.push_back(std::move(property));
 }
 
-/// Vertex colours may be light, paint or labels, linear or not: nobody can tell.
+/// Notes that vertex colours are not used: they may be light, paint or labels, linear or not.
 void PlyReader::noteColours() {
   for (const PlyElement& element : elements_) {
     for (const Property& property : element.properties) {
@@ -165,7 +165,7 @@ void PlyReader::noteColours() {
   }
 }
 
-/// So that a forged count makes no long loop.
+/// Refuses a count that the file is too short for, so that a forged count makes no long loop.
 void PlyReader::requireRoom(const PlyElement& element) const {
   std::size_t bytes = 0;
   for (const Property& property : element.properties)

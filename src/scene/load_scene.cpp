@@ -21,7 +21,7 @@ namespace {
 struct Format {
   const char* extension;
   Scene (*load)(const std::string&, const SceneOptions&);
-  Up up = Up::y;  ///< by custom
+  Up up = Up::y;  ///< the usual one of the format
 };
 
 constexpr std::array kFormats = {
@@ -74,7 +74,7 @@ void noteTextures(Scene& scene) {
                                    scene.textures.size(), scene.textures.size() == 1 ? "" : "s")});
 }
 
-/// Beyond it squares and cubes of lengths overflow, and nobody meant it.
+/// The largest coordinate: beyond, squares and cubes of lengths overflow.
 constexpr double kFarthest = 1e30;
 
 void requireExtent(const Scene& scene) {

@@ -7,7 +7,7 @@
 
 namespace radiosity {
 
-/// Length of one mm, cm, m, in or ft in metres. InputError for any other unit.
+/// The length of one mm, cm, m, in or ft in metres. Errors: InputError for any other unit.
 double metresPer(const std::string& unit);
 
 }  // namespace radiosity

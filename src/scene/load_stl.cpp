@@ -1,5 +1,5 @@
-// STL (3D Systems, "StereoLithography Interface Specification", 1989): triangles without materials,
-// in text with named solids or in binary records of 50 bytes.
+// Reads STL (3D Systems, "StereoLithography Interface Specification", 1989): triangles without
+// materials, in text with named solids or in binary records of 50 bytes.
 #include <fmt/format.h>
 
 #include <array>
@@ -24,8 +24,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "records are read as they stand");
 
-constexpr std::size_t kStlHeader = 84;  // 80 bytes of anything, then how many triangles
-constexpr std::size_t kRecord = 50;     // normal, three corners, two bytes that nobody defined
+constexpr std::size_t kStlHeader = 84;  // 80 arbitrary bytes, then the number of triangles
+constexpr std::size_t kRecord = 50;     // normal, three corners, two undefined bytes
 
 std::size_t claimedTriangles(std::string_view content) {
   std::uint32_t count = 0;
@@ -33,8 +33,8 @@ std::size_t claimedTriangles(std::string_view content) {
   return count;
 }
 
-/// Exporters begin binary files with "solid", too: what has exactly the size that a binary header
-/// claims is binary, and so is what holds a zero byte.
+/// Whether a file is binary: it has exactly the size in its binary header, or it has a zero byte.
+/// Exporters begin binary files with "solid", too.
 bool isBinary(std::string_view content) {
   if (content.size() >= kStlHeader &&
       content.size() == kStlHeader + kRecord * claimedTriangles(content)) {
@@ -44,7 +44,7 @@ bool isBinary(std::string_view content) {
          lowerCase(trimmed(content.substr(0, 200)).substr(0, 5)) != "solid";
 }
 
-/// Triangles into a scene; corners at equal places become one vertex.
+/// Adds triangles to a scene; corners at equal places become one vertex.
 class StlBuilder {
  public:
   explicit StlBuilder(GroupedFaces& faces) : faces_(faces) {}
@@ -76,7 +76,7 @@ class StlBuilder {
     }
   };
   Index vertexAt(const Vec3& p) {
-    const Vec3 place = p + Vec3(0.0);  // -0 and 0 are one place
+    const Vec3 place = p + Vec3(0.0);  // turns -0 into 0
     const auto [found, is_new] = vertex_of_.try_emplace(place, kNone);
     if (is_new) found->second = faces_.addVertex(place);
     return found->second;
@@ -138,7 +138,7 @@ class AsciiReader {
     in_facet_ = true;
     facet_line_ = line_;
     count_ = 0;
-    normal_ = Vec3(0.0);  // some exporters write "nan" for a facet without area: it decides nothing
+    normal_ = Vec3(0.0);  // exporters may write "nan" for a facet without area: not used then
     for (std::size_t k = 2; k < 5 && words.size() == 5; ++k) {
       normal_[int(k - 2)] = parseNumber(words[k]).value_or(0.0);
     }

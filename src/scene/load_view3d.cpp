@@ -1,4 +1,4 @@
-// View3D input: surfaces with emissivities, subsurfaces that are cut out of their bases.
+// Reads View3D input: surfaces with emissivities, and subsurfaces that are cut out of their bases.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,11 +19,11 @@ namespace {
 using Kind = View3dSurface::Kind;
 using Loop = std::vector<Vec3>;
 
-/// How far a subsurface may lie off its base's plane, or its corners beyond an edge, over the
-/// base's size: what View3D itself lets pass (coordinates of five digits).
+/// The largest distance of a subsurface from its base's plane, or of its corners beyond an edge,
+/// over the base's size: View3D itself accepts as much (coordinates of five digits).
 constexpr double kOffPlane = 1e-5;
-/// Edges that touch make no splinters: what is closer than that, over the base's size, is on the
-/// line of the cut.
+/// Points closer to a cut than this, over the base's size, count as on it, so that touching edges
+/// make no splinters.
 constexpr double kOnEdge = 1e-7;
 
 class View3dReader {
@@ -92,7 +92,7 @@ class View3dReader {
     return size;
   }
 
-  /// The unit normal. InputError where the surface has no area or is not convex.
+  /// The unit normal. Errors: InputError if the surface has no area or is not convex.
   Vec3 normalOf(const View3dSurface& surface, const Loop& loop) const {
     const Vec3 area = vectorArea(loop.size(), [&](std::size_t k) { return loop[k]; });
     const double size = sizeOf(loop);
@@ -111,7 +111,7 @@ class View3dReader {
     return normal;
   }
 
-  /// What View3D asks of a subsurface.
+  /// Checks View3D's conditions for a subsurface.
   void checkWithin(const View3dSurface& sub, const Loop& hole, const Loop& base,
                    const Vec3& normal) const {
     const bool turned = sub.kind == Kind::mask || sub.kind == Kind::null;
@@ -169,7 +169,8 @@ class View3dReader {
     }
   }
 
-  /// Convex pieces less a convex hole: along each of its edges what lies beyond is cut off.
+  /// Subtracts a convex hole from convex pieces: along each edge of the hole, the part beyond it is
+  /// cut off.
   static std::vector<Loop> without(const std::vector<Loop>& pieces, const Loop& hole,
                                    const Vec3& normal, double tolerance) {
     std::vector<Loop> result;
@@ -199,7 +200,7 @@ class View3dReader {
     return result;
   }
 
-  /// The part of a loop where side(p) >= 0; a corner on the line stands in it once.
+  /// The part of a loop where side(p) >= 0; it has a corner on the line only once.
   template <class Side>
   static Loop clipped(const Loop& loop, const Side& side, double tolerance) {
     Loop part;

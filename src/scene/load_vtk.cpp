@@ -1,5 +1,5 @@
-// Legacy VTK files (Kitware, "VTK File Formats"): POLYDATA and UNSTRUCTURED_GRID, text or binary
-// (big-endian), versions 1 to 5.1.
+// Reads legacy VTK files (Kitware, "VTK File Formats"): POLYDATA and UNSTRUCTURED_GRID, text or
+// binary (big-endian), versions 1 to 5.1.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ std::optional<NumberType> vtkTypeNamed(std::string_view name) {
   return std::nullopt;
 }
 
-/// Names and words of text files have %20 for a blank and the like.
+/// Decodes a name or word of a text file, which has %20 for a blank and the like.
 std::string percentDecoded(std::string_view word) {
   const auto digit = [](char c) {
     return std::string_view("0123456789abcdef").find(lowerCase({&c, 1})[0]);
@@ -99,12 +99,12 @@ class VtkReader {
   MeshCursor cursor_;
   GroupedFaces faces_;
   VtkCells cells_;
-  std::optional<VtkGroupRank> group_rank_;  ///< of the array that cells_.groups are from
+  std::optional<VtkGroupRank> group_rank_;  ///< of the array that gave cells_.groups
   bool is_grid_ = false;
   bool has_types_ = false;
   Lists kinds_[4];  ///< POLYDATA: vertices, lines, polygons, strips; a grid: its cells first
   Data data_ = Data::field;
-  std::size_t tuples_ = 0;  ///< of the data at hand
+  std::size_t tuples_ = 0;  ///< of the present data
 };
 
 void VtkReader::header() {
@@ -135,7 +135,7 @@ NumberType VtkReader::type(std::string_view name) const {
   return *found;
 }
 
-/// A number of the text between data: a count that is checked where its numbers are read.
+/// A number in the text between data: a count, which is checked when its numbers are read.
 std::size_t VtkReader::small(const char* what) { return cursor_.textNumber(what); }
 
 void VtkReader::statement() {
@@ -201,7 +201,7 @@ VtkReader::Lists VtkReader::lists() {
   return lists;
 }
 
-/// Each cell: how many points, and which.
+/// Reads, for each cell, the number of its points and the points.
 void VtkReader::listsByCount(std::size_t count, std::size_t size, Lists& lists) {
   const std::vector<long long> all = numbers(i32, size, "point");
   std::size_t at = 0;
@@ -218,7 +218,7 @@ void VtkReader::listsByCount(std::size_t count, std::size_t size, Lists& lists) 
   }
 }
 
-/// Version 5.1: where each cell's points begin, and the end; then all points.
+/// Version 5.1: reads the start of each cell's points, and the end; then all points.
 void VtkReader::listsByOffsets(std::size_t offsets, std::size_t size, Lists& lists) {
   cursor_.word();
   const NumberType offset_type = type(cursor_.word());
@@ -233,7 +233,7 @@ void VtkReader::listsByOffsets(std::size_t offsets, std::size_t size, Lists& lis
   lists.connectivity = numbers(kind, size, "point");
 }
 
-/// INFORMATION about arrays, up to a blank line.
+/// Skips INFORMATION about arrays, up to a blank line.
 void VtkReader::passMetadata() {
   cursor_.restOfLine();
   while (!cursor_.restOfLine().empty()) {
@@ -304,7 +304,7 @@ bool VtkReader::mayBeGroups(const std::string& name, std::size_t components,
   return data_ == Data::cell && components == 1 && tuples == tuples_ && groupArrayRank(name);
 }
 
-/// Keeps what ranks first among what is offered.
+/// Keeps the groups with the best rank of those offered.
 void VtkReader::offerGroups(const VtkGroupRank& rank, std::vector<std::string> groups) {
   if (group_rank_ && *group_rank_ <= rank) return;
   group_rank_ = rank;
@@ -326,7 +326,7 @@ void VtkReader::array(const std::string& name, std::string_view kind, std::size_
   offerGroups(vtkGroupRank(name, false, allDiffer(values)), std::move(groups));
 }
 
-/// One a line.
+/// Reads words, one a line.
 void VtkReader::words(const std::string& name, std::size_t components, std::size_t tuples) {
   if (cursor_.encoding() != Encoding::text) {
     cursor_.fail(

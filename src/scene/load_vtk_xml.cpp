@@ -1,4 +1,4 @@
-// XML VTK files (Kitware, "VTK File Formats"): .vtp PolyData and .vtu UnstructuredGrid.
+// Reads XML VTK files (Kitware, "VTK File Formats"): .vtp PolyData and .vtu UnstructuredGrid.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -66,11 +66,11 @@ class VtkXmlReader {
   std::string content_;
   VtkFile file_;
   pugi::xml_document document_;
-  std::string group_array_;  ///< that names cells; empty: none does
+  std::string group_array_;  ///< the array with groups of cells; empty: there is none
   GroupedFaces faces_;
 };
 
-/// Raw appended data is no XML: it is taken out before the rest is parsed.
+/// Parses the file. Raw appended data is not XML, so it is removed first.
 void VtkXmlReader::parse() {
   const std::size_t begin = content_.find("<AppendedData");
   std::string text = content_;
@@ -154,9 +154,10 @@ bool VtkXmlReader::mayBeGroups(const pugi::xml_node& node) const {
          node.attribute("NumberOfComponents").as_llong(1) <= 1;
 }
 
-/// The array that names cells, one for all pieces: a piece of few cells would not tell.
+/// The array with groups of cells, the same for all pieces: a piece with few cells is not enough to
+/// decide.
 std::string VtkXmlReader::groupArray(const pugi::xml_node& data) const {
-  std::map<std::string, std::vector<long long>> values;  // of all cells, none of words
+  std::map<std::string, std::vector<long long>> values;  // of all cells; empty for words
   std::vector<VtkArray> arrays;
   for (const pugi::xml_node piece : data.children("Piece")) {
     for (const pugi::xml_node node : piece.child("CellData").children()) {
@@ -207,7 +208,7 @@ VtkCells VtkXmlReader::polygons(const pugi::xml_node& piece) {
                                                           {"Lines", kVtkPolyLine},
                                                           {"Polys", kVtkPolygon},
                                                           {"Strips", kVtkStrip}};
-  // Data of cells stand in this order.
+  // Data of cells are in this order.
   VtkCells cells;
   points(piece, cells);
   for (const auto& [name, type] : kKinds) {

@@ -1,4 +1,4 @@
-// Scenes made in memory: made from triangles, and checked.
+// Makes scenes in memory from triangles, and checks them.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -68,7 +68,7 @@ std::string_view MeshCursor::restOfLine() {
 
 std::string_view MeshCursor::nextLine() {
   if (atEnd()) return {};
-  // The line end stays: line() is that of what was read last.
+  // We do not consume the line end, so that line() is that of the last item read.
   const std::size_t end = std::min(all_.find('\n', at_), all_.size());
   const std::string_view found = trimmed(all_.substr(at_, end - at_));
   at_ = end;
@@ -170,7 +170,7 @@ Vec3 MeshCursor::place(NumberType type) {
 
 void MeshCursor::require(std::size_t count, const char* what, NumberType of,
                          std::size_t numbers) const {
-  // A number in text is a digit and a blank or more, but for the last.
+  // In text a number has at least a digit and a blank, except the last.
   const std::size_t left = all_.size() - at_;
   const std::size_t room = encoding_ == Encoding::text ? (left + 1) / 2 : left / sizeOf(of);
   if (numbers == 0 || count <= room / numbers) return;

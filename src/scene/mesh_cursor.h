@@ -1,4 +1,4 @@
-// Reads mesh files from begin to end: words and numbers of text, or the same numbers from bytes.
+// Reads mesh files from beginning to end: words and numbers in text, or binary numbers.
 #pragma once
 
 #include <cstddef>
@@ -9,12 +9,12 @@
 
 namespace radiosity {
 
-/// How numbers stand in a file.
+/// The encoding of numbers in a file.
 enum class Encoding { text, little, big };
 
 enum class NumberType { i8, u8, i16, u16, i32, u32, i64, u64, f32, f64 };
 
-/// Bytes of a number in a binary file.
+/// The bytes of a number in a binary file.
 std::size_t sizeOf(NumberType type);
 
 /// Whether it is a floating-point number.
@@ -22,7 +22,7 @@ inline bool isFraction(NumberType type) {
   return type == NumberType::f32 || type == NumberType::f64;
 }
 
-/// A place in a mesh file. All errors are InputErrors "FILE:LINE: what; cure", and behind the first
+/// A place in a mesh file. All errors are InputErrors "FILE:LINE: what; cure", or after the first
 /// binary number "FILE: byte N: what; cure".
 class MeshCursor {
  public:
@@ -31,43 +31,43 @@ class MeshCursor {
 
   [[noreturn]] void fail(const std::string& what) const;
 
-  /// Whether nothing but blanks is left.
+  /// Whether only blanks are left.
   bool atEnd();
-  /// What stands between blanks, across line ends. Fails at the end of the file.
+  /// The next word between blanks, across line ends. Fails at the end of the file.
   std::string_view word();
-  /// The rest of this line, without blanks at its ends; the next read begins behind it.
+  /// The rest of this line, without blanks at its ends; the next read begins after it.
   std::string_view restOfLine();
   /// The next line that is not blank, without blanks at its ends; empty at the end of the file.
   std::string_view nextLine();
 
   void setEncoding(Encoding encoding) { encoding_ = encoding; }
   Encoding encoding() const { return encoding_; }
-  /// The next number; of text a word that is one. `what` names it in the error. A number that is
-  /// not finite is an error.
+  /// The next number; in text, a word that is a number. `what` names it in the error. A number that
+  /// is not finite is an error.
   double number(NumberType type, const char* what);
-  /// The same for whole numbers, of an integer type.
+  /// The same for integers, of an integer type.
   long long integer(NumberType type, const char* what);
-  /// How many `what` follow, each of `numbers` numbers: from 0 to what the rest of the file can
-  /// hold, so that a forged count reserves no memory.
+  /// The number of `what` that follow, each of `numbers` numbers. It must fit into the rest of the
+  /// file, so that a forged count reserves no memory.
   std::size_t count(NumberType type, const char* what, NumberType of, std::size_t numbers = 1);
-  /// The same where the number is a line of text in a binary file, too, and numbers follow it.
+  /// The same if the number is a line of text also in a binary file, and numbers follow it.
   std::size_t textCount(const char* what, NumberType of, std::size_t numbers = 1);
-  /// A number of 0 or more that is text in a binary file, too.
+  /// A number of 0 or more that is text also in a binary file.
   std::size_t textNumber(const char* what);
   /// Whether these characters come next.
   bool startsWith(std::string_view text) const { return all_.substr(at_).starts_with(text); }
   /// Three coordinates.
   Vec3 place(NumberType type);
-  /// Fails unless the rest of the file can hold so many numbers.
+  /// Fails unless the rest of the file can hold `count` items of `numbers` numbers.
   void require(std::size_t count, const char* what, NumberType of, std::size_t numbers = 1) const;
-  /// Passes over numbers, whatever they are.
+  /// Skips numbers of any value.
   void skip(NumberType type, std::size_t count);
-  /// Moves behind the next line that begins with `text`. False, and stays, where there is none.
+  /// Moves after the next line that begins with `text`. False, without moving, if there is none.
   bool passBehind(std::string_view text);
-  /// Raw bytes. Fails where there are fewer.
+  /// Raw bytes. Fails if there are fewer.
   std::string_view bytes(std::size_t count);
 
-  /// Of the word or line read last, counted from 1.
+  /// The line of the word or line read last, counted from 1.
   std::size_t line() const { return line_; }
 
  private:

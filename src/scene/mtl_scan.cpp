@@ -13,8 +13,8 @@ namespace radiosity {
 
 namespace {
 
-/// Statements with numbers behind them that mean nothing to a diffuse material, or only where
-/// they differ from a default (see MtlScanner::noteIgnored).
+/// Statements with numbers that do not matter for a diffuse material, or only if they differ from a
+/// default (see MtlScanner::noteIgnored).
 constexpr std::array<std::string_view, 17> kNumeric = {
     "Ka", "Ks", "Tf", "Ns", "Ni",  "d",     "Tr",     "illum", "sharpness",
     "Pr", "Pm", "Ps", "Pc", "Pcr", "aniso", "anisor", "Km"};
@@ -25,7 +25,7 @@ bool isMap(std::string_view keyword) {
          std::find(kMaps.begin(), kMaps.end(), keyword) != kMaps.end();
 }
 
-/// The words behind the keyword, up to a comment, less the option of `d -halo 0.5`.
+/// The words after the keyword, up to a comment, without the option of `d -halo 0.5`.
 std::vector<std::string_view> argumentsOf(const std::vector<std::string_view>& words) {
   const auto end = std::find_if(words.begin() + 1, words.end(),
                                 [](std::string_view word) { return word[0] == '#'; });
@@ -34,7 +34,7 @@ std::vector<std::string_view> argumentsOf(const std::vector<std::string_view>& w
   return arguments;
 }
 
-/// Takes the next word off a text.
+/// Removes the next word from a text and returns it.
 std::string_view takeWord(std::string_view& text) {
   text = trimmed(text);
   const std::size_t end = std::min(text.find_first_of(kBlanks), text.size());
@@ -43,7 +43,7 @@ std::string_view takeWord(std::string_view& text) {
   return word;
 }
 
-/// Takes up to three numbers off a text; whether one of them is not `usual`.
+/// Removes up to three numbers from a text; true if one of them is not `usual`.
 bool takeNumbers(std::string_view& text, double usual) {
   bool differs = false;
   for (int k = 0; k < 3; ++k) {
@@ -56,7 +56,7 @@ bool takeNumbers(std::string_view& text, double usual) {
   return differs;
 }
 
-/// Options and the name of a file, which may have blanks in it, or quotes around it.
+/// Parses options and the name of a file, which may contain blanks or have quotes around it.
 MtlMap mapOf(std::string_view text) {
   constexpr std::array<std::string_view, 11> kOneWord = {
       "-blendu", "-blendv", "-boost", "-texres", "-bm",        "-imfchan",
@@ -76,7 +76,7 @@ MtlMap mapOf(std::string_view text) {
     } else if (std::find(kOneWord.begin(), kOneWord.end(), option) != kOneWord.end()) {
       takeWord(rest);
     } else {
-      break;  // a name that begins so
+      break;  // a name that begins with this character
     }
     text = rest;
   }
@@ -141,7 +141,7 @@ void MtlScanner::statement(std::size_t line, std::string_view text) {
   } else if (isMap(keyword)) {
     ignored_.add(fmt::format("texture {} is not used, material", keyword), material.name);
   } else if (std::find(kNumeric.begin(), kNumeric.end(), keyword) != kNumeric.end()) {
-    // Exporters write -nan(ind) for what they do not use; nor is it used here.
+    // Exporters write -nan(ind) for values that they do not use; we do not use them either.
     const auto arguments = argumentsOf(words);
     const auto bad = std::ranges::find_if_not(
         arguments, [](std::string_view word) { return parseNumber(word).has_value(); });

@@ -12,9 +12,9 @@ namespace radiosity {
 
 /// A map_Kd or map_Ke.
 struct MtlMap {
-  std::string file;    ///< as written, blanks within it included; may be empty
+  std::string file;    ///< as written, including blanks; may be empty
   bool clamp = false;  ///< else it repeats
-  bool moved = false;  ///< -s, -o or -t is there and changes something
+  bool moved = false;  ///< -s, -o or -t has an effect
 };
 
 struct MtlMaterial {
@@ -26,8 +26,8 @@ struct MtlMaterial {
   std::optional<MtlMap> radiance_map;
 };
 
-/// The materials in file order. Features that a diffuse solver leaves out go to `ignored`, by
-/// material name. Kd, Ke and their maps are known in small letters, too.
+/// The materials in file order. Features that a diffuse solver does not use go to `ignored`, by
+/// material name. Kd, Ke and their maps may also be in small letters.
 /// Errors: InputError "FILE:LINE: what is wrong; cure".
 std::vector<MtlMaterial> scanMtl(const std::string& file, std::string_view text,
                                  FeatureNotes& ignored);

@@ -51,7 +51,7 @@ void ObjMaterialReader::readLibraries(const ObjScan& scan) {
   const fs::path folder = fs::path(scene_.file).parent_path();
   for (const auto& [line, text] : scan.libraries) {
     std::error_code error;
-    // The format separates several names by blanks; exporters write one name with blanks in it.
+    // In the format blanks separate several names, but exporters write one name with blanks in it.
     std::vector<std::string_view> names = {text};
     if (!fs::is_regular_file(folder / text, error)) names = splitWords(text);
     for (const std::string_view name : names) {

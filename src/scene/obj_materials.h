@@ -1,4 +1,4 @@
-// Materials of an OBJ: from its MTL files, or defaults where they are missing.
+// Reads the materials of an OBJ from its MTL files; missing ones get defaults.
 #pragma once
 
 #include <map>
@@ -8,9 +8,9 @@
 
 namespace radiosity {
 
-/// Reads the libraries `scan` names into scene.materials and scene.textures, adds a default
-/// material for every used name that none defines, and says so in the scene's notes. Returns the
-/// material of each entry of scan.materials.
+/// Reads the libraries in `scan` into scene.materials and scene.textures. Adds a default material
+/// for every used name that no library defines, with a note in the scene. Returns the material of
+/// each entry of scan.materials.
 std::vector<Index> readObjMaterials(const ObjScan& scan, const SceneOptions& options, Scene& scene);
 
 }  // namespace radiosity

@@ -17,7 +17,7 @@ namespace radiosity {
 
 namespace {
 
-/// Statements without a bearing on geometry or material: smoothing and display attributes.
+/// Statements that do not affect geometry or material: smoothing and display attributes.
 constexpr std::array<std::string_view, 14> kDisplayStatements = {
     "s",      "bevel",  "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj",
     "usemap", "maplib", "mg",       "t",        "vw",  "call",       "csh"};
@@ -32,12 +32,12 @@ bool contains(const Names& names, std::string_view word) {
   return std::find(names.begin(), names.end(), word) != names.end();
 }
 
-/// One of the three index lists a corner refers to.
+/// One of the three lists to which a corner refers.
 struct Referenced {
   const char* what;
   std::size_t count = 0;         ///< elements so far
   long long largest = 0;         ///< highest positive index used
-  std::size_t largest_line = 0;  ///< where
+  std::size_t largest_line = 0;  ///< its line
 };
 
 class ObjScanner {
@@ -110,7 +110,7 @@ void ObjScanner::statement(std::size_t line, std::string_view text) {
 }
 
 void ObjScanner::comment(std::string_view text) {
-  // Prose that happens to begin with "camera" is left alone.
+  // A comment that only happens to begin with "camera" is ignored.
   constexpr std::string_view kCamera = "camera";
   if (!text.starts_with(kCamera) || text.find('=') == std::string_view::npos) return;
   try {
@@ -137,7 +137,7 @@ void ObjScanner::numbers(Referenced& list, std::size_t least, std::size_t most,
                        words_[k + 1]));
     }
     if (!number) {
-      // Of slivers exporters write NaN. Normals are not used, a face without coordinates may be.
+      // Exporters write NaN for slivers. We do not use normals; faces may lack texture coordinates.
       ignored_.add(fmt::format("a {} that is no finite number is not used, in", list.what), name_,
                    Severity::warning);
     }
@@ -175,14 +175,14 @@ void ObjScanner::corner(std::string_view word) {
   const std::vector<std::string_view> parts = splitAt(word, '/');
   if (parts.size() > 3) fail(fmt::format("`{}` is not a corner v, v/vt or v/vt/vn", word));
   scan_.corners.push_back(index(parts[0], word, vertices_));
-  // `1/`, `1//` and `1/2/` leave out what a corner need not have.
+  // `1/`, `1//` and `1/2/` leave out optional parts of a corner.
   const bool textured = parts.size() > 1 && !parts[1].empty();
   scan_.corner_texcoord.push_back(textured ? index(parts[1], word, texcoords_) : kNone);
   if (parts.size() > 2 && !parts[2].empty()) index(parts[2], word, normals_);
 }
 
-/// An index that counts from 0; only finish() checks it against the end of the file. kNone of what
-/// is not there and need not be.
+/// An index from 0; only finish() checks it against the end of the file. kNone for an optional part
+/// that is missing.
 Index ObjScanner::index(std::string_view word, std::string_view corner, Referenced& list) {
   const std::optional<long long> value = parseInteger(word);
   if (!value) {
@@ -258,7 +258,8 @@ void ObjScanner::noteMissing(const Referenced& list, std::size_t line) {
                std::to_string(line), Severity::warning, 3);
 }
 
-/// Normals are not used, and a face without texture coordinates has the colour of its material.
+/// Checks all references. Normals are not used, and a face without texture coordinates has the
+/// colour of its material.
 ObjScan ObjScanner::finish() {
   const auto goesBeyond = [](const Referenced& list) {
     return list.largest > static_cast<long long>(list.count);
@@ -300,7 +301,7 @@ void forEachStatement(std::string_view text,
     begin = end + 1;
     ++line;
     if (joined.empty()) first_line = line;
-    // A comment that ends in a Windows path does not swallow the next line.
+    // A comment that ends in a Windows path must not swallow the next line.
     const bool goes_on = piece.ends_with('\\') && !(joined.empty() && piece.starts_with('#'));
     if (goes_on) piece.remove_suffix(1);
     joined += piece;

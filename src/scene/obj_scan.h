@@ -1,5 +1,5 @@
-// Reads an OBJ file token by token: what other readers guess in silence is an error with its line
-// here, and names, lines and cameras are kept.
+// Reads an OBJ file token by token. Errors that other readers ignore are reported with their line;
+// names, lines and cameras are kept.
 #pragma once
 
 #include <functional>
@@ -12,7 +12,7 @@
 
 namespace radiosity {
 
-/// The name of an object, and of a material, that has none.
+/// The name of an object or material without one.
 inline constexpr std::string_view kUnnamed = "unnamed";
 
 /// Calls visit(line number, text) for every statement of an OBJ or MTL file, comments included.
@@ -37,7 +37,7 @@ struct ObjScan {
   std::vector<std::string> materials;          ///< names, from `usemtl`
   /// Line and text of every mtllib statement.
   std::vector<std::pair<std::size_t, std::string>> libraries;
-  /// (object, material): the object names no material and goes on with the last one.
+  /// (object, material): the object names no material, so the last one applies.
   std::vector<std::pair<Index, Index>> inherited;
   std::vector<Camera> cameras;  ///< file units
   std::vector<Note> notes;

@@ -20,7 +20,7 @@ void SceneOptions::validate() const {
   if (!(default_reflectance >= 0 && default_reflectance <= 1)) {
     throw InputError(fmt::format("default reflectance {} is outside 0 to 1", default_reflectance));
   }
-  // A Texture counts its pixels by int.
+  // A Texture counts its pixels with an int.
   if (!(max_image > 0 && max_image <= 2000)) {
     throw InputError(
         fmt::format("max image {} is not above 0 and at most 2000 million pixels", max_image));

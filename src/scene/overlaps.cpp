@@ -28,7 +28,7 @@ double signedArea(const Triangle& t) { return 0.5 * cross(t[1] - t[0], t[2] - t[
 
 /// A convex polygon of few corners, on the stack.
 struct SmallPolygon {
-  std::array<Vec2, 12> corner;  // a triangle clipped by three half-planes has 6, rounding apart
+  std::array<Vec2, 12> corner;  // a triangle clipped by three half-planes has 6, but for rounding
   std::size_t size = 0;
   void add(const Vec2& p) {
     if (size < corner.size()) corner[size++] = p;
@@ -44,7 +44,7 @@ bool apart(const Triangle& a, const Triangle& b) {
   return false;
 }
 
-/// Area common to two counter-clockwise triangles: one clipped at the edges of the other
+/// The common area of two counter-clockwise triangles: one is clipped at the edges of the other
 /// (Sutherland and Hodgman 1974).
 double commonArea(const Triangle& subject, const Triangle& clip) {
   if (apart(subject, clip)) return 0;
@@ -88,8 +88,8 @@ PlaneFrame frameOf(const WeldedFaces& faces, std::size_t f) {
   return {faces.points[faces.face(f)[0]], u, glm::cross(normal, u)};
 }
 
-/// Area common to two polygons of one plane, concave ones too: the indicator of a polygon is the
-/// sum of the indicators of its fan's triangles, taken with their signs.
+/// The common area of two polygons of one plane, which may be concave: the indicator of a polygon
+/// is the signed sum of the indicators of its fan's triangles.
 double commonArea(const WeldedFaces& faces, std::size_t f, std::size_t g) {
   const PlaneFrame frame = frameOf(faces, f);
   const auto fan = [&](std::size_t face_index) {
@@ -135,10 +135,11 @@ double perimeter(const WeldedFaces& faces, std::size_t f) {
 
 bool isDegenerate(const WeldedFaces& faces, std::size_t f) { return faces.degenerate[f] != 0; }
 
-/// Pairs of faces whose boxes touch, and pairs of triangles of those in one plane: as a rule a few
-/// dozen a face. Some seconds of work; a fan of 20,000 faces around one vertex would be minutes.
+/// The most pairs of faces whose boxes touch, and of triangles of faces in one plane: some seconds
+/// of work. Usually there are a few dozen a face; a fan of 20,000 faces around one vertex would
+/// take minutes.
 constexpr double kMostEffort = 2e8;
-/// Bounds what is remembered to two million overlaps.
+/// Limits the overlaps that are kept to two million.
 constexpr double kOverlapEffort = 100;
 
 }  // namespace

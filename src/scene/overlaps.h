@@ -1,4 +1,4 @@
-// Faces that lie on one another.
+// Finds faces that lie on one another.
 #pragma once
 
 #include <vector>
@@ -14,7 +14,7 @@ struct DoubledFace {
 };
 std::vector<DoubledFace> findDoubledFaces(const WeldedFaces& faces);
 
-/// Two planar faces, not doubles, that share area in one plane.
+/// Two planar faces, not doubles, with a common area in one plane.
 struct Overlap {
   Index first;
   Index second;
@@ -23,14 +23,14 @@ struct Overlap {
 };
 struct OverlapSearch {
   std::vector<Overlap> overlaps;  ///< ascending by first, second
-  /// False where so many faces crowd in one place that the search was given up: there may be more.
+  /// False if the search was given up because too many faces are in one place: there may be more.
   bool complete = true;
 };
 /// `skip`: F, faces to leave out.
 OverlapSearch findOverlaps(const WeldedFaces& faces, const std::vector<std::uint8_t>& skip);
 
-/// How far face f is from planar, m: for a quadrilateral the largest distance of a corner from the
-/// plane of the other three, else the spread of the corners across the mean plane.
+/// The deviation of face f from a plane, m: for a quadrilateral the largest distance of a corner
+/// from the plane of the other three, else the spread of the corners across the mean plane.
 double planeDeviation(const WeldedFaces& faces, std::size_t f);
 
 }  // namespace radiosity

@@ -1,4 +1,4 @@
-// Changing materials by name, after reading.
+// Changes materials by name, after reading.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace radiosity {
 
 namespace {
 
-/// Where an override came from and what it is called there: "--set lamp.emission=17".
+/// The origin of an override and its text there: "--set lamp.emission=17".
 struct Origin {
   std::string text;
   [[noreturn]] void fail(const std::string& what) const {
@@ -31,8 +31,8 @@ class Overrides {
  public:
   explicit Overrides(Scene& scene);
 
-  /// Materials that `name` stands for, each used by nothing else: a surface that shares its
-  /// material has been given its own copy.
+  /// The materials that `name` stands for. No other surface uses them: a surface that shares its
+  /// material gets a copy.
   std::vector<Index> materialsOf(const std::string& name, const Origin& origin);
   void setProperty(const std::string& name, const std::string& property, const Vec3& value,
                    const Origin& origin);
@@ -50,7 +50,7 @@ class Overrides {
   Index ownMaterial(Index surface, std::span<const Index> chosen);
   void note(std::string text) { scene_.notes.push_back({Severity::info, std::move(text)}); }
   void noteUnused(const std::string& name, Index material);
-  // Each says in words what changed.
+  // Each returns the change in words.
   std::string setReflectance(Material& material, const Vec3& value, const Origin& origin);
   std::string setEmission(Material& material, const Vec3& value, const Origin& origin);
   std::string dropTexture(Index& texture, const char* instead) const;
@@ -77,8 +77,8 @@ Overrides::Overrides(Scene& scene) : scene_(scene), surfaces_with_(scene.materia
 std::vector<Index> Overrides::materialsOf(const std::string& name, const Origin& origin) {
   const std::vector<Index>& called = found(materials_called_, name);
   std::vector<Index> chosen = found(surfaces_called_, name);
-  // A surface has its material's name where the object has it too: then the material is meant,
-  // wherever it is used.
+  // A surface has its material's name if its object has the same name. Then the name means the
+  // material, wherever it is used.
   const bool is_material =
       chosen.empty() || std::any_of(chosen.begin(), chosen.end(), [&](Index s) {
         return scene_.materials[scene_.surfaces[s].material].name == name;
@@ -98,7 +98,7 @@ std::vector<Index> Overrides::materialsOf(const std::string& name, const Origin&
   return materials;
 }
 
-/// The material of `surface`, which the `chosen` ones, ascending, share with no other.
+/// The material of `surface`, which only the `chosen` surfaces, ascending, share after the call.
 Index Overrides::ownMaterial(Index surface, std::span<const Index> chosen) {
   const Index material = scene_.surfaces[surface].material;
   std::vector<Index> ours;
@@ -146,7 +146,7 @@ void Overrides::setProperty(const std::string& name, const std::string& property
   }
 }
 
-// A value that was asked for is the value, not one more factor: its texture goes, and is named.
+// A value that was asked for replaces the texture, which would multiply it. The texture is named.
 std::string Overrides::dropTexture(Index& texture, const char* instead) const {
   if (texture == kNone) return {};
   const std::string dropped = scene_.textures[std::exchange(texture, kNone)].name;
@@ -207,7 +207,7 @@ struct FileEntry {
   std::vector<double> bands;
 };
 
-/// The entries in the order of the file: a later one counts where two are about one material.
+/// The entries in the order of the file: of two for one material the later counts.
 std::vector<FileEntry> readEntries(const std::string& path) {
   std::vector<FileEntry> entries;
   const auto entryAt = [&](std::span<const JsonStep> at) {
@@ -251,8 +251,8 @@ void Overrides::readMaterialsFile(const std::string& path) {
 
 void applySet(const std::string& text, Overrides& overrides) {
   const Origin origin{"--set " + text};
-  // Names may hold dots and equals signs: the value begins at the last '=', the property at the
-  // last '.' before it.
+  // Names may contain dots and equals signs: the value begins after the last '=', the property
+  // after the last '.' before it.
   const std::size_t equals = text.rfind('=');
   const std::size_t dot = equals == std::string::npos ? equals : text.rfind('.', equals);
   if (dot == std::string::npos || dot == 0) {
@@ -273,7 +273,7 @@ void applySet(const std::string& text, Overrides& overrides) {
 
 void applyOverrides(Scene& scene, const SceneOptions& options) {
   options.validate();
-  // All or nothing: an override that fails leaves the caller's scene as it was.
+  // We change a copy, so that a failing override leaves the caller's scene unchanged.
   std::vector<Material> materials = scene.materials;
   std::vector<Surface> surfaces = scene.surfaces;
   std::vector<Note> notes = scene.notes;

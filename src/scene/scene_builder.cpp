@@ -68,7 +68,7 @@ void SceneBuilder::finish() {
   UniqueNames names;
   for (Surface& surface : scene_.surfaces) {
     const std::string& material = scene_.materials[surface.material].name;
-    // Exporters often give an object and its material one name.
+    // Exporters often give an object and its material the same name.
     const bool one_name = surface.object == material;
     surface.name = names.make(one_name ? material : surface.object + "/" + material);
   }
@@ -90,7 +90,7 @@ void SceneBuilder::dropUnusableTextures() {
       notes.add("texture not used, faces without texture coordinates; the factor alone counts",
                 name, Severity::warning);
     }
-    // A lamp all over is farther from what was meant than none.
+    // A surface that emits all over would be worse than one that does not emit.
     if (std::exchange(plain.emission_texture, kNone) != kNone) {
       plain.emission = Vec3(0.0);
       notes.add("emissive texture not used, faces without texture coordinates; they emit nothing",

@@ -1,5 +1,4 @@
-// Parts shared by both readers: faces into surfaces, names that are unique, notes that name many at
-// once.
+// Helpers of all readers: they sort faces into surfaces, make names unique, and join notes.
 #pragma once
 
 #include <map>
@@ -13,7 +12,7 @@
 
 namespace radiosity {
 
-/// Hands out names that differ: the second "lamp" becomes "lamp#2".
+/// Makes names unique: the second "lamp" becomes "lamp#2".
 class UniqueNames {
  public:
   std::string make(const std::string& wanted);
@@ -23,10 +22,10 @@ class UniqueNames {
   std::map<std::string, std::size_t> last_number_;  ///< by wanted name
 };
 
-/// Collects "this feature of that element is not used" and turns it into one note a feature.
+/// Collects features that are not used and makes one note for each feature.
 class FeatureNotes {
  public:
-  /// `shown`: so many names are written out, of the others how many they are.
+  /// `shown`: the most names that are written out; the others are counted.
   void add(const std::string& feature, const std::string& name, Severity severity = Severity::info,
            std::size_t shown = 12);
   /// Appends "FEATURE: NAME, NAME" for every feature, in the order they were first seen.
@@ -37,14 +36,14 @@ class FeatureNotes {
     std::string feature;
     Severity severity;
     std::size_t shown;
-    std::vector<std::string> names;  ///< in the order they came, once each
+    std::vector<std::string> names;  ///< in order, once each
     std::set<std::string> seen;
   };
   std::vector<Entry> entries_;
   std::map<std::string, std::size_t> entry_of_;  ///< by feature
 };
 
-/// Adds faces to a scene whose materials are there already.
+/// Adds faces to a scene that already has its materials.
 class SceneBuilder {
  public:
   explicit SceneBuilder(Scene& scene);
@@ -52,8 +51,8 @@ class SceneBuilder {
   /// The surface of (object, material), made when first asked for.
   Index surface(const std::string& object, Index material);
 
-  /// `texcoords`: one per corner, or empty where the face has none. InputError where there are more
-  /// than 2^28 corners: instances of instances multiply, and nothing could be done with so many.
+  /// `texcoords`: one for each corner, or empty. Errors: InputError if there are more than 2^28
+  /// corners: nested instances multiply, and such a scene could not be handled.
   void addFace(std::span<const Index> corners, std::span<const Vec2> texcoords, Index surface,
                std::size_t element);
 
@@ -73,7 +72,7 @@ inline bool isTextured(const Material& material) {
   return material.texture != kNone || material.emission_texture != kNone;
 }
 
-/// Material `name` with the default reflectance.
+/// A material `name` with the default reflectance.
 Material defaultMaterial(const std::string& name, const SceneOptions& options);
 
 /// Throws InputError "WHERE: material NAME: ..." unless 0 <= rho <= 1 in every band.

@@ -17,8 +17,8 @@ std::vector<Index> surfacesNamed(const Scene& scene, const std::string& name) {
     if (materialOf(s) == name) with_material.push_back(s);
     if (scene.surfaces[s].object == name) of_object.push_back(s);
   }
-  // A surface has its material's name where the object has it too: then the material is meant,
-  // wherever it is used.
+  // A surface has its material's name if its object has the same name. Then the name means the
+  // material, wherever it is used.
   const bool is_material = surfaces.empty() || std::ranges::any_of(surfaces, [&](Index s) {
                              return materialOf(s) == name;
                            });

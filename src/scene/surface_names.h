@@ -1,4 +1,4 @@
-// What a name stands for: a surface, a material or an object.
+// Names of surfaces, materials and objects.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace radiosity {
 
-/// The surfaces that `name` stands for, ascending, as SceneOptions::set finds them; none where
-/// nothing has that name.
+/// The surfaces that `name` stands for, ascending, as in SceneOptions::set; empty if nothing has
+/// that name.
 std::vector<Index> surfacesNamed(const Scene& scene, const std::string& name);
 
 /// Every name of a material, an object and a surface, each once.

@@ -1,4 +1,4 @@
-// Words of scene files and of messages about them.
+// Words in scene files and in messages about them.
 #pragma once
 
 #include <span>
@@ -10,25 +10,25 @@
 
 namespace radiosity {
 
-/// What separates words.
+/// The characters that separate words.
 inline constexpr std::string_view kBlanks = " \t\r\n\v\f";
 
-/// Without blanks at both ends.
+/// `text` without blanks at both ends.
 std::string_view trimmed(std::string_view text);
 
-/// Trimmed, line ends turned into blanks: a library's message fit for one of ours.
+/// `text` trimmed, with blanks for line ends, for a library's message inside one of ours.
 std::string onOneLine(std::string_view text);
 
-/// Words between blanks (space, tab, carriage return).
+/// The words between blanks (kBlanks).
 std::vector<std::string_view> splitWords(std::string_view text);
 
-/// ASCII letters as small ones.
+/// `text` with small ASCII letters.
 std::string lowerCase(std::string_view text);
 
-/// "a, b, c", and where there are more than `limit` names "... and 5 more".
+/// "a, b, c"; with more than `limit` names "... and 5 more".
 std::string joinNames(std::span<const std::string> names, std::size_t limit = 12);
 
-/// "0.5" where all bands agree, else "0.6 0.1 0.1".
+/// "0.5" if all bands are equal, else "0.6 0.1 0.1".
 std::string describeBands(const Vec3& value);
 
 }  // namespace radiosity

@@ -46,7 +46,7 @@ TextureResult textureFrom(const DecodedImage& image, const std::string& name) {
   texture.height = image.height;
   texture.texels.resize(pixels * 3);
   result.has_alpha = channels == 2 || channels == 4;
-  // Samples that are meant to be looked at carry the sRGB curve.
+  // Integer samples are for display and have the sRGB curve.
   const bool encoded = !image.floating && !image.linear;
   for (std::size_t p = 0; p < pixels; ++p) {
     for (std::size_t band = 0; band < 3; ++band) {
@@ -62,7 +62,7 @@ TextureResult textureFrom(const DecodedImage& image, const std::string& name) {
   return result;
 }
 
-/// As read(), but exceptions of libraries become outcomes.
+/// read(), with exceptions of libraries turned into results.
 template <class Read>
 TextureResult decoded(const std::string& name, const Read& read) {
   try {

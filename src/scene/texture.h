@@ -1,4 +1,4 @@
-// Images into linear texels.
+// Reads images as linear texels.
 #pragma once
 
 #include <span>
@@ -9,46 +9,46 @@
 
 namespace radiosity {
 
-/// Outcome of reading an image: a texture, or `problem` says in a few words why there is none.
+/// The result of reading an image: a texture, or the `problem` in a few words.
 struct TextureResult {
   Texture texture;
   bool has_alpha = false;  ///< a channel that is not used
-  bool above_one = false;  ///< a texel is above 1: it is no reflectance
+  bool above_one = false;  ///< a texel is above 1, so it is not a reflectance
   std::string problem;
 };
 
-/// TextureResult::problem where there is no such image.
+/// TextureResult::problem of a missing image.
 inline constexpr const char* kImageMissing = "is not there";
 
 /// The quantity that a texture multiplies.
 enum class TextureUse { reflectance, emission };
 
-/// An image that was looked for once, and what came of it.
+/// The result of looking for an image once.
 struct LoadedTexture {
   Index index = kNone;  ///< into Scene::textures
-  std::string problem;  ///< where there is none
+  std::string problem;  ///< why there is no texture
   bool above_one = false;
 
-  /// Why it cannot be used so; empty: it can.
+  /// The reason why it cannot be used so; empty if it can.
   std::string problemAs(TextureUse use) const;
 };
 
-/// Says that the `what` (factor or colour) of `material` alone counts, since the image `file`
-/// cannot be used for what LoadedTexture::problem says. Those that are not there are one note
-/// together: where a folder is missing they are all.
+/// Notes that only the `what` (factor or colour) of `material` counts, since the image `file`
+/// cannot be used because of `problem`. Missing images share one note: if a folder is missing, all
+/// are.
 void noteUnusedTexture(const std::string& file, const std::string& problem, const char* what,
                        const std::string& material, FeatureNotes& notes);
 
-/// Puts what was read among the scene's textures.
+/// Adds a result to the scene's textures.
 LoadedTexture keepTexture(TextureResult result, bool repeat, Scene& scene);
 
-/// Reads an image file. Integer samples are sRGB-encoded unless the file says that they are
-/// linear; float samples are linear. Grey is repeated in all bands, alpha is left out.
-/// `max_image`: SceneOptions::max_image; a larger one is not unpacked. Errors: RunError where it
-/// does not fit into memory.
+/// Reads an image file. Integer samples are sRGB-encoded unless the file says that they are linear;
+/// float samples are linear. Grey is repeated in all bands, alpha is left out. `max_image`:
+/// SceneOptions::max_image; larger images are not unpacked. Errors: RunError if it does not fit
+/// into memory.
 TextureResult readTexture(const std::string& path, double max_image);
 
-/// The same for an image that is already in memory; the format is told by its first bytes.
+/// The same for an image in memory; its first bytes tell the format.
 TextureResult decodeTexture(const std::string& name, std::span<const unsigned char> bytes,
                             double max_image);
 

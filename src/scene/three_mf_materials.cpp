@@ -63,7 +63,7 @@ Index ThreeMfMaterials::added(const std::string& name, const std::string& colour
   return place->second;
 }
 
-/// "#RRGGBB" or "#RRGGBBAA", coded as sRGB.
+/// The reflectance of "#RRGGBB" or "#RRGGBBAA", coded as sRGB.
 Vec3 ThreeMfMaterials::reflectanceOf(const std::string& name, const std::string& colour) const {
   unsigned long value = 0;
   const char* const end = colour.data() + colour.size();

@@ -18,12 +18,12 @@ class ThreeMfMaterials {
                    FeatureNotes& notes)
       : package_(package), options_(options), scene_(scene), notes_(notes) {}
 
-  /// The material that is member `member` (counted from 0) of the group `group` of `model`, as
-  /// `object` has it, and kNone for a group of a kind that is not read, which is noted. InputError
-  /// where there is no such group or member, or its colour is none.
+  /// The material of `object` that is member `member` (counted from 0) of group `group` in `model`;
+  /// kNone, with a note, for a kind of group that is not read. Errors: InputError if there is no
+  /// such group or member, or if its colour is invalid.
   Index of(const ThreeMfModel& model, const std::string& group, const std::string& member,
            const std::string& object);
-  /// The material of what has none in the file: `object`'s own, of the default reflectance.
+  /// The material of an object without one in the file: its own, with the default reflectance.
   Index ownOf(const std::string& object);
 
  private:

@@ -40,7 +40,7 @@ void ThreeMfPackage::parse(const std::string& name, pugi::xml_document& document
   }
 }
 
-/// The package says in a file of its own which of its files the model is.
+/// The name of the model's file, which another file of the package gives.
 std::string ThreeMfPackage::rootName() const {
   pugi::xml_document document;
   parse("_rels/.rels", document);

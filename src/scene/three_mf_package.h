@@ -1,5 +1,5 @@
 // The models in a 3MF file (3MF Consortium, "3MF Core Specification" 1.3): a zip archive of XML
-// files, of which the first says what is built.
+// files. The root file has the build.
 #pragma once
 
 #include <map>
@@ -22,17 +22,17 @@ struct ThreeMfModel {
 
 /// An element's or attribute's name without the prefix of its namespace.
 std::string_view localName(std::string_view name);
-/// The first child of that name, whatever its prefix; none: an empty node.
+/// The first child of that name, with any prefix; an empty node if there is none.
 pugi::xml_node childNamed(const pugi::xml_node& parent, std::string_view name);
 
-/// All errors: InputError "PATH: what; cure".
+/// All errors are InputError "PATH: what; cure".
 class ThreeMfPackage {
  public:
   explicit ThreeMfPackage(const std::string& path);
 
-  /// The model that says what is built.
+  /// The model with the build.
   const ThreeMfModel& root() { return model(root_name_); }
-  /// The model in that file of the archive, which stays as long as the package.
+  /// The model in a file of the archive; it lives as long as the package.
   const ThreeMfModel& model(const std::string& name);
   [[noreturn]] void fail(const std::string& what) const;
 
@@ -45,7 +45,7 @@ class ThreeMfPackage {
   std::string content_;
   ZipArchive archive_;
   std::string root_name_;
-  std::map<std::string, std::unique_ptr<ThreeMfModel>> models_;  ///< those that were asked for
+  std::map<std::string, std::unique_ptr<ThreeMfModel>> models_;  ///< those read so far
 };
 
 }  // namespace radiosity

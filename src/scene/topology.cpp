@@ -12,7 +12,7 @@ namespace radiosity {
 
 namespace {
 
-/// One face going along one edge.
+/// One edge of one face.
 struct EdgeUse {
   Index low, high;  ///< its ends
   Index face;
@@ -50,7 +50,7 @@ void forEachEdge(std::span<const EdgeUse> uses, Visit&& visit) {
   }
 }
 
-/// Neighbour over an edge that two faces share; `against`: both go along it the same way.
+/// The neighbour across an edge that two faces share; `against`: both run along it the same way.
 struct Neighbour {
   Index face;
   bool against;
@@ -69,7 +69,7 @@ Adjacency joinFaces(std::span<const EdgeUse> uses, std::size_t faces) {
   return adjacency;
 }
 
-/// Collects the part that hangs on `seed`; flipped[f] is relative to the seed.
+/// Collects the part connected to `seed`; flipped[f] is relative to the seed.
 ConnectedPart floodPart(Index seed, Index number, const Adjacency& adjacency, Topology& topology) {
   ConnectedPart part;
   std::vector<Index> waiting = {seed};
@@ -92,7 +92,7 @@ ConnectedPart floodPart(Index seed, Index number, const Adjacency& adjacency, To
   return part;
 }
 
-/// The minority, by area, is what is flipped.
+/// Marks the minority, by area, as flipped.
 void settleFlips(const WeldedFaces& faces, const ConnectedPart& part, Topology& topology) {
   double balance = 0;
   for (const Index f : part.faces) {
@@ -116,7 +116,7 @@ void measure(const WeldedFaces& faces, const std::vector<std::uint8_t>& flipped,
     }
   }
   if (!part.closed) return;
-  // Divergence theorem, about a corner of the box so that little cancels.
+  // By the divergence theorem, about a corner of the box, so that little cancels.
   for (const Index f : part.faces) {
     const Vec3 origin = faces.points[faces.face(f)[0]] - part.lower;
     const double sixth = glm::dot(origin, faces.area_vector[f]) / 3;
@@ -132,7 +132,7 @@ struct Tally {
   bool cancels() const { return winding_matters ? balance == 0 : count % 2 == 0; }
 };
 
-/// Marks parts with an edge whose uses do not cancel, and counts edges.
+/// Marks parts that have an edge whose uses do not cancel, and counts edges.
 void countEdges(std::span<const EdgeUse> uses, const std::vector<std::uint8_t>& two_sided,
                 Topology& topology) {
   for (ConnectedPart& part : topology.parts) part.closed = true;

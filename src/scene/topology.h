@@ -1,4 +1,4 @@
-// How faces hang together: edges, connected parts, which way they face.
+// The topology of faces: edges, connected parts, orientation.
 #pragma once
 
 #include <vector>
@@ -7,12 +7,12 @@
 
 namespace radiosity {
 
-/// Faces joined by edges that exactly two faces share.
+/// Faces connected by edges that exactly two faces share.
 struct ConnectedPart {
   std::vector<Index> faces;
   Vec3 lower{0.0};  ///< box, relative to WeldedFaces::centre
   Vec3 upper{0.0};
-  bool closed = false;  ///< no edge of the part is left over
+  bool closed = false;  ///< no edge of the part is open
   bool orientable = true;
   double volume = 0;  ///< m^3, positive where the fronts face outwards; 0 unless closed
 };
@@ -27,8 +27,8 @@ struct Topology {
   std::vector<std::uint8_t> flipped;
 };
 
-/// `two_sided`: F, faces whose winding does not matter. `skip`: F, faces that take no part
-/// (doubles of others); degenerate ones with fewer than three corners never do.
+/// `two_sided`: F, faces whose winding does not matter. `skip`: F, faces to leave out (doubles of
+/// others). Degenerate faces with fewer than three corners are always left out.
 Topology analyseTopology(const WeldedFaces& faces, const std::vector<std::uint8_t>& two_sided,
                          const std::vector<std::uint8_t>& skip);
 

@@ -22,7 +22,7 @@ struct Token {
   std::size_t line;
 };
 
-/// Words between blanks and commas; `!` comments out the rest of a line, `*` ends the data.
+/// The words between blanks and commas; `!` comments out the rest of a line, `*` ends the data.
 std::vector<Token> tokensOf(std::string_view text) {
   constexpr std::string_view kSeparators = " ,\t\r";
   std::vector<Token> tokens;
@@ -48,7 +48,7 @@ std::vector<Token> tokensOf(std::string_view text) {
 
 char upper(char c) { return char(std::toupper(static_cast<unsigned char>(c))); }
 
-/// Sine and cosine of an angle in degrees, exact where they are 0 or 1: walls meet.
+/// Sine and cosine of an angle in degrees, exact if they are 0 or 1, so that walls meet.
 struct Turn {
   double sine;
   double cosine;
@@ -92,7 +92,7 @@ class View3dScanner {
     throw InputError(fmt::format("{}:{}: {}", file_, line, what));
   }
 
-  /// False at the end of the data.
+  /// Reads a statement; false at the end of the data.
   bool statement();
   void skipLine() {
     while (at_ < tokens_.size() && tokens_[at_].line == line_) ++at_;
@@ -122,7 +122,7 @@ class View3dScanner {
 
 std::string_view View3dScanner::take(const char* what) {
   if (at_ == tokens_.size()) fail(fmt::format("the file ends where a {} belongs; add it", what));
-  line_ = tokens_[at_].line;  // data may go on in the next line
+  line_ = tokens_[at_].line;  // data may continue in the next line
   return tokens_[at_++].word;
 }
 
@@ -175,7 +175,7 @@ bool View3dScanner::statement() {
   fail(fmt::format("`{}` begins no View3D line (T C F V S M N O E); correct or remove it", word));
 }
 
-/// What it asks of View3D, this program is asked by options.
+/// Reads a control. It is not used: this program has options for it.
 void View3dScanner::control() {
   while (onThisLine()) {
     notes_.add("View3D controls are not used (options of the program say these)",
@@ -220,7 +220,7 @@ void View3dScanner::surface(char letter) {
     fail(fmt::format("surface {} stands where surface {} belongs; number them in order", given,
                      number_here));
   }
-  // View3D takes no more of an obstruction, but such lines have often been turned from S to O.
+  // View3D reads nothing more of an obstruction, but such lines often were S lines before.
   const auto describe = [&] {
     if (surface.kind != Kind::obstruction || onThisLine()) properties(surface);
     if (surface.name.empty()) surface.name = fmt::format("obstruction {}", given);
@@ -265,8 +265,8 @@ void View3dScanner::properties(View3dSurface& surface) {
   if (surface.kind != Kind::obstruction || onThisLine()) surface.name = take("surface name");
 }
 
-/// A shape in a plane of its own: x to the right and y up for who stands before its front, which
-/// looks to `azimuth` (clockwise from +y) and `tilt` (0 up, 90 level, 180 down).
+/// Reads a shape in its own plane: seen from its front, x is to the right and y is up. The front
+/// faces `azimuth` (clockwise from +y) and `tilt` (0 up, 90 level, 180 down).
 void View3dScanner::placedShape(View3dSurface& surface, char shape) {
   Vec3 origin(0.0);
   for (int k = 0; k < 3; ++k) origin[k] = number("coordinate");

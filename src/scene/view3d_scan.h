@@ -16,8 +16,8 @@ struct View3dSurface {
   std::size_t line = 0;
   std::vector<Index>
       corners;           ///< 3 or 4, into View3dScan::vertices, counter-clockwise from the front
-  std::size_t base = 0;  ///< number of the surface that it lies in, counted from 1; 0: none
-  std::size_t combined = 0;  ///< number of the surface that it is a part of, likewise
+  std::size_t base = 0;  ///< number of the surface in which it lies, counted from 1; 0: none
+  std::size_t combined = 0;  ///< number of the surface of which it is a part, likewise
   double emissivity = 1;     ///< 0 to 1
   std::string name;
 };
@@ -28,8 +28,8 @@ struct View3dScan {
   std::vector<Note> notes;
 };
 
-/// Errors: InputError "FILE:LINE: what is wrong; cure". References between surfaces exist and are
-/// in the order that View3D asks for.
+/// Errors: InputError "FILE:LINE: what is wrong; cure". References between surfaces are valid and
+/// in the order that View3D requires.
 View3dScan scanView3d(const std::string& file, std::string_view text);
 
 }  // namespace radiosity

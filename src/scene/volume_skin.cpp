@@ -8,8 +8,9 @@ namespace radiosity {
 
 namespace {
 
-/// Corners of a side, -1 behind the third of a triangle. Sides in the order of Dhondt, "CalculiX
-/// CrunchiX User's Manual", section "Element types"; pyramids, which it lacks, base first.
+/// The corners of a side; -1 as the fourth of a triangle. Sides are in the order of Dhondt,
+/// "CalculiX CrunchiX User's Manual", section "Element types"; pyramids, which it lacks, have the
+/// base first.
 using Side = std::array<int, 4>;
 constexpr std::array<Side, 4> kTetrahedron = {
     {{0, 2, 1, -1}, {0, 1, 3, -1}, {1, 2, 3, -1}, {2, 0, 3, -1}}};
@@ -35,7 +36,8 @@ std::span<const Side> sidesOf(std::size_t corners) {
   }
 }
 
-/// The side's vertices around it, each once; what has less than three, or touches itself, is none.
+/// The side's vertices in order, each once. False if there are fewer than three, or if the side
+/// touches itself.
 bool loopOf(const Side& side, std::span<const Index> corners, VolumeSkin::Face& face) {
   face.corners = 0;
   for (const int corner : side) {
@@ -49,7 +51,7 @@ bool loopOf(const Side& side, std::span<const Index> corners, VolumeSkin::Face& 
   return face.corners == 3 || (face.loop[0] != face.loop[2] && face.loop[1] != face.loop[3]);
 }
 
-/// The same for both elements that share a side.
+/// A key of a side, the same for both elements that share it.
 std::array<Index, 4> keyOf(const VolumeSkin::Face& face) {
   std::array<Index, 4> key = face.loop;
   if (face.corners == 3) key[3] = kNone;
@@ -68,11 +70,11 @@ bool VolumeSkin::add(std::span<const Index> corners) {
 
 void VolumeSkin::clear() { *this = VolumeSkin(); }
 
-// Programs do not agree on the sense in which a wedge is written, and moved nodes may turn an
-// element inside out: where its middle lies decides.
+// Programs write wedges in either orientation, and moved nodes may turn an element inside out. So
+// the middle of the element decides.
 void VolumeSkin::turnOutward(Face& face, std::span<const Vec3> places) const {
   const std::span<const Index> corners = cornersOf(face.volume);
-  const Vec3& origin = places[corners[0]];  // the differences are exact enough far from 0, too
+  const Vec3& origin = places[corners[0]];  // differences are accurate far from 0, too
   Vec3 middle(0.0);
   for (const Index corner : corners) middle += (places[corner] - origin) / double(corners.size());
   Vec3 area(0.0);

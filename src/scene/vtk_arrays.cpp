@@ -31,7 +31,7 @@ NumberType arrayType(const VtkFile& file, const VtkArray& array) {
   fail(file, array, fmt::format("type `{}` is not read; export the file again", array.type));
 }
 
-/// Value of a base64 digit, or 64.
+/// The value of a base64 digit, or 64.
 unsigned digitOf(char c) {
   if (c >= 'A' && c <= 'Z') return unsigned(c - 'A');
   if (c >= 'a' && c <= 'z') return unsigned(c - 'a') + 26;
@@ -40,7 +40,7 @@ unsigned digitOf(char c) {
   return c == '/' ? 63 : 64;
 }
 
-/// Reads bytes of an array from base64, in runs that end with their padding, or as they stand.
+/// Reads bytes of an array from base64, in runs that end with their padding, or raw.
 class ByteSource {
  public:
   ByteSource(const VtkFile& file, const VtkArray& array) : file_(file), array_(array) {
@@ -55,7 +55,7 @@ class ByteSource {
     }
   }
 
-  /// The next bytes. A run of base64 goes on from the last call's.
+  /// The next bytes. A run of base64 continues where the last call ended.
   std::string take(std::size_t count) {
     if (!coded_) {
       if (count > rest_.size()) failShort();
@@ -69,10 +69,10 @@ class ByteSource {
     return bytes;
   }
 
-  /// Begins a new run of base64, as behind the header of packed data.
+  /// Begins a new run of base64, for instance after the header of packed data.
   void endRun() { decoded_.clear(); }
 
-  /// No more than these bytes are left.
+  /// An upper bound of the bytes that are left.
   std::size_t room() const { return rest_.size() + decoded_.size(); }
 
  private:
@@ -109,7 +109,7 @@ class ByteSource {
   const VtkArray& array_;
   bool coded_;
   std::string_view rest_;
-  std::string decoded_;  ///< of base64, not taken yet
+  std::string decoded_;  ///< decoded bytes that are not taken yet
 };
 
 std::vector<std::size_t> headerOf(const VtkFile& file, ByteSource& source, std::size_t count) {
@@ -124,14 +124,14 @@ std::vector<std::size_t> headerOf(const VtkFile& file, ByteSource& source, std::
   return numbers;
 }
 
-/// Bytes that one byte of packed data can stand for at most: by the format, of LZMA by far more
-/// than is met.
+/// The most bytes to which one byte of packed data can unpack. For LZMA it is far more than occurs
+/// in practice, for the others it is the format's limit.
 std::size_t mostRatio(VtkPacking packing) {
   if (packing == VtkPacking::zlib) return 1032;
   return packing == VtkPacking::lz4 ? 255 : 8192;
 }
 
-/// Fills `block` from what it was packed to; false where that is damaged.
+/// Unpacks `packed` into `block`; false if it is damaged.
 bool unpackBlock(VtkPacking packing, const std::string& packed, std::span<char> block) {
   if (packing == VtkPacking::lz4) {
     constexpr std::size_t kMost = std::numeric_limits<int>::max();
@@ -153,8 +153,8 @@ bool unpackBlock(VtkPacking packing, const std::string& packed, std::span<char> 
   return uncompress(out, &length, in, packed.size()) == Z_OK && length == block.size();
 }
 
-/// Blocks, each packed by itself: how many, of which size, size of the last (0: as the others),
-/// then the size of each when packed.
+/// Unpacks blocks, which are packed separately. The header has their number, their size, the size
+/// of the last (0: like the others), then the packed size of each.
 std::string unpacked(const VtkFile& file, const VtkArray& array, ByteSource& source) {
   const std::vector<std::size_t> head = headerOf(file, source, 3);
   const std::size_t blocks = head[0];

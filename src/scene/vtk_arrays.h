@@ -1,4 +1,4 @@
-// Arrays of an XML VTK file: text, base64 in place, or appended, packed or not.
+// Arrays of an XML VTK file: text, inline base64, or appended; packed or not.
 #pragma once
 
 #include <optional>
@@ -13,8 +13,8 @@ namespace radiosity {
 
 enum class VtkPacking { none, zlib, lz4, lzma };
 
-/// How a file packs blocks, by the name of the compressor; empty: not at all. None: it is not
-/// known.
+/// The packing of blocks by the name of the compressor; an empty name means no packing. Empty for
+/// an unknown compressor.
 std::optional<VtkPacking> vtkPacking(std::string_view compressor);
 
 /// The file as a whole.
@@ -24,7 +24,7 @@ struct VtkFile {
   bool wide_header = false;           ///< header_type UInt64, not UInt32
   VtkPacking packing = VtkPacking::none;
   bool appended_is_raw = false;  ///< else base64
-  std::string_view appended;     ///< what stands behind the underscore
+  std::string_view appended;     ///< the data after the underscore
 };
 
 /// One DataArray element.
@@ -36,11 +36,11 @@ struct VtkArray {
   std::size_t offset = 0;  ///< into VtkFile::appended
 };
 
-/// Numbers of an array that are coordinates, finite.
+/// The numbers of an array of coordinates, all finite.
 std::vector<double> vtkNumbers(const VtkFile& file, const VtkArray& array);
-/// Whole numbers of an array of integers.
+/// The numbers of an array of integers.
 std::vector<long long> vtkIntegers(const VtkFile& file, const VtkArray& array);
-/// Words of an array of type String: characters, each word with a 0 at its end.
+/// The words of an array of type String: characters, with a 0 at the end of each word.
 std::vector<std::string> vtkWords(const VtkFile& file, const VtkArray& array);
 
 }  // namespace radiosity

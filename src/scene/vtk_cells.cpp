@@ -14,7 +14,8 @@ constexpr long long kPixel = 8;
 constexpr long long kVoxel = 11;
 constexpr long long kQuadraticPolygon = 36;
 
-/// 0: prisms of five and six sides, polyhedra. Nothing for what is no volume.
+/// The number of corners of a volume; 0 for prisms of five and six sides and polyhedra. Empty if
+/// the type is not a volume.
 std::optional<int> cornersOfVolume(long long type) {
   switch (type) {
     case 10:
@@ -53,7 +54,7 @@ std::optional<int> cornersOfVolume(long long type) {
   }
 }
 
-/// Of a cell of `nodes` points. Nothing for a type that VTK does not have.
+/// The shape of a cell with `nodes` points. Empty for a type that VTK does not have.
 std::optional<ElementShape> vtkShape(long long type, std::size_t nodes) {
   const int n = int(std::min<std::size_t>(nodes, 1000));
   switch (type) {
@@ -144,14 +145,14 @@ class CellAdder {
       fail(fmt::format("a {} of {} points has too few; correct or remove it",
                        shape->dimension == 2 ? "face" : "volume", corners_.size()));
     }
-    // Row by row, not around.
+    // The corners are row by row, not in a loop.
     if (type == kPixel || type == kVoxel) std::swap(corners_[2], corners_[3]);
     if (type == kVoxel) std::swap(corners_[6], corners_[7]);
     if (type == kVtkStrip) return addStrip();
     faces_.addElement(*shape, corners_, group(), first_ + cell_);
   }
 
-  /// Triangle k has points k, k + 1, k + 2; every second one is turned.
+  /// Adds a strip: triangle k has points k, k + 1, k + 2; every second one is turned over.
   void addStrip() {
     for (std::size_t k = 0; k + 2 < corners_.size(); ++k) {
       const std::size_t odd = k % 2;

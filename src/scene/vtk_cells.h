@@ -12,7 +12,7 @@
 
 namespace radiosity {
 
-/// Cells and what they stand on. Cell k has the points connectivity[end[k - 1]] up to end[k].
+/// Cells and their points. Cell k has the points from connectivity[end[k - 1]] up to end[k].
 struct VtkCells {
   std::vector<Index> points;            ///< vertices of the scene, by the number of the point
   std::vector<long long> connectivity;  ///< numbers of points, from 0
@@ -27,20 +27,20 @@ inline constexpr long long kVtkPolyLine = 4;
 inline constexpr long long kVtkPolygon = 7;
 inline constexpr long long kVtkStrip = 6;
 
-/// Which of several arrays that name groups counts: the one of the lowest rank, of equal ones the
-/// first. Words are meant to be read. Numbers that differ from cell to cell are numbers of the
-/// cells, and count where there is nothing else. `array`: as groupArrayRank() takes it.
+/// The rank of an array with names of groups: the array with the lowest rank counts, of equal ones
+/// the first. Words come first. Numbers that differ from cell to cell are numbers of cells, and
+/// count only if there is no other array. `array`: see groupArrayRank().
 using VtkGroupRank = std::pair<int, std::size_t>;
 VtkGroupRank vtkGroupRank(std::string_view array, bool has_words, bool differs_everywhere);
 
-/// Whether no two are the same.
+/// Whether no two values are equal.
 bool allDiffer(std::span<const long long> values);
 
 /// "group 3": the name of an integer group.
 std::string vtkGroupName(const std::string& array, long long value);
 
-/// Adds the faces of `cells`, as part of the surface `name` where they have no groups. InputError
-/// "FILE: cell N: what; cure". `first`: cells of the pieces before it.
+/// Adds the faces of `cells`, to the surface `name` if they have no groups. `first`: the number of
+/// cells in the pieces before. Errors: InputError "FILE: cell N: what; cure".
 void addVtkCells(const VtkCells& cells, const std::string& file, const std::string& name,
                  std::size_t first, GroupedFaces& faces);
 

@@ -11,14 +11,14 @@ namespace radiosity {
 
 namespace {
 
-/// Finds a point already there within the tolerance, or adds one. A hash of cubes with an edge of
-/// four tolerances: most points look into one cube only.
+/// Finds an existing point within the tolerance, or adds one. It is a hash of cubes with an edge of
+/// four tolerances, so that most searches visit only one cube.
 class PointSet {
  public:
   PointSet(double tolerance, std::vector<Vec3>& points) : tolerance_(tolerance), points_(points) {}
 
   Index find(const Vec3& p) {
-    // Without a tolerance only equal coordinates are the same place (-0 and 0 are equal).
+    // Without a tolerance only equal coordinates are one place (-0 and 0 are equal).
     const Vec3 place = p + Vec3(0.0);
     const Cell low = cellOf(place - Vec3(tolerance_));
     const Cell high = cellOf(place + Vec3(tolerance_));
@@ -48,7 +48,7 @@ class PointSet {
   Cell cellOf(const Vec3& p) const {
     if (tolerance_ == 0) return {p.x, p.y, p.z};
     const double edge = 4 * tolerance_;
-    // + 0.0 turns -0 into 0: cells are compared by their bytes.
+    // + 0.0 turns -0 into 0, since cells are compared by their bytes.
     return {std::floor(p.x / edge) + 0.0, std::floor(p.y / edge) + 0.0,
             std::floor(p.z / edge) + 0.0};
   }
@@ -67,7 +67,7 @@ class PointSet {
   std::unordered_map<Cell, std::vector<Index>, CellHash> cells_;
 };
 
-/// Twice the area over the longest edge: no less than the least width of the polygon.
+/// Twice the area over the longest edge: at least the least width of the polygon.
 double width(const WeldedFaces& faces, std::size_t f) {
   const auto face = faces.face(f);
   double longest = 0;

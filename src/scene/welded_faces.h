@@ -1,4 +1,4 @@
-// The faces of a scene with coincident vertices made one: what the checks look at.
+// The faces of a scene with coincident vertices merged, for the checks.
 #pragma once
 
 #include <span>
@@ -8,11 +8,11 @@
 
 namespace radiosity {
 
-/// F faces as in the scene. Positions are relative to `centre`, so that a scene far from the origin
-/// is checked as well as one around it.
+/// The F faces of the scene. Positions are relative to `centre`, so that a scene far from the
+/// origin is checked as accurately as one near it.
 struct WeldedFaces {
   Vec3 centre{0.0};
-  double tolerance = 0;  ///< metres: closer is the same place
+  double tolerance = 0;  ///< metres: closer points are one
   std::vector<Vec3> points;
   std::vector<std::size_t> offset;  ///< F + 1, into corners
   std::vector<Index> corners;       ///< into points, without repetition of the previous one
@@ -29,8 +29,8 @@ struct WeldedFaces {
 /// `lower`, `upper`: box of the scene. `weld`: coincidence as a fraction of its diagonal.
 WeldedFaces weldFaces(const Scene& scene, const Vec3& lower, const Vec3& upper, double weld);
 
-/// Normal times area of a polygon, by Newell's sum about its first corner: sum (a x b) / 2. Right
-/// for concave polygons; the projected area where it is not planar.
+/// Normal times area of a polygon, by Newell's sum about its first corner: sum (a x b) / 2. It is
+/// correct for concave polygons, and the projected area for polygons that are not planar.
 Vec3 areaVector(std::span<const Vec3> points, std::span<const Index> corners);
 
 }  // namespace radiosity

@@ -14,9 +14,9 @@ namespace radiosity {
 
 namespace {
 
-/// A node stands for its triangles from this many radii on. The next term of the expansion is then
-/// at most some 1/16 of the node's own, and terms of opposite sides of a part cancel: the rest is
-/// far from the quarter that would change an answer.
+/// From this many radii on a node represents its triangles. The next term of the expansion is then
+/// at most about 1/16 of the node's own, and terms of opposite sides of a part cancel. The error is
+/// far below the quarter that would change an answer.
 constexpr double kFarRadii = 4;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// How often a closed surface winds around a point.
+// Winding numbers of closed surfaces about points.
 #pragma once
 
 #include <array>
@@ -8,9 +8,9 @@
 
 namespace radiosity {
 
-/// A tree over the triangles of a closed surface: those far from a point count together, by the
-/// dipole that stands for them (G. Barill et al., "Fast winding numbers for soups and clouds",
-/// 2018, eq. 14 to its first term). A query takes time about log of the number of triangles.
+/// A tree over the triangles of a closed surface. Triangles far from a point count together, by one
+/// dipole (G. Barill et al., "Fast winding numbers for soups and clouds", 2018, eq. 14 to its first
+/// term). The time of a query is about the logarithm of the number of triangles.
 class WindingTree {
  public:
   struct Triangle {
@@ -19,8 +19,8 @@ class WindingTree {
   };
   explicit WindingTree(std::vector<Triangle> triangles);
 
-  /// 1 or -1 inside, 0 outside, about a half on the surface; off by 0.05 at most. Triangles of
-  /// plane `own`, if it is given, count as nothing: the point lies in that plane.
+  /// 1 or -1 inside, 0 outside, about a half on the surface; the error is at most 0.05. Triangles
+  /// of plane `own`, if given, count as 0: the point lies in that plane.
   double around(const Vec3& point, Index own = kNone) const;
 
  private:

@@ -51,7 +51,7 @@ const std::set<std::string_view> kBesideGeometry = {
     "Appearance",     "MetadataSet",     "MetadataString", "MetadataFloat",
     "MetadataDouble", "MetadataInteger", "MetadataBoolean"};
 
-/// The numbers of an attribute; `otherwise` where it is missing or has not as many.
+/// The numbers of an attribute; `otherwise` if it is missing or has another number of values.
 template <std::size_t N>
 std::array<double, N> numbers(const pugi::xml_node& element, const char* name,
                               const std::array<double, N>& otherwise) {
@@ -98,8 +98,8 @@ glm::dmat4 transformOf(const pugi::xml_node& element) {
          stretch * scaled * glm::transpose(stretch) * moved(-centre);
 }
 
-/// A Cone or Cylinder as an IndexedFaceSet: planar sides, turned outward, between circles of 32
-/// corners on the true one. A cone's upper circle is its apex.
+/// Replaces a Cone or Cylinder by an IndexedFaceSet: planar sides, turned outward, between circles
+/// of 32 corners on the true circle. The upper circle of a cone is its apex.
 void replaceRound(pugi::xml_node shape, pugi::xml_node given) {
   constexpr int kSides = 32;
   const bool is_cone = std::strcmp(given.name(), "Cone") == 0;
@@ -157,8 +157,7 @@ class Rewriter {
     for (const pugi::xml_node child : element.children()) collectNames(child);
   }
 
-  /// In the order of the file, so that what a name stands for has no USE any more when it is
-  /// copied.
+  /// Copies in the order of the file, so that an element has no USE any more when it is copied.
   void copyUses(pugi::xml_node element) {
     pugi::xml_node child = element.first_child();
     while (child) {
@@ -177,7 +176,7 @@ class Rewriter {
     }
   }
 
-  /// `name`: of the nearest element above that has one.
+  /// `name`: that of the nearest element above with a name.
   void rewriteChildren(pugi::xml_node parent, const glm::dmat4& place, const std::string& name) {
     pugi::xml_node next;
     for (pugi::xml_node child = parent.first_child(); child; child = next) {
@@ -194,7 +193,7 @@ class Rewriter {
     if (kind == "Viewpoint") return addViewpoint(element, place, called);
     if (kind == "Shape") return rewriteShape(parent, element, called);
     if (std::strcmp(element.attribute("containerField").value(), "proxy") == 0) {
-      parent.remove_child(element);  // of a Collision: it is touched, never seen
+      parent.remove_child(element);  // of a Collision: it is for contact, never visible
       return;
     }
     if (kind == "LOD") {
@@ -250,7 +249,7 @@ class Rewriter {
     camera.eye = Vec3(pose * glm::dvec4(0, 0, placed ? 0 : 10, 1));
     camera.target = camera.eye + Vec3(pose * glm::dvec4(0, 0, -1, 0));
     camera.up = Vec3(pose * glm::dvec4(0, 1, 0, 0));
-    // The smaller angle of a picture, which is the vertical one where it is wider than high.
+    // The smaller angle of the picture: the vertical one, if it is wider than high.
     camera.vertical_fov = numbers<1>(element, "fieldOfView", {0.7854})[0];
     extras_.viewpoints.push_back(camera);
   }

@@ -1,5 +1,5 @@
-// X3D made fit for Assimp, which loses all copies of a shape but one, takes the first material of
-// a file for shapes without any, and skips viewpoints, units and most nodes that hold others.
+// Rewrites X3D for Assimp, which loses all copies of a shape but one, takes the first material of a
+// file for shapes without any, and skips viewpoints, units and most grouping nodes.
 #pragma once
 
 #include <pugixml.hpp>
@@ -12,22 +12,22 @@
 
 namespace radiosity {
 
-/// Begin the names of groups that hold a shape with solid="false", or with ccw="false".
+/// The prefixes of the names of groups with a shape that has solid="false", or ccw="false".
 inline constexpr std::string_view kX3dTwoSided = "$two-sided$";
 inline constexpr std::string_view kX3dClockwise = "$clockwise$";
 
-/// What Assimp keeps nothing of.
+/// The parts of a file that Assimp drops.
 struct X3dExtras {
   double metres_per_unit = 1;
   std::vector<Camera> viewpoints;  ///< in units; the angle is the vertical one
 };
 
-/// Rewrites the elements in place: USE becomes a copy of what it names; Anchor, Billboard,
-/// Collision, CAD nodes and layers become Group, and LOD its finest level; a shape with a name,
-/// with solid="false" or with ccw="false" gets a Group that says so, and one without Appearance an
-/// empty one; Cone and Cylinder, whose faces Assimp turns both ways, become an IndexedFaceSet of 32
-/// sides. Notes what Assimp does not read. `document` has passed checkXml(). ISO/IEC 19775-1 and
-/// 19776-1.
+/// Rewrites the elements in place. USE becomes a copy of the named element. Anchor, Billboard,
+/// Collision, CAD nodes and layers become Group, and LOD becomes its finest level. A shape with a
+/// name, with solid="false" or with ccw="false" gets a Group that says so, and one without
+/// Appearance gets an empty one. Cone and Cylinder, whose faces Assimp turns both ways, become an
+/// IndexedFaceSet of 32 sides. Notes parts that Assimp does not read. `document` must have passed
+/// checkXml(). ISO/IEC 19775-1 and 19776-1.
 X3dExtras rewriteX3d(pugi::xml_document& document, FeatureNotes& notes);
 
 }  // namespace radiosity

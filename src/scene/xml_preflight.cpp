@@ -18,8 +18,8 @@ namespace {
 constexpr int kDeepestElement = 200;  // as in JSON
 constexpr double kMostCopies = 1e6;
 
-/// The elements that each stands for with those below it and those that it refers to: Collada's
-/// <instance_node url="#id">, X3D's USE="name".
+/// The number of elements that each element stands for, with those below it and those to which it
+/// refers: Collada's <instance_node url="#id">, X3D's USE="name".
 class References {
  public:
   explicit References(const std::string& path) : path_(path) {}
@@ -46,7 +46,7 @@ class References {
     throw InputError(fmt::format("{}: {}", path_, what));
   }
 
-  /// Of Collada's <p>: Assimp never gets past what is no digit.
+  /// Checks Collada's <p>: Assimp never gets past a character that is not a digit.
   void checkIndices(const pugi::xml_node& text) const {
     if (std::strcmp(text.parent().name(), "p") != 0) return;
     const std::string_view value = text.value();
@@ -64,7 +64,7 @@ class References {
                     element.name(), kDeepestElement));
   }
 
-  /// The element after `at` in the file's order; empty behind the last below `root`.
+  /// The element after `at` in the file's order; empty after the last one below `root`.
   pugi::xml_node next(pugi::xml_node at, const pugi::xml_node& root) const {
     if (const pugi::xml_node child = at.first_child()) return child;
     while (at != root && at.next_sibling().empty()) at = at.parent();
@@ -107,7 +107,7 @@ class References {
 
   struct Known {
     double elements = 0;
-    int height = 0;  ///< of what is below it
+    int height = 0;  ///< of the elements below it
     bool open = true;
   };
   const std::string& path_;
@@ -121,7 +121,7 @@ class References {
 pugi::xml_document checkXml(const std::string& path) {
   const std::string content = readWholeFile(path);
   pugi::xml_document document;
-  // Of what is no XML Assimp, which has the same parser, says so.
+  // If the file is not XML, Assimp will say so: it has the same parser.
   if (!document.load_buffer(content.data(), content.size())) return {};
   References(path).check(document.document_element());
   return document;

@@ -1,5 +1,5 @@
-// A check of a Collada or X3D file before Assimp reads it, which follows nesting and references
-// without a bound and does not get past words where numbers are due.
+// Checks a Collada or X3D file before Assimp reads it: Assimp follows nesting and references
+// without a limit, and loops at words in place of numbers.
 #pragma once
 
 #include <pugixml.hpp>
@@ -7,10 +7,10 @@
 
 namespace radiosity {
 
-/// Errors: InputError "PATH: what is wrong; cure" for elements nested more than 200 deep,
-/// references included; for an element that refers to itself; where references stand for more than
-/// a million elements; for corners of Collada that are no numbers. Throws what readWholeFile()
-/// throws. Returns the document; an empty one of what is no XML.
+/// Returns the document; an empty one if the file is not XML. Errors: those of readWholeFile(), and
+/// InputError "PATH: what is wrong; cure" for elements nested more than 200 deep, references
+/// included; for an element that refers to itself; if references stand for more than a million
+/// elements; and for corners of Collada that are not numbers.
 pugi::xml_document checkXml(const std::string& path);
 
 }  // namespace radiosity

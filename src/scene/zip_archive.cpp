@@ -13,17 +13,18 @@ namespace radiosity {
 
 namespace {
 
-/// The bytes that begin each part of an archive.
+/// The signatures of the parts of an archive.
 constexpr std::uint64_t kFileHeader = 0x04034b50;
 constexpr std::uint64_t kDirectoryEntry = 0x02014b50;
 constexpr std::uint64_t kDirectoryEnd = 0x06054b50;
 constexpr std::uint64_t kLargeDirectoryEnd = 0x06064b50;
 constexpr std::uint64_t kLargeLocator = 0x07064b50;
-/// Stands where a number takes more bits, which are elsewhere.
+/// Marks a number that needs more bits and is stored elsewhere.
 constexpr std::uint64_t kInLargeForm = 0xffffffff;
 
 constexpr std::uint64_t kMostUnpacked = (std::uint64_t{1} << 31U) - 1;
-/// Bytes that one deflated byte can stand for (zlib's manual, "Maximum expansion factor").
+/// The most bytes to which one deflated byte can unpack (zlib's manual, "Maximum expansion
+/// factor").
 constexpr std::uint64_t kMostRatio = 1032;
 
 std::string plainName(std::string_view name) {
@@ -39,7 +40,7 @@ std::uint64_t littleEndian(std::string_view bytes) {
   return value;
 }
 
-/// Fills `unpacked`; false where the bytes are damaged.
+/// Fills `unpacked`; false if the bytes are damaged.
 bool inflateInto(std::string_view packed, std::string& unpacked) {
   z_stream stream{};
   constexpr int kWithoutHeader = -15;
@@ -80,7 +81,8 @@ std::uint64_t ZipArchive::number(std::uint64_t place, unsigned count) const {
   return littleEndian(bytes(place, count));
 }
 
-/// The list stands at the end, and behind it where it begins, with a comment of up to 65535 bytes.
+/// Finds the list of files. It is at the end of the archive, followed by a record with its start
+/// and a comment of up to 65535 bytes.
 ZipArchive::Directory ZipArchive::directory() const {
   constexpr std::size_t kEndSize = 22;
   const std::size_t end = content_.rfind("PK\5\6");
@@ -115,7 +117,8 @@ void ZipArchive::readEntry(std::uint64_t& place) {
   entries_.try_emplace(plainName(entry.name), std::move(entry));
 }
 
-/// Of the fields behind an entry, each with a number and a size, number 1 has what did not fit.
+/// Reads sizes that did not fit into the entry. They are in field 1 of the extra fields, each of
+/// which has a number and a size.
 void ZipArchive::readLargeSizes(std::string_view extra, Entry& entry) const {
   while (extra.size() >= 4) {
     const std::uint64_t field = littleEndian(extra.substr(0, 2));
@@ -135,7 +138,7 @@ void ZipArchive::readLargeSizes(std::string_view extra, Entry& entry) const {
 
 bool ZipArchive::has(std::string_view name) const { return entries_.contains(plainName(name)); }
 
-/// What a damaged or forged archive would have us do is refused before memory is taken.
+/// Refuses the entry of a damaged or forged archive before memory is allocated.
 void ZipArchive::require(const Entry& entry) const {
   if ((entry.flags & 1U) != 0) fail(entry.name + ": is encrypted; save it without a password");
   if (entry.method != Z_DEFLATED && entry.method != 0) {
@@ -152,7 +155,7 @@ void ZipArchive::require(const Entry& entry) const {
   }
 }
 
-/// Behind a header, which has the name again and fields of its own.
+/// The packed bytes of a file. They follow a header, which repeats the name and has extra fields.
 std::string_view ZipArchive::packedBytes(const Entry& entry) const {
   constexpr std::uint64_t kHeaderSize = 30;
   if (entry.place >= content_.size() || number(entry.place, 4) != kFileHeader) failDamaged();

@@ -9,15 +9,16 @@
 
 namespace radiosity {
 
-/// The files of an archive in memory, by their names. Upper and lower case are the same, and so is
-/// a name with a slash before it: the packages that 3MF is one of have it so (ECMA-376, part 2).
+/// The files of an archive in memory, by their names. Case and a leading slash do not matter, as in
+/// the packages to which 3MF belongs (ECMA-376, part 2).
 class ZipArchive {
  public:
-  /// Reads the archive's list of files. `content` must outlive it. InputError "PATH: what; cure".
+  /// Reads the archive's list of files. `content` must outlive it. Errors: InputError "PATH: what;
+  /// cure".
   ZipArchive(const std::string& path, std::string_view content);
 
   bool has(std::string_view name) const;
-  /// What a file that is there unpacks to, less than 2 GiB. InputError "PATH: NAME: what; cure".
+  /// Unpacks an existing file of less than 2 GiB. Errors: InputError "PATH: NAME: what; cure".
   std::string read(std::string_view name) const;
 
  private:

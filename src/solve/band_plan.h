@@ -8,7 +8,7 @@
 
 namespace radiosity {
 
-/// Those with light that are not equal to an earlier one, and where each band's values come from.
+/// The lit bands that are not equal to an earlier one, and the source of each band's values.
 class BandPlan {
  public:
   BandPlan(std::span<const double> reflectance, std::span<const double> emission, int bands)

@@ -1,4 +1,4 @@
-// What falls on clusters beyond what their matrix gives, made fit to solve with.
+// Irradiance of clusters beyond that of their matrix, as a source term of the second solution.
 #pragma once
 
 #include <span>
@@ -11,12 +11,12 @@ namespace radiosity {
 /// Area times value, summed over rows of a band; `values`: N * bands, row-major.
 double powerOf(std::span<const double> area, std::span<const double> values, int bands, int band);
 
-/// True where some row sees the sky or backs.
+/// True if any row sees the sky or backs.
 bool seesOut(const FormFactors& factors);
 
-/// `more` so that no irradiance falls below 0 by it, and that light is neither made nor lost where
-/// all of it falls on fronts: then what differs within clusters falls elsewhere, all in all as
-/// much. Both: N * bands, row-major.
+/// Returns `more`, raised where `irradiance` plus `more` would be negative. If no row sees the sky
+/// or backs, it then scales that sum in each band, so that `more` adds no power. Both arrays: N *
+/// bands, row-major.
 std::vector<double> balanced(const FormFactors& factors, std::span<const double> more,
                              std::span<const double> irradiance, int bands);
 

@@ -42,9 +42,9 @@ std::optional<double> boundFrom(const System& system, const Fields& fields, cons
 
 }  // namespace
 
-// The all-ones vector costs one product and serves wherever every rho_i rowsum_i < 1. Else the
-// solution of M w = 1, roughly: a residual of 1 - M w within 0.1 leaves v = M w >= 0.9 > 0. The
-// products with the first w and the last are worth a sweep each.
+// The all-ones vector costs one product and serves wherever every rho_i rowsum_i < 1. Otherwise w
+// is a rough solution of M w = 1: if 1 - M w is within 0.1, then v = M w >= 0.9 > 0. The products
+// with the first w and the last are worth a sweep each.
 std::optional<double> certifiedErrorBound(const System& system, const Fields& fields,
                                           int max_sweeps, Progress& progress) {
   const std::vector<double> ones(fields.radiosity.size(), 1.0);

@@ -1,4 +1,4 @@
-// Light where patches share unknowns: between clusters, and within them.
+// The solution where patches share unknowns: between clusters, and within them.
 #pragma once
 
 #include <span>
@@ -8,20 +8,19 @@
 
 namespace radiosity {
 
-/// First as if each cluster were of one radiosity. Rays then tell how irradiance differs within
-/// clusters (PatchIrradiance), and what falls on each from its surroundings as they are in this
-/// light beyond what the matrix gives, which knows means of clusters alone. With so much more or
-/// less irradiance the matrix is solved again. At the end B = E + rho H of every patch, with an
-/// irradiance of its own.
+/// The first solution gives each cluster one radiosity. Rays then find how irradiance varies within
+/// clusters (PatchIrradiance), and how much the irradiance of each cluster differs from that of the
+/// matrix, which knows only means of clusters. The system is solved again with this difference as
+/// additional irradiance. At the end B = E + rho H for every patch, with an irradiance of its own.
 ///
-/// The means are not enough where patches lie deep and others open in one cluster: of books that
-/// stand in a row, sides are 2.6% too bright after the first solution in data/furnished-room.obj
-/// (2,000 clusters of 4,424 patches), and 0.9% after the second. *Test:* solve_clusters_test.
+/// Means are not enough where one cluster has both hidden and open patches: in
+/// data/furnished-room.obj (2,000 clusters of 4,424 patches), the sides of books in a row are 2.6%
+/// too bright after the first solution, and 0.9% after the second. *Test:* solve_clusters_test.
 ///
-/// Of the summary, what is counted is of the second solution; seconds are of both.
+/// The counts in the summary are those of the second solution; seconds are of both.
 class ClusterSolve {
  public:
-  /// All are kept by reference; mesh.clusters is there.
+  /// Keeps all by reference. Precondition: the mesh has clusters.
   ClusterSolve(const FormFactors& factors, const PatchMaterials& materials, const PatchMesh& mesh,
                const SolveOptions& options, Progress& progress);
   Solution run() const;

@@ -2,14 +2,14 @@
 //
 // With H = F B, A the areas, G = A F symmetric and D = sqrt(rho), let z = D sqrt(A) H. Then
 //     (I - D S D) z = D sqrt(A) F E,     S = A^-1/2 G A^-1/2 = sqrt(A) F A^-1/2,
-// which is symmetric, positive definite where the spectral radius of rho F is below 1, and without
-// 1 / rho; B = E + D A^-1/2 z. (Hestenes & Stiefel, J. Res. NBS 49, 1952.)
+// The system is symmetric, free of 1 / rho, and positive definite where the spectral radius of
+// rho F is below 1; B = E + D A^-1/2 z. (Hestenes & Stiefel, J. Res. NBS 49, 1952.)
 //
-// What creeps is the brightness of each closed room as a whole: its smallest eigenvalue is about
-// 1 - rho, all others are near 1. That vector, w = D sqrt(A) in a room, is solved for exactly and
-// kept out of the iteration (deflation: Nicolaides, SIAM J. Numer. Anal. 24, 1987; Saad, Yeung,
-// Erhel & Guyomarc'h, SIAM J. Sci. Comput. 21, 2000). Rooms are the components of the matrix: they
-// exchange nothing, so one product serves them all and their coarse matrix is diagonal.
+// The overall brightness of each closed room converges slowly: its eigenvalue is about 1 - rho,
+// while all others are near 1. We solve for that vector, w = D sqrt(A) in a room, exactly and keep
+// it out of the iteration (deflation: Nicolaides, SIAM J. Numer. Anal. 24, 1987; Saad, Yeung, Erhel
+// & Guyomarc'h, SIAM J. Sci. Comput. 21, 2000). Rooms are the connected components of the matrix:
+// they exchange no light, so one product serves them all and their coarse matrix is diagonal.
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -21,13 +21,14 @@ namespace radiosity {
 
 namespace {
 
-/// A cycle ends once its residual is so much smaller, in the 2-norm: beyond, the recurrence may
-/// have left the true residual, with which the next cycle begins.
+/// A cycle ends once it has reduced the 2-norm of its residual by this factor: beyond, the
+/// recurrence may have drifted from the true residual, with which the next cycle begins.
 constexpr double kCycleReduction = 1e-10;
-/// So little of w is left by I - D S D where a room neither absorbs nor lets out light. Then it has
-/// no light (findWhiteRoom()), and nothing to solve for.
+/// Where w . (I - D S D) w is below this share of w . w, the room neither absorbs nor lets out
+/// light. Such a room is dark (findWhiteRoom()), so there is nothing to solve for.
 constexpr double kNothingLeft = 1e-13;
-/// Rooms darker than this in every band, by area, converge as quickly without.
+/// The least mean reflectance, by area, at which deflation pays. A scene below it in every band
+/// converges as quickly without.
 constexpr double kBright = 0.7;
 
 class ConjugateGradients {
@@ -62,9 +63,9 @@ class ConjugateGradients {
   }
 
  private:
-  using Sums = std::vector<double>;  // a value a band, or a room and band
+  using Sums = std::vector<double>;  // one value for each band, or for each room and band
 
-  /// Calls visit(patch, band, where both are in an array), always in the same order.
+  /// Calls visit(patch, band, index of their value in an array), always in the same order.
   template <class Visit>
   void forAll(const Visit& visit) const {
     const std::size_t n = system_.matrix.size();
@@ -98,7 +99,7 @@ class ConjugateGradients {
     return sums;
   }
 
-  /// w of rooms and what I - D S D makes of it.
+  /// Finds the rooms, the image of their w under I - D S D, and the coarse matrix.
   void findRooms() {
     if (convergence_.sweeps() < 1 || convergence_.lastSweep() || !anyBright()) return;
     rooms_ = matrixRooms(system_.matrix);
@@ -132,7 +133,7 @@ class ConjugateGradients {
     });
   }
 
-  /// How much of each room's w is in `v` against `dual`.
+  /// The coefficient of each room's w: (dual . v) / (w . (I - D S D) w).
   Sums roomShares(const BandArray& dual, const BandArray& v) const {
     Sums shares = roomDots(dual, v);
     for (std::size_t k = 0; k < shares.size(); ++k) shares[k] *= coarse_[k];
@@ -141,15 +142,15 @@ class ConjugateGradients {
 
   bool deflates() const { return rooms_.count > 0; }
 
-  /// The part of a residual that is to be followed: conjugate to every w.
+  /// The part of a residual that is conjugate to every w: it gives the next direction.
   BandArray withoutRooms(const BandArray& residual) const {
     BandArray p = residual;
     if (deflates()) addRooms(p, -1, up_, roomShares(image_, residual));
     return p;
   }
 
-  /// Steps from z with the true residual `r` until they foresee what is asked for. A product is
-  /// left to check.
+  /// Iterates from z, whose true residual is `r`, until the recurrence predicts convergence. Leaves
+  /// one product for the check of the true residual.
   void cycle(BandArray r) {
     if (deflates()) {
       const Sums shares = roomShares(up_, r);
@@ -200,13 +201,13 @@ class ConjugateGradients {
     return true;
   }
 
-  /// D A^-1/2 r is the residual of B.
+  /// The relative residual of B that the recurrence predicts; D A^-1/2 r is the residual of B.
   double foreseen(const BandArray& r) const {
     const Eigen::ArrayXd most = (down_ * r).abs().colwise().maxCoeff();
     return (most / largest_).maxCoeff();
   }
 
-  /// Half of what is asked for, everywhere.
+  /// Whether the predicted residual is within half the tolerance, for every patch.
   bool enough(const BandArray& r) const {
     const double tolerance = 0.5 * convergence_.tolerance();
     if (foreseen(r) > tolerance) return false;

@@ -10,11 +10,11 @@ namespace radiosity {
 
 namespace {
 
-/// B below 0 by more than this times the largest is more than rounding.
+/// A negative B beyond this share of the largest B is not rounding.
 constexpr double kNegative = 1e-6;
 
-/// I - rho F of one band, over the patches that take part: those that reflect and that light
-/// reaches. All others have B = E; a white room without light, which has no inverse, is among them.
+/// I - rho F of one band, over the patches that reflect and are lit. All other patches have B = E.
+/// This leaves out white rooms without light, whose matrix has no inverse.
 class Factored {
  public:
   Factored(const System& system, const Eigen::MatrixXd& f, Eigen::Index band) {
@@ -55,7 +55,7 @@ class Factored {
   /// False where I - rho F is not positive definite, so that no B >= E solves the system.
   bool solvable() const { return solvable_; }
 
-  /// Adds to B what the residual says it is wrong by.
+  /// Adds to B the correction that solves the system for this residual.
   void improve(const Eigen::ArrayXd& residual,
                Eigen::Ref<Eigen::ArrayXd, 0, Eigen::InnerStride<>> radiosity) const {
     Eigen::VectorXd r(Eigen::Index(members_.size()));
@@ -75,7 +75,7 @@ class Factored {
 
   Eigen::Index at(Eigen::Index k) const { return members_[std::size_t(k)]; }
 
-  /// Patches that see one of those, and so on.
+  /// The patches of `from`, those that see one of them, and so on.
   static Flags reached(const Eigen::MatrixXd& f, Flags from) {
     std::vector<Eigen::Index> next;
     for (Eigen::Index j = 0; j < from.size(); ++j) {
@@ -113,8 +113,7 @@ Eigen::MatrixXd denseOf(const ExchangeMatrix& matrix) {
 
 }  // namespace
 
-// A step of iterative refinement after another: the first is the solution, those that follow take
-// off what rounding left.
+// Iterative refinement: the first step solves the system, later steps remove the rounding error.
 Fields direct(const System& system, Convergence& convergence) {
   Fields fields{system.emission, std::vector<double>(system.emission.size())};
   auto radiosity = asArray(fields.radiosity, system.bands);

@@ -2,11 +2,11 @@
 
 namespace radiosity {
 
-// With reciprocity the light seen by fronts is the light that falls on them, sum_i A_i fronts_i B_i
-// = sum_j A_j (H_j - S_j), S what falls from the sky. The rows' accounts sum to 1 and B = E + rho
-// H, so summing A_i B_i both ways gives
-//     sum A E + sum A S = sum A (1 - rho) H + sum A sky B + sum A backs B,
-// and what is left over measures missing reciprocity and the residual.
+// By reciprocity the light that goes to fronts is the light that falls on them from fronts: sum_i
+// A_i fronts_i B_i = sum_j A_j (H_j - S_j); S is the irradiance from the sky. The accounts of a row
+// sum to 1 and B = E + rho H, so summing A_i B_i both ways gives
+//     sum A E + sum A S = sum A (1 - rho) H + sum A sky B + sum A backs B.
+// The imbalance of this equation measures missing reciprocity and the residual.
 EnergyAccount energyAccount(const FormFactors& factors, std::span<const double> reflectance,
                             const Incoming& incoming, std::span<const double> radiosity,
                             std::span<const double> irradiance, int bands) {

@@ -10,9 +10,10 @@ namespace radiosity {
 
 namespace {
 
-/// Memory for so many vectors a band; rooms of up to two dozen nearly separate parts need fewer.
+/// The most vectors kept a band; rooms of up to two dozen nearly separate parts need fewer.
 constexpr int kMostSteps = 30;
-/// A cycle ends once its residual is so much smaller: beyond, rounding makes the recurrence untrue.
+/// A cycle ends once it has reduced its residual by this factor: beyond, rounding makes the
+/// recurrence untrue.
 constexpr double kTrueReduction = 1e-10;
 
 class Gmres {
@@ -47,7 +48,7 @@ class Gmres {
   }
 
  private:
-  /// A cycle: takes off what `step`, the residual, says B is wrong by. A product is left to check.
+  /// One cycle: corrects B for the residual `step`. Leaves one product to check the true residual.
   void improve(const BandArray& step) {
     const auto bands = std::size_t(system_.bands);
     std::vector<Krylov> krylov;
@@ -79,8 +80,8 @@ class Gmres {
     if (system_.nonnegative) radiosity = radiosity.max(asArray(system_.emission, system_.bands));
   }
 
-  /// Records what the cycle foresees. True where that is half of what is asked for, everywhere, or
-  /// as little as a cycle can tell.
+  /// Records the predicted residual. True if it is within half the tolerance for every patch, or as
+  /// small as a cycle can tell.
   bool foreseenEnough(const std::vector<Krylov>& krylov, const BandArray& step) {
     const auto emission = asArray(system_.emission, system_.bands);
     const auto radiosity = asArray(fields_.radiosity, system_.bands);

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kProgressSteps = 100;
 
-/// Corrections that leave more than half of the residual, one after the other, before it is taken
-/// for rounding.
+/// After this many corrections in a row that each leave more than half of the residual, the rest is
+/// taken for rounding.
 constexpr int kMostStalls = 3;
 
 /// |r| never grows where rho_i rowsum_i <= 1; row sums a little above 1 may let it grow a little

@@ -12,8 +12,8 @@
 
 namespace radiosity {
 
-/// B = E + rho F B for some bands at once. Only bands that carry light: max |E| > 0 in each. E may
-/// be negative: what rays find beyond the means of clusters, a heat flux that is taken out.
+/// B = E + rho F B for some bands at once. Every band carries light: max |E| > 0 in each. E may be
+/// negative: rays may correct the irradiance of a cluster downwards; a heat flux may be taken out.
 struct System {
   System(const ExchangeMatrix& f, int count, std::vector<double> rho, std::vector<double> e);
 
@@ -25,7 +25,7 @@ struct System {
   /// N flags: patches that reflect in some band. The others are black, B = E: their rows of the
   /// matrix are not needed to find B. Empty where every patch reflects.
   std::vector<std::uint8_t> reflecting;
-  std::size_t black = 0;  ///< how many do not
+  std::size_t black = 0;  ///< the number of patches that reflect in no band
 };
 
 using BandArray = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -41,13 +41,13 @@ inline Eigen::Map<const BandArray> asArray(const std::vector<double>& values, in
 /// max_i |E_i| of each band.
 Eigen::ArrayXd largestEmission(const System& system);
 
-/// max_i |E + rho H - B|_i / max_i |E_i| in the worst band. It is the true residual of B where H =
-/// F B.
+/// max_i |E + rho H - B|_i / max_i |E_i| in the worst band. It is the true residual of B if
+/// H = F B.
 double relativeResidual(const System& system, const std::vector<double>& radiosity,
                         const std::vector<double>& irradiance);
 
-/// How much of its own light a patch's residual may be, in tolerances, where a solver is accurate
-/// in a norm alone.
+/// The largest residual of a patch over its own radiosity, in tolerances. It applies to solvers
+/// that are accurate in a norm alone.
 inline constexpr double kOwnShare = 100;
 
 /// Whether |r_i| <= kOwnShare tolerance (E_i + rho_i H_i) for every patch and band. Jacobi's and
@@ -64,8 +64,9 @@ enum class GaveUp {
   rounding  ///< the tolerance is below what rounding lets anyone reach
 };
 
-/// Counts sweeps and says when to stop; tells `progress`, whose steps are hundredths of the way
-/// from a residual of 1 to the tolerance on a logarithmic scale (convergence is linear there).
+/// Counts sweeps, says when to stop and reports progress. A step of `progress` is a hundredth of
+/// the way from a residual of 1 to the tolerance on a logarithmic scale (convergence is linear
+/// there).
 class Convergence {
  public:
   Convergence(double tolerance, int max_sweeps, const std::string& stage, Progress& progress);
@@ -73,8 +74,8 @@ class Convergence {
   Convergence(const Convergence&) = delete;
   Convergence& operator=(const Convergence&) = delete;
 
-  /// A sweep ended with this relative residual; `everywhere`: and smallEverywhere(), where that is
-  /// asked for. Throws Cancelled.
+  /// Records the relative residual after a sweep. `everywhere`: the result of smallEverywhere(),
+  /// for solvers that need it. Throws Cancelled.
   void record(double residual, bool everywhere = true);
   void giveUp(GaveUp why) { gave_up_ = why; }
   void check() const { progress_.check(); }
@@ -83,7 +84,7 @@ class Convergence {
   bool converged() const {
     return !history_.empty() && history_.back() <= tolerance_ && everywhere_;
   }
-  /// Within the tolerance, but for patches that little light reaches.
+  /// Whether patches that little light reaches are not settled yet (smallEverywhere() was false).
   bool darkLeft() const { return !everywhere_; }
   GaveUp gaveUp() const;
   static bool outOfBounds(double residual);
@@ -107,26 +108,27 @@ class Convergence {
   std::vector<double> history_;
 };
 
-/// B and what falls on each patch, H = F B; both N * bands, row-major. The solvers leave H of black
-/// patches as it is: B does not depend on it, see blackIrradiance().
+/// B and the irradiance H = F B of each patch; both N * bands, row-major. The solvers leave H of
+/// black patches as it is: B does not depend on it, see blackIrradiance().
 struct Fields {
   std::vector<double> radiosity;
   std::vector<double> irradiance;
 };
 
-/// H <- F B of the fields, on the rows of patches that reflect, which are counted.
+/// H <- F B of the fields, on the rows of patches that reflect. Counts these rows.
 void multiply(const System& system, Fields& fields, Convergence& convergence);
 
 /// H <- F B of the fields; records the residual of B, with smallEverywhere(), and returns it.
 double measure(const System& system, Fields& fields, Convergence& convergence);
 
-/// Judges a solver that corrects B by solutions of a system of its own, in a norm, until the true
-/// residual of B is small.
+/// Decides when to end for solvers that correct B step by step: each correction solves a system of
+/// its own to a tolerance in a norm.
 class Corrections {
  public:
   Corrections(const System& system, Convergence& convergence)
       : system_(system), convergence_(convergence) {}
-  /// Measures the fields. Whether to end; `indefinite`: the solver has found its system to be so.
+  /// Measures the residual of the fields and says whether to end. `indefinite`: the solver has
+  /// found its system indefinite.
   bool end(Fields& fields, bool indefinite);
   double residual() const { return residual_; }  ///< as measured last
 
@@ -141,8 +143,8 @@ class Corrections {
 /// the symmetric form is symmetric. 0 for patches without area.
 void symmetricScales(const System& system, std::span<double> up, std::span<double> down);
 
-// Each runs until `convergence` is finished; its last residual is the true one of the fields
-// returned.
+// Each solver runs until `convergence` is finished. Its last residual is the true residual of the
+// fields returned.
 Fields jacobi(const System& system, Convergence& convergence);
 Fields gaussSeidel(const System& system, Convergence& convergence);
 /// The matrix must be in the symmetric form.
@@ -156,7 +158,7 @@ Fields petscSolve(const System& system, Convergence& convergence);
 /// conjugateGradients() where the matrix is symmetric, else gmres().
 Fields krylovSolve(const System& system, Convergence& convergence);
 
-/// H of the patches whose rows the solvers passed over.
+/// Fills in H of the black patches, whose rows the solvers leave out.
 void blackIrradiance(const System& system, Fields& fields);
 
 }  // namespace radiosity

@@ -5,8 +5,8 @@
 
 namespace radiosity {
 
-// E + rho F B is both the next B and, less B, the residual of this one: the true residual costs
-// nothing. The B returned is the one the last residual was measured for.
+// E + rho F B is the next B, and E + rho F B - B is the residual of this one: the true residual
+// costs nothing. The last residual recorded is that of the B returned.
 Fields jacobi(const System& system, Convergence& convergence) {
   Fields fields{system.emission, std::vector<double>(system.emission.size())};
   auto radiosity = asArray(fields.radiosity, system.bands);

@@ -6,7 +6,7 @@ namespace radiosity {
 
 namespace {
 
-/// A direction of which so little is new is rounding.
+/// A new direction is rounding if its part orthogonal to the others is below this share.
 constexpr double kRounding = 1e-13;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Makes an iteration converge in few steps where it creeps: bright walls, rooms that hardly
-// exchange light.
+// Speeds up a linear iteration that converges slowly, as with bright walls or with rooms that
+// hardly exchange light.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,11 +7,11 @@
 
 namespace radiosity {
 
-/// GMRES (Saad & Schultz, SIAM J. Sci. Stat. Comput. 7, 1986) for one band of an affine iteration
-/// x <- L x + c, that is for (I - L) d = s with s = L x + c - x: the d by which x is off. Of all
-/// combinations of s, L s, L L s, ... it takes the one that leaves least of s. An error in few
-/// directions, such as one brightness a room, goes in as many steps. The caller applies L; the
-/// result does not depend on the number of threads.
+/// GMRES (Saad & Schultz, SIAM J. Sci. Stat. Comput. 7, 1986) for one band of an affine iteration x
+/// <- L x + c. It solves (I - L) d = s with s = L x + c - x; d is the error of x. Of all
+/// combinations of s, L s, L L s, ... it takes the one that leaves least of s. An error in k
+/// directions, such as one brightness for each of k rooms, is gone after k steps. The caller
+/// applies L; the result does not depend on the number of threads.
 class Krylov {
  public:
   explicit Krylov(const Eigen::VectorXd& step);

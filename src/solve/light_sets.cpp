@@ -1,4 +1,4 @@
-// Sources of light from a table: what shines together, set by set.
+// Sources of light from a table: each set lists the surfaces that shine together.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace radiosity {
 
 namespace {
 
-/// How messages list names.
+/// The most names that a message lists.
 constexpr std::size_t kMostNames = 40;
 
 [[noreturn]] void fail(const CsvTable& table, std::size_t line, const std::string& what) {

@@ -101,7 +101,8 @@ std::string convergenceMessage(const SolveSummary& summary, const Choice& choice
   return fmt::format("no convergence: {}; {}; not usable as it is; {}", numbers, bound, cure);
 }
 
-/// The bound may take as many sweeps as the solution. Factoring is worth more than its two.
+/// The certificate may take as many sweeps as the solution, and this many more after a direct
+/// solution: factoring costs more than the few products that the direct solver counts.
 constexpr int kFactoringSweeps = 16;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// B = E + rho F B for whoever has reflectances and a right-hand side, and nothing else of a scene.
+// Solves B = E + rho F B for callers that have reflectances and a right-hand side, but no scene.
 #pragma once
 
 #include <span>
@@ -10,15 +10,15 @@
 
 namespace radiosity {
 
-/// Errors: InputError where a solver that was asked for cannot solve with this matrix.
+/// Errors: InputError if `solver` cannot solve with this matrix.
 void requireSolver(Solver solver, const ExchangeMatrix& matrix);
 
-/// By options.solver, then bounds the error: fills in the summary but for energy, skips and time.
+/// Solves by options.solver, then bounds the error. Fills in the summary but for energy, skips and
+/// time.
 Fields solveSystem(const System& system, const SolveOptions& options, Progress& progress,
                    SolveSummary& summary);
 
-/// B and H = F B, N * bands, row-major, and how they were found: of the summary all but energy,
-/// skips and time.
+/// B and H = F B, N * bands, row-major, and their summary, without energy, skips and time.
 struct LinearSolution {
   std::vector<double> radiosity;
   std::vector<double> irradiance;
@@ -27,9 +27,9 @@ struct LinearSolution {
 
 /// Solves (I - rho F) B = `source` in every band, by options.solver. `reflectance`: N * bands,
 /// row-major, 0 to 1; 1 is fine in a room that loses light elsewhere. `source`: likewise, finite,
-/// of any sign. A band without a source has B = 0. Where a room neither absorbs nor lets out what
-/// comes in there is no solution: status no_convergence. Errors: InputError where options.solver
-/// cannot solve with this matrix; Cancelled.
+/// of any sign. A band without a source has B = 0. If a room neither absorbs its light nor lets it
+/// out, there is no solution: status no_convergence. Errors: InputError if options.solver cannot
+/// solve with this matrix; Cancelled.
 LinearSolution solveLinear(const ExchangeMatrix& matrix, std::span<const double> reflectance,
                            std::span<const double> source, int bands, const SolveOptions& options,
                            Progress& progress);

@@ -1,4 +1,4 @@
-// Which patches are joined by exchange of light.
+// The rooms of a matrix: sets of patches that exchange light.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 namespace radiosity {
 
 /// The connected components of a symmetric matrix: the room of each patch, numbered from 0 by the
-/// first patch stored. Light from one never reaches another. One walk over what is stored, which
-/// ends as soon as all patches are joined.
+/// first patch stored. Light from one room never reaches another. The search walks once over the
+/// stored entries and ends as soon as all patches are joined.
 struct MatrixRooms {
   std::vector<Index> of_patch;  ///< N
   std::size_t count = 0;

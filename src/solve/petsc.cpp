@@ -1,9 +1,9 @@
 // PETSc's solvers, where the rows of the matrix lie in several processes.
 //
-// With H = F B and z = L H, B = E + R z is the solution where (I - L F R) z = L F E. In the
-// symmetric form L = D sqrt(A) and R = D A^-1/2, D = sqrt(rho), as in conjugate_gradients.cpp; else
-// L = rho and R = 1. PETSc's residual is that of its recurrence, in a norm; the true one of B
-// follows, and where it is not small enough, what is missing is solved for in turn.
+// With H = F B and z = L H, B = E + R z is the solution if (I - L F R) z = L F E. In the symmetric
+// form L = D sqrt(A) and R = D A^-1/2, D = sqrt(rho), as in conjugate_gradients.cpp; else L = rho
+// and R = 1. PETSc stops by a norm of the residual of its recurrence. We then measure the true
+// residual of B; if it is too large, PETSc solves for a correction of z.
 #include <algorithm>
 #include <utility>
 
@@ -15,10 +15,12 @@ namespace radiosity {
 
 namespace {
 
-/// Of what is asked for: PETSc stops by the 2-norm, and the largest residual is to be below.
+/// The share of the tolerance that PETSc is asked for: it stops by the 2-norm, but the tolerance is
+/// for the largest residual.
 constexpr double kMargin = 0.1;
 constexpr double kLeastReduction = 1e-14;
-/// Where the residual is small enough but for patches that little light reaches.
+/// The reduction that PETSc is asked for when only patches that little light reaches are not
+/// settled.
 constexpr double kSettling = 1e-3;
 
 class PetscSolve {
@@ -46,7 +48,7 @@ class PetscSolve {
   }
 
  private:
-  /// Adds the z that the residual `residual` of B is short of.
+  /// Solves for a correction of z and adds it. `residual`: the relative residual of B.
   void improve(double residual) {
     if (rooms_.of_patch.empty() && system_.matrix.isSymmetric()) findRooms();
     std::vector<double> missing(z_.size());
@@ -92,7 +94,7 @@ class PetscSolve {
   std::vector<double> z_;
   Fields fields_;
   MatrixRooms rooms_;
-  std::vector<unsigned> room_of_;  // by place: room * bands + band
+  std::vector<unsigned> room_of_;  // by patch * bands + band: room * bands + band
   bool indefinite_ = false;
 };
 

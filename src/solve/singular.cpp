@@ -11,7 +11,7 @@ constexpr double kNoChange = 1e-13;
 
 using Marks = std::vector<double>;  // 0 or 1
 
-/// Patches of `room` that light from an emitter in it reaches. The room is closed under "sees".
+/// The patches of `room` that are lit by an emitter in it. The room is closed under "sees".
 std::vector<std::size_t> litPatches(const System& system, std::size_t band, const Marks& room) {
   const auto bands = std::size_t(system.bands);
   Marks lit(room.size(), 0);
@@ -46,7 +46,7 @@ void markAllThatSee(const ExchangeMatrix& matrix, int bands, std::vector<double>
       matrix.sweep(marks, bands, update);
       continue;
     }
-    // Rows of several processes: all at once, which takes a few steps more.
+    // The rows lie in several processes: a product updates all at once and takes a few steps more.
     matrix.product(marks, bands, seen);
     for (std::size_t i = 0; i < matrix.size(); ++i) update(i, &seen[i * width]);
   }
@@ -56,10 +56,11 @@ bool looksOut(const FormFactors& factors, std::size_t row) {
   return factors.backs[row] + factors.sky[row] > kNoChange;
 }
 
-// Power absorbed at i is A_i (1 - rho_i) H_i, and H_i gathers along row i; "light from i reaches j"
-// therefore means a stored F_ij, then F_jk, and so on. The patches that reach no loss are closed
-// under "sees" and the rows of rho F restricted to them sum to 1: I - rho F is singular there, and
-// where one of them emits there is no solution. Raw rows need no symmetry for this to hold.
+// The power absorbed at i is A_i (1 - rho_i) H_i, and H_i gathers along row i. So light from i
+// reaches k by a chain of stored entries F_ij, F_jk, and so on. The patches whose light reaches no
+// loss are closed under "sees", and the rows of rho F restricted to them sum to 1: I - rho F is
+// singular there, and if one of them emits, there is no solution. The argument needs no symmetry,
+// so it holds for raw rows, too.
 WhiteRoom findWhiteRoom(const FormFactors& factors, const System& system) {
   const std::size_t n = system.matrix.size();
   const auto bands = std::size_t(system.bands);

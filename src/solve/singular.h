@@ -1,4 +1,4 @@
-// Where light has a way out, what it reaches, and rooms that it cannot leave and nothing absorbs.
+// Finds rooms that neither absorb light nor let it out, and the patches that light reaches.
 #pragma once
 
 #include <vector>
@@ -14,18 +14,18 @@ struct WhiteRoom {
   std::vector<std::size_t> patches;
 };
 
-/// Marks, 0 or 1, N * bands: spreads them to every row that sees a marked one in that band:
-/// sum_j F_ij mark_j > 0 says that row i does.
+/// Marks every row that sees a marked row in the same band, directly or through others: row i does
+/// where sum_j F_ij mark_j > 0. `marks`: 0 or 1, N * bands.
 void markAllThatSee(const ExchangeMatrix& matrix, int bands, std::vector<double>& marks);
 
-/// True where some of what leaves a row ends on the sky or on backs. In a closed scene it is false,
-/// however far computed rows are from 1.
+/// True if light from this row goes to the sky or to backs. In a closed scene it is false, however
+/// far the computed row sums are from 1.
 bool looksOut(const FormFactors& factors, std::size_t row);
 
-/// The patches from which light, however often reflected, reaches no loss: no patch with rho < 1,
-/// no sky, no back; and which an emitter lights. Energy comes in and never leaves: B is infinite.
-/// The first band that has such patches; none: `patches` is empty. A white room without light is
-/// no such room: it stays dark.
+/// Finds lit patches whose light, however often reflected, reaches no loss: no patch with rho < 1,
+/// no sky, no back. Energy comes in and never leaves there: B is infinite. Returns the first band
+/// that has such patches; `patches` is empty if there is none. A white room without light does not
+/// count: it stays dark.
 WhiteRoom findWhiteRoom(const FormFactors& factors, const System& system);
 
 }  // namespace radiosity

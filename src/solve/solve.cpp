@@ -57,7 +57,7 @@ std::vector<double> skyIrradiance(const FormFactors& factors, std::span<const do
   return irradiance;
 }
 
-/// E plus the reflected irradiance that is given.
+/// E plus rho times the given irradiance.
 std::vector<double> sourceOf(std::span<const double> reflectance, std::span<const double> emission,
                              std::span<const double> given) {
   std::vector<double> source(emission.begin(), emission.end());
@@ -65,7 +65,7 @@ std::vector<double> sourceOf(std::span<const double> reflectance, std::span<cons
   return source;
 }
 
-/// Nothing leaves any patch.
+/// Fills in the summary of a scene in which B = 0 for every patch.
 void nameDarkness(const std::vector<double>& from_sky, SolveSummary& summary) {
   const bool sky = std::any_of(from_sky.begin(), from_sky.end(), [](double h) { return h > 0; });
   summary.status = sky ? SolveStatus::converged : SolveStatus::no_light;

@@ -1,4 +1,4 @@
-// What solve() of patches and solve() of clusters share.
+// The part of solve() that patches and clusters have in common.
 #pragma once
 
 #include <span>
@@ -8,22 +8,23 @@
 
 namespace radiosity {
 
-/// How messages call patches: by surface where surfaces are known.
+/// Names of patches in messages: their surfaces, where these are known.
 struct PatchNames {
   std::span<const Index> group;
   std::span<const std::string> names;
 
   std::string of(std::size_t i) const;
-  /// The surfaces of some patches (else the patches), each once, at most twenty of them.
+  /// A list of the surfaces of some patches, or of the patches if surfaces are not known: each
+  /// once, at most twenty.
   std::string list(std::span<const std::size_t> patches) const;
 };
 
-/// Errors: InputError where a reflectance is not within 0 and 1, or an emission not finite and >=
-/// 0.
+/// Errors: InputError if a reflectance is not within 0 and 1, or an emission not finite and >= 0.
 void checkMaterials(std::span<const double> reflectance, std::span<const double> emission,
                     int bands, const PatchNames& names);
 
-/// solve(), with more irradiance than the matrix and the sky give: N * bands, W/m^2, or empty.
+/// solve(), with additional irradiance `more` beyond that of the matrix and the sky: N * bands,
+/// W/m^2, or empty.
 Solution solveRows(const FormFactors& factors, std::span<const double> reflectance,
                    std::span<const double> emission, int bands, const SolveOptions& options,
                    Progress& progress, const PatchNames& names, std::span<const double> sky,

@@ -59,7 +59,7 @@ void writeTallCsv(CheckedFile& file, const NamedFactors& factors, Progress& prog
           if (has_error) fmt::format_to(out, ",{}", factors.entryError(a, b));
           fmt::format_to(out, ",{}\n", factors.reciprocityResidual(a, b));
         }
-        // Neither gives anything back: no residual, and no figure of their own.
+        // Sky and backs exchange nothing: they have no residual and no error figure.
         const char* rest = has_error ? ",," : ",";
         fmt::format_to(out, "{},{},{}{}\n{},backs,{}{}\n", from, csvField(factors.sky_name),
                        factors.sky[a], rest, from, factors.backs[a], rest);

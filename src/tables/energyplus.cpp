@@ -13,7 +13,7 @@ namespace radiosity {
 
 namespace {
 
-/// Of names of EnergyPlus objects.
+/// The longest name of an EnergyPlus object.
 constexpr std::size_t kLongestIdfName = 100;
 
 void requireName(const std::string& path, const std::string& name) {
@@ -27,7 +27,7 @@ void requireName(const std::string& path, const std::string& name) {
       path, name, kLongestIdfName));
 }
 
-/// The most that EnergyPlus takes (IDD: \maximum 1.0), but for the digits that are not written.
+/// The largest factor that EnergyPlus takes (IDD: \maximum 1.0), but for the digits not written.
 constexpr double kMostFactor = 1 + 5e-12;
 
 void requireFactor(const std::string& path, const NamedFactors& factors, std::size_t a,

@@ -1,4 +1,4 @@
-// Surfaces joined under one name by patterns.
+// Groups surfaces under one name by patterns.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace radiosity {
 namespace {
 
 struct Wish {
-  std::string option;  ///< as it was given, for messages
+  std::string option;  ///< the text as given, for messages
   std::string name;
   std::string pattern;
 };
@@ -35,7 +35,8 @@ Wish parse(const std::string& text) {
   return wish;
 }
 
-/// A name as it stands may hold characters that mean something in a pattern.
+/// Whether a surface matches. Its literal name does, too: it may have special characters of
+/// patterns.
 bool matches(const Wish& wish, const std::string& surface) {
   return surface == wish.pattern || matchesPattern(wish.pattern, surface);
 }

@@ -1,4 +1,4 @@
-// Tables as JSON, written a row at a time.
+// Writes tables as JSON, one row at a time.
 #include <fmt/format.h>
 
 #include <functional>
@@ -15,14 +15,14 @@ std::string dumped(const nlohmann::json& value) {
   return value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// "key": [...] of a value of each row.
+/// "key": [...] with a value for each row.
 std::string member(const char* key, std::span<const double> values) {
   return fmt::format("\"{}\": {}", key, dumped(std::vector<double>(values.begin(), values.end())));
 }
 
 using ValueOf = std::function<double(std::size_t a, std::size_t b)>;
 
-/// "key": [[...], ...] of a value of each pair.
+/// "key": [[...], ...] with a value for each pair.
 void writeSquare(CheckedFile& file, const char* key, const NamedFactors& factors,
                  const ValueOf& value) {
   file.write(fmt::format(",\n\"{}\": [", key));

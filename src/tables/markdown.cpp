@@ -1,4 +1,4 @@
-// Tables for people: Markdown, with columns that line up on a terminal too.
+// Tables for people: Markdown, with columns that also line up on a terminal.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ std::string markdownOf(const std::vector<Cells>& rows, std::size_t text) {
   return out;
 }
 
-/// Rows of the table beyond `most` are counted, not made.
+/// The rows of a table. Rows beyond `most` are only counted.
 class Table {
  public:
   Table(Cells header, std::size_t most) : rows_({std::move(header)}), most_(most) {}

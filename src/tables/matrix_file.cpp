@@ -19,12 +19,11 @@ namespace radiosity {
 
 namespace {
 
-/// Below this a row of a file loses nothing to the sky: what text in six digits leaves.
+/// A share of the sky below this counts as 0: text in six digits leaves as much.
 constexpr double kClosedWithin = 1e-5;
-/// Rows that sum to more than this give off more than there is.
+/// Rows that sum to more than this would send out more light than there is.
 constexpr double kMostRowSum = 1 + 1e-4;
-/// Above this residual pairs are far from reciprocal; coarse hemicubes as they are reach a few
-/// percent.
+/// The largest reciprocity residual without a warning: coarse hemicubes reach a few percent.
 constexpr double kMostUneven = 0.05;
 
 bool isClosed(std::span<const double> sky) {
@@ -60,7 +59,7 @@ std::string firstLine(const std::string& path) {
   return line.substr(0, line.find_first_of("\r\n"));
 }
 
-/// For a file that begins as none of the formats does; its name says which was meant.
+/// Refuses a file whose start fits none of the formats; its name tells the intended one.
 [[noreturn]] void refuseStart(const std::string& path) {
   const std::string extension = lowerExtension(path);
   const std::string why =
@@ -81,7 +80,7 @@ MatrixFile readOfResults(const std::string& path) {
   MatrixFile file;
   file.path = path;
   file.factors = factorsOfUnknowns(made(results->mesh).mesh, factors);
-  // The matrix lives as long as the results that it is part of.
+  // The pointer keeps the results alive, since the matrix is a part of them.
   file.factors.matrix = std::shared_ptr<const ExchangeMatrix>(results, &factors.matrix);
   return file;
 }

@@ -1,4 +1,4 @@
-// Readers of matrices, a format a file.
+// Readers of matrix files, one for each format.
 #pragma once
 
 #include <span>
@@ -9,10 +9,11 @@
 
 namespace radiosity {
 
-/// Accounts of a file that has none: sky is what rows lack of 1.
+/// Sets the accounts for a file without them: the sky gets 1 minus the row sum.
 void setDefaultAccounts(NamedFactors& factors);
 
-/// `area`: N, or empty for those of the file. InputError for another number.
+/// Returns `area` (N values), or those of the file if `area` is empty. Errors: InputError for
+/// another number.
 std::vector<double> chosenAreas(const std::string& path, std::span<const double> area,
                                 std::vector<double> of_file);
 
@@ -20,7 +21,7 @@ inline constexpr std::string_view kMatrixMarketMark = "%%MatrixMarket";
 MatrixFile readMatrixMarket(const std::string& path, std::span<const double> area,
                             Progress& progress);
 
-/// "View3D 3.3.1 0 1 0 6", or the same by another program.
+/// The header line "View3D 3.3.1 0 1 0 6", or that of another program.
 struct View3dHeader {
   int format = 0;  ///< 0 text, 1 binary
   bool enclosure = false;

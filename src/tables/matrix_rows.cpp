@@ -11,7 +11,7 @@ namespace radiosity {
 
 namespace {
 
-/// Where each row begins in entries sorted by row, and where the last ends.
+/// The first entry of each row in entries sorted by row, and the end of the last row.
 std::vector<std::size_t> rowStarts(const std::vector<Entry>& entries, std::size_t rows) {
   std::vector<std::size_t> starts(rows + 1, 0);
   for (const Entry& entry : entries) ++starts[entry.row + 1];

@@ -1,4 +1,4 @@
-// A matrix from its entries in any order.
+// Makes a matrix from its entries in any order.
 #pragma once
 
 #include <span>
@@ -15,7 +15,7 @@ struct Entry {
   double value = 0;
 };
 
-/// Row form, double precision. InputError naming the file and the entry for one given twice.
+/// Row form, double precision. Errors: InputError naming the file and an entry that is given twice.
 ExchangeMatrix matrixOfEntries(const std::string& path, std::vector<Entry> entries,
                                std::vector<double> area);
 

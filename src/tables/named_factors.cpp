@@ -1,4 +1,4 @@
-// Form factors between groups of surfaces, from those between patches.
+// Makes form factors between groups of surfaces from those between patches.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,14 +13,14 @@ namespace radiosity {
 
 namespace {
 
-/// Each unknown's surface: clusters are of one.
+/// The surface of each unknown: a cluster has only one.
 std::vector<Index> surfaceOfUnknowns(const PatchMesh& mesh) {
   std::vector<Index> surface(mesh.unknowns(), 0);
   for (std::size_t i = 0; i < mesh.size(); ++i) surface[mesh.unknownOf(i)] = mesh.surface[i];
   return surface;
 }
 
-/// A value of each unknown, as its rows' means by area.
+/// The means by area, for each row, of a value of its unknowns.
 std::vector<double> meansOfRows(std::span<const double> values, std::span<const double> area,
                                 const NamedFactors& rows) {
   std::vector<double> means(rows.size(), 0.0);

@@ -1,4 +1,4 @@
-// MatrixMarket in (Boisvert, Pozo & Remington 1996, NISTIR 5935).
+// Reads MatrixMarket (Boisvert, Pozo & Remington 1996, NISTIR 5935).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -43,7 +43,7 @@ class Reader {
     throw InputError(fmt::format("{}:{}: {}", path_, line_number_, what));
   }
 
-  /// The next line that is neither empty nor a comment, which are kept.
+  /// Moves to the next line that is neither empty nor a comment. Keeps comments on rows.
   bool nextLine() {
     while (at_ < text_.size()) {
       const std::size_t end = std::min(text_.find('\n', at_), text_.size());
@@ -130,7 +130,7 @@ class Reader {
       fail(dense_ ? "has more than one value" : "is not `row column value`");
     }
     Entry entry;
-    if (dense_) {  // column by column; of a symmetric matrix from the diagonal down
+    if (dense_) {  // column by column; in a symmetric matrix from the diagonal down
       entry = {Index(dense_row_), Index(dense_column_), valueIn(words[0])};
       if (++dense_row_ == n_) {
         ++dense_column_;
@@ -170,7 +170,7 @@ class Reader {
     return file;
   }
 
-  /// Comments count where they speak of each row, once.
+  /// Whether there is exactly one comment for each row; otherwise comments are ignored.
   bool saysAllRows() const {
     if (comments_.size() != n_) return false;
     for (std::size_t i = 0; i < n_; ++i) {

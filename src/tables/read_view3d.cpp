@@ -1,4 +1,4 @@
-// View3D's view factors in, text and binary (View3D User Manual 3.3, "View Factor Output File").
+// Reads View3D's view factors, text and binary (View3D User Manual 3.3, "View Factor Output File").
 #include <fmt/format.h>
 
 #include <cstring>
@@ -13,7 +13,7 @@ namespace radiosity {
 
 namespace {
 
-/// Bytes of the header line of a binary file, its end included.
+/// The bytes of the header line of a binary file, its end included.
 constexpr std::size_t kBinaryHeader = 32;
 
 std::vector<double> numbersOfText(const std::string& path, std::string_view text) {
@@ -65,7 +65,7 @@ std::vector<double> readNumbers(const std::string& path, const std::string& byte
 
 std::optional<View3dHeader> parseView3dHeader(std::string_view line) {
   const std::vector<std::string_view> words = splitWords(line.substr(0, line.find('\n')));
-  // Other files begin with a letter and numbers.
+  // Files of other kinds begin with a letter and numbers.
   constexpr std::size_t kShortestProgram = 3;
   if (words.size() != 6 || words[0].size() < kShortestProgram) return std::nullopt;
   std::array<long long, 4> numbers{};

@@ -1,4 +1,4 @@
-// What a MatrixMarket file of ours says of its rows, in comments.
+// The comments on rows in a MatrixMarket file of ours.
 #pragma once
 
 #include <optional>
@@ -17,9 +17,9 @@ struct RowComment {
   std::string name;
 };
 
-/// "row I area A sky S backs B name NAME" of row i, from 0; at most a line of the format.
+/// "row I area A sky S backs B name NAME" for row i, from 0; not longer than a line of the format.
 std::string rowComment(const NamedFactors& factors, std::size_t i);
-/// The same read; nothing for other comments.
+/// Parses such a comment; empty for other comments.
 std::optional<RowComment> parseRowComment(std::string_view text);
 
 }  // namespace radiosity

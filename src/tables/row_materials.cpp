@@ -1,4 +1,4 @@
-// Reflectance, emission and areas of the rows of a matrix, from tables.
+// Reads reflectance, emission and areas of the rows of a matrix from tables.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace radiosity {
 
 namespace {
 
-/// The name that stands for every row that no other line names.
+/// The name for every row that no other line names.
 constexpr const char* kOthers = "*";
 
 class RowTable {
@@ -190,7 +190,7 @@ std::vector<double> readAreas(const std::string& path) {
   const std::optional<std::size_t> named = table.column("area_m2");
   std::vector<double> areas;
   areas.reserve(table.rows.size() + 1);
-  // Without a header the first number stands where it would be.
+  // Without a header, the first number is in its place.
   if (!named && table.header.size() > 1) {
     throw InputError(path + ": has no column area_m2; name it so, or give one number a line");
   }

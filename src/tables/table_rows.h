@@ -1,4 +1,4 @@
-// Rows of named form factors, one after the other.
+// Visits the rows of named form factors one after the other.
 #pragma once
 
 #include <algorithm>
@@ -9,14 +9,14 @@
 
 namespace radiosity {
 
-/// What a row is called in a file: its name, or its number.
+/// The label of a row in a file: its name, or its number.
 inline std::string labelOf(const NamedFactors& factors, std::size_t a) {
   return factors.numbered ? std::to_string(a) : factors.names[a];
 }
 
-/// InputError where a receiver would have another one's name.
+/// Throws InputError if two receivers would have the same name.
 void requireDistinctNames(const std::string& path, const NamedFactors& factors);
-/// InputError where a matrix of numbered rows has more values than kMostTableValues.
+/// Throws InputError if a matrix of numbered rows has more values than kMostTableValues.
 void requireTableSize(const std::string& path, const NamedFactors& factors);
 
 /// Calls visit(a, row) with all N values of each row in order. `stage`: for the progress.

@@ -35,7 +35,7 @@ void writeView3d(const std::string& path, const NamedFactors& factors,
                                  emissivity.size(), factors.size()));
   }
   CheckedFile file(path);
-  // Readers take a line of 31 characters.
+  // Readers expect a line of 31 characters.
   file.write(fmt::format("{:<30}\n", fmt::format("radiosity {} 0 {} 0 {}", RADIOSITY_VERSION,
                                                  factors.closed ? 1 : 0, factors.size())));
   file.write(lineOf(factors.matrix->area()));

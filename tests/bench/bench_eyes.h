@@ -1,4 +1,4 @@
-// From where hemicubes are timed.
+// The eyes of timed hemicubes.
 #pragma once
 
 #include <cstddef>

@@ -23,8 +23,8 @@ std::vector<RateScene> rateScenes() {
 }
 
 std::vector<CurveScene> curveScenes(bool quick) {
-  // The furnished room and the curved scene start at what their polygons need: about 9,500 and
-  // 2,200 patches.
+  // The furnished room and the curved scene start at the least that their polygons need: about
+  // 9,500 and 2,200 patches.
   std::vector<CurveScene> scenes = {{"cornell-box-closed", 250, 1e-7},
                                     {"cornell-box-closed", 1000, 1e-7}};
   if (quick) return scenes;

@@ -1,4 +1,4 @@
-// What the benchmark looks at: scenes of data/, meshed.
+// Scenes of the benchmark: those of data/, meshed.
 #pragma once
 
 #include <string>
@@ -28,7 +28,7 @@ struct RateScene {
 /// The Cornell box and the cluttered scene.
 std::vector<RateScene> rateScenes();
 
-/// For error against time. `quick`: those that take seconds.
+/// For error against time. `quick`: scenes that take seconds.
 struct CurveScene {
   std::string name;
   std::size_t patches;

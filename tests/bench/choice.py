@@ -55,7 +55,7 @@ class Case:
         return run.code == 0
 
     def factors(self, method, tolerance, limit):
-        """Processor seconds and the report; nothing where it took longer."""
+        """Processor seconds and the report; None if it took longer."""
         report = self.folder / f"{method}.json"
         run = self.run("factors", self.mesh, "-o", self.folder / "out.h5", "--method", method,
                        "--tolerance", tolerance, "--report", report, limit=limit)

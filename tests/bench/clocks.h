@@ -1,4 +1,4 @@
-// What time is measured with.
+// Clocks and repeated timings.
 #pragma once
 
 #include <sys/resource.h>
@@ -67,7 +67,7 @@ inline double threadSeconds() {
   return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
 }
 
-/// The least of several timings: what other jobs take from the shared caches does not count.
+/// The least of several timings, which excludes other jobs' use of shared caches.
 inline double least(const std::vector<double>& times) {
   return *std::min_element(times.begin(), times.end());
 }

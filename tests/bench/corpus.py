@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
 """Runs the program on every scene file under a folder: corpus.py PROGRAM FOLDER [options]
 
-Each file gets `radiosity factors FILE -o x.h5 --report r.json` and nothing else, as someone would
-who tries the program on a file of theirs. A table says what came of it: outcome, sizes, method,
-times and memory beside what was foreseen, the error figure, and for what failed its last line. The
-results file is read back: nothing in it may be NaN or infinite.
+Each file gets `radiosity factors FILE -o x.h5 --report r.json` and nothing else, like a person's
+first try on a file of their own. A table gives the result: outcome, sizes, method, times and
+memory beside the forecast, the error figure, and the last line of each failure. The results file is
+read back: nothing in it may be NaN or infinite.
 
   --limit S     seconds a file may take; default 300. It is interrupted then, and killed ten later
   --out DIR     where corpus.csv and corpus.md go; default out/bench. They grow file by file
   --match TEXT  only files whose path holds this
-  --            what comes after goes to the program, too
+  --            arguments after it go to the program, too
 
-Exit code 1 where a file was not finished in time, failed, or holds what is no number.
+Exit code 1 if a file was not finished in time, failed, or holds a non-finite number.
 """
 import argparse
 import json
@@ -90,8 +90,8 @@ class Finished:
 
 
 def not_finite(path):
-    """Fields of the results file that hold what is no finite number. In a process of its own: what
-    this one holds when it starts the program would count as the program's."""
+    """Fields of the results file with non-finite numbers. In a process of its own: this one's memory
+    when it starts the program would count as the program's."""
     script = pathlib.Path(__file__).with_name("not_finite.py")
     return subprocess.run([sys.executable, script, path], check=True, capture_output=True,
                           text=True).stdout.strip()
@@ -106,7 +106,7 @@ def outcome(run, limit):
 
 
 def last_words(run):
-    """The one-line error; of what ran out of time, where it was."""
+    """The one-line error; after the time limit, the last stage."""
     lines = [line for line in run.err.splitlines() if line.strip()]
     if run.late:
         lines = [line for line in lines if not line.startswith("radiosity:")]
@@ -174,7 +174,7 @@ def print_row(values, width):
 
 
 def print_ratios(rows, foreseen, true, what):
-    """How far what was foreseen is from what was needed."""
+    """How far the forecast is from the need."""
     ratios = [row[foreseen] / row[true] for row in rows
               if row[foreseen] and row[true] and row["outcome"] == "done"]
     if not ratios:

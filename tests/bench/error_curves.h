@@ -32,7 +32,7 @@ struct Measurement {
   std::optional<double> radiosity;
   std::size_t bytes = 0;         ///< of the matrix
   double largest_row_error = 0;  ///< max |fronts + backs + sky - 1|
-  /// What the exact method says of itself; empty for the others.
+  /// The exact method's own estimate; empty for the others.
   std::optional<OwnEstimate> own;
   ExactReport exact;
 };

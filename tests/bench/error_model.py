@@ -14,12 +14,12 @@ random seeds), by the rules of error_model/fits.py. It takes some five minutes o
 
   --folder DIR   more scenes to score on: every scene file below; those that fail or take too long
                  are named and left out
-  --record       writes what was found to error_model/constants.csv, values held as they are
+  --record       writes the results to error_model/constants.csv, held values unchanged
   --write NAME   takes over the values of these constants that --record left there, to two digits
 
-The table: constant, value held, value refitted to the training scenes, and the share of what the
-constant decides whose error is below what is stated of it (root mean squares: kPairMargin times
-that), with the value held in training and scoring scenes, and with the refitted one in the latter.
+The table: constant, value held, value refitted to the training scenes, and the share of the
+constant's cases whose error is below the stated one (root mean squares: kPairMargin times that),
+with the value held in training and scoring scenes, and with the refitted one in the latter.
 """
 import argparse
 import concurrent.futures
@@ -37,8 +37,8 @@ PAIRS = 800  # of a scene
 SHAPES = 600  # pairs of each shape
 LIMIT = 600  # seconds that one run of error_samples may take
 
-# File, patches, and for rows the tolerance of what is taken for true, and those scored; none where
-# they take too long.
+# File, patches, and for rows the tolerance of the reference, and those scored; none if they take
+# too long.
 TRAINING = [
     ("cornell-box-closed.obj", 985, 1e-6, (1e-2, 1e-3, 1e-4)),
     ("two-rooms.obj", 500, 1e-6, (1e-2, 1e-3, 1e-4)),
@@ -66,7 +66,7 @@ def jobs(scenes, seed):
 
 
 def sample(program, words):
-    """What error_samples prints, or nothing, and why."""
+    """The output of error_samples, or nothing, and why."""
     try:
         done = subprocess.run([program, *words], capture_output=True, text=True, timeout=LIMIT)
     except subprocess.TimeoutExpired:
@@ -97,7 +97,7 @@ def held_values(record):
 
 
 def text_of(value):
-    """To two digits; empty where nothing could be refitted."""
+    """To two digits; empty if nothing could be refitted."""
     if isinstance(value, list):
         return " ".join("kNever" if x == math.inf else text_of(x) or "-" for x in value)
     return "" if math.isnan(value) else f"{value:.2g}"

@@ -1,4 +1,4 @@
-// Hemicubes a second by whoever draws them.
+// Hemicubes a second by each eye.
 #pragma once
 
 namespace radiosity::bench {

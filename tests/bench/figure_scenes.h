@@ -15,9 +15,9 @@ struct FigureScene {
   std::function<Scene()> make;
 };
 
-/// Where points agree by symmetry (boxes in boxes), where shadows begin at the sampled patch
-/// (touching boxes), where they are thin (slivers), and meshes of the Cornell box and of two rooms
-/// that the curves do not have.
+/// Points that agree by symmetry (boxes in boxes), shadows that begin at the sampled patch
+/// (touching boxes), thin shadows (slivers), and meshes of the Cornell box and of two rooms that
+/// the curves do not have.
 std::vector<FigureScene> figureScenes();
 
 }  // namespace radiosity::bench

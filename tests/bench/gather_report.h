@@ -1,4 +1,4 @@
-// What the benchmark of the gather method prints and writes.
+// Output of the benchmark of the gather method.
 #pragma once
 
 #include <string>

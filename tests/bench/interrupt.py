@@ -3,8 +3,8 @@
 
 Each scene file under a folder is run several times (`radiosity factors FILE -o x.h5`, or another
 subcommand) and gets a SIGINT after a time drawn at random, evenly in its logarithm, so that short
-stages are met as well as long ones. Said of every answer that took longer than half a second: how
-long, and what the program was doing. Nothing may be left behind but what was there before.
+stages are met as well as long ones. Every answer that took longer than half a second is reported
+with its time and the program's stage. Only files that were there before may be left.
 
   --each N       runs a file; default 5
   --most S       the latest interruption; default 60
@@ -33,14 +33,14 @@ OUTPUT = {"factors": "x.h5", "mesh": "x.h5", "solve": "x.h5", "render": "x.png"}
 
 
 def stage_of(err, out):
-    """The stage last said to be at work, or else the last that was said to be done."""
+    """The last stage reported at work, or else the last one reported done."""
     stages = re.findall(r"^([a-z ]+): (?:\d+%|done)", err, re.M)
     words = [line for line in out.splitlines() if line.strip()]
     return stages[-1] if stages else (words[-1][:60] if words else "reading")
 
 
 def interrupt(program, command, scene, moment):
-    """Seconds to the answer (None: the run was over before), stage, and what is wrong with it."""
+    """Seconds to the answer (None: the run was over before), stage, and its fault."""
     with tempfile.TemporaryDirectory(prefix="interrupt-") as folder:
         process = subprocess.Popen(
             [program, command, str(scene), "-o", f"{folder}/{OUTPUT[command]}"],

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Names the fields of a results file that hold what is no finite number: not_finite.py FILE"""
+"""Names the fields of a results file with non-finite numbers: not_finite.py FILE"""
 import sys
 
 import h5py

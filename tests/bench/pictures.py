@@ -78,7 +78,7 @@ class Bench:
         self.good = True
 
     def run(self, command):
-        """None where it failed, which is said."""
+        """None if it failed, which is reported."""
         run = Finished([str(word) for word in command], self.folder, LIMIT)
         if run.code == 0:
             return run
@@ -101,7 +101,7 @@ class Bench:
             print(f"path tracer: {mean:g} W/m^2/sr in a furnace of 2 / pi", file=sys.stderr)
 
     def truth(self, scene):
-        """Blocks of the truth, traced where the folder has none of the same scene and tracer."""
+        """Blocks of the truth, traced if the folder has none of the same scene and tracer."""
         file = ROOT / "data" / f"{scene}.obj"
         made_of = hashlib.sha256()
         for part in (file, file.with_suffix(".mtl"), *sorted((ROOT / "tests/bench/path_tracer")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws error against time from what the benchmark wrote: plot.py FOLDER
+"""Draws error against time from the benchmark's files: plot.py FOLDER
 
 Reads error-against-time.csv and exact-against-rays.csv, writes error-against-time.svg and .png, and
 the main figures as a Markdown table, error-against-time.md.

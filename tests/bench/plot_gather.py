@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the gather method beside the matrix from what the benchmark wrote: plot_gather.py FOLDER
+"""Draws the gather method beside the matrix from the benchmark's files: plot_gather.py FOLDER
 
 Reads gather-costs.csv, writes gather-costs.svg and .png, and the main figures as a Markdown table,
 gather-costs.md. All axes are logarithmic. Above, a panel a mesh: seconds of one processor by
@@ -59,7 +59,7 @@ def draw_passes(axes, rows, value):
 
 def draw_memory(axes, rows):
     for method, (colour, mark, line) in STYLES.items():
-        # What gathering holds does not depend on the passes.
+        # The memory of gathering does not depend on the passes.
         points = {int(r["patches"]): int(r["bytes"]) / MEBIBYTE
                   for r in rows if r["method"] == method}
         axes.plot(*zip(*sorted(points.items())), color=colour, marker=mark, markersize=4.5,

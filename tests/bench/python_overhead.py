@@ -1,4 +1,4 @@
-"""What a call through Python takes beyond the computation itself, and what views take.
+"""The time of a call through Python beyond the computation itself, and of views.
 
     PYTHONPATH=build/release/python python3 tests/bench/python_overhead.py
 
@@ -15,7 +15,7 @@ import numpy as np
 import radiosity as rad
 
 SCENE = Path(__file__).parents[2] / "data/cornell-box-closed.obj"
-SECONDS = 6  # of each call: a run of milliseconds wants many, to find one that nothing disturbed
+SECONDS = 6  # of each call: a run of milliseconds needs many, to find an undisturbed one
 
 
 def timed(call, inside):

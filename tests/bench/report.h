@@ -1,4 +1,4 @@
-// What the benchmark prints and writes.
+// Output of the benchmark.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ void printMeasurement(const Measurement& measurement);
 /// A line that names the exact settings that were not run; none where all were.
 void printLeftOut(const SceneCurves& curves);
 
-/// What the curves come to.
+/// Summary of the curves.
 void printSummary(const Summary& summary);
 
 /// Every figure of every measurement, one line each, with a head line of names.

@@ -7,8 +7,8 @@
 Each scene is rendered as it comes, with a sky so that there is light. Those under --small folders
 are also run by the other ways through the program: exact with closure enforced, hemicubes merged,
 and gathering. Kept are results file, picture and report of each. Compared are all values of the
-results files but what was timed, and the pictures, to the bit; of what differs, how far it is off,
-relative to the largest value; and seconds of the run, as a ratio.
+results files but times, and the pictures, to the bit; differences are given relative to the largest
+value; and seconds of the run, as a ratio.
 
   --limit S      seconds a run may take; default 300
   --small DIR    a folder of small scenes; may be repeated

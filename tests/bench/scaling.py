@@ -134,7 +134,7 @@ def run(arguments, scene, patches, series):
 
 
 def measure(command):
-    """What run() starts: prints the seconds and the largest memory of a command."""
+    """Started by run(): prints the seconds and the largest memory of a command."""
     import time
     start = time.monotonic()
     child = subprocess.run(command, stdout=subprocess.DEVNULL)

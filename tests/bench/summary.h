@@ -1,4 +1,4 @@
-// What the curves come to: how much faster, how it grows, what a second core gives.
+// Summary of the curves: speed-up, growth, and the gain of a second core.
 #pragma once
 
 #include <optional>

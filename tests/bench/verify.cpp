@@ -28,7 +28,7 @@ constexpr double kAsymmetry = 100;
 struct RayCheck {
   double largest_deviation = 0;  ///< standard deviations, worst entry
   double rms_deviation = 0;
-  double largest_front = 0;  ///< |share of fronts - row sum of truth|, of what is allowed
+  double largest_front = 0;  ///< |share of fronts - row sum of truth| over the allowed one
   std::size_t entries = 0;
 };
 

@@ -1,4 +1,4 @@
-// What must hold before anything is timed.
+// Checks before anything is timed.
 #pragma once
 
 #include "bench_scenes.h"
@@ -6,7 +6,7 @@
 
 namespace radiosity::bench {
 
-/// Checks truth against what does not depend on it, and prints what was found:
+/// Checks truth against independent estimates, and prints the results:
 ///   - some rows against rays (Embree, another code path and another principle): each entry's
 ///     number of hits against its binomial spread, and the shares of fronts;
 ///   - exchange areas of pairs of rows against each other (A_i F_ij = A_j F_ji).

@@ -38,7 +38,7 @@ class Bands(CliTest):
             again = self.report("solve", name)
             self.assertEqual(again["stages"]["solution"]["action"], "reused")
 
-    def test_words_name_them(self):
+    def test_output_names_the_bands(self):
         name, _ = self.spectral("s.h5", 8)
         self.assertIn("emitted (bands 1 to 8)", self.run_program("solve", name).out)
         self.assertIn("emitted (R G B)", self.run_program("solve", "box.obj", *SMALL).out)
@@ -46,12 +46,12 @@ class Bands(CliTest):
         self.assertEqual(len(report["relative_l2_bands"]), 8)
         self.assertIn("l2_band_8_percent", report["surfaces"][0])
 
-    def test_gather_and_compare(self):
+    def test_gather_and_compare_use_the_bands_of_the_file(self):
         name, rgb = self.spectral("s.h5", 8)
         self.run_program("gather", name, "--at", "patches", "--resolution", "32",
                          "--gather-tolerance", "1e-6")
         self.assertEqual(self.light(name, "gather").shape, (len(rgb), 8))
-        # The same hemicubes: rounding, and what passes beyond the tolerance would add.
+        # The same hemicubes: rounding, and the light of passes beyond the tolerance.
         self.run_program("compare", name, "--gather", "--tolerance", "1e-5", "-o", "gap.png")
         self.run_program("solve", "box.obj", *SMALL, "-o", "rgb.h5")
         self.refuse("compare", name, "rgb.h5",
@@ -63,7 +63,7 @@ class Bands(CliTest):
         with h5py.File(self.folder / name) as file:
             self.assertEqual(file["solution/reflectance"].shape[1], 5)
 
-    def test_colours_are_three_bands_or_one(self):
+    def test_pictures_in_colour_take_three_bands_or_one(self):
         name, _ = self.spectral("s.h5", 8)
         for output, command in (("p.png", "render"), ("p.exr", "render"), ("p.glb", "solve"),
                                 ("p.png", "gather")):
@@ -76,12 +76,12 @@ class Bands(CliTest):
         view = ["--camera", "eye=0.5,0.5,0.9;target=0.5,0.5,0", "--width", "64"]
         self.run_program("render", name, "-o", "grey.exr", "-o", "grey.glb", *view)
         self.run_program("render", "box.obj", *SMALL, "-o", "rgb.exr", *view)
-        # Grey is the red of the picture in colours: its difference in that band is that of sweeps.
+        # Grey is the red of the picture in colours: that band differs by the solver's sweeps alone.
         report = self.report("compare", "grey.exr", "rgb.exr")["comparison"]
         self.assertLess(report["relative_l2_bands"][0], 1e-5)
         self.assertGreater(report["relative_l2_bands"][1], 0.01)
 
-    def test_darkness_says_where_light_comes_from(self):
+    def test_a_dark_file_is_warned_of_and_a_cure_is_named(self):
         name, _ = self.spectral("s.h5", 5)
         with h5py.File(self.folder / name, "r+") as file:
             file["solution/emission"][...] = 0
@@ -89,7 +89,7 @@ class Bands(CliTest):
         self.assertIn("nothing emits light, so B = 0 everywhere; give patches an emission above 0 in "
                       "/solution of s.h5", run.err)
 
-    def test_what_does_not_reach_them_is_refused(self):
+    def test_options_that_conflict_with_the_bands_are_refused(self):
         name, _ = self.spectral("s.h5", 8)
         self.refuse("solve", name, "--set", "wall.reflectance=.5",
                     words=["s.h5: holds materials of 8 bands", "/solution"])

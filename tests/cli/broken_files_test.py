@@ -1,5 +1,5 @@
-"""Files that are broken, forged or far too large: one clear line each, in a bounded time and memory,
-and nothing of the libraries' own words."""
+"""Files that are broken, forged or far too large: one clear line each, in bounded time and memory,
+without messages of the libraries."""
 
 import json
 import os
@@ -15,8 +15,8 @@ import numpy
 import input_files
 from cli_runner import DATA, PROGRAM, SMALL, CliTest
 
-# Seconds of processor time. What is refused takes hundredths, what is read a few: a program that
-# does work of the square of a file's size takes minutes.
+# Seconds of processor time. Refusing a file takes hundredths, reading one a few: work that grows
+# with the square of a file's size takes minutes.
 MOST_SECONDS = 60
 # Bytes of address space: the program with its libraries takes less than a tenth of it.
 MOST_BYTES = 4 << 30
@@ -57,7 +57,7 @@ class FileTest(CliTest):
 class Json(FileTest):
     DEEP = "its JSON is nested more than 200 levels deep; export it again"
 
-    def test_nesting_in_a_glb(self):
+    def test_deep_nesting_in_a_glb_is_refused(self):
         for name in ["extras", "extensions", "nodes"]:
             for opening, closing in ["[]", ('{"a":', "}")]:
                 value = opening * 100000 + "0" + closing * 100000
@@ -66,29 +66,29 @@ class Json(FileTest):
                     self.put("a.glb", input_files.glb(None, text=text))
                     self.says("a.glb: " + self.DEEP, "info", "a.glb")
 
-    def test_nesting_in_a_materials_file(self):
+    def test_deep_nesting_in_a_materials_file_is_refused(self):
         self.put("m.json", "[" * 100000)
         self.says("m.json: is not a JSON object; write {\"NAME\": {\"reflectance\": 0.5}}", "info",
                   "box.obj", "--materials", "m.json")
 
-    def test_a_long_chain_of_nodes(self):
+    def test_a_long_chain_of_nodes_is_read(self):
         def chain(document):
             count = 100000
             document["nodes"] = [{"children": [k + 1]} for k in range(count)] + [{"mesh": 0}]
         self.assertIn("faces                            1\n", self.passes("info", self.put_triangle(chain)))
 
-    def test_a_number_beyond_double_precision(self):
+    def test_a_number_beyond_double_precision_is_refused(self):
         text = json.dumps(input_files.triangle()).replace('"count": 3', '"count": 1e999', 1)
         self.put("a.glb", input_files.glb(None, input_files.triangle_data(), text))
         line = self.refuse("info", "a.glb", words=["a number is too large at byte"])
         self.assertNotIn("json.exception", line)
 
-    def test_a_cut_off_file(self):
+    def test_a_truncated_file_is_refused(self):
         self.put("a.gltf", '{"asset": {"version": "2.0')
         self.says("a.gltf: is not JSON that can be read: it is cut off or damaged at byte 27 (after "
                   "`t\": {\"version\": \"2.0`); export it again", "info", "a.gltf")
 
-    def test_a_large_materials_file(self):
+    def test_a_large_materials_file_is_read(self):
         entries = {f"name{k}": {"reflectance": 0.5} for k in range(200000)}
         self.put("m.json", json.dumps(entries))
         self.refuse("info", "box.obj", "--materials", "m.json", words=["name0", "there are: lamp, wall"])
@@ -99,7 +99,7 @@ class Json(FileTest):
 
 
 class Gltf(FileTest):
-    def test_container(self):
+    def test_a_damaged_container_is_refused(self):
         whole = input_files.glb(input_files.triangle(), input_files.triangle_data())
         self.put("a.glb", whole[:-8])
         self.says(f"a.glb: the file is cut off: it has {len(whole) - 8} of {len(whole)} bytes; export "
@@ -113,7 +113,7 @@ class Gltf(FileTest):
         self.put("a.glb", "hello")
         self.refuse("info", "a.glb", words=["a.glb: is neither binary glTF nor JSON"])
 
-    def test_accessors_without_data(self):
+    def test_accessors_without_data_are_refused(self):
         def forge(document):
             document["accessors"][0] = {"componentType": 5126, "count": 2**28, "type": "VEC3"}
         self.says("a.glb: plate, primitive 0: POSITION has no data (no buffer view); export the scene "
@@ -128,7 +128,7 @@ class Gltf(FileTest):
                   "bytes of all buffers; export the scene again", "info",
                   self.put_triangle(forge_sparse))
 
-    def test_sizes_that_nobody_has(self):
+    def test_impossible_buffer_sizes_are_refused(self):
         for size in [0, 2**62]:
             def forge(document):
                 document["buffers"][0]["byteLength"] = size
@@ -137,7 +137,7 @@ class Gltf(FileTest):
                 for word in ["_M_", "std::", "memory"]:
                     self.assertNotIn(word, line)
 
-    def test_extensions_that_are_needed(self):
+    def test_unsupported_required_extensions_are_named(self):
         def needs(*names):
             def change(document):
                 document["extensionsRequired"] = list(names)
@@ -167,7 +167,7 @@ class NotFiles(FileTest):
     FOLDER = "is a folder; name a file in it"
 
     def named(self, name):
-        """The name as a pipe nobody writes to, as a device without end, as a folder."""
+        """The name as a pipe without a writer, as an endless device, as a folder."""
         path = self.folder / name
         os.mkfifo(path)
         yield self.PIPE
@@ -179,18 +179,18 @@ class NotFiles(FileTest):
         yield self.FOLDER
         path.rmdir()
 
-    def test_scene_and_results(self):
+    def test_scene_and_results_files_must_be_files(self):
         for name in ["a.obj", "a.glb", "a.gltf", "a.stl", "a.h5"]:
             for what in self.named(name):
                 self.says(f"{name}: {what}", "info", name)
 
-    def test_sides_of_a_comparison(self):
+    def test_sides_of_a_comparison_must_be_files(self):
         self.put("b.ply", input_files.PLY)
         for name in ["a.ply", "a.glb", "a.obj", "a.png", "a.h5"]:
             for what in self.named(name):
                 self.says(f"{name}: {what}", "compare", name, "b.ply")
 
-    def test_files_beside_the_scene(self):
+    def test_files_beside_the_scene_must_be_files(self):
         document = input_files.triangle()
         document["buffers"][0]["uri"] = "plate.bin"
         self.put("a.gltf", json.dumps(document))
@@ -205,7 +205,7 @@ class NotFiles(FileTest):
         for what in self.named("t.png"):
             self.assertIn(f"texture t.png {what}", self.passes("info", "b.obj"))
 
-    def test_outputs(self):
+    def test_an_output_does_not_replace_a_pipe(self):
         os.mkfifo(self.folder / "a.h5")
         self.says("a.h5: is a pipe or a device, which the output would replace; name a file", "mesh",
                   "box.obj", "-o", "a.h5")
@@ -237,34 +237,34 @@ class Images(FileTest):
         self.says("max image 0 is not above 0 and at most 2000 million pixels", "info", name,
                   "--max-image", "0")
 
-    def test_a_picture_to_compare(self):
+    def test_the_limit_holds_for_compared_pictures(self):
         self.put("p.png", input_files.png(60000, 60000, 0))
         self.says("p.png: has 60000 x 60000 pixels, --max-image allows 100 million; make it smaller or "
                   "allow more; what can be compared: results (.h5), lit meshes (.glb, .gltf, .ply, "
                   ".obj), pictures", "compare", "p.png", "p.png")
 
-    def test_unknown_and_damaged_images(self):
+    def test_unknown_and_damaged_images_cannot_be_decoded(self):
         self.assertIn("texture picture cannot be decoded (of an unknown image format)",
                       self.passes("info", self.put_image(b"not an image")))
         self.assertIn("texture picture cannot be decoded",
                       self.passes("info", self.put_image(input_files.png(40, 40)[:60])))
-        # libpng speaks for itself before it is told not to: no line of its own.
+        # libpng prints unless it is told not to: no line may be its own.
         image = bytearray(input_files.png(40, 40))
         image[29] ^= 1  # of the header's check sum
         run = self.run_limited("info", self.put_image(bytes(image)))
         for line in run.stderr.decode().splitlines():
-            # The program's own lines, progress among them where the machine is slow.
+            # The program's own lines, with progress on a slow machine.
             self.assertRegex(line, r"^(radiosity|reading): ")
 
 
 class LargeFiles(FileTest):
-    def test_a_polygon_of_many_corners(self):
+    def test_a_polygon_of_many_corners_is_read(self):
         count = 20000
         corners = "".join(f"v {k} {k * k / count} 0\n" for k in range(count))
         self.put("a.obj", corners + "f " + " ".join(str(k + 1) for k in range(count)) + "\n")
         self.assertIn(f"triangles                        {count - 2:,}\n", self.passes("info", "a.obj"))
 
-    def test_many_objects_groups_and_materials(self):
+    def test_many_objects_groups_and_materials_are_read(self):
         for keyword in ["o", "g", "usemtl"]:
             parts = "".join(f"{keyword} part{k}\nv {k} 0 0\nv {k} 1 0\nv {k} 0 1\nf -3 -2 -1\n"
                             for k in range(40000))
@@ -272,7 +272,7 @@ class LargeFiles(FileTest):
             with self.subTest(keyword=keyword):
                 self.passes("info", "a.obj")
 
-    def test_many_closed_parts(self):
+    def test_many_closed_parts_are_read(self):
         box = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
         faces = "f -8 -5 -6 -7\nf -4 -3 -2 -1\nf -8 -7 -3 -4\nf -7 -6 -2 -3\nf -6 -5 -1 -2\nf -5 -8 -4 -1\n"
         text = "".join("".join(f"v {2 * (k % 150) + x} {2 * (k // 150) + y} {z}\n" for x, y, z in box)
@@ -280,14 +280,14 @@ class LargeFiles(FileTest):
         self.put("a.obj", text)
         self.assertRegex(self.passes("info", "a.obj"), r"closed +yes")
 
-    def test_many_faces_around_one_point(self):
+    def test_many_faces_around_one_point_are_read(self):
         count = 30000
         ring = "".join(f"v {k / count} {1 - k / count} 0\n" for k in range(count + 1))
         fan = "".join(f"f 1 {k + 2} {k + 3}\n" for k in range(count))
         self.put("a.obj", "v 0 0 0\n" + ring + fan)
         self.passes("info", "a.obj")
 
-    def test_a_word_of_megabytes(self):
+    def test_a_word_of_megabytes_is_shortened_in_the_message(self):
         self.put("a.obj", "v 0 0 " + "x" * 5000000 + "\n")
         run = self.run_limited("info", "a.obj")
         self.assertEqual(run.returncode, 2)
@@ -300,7 +300,7 @@ class Ply(FileTest):
         self.put("a.ply", text)
         self.says(f"a.ply: {line}", "compare", "a.ply", "a.ply", "--a-is", "srgb8", "--b-is", "srgb8")
 
-    def test_counts_that_the_file_cannot_hold(self):
+    def test_impossible_element_counts_are_refused(self):
         self.compare("ply\nformat ascii 1.0\nelement vertex 4000000000\nend_header\n",
                      "its `vertex` elements have no properties; export it again")
         self.compare("ply\nformat ascii 1.0\nelement other 4000000000\nend_header\n",
@@ -313,8 +313,8 @@ class Ply(FileTest):
 
 
 class ControlCharacters(FileTest):
-    def test_names_and_words(self):
-        """What a file holds reaches the terminal quoted: no byte of it is a command."""
+    def test_control_characters_of_scenes_are_quoted(self):
+        """Text of a file reaches the terminal quoted: no byte of it is a command."""
         escape = "\x1b]0;title\x07\x1b[31m\x9b1m"
         self.put("a.obj", f"v 0 0 0\nv 1 0 0\nv 0 1 0\no {escape}\nf 1 2 3\n")
         self.assertIn(r"\x1b]0;title\x07\x1b[31m\xc2\x9b1m", self.quoted("info", "a.obj"))
@@ -326,7 +326,7 @@ class ControlCharacters(FileTest):
             document["materials"][0]["name"] = escape
         self.assertIn(r"; \r\t/", self.quoted("info", self.put_triangle(rename)))
 
-    def test_words_of_a_results_file(self):
+    def test_control_characters_of_a_results_file_are_quoted(self):
         self.run_program("solve", "box.obj", *SMALL, "-o", "s.h5")
         with h5py.File(self.folder / "s.h5", "a") as file:
             for name, place in [("version", "/"), ("key", "/mesh"), ("key", "/solution")]:
@@ -348,20 +348,20 @@ class FirstImpressions(FileTest):
             run = self.run_program(command[0], DATA / "cornell-box.obj", *command[1:])
             self.assertNotIn("warning", run.err.lower())
 
-    def test_a_name_that_object_and_material_share_is_there_once(self):
+    def test_a_name_shared_by_object_and_material_is_listed_once(self):
         self.put("a.obj", "mtllib box.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\no lamp\nusemtl lamp\nf 1 2 3\n"
                           "o shade\nusemtl lamp\nf 1 2 3\n")
         report = self.report("info", "a.obj", "--set", "lamp.reflectance=0.25")
         self.assertEqual([s["name"] for s in report["scene"]["surfaces"]], ["lamp", "shade/lamp"])
-        # The material is meant, also where the other object uses it.
+        # The name means the material, also on the other object.
         self.assertIn(["lamp", "0.25, 0.25, 0.25"],
                       [[m["name"], m["reflectance"]] for m in report["scene"]["materials"]])
         self.assertEqual(len([m for m in report["scene"]["materials"] if m["name"] == "lamp"]), 1)
 
 
 class TwoRunsAtOnce(FileTest):
-    def test_a_results_file_is_of_one_run(self):
-        """Runs that update one file in different ways: each ends well or says that another was
+    def test_concurrent_updates_leave_the_results_of_one_run(self):
+        """Runs that update one file in different ways: each succeeds or reports that another was
         quicker, and the file is whole."""
         self.run_program("solve", "box.obj", *SMALL, "-o", "s.h5")
         runs = [subprocess.Popen([PROGRAM, "solve", "s.h5", "--patches", str(40 + 20 * (k % 4)),

@@ -1,4 +1,4 @@
-"""What goes wrong on the command line: messages, exit codes, and nothing half-written."""
+"""Errors on the command line: messages, exit codes, and nothing half-written."""
 
 import json
 import os
@@ -20,21 +20,21 @@ LONG = ["--patches", "20000", "--method", "hemicube", "--resolution", "2048"]
 
 
 class BadArguments(CliTest):
-    def test_typos_name_what_was_meant(self):
+    def test_typos_get_a_suggestion(self):
         self.refuse("rendr", "box.obj", words=["rendr", "did you mean render?"])
         self.refuse("mesh", "box.obj", "--patchs", "5", words=["--patchs", "did you mean --patches?"])
         self.refuse("solve", "box.obj", "--solver", "jacoby", words=["--solver", "jacobi"])
         self.refuse("render", "box.obj", "-o", "p.png", "--show", "rowsum",
                     words=["--show", "did you mean row-sum?"])
 
-    def test_missing_and_superfluous(self):
+    def test_missing_and_superfluous_arguments_are_refused(self):
         self.refuse(words=["subcommand"])
         self.refuse("info", words=["missing"])
         self.refuse("info", "box.obj", "box.mtl", words=["box.mtl"])
         self.refuse("render", "box.obj", words=["-o", ".png"])
         self.refuse("box.obj", words=["radiosity render box.obj"])
 
-    def test_values_out_of_range(self):
+    def test_values_out_of_range_are_refused(self):
         for arguments, words in [
                 (["mesh", "box.obj", "--patches", "0"], ["patches"]),
                 (["mesh", "box.obj", "--patches", "-5"], ["--patches"]),
@@ -58,16 +58,16 @@ class BadArguments(CliTest):
             with self.subTest(arguments=arguments):
                 self.refuse(*arguments, words=words)
 
-    def test_camera(self):
+    def test_unknown_and_malformed_cameras_are_refused(self):
         for camera, word in [("kitchen", "kitchen"), ("eye=1,2;target=0,0,0", "eye")]:
             self.refuse("render", "box.obj", *SMALL, "-o", "p.png", "--camera", camera, "--quiet",
                         words=[word])
 
-    def test_a_patch_that_is_not_there(self):
+    def test_a_missing_patch_number_is_refused(self):
         self.refuse("render", "box.obj", *SMALL, "-o", "p.png", "--show", "form-factor:999999",
                     words=["999999", "0 to "])
 
-    def test_elements_that_no_output_has(self):
+    def test_element_options_without_a_matching_output_are_refused(self):
         for arguments, words in [
                 (["solve", "box.obj", "--elements", "on"], ["nothing is written", "-o FILE.glb"]),
                 (["solve", "box.obj", "--elements", "on", "-o", "f.mtx"],
@@ -95,7 +95,7 @@ class BadArguments(CliTest):
             with self.subTest(arguments=arguments):
                 self.refuse(*arguments, "--quiet", words=words)
 
-    def test_outputs(self):
+    def test_impossible_outputs_are_refused(self):
         self.refuse("render", "box.obj", "-o", "p.jpg", words=["p.jpg", ".png", ".exr", ".h5"])
         self.refuse("mesh", "box.obj", "-o", "p.png", words=["p.png", ".obj", ".glb"])
         self.refuse("mesh", "box.obj", "-o", "box.obj", words=["box.obj"])
@@ -107,24 +107,24 @@ class BadArguments(CliTest):
 
 
 class BadInput(CliTest):
-    def test_no_such_file(self):
+    def test_a_missing_file_is_named(self):
         self.refuse("info", "absent.obj", words=["absent.obj", "no such file"])
         self.refuse("render", "absent.h5", "-o", "p.png", words=["absent.h5"])
 
-    def test_not_a_scene(self):
+    def test_a_file_that_is_no_scene_is_refused(self):
         self.write("words.txt", "hello")
         self.refuse("info", "words.txt", words=["words.txt", ".obj"])
 
-    def test_reflectance_above_one(self):
+    def test_a_reflectance_above_one_is_refused(self):
         self.refuse("solve", "box.obj", *SMALL, "--set", "wall.reflectance=1.5",
                     words=["wall", "1.5"])
         self.write("box.mtl", "newmtl lamp\nKe 1 1 1\nnewmtl wall\nKd 0.5 1.25 0.5\n")
         self.refuse("solve", "box.obj", *SMALL, words=["wall", "1.25"])
 
-    def test_unknown_material(self):
+    def test_an_unknown_material_gets_suggestions(self):
         self.refuse("solve", "box.obj", "--set", "wal.reflectance=.5", words=["wal", "wall", "lamp"])
 
-    def test_no_light(self):
+    def test_a_scene_without_light_is_not_drawn_and_solves_to_zero(self):
         self.refuse("render", "box.obj", *SMALL, "--set", "lamp.radiance=0", "-o", "p.png",
                     words=["box.obj", "--set", "radiance="])
         run = self.run_program("solve", "box.obj", *SMALL, "--set", "lamp.radiance=0", "-o", "s.h5")
@@ -132,7 +132,7 @@ class BadInput(CliTest):
         with h5py.File(self.folder / "s.h5") as file:
             self.assertEqual(abs(file["solution/radiosity"][()]).max(), 0)
 
-    def test_damaged_results_file(self):
+    def test_a_damaged_results_file_is_refused(self):
         self.run_program("solve", "box.obj", *SMALL, "-o", "s.h5")
         whole = (self.folder / "s.h5").read_bytes()
         (self.folder / "cut.h5").write_bytes(whole[:len(whole) // 2])
@@ -145,7 +145,7 @@ class BadInput(CliTest):
             file["x"] = 1
         self.refuse("render", "foreign.h5", "-o", "p.png", words=["foreign.h5"])
 
-    def test_what_is_named_as_a_results_file_and_is_none(self):
+    def test_text_and_empty_files_are_no_results_files(self):
         self.write("text.h5", "no HDF5\n")
         self.write("empty.h5", "")
         for name in ("text.h5", "empty.h5"):
@@ -168,17 +168,17 @@ class BadInput(CliTest):
         self.run_program(*small, "other.obj")
         run = self.run_program(*small, "box.obj", "--quiet")
         self.assertIn("WARNING: x.h5: holds results of other.obj", run.err)
-        # A scene that changed is the same scene.
+        # A changed scene is the same scene.
         self.write("box.obj", (self.folder / "other.obj").read_text())
         self.assertEqual(self.run_program(*small, "box.obj").err, "")
-        # So are results that go over those of another scene.
+        # Replacing those of another scene warns, too.
         self.run_program("factors", "other.obj", *SMALL, "-o", "y.h5")
         self.write("other.obj", (self.folder / "box.obj").read_text().replace("v 1 1 2", "v 1 1 3"))
         self.run_program("factors", "other.obj", *SMALL, "-o", "y.h5")
         run = self.run_program("factors", "x.h5", "-o", "y.h5")
         self.assertIn("WARNING: y.h5: holds results of other.obj", run.err)
 
-    def test_reading_options_and_a_results_file(self):
+    def test_reading_options_need_a_scene_file(self):
         self.run_program("mesh", "box.obj", *SMALL[:2], "-o", "m.h5")
         self.refuse("solve", "m.h5", "--unit", "mm", words=["--unit", "scene file"])
 
@@ -187,7 +187,7 @@ class BadInput(CliTest):
 
 
 class FailedRuns(CliTest):
-    def test_no_convergence(self):
+    def test_a_solution_that_did_not_converge_is_kept_marked(self):
         run = self.run_program("solve", "box.obj", *SMALL, "--max-iterations", "1", "-o", "s.h5",
                                "--report", "r.json", code=1)
         self.assertRegex(run.out, r"usable +no")
@@ -195,11 +195,11 @@ class FailedRuns(CliTest):
         report = json.loads((self.folder / "r.json").read_text())
         self.assertEqual(report["exit_code"], 1)
         self.assertEqual(report["solution"]["status"], "no_convergence")
-        # It is in the file, marked; asking again says so again; more iterations cure it.
+        # It is in the file, marked; a second run reports it again; more iterations cure it.
         self.run_program("solve", "s.h5", code=1)
         self.run_program("solve", "s.h5", "--max-iterations", "1000")
 
-    def test_singular(self):
+    def test_a_white_closed_room_is_singular(self):
         """rho = 1 everywhere in a closed room: energy only grows. The form factors are kept."""
         run = self.run_program("solve", "box.obj", *SMALL, "--set", "wall.reflectance=1", "--set",
                                "lamp.reflectance=1", "-o", "s.h5", code=1)
@@ -208,7 +208,7 @@ class FailedRuns(CliTest):
             self.assertIn("form_factors", file)
         self.run_program("solve", "s.h5", "--set", "wall.reflectance=0.5")
 
-    def test_memory_limit(self):
+    def test_a_memory_limit_refuses_with_the_numbers(self):
         line = self.refuse("factors", "box.obj", "--patches", "3000", "--memory-limit", "1M", "-o",
                            "f.h5", code=1)
         self.assertRegex(line, r"need about \d+ MiB beside the rows.*limit of 1\.0 MiB")
@@ -222,7 +222,7 @@ class TimeLimit(CliTest):
         self.assertRegex(line, r"form factors would take about .*, and --time-limit 10 s leaves "
                                r".* s; for less: ")
 
-    def test_a_run_out_of_time_stops_and_says_what_is_kept(self):
+    def test_a_run_out_of_time_stops_and_writes_nothing(self):
         line = self.refuse("mesh", "box.obj", "--patches", "1000000", "--time-limit", "0.05", "-o",
                            "m.h5", "--quiet", code=1)
         self.assertEqual(line, "radiosity: stopped after 0.05 s, --time-limit; nothing was written")
@@ -230,7 +230,7 @@ class TimeLimit(CliTest):
     def test_enough_time_changes_nothing(self):
         self.run_program("factors", "box.obj", *SMALL, "--time-limit", "1h", "-o", "f.h5")
 
-    def test_what_is_no_time_is_refused(self):
+    def test_malformed_time_limits_are_refused(self):
         for text in ["0", "-1", "soon", "5x", "inf", "m"]:
             line = self.refuse("factors", "box.obj", f"--time-limit={text}")
             self.assertIn(f"--time-limit: '{text}' is not a time above 0", line)
@@ -246,7 +246,7 @@ class Interrupted(CliTest):
             [PROGRAM, "render", "box.obj", *LONG, *outputs, "--report", "r.json"],
             cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         line = ""
-        while "hemicubes of" not in line:  # printed as the form factors begin
+        while "hemicubes of" not in line:  # printed when form factors begin
             line = process.stdout.readline()
             self.assertTrue(line, "the run ended before it was interrupted")
         return process

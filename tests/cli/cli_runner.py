@@ -82,7 +82,7 @@ class CliTest(unittest.TestCase):
         return Run(process)
 
     def report(self, *arguments, code=0):
-        """Runs with --report and returns what it holds."""
+        """Runs with --report and returns its contents."""
         self.run_program(*arguments, "--report", "run.json", code=code)
         return json.loads((self.folder / "run.json").read_text())
 

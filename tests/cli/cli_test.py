@@ -20,7 +20,7 @@ def actions(report):
 
 
 class Help(CliTest):
-    def test_version_and_help(self):
+    def test_version_and_help_are_printed(self):
         self.assertRegex(self.run_program("--version").out, r"^radiosity \d+\.\d+\.\d+\n$")
         text = self.run_program("--help").out
         for command in COMMANDS:
@@ -36,7 +36,7 @@ class Help(CliTest):
 
 
 class Subcommands(CliTest):
-    def test_info_names_what_was_read(self):
+    def test_info_describes_the_scene(self):
         out = self.run_program("info", DATA / "cornell-box.obj").out
         for word in ["emitted power", "closed", "upper corner", "open edges"]:
             self.assertIn(word, out)
@@ -51,7 +51,7 @@ class Subcommands(CliTest):
         report = self.report("mesh", "box.obj", "--patches", "100", "-o", "m.obj", "-o", "m.glb",
                              "-o", "m.h5")["mesh"]
         self.assertEqual(report["t_junctions"], 0)
-        # A unit cube: 6 m^2, whatever the patches; sums of about 100 terms round to 1e-14.
+        # A unit cube: 6 m^2 for any patches; sums of about 100 terms round to 1e-14.
         self.assertAlmostEqual(report["area_m2"], 6, delta=1e-12)
         faces = [l for l in (self.folder / "m.obj").read_text().splitlines() if l.startswith("f ")]
         self.assertEqual(len(faces), report["patches"])
@@ -72,7 +72,7 @@ class Subcommands(CliTest):
         # In a closed scene a row sums to 1; entries are stored in single precision.
         np.testing.assert_allclose(np.asarray(matrix.sum(axis=1)).ravel(), 1, atol=2e-6)
 
-    def test_furnace(self):
+    def test_a_closed_furnace_is_uniform(self):
         """Closed, rho = 0.5 and E = 1 everywhere: B = E / (1 - rho) = 2."""
         report = self.report("solve", DATA / "furnace-cube.obj", *SMALL, "--precision", "double",
                              "--solve-tolerance", "1e-12", "-o", "s.h5")["solution"]
@@ -154,7 +154,7 @@ class Subcommands(CliTest):
         self.assertEqual((self.folder / "seen.png").read_bytes(),
                          (self.folder / "picture.png").read_bytes())
 
-    def test_a_results_file_keeps_elements_where_asked_for(self):
+    def test_a_results_file_keeps_elements_on_request(self):
         self.assertNotIn("elements", self.report("solve", "box.obj", *SMALL, "-o", "e.h5"))
         self.report("solve", "e.h5", "--elements", "on")
         with h5py.File(self.folder / "e.h5") as file:
@@ -185,7 +185,7 @@ class Subcommands(CliTest):
             said = self.run_program(*drawn, *other, code=2).err
             self.assertIn("--final-gather: " + " ".join(other)[:6], said)
 
-    def test_false_colour(self):
+    def test_false_colour_shows_every_quantity(self):
         self.run_program("solve", "box.obj", *SMALL, "-o", "s.h5")
         for quantity in ["radiosity", "irradiance", "row-sum", "form-factor:3"]:
             report = self.report("render", "s.h5", "--show", quantity, "--width", "64", "--samples",
@@ -220,8 +220,8 @@ class Subcommands(CliTest):
     def test_threads_do_not_change_a_bit(self):
         data = []
         for threads in ["1", "2"]:
-            self.run_program("solve", "box.obj", *SMALL, "--threads", threads, "-o", "t.h5")
-            with h5py.File(self.folder / "t.h5") as file:
+            self.run_program("solve", "box.obj", *SMALL, "--threads", threads, "-o", f"t{threads}.h5")
+            with h5py.File(self.folder / f"t{threads}.h5") as file:
                 data.append((file["form_factors/data"][()].tobytes(),
                              file["solution/radiosity"][()].tobytes()))
         self.assertEqual(data[0], data[1])
@@ -232,17 +232,17 @@ class Reuse(CliTest):
         super().setUp()
         self.run_program("solve", "box.obj", *SMALL, "-o", "s.h5")
 
-    def test_nothing_changed(self):
+    def test_an_unchanged_run_recomputes_nothing(self):
         before = (self.folder / "s.h5").read_bytes()
         report = self.report("solve", "s.h5")
         self.assertEqual(set(actions(report).values()), {"reused"})
         self.assertEqual((self.folder / "s.h5").read_bytes(), before)
 
-    def test_options_that_say_what_is_there_recompute_nothing(self):
+    def test_options_equal_to_those_of_the_file_recompute_nothing(self):
         report = self.report("solve", "s.h5", *SMALL, "--seed", "1")
         self.assertEqual(set(actions(report).values()), {"reused"})
 
-    def test_materials_changed(self):
+    def test_changed_materials_recompute_the_solution_alone(self):
         report = self.report("solve", "s.h5", "--set", "wall.reflectance=0.1")
         self.assertEqual(actions(report), {"mesh": "reused", "form_factors": "reused",
                                            "solution": "recomputed"})
@@ -252,12 +252,12 @@ class Reuse(CliTest):
         self.assertEqual(set(actions(again).values()), {"reused"})
         self.assertEqual(again["solution"]["absorbed_W"], report["solution"]["absorbed_W"])
 
-    def test_solver_changed(self):
+    def test_a_changed_solver_keeps_the_form_factors(self):
         report = self.report("solve", "s.h5", "--solver", "jacobi")
         self.assertEqual(actions(report)["form_factors"], "reused")
         self.assertEqual(report["stages"]["solution"]["detail"], "solver auto -> jacobi")
 
-    def test_resolution_changed(self):
+    def test_a_changed_resolution_recomputes_the_form_factors(self):
         report = self.report("solve", "s.h5", "--resolution", "64")
         self.assertEqual(actions(report), {"mesh": "reused", "form_factors": "recomputed",
                                            "solution": "recomputed"})
@@ -274,12 +274,12 @@ class Reuse(CliTest):
         report = self.report("solve", "a.h5", "--tolerance", "0.01")
         self.assertEqual(actions(report)["form_factors"], "recomputed")
         self.assertEqual(actions(report)["solution"], "recomputed")
-        # Hemicubes that a person asked for are not what auto picks here.
+        # auto does not pick the requested hemicubes here.
         report = self.report("factors", "s.h5", "--method", "auto")
         self.assertEqual(actions(report)["form_factors"], "recomputed")
         self.assertEqual(report["form_factors"]["method"], "exact")
 
-    def test_patches_changed(self):
+    def test_a_changed_patch_count_recomputes_everything(self):
         report = self.report("solve", "s.h5", "--patches", "200")
         self.assertEqual(set(actions(report).values()), {"recomputed"})
         self.assertEqual(report["stages"]["mesh"]["detail"], "patches 60 -> 200")
@@ -303,18 +303,18 @@ class Reuse(CliTest):
         self.run_program("info", "s.h5")
         self.run_program("solve", "s.h5", "--patches", "100")
 
-    def test_scene_file_with_an_existing_results_file(self):
+    def test_a_scene_file_reuses_an_existing_results_file(self):
         report = self.report("solve", "box.obj", *SMALL, "-o", "s.h5")
         self.assertEqual(set(actions(report).values()), {"reused"})
         self.write("box.mtl", "newmtl lamp\nKe 9 9 9\nKd 0 0 0\nnewmtl wall\nKd 0.3 0.3 0.3\n")
         report = self.report("solve", "box.obj", *SMALL, "-o", "s.h5")
         self.assertEqual(actions(report), {"mesh": "reused", "form_factors": "reused",
                                            "solution": "recomputed"})
-        # What a command means does not depend on what is in its output: these are the defaults.
+        # A command's meaning does not depend on its output file: these are the defaults.
         report = self.report("mesh", "box.obj", "-o", "s.h5")
         self.assertEqual(actions(report)["mesh"], "recomputed")
 
-    def test_results_are_as_if_computed_at_once(self):
+    def test_stages_run_one_by_one_give_the_bits_of_one_run(self):
         self.run_program("mesh", "box.obj", *SMALL[:2], "-o", "steps.h5")
         self.run_program("factors", "steps.h5", *SMALL[2:])
         self.run_program("solve", "steps.h5")
@@ -331,7 +331,7 @@ class Reuse(CliTest):
 
 
 class ExactFactors(CliTest):
-    def test_default_is_exact_and_says_why(self):
+    def test_the_default_method_is_exact_with_its_reason(self):
         report = self.report("factors", "box.obj", "--patches", "60", "-o", "f.h5")
         factors = report["form_factors"]
         self.assertEqual(factors["method"], "exact")
@@ -378,7 +378,7 @@ class ExactFactors(CliTest):
         self.assertIn("near off -> exact", report["stages"]["form_factors"]["detail"])
         self.assertGreater(report["form_factors"]["near_pairs"], 0)
 
-    def test_ten_digits_with_one_patch_a_face(self):
+    def test_closed_forms_give_ten_digits_with_one_patch_a_face(self):
         report = self.report("factors", DATA / "facing-plates.obj", "--faces-as-patches",
                              "--tolerance", "1e-11", "-o", "f.h5")
         self.assertLess(report["form_factors"]["error_figure"], 1e-10)
@@ -390,7 +390,7 @@ class ExactFactors(CliTest):
 
 
 class Physics(CliTest):
-    def test_a_finer_mesh_leaves_the_brightness(self):
+    def test_a_finer_mesh_keeps_the_brightness(self):
         def means(patches):
             self.run_program("solve", DATA / "cornell-box.obj", "--patches", patches, "--method",
                              "hemicube", "--resolution", "128", "-o", "c.h5")

@@ -26,7 +26,7 @@ class Compare(CliTest):
         for word in words:
             self.assertIn(word, error)
 
-    def test_a_file_with_itself(self):
+    def test_a_file_equals_itself(self):
         self.solved()
         report = self.report("compare", "r.h5", "r.h5", "--tolerance", "0")["comparison"]
         self.assertEqual(report["relative_l2"], 0)
@@ -46,8 +46,8 @@ class Compare(CliTest):
                            surfaces["ceiling/lamp"]["l2_percent"])
         self.assertEqual(report["largest_on"], "room/wall")
 
-    def test_with_gather_in_one_go(self):
-        # The lit box, scene file in, difference out; results are kept where they are asked for.
+    def test_gather_compares_a_scene_file_in_one_run(self):
+        # The lit box, scene file in, difference out; results are kept on request.
         report = self.report("compare", "box.obj", "--gather", *SMALL, "-o", "gap.png", "-o",
                              "both.h5")
         self.assertLess(report["comparison"]["relative_l2"], 0.05)
@@ -77,7 +77,7 @@ class Compare(CliTest):
         run = self.run_program("compare", "r.h5", "lit.obj", "--b-is", "radiosity", "--partial")
         self.assertIn("that is pi", run.err)
 
-    def test_pictures(self):
+    def test_pictures_are_compared_pixel_by_pixel(self):
         self.solved()
         view = ["--width", "96", "--height", "64"]
         self.run_program("render", "r.h5", *view, "-o", "a.exr", "-o", "a.png", "--exposure", "0")
@@ -92,7 +92,7 @@ class Compare(CliTest):
         self.run_program("render", "r.h5", "--width", "64", "--height", "64", "-o", "c.exr")
         self.refuse("a.exr", "c.exr", words=["96 x 64", "64 x 64"])
 
-    def test_refusals(self):
+    def test_sides_that_cannot_be_compared_are_refused(self):
         self.solved()
         self.refuse("r.h5", words=["B is missing", "--gather"])
         self.refuse("r.h5", "r.h5", "--gather", words=["one too many"])
@@ -108,8 +108,8 @@ class Compare(CliTest):
         self.refuse("r.h5", "other.ply", "--b-is", "radiance", words=["not the same surfaces"])
         self.assertNotIn("d.png", self.files())
 
-    def test_options_that_would_do_nothing(self):
-        # Two files are compared as they are: what makes a mesh or its light is for --gather.
+    def test_options_without_effect_are_refused(self):
+        # Two files are compared as they are: options of meshing and light need --gather.
         self.solved()
         for option in [("--patches", "60"), ("--set", "wall.reflectance=.1"), ("--unit", "mm"),
                        ("--resolution", "32"), ("--solver", "jacobi"), ("--passes", "3"),
@@ -120,7 +120,7 @@ class Compare(CliTest):
         for option in [("--camera", "x"), ("--width", "9"), ("--match", "0.01"), ("--partial",)]:
             self.refuse("a.exr", "a.exr", *option, words=[option[0], "pictures"])
 
-    def test_the_gap_names_what_outweighs_the_rest(self):
+    def test_the_gap_names_the_dominant_cause(self):
         few = self.report("compare", "box.obj", "--gather", *SMALL, "--passes", "1")["comparison"]
         self.assertIn("after pass 1", few["gap"])
         self.assertGreater(few["relative_l2"], 0.05)

@@ -1,4 +1,4 @@
-// Lines in a pipe: what they say and how often.
+// Lines in a pipe: their text and frequency.
 #include "cli/console_progress.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ std::vector<std::string> said(ConsoleProgress& progress, const std::string& step
   return linesOf(testing::internal::GetCapturedStderr());
 }
 
-TEST(ConsoleProgress, LinesSayRowsTimeAndMemory) {
+TEST(ConsoleProgress, LinesGiveRowsTimeAndMemory) {
   ConsoleProgress progress(ProgressStyle::lines, {.first = 0.2, .between = 0.3});
   const std::vector<std::string> lines = said(progress, "rows", 0);
   ASSERT_GE(lines.size(), 3u);
@@ -51,7 +51,7 @@ TEST(ConsoleProgress, LinesSayRowsTimeAndMemory) {
   EXPECT_TRUE(std::regex_match(lines.back(), std::regex("form factors: done in .*"))) << lines[0];
 }
 
-TEST(ConsoleProgress, StepsWithoutANameAreShares) {
+TEST(ConsoleProgress, StepsWithoutANameArePercentages) {
   ConsoleProgress progress(ProgressStyle::lines, {.first = 0.3, .between = 60});
   const std::vector<std::string> lines = said(progress, "", 0);
   ASSERT_EQ(lines.size(), 2u);
@@ -60,9 +60,9 @@ TEST(ConsoleProgress, StepsWithoutANameAreShares) {
       << lines[0];
 }
 
-TEST(ConsoleProgress, TimeLeftCountsWhatWasDoneHere) {
-  // 500 steps were there. After 50 more, 450 are left and take nine times as long; were those that
-  // were there counted as done in this time, they would take less than it.
+TEST(ConsoleProgress, TimeLeftFollowsTheStepsOfThisRunAlone) {
+  // 500 steps were there. After 50 more, 450 are left and take nine times as long; if the earlier
+  // 500 counted as done in this time, they would take less than it.
   ConsoleProgress progress(ProgressStyle::lines, {.first = 0, .between = 60});
   testing::internal::CaptureStderr();
   progress.begin("form factors", 1000, "rows", 500);
@@ -76,7 +76,7 @@ TEST(ConsoleProgress, TimeLeftCountsWhatWasDoneHere) {
   EXPECT_GE(std::stod(found[1]), 0.9) << text;
 }
 
-TEST(ConsoleProgress, AMinuteIsBetweenLines) {
+TEST(ConsoleProgress, LinesAreAMinuteApart) {
   const ConsoleProgress::LineTimes times;
   EXPECT_EQ(times.between, 60);
 }

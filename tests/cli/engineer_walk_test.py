@@ -1,4 +1,4 @@
-"""What the README shows engineers, command by command, and whether the numbers are right."""
+"""The README's commands for engineers, one by one, and whether the numbers are right."""
 import csv
 import os
 import pathlib
@@ -32,7 +32,7 @@ class EngineerWalk(CliTest):
         sky = float(city["tower"]["sky"])
         self.assertGreater(sky, (100 + 0.5 * 0.9 * 1800) / 1900)
         self.assertLess(sky, 1)
-        # Rays know nothing of what the exact method does. Rows, whose norms are below .3, are good to
+        # Rays are independent of the exact method. Rows, whose norms are below .3, are good to
         # a tenth of that, and a surface has hundreds of them.
         self.run_program("factors", DATA / "city.stl", "--between", "surfaces", "--method", "rays",
                          "--tolerance", "0.1", "-o", "rays.csv")

@@ -13,10 +13,10 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "everyday_scenes
 import generators  # noqa: E402  (a folder of scripts, not a package)
 
 # Sums over thousands of areas of very different sizes, each rounded at 1e-16: 1e-12 would do, but
-# where coordinates are a million times a face's size, its edges have ten digits left.
+# if coordinates are a million times a face's size, its edges keep ten digits.
 AREA = 1e-9
 
-# What was dropped is reported with six digits: half a unit of the last one, at most.
+# Dropped areas are reported with six digits: half a unit of the last one, at most.
 REPORT_DIGITS = 5e-6
 
 # Sums of rows whose entries are rounded to single precision.
@@ -49,7 +49,7 @@ class EverydayScenes(CliTest):
             self.check_rows(file, welded)
 
     def check_areas(self, scene, surfaces):
-        """Each square metre of the file is in a patch or in the account of what was dropped."""
+        """Each square metre of the file is in a patch or in the account of dropped areas."""
         with h5py.File(self.folder / "m.h5") as file:
             kept = file["mesh/area"][:][file["mesh/side"][:] == 0].sum()
         dropped = [s[key] for s in surfaces for key in
@@ -63,7 +63,7 @@ class EverydayScenes(CliTest):
     def check_rows(self, file, welded):
         """Fronts, backs and sky of every row: 1. Errors of a row's N entries whose squares sum up
         to at most its error figure's square sum up to at most the root of N times it. `welded`:
-        share of a row that may go with what was welded."""
+        share of a row that may be lost by welding."""
         group = file["form_factors"]
         accounts = [group[name][:] for name in ("fronts", "backs", "sky")]
         area = group["area"][:]
@@ -74,37 +74,37 @@ class EverydayScenes(CliTest):
         for account in accounts:
             self.assertGreater((account + allowed).min(), 0)
 
-    def test_cad_export(self):
+    def test_a_cad_export_is_meshed_and_computed(self):
         self.check(generators.cad_export, 250)
 
-    def test_doubled_house(self):
+    def test_a_doubled_house_is_meshed_and_computed(self):
         self.check(generators.doubled_house, 50)
 
-    def test_photogrammetry(self):
+    def test_photogrammetry_is_meshed_and_computed(self):
         self.check(generators.photogrammetry, 100)
 
-    def test_city(self):
+    def test_a_city_is_meshed_and_computed(self):
         self.check(generators.city, 200)
 
-    def test_linked_duplicates(self):
+    def test_linked_duplicates_are_meshed_and_computed(self):
         self.check(generators.linked_duplicates, 220)
 
-    def test_text_geometry(self):
+    def test_text_geometry_is_meshed_and_computed(self):
         self.check(generators.text_geometry, 300)
 
-    def test_leaf_cards(self):
+    def test_leaf_cards_are_meshed_and_computed(self):
         self.check(generators.leaf_cards, 80)
 
-    def test_terrain(self):
+    def test_a_terrain_is_meshed_and_computed(self):
         self.check(generators.terrain, 200)
 
-    def test_sphere(self):
+    def test_a_sphere_is_meshed_and_computed(self):
         self.check(generators.sphere, 300)
 
-    def test_million_units_away(self):
+    def test_a_room_a_million_units_away_is_meshed_and_computed(self):
         self.check(generators.million_units_away, 100)
 
-    def test_two_million_units_apart(self):
+    def test_rooms_two_million_units_apart_are_meshed_and_computed(self):
         # Lengths below 0.2 are coincident here: slabs up to 3e-3 high may lie in the floor of a room
         # that is 3 high, or not, patch by patch.
         self.check(generators.two_million_units_apart, 100, welded=1e-3)

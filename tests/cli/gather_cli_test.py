@@ -11,7 +11,7 @@ SMALL = ["--patches", "60", "--resolution", "32"]
 
 
 class Gather(CliTest):
-    def test_vertices_into_a_results_file(self):
+    def test_light_at_vertices_is_kept_in_a_results_file(self):
         report = self.report("gather", "box.obj", *SMALL, "--passes", "7", "-o", "g.h5")["gather"]
         self.assertEqual(report["at"], "vertices")
         self.assertEqual(len(report["passes"]), 7)
@@ -33,7 +33,7 @@ class Gather(CliTest):
             self.assertLess(distance.max(), 0.1)
             self.assertEqual(group["summary/passes/emitted"].shape, (7, 3))
 
-    def test_closed_box_against_the_matrix(self):
+    def test_gathering_in_a_closed_box_equals_the_matrix_solution(self):
         # Same eyes: with as many bounces both methods have the same light, to float rounding and
         # the tolerances (1e-6 of max E each; the lamp's E is 5 pi).
         self.run_program("solve", "box.obj", *SMALL, "--method", "hemicube", "--solve-tolerance",
@@ -57,7 +57,7 @@ class Gather(CliTest):
         stages = self.report("solve", "g.h5", "--set", "wall.reflectance=.1")["stages"]
         self.assertEqual(stages["gather"]["action"], "dropped")
 
-    def test_pictures_and_lit_mesh(self):
+    def test_pictures_and_lit_mesh_show_the_gathered_light(self):
         # The gathered light through the renderer and the mesh writer of the matrix method: the same
         # room, as far as 60 patches and 32 pixels go (some per cent).
         view = ["--width", "48", "--samples", "2"]
@@ -74,13 +74,13 @@ class Gather(CliTest):
         self.assertEqual(meshes["matched_a"], "100.00%")
         self.assertLess(meshes["relative_l2"], 0.01)
 
-    def test_pictures_of_light_gathered_before(self):
+    def test_pictures_reuse_light_gathered_before(self):
         self.run_program("gather", "box.obj", *SMALL, "-o", "g.h5")
         before = (self.folder / "g.h5").read_bytes()
         report = self.report("gather", "g.h5", "--width", "32", "-o", "p.exr")
         self.assertEqual(report["stages"]["gather"]["action"], "reused")
         self.assertEqual(report["picture"]["size"].split()[0], "32")
-        # What is computed for the picture alone is not lost without a word.
+        # Light computed for the picture alone is not dropped silently.
         run = self.run_program("gather", "g.h5", "--at", "patches", "--width", "32", "-o", "q.exr")
         self.assertIn("g.h5 is left as it is", run.out)
         self.assertEqual((self.folder / "g.h5").read_bytes(), before)
@@ -88,7 +88,7 @@ class Gather(CliTest):
         self.assertNotIn("left as it is", flat.out)
         self.assertGreater(self.report("compare", "p.exr", "f.exr")["comparison"]["relative_l2"], 0)
 
-    def test_light_that_is_lost_is_named(self):
+    def test_light_lost_on_backs_is_reported(self):
         # The ceiling turned over: it is dark, and its back is seen.
         text = (self.folder / "box.obj").read_text()
         self.write("lamp.obj", text.replace("f 1 2 3 4", "f 4 3 2 1"))
@@ -96,7 +96,7 @@ class Gather(CliTest):
         self.assertIn("lost on surfaces seen from behind: flipped? (room/wall)", run.err)
         self.assertNotIn("flipped", self.run_program("gather", "box.obj", *SMALL).err)
 
-    def test_patches_too_large_for_points(self):
+    def test_light_lost_between_eyes_is_reported(self):
         # A lamp a hundredth above the floor: no corner of the floor is in its light.
         self.write("low.obj", """mtllib box.mtl
 v 0 0 0
@@ -130,7 +130,7 @@ f 5 6 7 8
         self.refuse("gather", "box.obj", *SMALL, "-o", "g.mtx",
                     words=["g.mtx", ".png, .exr, .glb, .h5"])
 
-    def test_exit_codes(self):
+    def test_exit_codes_tell_failure_from_misuse(self):
         # White walls and a grey lamp: far from converged after 100 passes.
         white = ["--set", "wall.reflectance=1", "--set", "lamp.reflectance=0.999"]
         small = ["--patches", "6", "--resolution", "16"]

@@ -60,7 +60,7 @@ class Gmsh(CliTest):
     def test_volumes_alone_are_read_by_their_skin(self):
         places = SQUARE + [(0, 0, 1)]
         names = '$PhysicalNames\n2\n2 2 "wall"\n3 2 "block"\n$EndPhysicalNames\n'
-        # The second element is there once for each of its physical groups, as version 2.2 has it.
+        # The second element appears once for each of its physical groups, as in version 2.2.
         self.put(msh2(places, ["4 2 2 1 1 2 3 5", "4 2 2 2 1 3 4 5", "4 2 7 2 1 3 4 5"], names))
         faces, area = self.surfaces()["block"]
         self.assertEqual(faces, 6)
@@ -68,7 +68,7 @@ class Gmsh(CliTest):
         self.assertEqual(list(self.surfaces()), ["block"])
         self.assertRegex(self.run_program("info", "a.msh").out, r"closed +yes")
 
-    def test_a_face_in_several_groups_counts_to_the_first(self):
+    def test_a_face_in_several_groups_belongs_to_the_first(self):
         # Version 2.2 writes it once for each; 4.1 lists the groups of its entity.
         names = '$PhysicalNames\n2\n2 1 "a"\n2 2 "b"\n$EndPhysicalNames\n'
         self.put(msh2(SQUARE, ["3 2 1 8 1 2 3 4", "3 2 2 8 1 2 3 4"], names))
@@ -90,14 +90,14 @@ class Gmsh(CliTest):
             values = (self.folder / "f.mtx").read_text().splitlines()[-1].split()
             self.assertEqual(len(values) == 3 and float(values[2]) > 0.1, sees, report)
 
-    def test_other_sections_are_passed_over(self):
+    def test_other_sections_are_skipped(self):
         text = msh2(SQUARE, ["3 2 1 8 1 2 3 4"])
         self.put(text + "$NodeData\n1\n\"T\"\n1\n0\n3\n0\n1\n1\n1 $Elements\n$EndNodeData\n")
         self.assertEqual(self.surfaces(), {"physical 1": [1, 1]})
         self.says(":15: section $NodeData has no end; the file is cut off, save it again",
                   text + "$NodeData\n1\n")
 
-    def test_broken_text(self):
+    def test_broken_text_is_refused_by_line(self):
         text = mesh_files.to_gmsh4(MESH).decode()
         old = msh2(SQUARE, ["3 2 1 8 1 2 3 4"])
         for whole, piece, new, line in [
@@ -122,7 +122,7 @@ class Gmsh(CliTest):
                 self.assertIn(piece, whole)
                 self.says(line, whole.replace(piece, new))
 
-    def test_broken_binary(self):
+    def test_broken_binary_is_refused_by_byte(self):
         for whole in [mesh_files.to_gmsh2(MESH, binary=True), mesh_files.to_gmsh4(MESH, binary=True)]:
             self.put(whole)
             self.assertEqual(self.surfaces(), {"plate": [1, 1]})

@@ -1,4 +1,4 @@
-"""`radiosity heat`: conditions from a table and by name, what is written, what is refused."""
+"""`radiosity heat`: conditions from a table and by name, files written, inputs refused."""
 
 import csv
 import math
@@ -47,7 +47,7 @@ class Heat(CliTest):
             return list(csv.DictReader(file))
 
     # F = 0.199824895698387 between the plates (Howell C-11), one row each: two equations by hand.
-    def test_plates_under_the_sky(self):
+    def test_plates_under_the_sky_match_two_equations_by_hand(self):
         f, sky = 0.199824895698387, SIGMA * 250 ** 4
         report = self.heat("plates.obj", "--faces-as-patches", "--tolerance", "1e-9",
                            "--precision", "double", "--condition", "*.emissivity=0.7",
@@ -73,7 +73,7 @@ class Heat(CliTest):
         for surface in report["surfaces"]:
             self.assertAlmostEqual(surface["temperature_K"], 700, delta=0.01)  # closure to 1e-6
 
-    def test_what_is_not_accounted_for_is_said(self):
+    def test_lost_power_is_reported(self):
         # Flipped, the lower plate shows its back to the upper one.
         self.write("plates.obj", PLATES.replace("f 1 2 3 4", "f 4 3 2 1"))
         plates = ["plates.obj", "--patches", "8", "--condition", "*.emissivity=1"]
@@ -84,7 +84,7 @@ class Heat(CliTest):
                                "--thermal", "walls.csv")
         self.assertNotIn("accounted", run.err)
 
-    def test_all_files_say_the_same(self):
+    def test_all_files_hold_the_same_values(self):
         run = self.run_program("heat", "box.obj", *SMALL, "--thermal", "walls.csv", "--condition",
                                "wall.convection=5", "--condition", "wall.ambient=290",
                                "-o", "x.h5", "-o", "x.csv", "-o", "x.vtp", "--patch-table", "p.csv")
@@ -120,7 +120,7 @@ class Heat(CliTest):
         again = self.report("heat", "x.h5", "--thermal", "walls.csv")
         self.assertEqual(again["stages"]["heat"]["action"], "reused")
         self.assertEqual(again["heat"], first["heat"])
-        # A solution leaves the heat where it is; other form factors take it away.
+        # A solution keeps the heat; other form factors drop it.
         other = self.report("solve", "x.h5")
         self.assertEqual(other["stages"]["heat"]["action"], "kept")
         run = self.run_program("heat", "x.h5", "--thermal", "walls.csv", "--condition",
@@ -132,14 +132,14 @@ class Heat(CliTest):
         with h5py.File(self.folder / "x.h5") as file:
             self.assertNotIn("heat", file)
 
-    def test_conditions_are_in_the_results_file(self):
+    def test_the_results_file_keeps_the_conditions(self):
         solved = ["--thermal", "walls.csv", "--condition", "ceiling.temperature=710"]
         self.run_program("heat", "box.obj", *SMALL, *solved, "-o", "done.h5", "-o", "first.csv")
         again = self.report("heat", "done.h5", "-o", "again.csv")
         self.assertEqual(again["stages"]["heat"]["action"], "reused")
         self.assertEqual((self.folder / "again.csv").read_bytes(),
                          (self.folder / "first.csv").read_bytes())
-        # With another mesh they still hold, by name.
+        # They hold by name for another mesh, too.
         other = self.report("heat", "done.h5", "--patches", "100", "--patch-table", "p.csv")
         self.assertEqual(other["stages"]["heat"]["action"], "recomputed")
         self.assertAlmostEqual(other["heat"]["surfaces"][1]["temperature_K"], 710)
@@ -150,7 +150,7 @@ class Heat(CliTest):
         self.run_program("solve", "done.h5")
         self.run_program("heat", "done.h5", "--thermal", "walls.csv")
         self.assertNotIn("710", self.run_program("info", "done.h5").out)
-        # A name that is gone is looked for in the file's own table.
+        # A missing name is reported by its line of the file's table.
         with h5py.File(self.folder / "done.h5", "r+") as file:
             table = file["heat/condition_table"][()]
             file["heat/condition_table"][...] = [table[0].replace(b"ceiling", b"cellar2")]
@@ -161,21 +161,21 @@ class Heat(CliTest):
         self.run_program("factors", "box.obj", *SMALL, "-o", "x.h5")
         self.refuse("heat", "x.h5", "-o", "x.csv", words=["no conditions are given"])
 
-    def test_options_of_light_are_named(self):
+    def test_unused_options_of_light_are_named(self):
         small = ["heat", "box.obj", *SMALL, "--thermal", "walls.csv"]
         run = self.run_program(*small, "--set", "lamp.reflectance=.3", "--sky", "3", "--kd-is", "srgb")
         self.assertIn("about light, not used by heat: --set, --sky (heat has --sky-temperature), "
                       "--kd-is\n", run.err)
         self.assertNotIn("->", run.out + run.err)
-        # Faces without a material have a reflectance by default, which heat has no use for.
+        # Faces without a material have a default reflectance, which heat does not use.
         run = self.run_program("heat", "plates.obj", "--patches", "8", "--condition",
                                "*.emissivity=.5", "--condition", "*.temperature=300")
         self.assertEqual(run.err, "")
         self.assertIn("no material", self.run_program("solve", "plates.obj", "--patches", "8",
                                                       "--sky", "1").err)
 
-    def test_shares_are_of_all_that_is_given_off(self):
-        # Net powers are next to nothing where all have one temperature.
+    def test_losses_are_shares_of_the_power_given_off(self):
+        # Net powers nearly vanish if all surfaces have one temperature.
         room = ["box.obj", "--patches", "60", "--method", "exact", "--condition", "*.emissivity=.9",
                 "--condition", "*.flux=0", "--condition", "ceiling.temperature=300"]
         run = self.run_program("heat", *room)
@@ -186,7 +186,7 @@ class Heat(CliTest):
         self.write("plates.obj", PLATES.replace("f 1 2 3 4", "f 4 3 2 1"))
         run = self.run_program("heat", "plates.obj", "--patches", "8", "--condition",
                                "*.emissivity=1", "--condition", "*.temperature=400")
-        # Of two black plates of one temperature half is the upper one's, of which F goes to the back.
+        # Two black plates at one temperature: half is the upper one's, and F of that meets the back.
         self.assertIn("9.99% of what all surfaces give off", run.err)
 
     def test_temperatures_beyond_all_bounds_are_refused(self):
@@ -219,7 +219,7 @@ class Heat(CliTest):
             for a, b in zip(grey["surfaces"], banded["surfaces"]):
                 self.assertAlmostEqual(a["temperature_K"], b["temperature_K"], delta=2e-3)
 
-    def test_threads_leave_every_bit(self):
+    def test_threads_change_no_bit(self):
         for threads in ("1", "2"):
             self.run_program("heat", "box.obj", "--patches", "2000", "--method", "hemicube",
                              "--resolution", "32", "--thermal", "walls.csv", "--condition",
@@ -227,7 +227,7 @@ class Heat(CliTest):
                              f"{threads}.csv")
         self.assertEqual((self.folder / "1.csv").read_bytes(), (self.folder / "2.csv").read_bytes())
 
-    def test_what_is_wrong_is_refused_in_one_line(self):
+    def test_wrong_conditions_are_refused_in_one_line(self):
         def refuse(*arguments, words):
             self.refuse("heat", "box.obj", *SMALL, *arguments, words=words)
 
@@ -275,13 +275,13 @@ class Heat(CliTest):
             file["heat/temperature"] = values[1:]
         self.refuse("info", "x.h5", words=["/heat/temperature", f"not {len(values)}"])
 
-    def test_not_converging_is_said(self):
+    def test_a_heat_solution_that_did_not_converge_fails(self):
         run = self.run_program("heat", "box.obj", *SMALL, "--thermal", "walls.csv", "--condition",
                                "wall.convection=5", "--condition", "wall.ambient=290",
                                "--heat-iterations", "1", code=1)
         self.assertIn("not converged after 1 iterations", run.err)
 
-    def test_names_with_commas_and_quotes(self):
+    def test_names_with_commas_and_quotes_are_read_and_written(self):
         self.write("plates.obj", PLATES.replace("o lower", 'o the "low", plate'))
         self.write("q.csv", 'surface,emissivity,temperature_K\n"the ""low"", plate",.5,300\n*,.5,400\n')
         self.run_program("heat", "plates.obj", "--patches", "8", "--thermal", "q.csv", "-o", "s.csv")

@@ -1,5 +1,5 @@
-"""Ctrl-C while form factors of a curved body in a room are computed: an answer soon, whatever the
-program is at, and nothing left behind but rows."""
+"""Ctrl-C while form factors of a curved body in a room are computed: every stage answers soon and
+leaves nothing behind but rows."""
 
 import math
 import random
@@ -43,7 +43,7 @@ def bumpy_ball(rings, sectors):
 
 class InterruptTest(CliTest):
     def answer(self, method, seconds):
-        # So many pixels that hemicubes take long on any machine.
+        # With so many pixels hemicubes take long on any machine.
         process = subprocess.Popen(
             [PROGRAM, "factors", "room.h5", "--method", method, "--resolution", "2048",
              "-o", "f.h5"], cwd=self.folder,
@@ -62,7 +62,7 @@ class InterruptTest(CliTest):
         kept.unlink(missing_ok=True)
         return time.monotonic() - start
 
-    def test_every_stage_answers(self):
+    def test_every_stage_answers_ctrl_c_soon(self):
         self.write("box.mtl", BOX_MTL)
         self.write("room.obj", ROOM + bumpy_ball(40, 80))
         self.run_program("mesh", "room.obj", "-o", "room.h5")

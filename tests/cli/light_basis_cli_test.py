@@ -8,7 +8,7 @@ import numpy as np
 from cli_runner import SMALL, CliTest
 
 # A residual of 1e-11 of the largest emission is an error of at most 1/(1 - 0.7) as much in a room
-# of reflectance 0.7; what is emitted is at most 5 times the smallest light here: 2e-10 of it.
+# of reflectance 0.7; emission is at most 5 times the smallest light here: 2e-10 of it.
 EXACT = ["--solve-tolerance", "1e-11"]
 CLOSE = 1e-9
 ROOM = "room.emission=1,2,3"
@@ -44,7 +44,7 @@ class LightBasis(CliTest):
         self.run_program("solve", "s.h5", "--mix", "room/wall=2", "-o", "other.csv")
         self.assertGreater(np.abs(self.table("other.csv") / full - 1).max(), 0.01)
 
-    def test_sets_of_a_table(self):
+    def test_sets_of_a_table_become_sources(self):
         self.write("day.csv", "set,name,r,g,b\nmorning,room,1,0,0\nmorning,ceiling,0,1,2\n"
                               "noon,ceiling,5,5,5\n")
         report = self.report("solve", "box.obj", *SMALL, *EXACT, "--basis", "day.csv", "-o", "s.h5")
@@ -56,10 +56,10 @@ class LightBasis(CliTest):
                          "--set", "ceiling.emission=0.5,1.5,2.5", "-o", "full.csv")
         np.testing.assert_allclose(self.table("mixed.csv"), self.table("full.csv"), rtol=CLOSE)
 
-    def test_it_is_reused_kept_and_made_anew(self):
+    def test_the_basis_is_reused_kept_or_recomputed(self):
         self.solve_lamps()
         self.assertEqual(self.solve_lamps()["stages"]["basis"]["action"], "reused")
-        # Another lamp is another solution; the light of single lamps stays what it was.
+        # Another lamp is another solution; the light of single lamps stays.
         self.report("solve", "s.h5", "--set", "ceiling.emission=7")
         with h5py.File(self.folder / "s.h5") as file:
             self.assertEqual([name.decode() for name in file["basis/names"][()]], NAMES)
@@ -68,7 +68,7 @@ class LightBasis(CliTest):
         darker = self.report("solve", "s.h5", "--set", "room.reflectance=0.1")
         self.assertEqual(darker["stages"]["basis"]["action"], "dropped")
 
-    def test_pictures_of_a_mixture(self):
+    def test_pictures_of_a_mixture_equal_those_of_a_full_solution(self):
         self.solve_lamps()
         self.run_program("solve", "box.obj", *SMALL, *EXACT, "--set", "room.emission=0", "-o",
                          "one.h5")
@@ -80,7 +80,7 @@ class LightBasis(CliTest):
             self.run_program("compare", "m.exr", "f.exr", "--tolerance", "1e-5")  # single precision
         self.run_program("solve", "s.h5", "--mix", "ceiling/lamp=1", "-o", "m.glb", "-o", "m.vtp")
 
-    def test_what_cannot_be_mixed_is_said(self):
+    def test_impossible_mixtures_are_refused(self):
         self.solve_lamps()
         mix = ["solve", "s.h5", "-o", "m.csv", "--mix"]
         self.refuse(*mix, "lamp=1",
@@ -109,7 +109,7 @@ class LightBasis(CliTest):
         self.refuse("solve", "box.obj", *SMALL, "--set", "ceiling.emission=0", "--basis",
                     "surfaces", "-o", "s.h5", words=["no surface emits light"])
 
-    def test_damage_is_named(self):
+    def test_a_damaged_basis_is_named(self):
         self.solve_lamps()
         with h5py.File(self.folder / "s.h5", "r+") as file:
             rows = file["basis/radiosity"][()]

@@ -1,4 +1,4 @@
-"""What a user sees and sets: the sky, dark scenes, stages that are kept, what cannot be kept."""
+"""Light on the command line: the sky, dark scenes, stages kept, requests that cannot be kept."""
 
 import json
 import shlex
@@ -18,7 +18,7 @@ FLOOR = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\no floor\nf 4 3 2 1\n"
 
 
 class Sky(CliTest):
-    def test_a_floor_under_the_sky(self):
+    def test_a_floor_reflects_the_sky(self):
         self.write("floor.obj", FLOOR)
         report = self.report("solve", "floor.obj", "--patches", "9", "--sky", "1,2,0.5", "-o", "s.h5")
         with h5py.File(self.folder / "s.h5") as file:
@@ -29,14 +29,14 @@ class Sky(CliTest):
             self.assertEqual(list(file["scene"].attrs["sky"]), [1, 2, 0.5])
         np.testing.assert_allclose(report["solution"]["from_sky_W"], np.pi * np.array([1, 2, 0.5]),
                                    rtol=1e-14)
-        # It stays in the file; another one is another solution with the same form factors.
+        # It stays in the file; another sky is another solution with the same form factors.
         again = self.report("solve", "s.h5")
         self.assertEqual(again["stages"]["solution"]["action"], "reused")
         darker = self.report("solve", "s.h5", "--sky", "0.5")
         self.assertEqual(darker["stages"]["form_factors"]["action"], "reused")
         self.assertIn("sky 1,2,0.5 -> 0.5", darker["stages"]["solution"]["detail"])
 
-    def test_pictures_show_it(self):
+    def test_pictures_show_the_sky(self):
         self.write("floor.obj", FLOOR)
         self.run_program("render", "floor.obj", "--sky", "2", "--patches", "9", "-o", "p.png",
                          "-o", "p.exr", "--camera", "eye=0.5,1,3;target=0.5,0.5,0", "--width", "64")
@@ -46,11 +46,11 @@ class Sky(CliTest):
         report = self.report("compare", "p.exr", "g.exr", "--tolerance", "1e-5")["comparison"]
         self.assertEqual(report["area_a"], 64 * 64)  # every pixel shows something: alpha 1
 
-    def test_compare_with_gather(self):
+    def test_gathering_sees_the_same_sky(self):
         self.run_program("compare", DATA / "cornell-box.obj", "--sky", "1", "--gather", *SMALL,
                          "--at", "patches", "--gather-tolerance", "1e-6", "--tolerance", "5e-6")
 
-    def test_a_closed_scene_does_not_see_it(self):
+    def test_a_closed_scene_does_not_see_the_sky(self):
         run = self.run_program("solve", "box.obj", *SMALL, "--set", "lamp.radiance=0", "--sky", "1",
                                "-o", "s.h5")
         self.assertIn("nothing emits light and no patch sees the sky (the scene is closed)", run.err)
@@ -92,7 +92,7 @@ class DarkScenes(CliTest):
         subprocess.run(shlex.split(pasted), cwd=self.folder, check=True, capture_output=True)
         self.assertTrue((self.folder / "p.png").exists())
 
-    def test_nothing_lit_in_view(self):
+    def test_a_view_of_unlit_surfaces_is_warned_of(self):
         # A camera in a second, dark room beside the lit one.
         dark = "".join(f"v {x + 3} {y} {z}\n" for x, y, z in
                        [(0, 0, 0), (0, 0, 1), (1, 0, 1), (1, 0, 0), (0, 1, 0), (1, 1, 0), (1, 1, 1),
@@ -104,7 +104,7 @@ class DarkScenes(CliTest):
         camera = ["--camera", "eye=3.1,0.5,0.5;target=4,0.5,0.5"]
         run = self.run_program("render", "box.obj", "--patches", "100", *camera, "-o", "p.png")
         self.assertIn("radiosity: warning: nothing lit is in view", run.err)
-        # The camera that nobody gave is in the lit room.
+        # The default camera is in the lit room.
         run = self.run_program("render", "box.obj", "--patches", "100", "-o", "p.png")
         self.assertNotIn("nothing lit", run.err)
 
@@ -124,8 +124,8 @@ class KeptStages(CliTest):
         self.assertEqual(process.returncode, 1, err)
         return err.splitlines()[-1]
 
-    def test_while_solving(self):
-        # So bright a room, and such slow sweeps, that a signal finds it at work.
+    def test_an_interrupted_solve_keeps_the_form_factors(self):
+        # The room is so bright and sweeps so slow that a signal finds it at work.
         slow = ["--set", "wall.reflectance=0.9999999", "--set", "lamp.reflectance=0.9999999",
                 "--solver", "jacobi", "--max-iterations", "100000000"]
         line = self.interrupt(["render", "box.obj", "--patches", "1500", *slow, "-o", "p.png",
@@ -136,7 +136,7 @@ class KeptStages(CliTest):
         self.assertEqual(report["stages"]["form_factors"]["action"], "reused")
         self.assertEqual(report["solution"]["status"], "converged")
 
-    def test_while_drawing(self):
+    def test_an_interrupted_picture_keeps_the_solution(self):
         picture = ["--width", "8000", "--height", "8000", "--samples", "8"]
         line = self.interrupt(["render", "box.obj", *SMALL, *picture, "-o", "p.png", "-o", "p.h5"],
                               after="Picture")
@@ -146,7 +146,7 @@ class KeptStages(CliTest):
         report = self.report("render", "p.h5", "-o", "p.png")
         self.assertEqual(report["stages"]["solution"]["action"], "reused")
 
-    def test_a_results_file_given_gets_what_it_lacks_and_keeps_what_it_has(self):
+    def test_a_given_results_file_gets_missing_stages_and_keeps_others(self):
         self.run_program("mesh", "box.obj", *SMALL[:2], "-o", "m.h5")
         self.run_program("render", "m.h5", *SMALL[2:], "-o", "p.png")
         with h5py.File(self.folder / "m.h5") as file:
@@ -160,7 +160,7 @@ class KeptStages(CliTest):
 
 
 class WhatCannotBeKept(CliTest):
-    def test_too_few_patches(self):
+    def test_fewer_patches_than_surfaces_are_warned_of(self):
         # Six planar polygons of two surfaces.
         run = self.run_program("factors", "box.obj", "--patches", "1")
         self.assertEqual(run.err, "radiosity: warning: --patches 1 cannot be kept: the scene has 2 "
@@ -169,7 +169,7 @@ class WhatCannotBeKept(CliTest):
         run = self.run_program("factors", "box.obj", "--patches", "6")
         self.assertEqual(run.err, "")
 
-    def test_patches_beyond_what_was_asked_for_share_unknowns(self):
+    def test_patches_beyond_the_request_share_unknowns(self):
         run = self.run_program("solve", "box.obj", "--patches", "4", "-o", "s.h5")
         self.assertEqual(run.err, "")
         self.assertIn("6 patches share 4 unknowns: 4 were asked for", run.out)
@@ -185,7 +185,7 @@ class WhatCannotBeKept(CliTest):
             self.assertEqual(irradiance.shape, (6, 3))
             self.assertTrue((irradiance >= 0).all())
             self.assertGreater(len(set(map(tuple, irradiance))), 4)
-        # What stands in the file is reused, drawn and listed.
+        # Results in the file are reused, drawn and listed.
         report = self.report("render", "s.h5", "--show", "row-sum", "-o", "p.png")
         self.assertEqual(report["stages"]["form_factors"]["action"], "reused")
         self.assertIn("cluster of patch 5",
@@ -211,7 +211,7 @@ class WhatCannotBeKept(CliTest):
 
 
 class CompareHeadline(CliTest):
-    def test_without_emitters_and_the_worst_surface(self):
+    def test_the_headline_names_the_error_without_emitters_and_the_worst_surface(self):
         self.run_program("solve", "box.obj", *SMALL, "-o", "r.h5")
         self.run_program("solve", "box.obj", *SMALL, "--set", "wall.reflectance=.4", "-o", "s.h5")
         run = self.run_program("compare", "r.h5", "s.h5", "--report", "c.json")

@@ -1,4 +1,4 @@
-"""--lightmap on the command line: files, report, and what is refused."""
+"""--lightmap on the command line: files, report and refusals."""
 
 import unittest
 
@@ -8,7 +8,7 @@ MAP = ["--lightmap", "map.exr", "--lightmap-size", "64"]
 
 
 class LightmapCli(CliTest):
-    def test_both_files_and_the_report(self):
+    def test_a_lightmap_has_an_image_a_mesh_and_a_report(self):
         report = self.report("solve", DATA / "blender-room.glb", *SMALL, *MAP, "-o", "baked.glb")
         self.assertEqual(self.files(), ["baked.glb", "box.mtl", "box.obj", "map.exr", "run.json"])
         lightmap = report["lightmap"]
@@ -16,7 +16,7 @@ class LightmapCli(CliTest):
         self.assertAlmostEqual(lightmap["inside"] + lightmap["padding"] + lightmap["unused"], 1)
         self.assertIn("Drum/Blue paint", self.run_program("info", "baked.glb").out)
 
-    def test_beside_a_picture_and_from_a_results_file(self):
+    def test_a_results_file_gives_a_lightmap_beside_a_picture(self):
         self.run_program("solve", "box.obj", *SMALL, "-o", "box.h5")
         run = self.run_program("render", "box.h5", *MAP, "-o", "p.png", "-o", "baked.glb", "--width",
                                "32", "--lightmap-shows", "radiosity")
@@ -24,7 +24,7 @@ class LightmapCli(CliTest):
         self.assertIn("lightmap, radiosity, W/m^2", run.out)
         self.assertTrue((self.folder / "p.png").exists())
 
-    def test_refused_before_the_work(self):
+    def test_impossible_lightmaps_are_refused_before_any_work(self):
         solve = ["solve", "box.obj", *SMALL]
         glb = ["-o", "baked.glb"]
         self.refuse(*solve, *MAP, words=["--lightmap map.exr", "add -o FILE.glb"])
@@ -39,7 +39,7 @@ class LightmapCli(CliTest):
                     words=["p.exr: named twice"])
         self.refuse("render", "box.obj", "--flat", *MAP, *glb, words=["leave out --flat"])
 
-    def test_too_many_charts(self):
+    def test_a_map_too_small_for_its_charts_is_refused(self):
         self.refuse("solve", DATA / "cornell-box.obj", *SMALL, "--element-tolerance", "0.5", "--lightmap",
                     "map.exr", "--lightmap-size", "16", "-o", "baked.glb",
                     words=["a lightmap of 16 x 16 texels has no room for", "would do"])

@@ -1,4 +1,4 @@
-"""What a run takes of memory is what it said before: within 20%, or 20 MiB where all is little."""
+"""A run takes the memory that it forecast: within 20%, or 20 MiB for small runs."""
 
 import json
 import os
@@ -9,7 +9,7 @@ import unittest
 from cli_runner import DATA, PROGRAM, CliTest
 
 MIB = 2 ** 20
-# Of a small run most is the program itself, of which more or less is in memory already.
+# Most of a small run is the program itself, parts of which may be in memory already.
 LITTLE = 100 * MIB
 ROUGH = 20 * MIB
 SHARE = 0.2
@@ -28,7 +28,7 @@ RUNS = [
 
 class MemoryTest(CliTest):
     def peak(self, scene, method, patches, *options):
-        """Bytes the run held at most, and what it had said."""
+        """Peak bytes of the run, and its forecast."""
         process = subprocess.Popen(
             [PROGRAM, "factors", str(DATA / scene), "--method", method, "--patches", patches,
              *options, "--threads", "2", "--quiet", "--report", "run.json", "-o", "f.h5"],
@@ -40,7 +40,7 @@ class MemoryTest(CliTest):
         report = json.loads((self.folder / "run.json").read_text())
         return usage.ru_maxrss * 1024, report["form_factors"]["estimated_bytes"]
 
-    def test_peaks_are_as_foreseen(self):
+    def test_peaks_match_the_forecast(self):
         for run in RUNS:
             with self.subTest(" ".join(run)):
                 peak, foreseen = self.peak(*run)

@@ -34,7 +34,7 @@ class MeshFormats(CliTest):
         return {s["name"]: s["area_m2"] for s in surfaces}
 
     def factors(self, file):
-        """Form factors between the faces as they stand in the file."""
+        """Form factors between the faces of the file."""
         self.run_program("factors", file, "--faces-as-patches", "--tolerance", "1e-3", "-o", "f.mtx")
         return mmread(self.folder / "f.mtx").toarray()
 
@@ -57,7 +57,7 @@ class MeshFormats(CliTest):
                     # To the bit: faces and names are the same, in the same order.
                     numpy.testing.assert_array_equal(self.factors(name), factors)
 
-    def test_units(self):
+    def test_every_format_takes_a_unit(self):
         mesh = mesh_files.Mesh([(0, 0, 0), (1000, 0, 0), (0, 1000, 0)], {"plate": [[0, 1, 2]]})
         for name, writers in FORMATS.items():
             with self.subTest(name=name):
@@ -104,7 +104,7 @@ class BrokenMeshes(CliTest):
                         self.refuse("info", name, words=[name])
 
     def test_damaged_files_do_no_harm(self):
-        """Bytes that are replaced: read, or refused in one line."""
+        """Files with replaced bytes: read, or refused in one line."""
         random = numpy.random.default_rng(7)
         for name, writers in FORMATS.items():
             for write in writers:

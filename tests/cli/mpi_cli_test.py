@@ -1,5 +1,5 @@
 """Several processes, started by mpirun: the same form factors to the bit, the same light, rows
-shared between them; what they cannot do is refused in a line."""
+shared between them; unsupported requests are refused in a line."""
 
 import json
 import os
@@ -30,7 +30,7 @@ def launch(processes, *arguments):
 
 
 def processes_of(launcher):
-    """The ids of the programs that a launcher runs."""
+    """The ids of a launcher's programs."""
     children = Path(f"/proc/{launcher}/task/{launcher}/children").read_text().split()
     return [int(child) for child in children]
 
@@ -47,7 +47,7 @@ def is_running(process):
         status = Path(f"/proc/{process}/status").read_text()
     except (FileNotFoundError, ProcessLookupError):
         return False
-    # One that ended may wait for its launcher's parent to ask how.
+    # A process that ended may still wait to be reaped.
     return not re.search(r"State:\t[ZX]", status)
 
 
@@ -110,13 +110,13 @@ class MpiTest(CliTest):
         self.assertIn("nothing emits light", done.stderr)
         self.assertFalse(self.radiosity_of("d.h5").any())
 
-    def test_more_processes_than_blocks_of_rows(self):
+    def test_more_processes_than_blocks_of_rows_change_no_bit(self):
         options = ["factors", str(DATA / "facing-plates.obj"), "--patches", "2"]
         self.run_program(*options, "--method", "exact", "-o", "one.h5")
         self.mpirun(4, *options, "-o", "many.h5")
         self.assert_same_factors("one.h5", "many.h5")
 
-    def test_solutions_are_those_of_one_process(self):
+    def test_solutions_equal_those_of_one_process(self):
         # The residual is at rounding, so that solutions differ by no more than it leaves.
         exactly = ["--solve-tolerance", "1e-14"]
         for scene, patches, runs in [(BOX, "400", [(1, "auto"), (2, "petsc"), (4, "petsc")]),
@@ -130,7 +130,7 @@ class MpiTest(CliTest):
                     self.assert_same_radiosity("one.h5", "many.h5")
                     os.remove(self.folder / "many.h5")
 
-    def test_many_read_what_one_wrote_and_one_what_many_wrote(self):
+    def test_results_files_pass_between_one_process_and_many(self):
         options = [BOX, "--patches", "400", "--method", "exact"]
         self.run_program("factors", *options, "-o", "one.h5")
         self.mpirun(3, "factors", *options, "-o", "many.h5")
@@ -157,7 +157,7 @@ class MpiTest(CliTest):
                 os.remove(self.folder / "many.h5")
 
     def peaks(self, processes, *arguments):
-        """The most memory that any process of a run took, and the run's report."""
+        """The peak memory of any process of a run, and the run's report."""
         run = subprocess.Popen([*launch(processes, *arguments), "--report", "report.json"],
                                cwd=self.folder, env=ENVIRONMENT, stdout=subprocess.DEVNULL)
         most = 0
@@ -175,8 +175,8 @@ class MpiTest(CliTest):
         alone, report = self.peaks(1, *options)
         matrix = report["form_factors"]["matrix_bytes"]
         fourth, _ = self.peaks(4, *options)
-        # Three quarters of the rows are elsewhere, less what a process takes that is quicker than
-        # others, and buffers of messages.
+        # Three quarters of the rows are elsewhere, less the extra rows of a process quicker than
+        # others, and message buffers.
         self.assertGreater(alone - fourth, 0.5 * matrix)
 
     def run_at_work(self):
@@ -215,7 +215,7 @@ class MpiTest(CliTest):
         self.assert_same_factors("one.h5", "f.h5")
         self.assertFalse([name for name in self.files() if ".rows" in name])
 
-    def test_what_processes_cannot_share_is_refused(self):
+    def test_commands_that_processes_cannot_share_are_refused(self):
         done = self.mpirun(2, "factors", BOX, "--patches", "100", "--method", "hemicube", "--eye", "gl",
                            code=2)
         self.assertIn("--eye cpu", done.stderr)
@@ -225,10 +225,10 @@ class MpiTest(CliTest):
         alone = self.run_program("solve", BOX, "--patches", "100", "--solver", "petsc", code=2)
         self.assertIn("mpirun", alone.err)
 
-    def test_a_fault_is_told_once(self):
+    def test_a_fault_of_all_processes_is_reported_once(self):
         done = self.mpirun(3, "factors", "missing.obj", code=2)
         self.assertEqual(done.stderr.count("missing.obj"), 1)
-        # One that all processes find, in PETSc, of few unknowns.
+        # A fault found by all processes, in PETSc, with few unknowns.
         done = self.mpirun(3, "solve", "box.obj", "--patches", "150", "--solver", "petsc", code=1,
                            petsc="-ksp_type nonsense")
         self.assertEqual(done.stderr.count("radiosity: "), 1)

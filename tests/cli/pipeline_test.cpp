@@ -1,5 +1,5 @@
-// The whole way, scene file to solution, on the scenes of data/: answers that are known in closed
-// form or that must not depend on how the scene is cut, turned or placed.
+// From scene file to solution on the scenes of data/: answers that are known in closed form or that
+// must not depend on how the scene is cut, turned or placed.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -97,14 +97,14 @@ TEST(Pipeline, EveryClosedSceneIsAFurnace) {
     double worst_row = 0;
     for (double sum : lit.factors.fronts) worst_row = std::max(worst_row, std::abs(sum - 1));
     EXPECT_LT(worst_row, 1e-12) << name;
-    // Where patches share unknowns, their own light rests on 16,384 rays a cluster. One that
-    // rounding lets slip through an edge finds the dark and moves a value by some 1e-4 of it.
+    // If patches share unknowns, their own light rests on 16,384 rays a cluster. A ray that slips
+    // through an edge by rounding finds the dark and moves a value by some 1e-4 of it.
     const double rounding = lit.meshed.mesh.clusters ? 1e-3 : 1e-10;
     for (double b : lit.solution.radiosity) ASSERT_NEAR(b, 10.0, rounding) << name;
   }
 }
 
-TEST(Pipeline, FurnaceCubeAsWritten) {
+TEST(Pipeline, TheFurnaceCubeHasItsClosedForm) {
   const Lit lit = light(loadScene(kData + "furnace-cube.obj"), 96, 128);
   // Single precision rows: each of up to 80 entries is off by 3e-8 of itself.
   for (double b : lit.solution.radiosity) ASSERT_NEAR(b, 2.0, 1e-6);
@@ -166,7 +166,7 @@ TEST(Pipeline, ColourBleedsFromTheNearWall) {
   EXPECT_GT(near_red.x / near_red.y, 1.2 * near_green.x / near_green.y);
 }
 
-TEST(Pipeline, NothingLiesUnderTheBlocksAndNothingLeaks) {
+TEST(Pipeline, BlocksHaveNoUndersidesAndNothingLeaks) {
   const Lit lit = light(loadScene(kData + "cornell-box-closed.obj"), 1500, 64);
   const PatchMesh& mesh = lit.meshed.mesh;
   for (std::size_t i = 0; i < mesh.size(); ++i) {
@@ -185,7 +185,7 @@ TEST(Pipeline, NothingLiesUnderTheBlocksAndNothingLeaks) {
   }
 }
 
-TEST(Pipeline, LightGoesThroughADoorwayAndLosesMostOfItself) {
+TEST(Pipeline, ADoorwayPassesLittleLight) {
   const auto mean = meanBySurface(light(loadScene(kData + "two-rooms.obj"), 1500, 128));
   EXPECT_GT(mean.at("dark_floor/wood").x, 0.0);
   EXPECT_LT(mean.at("dark_floor/wood").x, 0.2 * mean.at("lit_floor/wood").x);
@@ -232,7 +232,7 @@ TEST(Pipeline, PowersOfTwoChangeNoBit) {
   }
 }
 
-TEST(Pipeline, PlaceScaleAndTurnChangeNothingThatCounts) {
+TEST(Pipeline, PlaceScaleAndTurnKeepTheMeansOfSurfaces) {
   const Scene scene = loadScene(kData + "cornell-box-closed.obj");
   const auto plain = meanBySurface(light(scene, 800, 128));
   const struct {

@@ -38,13 +38,13 @@ class Ply(CliTest):
     def says(self, line, content):
         self.assertEqual(self.refuse("info", self.put(content)), "radiosity: a.ply" + line)
 
-    def test_groups_are_surfaces_and_other_properties_are_passed_over(self):
+    def test_groups_are_surfaces_and_other_properties_are_skipped(self):
         self.put(HEAD + BODY)
         self.assertEqual(self.areas(), {"material_index 5": .5, "material_index 6": .5})
         self.assertIn("colours of each vertex are not used: the format does not say what they mean; --set "
                       "NAME.reflectance=R,G,B does", self.run_program("info", "a.ply").out)
 
-    def test_without_groups_it_is_one_surface_of_the_name_of_the_file(self):
+    def test_a_file_without_groups_is_one_surface_named_after_it(self):
         text = (HEAD + BODY).replace("property int material_index\n", "").replace(" 5\n", "\n").replace(" 6\n", "\n")
         self.put(text, "north wall.ply")
         self.assertEqual(self.areas("north wall.ply"), {"north wall": 1})
@@ -59,7 +59,7 @@ class Ply(CliTest):
             self.assertIn("what stands after the last element of the file is left out",
                           self.run_program("info", "a.ply").err)
 
-    def test_broken_text(self):
+    def test_broken_text_is_refused_by_line(self):
         text = HEAD + BODY
         for old, new, line in [
                 ("ply\n", "plyy\n", ":1: is no PLY file, which begins with ply; export it"),
@@ -88,7 +88,7 @@ class Ply(CliTest):
                 self.assertIn(old, text)
                 self.says(line, text.replace(old, new))
 
-    def test_broken_binary(self):
+    def test_broken_binary_is_refused(self):
         whole = mesh_files.to_ply(MESH, "binary_little_endian")
         nan = struct.pack("<d", float("nan"))
         place = whole.index(b"end_header\n") + 11

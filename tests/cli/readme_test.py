@@ -70,7 +70,7 @@ class Readme(unittest.TestCase):
                 if anchor:
                     self.assertIn(anchor, list(anchors(where)), said)
 
-    def test_every_line_fits(self):
+    def test_every_line_fits_the_width(self):
         for readme in READMES:
             for number, line in enumerate(readme.read_text().splitlines(), 1):
                 self.assertLessEqual(len(line), WIDTH, f"{readme.relative_to(ROOT)}:{number}")

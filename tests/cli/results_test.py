@@ -1,4 +1,4 @@
-"""The files of the program as others read them: h5py, scipy, numpy."""
+"""The program's files read by other libraries: h5py, scipy, numpy."""
 
 import os
 import subprocess

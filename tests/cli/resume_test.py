@@ -19,7 +19,7 @@ METHODS = {
     "rays": ["--method", "rays", "--patches", "300", "--tolerance", "0.02"],
     "hemicube": ["--method", "hemicube", "--patches", "900", "--resolution", "512"],
 }
-# More rows than it has: for what need not come to an end.
+# A longer run, for tests that do not wait for its end.
 LONG = ["--method", "rays", "--patches", "900", "--tolerance", "0.0005"]
 
 
@@ -39,8 +39,8 @@ class ResumeTest(CliTest):
             return 0
 
     def run_until(self, options, size):
-        """Starts a run and leaves it as it is once its journal has that size. None where it came to
-        its end before."""
+        """Starts a run and returns it once its journal has that size, or None if it ended
+        before."""
         process = self.start(options)
         while process.poll() is None and self.kept_bytes() < size:
             time.sleep(0.002)
@@ -58,7 +58,7 @@ class ResumeTest(CliTest):
         return self.kept_bytes() >= size
 
     def journal_size(self, options):
-        """Of a run's whole journal, about."""
+        """About that of a whole journal."""
         process = self.start(options)
         largest = 0
         while process.poll() is None:
@@ -74,14 +74,14 @@ class ResumeTest(CliTest):
         with h5py.File(self.folder / first) as a, h5py.File(self.folder / second) as b:
             self.assertEqual(a["form_factors"].attrs["key"], b["form_factors"].attrs["key"])
 
-    def test_killed_runs_go_on(self):
+    def test_killed_runs_resume_to_the_same_bits(self):
         for method, options in METHODS.items():
             with self.subTest(method):
                 size = self.journal_size(options)
                 os.replace(self.folder / "f.h5", self.folder / "whole.h5")
                 kills = sum(self.kill_at(options, share * size) for share in
                             [0.001, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9])
-                # Fewer where the rest is quicker than the look at the file's size.
+                # Fewer kills if a run ends before its file size is read.
                 self.assertGreaterEqual(kills, 3)
                 self.assertFalse((self.folder / "f.h5").exists())
                 run = self.run_program(*self.command(options))
@@ -90,7 +90,7 @@ class ResumeTest(CliTest):
                 self.assertNotIn("f.h5.rows", self.files())
                 os.remove(self.folder / "f.h5")
 
-    def test_damage_costs_the_blocks_it_is_in(self):
+    def test_damage_costs_the_damaged_blocks_alone(self):
         options = METHODS["hemicube"]
         size = self.journal_size(options)
         os.replace(self.folder / "f.h5", self.folder / "whole.h5")
@@ -103,7 +103,7 @@ class ResumeTest(CliTest):
         self.assertRegex(run.out, r"rows were there, [12] damaged blocks? left out")
         self.assert_same_factors("whole.h5", "f.h5")
 
-    def test_other_options_begin_anew(self):
+    def test_other_options_start_afresh(self):
         self.assertTrue(self.kill_at(LONG, 20_000))
         options = METHODS["hemicube"]
         run = self.run_program(*self.command(options))
@@ -113,7 +113,7 @@ class ResumeTest(CliTest):
         self.assert_same_factors("plain.h5", "f.h5")
         self.assertNotIn("f.h5.rows", self.files())
 
-    def test_no_resume_begins_anew(self):
+    def test_no_resume_starts_afresh(self):
         options = METHODS["hemicube"]
         size = self.journal_size(options)
         os.replace(self.folder / "f.h5", self.folder / "whole.h5")
@@ -123,8 +123,8 @@ class ResumeTest(CliTest):
         self.assert_same_factors("whole.h5", "f.h5")
         self.assertNotIn("f.h5.rows", self.files())
 
-    def test_auto_goes_on_with_the_method_it_had(self):
-        # A scene of which exact form factors are had at once, but rows of rays are there.
+    def test_auto_resumes_with_the_method_of_the_rows(self):
+        # Exact form factors of this scene take no time, but rows of rays are kept.
         options = ["--patches", "300", "--tolerance", "0.002"]
         box = str(DATA / "cornell-box-closed.obj")
         chosen = self.run_program("factors", box, *options, "-o", "auto.h5")
@@ -157,7 +157,7 @@ class ResumeTest(CliTest):
         self.run_program("factors", SCENE, *options, "-o", "plain.h5")
         self.assert_same_factors("plain.h5", "f.h5")
 
-    def test_an_interrupted_run_says_where_its_rows_are(self):
+    def test_an_interrupted_run_names_the_file_of_its_rows(self):
         process = self.run_until(LONG, 20_000)
         self.assertIsNotNone(process)
         process.send_signal(signal.SIGINT)

@@ -62,7 +62,7 @@ class Interrupted : public testing::Test {
   fs::path folder_;
 };
 
-// 0.35 s at most by design, the rest for a busy machine: far from the minute that is slept.
+// 0.35 s at most by design, the rest for a busy machine: far below the minute of sleep.
 constexpr double kAnswer = 2;
 
 TEST_F(Interrupted, StageThatNeverPollsIsEndedAndLeavesNothing) {

@@ -7,7 +7,7 @@ import unittest
 import input_files
 from cli_runner import CliTest
 
-# A tetrahedron with a lamp's face: what a scene of triangles needs to be meshed and lit.
+# A tetrahedron with a lamp's face: a scene of triangles that can be meshed and lit.
 CORNERS = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
 FACES = [(0, 1, 2), (0, 3, 1), (0, 2, 3), (1, 3, 2)]  # seen from inside
 
@@ -55,11 +55,11 @@ class Stl(CliTest):
         self.assertIn("lamp: reflectance 0.5 -> 0.8",
                       self.run_program("solve", "s.h5", "--set", "lamp.reflectance=.8").out)
 
-    def test_units_and_case(self):
+    def test_units_apply_and_keywords_ignore_case(self):
         self.put(tetrahedron([("a", FACES)]).upper())
         self.assertEqual(self.scene("a.stl", "--unit", "mm")["upper_m"], [0.001, 0.001, 0.001])
 
-    def test_notes(self):
+    def test_notes_name_wrong_normals_and_trailing_bytes(self):
         self.put(input_files.ascii_stl("plate").replace("normal 0 0 1", "normal 0 0 -1"))
         self.assertIn("1 of 1 normals point against the order of the corners; the order counts",
                       self.run_program("info", "a.stl").err)
@@ -68,7 +68,7 @@ class Stl(CliTest):
         self.assertIn("4 bytes after the last triangle are left out", run.err)
         self.assertIn("no material, reflectance 0.5: a", run.err)
 
-    def test_broken_text(self):
+    def test_broken_text_is_refused_by_line(self):
         text = input_files.ascii_stl()
         for old, new, line in [
                 ("vertex 1 0 0", "vertex 1 nan 0", ":5: `nan` is not a finite number; write it as 1.5 "
@@ -91,7 +91,7 @@ class Stl(CliTest):
                 self.says(line, text.replace(old, new))
         self.says(": no faces; export the scene with its meshes", "solid nothing\nendsolid\n")
 
-    def test_broken_binary(self):
+    def test_broken_binary_is_refused(self):
         whole = input_files.binary_stl(3)
         self.says(": is cut off or no STL: it claims 3 triangles and holds 2; export it again", whole[:-1])
         self.says(": is cut off or no STL: it claims 4294967295 triangles and holds 3; export it again",

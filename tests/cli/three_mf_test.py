@@ -1,4 +1,4 @@
-"""3MF, as programs for CAD and printing write it: what the build places, units, names, colours, and damaged
+"""3MF, as programs for CAD and printing write it: placed objects, units, names, colours, and damaged
 archives, each refused in a line."""
 
 import io
@@ -72,7 +72,7 @@ class ThreeMf(CliTest):
                 scene = self.scene(model(WEDGE, ITEM, attributes))
                 for size in scene["extent_m"]:
                     self.assertAlmostEqual(size / unit, 1, 5)  # of six digits
-        # Who says --unit knows better.
+        # --unit overrides the file.
         scene = self.scene(model(WEDGE, ITEM, ""), "--unit", "m")
         self.assertEqual(scene["extent_m"], [1, 1, 1])
         self.says("its unit `league` is none of micron, millimeter, centimeter, inch, foot, meter; correct it",
@@ -93,12 +93,12 @@ class ThreeMf(CliTest):
             self.assertAlmostEqual(areas[name], times * (1.5 + SLANTED), 4)
         self.assertTrue(scene["closed"])
         self.assertNotIn("faces inwards", self.run_program("info", "a.3mf").err)  # the mirrored one neither
-        # An axis is turned as the rows say: x becomes y.
+        # The rows turn an axis: x becomes y.
         scene = self.scene(model(WEDGE, '<item objectid="1" transform="0 2 0 3 0 0 0 0 1 0 0 0"/>'))
         self.assertEqual(scene["upper_m"], [3, 2, 1])
 
-    def test_names(self):
-        # Of the object itself, else of what it is a component of, else its number; what is not built is left out.
+    def test_names_come_from_objects_and_components(self):
+        # The object's own name, else its parent's, else its number; objects not built are left out.
         resources = (f'<object id="1">{mesh()}</object><object id="2" name="lid"><components><component objectid="1"/>'
                      f'</components></object><object id="3" name="spare">{mesh()}</object>')
         text = model(resources, '<item objectid="2"/><item objectid="1"/>')
@@ -107,7 +107,7 @@ class ThreeMf(CliTest):
         self.assertIn("objects that the build does not place are left out: spare", run.err)
         self.assertIn("no material, reflectance 0.5: lid, object 1", run.err)
 
-    def test_materials(self):
+    def test_materials_come_from_the_colours_of_triangles(self):
         groups = ('<basematerials id="5"><base name="red" displaycolor="#FF8000FF"/><base name="grey" '
                   'displaycolor="#33333380"/></basematerials><m:colorgroup id="6"><m:color color="#000000"/>'
                   '<m:color color="#FFFFFF"/></m:colorgroup><m:texture2dgroup id="7" texid="8"/>')
@@ -132,8 +132,8 @@ class ThreeMf(CliTest):
                       "multiproperties) are not read, default reflectance for: b", "reflectance 0.5: b"]:
             self.assertIn(words, err)
 
-    def test_components_in_other_files(self):
-        # As the production extension has it, and all programs that print from several plates.
+    def test_components_in_other_files_are_read(self):
+        # As in the production extension, and in all programs that print from several plates.
         part = model(f'<object id="1">{mesh()}</object>', "")
         space = f'{CORE}" xmlns:p="http://schemas.microsoft.com/3dmanufacturing/production/2015/06'
         text = model('<object id="8" name="body"><components><component p:path="/3D/Objects/one.model" objectid="1"/>'
@@ -143,7 +143,7 @@ class ThreeMf(CliTest):
         self.assertNotIn("extensions", self.run_program("info", "a.3mf").err)
         self.says("is no 3MF file: its archive has no /3D/Objects/one.model; export it again", archive(text))
 
-    def test_what_an_extension_adds_is_said(self):
+    def test_unread_extensions_are_named(self):
         space = f'{CORE}" xmlns:b="http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02'
         lattice = WEDGE.replace("</mesh>", "<b:beamlattice/></mesh>")
         self.put(model(lattice, ITEM, 'unit="meter" requiredextensions="b"', space))
@@ -159,7 +159,7 @@ class ThreeMf(CliTest):
         self.assertEqual(list(self.areas(content)), ["wedge"])
 
     def test_the_form_of_large_archives_is_read(self):
-        # Sizes and places in 64 bits, as writers that do not know them beforehand put them.
+        # Sizes and places in 64 bits, as by writers that do not know them beforehand.
         text = archive(model(WEDGE, ITEM))
         end = text.rindex(b"PK\5\6")
         count, size, place = struct.unpack("<HII", text[end + 10:end + 20])
@@ -181,7 +181,7 @@ class ThreeMf(CliTest):
         self.assertEqual(at, place + size)
         self.assertEqual(list(self.areas(text[:place] + entries + large_end + locator + short_end)), ["wedge"])
 
-    def test_broken_models(self):
+    def test_broken_models_are_refused(self):
         text = model(WEDGE, ITEM)
         for old, new, line in [
                 ('x="1"', 'x="nan"', "object wedge: vertex 1: x `nan` is not a finite number; correct it"),
@@ -217,7 +217,7 @@ class ThreeMf(CliTest):
         self.says("object wedge: member `1` of its group of materials 5 does not exist; export it again",
                   model(base.format("#FF0000") + named.format(1), ITEM))
 
-    def test_damaged_archives(self):
+    def test_damaged_archives_are_refused(self):
         whole = archive(model(WEDGE, ITEM))
         self.says("is no zip archive, which begins with PK; export it again", model(WEDGE, ITEM).encode())
         self.says("the list of its files, at its end, is not there; it is cut off, export it again", whole[:-40])
@@ -241,7 +241,7 @@ class ThreeMf(CliTest):
                 self.says("the list of its files is damaged or cut off; export it again",
                           whole[:entry + at] + change + whole[entry + at + len(change):])
 
-    def test_damage_anywhere_is_a_line(self):
+    def test_random_damage_is_read_or_refused_in_a_line(self):
         whole = archive(model(WEDGE, ITEM))
         chance = random.Random(3)
         for _ in range(150):

@@ -15,7 +15,7 @@ WALLS = ["floor", "west", "south", "ceiling", "east", "north"]
 
 
 def lines(vertices, surfaces):
-    """A file of F = 3: places, and what stands behind the number of each surface."""
+    """A file of F = 3: places, and the fields after the number of each surface."""
     text = "T  a room\nC  encl=1 eps=1.e-5\nF  3\n"
     for k, place in enumerate(vertices):
         text += "V {} {} {} {}\n".format(k + 1, *place)
@@ -68,7 +68,7 @@ class View3d(CliTest):
         for a, b in [(0, 3), (1, 4), (2, 5)]:
             expected[a, b] = expected[b, a] = opposite
         numpy.fill_diagonal(expected, 0)
-        # Closed forms hold what is asked for.
+        # Closed forms keep the tolerance.
         numpy.testing.assert_allclose(found, expected, atol=1e-9)
 
     def test_emissivity_is_one_less_the_reflectance(self):
@@ -95,10 +95,10 @@ class View3d(CliTest):
         self.assertEqual([areas[n] for n in ["floor", "window", "pane", "door"]],
                          [1 - .125 - .16, .125 - .01, .01, .16])
         self.assertNotIn("overlap", self.run_program("info", "a.vs3").err)
-        # Nothing lies double and nothing is missing: every row of the closed room sums to 1.
+        # Nothing overlaps and nothing is missing: every row of the closed room sums to 1.
         found = self.factors("--patches", "60")
         # Rows are good to the tolerance, which is relative to the mean form factor, and are stored
-        # in single precision where that suffices.
+        # in single precision if that suffices.
         numpy.testing.assert_allclose(found.sum(axis=1), 1, atol=1e-6)
 
     def test_combined_surfaces_are_one(self):
@@ -147,7 +147,7 @@ class View3d(CliTest):
         self.assertEqual([scene["lower_m"], scene["upper_m"]], [[0, 0, 0], [1, 1, 1]])
         numpy.testing.assert_allclose(self.factors("--faces-as-patches"), expected, atol=1e-9)
 
-    def test_names_and_case(self):
+    def test_names_are_unique_and_keywords_ignore_case(self):
         two = [("S", "1 2 3 4 0 0 .9 wall"), ("S", "7 6 5 8 0 0 .5 wall"),
                ("S", "1 4 8 5 0 0 .5 north wall")]
         self.put(lines(CUBE_VERTICES, two).lower().replace("\n", "\r\n"), "a.V3D")
@@ -157,7 +157,7 @@ class View3d(CliTest):
         self.assertIn("View3D controls are not used (options of the program say these): encl=1, eps=1.e-5",
                       run.out)
 
-    def test_broken_files(self):
+    def test_broken_files_are_refused_by_line(self):
         text = lines(CUBE_VERTICES, walls())
         for old, new, line in [
                 ("V 2 1", "V 2 nan", ":5: coordinate `nan` is not a finite number; write it as 1.5 with a "

@@ -1,4 +1,4 @@
-"""Pages: what `radiosity view` writes, read back by other programs; when it opens one."""
+"""Pages of `radiosity view`, read back by another program; when it opens one."""
 
 import base64
 import gzip
@@ -69,7 +69,7 @@ def actions(report):
 
 @unittest.skipIf(HAS_PAGES, "the program was built with node and npm")
 class WithoutNode(CliTest):
-    def test_the_error_says_what_to_install(self):
+    def test_the_error_names_the_missing_tools(self):
         self.refuse("view", "box.obj", words=["node", "npm", "tools/setup"])
 
 
@@ -78,7 +78,7 @@ class Pages(CliTest):
     def page(self, name):
         return Page(self.folder / name)
 
-    def test_it_holds_what_the_results_file_holds(self):
+    def test_a_page_holds_the_values_of_the_results_file(self):
         self.run_program("view", DATA / "cornell-box.obj", "--patches", "300", "-o", "p.html",
                          "-o", "p.h5")
         page = self.page("p.html")
@@ -97,7 +97,7 @@ class Pages(CliTest):
         # Areas are in single precision.
         np.testing.assert_allclose(page.factors(), full, rtol=error + 2e-7, atol=1e-9 / 300)
 
-    def test_light_solved_again_from_it_is_that_of_solve(self):
+    def test_light_solved_from_a_page_is_that_of_solve(self):
         self.run_program("view", DATA / "cornell-box.obj", "--patches", "300", "-o", "p.html",
                          "-o", "p.h5", "--elements", "off")
         page = self.page("p.html")
@@ -110,7 +110,7 @@ class Pages(CliTest):
         reflectance[material == white] = .95
         with h5py.File(self.folder / "p.h5") as file:
             expected = file["solution/radiosity"][()]
-        # What a page may differ by from the program.
+        # Pages may differ by this from the program.
         self.assertLess(abs(page.solved(reflectance) - expected).max(), 1e-3 * expected.max())
 
     def test_a_results_file_gives_all_stages(self):
@@ -124,7 +124,7 @@ class Pages(CliTest):
         self.assertEqual(again["page"]["element_triangles"],
                          self.page("b.html")["element_triangle"].size / 3)
 
-    def test_camera_and_exposure_are_those_of_render(self):
+    def test_camera_and_exposure_equal_those_of_render(self):
         self.run_program("solve", "box.obj", *BOX, "-o", "s.h5", "-o", "lit.glb")
         picture = self.report("render", "s.h5", "-o", "p.png")["picture"]
         self.run_program("view", "s.h5", "-o", "p.html")
@@ -153,7 +153,7 @@ class Pages(CliTest):
         light = page.rows("irradiance")
         np.testing.assert_array_equal(light[:, 0], light[:, 2])
 
-    def test_what_it_refuses(self):
+    def test_impossible_pages_are_refused(self):
         for arguments, words in [
                 (["-o", "p.png"], ["p.png: view writes .h5, .html"]),
                 (["-o", "p.html", "--method", "hemicube"], ["box.obj", "--symmetrize"]),
@@ -164,7 +164,7 @@ class Pages(CliTest):
             with self.subTest(arguments=arguments):
                 self.refuse("view", "box.obj", *arguments, words=words)
 
-    def test_a_page_nobody_named_replaces_pages_alone(self):
+    def test_a_default_page_name_replaces_only_pages(self):
         self.write("box.html", "<p>mine</p>")
         self.refuse("view", "box.obj", *BOX, words=["box.html", "-o"])
         (self.folder / "box.html").unlink()
@@ -176,7 +176,7 @@ class Pages(CliTest):
 
 @unittest.skipUnless(HAS_PAGES, "the program was built without node and npm")
 class Desktop(CliTest):
-    """With an xdg-open that writes down what it is asked to open."""
+    """With an xdg-open that records the files it is to open."""
 
     def setUp(self):
         super().setUp()
@@ -187,7 +187,7 @@ class Desktop(CliTest):
         self.environment["PATH"] = f"{self.folder}:{os.environ['PATH']}"
 
     def view(self, *arguments, terminal=True, **environment):
-        """What was opened, or None."""
+        """The opened file, or None."""
         ours, theirs = pty.openpty()
         try:
             subprocess.run([PROGRAM, "view", "box.obj", *BOX, "--elements", "off", "--quiet", *arguments],
@@ -197,7 +197,7 @@ class Desktop(CliTest):
             os.close(ours)
             os.close(theirs)
         opened = self.folder / "opened"
-        # It is not waited for; where it ought to come it comes within this.
+        # Nobody waits for it; an expected one comes within this.
         until = time.monotonic() + (10 if terminal and environment and not arguments else 0.3)
         while time.monotonic() < until and not (opened.exists() and opened.read_text()):
             time.sleep(0.02)
@@ -207,16 +207,16 @@ class Desktop(CliTest):
         opened.unlink()
         return text
 
-    def test_a_page_nobody_named_opens_on_a_desktop(self):
+    def test_a_page_with_a_default_name_opens_on_a_desktop(self):
         self.assertEqual(self.view(DISPLAY=":0"), "box.html")
         self.assertEqual(self.view(WAYLAND_DISPLAY="wayland-0"), "box.html")
 
-    def test_elsewhere_nothing_opens(self):
+    def test_nothing_opens_without_desktop_terminal_or_default_name(self):
         self.assertIsNone(self.view())
         self.assertIsNone(self.view("-o", "p.html", DISPLAY=":0"))
         self.assertIsNone(self.view(terminal=False, DISPLAY=":0"))
 
-    def test_without_xdg_open_nothing_happens(self):
+    def test_a_missing_xdg_open_is_ignored(self):
         (self.folder / "xdg-open").unlink()
         self.environment["PATH"] = str(self.folder)
         self.assertIsNone(self.view("--report", "r.json", DISPLAY=":0"))

@@ -30,7 +30,7 @@ class Vtk(CliTest):
     def says(self, line, content, name="a.vtk"):
         self.assertEqual(self.refuse("info", self.put(content, name)), f"radiosity: {name}{line}")
 
-    def test_strips_and_polygons(self):
+    def test_strips_and_polygons_take_their_cell_data(self):
         self.put(LEGACY + "POLYDATA\n" + POINTS + "LINES 1 3\n2 0 1\nTRIANGLE_STRIPS 1 7\n6 0 1 2 3 4 5\n"
                  "POLYGONS 1 7\n6 0 1 3 5 4 2\nCELL_DATA 3\nSCALARS Region int\nLOOKUP_TABLE default\n9 1 2\n")
         # Cell data stand in the order lines, polygons, strips, whatever the order in the file.
@@ -40,7 +40,7 @@ class Vtk(CliTest):
         self.assertEqual([s["faces"] for s in scene["surfaces"]], [1, 4])
         self.assertNotIn("flipped", self.run_program("info", "a.vtk").err)
 
-    def test_pixels_and_curved_cells(self):
+    def test_pixels_and_curved_cells_are_read(self):
         cells = "4 0 1 2 3\n6 0 1 3 4 5 2\n4 2 3 4 5\n4 0 1 2 4\n2 0 1\n"
         self.put(LEGACY + "UNSTRUCTURED_GRID\n" + POINTS + f"CELLS 5 25\n{cells}CELL_TYPES 5\n8 22 8 10 3\n")
         self.assertEqual(self.areas(), {"a": 2.5})
@@ -63,7 +63,7 @@ class Vtk(CliTest):
         self.says(": no faces, volume elements alone; export the surface as polygons",
                   LEGACY + "UNSTRUCTURED_GRID\n" + points + "CELLS 1 11\n10 0 1 2 3 4 5 6 7 8 9\nCELL_TYPES 1\n15\n")
 
-    def test_arrays_that_are_no_groups_are_passed_over(self):
+    def test_arrays_that_are_no_groups_are_skipped(self):
         data = ("POINT_DATA 6\nSCALARS group int 1\nLOOKUP_TABLE own\n1 2 3 4 5 6\nLOOKUP_TABLE own 1\n0 0 0 1\n"
                 "NORMALS n float\n" + "0 0 1 " * 6 + "\nCELL_DATA 2\nFIELD FieldData 4\ntemperature 1 2 float\n300 nan\n"
                 "METADATA\nINFORMATION 0\n\ngroup 2 2 int\n1 2 3 4\ngroup 1 2 float\n.1 .2\n"
@@ -80,7 +80,7 @@ class Vtk(CliTest):
         self.put(text, "a.vtp")
         self.assertEqual(self.areas("a.vtp"), {"floor": .5, "unnamed": .5})
 
-    def test_of_several_arrays_that_name_groups_the_best_counts(self):
+    def test_the_best_of_several_group_arrays_names_the_surfaces(self):
         number = "{} 1 2 int\n{}\n"
         words = "part 1 2 string\nlamp\nfloor\n"
         ids = number.format("CellEntityIds", "4 4")
@@ -95,7 +95,7 @@ class Vtk(CliTest):
             self.assertEqual(list(self.areas()), names)
 
     def test_all_pieces_have_the_same_array(self):
-        # Each piece has one cell, whose number differs from none other's there.
+        # Each piece has one cell, so that its number is the only one there.
         number = '<DataArray type="Int32" Name="{}" format="ascii">{}</DataArray>'
         pieces = ""
         for k in range(3):
@@ -132,7 +132,7 @@ class Vtk(CliTest):
         writer.SetInputData(grid)
         self.assertTrue(writer.Write())
 
-    def test_what_vtk_itself_writes(self):
+    def test_files_written_by_vtk_are_read(self):
         for compressor in ["None", "ZLib", "LZ4", "LZMA"]:
             for mode in ["Binary", "Appended"]:
                 with self.subTest(f"{compressor} {mode}"):
@@ -144,7 +144,7 @@ class Vtk(CliTest):
                     for area in areas.values():
                         self.assertAlmostEqual(area, 0.5, 6)  # single precision
 
-    def test_damaged_packed_data(self):
+    def test_damaged_packed_data_are_read_or_refused(self):
         for compressor in ["LZ4", "LZMA"]:
             self.written_by_vtk(compressor, "Appended")
             content = bytearray((self.folder / "a.vtp").read_bytes())
@@ -164,7 +164,7 @@ class Vtk(CliTest):
         return subprocess.run([PROGRAM, "info", "a.vtp"], cwd=self.folder, capture_output=True, text=True, timeout=60,
                               check=False)
 
-    def test_broken_legacy_files(self):
+    def test_broken_legacy_files_are_refused_by_line(self):
         text = LEGACY + "POLYDATA\n" + POINTS + "POLYGONS 1 4\n3 0 1 2\n"
         for old, new, line in [
                 ("# vtk", "# vkt", ":1: is no VTK file, which begins with `# vtk DataFile Version`; export it again"),
@@ -190,7 +190,7 @@ class Vtk(CliTest):
         self.says(": cell 0: cells of type 99 are not read; export polygons",
                   text.replace("POLYDATA", "UNSTRUCTURED_GRID").replace("POLYGONS", "CELLS") + "CELL_TYPES 1\n99\n")
 
-    def test_broken_xml_files(self):
+    def test_broken_xml_files_are_refused_by_element(self):
         text = mesh_files.to_vtk_xml(MESH).decode()
         for old, new, line in [
                 ("</Polys>", "", ": is no sound XML (byte 637: Start-end tags mismatch); export it again"),
@@ -213,7 +213,7 @@ class Vtk(CliTest):
                 self.assertIn(old, text)
                 self.says(line, text.replace(old, new), "a.vtp")
 
-    def test_broken_coded_data(self):
+    def test_broken_coded_data_are_refused(self):
         packed = mesh_files.to_vtk_xml(MESH, form="binary", compressed=True).decode()
         plain = mesh_files.to_vtk_xml(MESH, form="binary").decode()
         raw = mesh_files.to_vtk_xml(MESH, form="appended", encoding="raw")
@@ -223,7 +223,7 @@ class Vtk(CliTest):
                  (plain.replace(first, "////////" + first[8:]), "it ends too early"),
                  (raw.replace(b'offset="0"', b'offset="99999"'), "its offset is beyond the appended data"),
                  (raw.replace(b"</AppendedData>", b""), "its appended data is cut off")]
-        # Behind each other: how many blocks, their size, that of the last one, that when packed.
+        # In order: number of blocks, their size, that of the last one, the packed size.
         first = re.search(r'format="binary">\s*(\S+)', packed).group(1)
         for numbers, words in [((2**60, 1000, 96, 40), "it has too many blocks"),
                                ((1, 1000, 2**50, 40), "a block's size is wrong"),

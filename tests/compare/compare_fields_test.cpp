@@ -1,5 +1,5 @@
-// Comparison of light on surfaces: figures that can be made by hand, meshes that differ, and what
-// is refused.
+// Comparison of light on surfaces: figures that can be made by hand, meshes that differ, and
+// refusals.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -50,7 +50,7 @@ std::string refusal(const LightField& a, const LightField& b, const CompareOptio
   return errorOf([&] { compare(a, b, options); });
 }
 
-TEST(CompareFields, FiguresMadeByHand) {
+TEST(CompareFields, FiguresEqualThoseMadeByHand) {
   // Two patches of area 1 and 3; A is 2 and 1 in each band, B is 3 and 1: the difference is
   // sqrt(1 * 1^2) over sqrt(1 * 2^2 + 3 * 1^2) in each band.
   QuadMesh builder;
@@ -78,7 +78,7 @@ TEST(CompareFields, FiguresMadeByHand) {
   EXPECT_EQ(c.matched_a, c.area_a);
 }
 
-TEST(CompareFields, EveryBandAloneHasTheFiguresItHasAmongOthers) {
+TEST(CompareFields, EveryBandHasTheSameFiguresAloneAndAmongOthers) {
   QuadMesh builder;
   builder.grid("left", {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 3, 2);
   builder.grid("right", {1, 0, 0}, {3, 0, 0}, {0, 1, 0}, 2, 3);
@@ -134,7 +134,7 @@ TEST(CompareFields, EveryBandAloneHasTheFiguresItHasAmongOthers) {
   }
 }
 
-TEST(CompareFields, OtherBandsAreRefusedWithTheCure) {
+TEST(CompareFields, DifferentBandsAreRefusedWithTheCure) {
   QuadMesh builder;
   builder.grid("square", {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, 2);
   const PatchMesh mesh = builder.build();
@@ -156,7 +156,7 @@ TEST(CompareFields, OtherBandsAreRefusedWithTheCure) {
             "");
 }
 
-TEST(CompareFields, TheSameFieldOnOtherMeshesIsTheSame) {
+TEST(CompareFields, AFieldEqualsItselfOnOtherMeshes) {
   // A linear field is linear whatever triangles carry it; means over cells are exact for it.
   const LightField a = light(square(3, ramp));
   for (const int n : {1, 2, 5, 16}) {
@@ -167,7 +167,7 @@ TEST(CompareFields, TheSameFieldOnOtherMeshesIsTheSame) {
   }
 }
 
-TEST(CompareFields, PatchesAreSetAgainstMeans) {
+TEST(CompareFields, PatchesAreComparedWithMeans) {
   // Patches that hold the means of a linear field are equal to it, though they differ at every
   // point; and the cells are the patches', whichever side they are on.
   QuadMesh builder;
@@ -186,7 +186,7 @@ TEST(CompareFields, PatchesAreSetAgainstMeans) {
   EXPECT_TRUE(turned.cells_of_b);
 }
 
-TEST(CompareFields, SidesOfASheetAreToldApart) {
+TEST(CompareFields, SidesOfASheetAreComparedSeparately) {
   // A sheet lit from above: its front is 1, its back 0. Both lie in one place.
   QuadMesh builder;
   builder.grid("sheet", {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, 2, true);
@@ -224,7 +224,7 @@ TEST(CompareFields, AnErrorOfPiIsFoundAndNamed) {
   ASSERT_EQ(turned.notes.size(), 1u);
   EXPECT_NE(turned.notes[0].text.find("that is 1 / pi:"), std::string::npos);
 
-  // Another factor is no pi; an honest difference is no factor.
+  // 2.5 is not pi; a difference in shape is no factor.
   const auto scaled = [](const Vec3& p) { return 2.5 * ramp(p); };
   const Comparison other = compare(radiosity, light(square(4, scaled)), {});
   ASSERT_EQ(other.notes.size(), 1u);
@@ -233,7 +233,7 @@ TEST(CompareFields, AnErrorOfPiIsFoundAndNamed) {
   EXPECT_TRUE(compare(radiosity, light(square(4, shaped)), {}).notes.empty());
 }
 
-TEST(CompareFields, OneFactorIsFitted) {
+TEST(CompareFields, AConstantFactorIsFitted) {
   CompareOptions options;
   options.fit_scale = true;
   const auto scaled = [](const Vec3& p) { return 0.04 * ramp(p); };
@@ -243,7 +243,7 @@ TEST(CompareFields, OneFactorIsFitted) {
   EXPECT_TRUE(c.notes.empty());
 }
 
-TEST(CompareFields, CodedColoursNeedAFactorAndLoseTheirTop) {
+TEST(CompareFields, CodedColoursNeedAFactorAndDropClippedValues) {
   // sRGB codes of x / 2 + 1 / 4, the right end of which is clipped at 1 when doubled.
   const auto coded = [](const Vec3& p) {
     const double linear = std::min(1.0, 2 * (0.25 + 0.5 * p.x));
@@ -269,7 +269,7 @@ TEST(CompareFields, CodedColoursNeedAFactorAndLoseTheirTop) {
   EXPECT_NEAR(c.sums.area + c.clipped, 1, 1e-12);
 }
 
-TEST(CompareFields, OtherSurfacesAreRefusedWithTheReason) {
+TEST(CompareFields, DifferentSurfacesAreRefusedWithTheReason) {
   const LightField a = light(square(3, ramp));
   const LightField far = light(square(3, ramp, false, {0, 0, 0.5}));
   const std::string apart = refusal(a, far);
@@ -279,13 +279,13 @@ TEST(CompareFields, OtherSurfacesAreRefusedWithTheReason) {
             std::string::npos);
   const std::string flipped = refusal(a, light(square(3, ramp, true)));
   EXPECT_NE(flipped.find("faces the other way"), std::string::npos) << flipped;
-  // Nothing matches: --partial has nothing to go on with.
+  // Nothing matches: --partial does not help.
   CompareOptions partial;
   partial.partial = true;
   EXPECT_NE(refusal(a, far, partial), "");
 }
 
-TEST(CompareFields, PartsAreComparedWhereAskedFor) {
+TEST(CompareFields, PartsAreComparedOnRequest) {
   const LightField whole = light(square(4, ramp));
   LitMesh half = square(4, ramp);
   half.triangles.resize(16);
@@ -306,7 +306,7 @@ TEST(CompareFields, PartsAreComparedWhereAskedFor) {
             16);
 }
 
-TEST(CompareFields, OptionsHaveTheirRange) {
+TEST(CompareFields, OptionsOutOfRangeAreRefused) {
   EXPECT_NO_THROW(CompareOptions().validate());
   for (const double match : {0.0, 0.2, double(NAN)}) {
     CompareOptions options;

@@ -36,7 +36,7 @@ const std::string kAsciiPly =
     "property uchar alpha\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
     "0 0 0 255 0 51 255\n1 0 0 0 0 0 255\n1 1 0 0 0 0 255\n0 1 0 0 255 0 255\n4 0 1 2 3\n";
 
-TEST_F(LitMeshFiles, PlyInAscii) {
+TEST_F(LitMeshFiles, AsciiPlyIsRead) {
   const LitMesh mesh = readLitMesh(put("a.ply", kAsciiPly));
   ASSERT_EQ(mesh.triangles.size(), 2u);
   EXPECT_TRUE(mesh.bytes);
@@ -54,7 +54,7 @@ void append(std::string& out, T value, bool swapped) {
   out.append(bytes.data(), bytes.size());
 }
 
-TEST_F(LitMeshFiles, PlyInBothByteOrders) {
+TEST_F(LitMeshFiles, BinaryPlyIsReadInBothByteOrders) {
   for (const bool big : {false, true}) {
     std::string text = std::string("ply\nformat binary_") + (big ? "big" : "little") +
                        "_endian 1.0\nelement vertex 3\nproperty double x\nproperty double y\n"
@@ -73,14 +73,14 @@ TEST_F(LitMeshFiles, PlyInBothByteOrders) {
     EXPECT_FALSE(mesh.bytes);
     EXPECT_EQ(mesh.vertices[2], Vec3(0, 2.5, 0.25));
     EXPECT_EQ(mesh.colours[0][2], Vec3(7.5, 0.125, 2));
-    // Any shorter it is damaged, not silently smaller.
+    // A shorter file is damaged, not silently smaller.
     for (const std::size_t cut : {1u, 13u, 60u}) {
       EXPECT_NE(refusal("c.ply", text.substr(0, text.size() - cut)), "") << cut;
     }
   }
 }
 
-TEST_F(LitMeshFiles, ObjWithColours) {
+TEST_F(LitMeshFiles, ObjWithColoursIsRead) {
   const LitMesh mesh = readLitMesh(put("a.obj",
                                        "# by hand\no wall\nusemtl red\nv 0 0 0 1 0.5 0.25\n"
                                        "v 1 0 0 4 5 6\nv 1 1 0 0 0 0\nv 0 1 0 0 0 1e3\n"
@@ -92,7 +92,7 @@ TEST_F(LitMeshFiles, ObjWithColours) {
   EXPECT_EQ(mesh.colours[2][2], Vec3(0, 0, 1000));
 }
 
-TEST_F(LitMeshFiles, WithoutColoursTheCureIsSaid) {
+TEST_F(LitMeshFiles, MissingColoursAreRefusedWithTheCure) {
   for (const std::string& error :
        {refusal("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
         refusal("a.ply",
@@ -106,7 +106,7 @@ TEST_F(LitMeshFiles, WithoutColoursTheCureIsSaid) {
   EXPECT_NE(error.find("bake the light into vertex colours"), std::string::npos) << error;
 }
 
-TEST_F(LitMeshFiles, DamageIsAnErrorWithAPlace) {
+TEST_F(LitMeshFiles, DamageIsReportedWithItsPlace) {
   EXPECT_NE(refusal("a.obj", "v 0 0 0 1 1 1\nv 1 0 0 nan 1 1\n").find("a.obj:2:"),
             std::string::npos);
   EXPECT_NE(refusal("a.obj", "v 0 0 0 1 1 1\nf 1 2 3\n").find("a.obj:2:"), std::string::npos);
@@ -121,7 +121,7 @@ TEST_F(LitMeshFiles, DamageIsAnErrorWithAPlace) {
 }
 
 TEST_F(LitMeshFiles, OurOwnLitMeshHoldsRadiosity) {
-  // Not what is shown, which is exposed and clipped: the true values, to the rounding of floats.
+  // The true values, to the rounding of floats, not the exposed and clipped ones that are shown.
   const test::Room room = test::loadRoom("cornell-box", 80);
   std::vector<double> radiosity;
   for (const Vec3& c : room.mesh.centroid) {

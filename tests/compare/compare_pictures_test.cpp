@@ -21,7 +21,7 @@ ImageFile picture(int width, int height, float r, float g, float b) {
   return file;
 }
 
-TEST(ComparePictures, FiguresMadeByHand) {
+TEST(ComparePictures, FiguresEqualThoseMadeByHand) {
   const ImageFile a = picture(4, 2, 1, 2, 3);
   ImageFile b = a;
   b.image.rgba[4 * 6 + 1] = 2.5F;  // pixel (2, 1), green
@@ -35,7 +35,7 @@ TEST(ComparePictures, FiguresMadeByHand) {
   EXPECT_NEAR(c.difference[6], 0.7152 * 0.5, 1e-12);
 }
 
-TEST(ComparePictures, PixelsThatEitherMissesAreLeftOut) {
+TEST(ComparePictures, PixelsMissedByEitherPictureAreLeftOut) {
   const ImageFile a = picture(4, 2, 1, 1, 1);
   ImageFile b = picture(4, 2, 1, 1, 1);
   for (std::size_t k = 0; k < 4; ++k) b.image.rgba[k] = 0;  // pixel 0: nothing hit
@@ -57,7 +57,7 @@ TEST(ComparePictures, RadiosityIsPiTimesRadiance) {
   EXPECT_NE(wrong.notes[0].text.find("1 / pi"), std::string::npos);
 }
 
-TEST(ComparePictures, ToneMappedAgainstLightIsRefusedWithTheCure) {
+TEST(ComparePictures, ToneMappedPicturesAgainstLightAreRefusedWithTheCure) {
   const ImageFile light = picture(2, 2, 0.5F, 0.5F, 0.5F);
   ImageFile screen = picture(2, 2, 0.5F, 0.5F, 0.5F);
   screen.bytes = true;
@@ -70,7 +70,7 @@ TEST(ComparePictures, ToneMappedAgainstLightIsRefusedWithTheCure) {
   const Comparison c = compare(screen, LightUnit::srgb8, light, LightUnit::radiance, options);
   // The sRGB curve gives 0.5 the light 0.214041 (IEC 61966-2-1).
   EXPECT_NEAR(c.scale, 0.214041 / 0.5, 1e-5);
-  // Two coded pictures need no factor, and what is at the top is left out.
+  // Two coded pictures need no factor; clipped values are left out.
   ImageFile bright = screen;
   bright.image.rgba[0] = 1;
   const Comparison two = compare(screen, LightUnit::srgb8, bright, LightUnit::srgb8, {});
@@ -78,7 +78,7 @@ TEST(ComparePictures, ToneMappedAgainstLightIsRefusedWithTheCure) {
   EXPECT_EQ(two.clipped, 1);
 }
 
-TEST(ComparePictures, OtherSizesAndNothingInCommonAreRefused) {
+TEST(ComparePictures, PicturesOfOtherSizesOrWithoutCommonPixelsAreRefused) {
   const ImageFile a = picture(4, 2, 1, 1, 1);
   const std::string sizes = errorOf(
       [&] { compare(a, LightUnit::radiance, picture(2, 4, 1, 1, 1), LightUnit::radiance, {}); });
@@ -88,7 +88,7 @@ TEST(ComparePictures, OtherSizesAndNothingInCommonAreRefused) {
   EXPECT_NE(errorOf([&] { compare(a, LightUnit::radiance, none, LightUnit::radiance, {}); }), "");
 }
 
-TEST(ComparePictures, PixelsInFalseColourHaveTheLegendBelow) {
+TEST(ComparePictures, FalseColourPixelsHaveTheLegendBelow) {
   std::vector<double> values(128 * 64, 0.0);
   values[5] = 1;
   values[6] = NAN;

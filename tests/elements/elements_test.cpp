@@ -1,4 +1,4 @@
-// Light at the vertices of elements: against closed forms, and what any field must keep.
+// Light at the vertices of elements: against closed forms, and invariants of any field.
 #include "radiosity/elements.h"
 
 #include <gtest/gtest.h>
@@ -88,7 +88,7 @@ SceneBuilder lampOverFloor() {
   return builder;
 }
 
-/// Where along a line of the floor the slope of direct light changes, and by how much.
+/// A change of the slope of direct light along a line of the floor: its place and size.
 struct Bend {
   double x;
   double jump;  ///< W/m^2 a metre
@@ -114,7 +114,7 @@ std::vector<Bend> bendsAlong(const Lit& lit, double y) {
   return bends;
 }
 
-/// Mach bands: the eye sees where slopes change. Light that bends by f'' is off by e = (2 c)^2 f''
+/// Mach bands: the eye sees changes of slope. Light that bends by f'' is off by e = (2 c)^2 f''
 /// / 8 in the middle of an element whose tested halves are c long, which the tolerance bounds at
 /// the reference edge over 2 c; and its slope changes by c f'' from one half to the next: by no
 /// more than tolerance * light * reference / c^2. Returns the largest change over light * reference
@@ -139,10 +139,9 @@ TEST(Elements, SlopesChangeAtBordersByNoMoreThanTheToleranceAllows) {
   EXPECT_GT(largestBend(0.1), 0.001) << "where coarser elements suffice, slopes change more";
 }
 
-/// Where there is less than a tenth of the mean light, errors count as if there were so much: so
-/// they are looked at over the light straight below the lamp, ten times that at the floor's
-/// corners.
-TEST(Elements, AnUnoccludedLampIsItsClosedForm) {
+/// Below a tenth of the mean light, errors count relative to that tenth: hence they are measured
+/// relative to the light straight below the lamp, ten times that at the floor's corners.
+TEST(Elements, AnUnoccludedLampHasItsClosedForm) {
   const double below = rectangleFactor(-0.5, 0.5, -1, 1, 2);
   for (const double tolerance : {0.01, 0.001}) {
     const Lit lit(lampOverFloor().scene(), 200, {.tolerance = tolerance});
@@ -176,7 +175,7 @@ Scene lampBehindBar(double half) {
 
 /// A bar that hides a part of the lamp from everywhere, and one that hides all of it from
 /// |x| < .3: then there are umbra, penumbra and, from |x| = 1.3 on, light.
-TEST(Elements, ThePenumbraOfALampBehindABarIsItsClosedForm) {
+TEST(Elements, ThePenumbraOfALampBehindABarHasItsClosedForm) {
   const double below = rectangleFactor(-0.5, 0.5, -1, 1, 2);
   for (const double half : {0.1, 0.4}) {
     for (const double tolerance : {0.02, 0.005}) {
@@ -200,7 +199,7 @@ TEST(Elements, ThePenumbraOfALampBehindABarIsItsClosedForm) {
 }
 
 /// Without interpolation only rounding is left, of coordinates that are scaled.
-TEST(Elements, DirectLightAtPointsIsItsClosedForm) {
+TEST(Elements, DirectLightAtPointsHasItsClosedForm) {
   const double below = rectangleFactor(-0.5, 0.5, -1, 1, 2);
   for (const double half : {0.1, 0.4}) {
     const Lit lit(lampBehindBar(half), 200);
@@ -251,8 +250,8 @@ TEST(Elements, NoLightReachesUnderAContact) {
   }
 }
 
-/// On edges that patches of a polygon share, either side has the same light: whatever is cut more
-/// finely there follows the coarser.
+/// On edges that patches of a polygon share, either side has the same light: the finer side follows
+/// the coarser.
 TEST(Elements, FieldsAreContinuousAcrossPatches) {
   const Lit lit(boxOnFloor(), 300);
   std::size_t shared = 0;
@@ -307,9 +306,9 @@ Scene roomWithoutBacks() {
   return builder.scene();
 }
 
-/// Where no light is lost, elements receive what patches receive. Without liftToMeans(), lines
-/// between points of what bends downwards are low by 9e-4; with it by 4e-4, which is what outermost
-/// elements and kinks leave.
+/// If no light is lost, elements receive as much as patches. Without liftToMeans(), lines between
+/// points of concave light are low by 9e-4; with it by 4e-4, the share of outermost elements and
+/// kinks.
 TEST(Elements, EnergyIsThatOfThePatches) {
   std::vector<double> irradiance;
   const Lit lit(roomWithoutBacks(), 2000, {},
@@ -359,8 +358,8 @@ std::vector<double> darkRoom(const Lit& lit) {
   return light;
 }
 
-/// All points have 4,096 rays in what others are held against: the same sources, three times less
-/// noise than with 512. Eight times the rays of scrambled points leave a fifth of the error.
+/// All points of the reference have 4,096 rays: the same sources, three times less noise than with
+/// 512. Eight times the rays of scrambled points leave a fifth of the error.
 TEST(Elements, UnevenLightTakesMoreRays) {
   const Scene scene = roomsWithADoor();
   const std::vector<double> truth =
@@ -392,9 +391,8 @@ TEST(Elements, AnyNumberOfThreadsGivesTheSameBits) {
   EXPECT_EQ(one.direct.points, two.direct.points);
 }
 
-/// Patches that are not wanted have no elements of indirect light, and change nothing for others
-/// but where these end.
-TEST(Elements, WhatIsNotWantedIsLeftOut) {
+/// Unwanted patches have no elements of indirect light, and change others only at their borders.
+TEST(Elements, UnwantedPatchesAreLeftOut) {
   const Scene scene = smallRoom();
   const Lit all(scene, 300, {}, solved);
   std::vector<std::uint8_t> wanted(all.mesh.size());
@@ -408,7 +406,7 @@ TEST(Elements, WhatIsNotWantedIsLeftOut) {
   }
 }
 
-TEST(Elements, VerticesAreBounded) {
+TEST(Elements, TheNumberOfVerticesIsBounded) {
   const Lit lit(lampBehindBar(0.1), 200, {.tolerance = 0.001, .most_vertices = 2000});
   EXPECT_LE(lit.elements.direct.vertices, 2000u);
   EXPECT_GT(lit.elements.report.unrefined, 0u);

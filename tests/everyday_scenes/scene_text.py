@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-# Kd, Ke. What every scene here is made of.
+# Kd, Ke of all materials here.
 MATERIALS = {
     "plain": ((0.6, 0.6, 0.6), (0, 0, 0)),
     "dark": ((0.2, 0.2, 0.25), (0, 0, 0)),
@@ -30,7 +30,7 @@ def polygon_area(corners):
 
 
 class SceneText:
-    """What a file will hold. Faces are lists of corners; `share` merges equal corners of one object,
+    """Contents of a file. Faces are lists of corners; `share` merges equal corners of one object,
     as modellers do; without it every face has corners of its own, as scanners and CAD kernels do."""
 
     def __init__(self, share=True, digits=9):
@@ -75,7 +75,7 @@ class SceneText:
         return sum(len(faces) for _, _, faces in self.groups)
 
     def area(self):
-        """Least and most, of what a reader of the file gets."""
+        """Least and most that a reader of the file gets."""
         points = np.array([[float(f"{x:.{self.digits}g}") for x in p] for p in self.vertices])
         return np.sum([polygon_area(points[face]) for _, _, faces in self.groups
                        for face in faces], axis=0)
@@ -117,7 +117,7 @@ class LinkedScene:
                          for k in range(1, len(f) - 1)])
 
     def area(self):
-        """Least and most, of what a reader of the file gets."""
+        """Least and most that a reader of the file gets."""
         total = 0.0
         for _, group, matrix in self.nodes:
             points = self.triangles(group).astype(float) @ matrix[:3, :3].T

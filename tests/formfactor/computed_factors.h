@@ -1,4 +1,4 @@
-// Form factors of a mesh, as the tests of the methods ask for them.
+// Form factors of a mesh, for the tests of the methods.
 #pragma once
 
 #include "radiosity/form_factors.h"

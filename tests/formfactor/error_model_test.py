@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""error_model.h is what tests/bench/error_model.py writes: nobody edited it by hand. The script's
-formulas are the library's."""
+"""error_model.h is the output of tests/bench/error_model.py, not edited by hand. The script's
+formulas match the library's."""
 import os
 import pathlib
 import subprocess
@@ -19,25 +19,25 @@ from samples import Samples  # noqa: E402
 
 
 class ErrorModel(unittest.TestCase):
-    def test_header_is_as_written(self):
+    def test_the_header_equals_the_output_of_the_script(self):
         done = subprocess.run([sys.executable, BENCH / "error_model.py", "--check"],
                               capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
 
-    def test_an_edit_would_be_noticed(self):
+    def test_an_edited_value_changes_the_header(self):
         record = constants.read_record()
         for constant in constants.CONSTANTS:
             other = dict(record[constant.name], value="123")
             self.assertNotEqual(constants.header(record | {constant.name: other}),
                                 constants.HEADER.read_text(), constant.name)
 
-    def test_every_constant_is_refitted_or_says_why_not(self):
+    def test_every_constant_has_a_rule_or_a_reason(self):
         record = constants.read_record()
         self.assertEqual(sorted(record), sorted(c.name for c in constants.CONSTANTS))
         for constant in constants.CONSTANTS:
             self.assertNotEqual(bool(constant.rule), bool(constant.reason), constant.name)
 
-    def test_formulas_of_cells_and_parts_are_the_librarys(self):
+    def test_formulas_of_cells_and_parts_match_the_library(self):
         jobs = (["shapes", "2", "1"],
                 ["scene", ROOT / "data/two-rooms.obj", "60", "60"],
                 ["rows", ROOT / "data/blocked-plates.obj", "40", "1e-5", "1e-3"])

@@ -1,5 +1,5 @@
-// Errors that programs of this kind make: each is made here on purpose, and what it breaks is shown
-// to hold in this one. More of them: gather_truth_test.cpp.
+// Errors that programs of this kind make: each is made here on purpose, and this program is shown
+// to be free of it. More of them: gather_truth_test.cpp.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -75,7 +75,7 @@ double furnaceGap(const FormFactors& factors) {
   return gap;
 }
 
-TEST(ErrorsOthersMake, TheMeanOfTwoEstimates) {
+TEST(ErrorsOthersMake, EstimatesAreMergedByAreaAndNotByTheirMean) {
   // Seen from its middle, a patch's form factors err as its area over the squared distance; so of a
   // pair's two estimates the one from the smaller patch is the better, by far on a floor three
   // times finer than the walls. Measured: 0.081 as seen, 0.106 by the plain mean, 0.044 weighted.
@@ -95,7 +95,7 @@ TEST(ErrorsOthersMake, TheMeanOfTwoEstimates) {
   EXPECT_LT(relativeL2(mesh, dense(merged.matrix), truth), 0.65 * as_seen);
 
   // Merging takes row sums off 1, and with them the furnace: its B would be wrong by per cents at
-  // rho = 0.9. They are restored; what is left is the solver's 1e-9 over 1 - rho.
+  // rho = 0.9. They are restored; only the solver's 1e-9 over 1 - rho is left.
   FormFactors unrestored = seen;
   unrestored.matrix = symmetrized(seen.matrix);
   unrestored.fronts = unrestored.matrix.rowSums();
@@ -111,7 +111,7 @@ double pointToPoint(const PatchMesh& mesh, std::size_t i, std::size_t j) {
   return std::max(cosines, 0.0) * mesh.area[j] / (std::numbers::pi * r2);
 }
 
-TEST(ErrorsOthersMake, AKernelFromPointToPoint) {
+TEST(ErrorsOthersMake, FormFactorsAreNotPointToPointKernels) {
   // A cube of six patches. The kernel sees 1.59 times everything; the closed forms are 0.199825
   // (facing) and 0.200044 (sharing an edge).
   const PatchMesh cube = unevenCube(1, 1);
@@ -132,7 +132,7 @@ TEST(ErrorsOthersMake, AKernelFromPointToPoint) {
   for (const double fronts : factorsOf(cube, FormFactorMethod::hemicube).fronts) {
     EXPECT_NEAR(fronts, 1, 1e-12);  // raw: nothing was normalised
   }
-  // Gathered: H = 1 where everything in sight has B = 1, not 1.59.
+  // Gathered: H = 1 if everything in sight has B = 1, not 1.59.
   test::Room lit{cube, {}};
   test::makeUniform(lit, 0.5, 1.0);
   GatherOptions options;
@@ -147,7 +147,7 @@ TEST(ErrorsOthersMake, AKernelFromPointToPoint) {
   }
 }
 
-TEST(ErrorsOthersMake, AKernelThatGrowsWithoutBoundUpClose) {
+TEST(ErrorsOthersMake, ClosePatchesKeepFormFactorsBelowOne) {
   // Unit squares a hundredth apart: 3183 by the kernel, 0.980416602925973 in truth.
   MeshBuilder builder;
   builder.grid("low", {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
@@ -159,12 +159,12 @@ TEST(ErrorsOthersMake, AKernelThatGrowsWithoutBoundUpClose) {
   EXPECT_NEAR(exact[1][0], 0.980416602925973, 1e-9);
   const auto seen = dense(factorsOf(mesh, FormFactorMethod::hemicube).matrix);
   EXPECT_LE(seen[0][1], 1);
-  // From the middle: a square of side 1 at 0.01 leaves out of the hemisphere what is beyond, about
-  // h^2 / a^2 times some 4.
+  // From the middle: a square of side 1 at 0.01 misses the rest of the hemisphere, about h^2 / a^2
+  // times some 4.
   EXPECT_NEAR(seen[0][1], 1, 2e-3);
 }
 
-TEST(ErrorsOthersMake, AgreementTakenForAccuracy) {
+TEST(ErrorsOthersMake, AgreementOfBothEndsGivesNoErrorFigure) {
   // Equal squares that face each other agree on their exchange from both ends and are wrong by a
   // fifth (0.239456 from a point, 0.199825 between areas). No error figure may be made of that.
   MeshBuilder builder;
@@ -176,7 +176,7 @@ TEST(ErrorsOthersMake, AgreementTakenForAccuracy) {
   EXPECT_TRUE(seen.error.empty());
 }
 
-TEST(ErrorsOthersMake, NumbersThatAreNoneGoThrough) {
+TEST(ErrorsOthersMake, NotANumberIsRefused) {
   // Compiled with -Ofast, a test for NaN is compiled away.
   const test::Room good = test::loadRoom("furnace-cube", 24);
   const FormFactors factors = factorsOf(good.mesh, FormFactorMethod::exact);
@@ -195,7 +195,7 @@ TEST(ErrorsOthersMake, NumbersThatAreNoneGoThrough) {
   }
 }
 
-/// What a long computation says of itself while it runs.
+/// The progress that a long computation reports.
 class Listener : public Progress {
  public:
   struct Stage {
@@ -228,7 +228,7 @@ class Listener : public Progress {
   std::mutex mutex_;
 };
 
-/// That all steps announced were made, and one after the other: a bar moves at least ten times.
+/// Expects all announced steps, one after the other: a bar moves at least ten times.
 void expectMoving(const Listener& listener, const std::string& what) {
   EXPECT_FALSE(listener.stages.empty()) << what;
   for (const Listener::Stage& stage : listener.stages) {
@@ -240,7 +240,7 @@ void expectMoving(const Listener& listener, const std::string& what) {
   }
 }
 
-TEST(ErrorsOthersMake, AFrozenWindowWithoutProgress) {
+TEST(ErrorsOthersMake, EveryLongComputationReportsProgress) {
   const test::Room room = test::loadRoom("cornell-box-closed", 300);
   FormFactors factors;
   for (const FormFactorMethod method : {FormFactorMethod::exact, FormFactorMethod::hemicube}) {
@@ -279,7 +279,7 @@ TEST(ErrorsOthersMake, AFrozenWindowWithoutProgress) {
   expectMoving(drawing, "picture");
 }
 
-TEST(ErrorsOthersMake, AGatherThatCannotBeStopped) {
+TEST(ErrorsOthersMake, AGatherCanBeStoppedWithinAPass) {
   class Impatient : public Progress {
    public:
     void advance(std::size_t /*steps*/) override {
@@ -291,7 +291,7 @@ TEST(ErrorsOthersMake, AGatherThatCannotBeStopped) {
   GatherOptions options;
   options.resolution = 32;
   EXPECT_THROW(gather(room.mesh, room.materials, options, progress), Cancelled);
-  EXPECT_LT(progress.steps, 40);  // within the first pass of 400 eyes, whatever threads had begun
+  EXPECT_LT(progress.steps, 40);  // within the first pass of 400 eyes, for any number of threads
 }
 
 }  // namespace

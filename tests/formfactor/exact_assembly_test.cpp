@@ -1,4 +1,4 @@
-// The exact method as a whole: rows, accounts, error figures, what is skipped, and sameness.
+// The exact method as a whole: rows, accounts, error figures, skipped work, and equal bits.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -70,7 +70,7 @@ PatchMesh twinPlates(int n) {
   return builder.build();
 }
 
-TEST(ExactFactors, TenDigitsWithOnePatchAPlate) {
+TEST(ExactFactors, FacingPlatesHaveTenDigitsWithOnePatchEach) {
   // Howell C-11, recomputed with 20 digits; double precision leaves some units of the 14th.
   const std::pair<double, double> values[] = {{0.01, 0.980416602925973},
                                               {0.1, 0.826994522397257},
@@ -84,7 +84,7 @@ TEST(ExactFactors, TenDigitsWithOnePatchAPlate) {
   }
 }
 
-TEST(ExactFactors, ObstructedPlates) {
+TEST(ExactFactors, ObstructedPlatesHaveTheirClosedForm) {
   // Unit squares at distance 1, a thin centred square of side 1/2 half way: 0.0995062945990 (from
   // the closed form of the aperture). The tolerance is per pair, relative to the mean 1/N; 2 * 16
   // pairs of one row and random signs leave some units of it.
@@ -95,7 +95,7 @@ TEST(ExactFactors, ObstructedPlates) {
   EXPECT_GT(f.report.exact.rechecked, 0u);
 }
 
-TEST(ExactFactors, FurnaceInAClosedRoomWithABlock) {
+TEST(ExactFactors, RowsOfAClosedRoomWithABlockSumToOne) {
   const PatchMesh mesh = test::roomWithBlock(4).build();
   const FormFactors f = test::computed(mesh);
   EXPECT_TRUE(f.report.closed);
@@ -123,15 +123,15 @@ TEST(ExactFactors, ClosureIsReportedOrEnforced) {
   EXPECT_EQ(told.report.closure.largest_residual_before, told.report.largest_row_error);
   EXPECT_GT(told.report.closure.rms_residual_before, 0.0);
   EXPECT_LT(told.report.closure.rms_residual_before, told.report.largest_row_error);
-  EXPECT_EQ(told.report.closure.adjustable, 0u);  // nobody asked what could be changed
+  EXPECT_EQ(told.report.closure.adjustable, 0u);  // counted on request only
   options.closure = ClosureMode::off;
   const FormFactors raw = test::computed(mesh, options);
-  expectSame(told, raw);  // saying changes nothing
+  expectSame(told, raw);  // a report changes nothing
   EXPECT_EQ(raw.report.closure.largest_residual_before, 0.0);
   options.closure = ClosureMode::enforce;
   const FormFactors closed = test::computed(mesh, options);
   ASSERT_TRUE(closed.report.closure_enforced);
-  // All that were clipped but those whose rules agree to the bit; some of them came out as hidden.
+  // All clipped pairs but those whose rules agree to the bit; some of them came out as hidden.
   EXPECT_LE(closed.report.closure.adjustable, raw.report.exact.occluded + raw.report.exact.hidden);
   EXPECT_GT(closed.report.closure.adjustable, raw.report.exact.occluded * 9 / 10);
   // Rows with an uncertain entry sum to 1 as well as single precision holds values that add up to
@@ -147,7 +147,7 @@ TEST(ExactFactors, ClosureIsReportedOrEnforced) {
   }
 }
 
-TEST(ExactFactors, AccountsOfAnOpenScene) {
+TEST(ExactFactors, RowsOfAnOpenSceneAccountForSkyAndBacks) {
   // The flipped plate is perpendicular and shares an edge with both: its back takes 0.200043776075
   // (Howell C-14) of the view of each.
   MeshBuilder builder;
@@ -168,7 +168,7 @@ TEST(ExactFactors, AccountsOfAnOpenScene) {
   EXPECT_NE(f.report.notes[0].text.find("flipped"), std::string::npos);
 }
 
-TEST(ExactFactors, PatchesOfSeveralElements) {
+TEST(ExactFactors, AConcavePatchExchangesAsMuchAsItsSquares) {
   // An L of three unit squares as one concave patch exchanges what the three squares exchange.
   const auto scene = [](bool whole) {
     MeshBuilder builder;
@@ -304,12 +304,12 @@ TEST(ExactFactors, CancelEndsTheRun) {
                Cancelled);
 }
 
-TEST(ExactFactors, AutoSaysWhatAndWhy) {
+TEST(ExactFactors, AutoReportsItsMethodAndTheReason) {
   Progress silent;
   const PatchMesh mesh = test::roomWithBlock(3).build();
   const FormFactors f = test::computed(mesh, FormFactorOptions());
   EXPECT_EQ(f.method, "exact");
-  // Exact is taken without a look at rays where it is soon done, which this is.
+  // Exact is taken without a look at rays if it is fast, as it is here.
   EXPECT_EQ(f.report.method_reason.rfind("it takes ", 0), 0u) << f.report.method_reason;
 }
 
@@ -323,7 +323,7 @@ TEST(ExactFactors, DegeneratePatchesHaveEmptyRows) {
   EXPECT_EQ(f.fronts[5] + f.backs[5] + f.sky[5] + f.error[5], 0.0);
 }
 
-TEST(ExactFactors, EmptyAndSingle) {
+TEST(ExactFactors, EmptyAndSinglePatchMeshesExchangeNothing) {
   const FormFactors none = test::computed(PatchMesh());
   EXPECT_EQ(none.fronts.size(), 0u);
   MeshBuilder builder;
@@ -333,7 +333,7 @@ TEST(ExactFactors, EmptyAndSingle) {
   EXPECT_EQ(one.sky[0], 1.0);
 }
 
-TEST(RowTasks, EveryElementOnceAndPatchesWhole) {
+TEST(RowTasks, CoverEveryElementOnceWithoutMixingFacets) {
   const PatchMesh mesh = test::roomWithBlock(9).build();
   const ElementSet elements(mesh);
   const RowTasks tasks(elements);
@@ -349,7 +349,7 @@ TEST(RowTasks, EveryElementOnceAndPatchesWhole) {
   EXPECT_GT(tasks.size(), 8u);
 }
 
-TEST(RowTasks, RowsThatLeadAreInTasksOfTheirOwn) {
+TEST(RowTasks, LeadingRowsAreInTasksOfTheirOwn) {
   for (const int patches : {1, 2, 40}) {
     MeshBuilder builder = test::roomWithBlock(9);
     builder.grid("lamp", {0.1, 0.1, 0.9}, {0, 0.1, 0}, {0.8, 0, 0}, 1, patches);
@@ -433,8 +433,8 @@ std::vector<double> exchangeOfSurfaces(const Scene& scene, std::size_t patches, 
   return sum;
 }
 
-TEST(ExactFactors, JoinedPatchesExchangeWhatTheirCellsDo) {
-  // What surfaces exchange does not depend on how they are cut.
+TEST(ExactFactors, JoinedPatchesExchangeAsMuchAsTheirCells) {
+  // The exchange of surfaces does not depend on how they are cut.
   const Scene scene = loadScene(RADIOSITY_SOURCE_DIR "/data/cornell-box-closed.obj");
   bool joined = false;
   const std::vector<double> few = exchangeOfSurfaces(scene, 20, 1e-5, joined);
@@ -448,7 +448,7 @@ TEST(ExactFactors, JoinedPatchesExchangeWhatTheirCellsDo) {
   }
 }
 
-TEST(ErrorSums, FiguresOfKnownErrors) {
+TEST(ErrorSums, FiguresFollowKnownErrors) {
   // Two rows of areas 2 and 1 with G_12 = 0.5, of which an error of 0.01 is stated.
   ErrorSums sums(2);
   std::vector<double> row = {0, 0.5};
@@ -473,21 +473,21 @@ TEST(ErrorSums, FiguresOfKnownErrors) {
   for (int k = 0; k < 4; ++k) many.addOccluded(0, 1, 0.01);
   many.figures(area, 0, figure);
   EXPECT_NEAR(figure[1], 0.01 * std::sqrt(6.0), 1e-15);
-  // What is off by less than four sevenths of the figure raises nothing.
+  // An error below four sevenths of the figure raises nothing.
   ErrorSums calm(2);
   calm.addOccluded(0, 1, 0.01);
   calm.addRecheck(0, 1, -0.008, 0.01);
   calm.figures(area, 0, figure);
   EXPECT_NEAR(figure[1], 0.01 * std::sqrt(2.0), 1e-16);
-  // Rows are drawn from all that was rechecked: of pairs of which one in ten is off by ten times
-  // what is stated, rows of one pair meet it.
+  // Rows are drawn from all rechecked pairs: if one pair in ten is off by ten times its stated
+  // error, rows of one pair meet it.
   ErrorSums mixed(2);
   mixed.addOccluded(0, 1, 0.01);
   for (int k = 0; k < 10; ++k) mixed.addRecheck(0, 1, k == 0 ? 0.1 : 0.001, 0.01);
   EXPECT_NEAR(mixed.recheckRatio(), 10 / std::sqrt(2.0), 1e-12);
-  // Rows of small patches have as much of a say as those of large ones: two of four rows, of 16
-  // pairs each, exchange a millionth and are off by ten times what is stated. Of 16 pairs drawn, 8
-  // are theirs on average, and in the worst hundredth of draws 12 to 14: the root of
+  // Rows of small patches count as much as those of large ones: two of four rows, of 16 pairs each,
+  // exchange a millionth and are off by ten times the stated error. Of 16 pairs drawn, 8 are theirs
+  // on average, and in the worst hundredth of draws 12 to 14: the root of
   // 100 * 12 / 16 / (1 + 1/4), or more; with all of them, of 80.
   ErrorSums unequal(4);
   for (int k = 0; k < 16; ++k) {
@@ -498,7 +498,7 @@ TEST(ErrorSums, FiguresOfKnownErrors) {
   }
   EXPECT_GT(unequal.recheckRatio(), std::sqrt(60.0));
   EXPECT_LE(unequal.recheckRatio(), std::sqrt(80.0) * (1 + 1e-12));
-  // What is off of a black back is off of the row's account of backs, not of the matrix.
+  // An error of a black back is one of the row's account of backs, not of the matrix.
   ErrorSums black(2);
   black.addBlackBack(1, 0.01);
   EXPECT_EQ(black.figures(area, 0, figure), 0);
@@ -512,7 +512,7 @@ TEST(ErrorSums, FiguresOfKnownErrors) {
   EXPECT_NEAR(figure[0], 0.06 * 0.25e-3, 1e-16);
 }
 
-TEST(ClosedScene, IsToldByHemicubesThatSeeNoSky) {
+TEST(ClosedScene, IsRecognisedByHemicubesThatSeeNoSky) {
   Progress silent;
   EXPECT_TRUE(closedByEye(test::roomWithBlock(2).build(), silent));
   MeshBuilder outside;

@@ -1,5 +1,5 @@
-// What the points of a cell see of targets past several occluders at once: against one point, one
-// target and double precision after the other, and whatever else is looked at along with it.
+// The visible parts of targets past several occluders from all points of a cell at once: against
+// one point and target after the other in double precision, and in batches with other targets.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -34,7 +34,7 @@ Occluder disc(const Vec3& centre, double radius, std::size_t sides) {
   return test::flatOccluder(loop);
 }
 
-/// Boxes, and what is special: a sheet in the plane of a column of points, a box about the middle
+/// Boxes, and special cases: a sheet in the plane of a column of points, a box about the middle
 /// point, a disc of more sides than kernels take.
 std::vector<Occluder> bodies(std::mt19937_64& random) {
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -135,11 +135,11 @@ void expectAsExact(const ClipKernels<T>& kernels, double tolerance) {
 
 // Targets have h about 0.14 at distance 2: one term is known to 14 times what the kernels claim,
 // and inclusion and exclusion add up some ten.
-TEST(BatchVisibility, DoublePrecisionIsThatOfOnePointAfterTheOther) {
+TEST(BatchVisibility, DoublePrecisionEqualsPointByPointClipping) {
   expectAsExact<double>(clipKernels(true).exact, 10 * 14 * 1e-14);
 }
 
-TEST(BatchVisibility, SinglePrecisionIsThatOfOnePointAfterTheOther) {
+TEST(BatchVisibility, SinglePrecisionEqualsPointByPointClipping) {
   expectAsExact<float>(clipKernels(true).single, 10 * 14 * 2e-6);
 }
 

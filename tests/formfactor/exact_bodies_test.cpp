@@ -1,5 +1,5 @@
-// Curved bodies of many faces: what blocks, how long it takes to find, that all of it are numbers,
-// and that it can be interrupted.
+// Curved bodies of many faces: their occluders, the time to find them, finite values, and
+// interruption.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -80,7 +80,7 @@ TEST(ExactBodies, AConvexBodyOfManyFacesIsOneSolid) {
   }
 }
 
-TEST(ExactBodies, ADentedBodyIsFlat) {
+TEST(ExactBodies, ADentedBodyBlocksByItsFaces) {
   std::size_t faces = 0;
   const auto dented = [](int r, int s) { return r == 12 && s == 5 ? 0.2 : 0.25; };
   const PatchMesh mesh = roomWithBall(24, 48, dented, faces);
@@ -120,7 +120,7 @@ TEST(ExactBodies, OccludersTakeLittleMoreThanLinearTime) {
 
 /// Bumpy bodies, whose patches touch each other's planes in corners, with thin triangles among
 /// them.
-TEST(ExactBodies, AllValuesAreNumbers) {
+TEST(ExactBodies, AllValuesAreFinite) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> any(0.15, 0.3);
@@ -140,8 +140,8 @@ TEST(ExactBodies, AllValuesAreNumbers) {
     for (std::size_t i = 0; i < mesh.size(); ++i) {
       ASSERT_TRUE(std::isfinite(f.error[i])) << seed << " " << i;
       f.matrix.forRow(i, [&](Index, double value) { ASSERT_TRUE(value >= 0) << seed << " " << i; });
-      // Rows of a room sum to 1 but for what the figures say: of these many entries, most of them
-      // occluded, errors of either sign.
+      // Rows of a room sum to 1 within their figures: errors of either sign in these many entries,
+      // most of them occluded.
       EXPECT_NEAR(f.fronts[i] + f.backs[i], 1.0, 20 * f.error[i] + 1e-4) << seed << " " << i;
     }
   }

@@ -1,4 +1,4 @@
-// What the points of a cell say of their error, on shadows made up at random.
+// The errors that the points of a cell state, on random shadows.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -92,11 +92,11 @@ Errors errorsOfRamps(double change, std::size_t side, int level) {
           std::sqrt(errors.found)};
 }
 
-TEST(SampleCell, ErrorsOfShadowsThatComeAndGo) {
+TEST(SampleCell, RandomShadowEdgesHaveErrorsNearTheEstimates) {
   // From shadows that cross the target once while the element is crossed to steps, seen or missed.
-  // Constants were fitted to scenes, which these shadows know nothing of: between half and two and
-  // a half times what is found by the cautious estimate, three quarters and four times by the
-  // stated one, over all cells, is what was measured; 3 and 5 either way are asserted.
+  // Constants were fitted to scenes, not to these shadows: over all cells the cautious estimate was
+  // measured at half to two and a half times the error found, the stated one at three quarters to
+  // four times; 3 and 5 either way are asserted.
   for (const auto& [side, levels] : {std::pair(2, 1), std::pair(3, 5)}) {
     for (int level = 0; level < levels; ++level) {
       for (const double change : {1.0, 4.0, 10.0, 100.0}) {
@@ -125,7 +125,7 @@ CellValues flatValues(double fraction) {
   return values;
 }
 
-TEST(SampleCell, AnEdgeThatAllPointsSeeHasNotSlippedBetweenThem) {
+TEST(SampleCell, AnEdgeSeenFromEveryPointLowersTheStatedError) {
   CellValues edge = flatValues(0.4);
   edge.one_occluder = true;
   CellValues none = flatValues(1);
@@ -134,12 +134,12 @@ TEST(SampleCell, AnEdgeThatAllPointsSeeHasNotSlippedBetweenThem) {
   EXPECT_GT(meanError(none).stated, 0);
   EXPECT_LT(meanError(edge).stated, meanError(none).stated);
   EXPECT_EQ(meanError(edge).cautious, meanError(none).cautious);
-  // One occluder's edge says nothing of another's.
+  // One occluder's edge tells nothing of another's.
   edge.one_occluder = false;
   EXPECT_EQ(meanError(edge).stated, meanError(edge).cautious);
 }
 
-TEST(SampleCell, KinksAreWeakWhereShadowsMoveLittle) {
+TEST(SampleCell, SlowShadowsLowerTheErrorStatedForKinks) {
   const auto statedShare = [](double step) {
     CellValues values = flatValues(0.5);
     values.change = 0;
@@ -154,7 +154,7 @@ TEST(SampleCell, KinksAreWeakWhereShadowsMoveLittle) {
   EXPECT_GT(statedShare(0.4), 1);
 }
 
-TEST(SampleCell, NothingMovesNothingIsStated) {
+TEST(SampleCell, AConstantViewStatesNoError) {
   CellValues values;
   values.count = 9;
   values.whole = 1;

@@ -71,7 +71,7 @@ GroupTarget groupTarget(const std::vector<Vec3>& outline) {
   return target;
 }
 
-/// The arrays of an Arena, and what kernels make of them.
+/// The arrays of an Arena, and the kernels' results.
 template <class T>
 struct Lanes {
   explicit Lanes(const Arena& setup) {
@@ -138,8 +138,8 @@ struct Lanes {
     clip.common(rows.lanes(), points, planes, items, names.data(), count.data(), common.data());
     for (std::size_t lane = 0; lane < kLanes; ++lane) parts.push_back(quarters(clip, lane));
   }
-  /// A target's form factor from its triangles about the middle: its own edges, and those that
-  /// cancel out.
+  /// A target's form factor from its triangles about the middle: its own edges, and inner edges
+  /// that cancel.
   T quarters(const ClipFunctions<T>& clip, std::size_t lane) {
     const TargetLanes<T>& all = rows.lanes();
     std::array<AlignedBuffer<T>, 4> edges;
@@ -263,7 +263,7 @@ void expectAccurate(const ClipFunctions<T>& clip, double size, double tolerance)
       }
       all += hidden == kHiddenWhole;
       cut += view.visible > 0.01 * view.whole && view.visible < 0.99 * view.whole;
-      // A shape is given where the cone's edge is seen before the polygon, and only there.
+      // A shape is given only if the cone's edge is seen before the polygon.
       if (visible > 1e-3 * whole && visible < 0.999 * whole) {
         ASSERT_NE(lanes.shape.data()[item], 0u);
       }
@@ -299,7 +299,7 @@ TEST(ClipKernels, FarKernelsKeepTheirAccuracy) {
     const double h_over_r = 0.75 * size / 0.9;
     const double tolerance = kFarError * std::pow(h_over_r, 3);
     expectAccurate<double>(clipKernels(false).exact.far, size, tolerance);
-    // In single precision what rounding a plane may move a shadow's edge by comes on top.
+    // In single precision the shift of a shadow's edge by a rounded plane comes on top.
     expectAccurate<float>(clipKernels(false).single.far, size, tolerance + 2e-6 / h_over_r);
   }
 }
@@ -373,7 +373,7 @@ void expectCones(const Occluder& body, std::span<const Vec3> eyes, double tolera
   }
 }
 
-TEST(ClipKernels, ConesAreThoseOfOnePointAfterTheOther) {
+TEST(ClipKernels, ConesOfManyPointsEqualThoseOfSinglePoints) {
   forEveryBody([](const Occluder& body, std::span<const Vec3> eyes) {
     // Unit normals and offsets below 2: a rounding or two to T each.
     expectCones<float>(body, eyes, 2e-7);
@@ -428,7 +428,7 @@ std::vector<Vec3> randomPolygon(std::mt19937_64& random) {
   return outline;
 }
 
-TEST(ClipKernels, MissedByConesIsWhatASideKeepsOut) {
+TEST(ClipKernels, APolygonIsMissedIfOneSideOfTheConeExcludesIt) {
   const ClipKernels<double> kernels = clipKernels(false).exact;
   std::mt19937_64 random(11);
   std::size_t missed_by = 0;
@@ -457,7 +457,7 @@ TEST(ClipKernels, MissedByConesIsWhatASideKeepsOut) {
   EXPECT_GT(not_missed_by, 100u);
 }
 
-TEST(ClipKernels, MissedByConesIsTheSameOnEveryTargetAndFromEveryEdge) {
+TEST(ClipKernels, MissedPolygonsAgreeOnEveryTargetAndFromEveryEdge) {
   forEveryClipTarget([](const ClipKernelSet& kernels) {
     std::mt19937_64 random(12);
     forEveryBody([&](const Occluder& body, std::span<const Vec3> eyes) {

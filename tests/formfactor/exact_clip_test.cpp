@@ -52,7 +52,7 @@ PointView look(const Vec3& eye, const Vec3& normal, std::span<const Vec3> target
   return eye_scratch.look(eye, normal, target, blockers);
 }
 
-TEST(Lambert, ClosedFormsOfTheCatalogue) {
+TEST(Lambert, MatchesClosedFormsOfTheCatalogue) {
   // Howell's catalogue, B-3 and B-4 with all sides 1.
   EXPECT_NEAR(formFactor(above(0, 1, 0, 1, 1), Vec3(0.0), kUp), 0.138531605994893, kRounding);
   const std::vector<Vec3> wall = {{1, 0, 0}, {1, 0, 1}, {1, 1, 1}, {1, 1, 0}};
@@ -99,7 +99,7 @@ TEST(Split, PartsAddUp) {
   EXPECT_GT(cut, 500);
 }
 
-TEST(Silhouette, HidesWhatRaysHit) {
+TEST(Silhouette, HidesExactlyThePointsBlockedForRays) {
   // Eyes all round a box, targets before, behind and beside it.
   const Vec3 low(-0.3, -0.2, -0.4), high(0.5, 0.3, 0.1);
   const Vec3 size = high - low;
@@ -156,7 +156,7 @@ TEST(VisiblePart, OverlappingSheetsCountOnce) {
   const std::vector<Occluder> three(sheets.begin(), sheets.begin() + 3);
   const PointView view = look(eye, kUp, target, three);
   EXPECT_NEAR(view.whole - view.visible, hidden, kRounding);
-  // Of the fourth only what is outside the first one's shadow, on the plane z = 0.4, is new:
+  // Only the part of the fourth outside the first one's shadow, on the plane z = 0.4, is new:
   // [-0.1, 0.1] x [0.2, 0.4], less [0, 0.1] x [0.2, 0.3].
   const double more = formFactor(above(-0.1, 0.1, 0.2, 0.4, 0.4), eye, kUp) -
                       formFactor(above(0, 0.1, 0.2, 0.3, 0.4), eye, kUp);
@@ -179,9 +179,9 @@ TEST(VisiblePart, PavementOfSheetsHidesEverything) {
   EXPECT_LT(view.visible, kRounding);
 }
 
-TEST(VisiblePart, BodyThatCutsTheTargetsPlaneHidesWhatIsBehindItOnly) {
-  // A post through the target: what it hides of the target is its section with the target's plane
-  // and the shadow of its lower part, not that of its upper part.
+TEST(VisiblePart, BodyThroughTheTargetHidesByThePartInFrontOnly) {
+  // A post through the target hides its section with the target's plane and the shadow of its lower
+  // part, not that of its upper part.
   const std::vector<Vec3> target = above(-1, 1, -1, 1, 1);
   const Vec3 eye(-0.4, 0.05, 0);
   const std::vector<Occluder> post = {
@@ -193,7 +193,7 @@ TEST(VisiblePart, BodyThatCutsTheTargetsPlaneHidesWhatIsBehindItOnly) {
   EXPECT_GT(hidden, look(eye, kUp, target, post).visible + 1e-3);
 }
 
-TEST(VisiblePart, ManyShadowsSideBySide) {
+TEST(VisiblePart, ManyShadowsSideBySideHideTheirSum) {
   const std::vector<Vec3> target = above(-0.5, 0.5, -0.5, 0.5, 1);
   const Vec3 eye(0.1, 0.05, 0);
   std::vector<Occluder> slats;

@@ -114,7 +114,7 @@ std::vector<ClosedForm> closedForms() {
   };
 }
 
-TEST(ClosedForms, PublishedValuesToTenDigits) {
+TEST(ClosedForms, PublishedValuesHoldToTenDigits) {
   for (const ClosedForm& c : closedForms()) {
     // One part in 1e10: the values are given to 12 digits or more.
     EXPECT_NEAR(formFactor(c.a, c.b, 1e-11), c.value, 1e-10 * c.value) << c.name;
@@ -125,8 +125,8 @@ TEST(ClosedForms, PublishedValuesToTenDigits) {
 }
 
 TEST(ClosedForms, RowsOfAFrustumSumToOne) {
-  // Edges of neighbours meet at corners, others at the tip, that is cut off. Not quite square, for
-  // edges that meet nowhere.
+  // Edges of neighbours meet at corners, others at the tip, which is cut off. Not quite square, so
+  // that some edges meet nowhere.
   const Vec3 tip(0.3, 0.1, 3);
   const Loop base = {{-1, -1, 0}, {1, -1, 0}, {1, 1.5, 0}, {-1, 1, 0}};
   Loop top;
@@ -154,7 +154,7 @@ TEST(ClosedForms, EveryToleranceIsKept) {
   }
 }
 
-TEST(ClosedForms, TurnedMovedAndScaledValuesAreTheSame) {
+TEST(ClosedForms, TurningMovingAndScalingKeepValues) {
   const auto moved = [](Loop loop) {
     for (Vec3& p : loop) {
       p = {0.6 * p.x - 0.8 * p.z, p.y, 0.8 * p.x + 0.6 * p.z};
@@ -169,7 +169,7 @@ TEST(ClosedForms, TurnedMovedAndScaledValuesAreTheSame) {
   }
 }
 
-TEST(ClosedForms, NearlyFlatAndNearlyClosedEdges) {
+TEST(ClosedForms, NearlyFlatAndNearlyClosedEdgesKeepTheirBounds) {
   const Loop unit = rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   for (const double angle : {1e-2, 1e-4, 1e-6}) {
     const Loop flap = rectangle({0, 0, 0}, {0, 1, 0}, {std::cos(angle), 0, std::sin(angle)});
@@ -205,7 +205,7 @@ TEST(ClosedForms, TouchingInsideAnEdgeIsTheSumOfTouchingAtVertices) {
   }
 }
 
-TEST(ClosedForms, SliversOfAspectAMillion) {
+TEST(ClosedForms, SliversOfAspectAMillionHaveTheirLimits) {
   // Strips of width w under and beside a unit square: to first order in w the strip is a line, and
   // every crosswise position sees alike.
   const Loop facing = rectangle({0, 0, 1}, {0, 1, 0}, {1, 0, 0});
@@ -213,10 +213,10 @@ TEST(ClosedForms, SliversOfAspectAMillion) {
   const double thin = 1e-6;
   const auto strip = [](double w) { return rectangle({0.5 - w / 2, 0, 0}, {w, 0, 0}, {0, 1, 0}); };
   const double expected = formFactor(strip(wide), facing, 1e-9);
-  // The middle of the square: first-order terms vanish, what is left is of order (1e-3)^2.
+  // The middle of the square: first-order terms vanish, the rest is of order (1e-3)^2.
   EXPECT_NEAR(formFactor(strip(thin), facing, 1e-9), expected, 1e-6 * expected);
   EXPECT_NEAR(formFactor(strip(thin), facing, 1e-5), expected, 1.1e-5 * expected);
-  // A strip along the foot of a wall sees half of everything, less what its ends miss.
+  // A strip along the foot of a wall sees half of everything, less the loss at its ends.
   const Loop wall = rectangle({0, 0, 0}, {0, 1, 0}, {0, 0, 1});
   const Loop foot = rectangle({0, 0, 0}, {thin, 0, 0}, {0, 1, 0});
   EXPECT_NEAR(formFactor(foot, wall, 1e-5), 0.5, 1e-5);
@@ -227,7 +227,7 @@ TEST(ClosedForms, SliversOfAspectAMillion) {
   EXPECT_NEAR(formFactor(strip(thin), above, 1e-7), thin * lines, 1e-6 * thin * lines);
 }
 
-TEST(PointToPolygon, PublishedValues) {
+TEST(PointToPolygon, MatchesPublishedValues) {
   // B-3 and B-4, a rectangle of unit sides over a corner.
   const Loop facing = rectangle({0, 0, 1}, {0, 1, 0}, {1, 0, 0});
   EXPECT_NEAR(pointToPolygon({0, 0, 0}, {0, 0, 1}, facing), 0.138531605994893, 1e-14);

@@ -1,5 +1,5 @@
-// Lines between which what is seen changes smoothly: parts tile the polygon, and from all points of
-// one the shadow is bounded by the same edges, as VisiblePart finds them, which knows of no lines.
+// Lines between which the view changes smoothly: parts tile the polygon, and from all points of one
+// the shadow is bounded by the same edges, as found by VisiblePart, which knows of no lines.
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>
@@ -86,7 +86,7 @@ Sight sightAbove(Jitter& jitter) {
   return sight;
 }
 
-TEST(CriticalLines, PastASheet) {
+TEST(CriticalLines, PartsPastASheetSeeOneShapeEach) {
   std::mt19937 random(1);
   std::size_t parts = 0;
   for (int trial = 0; trial < 30; ++trial) {
@@ -99,7 +99,7 @@ TEST(CriticalLines, PastASheet) {
   EXPECT_GT(parts, 30u * 10);  // there was something to cut
 }
 
-TEST(CriticalLines, PastABoxInTheAirOrStandingOnTheEyesPlane) {
+TEST(CriticalLines, PartsPastABoxSeeOneShapeEach) {
   std::mt19937 random(2);
   std::size_t parts = 0;
   for (int trial = 0; trial < 30; ++trial) {
@@ -115,7 +115,7 @@ TEST(CriticalLines, PastABoxInTheAirOrStandingOnTheEyesPlane) {
   EXPECT_GT(parts, 30u * 10);
 }
 
-TEST(CriticalLines, FromAFloorToAWallThatStandsOnIt) {
+TEST(CriticalLines, PartsOfAFloorBelowAWallSeeOneShapeEach) {
   std::mt19937 random(3);
   std::size_t parts = 0;
   for (int trial = 0; trial < 30; ++trial) {
@@ -135,7 +135,7 @@ TEST(CriticalLines, FromAFloorToAWallThatStandsOnIt) {
   EXPECT_GT(parts, 30u * 3);
 }
 
-TEST(CriticalLines, RefusesWhatTakesMore) {
+TEST(CriticalLines, RefusesTooManyPartsOrEdges) {
   std::mt19937 random(4);
   Jitter jitter(random);
   const Sight sight = sightAbove(jitter);

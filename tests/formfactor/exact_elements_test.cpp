@@ -1,4 +1,4 @@
-// The elements of the exact method: what they tile, how they are sorted, what they depend on.
+// The elements of the exact method: their tiling, their order, their dependences.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ double totalArea(const ElementSet& set, const Facet& facet) {
   return sum / (set.scale * set.scale);
 }
 
-/// Every element is in one leaf; children tile their parent; boxes and spheres hold what is below.
+/// Every element is in one leaf; children tile their parent; boxes and spheres hold all below them.
 void expectSoundClusters(const ElementSet& set) {
   for (const Facet& facet : set.facets) {
     EXPECT_EQ(set.clusters[facet.root].elements.first, facet.elements.first);
@@ -179,7 +179,7 @@ TEST(ExactElements, NothingDependsOnNumberingOrAPowerOfTwo) {
   }
 }
 
-TEST(ExactElements, ASolidNobodyLooksIntoHasNoBlackBacks) {
+TEST(ExactElements, ASolidUnseenFromInsideHasNoBlackBacks) {
   MeshBuilder builder;
   builder.box("room", {0, 0, 0}, {4, 4, 4}, 2, true);
   builder.box("block", {1, 1, 1}, {2, 2, 2}, 1);
@@ -192,7 +192,7 @@ TEST(ExactElements, ASolidNobodyLooksIntoHasNoBlackBacks) {
   EXPECT_EQ(black, 6 + 1);
 }
 
-TEST(ExactElements, AnEmptyMeshHasNone) {
+TEST(ExactElements, AnEmptyMeshHasNoElements) {
   PatchMesh mesh;
   mesh.corner_offset = mesh.piece_offset = {0};
   mesh.polygons.loop_offset = mesh.polygons.corner_offset = {0};

@@ -1,5 +1,5 @@
-// What the exact method foresees of its own work, against what it then counts; and what `auto`
-// makes of that.
+// The exact method's forecast of its own work against its counts, and the choice that `auto` makes
+// from it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,8 +36,8 @@ TEST(ExactEstimate, PointsAreForeseenWithinAFactorOfTwo) {
     std::size_t patches;
     std::vector<double> tolerances;
   };
-  // Counted points of these cases are 1.0 to 1.7 times what was foreseen: single pairs are
-  // off by more, and the sample is small.
+  // Counted points of these cases are 1.0 to 1.7 times the forecast: single pairs are off by more,
+  // and the sample is small.
   constexpr double kFactor = 2;
   Progress silent;
   for (const Case& c : {Case{"cornell-box-closed", 500, {1e-1, 1e-3, 1e-4, 1e-6}},
@@ -54,7 +54,7 @@ TEST(ExactEstimate, PointsAreForeseenWithinAFactorOfTwo) {
   }
 }
 
-TEST(ExactEstimate, IsTheSameInEveryRunButForTheClock) {
+TEST(ExactEstimate, RepeatsInEveryRunExceptForTimes) {
   const PatchMesh mesh = meshNamed("furnished-room", 600);
   const FormFactorOptions options = test::exactly(1e-3);
   const ExactEstimate first = estimateOf(mesh, options);
@@ -69,7 +69,7 @@ TEST(ExactEstimate, IsTheSameInEveryRunButForTheClock) {
   EXPECT_EQ(first.entries_per_row, second.entries_per_row);
 }
 
-TEST(ExactEstimate, ASampleWithoutBoundIsTheWhole) {
+TEST(ExactEstimate, AnUnboundedSampleCoversAllPairs) {
   const PatchMesh mesh = meshNamed("cluttered", 300);
   Progress silent;
   const ExactScene scene(mesh, silent);
@@ -121,13 +121,13 @@ TEST(ExactEstimate, TighterTolerancesTakeLonger) {
   const ExactEstimate tight = estimateOf(mesh, test::exactly(1e-3));
   EXPECT_GT(loose.refining, 0);
   EXPECT_LT(loose.refining, loose.work);
-  // What goes with 1 / tolerance; sums of some thousand numbers, rounded differently.
+  // Refining goes with 1 / tolerance; sums of some thousand numbers, rounded differently.
   EXPECT_NEAR(tight.work, loose.work + 9 * loose.refining, 1e-9 * tight.work);
   EXPECT_NEAR(tight.refining, 10 * loose.refining, 1e-9 * tight.work);
   EXPECT_EQ(tight.occluded_pairs, loose.occluded_pairs);
 }
 
-TEST(ExactEstimate, NothingInBetweenTakesNoPoints) {
+TEST(ExactEstimate, UnoccludedPairsTakeNoPoints) {
   test::MeshBuilder builder;
   builder.grid("low", {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 8, 8);
   builder.grid("high", {0, 0, 1}, {0, 1, 0}, {1, 0, 0}, 8, 8);
@@ -138,7 +138,7 @@ TEST(ExactEstimate, NothingInBetweenTakesNoPoints) {
   EXPECT_GT(estimate.work, 0);
 }
 
-TEST(Auto, PicksExactWhereLittleIsOccluded) {
+TEST(Auto, PicksExactIfLittleIsOccluded) {
   const PatchMesh mesh = meshNamed("cornell-box", 1000);
   Progress silent;
   for (const std::optional<double> tolerance : {std::optional<double>(), std::optional(1e-3)}) {
@@ -146,8 +146,7 @@ TEST(Auto, PicksExactWhereLittleIsOccluded) {
     options.tolerance = tolerance;
     const FormFactorPlan plan = planFormFactors(mesh, options, silent);
     EXPECT_EQ(plan.method, FormFactorMethod::exact);
-    // Rays need some hundred times as long. Where exact takes next to nothing they are not looked
-    // at.
+    // Rays take some hundred times as long. They are not looked at if exact takes next to no time.
     EXPECT_GT(plan.other_seconds.value_or(HUGE_VAL), plan.seconds);
   }
 }
@@ -162,7 +161,7 @@ TEST(Auto, PicksRaysInClutterAtALooseTolerance) {
   EXPECT_EQ(planFormFactors(cluttered, options, silent).method, FormFactorMethod::exact);
 }
 
-TEST(Auto, PicksRaysWhereExactWouldPassTheMemoryLimit) {
+TEST(Auto, PicksRaysIfExactWouldPassTheMemoryLimit) {
   const PatchMesh mesh = meshNamed("cornell-box", 1000);
   Progress silent;
   FormFactorOptions options;
@@ -172,7 +171,7 @@ TEST(Auto, PicksRaysWhereExactWouldPassTheMemoryLimit) {
   EXPECT_THROW(computeFormFactors(plan, silent), RunError);
 }
 
-TEST(Plan, IsCarriedOutAsOftenAsAskedFor) {
+TEST(Plan, CanBeRunSeveralTimes) {
   const PatchMesh mesh = test::roomWithBlock(3).build();
   Progress silent;
   for (const FormFactorMethod method : {FormFactorMethod::automatic, FormFactorMethod::hemicube}) {

@@ -112,7 +112,7 @@ TEST(FarKernels, TheTableOfAccuracyIsKeptOnEveryInstructionSet) {
   });
 }
 
-/// Rows of many columns, whose number is no multiple of any vector.
+/// Rows of many columns; their number is no multiple of any vector.
 template <class T>
 std::vector<T> manyValues(const FarKernels& kernels, std::size_t first, std::size_t count,
                           std::size_t& near) {
@@ -172,7 +172,7 @@ TEST(FarKernels, EveryInstructionSetHasTheSameBits) {
   });
 }
 
-TEST(FarKernels, MomentsAndMapOfShapes) {
+TEST(FarKernels, ShapesHaveTheMomentsAndCornersOfTheirOutline) {
   ElementPairs pairs(1);
   for (const Row& row : kShapes) {
     const ElementPair pair = pairs.next(row.shape, 1, 5);

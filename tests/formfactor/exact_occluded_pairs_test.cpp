@@ -1,5 +1,5 @@
-// Partly visible pairs: the obstructed plates whose exchange is known, groups of targets against
-// the exact clipper, and error figures against the truth.
+// Partly visible pairs: obstructed plates of known exchange, groups of targets against the exact
+// clipper, and error figures against the truth.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace {
 
 using test::MeshBuilder;
 
-/// A mesh with everything the exact method makes of it, and its partly visible pairs.
+/// A mesh with the exact method's data and its partly visible pairs.
 struct PairsCase : VisibilitySink {
   explicit PairsCase(PatchMesh given)
       : mesh(std::move(given)),
@@ -97,7 +97,7 @@ struct Sheet {
   double form_factor;
 };
 
-TEST(OccludedPairs, PlatesPastASheet) {
+TEST(OccludedPairs, PlatesPastASheetHaveTheirClosedForms) {
   // Closed forms: the aperture's and the obstructed form factor add up to that of the plates, and
   // the aperture's follows from those of rectangles. Tolerance 1e-7 of 1/N, N = 129: errors of
   // some 1500 occluded pairs, each 20 times that at most and of either sign, are below 1e-6 in sum.
@@ -135,7 +135,7 @@ PatchMesh clutteredRoom(int n) {
   return builder.build();
 }
 
-TEST(OccludedPairs, StaysBetweenNothingAndUnoccluded) {
+TEST(OccludedPairs, ExchangeStaysBetweenZeroAndUnoccluded) {
   const PairsCase scene(clutteredRoom(3));
   for (const double tolerance : {1e-3, 1e-4}) {
     OccludedCounts counts;
@@ -188,7 +188,7 @@ TEST(OccludedPairs, StricterEvaluationConfirmsStatedErrors) {
     }
     EXPECT_GT(difference2, 0);
     EXPECT_LE(difference2, stated2);
-    // It is itself off by a good deal less than what it is held against.
+    // Its own error is a good deal below the error that it checks.
     EXPECT_LE(strictly_stated2, 0.1 * stated2);
   }
 }
@@ -214,7 +214,7 @@ const OccludedPair& firstPair(const PairsCase& scene) {
   throw std::logic_error("the pair is not occluded");
 }
 
-TEST(OccludedPairs, PointsLieWhereTheShadowThatMovesMostMovesLeast) {
+TEST(OccludedPairs, PointsAreTakenOnTheEndWithSlowerShadows) {
   // A small plate closely beside an occluder, and a large one, farther in its own size from the
   // nearest edge of another: but from there the small one is seen past that or not, in a step.
   MeshBuilder builder;
@@ -237,8 +237,8 @@ TEST(OccludedPairs, PointsLieWhereTheShadowThatMovesMostMovesLeast) {
 
 TEST(OccludedPairs, ErrorOfFarKernelsIsStated) {
   // A target some of its radii away, to one side, part of it behind a straight edge: no kink
-  // between the points, and at loose tolerances kernels that expand about the target's middle. What
-  // is stated is a root mean square over targets, with a margin of 2.55: 4 times the error here.
+  // between the points, and at loose tolerances kernels that expand about the target's middle. The
+  // stated error is a root mean square over targets, with a margin of 2.55: 4 times the error here.
   for (const double away : {1.2, 1.6, 2.4}) {
     MeshBuilder builder;
     square(builder, "small", 0, 0, 0, 0.02, true);
@@ -313,7 +313,7 @@ struct TrueRows {
   std::vector<std::vector<double>> form_factors;
 };
 
-/// What entries are off by, and what is said of it.
+/// The true errors of entries, and the stated ones.
 struct RowErrors {
   double relative = 0;      ///< area-weighted, of all rows
   std::size_t below = 0;    ///< rows whose true error is below its figure
@@ -358,11 +358,11 @@ RowErrors compareRows(const PairsCase& scene, const TrueRows& rows, double toler
   return errors;
 }
 
-TEST(OccludedPairs, RowsKeepTheToleranceAndSaySo) {
+TEST(OccludedPairs, RowsKeepTheToleranceAndTheirFigures) {
   // One block in a room, and twelve. The tolerance is for the root mean square over a row's
-  // entries in mean form factors, which is less than theirs. It is met where a tenth of the pairs
-  // are occluded; among twelve blocks nearly all are: three times it is asserted. Figures are above
-  // the error in every row of the sample, and within ten times it in half of them; twenty, where
+  // entries in mean form factors, which is less than theirs. It is met if a tenth of the pairs are
+  // occluded; among twelve blocks nearly all are: three times it is asserted. Figures are above the
+  // error in every row of the sample, and within ten times it in half of them; within twenty, if
   // large patches past many blocks leave much to guess.
   const PairsCase block(test::roomWithBlock(3).build());
   const PairsCase clutter(clutteredRoom(3));

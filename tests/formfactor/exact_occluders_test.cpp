@@ -1,4 +1,4 @@
-// What blocks: solids and flat pieces recovered from the polygons, against the polygons themselves.
+// Occluders: solids and flat pieces recovered from the polygons, against the polygons themselves.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -22,7 +22,7 @@ struct Made {
   OccluderSet set;
 };
 
-/// Bodies are convex, closed and named by what they say.
+/// Bodies are convex, closed and consistent.
 void expectSound(const Made& made) {
   const double near = made.elements.coincidence;
   for (std::size_t k = 0; k < made.set.occluders.size(); ++k) {
@@ -115,17 +115,17 @@ const OccluderCase kOccluderCases[] = {
 
 class ExactOccluders : public ::testing::TestWithParam<OccluderCase> {};
 
-TEST_P(ExactOccluders, BlockWhatPolygonsBlock) {
+TEST_P(ExactOccluders, BlockTheSameLinesAsPolygons) {
   expectBlocksAlike(test::meshOf(GetParam().make(), 100), GetParam().lines, 1);
 }
 
-TEST_P(ExactOccluders, BlockWhatPolygonsBlockTurned) {
+TEST_P(ExactOccluders, BlockTheSameLinesAsTurnedPolygons) {
   expectBlocksAlike(test::meshOf(test::turned(GetParam().make()), 100), GetParam().lines / 2, 2);
 }
 
 class ExactOccludersOfFaces : public ::testing::TestWithParam<OccluderCase> {};
 
-TEST_P(ExactOccludersOfFaces, BlockWhatPolygonsBlock) {
+TEST_P(ExactOccludersOfFaces, BlockTheSameLinesAsPolygons) {
   const Scene scene = GetParam().make();
   const Scene faces = test::sceneOfPatches(test::meshOf(scene, 100), scene);
   expectBlocksAlike(test::meshOf(faces, 1, true), GetParam().lines / 2, 3);
@@ -162,16 +162,16 @@ void expectCornellBlocks(const PatchMesh& mesh) {
   EXPECT_NEAR(volume / std::pow(made.elements.scale, 3), expected, 1e-9 * expected);
 }
 
-TEST(ExactSolids, CornellBlocksWithTheirContactAreaDropped) {
+TEST(ExactSolids, CornellBlocksAreSolidsWithoutTheirContactArea) {
   expectCornellBlocks(test::meshOf(test::dataScene("cornell-box-closed"), 300));
 }
 
-TEST(ExactSolids, CornellBlocksOfFaces) {
+TEST(ExactSolids, CornellBlocksAreSolidsOfFaces) {
   expectCornellBlocks(test::meshOf(test::dataScene("cornell-box-closed"), 1, true));
 }
 
 /// As they were published: no undersides, and a floor that is not cut.
-TEST(ExactSolids, CornellBlocksWithoutUndersides) {
+TEST(ExactSolids, CornellBlocksAreSolidsWithoutUndersides) {
   Scene scene = test::dataScene("cornell-box");
   Scene open = scene;
   open.corners.clear();
@@ -265,7 +265,7 @@ TEST(ExactSolids, AHollowCubeOfTwoSheetsIsNoSolid) {
   expectNoSolidAndBlocksAlike(b);
 }
 
-/// Open at the top, where all of the scene is below; and with walls that go on, outwards.
+/// Open at the top, with all of the scene below; and with walls that continue outwards.
 TEST(ExactSolids, ABasinOfTwoSheetsIsNoSolid) {
   for (const bool flared : {false, true}) {
     SceneBuilder b;
@@ -298,8 +298,8 @@ TEST(ExactSolids, ASheetAndTheFacesOfAnInnerRoomAreFlat) {
   EXPECT_EQ(made.set.skipped_hull, 6u);
 }
 
-/// A quad that is not planar by some coincidences, once with each diagonal: where the planes of its
-/// faces cross is anybody's guess, and points beside it would be inside all of them.
+/// A quad that is not planar by some coincidences, once with each diagonal: the planes of its faces
+/// cross in no reliable place, and points beside it would be inside all of them.
 TEST(ExactSolids, KnifeEdgesMakeNoSolid) {
   const auto hullOf = [](double off) {
     const std::vector<Vec3> p{{0, 0, 0}, {0.3, 0, off}, {0.3, 0.3, 0}, {0, 0.3, off}};
@@ -315,9 +315,9 @@ TEST(ExactSolids, KnifeEdgesMakeNoSolid) {
   EXPECT_TRUE(hullOf(1e-2));
 }
 
-/// Boxes side by side with dropped contact areas, of heights and depths that differ: one solid
-/// each, whatever their faces were cut to.
-TEST(ExactSolids, BooksOnABoard) {
+/// Boxes side by side with dropped contact areas, of different heights and depths: one solid each,
+/// however their faces were cut.
+TEST(ExactSolids, BooksOnABoardAreASolidEach) {
   SceneBuilder b = room();
   b.box(b.surface("board"), {1, 1, 1}, {3, 2, 1.1});
   const Index books = b.surface("books");
@@ -335,7 +335,7 @@ TEST(ExactSolids, BooksOnABoard) {
 
 /// Pieces of plates, and how many: a square frame takes four, an L two; two rectangles of different
 /// surfaces side by side one.
-TEST(ExactPieces, AreFew) {
+TEST(ExactPieces, PlatesMakeFewPieces) {
   const auto piecesOf = [](const std::vector<std::vector<Vec2>>& faces) {
     SceneBuilder b = room();
     Index k = 0;
@@ -359,7 +359,7 @@ TEST(ExactPieces, AreFew) {
 }
 
 /// Two faces back to back without thickness are one flat occluder on four facets' planes.
-TEST(ExactPieces, BackToBackIsOne) {
+TEST(ExactPieces, FacesBackToBackAreOneOccluder) {
   const Made made(test::meshOf(test::dataScene("blocked-plates"), 100));
   ASSERT_EQ(made.set.occluders.size(), 1u);
   EXPECT_TRUE(made.set.occluders[0].flat);

@@ -1,4 +1,4 @@
-// Rows that are exact beside rays: those of emitters.
+// Exact rows of emitters beside rows by rays.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ FormFactors byRays(const PatchMesh& mesh, const std::vector<Index>& exact_rows, 
   return test::computed(mesh, options);
 }
 
-/// What each patch sees of some, over what it truly sees of them: the largest difference, of
+/// The share of some patches that each patch sees, over its true value: the largest difference, of
 /// patches that see a tenth of the mean or more.
 double worstShare(const FormFactors& found, const FormFactors& truth,
                   const std::vector<Index>& seen) {
@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, ExactRows,
 TEST(ExactRowsOfClusters, AreSumsOverTheirPatches) {
   PatchMesh mesh = test::roomWithBlock(4).build();
   const FormFactors truth = test::computed(mesh, test::exactly(1e-4));
-  PatchClusters clusters;  // three patches each, whatever surface they are of
+  PatchClusters clusters;  // three patches each, of any surfaces
   for (Index i = 0; i < mesh.size(); ++i) {
     if (i % 3 == 0) clusters.begin.push_back(clusters.patches.size());
     clusters.patches.push_back(i);
@@ -151,7 +151,7 @@ TEST(ExactRowsOfARoom, HaveTheSameBitsForAnyNumberOfThreads) {
   }
 }
 
-TEST(ExactRowsOptions, AreRefusedWhereTheyAreNoUnknownsInOrder) {
+TEST(ExactRowsOptions, AreRefusedUnlessTheyAreDistinctUnknowns) {
   const PatchMesh mesh = test::roomWithBlock(2).build();
   EXPECT_THROW(byRays(mesh, {Index(mesh.size())}, 5e-2), InputError);
   EXPECT_THROW(byRays(mesh, {3, 3}, 5e-2), InputError);

@@ -161,7 +161,7 @@ bool blocks(const Bodies& bodies, const Vec3& p, const Vec3& q, double margin) {
   return false;
 }
 
-/// A room of 4 x 4 x 3 with what is hard: blocks that stand on the floor, on each other and side by
+/// A room of 4 x 4 x 3 with hard cases: blocks that stand on the floor, on each other and side by
 /// side, an L-shaped solid, a two-sided sheet, a wall with a window, a plate of two surfaces.
 inline Scene hardRoom() {
   SceneBuilder b;

@@ -34,7 +34,7 @@ FormFactors compute(const PatchMesh& mesh, FormFactorMethod method, double toler
   return computeFormFactors(mesh, options, silent);
 }
 
-/// What holds of any row of either method.
+/// Invariants of any row of either method.
 void expectSane(const PatchMesh& mesh, const FormFactors& f, const std::string& what) {
   const bool exact = f.method == "exact";
   ASSERT_EQ(f.fronts.size(), mesh.size());
@@ -68,9 +68,9 @@ void expectSane(const PatchMesh& mesh, const FormFactors& f, const std::string& 
 }
 
 /// Both methods, and the exact one against the truth: closed forms to 2e-5 (the 1e-5 of each value
-/// and what storage and summing add), entries past something to `past` times the mean form
-/// factor. The tolerance is 1e-3 of that, for the root mean square; the worst single entries of
-/// these coarse scenes are off by 20 to 50 times as much.
+/// and the errors of storage and summing), occluded entries to `past` times the mean form factor.
+/// The tolerance is 1e-3 of that, for the root mean square; the worst single entries of these
+/// coarse scenes are off by 20 to 50 times as much.
 void expectTrue(const PatchMesh& mesh, const std::string& what, double past = 0.05) {
   expectSane(mesh, compute(mesh, FormFactorMethod::hemicube), what + ", hemicube");
   const FormFactors f = compute(mesh, FormFactorMethod::exact);
@@ -101,7 +101,7 @@ void addRoom(SceneBuilder& builder, const Vec3& high = Vec3(1)) {
 
 // ---- Degenerate input
 
-TEST(Stress, DegenerateFaces) {
+TEST(Stress, DegenerateFacesLeaveFormFactorsCorrect) {
   SceneBuilder builder;
   addRoom(builder);
   const Index odd = builder.surface("odd");
@@ -113,7 +113,7 @@ TEST(Stress, DegenerateFaces) {
   }
 }
 
-TEST(Stress, SliversOfAspectOneMillion) {
+TEST(Stress, SliversOfAspectOneMillionHaveCorrectFormFactors) {
   constexpr double kThin = 1e-6;
   MeshBuilder builder;
   builder.polygon("floor", {truth::level(0, 1, 0, kThin, 0, true)});
@@ -134,7 +134,7 @@ TEST(Stress, OverlappingCoplanarFacesAreRepaired) {
 
 // ---- Touching
 
-TEST(Stress, HingesFromNearlyShutToNearlyFlat) {
+TEST(Stress, HingesFromNearlyShutToNearlyFlatHaveCorrectFormFactors) {
   for (const double angle : {1e-6, 1e-4, 1e-2, 1.0, 3.0, std::numbers::pi - 1e-2,
                              std::numbers::pi - 1e-4, std::numbers::pi - 1e-6}) {
     const Vec3 up(std::cos(angle), 0, std::sin(angle));
@@ -145,7 +145,7 @@ TEST(Stress, HingesFromNearlyShutToNearlyFlat) {
   }
 }
 
-TEST(Stress, TJunctionsAndSharedCorners) {
+TEST(Stress, TJunctionsAndSharedCornersLeaveFormFactorsCorrect) {
   // A floor in one piece, walls and blocks that meet it at a part of its edge, in corners, and in
   // the middle of its edge.
   SceneBuilder builder;
@@ -160,7 +160,7 @@ TEST(Stress, TJunctionsAndSharedCorners) {
   expectTrue(test::meshOf(builder.scene(), 40), "T-junctions meshed");
 }
 
-TEST(Stress, BlockOnAFloorThatIsNotCut) {
+TEST(Stress, ABlockOnAnUncutFloorHasCorrectFormFactors) {
   SceneBuilder builder;
   addRoom(builder);
   builder.box(builder.surface("block"), Vec3(0.3, 0.35, 0), Vec3(0.6, 0.7, 0.4));
@@ -170,7 +170,7 @@ TEST(Stress, BlockOnAFloorThatIsNotCut) {
 
 // ---- Solids and sheets
 
-TEST(Stress, SolidsThroughEachOther) {
+TEST(Stress, CrossingSolidsHaveCorrectFormFactors) {
   SceneBuilder builder;
   addRoom(builder);
   const Index solids = builder.surface("solids");
@@ -180,7 +180,7 @@ TEST(Stress, SolidsThroughEachOther) {
   expectTrue(test::meshOf(builder.scene(), 1, true), "crossing solids, as faces");
 }
 
-TEST(Stress, AFaceInsideASolid) {
+TEST(Stress, AFaceInsideASolidLeavesFormFactorsCorrect) {
   SceneBuilder builder;
   addRoom(builder);
   builder.box(builder.surface("solid"), Vec3(0.2), Vec3(0.7));
@@ -188,17 +188,17 @@ TEST(Stress, AFaceInsideASolid) {
   expectTrue(test::meshOf(builder.scene(), 1, true), "inside, as faces");
 }
 
-TEST(Stress, PatchesOnThePlanesAndEdgesOfBlockers) {
+TEST(Stress, PatchesAlignedWithBlockersHaveCorrectFormFactors) {
   // Faces, edges and corners of the blockers in line with corners and middles of the patches.
   MeshBuilder builder;
   builder.box("room", Vec3(0), Vec3(1), 4, true);
   builder.box("block", Vec3(0.25, 0.25, 0.25), Vec3(0.5, 0.5, 0.75), 1);
   builder.grid("sheet", {0.625, 0, 0.25}, {0, 0.75, 0}, {0, 0, 0.5}, 2, 2, true);
-  // Shadows all step at once, where points are: the worst entries are off by 85 tolerances.
+  // Shadows all step at once, at points: the worst entries are off by 85 tolerances.
   expectTrue(builder.build(), "aligned", 0.1);
 }
 
-TEST(Stress, SheetsOfAllKinds) {
+TEST(Stress, TwoSidedSheetsAndFlippedBoxesHaveCorrectFormFactors) {
   SceneBuilder two_sided;
   addRoom(two_sided);
   two_sided.level(two_sided.surface("sheet", 0.5, 0, true), 0.2, 0.3, 0.8, 0.7, 0.5);
@@ -210,7 +210,7 @@ TEST(Stress, SheetsOfAllKinds) {
   expectTrue(test::meshOf(flipped.scene(), 120), "flipped normals");
 }
 
-TEST(Stress, ABoxWithoutThickness) {
+TEST(Stress, ABoxWithoutThicknessHasCorrectFormFactors) {
   SceneBuilder flat_box;
   addRoom(flat_box);
   flat_box.level(flat_box.surface("up"), 0.2, 0.3, 0.8, 0.7, 0.5, true);
@@ -220,7 +220,7 @@ TEST(Stress, ABoxWithoutThickness) {
 
 // ---- Rooms and holes
 
-TEST(Stress, EmptyAndSingle) {
+TEST(Stress, EmptyAndSinglePatchMeshesExchangeNothing) {
   for (const FormFactorMethod method : {FormFactorMethod::hemicube, FormFactorMethod::exact}) {
     const FormFactors none = compute(PatchMesh(), method);
     EXPECT_EQ(none.matrix.size(), 0u);
@@ -247,7 +247,7 @@ TEST(Stress, RoomsApartSeeNothingOfEachOther) {
   }
 }
 
-TEST(Stress, APinhole) {
+TEST(Stress, APinholeLeavesFormFactorsCorrect) {
   // A wall with a hole of 1e-4 between two rooms.
   constexpr double kHole = 1e-4;
   const double a = 0.5 - kHole / 2;
@@ -267,7 +267,7 @@ TEST(Stress, APinhole) {
     const FormFactors f = compute(mesh, method);
     expectSane(mesh, f, "pinhole");
   }
-  // What goes through is 1e-8 of what there is, far below the tolerance: ten of them, 1e-2 / N.
+  // 1e-8 of all light goes through, far below the tolerance: ten of them, 1e-2 / N.
   const truth::GroundTruth truth(mesh);
   const FormFactors f = compute(mesh, FormFactorMethod::exact);
   for (std::size_t i = 0; i < mesh.size(); ++i) {
@@ -278,7 +278,7 @@ TEST(Stress, APinhole) {
   }
 }
 
-TEST(Stress, ConcavePolygonsWithHoles) {
+TEST(Stress, ConcavePolygonsAndHolesHaveCorrectFormFactors) {
   SceneBuilder builder;
   addRoom(builder, Vec3(2, 2, 1));
   const Index s = builder.surface("concave", 0.5, 0, true);
@@ -306,9 +306,9 @@ TEST(Stress, ConcavePolygonsWithHoles) {
   expectTrue(test::meshOf(builder.scene(), 1, true), "concave, as faces");
 }
 
-TEST(Stress, AThousandBlockersOverOnePatch) {
-  // The black fields of a board of 46 x 46 half-way between two plates let through what the white
-  // ones hold back, and are their mirror image: half of everything.
+TEST(Stress, AThousandBlockersHideHalfOfAPatch) {
+  // The black fields of a board of 46 x 46 half-way between two plates pass the light that the
+  // white ones block, and are their mirror image: half of everything.
   constexpr int kFields = 46;
   MeshBuilder builder;
   builder.polygon("lower", {truth::level(0, 1, 0, 1, 0, true)});
@@ -326,7 +326,7 @@ TEST(Stress, AThousandBlockersOverOnePatch) {
   EXPECT_NEAR(f.matrix.at(0, 1), 0.5 * 0.199824895698387, 1e-3 * 0.5);
 }
 
-// ---- Sameness
+// ---- Invariance
 
 PatchMesh transformed(PatchMesh mesh, double scale, const Vec3& shift, double turn) {
   const Vec3 axis = glm::normalize(Vec3(1, 2, 3));
@@ -371,9 +371,9 @@ PatchMesh turnedObstacle() {
   return truth::blockedPlates({sheet}, 3);
 }
 
-TEST(Sameness, PlaceScaleAndTurnLeaveExactValuesAsTheyAre) {
-  // Far closed forms and shadows are computed in single precision where the tolerance lets them:
-  // what coordinates are rounded to then shows, some 1e-7 of a form factor. Else 1e-9.
+TEST(Sameness, PlaceScaleAndTurnKeepExactValues) {
+  // Far closed forms and shadows are computed in single precision if the tolerance allows: rounded
+  // coordinates then show, by some 1e-7 of a form factor. Else 1e-9.
   const struct {
     PatchMesh mesh;
     double tolerance, allowed;
@@ -398,7 +398,7 @@ TEST(Sameness, PlaceScaleAndTurnLeaveExactValuesAsTheyAre) {
   }
 }
 
-TEST(Sameness, NoBitDependsOnThreadsVectorsPowersOfTwoOrNumbers) {
+TEST(Sameness, NoBitDependsOnThreadsVectorsOrPowersOfTwo) {
   for (const FormFactorMethod method : {FormFactorMethod::hemicube, FormFactorMethod::exact}) {
     const PatchMesh mesh = turnedBoxes();
     const FormFactors plain = compute(mesh, method);
@@ -415,7 +415,7 @@ TEST(Sameness, NoBitDependsOnThreadsVectorsPowersOfTwoOrNumbers) {
   }
 }
 
-TEST(Sameness, NoBitOfTheExactMethodDependsOnTightness) {
+TEST(Sameness, NoBitOfTightTolerancesDependsOnVectors) {
   // The double-precision kernels, which tight tolerances use, in vectors and one by one.
   const PatchMesh mesh = test::roomWithBlock(2).build();
   EXPECT_EQ(largestDifference(compute(mesh, FormFactorMethod::exact, 1e-5),
@@ -423,9 +423,9 @@ TEST(Sameness, NoBitOfTheExactMethodDependsOnTightness) {
             0);
 }
 
-// ---- What is not there costs nothing
+// ---- Absent features cost nothing
 
-TEST(ExactSkips, ConvexAndCoplanar) {
+TEST(ExactSkips, ConvexAndCoplanarScenesRunNoVisibility) {
   MeshBuilder plain;
   plain.grid("floor", {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 100, 100);
   const ExactReport flat = compute(plain.build(), FormFactorMethod::exact).report.exact;

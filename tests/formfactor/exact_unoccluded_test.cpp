@@ -1,4 +1,4 @@
-// Blocks of unoccluded pairs: clipping, sums, bounds, sameness, and what is counted.
+// Blocks of unoccluded pairs: clipping, sums, bounds, equal bits, and counts.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -130,7 +130,7 @@ double clippedReference(const ElementSet& set) {
   return test::referenceExchange(of_a.outline(), of_b.outline());
 }
 
-// As rounding leaves the corners of an element in the plane that it is cut by.
+// As if rounding had moved corners of an element in its cutting plane.
 TEST(FlatPolygon, HasRoomForAQuadrilateralWithEverySecondCornerBehindThePlane) {
   const double tiny = 1e-16;
   const std::array<Vec3, 4> outline = {Vec3(0, 0, tiny), Vec3(1, 0, -tiny), Vec3(1, 1, tiny),
@@ -196,7 +196,7 @@ TEST(Unoccluded, NothingIsNegativeOrLargerThanAnArea) {
   }
 }
 
-TEST(Unoccluded, ValuesDoNotDependOnBlocksOrTheTwin) {
+TEST(Unoccluded, ValuesDoNotDependOnBlocksOrVectors) {
   const ElementSet set(test::roomWithBlock(6).build());
   const UnoccludedKernel simd(set, 1e-5, true);
   const UnoccludedKernel twin(set, 1e-5, false);
@@ -205,7 +205,7 @@ TEST(Unoccluded, ValuesDoNotDependOnBlocksOrTheTwin) {
     for (const Facet& columns : set.facets) {
       if (&rows == &columns) continue;
       const std::size_t width = columns.elements.size();
-      // Longer rows than columns: what lies between must stay.
+      // Rows longer than the columns: values in between must stay.
       const std::size_t stride = width + 3;
       std::vector<double> block(rows.elements.size() * stride, -7);
       std::vector<double> scalar(rows.elements.size() * stride, -7);

@@ -37,7 +37,7 @@ double surfaceToSurface(const PatchMesh& mesh, const FormFactors& factors, const
 
 // ---- Planar values
 
-TEST(ExactValues, PlanarClosedFormsToTenDigits) {
+TEST(ExactValues, PlanarClosedFormsHoldToTenDigits) {
   for (const truth::ClosedForm& k : truth::closedForms()) {
     MeshBuilder builder;
     builder.polygon("from", {k.from});
@@ -51,7 +51,7 @@ TEST(ExactValues, PlanarClosedFormsToTenDigits) {
   }
 }
 
-TEST(ExactValues, CubeOfTriangles) {
+TEST(ExactValues, ACubeOfTrianglesHasKnownValues) {
   const PatchMesh mesh = cubeOfTriangles();
   const FormFactors f = test::exactInDouble(mesh, 1e-11);
   const double known[] = {0.211324865405187, 0.184424034121610, 0.0563375489264, 0.0760875888927,
@@ -66,7 +66,7 @@ TEST(ExactValues, CubeOfTriangles) {
   }
 }
 
-TEST(ExactValues, ObstructedPlatesInPatches) {
+TEST(ExactValues, ObstructedPlatesInPatchesHaveTheirClosedForms) {
   for (const truth::ObstructedForm& k : truth::obstructedForms()) {
     const PatchMesh mesh = truth::blockedPlates({k.obstacle}, 8);
     const FormFactors f = test::exactInDouble(mesh, 1e-7);
@@ -95,8 +95,8 @@ TEST(ExactValues, ObstructedPlatesToNineDigitsTakeFewPoints) {
 // ---- Curved values: the tessellation's error goes with the square of the facets' width
 
 /// Values of three meshes, each of twice as many facets as the one before: differences fall by 4,
-/// but for the next even order, so the order measured is 2 within a quarter. What the finest is off
-/// then is a third of the last difference.
+/// but for the next even order, so the order measured is 2 within a quarter. The finest mesh is
+/// then off by a third of the last difference.
 void expectSecondOrder(const std::vector<double>& values, double truth, const std::string& what,
                        double slack = 0.25) {
   ASSERT_EQ(values.size(), 3u);
@@ -122,7 +122,7 @@ void disc(MeshBuilder& builder, const std::string& surface, double radius, doubl
   builder.polygon(surface, {rim}, wedges);
 }
 
-TEST(ExactValues, CoaxialDiscs) {
+TEST(ExactValues, CoaxialDiscsConvergeToSecondOrder) {
   const struct {
     double r1, r2, h, f;
   } cases[] = {{1, 1, 1, 0.381966011250105},   {1, 1, 0.1, 0.904875078027496},
@@ -164,7 +164,7 @@ void sphere(MeshBuilder& builder, const std::string& surface, double radius, int
   }
 }
 
-TEST(ExactValues, SphereInACube) {
+TEST(ExactValues, ASphereInACubeConvergesToSecondOrder) {
   // From the solid to each face 1/6 by symmetry, for the tessellated one too; from a face to the
   // sphere by the area, which converges at second order.
   std::vector<double> values;
@@ -186,7 +186,7 @@ TEST(ExactValues, SphereInACube) {
   expectSecondOrder(values, 0.130899693899575, "face to sphere");
 }
 
-TEST(ExactValues, ConcentricSpheres) {
+TEST(ExactValues, ConcentricSpheresSeeTheRatioOfTheirAreas) {
   for (const int sides : {8, 16}) {
     MeshBuilder builder;
     sphere(builder, "inner", 1, sides, false);
@@ -195,7 +195,7 @@ TEST(ExactValues, ConcentricSpheres) {
     const FormFactors f = test::exactInDouble(mesh, 1e-5);
     double areas[2] = {0, 0};
     for (std::size_t i = 0; i < mesh.size(); ++i) areas[mesh.surface[i]] += mesh.area[i];
-    // Whatever leaves a convex solid reaches what encloses it: exact for the polyhedra. A row's
+    // All light that leaves a convex solid reaches its enclosure: exact for the polyhedra. A row's
     // N occluded pairs are each within the tolerance's share 1/N, so that the sum is within it.
     const double ratio = areas[0] / areas[1];
     EXPECT_NEAR(surfaceToSurface(mesh, f, "outer", "inner"), ratio, 1e-5) << sides;
@@ -204,7 +204,7 @@ TEST(ExactValues, ConcentricSpheres) {
   }
 }
 
-TEST(ExactValues, InsideASphere) {
+TEST(ExactValues, TheInsideOfASphereConvergesToSecondOrder) {
   // F_ij = A_j / (4 pi R^2) for any two parts: here a polar cap's patches to an equatorial band's.
   std::vector<double> values;
   for (const int sides : {16, 32, 64}) {
@@ -264,7 +264,7 @@ void annulus(MeshBuilder& builder, const std::string& surface, double inner, dou
   builder.polygon(surface, {out, in}, parts);
 }
 
-TEST(ExactValues, CoaxialCylinders) {
+TEST(ExactValues, CoaxialCylindersConvergeToSecondOrder) {
   const struct {
     double r, h, inner, self, end, ends;
   } cases[] = {{1.5, 1, 0.440764445482524, 0.130879245368273, 0.214178154574602, 0.214889763599984},

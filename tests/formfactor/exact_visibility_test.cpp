@@ -1,4 +1,4 @@
-// Which elements see each other: every proved answer against random sight lines.
+// Visibility between elements: every proved answer against random sight lines.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -81,8 +81,8 @@ void expectCountsAddUp(const Table& table) {
 }
 
 /// `lines` random pairs of elements, a random sight line each (from every pair there is, one after
-/// the other): none of an unoccluded pair is blocked, none of a pair not reported is free, and
-/// what blocks one of an occluded pair is among its candidates.
+/// the other): none of an unoccluded pair is blocked, none of a pair not reported is free, and the
+/// blocker of one of an occluded pair is among its candidates.
 void expectTrue(const PatchMesh& mesh, std::size_t lines, unsigned seed) {
   const Table table(mesh);
   expectCountsAddUp(table);
@@ -148,7 +148,7 @@ TEST_P(ExactVisibility, AnswersAreTrue) {
   expectTrue(test::meshOf(c.make(), c.patches), c.lines, 1);
 }
 
-TEST_P(ExactVisibility, AnswersAreTrueTurned) {
+TEST_P(ExactVisibility, AnswersAreTrueInTurnedScenes) {
   const VisibilityCase& c = GetParam();
   expectTrue(test::meshOf(test::turned(c.make()), c.patches), c.lines / 2, 2);
 }
@@ -166,7 +166,7 @@ TEST(ExactVisibilityFaces, AnswersAreTrueWithoutContactCuts) {
 }
 
 /// Nothing is repaired: boxes run through each other and through the floor, one is inside another.
-TEST(ExactVisibilityFaces, AnswersAreTrueWhereBodiesCross) {
+TEST(ExactVisibilityFaces, AnswersAreTrueForCrossingBodies) {
   test::SceneBuilder b;
   b.box(b.surface("room"), {0, 0, 0}, {4, 4, 3}, false);
   const Index box = b.surface("box");
@@ -188,7 +188,7 @@ TEST(ExactVisibilityFaces, AnswersAreTrueFarAwayAndTiny) {
 }
 
 /// The scalar target answers alike, pair by pair.
-TEST(ExactVisibilityCounts, ScalarTargetGivesTheSame) {
+TEST(ExactVisibilityCounts, ScalarTargetGivesTheSameAnswers) {
   const PatchMesh mesh = test::meshOf(test::hardRoom(), 250);
   const Table table(mesh);
   const Visibility scalar(table.elements, table.occluders, false);
@@ -241,9 +241,9 @@ TEST(ExactVisibilityCounts, CoplanarPatchesAreNeverPaired) {
   EXPECT_EQ(counts.shaft_tests, 0u);
 }
 
-/// Panels of rows give what whole facets give, but for pairs so close to a shadow's edge that it
+/// Panels of rows give the same as whole facets, but for pairs so close to a shadow's edge that it
 /// depends on the cluster they are settled in (measured: 1 of 10058 occluded pairs).
-TEST(ExactVisibilityCounts, AnyRangeOfRowsGivesTheSame) {
+TEST(ExactVisibilityCounts, AnyRangeOfRowsGivesTheSameCounts) {
   const PatchMesh mesh = test::meshOf(test::hardRoom(), 250);
   const Table whole(mesh);
   struct Sum : VisibilitySink {
@@ -268,7 +268,7 @@ TEST(ExactVisibilityCounts, AnyRangeOfRowsGivesTheSame) {
 
 /// Occluded pairs thin out with the square root of the number of patches: only those along shadows'
 /// edges remain. Measured: 11.1% of all pairs at 985 patches, 4.95% at 5096.
-TEST(ExactVisibilityCounts, PartialPairsThinOut) {
+TEST(ExactVisibilityCounts, OccludedPairsThinOutWithMorePatches) {
   double before = 1;
   for (const std::size_t n : {300, 1200}) {
     const Table table(test::meshOf(test::dataScene("cornell-box-closed"), n));
@@ -280,7 +280,7 @@ TEST(ExactVisibilityCounts, PartialPairsThinOut) {
 }
 
 /// The same room meshed here and read back as a mesh of faces: as many pairs that need clipping.
-TEST(ExactVisibilityCounts, FacesAsPatchesGiveTheSameClasses) {
+TEST(ExactVisibilityCounts, FacesAsPatchesHaveAsManyOccludedPairs) {
   const Scene scene = test::dataScene("cornell-box-closed");
   const PatchMesh mesh = test::meshOf(scene, 400);
   const Table own(mesh);

@@ -1,5 +1,5 @@
-// What shadows leave of a polygon in its plane, by its area: against closed forms, and against
-// lines across it, on which shadows are intervals.
+// The area that shadows leave of a polygon in its plane: against closed forms, and against lines
+// across it, on which shadows are intervals.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -51,7 +51,7 @@ double visibleArea(std::span<const Vec2> polygon, const std::vector<Shadow>& sha
   return area(pieces);
 }
 
-TEST(VisiblePieces, PolygonOfManySides) {
+TEST(VisiblePieces, AShadowOfManySidesHidesItsArea) {
   const int sides = 100;
   const double inside = sides * 0.3 * 0.3 * std::tan(M_PI / sides);
   EXPECT_NEAR(visibleArea(kUnitSquare, {regular({0.5, 0.5}, 0.3, sides)}), 1 - inside, 1e-14);
@@ -108,7 +108,7 @@ double visibleLength(double u, const std::vector<Shadow>& shadows) {
   return seen + (1 - end);
 }
 
-TEST(VisiblePieces, AreaIsThatOfLinesAcross) {
+TEST(VisiblePieces, AreaMatchesLinesAcross) {
   constexpr int kLines = 4000;
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(0, 1);

@@ -1,4 +1,4 @@
-// Blocks of form factors made on demand, against the exact matrix and whatever block they are in.
+// Blocks of form factors made on demand, against the exact matrix and against other blocks.
 #include "radiosity/form_factor_kernel.h"
 
 #include <gtest/gtest.h>
@@ -56,8 +56,8 @@ double errorAgainstExact(const PatchMesh& mesh, int points) {
 }
 
 TEST(FormFactorKernel, BlocksApproachTheExactMatrixWithMorePoints) {
-  // Two boxes in a closed room, triangles among the patches; edges that patches share are what
-  // Gauss points are slow at.
+  // Two boxes in a closed room, triangles among the patches; Gauss points converge slowly at edges
+  // that patches share.
   const PatchMesh mesh = meshOf("cornell-box-closed.obj", 150);
   const double coarse = errorAgainstExact(mesh, 1);
   const double fine = errorAgainstExact(mesh, 4);
@@ -97,7 +97,7 @@ TEST(FormFactorKernel, AnEntryIsTheSameInEveryBlockAndThread) {
   EXPECT_TRUE(blockOf(kernel, {}, columns).empty());
 }
 
-TEST(FormFactorKernel, RefusesWhatIsNotThere) {
+TEST(FormFactorKernel, RefusesWrongPointsRowsColumnsAndSizes) {
   const PatchMesh mesh = meshOf("furnace-cube.obj", 6);
   Progress quiet;
   const auto message = [](const auto& call) { return test::errorOf(call); };

@@ -1,4 +1,4 @@
-// Delta form factors against what they must add up to, and against the integrand.
+// Delta form factors against their known sums, and against the integrand.
 #include <gtest/gtest.h>
 
 #include <cmath>

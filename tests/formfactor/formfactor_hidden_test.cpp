@@ -1,5 +1,5 @@
-// Polygons drawn front to back, hidden ones left out: the same pixels, and work that follows what
-// is seen.
+// Polygons drawn front to back, hidden ones left out: the same pixels, and work for visible
+// polygons only.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -68,7 +68,7 @@ void expectSameViews(TwoWays& views, int eyes) {
   }
 }
 
-TEST(Hidden, LeavingOutChangesNoPixel) {
+TEST(Hidden, LeavingPolygonsOutChangesNoPixel) {
   // Lids and plates lie in the same places: depths are equal to the bit, and the first one stays.
   const PatchMesh mesh = platesInARoom(200, 0.15, 0.2, 0.8).build();
   for (const int resolution : {16, 36, 64, 150}) {
@@ -77,7 +77,7 @@ TEST(Hidden, LeavingOutChangesNoPixel) {
   }
 }
 
-TEST(Hidden, LeavingOutChangesNoPixelOnAnyInstructionSet) {
+TEST(Hidden, LeavingPolygonsOutChangesNoPixelOnAnyInstructionSet) {
   const PatchMesh mesh = platesInARoom(60, 0.2, 0.2, 0.8).build();
   test::onEveryTarget([] { return rasterKernels(true); },
                       [&](const RasterKernels& kernels) {
@@ -100,7 +100,7 @@ std::size_t drawnBelowALid(int count) {
 }
 
 TEST(Hidden, HiddenPolygonsAreNotDrawnHoweverMany) {
-  // Some are, before the lid: those whose boxes the eye comes to first.
+  // Some are drawn before the lid: their boxes are the nearest.
   const std::size_t few = drawnBelowALid(100);
   EXPECT_LE(drawnBelowALid(1000), few + 10);
   EXPECT_LE(drawnBelowALid(10000), few + 10);
@@ -118,7 +118,7 @@ TEST(Hidden, CountsAddUp) {
                 c.rasterised_polygons + c.skipped_face + c.skipped_hidden);
 }
 
-TEST(Hidden, RowsAreDrawnThatWayWhereMostIsHidden) {
+TEST(Hidden, PolygonsAreLeftOutOnlyIfMostAreHidden) {
   FormFactorOptions options;
   options.resolution = 64;
   const auto leavesOut = [&](const MeshBuilder& builder) {

@@ -123,7 +123,7 @@ TEST(Kernels, FillTakesEveryDepthAboveMinusInfinity) {
   });
 }
 
-TEST(Kernels, RunsAgree) {
+TEST(Kernels, RunsAgreeWithTheDefinition) {
   std::mt19937_64 random(5);
   AlignedBuffer<std::uint32_t> values;
   values.reserve(kStride);
@@ -199,7 +199,7 @@ TEST(Kernels, CellsAgreeAlsoOutsideTheGrid) {
   }
 }
 
-TEST(Kernels, EdgesCrossRowsAlike) {
+TEST(Kernels, EdgesCrossRowsByTheDefinition) {
   std::mt19937_64 random(13);
   std::uniform_real_distribution<double> unit(-10, 60);
   for (int k = 0; k < 300; ++k) {

@@ -16,7 +16,7 @@ FormFactors computeNear(const PatchMesh& mesh, FormFactorMethod method, bool nea
   options.method = method;
   options.near_exact = near_exact;
   options.precision = Precision::double_precision;
-  options.tolerance = 1e-4;  // far below what hemicubes get wrong
+  options.tolerance = 1e-4;  // far below the errors of hemicubes
   Progress silent;
   return computeFormFactors(mesh, options, silent);
 }
@@ -35,8 +35,8 @@ double difference(const PatchMesh& mesh, const FormFactors& a, const FormFactors
   return std::sqrt(off / all);
 }
 
-TEST(NearPairs, OnePatchAPlate) {
-  // Howell C-11, gap 0.1 and 1: all of what the plates see of each other is near.
+TEST(NearPairs, PlatesOfOnePatchHaveTheirClosedForm) {
+  // Howell C-11, gap 0.1 and 1: the plates are near each other everywhere.
   for (const auto& [gap, value] : {std::pair(0.1, 0.826994522397257), {1.0, 0.199824895698387}}) {
     MeshBuilder builder;
     builder.grid("low", {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
@@ -53,7 +53,7 @@ TEST(NearPairs, AWholeRoomGetsBetterAndStaysClosed) {
   const FormFactors exact = computeNear(mesh, FormFactorMethod::exact, false);
   const FormFactors plain = computeNear(mesh, FormFactorMethod::hemicube, false);
   const FormFactors corrected = computeNear(mesh, FormFactorMethod::hemicube, true);
-  // A single point is off by per cents next to an edge; what is left is occluded or less near.
+  // A single point is off by per cents next to an edge; the rest is occluded or less near.
   EXPECT_LT(difference(mesh, corrected, exact), 0.4 * difference(mesh, plain, exact));
   EXPECT_LE(corrected.report.largest_row_error, 1e-12);  // sums of at most 200 terms
   EXPECT_EQ(corrected.report.capped, 0u);
@@ -63,7 +63,7 @@ TEST(NearPairs, AWholeRoomGetsBetterAndStaysClosed) {
   }
 }
 
-TEST(NearPairs, OffByDefault) {
+TEST(NearPairs, AreOffByDefault) {
   const FormFactors f = computeNear(test::roomWithBlock(2).build(), FormFactorMethod::hemicube,
                                     FormFactorOptions().near_exact);
   EXPECT_EQ(f.report.near_pairs, 0u);

@@ -1,4 +1,4 @@
-// Rows of the form-factor matrix: their accounts, and what must not change them.
+// Rows of the form-factor matrix: their accounts and their invariance.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -97,7 +97,7 @@ TEST(Rows, SymmetricEyesWithoutTurnsDoNotLeak) {
   for (const double backs : f.backs) EXPECT_EQ(backs, 0.0);
 }
 
-TEST(Rows, AccountsOfAnOpenScene) {
+TEST(Rows, OfAnOpenSceneAccountForSkyAndBacks) {
   // Two facing unit squares, gap 1, a third one seen from behind beside them.
   MeshBuilder builder;
   builder.grid("low", {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, 2);
@@ -124,8 +124,8 @@ TEST(Rows, AccountsOfAnOpenScene) {
   EXPECT_NE(f.report.notes[0].text.find("flipped (", 0), std::string::npos);
 }
 
-TEST(Rows, OfManySurfacesSeenFromBehindTheWarningNamesThree) {
-  // Twenty boards above a floor, facing up as it does: none makes up a tenth of what it sees.
+TEST(Rows, TheWarningOfBacksNamesThreeOfManySurfaces) {
+  // Twenty boards above a floor, facing up, too: none makes up a tenth of the floor's view.
   MeshBuilder builder;
   builder.grid("floor", {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, 1);
   for (int k = 0; k < 20; ++k) {
@@ -252,7 +252,7 @@ TEST(Rows, OptionsHaveValidDefaultsAndRanges) {
   }
 }
 
-TEST(Rows, CancelStops) {
+TEST(Rows, CancellingStopsTheRun) {
   class CancelAtOnce : public Progress {
    public:
     void advance(std::size_t /*steps*/) override { cancel(); }

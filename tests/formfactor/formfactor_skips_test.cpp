@@ -1,4 +1,4 @@
-// What is not drawn, why, and that leaving it out changes nothing.
+// Polygons that are not drawn: the reasons, and unchanged results.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -58,7 +58,7 @@ TEST(Skips, TheSameEyeDrawsTheSamePolygonsHoweverFineThePatches) {
   EXPECT_EQ(drawn(1), drawn(16));
 }
 
-TEST(Skips, OwnPlane) {
+TEST(Skips, PolygonsInTheEyesPlaneAreSkipped) {
   // Two coplanar floors: an eye on one looks at neither.
   MeshBuilder builder;
   builder.grid("floor", {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, 1);
@@ -69,7 +69,7 @@ TEST(Skips, OwnPlane) {
   expectCountsAddUp(r);
 }
 
-TEST(Skips, OwnPlaneAfterARotation) {
+TEST(Skips, PolygonsInTheEyesPlaneAreSkippedAfterARotation) {
   // Coplanar only to rounding.
   const double c = std::cos(1.0), s = std::sin(1.0);
   const auto turn = [&](double x, double y) {
@@ -83,7 +83,7 @@ TEST(Skips, OwnPlaneAfterARotation) {
   EXPECT_EQ(r.rasterised_polygons, 0u);
 }
 
-TEST(Skips, Horizon) {
+TEST(Skips, PolygonsBelowTheHorizonAreSkipped) {
   // From each face of a convex solid all other faces lie behind.
   MeshBuilder builder;
   builder.box("solid", {0, 0, 0}, {1, 1, 1}, 2);
@@ -95,7 +95,7 @@ TEST(Skips, Horizon) {
   EXPECT_FALSE(r.closed);
 }
 
-TEST(Skips, FacingAway) {
+TEST(Skips, PolygonsFacingAwayAreSkipped) {
   // A cube floating in a cubic room. The centre of each wall sees one face of the cube; the five
   // others show it their backs. The cube's own faces see no black back at all.
   MeshBuilder builder;
@@ -107,7 +107,7 @@ TEST(Skips, FacingAway) {
   expectCountsAddUp(r);
 }
 
-TEST(Skips, OutsideAFace) {
+TEST(Skips, PolygonsOutsideAFaceAreSkipped) {
   // A small square overhead is on the top face only.
   MeshBuilder builder;
   builder.grid("floor", {-0.5, -0.5, 0}, {1, 0, 0}, {0, 1, 0});
@@ -147,7 +147,7 @@ TEST(HiddenBacks, LeavingThemOutChangesNoPixel) {
 }
 
 TEST(HiddenBacks, AreKeptForEyesOnTheOtherSide) {
-  // Inside the solid cube, and outside the room: backs are what one sees.
+  // Inside the solid cube, and outside the room, the eye sees backs.
   MeshBuilder builder;
   builder.box("cube", {0, 0, 0}, {1, 1, 1}, 1);
   const PatchMesh mesh = builder.build();

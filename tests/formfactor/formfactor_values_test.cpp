@@ -16,8 +16,8 @@ namespace {
 using test::MeshBuilder;
 using Loop = MeshBuilder::Loop;
 
-/// Lambert's formula: what an element at the origin facing +z receives from a polygon above its
-/// horizon, counter-clockwise seen from its front, front towards the element (Baum et al. 1989,
+/// Lambert's formula: the form factor from an element at the origin facing +z to a polygon above
+/// its horizon, counter-clockwise seen from its front, front towards the element (Baum et al. 1989,
 /// eq. 9).
 double lambert(const Loop& loop) {
   double sum = 0;
@@ -92,21 +92,21 @@ constexpr double kUprightEdges = 1.0;
 // 1.3e-4 for 1e4 to 7e4 pixels, doubled. Upright edges: uniformly distributed within a pixel, two
 // edges err by h/sqrt(6) = 1.6e-3 of the target's unit width (h = 1/256), doubled.
 
-TEST(PointValues, FacingCornerRectangle) {
+TEST(PointValues, AFacingRectangleConverges) {
   const Loop square = {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}};
   const double b3 = 0.138531605994893;  // Howell B-3, all sides 1
   EXPECT_NEAR(lambert(square), b3, 1e-14);
   expectOrder({square}, b3, kSlantedEdges, 4e-4);
 }
 
-TEST(PointValues, PerpendicularRectangle) {
+TEST(PointValues, APerpendicularRectangleConverges) {
   const Loop square = {{1, 0, 0}, {1, 0, 1}, {1, 1, 1}, {1, 1, 0}};
   const double b4 = 0.0557341970025535;  // Howell B-4, all sides 1
   EXPECT_NEAR(lambert(square), b4, 1e-14);
   expectOrder({square}, b4, kUprightEdges, 3.2e-3);
 }
 
-TEST(PointValues, DiscOverhead) {
+TEST(PointValues, ADiscOverheadConverges) {
   Loop disc;
   const int corners = 1024;
   for (int k = 0; k < corners; ++k) {
@@ -119,13 +119,13 @@ TEST(PointValues, DiscOverhead) {
   expectOrder({disc}, truth, kSlantedEdges, 4e-4);
 }
 
-TEST(PointValues, ConcavePolygon) {
+TEST(PointValues, AConcavePolygonConverges) {
   const Loop ell = {{-0.8, -0.8, 1}, {-0.8, 0.9, 1}, {-0.3, 0.9, 1},
                     {-0.3, -0.2, 1}, {0.9, -0.2, 1}, {0.9, -0.8, 1}};
   expectOrder({ell}, lambert(ell), kSlantedEdges, 4e-4);
 }
 
-TEST(PointValues, PolygonWithAHole) {
+TEST(PointValues, APolygonWithAHoleConverges) {
   const Loop outer = {{-0.9, -0.8, 1}, {-0.9, 0.8, 1}, {0.9, 0.8, 1.1}, {0.9, -0.8, 1.1}};
   // The hole lies in the same plane, z = 1.05 + x / 18, and runs the other way.
   const auto at = [](double x, double y) { return Vec3(x, y, 1.05 + x / 18); };
@@ -133,7 +133,7 @@ TEST(PointValues, PolygonWithAHole) {
   expectOrder({outer, hole}, lambert(outer) + lambert(hole), kSlantedEdges, 4e-4);
 }
 
-TEST(PointValues, AcrossTheHorizon) {
+TEST(PointValues, APolygonAcrossTheHorizonConverges) {
   // Half of the polygon is below the horizon and must not count.
   const Loop whole = {{1, -0.5, -1}, {1, -0.5, 1}, {1, 0.5, 1}, {1, 0.5, -1}};
   const Loop above = {{1, -0.5, 0}, {1, -0.5, 1}, {1, 0.5, 1}, {1, 0.5, 0}};
@@ -239,7 +239,7 @@ TEST(AreaValues, ObstructedSquaresConverge) {
   EXPECT_LT(errors[2], 1e-3 * truth);
 }
 
-TEST(AreaValues, NothingIsSeenInTheUmbra) {
+TEST(AreaValues, TheUmbraSeesNoLamp) {
   // A lamp of side 0.1 at height 1 over a blocker of side 0.4 at 0.5: its umbra on the floor is
   // 0.4 + (0.4 - 0.1) = 0.7 wide. Floor patches whose centres lie in it see no lamp at all.
   MeshBuilder builder;

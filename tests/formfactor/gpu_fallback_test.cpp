@@ -1,4 +1,4 @@
-// What becomes of form factors and gathered light where a GPU gives up.
+// Form factors and gathered light if a GPU gives up.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace radiosity {
 namespace {
 
-/// Does what the processor's eye does for some views, two at a time, then says that it is lost.
+/// Works as the processor's eye for some views, two at a time, then reports that it is lost.
 class FailingEye final : public GpuEye {
  public:
   FailingEye(const RowBuilder& rows, std::size_t lives) : rows_(rows), lives_(lives) {}
@@ -32,7 +32,7 @@ class FailingEye final : public GpuEye {
     field_ = field;
     return {};
   }
-  /// What patches emit, as a first pass does.
+  /// The emission of patches, as in a first pass.
   std::string gather(std::size_t count, const Describe& describe, const Take& take) override {
     return look(count, describe, take);
   }
@@ -127,7 +127,7 @@ bool has(const std::vector<Note>& notes, Severity severity, const std::string& w
   });
 }
 
-TEST(GpuFallback, TheProcessorDrawsWhatALostDeviceHasNot) {
+TEST(GpuFallback, TheProcessorDrawsTheRestOfALostDevice) {
   const PatchMesh mesh = test::roomWithBlock(1).build();
   const FormFactorOptions options = smallHemicubes();
   Progress silent;
@@ -152,7 +152,7 @@ TEST(GpuFallback, TheProcessorDrawsWhatALostDeviceHasNot) {
   }
 }
 
-TEST(GpuFallback, MemoryIsForeseenWhereTheDeviceIsLost) {
+TEST(GpuFallback, MemoryIsForecastIfTheDeviceIsLost) {
   const PatchMesh mesh = test::roomWithBlock(1).build();
   Progress silent;
   HemicubeScene scene(mesh, smallHemicubes());
@@ -173,7 +173,7 @@ PatchMaterials lampAndWalls(const PatchMesh& mesh) {
   return materials;
 }
 
-TEST(GpuFallback, TheProcessorGathersWhatALostDeviceHasNot) {
+TEST(GpuFallback, TheProcessorGathersTheRestOfALostDevice) {
   const PatchMesh mesh = test::roomWithBlock(1).build();
   const PatchMaterials materials = lampAndWalls(mesh);
   GatherOptions options;
@@ -215,7 +215,7 @@ TEST(GpuFallback, TheProcessorDrawsASceneThatTheDeviceCannotHold) {
   }
 }
 
-TEST(GpuFallback, LightThatFindsNoRoomIsGatheredByTheProcessor) {
+TEST(GpuFallback, TheProcessorGathersLightThatTheDeviceCannotHold) {
   const PatchMesh mesh = test::roomWithBlock(1).build();
   const PatchMaterials materials = lampAndWalls(mesh);
   GatherOptions options;
@@ -232,7 +232,7 @@ TEST(GpuFallback, LightThatFindsNoRoomIsGatheredByTheProcessor) {
   EXPECT_FALSE(has(seen.summary.notes, Severity::info, "drawn by"));
 }
 
-TEST(GpuFallback, AMissingDeviceIsAnErrorWhereItIsAskedFor) {
+TEST(GpuFallback, AMissingDeviceIsAnErrorOnlyOnRequest) {
   const PatchMesh mesh = test::roomWithBlock(1).build();
   const RowBuilder rows(mesh, smallHemicubes());
   const auto open = [&](EyeChoice choice, const GpuEyes& eyes) {

@@ -1,4 +1,4 @@
-// Convex occluders made by hand: what OccluderSet builds from meshes, without a mesh.
+// Convex occluders made by hand, as OccluderSet builds them from meshes.
 #pragma once
 
 #include <array>

@@ -67,18 +67,18 @@ TEST(PointFactors, ARectangleInFrontHasItsClosedForm) {
   }
 }
 
-TEST(PointFactors, WhatIsCoveredIsNotSeen) {
+TEST(PointFactors, CoveredPatchesAreNotSeen) {
   const PatchMesh mesh = quads({ceiling(2, 2, 1), ceiling(0.5, 1, 0.5)}, 30);
   const std::vector<double> row = rowOf(mesh, {0, 0, 0}, {0, 0, 1});
   double high = 0;
   double low = 0;
   for (std::size_t i = 0; i < mesh.size(); ++i) (mesh.centroid[i].z > 0.7 ? high : low) += row[i];
-  // The shadow of the low one is 1 x 2 on the high one, and is what it covers itself.
+  // The shadow of the low one on the high one is 1 x 2, just the part that it covers.
   EXPECT_NEAR(low, rectangleAbove(0.5, 1, 0.5), 1e-12);
   EXPECT_NEAR(high, rectangleAbove(2, 2, 1) - rectangleAbove(1, 2, 1), 1e-12);
 }
 
-TEST(PointFactors, AWallBlocksAlsoWhoStandsBehindIt) {
+TEST(PointFactors, AWallBlocksPointsBehindIt) {
   // Nothing of the scene is behind the ceiling, so that it blocks no pair of patches.
   const PatchMesh mesh =
       quads({ceiling(1, 1, 1), {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}}}, 9);
@@ -93,7 +93,7 @@ TEST(PointFactors, APointOnASurfaceSeesTheSideOfItsNormal) {
   const double up = 4 * rectangleAbove(0.5, 0.5, 1);
   EXPECT_NEAR(sum(rowOf(mesh, {0.5, 0.5, 0}, {0, 0, 1})), up, 1e-12);
   EXPECT_EQ(sum(rowOf(mesh, {0.5, 0.5, 0}, {0, 0, -1})), 0);
-  // Askew, half of what is below the horizon of the floor is the floor: 1/2 (1 - cos 45 deg).
+  // Askew, the floor is half of the view below its horizon: 1/2 (1 - cos 45 deg).
   const std::vector<double> askew = rowOf(mesh, {0.5, 0.5, 0}, {1, 0, 1});
   double floor = 0;
   for (std::size_t i = 0; i < mesh.size(); ++i) floor += mesh.centroid[i].z < 0.5 ? askew[i] : 0;
@@ -135,7 +135,7 @@ TEST(PointFactors, TheMeanOverAPatchIsItsExactRow) {
   }
 }
 
-TEST(PointFactors, WrongInputIsSaidByItsRow) {
+TEST(PointFactors, WrongInputIsReportedByItsRow) {
   const PatchMesh mesh = quads({ceiling(1, 1, 1)}, 1);
   const std::vector<Vec3> points(2, Vec3(0.0));
   std::vector<Vec3> normals(2, Vec3(0, 0, 1));

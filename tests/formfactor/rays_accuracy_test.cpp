@@ -1,5 +1,5 @@
-// Errors of rows counted by rays: what replicates and all rows together say of them, on rows drawn
-// from known distributions.
+// Errors of rows counted by rays, as estimated from replicates and from all rows together, on rows
+// drawn from known distributions.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,10 +33,10 @@ DrawnRow draw(const std::vector<double>& sigma, double scale, std::mt19937& rand
   return row;
 }
 
-/// Most of a row's error is that of one entry, as with a lamp or a wall close by.
+/// Most of a row's error comes from one entry, as with a lamp or a wall close by.
 const std::vector<double> kOneLargeEntry{0.01, 0.001, 0.001};
 
-TEST(RaysAccuracy, RowsThatStopByChanceStateWhatTheyAreOff) {
+TEST(RaysAccuracy, ModeratedRowsDoNotStopByChance) {
   constexpr double kAim = 0.005;  // half the true error: no row should stop
   std::mt19937 random(1);
   std::vector<DrawnRow> rows;
@@ -63,8 +63,8 @@ TEST(RaysAccuracy, RowsThatStopByChanceStateWhatTheyAreOff) {
   EXPECT_NEAR(stated / off, 1, 0.15);
 }
 
-/// Rows that differ in what they are off beside what is foreseen keep a say of their own.
-TEST(RaysAccuracy, FiguresHoldWhereRowsDiffer) {
+/// Rows whose errors differ from the forecast differently keep estimates of their own.
+TEST(RaysAccuracy, FiguresHoldForRowsOfDifferentErrors) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> exponent(-1, 1);
   std::vector<DrawnRow> rows;
@@ -84,19 +84,19 @@ TEST(RaysAccuracy, FiguresHoldWhereRowsDiffer) {
   EXPECT_GT(above, 0u);
 }
 
-TEST(RaysAccuracy, ARowWithoutHitsMayHaveMissedSomething) {
+TEST(RaysAccuracy, ARowWithoutHitsHasAnErrorFigure) {
   RowAccuracy row;
   row.rays = 1000;
-  // .99 of rows whose rays meet nothing see less than this: (1 - f)^1000 = .01.
+  // .99 of rows without hits see less than this: (1 - f)^1000 = .01.
   EXPECT_NEAR(row.figure(), 0.0046, 1e-4);
   row.rays = 0;  // known, not counted
   EXPECT_EQ(row.figure(), 0);
 }
 
-TEST(RaysAccuracy, ForeseenVarianceIsThatOfHitsLessWhatNetsGain) {
+TEST(RaysAccuracy, ForeseenVarianceFollowsHitsAndTheGainOfNets) {
   // Few hits of a small share: those of independent rays.
   EXPECT_NEAR(foreseenVariance(1e-3, 1), 1e-6 * (1 - 1e-3), 1e-12);
-  // Many: less by the fourth root of the hits. Nearly all: by those that miss.
+  // Many: less by the fourth root of the hits. Nearly all: by the misses.
   EXPECT_NEAR(foreseenVariance(0.5, 20000), 0.25 * 10000 / (20000.0 * 20000.0) / 10, 1e-12);
   EXPECT_LT(foreseenVariance(0.99, 10000), foreseenVariance(0.5, 10000));
   EXPECT_EQ(foreseenVariance(1, 1000), 0);

@@ -14,7 +14,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// Of patches whose clusters have these, K * bands.
+/// Of patches whose clusters have these values, K * bands.
 std::vector<double> patchIrradiance(const PatchMesh& mesh, std::span<const double> radiosity,
                                     std::span<const double> irradiance, int bands,
                                     std::span<const double> sky, Progress& progress) {
@@ -190,7 +190,7 @@ TEST(SeenPatches, GivesTheIrradianceOfPatchesInAnyLight) {
   }
 }
 
-TEST(SeenPatches, CountsRaysThatMatricesOfClustersStandFor) {
+TEST(SeenPatches, CountsEveryRayInAClosedRoom) {
   test::MeshBuilder builder;
   builder.box("room", {0, 0, 0}, {1, 1, 1}, 2, true);
   PatchMesh mesh = builder.build();

@@ -1,4 +1,4 @@
-// The points that rays start from and turn by.
+// The points of the rays' origins and directions.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -24,7 +24,7 @@ FormFactorOptions byRays(double tolerance) {
   return options;
 }
 
-/// How far off rows are from true ones.
+/// The errors of rows against true ones.
 struct Score {
   std::size_t rows = 0;
   std::size_t below_figure = 0;
@@ -75,8 +75,8 @@ TEST(Rays, FindTheFormFactorsOfACube) {
       const bool opposite = glm::dot(mesh.normal[i], mesh.normal[j]) < -0.5;
       EXPECT_NEAR(f.matrix.at(i, j), opposite ? kOpposite : kAdjoining, f.error[i]);
     }
-    // A figure that says nothing is none: the row's norm is .45, good to 1e-4, and so few entries
-    // and rows cost a factor of up to 6 (the root of the 99% quantile of F(1, 3)).
+    // A useful figure is small: the row's norm is .45, good to 1e-4, and so few entries and rows
+    // cost a factor of up to 6 (the root of the 99% quantile of F(1, 3)).
     EXPECT_LT(f.error[i], 6 * 1e-4 * 0.45);
   }
 }
@@ -96,7 +96,7 @@ TEST(Rays, KeepReciprocityAndClosure) {
 
 class RaysAgainstExact : public testing::TestWithParam<const char*> {};
 
-TEST_P(RaysAgainstExact, RowsAreAsGoodAsAskedForAndAsStated) {
+TEST_P(RaysAgainstExact, RowsKeepTheToleranceAndTheirFigures) {
   const PatchMesh mesh = test::meshOf(test::dataScene(GetParam()), 300);
   ASSERT_FALSE(mesh.clusters);
   const FormFactors truth = test::computed(mesh, test::exactly(1e-4));
@@ -221,12 +221,12 @@ TEST(Rays, OfClustersAreSumsOverTheirPatches) {
       norms += area * row[l] * row[l];
     }
   }
-  // What is expected of a row is a root mean square; of all of them together it is good to some
-  // per cent.
+  // The tolerance of a row is a root mean square; that of all rows together is good to some per
+  // cent.
   EXPECT_LT(std::sqrt(squares / norms), 1.1 * 5e-3);
 }
 
-/// What a tolerance costs whose rays go as its square.
+/// Rays that grow as the inverse square of the tolerance.
 TEST(RayAim, LoosensToleranceJustEnoughForTheRaysAllowed) {
   const auto raysAt = [](double loosened) { return 1e6 / (loosened * loosened); };
   EXPECT_EQ(loosening(1e6, raysAt), 1);
@@ -243,7 +243,7 @@ TEST(RayAim, OnlyTheDefaultToleranceIsLoosened) {
   EXPECT_EQ(RayAim(options).most_rays, std::numeric_limits<double>::infinity());
 }
 
-TEST(RayAim, RowsShareTheRaysAllowedAndTheReportSaysWhatTheyReach) {
+TEST(RayAim, RowsShareTheRaysAllowedAndTheReportNamesTheirTolerance) {
   const PatchMesh mesh = test::roomWithBlock(4).build();
   const RayScene scene(mesh, 1);
   RayAim aim(byRays(1e-3));

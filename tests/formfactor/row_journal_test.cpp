@@ -1,4 +1,4 @@
-// Form factors that go on from rows an earlier run has kept: the same bits, whatever is missing.
+// Form factors that go on from rows of an earlier run: the same bits, whatever is missing.
 #include "radiosity/row_journal.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@
 namespace radiosity {
 namespace {
 
-/// In memory; a run is ended after so many blocks, as by a signal.
+/// In memory; ends a run after some blocks, as a signal would.
 class MemoryJournal : public RowJournal {
  public:
   using Name = std::pair<RowBlock, std::uint64_t>;
@@ -43,7 +43,7 @@ class MemoryJournal : public RowJournal {
     rows_found = rows;
     rows_at_all = of;
   }
-  /// What was written is there for the next run, but for a share drawn at random.
+  /// The next run finds all written blocks but a share drawn at random.
   void reopen(double lost = 0) {
     std::mt19937 random(7);
     for (auto& [name, bytes] : written) {
@@ -77,7 +77,7 @@ void add(std::span<const double> values, Bits& bits) {
   for (const double value : values) bits.push_back(std::bit_cast<std::uint64_t>(value));
 }
 
-/// All that results say, but for seconds.
+/// All results but the seconds.
 Bits bitsOf(const FormFactors& factors) {
   Bits bits;
   const std::size_t n = factors.matrix.size();
@@ -163,7 +163,7 @@ TEST_P(Journal, ChangesNoBit) {
   EXPECT_EQ(journal.rows_at_all, mesh_.size());
 }
 
-TEST_P(Journal, EndedRunsGoOn) {
+TEST_P(Journal, EndedRunsResumeToTheSameBits) {
   const Bits plain = bitsOf(computed(nullptr));
   MemoryJournal whole;
   computed(&whole);
@@ -182,7 +182,7 @@ TEST_P(Journal, EndedRunsGoOn) {
   EXPECT_LT(journal.writes, blocks) << "rows that were there are not computed again";
 }
 
-TEST_P(Journal, MissingBlocksAreMadeAgain) {
+TEST_P(Journal, MissingBlocksAreComputedAgain) {
   const Bits plain = bitsOf(computed(nullptr));
   MemoryJournal journal;
   computed(&journal);
@@ -195,7 +195,7 @@ TEST_P(Journal, MissingBlocksAreMadeAgain) {
   }
 }
 
-TEST_P(Journal, BlocksOfAnotherFormAreNotUsed) {
+TEST_P(Journal, BlocksOfAnotherSizeChangeNoBit) {
   const Bits plain = bitsOf(computed(nullptr));
   MemoryJournal journal;
   computed(&journal);

@@ -24,8 +24,8 @@ double formFactor(const Corners& from, const Corners& to) {
   return unoccludedExchange(a, b) / (0.5 * glm::length(vectorArea(a)));
 }
 
-TEST(TruthUnoccluded, ClosedForms) {
-  // They are known to 12 to 15 digits; 1e-12 is what the last digit of the shorter ones allows.
+TEST(TruthUnoccluded, ClosedFormsHoldToTwelveDigits) {
+  // They are known to 12 to 15 digits; the last digit of the shorter ones allows 1e-12.
   for (const ClosedForm& k : closedForms()) {
     EXPECT_NEAR(formFactor(k.from, k.to), k.f, 1e-12) << k.name;
     const Vec3 a = vectorArea(Loop{std::span<const Vec3>(k.from)});
@@ -34,7 +34,7 @@ TEST(TruthUnoccluded, ClosedForms) {
   }
 }
 
-TEST(TruthUnoccluded, ClosureOfTheCubeOfTriangles) {
+TEST(TruthUnoccluded, RowsOfTheCubeOfTrianglesSumToOne) {
   // Twelve triangles: rows sum to 1 whatever the values are.
   const PatchMesh mesh = cubeOfTriangles();
   for (std::size_t i = 0; i < mesh.size(); ++i) {
@@ -68,14 +68,14 @@ double plateToPlate(const PatchMesh& mesh, std::size_t patches, double accuracy)
   return exchange;
 }
 
-TEST(TruthObstructed, PlatesAsOnePatchEach) {
+TEST(TruthObstructed, PlatesOfOnePatchHaveTheirClosedForms) {
   // Cells between the critical lines are smooth: the values come to the digits they are known to.
   for (const ObstructedForm& k : obstructedForms()) {
     EXPECT_NEAR(plateToPlate(blockedPlates({k.obstacle}, 1), 1, 1e-10), k.f, 1e-10) << k.name;
   }
 }
 
-TEST(TruthObstructed, PlatesInPatches) {
+TEST(TruthObstructed, PlatesInPatchesHaveTheirClosedForms) {
   // The accuracy of each F_ij, 1e-7 of the mean of 36 patches' 1/36, is never summed up to more
   // than 1e-7 of a plate's row; measured figures are far below it.
   for (const ObstructedForm& k : obstructedForms()) {
@@ -83,17 +83,17 @@ TEST(TruthObstructed, PlatesInPatches) {
   }
 }
 
-TEST(TruthObstructed, AnObstacleInPartsIsTheObstacle) {
+TEST(TruthObstructed, AnObstacleInPartsBlocksAsTheWhole) {
   const std::vector<Corners> quarters = {
       level(0.25, 0.5, 0.25, 0.5, 0.5, true), level(0.5, 0.75, 0.25, 0.5, 0.5, true),
       level(0.25, 0.5, 0.5, 0.75, 0.5, true), level(0.5, 0.75, 0.5, 0.75, 0.5, true)};
   EXPECT_NEAR(plateToPlate(blockedPlates(quarters, 1), 1, 1e-10), 0.0995062945990, 1e-10);
 }
 
-TEST(TruthObstructed, AGapOfAMillionth) {
-  // A strip a millionth wide along a wall's foot, roofed over a millionth up: what reaches the wall
-  // is what reaches its lowest millionth (Howell C-14 for w = h << l: 1 - 1/sqrt(2), less what
-  // leaves at the ends, some millionths of a logarithm).
+TEST(TruthObstructed, AGapOfAMillionthHasItsLimit) {
+  // A strip a millionth wide along a wall's foot, roofed over a millionth up, reaches only the
+  // wall's lowest millionth (Howell C-14 for w = h << l: 1 - 1/sqrt(2), less the loss at the ends,
+  // some millionths of a logarithm).
   constexpr double kThin = 1e-6;
   MeshBuilder builder;
   builder.polygon("strip", {level(0, 1, 0, kThin, 0, true)});
@@ -104,8 +104,8 @@ TEST(TruthObstructed, AGapOfAMillionth) {
 }
 
 TEST(TruthObstructed, AWindowAndItsShutterAddUp) {
-  // A frame with a square hole blocks what the square alone lets through, of an obstacle that is
-  // otherwise as large as the plates.
+  // A frame with a square hole, otherwise as large as the plates, blocks all light that the square
+  // alone lets through.
   MeshBuilder builder;
   builder.grid("lower", {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   builder.grid("upper", {0, 0, 1}, {0, 1, 0}, {1, 0, 0});
@@ -117,10 +117,10 @@ TEST(TruthObstructed, AWindowAndItsShutterAddUp) {
   EXPECT_NEAR(plateToPlate(builder.build(), 1, 1e-10), 0.199824895698387 - 0.0995062945990, 1e-10);
 }
 
-TEST(TruthObstructed, AStripBetweenLooksIsFound) {
-  // A thin stick and so many specks that their critical lines are not all cut along: from the large
-  // end most cells look clear from every point of a rule. Both ends must tell the same, within
-  // their figures.
+TEST(TruthObstructed, AStripBetweenSamplePointsIsFound) {
+  // A thin stick and so many specks that not all of their critical lines are cut along: from the
+  // large end most cells look clear from every point of a rule. Both ends must agree within their
+  // figures.
   const auto sheet = [](const Corners& corners) {
     return Sheet(Loop{std::span<const Vec3>(corners)});
   };

@@ -23,7 +23,7 @@ struct SampledScore {
 SampledScore score(const PatchMesh& mesh, const FormFactors& f, std::size_t rows,
                    double tolerance = 1e-3) {
   truth::TruthOptions options;
-  options.accuracy = std::min(1e-5, 1e-2 * tolerance);  // a hundredth of what is judged
+  options.accuracy = std::min(1e-5, 1e-2 * tolerance);  // a hundredth of the judged error
   const truth::GroundTruth truth(mesh, options);
   SampledScore s;
   double off = 0;
@@ -82,7 +82,7 @@ const std::vector<Judged>& judged() {
   return all;
 }
 
-TEST(ExactAgainstTruth, RelativeErrorAtTheDefaultTolerance) {
+TEST(ExactAgainstTruth, TheDefaultToleranceBoundsTheRelativeError) {
   for (const Judged& j : judged()) {
     RecordProperty("relL2 of " + j.name, std::to_string(j.score.rel_l2));
     EXPECT_LE(j.score.rel_l2, 5e-4) << j.name;

@@ -243,8 +243,8 @@ std::vector<std::size_t> everyNth(const PatchMesh& mesh, std::size_t rows) {
 // Student's t with 31 degrees of freedom exceeds 8.5 in size with a probability of 1.4e-9, so that
 // one of a thousand comparisons does with 1.4e-6. The mean square of K values of t is
 // 31/29 = 1.069 with a variance of 2.54 / K: 1.6 is 6 standard deviations up for K = 320, and more
-// for more; the form factors of a row hang together a little (their sum is 1), which lowers it.
-// Seeds are fixed: what passes once passes always.
+// for more; the form factors of a row correlate a little (their sum is 1), which lowers it. Seeds
+// are fixed: a test that passes once passes always.
 constexpr double kLargest = 8.5;
 constexpr double kMeanSquare = 1.6;
 

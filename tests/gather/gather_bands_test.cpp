@@ -1,4 +1,4 @@
-// Any number of bands at once: each is gathered as it would be alone.
+// Any number of bands at once: each is gathered as if alone.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ std::vector<Value> bandOf(const std::vector<Value>& values, int bands, int band)
   return out;
 }
 
-/// Every patch its own reflectance in each band; what emits in the scene does so in each.
+/// Every patch its own reflectance in each band; the scene's emitters emit in each.
 PatchMaterials spectrum(const Room& room, int bands) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -62,7 +62,7 @@ bool hasQuadsAndTrianglesOnly(const PatchMesh& mesh) {
   return true;
 }
 
-TEST(GatherBands, EachAloneHasTheBitsItHasAmongOthers) {
+TEST(GatherBands, EachHasTheSameBitsAloneAndAmongOthers) {
   const Room room = test::loadRoom("cornell-box", 150);
   ASSERT_TRUE(hasQuadsAndTrianglesOnly(room.mesh));
   Progress quiet;
@@ -94,9 +94,9 @@ TEST(GatherBands, EachAloneHasTheBitsItHasAmongOthers) {
 }
 
 TEST(GatherBands, PatchesOfManyCornersDifferByRoundingAlone) {
-  // Such a patch is weighed whole where all bands are constant on it, else facet by facet: doubles
-  // round otherwise, by 1e-16, and now and then a float of the sum falls to the other side: 6e-8 of
-  // it, each pass.
+  // Such a patch is weighed whole if all bands are constant on it, else facet by facet: doubles
+  // round differently, by 1e-16, and now and then a float of the sum falls to the other side: 6e-8
+  // of it, each pass.
   const Room room = test::loadRoom("two-rooms", 30);
   ASSERT_FALSE(hasQuadsAndTrianglesOnly(room.mesh));
   Progress quiet;
@@ -134,7 +134,7 @@ TEST(GatherBands, EveryBandIsAFurnaceOfItsOwn) {
   }
 }
 
-TEST(GatherBands, WhatDoesNotFitIsNamed) {
+TEST(GatherBands, MaterialsThatDoNotFitAreNamed) {
   const Room room = test::loadRoom("furnace-cube", 6);
   Progress quiet;
   const auto refusal = [&](const PatchMaterials& materials) {

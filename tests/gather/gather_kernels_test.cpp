@@ -76,7 +76,7 @@ TEST(InterpolationKernels, EveryInstructionSetGivesTheSameBits) {
   });
 }
 
-TEST(InterpolationKernels, ABandAloneHasTheBitsItHasAmongOthers) {
+TEST(InterpolationKernels, ABandHasTheSameBitsAloneAndAmongOthers) {
   forEveryTarget([&](const InterpolationKernels& kernels) {
     std::mt19937_64 random(7);
     const std::vector<double> weights = runningSums(50, random);

@@ -62,8 +62,8 @@ double worst(const std::vector<float>& a, const std::vector<double>& b) {
 }
 
 TEST(GatherAtPatches, EveryPassIsAJacobiIterate) {
-  // The same eyes, turns and pixels, so what is left is the rounding of radiosities to 32 bits,
-  // 6e-8 of each a pass, which rho < 0.9 keeps below 10 times that: 1e-6 of the largest emission.
+  // The same eyes, turns and pixels differ only by the rounding of radiosities to 32 bits, 6e-8 of
+  // each a pass, which rho < 0.9 keeps below 10 times that: 1e-6 of the largest emission.
   for (const char* scene : {"cornell-box-closed", "cornell-box", "two-rooms", "blocked-plates"}) {
     const Room room = test::loadRoom(scene, 250);
     const FormFactors factors = matrixOf(room, 64);
@@ -78,7 +78,7 @@ TEST(GatherAtPatches, EveryPassIsAJacobiIterate) {
   }
 }
 
-TEST(GatherAtPatches, TheTransposeWouldBeFound) {
+TEST(GatherAtPatches, DiffersFromTheTransposedMatrix) {
   // Gathering with F_ji is invisible while all areas are equal; here they are not, and the first
   // pass already differs by far more than the 1e-6 the test above allows.
   const Room room = test::loadRoom("cornell-box-closed", 250);
@@ -98,14 +98,14 @@ TEST(GatherAtPatches, EnergyOfEveryPassIsAccountedFor) {
       EXPECT_NEAR(e.emitted[b],
                   e.absorbed[b] + e.to_sky[b] + e.on_backs[b] + pass.in_flight[b] + e.imbalance[b],
                   1e-12 * e.emitted[b]);
-      // What one-point rows lack of reciprocity; the matrix of these hemicubes has as much.
+      // One-point rows are not reciprocal; the matrix of these hemicubes is as far off.
       EXPECT_LT(std::abs(e.imbalance[b]), 0.05 * e.emitted[b]);
     }
     EXPECT_GT(pass.in_flight[0], 0);
     EXPECT_LT(pass.in_flight[0], before);  // each bounce loses some
     before = pass.in_flight[0];
   }
-  // After the first pass what flies on is what the lamp's light was reflected to: B_1 - E.
+  // After the first pass the reflected light of the lamp is in flight: B_1 - E.
   const Gathered once = test::gathered(room, atPatches(1));
   double reflected = 0;
   for (std::size_t i = 0; i < room.mesh.size(); ++i) {
@@ -136,7 +136,7 @@ TEST(GatherAtPatches, BacksAreAccountedForBySurface) {
   EXPECT_EQ(from_vertices.backs_by_surface[0], 0);
   // Points on a grid of six for the area: some per cent.
   EXPECT_NEAR(from_vertices.backs_by_surface[1], 5.0 / 6 * 0.2, 1e-2);
-  // What is told by surface is what was told by eye.
+  // The shares by surface add up to those by eye.
   double sum = 0;
   double area = 0;
   for (std::size_t k = 0; k < from_vertices.area.size(); ++k) {
@@ -146,7 +146,7 @@ TEST(GatherAtPatches, BacksAreAccountedForBySurface) {
   EXPECT_NEAR(from_vertices.backs_by_surface[1], sum / area, 1e-7);  // backs by eye are floats
 }
 
-TEST(GatherAtPatches, TheBoundHoldsAndIsNotIdle) {
+TEST(GatherAtPatches, TheBoundIsWithinAHundredTimesTheError) {
   const Room room = test::loadRoom("cornell-box-closed", 250);
   const Gathered limit = test::gathered(room, atPatches(120));
   for (const int passes : {1, 3, 8, 20}) {
@@ -196,7 +196,7 @@ TEST(GatherAtPatches, NoBoundIsClaimedInAWhiteRoom) {
   }
 }
 
-TEST(GatherAtPatches, DarkScenesAndBadInputSaySo) {
+TEST(GatherAtPatches, DarkScenesAreReportedAndBadInputIsRefused) {
   Room room = test::loadRoom("furnace-cube", 96);
   Progress quiet;
   Room dark = room;

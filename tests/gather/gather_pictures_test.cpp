@@ -1,4 +1,4 @@
-// What was gathered at vertices, as pictures and lit meshes: values at corners, not means over
+// Light gathered at vertices, as pictures and lit meshes: values at corners, not means over
 // patches.
 #include <gtest/gtest.h>
 
@@ -54,7 +54,7 @@ PatchMesh sheet() {
 }
 Camera slanted() { return parseCamera("eye=0.2,-1.2,2;target=0,0.1,0;up=0,1,0;fov=40"); }
 
-/// Where the ray through a pixel's middle meets z = 0.
+/// The point of z = 0 seen through a pixel's middle.
 Vec3 seenAt(int x, int y, const RenderOptions& options) {
   const Camera camera = slanted();
   const Vec3 ahead = glm::normalize(camera.target - camera.eye);
@@ -67,7 +67,7 @@ Vec3 seenAt(int x, int y, const RenderOptions& options) {
   return camera.eye - ray * (camera.eye.z / ray.z);
 }
 
-TEST(PicturesFromCorners, ShowALinearFieldAsItIs) {
+TEST(PicturesFromCorners, ShowALinearFieldExactly) {
   const PatchMesh mesh = sheet();
   Progress quiet;
   const RenderOptions options = small(1);
@@ -84,7 +84,7 @@ TEST(PicturesFromCorners, ShowALinearFieldAsItIs) {
   }
 }
 
-TEST(PicturesFromCorners, AreTheUsualOnesWhereCornersAreTheUsualMeans) {
+TEST(PicturesFromCorners, EqualUsualPicturesForTheUsualCornerMeans) {
   const test::Room room = test::loadRoom("cornell-box", 80);
   const std::vector<double> values = atCentroids(room.mesh);
   const std::vector<double> corners = cornerValues(room.mesh, values, 3, 30);

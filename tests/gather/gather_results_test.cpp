@@ -31,7 +31,7 @@ Results sampleOf(GatherAt at) {
   return results;
 }
 
-TEST_F(GatherResults, ComeBackToTheBit) {
+TEST_F(GatherResults, AreReadBackToTheBit) {
   Progress quiet;
   for (const GatherAt at : {GatherAt::patches, GatherAt::vertices}) {
     const Results out = sampleOf(at);
@@ -68,7 +68,7 @@ TEST_F(GatherResults, ComeBackToTheBit) {
   }
 }
 
-TEST_F(GatherResults, OfAnotherMeshAreRefused) {
+TEST_F(GatherResults, AreRefusedIfTheyDoNotFitTheMesh) {
   Progress quiet;
   for (const GatherAt at : {GatherAt::patches, GatherAt::vertices}) {
     Results out = sampleOf(at);

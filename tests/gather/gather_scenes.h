@@ -1,4 +1,4 @@
-// Meshed scenes with materials, for tests of what gathers light in them.
+// Meshed scenes with materials, for tests of gathered light.
 #pragma once
 
 #include <string>

@@ -85,9 +85,9 @@ TEST(GatherTruth, ConvergesToTheExactSolutionAsPatchesShrink) {
 
 TEST(GatherTruth, PixelsConvergeToFirstOrderAndBetter) {
   // One bounce off a shining floor, all eyes of a cube, each turned at random, against 1024 pixels.
-  // What aliases is the floor's outline: n pixels of it err by about n^(-3/4) in area, so order 3/2
-  // where it is seen whole, less where it runs along the horizon. Measured rms: 1.6e-3, 7.3e-4,
-  // 3.3e-4 at 32, 64, 128 pixels.
+  // The floor's outline aliases: n pixels of it err by about n^(-3/4) in area, so order 3/2 if it
+  // is seen whole, less if it runs along the horizon. Measured rms: 1.6e-3, 7.3e-4, 3.3e-4 at 32,
+  // 64, 128 pixels.
   const Room room = litCube(96);
   Progress quiet;
   GatherOptions options;
@@ -111,7 +111,7 @@ TEST(GatherTruth, PixelsConvergeToFirstOrderAndBetter) {
   }
 }
 
-TEST(GatherTruth, SeesThePointValueAndNotAnAreas) {
+TEST(GatherTruth, SeesThePointValueAndNotTheAreaValue) {
   // Unit squares at gap 1, the lower one looking up: its middle sees the upper one with 0.239456
   // (the point value), 19.8% above the area value 0.199825. Counting pixels would give 1/12: a
   // quarter of the top face's pixels, of three faces' worth in all.
@@ -129,18 +129,19 @@ TEST(GatherTruth, SeesThePointValueAndNotAnAreas) {
   const Gathered gathered = gather(room.mesh, room.materials, options, quiet);
   EXPECT_NEAR(gathered.irradiance[0], 0.239456, 3e-4);  // 512 pixels of the outline, a random turn
   EXPECT_GT(gathered.irradiance[0], 2.5 / 12);
-  // An open scene: what is not seen went to the sky, and is not put back by making rows sum to 1.
+  // An open scene: the rest went to the sky, and is not put back by making rows sum to 1.
   EXPECT_NEAR(gathered.sky[0], 1 - gathered.irradiance[0], 1e-6);
-  // In every account: half of what falls is absorbed, the rest of what leaves goes to the sky.
+  // In every account: half of the incident light is absorbed, the rest of the light goes to the
+  // sky.
   const GatherPass& pass = gathered.summary.passes.front();
   EXPECT_NEAR(pass.energy.to_sky[0], 2 * (1 - 0.239456), 2e-3);
   EXPECT_NEAR(pass.energy.absorbed[0], 2 * 0.5 * 0.239456, 1e-3);
 }
 
-TEST(ErrorsOthersMake, WeightsThatAreNoFormFactors) {
-  // Summed over all pixels each of these comes out at 1 once it is normalised; the top face alone
-  // tells them apart. It is worth its configuration factor from the middle of a facing square of
-  // side 2 at distance 1: 0.554139 (Howell B-3, four corners of side 1 each 0.138531605994893).
+TEST(ErrorsOthersMake, PixelWeightsAreFormFactors) {
+  // Normalised, each of these sums to 1 over all pixels; the top face alone tells them apart. It is
+  // worth its configuration factor from the middle of a facing square of side 2 at distance 1:
+  // 0.554139 (Howell B-3, four corners of side 1 each 0.138531605994893).
   constexpr double kTop = 4 * 0.138531605994893;
   constexpr int kResolution = 128;
   const DeltaFormFactors weights(kResolution);
@@ -171,7 +172,7 @@ TEST(ErrorsOthersMake, WeightsThatAreNoFormFactors) {
   EXPECT_GT(std::abs(corners - kTop), 1e-6) << "corners err to first order at the rim";
 }
 
-TEST(ErrorsOthersMake, LengthsInTheScenesUnit) {
+TEST(ErrorsOthersMake, TheUnitOfLengthChangesNoBit) {
   // A near plane or an epsilon in scene units makes light depend on the unit. Millimetres to
   // light-years, by powers of two: the same bits.
   Room room = litCube(24);
@@ -186,7 +187,7 @@ TEST(ErrorsOthersMake, LengthsInTheScenesUnit) {
   }
 }
 
-TEST(ErrorsOthersMake, AFixedNumberOfSweepsIsNotTakenForTheAnswer) {
+TEST(ErrorsOthersMake, AFixedNumberOfPassesIsNotCalledConverged) {
   // Bright walls: after ten passes B changes by 5% a pass and is still a third short. The bound
   // says so, and the status is not "converged".
   Room room = litCube(24);

@@ -1,4 +1,4 @@
-// The gather method at vertices: eyes at creases, interpolation of what is seen, accounts.
+// The gather method at vertices: eyes at creases, interpolation of seen light, accounts.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -45,7 +45,7 @@ TEST(GatherAtVertices, EveryClosedSceneIsAFurnaceAtEveryVertex) {
   }
 }
 
-TEST(GatherAtVertices, AreasAddUpAndEnergyIsAccountedForWithThem) {
+TEST(GatherAtVertices, AreasAddUpAndAccountForAllEnergy) {
   for (const char* scene : {"cornell-box", "curved", "two-rooms"}) {
     const Room room = test::loadRoom(scene, 300);
     const Gathered gathered = test::gathered(room, atVertices(3, 32));
@@ -126,7 +126,7 @@ TEST(GatherAtVertices, NoLightLeaksUnderASheet) {
   EXPECT_EQ(dark, room.mesh.size() / 2);
 }
 
-TEST(GatherAtVertices, LightGoesThroughADoorwayAndLosesMostOfItself) {
+TEST(GatherAtVertices, ADoorwayPassesLittleLight) {
   const Room room = test::loadRoom("two-rooms", 600);
   const Gathered gathered = test::gathered(room, atVertices(30));
   const std::vector<double> means = patchRadiosity(room.mesh, gathered);
@@ -142,8 +142,8 @@ TEST(GatherAtVertices, LightGoesThroughADoorwayAndLosesMostOfItself) {
   };
   EXPECT_GT(meanOf("dark_floor/wood"), 0.0);
   EXPECT_LT(meanOf("dark_floor/wood"), 0.2 * meanOf("lit_floor/wood"));
-  // The same light as by the matrix, which sees from patch centres: coarse patches differ by some
-  // per cent, as in "points against areas".
+  // The same light as gathered at patch centres, the matrix's eyes: coarse patches differ by some
+  // per cent.
   Progress quiet;
   GatherOptions options = atVertices(30);
   options.at = GatherAt::patches;
@@ -184,8 +184,8 @@ TEST(GatherAtVertices, EyesStandOnTheirOwnSideOfACrease) {
     moved += p != vertex;
     ASSERT_LE(glm::distance(p, vertex), 0.1 * 0.5 + 1e-12);
   }
-  // The vertices that are not on an edge: one a wall and block face of 2 x 2, and on the floor
-  // those of a 6 x 6 grid without the hole's 2 x 2 that have patches all round.
+  // The vertices off all edges: one a wall and block face of 2 x 2, and on the floor those of a
+  // 6 x 6 grid without the hole's 2 x 2 that have patches all round.
   EXPECT_EQ(groups.size() - moved, 5u + 5u + (25u - 9u));
 }
 
@@ -216,7 +216,7 @@ double irradianceOf(const PatchMesh& mesh, const Vec3& eye, int resolution,
   return irradiance[0];
 }
 
-TEST(Interpolation, LinearFieldsAreSeenAsTheyAreHoweverTheyAreCut) {
+TEST(Interpolation, LinearFieldsLookTheSameHoweverTheyAreCut) {
   // A ceiling at height 1 with B = 2 + x - 3y, integrated over the square against the kernel
   // 1 / (pi r^4) by 400 x 400 midpoints (error 1e-6); the hemicube's own pixels err by 2e-4 here.
   const auto field = [](const Vec3& p) { return 2 + p.x - 3 * p.y; };

@@ -1,4 +1,4 @@
-"""--eye: who draws hemicubes, on the command line."""
+"""--eye on the command line: devices that draw hemicubes."""
 
 import sys
 import unittest
@@ -24,7 +24,7 @@ class EyeTest(CliTest):
         self.assertIn("excludes", self.run_program("info", "box.obj", "--devices", code=2).err)
         self.assertIn("is missing", self.run_program("info", code=2).err)
 
-    def test_form_factors_by_either_eye_are_stages_of_their_own(self):
+    def test_another_eye_recomputes_form_factors(self):
         self.run_program("factors", "box.obj", *SMALL, "-o", "f.h5")
         stage = self.report("factors", "f.h5", "--eye", "gl")["stages"]["form_factors"]
         self.assertEqual(stage["action"], "recomputed")
@@ -35,9 +35,9 @@ class EyeTest(CliTest):
         stage = self.report("factors", "f.h5", "--eye", "cpu")["stages"]["form_factors"]
         self.assertEqual(stage["action"], "recomputed")
 
-    def test_gathered_light_is_the_processors(self):
-        # Few of the 3,072 pixels of an eye lie at an edge; what differs of them, a weight of 1e-3 or
-        # less, shows another surface, of about the same brightness but for the lamp.
+    def test_gathered_light_equals_the_processors(self):
+        # Few of the 3,072 pixels of an eye lie at an edge; those that differ, of a weight of 1e-3 or
+        # less, show another surface, of about the same brightness but for the lamp.
         for at in ("patches", "vertices"):
             light = {}
             for eye in ("cpu", "gl"):

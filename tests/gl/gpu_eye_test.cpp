@@ -50,7 +50,7 @@ class BothEyes {
         cpu_(rows_.makeHemicube()),
         gpu_(openGpuEye(EyeChoice::gl, rows_.scene(), mesh, rows_.weights())) {}
 
-  /// What differs, all hemicubes together.
+  /// Differences of all hemicubes together.
   struct Difference {
     std::size_t pixels = 0;
     std::size_t polygon = 0;   ///< pixels that show another polygon
@@ -140,7 +140,7 @@ void expectSame(const BothEyes::Difference& difference) {
   EXPECT_LE(difference.largest_error, 1e-13);
 }
 
-TEST(GpuEye, SeesWhatTheProcessorSeesInAClosedRoom) {
+TEST(GpuEye, ShowsTheProcessorsPixelsInAClosedRoom) {
   // The vertices of the block lie in the middle of no edge: no pixel is lost between polygons.
   const PatchMesh mesh = test::roomWithBlock(3).build();
   BothEyes both(mesh, 64);
@@ -149,7 +149,7 @@ TEST(GpuEye, SeesWhatTheProcessorSeesInAClosedRoom) {
   EXPECT_EQ(difference.largest_sky, 0);
 }
 
-TEST(GpuEye, SeesWhatTheProcessorSeesInScenesOfFiles) {
+TEST(GpuEye, ShowsTheProcessorsPixelsInScenesOfFiles) {
   // Faces in one plane are put together: vertices of others lie on their edges. Meshes have cells
   // that patches share.
   for (const char* name :
@@ -167,7 +167,7 @@ TEST(GpuEye, SeesWhatTheProcessorSeesInScenesOfFiles) {
 TEST(GpuEye, CutsATriangleOnceAtAVertexBesideItsCorner) {
   // Beside an obtuse corner, a bit more than coincidence away, lies a corner of another triangle.
   // The cut from it passes by the obtuse one at less than coincidence: there it must not be cut
-  // again, or the triangle of before would come out.
+  // again, or the old triangle would come out.
   const double coincidence = 2e-7;  // MeshOptions::weld of the diagonal
   MeshBuilder builder;
   builder.polygon("triangle", {{{0, 0, 0}, {1, 0, 0}, {-0.5, std::sqrt(0.75), 0}}});
@@ -180,7 +180,7 @@ TEST(GpuEye, CutsATriangleOnceAtAVertexBesideItsCorner) {
   EXPECT_EQ(scene.triangles.size(), 3U);  // the upright one, and two parts of the other
 }
 
-TEST(GpuEye, SeesWhatTheProcessorSeesInAModelOfOthers) {
+TEST(GpuEye, ShowsTheProcessorsPixelsInAModelOfOthers) {
   // An engine of many small curved parts, of Debian's package of models for Assimp's tests: patches
   // share unknowns, most polygons are a few pixels wide.
   const PatchMesh mesh =
@@ -189,7 +189,7 @@ TEST(GpuEye, SeesWhatTheProcessorSeesInAModelOfOthers) {
   expectSame(both.compareAtPatches(mesh, 3));
 }
 
-TEST(GpuEye, SeesWhatTheProcessorSeesInAnOpenScene) {
+TEST(GpuEye, ShowsTheProcessorsPixelsInAnOpenScene) {
   const PatchMesh mesh = meshOf("cornell-box.obj", 100);
   BothEyes both(mesh, 34);  // the last group of a row of pixels is not full
   const BothEyes::Difference difference = both.compareAtPatches(mesh, 10);
@@ -227,8 +227,8 @@ TEST(GpuEye, DrawsPolygonsSmallerThanAPixel) {
 }
 
 TEST(GpuEye, DrawsPolygonsThroughTheEyesPlane) {
-  // Walls that the eye's plane cuts, one that passes through the eye itself, seen edge-on, and one
-  // in the eye's own plane.
+  // Walls cut by the eye's plane, one through the eye itself, seen edge-on, and one in the eye's
+  // own plane.
   MeshBuilder builder;
   builder.grid("floor", {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
   builder.grid("beside", {2, -1, 0}, {1, 0, 0}, {0, 1, 0});
@@ -261,8 +261,8 @@ GpuPace batchesOf(std::size_t views, std::size_t ring, int resolution) {
   return {ring, views * 3 * std::size_t(resolution) * std::size_t(resolution)};
 }
 
-TEST(GpuEye, MakesRoomWhereEveryTriangleIsOnManyFaces) {
-  // 300 triangles, far larger than what they lie in: clipping makes more than six of each, and
+TEST(GpuEye, MakesRoomForTrianglesOnManyFaces) {
+  // 300 triangles, far larger than the space they lie in: clipping makes more than six of each, and
   // there is room for fewer than three at first. They cross each other everywhere; depths are
   // the processor's, so that no more than a pixel, which weighs 0.005, changes hands in a row.
   const PatchMesh mesh = platesAboveAFloor(150, 8, 3);
@@ -378,10 +378,10 @@ std::vector<std::vector<std::uint64_t>> rowsSeen(GpuEye& gpu, const RowBuilder& 
   return all;
 }
 
-TEST(GpuEye, RowsHaveTheSameBitsWhereverTheyAreDrawn) {
+TEST(GpuEye, RowsHaveTheSameBitsInAnyBatches) {
   // A few at once, three batches under way, or all at once, across a target of thousands of pixels.
-  // Plates cross each other and lie in each other's planes, where the smallest difference of a
-  // depth turns pixels over; in the box that of an edge does.
+  // Plates cross each other and lie in each other's planes, so that the smallest difference of a
+  // depth changes pixels; in the box that of an edge does.
   constexpr int kResolution = 32;
   constexpr std::size_t kEyes = 600;
   for (const PatchMesh& mesh : {meshOf("cornell-box.obj", 600), platesAboveAFloor(300, 0.5, 7)}) {
@@ -395,8 +395,8 @@ TEST(GpuEye, RowsHaveTheSameBitsWhereverTheyAreDrawn) {
   }
 }
 
-/// Irradiance at all patches, in passes: each emits 1, and reflects half of what the pass before
-/// has brought it.
+/// Irradiance at all patches, in passes: each emits 1, and reflects half of its light from the pass
+/// before.
 std::vector<double> lightGathered(GpuEye& gpu, const RowBuilder& rows, std::size_t patches,
                                   int passes) {
   GpuField field;
@@ -446,7 +446,7 @@ TEST(GpuEye, RefusesASceneThatTheDeviceCannotHold) {
   EXPECT_EQ(problem, "the scene is too large for the buffers of the device");
 }
 
-TEST(GpuEye, GivesUpForGoodWhereLightFindsNoRoom) {
+TEST(GpuEye, GivesUpForGoodIfLightDoesNotFit) {
   // Sums of 128 pixels take 1,536 numbers a band and hemicube: 6 GiB.
   const PatchMesh mesh = test::roomWithBlock(1).build();
   const RowBuilder rows(mesh, ofResolution(256));
@@ -468,7 +468,7 @@ TEST(GpuEye, GivesUpForGoodWhereLightFindsNoRoom) {
   EXPECT_THROW(gpu->pictures(describe), RunError);
 }
 
-TEST(GpuDevices, SoftwareIsKnownByItsName) {
+TEST(GpuDevices, SoftwareRenderersAreRecognisedByName) {
   for (const char* name :
        {"llvmpipe (LLVM 15.0.6, 256 bits)", "softpipe", "SWR (LLVM 12.0.0)",
         "zink Vulkan 1.3(llvmpipe (LLVM 17.0.6, 256 bits) (MESA_LLVMPIPE))", "zink (Lavapipe)"}) {
@@ -481,7 +481,7 @@ TEST(GpuDevices, SoftwareIsKnownByItsName) {
   }
 }
 
-TEST(GpuEye, FormFactorsAreTheProcessorsToWithinAFewPixels) {
+TEST(GpuEye, FormFactorsEqualTheProcessorsWithinAFewPixels) {
   const PatchMesh mesh = test::roomWithBlock(2).build();
   Progress silent;
   FormFactorOptions options = ofResolution(64);

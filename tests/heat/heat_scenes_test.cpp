@@ -108,7 +108,7 @@ Solved solved(const Scene& scene, const HeatConditions& conditions, const MeshOp
 // & Siegel): radii 1 and 2, 1000 K at .8 inside, 500 K at .5 outside. Polyhedra with vertices on
 // the spheres miss their areas by a term in the square of the edge, so that errors fall to a
 // quarter from one to the next, and a parabola through the last two ends near Q.
-TEST(HeatScenes, ConcentricSpheresComeToTheirClosedForm) {
+TEST(HeatScenes, ConcentricSpheresConvergeToTheirClosedForm) {
   const double truth = 445350.1654603;
   std::vector<double> error;
   for (const int times : {1, 2}) {
@@ -130,7 +130,7 @@ TEST(HeatScenes, ConcentricSpheresComeToTheirClosedForm) {
   }
   EXPECT_LT(std::abs(error[1]), .06);
   EXPECT_NEAR(error[0] / error[1], 4, .5);
-  // What the parabola leaves goes with the fourth power of the edge: .072^2.
+  // The parabola's error goes with the fourth power of the edge: .072^2.
   EXPECT_LT(std::abs((4 * error[1] - error[0]) / 3), .005);
 }
 
@@ -185,7 +185,7 @@ TEST(HeatScenes, SharedUnknownsGiveTheFiguresOfSurfaces) {
   EXPECT_EQ(shared.heat.temperature.size(), shared.mesh.size());
   EXPECT_NEAR(shared.surfaces[3].radiated, 500, 1e-6);
   for (std::size_t i = 1; i < 4; ++i) {
-    // Coarse unknowns and rays to 1e-2, of the power that goes round.
+    // Coarse unknowns and rays to 1e-2, relative to the exchanged power.
     EXPECT_NEAR(shared.surfaces[i].radiated, fine.surfaces[i].radiated, .05 * 500);
     EXPECT_NEAR(shared.surfaces[i].temperature / fine.surfaces[i].temperature, 1, .02);
   }
@@ -223,7 +223,7 @@ TEST(HeatConditionsByName, SettingsFindSurfacesAndObjects) {
   EXPECT_DOUBLE_EQ(lid.emissivity[0].at(100), .1);
 }
 
-TEST(HeatConditionsByName, NamesGoBeforePatternsAndSettingsBeforeTheTable) {
+TEST(HeatConditionsByName, NamesOverridePatternsAndSettingsOverrideTheTable) {
   const auto temperatures = [](const std::string& table, const std::vector<std::string>& settings) {
     const HeatConditions c = readHeatConditions(
         namedScene(),
@@ -248,7 +248,7 @@ TEST(HeatConditionsByName, NamesGoBeforePatternsAndSettingsBeforeTheTable) {
             std::string::npos);
 }
 
-TEST(HeatConditionsByName, RowsGoByNameOrNumber) {
+TEST(HeatConditionsByName, RowsAreFoundByNameOrNumber) {
   const std::vector<std::string> names = {"wall", "", "wall", "lid"};
   const std::vector<double> emissivity = {.1, .2, .3, .4};
   const auto read = [&](const std::vector<std::string>& settings) {
@@ -273,7 +273,7 @@ TEST(HeatConditionsByName, RowsGoByNameOrNumber) {
   says({"*.flux=0", "wall.power=10"}, "whose emissivities in the file differ");
 }
 
-TEST(HeatConditionsByName, WhatIsWrongIsNamed) {
+TEST(HeatConditionsByName, WrongConditionsAreNamed) {
   const auto says = [](const std::vector<std::string>& settings, const std::string& words) {
     const std::string message = test::errorOf([&] { given(settings); });
     EXPECT_NE(message.find(words), std::string::npos) << message;

@@ -49,7 +49,7 @@ TEST(Heat, SigmaFollowsFromTheExactConstantsOfTheSi) {
 
 // q = sigma (T1^4 - T2^4) / (1/eps1 + 1/eps2 - 1), Howell, Menguc & Siegel, "Thermal Radiation Heat
 // Transfer", chapter 5. Differences of numbers of 5e4 in 16 digits.
-TEST(Heat, ParallelPlates) {
+TEST(Heat, ParallelPlatesHaveTheirClosedForm) {
   const HeatSolution s =
       solved(facingPlates(), {test::at("hot", .8, 1000), test::at("cold", .5, 500)});
   EXPECT_EQ(s.summary.status, HeatStatus::converged);
@@ -62,7 +62,7 @@ TEST(Heat, ParallelPlates) {
 
 // The flux that the plates above have, given for one of them, gives its temperature back; so does
 // the power, over the area of the plate.
-TEST(Heat, FluxAndPowerGiveTheTemperatureThatHasThem) {
+TEST(Heat, FluxAndPowerGiveTheirTemperature) {
   const HeatSolution s =
       solved(facingPlates(), {fluxed("hot", .8, 23626.56007993512), test::at("cold", .5, 500)});
   EXPECT_NEAR(s.temperature[0], 1000, 1e-10);
@@ -77,7 +77,7 @@ TEST(Heat, FluxAndPowerGiveTheTemperatureThatHasThem) {
 
 // Two walls at given temperatures, two adiabatic: published with its own sigma, to 8 digits. Rows
 // are divided by their sums.
-TEST(Heat, FourSurfacesTwoOfThemAdiabatic) {
+TEST(Heat, FourSurfacesMatchPublishedValues) {
   Matrix f(4, 4);
   f << 0, .123, .6928, .1841,      //
       .123, 0, .1841, .6928,       //
@@ -119,7 +119,7 @@ TEST(Heat, SphericalCavityHasItsEffectiveEmissivity) {
           solved(factors, std::vector<HeatCondition>(12, test::at("wall", emissivity, 700)));
       const double effective = emissivity / (emissivity + (1 - emissivity) * cap);
       for (const double j : s.radiosity) EXPECT_NEAR(j / sigmaT4(700), effective, 1e-13);
-      // What leaves is what the aperture, of that emissivity, would emit: a of the whole sphere
+      // The power that leaves is that of the aperture at that emissivity: a of the whole sphere
       // times (1 - a) of it, flat.
       double area = 0;
       for (const double a : factors.matrix.area()) area += a;
@@ -248,7 +248,7 @@ TEST(Heat, DirectAndIterativeSolutionsAgree) {
 }
 
 // q = eps sigma (T^4 - Tsky^4) + h (T - Tinf) of a plate that sees nothing but the sky.
-TEST(Heat, PlateToSkyAndAir) {
+TEST(Heat, APlateExchangesHeatWithSkyAndAir) {
   FormFactors plate = test::factorsFrom(Matrix::Zero(1, 1), {2.5});
   HeatOptions options;
   options.sky_temperature = 255;
@@ -277,7 +277,7 @@ TEST(Heat, SurfaceThatOnlyConvectsHasTheAirsTemperature) {
   EXPECT_NEAR(s.radiosity[0], s.irradiance[0], 1e-9);
 }
 
-TEST(Heat, MirrorThatIsAdiabaticHasNoTemperature) {
+TEST(Heat, AnAdiabaticMirrorHasNoTemperature) {
   const HeatSolution s =
       solved(facingPlates(), {test::condition("mirror", 0), test::at("cold", .5, 500)});
   EXPECT_TRUE(s.summary.usable());
@@ -340,8 +340,8 @@ TEST(Heat, BandsOfOneEmissivityAreGrey) {
 }
 
 // Between plates each band has its own q_k = (E_k1 - E_k2) / (1/eps_k1 + 1/eps_k2 - 1), with or
-// without an adiabatic sheet, whose temperature is where both sides' sums over bands agree.
-TEST(Heat, BandsBetweenPlatesAndTheSheetThatCouplesThem) {
+// without an adiabatic sheet, at whose temperature both sides' sums over bands agree.
+TEST(Heat, BandsExchangeBetweenPlatesAndThroughASheet) {
   HeatOptions options;
   options.bands.edges = {4};
   options.tolerance = 1e-12;
@@ -388,7 +388,7 @@ TEST(Heat, BandsBetweenPlatesAndTheSheetThatCouplesThem) {
   EXPECT_NEAR(s.net_flux[0] / exchange(0, 1200, 1, low), 1, 1e-9);
 }
 
-// eps(T) is read where the plate ends up: q = eps(T) sigma T^4 to a sky of 0 K.
+// eps(T) is read at the plate's final T: q = eps(T) sigma T^4 to a sky of 0 K.
 TEST(Heat, EmissivityFollowsItsTable) {
   HeatCondition c = fluxed("plate", 0, 0);
   c.emissivity = {{{300, 500, 900}, {.2, .3, .7}}};
@@ -433,7 +433,7 @@ TEST(Heat, ValuesBeyondAllBoundsAreNoSolution) {
   EXPECT_FALSE(none.summary.usable()) << none.summary.message;
 }
 
-TEST(Heat, RefusesWhatHasNoTemperature) {
+TEST(Heat, RefusesConditionsWithoutATemperature) {
   const FormFactors plates = facingPlates();
   const auto error = [&](const std::vector<HeatCondition>& conditions) {
     return test::errorOf([&] { solved(plates, conditions); });

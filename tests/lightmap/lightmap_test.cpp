@@ -22,7 +22,7 @@ namespace {
 using test::dataScene;
 using test::LitScene;
 
-/// Where it does not matter what the light is.
+/// For tests in which the light does not matter.
 constexpr ElementOptions kCoarse{.tolerance = 0.5, .most_vertices = 1000, .rays = 64};
 
 Lightmap mapOf(const LitScene& lit, const LightmapOptions& options) {
@@ -35,7 +35,7 @@ struct Sample {
   bool set = true;  ///< of all four texels
 };
 
-/// What a viewer sees: the four texels around a place of the map.
+/// A viewer's sample: the four texels around a place of the map.
 Sample bilinear(const Image& image, const Vec2& uv) {
   const double x = uv.x * image.width - 0.5;
   const double y = uv.y * image.height - 0.5;
@@ -70,8 +70,8 @@ Vec2 uvAt(const LightmapTriangle& t, const Vec3& w) {
   return w.x * t.texcoord[0] + w.y * t.texcoord[1] + w.z * t.texcoord[2];
 }
 
-/// The elements' irradiance where a patch of the surface and side holds the point, by a look at
-/// every patch; false where none does.
+/// The elements' irradiance on the patch of the surface and side that holds the point, by a look at
+/// every patch; false if none does.
 bool elementsAt(const LitScene& lit, const ElementLookup& lookup, Index surface, int side,
                 const Vec3& normal, const Vec3& point, Vec3& value) {
   constexpr double kOnIt = 1e-7;
@@ -174,7 +174,7 @@ TEST(Lightmap, IsConstantInAFurnace) {
   EXPECT_EQ(map.report.dark, 0u);
 }
 
-TEST(Lightmap, RadiosityIsWhatLeaves) {
+TEST(Lightmap, RadiosityIsEmissionPlusReflectedLight) {
   const LitScene lit(dataScene("furnace-cube.obj"), 60);
   const Lightmap arrives = mapOf(lit, {.size = 64});
   const Lightmap leaves = mapOf(lit, {.size = 64, .shows = LightmapShows::radiosity});
@@ -190,7 +190,7 @@ TEST(Lightmap, RadiosityIsWhatLeaves) {
 }
 
 /// Nothing emits: there is no direct light, and an open floor gets pi L of the sky.
-TEST(Lightmap, UnderTheSky) {
+TEST(Lightmap, AnOpenFloorShowsTheSky) {
   test::SceneBuilder builder;
   builder.level(builder.surface("floor", 0.5), 0, 0, 1, 1, 0);
   Scene scene = builder.scene();
@@ -231,7 +231,7 @@ double depthIn(const Triangle2& t, const Vec3& p) {
 }
 
 /// Bilinear sampling looks at texels whose centre is less than sqrt 2 from the place.
-TEST(Lightmap, ChartsShareNoTexelAndLieNowhereOverThemselves) {
+TEST(Lightmap, ChartsShareNoTexelAndDoNotOverlapThemselves) {
   test::SceneBuilder builder;
   builder.level(builder.surface("lamp", 0.5, 5.0), 0, 0, 4, 4, 3, false);
   // A screw of three turns: seen from above it lies over itself.
@@ -265,7 +265,7 @@ TEST(Lightmap, ChartsShareNoTexelAndLieNowhereOverThemselves) {
           EXPECT_EQ(map.image.rgba[4 * k + 3], 1) << x << " " << y;
           EXPECT_TRUE(owner[k] == kNone || owner[k] == t.chart) << x << " " << y;
           owner[k] = t.chart;
-          // Rounding, and what a chart may lie over itself by.
+          // Rounding, and a chart's allowed overlap with itself.
           if (depthIn(p, centre) > 1e-3) ++covered[k];
           EXPECT_LE(covered[k], 1) << x << " " << y;
         }
@@ -275,7 +275,7 @@ TEST(Lightmap, ChartsShareNoTexelAndLieNowhereOverThemselves) {
 }
 
 /// Light on either side of a sheet is its own; a side that sees nothing has no chart.
-TEST(Lightmap, BothSidesOfASheet) {
+TEST(Lightmap, SidesOfASheetHaveLightOfTheirOwn) {
   test::SceneBuilder builder;
   builder.level(builder.surface("lamp", 0.5, 5.0), 0, 0, 1, 1, 2, false);
   builder.level(builder.surface("sheet", 0.5, 0.0, true), 0, 0, 1, 1, 1);
@@ -310,7 +310,7 @@ TEST(Lightmap, SmoothFacesShareCharts) {
   EXPECT_EQ(mapOf(lit, {.size = 256, .crease = 1}).report.charts, 66u);
 }
 
-TEST(Lightmap, Errors) {
+TEST(Lightmap, WrongInputIsRefused) {
   EXPECT_NO_THROW(LightmapOptions().validate());
   LitScene lit(dataScene("curved.obj"), 60, kCoarse);
   EXPECT_EQ(test::errorOf([&] { mapOf(lit, {.size = 5000}); }),

@@ -36,7 +36,7 @@ struct GroupedSample {
         if (uniform(random) < 0.3) exchange[i][j] = exchange[j][i] = uniform(random);
       }
     }
-    // What a patch does not give to others is its own, as of a bent one: all rows sum to 1.
+    // A patch gives the rest to itself, as a bent one does: all rows sum to 1.
     for (std::size_t i = 0; i < kSamplePatches; ++i) {
       area[i] = 0.5 + std::accumulate(exchange[i].begin(), exchange[i].end(), 0.0);
       exchange[i][i] += 0.5;
@@ -132,7 +132,7 @@ TEST(Aggregation, KeepsClosureAndReciprocity) {
   EXPECT_LT(reciprocityResidual(rows), kRounding);
 }
 
-TEST(Aggregation, OfOnePatchAGroupChangesNothing) {
+TEST(Aggregation, GroupsOfOnePatchChangeNothing) {
   Progress progress;
   const GroupedSample sample(3);
   std::vector<Index> each(kSamplePatches);

@@ -97,7 +97,7 @@ struct Scene {
     }
     return pairs;
   }
-  /// What the rows lack, as exchange areas.
+  /// The rows' residuals, as exchange areas.
   Vector lacking() const {
     Vector r(n);
     for (std::size_t k = 0; k < n; ++k) {
@@ -168,7 +168,7 @@ TEST(LeastSquaresClosure, IsTheLeastChange) {
   }
 }
 
-TEST(LeastSquaresClosure, TouchesNothingThatIsKnown) {
+TEST(LeastSquaresClosure, LeavesKnownEntriesUnchanged) {
   const Scene scene(40, 0.3, 1.0 / 64, 3);
   for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
     ExchangeMatrix matrix = scene.matrix(precision);
@@ -192,7 +192,7 @@ TEST(LeastSquaresClosure, TouchesNothingThatIsKnown) {
         total += scene.area[i] * before.at(i, j) * before.at(i, j);
         sum += matrix.at(i, j);
       }
-      // The tolerance, 40 additions, and what values that add up to 1 are rounded by.
+      // The tolerance, 40 additions, and the rounding of values that add up to 1.
       const double rounding = precision == Precision::single_precision ? 0x1p-24 : 0;
       EXPECT_NEAR(sum, 1.0, 1.1e-9 + rounding);
     }
@@ -202,7 +202,7 @@ TEST(LeastSquaresClosure, TouchesNothingThatIsKnown) {
   }
 }
 
-TEST(Closure, IsReportedByASum) {
+TEST(Closure, ResidualsAreReportedFromRowSums) {
   const std::vector<double> sums{1.25, 0.5, 0.0, 1.0};  // the third row sees nothing
   const ClosureReport report = reportClosure(sums, std::vector<double>{1.0, 1.0, 1.0, 1.0});
   EXPECT_EQ(report.largest_residual_before, 0.5);
@@ -216,8 +216,8 @@ TEST(Closure, IsReportedByASum) {
 }
 
 // Five patches, ten pairs, errors as large as the values: all 1,024 ways to hold some at 0 are
-// tried, and the best one that is feasible is the answer.
-TEST(LeastSquaresClosure, HoldsAtZeroWhatWouldTurnNegative) {
+// tried, and the best feasible one is the answer.
+TEST(LeastSquaresClosure, HoldsEntriesAtZeroThatWouldTurnNegative) {
   std::size_t with_held = 0;
   for (unsigned seed = 0; seed < 100; ++seed) {
     const Scene scene(5, 1.0, 32.0, seed);
@@ -238,7 +238,7 @@ TEST(LeastSquaresClosure, HoldsAtZeroWhatWouldTurnNegative) {
       feasible = feasible && rows.cwiseAbs().maxCoeff() < 1e-10;
       if (feasible && (best.size() == 0 || change.norm() < best.norm())) best = change;
     }
-    ASSERT_GT(best.size(), 0);  // the truth is feasible, so that something is
+    ASSERT_GT(best.size(), 0);  // the truth is feasible at least
     ExchangeMatrix matrix = scene.matrix();
     const ClosureReport report =
         closed(matrix, scene.uncertain(), std::vector<double>(5, 1.0), 1e-12);
@@ -256,7 +256,7 @@ TEST(LeastSquaresClosure, HoldsAtZeroWhatWouldTurnNegative) {
   EXPECT_GT(with_held, 10u);  // else this tests nothing
 }
 
-TEST(LeastSquaresClosure, SaysWhatIsOutOfReach) {
+TEST(LeastSquaresClosure, ReportsRowsThatItCannotClose) {
   // Rows 0 and 1 exchange, rows 2 and 3 exchange; only the first pair is uncertain.
   auto matrix =
       ExchangeMatrix::symmetric({1.0, 1.0, 1.0, 1.0}, {0, 1, 2, 3}, Precision::double_precision);
@@ -278,7 +278,7 @@ TEST(LeastSquaresClosure, SaysWhatIsOutOfReach) {
   EXPECT_EQ(report.fixed_rows, 0u);
   EXPECT_NEAR(report.largest_residual, 0.1, 1e-9);
   EXPECT_NEAR(other.at(0, 1), 0.6, 1e-9);
-  // Empty rows are asked for nothing.
+  // Empty rows have nothing to close.
   auto sparse = ExchangeMatrix::symmetric({1.0, 1.0, 0.0}, {2, 0, 1}, Precision::single_precision);
   sparse.setUpperRow(1, std::vector<double>{0.0, 1.0});
   report = closed(sparse, UncertainEntries(3), std::vector<double>(3, 1.0));
@@ -314,9 +314,9 @@ TEST(LeastSquaresClosure, ThreadsAndScaleDoNotChangeABit) {
   }
 }
 
-// Two patches close together have little uncertain but each other: what the two lack can hardly go
+// Two patches close together have little uncertain but each other: their residual can hardly go
 // anywhere else, and an iteration alone takes 396 steps here.
-TEST(LeastSquaresClosure, TakesFewStepsWherePatchesSeeMostlyEachOther) {
+TEST(LeastSquaresClosure, TakesFewStepsIfPatchesSeeMostlyEachOther) {
   constexpr std::size_t kPatches = 300;
   Scene scene(kPatches, 0.2, 1.0 / 1024, 7);
   for (Eigen::Index k = 0; k < Eigen::Index(kPatches); k += 2) {
@@ -384,8 +384,8 @@ TEST(LeastSquaresClosure, ClosesNarrowGaps) {
   EXPECT_LE(report.largest_residual, 1.001e-12);  // and rounding
 }
 
-// A row that saw nothing but is seen: merging gave it entries, the target takes them away again.
-TEST(LeastSquaresClosure, EmptiesARowThatIsToSumToZero) {
+// A row that saw nothing but is seen: merging gave it entries, the target removes them.
+TEST(LeastSquaresClosure, EmptiesARowOfTargetZero) {
   auto matrix = ofRows({{0, 0.4, 0.2}, {0, 0.1}, {0}}, Precision::single_precision);
   const ClosureReport report = closed(matrix, allOf(matrix), {0.5, 0.5, 0.0});
   EXPECT_TRUE(report.reached);
@@ -394,7 +394,7 @@ TEST(LeastSquaresClosure, EmptiesARowThatIsToSumToZero) {
   EXPECT_NEAR(report.largest_move, 0.2, 3e-8);
 }
 
-// What a row sees beside the matrix is one more pair, with a patch that has no sum to keep.
+// A row's share beside the matrix is one more pair, with a patch that has no sum to keep.
 TEST(LeastSquaresClosure, SharesBesideTheMatrixMoveByTheirErrors) {
   constexpr std::size_t kPatches = 30;
   for (unsigned seed = 0; seed < 10; ++seed) {
@@ -428,8 +428,8 @@ TEST(LeastSquaresClosure, SharesBesideTheMatrixMoveByTheirErrors) {
   }
 }
 
-// A plate whose row sum was estimated 10% too large, and two small patches that see it and the sky,
-// known well: the sky of the plate has to give way, for the small rows have no room.
+// A plate with a row sum 10% too large, and two small patches that see it and the sky, known well:
+// the sky of the plate has to give way, for the small rows have no room.
 TEST(LeastSquaresClosure, ASmallPatchIsNotMadeToSeeMoreThanItsView) {
   const std::vector<double> area{100, 1, 1};
   auto matrix = ExchangeMatrix::symmetric(area, {0, 1, 2}, Precision::double_precision);
@@ -489,7 +489,7 @@ TEST(UncertainEntries, TakeAByteEach) {
   EXPECT_EQ(uncertain.entries(), 8 * later.size());
 }
 
-TEST(UncertainEntries, RefusesWhatIsNoError) {
+TEST(UncertainEntries, RefuseInvalidErrors) {
   UncertainEntries uncertain(4);
   const auto set = [&](std::size_t k, std::vector<Index> later, std::vector<double> errors) {
     uncertain.setRow(k, later, errors);

@@ -42,7 +42,7 @@ UncertainEntries uncertainOf(const ExchangeMatrix& matrix, std::shared_ptr<Scrat
 }
 
 std::shared_ptr<ScratchMemory> scratchIn(const std::string& folder) {
-  // Nothing may stay in memory: all is let go of at every look.
+  // Nothing may stay in memory: all is released at every look.
   return std::make_shared<ScratchMemory>(folder, 0);
 }
 
@@ -90,7 +90,7 @@ TEST(ScratchMemory, AMatrixOutlivesTheOneItIsMovedOverAndCopiesAreInMemory) {
   EXPECT_EQ(copy.rowSums(), sums);
 }
 
-TEST(ScratchMemory, LeavesNoFileAndNamesAFolderThatIsNotThere) {
+TEST(ScratchMemory, LeavesNoFileAndNamesAMissingFolder) {
   const std::string folder = testing::TempDir() + "/scratch_memory";
   std::filesystem::create_directory(folder);
   const ExchangeMatrix matrix = filled(scratchIn(folder));

@@ -76,7 +76,7 @@ RowMatrix times(const RowMatrix& f, const std::vector<double>& x, int bands) {
   return f * Eigen::Map<const RowMatrix>(x.data(), f.cols(), bands);
 }
 
-TEST(SymmetricForm, EveryEntryFromBothEnds) {
+TEST(SymmetricForm, EveryEntryIsReadFromBothEnds) {
   for (const Pattern pattern : kPatterns) {
     const Sample sample(150, pattern, 1, true);
     for (const Precision precision : test::kPrecisions) {
@@ -95,7 +95,7 @@ TEST(SymmetricForm, EveryEntryFromBothEnds) {
   }
 }
 
-TEST(SymmetricForm, RowsAndPanelsAreTheRowsInOrder) {
+TEST(SymmetricForm, RowsAndPanelsVisitEntriesInOrder) {
   for (const Pattern pattern : kPatterns) {
     const Sample sample(97, pattern, 2, true);
     const ExchangeMatrix matrix = sample.matrix(Precision::single_precision);
@@ -272,7 +272,7 @@ TEST(SymmetricForm, ScaleDoesNotChangeABit) {
 }
 
 // A sweep that changes x as it goes sees the changed values, in the order of storage.
-TEST(SymmetricForm, SweepGathersWhatUpdatesLeft) {
+TEST(SymmetricForm, SweepGathersUpdatedValues) {
   for (const Pattern pattern : kPatterns) {
     for (const int bands : {1, 3, 6}) {
       const std::size_t n = 130;
@@ -327,13 +327,13 @@ TEST(SymmetricForm, EstimateIsAnUpperBound) {
       const auto estimate = double(estimateSymmetricBytes(n, per_row, precision));
       EXPECT_LE(double(matrix.bytes()), estimate);
       const double row_form = double(estimateRowFormBytes(n, per_row, precision));
-      EXPECT_LE(estimate, 0.55 * row_form + double(n) * 200);  // what every row costs: a constant
+      EXPECT_LE(estimate, 0.55 * row_form + double(n) * 200);  // constant cost of a row
     }
   }
 }
 
 // Runs and gaps longer than 65,535 are stored in parts.
-TEST(SymmetricForm, LongRunsAndLongGaps) {
+TEST(SymmetricForm, LongRunsAndGapsAreReadBack) {
   const std::size_t n = 200001;
   std::vector<Index> order(n);
   std::iota(order.begin(), order.end(), Index(0));
@@ -357,7 +357,7 @@ TEST(SymmetricForm, LongRunsAndLongGaps) {
   EXPECT_EQ(sums[150002], 0.25);
 }
 
-TEST(SymmetricForm, UpperRowsComeBackAndAreReplaced) {
+TEST(SymmetricForm, UpperRowsAreReadBackAndReplaced) {
   const Sample sample(80, Pattern::runs, 16, true);
   ExchangeMatrix matrix = sample.matrix(Precision::single_precision);
   std::vector<double> row(80 - 7);
@@ -371,7 +371,7 @@ TEST(SymmetricForm, UpperRowsComeBackAndAreReplaced) {
   EXPECT_EQ(matrix.at(sample.order[7], sample.order[9]), 0.0);
 }
 
-TEST(SymmetricForm, RefusesWhatIsNoFormFactorMatrix) {
+TEST(SymmetricForm, RefusesImpossibleFormFactors) {
   const auto make = [](std::vector<Index> order) {
     return ExchangeMatrix::symmetric({1.0, 0.0, 1.0}, std::move(order),
                                      Precision::single_precision);

@@ -41,7 +41,7 @@ ExchangeMatrix toMatrix(const Dense& dense, std::vector<double> area, Precision 
   return matrix;
 }
 
-TEST(ExchangeMatrix, StoresEachRowTheSmallerWay) {
+TEST(ExchangeMatrix, StoresEachRowInTheSmallerForm) {
   const std::size_t n = 12;
   ExchangeMatrix matrix(std::vector<double>(n, 1.0), Precision::single_precision);
   const std::vector<Index> six{0, 2, 4, 6, 8, 10};
@@ -133,7 +133,7 @@ TEST(ExchangeMatrix, StorageAndThreadsDoNotChangeABit) {
   }
 }
 
-TEST(ExchangeMatrix, EstimateIsWhatIsStored) {
+TEST(ExchangeMatrix, EstimateEqualsTheStoredBytes) {
   const std::size_t n = 200;
   for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
     for (const std::size_t entries : {std::size_t{3}, std::size_t{90}, std::size_t{150}, n}) {
@@ -147,7 +147,7 @@ TEST(ExchangeMatrix, EstimateIsWhatIsStored) {
   }
 }
 
-TEST(ExchangeMatrix, RefusesWhatIsNoFormFactorMatrix) {
+TEST(ExchangeMatrix, RefusesImpossibleFormFactors) {
   const double nan = std::nan("");
   EXPECT_THROW(ExchangeMatrix({1.0, -1.0}, Precision::double_precision), InputError);
   EXPECT_THROW(ExchangeMatrix({1.0, nan}, Precision::double_precision), InputError);
@@ -166,7 +166,7 @@ TEST(ExchangeMatrix, RefusesWhatIsNoFormFactorMatrix) {
 }
 
 // By hand: G = (0, 2*0.3; 1*0.5, 0), differences 0.1 twice, sum of squares 0.36 + 0.25.
-TEST(Reciprocity, ResidualByHand) {
+TEST(Reciprocity, ResidualEqualsThatByHand) {
   const auto matrix = toMatrix({{0, 0.3}, {0.5, 0}}, {2.0, 1.0}, Precision::double_precision);
   EXPECT_NEAR(reciprocityResidual(matrix), std::sqrt(0.02 / 0.61), 1e-15);  // rounding
   const auto exact = toMatrix({{0, 0.25}, {0.5, 0}}, {2.0, 1.0}, Precision::double_precision);

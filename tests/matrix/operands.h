@@ -1,4 +1,4 @@
-// What the tests of the matrix multiply by, and in which precisions.
+// Vectors that the tests of the matrix multiply by, and precisions.
 #pragma once
 
 #include <cstddef>

@@ -163,7 +163,7 @@ struct Named {
 
 class Clusters : public testing::TestWithParam<Named> {};
 
-TEST_P(Clusters, AreAsManyAsAskedFor) {
+TEST_P(Clusters, AreAsManyAsRequested) {
   const auto& [name, scene, patches] = GetParam();
   for (const Scene& s : {scene(), turned(scene())}) {
     const auto [mesh, report] = meshed(s, patches);
@@ -174,7 +174,7 @@ TEST_P(Clusters, AreAsManyAsAskedFor) {
     EXPECT_TRUE(std::ranges::any_of(report.notes, [](const Note& note) {
       return note.text.find("unknowns") != std::string::npos;
     }));
-    // And the very same again.
+    // A second run gives the same.
     EXPECT_EQ(meshed(s, patches).mesh.clusters->of_patch, mesh.clusters->of_patch);
   }
 }
@@ -193,7 +193,7 @@ INSTANTIATE_TEST_SUITE_P(
       return name;
     });
 
-TEST(ClustersOfAMesh, AreNoneWherePatchesAreAsMany) {
+TEST(ClustersOfAMesh, DoNotExistIfPatchesAreFewEnough) {
   SceneBuilder builder;
   builder.box(builder.surface("room"), Vec3(0), Vec3(1), false);
   const auto [mesh, report] = meshed(builder.scene(), 300);
@@ -202,7 +202,7 @@ TEST(ClustersOfAMesh, AreNoneWherePatchesAreAsMany) {
   EXPECT_EQ(report.clusters, 0u);
 }
 
-TEST(ClustersOfAMesh, AreNoneWhereEdgesOrFacesWereAskedFor) {
+TEST(ClustersOfAMesh, DoNotExistIfEdgesOrFacesAreRequested) {
   Progress progress;
   MeshOptions options;
   options.max_edge = 0.5;
@@ -214,7 +214,7 @@ TEST(ClustersOfAMesh, AreNoneWhereEdgesOrFacesWereAskedFor) {
   EXPECT_FALSE(meshScene(ball(), options, progress).mesh.clusters);
 }
 
-TEST(ClustersOfAMesh, OneASurfaceIsTheFewest) {
+TEST(ClustersOfAMesh, NumberAtLeastOneASurface) {
   SceneBuilder builder;
   for (int k = 0; k < 40; ++k) {
     const Vec3 low(k, 0, 0);
@@ -264,9 +264,9 @@ TEST(ClustersOfAMesh, DoNotDependOnTheOrderOfSurfaces) {
             clustersByName(meshed(balls(true), 101).mesh));
 }
 
-TEST(ClustersOfAMesh, AreSmallWhereASurfaceBends) {
-  // A cap of a 200th of a ball reaches 8 degrees. Clusters are not equal, nor round: four times as
-  // far still says that none is a strip around the ball.
+TEST(ClustersOfAMesh, AreSmallOnBentSurfaces) {
+  // A cap of a 200th of a ball reaches 8 degrees. Clusters are neither equal nor round: four times
+  // as far still shows that none is a strip around the ball.
   const auto [mesh, report] = meshed(ball(), 200);
   EXPECT_LT(report.widest_cone, 32);
   EXPECT_GT(report.widest_cone, 4);

@@ -1,4 +1,4 @@
-// What must hold of every coarse complex, checked by brute force from its vertices and loops alone.
+// Invariants of every coarse complex, checked by brute force from its vertices and loops alone.
 #pragma once
 
 #include <gtest/gtest.h>

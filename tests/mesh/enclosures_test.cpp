@@ -35,7 +35,7 @@ TEST(Enclosures, ARoomWithABlockOnItsFloorIsOneClosedSurface) {
   EXPECT_NEAR(windingNumber(mesh, room.polygons, {2, 0.5, 0.5}), 0, 1e-12);
 }
 
-TEST(Enclosures, OpenFlippedTwoSidedAndCrossingSurfacesAreNone) {
+TEST(Enclosures, OpenFlippedTwoSidedAndCrossingSurfacesEncloseNothing) {
   MeshBuilder open;
   open.box("box", {0, 0, 0}, {1, 1, 1}, 1, false, false);
   EXPECT_EQ(closedSurfaces(open), 0u);
@@ -79,7 +79,7 @@ TEST(Enclosures, ABodyThatFloatsInARoomIsASurfaceOfItsOwn) {
 
 bool provesClosed(const MeshBuilder& builder) { return enclosuresOf(builder).proved_closed; }
 
-TEST(Enclosures, ASceneIsProvedClosedWhereEveryPatchIsOnOrInARoom) {
+TEST(Enclosures, ASceneIsProvedClosedIfEveryPatchIsOnOrInARoom) {
   EXPECT_TRUE(provesClosed(test::roomWithBlock(2)));
   MeshBuilder inside;  // a block within a room, apart from it
   inside.box("room", {0, 0, 0}, {1, 1, 1}, 1, true);
@@ -107,7 +107,7 @@ TEST(Enclosures, APolygonIsCoveredByOneOnTheSameCornersThatFacesTheOtherWay) {
   EXPECT_FALSE(found.proved_closed);
 }
 
-TEST(Enclosures, MeshingFindsThemWhateverTheSceneSizeAndTurn) {
+TEST(Enclosures, MeshingFindsThemAtAnySizeAndTurn) {
   test::SceneBuilder builder;
   builder.box(builder.surface("room"), {0, 0, 0}, {3, 2, 2}, false);
   builder.box(builder.surface("on the floor"), {0.5, 0.5, 0}, {1, 1, 0.5});
@@ -122,7 +122,7 @@ TEST(Enclosures, MeshingFindsThemWhateverTheSceneSizeAndTurn) {
       Progress silent;
       const PatchMesh mesh = meshScene(scene, options, silent).mesh;
       ASSERT_TRUE(mesh.enclosures.has_value());
-      // As they are, faces do not say that the room and the box on its floor are one surface.
+      // Faces as patches do not tell that the room and the box on its floor are one surface.
       EXPECT_EQ(mesh.enclosures->surfaces.size(), faces ? 3u : 2u);
       EXPECT_TRUE(mesh.enclosures->proved_closed);
     }

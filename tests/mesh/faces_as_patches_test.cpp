@@ -250,7 +250,7 @@ TEST(FacesAsPatches, EmptySceneIsAnError) {
   EXPECT_THROW(asPatches(b.scene()), InputError);
 }
 
-TEST(FacesAsPatches, MovingAndScalingKeepTheRules) {
+TEST(FacesAsPatches, MovingAndScalingKeepAreasAndCrossings) {
   SceneBuilder b;
   const Index s = b.surface("s");
   b.box(s, {0, 0, 0}, {1, 1, 1});
@@ -269,7 +269,7 @@ TEST(FacesAsPatches, MovingAndScalingKeepTheRules) {
   }
 }
 
-TEST(GeometryHash, KnowsVerticesSidesAndNamesButNotMaterials) {
+TEST(GeometryHash, DependsOnVerticesSidesAndNamesButNotMaterials) {
   const auto hash = [](double height, bool two_sided, const char* name, double reflectance) {
     SceneBuilder b;
     b.level(b.surface(name, reflectance, reflectance, two_sided), 0, 0, 1, 1, height);

@@ -1,4 +1,4 @@
-// Meshing of geometry as it comes: nothing throws, area is conserved, what is left undone is said.
+// Meshing of any geometry: nothing throws, area is conserved, unrepaired faults are reported.
 // Every scene is tried as it is, turned by one radian about a skew axis, and a million units away.
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ void expectPatchesWithArea(const PatchMesh& m) {
   }
 }
 
-/// Area that left its surface for being thinner than the coincidence: hardly any.
+/// Area lost because it is thinner than the coincidence: hardly any.
 double lost(const MeshReport& report) {
   double given = 0;
   double degenerate = 0;
@@ -107,7 +107,7 @@ TEST(AnyGeometry, AnEdgeThatLeavesThePlaneItTouchedCutsItNoFarther) {
   everywhere(b.scene(), [&](const MeshResult& r) { EXPECT_EQ(r.report.t_junctions, 0u); });
 }
 
-TEST(AnyGeometry, BowTiesAndPolygonsThatCrossThemselves) {
+TEST(AnyGeometry, BowTiesAndSelfCrossingPolygonsAreMeshed) {
   SceneBuilder b;
   const Index bow = b.surface("bow");
   b.face(bow, {{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 3, 0}});
@@ -126,7 +126,7 @@ TEST(AnyGeometry, BowTiesAndPolygonsThatCrossThemselves) {
   });
 }
 
-TEST(AnyGeometry, DoubledFlippedAndBackToBackFaces) {
+TEST(AnyGeometry, DoubledFlippedAndBackToBackFacesAreMeshed) {
   SceneBuilder b;
   const Index wall = b.surface("wall");
   const Index other = b.surface("other");
@@ -142,7 +142,7 @@ TEST(AnyGeometry, DoubledFlippedAndBackToBackFaces) {
   });
 }
 
-TEST(AnyGeometry, SliversAndFansOfThem) {
+TEST(AnyGeometry, SliversAndTheirFansLoseHardlyAnyArea) {
   SceneBuilder b;
   const Index fan = b.surface("fan");
   const Index disc = b.surface("disc");
@@ -159,7 +159,7 @@ TEST(AnyGeometry, SliversAndFansOfThem) {
   everywhere(b.scene(), [](const MeshResult& r) { EXPECT_LT(lost(r.report), 1e-5); });
 }
 
-TEST(AnyGeometry, BodiesThroughEachOther) {
+TEST(AnyGeometry, CrossingBodiesLoseTheirInnerParts) {
   SceneBuilder b;
   const Index a = b.surface("a");
   const Index c = b.surface("c");
@@ -168,13 +168,13 @@ TEST(AnyGeometry, BodiesThroughEachOther) {
   b.box(b.surface("box"), {-0.3, -2, -0.2}, {0.4, 2, 0.6});
   everywhere(b.scene(), [&](const MeshResult& r) {
     EXPECT_EQ(r.report.t_junctions, 0u);
-    // Of closed bodies what lies inside another is gone.
+    // Parts of closed bodies inside another are gone.
     EXPECT_GT(r.report.surfaces[a].buried, 0.05 * r.report.surfaces[a].given);
     EXPECT_GT(r.report.surfaces[c].buried, 0.05 * r.report.surfaces[c].given);
   });
 }
 
-TEST(AnyGeometry, EdgesOfManyFaces) {
+TEST(AnyGeometry, EdgesOfManyFacesAreMeshed) {
   // A book: twelve pages at one spine, some doubled, one page of triangles that share the spine.
   SceneBuilder b;
   const Index page = b.surface("page");
@@ -190,7 +190,7 @@ TEST(AnyGeometry, EdgesOfManyFaces) {
   });
 }
 
-TEST(AnyGeometry, DetailsOfAMillimetreAThousandKilometresAway) {
+TEST(AnyGeometry, MillimetreDetailsAThousandKilometresAwayAreKept) {
   SceneBuilder b;
   b.box(b.surface("house"), {0, 0, 0}, {12, 9, 7});
   const Index rail = b.surface("rail");
@@ -221,19 +221,19 @@ Scene noise(unsigned seed, std::size_t triangles, double coincidence) {
     const Vec3 q = corner();
     b.face(soup, {p, q, corner()});
   }
-  // Something large, which makes the details small.
+  // A large face, so that the details are small.
   b.level(b.surface("floor"), -0.5, -0.5, 0.5, 0.5, 0);
   return b.scene();
 }
 
-TEST(AnyGeometry, NoiseAsLargeAsTheCoincidence) {
+TEST(AnyGeometry, NoiseAsLargeAsTheCoincidenceIsMeshed) {
   for (unsigned seed = 1; seed <= 6; ++seed) {
     SCOPED_TRACE(seed);
     everywhere(noise(seed, 40, 1.5e-7), [](const MeshResult& r) { EXPECT_GT(r.mesh.size(), 50u); });
   }
 }
 
-TEST(AnyGeometry, NoiseUnderACoarseWeld) {
+TEST(AnyGeometry, NoiseUnderACoarseWeldIsMeshed) {
   for (unsigned seed = 11; seed <= 14; ++seed) {
     SCOPED_TRACE(seed);
     everywhere(
@@ -241,7 +241,7 @@ TEST(AnyGeometry, NoiseUnderACoarseWeld) {
   }
 }
 
-TEST(AnyGeometry, APolygonOfTwentyThousandCorners) {
+TEST(AnyGeometry, APolygonOfTwentyThousandCornersIsMeshed) {
   SceneBuilder b;
   const Index plate = b.surface("plate");
   std::vector<Vec3> corners;

@@ -1,4 +1,4 @@
-// meshScene() on the scenes of data/: what must hold of every mesh, whatever the scene.
+// meshScene() on the scenes of data/: invariants of every mesh.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -64,7 +64,7 @@ TEST_P(MeshOfData, IsConformingAndLosesNoArea) {
     expectAreasAddUp(report);
     EXPECT_EQ(report.t_junctions, 0u);
     EXPECT_LE(report.triangles + report.quads, m.size());
-    // Either patches are as many, or they share as many unknowns.
+    // There are as many patches, or they share as many unknowns.
     std::set<std::size_t> unknowns;
     for (std::size_t i = 0; i < m.frontCount(); ++i) unknowns.insert(m.unknownOf(i));
     EXPECT_GT(double(unknowns.size()), 0.85 * double(patches));
@@ -104,7 +104,7 @@ TEST(MeshScene, CornellBoxHasNoSmallAngle) {
   }
 }
 
-TEST(MeshScene, TurnedAndFarAwayItIsTheSameMeshInAllFigures) {
+TEST(MeshScene, TurningMovingAndScalingKeepTheFigures) {
   const Scene scene = loadScene(dataFile("cornell-box.obj"));
   const auto plain = mesh(scene);
   for (const Scene& moved :
@@ -120,7 +120,7 @@ TEST(MeshScene, TurnedAndFarAwayItIsTheSameMeshInAllFigures) {
   }
 }
 
-TEST(MeshScene, FacesAsPatchesKeepsTheFacesOfTheFile) {
+TEST(MeshScene, FacesAsPatchesKeepTheFacesOfTheFile) {
   const Scene scene = loadScene(dataFile("cornell-box.obj"));
   MeshOptions options;
   options.faces_as_patches = true;

@@ -1,4 +1,4 @@
-// The tools of meshing that answer in n log n, each against the answer of trying everything.
+// The tools of meshing that answer in n log n, each against brute force.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ class Random {
   std::mt19937 engine_;
 };
 
-TEST(SharpCorners, AreThoseOfAllPairsOfEdges) {
+TEST(SharpCorners, MatchASearchOfAllPairsOfEdges) {
   Random random(3);
   std::vector<Vec3> vertices;
   vertices.reserve(60);
@@ -100,7 +100,7 @@ TEST(EdgeRows, HoldEveryEdgeNearAPlace) {
   EXPECT_LT(seen, 300 * edges.size() / 4) << "a row holds too many edges to be of use";
 }
 
-TEST(BoxFilter, LetsPassWhateverMeetsABox) {
+TEST(BoxFilter, PassesEverythingThatMeetsABox) {
   Random random(7);
   const auto box = [&](double size) {
     const Vec3 low = random.point();
@@ -155,7 +155,7 @@ TEST(WindingTree, TellsInsideFromOutside) {
   }
 }
 
-TEST(WindingTree, ATrianglesOwnPlaneCountsAsNothing) {
+TEST(WindingTree, ATriangleCountsAsNothingInItsOwnPlane) {
   const auto triangles = torus(48);
   const WindingTree tree(triangles);
   for (Index k = 0; k < triangles.size(); k += 37) {
@@ -170,7 +170,7 @@ TEST(JoinLoops, GiveTheOutlineOfBothOrNothing) {
   // Two squares of a grid side by side, numbered along its rows of three points.
   EXPECT_EQ(joinLoops({0, 1, 4, 3}, {1, 2, 5, 4}), (Loop{0, 1, 2, 5, 4, 3}));
   EXPECT_EQ(joinLoops({4, 3, 0, 1}, {5, 4, 1, 2}), (Loop{0, 1, 2, 5, 4, 3}));
-  // That meet in a point, or not at all.
+  // Squares that meet in a point, or not at all.
   EXPECT_EQ(joinLoops({0, 1, 4, 3}, {4, 5, 8, 7}), Loop());
   EXPECT_EQ(joinLoops({0, 1, 4, 3}, {5, 6, 9, 8}), Loop());
   // Seven squares around an eighth, on rows of four points, and the one that closes the ring.
@@ -222,13 +222,13 @@ TEST(JoinCells, EveryCellIsInOnePatchOfNoMoreThanTheSize) {
       EXPECT_NEAR(triangles, double(group.cells.size()), 1e-10);
     }
     EXPECT_EQ(std::ranges::count(used, 1), std::ptrdiff_t(used.size()));
-    // Whatever is joined is more than half as large as it may be, in the mean.
+    // Joined groups are more than half the allowed size on average.
     EXPECT_LT(double(groups.size()), 2 * 144 / (size * size) + 1) << size;
   }
   EXPECT_EQ(joinCells(grid.cells, {}, grid.points, 1.0).size(), grid.cells.size());
 }
 
-TEST(JoinCells, EdgesInsideAreKept) {
+TEST(JoinCells, GroupsDoNotCrossInnerEdges) {
   const SquareGrid grid(4);
   // A wall along the second row of points.
   std::vector<std::array<Index, 2>> wall;

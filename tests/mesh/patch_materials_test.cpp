@@ -90,7 +90,7 @@ TEST(PatchMaterials, WholeTextureOnOnePatchGivesItsMean) {
   }
 }
 
-TEST(PatchMaterials, EmissionIsAveragedAsReflectanceIs) {
+TEST(PatchMaterials, EmissionIsAveragedLikeReflectance) {
   CoarseBuilder input;
   const Texture texture = noise(8, 8);
   texturedSquare(input, texture);
@@ -108,11 +108,11 @@ TEST(PatchMaterials, EmissionIsAveragedAsReflectanceIs) {
     EXPECT_EQ(rgbAt(alone.reflectance, i), Vec3(1.0)) << "its factor";
     power += mesh.area[i] * rgbAt(both.emission, i);
   }
-  // Patches or not, the same light leaves: the mean over the square, of area 1.
+  // The emitted power does not depend on patches: the mean over the square, of area 1.
   expectNear(power, meanOf(texture) * Vec3(7, 0, 2), 1e-12);
 }
 
-TEST(PatchMaterials, RepeatsAndClamps) {
+TEST(PatchMaterials, TexturesRepeatOrClamp) {
   CoarseBuilder input;
   Texture texture = noise(3, 2);
   texturedSquare(input, texture, 3);
@@ -146,7 +146,7 @@ TEST(PatchMaterials, EveryPatchGetsTheTexelsUnderIt) {
   }
 }
 
-TEST(PatchMaterials, AreaWeightedSumIsTheMeanHoweverItIsCut) {
+TEST(PatchMaterials, TheAreaWeightedSumIsTheMeanForAnyCuts) {
   for (const std::size_t patches : {7u, 150u}) {
     CoarseBuilder input;
     const Texture texture = noise(13, 9);
@@ -162,7 +162,7 @@ TEST(PatchMaterials, AreaWeightedSumIsTheMeanHoweverItIsCut) {
   }
 }
 
-TEST(PatchMaterials, PatchOverSeveralFacesSeesThemAll) {
+TEST(PatchMaterials, APatchOverSeveralFacesAveragesThemAll) {
   CoarseBuilder input;
   Texture texture = noise(2, 1);
   texturedSquare(input, texture);

@@ -125,7 +125,7 @@ struct Shape {
   std::string name;
   std::vector<std::vector<Vec2>> loops;
   std::vector<std::array<Vec2, 2>> inner = {};
-  std::size_t fewest = 1;  ///< fewer cells cannot be had without small angles
+  std::size_t fewest = 1;  ///< fewer cells would have small angles
 };
 
 std::vector<Shape> goodShapes() {
@@ -189,7 +189,7 @@ TEST(Subdivide, GoodShapesStayGoodAtEverySize) {
   }
 }
 
-TEST(Subdivide, CountIsWithinFifteenPercentOfWhatWasAskedFor) {
+TEST(Subdivide, CountIsWithinFifteenPercentOfTheRequest) {
   for (const Shape& shape : goodShapes()) {
     for (const std::size_t wanted : {300u, 3000u}) {
       CoarseBuilder input;
@@ -200,7 +200,7 @@ TEST(Subdivide, CountIsWithinFifteenPercentOfWhatWasAskedFor) {
   }
 }
 
-TEST(Subdivide, NoEdgeIsLongerThanAskedFor) {
+TEST(Subdivide, NoEdgeExceedsTheRequestedLength) {
   for (const Shape& shape : goodShapes()) {
     for (const double longest : {0.3, 0.05}) {
       SCOPED_TRACE(shape.name);
@@ -362,7 +362,7 @@ TEST(Subdivide, PowersOfTwoChangeNothing) {
   }
 }
 
-TEST(Subdivide, FarFromTheOriginOnlyRepresentationIsLost) {
+TEST(Subdivide, DistanceFromTheOriginRoundsVerticesOnly) {
   CoarseBuilder input;
   addShape(input, goodShapes()[5]);
   const MeshResult near = subdivided(input, count(150));
@@ -401,7 +401,7 @@ TEST(Subdivide, SourceFaceIsTheOneUnderTheCentroid) {
 }
 
 TEST(Subdivide, ManySmallPolygonsLeaveLargeOnesCut) {
-  // A wall of 16 m^2 above 400 loose tiles of 1 cm: 50 patches are not to be had. Shared out evenly
+  // A wall of 16 m^2 above 400 loose tiles of 1 cm: 50 patches are impossible. Shared out evenly
   // the wall's patches would be 0.57 m wide; one and a half times that is 5 x 5 of them.
   CoarseBuilder input;
   const Index wall = input.surface("wall");
@@ -421,7 +421,7 @@ TEST(Subdivide, ManySmallPolygonsLeaveLargeOnesCut) {
   EXPECT_TRUE(report.notes.empty());
 }
 
-TEST(Subdivide, QuadrilateralsThatNarrowDoNotDragFinenessAlong) {
+TEST(Subdivide, NarrowingQuadrilateralsDoNotSpreadFineCuts) {
   // A cone of 40 slender frustum sides: each ring is narrower than the last by a factor 1.4, so the
   // chain of opposite edges spans 1.4^6 = 7.5. Cut alike throughout, the top would be 7 times too
   // fine.
@@ -511,8 +511,8 @@ TEST(Subdivide, HolesBesideALongEdgeKeepTheCount) {
   }
 }
 
-TEST(Subdivide, VerticesBehindOthersCutNothing) {
-  // A slit 1 cm from the long edge hides the slit behind it: of its ends nothing is to be seen.
+TEST(Subdivide, HiddenVerticesCutNothing) {
+  // A slit 1 cm from the long edge hides the slit behind it, its ends included.
   CoarseBuilder input;
   input.flat(input.surface("plate"), {{{0, 0}, {4, 0}, {4, 4}, {0, 4}},
                                       hole({{1, 0.01}, {3, 0.01}, {3, 0.02}, {1, 0.02}}),
@@ -526,7 +526,7 @@ TEST(Subdivide, VerticesBehindOthersCutNothing) {
   EXPECT_EQ(cuts, (std::set<double>{0, 1, 3, 4}));
 }
 
-TEST(Subdivide, HugeAndTinySizes) {
+TEST(Subdivide, HugeEdgesCutNothingAndTinyOnesAreRefused) {
   CoarseBuilder input;
   input.cube(input.surface("cube"));
   EXPECT_EQ(subdivided(input, edge(1e9)).mesh.size(), 6u);
@@ -553,7 +553,7 @@ TEST(MeshOptions, RangesAreChecked) {
   EXPECT_THROW(options.validate(), InputError);
 }
 
-TEST(TJunctions, AreFoundByTheGridAsByBruteForce) {
+TEST(TJunctions, AreTheSameByGridAndByBruteForce) {
   // A square beside two that share only half of its side each, one of them far below.
   PatchMesh mesh;
   mesh.corner_offset = {0, 4, 8, 12};

@@ -20,7 +20,7 @@ double areaOf(const std::vector<Vec2>& p, const std::array<Index, 3>& t) {
   return 0.5 * cross2(p[t[1]] - p[t[0]], p[t[2]] - p[t[0]]);
 }
 
-TEST(TriangulateOutline, ManyCornersAsFewAreTiledByAllTheirTriangles) {
+TEST(TriangulateOutline, FewAndManyCornersAreTiledByAllTheirTriangles) {
   for (const int n : {40, 3000}) {
     for (const bool clockwise : {false, true}) {
       std::vector<Vec2> outline;
@@ -106,7 +106,7 @@ const std::vector<Vec2> kSquare{{0, 0}, {8, 0}, {8, 8}, {0, 8}};
 TEST(TriangulatePolygon, TilesTrianglesAndQuadrilaterals) {
   expectTiles(Tilted().loop({{0, 0}, {4, 0}, {0, 4}}), 1, 8);
   expectTiles(Tilted().loop(kSquare), 2, 64);
-  // Where a corner turns inward, or lies in line, one diagonal alone will do.
+  // If a corner turns inward, or lies in line, only one diagonal is valid.
   for (std::size_t first = 0; first < 4; ++first) {
     std::vector<Vec2> arrow{{0, 0}, {4, 1}, {8, 0}, {4, 8}};
     std::vector<Vec2> straight{{0, 0}, {4, 0}, {8, 0}, {4, 8}};
@@ -152,7 +152,7 @@ TEST(TriangulatePolygon, RefusesLoopsThatCrossOverlapOrTurnTheWrongWay) {
   EXPECT_FALSE(Tilted().loop({{0, 0}, {0, 8}, {8, 0}}).triangles());
 }
 
-TEST(TriangulatePolygon, GivesNothingWhereThereIsNoArea) {
+TEST(TriangulatePolygon, GivesNothingForPolygonsWithoutArea) {
   expectTiles(Tilted().loop({{0, 0}, {4, 4}, {8, 8}}), 0, 0);
   expectTiles(Tilted().loop({{0, 0}, {4, 4}, {8, 8}, {2, 2}}), 0, 0);
 }

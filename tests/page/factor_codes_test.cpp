@@ -60,7 +60,7 @@ TEST(FactorCodes, OneValueNeedsNoSteps) {
   }
 }
 
-TEST(FactorCodes, WhatIsNegligibleIsLeftOutAndCounted) {
+TEST(FactorCodes, NegligibleFactorsAreLeftOutAndCounted) {
   Progress progress;
   // 1e-9 / 4 is the limit of each.
   const FactorCodes codes = encodeFactors(banded(4, {0.5, 1e-10, 1e-9, 1e-30}), progress);
@@ -70,7 +70,7 @@ TEST(FactorCodes, WhatIsNegligibleIsLeftOutAndCounted) {
   EXPECT_NEAR(codes.quantisation.largest_row_error, 2e-10, 1e-12);
 }
 
-/// A small patch in view of a large one: what is next to nothing one way counts the other way.
+/// A small patch in view of a large one: a factor near 0 one way counts the other way.
 TEST(FactorCodes, SmallFactorsOfLargePatchesAreKept) {
   Progress progress;
   ExchangeMatrix matrix =

@@ -1,5 +1,5 @@
-// The data of a page read back: they are the mesh, the materials, the matrix and the light that
-// went in, within what single precision and 16 bits leave.
+// The data of a page read back: the mesh, the materials, the matrix and the light that went in,
+// within single precision and 16 bits.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -141,7 +141,7 @@ void expectMaterials(Made& made) {
   }
 }
 
-/// Every form factor, both ways; and what the header says of its error.
+/// Every form factor, both ways; and its error in the header.
 void expectFactors(Made& made, bool dense) {
   const PageReader& page = made.page();
   const ExchangeMatrix& matrix = made.pipeline.matrix();
@@ -228,7 +228,7 @@ void useRoughRays(PipelineOptions& options) {
   options.factors.tolerance = 0.1;
 }
 
-/// What unknowns see that patches share.
+/// The views of shared unknowns.
 void expectSeen(const PageReader& page, const PatchMesh& mesh) {
   Progress silent;
   const SeenPatches seen = seenPatches(mesh, silent);
@@ -284,8 +284,8 @@ TEST(PageData, PatchesThatShareUnknownsHaveLightOfTheirOwn) {
   expectSeen(page, mesh);
 }
 
-/// The header's bound of what 16 bits do to light: |(F' - F) B| <= largest_row_error max B.
-TEST(PageData, LightIsOffByNoMoreThanThePageSays) {
+/// The header's bound of the error of light by 16 bits: |(F' - F) B| <= largest_row_error max B.
+TEST(PageData, LightIsWithinThePagesErrorBound) {
   Scene scene = dataScene("cornell-box.obj");
   scene.sky = Vec3(1, 2, 3);
   Made made(std::move(scene), 200);
@@ -307,12 +307,12 @@ TEST(PageData, LightIsOffByNoMoreThanThePageSays) {
       off = std::max(off, std::abs(gathered - solution.irradiance[3 * i + b]));
     }
   }
-  // What the solver left of its residual comes on top: 1e-6 of the largest emission.
+  // The solver's residual comes on top: 1e-6 of the largest emission.
   EXPECT_LE(off, (made.report.quantisation.largest_row_error + 1e-6) * largest);
   EXPECT_GT(off, 0);
 }
 
-TEST(PageData, SmoothShadingIsThatOfPictures) {
+TEST(PageData, SmoothShadingEqualsThatOfPictures) {
   for (const char* name : {"cornell-box.obj", "curved.obj"}) {
     Progress progress;
     const PatchMesh mesh = meshScene(dataScene(name), {.patches = 300}, progress).mesh;
@@ -347,7 +347,7 @@ TEST(PageData, SmoothShadingIsThatOfPictures) {
 
 /// Eyes are the first shading vertices. On a flat side an eye lies in its patches' plane and looks
 /// along their normal; its axes are those of `radiosity gather`.
-TEST(PageData, EyesAreThoseOfTheGather) {
+TEST(PageData, EyesEqualThoseOfTheGather) {
   for (const bool flat : {true, false}) {
     Made made(flat ? roomWithPlate() : dataScene("curved.obj"), 120, false, useRoughRays);
     const PatchMesh& mesh = made.mesh();
@@ -387,7 +387,7 @@ TEST(PageData, EyesAreThoseOfTheGather) {
   }
 }
 
-TEST(PageData, AnEyeThatStandsForNoAreaDoesNotLook) {
+TEST(PageData, AnEyeWithoutAreaDoesNotLook) {
   Scene scene = roomWithPlate();
   const auto first = Index(scene.vertices.size());
   for (const double x : {0.2, 0.3, 0.4}) scene.vertices.push_back({x, 0.2, 0.2});  // in one line
@@ -407,7 +407,7 @@ TEST(PageData, AnEyeThatStandsForNoAreaDoesNotLook) {
   EXPECT_EQ(blind, 3u);
 }
 
-TEST(PageData, EveryOutlineEdgeIsThereOnce) {
+TEST(PageData, EveryOutlineEdgeAppearsOnce) {
   Progress progress;
   const PatchMesh mesh = meshScene(roomWithPlate(), {.patches = 100}, progress).mesh;
   const auto edges = page::outlineEdges(mesh);
@@ -429,7 +429,7 @@ TEST(PageData, FarFromTheOriginPositionsStayExact) {
   expectShapes(made);
 }
 
-TEST(PageData, AMaterialWhosePatchesDifferIsTheMeanOfThem) {
+TEST(PageData, AVaryingMaterialIsTheMeanOfItsPatches) {
   Scene scene = roomWithPlate();
   // Two texels, black and white, over a face whose coordinates go from 0 to 1.
   scene.textures.push_back({"stripes", 2, 1, {0, 0, 0, 1, 1, 1}, false});
@@ -449,7 +449,7 @@ TEST(PageData, AMaterialWhosePatchesDifferIsTheMeanOfThem) {
 
 class PageElements : public FolderTest {};
 
-TEST_F(PageElements, AreThoseOfTheLitMesh) {
+TEST_F(PageElements, EqualTheTrianglesOfTheLitMesh) {
   Made made(dataScene("cornell-box.obj"), 100, true);
   const PageReader& page = made.page();
   const auto position = page.floats("element_position");
@@ -486,13 +486,13 @@ TEST_F(PageElements, AreThoseOfTheLitMesh) {
   EXPECT_EQ(here, there);
 }
 
-TEST(PageData, WithoutElementsTheirArraysAreEmpty) {
+TEST(PageData, MissingElementsLeaveTheirArraysEmpty) {
   const Made made(roomWithPlate(), 60);
   EXPECT_TRUE(made.page().floats("element_light").empty());
   EXPECT_EQ(made.report.element_triangles, 0u);
 }
 
-TEST(PageData, WhatIsTooLargeIsRefusedWithNumberAndCure) {
+TEST(PageData, TooManyUnknownsOrPatchesAreRefusedWithTheCure) {
   PatchMesh mesh;
   mesh.area.resize(kMostPageUnknowns);
   EXPECT_NO_THROW(requirePageFits("s.obj", mesh));
@@ -515,7 +515,7 @@ void useHemicubes(PipelineOptions& options) {
   options.factors.resolution = 32;
 }
 
-TEST(PageData, TwoEstimatesAPairAreRefused) {
+TEST(PageData, UnmergedHemicubesAreRefused) {
   const std::string why = test::errorOf([] { Made(roomWithPlate(), 60, false, useHemicubes); });
   EXPECT_NE(why.find("--symmetrize"), std::string::npos) << why;
 }
@@ -530,7 +530,7 @@ TEST(PageData, HemicubesHaveNoErrorFigures) {
   EXPECT_TRUE(made.page().header["tolerance"].is_null());
 }
 
-TEST(PageData, ANameThatIsNoUtf8IsReplaced) {
+TEST(PageData, InvalidUtf8InANameIsReplaced) {
   Scene scene = roomWithPlate();
   scene.surfaces[0].name = "w\xe4nd";
   const Made made(std::move(scene), 60);

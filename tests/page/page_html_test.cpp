@@ -1,4 +1,4 @@
-// From data to HTML: what a browser unpacks is what went in.
+// From data to HTML: a browser unpacks the data that went in.
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -41,7 +41,7 @@ std::vector<std::byte> unpacked(const std::string& packed, std::size_t size) {
   return data;
 }
 
-TEST(PageHtml, Base64IsThatOfTheStandard) {
+TEST(PageHtml, Base64FollowsTheStandard) {
   // RFC 4648, section 10.
   const std::pair<const char*, const char*> vectors[] = {{"", ""},
                                                          {"f", "Zg=="},
@@ -54,7 +54,7 @@ TEST(PageHtml, Base64IsThatOfTheStandard) {
   EXPECT_EQ(base64(std::string("\xff\xfb\xbf\x00", 4)), "//u/AA==");
 }
 
-TEST(PageHtml, DataOfAnySizeComeBack) {
+TEST(PageHtml, DataOfAnySizeAreUnpackedUnchanged) {
   Progress progress;
   // About the megabyte that is packed at a time.
   for (const std::size_t size : {0u, 1u, 1048575u, 1048576u, 1048577u, 3000000u}) {
@@ -65,7 +65,7 @@ TEST(PageHtml, DataOfAnySizeComeBack) {
 
 class PageHtmlFile : public FolderTest {};
 
-TEST_F(PageHtmlFile, DataStandWhereTheMarkStood) {
+TEST_F(PageHtmlFile, DataReplaceTheMark) {
   const std::vector<std::byte> data = noise(5);
   const std::size_t size =
       writeHtml(path("p.html"), "<p>before</p><!--radiosity-data--><p>after</p>", data, progress_);
@@ -77,7 +77,7 @@ TEST_F(PageHtmlFile, DataStandWhereTheMarkStood) {
                 coded + "</script><p>after</p>");
 }
 
-TEST_F(PageHtmlFile, NothingStaysWhereItFails) {
+TEST_F(PageHtmlFile, AFailedWriteLeavesNoFile) {
   const std::vector<std::byte> data = noise(100000);
   const std::string file = path("p.html");
   expectError<RunError>(file, "no place for data",

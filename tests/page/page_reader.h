@@ -1,4 +1,4 @@
-// A page's container as another program reads it: by the description in src/page/README.md alone.
+// A page's container, read by the description in src/page/README.md alone.
 #pragma once
 
 #include <gtest/gtest.h>

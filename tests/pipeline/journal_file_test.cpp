@@ -1,4 +1,4 @@
-// The journal of rows as a file: what comes back after a run was ended in any way.
+// The journal of rows as a file: the blocks read back after a run was ended in any way.
 #include "pipeline/journal_file.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ class JournalOnDisk : public FolderTest {
     JournalFile journal = opened();
     for (std::size_t k = 0; k < kBlocks; ++k) journal.keep(kKind, k, block(k));
   }
-  /// Blocks that come back as they were; any other must not come back.
+  /// Blocks that are read back unchanged; no other may be read back.
   std::size_t goodBlocks(const JournalFile& journal) const {
     std::size_t good = 0;
     for (std::size_t k = 0; k < kBlocks; ++k) {
@@ -45,7 +45,7 @@ class JournalOnDisk : public FolderTest {
   }
 };
 
-TEST_F(JournalOnDisk, BlocksComeBack) {
+TEST_F(JournalOnDisk, BlocksAreReadBack) {
   keepAll();
   EXPECT_EQ(JournalFile::keyIn(file()), "key=1");
   const JournalFile journal = opened();
@@ -56,7 +56,7 @@ TEST_F(JournalOnDisk, BlocksComeBack) {
   EXPECT_TRUE(journal.kept(RowBlock::ray_row, 0).empty());
 }
 
-TEST_F(JournalOnDisk, TheLaterOfTwoCounts) {
+TEST_F(JournalOnDisk, TheLaterOfTwoBlocksCounts) {
   {
     JournalFile journal = opened();
     journal.keep(kKind, 3, block(5));
@@ -65,7 +65,7 @@ TEST_F(JournalOnDisk, TheLaterOfTwoCounts) {
   EXPECT_EQ(opened().kept(kKind, 3), block(3));
 }
 
-TEST_F(JournalOnDisk, WhereverItIsCutWholeBlocksComeBack) {
+TEST_F(JournalOnDisk, WholeBlocksSurviveAnyTruncation) {
   keepAll();
   const std::vector<char> whole = load(file());
   std::size_t before = 0;
@@ -87,7 +87,7 @@ TEST_F(JournalOnDisk, WhereverItIsCutWholeBlocksComeBack) {
   EXPECT_GE(before, kBlocks - 1);
 }
 
-TEST_F(JournalOnDisk, AByteThatChangedCostsOneBlock) {
+TEST_F(JournalOnDisk, AChangedByteCostsOneBlock) {
   keepAll();
   const std::vector<char> whole = load(file());
   const std::size_t header = 32 + 8;
@@ -104,7 +104,7 @@ TEST_F(JournalOnDisk, AByteThatChangedCostsOneBlock) {
   }
 }
 
-TEST_F(JournalOnDisk, AnotherKeyBeginsAnew) {
+TEST_F(JournalOnDisk, AnotherKeyStartsAfresh) {
   keepAll();
   {
     const JournalFile journal = opened("key=2");
@@ -114,7 +114,7 @@ TEST_F(JournalOnDisk, AnotherKeyBeginsAnew) {
   EXPECT_EQ(files(), 0u) << "nothing was kept in it";
 }
 
-TEST_F(JournalOnDisk, WithoutResumeItBeginsAnew) {
+TEST_F(JournalOnDisk, NoResumeStartsAfresh) {
   keepAll();
   const JournalFile journal = opened("key=1", false);
   EXPECT_FALSE(journal.atOpening().other_key);
@@ -134,7 +134,7 @@ TEST_F(JournalOnDisk, AChangedHeaderIsAnotherKey) {
   }
 }
 
-TEST_F(JournalOnDisk, BelongsToOne) {
+TEST_F(JournalOnDisk, BelongsToOneRunAtATime) {
   JournalFile journal = opened();
   journal.keep(kKind, 0, block(0));
   expectError<RunError>(file(), "in use by another run", [&] { opened(); });
@@ -148,7 +148,7 @@ TEST_F(JournalOnDisk, BelongsToOne) {
   EXPECT_EQ(files(), 1u);
 }
 
-TEST_F(JournalOnDisk, WhatIsNoJournalStaysAsItIs) {
+TEST_F(JournalOnDisk, AForeignFileIsLeftUnchanged) {
   const std::vector<char> text(100, 'x');
   save(file(), text);
   expectError<RunError>(file(), "holds no rows", [&] { opened(); });

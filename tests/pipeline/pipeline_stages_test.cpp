@@ -1,4 +1,4 @@
-// The stages of a scene by the library alone: which are made, which are reused, and what is said.
+// The stages of a scene by the library alone: stages made, stages reused, and messages.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 const std::string kBox = RADIOSITY_SOURCE_DIR "/data/cornell-box-closed.obj";
 
-/// Writes down what it is told.
+/// Records its messages.
 class Recorder : public PipelineObserver {
  public:
   void opened(const Pipeline& pipeline) override { faces = pipeline.scene().faceCount(); }
@@ -45,7 +45,7 @@ class Recorder : public PipelineObserver {
     if (!event.detail.empty()) text += ": " + event.detail;
     events.push_back(std::move(text));
   }
-  /// What was told since it was asked last.
+  /// The messages since the last call.
   std::vector<std::string> take() { return std::exchange(events, {}); }
 
   std::vector<std::string> events;
@@ -91,7 +91,7 @@ class PipelineStages : public FolderTest {
   Recorder told_;
 };
 
-TEST_F(PipelineStages, EachMakesWhatItStandsOn) {
+TEST_F(PipelineStages, EachStageMakesTheStagesBeforeIt) {
   Pipeline pipeline(progress_, &told_);
   pipeline.open(kBox);
   EXPECT_EQ(told_.faces, pipeline.scene().faceCount());
@@ -142,7 +142,7 @@ TEST_F(PipelineStages, StagesMadeWithoutAPipelineAreReusedByTheirKeys) {
   results.scene = loadScene(kBox);
   results.mesh = meshScene(*results.scene, options.mesh, quiet);
   const PatchMesh& mesh = results.mesh->mesh;
-  // Apart from the results, as those have them who share form factors.
+  // Apart from the results, as for shared form factors.
   const FormFactors factors = computeFormFactors(mesh, options.factors, quiet);
   results.materials = patchMaterials(*results.scene, mesh);
   results.solution = solve(factors, *results.materials, mesh, options.solve, quiet);
@@ -161,7 +161,7 @@ TEST_F(PipelineStages, StagesMadeWithoutAPipelineAreReusedByTheirKeys) {
   EXPECT_EQ(recorder.take(), (Events{"mesh" + reused, "factors" + reused, "solution" + reused}));
 }
 
-TEST_F(PipelineStages, AChangedOptionRemakesWhatDependsOnIt) {
+TEST_F(PipelineStages, AChangedOptionRemakesTheStagesThatDependOnIt) {
   const std::string file = savedBox();
   const Events reused = {"mesh reused: " + file, "factors reused: " + file,
                          "solution reused: " + file, "gather reused: " + file};
@@ -178,7 +178,7 @@ TEST_F(PipelineStages, AChangedOptionRemakesWhatDependsOnIt) {
                 {"plan", "factors recomputed: resolution 32 -> 64"},
                 {"solution recomputed: form factors changed"},
                 {reused[3]}},
-               // No matter to hemicubes.
+               // Hemicubes ignore it.
                {[](PipelineOptions& o) { o.factors.tolerance = 1e-2; },
                 {reused[0]},
                 {reused[1]},
@@ -210,7 +210,7 @@ TEST_F(PipelineStages, AChangedOptionRemakesWhatDependsOnIt) {
   }
 }
 
-TEST_F(PipelineStages, NewMaterialsCostNoFormFactors) {
+TEST_F(PipelineStages, NewMaterialsKeepTheFormFactors) {
   const std::string file = savedBox();
   Pipeline pipeline(progress_, &told_);
   SceneOptions overrides;
@@ -242,7 +242,7 @@ TEST_F(PipelineStages, ElementsOfTheSameSolutionAreReused) {
   EXPECT_EQ(pipeline.options().elements.rays, 64) << "as the file has them";
   const Events made = {"mesh reused: " + file, "factors reused: " + file,
                        "solution reused: " + file, "elements reused: " + file};
-  // For a picture of one patch those of all are taken, since they are there.
+  // A picture of one patch takes the elements of all, since they exist.
   std::vector<std::uint8_t> wanted(pipeline.mesh().mesh.size(), 0);
   wanted[0] = 1;
   const SurfaceLight light = pipeline.elementLight(wanted);
@@ -259,7 +259,7 @@ TEST_F(PipelineStages, ElementsOfTheSameSolutionAreReused) {
   EXPECT_EQ(told_.take(), Events{"elements kept"});
 }
 
-TEST_F(PipelineStages, FormFactorsThatAreOnlySourcesAreSoInTheFileToo) {
+TEST_F(PipelineStages, TheFileMarksFormFactorsForSourcesAlone) {
   const std::string file = path("sources.h5");
   Pipeline first(progress_);
   first.open(kBox);
@@ -352,7 +352,7 @@ TEST_F(PipelineStages, OptionsMayChangeBetweenCalls) {
   EXPECT_EQ(pipeline.solution().radiosity.size(), 3 * pipeline.mesh().mesh.size());
 }
 
-TEST_F(PipelineStages, ASceneFromMemory) {
+TEST_F(PipelineStages, ASceneFromMemoryReusesItsFile) {
   const std::string file = path("furnace.h5");
   {
     Pipeline pipeline(progress_, &told_);
@@ -382,7 +382,7 @@ TEST_F(PipelineStages, ASceneFromMemory) {
   EXPECT_EQ(told_.take(), Events{"mesh recomputed: geometry changed"});
 }
 
-TEST_F(PipelineStages, SavingKeepsWhatStillFitsAndDropsTheRest) {
+TEST_F(PipelineStages, SavingKeepsValidStagesAndDropsTheRest) {
   const std::string file = savedBox();
   Pipeline pipeline(progress_, &told_);
   pipeline.open(file);
@@ -411,7 +411,7 @@ TEST_F(PipelineStages, ACheckpointLosesNothing) {
   EXPECT_EQ(told_.take(), Events{"gather reused: " + file});
 }
 
-TEST_F(PipelineStages, GapsAreFilledWithoutReplacingAnything) {
+TEST_F(PipelineStages, AFileIsOnlyAddedToUntilTheMeshChanges) {
   const std::string file = path("mesh.h5");
   {
     Pipeline pipeline(progress_);
@@ -443,7 +443,7 @@ TEST_F(PipelineStages, ASolutionWithoutValuesIsNotSaved) {
   EXPECT_FALSE(results.solution || results.materials);
 }
 
-TEST_F(PipelineStages, FieldsAreWhatIsAskedFor) {
+TEST_F(PipelineStages, FieldsHoldTheRequestedQuantity) {
   Pipeline pipeline(progress_);
   pipeline.open(kBox);
   makeCoarse(pipeline.options());
@@ -507,7 +507,7 @@ TEST_F(PipelineStages, AFilesOwnMaterialsBelongToItsMesh) {
   expectError<InputError>(file, "materials of 5 bands", [&] { overridden.open(file, overrides); });
 }
 
-/// Results files live long: a key that is written differently would throw away what they hold.
+/// Results files live long: a key written differently would discard their stages.
 TEST_F(PipelineStages, KeysKeepTheirText) {
   Pipeline pipeline(progress_);
   pipeline.open(kBox);
@@ -545,7 +545,7 @@ TEST_F(PipelineStages, ADarkSceneIsRefused) {
   EXPECT_EQ(pipeline.solution().summary.status, SolveStatus::no_light) << "it can be solved";
 }
 
-TEST_F(PipelineStages, AResultsFileIsNotReadLikeAScene) {
+TEST_F(PipelineStages, SceneOptionsAreRefusedForResultsFiles) {
   const std::string file = savedBox();
   SceneOptions inches;
   inches.unit = "in";
@@ -602,7 +602,7 @@ TEST_F(PipelineStages, OptionsOutOfRangeAreNamed) {
   EXPECT_THROW(pipeline.solution(), InputError);
 }
 
-TEST_F(PipelineStages, AnObserverMayStopWhatTakesTooLong) {
+TEST_F(PipelineStages, AnObserverMayStopALongPlan) {
   class Impatient : public PipelineObserver {
     void planned(const Pipeline& /*pipeline*/, const FormFactorPlan& /*plan*/) override {
       throw RunError("too long");

@@ -1,4 +1,4 @@
-"""Arrays in and out: views that live, shapes, and messages for what is wrong."""
+"""Arrays in and out: lasting views, shapes, and messages for errors."""
 
 import gc
 import re
@@ -41,7 +41,7 @@ def test_views_are_no_copies_and_read_only(cornell):
             array[0] = 1
 
 
-def test_shapes_and_types(cornell):
+def test_arrays_have_their_shapes_and_types(cornell):
     mesh = cornell.mesh
     n = len(mesh)
     assert mesh.vertices.shape[1] == 3 and mesh.vertices.dtype == np.float64
@@ -85,7 +85,7 @@ def test_scene_takes_strided_and_whole_number_arrays():
     assert np.array_equal(scene.vertices, np.round(vertices * 2))
 
 
-def test_faces_of_several_lengths():
+def test_faces_may_have_several_lengths():
     scene = rad.Scene([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2, 3], [0, 1, 2]])
     assert scene.face_offset.tolist() == [0, 4, 7]
 
@@ -116,7 +116,7 @@ SQUARE = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
     (lambda: rad.mesh(rad.load("data/cornell-box.obj"), weld=1.0), "weld"),
     (lambda: rad.read("README.md"), "README.md: is no matrix of form factors"),
 ])
-def test_what_is_wrong_is_said(call, message):
+def test_wrong_arrays_are_refused_in_one_line(call, message):
     with pytest.raises(rad.InputError) as raised:
         call()
     assert re.search(message, str(raised.value)), raised.value
@@ -150,7 +150,7 @@ def test_what_is_wrong_is_said(call, message):
     (lambda F: rad.from_csr([[0, 1], [1, 0]], [1, 1, 1]), r"area: has shape \(3,\); give \(2,\)"),
     (lambda F: rad.from_csr([[0, 1], [1, 0]], [1, 1]).save("x.h5"), "matrix without a mesh"),
 ])
-def test_what_is_wrong_with_later_steps_is_said(cornell, call, message):
+def test_wrong_arguments_of_later_steps_are_refused(cornell, call, message):
     with pytest.raises(rad.InputError) as raised:
         call(cornell)
     assert re.search(message, str(raised.value)), raised.value
@@ -177,7 +177,7 @@ def test_own_matrices_keep_their_values():
         assert rad.from_csr(twice, [1, 1]).csr.toarray().tolist() == [[0, 0.5], [0, 0]]
 
 
-def test_only_matrices_that_make_energy_are_warned_of():
+def test_only_rows_above_one_are_warned_of():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert rad.from_csr([[0, 1], [0.5, 0]], [1, 2]).report["notes"] == []

@@ -14,7 +14,7 @@ import radiosity as rad
 from conftest import ROOT
 
 
-# On a quiet machine half a second, 50 ms of it to see the signal. Tests run several at a time, as in
+# On a quiet machine half a second, 50 ms of it to see the signal. Several tests run at a time, as in
 # interrupt_test.py; the computation itself takes a minute.
 LONGEST_ANSWER = 5  # seconds
 
@@ -33,7 +33,7 @@ def test_ctrl_c_raises_keyboard_interrupt(slow):
     assert time.monotonic() - start < 0.5 + LONGEST_ANSWER
 
 
-def test_a_handler_of_signals_may_raise_what_it_likes(slow):
+def test_a_signal_handler_may_raise_any_exception(slow):
     def handler(number, frame):
         raise TimeoutError("enough")
 
@@ -46,7 +46,7 @@ def test_a_handler_of_signals_may_raise_what_it_likes(slow):
         signal.signal(signal.SIGUSR1, before)
 
 
-def test_other_threads_run_meanwhile(slow):
+def test_other_threads_run_during_a_computation(slow):
     class Stop(Exception):
         pass
 
@@ -91,7 +91,7 @@ def test_other_threads_run_while_rows_are_made():
     assert max(b - a for a, b in zip(within, within[1:])) < 0.3 * (end - start)
 
 
-def test_two_threads_compute_at_once(cornell):
+def test_two_threads_may_compute_at_once(cornell):
     results = [None, None]
 
     def compute(k):
@@ -106,11 +106,11 @@ def test_two_threads_compute_at_once(cornell):
 
 
 def test_a_forked_process_computes_too(cornell):
-    """It has no copies of the threads of its parent, which computed before."""
+    """It has no copies of its parent's threads, which computed before."""
     read, write = os.pipe()
     child = os.fork()
     if child == 0:
-        signal.alarm(60)  # ends it, where it would wait for a thread that is not there
+        signal.alarm(60)  # ends it if it waits for a missing thread
         os.write(write, rad.solve(cornell).radiosity.tobytes())
         os._exit(0)
     os.close(write)
@@ -120,7 +120,7 @@ def test_a_forked_process_computes_too(cornell):
     assert radiosity == rad.solve(cornell).radiosity.tobytes()
 
 
-def test_progress_tells_stage_done_and_total(slow):
+def test_progress_gives_stage_done_and_total(slow):
     told = []
 
     class Enough(Exception):
@@ -137,7 +137,7 @@ def test_progress_tells_stage_done_and_total(slow):
     assert told[-1][2] == len(slow)  # a hemicube a patch
 
 
-def test_progress_on_standard_error(capsys, monkeypatch, slow, cornell):
+def test_progress_is_shown_on_standard_error(capsys, monkeypatch, slow, cornell):
     monkeypatch.setattr("radiosity._progress.SHOWN_AFTER", 0)
     threading.Timer(0.6, os.kill, (os.getpid(), signal.SIGINT)).start()
     with pytest.raises(KeyboardInterrupt):

@@ -28,7 +28,7 @@ NAMES = dict(documented())
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_docstring_and_its_examples(name):
+def test_every_name_has_a_docstring_whose_examples_run(name):
     text = NAMES[name].__doc__
     assert text, f"{name} has no docstring"
     test = doctest.DocTestParser().get_doctest(text, {"rad": rad}, name, name, 0)
@@ -52,7 +52,7 @@ def test_the_code_of_a_page_runs(page, tmp_path, monkeypatch):
 def test_every_function_that_computes_has_an_example():
     without = [name for name, thing in NAMES.items()
                if inspect.isfunction(thing) and "." not in name and ">>>" not in thing.__doc__]
-    assert without == ["from_trimesh"]  # Debian has no trimesh; foreign_test.py has a stand-in
+    assert without == ["from_trimesh"]  # Debian has no trimesh; test_foreign.py has a stand-in
 
 
 def test_arguments_and_results_are_annotated():

@@ -1,4 +1,4 @@
-"""What Python computes and what the command line computes have the same bits."""
+"""Python and the command line compute the same bits."""
 
 import json
 
@@ -20,7 +20,7 @@ def stored(path, name):
 @pytest.mark.parametrize("method, options", [("exact", {}), ("rays", {"tolerance": 0.05}),
                                              ("hemicube", {"resolution": 32}),
                                              ("hemicube", {"resolution": 32, "eye": "auto"})])
-def test_form_factors_and_light(run_program, method, options):
+def test_form_factors_and_light_are_the_same(run_program, method, options):
     words = [word for name, value in options.items() for word in (f"--{name}", value)]
     folder = run_program("solve", SCENE, "--patches", 80, "--method", method, *words, "-o", "s.h5")
     mesh = rad.mesh(rad.load(SCENE), patches=80)
@@ -35,7 +35,7 @@ def test_form_factors_and_light(run_program, method, options):
     assert np.array_equal(mesh.vertices, stored(path, "mesh/vertices"))
 
 
-def test_clusters_share_rows(run_program):
+def test_rows_of_clusters_are_the_same(run_program):
     scene = "data/two-rooms.obj"
     folder = run_program("solve", scene, "--patches", 10, "--method", "rays", "--tolerance", 0.1,
                          "-o", "s.h5")
@@ -46,7 +46,7 @@ def test_clusters_share_rows(run_program):
     assert np.array_equal(rad.solve(F).radiosity, stored(folder / "s.h5", "solution/radiosity"))
 
 
-def test_heat_by_name(run_program):
+def test_heat_by_name_is_the_same(run_program):
     scene = "data/cornell-box-closed.obj"
     words = ["*.emissivity=0.8", "lamp.temperature=900", "short_block.emissivity=300:0.1 1000:0.25",
              "*.flux=0", "floor.convection=5", "floor.ambient=290"]
@@ -60,9 +60,9 @@ def test_heat_by_name(run_program):
 
 
 @pytest.mark.parametrize("elements", [True, False])
-def test_picture(run_program, elements):
+def test_pictures_are_the_same(run_program, elements):
     coarse = ["--element-tolerance", 0.3] if elements else []
-    # Without a tolerance, form factors that serve elements alone are coarser on the command line.
+    # Without a tolerance, form factors for elements alone are coarser on the command line.
     folder = run_program("render", SCENE, "--patches", 80, "--method", "exact", "--tolerance", 1e-3,
                          "--width", 16, "--elements", "on" if elements else "off", *coarse,
                          "-o", "p.exr")
@@ -73,7 +73,7 @@ def test_picture(run_program, elements):
     assert np.array_equal(image, exr(folder / "p.exr"))
 
 
-def test_a_picture_of_all_defaults(run_program):
+def test_a_picture_of_all_defaults_is_the_same(run_program):
     folder = run_program("solve", SCENE, "-o", "s.h5")
     run_program("render", "s.h5", "-o", "p.exr")
     mesh = rad.mesh(rad.load(SCENE))
@@ -82,7 +82,7 @@ def test_a_picture_of_all_defaults(run_program):
     assert np.array_equal(image, exr(folder / "p.exr"))
 
 
-def test_tables(run_program):
+def test_tables_are_the_same(run_program):
     folder = run_program("factors", SCENE, "--patches", 80, "--between", "surfaces", "-o", "t.json")
     said = json.loads((folder / "t.json").read_text())
     table = rad.form_factors(rad.mesh(rad.load(SCENE), patches=80)).table()
@@ -93,7 +93,7 @@ def test_tables(run_program):
 
 
 @pytest.mark.parametrize("at", ["patches", "vertices"])
-def test_gathered_light(run_program, at):
+def test_gathered_light_is_the_same(run_program, at):
     folder = run_program("gather", SCENE, "--patches", 80, "--resolution", 32, "--at", at, "--passes", 4,
                          "-o", "g.h5")
     mesh = rad.mesh(rad.load(SCENE), patches=80)

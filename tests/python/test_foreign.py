@@ -11,7 +11,7 @@ from conftest import box
 meshio = pytest.importorskip("meshio")
 
 
-def test_meshio_cells_sets_and_order():
+def test_meshio_sets_become_surfaces_in_order():
     vertices, faces = box()
     mesh = meshio.Mesh(vertices, [("line", [[0, 1]]), ("quad", faces[:4]),
                                   ("triangle", [faces[4][:3], faces[4][:1] + faces[4][2:], faces[5][:3],
@@ -24,7 +24,7 @@ def test_meshio_cells_sets_and_order():
     assert rad.mesh(scene, patches=24).area.sum() == pytest.approx(6, rel=1e-12)
 
 
-def test_meshio_physical_groups():
+def test_meshio_physical_groups_become_surfaces():
     mesh = meshio.Mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [("triangle", [[0, 1, 2], [0, 2, 3]])],
                        cell_data={"gmsh:physical": [np.array([7, 9])]},
                        field_data={"inlet": np.array([7, 2])})
@@ -62,7 +62,7 @@ def test_a_mesh_of_a_file_has_the_skin_that_the_file_has(tmp_path):
     assert len(faces[0]) == 6 and sorted(faces[0]) == sorted(faces[1])
 
 
-def test_volumes_of_points_that_are_not_there():
+def test_volumes_of_missing_points_are_refused():
     mesh = meshio.Mesh(np.eye(3), [("tetra", [[0, 1, 2, 7]])])
     with pytest.raises(rad.InputError, match="^meshio mesh: volume cell 0 has point 7; there are 3 points"):
         rad.from_meshio(mesh)
@@ -86,7 +86,7 @@ def test_fields_go_back_to_meshio(cornell):
 
 
 class Trimesh(types.SimpleNamespace):
-    """What from_trimesh() looks at of a trimesh.Trimesh."""
+    """The members of a trimesh.Trimesh that from_trimesh() reads."""
 
     def copy(self):
         return Trimesh(vertices=self.vertices.copy(), faces=self.faces.copy())
@@ -100,7 +100,7 @@ def triangles_of_box():
     return Trimesh(vertices=vertices, faces=np.array([[f[0], f[k], f[k + 1]] for f in faces for k in (1, 2)]))
 
 
-def test_trimesh():
+def test_a_trimesh_becomes_a_scene():
     scene = rad.from_trimesh(triangles_of_box())
     assert rad.mesh(scene, patches=24).area.sum() == pytest.approx(6, rel=1e-12)
 
@@ -121,7 +121,7 @@ def test_trimesh_scenes_keep_their_places_and_names():
         rad.from_trimesh(types.SimpleNamespace(vertices=np.zeros((0, 3)), faces=np.zeros((0, 3))))
 
 
-def test_pyvista(cornell):
+def test_a_mesh_becomes_pyvista_polygons(cornell):
     pyvista = pytest.importorskip("pyvista")
     poly = cornell.mesh.to_pyvista(area=cornell.mesh.area)
     assert isinstance(poly, pyvista.PolyData) and poly.n_cells == len(cornell.mesh.triangles)

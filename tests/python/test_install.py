@@ -1,4 +1,4 @@
-"""The package as it is installed: by pip, without network and isolation."""
+"""The installed package: by pip, without network and isolation."""
 
 import os
 import subprocess

@@ -13,7 +13,7 @@ def dense_solution(F, rho, E):
     return np.linalg.solve(np.eye(len(F)) - rho[:, None] * A, E)
 
 
-def test_emission_of_every_shape(cornell):
+def test_emission_may_have_every_shape(cornell):
     n = len(cornell.mesh)
     rng = np.random.default_rng(1)
     E = rng.random((n, 2, 3))
@@ -32,9 +32,9 @@ def test_emission_of_every_shape(cornell):
             assert np.allclose(alone.radiosity, expected, rtol=1e-5)
 
 
-def test_furnace_of_one_reflectance(cube):
+def test_a_furnace_has_its_closed_form(cube):
     light = rad.solve(cube, reflectance=0.75, emission=np.ones(24), tolerance=1e-12)
-    # B = E / (1 - rho) whatever F, where rows sum to 1: exact form factors to 1e-6.
+    # B = E / (1 - rho) for any F with rows that sum to 1: exact form factors to 1e-6.
     assert np.allclose(light.radiosity, 4, rtol=4e-6)
     assert light.summary["usable"] and light.summary["energy"]["to_sky"][0] == pytest.approx(0, abs=1e-9)
 
@@ -44,7 +44,7 @@ def test_a_singular_room_is_a_run_error(cube):
         rad.solve(cube, reflectance=1.0, emission=np.ones(24))
 
 
-def test_own_matrix_solves_as_numpy_does():
+def test_an_own_matrix_solves_as_in_numpy():
     rng = np.random.default_rng(2)
     A = rng.random((40, 40)) / 40
     F = rad.from_csr(A, rng.random(40) + 0.5)
@@ -56,7 +56,7 @@ def test_own_matrix_solves_as_numpy_does():
         rad.solve(F)
 
 
-def test_table_is_the_matrix_summed(cornell):
+def test_a_table_sums_the_matrix(cornell):
     table = cornell.table()
     A = cornell.csr.toarray().astype(float)
     surface = cornell.mesh.surface
@@ -74,13 +74,13 @@ def test_table_is_the_matrix_summed(cornell):
     assert "| lamp/light |" in str(table)
 
 
-def test_table_of_own_matrix_by_row_names():
+def test_a_table_of_an_own_matrix_goes_by_row_names():
     F = rad.from_csr([[0, 0.2, 0.3], [0.2, 0, 0.1], [0.15, 0.05, 0]], [1, 1, 2], names=["a", "a", "b"])
     assert F.between("a", "b") == pytest.approx(0.2)  # (1 * 0.3 + 1 * 0.1) / 2
     assert F.table().area.tolist() == [2, 2]
 
 
-def test_heat_between_plates_by_rows():
+def test_heat_between_plates_has_its_closed_form():
     F = rad.from_csr([[0, 1], [1, 0]], [1, 1])
     sigma = 5.67037441918443e-8
     got = rad.heat(F, emissivity=[0.8, 0.5], temperature=[1000, np.nan], flux=[np.nan, -1000])
@@ -109,7 +109,7 @@ def plate(z, a=2.0, b=1.0, name="plate"):
     return [[0, 0, z], [0, b, z], [a, b, z], [a, 0, z]], name  # looks down
 
 
-def test_a_sensor_below_a_plate():
+def test_a_sensor_below_a_plate_has_its_closed_form():
     vertices, name = plate(0.7)
     mesh = rad.mesh(rad.Scene(vertices, [[0, 1, 2, 3]], [name]), patches=9)
     row = rad.view_factors_from(mesh, [[0, 0, 0]], [0, 0, 1])
@@ -120,7 +120,7 @@ def test_a_sensor_below_a_plate():
     assert rad.view_factors_from(mesh, [[-1, 0, 0]], [-1, 0, 0]).sum() == 0
 
 
-def test_a_sensor_sees_past_what_is_in_between():
+def test_a_sensor_does_not_see_covered_parts():
     high, low = plate(1.0)[0], plate(0.5, 1.0, 1.0)[0]
     scene = rad.Scene(high + low, [[0, 1, 2, 3], [4, 5, 6, 7]], ["high", "low"])
     mesh = rad.mesh(scene, patches=40)
@@ -159,17 +159,17 @@ def test_sensors_outside_see_the_hull_and_through_none_of_it():
     assert inside.sum() == 0  # backs alone
 
 
-def test_irradiance_at_sensors_is_that_of_the_patches(cornell):
+def test_irradiance_at_sensors_is_near_that_of_the_patches(cornell):
     mesh = cornell.mesh
     light = rad.solve(cornell)
     floor = np.flatnonzero(mesh.per_patch({"floor": 1.0}))[::5]
     rows = rad.view_factors_from(mesh, mesh.centroid[floor], mesh.normal[floor])
     at_points = rows @ light.radiosity
-    # Point against mean over the patch: they differ by what light curves over a patch.
+    # Point against mean over the patch: they differ by the curvature of light over a patch.
     assert np.allclose(at_points, light.irradiance[floor], rtol=0.15)
 
 
-def test_a_picture_of_arrays(cornell):
+def test_arrays_are_drawn_as_radiance(cornell):
     values = cornell.mesh.per_patch({"lamp": np.pi}, 0.0)
     image = rad.render(cornell.mesh, values, width=64, smooth=False, samples=1)
     assert image.shape == (64, 64, 4) and image.dtype == np.float32

@@ -1,4 +1,4 @@
-"""What is wrong with an argument is said in one line that names it; what is not used is said, too."""
+"""A wrong argument is named in one line; unused ones are named, too."""
 
 import re
 import sys
@@ -112,7 +112,7 @@ def test_wrong_objects_are_named(plates, call, message):
 
 
 @pytest.mark.parametrize("name", ["scene.obj", "picture.png", "f.mtx", "f.hdf5", "plain"])
-def test_no_other_file_is_overwritten_by_results(plates, tmp_path, name):
+def test_results_overwrite_no_other_file(plates, tmp_path, name):
     path = tmp_path / name
     path.write_text("of someone else")
     refused(lambda: plates.save(path), f"{name}: is no name of a results file; end it in .h5")
@@ -161,7 +161,7 @@ def test_options_that_are_used_are_not_warned_of(plates):
         rad.form_factors(plates.mesh, 1e-4, method="exact", closure="off")
 
 
-def test_what_did_not_converge_is_warned_of(cube):
+def test_missing_convergence_is_warned_of(cube):
     with pytest.warns(UserWarning, match="no convergence: 1 Jacobi sweeps") as told:
         light = rad.solve(cube, 0.9, np.ones(24), solver="jacobi", max_iterations=1)
     assert not light.summary["usable"] and told[0].filename == __file__
@@ -199,7 +199,7 @@ def room_with_a_heater():
     return rad.form_factors(rad.mesh(scene, patches=24))
 
 
-def test_conditions_that_lack_names_name_the_cure():
+def test_incomplete_conditions_name_the_cure():
     F = room_with_a_heater()
     temperature = {"heater": 1200, "tray": None}
     refused(lambda: rad.heat(F, emissivity={"wall": 0.8}, temperature={**temperature, "*": 300}),

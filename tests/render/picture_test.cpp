@@ -1,4 +1,4 @@
-// Small pictures against stored ones: what a user looks at must not change unnoticed.
+// Small pictures against stored ones: no picture may change unnoticed.
 //
 // Metric: root mean square of the difference over all pixels and colour bands, divided by the mean
 // of the stored picture; pixels that one picture hits and the other misses count as a difference of
@@ -58,7 +58,7 @@ double difference(const Image& image, const Image& stored) {
 
 class Picture : public testing::TestWithParam<const char*> {};
 
-TEST_P(Picture, IsTheStoredOne) {
+TEST_P(Picture, EqualsTheStoredOne) {
   const std::string path =
       RADIOSITY_SOURCE_DIR "/tests/truth/picture-" + std::string(GetParam()) + ".exr";
   const Image image = picture(GetParam());

@@ -89,16 +89,16 @@ double meanOf(const Image& image) {
 
 /// Interpolation is low by .1% in the mean; rays of 1% a pixel leave .02% of the mean of 4,096
 /// pixels.
-TEST(PixelGather, TheMeanIsThatOfElements) {
+TEST(PixelGather, TheMeanEqualsThatOfElements) {
   const Scene scene = cornellBox();
   Solved box(scene, scene.cameras.at(0), 500);
   const double of_pixels = meanOf(box.gather(64).radiance);
   EXPECT_NEAR(of_pixels / meanOf(box.elements(64)), 1, 2e-3);
 }
 
-/// A picture by 32 times as many rays is nearly free of noise: what the other one differs by is its
-/// own.
-TEST(PixelGather, NoiseIsAsStated) {
+/// A picture by 32 times as many rays is nearly free of noise: the difference is the other one's
+/// noise.
+TEST(PixelGather, NoiseMatchesTheStatedError) {
   const Scene scene = cornellBox();
   Solved box(scene, scene.cameras.at(0), 500);
   const PixelGather coarse = box.gather(32, {.rays = 128});
@@ -106,7 +106,7 @@ TEST(PixelGather, NoiseIsAsStated) {
   double off = 0;
   double whole = 0;
   for (std::size_t p = 0; p < fine.radiance.rgba.size(); p += 4) {
-    // The lamp shines, and edges of the box are mixed with nothing.
+    // The lamp shines, and pixels at edges of the box are partly empty.
     const float brightest = fine.radiance.rgba[p];
     if (fine.radiance.rgba[p + 3] < 1 || brightest > 1) continue;
     double one = 0;
@@ -138,7 +138,7 @@ TEST(PixelGather, AnyNumberOfThreadsGivesTheSameBits) {
   EXPECT_EQ(one.report.ray_error, two.report.ray_error);
 }
 
-TEST(PixelGather, ForecastsCountWhatIsDone) {
+TEST(PixelGather, ForecastsMatchTheWorkDone) {
   const Scene scene = cornellBox();
   Solved box(scene, scene.cameras.at(0), 200);
   const PixelGather done = box.gather(256, {.rays = 64});
@@ -151,7 +151,7 @@ TEST(PixelGather, ForecastsCountWhatIsDone) {
   EXPECT_GT(foreseen.seconds, 0);
 }
 
-TEST(PixelGather, RaysAreBounded) {
+TEST(PixelGather, TheNumberOfRaysIsBounded) {
   const Scene scene = cornellBox();
   Solved box(scene, scene.cameras.at(0), 200);
   const PixelGather found = box.gather(32, {.rays = 1024, .most_rays = 32 * 32 * 256});
@@ -174,7 +174,7 @@ TEST(PixelGather, CanBeCancelled) {
                Cancelled);
 }
 
-TEST(PixelGather, WhatCannotBeDoneIsRefusedByName) {
+TEST(PixelGather, ImpossibleInputIsRefused) {
   const Scene scene = cornellBox();
   Solved box(scene, scene.cameras.at(0), 200);
   EXPECT_THROW(box.gather(32, {.rays = 0}), InputError);

@@ -1,4 +1,4 @@
-// Cameras: from text, by default, and the exposure of what they see.
+// Cameras: from text, by default, and the exposure of their pictures.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -88,7 +88,7 @@ TEST(View, ANarrowPictureKeepsTheCamerasHorizontalField) {
 PatchMesh room(const Vec3& size, bool block_at_the_ends) {
   QuadMesh builder;
   builder.box("room", Vec3(0), size, 6, true);
-  if (block_at_the_ends) {  // where an eye near the end of the longest extent would stand
+  if (block_at_the_ends) {  // at the place of an eye near the end of the longest extent
     const Vec3 half(0.12 * size.x, 0.4 * size.y, 0.3 * size.z);
     for (const double x : {0.13, 0.87}) {
       const Vec3 centre = Vec3(x, 0.45, 0.5) * size;
@@ -128,7 +128,7 @@ TEST(FramingCamera, AClosedRoomIsSeenFromAnEndAlongItsLength) {
   }
 }
 
-TEST(FramingCamera, StandsOnTheFloorOfASceneWhoseUpIsZ) {
+TEST(FramingCamera, StandsOnTheFloorIfZIsUp) {
   const PatchMesh mesh = room({8, 2.5, 4}, true);
   PatchMesh lying = mesh;
   for (auto* const vectors : {&lying.vertices, &lying.centroid, &lying.normal}) {
@@ -205,7 +205,7 @@ TEST(FramingCamera, DoesNotDependOnThreadsOrScale) {
   setThreads(0);
   EXPECT_EQ(one.eye, reference.eye);
   EXPECT_EQ(one.target, reference.target);
-  // A person's height counts in scenes as high as a room or a hall, shares of it in all others.
+  // Eyes stand at a person's height in scenes as high as a room or hall, else at a share of theirs.
   const auto scaled = [&](double factor) {
     PatchMesh other = mesh;
     for (Vec3& v : other.vertices) v *= factor;
@@ -249,7 +249,7 @@ TEST(FramingCamera, ARoomWithAWindowIsSeenFromInside) {
   EXPECT_GT(fronts(mesh, camera), 0.9);
 }
 
-TEST(FramingCamera, LooksTowardsWhatIsLit) {
+TEST(FramingCamera, LooksTowardsTheLitRoom) {
   // Two rooms side by side, the wall between them closed: light in one of them.
   for (const bool first_lit : {true, false}) {
     QuadMesh builder;
@@ -265,7 +265,7 @@ TEST(FramingCamera, LooksTowardsWhatIsLit) {
   }
 }
 
-TEST(FramingCamera, NeedsALightAPatch) {
+TEST(FramingCamera, NeedsALightValueForEachPatch) {
   const PatchMesh mesh = room({1, 1, 1}, false);
   EXPECT_THROW(framingCamera(mesh, true, 1, std::vector<double>(3, 1.0)), InputError);
   EXPECT_EQ(typicalLight(mesh, std::vector<double>(mesh.size(), 0.0)), 0);
@@ -305,7 +305,7 @@ TEST(Exposure, LuminanceIsRec709) {
   EXPECT_NEAR(autoExposure(green), std::log2(0.8 / (2 * 0.7152)), 1e-6);
 }
 
-TEST(Exposure, NothingToSeeIsNotExposed) {
+TEST(Exposure, EmptyAndBlackImagesAreNotExposed) {
   EXPECT_EQ(autoExposure(Image{}), 0);
   EXPECT_EQ(autoExposure(Image{1, 1, {5, 5, 5, 0}}), 0);
   EXPECT_EQ(autoExposure(Image{1, 1, {0, 0, 0, 1}}), 0);

@@ -1,4 +1,4 @@
-// False colour: the map, what has no value, and a legend that says the truth and can be read.
+// False colour: the map, pixels without a value, and a true and legible legend.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,8 +24,8 @@ std::array<int, 3> coded(const Vec3& linear) {
 }
 
 TEST(ColourMap, IsViridis) {
-  // Entries 0, 40, 127, 200 and 255 of the 256 published ones, to 8 bits. Between the control
-  // points (every 16th) the chord stays within 2 of the curve.
+  // Entries 0, 127 and 255 of the 256 published ones, to 8 bits. Between the control points (every
+  // 16th) the chord stays within 2 of the curve.
   const ColourMap map;
   const auto near = [&](int entry, std::array<int, 3> published) {
     const std::array<int, 3> c = coded(map.at(entry / 255.0));
@@ -109,7 +109,7 @@ TEST(FalseColour, ValuesHaveTheirColourAndMissesAreGrey) {
   for (std::size_t k = 3; k < image.rgba.size(); k += 4) ASSERT_EQ(image.rgba[k], 1.0f);
 }
 
-TEST(FalseColour, WithoutARangeTheVisibleValuesMakeIt) {
+TEST(FalseColour, TheDefaultRangeIsThatOfVisibleValues) {
   const Image by_itself = falseColour({2.0, 3.5, 7.0}, {"t", "u"});
   const Image told = falseColour({2.0, 3.5, 7.0}, {"t", "u", 2, 7});
   EXPECT_EQ(by_itself.rgba, told.rgba);
@@ -130,7 +130,7 @@ TEST(FalseColour, WithoutARangeTheVisibleValuesMakeIt) {
   EXPECT_EQ(draw(1.5).rgba, draw(1000).rgba);
 }
 
-TEST(FalseColour, ALampInViewDoesNotLeaveTheRestInOneColour) {
+TEST(FalseColour, ALampInViewLeavesTheRestItsColours) {
   QuadMesh builder;  // a wall from 0 to 1, before it a lamp that covers 0.25% of the picture
   builder.grid("wall", {-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 100, 1);
   builder.grid("lamp", {0, 0, 0.1}, {0.1, 0, 0}, {0, 0.1, 0});
@@ -162,7 +162,7 @@ TEST(FalseColour, TheLegendTellsRangesApart) {
   // Row sums stand on 1: the digits that differ must be shown.
   EXPECT_NE(with(0.99998, 1.00001), with(0.99997, 1.00001));
   EXPECT_NE(with(0.99998, 1.00001), with(0.99998, 1.00002));
-  // Values beyond an end change what the end says.
+  // Values beyond an end change its label.
   const auto clipped = strip(falseColour({0.2, 0.5, 5}, {"t", "u", 0, 1}));
   EXPECT_NE(with(0, 1), clipped);
   EXPECT_NE(strip(falseColour(values, {"t", "u", 0, 1})),
@@ -191,7 +191,7 @@ TEST(FalseColour, TheBarRunsFromLowToHighAndTheTextStaysInside) {
     EXPECT_TRUE(colours.contains(coded(map.at(0))));
     EXPECT_TRUE(colours.contains(coded(map.at(1))));
     EXPECT_GT(colours.size(), 100u);
-    // A capital is at least 7 pixels high and 1/80 of the picture: legible where it is legible.
+    // A capital is at least 7 pixels high and 1/80 of the picture: legible at its size.
     EXPECT_GE(rows, width / 10);
     EXPECT_LE(rows, width / 4);
   }

@@ -1,4 +1,4 @@
-// How values spread over patches: what is shared, what is not, and how well fields come out.
+// Values at corners and within patches: which patches mix, and the accuracy of fields.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,7 +30,7 @@ std::vector<double> atCentroids(const PatchMesh& mesh, const Field& field) {
   return perPatch(mesh, [&](std::size_t i) { return field(mesh.centroid[i]); });
 }
 
-TEST(CornerValues, AConstantStaysThatConstantToTheBit) {
+TEST(CornerValues, AConstantStaysConstantToTheBit) {
   QuadMesh builder;
   builder.box("box", {0.1, 0.2, 0.3}, {1.7, 2.9, 3.1}, 7);
   builder.patch("box", {{9, 0, 0}, {10, 0, 0}, {9, 0, 0}});  // degenerate
@@ -127,7 +127,7 @@ TEST(CornerValues, TheSidesOfATwoSidedSheetDoNotMix) {
   expectSidesApart(builder.build());
 }
 
-TEST(CornerValues, SameBitsForAnyOrderOfThePatches) {
+TEST(CornerValues, TheOrderOfPatchesChangesNoBit) {
   QuadMesh builder;
   builder.grid("floor", {0, 0, 0}, {1, 0.1, 0}, {0.3, 1, 0}, 12, 12);
   std::vector<std::size_t> order(builder.patchCount());
@@ -143,7 +143,7 @@ TEST(CornerValues, SameBitsForAnyOrderOfThePatches) {
   }
 }
 
-TEST(CornerValues, AreasWeigh) {
+TEST(CornerValues, PatchesAreWeightedByArea) {
   QuadMesh builder;
   builder.patch("floor", {{0, 0, 0}, {3, 0, 0}, {3, 1, 0}, {0, 1, 0}});
   builder.patch("floor", {{3, 0, 0}, {4, 0, 0}, {4, 1, 0}, {3, 1, 0}});
@@ -155,7 +155,7 @@ TEST(CornerValues, AreasWeigh) {
   EXPECT_EQ(corners[5], 10.0);
 }
 
-TEST(CornerValues, TouchingInAVertexOnlyIsNotANeighbour) {
+TEST(CornerValues, PatchesThatTouchInAVertexDoNotMix) {
   QuadMesh builder;
   builder.patch("floor", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
   builder.patch("floor", {{1, 1, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0}});
@@ -299,7 +299,7 @@ TEST(InterpolatedPicture, TheBorderIsFirstOrderAndTheInsideSecond) {
   EXPECT_NEAR(std::log2(error16 / error32), 2, 0.2);
 }
 
-TEST(InterpolatedPicture, AConstantFieldIsThatConstantInEveryPixelThatHits) {
+TEST(InterpolatedPicture, AConstantFieldIsConstantInEveryPixelHit) {
   QuadMesh builder;
   builder.box("room", {-2, 0, -3}, {2, 2.5, 3}, 7, true);
   builder.box("block", {-1, 0.25, -1.5}, {0, 1.5, -0.5}, 3);

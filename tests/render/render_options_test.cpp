@@ -1,4 +1,4 @@
-// What render() takes and refuses, and its smallest cases.
+// Options that render() takes and refuses, and its smallest cases.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What is seen where: coverage, perspective, depth order, sides, clipping, and sameness to the bit.
+// Visible surfaces: coverage, perspective, depth order, sides, clipping, and equal bits.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,7 +37,7 @@ Image picture(const PatchMesh& mesh, const std::vector<double>& values, const Ca
   return render(mesh, values, camera, options, silent);
 }
 
-/// Value k + 1 in the first band of patch k: tells which patch a flat picture shows.
+/// Value k + 1 in the first band of patch k, which tells the patches of a flat picture.
 std::vector<double> labels(const PatchMesh& mesh) {
   std::vector<double> values(mesh.size() * 3, 0.0);
   for (std::size_t i = 0; i < mesh.size(); ++i) values[i * 3] = double(i + 1);
@@ -100,7 +100,7 @@ TEST(RenderVisibility, TiltedSquareCoversItsProjectedArea) {
   EXPECT_NEAR(coverage(image), std::abs(twice) / 2, 0.25 * std::sqrt(perimeter));
 }
 
-TEST(RenderVisibility, APointIsSeenWherePerspectivePutsIt) {
+TEST(RenderVisibility, APointIsSeenAtItsPerspectivePlace) {
   // A square of 0.2 m around (0.4, 0.3, -1), seen from an oblique camera.
   const Vec3 point(0.4, 0.3, -1.0);
   Camera camera = cameraAt({1.5, 1.0, 2.0});
@@ -195,7 +195,7 @@ TEST(RenderVisibility, AHugeFloorThatPassesBehindTheEyeEndsAtTheHorizon) {
   }
 }
 
-TEST(RenderVisibility, NothingIsTooNear) {
+TEST(RenderVisibility, ASurfaceCloseToTheEyeIsDrawn) {
   // 1e-9 m before the eye of a room of metres: a near plane would open it.
   QuadMesh builder;
   builder.grid("near", {-1, -1, -1e-9}, {2, 0, 0}, {0, 2, 0});
@@ -207,7 +207,7 @@ TEST(RenderVisibility, NothingIsTooNear) {
   for (int k = 0; k < 32; ++k) EXPECT_EQ(pixel(image, k, k)[0], 1.0f);
 }
 
-TEST(RenderVisibility, NearerHidesFartherWhateverTheOrder) {
+TEST(RenderVisibility, NearerSurfacesHideFartherOnesInAnyOrder) {
   for (const bool near_first : {true, false}) {
     QuadMesh builder;
     const auto add = [&](double z, double half) {
@@ -323,7 +323,7 @@ TEST(RenderVisibility, ARoomHasNoCracks) {
   }
 }
 
-TEST(RenderVisibility, SameBitsForAnyThreadCountOrderAndPowerOfTwo) {
+TEST(RenderVisibility, ThreadsOrderAndPowersOfTwoChangeNoBit) {
   QuadMesh builder;
   builder.box("room", {-2, 0, -3}, {2, 2.5, 3}, 9, true);
   builder.box("block", {-1, 0, -1.5}, {0, 1.5, -0.5}, 4);  // stands on the floor: equal depths
@@ -364,7 +364,7 @@ TEST(RenderVisibility, SameBitsForAnyThreadCountOrderAndPowerOfTwo) {
 }
 
 TEST(RenderVisibility, SamplesSetTheStepsOfAlpha) {
-  // An edge 5/16 of the way through pixel column 8 of 16: alpha there is 1 - 5/16 of the samples.
+  // An edge a quarter of the way through pixel column 9 of 16: alpha there is 3/4 of the samples.
   QuadMesh builder;
   builder.grid("half", {(0.5 * 5 / 16) / 4, -9, -1}, {9, 0, 0}, {0, 18, 0});
   const PatchMesh mesh = builder.build();

@@ -63,11 +63,11 @@ TEST_F(ResultsFile, GivesBackClustersWithARowForEach) {
   }
 }
 
-TEST_F(ResultsFile, GivesBackWhateverStagesThereAre) {
+TEST_F(ResultsFile, GivesBackAnyCombinationOfStages) {
   const Results full = sample::results(3, Precision::single_precision);
   for (int stages = 0; stages < 128; ++stages) {
     Results some = full;
-    // What was gathered belongs to a mesh and is not stored without it.
+    // Gathered light belongs to a mesh and is not stored without it.
     if ((stages & 34) != 34) some.gathered.reset(), some.gather_key.clear();
     // Heat belongs to a mesh and form factors.
     if ((stages & 6) != 6) some.heat.reset(), some.heat_key.clear();
@@ -85,8 +85,8 @@ TEST_F(ResultsFile, GivesBackWhateverStagesThereAre) {
   }
 }
 
-TEST_F(ResultsFile, BandsAreThoseOfTheRows) {
-  // As a program that uses the library, or h5py, makes a file: materials alone, the sky left out.
+TEST_F(ResultsFile, BandsFollowTheRows) {
+  // As in a file made by a program with the library or h5py: materials alone, without the sky.
   Results spectral = sample::results(3, Precision::single_precision, 8);
   spectral.solution.reset();
   spectral.solution_key.clear();
@@ -107,7 +107,7 @@ TEST_F(ResultsFile, BandsAreThoseOfTheRows) {
   EXPECT_TRUE(sample::same(read, readResults(file())));
 }
 
-TEST_F(ResultsFile, KeepsTheUnusual) {
+TEST_F(ResultsFile, KeepsUnusualValues) {
   Results odd = sample::results(3, Precision::double_precision);
   Solution solution = sample::solution(0, 3);
   solution.summary.error_bound.reset();
@@ -123,7 +123,7 @@ TEST_F(ResultsFile, KeepsTheUnusual) {
   MeshResult mesh = {sample::mesh(3), sample::meshReport()};
   mesh.report.notes.assign(5000, {Severity::info, "one of many"});
   odd.mesh = mesh;
-  odd.mesh_key = std::string(200000, 'k');  // above what an object header holds
+  odd.mesh_key = std::string(200000, 'k');  // more than an object header holds
   write(odd);
   EXPECT_TRUE(sample::same(odd, readResults(file())));
 
@@ -153,7 +153,7 @@ TEST_F(ResultsFile, SameResultsGiveTheSameBytes) {
   EXPECT_EQ(first, load(file()));
 }
 
-TEST_F(ResultsFile, SizeIsKnownBeforeItIsWritten) {
+TEST_F(ResultsFile, SizeIsEstimatedBeforeWriting) {
   for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
     for (const Index side : {1u, 2u, 5u, 12u, 30u, 60u}) {
       const Results results = sample::results(side, precision);
@@ -170,7 +170,7 @@ TEST_F(ResultsFile, SizeIsKnownBeforeItIsWritten) {
               4096.0);
 }
 
-TEST_F(ResultsFile, NamesWhatIsNotAResultsFile) {
+TEST_F(ResultsFile, NamesFilesThatAreNoResultsFiles) {
   expectInputError("no such file");
   save(file(), {'v', ' ', '1'});
   EXPECT_FALSE(isResultsFile(file()));
@@ -234,7 +234,7 @@ class Edit {
   hid_t file_;
 };
 
-TEST_F(ResultsFile, NamesWhatAnotherProgramChanged) {
+TEST_F(ResultsFile, NamesFieldsThatAnotherProgramChanged) {
   const Results good = sample::results(3, Precision::single_precision);
   const auto expectAfter = [&](const auto& change, const std::string& part) {
     write(good);
@@ -309,7 +309,7 @@ TEST_F(ResultsFile, NamesWhatAnotherProgramChanged) {
         e.vector("/mesh/area", H5T_NATIVE_FLOAT, 10);
       },
       "/mesh/area is not a vector of 64-bit float");
-  // An extent nothing stands behind must not be believed (8 TB).
+  // An extent without data must not be believed (8 TB).
   expectAfter(
       [](Edit& e) {
         e.remove("/mesh/area");
@@ -433,7 +433,7 @@ TEST_F(ResultsFile, EveryFlippedByteIsNoticedOrHarmless) {
       ++noticed;
     }
   }
-  // Unused space between blocks is all that may be harmless.
+  // Only unused space between blocks may be harmless.
   EXPECT_GT(noticed, 4 * harmless);
 }
 

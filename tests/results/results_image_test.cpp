@@ -55,7 +55,7 @@ TEST_F(ImageFile, ExrIsMultipliedByAlpha) {
   EXPECT_EQ(readImage(path("x.exr")).rgba, written.rgba);
 }
 
-TEST_F(ImageFile, PngHasTheCurveOfSrgb) {
+TEST_F(ImageFile, PngFollowsTheSrgbCurve) {
   // IEC 61966-2-1: 0.5 -> 187.5 (188), 0.2140 -> 0.5 -> 127.5, and the straight part below
   // 0.0031308: 0.002 -> 0.02584 -> 6.6.
   const Image linear = image(4, 2, {0.5f,       0.5f,  0.5f, 1,    0,  1,     2,    1,  //
@@ -76,7 +76,7 @@ TEST_F(ImageFile, PngHasTheCurveOfSrgb) {
                                                10,  25,  89,  255, 255, 255, 255, 255}));
 }
 
-TEST_F(ImageFile, PngOfDisplayColoursIsStoredAsIs) {
+TEST_F(ImageFile, PngStoresDisplayColoursUnchanged) {
   Image shown = image(16, 16, {});
   for (int k = 0; k < 1024; ++k) shown.rgba.push_back(float(k % 256) / 255);
   writeImage(path("x.png"), shown, true);
@@ -130,7 +130,7 @@ TEST_F(ImageFile, TruncatedPicturesAreRefused) {
   }
 }
 
-TEST_F(ImageFile, IsWholeOrNotThere) {
+TEST_F(ImageFile, IsWrittenWholeOrNotAtAll) {
   Image noise = image(256, 256, {});
   for (std::size_t k = 0; k < 256 * 256 * 4; ++k) {
     noise.rgba.push_back(float((k * k * 7919) % 65521) / 65521);

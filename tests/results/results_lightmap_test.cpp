@@ -174,7 +174,7 @@ class LightmapGlb : public FolderTest {
   GltfFile baked;
 };
 
-TEST_F(LightmapGlb, KeepsWhatTheFileHas) {
+TEST_F(LightmapGlb, KeepsTheContentsOfTheFile) {
   const std::string source = GltfWriter().write(folder_);
   bake(source);
   EXPECT_EQ(set, 1);
@@ -215,8 +215,8 @@ TEST_F(LightmapGlb, KeepsWhatTheFileHas) {
                          [](unsigned char a, char b) { return char(a) == b; }));
 }
 
-/// Where a face's corners lie in the map, by the file as by the map itself.
-TEST_F(LightmapGlb, CoordinatesAreThoseOfTheMap) {
+/// The places of a face's corners in the map, by the file and by the map itself.
+TEST_F(LightmapGlb, CoordinatesEqualThoseOfTheMap) {
   bake(GltfWriter().write(folder_));
   const Scene again = loadScene(path("out/baked.glb"));
   // Faces of the file: the floor's, a plate's fronts and backs, the other's, the lamp's.
@@ -276,7 +276,7 @@ TEST_F(LightmapGlb, BacksHaveAPrimitiveOfTheirOwn) {
 }
 
 /// Three charts meet at each of the block's eight vertices.
-TEST_F(LightmapGlb, VerticesBetweenChartsAreParted) {
+TEST_F(LightmapGlb, ChartsDoNotShareVertices) {
   bake(GltfWriter().write(folder_));
   const tinygltf::Primitive& block =
       baked.model.meshes[std::size_t(baked.model.nodes[5].mesh)].primitives[0];
@@ -285,7 +285,7 @@ TEST_F(LightmapGlb, VerticesBetweenChartsAreParted) {
   }
 }
 
-TEST_F(LightmapGlb, OfOtherFilesAPlainMesh) {
+TEST_F(LightmapGlb, OtherFilesGiveAPlainMesh) {
   bake(RADIOSITY_SOURCE_DIR "/data/cornell-box.obj");
   EXPECT_EQ(set, 1);
   const Scene again = loadScene(path("out/baked.glb"));
@@ -302,7 +302,7 @@ TEST_F(LightmapGlb, OfOtherFilesAPlainMesh) {
   }
 }
 
-TEST_F(LightmapGlb, AFileThatChangedIsRefused) {
+TEST_F(LightmapGlb, AChangedFileIsRefused) {
   const std::string source = GltfWriter().write(folder_);
   bake(source);
   std::string text;

@@ -1,4 +1,4 @@
-// Elements as a lit mesh: whole, without cracks, with the light that they have.
+// Elements as a lit mesh: whole, without cracks, with their light.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -126,7 +126,7 @@ TEST(LitElements, LightIsContinuousOnASmoothSide) {
   EXPECT_GT(shared, lit.found.size() / 2);
 }
 
-/// At corners of elements the lit mesh has what a picture interpolates between. The lookup takes
+/// At corners of elements the lit mesh has the values that pictures interpolate. The lookup takes
 /// points in single steps from the root, the mesh halves by halves: they differ by rounding.
 TEST(LitElements, CornersHaveTheLightOfPictures) {
   const Lit lit(smallRoom(), 300);
@@ -147,7 +147,7 @@ TEST(LitElements, CornersHaveTheLightOfPictures) {
   }
 }
 
-/// What leaves the elements as a picture shows them: by 32 x 32 points of each root.
+/// The power of the elements as in a picture: by 32 x 32 points of each root.
 double energyOfFields(const Lit& lit) {
   const Elements& elements = *lit.light.elements;
   const ElementLookup lookup(lit.mesh, elements.roots);
@@ -176,12 +176,12 @@ double energyOfFields(const Lit& lit) {
   return energy;
 }
 
-/// Of the first band. What leaves the triangles is what leaves the elements, but for how light
-/// turns within a quadrilateral, which two triangles do not follow: 1e-4. The patches' is the same
+/// Of the first band. The power of the triangles is that of the elements, but for the twist of
+/// light within a quadrilateral, which two triangles do not follow: 1e-4. The patches' is the same
 /// to the error of both: the matrix takes light as constant on each patch, and lines between
 /// vertices are low where light has maxima; measured, 4e-4 and 6e-4 (1.2e-3 with
 /// 2,000 patches in the two rooms, of which the triangles have 1e-4).
-TEST(LitElements, EnergyIsThatOfElementsAndOfPatches) {
+TEST(LitElements, EnergyEqualsThatOfElementsAndOfPatches) {
   for (const char* name : {"cornell-box-closed.obj", "two-rooms.obj"}) {
     const Lit lit(data(name), 1000);
     double of_patches = 0;
@@ -197,8 +197,8 @@ TEST(LitElements, EnergyIsThatOfElementsAndOfPatches) {
   }
 }
 
-/// A patch without elements is drawn as it would be alone, but for what its neighbours cut.
-TEST(LitElements, WhatWasNotEvaluatedKeepsItsPatch) {
+/// A patch without elements is drawn as if alone, but for cuts by its neighbours.
+TEST(LitElements, PatchesWithoutElementsAreDrawnAsPatches) {
   const auto is_wanted = [](Index i) { return i % 3 == 0; };
   const Lit lit(smallRoom(), 300, {}, FormFactorMethod::exact, is_wanted);
   LitTriangles alone(lit.mesh, lit.light.patches, lit.corners);
@@ -243,7 +243,7 @@ TEST_F(LitElementsFile, IsReadBackWithEveryTriangleAndItsLight) {
   EXPECT_NEAR(read / written, 1, 1e-6) << "single precision";
 }
 
-TEST_F(LitElementsFile, ANumberThatIsNoneIsRefused) {
+TEST_F(LitElementsFile, NotANumberIsRefused) {
   Lit lit(smallRoom(), 60);
   Elements broken = *lit.light.elements;
   broken.indirect.values[4] = NAN;

@@ -42,9 +42,9 @@ TEST_F(MatrixMarket, HoldsEveryEntryToTheBit) {
   }
 }
 
-// The far side of a pair of a symmetric matrix is computed from the near one: what is written is
-// what a results file holds, rounded likewise.
-TEST_F(MatrixMarket, RoundsAsTheResultsFileDoes) {
+// The far side of a pair of a symmetric matrix is computed from the near one: it is written as a
+// results file holds it, rounded likewise.
+TEST_F(MatrixMarket, RoundsLikeTheResultsFile) {
   ExchangeMatrix matrix =
       ExchangeMatrix::symmetric({1, 3, 0.7}, {0, 1, 2}, Precision::single_precision);
   const std::vector<double> first = {0, 0.3, 0.1};
@@ -68,7 +68,7 @@ TEST_F(MatrixMarket, RoundsAsTheResultsFileDoes) {
   EXPECT_NE(matrix.at(1, 0), double(float(matrix.at(1, 0)))) << "0.1 as a double is no float";
 }
 
-TEST_F(MatrixMarket, EmptyMatrix) {
+TEST_F(MatrixMarket, AnEmptyMatrixHasNoEntries) {
   writeMatrixMarket(path("x.mtx"), ExchangeMatrix({1, 2}, Precision::single_precision), progress_);
   std::ifstream file(path("x.mtx"));
   std::string line;
@@ -77,7 +77,7 @@ TEST_F(MatrixMarket, EmptyMatrix) {
   EXPECT_EQ(line, "2 2 0");
 }
 
-TEST_F(MatrixMarket, IsWholeOrNotThere) {
+TEST_F(MatrixMarket, IsWrittenWholeOrNotAtAll) {
   const ExchangeMatrix matrix = sample::matrix(sample::mesh(17), Precision::single_precision);
   for (const rlim_t limit : {0, 100, 100000}) {
     const FullDisk disk(limit);

@@ -153,7 +153,7 @@ TEST_F(MeshFile, ObjHoldsOutlinesInOrder) {
                                              "f 1 2 5 5"}));
 }
 
-/// What --faces-as-patches needs: the same faces in the same order on surfaces of the same names.
+/// As for --faces-as-patches: the same faces in the same order on surfaces of the same names.
 TEST_F(MeshFile, ObjIsReadBackAsTheSameFaces) {
   PatchMesh mesh = sample::mesh(5);
   mesh.surface_names = {"box/red", "house/left wall/white paint"};
@@ -167,7 +167,7 @@ TEST_F(MeshFile, ObjIsReadBackAsTheSameFaces) {
   }
 }
 
-TEST_F(MeshFile, ObjKeepsABackThatHasNoFront) {
+TEST_F(MeshFile, ObjKeepsABackWithoutAFront) {
   PatchMesh mesh = corner();
   mesh.twin = {kNone, kNone, kNone, kNone};
   writeMesh(path("x.obj"), mesh);
@@ -235,7 +235,7 @@ TEST_F(MeshFile, LitGlbShowsExposedRadianceAndHoldsRadiosity) {
   }
 }
 
-TEST_F(MeshFile, LitGlbSharesVerticesWhereValuesAgree) {
+TEST_F(MeshFile, LitGlbSharesVerticesOfEqualValues) {
   PatchMesh mesh = sample::mesh(4);
   for (Vec3& v : mesh.vertices) v.z = 0;
   for (std::size_t i = 0; i < mesh.size(); ++i) {
@@ -246,7 +246,7 @@ TEST_F(MeshFile, LitGlbSharesVerticesWhereValuesAgree) {
   writeLitGlb(path("x.glb"), mesh, b, 0, 30);
   const tinygltf::Model model = parse(path("x.glb"));
   const std::vector<double> corners = cornerValues(mesh, b, 3, 30);
-  // What the file must show at each corner, by place: the values there are.
+  // The values that the file must show at each corner, by place.
   std::map<std::vector<float>, std::size_t> wanted;
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     if (mesh.piece_offset[i] == mesh.piece_offset[i + 1]) continue;
@@ -270,7 +270,7 @@ TEST_F(MeshFile, LitGlbSharesVerticesWhereValuesAgree) {
   EXPECT_EQ(found, wanted.size());  // each once: none missing, none twice
 }
 
-TEST_F(MeshFile, FarFromTheOriginNothingIsRounded) {
+TEST_F(MeshFile, GlbRoundsNothingFarFromTheOrigin) {
   const PatchMesh near = corner();
   PatchMesh far = near;
   const Vec3 shift(1e6, -2e6, 3e6);
@@ -314,7 +314,7 @@ TEST_F(MeshFile, ErrorsNameTheFile) {
   EXPECT_EQ(files(), 0u);
 }
 
-TEST_F(MeshFile, IsWholeOrNotThere) {
+TEST_F(MeshFile, IsWrittenWholeOrNotAtAll) {
   const PatchMesh mesh = sample::mesh(20);
   const std::vector<double> b(3 * mesh.size(), 1.0);
   for (const rlim_t limit : {0, 100, 5000}) {

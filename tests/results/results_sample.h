@@ -119,7 +119,7 @@ inline MeshReport meshReport() {
   return r;
 }
 
-/// A patch and the one after the next share a cluster, where surface and side are the same.
+/// A patch and the one after the next share a cluster, if surface and side are the same.
 inline PatchClusters clusters(const PatchMesh& m) {
   PatchClusters c;
   std::vector<std::vector<Index>> found;
@@ -427,7 +427,7 @@ inline Results results(Index side, Precision precision, int bands = 3) {
   r.solution_key = "tolerance=1e-6";
   r.elements = elements(r.mesh->mesh, bands);
   r.elements_key = "element-tolerance=0.01";
-  // Of both kinds, one in each sample.
+  // Both kinds, one in each sample.
   r.gathered = gathered(
       r.mesh->mesh,
       precision == Precision::single_precision ? GatherAt::patches : GatherAt::vertices, bands);
@@ -576,7 +576,7 @@ inline auto members(const HeatSummary& s) {
   return std::tie(a, b, c, d, e, f, g, h, i);
 }
 inline auto members(const ConditionText& s) {
-  // Where it came from is not kept in the file.
+  // Its source is not kept in the file.
   return std::tie(s.table, s.settings);
 }
 inline auto members(const HeatSolution& s) {

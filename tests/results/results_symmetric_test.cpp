@@ -45,7 +45,7 @@ class ResultsSymmetric : public FolderTest {
 };
 
 // 60 x 60 patches: several chunks of the file and several panels of the matrix.
-TEST_F(ResultsSymmetric, ComesBackToTheBit) {
+TEST_F(ResultsSymmetric, IsReadBackToTheBit) {
   for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
     for (const Index side : {1u, 2u, 12u, 60u}) {
       const Results written = results(side, precision);
@@ -94,7 +94,7 @@ TEST_F(ResultsSymmetric, TheFileHoldsAllOfFAsCompressedRows) {
   EXPECT_EQ(at, matrix.nonZeros());
 }
 
-TEST_F(ResultsSymmetric, NamesWhatIsNotSymmetric) {
+TEST_F(ResultsSymmetric, NamesFieldsThatAreNotSymmetric) {
   const auto refused = [&](const std::string& part) {
     expectError<InputError>(file(), part, [&] { readResults(file()); });
   };
@@ -138,7 +138,7 @@ TEST_F(ResultsSymmetric, MatrixMarketHoldsAllOfF) {
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < matrix.size(); ++i) {
     for (std::size_t j = 0; j < matrix.size(); ++j) {
-      // What the results file holds: F, rounded once to its precision.
+      // The value in the results file: F, rounded once to its precision.
       const double f = float(matrix.at(i, j));
       if (f == 0) continue;
       std::getline(text, line);

@@ -1,4 +1,4 @@
-// A results file that is extended: the form factors are not written again, and whoever is killed
+// A results file that is extended: the form factors are not written again, and a run killed
 // meanwhile leaves the file as it was, or whole.
 #include <gtest/gtest.h>
 #include <sys/file.h>
@@ -28,7 +28,7 @@ class ResultsUpdate : public FolderTest {
     std::ifstream in(file(), std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
   }
-  /// The file with all but the solution and what stands on it.
+  /// The file without the solution and stages that depend on it.
   Results writeUnsolved() {
     Results results = sample::results(kSide, Precision::single_precision);
     results.elements.reset(), results.elements_key.clear();
@@ -93,7 +93,7 @@ TEST_F(ResultsUpdate, LeavesTheFileToARunThatExtendsIt) {
   EXPECT_TRUE(bytes() == before);
 }
 
-TEST_F(ResultsUpdate, LeavesAFileAloneWhoseFormFactorsAnotherRunHasReplaced) {
+TEST_F(ResultsUpdate, LeavesAFileWithOtherFormFactorsAlone) {
   Results solved = writeUnsolved();
   const std::string before = bytes();
   solved.factors_key = "of another run";
@@ -101,7 +101,7 @@ TEST_F(ResultsUpdate, LeavesAFileAloneWhoseFormFactorsAnotherRunHasReplaced) {
   EXPECT_TRUE(bytes() == before);
 }
 
-// HDF5 asks for the length of a file before it reads where its first page says that it ends.
+// HDF5 asks for the length of a file before it reads the end that its first page names.
 TEST_F(ResultsUpdate, MayBeReadWhileAnotherRunSwitchesTheFile) {
   Results solved = writeUnsolved();
   const pid_t reader = fork();
@@ -134,8 +134,8 @@ TEST_F(ResultsUpdate, LeavesAFileOfAnotherKindAlone) {
   EXPECT_EQ(bytes(), before);
 }
 
-// What was written behind the end by a run that was killed is overwritten by the next.
-TEST_F(ResultsUpdate, DoesNotMindWhatAKilledRunLeftBehindTheEnd) {
+// Bytes that a killed run wrote behind the end are overwritten by the next.
+TEST_F(ResultsUpdate, OverwritesBytesThatAKilledRunLeftBehindTheEnd) {
   const Results solved = writeUnsolved();
   std::ofstream(file(), std::ios::binary | std::ios::app) << std::string(100000, 'x');
   EXPECT_FALSE(readResults(file()).solution);
@@ -144,7 +144,7 @@ TEST_F(ResultsUpdate, DoesNotMindWhatAKilledRunLeftBehindTheEnd) {
 }
 
 // Processes killed after 0 to 20 ms: some before, some within, some after the update.
-TEST_F(ResultsUpdate, KilledAtAnyMomentTheFileIsAsItWasOrWhole) {
+TEST_F(ResultsUpdate, AKillAtAnyMomentLeavesTheFileAsItWasOrWhole) {
   Results solved = writeUnsolved();
   int done = 0;
   int undone = 0;

@@ -1,4 +1,4 @@
-// Patches for ParaView: what is refused. vtp_test.py reads files back with VTK.
+// Patches for ParaView: refusals. vtp_test.py reads files back with VTK.
 #include <gtest/gtest.h>
 
 #include "radiosity/vtk.h"
@@ -25,7 +25,7 @@ TEST_F(Vtp, RefusesFieldsThatDoNotFit) {
   EXPECT_EQ(files(), 0u);
 }
 
-TEST_F(Vtp, IsWholeOrNotThere) {
+TEST_F(Vtp, IsWrittenWholeOrNotAtAll) {
   const PatchMesh mesh = sample::mesh(17);
   const FullDisk disk(1000);
   expectError<RunError>(path("x.vtp"), "cannot be written",

@@ -33,7 +33,7 @@ f 5 8 7 6
 
 
 class Read:
-    """What VTK makes of a file: outlines, and arrays by name."""
+    """A file as VTK reads it: outlines, and arrays by name."""
 
     def __init__(self, path):
         reader = vtkXMLPolyDataReader()
@@ -92,7 +92,7 @@ class Vtp(CliTest):
         for name, dataset in names.items():
             numpy.testing.assert_array_equal(read.arrays[name], group[dataset][()], name)
 
-    def test_of_solve_holds_mesh_rows_and_light_to_the_bit(self):
+    def test_a_file_of_solve_holds_mesh_rows_and_light_to_the_bit(self):
         read, h5 = self.both("solve", "box.obj", "--patches", 60, "--method", "exact")
         self.check_geometry(read, h5["mesh"])
         self.check_fields(read, h5["form_factors"],
@@ -102,16 +102,16 @@ class Vtp(CliTest):
                                         ("radiosity", "irradiance", "reflectance", "emission")})
         net = light["radiosity"][()] - light["irradiance"][()]
         numpy.testing.assert_array_equal(read.arrays["net_flux"], net)
-        # What the room's patches give off beyond what they take in is nothing, in all.
+        # The net power of all patches of the room is 0.
         total = (read.arrays["area"][:, None] * net).sum(axis=0)
         emitted = (read.arrays["area"][:, None] * light["emission"][()]).sum(axis=0)
-        # The residual that the solver leaves, and closure of the rows to the exact tolerance.
+        # The solver's residual, and closure of the rows to the exact tolerance.
         self.assertLess(abs(total / emitted).max(), 1e-3)
         self.assertEqual(read.units["net_flux"], "W/m^2")
         self.assertEqual(read.units["area"], "m^2")
         self.assertIsNone(read.units["row_sum"])
 
-    def test_backs_are_polygons_of_their_own_and_names_are_what_they_are(self):
+    def test_backs_are_polygons_of_their_own_and_names_are_escaped(self):
         self.write("sheet.obj", SHEET_OBJ)
         read, h5 = self.both("factors", "sheet.obj", "--two-sided", "sheet", *SMALL)
         self.check_geometry(read, h5["mesh"])
@@ -130,7 +130,7 @@ class Vtp(CliTest):
         numpy.testing.assert_array_equal(read.arrays["unknown"], of_patch)
         numpy.testing.assert_array_equal(read.arrays["sky"], h5["form_factors/sky"][()][of_patch])
 
-    def test_of_mesh_holds_materials(self):
+    def test_a_file_of_mesh_holds_materials(self):
         read, h5 = self.both("mesh", "box.obj", "--patches", 60)
         self.check_geometry(read, h5["mesh"])
         lamp = numpy.array(read.arrays["surface"]) == "ceiling/lamp"

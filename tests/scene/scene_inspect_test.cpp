@@ -1,4 +1,4 @@
-// What `radiosity info` says about a scene: figures, and what looks wrong by name.
+// The report of `radiosity info` on a scene: figures, and likely faults by name.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -75,7 +75,7 @@ TEST(SceneInspect, ChecksDoNotDependOnScaleOrPlace) {
   }
 }
 
-TEST(SceneInspect, SeesWhatIsClosed) {
+TEST(SceneInspect, TellsClosedScenesFromOpenOnes) {
   Room room;
   EXPECT_TRUE(inspectScene(room.builder.scene()).closed);
   EXPECT_EQ(inspectScene(room.builder.scene()).open_edges, 0u);
@@ -138,13 +138,13 @@ TEST(SceneInspect, NamesFacesThatTurnAgainstTheirNeighbours) {
 }
 
 TEST(SceneInspect, NamesSolidsAndRoomsThatAreInsideOut) {
-  // A room that faces outwards hides all that is in it.
+  // A room that faces outwards hides its contents.
   SceneBuilder outwards;
   outwards.box(outwards.surface("walls"), {0, 0, 0}, {4, 4, 4});
   outwards.box(outwards.surface("lamp", 0.5, 1), {1, 1, 1}, {2, 2, 2});
   EXPECT_NOTE(inspectScene(outwards.scene()).problems,
               "walls/walls: closed, faces outwards and holds lamp/lamp", Severity::loud);
-  // However many bodies a surface has, it is named once; what else the solid has is no other's.
+  // A surface of many bodies is named once; the solid's other content is a part of itself.
   SceneBuilder beads;
   const Index shell = beads.surface("shell");
   const Index bead = beads.surface("bead", 0.5, 1);
@@ -154,7 +154,7 @@ TEST(SceneInspect, NamesSolidsAndRoomsThatAreInsideOut) {
   EXPECT_NOTE(inspectScene(beads.scene()).problems,
               "shell/shell: closed, faces outwards and holds bead/bead, another part of it: a room",
               Severity::loud);
-  // A solid may be hollow: with something in its chamber, or nothing; what is in its wall is gone.
+  // A solid may be hollow: its chamber holds something or nothing; things in its wall are gone.
   for (const bool heated : {true, false}) {
     SceneBuilder oven;
     const Index walls = oven.surface("walls");
@@ -180,7 +180,7 @@ TEST(SceneInspect, NamesSolidsAndRoomsThatAreInsideOut) {
   room.builder.box(room.lamp, {0.5, 0.5, 2}, {1, 1, 3}, false);
   EXPECT_NOTE(inspectScene(room.builder.scene()).problems,
               "lamp/lamp: closed, faces inwards and holds nothing", Severity::loud);
-  // A closed room alone, a solid alone: nothing to say but that they are dark.
+  // A closed room alone, a solid alone: no faults.
   for (const bool outward : {true, false}) {
     SceneBuilder alone;
     alone.box(alone.surface("cube", 0.5, 1), {0, 0, 0}, {1, 1, 1}, outward);
@@ -239,7 +239,7 @@ TEST(SceneInspect, MeasuresOverlapsInOnePlane) {
   }
 }
 
-TEST(SceneInspect, NamesWhatLiesFarFromAllElse) {
+TEST(SceneInspect, NamesFacesFarFromAllOthers) {
   const auto withAStray = [](double distance) {
     Room room;
     const Index stray = room.builder.surface("stray");
@@ -257,7 +257,7 @@ TEST(SceneInspect, NamesWhatLiesFarFromAllElse) {
   EXPECT_EQ(problemsOf(sheets.scene()).find("from all others"), std::string::npos);
 }
 
-TEST(SceneInspect, SeesALampThatLiesFaceDown) {
+TEST(SceneInspect, ReportsALampThatLiesFaceDown) {
   Room room;
   room.builder.level(room.lamp, 0.5, 0.5, 1.5, 1.5, 4, true);
   EXPECT_NOTE(inspectScene(room.builder.scene()).problems,
@@ -268,7 +268,7 @@ TEST(SceneInspect, SeesALampThatLiesFaceDown) {
   EXPECT_EQ(problemsOf(standing.builder.scene()), "");
 }
 
-TEST(SceneInspect, SaysWhenThereIsNoLight) {
+TEST(SceneInspect, ReportsMissingLight) {
   Room room;
   EXPECT_NOTE(inspectScene(room.builder.scene()).problems, "no surface emits light",
               Severity::loud);
@@ -278,7 +278,7 @@ TEST(SceneInspect, SaysWhenThereIsNoLight) {
   EXPECT_NOTE(problems, "no surface emits light", Severity::loud);
 }
 
-TEST(SceneInspect, SaysWhenNothingAbsorbs) {
+TEST(SceneInspect, ReportsThatNothingAbsorbs) {
   SceneBuilder builder;
   builder.box(builder.surface("mirror", 1, 1), {0, 0, 0}, {1, 1, 1}, false);
   EXPECT_NOTE(inspectScene(builder.scene()).problems, "light is never absorbed", Severity::loud);
@@ -286,7 +286,7 @@ TEST(SceneInspect, SaysWhenNothingAbsorbs) {
   EXPECT_EQ(problemsOf(builder.scene()), "");
 }
 
-TEST(SceneInspect, NoticesSizesThatSpeakForAnotherUnit) {
+TEST(SceneInspect, ReportsSizesThatSuggestAnotherUnit) {
   Room room;
   room.hangLamp();
   EXPECT_NOTE(inspectScene(scaled(room.builder.scene(), 1000)).problems,

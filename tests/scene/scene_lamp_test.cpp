@@ -1,4 +1,4 @@
-// What is likeliest a lamp.
+// The likeliest lamp of a scene.
 #include <gtest/gtest.h>
 
 #include "support/scene_builder.h"
@@ -8,7 +8,7 @@ namespace {
 
 using test::SceneBuilder;
 
-TEST(LikelyLamp, IsCalledSo) {
+TEST(LikelyLamp, IsFoundByTheNameOfItsMaterial) {
   for (const std::string name : {"Lamp", "ceiling_light.003", "DeskLamp02", "bulb", "emitter",
                                  "Emissive_white", "neon-lights"}) {
     SceneBuilder builder;
@@ -19,7 +19,7 @@ TEST(LikelyLamp, IsCalledSo) {
   }
 }
 
-TEST(LikelyLamp, AnObjectsNameWillDo) {
+TEST(LikelyLamp, IsFoundByTheNameOfItsObject) {
   SceneBuilder builder;
   const Index white = builder.material("white");
   builder.level(builder.surfaceOf("flight of stairs", white), 0, 0, 1, 1, 0);
@@ -27,24 +27,23 @@ TEST(LikelyLamp, AnObjectsNameWillDo) {
   EXPECT_EQ(likelyLamp(builder.scene()), "floor lamp/white");
 }
 
-TEST(LikelyLamp, AShadeOfAMaterialIsNone) {
+TEST(LikelyLamp, IsNotALightShadeOfAMaterial) {
   SceneBuilder builder;
   builder.level(builder.surface("metalDark"), 0, 0, 1, 1, 0);
   builder.level(builder.surface("metalLight"), 0, 0, 1, 1, 1);
   builder.level(builder.surface("Wood.light"), 0, 0, 1, 1, 2);
   builder.level(builder.surface("wood"), 0, 0, 1, 1, 3);
-  EXPECT_EQ(likelyLamp(builder.scene()), "metalDark/metalDark");  // the first there is
+  EXPECT_EQ(likelyLamp(builder.scene()), "metalDark/metalDark");  // the first surface
   builder.level(builder.surface("deskLight"), 0, 0, 1, 1, 4);
   EXPECT_EQ(likelyLamp(builder.scene()), "deskLight");
 }
 
-TEST(LikelyLamp, ElseTheCeiling) {
+TEST(LikelyLamp, IsTheCeilingIfNoNameTells) {
   SceneBuilder named;
   named.level(named.surface("floor"), 0, 0, 1, 1, 0);
   named.level(named.surfaceOf("Ceiling", named.material("white")), 0, 0, 1, 1, 1);
   EXPECT_EQ(likelyLamp(named.scene()), "Ceiling/white");
-  // No name says so: the larger of two surfaces that face down, y being up; not a table's
-  // underside.
+  // No name tells: the larger of two surfaces that face down, y being up; not a table's underside.
   SceneBuilder builder;
   const Index walls = builder.surface("a");
   const Index small = builder.surface("b");
@@ -64,7 +63,7 @@ TEST(LikelyLamp, ElseTheCeiling) {
   EXPECT_EQ(likelyLamp(builder.scene()), "c/c");
 }
 
-TEST(LikelyLamp, ElseWhatThereIs) {
+TEST(LikelyLamp, IsTheFirstSurfaceIfNothingElseTells) {
   SceneBuilder builder;
   builder.level(builder.surface("teapot"), 0, 0, 1, 1, 0);
   EXPECT_EQ(likelyLamp(builder.scene()), "teapot/teapot");

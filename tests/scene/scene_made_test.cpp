@@ -1,4 +1,4 @@
-// Scenes made in memory: from triangles, and what is said of one that is not in order.
+// Scenes made in memory: from triangles, and the messages for invalid ones.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -61,7 +61,7 @@ TEST(SceneOfTriangles, NeedsAMaterialForEachTriangleOrOneForAll) {
   EXPECT_THROW(sceneOfTriangles(vertices, triangles, {}), InputError);
 }
 
-TEST(SceneValidation, NamesTheElementAndWhatIsWrong) {
+TEST(SceneValidation, NamesTheElementAndItsFault) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(refusal([](Scene&) {}), "");
   EXPECT_EQ(refusal([&](Scene& s) { s.vertices[2].y = nan; }),

@@ -59,7 +59,7 @@ TEST_F(SceneOverride, SetsOneObjectOrSurfaceAlone) {
   }
 }
 
-TEST_F(SceneOverride, EmissionIsExitanceAndRadianceIsPiTimesLess) {
+TEST_F(SceneOverride, EmissionIsExitanceAndPiTimesRadiance) {
   Scene scene = loadWith({"glow.emission=17,12,4"});
   EXPECT_EQ(scene.materialOf(1).emission, Vec3(17, 12, 4));
   EXPECT_NOTE(scene.notes, "glow: emission 3.14159 -> 17 12 4 W/m^2", Severity::info);
@@ -72,7 +72,7 @@ TEST_F(SceneOverride, NamesMayHoldDots) {
   EXPECT_EQ(loadWith({"lamp.001/glow.emission=1.5"}).materialOf(1).emission, Vec3(1.5));
 }
 
-TEST_F(SceneOverride, RefusesWhatItCannotDo) {
+TEST_F(SceneOverride, RefusesUnknownNamesAndBadValues) {
   const auto errorOf = [&](const std::string& set) {
     return inputErrorOf([&] { loadWith({set}); });
   };
@@ -92,7 +92,7 @@ TEST_F(SceneOverride, RefusesWhatItCannotDo) {
   EXPECT_CONTAINS(errorOf(".emission=1"), "NAME.PROPERTY=VALUE");
 }
 
-TEST_F(SceneOverride, SaysWhenAChangeShowsNowhere) {
+TEST_F(SceneOverride, WarnsOfAChangeThatShowsNowhere) {
   EXPECT_NOTE(loadWith({"spare.emission=1"}).notes, "spare: no face has this material",
               Severity::warning);
 }
@@ -126,7 +126,7 @@ TEST_F(SceneOverride, RefusesABadMaterialsFile) {
   EXPECT_CONTAINS(inputErrorOf([&] { loadScene(file_, options); }), "no such file");
 }
 
-TEST_F(SceneOverride, SetsSidesOneSidedFirst) {
+TEST_F(SceneOverride, SetsOneSidedBeforeTwoSided) {
   SceneOptions options;
   options.two_sided = {"all"};
   Scene scene = loadScene(file_, options);

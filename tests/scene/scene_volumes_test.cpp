@@ -1,4 +1,4 @@
-// The skin of volumes: which sides, and which way they face.
+// The skin of volumes: its sides and their orientation.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ std::vector<Index> inOrder(std::size_t count) {
   return all;
 }
 
-/// Of what the faces enclose, by the divergence theorem; below 0 where they face inward.
+/// The volume that the faces enclose, by the divergence theorem; below 0 if they face inward.
 double enclosed(const std::vector<VolumeSkin::Face>& faces, const std::vector<Vec3>& places) {
   double volume = 0;
   for (const VolumeSkin::Face& face : faces) {
@@ -61,7 +61,7 @@ TEST(VolumeSkin, EnclosesEachKindOfElementFromOutside) {
   }
 }
 
-TEST(VolumeSkin, FacesOutwardWhereAnElementIsWrittenInTheOtherSense) {
+TEST(VolumeSkin, FacesOutwardForMirroredElements) {
   for (const Element& element : elements()) {
     std::vector<Vec3> mirrored = element.places;
     for (Vec3& place : mirrored) place.z = 1e6 - place.z;
@@ -72,7 +72,7 @@ TEST(VolumeSkin, FacesOutwardWhereAnElementIsWrittenInTheOtherSense) {
   }
 }
 
-TEST(VolumeSkin, SidesAreNumberedAsCalculixHasThem) {
+TEST(VolumeSkin, SidesAreNumberedAsInCalculix) {
   // S1 to S6 of a unit cube look towards -z, z, -y, x, y, -x.
   const Element& cube = elements()[3];
   VolumeSkin skin;
@@ -89,7 +89,7 @@ TEST(VolumeSkin, SidesAreNumberedAsCalculixHasThem) {
 }
 
 /// A grid of cells, each a cube or six tetrahedra about its diagonal, in any order.
-TEST(VolumeSkin, LeavesOutWhatTwoElementsShare) {
+TEST(VolumeSkin, LeavesOutSharedSides) {
   constexpr Index kSide = 4;
   std::vector<Vec3> places;
   for (Index z = 0; z <= kSide; ++z) {
@@ -136,7 +136,7 @@ TEST(VolumeSkin, AWedgeMayBeWrittenAsAHexahedron) {
   EXPECT_NEAR(enclosed(faces, wedge.places), wedge.volume, 1e-15);
 }
 
-TEST(VolumeSkin, TakesNoElementOfAnotherNumberOfCorners) {
+TEST(VolumeSkin, RefusesOtherNumbersOfCorners) {
   VolumeSkin skin;
   for (const std::size_t count : {0U, 3U, 7U, 9U}) EXPECT_FALSE(skin.add(inOrder(count))) << count;
   EXPECT_TRUE(skin.faces({}).empty());

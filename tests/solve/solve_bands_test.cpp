@@ -1,4 +1,4 @@
-// Any number of bands at once: each is the solution it would be alone.
+// Any number of bands at once: each is solved as if alone.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -21,7 +21,7 @@ std::vector<double> bandOf(const std::vector<double>& values, int bands, int ban
   return out;
 }
 
-TEST(SolveBands, EachAloneHasTheBitsItHasAmongOthers) {
+TEST(SolveBands, EachHasTheSameBitsAloneAndAmongOthers) {
   constexpr std::size_t kPatches = 120;
   test::Random random(17);
   const test::Reciprocal room = test::reciprocal(kPatches, random);
@@ -52,7 +52,7 @@ TEST(SolveBands, EachAloneHasTheBitsItHasAmongOthers) {
   }
 }
 
-TEST(SolveBands, MaterialsOfAnyNumberAreSolvedOnAMesh) {
+TEST(SolveBands, MaterialsOfAnyNumberOfBandsAreSolved) {
   // A closed room in which band b reflects rho_b and emits E_b all over: B_b = E_b / (1 - rho_b).
   test::Room room = test::loadRoom("furnace-cube", 54);
   Progress quiet;
@@ -76,7 +76,7 @@ TEST(SolveBands, MaterialsOfAnyNumberAreSolvedOnAMesh) {
     ASSERT_EQ(light.radiosity.size(), room.mesh.size() * std::size_t(bands));
     for (std::size_t k = 0; k < light.radiosity.size(); ++k) {
       const auto b = double(k % std::size_t(bands));
-      // Rows sum to 1 within what closure and single precision leave.
+      // Rows sum to 1 within closure and single precision.
       const double truth = (1 + b) / (1 - 0.1 * (b + 1));
       ASSERT_NEAR(light.radiosity[k], truth, 1e-5 * truth) << k;
     }

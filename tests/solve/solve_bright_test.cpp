@@ -55,7 +55,7 @@ TEST(BrightWalls, TakeAboutADozenSweeps) {
 }
 
 // No wall absorbs, one opening lets light out: the spectral radius is 1 but for the opening.
-TEST(BrightWalls, OfReflectanceOneWithAnOpening) {
+TEST(BrightWalls, OfReflectanceOneConvergeThroughAnOpening) {
   const std::size_t n = 200;
   auto [f, area] = rooms(n, 0.01);
   f.row(17) *= 0.9;
@@ -76,7 +76,7 @@ TEST(BrightWalls, OfReflectanceOneWithAnOpening) {
 
 // Rows that sum to more than 1 need a vector of their own for the bound, and that takes sweeps:
 // two, as many as the solution was given, are not enough.
-TEST(BrightWalls, TheBoundStopsWithASentence) {
+TEST(BrightWalls, ABoundOutOfTimeIsReported) {
   test::Random random(5);
   const Eigen::Index n = 100;
   const auto factors = test::factorsFrom(

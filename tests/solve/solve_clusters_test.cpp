@@ -149,7 +149,7 @@ FormFactors factorsOfPatches(PatchMesh mesh, FormFactorMethod method) {
   mesh.clusters.reset();
   FormFactorOptions options;
   options.method = method;
-  // Both solutions have the same form factors; within clusters rays find what is there.
+  // Both solutions have the same form factors; rays find the light within clusters.
   options.tolerance = method == FormFactorMethod::rays ? 0.02 : 0.1;
   options.resolution = 128;
   options.symmetrize = true;
@@ -171,7 +171,7 @@ Solution solved(const FormFactors& factors, const PatchMaterials& materials,
   return solve(factors, materials, mesh, {}, progress);
 }
 
-/// What leaves each surface, red, W.
+/// The power of each surface, red, W.
 std::vector<double> powers(const PatchMesh& mesh, const Solution& solution) {
   std::vector<double> power(mesh.surface_names.size(), 0.0);
   for (std::size_t i = 0; i < mesh.size(); ++i) {
@@ -190,7 +190,7 @@ struct Named {
 
 class SolveClusters : public testing::TestWithParam<Named> {};
 
-TEST_P(SolveClusters, GivesEverySurfaceThePowerThatItsPatchesHave) {
+TEST_P(SolveClusters, GivesEverySurfaceThePowerOfItsPatches) {
   const auto& [name, scene, patches, method, tolerance] = GetParam();
   const Scene given = scene();
   const PatchMesh mesh = meshed(given, patches);
@@ -218,10 +218,9 @@ constexpr auto kExact = FormFactorMethod::exact;
 constexpr auto kHemicube = FormFactorMethod::hemicube;
 constexpr auto kRays = FormFactorMethod::rays;
 
-// 1% of a surface's power is what clusters may cost. The furnished room is the hard one: sides of
-// books are put together that are alike in place and direction, but of which some lie open to the
-// room and others deep between books. Hemicubes, an eye a patch, do not see the same there as rays
-// from all over it do.
+// Clusters may cost 1% of a surface's power. The furnished room is the hard one: it joins sides of
+// books that are alike in place and direction, but some lie open to the room and others deep
+// between books. Hemicubes, an eye a patch, do not see the same there as rays from all over it.
 INSTANTIATE_TEST_SUITE_P(Scenes, SolveClusters,
                          testing::Values(Named{"BallAndVase", ballAndVase, 150, kExact, 0.01},
                                          Named{"Bowl", bowl, 150, kExact, 0.01},
@@ -231,7 +230,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, SolveClusters,
                                          Named{"Furnished", furnished, 2000, kRays, 0.01}),
                          [](const auto& scene) { return std::string(scene.param.name); });
 
-TEST(ClusterFactors, AreWhatComputeFormFactorsGivesForAMeshWithClusters) {
+TEST(ClusterFactors, EqualComputeFormFactorsOfAMeshWithClusters) {
   const PatchMesh mesh = meshed(vault(), 60);
   ASSERT_TRUE(mesh.clusters);
   const FormFactors of_patches = factorsOfPatches(mesh, kHemicube);
@@ -257,9 +256,9 @@ TEST(ClusterFactors, AreWhatComputeFormFactorsGivesForAMeshWithClusters) {
   }
 }
 
-TEST(ClusterFactors, HaveErrorFiguresThatBoundWhatErrorsOfPatchesCanDo) {
-  // Rows of patches that are off in every entry by as much and the same way: the worst that sums
-  // over clusters can make of them.
+TEST(ClusterFactors, HaveErrorFiguresThatBoundTheErrorsOfPatches) {
+  // Rows of patches that are off by the same in every entry, with the same sign: the worst case for
+  // sums over clusters.
   const PatchMesh mesh = meshed(vault(), 60);
   const std::size_t n = mesh.size();
   const auto matrixOf = [&](double error) {
@@ -313,7 +312,7 @@ TEST(SolveWithClusters, KeepsEachPatchsOwnReflectanceAndEmission) {
             clusterMeans(mesh, materials.emission, 3), 3, SolveOptions(), progress);
   PatchMesh apart = mesh;
   apart.clusters.reset();
-  // Nearer to the light between patches than means of clusters alone come.
+  // Nearer to the light between patches than means of clusters alone.
   const auto expected = clusterMeans(mesh, solved(of_patches, materials, apart).irradiance, 3);
   const auto means = clusterMeans(mesh, solution.irradiance, 3);
   EXPECT_LT(squaredDistance(means, expected),
@@ -327,10 +326,10 @@ TEST(SolveWithClusters, KeepsEachPatchsOwnReflectanceAndEmission) {
     emitted += mesh.area[i] * materials.emission[3 * i];
     absorbed += mesh.area[i] * (1 - materials.reflectance[3 * i]) * solution.irradiance[3 * i];
   }
-  // Means by area: what clusters emit is what their patches do. Rounding.
+  // Means by area: clusters emit as much as their patches. Rounding.
   EXPECT_NEAR(solution.summary.energy.emitted[0], emitted, 1e-12 * emitted);
-  // What they absorb goes with the mean reflectance: some patches of a cluster are lit more than
-  // others, and not all reflect alike.
+  // Absorption follows the mean reflectance: some patches of a cluster are lit more than others,
+  // and not all reflect alike.
   EXPECT_NEAR(solution.summary.energy.absorbed[0], absorbed, 1e-2 * absorbed);
 }
 

@@ -54,7 +54,7 @@ TEST(SolveSingular, AWhiteClosedRoomIsRefusedByName) {
   }
 }
 
-TEST(SolveSingular, OneAbsorberWindowOrBackIsEnough) {
+TEST(SolveSingular, OneAbsorberWindowOrBackMakesASolution) {
   TwoRooms absorber;
   absorber.whitenAttic();
   absorber.rho[9] = 0.5;
@@ -79,7 +79,7 @@ TEST(SolveSingular, OneAbsorberWindowOrBackIsEnough) {
 }
 
 // The white patches of rows 0 and 1 see each other alone. Patch 2 absorbs, but only sees them.
-TEST(SolveSingular, AnAbsorberThatNoRowSeesDoesNotHelp) {
+TEST(SolveSingular, AnUnseenAbsorberDoesNotHelp) {
   Matrix f(3, 3);
   f << 0.5, 0.5, 0.0, 1.0, 0.0, 0.0, 0.5, 0.5, 0.0;
   const auto factors = test::factorsFrom(f, {1.0, 1.0, 1.0});
@@ -108,7 +108,7 @@ TEST(SolveSingular, AWhiteRoomWithoutLightStaysDark) {
   }
 }
 
-TEST(SolveSingular, OnlyTheBandThatIsWhiteAndLitCounts) {
+TEST(SolveSingular, OnlyAWhiteAndLitBandIsSingular) {
   const TwoRooms rooms;
   std::vector<double> rho(36, 0.5);
   std::vector<double> emission(36, 0.0);
@@ -126,7 +126,7 @@ TEST(SolveSingular, OnlyTheBandThatIsWhiteAndLitCounts) {
 // rho = 1 - 1e-9 in a furnace takes 1e10 sweeps of Jacobi: the limit comes first and is reported as
 // such; the true residual after k sweeps is rho^(k). Others find B = E / (1 - rho) = 1e9, to the
 // rounding of 1 - rho (1e-16 of 1e-9) and of the rows' sums.
-TEST(SolveSingular, NearlyWhiteIsSolvedOrSaidNotToBe) {
+TEST(SolveSingular, ANearlyWhiteRoomIsSolvedOrReported) {
   TwoRooms rooms;
   std::fill(rooms.rho.begin(), rooms.rho.end(), 1 - 1e-9);
   std::fill(rooms.emission.begin(), rooms.emission.end(), 1.0);
@@ -141,7 +141,7 @@ TEST(SolveSingular, NearlyWhiteIsSolvedOrSaidNotToBe) {
   }
 }
 
-TEST(SolveEdges, NoLight) {
+TEST(SolveEdges, AnUnlitRoomIsDark) {
   TwoRooms rooms;
   std::fill(rooms.emission.begin(), rooms.emission.end(), 0.0);
   std::fill(rooms.rho.begin(), rooms.rho.end(), 1.0);
@@ -155,7 +155,7 @@ TEST(SolveEdges, NoLight) {
   EXPECT_EQ(solve(FormFactors{}, {}, {}, 3, {}, quiet).summary.status, SolveStatus::no_light);
 }
 
-// A dark band is exactly 0 and the lit ones are what they are alone.
+// A dark band is exactly 0 and the lit ones are as if alone.
 TEST(SolveEdges, DarkBandsCostNothingAndChangeNothing) {
   test::Random random(4);
   const auto f = random.rows(30, [&](auto) { return random(0.5, 1.0); });
@@ -183,7 +183,7 @@ TEST(SolveEdges, DarkBandsCostNothingAndChangeNothing) {
 }
 
 // All stopping is relative: powers of two change no bit, other scales only rounding.
-TEST(SolveEdges, EmissionOfAnyScale) {
+TEST(SolveEdges, EmissionMayHaveAnyScale) {
   test::Random random(6);
   const auto f = random.rows(40, [&](auto) { return random(0.5, 1.0); });
   const auto factors = test::factorsFrom(f, std::vector<double>(40, 1.0));
@@ -240,7 +240,7 @@ TEST(SolveEdges, ThreadsAndStorageDoNotChangeABit) {
   }
 }
 
-TEST(SolveEdges, BlackAndSinglePatches) {
+TEST(SolveEdges, BlackAndSinglePatchesKeepTheirEmission) {
   const auto alone = test::factorsFrom(Matrix::Zero(1, 1), {2.0});
   const std::vector<double> one{1.0};
   const std::vector<double> cube_emission{1, 2, 3, 4, 5, 6};
@@ -273,7 +273,7 @@ TEST(SolveEdges, GaussSeidelSolvesTheDiagonal) {
   EXPECT_EQ(jacobi.summary.iterations, 20);  // 2^-20 is the first power below 1e-6
 }
 
-/// What solve() says when it refuses.
+/// The message with which solve() refuses.
 std::string refusal(const std::vector<double>& rho, const std::vector<double>& emission, int bands,
                     const SolveOptions& options = {}) {
   const TwoRooms rooms;

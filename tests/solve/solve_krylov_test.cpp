@@ -1,4 +1,4 @@
-// Conjugate gradients: few products however bright the walls, dark rooms right, and no answer where
+// Conjugate gradients: few products however bright the walls, dark rooms right, and no answer if
 // there is none.
 #include <gtest/gtest.h>
 
@@ -68,8 +68,8 @@ TEST(ConjugateGradients, SolveABrightBoxWithinFifteenProducts) {
   }
 }
 
-// Two rooms that exchange a thousandth of what each of them does within: Gauss-Seidel takes 582
-// sweeps at 0.99.
+// Two rooms that exchange a thousandth of each one's inner exchange: Gauss-Seidel takes 582 sweeps
+// at 0.99.
 TEST(ConjugateGradients, SolveTwoRoomsWithinFifteenProducts) {
   const std::size_t n = 300;
   test::Random random(11);
@@ -102,9 +102,9 @@ TEST(ConjugateGradients, SolveTwoRoomsWithinFifteenProducts) {
   }
 }
 
-// A lamp of a million in one room, a pinhole of 1e-6 to the next: what is seen there is 1e-12 of
-// the lamp, and right all the same.
-TEST(ConjugateGradients, ADarkRoomBehindAPinholeIsRight) {
+// A lamp of a million in one room, a pinhole of 1e-6 to the next: its light there is 1e-12 of the
+// lamp, and right all the same.
+TEST(ConjugateGradients, SolveADarkRoomBehindAPinhole) {
   const std::size_t n = 120;
   test::Random random(3);
   auto [f, area] = test::reciprocal(n, random);
@@ -156,7 +156,7 @@ TEST(DirectSolver, RefusesMoreUnknownsThanItCanHold) {
                InputError);
 }
 
-TEST(AutomaticSolver, PicksByTheMatrixAndSaysWhy) {
+TEST(AutomaticSolver, PicksByTheMatrixAndGivesTheReason) {
   test::Random random(2);
   const auto [f, area] = test::reciprocal(kFewUnknowns + 1, random);
   const std::size_t n = area.size();
@@ -181,8 +181,8 @@ TEST(AutomaticSolver, PicksByTheMatrixAndSaysWhy) {
   EXPECT_NE(direct.message.find("(auto: few unknowns)"), std::string::npos) << direct.message;
 }
 
-// rho F of a spectral radius of at least 1.18: there is no light that B >= 0 could be.
-TEST(ConjugateGradients, SayThatLightGrows) {
+// rho F of a spectral radius of at least 1.18: no B >= 0 exists.
+TEST(ConjugateGradients, ReportGrowingLight) {
   const std::size_t n = 40;
   test::Random random(8);
   auto [f, area] = test::reciprocal(n, random);
@@ -203,7 +203,7 @@ TEST(ConjugateGradients, SayThatLightGrows) {
   }
 }
 
-// What rays find beyond means of clusters, or a heat flux taken out: a right-hand side of any sign.
+// Light of rays beyond means of clusters, or a heat flux taken out: a right-hand side of any sign.
 TEST(ConjugateGradients, TakeAnySourceOfLight) {
   const std::size_t n = 90;
   test::Random random(12);
@@ -241,11 +241,11 @@ TEST(LinearSolve, TakesSpansOfReflectanceAndSource) {
   const LinearSolution s =
       solveLinear(factors.matrix, rho, source, 3, test::options(Solver::automatic, 1e-12), quiet);
   EXPECT_EQ(s.summary.status, SolveStatus::converged) << s.summary.message;
-  // 1e-12 over what is lost of a bounce, at least a tenth.
+  // 1e-12 over the loss of a bounce, at least a tenth.
   EXPECT_LT(test::largestDifference(s.radiosity, expected), 1e-10);
 }
 
-TEST(MatrixRooms, AreWhatLightJoins) {
+TEST(MatrixRooms, ArePatchesJoinedByLight) {
   const std::size_t n = 30;
   test::Random random(4);
   Matrix f = test::reciprocal(n, random).f;

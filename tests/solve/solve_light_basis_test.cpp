@@ -86,7 +86,7 @@ TEST_F(LightBasisTest, TakesNoMoreProductsThanTheHardestSource) {
   EXPECT_LE(all.solution.summary.iterations, most + 1);  // bands that wait may begin a cycle anew
 }
 
-TEST_F(LightBasisTest, RefusesWhatIsNotThere) {
+TEST_F(LightBasisTest, RefusesUnknownRepeatedAndMissingSources) {
   const std::vector<LightSource> sources = lightSources(materials, mesh);
   const LightBasis basis = solveBasis(factors, materials, mesh, sources, {}, quiet);
   const auto refusal = [&](const std::vector<LightWeight>& mix) {
@@ -107,7 +107,7 @@ TEST_F(LightBasisTest, RefusesWhatIsNotThere) {
             std::string::npos);
 }
 
-TEST_F(LightBasisTest, WithEverythingOffItIsDark) {
+TEST_F(LightBasisTest, AnEmptyMixIsDark) {
   const LightBasis basis =
       solveBasis(factors, materials, mesh, lightSources(materials, mesh), {}, quiet);
   const MixedLight dark = mixLight(basis, {});

@@ -1,4 +1,4 @@
-// Work a scene does not need: counted, and without a trace in the results.
+// Work that a scene does not need: counted, and without effect on the results.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -60,7 +60,7 @@ TEST(SolveSkips, BlackPatchesNeedNoRow) {
 }
 
 // Black in the red band alone is not black.
-TEST(SolveSkips, BlackMeansInEveryBandSolved) {
+TEST(SolveSkips, BlackPatchesAreBlackInEveryBandSolved) {
   const Room room;
   std::vector<double> rho(3 * kPatches, 0.5);
   std::vector<double> emission(3 * kPatches, 1.0);
@@ -108,7 +108,7 @@ TEST(SolveSkips, EqualBandsAreSolvedOnceAndDarkOnesNot) {
   }
 }
 
-TEST(SolveSkips, NothingIsSkippedInTheDark) {
+TEST(SolveSkips, DarkScenesReadNoRows) {
   const Room room;
   Progress quiet;
   const auto dark =

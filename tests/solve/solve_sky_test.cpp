@@ -35,7 +35,7 @@ double sum(const std::vector<double>& v) { return std::accumulate(v.begin(), v.e
 
 double incoming(const EnergyAccount& e) { return sum(e.emitted) + sum(e.from_sky); }
 
-/// What comes in beyond what is accounted for, as a share of it.
+/// The incoming power that is not accounted for, as a share.
 double imbalance(const EnergyAccount& e) {
   EXPECT_NEAR(incoming(e) - sum(e.absorbed) - sum(e.to_sky) - sum(e.on_backs), sum(e.imbalance),
               1e-12 * incoming(e));
@@ -88,7 +88,7 @@ TEST(Sky, AnOpenCubeSeesTheSkyByTheClosedForms) {
 }
 
 // A convex scene in a sky of radiance L whose walls emit (1 - rho) pi L: radiance is L everywhere.
-TEST(Sky, FurnaceOfAnOpenBox) {
+TEST(Sky, AnOpenBoxUnderAMatchingSkyIsAFurnace) {
   test::SceneBuilder builder;
   builder.prism(builder.surface("box"), {{0, 0}, {2, 0}, {2.5, 1.5}, {0, 1}}, 0, 1, false);
   Scene scene = test::turned(builder.scene());
@@ -110,7 +110,7 @@ TEST(Sky, FurnaceOfAnOpenBox) {
   }
 }
 
-TEST(Sky, TheAccountBalancesWhereFIsReciprocal) {
+TEST(Sky, TheAccountBalancesIfFIsReciprocal) {
   test::Random random(11);
   const std::size_t n = 50;
   const auto [f, area] = test::reciprocal(n, random);
@@ -136,7 +136,7 @@ TEST(Sky, AClosedSceneStaysDark) {
   EXPECT_EQ(s.summary.status, SolveStatus::no_light);
 }
 
-TEST(Sky, RefusesWhatIsNoRadiance) {
+TEST(Sky, RefusesInvalidRadiances) {
   const auto factors = test::factorsFrom(test::cube(), std::vector<double>(6, 1.0));
   const std::vector<double> dark(6, 0.0);
   EXPECT_THROW(solveUnder(factors, 0.5, dark, {-1.0}), InputError);
@@ -166,7 +166,7 @@ TEST(Sky, GatheredLightOfAFloorIsRhoPiL) {
       // 32-bit floats.
       EXPECT_NEAR(g.radiosity[k], 0.25 * kPi * materials.sky[k % 3], 1e-6);
     }
-    // Light that the one pass leaves in flight is what the floor sends on.
+    // The one pass leaves the floor's reflected light in flight.
     const GatherPass& last = g.summary.passes.back();
     EXPECT_LT(std::abs(sum(last.energy.imbalance)), 1e-6 * incoming(last.energy));
     EXPECT_NEAR(sum(last.in_flight), 0.25 * kPi * 3, 1e-6);

@@ -14,8 +14,7 @@ namespace radiosity::test {
 
 using Matrix = Eigen::MatrixXd;
 
-/// What a row lacks of 1 goes to the sky, but for the share `on_backs` of it. Rows above 1 lose
-/// nothing.
+/// The rest of a row to 1 goes to the sky, but for its share `on_backs`. Rows above 1 lose nothing.
 inline void setAccounts(FormFactors& factors, double on_backs) {
   const std::size_t n = factors.matrix.size();
   factors.fronts = factors.matrix.rowSums();
@@ -164,13 +163,13 @@ inline SolveOptions options(Solver solver, double tolerance, int max_iterations 
   return options;
 }
 
-/// Those that go step by step, for any matrix.
+/// Iterations for any matrix.
 inline constexpr Solver kIterations[] = {Solver::jacobi, Solver::gauss_seidel, Solver::gmres};
-/// All that solve with any matrix.
+/// All solvers for any matrix.
 inline constexpr Solver kSolvers[] = {Solver::jacobi, Solver::gauss_seidel, Solver::gmres,
                                       Solver::direct};
 
-/// Those, and for a symmetric matrix conjugate gradients.
+/// These, and for a symmetric matrix conjugate gradients.
 inline std::vector<Solver> solversOf(const FormFactors& factors) {
   std::vector<Solver> solvers(std::begin(kSolvers), std::end(kSolvers));
   if (factors.matrix.isSymmetric()) solvers.push_back(Solver::cg);

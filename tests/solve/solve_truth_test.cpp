@@ -14,7 +14,7 @@ using test::Matrix;
 
 // One patch a face, rho = 1/2, the floor emits 1. The values solve the 6 x 6 system, which by
 // symmetry has three unknowns; their area mean is 1/3 as energy demands.
-TEST(Solve, CubeToTwelveDigits) {
+TEST(Solve, TheCubeIsSolvedToTwelveDigits) {
   const auto factors = test::factorsFrom(test::cube(), std::vector<double>(6, 1.0));
   const std::vector<double> rho(6, 0.5);
   const std::vector<double> emission{1, 0, 0, 0, 0, 0};
@@ -37,7 +37,7 @@ TEST(Solve, CubeToTwelveDigits) {
 }
 
 // Rows that sum to 1 and nothing else, not even reciprocity: B = E / (1 - rho).
-TEST(Solve, Furnace) {
+TEST(Solve, AFurnaceHasItsClosedForm) {
   test::Random random(1);
   const std::size_t n = 80;
   const auto f = random.rows(Eigen::Index(n), [](auto) { return 1.0; });
@@ -65,7 +65,7 @@ TEST(Solve, Furnace) {
 // Inside a sphere every patch sees area, itself included: F_ij = A_j / A. Half of it emits 1 and
 // rho = 0.8: B = E + rho <E> / (1 - rho) = 3 and 2. The areas differ, so a transposed F gives
 // something else.
-TEST(Solve, SphereInteriorAndItsTransposeWithUnequalAreas) {
+TEST(Solve, TheInsideOfASphereDiffersFromItsTranspose) {
   const std::vector<double> area{0.5, 3.0, 1.5, 0.25, 4.0, 0.75};  // 0.5 + 3 + 1.5 = 5 = half
   const std::vector<double> emission{1, 1, 1, 0, 0, 0};
   const std::vector<double> rho(6, 0.8);
@@ -188,7 +188,7 @@ TEST(Solve, GaussSeidelTakesAboutHalfTheSweeps) {
   EXPECT_NEAR(seidel, 0.5 * jacobi, 0.1 * jacobi);
 }
 
-TEST(SolveEnergy, ClosesWhereFIsReciprocal) {
+TEST(SolveEnergy, ClosesIfFIsReciprocal) {
   test::Random random(9);
   const std::size_t n = 70;
   const auto [f, area] = test::reciprocal(n, random);

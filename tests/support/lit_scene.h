@@ -1,4 +1,4 @@
-// A scene with its light at elements, for tests of what shows it.
+// A scene with its light at elements, for tests of pictures.
 #pragma once
 
 #include <memory>

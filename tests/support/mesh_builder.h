@@ -1,4 +1,4 @@
-// Patch meshes with their planar polygons, made by hand, for tests of what rasterises them.
+// Patch meshes with their planar polygons, made by hand, for tests of rasterisers.
 #pragma once
 
 #include <string>

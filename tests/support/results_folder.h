@@ -15,7 +15,7 @@
 #include "radiosity/base.h"
 
 #ifdef __SANITIZE_ADDRESS__
-/// HDF5 and OpenImageIO (a string, past a longjmp of libpng) leak memory where they meet damage;
+/// HDF5 and OpenImageIO (a string, past a longjmp of libpng) leak memory on damaged files;
 /// that is not ours to mend.
 extern "C" const char* __lsan_default_options() { return "print_suppressions=0"; }
 extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5\nleak:_M_assign\n"; }
@@ -66,7 +66,7 @@ class FolderTest : public ::testing::Test {
   Progress progress_;
 };
 
-/// As long as it lives no file can grow beyond `bytes`: what a full disk is like.
+/// As long as it lives no file can grow beyond `bytes`, as on a full disk.
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes) {

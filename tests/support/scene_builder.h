@@ -20,7 +20,7 @@ inline Vec3 rotated(const Vec3& p, const Vec3& axis, double angle) {
 }
 
 /// Fills a Scene face by face. Every face gets vertices of its own, as if each came from another
-/// object of a file: what belongs together has to be found by welding.
+/// object of a file: welding has to find shared vertices.
 class SceneBuilder {
  public:
   SceneBuilder() {

@@ -10,8 +10,8 @@
 namespace radiosity::test {
 
 /// Calls check(kernels) once for every instruction set compiled in that this machine has, Highway's
-/// scalar target among them, with what `choose`, the library's own function, gives on it. Fails
-/// where there are fewer than two.
+/// scalar target among them, with the kernels that `choose`, the library's own function, gives on
+/// it. Fails if there are fewer than two.
 template <class Choose, class Check>
 void onEveryTarget(const Choose& choose, const Check& check) {
   int count = 0;

@@ -50,7 +50,7 @@ class Matrices(CliTest):
         self.assertEqual(c["rows_by_name"][0]["name"], name)
         self.assertEqual(c["verdict"], "above the tolerance of 0.001")
 
-    def test_results_files_are_compared_by_form_factors_where_that_is_asked(self):
+    def test_results_files_are_compared_by_form_factors_on_request(self):
         self.run_program("solve", *BOX, "-o", "a.h5")
         self.run_program("solve", *BOX, "--tolerance", "1e-2", "-o", "b.h5")
         report = self.report("compare", "a.h5", "b.h5", "--form-factors")
@@ -65,7 +65,7 @@ class Matrices(CliTest):
                              "--solve-tolerance", "1e-12", "-o", "light.csv")
         first, second = self.light("light.csv")
         b1 = 3 / (1 - .5 * .8)
-        # What the residual of 1e-12 times 3 W/m^2 can leave, over 1 - rho.
+        # The residual of 1e-12 times 3 W/m^2, over 1 - rho.
         self.assertAlmostEqual(float(first["radiosity"]), b1, delta=1e-11)
         self.assertAlmostEqual(float(second["radiosity"]), .8 * b1, delta=1e-11)
         self.assertAlmostEqual(float(first["irradiance"]), .8 * b1, delta=1e-11)
@@ -73,7 +73,7 @@ class Matrices(CliTest):
         self.assertEqual(first["area_m2"], "2")
         self.assertAlmostEqual(report["solution"]["emitted_W"][0], 6)
 
-    def test_areas_that_do_not_fit_the_rows_are_warned_of(self):
+    def test_areas_that_break_reciprocity_are_warned_of(self):
         self.write("plates.mtx", PLATES)
         self.write("rows.csv", "row,reflectance,emission\n1,.5,3\n2,.8,0\n")
         for areas, warned in (("2\n2\n", False), ("2\n4\n", True)):
@@ -82,7 +82,7 @@ class Matrices(CliTest):
                                    "rows.csv")
             self.assertEqual("A_i F_ij and A_j F_ji differ by" in run.err, warned)
 
-    def test_a_closed_matrix_that_absorbs_nothing_has_no_light_to_write(self):
+    def test_a_closed_matrix_that_absorbs_nothing_writes_no_light(self):
         self.write("plates.mtx", PLATES)
         self.write("rows.csv", "row,reflectance,emission\n1,1,3\n2,1,0\n")
         run = self.run_program("solve", "plates.mtx", "--rows", "rows.csv", "-o", "light.csv",
@@ -167,7 +167,7 @@ class Matrices(CliTest):
         self.refuse("mesh", "plates.mtx", words=["plates.mtx", "form factors alone", "mesh needs a scene"])
         self.refuse("render", "none.mtx", "-o", "x.png", words=["none.mtx", "no such file"])
 
-    def test_what_cannot_be_used_is_called_by_its_name(self):
+    def test_unusable_matrix_files_are_named(self):
         self.write("rows.csv", "row,reflectance,emission\n1,.5,3\n2,.8,0\n")
         self.write("q.mtx", "2 2 2\n1 2 1\n2 1 1\n")
         self.write("q.vf", "text\n")
@@ -185,7 +185,7 @@ class Matrices(CliTest):
         self.refuse("solve", "q.mtx", "--rows", "rows.csv",
                     words=["q.mtx:2", "999999999999 rows", "form factors have 1 to"])
 
-    def test_what_is_refused(self):
+    def test_options_that_do_not_fit_a_matrix_are_refused(self):
         self.write("plates.mtx", PLATES)
         self.write("rows.csv", "row,reflectance,emission\n1,.5,3\n2,.8,0\n")
         self.run_program("factors", *BOX, "-o", "f.h5")

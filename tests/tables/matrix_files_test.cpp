@@ -29,7 +29,7 @@ class MatrixFiles : public FolderTest {
 // Opposite faces of a cube: catalogue C-11 of Howell et al.; adjacent ones follow from closure.
 constexpr double kOppositeSides = 0.199824896;
 
-/// As View3D writes the cube, whose faces 1 and 4, 2 and 5, 3 and 6 are opposite: six decimals.
+/// View3D's file of the cube, whose faces 1 and 4, 2 and 5, 3 and 6 are opposite: six decimals.
 std::string cubeOfView3d() {
   std::string text = "View3D 3.3.1 0 1 0 6          \n1 1 1 1 1 1\n";
   for (int a = 0; a < 6; ++a) {
@@ -75,7 +75,7 @@ TEST_F(MatrixFiles, ReadsBinaryViewFactorsOfView3d) {
   EXPECT_FALSE(file.factors.closed);
 }
 
-TEST_F(MatrixFiles, RefusesWhatView3dCannotHaveMeant) {
+TEST_F(MatrixFiles, RefusesDamagedViewFactorsOfView3d) {
   const auto refused = [&](const std::string& text, const std::string& part) {
     write("x.vf", text);
     expectError<InputError>(path("x.vf"), part, [&] { read("x.vf"); });
@@ -100,7 +100,7 @@ NamedFactors threeRows() {
   return factors;
 }
 
-TEST_F(MatrixFiles, MatrixMarketOfOursComesBackWithAreasAccountsAndNames) {
+TEST_F(MatrixFiles, OurMatrixMarketIsReadBackWithAreasAccountsAndNames) {
   const NamedFactors factors = threeRows();
   writeMatrixMarket(path("x.mtx"), factors, progress_);
   const MatrixFile file = read("x.mtx");
@@ -157,7 +157,7 @@ TEST_F(MatrixFiles, RefusesDamagedMatrixMarket) {
   expectError<InputError>(path("x.mtx"), "has 2 rows, and 3 areas", [&] { read("x.mtx", three); });
 }
 
-TEST_F(MatrixFiles, DifferencesAreThoseWorkedOutByHand) {
+TEST_F(MatrixFiles, DifferencesEqualThoseWorkedOutByHand) {
   MatrixFile a;
   a.factors = threeRows();
   MatrixFile b = a;
@@ -184,7 +184,7 @@ TEST_F(MatrixFiles, DifferencesAreThoseWorkedOutByHand) {
   EXPECT_EQ(compareMatrices(a, a, progress_).relative_l2, 0);
 }
 
-TEST_F(MatrixFiles, WithoutAreasRowsWeighAlikeAndReciprocityIsNotKnown) {
+TEST_F(MatrixFiles, MissingAreasGiveEqualWeightsAndNoReciprocity) {
   MatrixFile a;
   a.factors = threeRows();
   a.has_areas = false;
@@ -234,7 +234,7 @@ TEST_F(MatrixFiles, RefusesTablesOfRowsThatDoNotFit) {
   refused("row,reflectance\n\"1,.5\n", ":2: a quote is opened and not closed");
 }
 
-TEST_F(MatrixFiles, AreasAreAListOrAColumn) {
+TEST_F(MatrixFiles, AreasAreReadFromAListOrAColumn) {
   write("a.txt", "1\n2.5\n\n3\n");
   EXPECT_EQ(readAreas(path("a.txt")), (std::vector<double>{1, 2.5, 3}));
   write("a.csv", "name,area_m2\n\"a, b\",4\nc,5\n");

@@ -1,4 +1,4 @@
-// Patterns of names, and names that are near a word.
+// Patterns of names, and names near a word.
 #include "base/name_pattern.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ struct Case {
   bool matches;
 };
 
-TEST(NamePattern, WhatItStandsFor) {
+TEST(NamePattern, MatchesNamesByWildcardsAndSets) {
   const Case cases[] = {{"*", "", true},
                         {"*wall*", "left_wall/red", true},
                         {"*wall*", "floor", false},
@@ -38,7 +38,7 @@ TEST(NamePattern, WhatItStandsFor) {
   }
 }
 
-TEST(NamePattern, CharactersAreThoseOfUtf8) {
+TEST(NamePattern, CharactersAreUtf8) {
   EXPECT_TRUE(matchesPattern("W?nde", "Wände"));
   EXPECT_FALSE(matchesPattern("W??nde", "Wände"));
   EXPECT_TRUE(matchesPattern("???", "日本語"));

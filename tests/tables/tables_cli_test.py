@@ -1,4 +1,4 @@
-"""Tables of form factors: what `factors` writes, read back and compared with the results file."""
+"""Tables of form factors by `factors`, read back and compared with the results file."""
 import csv
 import json
 import re
@@ -68,7 +68,7 @@ class Tables(CliTest):
     def assert_close(self, a, b):
         numpy.testing.assert_allclose(a, b, rtol=2e-7, atol=1e-12)
 
-    def test_wide_csv_json_and_markdown_say_the_same(self):
+    def test_wide_csv_json_and_markdown_hold_the_same_values(self):
         self.run_program(*ROOM, "--group", "walls=*wall/*", "-o", "t.csv", "-o", "t.json",
                          "-o", "t.md", "-o", "t.h5")
         truth = Truth(self.folder / "t.h5", [WALLS])
@@ -131,7 +131,7 @@ class Tables(CliTest):
         truth = Truth(self.folder / "t.h5", [WALLS])
         self.assert_close(pairs["walls", "walls"], truth.factors[0, 0])
 
-    def test_threads_leave_every_bit(self):
+    def test_threads_change_no_bit_of_tables(self):
         self.run_program("factors", DATA / "cornell-box.obj", "--patches", 400, "--method", "exact",
                          "-o", "t.h5")
         self.run_program("factors", "t.h5", "--threads", 2, "-o", "a.csv", "-o", "a.txt")
@@ -196,7 +196,7 @@ class Tables(CliTest):
         self.assertEqual(len(entries), truth.patches.nnz)
         self.assertEqual(len(rows), truth.patches.nnz + 2 * n)
 
-    def test_hemicubes_have_residuals_of_reciprocity_and_no_error(self):
+    def test_tables_of_hemicubes_have_reciprocity_but_no_error(self):
         self.run_program("factors", DATA / "cornell-box.obj", "--patches", 60, "--method",
                          "hemicube", "--resolution", 32, "-o", "t.csv", "-o", "t.h5")
         truth = Truth(self.folder / "t.h5")
@@ -210,14 +210,14 @@ class Tables(CliTest):
         self.assertEqual(header, ["from", "to", "form_factor", "reciprocity_m2"])
         self.assertTrue(all(len(row) == 4 for row in rows))
 
-    def test_names_that_separate_are_quoted(self):
+    def test_names_with_commas_are_quoted(self):
         self.run_program("factors", "box.obj", "--patches", 30, "--group", 'a, "b"=room*', "-o",
                          "t.csv")
         header, rows = read_csv(self.folder / "t.csv")
         self.assertEqual(rows[0][0], 'a, "b"')
         self.assertEqual(header[2], 'a, "b"')
 
-    def test_what_is_refused(self):
+    def test_options_that_do_not_fit_are_refused(self):
         small = ["factors", "box.obj", "--patches", 30]
         self.refuse(*small, "--group", "a=up*", words=["--group a=up*", "room/wall", "ceiling/lamp"])
         self.refuse(*small, "--layout", "long", words=["--layout", "--between"])
@@ -242,8 +242,8 @@ class Tables(CliTest):
             run = self.run_program(*small, *arguments, code=2)
             self.assertNotIn("about", run.out, "planned")
 
-    def test_a_table_that_fails_leaves_the_form_factors(self):
-        # View3D's readers divide by areas; which rows have none, the mesh alone says.
+    def test_a_failed_table_keeps_the_form_factors(self):
+        # View3D's readers divide by areas; only the mesh tells which rows have none.
         self.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\n"
                    "o a\nf 1 2 3 4\no line\nf 1 2 5\n")
         run = self.run_program("factors", "flat.obj", "--patches", 8, "-o", "k.h5", "-o", "k.vf", code=2)

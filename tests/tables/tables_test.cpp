@@ -110,7 +110,7 @@ struct Sample {
   FormFactors factors;
 };
 
-TEST_F(Tables, SumsOfSharedUnknownsAreThoseMadeByHand) {
+TEST_F(Tables, SumsOfSharedUnknownsEqualThoseMadeByHand) {
   const Sample sample;
   const NamedFactors table = between(sample.mesh, sample.factors, {"g=b", "g=a"});
   ASSERT_EQ(table.names, (std::vector<std::string>{"g", "sheet"}));
@@ -183,7 +183,7 @@ TEST_F(Tables, EntriesAreWithinTheirErrorOfFactorsToAThousandthOfTheTolerance) {
   EXPECT_GT(largest, 1e-6) << "nothing was tested";
 }
 
-TEST_F(Tables, GroupsAreTakenByTheFirstThatMatches) {
+TEST_F(Tables, SurfacesJoinTheFirstGroupThatMatches) {
   const std::vector<std::string> surfaces = {"left/white", "right/white", "lamp", "a[1]"};
   const SurfaceGroups groups =
       groupSurfaces(surfaces, std::vector<std::string>{"light=lamp", "room=*/white", "all=*"});
@@ -191,19 +191,19 @@ TEST_F(Tables, GroupsAreTakenByTheFirstThatMatches) {
   EXPECT_EQ(groups.of_surface, (std::vector<Index>{1, 1, 0, 2}));
   ASSERT_EQ(groups.notes.size(), 3u);
   EXPECT_EQ(groups.notes[2].text, "--group all=*: surface lamp is in group light already");
-  // A name as it stands is one, whatever a pattern would make of it.
+  // An exact name counts, whatever it would match as a pattern.
   EXPECT_EQ(groupSurfaces(surfaces, std::vector<std::string>{"one=a[1]"}).of_surface,
             (std::vector<Index>{1, 2, 3, 0}));
   EXPECT_EQ(groupSurfaces(surfaces).names, surfaces);
 }
 
-TEST_F(Tables, AQuestionMarkIsACharacterOfUtf8) {
+TEST_F(Tables, AQuestionMarkMatchesAUtf8Character) {
   const std::vector<std::string> surfaces = {"Wände", "Winde", "Wand"};
   EXPECT_EQ(groupSurfaces(surfaces, std::vector<std::string>{"g=W?nde"}).of_surface,
             (std::vector<Index>{0, 0, 1}));
 }
 
-TEST_F(Tables, RefusesGroupsThatAreNone) {
+TEST_F(Tables, RefusesInvalidGroups) {
   const std::vector<std::string> surfaces = {"left", "right"};
   const auto error = [&](std::vector<std::string> groups) {
     return errorOf([&] { groupSurfaces(surfaces, groups); });
@@ -215,7 +215,7 @@ TEST_F(Tables, RefusesGroupsThatAreNone) {
   EXPECT_NE(error({"left=right"}).find("surface left has that name"), std::string::npos);
 }
 
-TEST_F(Tables, ReceiversHaveNamesOfTheirOwn) {
+TEST_F(Tables, ReceiversNeedNamesOfTheirOwn) {
   const Sample sample;
   NamedFactors table = between(sample.mesh, sample.factors, {"sky=a"});
   const auto write = [&] { writeFactorsCsv(path("x.csv"), table, TableLayout::wide, progress_); };
@@ -225,7 +225,7 @@ TEST_F(Tables, ReceiversHaveNamesOfTheirOwn) {
   EXPECT_EQ(files(), 1u);
 }
 
-TEST_F(Tables, PartnersGetNamesAndAreasTheyCanRead) {
+TEST_F(Tables, NamesAndAreasThatPartnersCannotReadAreRefused) {
   const Sample sample;
   const auto idf = [&](const std::string& group, const std::string& zone) {
     return [&, group, zone] {

@@ -10,8 +10,8 @@ namespace radiosity::truth {
 
 struct BlockedExchange {
   double blocked = 0;  ///< m^2; 0 <= blocked <= the unoccluded exchange area
-  /// What two embedded rules differ by, well above the true error, and what triangles that looked
-  /// clear or hidden without proof may have missed; m^2.
+  /// The difference of two embedded rules, well above the true error, and the possible miss of
+  /// triangles that looked clear or hidden without proof; m^2.
   double error = 0;
   std::size_t points = 0;  ///< points looked from
   bool clear = false;      ///< no blocker seen to touch the exchange

@@ -1,5 +1,5 @@
-// What may stand between two polygons: convex pieces of the planar polygons, found by a tree of
-// boxes.
+// Possible obstacles between two polygons: convex pieces of the planar polygons, found by a tree
+// of boxes.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// What a point sees of a polygon past others, by exact clipping.
+// A point's view of a polygon past others, by exact clipping.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ namespace radiosity::truth {
 /// eq. 9, with the sign of a polygon counter-clockwise about its own normal).
 double pointToPolygon(const Loop& polygon, const Vec3& normal);
 
-/// What one point sees of the target.
+/// One point's view of the target.
 struct Glimpse {
   double whole = 0;     ///< form factor to the target without blockers
   double blocked = 0;   ///< the part of it that blockers take away

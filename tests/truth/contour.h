@@ -6,7 +6,7 @@
 namespace radiosity::truth {
 
 /// A F, the exchange area of two convex polygons with nothing between them, m^2, each facing the
-/// side it is counter-clockwise from. What lies behind the other's plane is cut away first.
+/// side it is counter-clockwise from. Parts behind the other's plane are cut away first.
 /// A F = 1/(2 pi) sum over pairs of edges of (e.f) * double integral of ln r (Stokes; Sparrow
 /// 1963): the inner integral in closed form, the outer by Gauss where the edges are apart and by
 /// the double exponential rule (Takahasi & Mori 1974), cut at the singular points, where they are

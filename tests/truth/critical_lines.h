@@ -1,4 +1,4 @@
-// Where on a polygon the shape of what it sees of another changes.
+// Lines on a polygon at which the shape of its view of another changes.
 #pragma once
 
 #include <vector>
@@ -13,10 +13,10 @@ struct Segment {
 };
 
 /// The straight critical lines on `source`'s plane: between them the visible part of `target` keeps
-/// its corners and edges, and its form factor is analytic in the eye's place. They are where an
+/// its corners and edges, and its form factor is analytic in the eye's place. From these lines an
 /// edge of a blocker passes a corner of the target, a corner of a blocker passes an edge of the
-/// target, and where a blocker is seen edge-on. (Where edges of two blockers meet on an edge of
-/// the target lie curves, which are not here.) `target` lies in front of the source's plane.
+/// target, or a blocker is seen edge-on. (Edges of two blockers meet on an edge of the target along
+/// curves, which are not here.) `target` lies in front of the source's plane.
 std::vector<Segment> criticalSegments(const Sheet& source, const Loop& target,
                                       const std::vector<const Blocker*>& blockers);
 

@@ -29,7 +29,7 @@ struct TruthRow {
 
 /// Unoccluded pairs: contour integrals in long double. Occluded ones: the same minus the blocked
 /// part, clipped exactly against every planar polygon that comes between, integrated over the
-/// patch that lies farther from what blocks, cell by cell between the critical lines.
+/// patch that lies farther from the blockers, cell by cell between the critical lines.
 class GroundTruth {
  public:
   /// Keeps a reference to the mesh.

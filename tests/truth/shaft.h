@@ -1,4 +1,4 @@
-// The space between two polygons, and what can block it.
+// The space between two polygons, and its possible blockers.
 #pragma once
 
 #include <vector>
@@ -28,8 +28,8 @@ struct Blocker : Sheet {
   bool solid = false;
 };
 
-/// Planes that have both sheets on one side: what has no point beyond any one of them lies outside
-/// the convex hull of the two, and cannot come between. Touching counts as outside: within
+/// Planes that have both sheets on one side: a body without a point beyond any one of them is
+/// outside the convex hull of the two, and cannot come between. Touching counts as outside: within
 /// `coincidence` for the sheets' own planes, within rounding for the others.
 class Shaft {
  public:

@@ -46,7 +46,7 @@ struct BoxOf {
 using Box2 = BoxOf<Vec2>;
 using Box3 = BoxOf<Vec3>;
 
-/// The box of some points; where there are none, the origin's.
+/// The box of some points; the box of the origin if there are none.
 inline Box3 boxOf(std::span<const Vec3> points) {
   if (points.empty()) return {Vec3(0.0), Vec3(0.0)};
   Box3 box;

@@ -12,7 +12,7 @@ namespace {
 constexpr Index kLeafBoxes = 4;
 constexpr Index kWorthATask = 8192;
 
-/// Nodes below one of so many boxes.
+/// The number of nodes below a node of `count` boxes.
 Index nodesBelow(Index count) {
   return count <= kLeafBoxes ? 0 : 2 + nodesBelow(count / 2) + nodesBelow(count - count / 2);
 }
@@ -28,7 +28,7 @@ BoxTree::BoxTree(const std::vector<Box3>& boxes) : order_(boxes.size()) {
   for (const Index k : order_) boxes_.push_back(boxes[k]);
 }
 
-/// `below`: where the nodes below this one begin.
+/// `below`: the index of the first node below this one.
 void BoxTree::build(Index node, Index first, Index count, Index below,
                     const std::vector<Box3>& boxes) {
   Box3 bound = boxes[order_[first]];

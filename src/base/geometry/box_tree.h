@@ -9,7 +9,7 @@
 
 namespace radiosity {
 
-/// A binary tree over boxes: which of them meet a box.
+/// A binary tree over boxes; finds those that meet a box.
 class BoxTree {
  public:
   BoxTree() = default;
@@ -21,8 +21,8 @@ class BoxTree {
     search([&](const Box3& other) { return other.meets(box); }, visit);
   }
 
-  /// Calls visit(index) for every box that `meets` is true of, until it returns false. Where
-  /// `meets` is false of a box, it must be false of every box inside it.
+  /// Calls visit(index) for every box for which `meets` is true, until visit() returns false. If
+  /// `meets` is false for a box, it must be false for every box inside it.
   template <class Meets, class Visit>
   void search(const Meets& meets, const Visit& visit) const {
     if (nodes_.empty()) return;
@@ -47,13 +47,13 @@ class BoxTree {
 
   struct Node {
     Box3 bound;
-    Index first = 0;  ///< child (the second follows it), or of a leaf its first place in order()
+    Index first = 0;  ///< first child (the second follows it); of a leaf, first place in order()
     Index count = 0;  ///< of a leaf; 0: inner node
     Index below = 0;  ///< boxes in it
   };
-  /// For walks that search() does not do: the root comes first. Empty without boxes.
+  /// The nodes, root first, for other searches than search(). Empty if there are no boxes.
   const std::vector<Node>& nodes() const { return nodes_; }
-  /// Leaf by leaf, the boxes and their indices.
+  /// The boxes, leaf by leaf, and their indices.
   const std::vector<Box3>& boxes() const { return boxes_; }
   const std::vector<Index>& order() const { return order_; }
   std::size_t bytes() const {
@@ -61,13 +61,13 @@ class BoxTree {
   }
 
  private:
-  /// Halves are halved until few are left: more levels than an index has bits there are not, and a
-  /// search leaves one node a level for later.
+  /// The most nodes that a search defers: one a level. Each level halves the boxes, so there are no
+  /// more levels than an index has bits.
   static constexpr std::size_t kDepth = 34;
   void build(Index node, Index first, Index count, Index below, const std::vector<Box3>& boxes);
 
   std::vector<Box3> boxes_;   ///< leaf by leaf
-  std::vector<Index> order_;  ///< of each its index
+  std::vector<Index> order_;  ///< the index of each
   std::vector<Node> nodes_;
 };
 

@@ -8,14 +8,13 @@
 
 namespace radiosity {
 
-// Two clippers stand apart: exact/convex_polygon.h cuts pieces into both of their parts at once and
-// keeps track of where each edge comes from; exact/clip_polygons-inl.h clips a polygon in every
-// lane.
+// There are two other clippers: exact/convex_polygon.h cuts a piece into both of its parts at once
+// and records the origin of each edge; exact/clip_polygons-inl.h clips a polygon in every lane.
 
 /// Calls keep(corner) for the corners, in order, of the part of a loop where side(p) >= 0
-/// (Sutherland & Hodgman 1974); `side` is affine, between(a, b, side(a), side(b)) the point of edge
-/// a b where it is 0. A concave loop stays one loop, with edges that run to and fro on the border.
-/// Nothing is kept where nothing is left.
+/// (Sutherland & Hodgman 1974). `side` is affine; between(a, b, side(a), side(b)) is the point of
+/// edge a b where it is 0. A concave loop stays one loop, with edges that run to and fro on the
+/// border. Calls nothing if nothing is left.
 template <class Loop, class Side, class Between, class Keep>
 void clipCorners(const Loop& loop, const Side& side, const Between& between, const Keep& keep) {
   if (loop.empty()) return;

@@ -31,7 +31,7 @@ inline PlaneFrame makeFrame(const Vec3& origin, const Vec3& normal, const Vec3& 
   return frame;
 }
 
-/// The axis `normal` is farthest from: a safe `along` for any plane.
+/// The axis that is farthest from `normal`: a safe `along` for any plane.
 inline Vec3 axisAcross(const Vec3& normal) {
   const Vec3 a = glm::abs(normal);
   if (a.x <= a.y && a.x <= a.z) return {1.0, 0.0, 0.0};

@@ -12,7 +12,7 @@
 
 namespace radiosity {
 
-/// Answers what a loop over all points would, mostly in logarithmic time.
+/// Gives the same answers as a loop over all points, mostly in logarithmic time.
 class PointTree {
  public:
   PointTree() = default;
@@ -55,7 +55,7 @@ class PointTree {
     return glm::dot(0.5 * (box.low + box.high), normal) +
            glm::dot(0.5 * (box.high - box.low), glm::abs(normal));
   }
-  /// A box may be off by rounding, in coordinates of about 1; points decide themselves.
+  /// Tolerance for the rounding of boxes, for coordinates of about 1; points are tested exactly.
   static double slack(double height) { return 1e-14 * (4 + std::abs(height)); }
 
   std::vector<Vec3> points_;

@@ -6,7 +6,7 @@
 
 namespace radiosity {
 
-/// The point of segment ab that is nearest to p; a where the segment has no length.
+/// The point of segment ab that is nearest to p; a if the segment has no length.
 template <class Point>
 Point nearestOnSegment(const Point& p, const Point& a, const Point& b) {
   const Point along = b - a;

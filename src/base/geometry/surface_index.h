@@ -23,13 +23,13 @@ Vec3 nearestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& 
 /// A tree of boxes over triangles (median splits).
 class SurfaceIndex {
  public:
-  /// Both are kept by reference.
+  /// Keeps both by reference.
   SurfaceIndex(std::span<const Vec3> vertices, std::span<const std::array<Index, 3>> triangles);
 
   static constexpr double kFacingAlike = 0.5;  ///< the cosine of 60 degrees
 
-  /// Nearest point of a triangle whose normal's cosine with `normal` is `least_cosine` or more, not
-  /// farther than `reach`; of equals the first triangle's.
+  /// The nearest point within `reach` of a triangle whose normal's cosine with `normal` is
+  /// `least_cosine` or more. Of equally near points it is that of the first triangle.
   std::optional<NearestPoint> nearest(const Vec3& point, const Vec3& normal, double reach,
                                       double least_cosine = kFacingAlike) const;
 

@@ -1,4 +1,4 @@
-// Lambert's sum over the edges of a polygon: the integrator for what is near.
+// Lambert's sum over the edges of a polygon: the integrator for near targets.
 // Included once for every instruction set: Highway flips HWY_TARGET_TOGGLE in between.
 #if defined(RADIOSITY_FORMFACTOR_EXACT_CLIP_ARCS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RADIOSITY_FORMFACTOR_EXACT_CLIP_ARCS_INL_H
@@ -55,8 +55,8 @@ HWY_INLINE Vector<double> atanRatio(Vector<double> z) {
 }
 
 /// One edge's term of Lambert's sum, (n . c) atan2(|c|, a . b) / |c| with c = a x (b - a). For
-/// angles below 45 degrees it is written with the tangent's square only: no root, and nothing to
-/// divide by that can vanish.
+/// angles below 45 degrees it is written with the tangent's square only: there is no root, and no
+/// divisor can vanish.
 template <class T>
 HWY_INLINE Vector<T> arc(const Vector3<T>& a, const Vector3<T>& edge, const Vector3<T>& normal) {
   const Tag<T> d;
@@ -110,9 +110,9 @@ class ArcSum {
     sum_ = hn::Add(sum_, arc<T>(a, inPlane(hn::Sub(to.u, from.u), hn::Sub(to.v, from.v)), normal_));
   }
   HWY_INLINE V formFactor() const { return formFactorOfSum<T>(sum_); }
-  /// The sums so far; each kLaneAlignment after the other.
+  /// Stores the sums so far, each kLaneAlignment after the other.
   HWY_INLINE void store(T* to) const { hn::Store(sum_, Tag<T>(), to); }
-  /// All lanes' sums.
+  /// Sets the sums of all lanes.
   HWY_INLINE void set(const T (&sums)[kSums]) { sum_ = hn::Set(Tag<T>(), sums[0]); }
 
  private:

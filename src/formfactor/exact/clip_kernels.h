@@ -1,8 +1,8 @@
-// Form factors from one point to many convex polygons, and to what one cone hides of each: the
-// inner loops of the visibility of occluded pairs, behind plain pointers. One set per instruction
-// set, Highway's scalar target among them; every set gives the same bits, since the loops only add,
-// multiply, divide, compare and take square roots, each correctly rounded by IEEE 754, nothing is
-// contracted to a fused multiply-add, and no lane's value depends on the others.
+// Form factors from one point to many convex polygons, and to the part of each that a cone hides:
+// the inner loops of the visibility of occluded pairs, behind plain pointers. One set per
+// instruction set, Highway's scalar target among them; every set gives the same bits, since the
+// loops only add, multiply, divide, compare and take square roots, each correctly rounded by IEEE
+// 754, nothing is contracted to a fused multiply-add, and no lane's value depends on the others.
 #pragma once
 
 #include <cstddef>
@@ -49,7 +49,7 @@ struct EyePoints {
   T normal[3];
 };
 
-/// Wide enough for a lane to add labels in.
+/// A word wide enough for a lane to add labels in.
 template <class T>
 using ShapeWord = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
 
@@ -76,11 +76,11 @@ struct ClipItems {
   const LaneIndex<T>* eye;
 };
 
-/// The part of each item inside a cone. `form_factor`: to the part inside all planes, 0 where there
-/// is none, kHiddenWhole where no plane cuts the polygon. `shape`: sum of the labels of the edges
-/// that bound the part, 0 where it is nothing or all. `cut_low` and `cut_high`: a bit for each
-/// plane, of the first and the second 32, that cuts the polygon; the others do nothing to it.
-/// (There are no bits for planes after the 64th.)
+/// The part of each item inside a cone. `form_factor`: to the part inside all planes, 0 if there is
+/// none, kHiddenWhole if no plane cuts the polygon. `shape`: sum of the labels of the edges that
+/// bound the part, 0 if it is nothing or all. `cut_low` and `cut_high`: a bit for each plane, of
+/// the first and the second 32, that cuts the polygon; the others do nothing to it. (There are no
+/// bits for planes after the 64th.)
 template <class T>
 struct HiddenParts {
   T* form_factor;
@@ -97,7 +97,7 @@ template <class T>
 inline constexpr T kPlaneNoise = 4 * std::numeric_limits<T>::epsilon();
 
 /// Directed edges in one target's plane, in its coordinates: of polygons that turn as it does, in
-/// any order. Those that polygons side by side share cancel out.
+/// any order. Edges that two polygons side by side share cancel out.
 template <class T>
 struct FlatEdges {
   std::size_t count;  ///< a multiple of kLaneAlignment; filled up with edges of no length
@@ -118,7 +118,7 @@ struct ClipFunctions {
                  const HiddenParts<T>& out);
   /// Form factor to the part of each item inside its own planes: own_planes[k][lane] names the
   /// lane's k-th of plane_count[lane], up to kMostPlanes. Lanes that share a vector of
-  /// kLaneAlignment all have as many names as the one with most. 0 also where no plane cuts it.
+  /// kLaneAlignment all have as many names as the one with most. 0 also if no plane cuts it.
   void (*common)(const TargetLanes<T>& targets, const EyePoints<T>& eyes,
                  const ConePlanes<T>& planes, const ClipItems<T>& items,
                  const LaneIndex<T>* const* own_planes, const LaneIndex<T>* plane_count,
@@ -135,8 +135,8 @@ struct ConePoints {
   std::size_t count;
 };
 
-/// A side of a body's cones, one plane a point; see ConePlanes. Nothing is said of points that it
-/// is no side for.
+/// A side of a body's cones, one plane a point; see ConePlanes. The planes of points that it is no
+/// side for mean nothing.
 template <class T>
 struct ConeSide {
   alignas(64) T normal[3][kLaneAlignment];
@@ -164,9 +164,9 @@ struct ClipKernels {
   /// `with_faces`, its faces. Found in double precision. Returns their number.
   std::size_t (*cones)(const Occluder& body, const ConePoints& points, bool with_faces,
                        const ConeScratch& scratch, ConeSide<T>* sides);
-  /// A bit for each point whose cone has a side, through an edge of the body, that all of a polygon
-  /// is outside of: 3 to kMostCorners corners in the body's coordinates. Edges are tried from
-  /// number `edge` on, going round, until all points have one; `edge` gets the last that told.
+  /// A bit for each point whose cone has a side, through an edge of the body, with all of a polygon
+  /// outside: 3 to kMostCorners corners in the body's coordinates. Edges are tried from number
+  /// `edge` on, going round, until all points have one; `edge` gets the last that decided.
   std::uint32_t (*missed)(const Occluder& body, const ConePoints& points, const Vec3* outline,
                           std::size_t corners, const ConeScratch& scratch, std::size_t& edge);
 };

@@ -41,8 +41,8 @@ void wholeLanes(const TargetLanes<T>& targets, const EyePoint<T>& eye, T* form_f
   }
 }
 
-/// Cuts the polygons of `concerned` lanes to what is inside all of their cones' planes. Returns the
-/// sums of the labels of the edges that have a length then.
+/// Cuts the polygons of `concerned` lanes to their parts inside all of their cones' planes. Returns
+/// the sums of the labels of the edges that have a length then.
 template <class T>
 HWY_INLINE WordVector<T> cutToCone(VectorClip<T>& clip, IndexVector<T> first_plane,
                                    Mask<T> concerned) {

@@ -1,5 +1,5 @@
 // The kernel cos cos / (pi r^2) about the middle of a polygon to second order, integrated exactly:
-// the integrator for what is far.
+// the integrator for far targets.
 // Included once for every instruction set: Highway flips HWY_TARGET_TOGGLE in between.
 #if defined(RADIOSITY_FORMFACTOR_EXACT_CLIP_MOMENTS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RADIOSITY_FORMFACTOR_EXACT_CLIP_MOMENTS_INL_H
@@ -22,8 +22,8 @@ namespace {
 /// The form factor from the eye to a polygon given edge by edge. With the polygon's point p + d, p
 /// its middle, n the eye's normal and s = 2 (p.u, p.v) / p.p, the kernel is
 ///   n.(p + d) (1 + s.d + d.d / p.p)^-2 = n.(p + d) (1 - 2 s.d + 3 (s.d)^2 - 2 d.d / p.p + ...)
-/// times what does not depend on d. Terms of third order in d are left out. Unlike a sum of arcs it
-/// loses no digits where the polygon is small. A polygon's parts add up to the whole.
+/// times a factor without d. Terms of third order in d are left out. Unlike a sum of arcs it loses
+/// no digits for a small polygon. A polygon's parts add up to the whole.
 template <class T>
 class MomentSum {
  public:
@@ -48,7 +48,7 @@ class MomentSum {
     const V own = hn::Add(hn::Mul(a.u, a.v), hn::Mul(b.u, b.v));
     of_uv_ = hn::Add(of_uv_, hn::Mul(twice, hn::Add(own, hn::Mul(u, v))));
   }
-  /// The sums so far; each kLaneAlignment after the other.
+  /// Stores the sums so far, each kLaneAlignment after the other.
   HWY_INLINE void store(T* to) const {
     const Tag<T> d;
     hn::Store(area_, d, to);
@@ -58,7 +58,7 @@ class MomentSum {
     hn::Store(of_uv_, d, to + 4 * kLaneAlignment);
     hn::Store(of_vv_, d, to + 5 * kLaneAlignment);
   }
-  /// All lanes' sums.
+  /// Sets the sums of all lanes.
   HWY_INLINE void set(const T (&sums)[kSums]) {
     const Tag<T> d;
     area_ = hn::Set(d, sums[0]);

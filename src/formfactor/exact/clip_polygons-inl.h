@@ -1,5 +1,5 @@
 // Convex polygons cut by planes, one polygon a lane. Arithmetic is spelled out, operation by
-// operation, since its order is what makes results equal.
+// operation, since only a fixed order makes results equal.
 // Included once for every instruction set: Highway flips HWY_TARGET_TOGGLE in between.
 #if defined(RADIOSITY_FORMFACTOR_EXACT_CLIP_POLYGONS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RADIOSITY_FORMFACTOR_EXACT_CLIP_POLYGONS_INL_H
@@ -56,8 +56,8 @@ struct EdgeList {
   }
 
   /// Cuts every edge to the inner side of a line and adds the edge along it. `concerned`: lanes
-  /// that are cut; to the others nothing is done. Points count as inside up to `noise` outside, so
-  /// that an edge along the line lies on one side with all its points.
+  /// that are cut; the others stay. Points count as inside up to `noise` outside, so that an edge
+  /// along the line lies on one side with all its points.
   HWY_INLINE void cut(const Line<T>& line, Vector<T> noise, Mask<T> concerned) {
     const Tag<T> d;
     const auto zero = hn::Zero(d);
@@ -126,7 +126,7 @@ struct LaneLines {
 /// One vector of items.
 template <class T>
 struct VectorClip {
-  // Leaves the arrays as they are: clearing them would take longer than what is done with them.
+  // Leaves the arrays as they are: clearing them would take longer than the work on them.
   VectorClip(const TargetLanes<T>& all_targets, const EyePoints<T>& all_eyes,
              const ConePlanes<T>& all_planes)
       : targets(all_targets), eyes(all_eyes), planes(all_planes) {}
@@ -161,7 +161,7 @@ struct VectorClip {
     line_count = 0;
   }
 
-  /// Finds where each polygon lies of a plane of its own.
+  /// Finds the place of each polygon relative to a plane of its own.
   HWY_INLINE void classify(IndexVector<T> plane) {
     const Tag<T> d;
     const Vector3<T> normal = gather3<T>(planes.normal, plane);

@@ -20,14 +20,14 @@ HWY_BEFORE_NAMESPACE();
 namespace radiosity::HWY_NAMESPACE {
 namespace {
 
-/// Lane k's as bit k.
+/// The mask's bits, lane k's as bit k.
 HWY_INLINE std::uint32_t maskBits(Mask<double> mask) {
   std::uint8_t bytes[8] = {};
   hn::StoreMaskBits(Tag<double>(), mask, bytes);
   return bytes[0] | std::uint32_t(bytes[1]) << 8;
 }
 
-/// Rounded to the type it is stored as.
+/// Stores a vector, rounded to the type it is stored as.
 HWY_INLINE void storeRounded(Vector<double> v, double* to) { hn::Store(v, Tag<double>(), to); }
 HWY_INLINE void storeRounded(Vector<double> v, float* to) {
   const hn::Rebind<float, Tag<double>> narrow;
@@ -54,7 +54,7 @@ HWY_INLINE std::uint32_t heightsOver(const Occluder::Plane& face, const ConePoin
   return above;
 }
 
-/// Of any length; stored with length 1, rounded to T.
+/// Stores planes, given at any length, with length 1, rounded to T.
 template <class T>
 HWY_INLINE void storePlanes(const Vector3<double>& normal, Vector<double> offset, std::size_t q,
                             ConeSide<T>& side) {
@@ -87,7 +87,7 @@ HWY_INLINE void edgePlanes(const Vec3& from, const Vec3& to, const double* left,
   }
 }
 
-/// The points' heights over all faces, and which are above: into `scratch`.
+/// Finds the points' heights over all faces, and the faces that they are above: into `scratch`.
 HWY_INLINE void findFaces(const Occluder& body, const ConePoints& points,
                           const ConeScratch& scratch) {
   const std::uint32_t used = (1U << points.count) - 1;
@@ -98,7 +98,7 @@ HWY_INLINE void findFaces(const Occluder& body, const ConePoints& points,
 }
 
 /// A bit for each point whose plane through an edge of the body has all of a polygon on the side of
-/// dot(cross(from - point, along), p) <= 0, and the other way round.
+/// dot(cross(from - point, along), p) <= 0; another for the other side.
 struct EdgeSides {
   std::uint32_t negative, positive;
 };

@@ -14,7 +14,7 @@ namespace {
 /// of the largest.
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
 
-/// On the plane, from a point inside to one outside it (or back: the same bits).
+/// The point on the plane between a point inside and one outside it (the same bits either way).
 Vec3 crossing(const Vec3& in, const Vec3& out, double in_distance, double out_distance) {
   return in + (out - in) * (in_distance / (in_distance - out_distance));
 }

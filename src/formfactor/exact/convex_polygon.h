@@ -22,8 +22,8 @@ struct ClipPlane {
 /// A planar convex polygon, relative to the viewing point.
 struct ConvexPolygon {
   std::vector<Vec3> corners;
-  /// Where the edge from corner k to corner k + 1 comes from: the polygon's own edge number, or
-  /// the number given with the plane that cut it.
+  /// The origin of the edge from corner k to corner k + 1: the polygon's own edge number, or the
+  /// number given with the plane that cut it.
   std::vector<std::uint16_t> edges;
 
   void assign(std::span<const Vec3> outline, const Vec3& eye);
@@ -36,10 +36,10 @@ struct ConvexPolygon {
 
 enum class PlaneSide { inside, outside, both };
 
-/// Cuts `in` into what lies on the plane's inner side and what does not (Sutherland & Hodgman
-/// 1974). The results are set only where there is something on both sides; `outside` may be null,
-/// neither may be `in`. Both get the same points on the cut. A polygon that passes the plane by no
-/// more than rounding is not cut: no slivers.
+/// Cuts `in` into its parts on the plane's inner and outer side (Sutherland & Hodgman 1974). The
+/// results are set only if there is something on both sides; `outside` may be null, neither may be
+/// `in`. Both get the same points on the cut. A polygon that passes the plane by no more than
+/// rounding is not cut: no slivers.
 PlaneSide split(const ConvexPolygon& in, const ClipPlane& plane, std::uint16_t edge,
                 ConvexPolygon* inside, ConvexPolygon* outside);
 

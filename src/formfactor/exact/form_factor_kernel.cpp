@@ -53,7 +53,7 @@ struct FormFactorKernel::Prepared {
     }
   }
 
-  /// Adds `weight` of what a sensor sees of each column's patch.
+  /// Adds `weight` times the form factor from a sensor to each column's patch.
   void look(const Sensor& sensor, double weight, std::span<const Index> columns,
             std::span<double> values) const {
     const ElementSet& elements = view.elements();

@@ -1,4 +1,4 @@
-// Form factors from points to patches, each looking for itself.
+// Form factors from points to patches, each point by itself.
 #include "radiosity/point_factors.h"
 
 #include <fmt/format.h>

@@ -7,10 +7,10 @@
 
 namespace radiosity {
 
-/// The fraction of what leaves a small patch at `point` with unit `normal` that reaches a planar
-/// polygon, nothing between them (Lambert 1760; Baum, Rushmeier & Winget 1989, eq. 9). The polygon
-/// is counter-clockwise seen from the point and lies wholly in front of the point's plane (clip it
-/// first); the other way round the value is negative.
+/// The fraction of the light leaving a small patch at `point` with unit `normal` that reaches a
+/// planar polygon, nothing between them (Lambert 1760; Baum, Rushmeier & Winget 1989, eq. 9). The
+/// polygon is counter-clockwise seen from the point and lies wholly in front of the point's plane
+/// (clip it first); the other way round the value is negative.
 ///
 /// With edges e from a to b, a and b relative to the point, c = a x e and s = |c|:
 ///

@@ -1,4 +1,4 @@
-// What single points see of elements, past flat occluders. Solids, which the exact method puts in
+// The view of single points: elements, past flat occluders. Solids, which the exact method puts in
 // the place of closed bodies, and polygons that it leaves out since nothing is behind them, are
 // proved for points of patches alone; here every polygon blocks by itself.
 #pragma once

@@ -13,7 +13,7 @@ namespace {
 constexpr double kRounding = 1e-14;
 constexpr double kPixelRounding = 1e-6;
 
-/// Of the centres within [low, high], the first and one past the last, if `count` there are.
+/// The first of the centres of `count` pixels that lies within [low, high], and one past the last.
 std::pair<int, int> centresWithin(double low, double high, int count) {
   // std::ceil and std::floor are library calls without SSE4.1.
   const double from = std::clamp(low - 0.5 - kPixelRounding, 0.0, double(count));
@@ -22,7 +22,7 @@ std::pair<int, int> centresWithin(double low, double high, int count) {
   return {below + int(below < from), int(to)};
 }
 
-/// Of x / w over [low, high] x [near, far], near > 0, the least and the largest.
+/// The least and the largest x / w over [low, high] x [near, far], near > 0.
 double leastQuotient(double low, double near, double far) { return low / (low < 0 ? near : far); }
 double mostQuotient(double high, double near, double far) { return high / (high > 0 ? near : far); }
 

@@ -1,4 +1,4 @@
-// Where on a hemicube's face a box may be seen, and how near.
+// The pixels of a hemicube's face on which a box may be seen, and how near it is.
 #pragma once
 
 #include <glm/mat3x3.hpp>
@@ -10,7 +10,7 @@
 
 namespace radiosity {
 
-/// Boxes in the coordinates of an eye: along its axes, around what they were before.
+/// Turns boxes into boxes along an eye's axes around them, in the eye's coordinates.
 class BoxesFromEye {
  public:
   explicit BoxesFromEye(const EyeFrame& frame);
@@ -21,7 +21,7 @@ class BoxesFromEye {
   glm::dmat3 spread_;  ///< magnitudes of the axes
 };
 
-/// The pixels whose centres lie in a rectangle, in pixels; of `columns` x `rows`.
+/// The pixels of `columns` x `rows` whose centres lie in a rectangle, in pixels.
 PixelBox pixelsWithin(const Box2& rectangle, int columns, int rows);
 
 struct BoxOnFace {

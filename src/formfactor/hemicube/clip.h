@@ -1,4 +1,4 @@
-// Clipping a polygon to what one face of the hemicube sees.
+// Clipping a polygon to the view of one face of the hemicube.
 #pragma once
 
 #include <vector>

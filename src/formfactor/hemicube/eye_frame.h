@@ -1,4 +1,4 @@
-// Where an eye stands and how its hemicube is turned.
+// The place of an eye and the turn of its hemicube.
 #pragma once
 
 #include <cstdint>

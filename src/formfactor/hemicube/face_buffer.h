@@ -1,4 +1,4 @@
-// The item buffer of a whole face, which tells what it already hides.
+// The item buffer of a whole face, which tells whether it hides a box.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,11 @@ struct PixelBox {
   bool isEmpty() const { return x_begin >= x_end || y_begin >= y_end; }
 };
 
-/// Depths and items of a face, drawn in any order, and of every tile of kTile x kTile pixels the
-/// farthest depth: what lies behind it in all tiles that it may touch cannot be seen (the z-pyramid
-/// of Greene, Kass & Miller, "Hierarchical Z-Buffer Visibility", SIGGRAPH 1993, of one level).
-/// Depths are inverse distances (hemicube.h). A tile's is found when it is asked for: until then
-/// the value of before stands, which is farther or the same.
+/// Depths and items of a face, drawn in any order, and the farthest depth of every tile of kTile x
+/// kTile pixels: a box behind that depth in all tiles that it may touch cannot be seen (the
+/// z-pyramid of Greene, Kass & Miller, "Hierarchical Z-Buffer Visibility", SIGGRAPH 1993, of one
+/// level). Depths are inverse distances (hemicube.h). A tile's farthest depth is found when it is
+/// asked for: until then the old one stands, which is farther or the same.
 class FaceBuffer {
  public:
   FaceBuffer(int columns, int rows);
@@ -42,7 +42,7 @@ class FaceBuffer {
   static constexpr int kTile = 8;
   struct Tile {
     float farthest;
-    bool is_old;  ///< drawn on since
+    bool is_old;  ///< the tile was drawn on since
   };
   float farthestOf(int column, int row) const;
   bool isNearer(const PixelBox& box, double nearest) const;

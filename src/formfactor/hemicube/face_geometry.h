@@ -45,7 +45,7 @@ enum class SidePlane { left, right, bottom, top };
 inline constexpr std::array<SidePlane, 4> kSidePlanes = {SidePlane::left, SidePlane::right,
                                                          SidePlane::bottom, SidePlane::top};
 
-/// Face 0 is the top; 1 to 4 are the sides, which show only what is above the horizon.
+/// Face 0 is the top; 1 to 4 are the sides, which show only the part above the horizon.
 class FaceGeometry {
  public:
   explicit FaceGeometry(int face) : face_(face) {}

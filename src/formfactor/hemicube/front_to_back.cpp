@@ -1,6 +1,6 @@
-// Draws a hemicube's polygons front to back, leaving out what is hidden: node by node of a tree of
-// boxes, as soon as all pixels that a node may cover are nearer (Greene, Kass & Miller 1993, with
-// boxes for octants).
+// Draws a hemicube's polygons front to back, without the hidden ones: a node of a tree of boxes is
+// left out if all pixels that it may cover are nearer (Greene, Kass & Miller 1993, with boxes for
+// octants).
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -15,12 +15,12 @@ namespace {
 
 constexpr unsigned kAllFaces = (1u << kFaces) - 1;
 /// Depths of polygons that are seen nearly edge-on are rounded by more than their last bits. A box
-/// knows nothing of the planes in it: it allows for so much, relative.
+/// knows nothing of the planes in it, so its depth allows for this much, relative.
 constexpr double kBoxMargin = 1e-4;
 /// Three roundings to single precision, relative to the largest term of a depth.
 constexpr double kRoundings = 0x1p-22;
 
-/// Of the place in a box that is nearest.
+/// The square of the distance to the nearest place in a box.
 double squaredDistance(const Box3& box, const Vec3& from) {
   const Vec3 away = from - glm::clamp(from, box.low, box.high);
   return glm::dot(away, away);
@@ -53,7 +53,7 @@ void Hemicube::drawLeaf(const BoxTree::Node& leaf, const Pending& pending) {
   }
 }
 
-/// True, and counted, where none of the polygons in a box can be seen.
+/// True, with the polygons counted, if none of those in a box can be seen.
 bool Hemicube::isSettled(const Box3& world_box, std::size_t polygons, Pending& pending) {
   const Box3 box = from_eye_(world_box);
   if (isOffHorizon(box, polygons)) return true;
@@ -63,7 +63,7 @@ bool Hemicube::isSettled(const Box3& world_box, std::size_t polygons, Pending& p
   return true;
 }
 
-/// Whether all of a box lies below the horizon or in its plane; counted.
+/// True, with the polygons counted, if all of a box lies below the horizon or in its plane.
 bool Hemicube::isOffHorizon(const Box3& box, std::size_t polygons) {
   if (box.high.z > scene_.coincidence) return false;
   if (box.high.z < -scene_.coincidence) {
@@ -103,7 +103,7 @@ void Hemicube::countUnseen(const Pending& pending, std::size_t polygons) {
   counts_.skipped_hidden += polygons * std::size_t(std::popcount(pending.hidden));
 }
 
-/// `pending`: of its leaf.
+/// `pending`: the faces on which the polygon is known to be out of sight.
 void Hemicube::drawPolygon(Index place, Pending pending) {
   Candidate candidate{};
   eye_corners_.clear();
@@ -121,7 +121,7 @@ void Hemicube::drawPolygon(Index place, Pending pending) {
   countUnseen(pending, 1);
 }
 
-/// Draws what scan() has projected; false where it is hidden.
+/// Draws the polygon that scan() has projected; false if it is hidden.
 bool Hemicube::drawOnFace(const Candidate& candidate, const FaceGeometry& face) {
   FaceBuffer& buffer = faces_[face.index()];
   const Vec3 plane = inverseDepth(candidate, face);

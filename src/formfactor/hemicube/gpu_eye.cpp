@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kLibrary = "libradiosity_gl.so";
 
-/// Where there is no library.
+/// Stands for a library that is not there.
 class NoEyes final : public GpuEyes {
  public:
   explicit NoEyes(std::string problem) : problem_(std::move(problem)) {}

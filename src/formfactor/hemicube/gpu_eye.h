@@ -1,10 +1,10 @@
-// Hemicubes drawn by a GPU. What knows OpenGL stands in a library of its own (src/gl), which is
-// opened when the first device is asked for: the program runs where there is none.
+// Hemicubes drawn by a GPU. The code that uses OpenGL is a library of its own (src/gl), opened when
+// the first device is asked for, so that the program runs without it.
 //
 // A GPU draws many hemicubes at once, all polygons in colours of their own (Cohen & Greenberg
 // 1985), finds the patches of visible pixels and adds up the delta form factors. Conventions are
-// those of hemicube.h; what differs is that vertices are rounded to the rasteriser's grid, so that
-// a pixel whose centre is within some 1/256 of a pixel of an edge may fall to either side.
+// those of hemicube.h, except that vertices are rounded to the rasteriser's grid: a pixel whose
+// centre is within some 1/256 of a pixel of an edge may fall to either side.
 #pragma once
 
 #include <array>
@@ -22,12 +22,12 @@
 
 namespace radiosity {
 
-/// Where one eye stands, as Hemicube::look() has it, in the coordinates of the ViewScene.
+/// The place and axes of one eye, as for Hemicube::look(), in the coordinates of the ViewScene.
 struct GpuView {
   std::array<double, 3> eye;
   std::array<double, 9> axes;  ///< column by column
   std::uint32_t own;           ///< position in ViewScene::polygons, or kNone
-  std::uint32_t source = 0;    ///< of GpuField: whose light this eye gathers
+  std::uint32_t source = 0;    ///< of GpuField: the source that gathers by this eye
 };
 static_assert(sizeof(GpuView) == 104);
 
@@ -58,8 +58,8 @@ struct GpuFacet {
 };
 static_assert(sizeof(GpuFacet) == 72);
 
-/// Light that is gathered. Sources are the patches, or, where there are facets, what the corners of
-/// these name: the eyes, then means over several of them. Values are rows of `bands`.
+/// Light that is gathered. Sources are the patches or, with facets, those named by the corners of
+/// facets: the eyes, then means over several of them. Values are rows of `bands`.
 struct GpuField {
   std::size_t bands = 0;
   std::size_t eyes = 0;            ///< sources that gather
@@ -75,8 +75,8 @@ struct GpuField {
   std::vector<std::uint32_t> mean_of, first_of_mean;
 };
 
-/// What views [first, first + count) see: for each of them the weight of every item, the sky's
-/// last, in units of kGpuUnit, items + 1 of them.
+/// The rows of views [first, first + count): the items + 1 weights of each, the sky's last, in
+/// units of kGpuUnit.
 struct GpuRows {
   std::size_t first = 0;
   std::size_t count = 0;
@@ -91,27 +91,27 @@ class GpuEye {
  public:
   virtual ~GpuEye() = default;
 
-  /// Describes view k: where it stands, and a bit for each polygon whose black back cannot be seen
-  /// (bit p % 32 of word p / 32; all are 0 before).
+  /// Describes view k: its place and axes, and a bit for each polygon whose black back cannot be
+  /// seen (bit p % 32 of word p / 32; all are 0 before).
   using Describe =
       std::function<void(std::size_t k, GpuView& view, std::span<std::uint32_t> hidden)>;
   /// Receives rows, views ascending, each once; false: that is enough.
   using Take = std::function<bool(const GpuRows& rows)>;
 
-  /// Looks from `count` eyes. While rows are taken later ones are drawn. Empty, or why the device
-  /// gave up ("out of memory"): views after those taken were not seen then. One that has given up,
-  /// here or below, does nothing more but say so again.
+  /// Looks from `count` eyes. Later rows are drawn while earlier ones are taken. Returns why the
+  /// device gave up ("out of memory"), if it did: views after those taken were then not seen. An
+  /// eye that has given up, here or below, only says so again.
   virtual std::string look(std::size_t count, const Describe& describe, const Take& take) = 0;
 
-  /// Makes room for the light of a field, which is dark but for its emission. Empty, or why the
-  /// device gave up.
+  /// Makes room for the light of a field, which is dark but for its emission. Returns why the
+  /// device gave up, or nothing.
   virtual std::string prepare(const GpuField& field) = 0;
-  /// As look(), and gathers light: the sources of the views have then what their eyes receive, for
-  /// the next call. Radiosity stays on the device.
+  /// As look(), and gathers light: each view's source gets the light that its eye receives, for the
+  /// next call. Radiosity stays on the device.
   virtual std::string gather(std::size_t count, const Describe& describe, const Take& take) = 0;
 
-  /// For tests: the polygons that view 0 sees, face by face as Hemicube::picture() has them.
-  /// RunError where the device gives up.
+  /// For tests: the polygons that view 0 sees, face by face as Hemicube::picture() has them. Throws
+  /// RunError if the device gives up.
   virtual std::vector<Index> pictures(const Describe& describe) = 0;
 
   /// Bytes held here and on the device, about.
@@ -119,34 +119,34 @@ class GpuEye {
   virtual const EyeDevice& device() const = 0;
 };
 
-/// How work is handed to a device; rows have the same bits whatever it is.
+/// The pace of handing work to a device; rows have the same bits at any pace.
 struct GpuPace {
   std::size_t ring;  ///< batches that are under way at once: while one is read, the next are drawn
   std::size_t pixels;  ///< of a batch; one hemicube may have more
 };
 
-/// What the library offers.
+/// The devices that the library offers.
 class GpuEyes {
  public:
   virtual ~GpuEyes() = default;
-  /// Devices that can draw, hardware first; where there are none `problem` says why, and the cure.
+  /// Devices that can draw, hardware first; if there are none, `problem` says why, and the cure.
   virtual EyeDevices devices() const = 0;
-  /// An eye on device `d` of devices(), which keeps nothing of its arguments. `pace`: empty for
-  /// what suits the device. Null: `problem` says why.
+  /// Opens an eye on device `d` of devices(); it keeps none of its arguments. `pace`: empty for one
+  /// that suits the device. Null: `problem` says why.
   virtual std::unique_ptr<GpuEye> open(std::size_t d, const GpuScene& scene,
                                        const GpuWeights& weights, std::optional<GpuPace> pace,
                                        std::string& problem) const = 0;
 };
 
-/// Those of the library; without devices where it is not there.
+/// Those of the library; without devices if there is no library.
 const GpuEyes& gpuEyes();
 
-/// Why it is not, and the cure, from the words of the loader (dlerror()).
+/// Why there is no library, and the cure, from the words of the loader (dlerror()).
 std::string libraryProblem(const std::string& loader_words);
 
-/// The eye that `choice` asks for: null for the CPU's, also where `automatic` finds no hardware, or
-/// finds the program to be one of several processes. RunError, with the cure, where `gl` is asked
-/// for and there is no device. One that cannot hold the scene gives up at the first call.
+/// The eye that `choice` asks for: null for the CPU's, also if `automatic` finds no hardware, or
+/// finds the program to be one of several processes. Throws RunError, with the cure, if `gl` is
+/// asked for and there is no device. An eye that cannot hold the scene gives up at the first call.
 std::unique_ptr<GpuEye> openGpuEye(EyeChoice choice, const ViewScene& scene, const PatchMesh& mesh,
                                    const DeltaFormFactors& weights);
 /// The same with the devices of `eyes`.

@@ -13,14 +13,14 @@
 
 namespace radiosity {
 
-/// Writes down where an eye stands. `hidden`: as RowBuilder::place() gives it; `words`: zeros.
+/// Writes down the place of an eye. `hidden`: as RowBuilder::place() gives it; `words`: zeros.
 void describeEye(const PlacedEye& eye, std::span<const std::uint8_t> hidden, GpuView& view,
                  std::span<std::uint32_t> words);
 
-/// What single eyes of some rows see, in the form that Hemicube::look() has. Memory: one a thread.
+/// The views of single eyes, in the form of Hemicube::look(). Holds memory: one a thread.
 class GpuRowReader {
  public:
-  /// Of view k < rows.count; `patches`: of the scene. Valid until the next call.
+  /// View k < rows.count; `patches`: those of the scene. Valid until the next call.
   const HemicubeView& read(const GpuRows& rows, std::size_t k, std::size_t patches);
 
  private:
@@ -28,13 +28,13 @@ class GpuRowReader {
   HemicubeView view_;
 };
 
-/// Polygons that some hemicubes drew and skipped; no hemicubes and pixels.
+/// Polygons that some hemicubes drew and skipped; hemicubes and pixels stay 0.
 HemicubeCounts polygonCounts(const GpuCounts& counts);
 
-/// Looks from `patches` (not empty ones) and calls store(patch, view, counts) for each of them, on
-/// all threads. Counts of polygons are told with the first patch of a batch, for all of it;
-/// HemicubeCounts::sky_pixels is 1 for any number of them. Advances `progress` by a step a patch
-/// and stops where that is cancelled. Empty, or why the device gave up: then some were not called.
+/// Looks from `patches` (not empty ones) and calls store(patch, view, counts) for each, on all
+/// threads. The first patch of a batch gets the counts of polygons of all of it;
+/// HemicubeCounts::sky_pixels is 1 for any number. Advances `progress` by a step a patch and stops
+/// if that is cancelled. Returns why the device gave up, if it did: some were then not called.
 std::string lookFromPatches(
     GpuEye& eye, const RowBuilder& rows, std::span<const Index> patches,
     const std::function<void(std::size_t, const HemicubeView&, const HemicubeCounts&)>& store,

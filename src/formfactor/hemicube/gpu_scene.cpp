@@ -25,7 +25,7 @@ class EdgeVertices {
     tree_ = BoxTree(boxes);
   }
 
-  /// No higher than coincidence allows to tell from a line.
+  /// True if the triangle is at most four coincidences high: it cannot be told from a line.
   bool isThin(const std::array<Index, 3>& triangle) const {
     const Vec3 u = vertices_[triangle[1]] - vertices_[triangle[0]];
     const Vec3 v = vertices_[triangle[2]] - vertices_[triangle[0]];
@@ -33,7 +33,7 @@ class EdgeVertices {
     return !(glm::length(glm::cross(u, v)) > 4 * coincidence_ * longest);
   }
 
-  /// From `a` to `b`. The same vertices, the other way round, as from `b` to `a`.
+  /// The vertices from `a` to `b`: those from `b` to `a` in reverse.
   std::vector<Index> between(Index a, Index b) const {
     if (a > b) {
       std::vector<Index> found = between(b, a);
@@ -55,7 +55,7 @@ class EdgeVertices {
         },
         [&](Index v) {
           const Vec3& p = vertices_[v];
-          // An end, and what coincides with it, cuts nothing off.
+          // Vertices that coincide with an end cut nothing off.
           const bool at_end = glm::distance(p, from) <= coincidence_ ||
                               glm::distance(p, vertices_[b]) <= coincidence_;
           if (!at_end && distanceOf(p) <= coincidence_) {
@@ -117,7 +117,7 @@ GpuScene::GpuScene(const ViewScene& scene, const PatchMesh& mesh)
   for (const std::vector<GpuTriangle>& parts : cut) {
     triangles.insert(triangles.end(), parts.begin(), parts.end());
   }
-  // Of equal depths the polygon that is drawn first stays.
+  // At equal depths the polygon that is drawn first stays.
   std::stable_sort(triangles.begin(), triangles.end(),
                    [](const GpuTriangle& a, const GpuTriangle& b) { return a[3] < b[3]; });
 }

@@ -9,8 +9,7 @@
 
 namespace radiosity {
 
-/// ViewPolygon. Sides: front, back; `grid`: into GpuScene::grids, or -1 where all of a side is
-/// `item`.
+/// ViewPolygon. Sides: front, back; `grid`: into GpuScene::grids, or -1 if all of a side is `item`.
 struct GpuPolygon {
   std::array<double, 3> normal, origin;
   std::uint32_t corner_begin, corner_end;  ///< into GpuScene::corners
@@ -39,10 +38,10 @@ static_assert(sizeof(GpuPolygon) == 72 && sizeof(GpuGrid) == 80 && sizeof(GpuNod
               sizeof(Vec3) == 24);
 
 /// A rasteriser of a GPU moves vertices to a grid of its own, 1/256 of a pixel or so. Neighbours
-/// that share their vertices still meet; where one has a vertex in the middle of the other's edge,
-/// a pixel between the two could be lost. So triangles are cut at all vertices on their edges.
+/// that share their vertices still meet. If one has a vertex in the middle of the other's edge, a
+/// pixel between the two could be lost, so triangles are cut at all vertices on their edges.
 struct GpuScene {
-  /// `mesh`: whose ViewScene that is.
+  /// `mesh`: the one that `scene` was made from.
   GpuScene(const ViewScene& scene, const PatchMesh& mesh);
 
   double coincidence;   ///< ViewScene::coincidence
@@ -52,7 +51,7 @@ struct GpuScene {
   std::vector<GpuPolygon> polygons;    ///< as in ViewScene
   std::vector<GpuTriangle> triangles;  ///< in the polygons' order
   std::vector<GpuGrid> grids;
-  std::vector<std::int32_t> cells;  ///< items; of grids those below 0 are ~(node of the grid)
+  std::vector<std::int32_t> cells;  ///< items; in grids, values below 0 are ~(node of the grid)
   std::vector<GpuNode> nodes;
 
  private:

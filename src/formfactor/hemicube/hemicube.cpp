@@ -186,9 +186,9 @@ void Hemicube::sumRow(const FaceGeometry& face, int y, const std::uint32_t* row,
   sumCells(resolution_, weights, sink);
 }
 
-/// Adds what the row's runs of cells, the last of which ends at pixel `end`, are worth to what the
-/// cells count for. One long loop for the whole row: runs are short, and a loop for each polygon
-/// would spend its time on mispredicted ends.
+/// Adds the weights of the row's runs of cells, the last of which ends at pixel `end`, to the
+/// cells' items. One long loop for the whole row: runs are short, and a loop for each polygon would
+/// spend its time on mispredicted ends.
 template <class Sink>
 void Hemicube::sumCells(int end, const double* weights, const Sink& sink) {
   const std::int32_t* starts = cell_starts_.data();
@@ -203,8 +203,8 @@ void Hemicube::sumCells(int end, const double* weights, const Sink& sink) {
   }
 }
 
-/// Appends the cells that a run of pixels of one polygon lies in to the row's. Where cells may be
-/// shared by several patches, they are summed at once instead, together with the runs before them.
+/// Appends the cells of a run of pixels of one polygon to the row's. If several patches may share a
+/// cell, they are summed at once instead, together with the runs before them.
 template <class Sink>
 void Hemicube::locatePatches(Drawn& drawn, double height, int begin, int end, const double* weights,
                              const Sink& sink) {

@@ -12,9 +12,9 @@
 // division per pixel. A face is drawn and summed in bands of rows that stay in the first-level
 // cache: clearing, depth tests and sums are then bound by arithmetic, not by memory.
 //
-// Where most polygons are hidden, whole faces are drawn, polygons front to back, and what lies
-// behind them is left out by boxes (front_to_back.cpp): the same pixels, and a cost that follows
-// what is seen.
+// If most polygons are hidden, whole faces are drawn, polygons front to back, and boxes of polygons
+// behind those drawn are left out (front_to_back.cpp). The pixels are the same; the cost follows
+// the visible polygons.
 #pragma once
 
 #include <array>
@@ -73,7 +73,7 @@ struct ItemRun {
   const double* weights;  ///< running sums: pixel x is worth weights[x + 1] - weights[x]
 };
 
-/// Receives what an eye sees run by run, where a sum by item says too little.
+/// Receives a view run by run, for callers that need more than a sum by item.
 class RunVisitor {
  public:
   virtual ~RunVisitor() = default;
@@ -85,20 +85,20 @@ class RunVisitor {
 class Hemicube {
  public:
   /// The arguments are kept by reference (except `kernels`) and must outlive the hemicube. `tree`:
-  /// of the scene; its polygons are then drawn front to back, and what is hidden is left out. Null:
-  /// all are drawn. Both see the same.
+  /// the scene's; polygons are then drawn front to back without the hidden ones. Null: all are
+  /// drawn. Both give the same view.
   Hemicube(const ViewScene& scene, const DeltaFormFactors& weights, const RasterKernels& kernels,
            const PolygonTree* tree = nullptr);
 
   /// Looks from `frame` (in the scene's scaled coordinates). `own`: position in scene.polygons of
   /// the polygon the eye lies in, never drawn; kNone for an eye in free space. `hidden[p]` != 0
-  /// says the black back of polygon p cannot be seen from here; may be null. Where `runs` is given
-  /// it receives all runs, and of the view only the sums by kind are made.
+  /// says the black back of polygon p cannot be seen from here; may be null. `runs`, if given,
+  /// receives all runs; of the view only the sums by kind are then made.
   const HemicubeView& look(const EyeFrame& frame, Index own, const std::uint8_t* hidden,
                            RunVisitor* runs = nullptr);
 
   const HemicubeCounts& counts() const { return counts_; }
-  /// The same, which then start anew.
+  /// Returns the counts and sets them to 0.
   HemicubeCounts takeCounts() { return std::exchange(counts_, {}); }
 
   /// One face of the last view, for tests and comparisons: positions in scene.polygons, or kNone;
@@ -159,7 +159,7 @@ class Hemicube {
       return std::tie(other.squared_distance, other.node) < std::tie(squared_distance, node);
     }
   };
-  /// Of what scan() has projected, in pixels, and the least distance along the face's axis.
+  /// The extent of the polygon that scan() has projected, and its least distance along the axis.
   struct Extent {
     Box2 pixels;
     double least_w;
@@ -194,7 +194,7 @@ class Hemicube {
   /// Draws a face band by band and calls visit(y, row of drawn polygons) for its rows, ascending.
   template <class Visit>
   void drawFace(const FaceGeometry& face, const Visit& visit);
-  /// Where runs go, add(item, begin, end, weight): into a sum by item, or to a visitor.
+  /// Sinks for runs, with add(item, begin, end, weight): a sum by item, or a visitor.
   class ItemSums;
   class VisitedRuns;
   template <class Sink>
@@ -245,8 +245,8 @@ class Hemicube {
   std::vector<std::vector<BandSpans>> bands_;
   AlignedBuffer<float> depth_;           ///< of one band
   AlignedBuffer<std::uint32_t> buffer_;  ///< of one band: positions in drawn_
-  /// Front to back: buffers of whole faces, of positions in scene_.polygons; of each of these that
-  /// is drawn its position in drawn_; a heap of nodes still to be looked at.
+  /// For drawing front to back: buffers of whole faces, of positions in scene_.polygons; the
+  /// position in drawn_ of each of these that is drawn; a heap of nodes still to be looked at.
   std::vector<FaceBuffer> faces_;
   std::vector<Index> place_;
   std::vector<Pending> pending_;

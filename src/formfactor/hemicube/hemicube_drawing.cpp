@@ -23,7 +23,7 @@ Vec3 perPixel(const FacePoint& p, int resolution) {
 
 }  // namespace
 
-/// False, and counted, for what the eye does not see on any face.
+/// False, with the polygon counted, if the eye sees it on no face.
 bool Hemicube::findCandidate(Index p, const ViewPolygon& shape, Candidate& candidate) {
   const auto first_corner = std::uint32_t(eye_corners_.size());
   unsigned code = 0;

@@ -19,8 +19,8 @@
 namespace radiosity {
 namespace {
 
-/// One row in so many, as far as these are at least and at most so many rows: so a sample takes a
-/// few per cent of the whole, or not long.
+/// A sample has one row in kOneIn, and kLeastRows to kMostRows of them: it takes a few per cent of
+/// the whole, or not long.
 constexpr std::size_t kOneIn = 40;
 constexpr std::size_t kLeastRows = 8;
 constexpr std::size_t kMostRows = 32;
@@ -32,7 +32,7 @@ struct SampledRow {
   BothClocks taken;    ///< by all of it
 };
 
-/// The second look is timed: the first one also makes room for itself.
+/// Times the second look: the first one also allocates memory.
 SampledRow lookFrom(std::size_t patch, std::size_t patches, const HemicubeScene& scene) {
   const BothWatches watches;
   Hemicube hemicube = scene.rows.makeHemicube();
@@ -51,7 +51,7 @@ SampledRow lookFrom(std::size_t patch, std::size_t patches, const HemicubeScene&
   return sampled;
 }
 
-/// Of all rows, as a sample of them has it.
+/// Figures of all rows, from a sample of them.
 struct Sample {
   double entries = 0;         ///< a row
   double seconds = 0;         ///< a row, by the clock, on the threads allowed
@@ -79,8 +79,8 @@ Sample sampleByCpu(const std::vector<Index>& patches, std::size_t n, const Hemic
           allowedThreads() * sum.hemicube_bytes};
 }
 
-/// The second look is timed: before the first one a device compiles. Empty where the device gives
-/// up, of which the rows' own look will tell.
+/// Times the second look: before the first one a device compiles. Empty if the device gives up,
+/// which the rows' own look will report.
 std::optional<Sample> sampleByGpu(const std::vector<Index>& patches, std::size_t n,
                                   const HemicubeScene& scene, Progress& progress) {
   std::vector<Index> looking;
@@ -131,8 +131,8 @@ HemicubeEstimate estimateHemicubes(const PatchMesh& mesh, const HemicubeScene& s
       4 * sizeof(double) + sizeof(std::vector<SeenBack>) + 7 * sizeof(std::size_t) + 2 * 16;
   // Looking through columns for reciprocity, and writing, come one after the other.
   const std::size_t finishing = std::max(bothEstimatesBytes(n, threads), kFileChunks);
-  // Merging makes a second matrix beside the first, in which a pair is stored once where one of its
-  // ends or the other has seen it; closing its rows, after that, takes no more than the first.
+  // Merging makes a second matrix beside the first, in which a pair is stored once if either of its
+  // ends has seen it; closing its rows, after that, takes no more than the first.
   constexpr double kSeenByEither = 1.2;
   const double merged = std::min(double(n), kSeenByEither * sample.entries);
   const std::size_t second =

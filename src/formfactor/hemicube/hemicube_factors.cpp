@@ -26,13 +26,13 @@
 namespace radiosity {
 namespace {
 
-/// What a thread needs to store rows, and what they have counted.
+/// Memory in which a thread stores rows, and their counts.
 struct RowStore {
   PackedRow row;
   HemicubeRowCounts counts;
 };
 
-/// What a thread needs to make them.
+/// Memory in which a thread makes rows.
 struct Worker {
   Hemicube hemicube;
   std::vector<std::uint8_t> hidden;
@@ -45,10 +45,10 @@ struct Rows {
   RowJournal* journal;
   FormFactors& result;
   std::vector<std::vector<SeenBack>>& seen_backs;
-  std::vector<std::uint8_t> made;  ///< by row; empty ones are
+  std::vector<std::uint8_t> made;  ///< by row; 1 also for empty ones
 };
 
-/// Stores row i as it was seen, or with its near entries put right.
+/// Stores row i as it was seen, or with its near entries corrected.
 void storeRow(std::size_t i, const HemicubeView& view, const NearPairs* near_pairs, PackedRow& row,
               FormFactors& result, std::vector<SeenBack>& seen_backs, HemicubeRowCounts& counts) {
   const std::size_t n = result.fronts.size();
@@ -70,7 +70,7 @@ void storeRow(std::size_t i, const HemicubeView& view, const NearPairs* near_pai
   }
 }
 
-/// How many rows need not be made: those that are empty, and those in the journal.
+/// The number of rows that need not be made: empty ones and those in the journal.
 std::size_t rowsThere(const RowBuilder& rows, std::size_t n, RowJournal* journal) {
   std::size_t found = 0;
   std::size_t all = 0;
@@ -83,7 +83,7 @@ std::size_t rowsThere(const RowBuilder& rows, std::size_t n, RowJournal* journal
   return n - all + found;
 }
 
-/// Stores row i and keeps it. `drawn`: what looking at it has counted.
+/// Stores row i and keeps it. `drawn`: the counts of its look.
 void finishRow(Rows& rows, std::size_t i, const HemicubeView& view, const HemicubeCounts& drawn,
                RowStore& store) {
   HemicubeRowCounts counts;
@@ -101,7 +101,7 @@ struct RowRange {
   std::size_t size() const { return last - first; }
 };
 
-/// Rows that need not be made: empty ones and those in the journal.
+/// Takes the rows that need not be made: empty ones and those in the journal.
 HemicubeRowCounts takeRows(Rows& rows, RowRange range, const Progress& progress) {
   tbb::enumerable_thread_specific<HemicubeRowCounts> taken;
   parallelFor(range.size(), 1, [&](std::size_t k) {
@@ -116,7 +116,7 @@ HemicubeRowCounts takeRows(Rows& rows, RowRange range, const Progress& progress)
   return all;
 }
 
-/// Rows by the GPU's eye; where that gives up, a note says why and the others are still to be made.
+/// Makes rows by the GPU's eye. If that gives up, a note says why; other rows are still to be made.
 HemicubeRowCounts makeRowsByGpu(Rows& rows, Progress& progress) {
   std::vector<Index> patches;
   for (std::size_t i = 0; i < rows.made.size(); ++i) {
@@ -146,7 +146,7 @@ HemicubeRowCounts makeRowsByGpu(Rows& rows, Progress& progress) {
 
 using Workers = tbb::enumerable_thread_specific<Worker>;
 
-/// What is left, by the CPU's eye. How many rows that was.
+/// Makes the rows that are left by the CPU's eye. Returns their number.
 std::size_t makeRows(Rows& rows, RowRange range, Workers& workers, Progress& progress) {
   std::atomic<std::size_t> made{0};
   parallelFor(range.size(), 1, [&](std::size_t k) {
@@ -162,14 +162,14 @@ std::size_t makeRows(Rows& rows, RowRange range, Workers& workers, Progress& pro
   return made;
 }
 
-/// What all have counted since this was asked last.
+/// The counts of all workers since the last call.
 HemicubeRowCounts takeCounts(Workers& workers) {
   HemicubeRowCounts all;
   for (Worker& worker : workers) all += std::exchange(worker.store.counts, {});
   return all;
 }
 
-/// Rows in blocks by all processes; process 0 gets accounts and counts of all of them.
+/// Makes rows in blocks by all processes; process 0 gets accounts and counts of all of them.
 HemicubeRowCounts shareRows(Processes& processes, Rows& rows, Workers& workers,
                             Progress& progress) {
   constexpr std::size_t kBlocksAProcess = 32;
@@ -251,7 +251,7 @@ void reportCounts(const HemicubeRowCounts& all, std::size_t n, FormFactorReport&
   report.closed = counts.hemicubes > 0 && counts.sky_pixels == 0;
 }
 
-/// No rows yet.
+/// Form factors without rows yet.
 FormFactors emptyRows(const PatchMesh& mesh, const FormFactorOptions& options,
                       std::shared_ptr<ScratchMemory> scratch) {
   FormFactors result;
@@ -263,9 +263,8 @@ FormFactors emptyRows(const PatchMesh& mesh, const FormFactorOptions& options,
   return result;
 }
 
-/// How far off the entries of a merged matrix may be: the square of the error goes with the
-/// exchange area, as in van Leersum's closure (closure.h). In a unit that keeps errors of F
-/// below 1.
+/// The errors of a merged matrix's entries: their squares go with the exchange area, as in van
+/// Leersum's closure (closure.h). The unit keeps errors of F below 1.
 UncertainEntries uncertainEntries(const ExchangeMatrix& matrix) {
   const std::size_t n = matrix.size();
   double smallest = std::numeric_limits<double>::infinity();
@@ -289,7 +288,7 @@ UncertainEntries uncertainEntries(const ExchangeMatrix& matrix) {
 void symmetrize(FormFactors& result, Progress& progress) {
   constexpr double kTolerance = 1e-12;
   result.matrix = symmetrized(result.matrix);
-  // The row sums to restore are the raw ones: 1 in a closed scene, what was seen in an open one.
+  // The row sums to restore are the raw ones: 1 in a closed scene, the share seen in an open one.
   result.report.closure = closeRows(result.matrix, uncertainEntries(result.matrix), result.fronts,
                                     progress, kTolerance);
   result.report.symmetrized = true;

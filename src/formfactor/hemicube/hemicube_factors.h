@@ -16,14 +16,14 @@ namespace radiosity {
 
 /// The scene as all rows see it.
 struct HemicubeScene {
-  /// Keeps `mesh` by reference. RunError as openGpuEye().
+  /// Keeps `mesh` by reference. Throws RunError as openGpuEye().
   HemicubeScene(const PatchMesh& mesh, const FormFactorOptions& options);
   RowBuilder rows;
   std::unique_ptr<GpuEye> gpu;          ///< null: the CPU's eye looks
-  std::optional<NearPairs> near_pairs;  ///< where near entries are to be made exact
+  std::optional<NearPairs> near_pairs;  ///< if near entries are to be made exact
 };
 
-/// Foreseen from a sample of rows.
+/// Time and memory, foreseen from a sample of rows.
 struct HemicubeEstimate {
   RowMemory memory;
   std::size_t matrix_bytes = 0;  ///< of these, the matrix
@@ -38,7 +38,7 @@ FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
                             const HemicubeEstimate& estimate, const FormFactorOptions& options,
                             Progress& progress, RowJournal* journal, Processes* processes);
 
-/// In the other processes, while process 0 is in hemicubeFactors(): the rows that fell to this one.
+/// For the other processes, while process 0 is in hemicubeFactors(): makes the rows of this one.
 ExchangeMatrix hemicubeRowsForOthers(const PatchMesh& mesh, const FormFactorOptions& options,
                                      Processes& processes, Progress& progress, RowJournal* journal);
 

@@ -83,7 +83,7 @@ NearPairs::Outcome NearPairs::correct(std::size_t patch, PackedRow& row) const {
     near_exact = 1;
     ++outcome.capped;
   }
-  // 1 - near_seen is what the rest, backs and sky had together.
+  // The rest, backs and sky had 1 - near_seen together.
   outcome.rest = near_seen < 1 ? (1 - near_exact) / (1 - near_seen) : 1.0;
   for (std::size_t k = 0; k < row.columns.size(); ++k) {
     row.values[k] *= replaced[k] != 0 ? cap : outcome.rest;

@@ -12,12 +12,12 @@ namespace radiosity {
 /// Replaces the near entries of hemicube rows by area-to-area form factors.
 ///
 /// A hemicube sees from one point; its error goes as (patch size / distance)^2 and no number of
-/// pixels helps (Baum, Rushmeier & Winget 1989). A pair is near where its centroids are closer than
+/// pixels helps (Baum, Rushmeier & Winget 1989). A pair is near if its centroids are closer than
 /// two patch sizes. Its new value is the unoccluded area-to-area form factor times the visible
-/// fraction, which is what the hemicube saw over what its eye would see with nothing between. What
-/// is nearly all seen is taken for all: pixels along an edge are no occluder. The rest of the row,
-/// backs and sky are scaled to what is left of 1, in the proportions in which they were seen: a
-/// hemicube's row sums to 1, and so does the corrected one.
+/// fraction, which is the hemicube's value over that of its eye with nothing between. Nearly all
+/// seen counts as all: pixels along an edge are no occluder. The rest of the row, backs and sky are
+/// scaled to the rest of 1, in the proportions in which they were seen: a hemicube's row sums to 1,
+/// and so does the corrected one.
 class NearPairs {
  public:
   /// `mesh` is kept by reference.
@@ -33,8 +33,8 @@ class NearPairs {
 
  private:
   bool near(std::size_t i, std::size_t j) const;
-  /// Area-to-area value over point-to-area value, times what was seen; empty where the eye sees
-  /// nothing of j.
+  /// Area-to-area value times the visible fraction; `seen` if all of j is below the horizon of i's
+  /// eye.
   double corrected(std::size_t i, std::size_t j, double seen) const;
 
   const PatchMesh& mesh_;

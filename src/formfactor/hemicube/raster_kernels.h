@@ -14,7 +14,7 @@ namespace radiosity {
 inline constexpr std::uint32_t kSky = 0xffffffffu;
 
 /// Rows of the item buffer start at multiples of this many pixels (a cache line of floats), and
-/// kernels may read or write, without effect, up to so many elements past the end of a row.
+/// kernels may read or write, without effect, up to this many elements past the end of a row.
 inline constexpr int kRowAlignment = 16;
 
 /// Pixels [begin, end) of row y, covered by one polygon. The inverse depth at pixel x is
@@ -26,8 +26,8 @@ struct Span {
   float inverse_depth;  ///< at x = -first_centre
 };
 
-/// Where a polygon's spans go. Pixel x has its centre at x + first_centre, measured from the
-/// middle of the face.
+/// The buffers that take a polygon's spans. Pixel x has its centre at x + first_centre, measured
+/// from the middle of the face.
 struct FillTarget {
   float* depth;          ///< inverse depth, larger is nearer; -infinity in a cleared pixel
   std::uint32_t* items;  ///< the nearest item so far

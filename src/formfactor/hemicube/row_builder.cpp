@@ -3,13 +3,12 @@
 namespace radiosity {
 namespace {
 
-/// Where there are fewer, next to nothing is hidden.
+/// With fewer polygons, next to nothing is hidden.
 constexpr std::size_t kLeastPolygons = 100;
 constexpr std::size_t kEyes = 8;
-/// What drawing a polygon front to back takes, the boxes above it included, and what a pixel of
-/// buffers of whole faces takes, which lie in the second-level cache: in drawings of a polygon band
-/// by band. Measured, rounded: in scenes of 700 to 117,000 polygons 2.4 to 3.7, and 1 in 500 to
-/// 800.
+/// The cost of drawing a polygon front to back, the boxes above it included, and of a pixel in
+/// buffers of whole faces, which lie in the second-level cache. The unit is a polygon drawn band by
+/// band. Measured, rounded: in scenes of 700 to 117,000 polygons 2.4 to 3.7, and 1 in 500 to 800.
 constexpr double kDrawnTimes = 3;
 constexpr double kPolygonsAPixel = 1.0 / 600;
 
@@ -30,7 +29,7 @@ RowBuilder::RowBuilder(const PatchMesh& mesh, const FormFactorOptions& options)
   if (!leavingOutPays()) tree_.reset();
 }
 
-/// Whether hemicubes take less time front to back: foreseen from what some eyes draw both ways, not
+/// True if hemicubes take less time front to back: foreseen from what some eyes draw both ways, not
 /// from clocks, so that counts are the same in every run.
 bool RowBuilder::leavingOutPays() const {
   Hemicube all(scene_, weights_, kernels_);

@@ -49,7 +49,7 @@ class RowBuilder {
     return scene_.bytes() + weights_.bytes() + (tree_ ? tree_->bytes() : 0);
   }
 
-  /// Whether hemicubes are drawn front to back, what is hidden left out.
+  /// True if hemicubes are drawn front to back, without the hidden polygons.
   bool leavesOutHidden() const { return tree_.has_value(); }
 
  private:
@@ -61,12 +61,12 @@ class RowBuilder {
   ViewScene scene_;
   HiddenBacks hidden_backs_;
   DeltaFormFactors weights_;
-  std::optional<PolygonTree> tree_;  ///< where leaving out what is hidden pays
+  std::optional<PolygonTree> tree_;  ///< if leaving out hidden polygons pays
   RasterKernels kernels_;
   std::vector<Index> polygon_place_;  ///< position in scene_.polygons of each polygon of the mesh
 };
 
-/// A row as it is stored: patches seen, ascending, and what they are worth.
+/// A row as it is stored: the patches seen, ascending, and their form factors.
 struct PackedRow {
   std::vector<Index> columns;
   std::vector<double> values;

@@ -12,11 +12,11 @@
 namespace radiosity {
 namespace {
 
-/// Of two hits no farther apart than this, in scenes of size 1, single precision cannot tell which
-/// is first.
+/// Single precision cannot tell which of two hits comes first if they are no farther apart than
+/// this, in scenes of size 1.
 constexpr float kTie = 2e-6F;
 
-/// An intersection filter of a single ray.
+/// An intersection filter for a single ray.
 void refuseBacks(const RTCFilterFunctionNArguments* hit) {
   const float along = RTCHitN_Ng_x(hit->hit, 1, 0) * RTCRayN_dir_x(hit->ray, 1, 0) +
                       RTCHitN_Ng_y(hit->hit, 1, 0) * RTCRayN_dir_y(hit->ray, 1, 0) +
@@ -57,9 +57,9 @@ EmbreeScene::EmbreeScene(const ViewScene& scene, const PatchMesh& mesh)
   rtcReleaseGeometry(geometry);
   rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
   rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
-  // One thread builds the tree: it then is the same in every run, and with it which of two
-  // triangles a ray through their common edge ends on. (A device with one thread would leave the
-  // whole process one.)
+  // One thread builds the tree, so that every run has the same tree, and a ray through the common
+  // edge of two triangles ends on the same one. (A device with one thread would leave the whole
+  // process one.)
   tbb::task_arena(1).execute([&] { rtcCommitScene(scene_); });
 }
 

@@ -40,25 +40,25 @@ inline void setRay(RTCRayHit16& packet, int k, const glm::vec3& from, const glm:
 /// no ray through between triangles that do.
 class EmbreeScene {
  public:
-  /// `mesh`: whose ViewScene that is. A polygon whose outlines cross is taken as the triangles that
-  /// tile its patches.
+  /// `mesh`: the one that `scene` was made from. A polygon whose outlines cross is taken as the
+  /// triangles that tile its patches.
   EmbreeScene(const ViewScene& scene, const PatchMesh& mesh);
   ~EmbreeScene();
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
 
   RTCScene handle() const { return scene_; }
-  /// Embree's coordinates, in single precision, are those of the ViewScene less this: the middle
-  /// of the scene, so that none is lost far from the origin.
+  /// The middle of the scene. Embree's coordinates, in single precision, are those of the ViewScene
+  /// less this, so that no digits are lost far from the origin.
   const Vec3& middle() const { return middle_; }
   glm::vec3 place(const Vec3& vertex) const { return {vertex - middle_}; }
   /// Traces the first `lanes` rays of a packet, which leave in similar directions.
   void trace(RTCRayHit16& packet, int lanes) const;
-  /// The front that covers the back which lane k of a packet has hit: of a plate without thickness,
-  /// two polygons back to back, the front covers the back, but in depth they are a tie. Its geomID
-  /// is RTC_INVALID_GEOMETRY_ID where there is none.
+  /// The front that covers the back which lane k of a packet has hit. In a plate without thickness,
+  /// two polygons back to back, the two tie in depth. Its geomID is RTC_INVALID_GEOMETRY_ID if
+  /// there is none.
   RTCHit frontAt(const RTCRayHit16& packet, int k) const;
-  /// In the coordinates of the ViewScene: its vertices, and those of such tiles.
+  /// The vertices of the ViewScene and of such tiles, in its coordinates.
   const std::vector<Vec3>& vertices() const { return all_.vertices; }
   /// Corners in vertices().
   const std::vector<std::array<std::uint32_t, 3>>& triangles() const { return all_.triangles; }

@@ -16,34 +16,34 @@ class KnownEntries {
   struct Entry {
     Index position;
     double exchange;  ///< G, m^2
-    double error;     ///< of it
+    double error;     ///< of the exchange
   };
 
   KnownEntries() = default;
-  /// `position`: K, of each unknown.
+  /// `position`: that of each unknown, K values.
   KnownEntries(std::vector<KnownRow> rows, std::span<const Index> position);
 
   bool empty() const { return rows_.empty(); }
-  /// Of the unknown at a position, where all of it is known; else null.
+  /// The row of the unknown at a position if all of it is known, else null.
   const KnownRow* rowAt(std::size_t position) const {
     return empty() || row_at_[position] == kNone ? nullptr : &rows_[row_at_[position]];
   }
-  /// What is known of a row, positions increasing.
+  /// The known entries of a row, positions increasing.
   std::span<const Entry> at(std::size_t position) const {
     return empty() ? std::span<const Entry>() : std::span<const Entry>(entries_[position]);
   }
 
-  /// The same for the same rows.
+  /// A number that is the same for the same rows.
   std::uint64_t identity() const;
 
-  /// Held by this for so many pairs.
+  /// Bytes held by this for `pairs` pairs.
   static std::size_t bytes(std::size_t pairs) {
     return 2 * pairs * (sizeof(Entry) + sizeof(KnownExchange));
   }
 
  private:
   std::vector<KnownRow> rows_;
-  std::vector<Index> row_at_;  ///< by position; kNone
+  std::vector<Index> row_at_;  ///< by position, into rows_; or kNone
   std::vector<std::vector<Entry>> entries_;
 };
 

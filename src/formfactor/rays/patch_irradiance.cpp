@@ -31,7 +31,7 @@ struct PatchIrradiance::Fit {
   Eigen::VectorXd values;
   Eigen::VectorXd squares;
   Eigen::MatrixXd products;
-  Eigen::VectorXd beyond = Eigen::VectorXd::Zero(values.size());  ///< of the means of clusters
+  Eigen::VectorXd beyond = Eigen::VectorXd::Zero(values.size());  ///< sums of View::beyond
 
   void add(const Features& features, const double* value, const double* beyond_mean) {
     rays += 1;
@@ -45,7 +45,7 @@ struct PatchIrradiance::Fit {
     }
   }
 
-  /// Of each band, a column.
+  /// The slopes of each band, a column.
   Eigen::MatrixXd slopes() const {
     Eigen::MatrixXd result = Eigen::MatrixXd::Zero(kFeatures, values.size());
     if (rays <= kFeatures + 1) return result;
@@ -65,10 +65,10 @@ struct PatchIrradiance::Fit {
   }
 };
 
-/// What rays find, a row an item, then that of the sky.
+/// The light that rays find, a row an item, then that of the sky.
 struct PatchIrradiance::View {
   std::vector<double> radiosity;
-  std::vector<double> beyond;  ///< its cluster's mean
+  std::vector<double> beyond;  ///< radiosity less its cluster's mean
 };
 
 PatchIrradiance::PatchIrradiance(const PatchMesh& mesh, int bands, std::span<const double> sky)
@@ -128,7 +128,7 @@ std::vector<double> PatchIrradiance::around(std::span<const double> irradiance) 
   return out;
 }
 
-/// Where a cluster's patches have its mean so far.
+/// Adds the slopes within a cluster to its patches, which have its mean so far.
 void PatchIrradiance::addSlopes(std::size_t cluster, std::vector<double>& irradiance) const {
   const std::span<const Index> patches = made(mesh_.clusters).patchesOf(cluster);
   const RayOrigins origins = caster_.origins(cluster);
@@ -147,7 +147,7 @@ void PatchIrradiance::addSlopes(std::size_t cluster, std::vector<double>& irradi
       value = std::max(0.0, mean + slopes.dot(features.ofPatch(i) - middle));
       sum += mesh_.area[i] * value;
     }
-    // What was cut off at 0 has raised the mean.
+    // Cutting values off at 0 has raised the mean.
     if (!(sum > 0)) continue;
     for (const Index i : patches) irradiance[i * bands_ + b] *= mean * area / sum;
   }

@@ -1,4 +1,4 @@
-// Light within clusters, where the solution has means of clusters alone.
+// Light within clusters, of which the solution has the means alone.
 #pragma once
 
 #include <array>
@@ -13,28 +13,28 @@
 namespace radiosity {
 
 /// Looks from every cluster at its surroundings. Within a cluster irradiance is taken to be linear
-/// in place and in the normal. The slopes are those of a least-squares fit to what rays from all
-/// over the cluster find, shrunk by the share of them that noise explains (positive-part James and
-/// Stein 1961). The same bits for any number of threads.
+/// in place and in the normal. Its slopes are fitted by least squares to the radiosity found by
+/// rays from all over the cluster, then shrunk by the share of them that noise explains
+/// (positive-part James and Stein 1961). The same bits for any number of threads.
 class PatchIrradiance {
  public:
-  /// `mesh` is kept by reference; mesh.clusters is there. `sky`: radiance a band, or empty.
+  /// `mesh` is kept by reference and has clusters. `sky`: radiance a band, or empty.
   PatchIrradiance(const PatchMesh& mesh, int bands, std::span<const double> sky);
 
   /// Looks at patches of this radiosity, N * bands, row-major, W/m^2. The first look traces rays
-  /// and keeps what they end on, 4 bytes a ray, some 64 MiB; later ones look at the same patches.
-  /// Throws Cancelled.
+  /// and keeps the items they end on, 4 bytes a ray, some 64 MiB, for later looks. Throws
+  /// Cancelled.
   void look(std::span<const double> radiosity, Progress& progress);
 
   /// N * bands, none below 0: the irradiance of patches whose clusters have `irradiance`, K *
-  /// bands. The means of clusters stay what they are.
+  /// bands. The means of clusters stay the same.
   std::vector<double> around(std::span<const double> irradiance) const;
 
-  /// K * bands, W/m^2: what falls on each cluster from the patches that it sees, less what would
-  /// fall on it if each of them had its cluster's mean radiosity. Matrices between clusters know
-  /// means alone: light stays longer between patches that lie deep and bright ones lose more,
-  /// though their cluster's mean is the same. Two means over the same rays: what both have in
-  /// common, noise as well, cancels.
+  /// K * bands, W/m^2: the irradiance of each cluster from the patches that it sees, less its
+  /// irradiance if each of them had its cluster's mean radiosity. Matrices between clusters know
+  /// means alone, but light stays longer between patches that lie deep, and bright ones lose more,
+  /// with the same mean of their cluster. Both terms are means over the same rays, so that their
+  /// common part, noise included, cancels.
   const std::vector<double>& beyondMeans() const { return beyond_; }
 
  private:

@@ -17,7 +17,7 @@ namespace {
 /// Rays to a point end this much of their length before it.
 constexpr float kShort = 1e-5F;
 constexpr int kDiscCells =
-    8;  ///< along each side of the disc's square: a packet a cell of 1,024 rays
+    8;  ///< along each side of the disc's square: of 1,024 rays a cell has one packet
 
 /// Cells row by row, to and fro, so that neighbours in the order are neighbours on the disc.
 int discCellOf(float x, float y) {
@@ -26,7 +26,7 @@ int discCellOf(float x, float y) {
   return row * kDiscCells + (row % 2 == 0 ? column : kDiscCells - 1 - column);
 }
 
-/// What a ray to a point must not be stopped by; handed through Embree's context.
+/// The polygons that must not stop a ray to a point; passed through Embree's context.
 struct SightContext {
   RTCIntersectContext context;  // first: Embree gives back a pointer to it
   const Index* source;
@@ -34,7 +34,7 @@ struct SightContext {
   Index there;
 };
 
-/// An intersection filter of a single ray: what either end lies on stops nothing.
+/// An intersection filter for a single ray: polygons that either end lies on stop nothing.
 void passEnds(const RTCFilterFunctionNArguments* hit) {
   const auto* sight = reinterpret_cast<const SightContext*>(hit->context);
   const Index polygon = sight->source[RTCHitN_primID(hit->hit, 1, 0)];

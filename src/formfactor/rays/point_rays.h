@@ -14,13 +14,13 @@
 
 namespace radiosity {
 
-/// Where a ray ended.
+/// The place where a ray ended.
 struct RayEnd {
   static constexpr std::uint32_t kSky = kNone - 1;
   static constexpr std::uint32_t kBlack = kNone - 2;  ///< a back without patches
-  static constexpr std::uint32_t kOwn = kNone - 3;    ///< what it left from: no true hit
+  static constexpr std::uint32_t kOwn = kNone - 3;    ///< a polygon that it left from: no true hit
   std::uint32_t patch = kSky;
-  Vec3 at{0.0};  ///< metres; of a patch
+  Vec3 at{0.0};  ///< metres; of a hit on a patch
 };
 
 /// A point of a surface; `own`: the polygons that it lies on, which no ray from it ends on.
@@ -39,8 +39,8 @@ class HemisphereSet {
   HemisphereSet(std::size_t rays, std::uint64_t seed);
   std::size_t rays() const { return rays_; }
   static constexpr std::size_t kSets = 16;
-  /// Direction k of a set about the axis z. Those with isFirst(k) are the first half of the
-  /// sequence: a set of its own, as is the rest.
+  /// Direction k of a set about the axis z. The directions with isFirst(k) are the first half of
+  /// the sequence: a set of its own, as is the rest.
   const glm::vec3& direction(std::size_t set, std::size_t k) const {
     return directions_[set * rays_ + k];
   }
@@ -58,13 +58,13 @@ class PointRays {
   /// `mesh` is kept by reference.
   explicit PointRays(const PatchMesh& mesh);
 
-  /// Where the rays of one of the sets end, turned about the normal by `turn` radians. `ends` has
-  /// set.rays() places.
+  /// Finds where the rays of set `number` end, turned about the normal by `turn` radians. `ends`
+  /// has set.rays() places.
   void look(const RaySource& from, const HemisphereSet& set, std::size_t number, double turn,
             std::span<RayEnd> ends) const;
 
-  /// seen[k]: nothing stands between the point and `to[k]`. What lies on `there`, a polygon, and on
-  /// the source's own polygons does not count.
+  /// seen[k]: nothing stands between the point and `to[k]`. Hits on the polygon `there[k]` and on
+  /// the source's own polygons do not count.
   void see(const RaySource& from, std::span<const Vec3> to, std::span<const Index> there,
            std::span<std::uint8_t> seen) const;
 

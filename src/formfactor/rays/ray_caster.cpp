@@ -11,7 +11,7 @@
 namespace radiosity {
 namespace {
 
-/// What a ray may end on beside items.
+/// Ends of a ray that are no items.
 constexpr std::uint32_t kSky = kNone - 1;
 constexpr std::uint32_t kLost = kNone - 2;
 /// Rays that are sorted together, at most: their batch fits the second-level cache.
@@ -49,14 +49,14 @@ std::uint16_t octahedralCell(float x, float y, float z) {
 
 }  // namespace
 
-/// Rays that are sorted together: of all replicates, one after the other.
+/// Rays that are sorted together: those of all replicates, one replicate after the other.
 struct RayCaster::Batch {
   std::size_t each = 0;  ///< rays of a replicate
   std::array<std::array<float, kBatch>, kDimensions> points;
   std::array<std::array<float, kBatch>, 2> disc;
   std::array<std::array<float, kBatch>, 3> origin;
   std::array<std::array<float, kBatch>, 3> direction;
-  std::array<Index, kBatch> polygon;  ///< that each ray leaves from
+  std::array<Index, kBatch> polygon;  ///< from which each ray leaves
   std::array<std::uint32_t, kBatch> frame;
   std::array<std::uint16_t, kBatch> cell;
   std::array<std::uint16_t, kBatch> order;
@@ -120,12 +120,12 @@ RayCaster::RayCaster(const PatchMesh& mesh, RayItems items)
 }
 
 std::size_t RayCaster::bytes() const {
-  // Embree's tree takes about so much a triangle in robust mode.
+  // Embree's tree takes about this much a triangle in robust mode.
   constexpr std::size_t kTreeBytes = 160;
   return scene_.bytes() + targets_.size() * (sizeof(targets_[0]) + sizeof(Index) + kTreeBytes);
 }
 
-/// Of an item of the ViewScene.
+/// The item of rays for an item of the ViewScene.
 std::uint32_t RayCaster::rayItem(std::uint32_t item) const {
   const std::size_t patches = scene_.patches;
   if (item < patches) return frontOf(item);
@@ -133,7 +133,7 @@ std::uint32_t RayCaster::rayItem(std::uint32_t item) const {
 }
 
 void RayCaster::setTargets() {
-  // Where all patches of a side count for one item, there is nothing to look up.
+  // If all patches of a side count for one item, there is nothing to look up.
   std::vector<std::array<std::uint32_t, 2>> only(mesh_.polygons.size(), {kNone, kNone});
   std::vector<std::array<std::uint8_t, 2>> several(mesh_.polygons.size(), {0, 0});
   for (std::size_t i = 0; i < mesh_.size(); ++i) {
@@ -162,7 +162,7 @@ std::uint32_t RayCaster::itemAt(const RayTarget& target, float s, float t) const
   return target.grid == nullptr ? target.item : rayItem(target.itemAt(s, t));
 }
 
-/// What the ray in lane k has hit.
+/// The item that the ray in lane k has hit.
 std::uint32_t RayCaster::itemOf(const RTCRayHit16& packet, int k) const {
   // A triangle's corners run counter-clockwise about the front, and Embree's normal is
   // (v1 - v0) x (v2 - v0).
@@ -173,15 +173,14 @@ std::uint32_t RayCaster::itemOf(const RTCRayHit16& packet, int k) const {
   return itemAt(target, packet.hit.u[k], packet.hit.v[k]);
 }
 
-/// What shows its front where a ray has hit a back (EmbreeScene::frontAt()); kNone: nothing.
+/// The item whose front covers the back that a ray has hit (EmbreeScene::frontAt()), or kNone.
 std::uint32_t RayCaster::frontAt(const RTCRayHit16& packet, int k) const {
   const RTCHit front = embree_.frontAt(packet, k);
   if (front.geomID == RTC_INVALID_GEOMETRY_ID) return kNone;
   return itemAt(targets_[front.primID][0], front.u, front.v);
 }
 
-/// Calls visit(ray, item), the ray's place in the batch; the item is kSky or kLost where it is
-/// none.
+/// Calls visit(ray, item) with the ray's place in the batch; kSky and kLost stand for no item.
 template <class Visit>
 void RayCaster::tracePacket(const Batch& batch, const std::uint16_t* order, int lanes,
                             const Visit& visit) const {

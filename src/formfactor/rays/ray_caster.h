@@ -17,7 +17,7 @@
 
 namespace radiosity {
 
-/// What rays count for.
+/// The items that rays count for.
 enum class RayItems { unknowns, patches };
 
 /// The share of rays from random points of i, in cosine-distributed directions, that ends on j is
@@ -33,8 +33,8 @@ class RayCaster {
   /// `mesh` is kept by reference.
   explicit RayCaster(const PatchMesh& mesh, RayItems items = RayItems::unknowns);
 
-  /// Where rays ended, added to what was there. Items: 0 to K-1 an unknown (PatchMesh::unknowns()),
-  /// or a patch, K + s the black back of surface s.
+  /// Counts of where rays ended; cast() adds to them. Items: 0 to K-1 an unknown
+  /// (PatchMesh::unknowns()), or a patch, K + s the black back of surface s.
   struct Counts {
     std::vector<std::uint32_t> hits;  ///< items() values
     std::vector<std::uint32_t> hit;   ///< the items with any, in the order they were met
@@ -46,7 +46,7 @@ class RayCaster {
       if (hits[item] == 0) hit.push_back(item);
       hits[item] += more;
     }
-    /// As new, in the time that the items with hits take.
+    /// Sets all counts to 0, in a time that goes with the number of items hit.
     void clear(std::size_t items) {
       if (hits.size() != items) hits.assign(items, 0);
       for (const std::uint32_t item : hit) hits[item] = 0;
@@ -55,19 +55,20 @@ class RayCaster {
       own = 0;
     }
   };
-  /// Rays `first` to `last` of each of the sequences of points that `seed` and the number after it
-  /// stand for. Thread-safe.
+  /// Casts rays `first` to `last` of each replicate's sequence of points, scrambled by `seed` and
+  /// by the number after it. Thread-safe.
   void cast(const RayOrigins& origins, std::uint64_t seed, std::uint32_t first, std::uint32_t last,
             std::array<Counts, kReplicates>& of_replicate) const;
 
-  /// Visits, in a fixed order, where each of `rays` rays of every replicate leaves, the normal
-  /// there, and the item it ends on, items() for the sky. Lost rays are left out. Thread-safe.
+  /// Visits `rays` rays of every replicate in a fixed order: where each leaves, the normal there,
+  /// and the item it ends on, items() for the sky. Lost rays are left out. Thread-safe.
   using EndVisitor =
       std::function<void(const glm::vec3& from, const glm::vec3& normal, std::uint32_t item)>;
   void visitEnds(const RayOrigins& origins, std::uint64_t seed, std::uint32_t rays,
                  const EndVisitor& visit) const;
-  /// The same with the items that the rays end on kept in `ends`, in the order of their tracing: an
-  /// empty one is filled. With those of an earlier call for the same rays, none is traced again.
+  /// The same, with the items that the rays end on kept in `ends`, in the order of their tracing.
+  /// Empty `ends` are filled; with those of an earlier call for the same rays, none is traced
+  /// again.
   using Ends = std::vector<std::uint32_t>;
   void visitEnds(const RayOrigins& origins, std::uint64_t seed, std::uint32_t rays, Ends& ends,
                  const EndVisitor& visit) const;
@@ -77,13 +78,13 @@ class RayCaster {
   RayOrigins origins(std::size_t unknown) const {
     return {mesh_, unknown, scene_.scale, embree_.middle()};
   }
-  /// K, of the items that are fronts.
+  /// K: the number of items that are fronts.
   std::size_t fronts() const {
     return items_ == RayItems::unknowns ? mesh_.unknowns() : mesh_.size();
   }
   std::size_t items() const { return fronts() + mesh_.surface_names.size(); }
   std::size_t triangles() const { return embree_.triangles().size(); }
-  /// Held by this, about.
+  /// Bytes held by this, about.
   std::size_t bytes() const;
 
  private:

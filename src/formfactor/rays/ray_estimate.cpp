@@ -1,4 +1,4 @@
-// What rays will take: some rows are cast, and their errors followed.
+// The cost of rays, foreseen: some rows are cast, and their errors followed.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -14,19 +14,19 @@ namespace radiosity {
 namespace {
 
 constexpr std::size_t kMostRows = 160;
-/// Rays of a sampled row, in each replicate: from the first number to the second its error is seen
-/// to fall.
+/// Rays of a sampled row, in each replicate. The fall of its error from the first number to the
+/// second is measured.
 constexpr std::uint32_t kFewRays = kPilotRays;
 constexpr std::uint32_t kManyRays = 8 * kPilotRays;
-/// Orders that the sample may seem to show: of 160 rows it is rough still.
+/// Bounds of the order that the sample shows: from 160 rows it is still rough.
 constexpr double kLeastForeseenOrder = 1.1;
 constexpr double kMostForeseenOrder = 1.4;
-/// Merging with what the others count takes about half off the square of an error.
+/// Merging with the other rows' counts takes about half off the square of an error.
 constexpr double kMerged = 0.5;
-/// Rays are cast to the next number that suits the net, and what a round says of an error is rough:
-/// with this, thirteen scenes of the kinds that people have take .6 to 1.5 times the rays foreseen.
+/// Allows for rounding rays up to numbers that suit the net, and for the rough errors of a round:
+/// with it, thirteen scenes of the kinds that people have take .6 to 1.5 times the rays foreseen.
 constexpr double kRounding = 1.5;
-/// Seconds an entry of the rows takes in counting, merging and closing, beside the rays.
+/// Seconds for counting, merging and closing an entry of the rows, beside the rays.
 constexpr double kEntrySeconds = 12e-9;
 
 struct SampledRow {
@@ -39,7 +39,7 @@ struct SampledRow {
   BothClocks taken;  ///< by the rays from kFewRays on
 };
 
-/// Of what is seen once and twice, how much there is that was not seen (Chao, "Nonparametric
+/// The entries, with those not seen estimated from those seen once and twice (Chao, "Nonparametric
 /// estimation of the number of classes in a population", Scand. J. Statist. 11, 1984).
 double visibleEntries(const RayRow& row) {
   double once = 0;
@@ -68,7 +68,7 @@ SampledRow sampleRow(const RayScene& scene, std::size_t position, const Progress
   return sampled;
 }
 
-/// Errors by all rows sampled, as rounds will take them (CommonError).
+/// Moderates errors by those of all sampled rows, as rounds will (CommonError).
 void moderate(std::vector<SampledRow>& rows) {
   CommonError few;
   CommonError many;
@@ -82,7 +82,7 @@ void moderate(std::vector<SampledRow>& rows) {
   }
 }
 
-/// How error squared falls, over all rows: of one alone it is too rough.
+/// The order at which error squared falls, over all rows: that of a single row is too rough.
 double orderOf(const std::vector<SampledRow>& rows) {
   double few = 0;
   double many = 0;
@@ -96,11 +96,11 @@ double orderOf(const std::vector<SampledRow>& rows) {
                     kLeastForeseenOrder, kMostForeseenOrder);
 }
 
-/// Few of the entries that are not there yet are found by so many times the rays.
+/// Beyond kManyRays, entries grow at most with this power of the rays: few new ones are found.
 constexpr double kNewEntries = 0.3;
 
-/// Of a row by so many rays a replicate: as from few to many, and beyond as above, up to all that
-/// are visible.
+/// Entries of a row by `rays` rays a replicate. They grow as from few to many rays, beyond that as
+/// above, and at most to all visible ones.
 double entriesBy(const SampledRow& row, double rays) {
   if (!(row.few_entries > 0)) return 0;
   double power = std::log(row.entries / row.few_entries) / std::log(double(kManyRays) / kFewRays);
@@ -108,7 +108,7 @@ double entriesBy(const SampledRow& row, double rays) {
   return std::min(row.visible, row.entries * std::pow(rays / kManyRays, power));
 }
 
-/// What sampled rows say of all.
+/// The cost of all rows, foreseen from the sampled ones.
 class Forecast {
  public:
   Forecast(const std::vector<SampledRow>& rows, std::size_t all, const RayAim& aim)
@@ -121,15 +121,15 @@ class Forecast {
     loosened_ = loosening(aim.most_rays, [&](double times) { return rays(times); });
   }
 
-  /// How far the tolerance is loosened to keep within the rays allowed.
+  /// The factor by which the tolerance is loosened to keep within the rays allowed.
   double loosened() const { return loosened_; }
-  /// Of all rows, for a tolerance loosened so many times.
+  /// Rays of all rows, for a tolerance loosened by this factor.
   double rays(double loosened) const {
     double sum = 0;
     for (const SampledRow& row : rows_) sum += raysOf(row, loosened);
     return kReplicates * kRounding * times_ * sum;
   }
-  /// Of all rows together, once they have the rays they get.
+  /// Entries of all rows together, once they have the rays they get.
   double entries(std::size_t columns) const {
     double sum = 0;
     for (const SampledRow& row : rows_) {
@@ -137,8 +137,8 @@ class Forecast {
     }
     return times_ * sum;
   }
-  /// By the clock, of all threads, each row at the rate that it had: rows that want many rays are
-  /// those that look into corners, where rays take longer than under the sky.
+  /// Seconds by the clock, on all threads, each row at its own rate: rows that want many rays look
+  /// into corners, where rays take longer than under the sky.
   double seconds(double loosened, double entries) const {
     double casting = 0;
     for (const SampledRow& row : rows_) {
@@ -149,12 +149,12 @@ class Forecast {
   }
 
  private:
-  /// In each replicate.
+  /// Rays of a row in each replicate.
   double raysOf(const SampledRow& row, double loosened) const {
     const double norm = std::max(row.many.norm, usual_.value());
     if (!(norm > 0)) return 0;
     const double over = row.many.error / (norm * tolerance_ * loosened);
-    // Beyond kMostRays rows are given up, and the tolerance is not kept: then this is too long.
+    // Beyond kMostRays rows are given up and miss the tolerance: then this is too long.
     return std::max(double(kPilotRays), kManyRays * std::pow(kMerged * over * over, 1 / order_));
   }
 
@@ -163,11 +163,11 @@ class Forecast {
   double tolerance_;
   UsualNorm usual_;
   BothClocks taken_;
-  double times_ = 0;  ///< rows there are for one that was sampled
+  double times_ = 0;  ///< rows for each sampled one
   double loosened_ = 1;
 };
 
-/// What counts, matrix and errors take: first rows are merged, then closed, then written.
+/// Bytes of counts, matrix and errors: rows are merged first, then closed, then written.
 void foreseeBytes(const RayScene& scene, double entries, const FormFactorOptions& options,
                   RayEstimate& estimate) {
   const std::size_t n = scene.size();
@@ -175,7 +175,7 @@ void foreseeBytes(const RayScene& scene, double entries, const FormFactorOptions
   constexpr std::size_t kAccounts = 16 * sizeof(double);     // a row: accounts, states, targets
   constexpr std::size_t kHeaders = 4 * sizeof(std::size_t);  // of two vectors' memory
   const auto counts = std::size_t(double(n) * entries * kCountBytes);
-  // A pair is stored where one end or the other has seen it: as by twice the rays.
+  // A pair is stored if either end has seen it: as many pairs as twice the rays would find.
   const double merged = std::min(double(n), entries * std::exp2(kNewEntries));
   estimate.matrix_bytes = expectedSymmetricBytes(n, merged, options.storedPrecision());
   const std::size_t errors = expectedUncertainBytes(n, merged);

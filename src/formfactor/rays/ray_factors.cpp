@@ -19,10 +19,10 @@
 namespace radiosity {
 namespace {
 
-/// As good as single precision can restore rows.
+/// The tolerance to which single precision can restore rows.
 constexpr double kClosureTolerance = 1e-9;
 
-/// The account of a row that rests on no rays. In a closed scene fronts are what backs leave.
+/// The account of a row that rests on no rays. In a closed scene its fronts are 1 less its backs.
 void setKnownAccount(const KnownEntries& known, std::size_t k, Index i, double area,
                      FormFactors& result, std::vector<SeenBack>& seen_backs) {
   for (const KnownEntries::Entry& entry : known.at(k)) result.fronts[i] += entry.exchange / area;
@@ -33,16 +33,15 @@ void setKnownAccount(const KnownEntries& known, std::size_t k, Index i, double a
   result.sky[i] = rest - result.fronts[i];
 }
 
-/// How far off the sky's share of a row may be: by the spread of its rays, and by one ray at least,
-/// since a row that saw none may have missed it.
+/// The error of the sky's share of a row: the spread of its rays, and at least one ray, since a row
+/// that saw no sky may have missed it.
 double skyError(double sky, double each) {
   const double share = std::clamp(sky, 0.0, 1.0);
   return std::sqrt(share * (1 - share) * each + each * each);
 }
 
-/// What a row saw of fronts, backs and sky, by its own rays alone. What is known takes the place of
-/// the rays that ended there; all others count for what that leaves. `sky_error`: of the sky's
-/// share.
+/// Fronts, backs and sky of each row, by its own rays alone. Known entries replace the rays that
+/// ended there; all other rays share the rest of the row. `sky_error`: of the sky's share.
 void setAccounts(const RayScene& scene, const KnownEntries& known, const std::vector<RayRow>& rows,
                  ScratchMemory* scratch, FormFactors& result, std::vector<double>& sky_error,
                  std::vector<std::vector<SeenBack>>& seen_backs) {
@@ -85,7 +84,7 @@ void setAccounts(const RayScene& scene, const KnownEntries& known, const std::ve
   });
 }
 
-/// The matrix, its error figures and how far off each entry may be.
+/// Stores the matrix, its error figures and the error of each entry.
 void store(const RayScene& scene, const KnownEntries& known, const std::vector<RayRow>& rows,
            ScratchMemory* scratch, FormFactors& result, UncertainEntries& uncertain) {
   const std::size_t n = rows.size();
@@ -120,7 +119,7 @@ void store(const RayScene& scene, const KnownEntries& known, const std::vector<R
         upper.errors.push_back(std::min(1.0, next_known->error / scene.area()[k]));
         continue;
       }
-      // Of independent rays: more than the true one, but it weighs entries all the same.
+      // The variance of independent rays: above the true one, but good as a weight.
       const double variance = value / ((density[k] + density[j]) * scene.area()[k]);
       upper.errors.push_back(std::min(1.0, std::sqrt(variance)));
     }
@@ -147,8 +146,8 @@ void store(const RayScene& scene, const KnownEntries& known, const std::vector<R
   result.report.error_figure = norms > 0 ? std::sqrt(squares / norms) : 0.0;
 }
 
-/// Fronts, backs and sky of a row make 1 by its own rays; merging has moved the fronts. What they
-/// lack goes to fronts and sky, each by its error.
+/// By its own rays, fronts, backs and sky of a row sum to 1; merging has moved the fronts. The
+/// difference goes to fronts and, in an open scene, to the sky, each by its error.
 void close(const UncertainEntries& uncertain, const std::vector<double>& sky_error,
            ClosureMode mode, FormFactors& result, Progress& progress) {
   if (mode != ClosureMode::off) {
@@ -157,13 +156,13 @@ void close(const UncertainEntries& uncertain, const std::vector<double>& sky_err
     result.report.closure =
         closeRows(result.matrix, uncertain, result.fronts, progress, kClosureTolerance, sky);
     result.report.closure_enforced = true;
-    // The very sums, not those that storing rounds.
+    // Keep the sums aimed at: storing rounds those of the matrix.
     if (result.report.closed && result.report.closure.reached) return;
   }
   result.fronts = result.matrix.rowSums();
 }
 
-/// Sky is what rows leave, and nothing where the scene is closed.
+/// Sets the sky to the rest of each row, and to 0 in a closed scene.
 void balance(FormFactors& result) {
   FormFactorReport& report = result.report;
   for (std::size_t i = 0; i < result.fronts.size(); ++i) {
@@ -186,7 +185,7 @@ void noteLoosened(const FormFactorOptions& options, FormFactorReport& report) {
                    tolerance)});
 }
 
-/// From here on rows are with all processes.
+/// Deals the rows out to all processes.
 void share(Processes& processes, Progress& progress, ExchangeMatrix& matrix) {
   const WhileWaiting waiting = [&progress] { progress.check(); };
   ExchangeMatrix own = dealRows(processes, matrix, waiting);

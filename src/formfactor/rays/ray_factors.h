@@ -1,4 +1,4 @@
-// Form factors by rays: what it takes, and the whole matrix.
+// Form factors by rays: their cost foreseen, and the whole matrix.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace radiosity {
 
 struct RayEstimate {
   double rays = 0;       ///< all in all
-  double tolerance = 0;  ///< that these reach, where rays stop before the one aimed at
+  double tolerance = 0;  ///< reached by these rays, which may stop before the one aimed at
   double seconds = 0;
   double seconds_to_tolerance = 0;  ///< for the tolerance aimed at
   double seconds_prepare = 0;       ///< spent on the RayScene
@@ -21,20 +21,20 @@ struct RayEstimate {
   std::size_t matrix_bytes = 0;
 };
 
-/// From some rows, which are cast to see how their error falls.
+/// Foreseen from some rows, which are cast to see how their error falls.
 RayEstimate estimateRays(const RayScene& scene, const FormFactorOptions& options,
                          Progress& progress);
 
-/// Rows are cast in rounds: each is continued until the error expected of it, merged with what the
-/// others count, is below options.toleranceOf(rays) times its norm, or times that of a usual row
-/// where it sees less: what little an open body sees of itself is not worth a thousand times the
-/// rays of the rest. `known`: rows that need none. `journal` and `processes` may be null. Errors:
-/// RunError where the estimate exceeds options.memory_limit.
+/// Casts rows in rounds. Each is continued until its expected error, merged with the other rows'
+/// counts, is below options.toleranceOf(rays) times its norm, or times that of a usual row if that
+/// is larger: the little that an open body sees of itself is not worth a thousand times the rays of
+/// the rest. `known`: rows that need none. `journal` and `processes` may be null. Throws RunError
+/// if the estimate exceeds options.memory_limit.
 FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene, std::vector<KnownRow> known,
                        const RayEstimate& estimate, const FormFactorOptions& options,
                        Progress& progress, RowJournal* journal, Processes* processes);
 
-/// In the other processes, while process 0 is in rayFactors(): casts a share of the rays. Returns
+/// For the other processes, while process 0 is in rayFactors(): casts a share of the rays. Returns
 /// the rows that fell to this one once process 0 had merged all.
 ExchangeMatrix rayRowsForOthers(const PatchMesh& mesh, std::uint64_t seed, Processes& processes,
                                 Progress& progress);

@@ -12,8 +12,8 @@ namespace {
 
 constexpr float kBelowOne = 1 - 0x1p-24F;
 
-/// `across`: not along any normal, the same for all patches of an unknown if that can be: then
-/// frames of patches that bend a little turn a little.
+/// `across`: a direction off every normal, if possible, and the same for all patches of an unknown,
+/// so that frames of patches that bend a little turn a little.
 RayFrame frameAround(const Vec3& normal, Vec3 across) {
   constexpr double kParallel = 0.1;
   if (glm::length(glm::cross(across, normal)) < kParallel) across = axisAcross(normal);

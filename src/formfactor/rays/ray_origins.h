@@ -1,4 +1,4 @@
-// Where the rays of an unknown start: points over the area of all its patches.
+// Points over the area of all patches of an unknown, where its rays start.
 #pragma once
 
 #include <array>
@@ -35,12 +35,12 @@ class RayOrigins {
   bool empty() const { return parts_.empty(); }
   /// The side of a square of as much area.
   double size() const { return size_; }
-  /// Of one plane: all rays have frame(0) and leave from polygon(0).
+  /// True if all lies in one plane: all rays have frame(0) and leave from polygon(0).
   bool isPlanar() const { return frames_.size() == 1; }
   const RayFrame& frame(std::uint32_t k) const { return frames_[k]; }
   const Part& part(std::uint32_t k) const { return parts_[k]; }
 
-  /// The part that x in [0, 1) falls on, and where in its own range: parts have shares of x by
+  /// The part that x in [0, 1) falls on, and the place in its own range. Parts have shares of x by
   /// their area, so that points spread evenly over x spread evenly over all of it.
   std::uint32_t partAt(float x, float& within) const;
   /// The point of a part at (x, y) in [0, 1)^2; areas keep their ratios.

@@ -16,16 +16,16 @@
 namespace radiosity {
 namespace {
 
-/// A row gets at most so many times the rays it had in one round: what a few rays say of its error
+/// A round gives a row at most this many times the rays that it had: an error known from few rays
 /// is rough.
 constexpr double kMostGrowth = 32;
-/// A row that is still short after so many rounds is given up: its error does not fall.
+/// A row that is still short after this many rounds is given up: its error does not fall.
 constexpr int kMostRounds = 24;
-/// Orders that two rounds may seem to show.
+/// Bounds of the order that two rounds show.
 constexpr double kLeastOrder = 0.9;
 constexpr double kMostOrder = 2.5;
 
-/// Rows aim at so much of the tolerance, since errors are themselves known to some per cent only.
+/// Rows aim at this share of the tolerance, since errors are known to some per cent only.
 constexpr double kMargin = 0.95;
 
 class Rounds {
@@ -71,8 +71,8 @@ class Rounds {
   }
 
  private:
-  /// Goes on where the journal ends: with the last of an unbroken row of rounds, whose targets
-  /// `rays` become. Whoever casts the same rays in the same order counts the same hits.
+  /// Continues from the last of the journal's unbroken series of rounds, whose targets `rays`
+  /// become. The same rays cast in the same order count the same hits.
   void resume(std::vector<std::uint32_t>& rays) {
     std::vector<std::vector<std::uint32_t>> targets{rays};
     while (std::optional<RayRound> round = journal_.take(int(targets.size()))) {
@@ -99,8 +99,8 @@ class Rounds {
     journal_.found(found);
   }
 
-  /// A row as it was after rounds with these targets: as the last of them left it, and where that
-  /// is not there, by the rays of those after one that is.
+  /// Restores a row as it was after rounds with these targets: from the last of them, or, if that
+  /// is not there, from an earlier one and the rays of those after it.
   void restore(std::size_t k, const std::vector<std::vector<std::uint32_t>>& targets) {
     std::vector<int> continued;  // rounds that have cast rays of this row
     std::uint32_t most = 0;
@@ -125,7 +125,7 @@ class Rounds {
     if (!progress_.cancelled()) journal_.keepRow(round, k, rows_[k]);
   }
 
-  /// Continues rows to as many rays as given, where that is more than they have.
+  /// Continues rows to as many rays as given, if that is more than they have.
   bool cast(const std::vector<std::uint32_t>& rays) {
     std::vector<Index> todo;
     std::size_t all = 0;
@@ -183,15 +183,15 @@ class Rounds {
     castTogether(*processes_, scene_, std::move(left), take, progress_);
   }
 
-  /// What a row is to bring down: its error over its norm, or that of the backs it sees over the
-  /// norm of all it sees; over usual norms where its own are smaller.
+  /// The relative error that a row is to bring down: that of its fronts over their norm or, if
+  /// larger, that of its backs over the norm of all it sees. Usual norms replace smaller ones.
   double relativeError(const RowState& row) const {
     const double norm = std::max(row.norm, usual_norm_);
     const double whole = std::max(row.whole_norm, usual_whole_norm_);
     return std::max(norm > 0 ? row.error / norm : 0.0, whole > 0 ? row.backs_error / whole : 0.0);
   }
 
-  /// Rays for a relative error of `aim`, from what was seen with fewer.
+  /// Rays for a relative error of `aim`, from the errors with fewer rays.
   std::uint32_t raysNeeded(const RowState& before, const RowState& now, double aim) const {
     const double error = relativeError(now);
     const double error_before = relativeError(before);
@@ -214,8 +214,8 @@ class Rounds {
     }
     return rays;
   }
-  /// True once all rows have reached what they aimed at and the matrix has not: rows of a small
-  /// norm may be off by the tolerance of a usual one.
+  /// True once all rows have reached their aim and the matrix has not: rows of a small norm may be
+  /// off by the tolerance of a usual one.
   bool matrixIsShort() const {
     bool is_done = loosened_ == 1;
     for (std::size_t k = 0; k < rows_.size() && is_done; ++k) is_done = isGoodEnough(k);
@@ -230,7 +230,7 @@ class Rounds {
     }
     return norms > 0 ? std::sqrt(squares / norms) : 0.0;
   }
-  /// Rows aim at so much less, and `rays` are what that needs; unless it is more than is allowed.
+  /// Tightens the rows' aim and sets `rays` to what that needs, unless it is more than allowed.
   void tighten(std::vector<std::uint32_t>& rays) {
     const double before = tightened_;
     tightened_ *= kMargin * kMargin * aim_.tolerance / matrixError();
@@ -241,14 +241,14 @@ class Rounds {
       tightened_ = before;
     }
   }
-  /// All rays there then are, of both replicates.
+  /// All rays, of both replicates, once rows have those wished for.
   double raysOf(const std::vector<std::uint32_t>& wished) const {
     double sum = 0;
     for (std::size_t k = 0; k < rows_.size(); ++k) sum += std::max(wished[k], rows_[k].rays);
     return kReplicates * sum;
   }
 
-  /// Rows that were not continued are better now, too: of them, too, others have counted more.
+  /// Measures the rows just continued; others, which these counts improve, too, are left.
   void measure(const std::vector<std::uint32_t>& rays) {
     const double start = clockSeconds();
     std::vector<std::uint8_t> wanted(rows_.size());
@@ -278,7 +278,7 @@ class Rounds {
     report_.seconds_merge += clockSeconds() - start;
   }
 
-  /// For relative errors.
+  /// The aim of relative errors.
   double aim() const { return tightened_ * aim_.tolerance; }
   bool isGoodEnough(std::size_t k) const { return relativeError(now_[k]) <= aim(); }
 

@@ -15,35 +15,35 @@ class RayScene;
 
 /// Rays of the first round, in each replicate.
 inline constexpr std::uint32_t kPilotRays = 512;
-/// A row gets no more in each replicate: points then lie as close as their 24 bits can tell apart.
+/// Most rays of a row in each replicate: points then lie as close as 24 bits can tell apart.
 inline constexpr std::uint32_t kMostRays = 1u << 24;
 
-/// How error squared falls with the number of rays, n^-this, where nothing better is known. (In
-/// four dimensions scrambled nets reach n^-5/4 on what jumps, as visibility does: He & Wang, "On
-/// the convergence rate of randomized quasi-Monte Carlo for discontinuous functions", SIAM J.
-/// Numer. Anal. 53, 2015.)
+/// Error squared falls as n^-kUsualOrder with the number n of rays, if no better order is known.
+/// (In four dimensions scrambled nets reach n^-5/4 on integrands that jump, as visibility does: He
+/// & Wang, "On the convergence rate of randomized quasi-Monte Carlo for discontinuous functions",
+/// SIAM J. Numer. Anal. 53, 2015.)
 inline constexpr double kUsualOrder = 1.25;
 
 /// The least number of rays a replicate that is 2^k or 3 2^k and at least `rays`.
 std::uint32_t roundedRays(double rays);
 
-/// What rows are cast to.
+/// The aim of casting rows.
 struct RayAim {
   double tolerance = 0;  ///< error over norm
-  /// Of all rows together; where the tolerance needs more, it is loosened for all alike.
+  /// Rays of all rows together; if the tolerance needs more, it is loosened for all rows alike.
   double most_rays = 0;
 
   explicit RayAim(const FormFactorOptions& options);
 };
 
-/// The smallest number from 1 on that raysAt(), the rays that a tolerance loosened so many times
-/// needs, falling with it, brings to `most` or below; within a hundredth.
+/// The smallest factor, 1 or more, that brings raysAt(factor) to `most` or below; within a
+/// hundredth. raysAt(): the rays that a tolerance loosened by the factor needs, falling with it.
 double loosening(double most, const std::function<double(double)>& raysAt);
 
-/// All rows, by position. `known`: entries that are not estimated. Fills what the report says of
-/// rays and rounds. `journal`: null where nothing is kept. `scratch`: where the rows' entries are
-/// to be; null: in memory. `processes`: those that share the casting, whose others are in
-/// castForOthers() (shared_rays.h); null: this one alone.
+/// Casts all rows, by position. `known`: entries that are not estimated. Fills the report's figures
+/// of rays and rounds. `journal`: null if nothing is kept. `scratch`: holds the rows' entries;
+/// null: in memory. `processes`: share the casting, the others in castForOthers() (shared_rays.h);
+/// null: this one alone.
 std::vector<RayRow> castRows(const RayScene& scene, const KnownEntries& known, const RayAim& aim,
                              RayReport& report, Progress& progress, RowJournal* journal,
                              ScratchMemory* scratch, Processes* processes);

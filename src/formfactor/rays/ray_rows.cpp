@@ -14,7 +14,7 @@ namespace radiosity {
 
 namespace {
 
-/// Of what is handed on to the rows that are merged at once.
+/// Bytes of the entries handed on to the rows that are merged at once.
 constexpr std::size_t kPanelBytes = std::size_t(1) << 25;
 
 using Hits = std::array<std::uint32_t, kReplicates>;
@@ -24,7 +24,7 @@ constexpr std::size_t kHandedBytes = sizeof(Index) + sizeof(Hits);
 /// Blocks of rows that are looked through side by side.
 constexpr std::size_t kBlocks = 32;
 
-/// What all other rows have counted of some rows: their columns, transposed.
+/// Counts of some rows by all other rows: their columns, transposed.
 class Transposed {
  public:
   explicit Transposed(std::span<const RayRow> rows, ScratchMemory* scratch)
@@ -35,7 +35,7 @@ class Transposed {
         if (column < rows.size() && column != j) ++handed_[column];
       }
     }
-    // As much as the largest panel takes, once: growing would hold two panels.
+    // Room for the largest panel at once: growing would hold two panels.
     std::size_t most = 0;
     for (std::size_t first = 0; first < rows.size();) {
       const std::size_t last = panelEnd(first);
@@ -66,7 +66,7 @@ class Transposed {
     for (std::size_t k = first; k < last; ++k) starts_.push_back(starts_.back() + handed_[k]);
     columns_.resize(starts_.back());
     hits_.resize(starts_.back());
-    // Where each block of rows puts what it hands on: in the order of the rows, sorted.
+    // The place for the entries that each block of rows hands on: in the order of the rows, sorted.
     const std::size_t n = rows_.size();
     const std::size_t blocks = std::min(n, kBlocks);
     const std::size_t width = last - first;
@@ -103,7 +103,7 @@ class Transposed {
     const RayRow& row = rows_[j];
     std::size_t e = read_[j];
     for (; e < row.columns.size() && row.columns[e] < last; ++e) {
-      if (row.columns[e] != j) visit(row.columns[e], row.hits[e]);  // itself: it is the same end
+      if (row.columns[e] != j) visit(row.columns[e], row.hits[e]);  // itself: both ends are one
     }
     touchRows(scratch_, (e - read_[j]) * kHandedBytes);
     return e;
@@ -205,7 +205,7 @@ void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
       merging.variances.clear();
       const std::span<const KnownEntries::Entry> entries = known.at(k);
       const bool all_known = known.rowAt(k) != nullptr;
-      std::size_t next = 0;  // of these
+      std::size_t next = 0;  // into entries
       const auto addKnownBefore = [&](std::size_t end) {
         for (; next < entries.size() && entries[next].position < end; ++next) {
           const double factor = entries[next].exchange / area[k];
@@ -240,7 +240,7 @@ void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
 
 namespace {
 
-/// An entry that a row alone has counted.
+/// Adds an entry that a row alone has counted.
 void addAlone(const RayRow& row, std::size_t e, ReplicateSums& sums) {
   const double first = row.hits[e][0] / row.counted(0);
   const double second = row.hits[e][1] / row.counted(1);

@@ -1,4 +1,4 @@
-// What rays counted, a row an unknown, and how good the matrix is that follows.
+// The counts of rays, a row an unknown, and the accuracy of the matrix made from them.
 #pragma once
 
 #include <array>
@@ -16,64 +16,64 @@
 
 namespace radiosity {
 
-/// Each row is counted twice, by points scrambled independently: what the two differ by says how
+/// Each row is counted twice, by points scrambled independently: the difference of the two says how
 /// far off their mean is.
 inline constexpr int kReplicates = 2;
 
-/// Where the rays of one unknown ended. Columns are positions in the order of the matrix, then
-/// K + s for the black back of surface s; strictly increasing.
+/// Counts of where the rays of one unknown ended. Columns are positions in the order of the matrix,
+/// then K + s for the black back of surface s; strictly increasing.
 struct RayRow {
   std::uint32_t rays = 0;  ///< cast in each replicate
   std::array<std::uint32_t, kReplicates> sky{};
   std::array<std::uint32_t, kReplicates> lost{};  ///< no true hits: they do not count
-  std::uint32_t leaked = 0;                       ///< of these, out of a closed scene; of both
+  std::uint32_t leaked = 0;  ///< of these, those out of a closed scene; of both
   std::pmr::vector<Index> columns;
   std::pmr::vector<std::array<std::uint32_t, kReplicates>> hits;
 
   RayRow() = default;
-  /// Its entries stay in `memory`, whatever is assigned to it.
+  /// Its entries stay in `memory`, also after an assignment.
   explicit RayRow(std::pmr::memory_resource* memory) : columns(memory), hits(memory) {}
 
-  /// Adds what the rays from number `rays` to more.rays - 1 of each replicate counted.
+  /// Adds the counts of rays `rays` to more.rays - 1 of each replicate.
   void add(const RayRow& more);
 
-  /// Of the entries.
+  /// Bytes of the entries.
   std::size_t bytes() const {
     return columns.size() * sizeof(Index) + hits.size() * sizeof(hits[0]);
   }
-  /// That count in one replicate, ...
+  /// Rays that count in one replicate.
   double counted(int replicate) const {
     return double(rays) - double(lost[std::size_t(replicate)]);
   }
-  /// ... and in both.
+  /// Rays that count in both.
   double counted() const { return counted(0) + counted(1); }
 };
 
-/// Both estimates of a row's pairs merged: G_ij = (c_ij + c_ji) / (n_i / A_i + n_j / A_j), counts
-/// over rays a square metre. That is their mean weighted by the inverse of the variances that
-/// independent rays would have, A_i G_ij / n_i. Of each replicate.
+/// Both estimates of a row's pairs merged, for each replicate: G_ij = (c_ij + c_ji) / (n_i / A_i +
+/// n_j / A_j), counts over rays a square metre. That is their mean weighted by the inverse of the
+/// variances that independent rays would have, A_i G_ij / n_i.
 struct MergedRow {
   std::size_t position = 0;
   std::size_t unknowns = 0;        ///< K
   std::span<const Index> columns;  ///< positions that one end or the other has hit, increasing
-  /// F from this row's unknown to those, by the first and the second replicate; twice the same
-  /// where it is known.
+  /// F from this row's unknown to the columns, by the first and the second replicate; the same
+  /// value twice if it is known.
   std::span<const std::array<double, kReplicates>> factors;
-  /// Foreseen, of their means, but for a factor that all rows share (foreseenVariance()); 0 where
-  /// they are known.
+  /// Variances foreseen of the factors' means, but for a factor that all rows share
+  /// (foreseenVariance()); 0 for known ones.
   std::span<const double> variances;
-  std::span<const KnownEntries::Entry> known;  ///< those among them that are known
+  std::span<const KnownEntries::Entry> known;  ///< the known ones among the columns
   bool all_known = false;                      ///< the row rests on no rays
 };
 
 /// Calls visit(row) for the rows with `wanted` (by position; empty: all), several at once from
-/// different threads. `area`: K, by position. `scratch`: where the rows' entries are; null: in
-/// memory. What is known takes the place of what rays counted. O(K + entries), in panels of memory.
+/// different threads. `area`: K, by position. `scratch`: holds the rows' entries; null: in memory.
+/// Known entries replace counted ones. O(K + entries), in panels of memory.
 void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
                    const KnownEntries& known, std::span<const std::uint8_t> wanted,
                    ScratchMemory* scratch, const std::function<void(const MergedRow&)>& visit);
 
-/// Bytes that forMergedRows() takes of `rows` rows with `entries` of their own, all together.
+/// Bytes that forMergedRows() takes for `rows` rows with `entries` of their own, all together.
 std::size_t mergingBytes(std::size_t rows, double entries);
 
 /// The norm of a usual row: the root mean square of those added, weighted by area.
@@ -90,12 +90,12 @@ class UsualNorm {
   double areas_ = 0;
 };
 
-/// `own`: the row itself, for the black backs in it, which nothing estimates from the other end;
-/// `area`: its, m^2.
+/// `own`: the row itself, for its black backs, which no other row estimates; `area`: the row's,
+/// m^2.
 RowAccuracy accuracyOf(const MergedRow& merged, const RayRow& own, double area);
 
-/// The same of a row by itself, before it is merged with what the others count; without backs,
-/// which come from column `unknowns` on.
+/// The same for a row by itself, before it is merged with the others' counts; without backs, which
+/// come from column `unknowns` on.
 RowAccuracy accuracyAlone(const RayRow& row, std::size_t unknowns);
 
 }  // namespace radiosity

@@ -12,7 +12,7 @@ namespace radiosity {
 
 namespace {
 
-/// Rays between two looks at whether to go on: some milliseconds.
+/// Rays between two checks for cancellation: some milliseconds.
 constexpr std::uint32_t kSlice = 1u << 16;
 
 /// Counts of this thread, all 0.
@@ -75,7 +75,7 @@ void RayScene::addCounts(std::array<RayCaster::Counts, kReplicates>& counts, Ray
   }
   std::sort(columns.begin(), columns.end());
   columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
-  // New vectors of just that size: of ones that grow, a third would be empty.
+  // New vectors of just that size: a third of grown ones would be empty.
   row.columns.clear();
   row.hits.clear();
   row.columns.reserve(columns.size());

@@ -23,13 +23,13 @@ class RayScene {
   const std::vector<Index>& order() const { return order_; }
   /// The position of each unknown.
   const std::vector<Index>& position() const { return position_; }
-  /// By position, m^2.
+  /// Areas by position, m^2.
   const std::vector<double>& area() const { return area_; }
-  /// No ray can get out: those that do went through a gap.
+  /// True if no ray can get out: one that does has passed through a gap.
   bool provedClosed() const { return proved_closed_; }
 
-  /// Continues a row, by position, to `rays` rays in each replicate. Returns early, with a row that
-  /// is of no use, when `progress` is cancelled. Thread-safe for different rows.
+  /// Continues a row, by position, to `rays` rays in each replicate. If `progress` is cancelled,
+  /// returns early with a useless row. Thread-safe for different rows.
   void cast(std::size_t position, std::uint32_t rays, RayRow& row, const Progress& progress) const;
 
  private:

@@ -1,4 +1,4 @@
-// Which patch a ray has hit, from where on a triangle it ended.
+// The patch that a ray has hit, found from the place on a triangle where it ended.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 
 namespace radiosity {
 
-/// What one side of a triangle counts for, and how a hit's position (Embree's s and t) maps to the
-/// grid of its polygon: u[0] + u[1] s + u[2] t.
+/// The item that one side of a triangle counts for, and the map from a hit's position (Embree's s
+/// and t) to the grid of its polygon: u[0] + u[1] s + u[2] t.
 struct RayTarget {
   const PatchGrid* grid = nullptr;  ///< null: `item` everywhere
   std::array<float, 3> u{};

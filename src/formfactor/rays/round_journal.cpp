@@ -62,7 +62,7 @@ RayRow takeRayRow(ByteReader& bytes) {
   row.sky = bytes.get<std::array<std::uint32_t, kReplicates>>();
   row.lost = bytes.get<std::array<std::uint32_t, kReplicates>>();
   row.leaked = bytes.get<std::uint32_t>();
-  // An entry takes a byte or more: of more entries than bytes are left, none is good.
+  // An entry takes a byte or more: there are no more entries than bytes left.
   const std::size_t entries = std::min<std::size_t>(bytes.getVarint(), bytes.left());
   row.columns.reserve(entries);
   row.hits.reserve(entries);

@@ -1,4 +1,4 @@
-// Rounds of rays in a journal: what each row is to have, and what it has counted.
+// Rounds of rays in a journal: the rays that each row is to have, and its counts.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace radiosity {
 
-/// What a row has come to.
+/// A row's rays, norms and errors.
 struct RowState {
   std::uint32_t rays = 0;
   double error = 0;
@@ -22,9 +22,9 @@ struct RowState {
   double whole_norm = 0;  ///< of fronts and backs
 };
 
-/// What is decided when a round begins. All by position.
+/// The decisions at the beginning of a round. Vectors go by position.
 struct RayRound {
-  std::vector<std::uint32_t> rays;  ///< each row is to have in each replicate, where it has less
+  std::vector<std::uint32_t> rays;  ///< each row is to have in each replicate, if it has fewer
   std::vector<RowState> before;     ///< by the measurement before the last,
   std::vector<RowState> now;        ///< and by the last
   CommonError common;               ///< of all rows measured up to the last
@@ -38,12 +38,12 @@ struct RayRound {
 void putRayRow(const RayRow& row, ByteWriter& bytes);
 RayRow takeRayRow(ByteReader& bytes);
 
-/// Blocks of all rounds and rows stay. Rows are kept whole, not as what a round adds to them: where
-/// one is damaged the round before still is good.
+/// Blocks of all rounds and rows stay. Each holds a whole row, not the counts that a round adds: if
+/// one is damaged, that of the round before is still good.
 class RoundJournal {
  public:
-  /// Of `rows` rows. `journal`: null where nothing is kept. `known`: tells what is known of them,
-  /// which rounds rest on and rays do not.
+  /// For `rows` rows. `journal`: null if nothing is kept. `known`: identifies their known entries,
+  /// on which rounds depend and rays do not.
   RoundJournal(RowJournal* journal, std::size_t rows, std::uint64_t known)
       : journal_(journal), rows_(rows), known_(known) {}
 
@@ -53,7 +53,7 @@ class RoundJournal {
   /// A row at the end of a round that has continued it.
   void keepRow(int round, std::size_t position, const RayRow& row) const;
   bool hasRow(int round, std::size_t position) const;
-  /// `rays`: what the row must have then. False, with `row` as it was, where it is not there.
+  /// `rays`: what the row must then have. False, with `row` unchanged, if it is not there.
   bool takeRow(int round, std::size_t position, std::uint32_t rays, RayRow& row) const;
 
   /// See RowJournal::found().

@@ -9,9 +9,9 @@ namespace {
 
 constexpr double kStated = 0.99;
 
-/// Independent normal terms are about so many times as many as squared terms over the sum of their
-/// squares say of entries: neighbours share the border that rays fall to either side of. (Counted
-/// without it, 95.6 to 98% of the rows of five scenes at two tolerances were below their figures.)
+/// Entries for each independent normal term, about, where entries count as the square of their sum
+/// over the sum of their squares: neighbours share the border that rays fall to either side of.
+/// (Without it, 95.6 to 98% of the rows of five scenes at two tolerances were below their figures.)
 constexpr double kEntriesATerm = 3;
 
 /// Of n scrambled points in four dimensions about n^(3/4) lie in cells that a border runs through.
@@ -27,7 +27,7 @@ double RowAccuracy::figure() const {
     seen = std::hypot(estimated * std::sqrt(boost::math::quantile(distribution, kStated)),
                       known_error);
   }
-  // Whatever takes more than this of a row is met by one of its rays in 99% of rows.
+  // In 99% of rows, one of the rays hits any part that takes more than this share of the row.
   const double unseen = rays > 0 ? -std::log(1 - kStated) / rays : 0.0;
   return std::max(seen, unseen);
 }
@@ -65,10 +65,10 @@ RowAccuracy CommonError::moderated(const RowAccuracy& row) const {
   RowAccuracy result = row;
   if (!(row.foreseen > 0) || !(ratios_ > 0)) return result;
   const double mean = ratios_ / rows_;
-  // How much rows' own ratios differ: their variance over their mean squared.
+  // The scatter of rows' own ratios: their variance over their mean squared.
   const double spread = std::max(0.0, squares_ / rows_ / (mean * mean) - 1);
   const double common = mean * row.foreseen * row.foreseen;
-  // What is common weighs as an estimate of so many degrees would, and of no more than there are.
+  // The common estimate weighs as one of this many degrees, and of no more than there are.
   double weight = degrees_;
   if (spread > 0) weight = std::min(weight, 2 * (1 + 1 / spread));
   result.degrees = row.degrees + weight;

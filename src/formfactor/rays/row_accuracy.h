@@ -1,32 +1,31 @@
-// How far off a row counted by rays is: from what its replicates differ by, and from what other
-// rows teach.
+// The error of a row counted by rays: from the difference of its replicates, and from other rows.
 #pragma once
 
 #include <cstddef>
 
 namespace radiosity {
 
-/// How far off a row is.
+/// The error of a row.
 struct RowAccuracy {
   double norm = 0;      ///< sqrt(sum_j F_ij^2)
   double error = 0;     ///< root mean square expected of sqrt(sum_j (F_ij - true F_ij)^2)
   double foreseen = 0;  ///< the same from the numbers of hits, but for a factor that all rows share
-  /// About: of how many independent terms the squared error is the sum, ...
+  /// The number of independent terms that sum up to the squared error, about.
   double terms = 1;
-  /// ... and how many its estimate rests on.
+  /// The number of terms that its estimate rests on, about.
   double degrees = 1;
   double known_error = 0;  ///< stated, of the entries that are known; not in `error`
   double backs_norm = 0;   ///< as `norm`, of the black backs that it sees, ...
   double backs_error = 0;  ///< ... and as `error`
   double rays = 0;         ///< its own that count, of both replicates
 
-  /// What sqrt(sum_j (F_ij - true F_ij)^2), backs among the j, is below in 99% of rows: error
-  /// squared over its estimate is distributed like F with `terms` degrees of freedom above and
-  /// `degrees` below. At least what so many rays may all have missed.
+  /// A bound that holds in 99% of rows on sqrt(sum_j (F_ij - true F_ij)^2), backs among the j:
+  /// error squared over its estimate is distributed like F with `terms` degrees of freedom above
+  /// and `degrees` below. It is at least the share that all rays may have missed.
   double figure() const;
 };
 
-/// Sums over the entries of a row, of which each replicate has an estimate.
+/// Sums over the entries of a row; each replicate has an estimate of each entry.
 class ReplicateSums {
  public:
   /// `foreseen`: foreseenVariance() of the mean.
@@ -46,27 +45,27 @@ class ReplicateSums {
   double foreseen_squares_ = 0;
 };
 
-/// Of a mean form factor that so many hits say, in rays of scrambled nets: the variance `1 -
-/// factor` of independent rays, less what nets gain. They leave to chance the cells of the net that
-/// the border of what is hit runs through: of n points in four dimensions about n^(3/4).
+/// The variance of a mean form factor known from `hits` hits by rays of scrambled nets: that of
+/// independent rays, hits * (1 - factor), less the gain of nets. They leave to chance the cells of
+/// the net that a target's border runs through: of n points in four dimensions about n^(3/4).
 double foreseenVariance(double factor, double hits);
 
-/// What rows have in common. A row's own two replicates say little of its error where few entries
-/// make it: they may agree by chance. So the error is a mean of what they say and of what all rows
-/// say, weighted by how well each is known: the credibility of Buehlmann, "Experience rating and
-/// credibility", ASTIN Bulletin 4 (1967).
+/// The error that rows have in common. A row's own two replicates say little of its error if few
+/// entries make it: they may agree by chance. So the error is a mean of the row's own estimate and
+/// that of all rows, weighted by how well each is known: the credibility of Buehlmann, "Experience
+/// rating and credibility", ASTIN Bulletin 4 (1967).
 class CommonError {
  public:
-  /// Rows as they come from their replicates.
+  /// Adds a row with the error that its replicates show.
   void add(const RowAccuracy& row);
-  /// The row with an error by both, and more degrees of freedom.
+  /// The row with its error by both estimates, and more degrees of freedom.
   RowAccuracy moderated(const RowAccuracy& row) const;
 
  private:
   double rows_ = 0;
   double degrees_ = 0;
   double ratios_ = 0;   ///< sum of squared error over foreseen
-  double squares_ = 0;  ///< of these ratios, each over what chance makes of one that is 1
+  double squares_ = 0;  ///< sum of their squares, each over 1 + 2 / degrees, its mean by chance
 };
 
 }  // namespace radiosity

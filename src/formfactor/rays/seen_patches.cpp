@@ -16,7 +16,7 @@ using Vector = ClusterFeatures::Vector;
 using Square = ClusterFeatures::Square;
 using Axes = Eigen::Matrix<double, Eigen::Dynamic, ClusterFeatures::kCount>;
 
-/// An axis along which a cluster spreads by less than this share of what holds it says nothing.
+/// Axes with less spread than this share of ClusterFeatures::hold() are left out.
 constexpr double kLeastSpread = 1e-3;
 
 struct Item {
@@ -25,7 +25,7 @@ struct Item {
   Vector sum = Vector::Zero();  ///< of features
 };
 
-/// What one cluster sees.
+/// The view of one cluster.
 struct Row {
   std::uint32_t rays = 0;
   std::vector<Item> items;

@@ -1,4 +1,4 @@
-// What is seen from clusters, whatever the light: PatchIrradiance for those who have no rays.
+// The patches that clusters see, for any light: PatchIrradiance for callers without rays.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,10 @@
 
 namespace radiosity {
 
-/// Sums over the rays of PatchIrradiance. Its least-squares fit in any light follows from them: the
-/// axes of a cluster are combinations of place and normal that have a mean of 0 over the cluster's
-/// rays and a mean square of 1, and of which no two go together. So the slope of irradiance along
-/// an axis is the mean over all rays of what a ray finds times the axis' value where it left.
+/// Sums over the rays of PatchIrradiance. Its least-squares fit in any light follows from them. The
+/// axes of a cluster are combinations of place and normal with a mean of 0 over the cluster's rays,
+/// a mean square of 1 and no correlation. So the slope of irradiance along an axis is the mean over
+/// all rays of the radiosity found times the axis' value where the ray left.
 ///
 /// Backs are black and left out. *Test:* rays_patch_irradiance_test.
 struct SeenPatches {
@@ -28,7 +28,7 @@ struct SeenPatches {
   std::vector<float> patch;
 };
 
-/// Of a mesh that has clusters. The same bits for any number of threads. Throws Cancelled.
+/// `mesh` has clusters. The same bits for any number of threads. Throws Cancelled.
 SeenPatches seenPatches(const PatchMesh& mesh, Progress& progress);
 
 }  // namespace radiosity

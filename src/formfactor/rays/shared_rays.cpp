@@ -10,10 +10,10 @@ namespace radiosity {
 
 namespace {
 
-/// For each process: many, so that the slowest is not waited for long.
+/// Blocks for each process: many, so that nobody waits long for the slowest.
 constexpr std::size_t kRayBlocksAProcess = 32;
 
-/// Where blocks of about equal numbers of rays begin, and the end.
+/// The beginnings of blocks of about equal numbers of rays, and the end.
 std::vector<std::size_t> blocksOf(const std::vector<RowToCast>& rows, std::size_t most) {
   std::size_t total = 0;
   for (const RowToCast& row : rows) total += row.to - row.from;
@@ -27,7 +27,7 @@ std::vector<std::size_t> blocksOf(const std::vector<RowToCast>& rows, std::size_
   return starts;
 }
 
-/// By all processes.
+/// Casts a round by all processes.
 void castRound(Processes& processes, const RayScene& scene, const std::vector<RowToCast>& rows,
                const TakeCounts& take, Progress& progress) {
   const std::vector<std::size_t> starts =

@@ -17,19 +17,19 @@ struct RowToCast {
   std::uint32_t to;
 };
 
-/// What the rays that a row got counted, on process 0's calling thread.
+/// Takes the counts of a row's new rays, on process 0's calling thread.
 using TakeCounts = std::function<void(const RowToCast& row, const RayRow& counted)>;
 
-/// By process 0, while the others are in castForOthers(): all of `rows`, at least one, which are
+/// Called by process 0 while the others are in castForOthers(): casts all of `rows`, at least one,
 /// handed out in this order. Rays are numbered and counts are whole numbers: the sums do not depend
 /// on who casts them.
 void castTogether(Processes& processes, const RayScene& scene, std::vector<RowToCast> rows,
                   const TakeCounts& take, Progress& progress);
 
-/// By process 0, after the last round.
+/// Called by process 0 after the last round.
 void endCasting(Processes& processes, Progress& progress);
 
-/// By the others: casts what falls to this process, until process 0 is done with all rounds.
+/// Called by the others: casts what falls to this process, until process 0 is done with all rounds.
 void castForOthers(Processes& processes, const RayScene& scene, Progress& progress);
 
 }  // namespace radiosity

@@ -12,7 +12,7 @@ inline constexpr int kDimensions = 4;
 /// cache.
 inline constexpr std::size_t kMostPoints = 4096;
 
-/// Where each dimension's values go, in [0, 1).
+/// Arrays for each dimension's values, in [0, 1).
 using PointArrays = std::array<float*, kDimensions>;
 
 /// The first points of the Sobol sequence (direction numbers: S. Joe, F. Kuo, "Constructing Sobol

@@ -1,4 +1,4 @@
-// WebAssembly text to the bytes that browsers take.
+// Assembles WebAssembly text to bytes for browsers.
 import { readFile } from "node:fs/promises";
 import { basename } from "node:path";
 import wabt from "wabt";

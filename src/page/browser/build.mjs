@@ -59,10 +59,10 @@ const workers = {
   },
 };
 
-/** Text that may stand in a script element: it does not end it. */
+/** Escapes text for a script element, so that it does not end the element. */
 const inScript = (text) => text.replace(/<\/(script)/gi, "<\\/$1").replace(/<!--/g, "<\\!--");
 
-/** Puts `text` in place of `mark`, which must stand there once. */
+/** Replaces `mark`, which must occur once, by `text`. */
 function put(page, mark, text) {
   if (page.split(mark).length !== 2) throw new Error(`index.html needs ${mark} once`);
   return page.replace(mark, () => text);

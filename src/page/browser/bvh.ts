@@ -1,4 +1,4 @@
-// A tree of boxes over the triangles of patches, to find what a ray hits first.
+// A tree of boxes over the triangles of patches, to find the first hit of a ray.
 
 /** x, y, z. */
 export type Point = [number, number, number];
@@ -36,7 +36,7 @@ export class TriangleTree {
     this.root = count > 0 ? this.build(0, count, centre) : null;
   }
 
-  /** The nearest triangle whose front (counter-clockwise) the ray meets, or null. */
+  /** The nearest triangle with its front (counter-clockwise) hit by the ray, or null. */
   cast(from: Point, direction: Point): Hit | null {
     let best: Hit | null = null;
     const stack: Node[] = this.root ? [this.root] : [];
@@ -83,7 +83,7 @@ export class TriangleTree {
     return node;
   }
 
-  /** Moeller & Trumbore 1997, fronts only; Infinity: not met. */
+  /** Moeller & Trumbore 1997, fronts only; Infinity: no hit. */
   private meet(t: number, from: Point, direction: Point): number {
     const a = this.corner(t, 0);
     const e1 = minus(this.corner(t, 1), a), e2 = minus(this.corner(t, 2), a);
@@ -105,7 +105,7 @@ export class TriangleTree {
   }
 }
 
-/** Where the ray enters the box; Infinity: it does not. */
+/** The distance at which the ray enters the box; Infinity: it does not. */
 function entry(node: Node, from: Point, direction: Point): number {
   let near = 0, far = Infinity;
   for (let axis = 0; axis < 3; ++axis) {

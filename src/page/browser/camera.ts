@@ -1,4 +1,4 @@
-// Where the viewer stands: orbit around a pivot, pan, zoom, or walk; by mouse, touch and keyboard.
+// The viewer's position: orbit around a pivot, pan, zoom, or walk; by mouse, touch and keyboard.
 import { PerspectiveCamera, Vector3 } from "three";
 import type { Header } from "./container";
 
@@ -9,7 +9,7 @@ const WALK_A_SECOND = 0.35; // of the scene's diagonal
 const TAP_PIXELS = 6;
 const LONG_PRESS_MS = 500;
 
-/** Keys that move while they are held: what they do, in the viewer's own axes. */
+/** Keys that move while they are held, with the motion in the viewer's own axes. */
 const KEYS: Record<string, "left" | "right" | "up" | "down" | "forward" | "back" | "rise" | "sink" |
   "stepLeft" | "stepRight"> = {
   ArrowLeft: "left", ArrowRight: "right", ArrowUp: "up", ArrowDown: "down",
@@ -48,7 +48,7 @@ export class CameraControl {
     this.reset();
   }
 
-  /** Back to where the page begins. */
+  /** Returns to the first view of the page. */
   reset(): void {
     const origin = new Vector3(...this.header.origin);
     const eye = new Vector3(...this.header.camera.eye).sub(origin);
@@ -70,13 +70,13 @@ export class CameraControl {
     this.distance = Math.max(distance, this.header.diagonal * 1e-3);
   }
 
-  /** Turns towards a point and comes as near as `size` wants. */
+  /** Turns towards a point and moves to a distance that suits `size`. */
   focus(point: Vector3, size: number): void {
     const direction = this.forward();
     this.look(point.clone().addScaledVector(direction, -Math.max(size, this.header.diagonal * 0.02)), point);
   }
 
-  /** The canvas has these proportions now: what the camera should show stays in the picture. */
+  /** Sets the proportions of the canvas; the camera's field of view stays in the picture. */
   setAspect(aspect: number): void {
     const half = Math.tan((this.header.camera.fov * Math.PI) / 360);
     this.camera.fov = (Math.atan(half / Math.min(1, aspect)) * 360) / Math.PI;
@@ -84,7 +84,7 @@ export class CameraControl {
     this.moved();
   }
 
-  /** As `radiosity render --camera` reads it. */
+  /** The camera as text for `radiosity render --camera`. */
   text(): string {
     const origin = new Vector3(...this.header.origin);
     const words = (p: Vector3) => p.toArray().map((x) => Number(x.toPrecision(6))).join(",");
@@ -174,7 +174,7 @@ export class CameraControl {
     this.canvas.focus({ preventScroll: true });
     this.canvas.setPointerCapture(event.pointerId);
     this.pointers.set(event.pointerId, { x: event.offsetX, y: event.offsetY });
-    // A second finger is no tap.
+    // A second finger does not count as a tap.
     this.travelled = this.pointers.size > 1 ? Infinity : 0;
     this.pressed = performance.now();
   }
@@ -185,7 +185,7 @@ export class CameraControl {
     const now = { x: event.offsetX, y: event.offsetY };
     const dx = now.x - before.x, dy = now.y - before.y;
     this.travelled += Math.hypot(dx, dy);
-    if (this.travelled <= TAP_PIXELS) return; // the start of a drag is the finger's trembling
+    if (this.travelled <= TAP_PIXELS) return; // small motions may be trembling
     this.pointers.set(event.pointerId, now);
     const other = [...this.pointers].find(([id]) => id !== event.pointerId)?.[1];
     if (other) {

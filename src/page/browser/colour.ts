@@ -1,4 +1,4 @@
-// Colour: the sRGB curve, and viridis as the program's own false-colour pictures have it.
+// Colour: the sRGB curve, and viridis as in the program's own false-colour pictures.
 import type { Rgb } from "./container";
 
 /** Every 16th of viridis' 256 published colours, and the last (sRGB); ../../render/colour_map.cpp. */
@@ -28,7 +28,7 @@ export function viridisTable(): Uint8Array {
 export const toSrgb = (x: number): number => (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055);
 export const fromSrgb = (x: number): number => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
 
-/** "#rrggbb" of a linear colour whose largest channel is taken as 1. */
+/** "#rrggbb" of a linear colour, scaled so that its largest channel is 1. */
 export function hexOf(linear: Rgb): string {
   const most = Math.max(...linear);
   const byte = (x: number) => Math.round(255 * toSrgb(most > 0 ? Math.max(0, x / most) : 1));

@@ -1,6 +1,6 @@
-// Reads the container that `radiosity view` embeds: a JSON header and typed arrays (the format is in
-// ../README.md). Every array is checked for its length, so that a damaged page says what is damaged
-// instead of drawing nonsense.
+// Reads the container that `radiosity view` embeds: a JSON header and typed arrays (the format is
+// in ../README.md). It checks the length of every array, so that a damaged page gives an error
+// instead of a wrong picture.
 
 export type Rgb = [number, number, number];
 
@@ -43,7 +43,7 @@ export interface Header {
   arrays: Record<string, { type: string; offset: number; length: number }>;
 }
 
-/** What a page has of patches that share unknowns: sums over rays (the format is in ../README.md). */
+/** Sums over rays, for patches that share unknowns (the format is in ../README.md). */
 export interface SeenData {
   begin: Uint32Array; // K+1
   item: Uint32Array; // patches; N: the sky
@@ -85,12 +85,12 @@ export interface PageData {
   unknownArea: Float32Array; // K
   rowSum: Float32Array; // K
   rowSky: Float32Array; // K, the share of the view that is sky
-  rowError: Float32Array; // K; empty: the method knows none
+  rowError: Float32Array; // K; empty: the method has none
   factorBegin: Uint32Array; // K+1
   factorColumn: Uint32Array; // empty: rows hold every column from the diagonal on
   factorCode: Uint16Array;
-  order: Uint32Array | null; // K: in which order the program's Gauss-Seidel takes unknowns
-  seen: SeenData | null; // where patches share unknowns
+  order: Uint32Array | null; // K: the order of unknowns in the program's Gauss-Seidel
+  seen: SeenData | null; // if patches share unknowns
   elementPosition: Float32Array;
   elementTriangle: Uint32Array;
   elementLight: Float32Array; // radiosity at each element vertex
@@ -216,7 +216,7 @@ function readSeen(buffer: ArrayBuffer, header: Header): SeenData {
   };
 }
 
-/** The arrays are views of `buffer`. Throws an Error with one clear line where the data are damaged. */
+/** The arrays are views of `buffer`. Throws an Error with one clear line if the data are damaged. */
 export function readContainer(buffer: ArrayBuffer): PageData {
   const header = readHeader(buffer);
   const f32 = (name: string) => view(buffer, header, name, "f32");

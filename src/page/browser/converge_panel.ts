@@ -1,11 +1,11 @@
-// The solver's way from E to the light, watched: played at a speed, stepped, and gone back through.
+// Shows the solver's iterates from E to the light: played at a speed, stepped, and replayed.
 import { FIRST_METHOD, METHODS, wordsOf, type Method } from "./methods";
 import { drawPlot, type Point } from "./plot";
 import type { Frame } from "./protocol";
 import { element, input, on, select, short } from "./ui";
 import type { Viewer } from "./viewer";
 
-/** Frames are kept for the slider; a run longer than that stops. */
+/** The most frames that are kept for the slider; a longer run stops. */
 const MOST_FRAMES = 500;
 
 export class ConvergePanel {
@@ -37,7 +37,7 @@ export class ConvergePanel {
 
   get method(): Method { return select("method").value as Method; }
 
-  /** Forgets the run: its materials are no more. */
+  /** Forgets the run, since its materials have changed. */
   forget(): void {
     this.pause();
     this.frames = [];
@@ -46,7 +46,7 @@ export class ConvergePanel {
     this.draw();
   }
 
-  /** Which moment is shown. */
+  /** The moment that is shown, in words. */
   moment(): string {
     const frame = this.frames[this.shown];
     const { name, unit } = wordsOf(this.method);
@@ -133,7 +133,7 @@ export class ConvergePanel {
     element("play").setAttribute("aria-pressed", String(this.playing));
   }
 
-  /** The program's history, where it used this solver and the materials are those it had. */
+  /** The program's history, if it used this solver and the same materials. */
   private told(): Point[] {
     const { name, history } = this.viewer.data.header.solver;
     const changed = JSON.stringify(this.viewer.states) !== JSON.stringify(this.viewer.storedStates());

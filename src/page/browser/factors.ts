@@ -29,7 +29,7 @@ export function codeTable(lowest: number, step: number): Float32Array {
   return table;
 }
 
-/** How many entries each row of the whole matrix has, as begins. */
+/** The first entry of each row of the whole matrix. */
 function beginsOfBoth(stored: StoredFactors): Uint32Array {
   const size = stored.area.length;
   const dense = stored.column.length === 0;
@@ -49,7 +49,7 @@ function beginsOfBoth(stored: StoredFactors): Uint32Array {
 const ALIGNED = 16; // bytes: what vectors are loaded from
 const aligned = (bytes: number): number => Math.ceil(bytes / ALIGNED) * ALIGNED;
 
-/** Rows to fill, in one buffer of `room`, which is given the bytes that they need. */
+/** Empty rows in one buffer, which `room` allocates. */
 function emptyRows(begins: Uint32Array, room: (bytes: number) => ArrayBuffer) {
   const size = begins.length - 1;
   const entries = begins[size]!;

@@ -1,5 +1,5 @@
-// Gathering, pass after pass: every eye looks at the scene in its present light; then B = E + rho H, and
-// again. Pass k adds the k-th bounce.
+// Gathering, pass after pass: every eye looks at the scene in its present light; then B = E + rho
+// H. Pass k adds the k-th bounce.
 import type { PageData, Rgb } from "./container";
 import { Eyes, type EyeMaterials } from "./gather_eyes";
 import { GatherGpu } from "./gather_gpu";
@@ -7,14 +7,14 @@ import type { PatchLight } from "./light";
 
 const BANDS = 3;
 const BATCH_MS = 16; // of a frame of 33 ms; the picture and the panels need the rest
-// In software a frame of the page costs what ten eyes cost: none is drawn but where something changes, and
-// a batch is what it then waits for.
+// In software a frame of the page costs as much as ten eyes. So it is only drawn if something
+// changes, and then waits for a batch.
 const SOFTWARE_BATCH_MS = 60;
 const SOFTWARE_PROGRESS_MS = 500;
 
 export interface GatherState {
   pass: number; // passes that are complete
-  eyes: number; // looked in the pass that is on
+  eyes: number; // that have looked in the present pass
 }
 
 export class Gather {
@@ -32,12 +32,12 @@ export class Gather {
   private readonly materials: EyeMaterials;
   private readonly sky: Rgb;
   private batch = 1;
-  private told = 0; // when progress was
+  private told = 0; // time of the last progress
   private running = false;
   private working = false;
   private closed = false;
 
-  /** Throws an Error with one sentence where the browser cannot do it. */
+  /** Throws an Error with one sentence if the browser cannot gather. */
   constructor(data: PageData, light: PatchLight, tint: Rgb, resolution: number) {
     this.eyes = new Eyes(data);
     this.gpu = new GatherGpu(data, this.eyes, resolution);
@@ -70,21 +70,21 @@ export class Gather {
     this.working = false;
   }
 
-  /** Waits for the time of a batch: as frames do, none comes while the page is out of sight. */
+  /** Waits for the next batch, in step with frames: there are none while the page is hidden. */
   private async turn(): Promise<void> {
     if (!this.gpu.software) return void (await new Promise(requestAnimationFrame));
     do await new Promise((resume) => setTimeout(resume, 1));
     while (this.running && (document.hidden || this.viewerMoves()));
   }
 
-  /** As many eyes as a batch has time for. */
+  /** Lets as many eyes look as a batch has time for. */
   private async someEyes(): Promise<void> {
     const budget = this.gpu.software ? SOFTWARE_BATCH_MS : BATCH_MS;
     const begin = performance.now();
     const looks = this.gpu.look(this.state.eyes, this.batch, this.sky);
     await this.gpu.done();
     const took = performance.now() - begin;
-    if (looks === this.batch || took > budget) { // a batch that a row's end cut short tells less
+    if (looks === this.batch || took > budget) { // ignores batches cut short at the end of a row
       const wanted = Math.round((looks * budget) / Math.max(took, 1));
       this.batch = Math.max(1, Math.min(wanted, 2 * this.batch, this.gpu.capacity));
     }

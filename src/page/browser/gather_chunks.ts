@@ -1,5 +1,5 @@
-// Runs of triangles that a face of a hemicube may see. A GPU clips what lies outside by itself; in software
-// that costs about as much as drawing it.
+// Runs of triangles that a face of a hemicube may see. A GPU clips triangles outside by itself; in
+// software this costs about as much as drawing them.
 import type { PageData } from "./container";
 
 type Vec = readonly number[];
@@ -9,10 +9,10 @@ export interface Face {
   across: Vec;
   up: Vec;
   along: Vec;
-  half: boolean; // only what has 0 <= up
+  half: boolean; // only the part with 0 <= up
 }
 
-/** Normals of the planes that bound what it sees, all through the eye; inside is in front of them. */
+/** Normals of the planes that bound its view, all through the eye; the inside is in front of them. */
 function planes({ across, up, along, half }: Face): Vec[] {
   const towards = (axis: Vec, sign: number): Vec => along.map((x, d) => x + sign * axis[d]!);
   return [towards(across, 1), towards(across, -1), towards(up, -1), half ? up : towards(up, 1)];
@@ -23,7 +23,7 @@ export class Chunks {
   private readonly middle: Float64Array; // of the box of each chunk
   private readonly reach: Float64Array; // half the edges of that box
 
-  /** As triangles stand in the page's data, where neighbours are near each other. `most`: of them a chunk. */
+  /** Triangles in the order of the page's data, where neighbours are near each other. `most`: in a chunk. */
   constructor(private readonly data: PageData, most: number) {
     const corners = data.patchTriangle.length;
     for (let first = 0; first < corners; first += 3 * most) this.begin.push(first);
@@ -33,7 +33,7 @@ export class Chunks {
     for (let c = 0; c + 1 < this.begin.length; ++c) this.findBox(c);
   }
 
-  /** Runs of corners, `draw(first, count)`, among which is all that the face sees from `eye`. */
+  /** Calls `draw(first, count)` for runs of corners that include everything the face sees from `eye`. */
   seen(eye: Vec, face: Face, draw: (first: number, count: number) => void): void {
     const bounds = planes(face);
     let first = 0, end = 0;
@@ -48,7 +48,7 @@ export class Chunks {
     if (end > first) draw(first, end - first);
   }
 
-  /** The whole box. */
+  /** Whether the whole box is behind a plane. */
   private isBehind(chunk: number, eye: Vec, normal: Vec): boolean {
     let most = 0;
     for (let d = 0; d < 3; ++d) {

@@ -1,5 +1,5 @@
-// The eyes of gathering, one a vertex and smooth side, and how their values become those of corners and
-// patches.
+// The eyes of gathering, one for each vertex and smooth side, and the conversion of their values to
+// those of corners and patches.
 import type { PageData } from "./container";
 import { shadingValues, type PatchLight } from "./light";
 
@@ -31,7 +31,7 @@ export class Eyes {
   }
 
   position(eye: number): Vec { return this.at(this.data.eyePosition, eye); }
-  /** 0 where the eye stands for no area, and does not look. */
+  /** 0 if the eye represents no area and does not look. */
   normal(eye: number): Vec { return this.at(this.data.eyeNormal, eye); }
   axis(eye: number): Vec { return this.at(this.data.eyeAxis, eye); }
 
@@ -99,8 +99,8 @@ export class Eyes {
 }
 
 /**
- * Root of the sum of squared differences by area, over that of the reference: of light that is reflected,
- * since the lamps' own is the same by any method.
+ * The area-weighted relative L2 difference of the reflected light, since the lamps' own light is the same by
+ * any method.
  */
 export function reflectedDifference(data: PageData, irradiance: Float32Array, reference: PatchLight): number {
   let difference = 0, size = 0;

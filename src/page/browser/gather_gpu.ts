@@ -10,9 +10,9 @@ import { drawn, drawsInSoftware } from "./graphics";
 const ATLAS_WIDTH = 2048, ATLAS_HEIGHT = 1536; // pixels; 63 MB with its depths
 const CHUNK = 16; // triangles, in software: more draws cost what fewer vertices save
 const RESULT_WIDTH = 256; // eyes a row of the texture that collects a pass
-// In diagonals of the scene. Positions are floats, off by up to 1e-7: an eye stands a lift above its own
-// plane, which it so does not see; backs lie behind fronts by more than that, so that of a plate without
-// thickness the front is seen.
+// In diagonals of the scene. Positions are floats, with errors of up to 1e-7. An eye is lifted
+// above its own plane, so that it does not see it. Backs are moved behind fronts by more than the
+// error, so that the front of a plate without thickness is seen.
 const LIFT = 1e-6, NEAR = 1e-6, BACK = 4e-6;
 type Vec = [number, number, number];
 
@@ -27,7 +27,7 @@ interface Target {
 }
 
 export class GatherGpu {
-  /** No GPU draws. */
+  /** Whether software draws, not a GPU. */
   readonly software: boolean;
   readonly capacity: number; // eyes a batch, at most
   private readonly gl: WebGL2RenderingContext;
@@ -47,7 +47,7 @@ export class GatherGpu {
   private readonly chunks: Chunks;
   private brightest = 0;
 
-  /** Throws an Error with one sentence where the browser cannot do it. */
+  /** Throws an Error with one sentence if the browser cannot gather. */
   constructor(private readonly data: PageData, private readonly eyes: Eyes, private readonly resolution: number) {
     const gl = document.createElement("canvas").getContext("webgl2", { antialias: false, depth: false, alpha: false });
     if (!gl) throw new Error("Gathering needs WebGL 2, which this browser does not offer.");
@@ -77,14 +77,14 @@ export class GatherGpu {
 
   dispose(): void { this.gl.getExtension("WEBGL_lose_context")?.loseContext(); }
 
-  /** Radiosity at the corners of triangles, T*9: what eyes see from now on. */
+  /** Sets the radiosity at the corners of triangles, T*9, that eyes see from now on. */
   setLight(corners: Float32Array): void {
     this.gl.bindBuffer(this.gl.ARRAY_BUFFER, this.light);
     this.gl.bufferData(this.gl.ARRAY_BUFFER, corners, this.gl.DYNAMIC_DRAW);
     this.brightest = corners.reduce((most, value) => Math.max(most, value), 0);
   }
 
-  /** Starts the looks of `count` eyes from `first` on; returns of how many: fewer at the end of a row of the result. */
+  /** Starts the looks of `count` eyes from `first` on, fewer at the end of a row of the result; returns their number. */
   look(first: number, count: number, sky: Vec): number {
     const column = first % RESULT_WIDTH;
     const looks = Math.min(count, this.capacity, RESULT_WIDTH - column, this.eyes.count - first);
@@ -100,12 +100,12 @@ export class GatherGpu {
     return looks;
   }
 
-  /** Resolves when all that was started is done. */
+  /** Resolves when all looks are done. */
   async done(): Promise<void> {
     if (!(await drawn(this.gl))) throw new Error("The GPU gave up on gathering; start again.");
   }
 
-  /** What every eye received, G*4: irradiance, and the sum of its weights. */
+  /** The results of every eye, G*4: irradiance, and the sum of its weights. */
   async read(): Promise<Float32Array> {
     const { gl } = this;
     const values = new Float32Array(RESULT_WIDTH * this.resultRows * 4);
@@ -143,7 +143,7 @@ export class GatherGpu {
     const half = gl.getUniformLocation(draw, "half_");
     for (let k = 0; k < looks; ++k) {
       const normal = this.eyes.normal(first + k), s = this.eyes.axis(first + k), t = cross(normal, s);
-      if (Math.hypot(...normal) === 0) continue; // stands for no area
+      if (Math.hypot(...normal) === 0) continue; // represents no area
       const eye = this.eyes.position(first + k).map((x, d) => x + LIFT * size * normal[d]!) as Vec;
       gl.uniform3f(at[0]!, ...eye);
       const faces: [Vec, Vec, Vec][] =
@@ -175,7 +175,7 @@ export class GatherGpu {
     gl.drawArrays(gl.TRIANGLES, 0, 3);
     for (let unit = 0; unit < 2; ++unit) {
       gl.activeTexture(gl.TEXTURE0 + unit);
-      gl.bindTexture(gl.TEXTURE_2D, null); // what is drawn into next must not be read
+      gl.bindTexture(gl.TEXTURE_2D, null); // the next target must not be read
     }
   }
 

@@ -1,4 +1,4 @@
-// Gathering, live: started, paused, forgotten; each pass beside the matrix solution.
+// The panel of gathering: start, pause, forget, and compare each pass with the matrix solution.
 import { Gather } from "./gather";
 import { reflectedDifference } from "./gather_eyes";
 import type { PatchLight } from "./light";
@@ -51,7 +51,7 @@ export class GatherPanel {
 
   private begin(): void {
     const { viewer } = this;
-    if (viewer.source === "run") element("to-stored").click(); // an iterate is no solution to compare with
+    if (viewer.source === "run") element("to-stored").click(); // we compare with a solution, not an iterate
     try {
       this.gather = new Gather(viewer.data, viewer.light, viewer.sky, Number(select("gather-resolution").value));
     } catch (error) {

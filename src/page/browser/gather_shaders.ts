@@ -20,9 +20,9 @@ export const DRAW = {
       vCorner = vec4(light, w);
       gl_Position = vec4(dot(p, across), half_ ? 2.0 * y - w : y, w - 2.0 * nearest, w);
     }`,
-  // Depths are linear in the distance: all over the scene they are off by a float's rounding. A triangle seen
-  // all but edge-on may cover a pixel by rounding, where interpolation divides by 0: it shows what its last
-  // corner has.
+  // Depths are linear in the distance, with the rounding error of a float everywhere. By rounding,
+  // a triangle seen almost edge-on may cover a pixel where interpolation divides by 0: it shows the
+  // value of its last corner.
   fragment: `#version 300 es
     precision highp float;
     uniform vec2 depths; // a unit of distance; how far backs lie behind

@@ -1,5 +1,5 @@
-// Delta form factors of a hemicube's pixels, exact: each is the integral over its pixel, in closed form (as
-// the program's src/formfactor/hemicube/delta_form_factors.h, which derives it).
+// Exact delta form factors of a hemicube's pixels: each is the integral over its pixel, in closed
+// form (derived in src/formfactor/hemicube/delta_form_factors.h).
 
 /** Rows of a hemicube's strip: the top face, then the upper halves of four sides. */
 export const stripRows = (resolution: number): number => 3 * resolution;

@@ -1,11 +1,11 @@
-// Light on patches: from the irradiance of unknowns to what each patch shows, and from a viewer's
-// changes of materials to what each patch emits and reflects.
+// Light on patches: computes the light of each patch from the irradiance of unknowns, and its
+// emission and reflectance from a viewer's changes of materials.
 import type { PageData, Rgb } from "./container";
 import type { Materials } from "./protocol";
 
 const BANDS = 3;
 
-/** What a viewer may change of a material: all in the units of MaterialInfo. */
+/** The properties of a material that a viewer may change, in the units of MaterialInfo. */
 export interface MaterialState {
   reflectance: Rgb;
   emission: Rgb;
@@ -78,14 +78,14 @@ export function patchIrradiance(
   return result;
 }
 
-/** A patch's value when its material's went from `before` to `now`: textures and overrides keep theirs. */
+/** A patch's value after its material's changed from `before` to `now`: textures and overrides are kept. */
 function followed(value: number, before: number, now: number, plain: boolean): number {
   if (now === before) return value;
   if (plain || before === 0) return now;
   return (value * now) / before;
 }
 
-/** How far a patch's value may be from its material's to be that value, rounded to 32 bits. */
+/** The largest difference of a patch's value from its material's that may be rounding to 32 bits. */
 const SAME = 1e-5;
 
 function isPlain(values: Float32Array, at: number, of: Rgb): boolean {
@@ -93,11 +93,11 @@ function isPlain(values: Float32Array, at: number, of: Rgb): boolean {
 }
 
 export interface Relit extends Omit<PatchLight, "irradiance"> {
-  /** Patches whose reflectance would have gone above 1 (bright texels), and is 1. */
+  /** The number of patches whose reflectance would be above 1 (bright texels) and is limited to 1. */
   limited: number;
 }
 
-/** What patches emit and reflect when their materials are these. */
+/** The emission and reflectance of patches for these materials. */
 export function withMaterials(data: PageData, states: MaterialState[]): Relit {
   const emission = new Float32Array(data.emission.length);
   const reflectance = new Float32Array(data.reflectance.length);

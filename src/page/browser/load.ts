@@ -1,4 +1,4 @@
-// From the text in the page to the container's bytes: base64, then gzip, with progress.
+// Decodes the text in the page to the container's bytes: base64, then gzip, with progress.
 
 /** Characters decoded at a time: a multiple of 4, small enough that the loading bar moves. */
 const SLICE = 1 << 20;
@@ -10,7 +10,7 @@ function decodeSlice(text: string): Uint8Array<ArrayBuffer> {
   return bytes;
 }
 
-/** `progress` is told the share of the text that was decoded, 0 to 1. */
+/** `progress` is called with the share of the text that is decoded, 0 to 1. */
 export async function unpack(base64: string, progress: (share: number) => void): Promise<ArrayBuffer> {
   const text = base64.trim();
   let next = 0;

@@ -1,4 +1,4 @@
-// How the scene is shown: exposure, tone mapping, surfaces, false colour with its legend, before and
+// The panel of the view: exposure, tone mapping, surfaces, false colour with its legend, before and
 // after.
 import { toSrgb, viridis } from "./colour";
 import { toneIndex, type Tone } from "./shading";
@@ -17,7 +17,7 @@ const TITLES: Record<Show, string> = {
 };
 const EXPOSURE_STOPS = 8;
 
-/** Why there are no form factors to paint; null: there are some. */
+/** The reason why no form factors can be painted; null: they can. */
 function whyNoFactors(viewer: Viewer): string | null {
   const { first } = viewer.picks;
   if (!first) return "pick a patch";
@@ -45,7 +45,7 @@ function showLegend(viewer: Viewer): void {
   }
 }
 
-/** The sky is seen where nothing stands. */
+/** Shows the sky behind the scene. */
 function showSky(viewer: Viewer): void {
   const sky = viewer.data.header.sky.map((x, b) => x * viewer.sky[b]! * 2 ** viewer.uniforms.exposure.value);
   if (!viewer.data.header.sky.some((x) => x > 0)) return;
@@ -104,7 +104,7 @@ function setUpSplit(viewer: Viewer): void {
   on("split", "input", apply);
 }
 
-/** Form factors span decades: their colours start logarithmic, others linear. */
+/** Chooses the scale: logarithmic at first for form factors, which span decades, linear for others. */
 function scaleFor(viewer: Viewer, shown: Show): void {
   const logarithmic = shown === "factors";
   viewer.uniforms.logarithmic.value = logarithmic;

@@ -1,10 +1,10 @@
-// What build.mjs makes of imports: the text of a worker's program.
+// Imports that build.mjs resolves: the text of a worker's program.
 declare module "worker:*" {
   const program: string;
   export default program;
 }
 
-// And the bytes of a kernel.
+// The bytes of a kernel.
 declare module "wat:*" {
   const program: Uint8Array<ArrayBuffer>;
   export default program;

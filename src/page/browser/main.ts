@@ -1,4 +1,4 @@
-// The page from its text to what a viewer can use: unpack, check, draw, give the solver its matrix.
+// Starts the page: unpacks and checks its data, draws, and gives the solver its matrix.
 import { readContainer, type PageData } from "./container";
 import { ConvergePanel } from "./converge_panel";
 import { GatherPanel } from "./gather_panel";
@@ -10,11 +10,11 @@ import { RelightPanel } from "./relight_panel";
 import { copy, counted, element, make, on, onChoice, short } from "./ui";
 import { Viewer } from "./viewer";
 
-/** As the program calls its methods, in a sentence. */
+/** The names of the program's methods in a sentence. */
 const METHODS: Record<string, string> = { rays: "ray-traced" };
 const NARROW = "(max-width: 760px)";
 
-/** The loading bar: a share of all the work, and what is done now. */
+/** Updates the loading bar: the share of the work, and the present step. */
 async function loading(share: number, text: string): Promise<void> {
   element<HTMLProgressElement>("loading-bar").value = share;
   element("loading-text").textContent = text;
@@ -33,7 +33,7 @@ async function readPage(): Promise<PageData> {
   const script = document.getElementById("radiosity-data");
   if (!script?.textContent) throw new Error("This page holds no scene: write one with radiosity view");
   const buffer = await unpack(script.textContent, (share) => void loading(0.5 * share, "Unpacking…"));
-  script.remove(); // megabytes of text that are not needed any more
+  script.remove(); // frees megabytes of text
   return readContainer(buffer);
 }
 

@@ -1,12 +1,11 @@
-// The solvers that the page shows at work: their names, and what it says of each. What a frame of
-// each computes is in session.ts.
+// The solvers that can be watched: their names and texts. session.ts computes their frames.
 
 interface MethodWords {
   name: string;
   unit: string; // of the run's slider: a frame
-  units: string; // what the list of solvers says that one does
-  firstFigure: number; // the frame that the first figure of the program's history is of
-  figures: string; // what that history holds
+  units: string; // the description in the list of solvers
+  firstFigure: number; // the frame of the first figure in the program's history
+  figures: string; // the meaning of that history
   residualNote: string;
 }
 

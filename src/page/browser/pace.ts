@@ -1,6 +1,6 @@
-// How finely software draws a picture while the viewer moves: so that the next one may follow soon.
+// Chooses the resolution of software pictures while the viewer moves, so that they follow quickly.
 
-/** `scale`: of width and height. `elements`: or the patches instead, which are fewer. */
+/** `scale`: of width and height. `elements`: draws elements; false: patches, which are fewer. */
 const LEVELS = [
   { scale: 1, elements: true },
   { scale: 0.5, elements: true },
@@ -12,14 +12,14 @@ const SLOW_PICTURES = 2, QUICK_PICTURES = 20; // one after the other, before it 
 
 export class Pace {
   private level = 2;
-  private finest = 0; // what was too slow is not tried again
+  private finest = 0; // finer levels were too slow and are not tried again
   private slow = 0;
   private quick = 0;
 
   get scale(): number { return LEVELS[this.level]!.scale; }
   get elements(): boolean { return LEVELS[this.level]!.elements; }
 
-  /** A picture of a movement took so long. */
+  /** Records the time of a picture during a movement. */
   took(milliseconds: number): void {
     this.slow = milliseconds > SLOW_MS ? this.slow + 1 : 0;
     this.quick = milliseconds < QUICK_MS ? this.quick + 1 : 0;

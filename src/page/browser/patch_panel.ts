@@ -1,4 +1,4 @@
-// What the picked patches are, and what they exchange.
+// The panel of the picked patches and their exchange.
 import { radiosityOf } from "./light";
 import type { MarkName } from "./stage";
 import { element, input, make, number, on } from "./ui";
@@ -70,7 +70,7 @@ export function setUpPatch(viewer: Viewer): void {
   };
   viewer.listen("picks", showPicks);
   viewer.listen("light", refresh);
-  viewer.listen("rows", refresh); // and not the fields: a number may be being typed
+  viewer.listen("rows", refresh); // not the fields, since a number may be being typed
   for (const name of NAMES) {
     const field = input(`pick-${name}`);
     field.max = String(viewer.data.header.patches - 1);
@@ -89,7 +89,7 @@ export function clearPicks(viewer: Viewer): void {
   for (const name of NAMES) viewer.pick(name, null);
 }
 
-/** Picks what is at a pixel; nothing there: clears the pick. */
+/** Picks the patch at a pixel; clears the pick if there is none. */
 export function pickAt(viewer: Viewer, x: number, y: number, second: boolean): void {
   viewer.pick(second ? "second" : "first", viewer.patchAt(x, y));
   element<HTMLDetailsElement>("patch-panel").open = true;

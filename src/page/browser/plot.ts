@@ -1,4 +1,4 @@
-// The residual over the work done, logarithmic upwards: a drawing of the solver's way.
+// Plots the residual, on a logarithmic axis, over the work of the solver.
 
 import { short } from "./ui";
 
@@ -17,7 +17,7 @@ function shape(tag: string, attributes: Record<string, string | number>, text = 
   return made;
 }
 
-/** `told`: the program's own history, hollow; `now`: the one of `run` that is shown. */
+/** `told`: the program's own history, drawn hollow; `now`: the point of `run` that is shown. */
 export function drawPlot(into: HTMLElement, run: Point[], told: Point[], now: number, axis: string): void {
   const all = [...run, ...told].filter((p) => p.y > 0);
   const decades = all.map((p) => Math.log10(p.y));

@@ -1,4 +1,4 @@
-// What the page and its solver worker say to each other. Values of unknowns: K * 3, row-major.
+// The messages between the page and its solver worker. Values of unknowns: K * 3, row-major.
 import type { SeenData } from "./container";
 import type { StoredFactors } from "./factors";
 import type { Method } from "./methods";
@@ -9,22 +9,22 @@ export interface PatchMaterials {
   reflectance: Float32Array;
 }
 
-/** Light as the page was given it, and what the viewer changed: of unknowns. */
+/** The materials of unknowns, with the viewer's changes. */
 export interface Materials {
   emission: Float32Array; // W/m^2
   reflectance: Float32Array;
   sky: [number, number, number]; // factors on the sky's light
-  patches?: PatchMaterials; // where they share unknowns
+  patches?: PatchMaterials; // if they share unknowns
 }
 
-/** What the worker is given once. */
+/** The data that the worker gets once. */
 export interface Load {
   stored: StoredFactors;
   order: Uint32Array | null; // of Gauss-Seidel's sweeps over unknowns; null: as numbered
   materials: Materials;
   irradiance: Float32Array; // as stored
   sky: Float32Array; // irradiance from the sky as stored, K * 3
-  seen: SeenData | null; // where patches share unknowns
+  seen: SeenData | null; // if patches share unknowns
 }
 
 export type Request =
@@ -41,9 +41,9 @@ export interface Frame {
   index: number; // 0: B = E
   irradiance: Float32Array;
   rows: number;
-  residual: number; // true residual over the brightest source; Southwell: of what was sent
+  residual: number; // true residual over the brightest source; Southwell: of the light sent
   change: number; // Gauss-Seidel: the largest of the sweep, over the brightest source; else NaN
-  finished: boolean; // nothing is left to do, or all precision is used
+  finished: boolean; // no work is left, or the precision is exhausted
 }
 
 export type Reply =

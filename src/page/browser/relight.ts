@@ -1,13 +1,13 @@
 // Relighting: conjugate gradients (Hestenes & Stiefel 1952) for the irradiance, from the last light on.
 //
-// H = F (E + rho H) + more, so (I - F rho) H = F E + more. A_i rho_i F_ij rho_j is the same for i, j as
-// for j, i (reciprocity), so I - F rho is self-adjoint in <x, y> = sum_i A_i rho_i x_i y_i, and positive
-// definite where light dies out: what the method needs. Where rho = 0 the product says nothing of x_i; no
-// light comes from there, and the residual's share of H_i is known all the same. Bands are systems of
-// their own that share each pass over the matrix.
+// H = F (E + rho H) + more, so (I - F rho) H = F E + more. A_i rho_i F_ij rho_j is symmetric in i
+// and j (reciprocity), so I - F rho is self-adjoint in <x, y> = sum_i A_i rho_i x_i y_i, and
+// positive definite if light dies out, as the method needs. If rho_i = 0, x_i does not affect the
+// inner product, but no light is reflected there, and the residual still gives H_i. Bands are
+// separate systems that share each pass over the matrix.
 import { BANDS, source, type System } from "./solver";
 
-/** The area-weighted mean of each band, 1 where it is dark. */
+/** The area-weighted mean of each band; 1 for dark bands. */
 export function typical(values: ArrayLike<number>, area: Float32Array): Float64Array {
   const sum = new Float64Array(BANDS);
   let total = 0;
@@ -18,15 +18,15 @@ export function typical(values: ArrayLike<number>, area: Float32Array): Float64A
   return sum.map((value) => (value > 0 ? value / total : 1));
 }
 
-/** A light that was solved for, or nearly: its irradiance and its source(). */
+/** An exact or approximate solution: its irradiance and its source(). */
 export interface Lit {
   irradiance: Float64Array;
   source: Float64Array;
 }
 
 /**
- * A start for `system` from another light: scaled by the power that each band is given now and was given
- * then. Exact where only the one lamp changed.
+ * A start for `system` from another light: scaled by the ratio of the power of each band now and then. It is
+ * exact if only the one lamp changed.
  */
 function start(system: System, lit: Lit): Float64Array {
   const now = typical(source(system), system.factors.area);
@@ -35,9 +35,9 @@ function start(system: System, lit: Lit): Float64Array {
 }
 
 export class Relight {
-  /** With the matrix, so far. */
+  /** The products with the matrix so far. */
   products = 0;
-  /** max |E + rho H - B| over the mean irradiance, worst band; infinite where light does not die out. */
+  /** max |E + rho H - B| over the mean irradiance, worst band; infinite if light does not die out. */
   residual = Infinity;
 
   private readonly weight: Float64Array; // A rho
@@ -59,13 +59,13 @@ export class Relight {
     this.measure();
   }
 
-  /** F B + more of the B that was reached; never below 0, since light is not. */
+  /** F B + more for the present B; at least 0, since light is not negative. */
   irradiance(): Float64Array { return this.h.map((h, k) => Math.max(0, h + this.left[k]!)); }
 
-  /** What to start from for other materials. */
+  /** A start for other materials. */
   lit(): Lit { return { irradiance: this.irradiance(), source: source(this.system) }; }
 
-  /** Steps until the residual is within `tolerance`, or until `expired()` says that time is up. */
+  /** Iterates until the residual is within `tolerance`, or until `expired()` is true. */
   run(tolerance: number, expired: () => boolean): void {
     while (this.residual > tolerance && Number.isFinite(this.residual)) {
       this.step();

@@ -1,4 +1,4 @@
-// Lamps and materials that the viewer turns, and the command line that would do the same.
+// The panel of lamps and materials that the viewer changes, with an equivalent command line.
 import { chromaOf, hexOf } from "./colour";
 import type { Rgb } from "./container";
 import type { Relighting } from "./solver_client";
@@ -19,7 +19,7 @@ interface Row {
 const largest = (value: Rgb): number => Math.max(...value);
 const times = (value: Rgb, factor: number): Rgb => value.map((x) => x * factor) as Rgb;
 const same = (a: Rgb, b: Rgb): boolean => a.every((x, k) => x === b[k]);
-/** Digits enough for the command line to give the same light. */
+/** A number with enough digits for the command line to give the same light. */
 const digits = (x: number): string => String(Number(x.toPrecision(7)));
 
 export class RelightPanel {
@@ -79,7 +79,7 @@ export class RelightPanel {
 
   private control(row: Row): HTMLElement {
     const what = row.unit ? "strength" : "reflectance";
-    // The colour is kept while the strength goes through 0.
+    // We keep the colour, also when the strength is 0.
     let chroma = largest(row.stored) > 0 ? times(row.stored, 1 / largest(row.stored)) : ([1, 1, 1] as Rgb);
     const colour = make("input", { type: "color", "aria-label": `${row.name}: colour` }) as HTMLInputElement;
     const slider = make("input", { type: "range", min: "0", max: String(row.most), step: "any",
@@ -105,7 +105,8 @@ export class RelightPanel {
       this.changed();
     };
     slider.addEventListener("input", () => change(times(chroma, Number(slider.value))));
-    // "step any" moves the browser's own keys by too little or too much: a hundredth of the range.
+    // With "step any" the browser's own keys move by too little or too much; we use a hundredth of
+    // the range.
     slider.addEventListener("keydown", (event) => {
       const by = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 }[event.key];
       if (!by) return;

@@ -1,5 +1,6 @@
-// Relighting where patches share unknowns, as `radiosity solve` does it: solved as if each unknown were of one
-// radiosity; then what differs within unknowns is found, and what that changes between them is solved for.
+// Relighting if patches share unknowns, as in `radiosity solve`. The first solution gives each
+// unknown one radiosity. Then the variation within unknowns is found, and its effect between them
+// is solved for.
 import type { Rgb } from "./container";
 import type { PatchMaterials } from "./protocol";
 import { type Lit, Relight } from "./relight";
@@ -12,7 +13,7 @@ export class SharedRelight {
   private means: Lit | null = null; // the first solution
   private productsBefore = 0;
 
-  /** `sky`: its radiance; `seesOut`: some unknown sees the sky or backs. */
+  /** `sky`: its radiance; `seesOut`: an unknown sees the sky or backs. */
   constructor(private readonly system: System, lit: Lit, private readonly multiply: (x: Float64Array) => Float64Array,
               private readonly within: LightWithin, private readonly patches: PatchMaterials,
               private readonly sky: Rgb, private readonly seesOut: boolean) {
@@ -22,9 +23,9 @@ export class SharedRelight {
   get products(): number { return this.productsBefore + this.solution.products; }
   get residual(): number { return this.solution.residual; }
   irradiance(): Float64Array { return this.solution.irradiance(); }
-  /** Of patches, N*3; null as long as light within unknowns is not known. */
+  /** Irradiance of patches, N*3; null as long as light within unknowns is not known. */
   ofPatches(): Float64Array | null { return this.finished ? this.within.around(this.irradiance()) : null; }
-  /** What to start from for other materials: the matrix' own solution. */
+  /** A start for other materials: the matrix' own solution. */
   lit(): Lit { return this.means ?? this.solution.lit(); }
 
   run(tolerance: number, expired: () => boolean): void {
@@ -37,7 +38,7 @@ export class SharedRelight {
     }
   }
 
-  /** Twice: light within unknowns is part of what they see. */
+  /** Looks twice, since unknowns also see the light within others. */
   private lookAround(): void {
     const { within, system } = this;
     const means = this.solution.lit();
@@ -58,7 +59,7 @@ export class SharedRelight {
     return irradiance.map((h, k) => emission[k]! + reflectance[k]! * h);
   }
 
-  /** No irradiance falls below 0 by it; and where no light gets out, none is made or lost. */
+  /** `beyond` limited so that irradiance is not negative; in closed scenes it adds no power. */
   private balanced(beyond: Float64Array, irradiance: Float64Array): Float64Array {
     const out = beyond.map((more, k) => Math.max(more, -irradiance[k]!));
     if (this.seesOut) return out;

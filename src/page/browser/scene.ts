@@ -45,7 +45,7 @@ export class SceneMeshes {
     this.fill("storedLight", stored, 3, this.surfaces === "smooth");
   }
 
-  /** What false colour shows, N, now and as stored; `smooth`: it may be interpolated. */
+  /** Sets the values for false colour, N, now and as stored; `smooth`: they may be interpolated. */
   setValues(now: Float32Array, stored: Float32Array, smooth: boolean): void {
     this.values = { now, stored, smooth };
     const interpolated = smooth && this.surfaces === "smooth";
@@ -63,7 +63,7 @@ export class SceneMeshes {
     this.lineUniforms["colour"]!.value = colour;
   }
 
-  /** What is drawn next. `elements`: the finer mesh may stand for the patches. */
+  /** Chooses the meshes to draw. `elements`: the finer mesh may replace the patches. */
   arrange(elements: boolean): void {
     const wireframe = this.surfaces === "wireframe";
     const fine = elements && this.hasElements && this.surfaces === "smooth";
@@ -73,7 +73,7 @@ export class SceneMeshes {
     this.lineUniforms["opacity"]!.value = wireframe ? 0.9 : 0.45;
   }
 
-  /** Outlines of a patch: the edges of its triangles that no other of its triangles has. */
+  /** The outline of a patch: the edges of its triangles that no other of its triangles has. */
   outlineOf(patch: number): Float32Array {
     const { trianglePatch, patchTriangle, position } = this.data;
     const edges = new Map<string, [number, number]>();

@@ -1,5 +1,5 @@
-// What the solver worker remembers between messages: the matrix, the light it last solved for, and a
-// run that is watched. It knows nothing of workers, so that tests call it as they are.
+// The state of the solver worker between messages: the matrix, the last light, and a run that is
+// watched. It does not depend on workers, so that tests can call it directly.
 import type { Rgb } from "./container";
 import { type Factors, denseRow, expand } from "./factors";
 import type { Method } from "./methods";
@@ -13,11 +13,11 @@ import { LightWithin } from "./within";
 
 /** Relighting is done when the residual is within this share of the mean irradiance. */
 export const RELIGHT_TOLERANCE = 5e-5;
-/** The reference light of clusters is solved at most this long. */
+/** The most time for the reference light of clusters. */
 const REFERENCE_MS = 5000;
-/** Work for nothing takes at most so long, about. */
+/** The approximate limit of warm-up work. */
 const WARM_MS = 150;
-/** Below this a residual is the rounding of 32-bit form factors. */
+/** Residuals below this are the rounding of 32-bit form factors. */
 const ROUNDING = 1e-7;
 
 interface Run {
@@ -39,8 +39,8 @@ export class Session {
   readonly loaded: Reply & { kind: "loaded" };
 
   /**
-   * Where patches share unknowns the stored light is not the solution of the matrix alone, and a
-   * reference is solved for. `kernel`: of VectorProduct; without it, sums are plain.
+   * If patches share unknowns, the stored light is not the solution of the matrix alone, so a reference is
+   * solved for. `kernel`: of VectorProduct; without it, products are plain sums.
    */
   constructor(private readonly load: Load, kernel: Uint8Array<ArrayBuffer> | null) {
     this.vectors = kernel && WebAssembly.validate(kernel) ? new VectorProduct(load.stored, kernel) : null;
@@ -63,7 +63,7 @@ export class Session {
     return unknowns.map((i) => denseRow(this.factors, i));
   }
 
-  /** Goes from the last light to that of `materials` for about so long; null: goes on where it stood. */
+  /** Solves for the light of `materials` from the last light for about this time; null: continues. */
   relight(materials: Materials | null, milliseconds: number): Omit<Reply & { kind: "relit" }, "ticket"> {
     const began = performance.now();
     if (materials) this.relighting = this.relightFor(materials);
@@ -83,7 +83,7 @@ export class Session {
     };
   }
 
-  /** Relights for nothing, of which nothing is kept: browsers compile what is used, the better the more. */
+  /** Relights without keeping the result, since browsers optimise code the more it is used. */
   warm(): void {
     const began = performance.now();
     const { materials } = this.load;
@@ -122,7 +122,7 @@ export class Session {
     return this.frame(this.run, southwell ? null : solver.irradianceOf(system, iterate.radiosity), NaN);
   }
 
-  /** The next frame of the run; null where another was started since. */
+  /** The next frame of the run; null if another was started since. */
   step(id: number): Frame | null {
     const run = this.run;
     if (!run || run.id !== id) return null;
@@ -143,7 +143,7 @@ export class Session {
     "southwell": (run) => this.shots(run, run.southwell!),
   };
 
-  /** A tenth more shots than there were: the first ones are seen one by one. */
+  /** Makes a tenth as many new shots as there were, at least one, so that the first are shown singly. */
   private shots(run: Run, southwell: solver.Southwell): Frame {
     const before = Math.round(run.iterate.rows * this.factors.size);
     let left = true;
@@ -175,7 +175,7 @@ export class Session {
   }
 }
 
-/** Root mean square by area, all bands together. */
+/** The relative root mean square difference by area, all bands together. */
 function relativeDifference(a: Float64Array, b: Float64Array, area: Float32Array): number {
   let difference = 0, size = 0;
   for (let k = 0; k < a.length; ++k) {

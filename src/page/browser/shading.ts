@@ -1,5 +1,5 @@
-// How colours come about on the screen: exposure, tone mapping, false colour. Nothing is lit by the
-// graphics library; the light is the radiosity at the corners of triangles.
+// The colours on the screen: exposure, tone mapping, false colour. The graphics library does no
+// lighting; the light is the radiosity at the corners of triangles.
 import {
   ClampToEdgeWrapping, Color, DataTexture, LinearFilter, RGBAFormat, ShaderMaterial, type IUniform,
 } from "three";
@@ -8,7 +8,7 @@ import { viridisTable } from "./colour";
 export type Tone = "linear" | "reinhard" | "filmic";
 const TONES: Tone[] = ["linear", "reinhard", "filmic"];
 
-/** A value that is not there; drawn in grey. */
+/** A missing value; drawn in grey. */
 export const NO_VALUE = -1e30;
 
 export interface Uniforms {
@@ -36,7 +36,7 @@ export function makeUniforms(): Uniforms {
 
 export const toneIndex = (tone: Tone): number => TONES.indexOf(tone);
 
-// Radiosity -> what the display is sent. `linear` is what the program's PNG files show.
+// Converts radiosity to display values. `linear` gives the same as the program's PNG files.
 const DISPLAY = /* glsl */ `
   uniform float exposure;
   uniform int tone;

@@ -1,8 +1,8 @@
 // B = E + rho H, H = F B + more, for three bands at once: Jacobi, Gauss-Seidel, Southwell. Pure
 // functions of arrays; the worker and the tests call them. Values are K * 3, row-major.
 //
-// What is kept is the irradiance H of an iterate; its radiosity is E + rho H. That way a patch that
-// reflects nothing shows its light too.
+// An iterate is stored as its irradiance H; its radiosity is E + rho H. So a patch that reflects
+// nothing shows its irradiance, too.
 import type { Factors } from "./factors";
 
 export const BANDS = 3;
@@ -11,7 +11,7 @@ export interface System {
   factors: Factors;
   emission: Float32Array; // W/m^2
   reflectance: Float32Array;
-  more: Float32Array; // irradiance from beyond the matrix (a sky), W/m^2
+  more: Float32Array; // irradiance from outside the matrix (a sky), W/m^2
 }
 
 /** An iterate. `rows`: rows of the matrix that were multiplied to get there, over K. */
@@ -21,19 +21,19 @@ export interface Iterate {
   rows: number;
 }
 
-/** E + rho * more in each band: what B starts from, and what residuals are relative to. */
+/** E + rho * more in each band: B starts from it, and residuals are relative to it. */
 export function source(system: System): Float64Array {
   return Float64Array.from(system.emission, (e, k) => e + system.reflectance[k]! * system.more[k]!);
 }
 
-/** The largest of each band; 1 where a band is dark, so that it may divide. */
+/** The largest value of each band; 1 for dark bands, so that it can divide. */
 export function scales(values: ArrayLike<number>): Float64Array {
   const most = new Float64Array(BANDS);
   for (let k = 0; k < values.length; ++k) most[k % BANDS] = Math.max(most[k % BANDS]!, values[k]!);
   return most.map((value) => (value > 0 ? value : 1));
 }
 
-/** B = E (with the sky's share), no light on its way yet. */
+/** The start: B = E (with the sky's share). */
 export function fromEmission(system: System): Iterate {
   return { irradiance: Float64Array.from(system.more), radiosity: source(system), rows: 0 };
 }
@@ -72,7 +72,7 @@ export function irradianceOf(system: System, radiosity: Float64Array): Float64Ar
   return result;
 }
 
-/** max |E + rho H - B| / max (E + rho more), worst band, of H that belongs to B. */
+/** max |E + rho H - B| / max (E + rho more), worst band, with the H of B. */
 export function residual(system: System, radiosity: Float64Array, irradiance: Float64Array): number {
   const scale = scales(source(system));
   let worst = 0;
@@ -85,7 +85,7 @@ export function residual(system: System, radiosity: Float64Array, irradiance: Fl
 
 /**
  * One bounce everywhere (Goral, Torrance, Greenberg & Battaile 1984). `next` is F B + more of this
- * iterate where it is known already, since the residual needs it.
+ * iterate if it is known already, since the residual needs it.
  */
 export function jacobiSweep(system: System, iterate: Iterate, next?: Float64Array): Iterate {
   const irradiance = next ?? irradianceOf(system, iterate.radiosity);
@@ -95,8 +95,8 @@ export function jacobiSweep(system: System, iterate: Iterate, next?: Float64Arra
 
 /**
  * B_i <- (E_i + rho_i (sum_{j != i} F_ij B_j + more_i)) / (1 - rho_i F_ii), one after another, each
- * with the new values of those before it (Cohen & Greenberg 1985). In place. `order`: which row comes
- * when; `scale`: as scales(). Returns the largest change, relative to `scale`.
+ * with the new values of those before it (Cohen & Greenberg 1985). In place. `order`: the order of
+ * rows; `scale`: from scales(). Returns the largest change, relative to `scale`.
  */
 export function gaussSeidelSweep(
   system: System, iterate: Iterate, scale: Float64Array, order?: Uint32Array): number {
@@ -128,8 +128,8 @@ export function gaussSeidelSweep(
 
 /**
  * Southwell's relaxation, "progressive refinement" (Cohen, Chen, Wallace & Greenberg 1988): the unknown
- * with the most power that was not sent out yet sends it, one row of F at a time. `iterate.radiosity`
- * is all light that arrived so far, E + rho H; `sent` is the part of it that was sent.
+ * with the most unsent power sends it, one row of F at a time. `iterate.radiosity` is all light so far,
+ * E + rho H; `sent` is the part of it that was sent.
  */
 export interface Southwell {
   iterate: Iterate;
@@ -156,7 +156,7 @@ function brightestUnsent(system: System, { iterate, sent }: Southwell): number {
   return best;
 }
 
-/** False where nothing is left to send. */
+/** Sends once; false if nothing is left to send. */
 export function southwellShot(system: System, state: Southwell): boolean {
   const i = brightestUnsent(system, state);
   if (i < 0) return false;
@@ -180,7 +180,7 @@ export function southwellShot(system: System, state: Southwell): boolean {
   return true;
 }
 
-/** The residual of what was sent: the largest that waits to be sent. */
+/** The residual of the light sent: the largest unsent radiosity. */
 export function southwellResidual(system: System, { iterate, sent }: Southwell): number {
   const scale = scales(source(system));
   let worst = 0;

@@ -1,11 +1,11 @@
-// The page's side of the solver worker: one question at a time of a kind, the newest wins.
+// The page's side of the solver worker: one request of a kind at a time; the newest wins.
 import type { Method } from "./methods";
 import type { Frame, Load, Materials, Reply, Request } from "./protocol";
 import workerProgram from "worker:worker.ts";
 
-/** A relight is sent back unfinished after this long, shown, and then gone on with. */
+/** After this time a relight is returned unfinished, shown, and then continued. */
 const RELIGHT_SLICE_MS = 60;
-/** What did not converge by then is left as it is, and said to be so. */
+/** A relight that has not converged by then is left as it is, and reported. */
 const RELIGHT_LIMIT_MS = 20_000;
 
 type Loaded = Reply & { kind: "loaded" };
@@ -13,7 +13,7 @@ type Relit = Reply & { kind: "relit" };
 
 export interface Relighting {
   irradiance: Float32Array; // of unknowns, K * 3
-  ofPatches: Float32Array | null; // N * 3, where patches share unknowns and all is solved
+  ofPatches: Float32Array | null; // N * 3, if patches share unknowns and all is solved
   products: number; // with the matrix, since the change
   milliseconds: number; // since the change, solver alone
   residual: number; // over the mean irradiance
@@ -30,7 +30,7 @@ export class SolverClient {
   private loaded: ((reply: Loaded) => void) | null = null;
   private readonly rowTickets = new Map<number, (rows: Float32Array[]) => void>();
   private tickets = 0;
-  private wanted: Materials | null = null; // changed since the relight under way was asked for
+  private wanted: Materials | null = null; // newer than those of the present relight
   private relighting = false;
   private products = 0;
   private milliseconds = 0;
@@ -59,7 +59,7 @@ export class SolverClient {
     });
   }
 
-  /** Does some work for nothing, so that the browser has compiled the solver when it is needed. */
+  /** Does some unused work, so that the browser has compiled the solver when it is needed. */
   warm(): void { this.send({ kind: "warm" }); }
 
   relight(materials: Materials): void {

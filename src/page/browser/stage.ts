@@ -1,4 +1,4 @@
-// Draws the scene when something changed: one picture, or two halves for before and after.
+// Draws the scene after changes: one picture, or two halves for before and after.
 import { Color, Scene, WebGLRenderer } from "three";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
@@ -9,7 +9,7 @@ import { Pace } from "./pace";
 import type { SceneMeshes } from "./scene";
 import type { Uniforms } from "./shading";
 
-/** A movement is over when nothing moved for so long; then the picture is drawn as finely as it gets. */
+/** A movement ends after this time without motion; then the picture is drawn at full resolution. */
 const SETTLED_MS = 300;
 const MARK_PIXELS = 3;
 const RIM_PIXELS = 6; // behind the mark, so that it shows on any colour
@@ -44,11 +44,11 @@ class Mark {
 export type MarkName = "first" | "second";
 
 export class Stage {
-  /** Share of the width that shows the stored light; null: all is as it is now. */
+  /** The share of the width that shows the stored light; null: all shows the present light. */
   split: number | null = null;
-  /** What the finer mesh may stand for: both halves, or none of them. */
+  /** Whether the finer mesh may replace the patches in both halves. */
   elements = true;
-  /** The viewer moves. */
+  /** Whether the viewer moves. */
   moving = false;
 
   private readonly renderer: WebGLRenderer | null; // null: the browser has no WebGL 2
@@ -79,7 +79,7 @@ export class Stage {
     this.draw();
   }
 
-  /** Soon: at most once a frame, in software when the picture before is done. */
+  /** Draws soon: at most once a frame; in software when the last picture is done. */
   draw(): void {
     if (this.wanted) return;
     this.wanted = true;
@@ -99,7 +99,7 @@ export class Stage {
     if (this.wanted) requestAnimationFrame(() => void this.drawWanted());
   }
 
-  /** As draw(), for a picture that others will follow. */
+  /** Like draw(), for a picture that others will follow. */
   private move(): void {
     this.setMoving(true);
     window.clearTimeout(this.settling);
@@ -110,7 +110,7 @@ export class Stage {
   private setMoving(moving: boolean): void {
     if (moving === this.moving) return;
     this.moving = moving;
-    // Until the picture is as fine as it gets, which tests wait for.
+    // Set until the picture has full resolution; tests wait for this.
     if (moving) this.canvas.setAttribute("data-moving", "");
     this.draw();
   }
@@ -119,7 +119,7 @@ export class Stage {
     return renderer.getContext() as WebGL2RenderingContext;
   }
 
-  /** False: there is no picture, for want of WebGL 2. */
+  /** False without WebGL 2: then there is no picture. */
   get draws(): boolean { return this.renderer !== null; }
 
   private resize(): void {
@@ -127,7 +127,7 @@ export class Stage {
     if (width === 0 || height === 0) return;
     this.renderer?.setSize(width, height, false);
     this.control.setAspect(width / height);
-    window.clearTimeout(this.settling); // another shape is no movement
+    window.clearTimeout(this.settling); // a new shape is not a movement
     this.moving = false;
     this.drawNow(); // a resized canvas is empty until it is drawn
   }

@@ -32,14 +32,14 @@ export function short(value: number): string {
   return Number(value.toPrecision(4)).toString();
 }
 
-/** A number as it reads, with all its digits for programs. */
+/** A readable number, with all its digits for programs. */
 export function number(value: number): HTMLElement {
   return make("data", { value: String(value) }, short(value));
 }
 
 export const counted = (count: number): string => count.toLocaleString("en");
 
-/** Which of the radio buttons of a group is on. */
+/** The value of the selected radio button of a group. */
 export function onChoice(name: string, act: (value: string) => void): void {
   for (const radio of document.querySelectorAll<HTMLInputElement>(`input[name="${name}"]`)) {
     radio.addEventListener("change", () => radio.checked && act(radio.value));

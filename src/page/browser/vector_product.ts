@@ -1,13 +1,13 @@
-// F x by the processor's vectors, where the browser has them (WebAssembly with SIMD): product.wat over rows
-// that lie in its memory. In 32 bits: each value is off by a few units of 1e-7, which relighting does not
-// see; watched runs use the plain sums of solver.ts.
+// F x with the processor's vectors, if the browser has them (WebAssembly with SIMD): product.wat
+// runs over rows in its memory. It uses 32 bits: each value is off by a few units of 1e-7, which
+// does not matter for relighting; watched runs use the plain sums of solver.ts.
 import { expand, type Factors, type StoredFactors } from "./factors";
 
 const BANDS = 3;
 const LANES = 4;
 const PAGE = 65536; // bytes, of WebAssembly's memory
 
-/** The same kernel as a function of addresses; product.wat says of which. */
+/** The kernel as a function of addresses; product.wat describes them. */
 type Kernel = (rows: number, begin: number, column: number, value: number, x: number, out: number) => void;
 
 export class VectorProduct {
@@ -16,7 +16,7 @@ export class VectorProduct {
   private readonly out: Float32Array;
   private readonly kernel: Kernel;
 
-  /** `program`: product.wat, assembled; WebAssembly.validate() says whether the browser takes it. */
+  /** `program`: product.wat, assembled; WebAssembly.validate() tells whether the browser supports it. */
   constructor(stored: StoredFactors, program: Uint8Array<ArrayBuffer>) {
     const length = stored.area.length * LANES;
     const bytes = length * Float32Array.BYTES_PER_ELEMENT;

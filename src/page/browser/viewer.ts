@@ -1,5 +1,5 @@
-// The state of the page: which light is shown, how, and which patches are picked. Panels change it
-// and are told of changes; it knows no panel.
+// The state of the page: the light that is shown, the view, and the picked patches. Panels change
+// it and are told of changes; it does not depend on panels.
 import { Color, Vector3 } from "three";
 import { TriangleTree } from "./bvh";
 import { CameraControl } from "./camera";
@@ -16,7 +16,7 @@ import { SolverClient, type Relighting } from "./solver_client";
 import { type MarkName, Stage } from "./stage";
 
 export type Show = "light" | "radiosity" | "irradiance" | "row-sum" | "row-error" | "factors" | "difference";
-/** Where the light shown comes from. */
+/** The source of the light that is shown. */
 export type Source = "stored" | "relit" | "run" | "gathered";
 
 export interface Picked {
@@ -39,7 +39,7 @@ export class Viewer {
   show: Show = "light";
   paint = true;
   elements = true;
-  range: { low: number; high: number } | null = null; // null: what the values span
+  range: { low: number; high: number } | null = null; // null: that of the values
   sky: Rgb = [1, 1, 1];
   states: MaterialState[];
   limited = 0; // patches held at a reflectance of 1
@@ -47,7 +47,7 @@ export class Viewer {
 
   private readonly tree: TriangleTree;
   private reference: Float32Array | null = null;
-  private solved: PatchLight; // by the matrix: what gathered light is compared with
+  private solved: PatchLight; // by the matrix; gathered light is compared with it
   private materials: Materials;
   private runs = 0;
   private readonly listeners: Record<string, (() => void)[]> = {};
@@ -68,7 +68,7 @@ export class Viewer {
     this.refreshLight();
   }
 
-  /** Patches share unknowns. */
+  /** Whether patches share unknowns. */
   get shared(): boolean { return this.data.seen !== null; }
 
   /** `event`: "light", "view" (how it is shown), "picks", "rows" (of picks, which come later). */
@@ -135,7 +135,7 @@ export class Viewer {
     this.take(frame.irradiance);
   }
 
-  /** Irradiance of patches, gathered with the materials of `solved`, the matrix solution it is compared with. */
+  /** Shows irradiance of patches, gathered with the materials of `solved`, the matrix solution to compare with. */
   showGathered(irradiance: Float32Array, solved: PatchLight): void {
     this.solved = solved;
     this.source = "gathered";
@@ -143,7 +143,7 @@ export class Viewer {
     this.refreshLight();
   }
 
-  /** Back from gathered light to the matrix solution. */
+  /** Returns from gathered light to the matrix solution. */
   showSolved(solved: PatchLight): void {
     this.source = solved === this.stored ? "stored" : "relit";
     this.light = solved;
@@ -184,7 +184,7 @@ export class Viewer {
     this.pivotOnScene();
   }
 
-  /** What is shown now: a picked patch's form factors stand for the light, unless a run is watched. */
+  /** The quantity that is shown: a picked patch's form factors replace the light, unless a run is watched. */
   shown(): Show {
     if (this.show === "light" && this.source !== "run" && this.paint && this.picks.first?.row) return "factors";
     return this.show;
@@ -195,7 +195,7 @@ export class Viewer {
     this.refreshView();
   }
 
-  /** Colours of lines and marks follow the page's theme. */
+  /** Sets the colours of lines and marks to those of the page's theme. */
   refreshTheme(): void {
     this.meshes.setLineColour(new Color().setStyle(themed("--wire"), ""));
     this.mark("first");
@@ -224,7 +224,7 @@ export class Viewer {
     this.refreshView();
   }
 
-  /** One value a patch. */
+  /** One value for each patch. */
   values(show: Show, light: PatchLight): Float32Array {
     const { data } = this;
     const ofUnknown = (values: Float32Array | null) => Float32Array.from(data.unknown, (k) =>
@@ -250,7 +250,7 @@ export class Viewer {
     this.materials = materialsOfUnknowns(this.data, this.light, this.sky);
   }
 
-  /** Irradiance of unknowns, and of patches where it is known; neither: as it was. */
+  /** Takes irradiance of unknowns, and of patches if known; without both it stays as it was. */
   private take(irradiance: Float32Array | null, ofPatches: Float32Array | null = null): void {
     if (irradiance) {
       this.light = {
@@ -266,7 +266,7 @@ export class Viewer {
     this.tell("light");
   }
 
-  /** The range of what is shown; a few very bright patches (lamps) do not set its end. */
+  /** The range of the shown values; a few very bright patches (lamps) do not set its end. */
   private span(): { low: number; high: number } {
     const all = this.values(this.shown(), this.light).filter((value) => value !== NO_VALUE).sort();
     if (all.length === 0) return { low: 0, high: 1 };
@@ -286,7 +286,7 @@ export class Viewer {
     this.stage.mark(name, picked ? this.meshes.outlineOf(picked.patch) : null, themed(`--mark-${name}`));
   }
 
-  /** The viewer turns around what is in the middle of the picture, or around the scene's middle. */
+  /** Sets the pivot to the surface in the middle of the picture, or else to the scene's middle. */
   private pivotOnScene(): void {
     const { eye, target } = this.data.header.camera;
     const origin = this.data.header.origin;
@@ -311,7 +311,7 @@ function boxMiddle(position: Float32Array): Vector3 {
   return low.add(high).multiplyScalar(0.5);
 }
 
-/** Safari knows no idle callbacks. */
+/** Calls `act` when the page is idle. Safari has no idle callbacks. */
 function whenIdle(act: () => void): void {
   if ("requestIdleCallback" in window) window.requestIdleCallback(act);
   else setTimeout(act, 500);

@@ -1,10 +1,11 @@
-// Light within unknowns that patches share, as the program finds it: on each patch irradiance is linear in
-// place and normal over its unknown, with slopes fitted by least squares to what rays find. The page has no
-// rays, but sums over those of the program (../../formfactor/rays/seen_patches.h), which serve for any light.
+// Light within unknowns that patches share, as in the program: irradiance of patches is linear in
+// place and normal over their unknown, with slopes fitted to rays by least squares. The page has no
+// rays, but sums over those of the program (../../formfactor/rays/seen_patches.h), which serve for
+// any light.
 import type { Rgb, SeenData } from "./container";
 import { BANDS } from "./solver";
 
-/** Slopes are of so many features, whatever the number of axes: what noise explains goes by it. */
+/** The number of features of slopes, for any number of axes: it determines the share that noise explains. */
 const FEATURES = 6;
 
 export class LightWithin {
@@ -104,8 +105,8 @@ export class LightWithin {
   }
 
   /**
-   * What falls on each unknown from the patches that it sees, less what would fall on it if each of them had
-   * the mean radiosity of its unknown, which is all that the matrix knows. K*3, W/m^2.
+   * The irradiance of each unknown from the patches that it sees, minus the irradiance if each of them had the
+   * mean radiosity of its unknown, as in the matrix. K*3, W/m^2.
    */
   beyondMeans(radiosity: Float64Array): Float64Array {
     const { begin, item } = this.seen;
@@ -124,7 +125,7 @@ export class LightWithin {
     return result;
   }
 
-  /** Of each patch the value of its unknown. */
+  /** Gives each patch the value of its unknown. */
   spread(ofUnknowns: Float64Array): Float64Array {
     const { unknown } = this.seen;
     const result = new Float64Array(unknown.length * BANDS);
@@ -134,7 +135,7 @@ export class LightWithin {
     return result;
   }
 
-  /** By area. */
+  /** The means by area over unknowns. */
   private means(values: Float64Array): Float64Array {
     const { unknown, area } = this.seen;
     const sums = new Float64Array(this.area.length * BANDS);

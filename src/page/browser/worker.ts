@@ -3,7 +3,7 @@ import type { Reply, Request } from "./protocol";
 import { Session } from "./session";
 import kernel from "wat:product.wat";
 
-/** What of a worker's global scope is used here; the DOM's types know only windows. */
+/** The used part of a worker's global scope; the DOM's types only have windows. */
 interface Scope {
   onmessage: ((event: MessageEvent<Request>) => void) | null;
   postMessage(reply: Reply): void;

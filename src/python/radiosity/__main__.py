@@ -7,7 +7,7 @@ from pathlib import Path
 
 def program() -> Path:
     """The program that was built or installed with this package."""
-    here = Path(__file__).parent  # of links in a build folder: the link's
+    here = Path(__file__).parent  # in a build folder, the folder of the link
     places = [
         here / "bin/radiosity",  # pip
         here.parents[3] / "bin/radiosity",  # cmake --install: PREFIX/lib/pythonX.Y/site-packages

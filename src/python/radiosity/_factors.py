@@ -25,13 +25,13 @@ class Table:
     names: List[str]
     #: (S,) m^2, both sides of a two-sided surface
     area: np.ndarray
-    #: (S, S): factors[a, b] is the fraction of what leaves names[a] that reaches names[b]
+    #: (S, S): factors[a, b] is the fraction of the light leaving names[a] that reaches names[b]
     factors: np.ndarray
-    #: (S,): what goes to the sky
+    #: (S,): the fraction that goes to the sky
     sky: np.ndarray
-    #: (S,): what goes to black backs
+    #: (S,): the fraction that goes to black backs
     backs: np.ndarray
-    #: (S, S): how far off each may be; NaN where the method has no error figures
+    #: (S, S): error bound of each factor; NaN if the method has no error figures
     error: np.ndarray
     _text: str = ""
 

@@ -13,9 +13,9 @@ from ._core import InputError
 from ._notes import warn
 from ._scene import Scene
 
-#: meshio's cells that are faces, and how many of their points are corners
+#: meshio's cells that are faces, and the number of points that are corners
 _FACES = {"triangle": 3, "triangle6": 3, "triangle7": 3, "quad": 4, "quad8": 4, "quad9": 4}
-#: The same of cells that are volumes; corners come first, in the order that VTK has.
+#: The same for cells that are volumes; corners come first, in VTK's order.
 _VOLUMES = {"tetra": 4, "tetra10": 4, "pyramid": 5, "pyramid13": 5, "pyramid14": 5, "wedge": 6,
             "wedge15": 6, "wedge18": 6, "hexahedron": 8, "hexahedron20": 8, "hexahedron24": 8,
             "hexahedron27": 8}

@@ -13,7 +13,7 @@ from ._mesh import Mesh
 from ._notes import tell, warn
 from ._progress import Progress, reporting
 
-MOST_PASSES = 100  # where nobody asks for fewer
+MOST_PASSES = 100  # unless the caller asks for fewer
 
 
 class Gathered:

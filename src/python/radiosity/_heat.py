@@ -14,7 +14,7 @@ from ._factors import FormFactors
 from ._notes import warn
 from ._progress import Progress, reporting
 
-#: One value for all surfaces that others leave out, or values by name.
+#: One value for all surfaces, or values by name.
 ByName = Union[float, Mapping[str, Any]]
 
 

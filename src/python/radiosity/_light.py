@@ -70,7 +70,7 @@ class Materials(NamedTuple):
     reflectance: np.ndarray
     emission: np.ndarray
     sky: list
-    shape: Tuple[int, ...]  # of the emission as it was given
+    shape: Tuple[int, ...]  # of the given emission
 
 
 def _emission(mesh: Optional[Mesh], rows: int, meaning: str, given: Any) -> np.ndarray:

@@ -8,8 +8,8 @@ from contextlib import contextmanager
 from typing import Callable, Iterator, Optional, Union
 
 Report = Callable[[str, int, int, str], None]
-#: None: shown where there is someone to see it; True and False: always, never; or a function that is
-#: called as progress(stage, done, total) about twenty times a second.
+#: None: shown if somebody can see it; True and False: always, never; or a function that is called
+#: as progress(stage, done, total) about twenty times a second.
 Progress = Union[None, bool, Callable[[str, int, int], None]]
 
 SHOWN_AFTER = 0.5  # seconds: shorter calls leave no trace

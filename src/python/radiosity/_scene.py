@@ -13,7 +13,7 @@ from ._core import InputError
 from ._notes import tell
 from ._progress import Progress, reporting
 
-#: What is not said of a material of arrays.
+#: The defaults of materials given as arrays.
 _PLAIN = {"reflectance": 0.5, "emission": 0.0, "two_sided": False}
 
 

@@ -18,7 +18,7 @@ def is_one_shape(cells):
 
 
 def seen_parts(cells):
-    """What kCellSmooth and kCellKinked multiply, and kCellSlope9."""
+    """The factors of kCellSmooth and kCellKinked, and of kCellSlope9."""
     r = cells.r
     if len(r) == 4:
         along_u = abs(r[1] - r[0]) + abs(r[3] - r[2])
@@ -68,7 +68,7 @@ def flat_share(cells, held):
 
 
 def strength(cells, held):
-    """Times the seen part: what is stated of it."""
+    """The stated error of the seen part, over that part."""
     count = len(cells.r)
     seen, _ = cell_estimate(cells, held)
     strong = held[f"kCellStrong{count}"] * 2.0 ** -cells.level
@@ -124,15 +124,15 @@ def refit_cells(samples, held):
 
 
 def ratio_of_sums(errors, estimates):
-    """What estimates are to be multiplied with for sums of squares to be alike."""
+    """The factor of estimates that equates sums of squares."""
     if len(errors) < LEAST or not (estimates**2).sum() > 0:
         return math.nan
     return math.sqrt((errors**2).sum() / (estimates**2).sum())
 
 
 def refit_strong(cells, held):
-    """kCellStrong for sums of squares, stated and found, to be alike; by bisection, for what is
-    stated falls with it."""
+    """kCellStrong that equates sums of squares, stated and found; by bisection, for the stated one
+    falls with it."""
     name = f"kCellStrong{len(cells.r)}"
     if len(cells.error) < LEAST:
         return math.nan

@@ -1,6 +1,6 @@
 """The fitted constants of the exact method, and the header that holds them.
 
-What each constant multiplies, where, and how it is obtained stands here; its value stands in
+The meaning, the place and the origin of each constant stand here; its value stands in
 constants.csv. Both together make src/formfactor/exact/error_model.h.
 """
 import csv

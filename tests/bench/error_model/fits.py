@@ -1,4 +1,4 @@
-"""By constant: what it decides, what it says of that, and the value that fits samples."""
+"""By constant: its cases, its error figures, and the value that fits samples."""
 import dataclasses
 import math
 from collections.abc import Callable
@@ -13,8 +13,8 @@ TOP = 0.99  # share of rows that are to be below their figure
 
 @dataclasses.dataclass
 class Fit:
-    errors: Callable  # (samples, held): errors of what the constant decides
-    figures: Callable  # (samples, values): what they are to be below
+    errors: Callable  # (samples, held): errors of the constant's cases
+    figures: Callable  # (samples, values): bounds of these errors
     refit: Callable  # (samples, held): the value or values
 
 
@@ -159,14 +159,14 @@ def far_fit(name):
 
 
 def bound_fit(chosen, unit):
-    """`unit`: what the constant multiplies to a bound."""
+    """`unit`: the bound for a constant of 1."""
     return lambda name: Fit(
         lambda s, held: chosen(s, held).error,
         lambda s, v: v[name] * unit(chosen(s, v)),
         lambda s, held: max(chosen(s, held).error / unit(chosen(s, held)), default=math.nan))
 
 
-LOOSEST = 1e-2  # that the formulas for pairs with nothing in between are asked for
+LOOSEST = 1e-2  # tolerance of the formulas for pairs with nothing in between
 
 
 def eye_fit(name):
@@ -351,8 +351,8 @@ FITS = {
 
 
 def share_below(name, samples, held, values):
-    """Share of what a constant decides whose error is below what it says, with `values`; NaN where
-    there are too few to tell."""
+    """Share of a constant's cases whose error is below its figure, with `values`; NaN if there are
+    too few."""
     fit = FITS[name](name)
     errors = fit.errors(samples, held)
     if len(errors) == 0:

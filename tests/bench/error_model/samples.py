@@ -1,4 +1,4 @@
-"""What error_samples prints, as tables."""
+"""The output of error_samples, as tables."""
 import numpy as np
 
 

@@ -1,4 +1,4 @@
-// One target looked at in double precision, and what a cell sees of it when it is cut very fine.
+// One target seen in double precision, and the converged view of it from a finely cut cell.
 #pragma once
 
 #include <span>
@@ -17,7 +17,7 @@ struct PairSum {
 
 class TargetLook {
  public:
-  /// Keeps `target` by reference, of which its blockers, too. `normal`: of the sampled element.
+  /// Keeps `target` and its blockers by reference. `normal`: of the sampled element.
   void take(const GroupTarget& target, const Vec3& normal) {
     target_ = &target;
     normal_ = normal;
@@ -47,8 +47,8 @@ class TargetLook {
   Vec3 normal_{0.0};
 };
 
-/// By 3 x 3 points in each of 4^levels parts: of kinks, errors fall by a factor of four to eight a
-/// level, and of all else by far more.
+/// By 3 x 3 points in each of 4^levels parts: errors of kinks fall by a factor of four to eight a
+/// level, all others by far more.
 inline PairSum convergedCell(TargetLook& look, const SampleCell& cell, int levels) {
   if (levels == 0) {
     const SamplePoints points = cell.points(3);

@@ -1,5 +1,5 @@
 // error_samples scene FILE PATCHES PAIRS | rows FILE PATCHES REFERENCE TOLERANCE... | shapes PAIRS
-// SEED: prints what error_model.py fits to, a line a sample, see scene_samples.h, row_samples.h and
+// SEED: prints samples for error_model.py, a line each, see scene_samples.h, row_samples.h and
 // shape_samples.h.
 #include <fmt/format.h>
 

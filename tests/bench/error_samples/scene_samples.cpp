@@ -22,7 +22,7 @@ namespace radiosity::bench {
 namespace {
 
 constexpr std::uint32_t kSeed = 1;
-/// From how many ranges of rows pairs are drawn, about.
+/// About how many ranges of rows give pairs.
 constexpr std::size_t kRanges = 48;
 constexpr double kCellTolerances[] = {1e-1, 1e-2, 1e-3, 1e-4};
 constexpr double kPartTolerances[] = {1e-4, 1e-6};
@@ -90,7 +90,7 @@ class SceneSampler {
   }
 
  private:
-  /// The pair that all below is about.
+  /// The pair of all calls below.
   void take(const SampledPair& sampled) {
     sampled_ = &sampled;
     const Vec3& normal = elements_.facets[elements_.facet[sampled.target]].normal;
@@ -106,7 +106,7 @@ class SceneSampler {
         elements_.radius[sampled.target];
   }
 
-  /// As AdaptiveIntegrator goes, but for one quarter of each cell that is cut.
+  /// As AdaptiveIntegrator, but for one quarter of each cell that is cut.
   void sampleCells(double tolerance, double allowed) {
     const std::span<const Vec3> c = elements_.outline(sampled_->sampled);
     SampleCell cell = {{c[0], c[1], c[2], c[c.size() - 1]}};
@@ -175,8 +175,8 @@ class SceneSampler {
     return largest;
   }
 
-  /// The quadrilaterals that the sampled element is cut into; none where one has a foot, about
-  /// which parts are cut otherwise.
+  /// The quadrilaterals that the sampled element is cut into; none if one has a foot, about which
+  /// parts are cut otherwise.
   std::vector<SampleCell> partsOf(double most) {
     const Vec3& normal = elements_.facets[elements_.facet[sampled_->sampled]].normal;
     const auto outline = std::span(target_.corners).first(target_.corner_count);

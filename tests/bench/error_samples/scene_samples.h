@@ -19,8 +19,8 @@ namespace radiosity::bench {
 /// estimate that is accepted. `outside`: the largest residual near the corners, or -1: it was not
 /// looked at. 4 residuals or 9. `part`: of pairs cut along critical lines, before any is halved.
 /// `difference`: of the two rules; `before`: of the first and a single point; `values`: the largest
-/// residual times the area. `far`: what the kernels for far targets change of a visible fraction by
-/// 2 x 2 points, targets 2 to 4 radii away.
+/// residual times the area. `far`: the change of a visible fraction by the kernels for far targets,
+/// with 2 x 2 points, targets 2 to 4 radii away.
 void sampleScene(const PatchMesh& mesh, std::size_t pairs);
 
 }  // namespace radiosity::bench

@@ -9,7 +9,7 @@
 namespace radiosity {
 namespace {
 
-/// Rows that are drawn, and most pairs of each.
+/// The number of rows drawn, and the most pairs of each.
 constexpr std::size_t kRowsDrawn = 2000;
 constexpr double kMostDrawn = 1024;
 /// Weights of rechecked pairs are rounded to shares of this many places a pair.
@@ -39,7 +39,7 @@ ErrorSums& ErrorSums::operator+=(const ErrorSums& other) {
 
 namespace {
 
-/// The rows from `first` on that have any, with their numbers: most have no occluded pair.
+/// Writes the rows from `first` on that have any pairs, with their numbers: most have none.
 template <class PairErrors>
 void putPairs(const std::vector<PairErrors>& rows, std::size_t first, ByteWriter& bytes) {
   const auto has = [](const PairErrors& row) { return row.squares > 0; };
@@ -133,14 +133,14 @@ std::vector<std::uint32_t> ErrorSums::recheckedByWeight() const {
 }
 
 double ErrorSums::recheckRatio() const {
-  // As many equal errors as scatter like a row's.
+  // For each row, the number of equal errors that scatter like its own.
   std::vector<double> counts;
   for (const PairErrors& row : occluded_) {
     if (row.fourths > 0) counts.push_back(row.squares * row.squares / row.fourths);
   }
   const std::vector<std::uint32_t> by_weight = recheckedByWeight();
   if (counts.empty() || by_weight.empty()) return 0;
-  // The same numbers on every machine, unlike those of the library's distributions.
+  // Numbers that are the same on every machine, unlike those of the library's distributions.
   std::mt19937 random;
   std::vector<double> ratios;
   for (std::size_t r = 0; r < kRowsDrawn; ++r) {

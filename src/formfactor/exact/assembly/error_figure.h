@@ -1,4 +1,4 @@
-// How far the rows of an exact form-factor matrix may be from the truth.
+// Error figures: how far the rows of an exact form-factor matrix may be from the truth.
 #pragma once
 
 #include <cstddef>
@@ -60,11 +60,11 @@ namespace radiosity {
 /// rows are those of one pair and its seven mirror images; in the cube, all rows are alike, and six
 /// exceed their figures by less than 1%; of the blades at 1e-2 (98.97%), four rows are two and
 /// their images, at 1e-5 (98.7%) five rows have a pair each that is off. Figures mostly miss
-/// neighbouring targets of one element past which the same edge of a shadow slips unseen, where
-/// another edge of that occluder is nearer and SampledPair::change goes by that, in so few pairs
-/// that none of those that are evaluated again is among them. Where one of these is a pair that
-/// hardly any row has, figures are far above errors (the 20). (truth_exact_test holds three meshes
-/// to it, against truth that shares no code.)
+/// neighbouring targets of one element past which the same edge of a shadow slips unseen:
+/// SampledPair::change goes by another edge of that occluder, which is nearer. These pairs are so
+/// few that none is evaluated again. If a pair that hardly any row has is evaluated again, figures
+/// are far above errors (the 20). (truth_exact_test holds three meshes to it, against truth that
+/// shares no code.)
 class ErrorSums {
  public:
   ErrorSums() = default;
@@ -72,29 +72,29 @@ class ErrorSums {
 
   ErrorSums& operator+=(const ErrorSums& other);
 
-  /// Adds the upper row of `row`: exchange[m] with row + m. Scales it to form factors.
+  /// Adds the upper row of `row`: exchange[m] is with row + m. Scales it to form factors.
   void addAndScale(std::size_t row, std::span<double> exchange, double inverse_area);
-  /// `error`: absolute, of the exchange of one occluded pair.
+  /// Adds an occluded pair. `error`: absolute, of its exchange.
   void addOccluded(std::size_t row, std::size_t column, double error) {
     occluded_[row].add(error);
     occluded_[column].add(error);
   }
   /// The same of a row and a black back.
   void addBlackBack(std::size_t row, double error) { black_backs_[row].add(error); }
-  /// An occluded pair of two rows, evaluated to a stricter tolerance: the difference, and the error
-  /// that was stated of it.
+  /// Adds an occluded pair of two rows, evaluated to a stricter tolerance: the difference, and the
+  /// error that was stated of it.
   void addRecheck(std::size_t row, std::size_t column, double difference, double stated) {
     rechecks_.push_back({row, column, difference, stated});
   }
 
-  /// All of it where only rows from `first` on have any sums, and back. Of bytes of another number
-  /// of rows nothing is taken, and false comes back.
+  /// Writes all of it, where only rows from `first` on have any sums, and reads it back. take()
+  /// returns false, with nothing taken, if the bytes are of another number of rows.
   void put(std::size_t first, ByteWriter& bytes) const;
   bool take(std::size_t first, ByteReader& bytes);
 
   std::size_t rechecked() const { return rechecks_.size(); }
-  /// Error over figure that one in a hundred rows exceeds, of rows drawn from the pairs that were
-  /// rechecked; 0 where there are none.
+  /// The error over the figure that one in a hundred rows exceeds, of rows drawn from the rechecked
+  /// pairs; 0 if there are none.
   double recheckRatio() const;
 
   /// figure[row], absolute, of F. `area`: of the rows; `closed_form`: published relative accuracy

@@ -24,8 +24,8 @@ namespace {
 
 /// About this share of the occluded pairs is evaluated again.
 constexpr double kRecheckShare = 1.0 / 256;
-/// At least so many pairs are evaluated again, as far as there are. In double precision they are
-/// more: fewer pairs hold the errors that rules miss there, and pairs are dearer to begin with.
+/// At least this many pairs are evaluated again, as far as there are. In double precision they are
+/// more: fewer pairs hold the errors that rules miss there, and pairs cost more to begin with.
 constexpr double kRecheckLeast = 512;
 constexpr double kRecheckLeastTight = 1024;
 /// A row that leaves more than this to the sky needs no eye to tell that the scene is open.
@@ -37,7 +37,7 @@ std::size_t recheckEvery(double occluded_pairs, double tolerance) {
   return std::size_t(std::max(1.0, 1 / share));
 }
 
-/// What rows are put into, and what they are made of.
+/// The results that rows are stored into, and the inputs that they are made from.
 struct RowStore {
   RowStore(const PatchMesh& mesh, const ExactScene& scene, const FormFactorOptions& options,
            const std::shared_ptr<ScratchMemory>& scratch)
@@ -70,8 +70,8 @@ struct RowStore {
   UncertainEntries uncertain;
 };
 
-/// All rows, in parallel, or the share of this process. Sums are made in a tree that depends on the
-/// tasks alone.
+/// Makes all rows, in parallel, or the share of this process. Sums are made in a tree that depends
+/// on the tasks alone.
 RowSums fillRows(const RowContext& context, const RowTasks& tasks, RowJournal* journal,
                  Processes* processes, Progress& progress) {
   const TaskJournal kept(journal, context, tasks);
@@ -157,7 +157,7 @@ void setErrors(const PatchOrder& order, const ErrorSums& sums, double closed_for
   for (std::size_t k = 0; k < order.ranked; ++k) result.error[order.patch[k]] = figure[k];
 }
 
-/// Fronts are what the matrix holds; sky is what is left of an open scene's rows.
+/// Sets fronts to the sums of the matrix's rows, and sky to the rest of an open scene's rows.
 void setAccounts(const PatchMesh& mesh, const PatchOrder& order, FormFactors& result,
                  Progress& progress) {
   result.fronts = result.matrix.rowSums();
@@ -178,8 +178,8 @@ void setAccounts(const PatchMesh& mesh, const PatchOrder& order, FormFactors& re
   }
 }
 
-/// Says what a closed scene's rows lack of 1, and puts it on the occluded pairs if that is asked
-/// for.
+/// Reports how far a closed scene's rows are from 1 and, if asked to, puts the difference on the
+/// occluded pairs.
 void close(const PatchOrder& order, const UncertainEntries& uncertain, ClosureMode mode,
            FormFactors& result, Progress& progress) {
   std::vector<double> target(order.patch.size(), 0.0);

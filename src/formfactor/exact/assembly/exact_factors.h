@@ -1,4 +1,4 @@
-// The exact method: every pair once, area to area, what is blocked taken off by clipping.
+// The exact method: every pair once, area to area, with the blocked parts clipped off.
 #pragma once
 
 #include "base/processes.h"
@@ -14,7 +14,7 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
                          const FormFactorOptions& options, Progress& progress, RowJournal* journal,
                          Processes* processes);
 
-/// In the other processes, while process 0 is in exactFactors(): the rows that fell to this one.
+/// For the other processes, while process 0 is in exactFactors(): makes the rows of this one.
 ExchangeMatrix exactRowsForOthers(const PatchMesh& mesh, const FormFactorOptions& options,
                                   Processes& processes, Progress& progress, RowJournal* journal);
 

@@ -36,8 +36,8 @@ struct ExactKernels {
   OccludedKernel occluded;
 };
 
-/// Foreseen from the pairs of a sample of tasks. It depends on the scene and the options alone,
-/// never on the machine or its load.
+/// The cost foreseen from the pairs of a sample of tasks. It depends on the scene and the options
+/// alone, never on the machine or its load.
 struct ExactEstimate {
   RowMemory memory;
   std::size_t matrix_bytes = 0;  ///< of these, the matrix
@@ -46,7 +46,7 @@ struct ExactEstimate {
   double occluders_per_pair = 0;
   double points = 0;    ///< ExactReport::points; about, like the work
   double work = 0;      ///< see foreseen_work.h
-  double refining = 0;  ///< of the work, what goes with 1 / tolerance
+  double refining = 0;  ///< the part of the work that goes with 1 / tolerance
 };
 struct RowSample;
 ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,

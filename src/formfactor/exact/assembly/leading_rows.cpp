@@ -68,13 +68,13 @@ class UnknownRows {
     }
   }
 
-  /// A pair of patches, once.
+  /// Adds a pair of patches, each pair once.
   void add(Index a, Index b, double exchange, double error) {
     addFrom(mesh_.unknownOf(a), mesh_.unknownOf(b), exchange, error);
     addFrom(mesh_.unknownOf(b), mesh_.unknownOf(a), exchange, error);
   }
 
-  /// What a patch sees of backs.
+  /// Adds the backs that a patch sees.
   void addBacks(Index patch, std::span<const SeenBack> seen) {
     const Index unknown = mesh_.unknownOf(patch);
     if (which_[unknown] == kNone) return;
@@ -168,7 +168,7 @@ void LeadingRows::fill(Triangle& triangle, const ExactKernels& kernels, Progress
                            triangle.seen_backs};
   struct Worker {
     RowAssembly assembly;
-    RowSums sums;  // of no use: errors are those of each pair
+    RowSums sums;  // unused: each pair has its own error
   };
   tbb::enumerable_thread_specific<Worker> workers([&] {
     return Worker{RowAssembly(context), RowSums(scene_.order.ranked)};

@@ -21,24 +21,24 @@ class LeadingRows {
   LeadingRows(const PatchMesh& mesh, std::vector<Index> wanted, const FormFactorOptions& options,
               Progress& progress);
 
-  /// FormFactorOptions::tolerance of compute(), before that of the options.
+  /// The tolerance of compute(), which replaces that of the options.
   void setTolerance(double tolerance) { options_.tolerance = tolerance; }
-  /// Some of the rows, for what follows.
+  /// A sample of the rows, for work() and seconds().
   RowSample sample(Progress& progress) const;
-  /// What compute() takes, foreseen as ExactEstimate::work: the same in every run.
+  /// The work of compute(), foreseen as ExactEstimate::work: the same in every run.
   double work(const RowSample& sample) const;
-  /// The same by the clock, here and now.
+  /// The seconds of compute() by the clock, here and now.
   double seconds(const RowSample& sample, Progress& progress) const;
-  /// Held by compute() beside this, about.
+  /// Bytes held by compute() beside this, about.
   std::size_t bytes() const;
 
-  /// A row for each that is wanted; none where none has elements. The same bits for any number of
-  /// threads. Throws Cancelled.
+  /// A row for each wanted unknown; no rows if none of these has elements. The same bits for any
+  /// number of threads. Throws Cancelled.
   std::vector<KnownRow> compute(Progress& progress) const;
 
  private:
   struct Triangle;
-  /// The rows that lead.
+  /// Makes the rows that lead.
   void fill(Triangle& triangle, const ExactKernels& kernels, Progress& progress) const;
 
   const PatchMesh& mesh_;

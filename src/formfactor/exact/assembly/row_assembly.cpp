@@ -112,7 +112,7 @@ void RowAssembly::evaluateUnoccluded(ElementRange range, std::size_t first_block
   const std::vector<ElementRange>& ranges = chunks.ranges;
   for (std::size_t c = chunks.of_element[range.end - 1]; c < ranges.size();) {
     std::size_t end = c;
-    // Neighbours of one facet at once.
+    // Take neighbours of one facet at once.
     while (end < ranges.size() && asked_[end] != 0 &&
            context_.elements.facet[ranges[end].first] == context_.elements.facet[ranges[c].first]) {
       asked_[end++] = 0;
@@ -127,7 +127,7 @@ void RowAssembly::evaluateUnoccluded(ElementRange range, std::size_t first_block
   dropPairsWithoutExchange(first_pair, sums);
 }
 
-/// Pairs that turn out to be below each other's horizon never reach the clipping.
+/// Drops the pairs below each other's horizon, which need no clipping.
 void RowAssembly::dropPairsWithoutExchange(std::size_t first_pair, RowSums& sums) {
   std::vector<OccludedPair>& pairs = pairs_.occluded_pairs;
   std::size_t kept = first_pair;
@@ -168,7 +168,7 @@ void RowAssembly::recheck(RowSums& sums) const {
   for (std::size_t k = 0; k < occluded_.size(); ++k) {
     const OccludedPair& pair = pairs_.occluded_pairs[k];
     if (pair.column >= context_.elements.patch_elements) continue;
-    if (occluded_[k].cut_short) continue;  // it would take as much again, and states what it misses
+    if (occluded_[k].cut_short) continue;  // it would take as long again, and has stated its error
     if (pairHash(pair.row, pair.column) % context_.recheck_every != 0) continue;
     which.push_back(k);
     pairs.push_back(pair);
@@ -241,7 +241,7 @@ void RowAssembly::storePatches(ElementRange rows, RowSums& sums) {
   }
 }
 
-/// Eight marks at a time: where things are, they are mostly all marked or none.
+/// Sets places without a mark to 0. Reads eight marks at a time: mostly all or none are set.
 void RowAssembly::clearUnmarked() {
   constexpr std::uint64_t kAllMarked = 0x0101010101010101ULL;
   for (std::size_t k = 0; k < marked_.size(); k += kMarks) {

@@ -19,7 +19,7 @@
 
 namespace radiosity {
 
-/// Where each patch stands: by its first element. Patches without elements come last.
+/// The order of patches: by their first elements. Patches without elements come last.
 struct PatchOrder {
   PatchOrder(const PatchMesh& mesh, const ElementSet& elements);
   std::vector<Index> patch;          ///< N: the patches in order
@@ -44,7 +44,7 @@ struct RowSums {
   double seconds_assembly = 0;
 };
 
-/// Inputs that all rows share, and where rows go.
+/// Inputs that all rows share, and the places that rows are stored in.
 struct RowContext {
   const ElementSet& elements;
   const PatchOrder& order;
@@ -53,9 +53,9 @@ struct RowContext {
   const UnoccludedKernel& unoccluded;
   const OccludedKernel& occluded;
   const Progress& progress;
-  std::size_t recheck_every;  ///< about one occluded pair in so many is evaluated again
+  std::size_t recheck_every;  ///< about one occluded pair in this many is evaluated again
   ExchangeMatrix& matrix;
-  UncertainEntries* uncertain;  ///< occluded pairs and their errors go there; may be null
+  UncertainEntries* uncertain;  ///< takes occluded pairs and their errors; may be null
   std::vector<double>& backs;
   std::vector<std::vector<SeenBack>>& seen_backs;
 };
@@ -83,7 +83,7 @@ class RowAssembly {
     auto operator<=>(const Uncertain&) const = default;
   };
   void classify(std::span<const ElementRange> ranges, RowSums& sums);
-  /// Closed forms of rows `range`: of the blocks and pairs recorded from the given ones on.
+  /// Evaluates closed forms of rows `range`: of the blocks and pairs from the given ones on.
   void evaluateUnoccluded(ElementRange range, std::size_t first_block, std::size_t first_pair,
                           RowSums& sums);
   void dropPairsWithoutExchange(std::size_t first_pair, RowSums& sums);

@@ -8,20 +8,20 @@
 namespace radiosity {
 namespace {
 
-/// A sample takes ranges of a task until there are so many rows: rows share work on their columns.
+/// A sample takes ranges of a task until it has this many rows: rows share work on their columns.
 constexpr std::size_t kLeastRows = 4;
-/// Facets looked at, and tests made, for one range of rows.
+/// The most facets looked at, and tests made, for one range of rows.
 constexpr std::size_t kMostFacets = 128;
 constexpr std::size_t kMostLargeFacets = 4;
 constexpr std::size_t kMostTests = 12'500;
-/// Tests for each occluder, besides: all occluders are tested against the space between two large
-/// facets, and that settles nothing yet. At most so many.
+/// Further tests for each occluder, since testing all against the space between two large facets
+/// settles nothing yet; and the most tests in all.
 constexpr std::size_t kTestsAnOccluder = 50;
 constexpr std::size_t kMostTestsAtAll = 200'000;
 /// Occluded pairs of a task whose cost is guessed, evenly among all.
 constexpr std::size_t kGuessedPairs = 48;
 
-/// Occluded pairs and blocks of some rows, and what finding them took.
+/// Finds occluded pairs and blocks of some rows, and measures what that takes.
 void classify(const ExactScene& scene, std::span<const ElementRange> ranges, FacetSize size,
               std::size_t place, RecordedPairs& recorded, SampledPlace& found) {
   VisibilityCounts counts;
@@ -44,7 +44,7 @@ void classify(const ExactScene& scene, std::span<const ElementRange> ranges, Fac
     found.rows += double(range.size());
   }
   const double seconds = processorSeconds() - start;
-  // Where it stopped as it was, what was left of its facets is like what was settled of them.
+  // If it stopped early, the rest of its facets is taken to be like the settled part.
   const VisibilityCounts& whole = of_facets.settled;
   const auto closely = double(counts.settled() - whole.settled());
   const double share = closely > 0 ? double(of_facets.left) / closely : 1.0;
@@ -97,7 +97,7 @@ void costOfPairs(const ExactScene& scene, RecordedPairs recorded, double toleran
   }
 }
 
-/// Ranges of rows that stand for themselves and their neighbours, with facets of one size.
+/// Ranges of rows, taken for themselves and their neighbours, with facets of one size.
 struct SampledRanges {
   std::span<const ElementRange> rows;
   FacetSize size = FacetSize::small;
@@ -161,7 +161,7 @@ std::span<const ElementRange> rowsFrom(std::span<const ElementRange> ranges, std
   return ranges.subspan(first, end - first);
 }
 
-/// Up to `most` places of about as many open pairs each, at the range in their middle.
+/// Adds up to `most` places with about as many open pairs each, at the range in their middle.
 void addPlaces(const ExactScene& scene, std::span<const ElementRange> ranges, FacetSize size,
                std::size_t most, std::vector<SampledRanges>& places) {
   std::vector<double> until{0.0};  // open pairs of the ranges before
@@ -174,7 +174,7 @@ void addPlaces(const ExactScene& scene, std::span<const ElementRange> ranges, Fa
     const double quota = until.back() * double(k) / double(most);
     std::size_t end = first;
     while (end < ranges.size() && (k == most || until[end + 1] <= quota)) ++end;
-    // One that is larger than a place has the places that it reaches into.
+    // A range larger than a place takes up all places that it reaches into.
     if (end == first && until[first] < quota) ++end;
     if (!(until[end] > until[first])) continue;
     const double middle = 0.5 * (until[first] + until[end]);

@@ -1,4 +1,4 @@
-// A sample of the rows, to foresee what all of them will take.
+// A sample of the rows, to foresee the cost of all of them.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ struct SampledPairs {
   OccludedCost cost;                ///< of all that these stand for in the rows looked at
 };
 
-/// Some rows and facets after theirs: what was found, brought to all pairs of these rows with these
+/// Some rows and facets after theirs: counts, scaled up to all pairs of these rows with these
 /// facets.
 struct SampledPlace {
   double weight = 0;   ///< open pairs that it stands for
@@ -42,11 +42,11 @@ struct SampledPlace {
   std::vector<PairBlock> blocks;     ///< unoccluded
   std::vector<Index> occluder_list;  ///< of the occluded pairs
 
-  /// Open pairs for each that was settled; 0 where none was.
+  /// Open pairs for each settled one; 0 if none was settled.
   double share() const { return settled > 0 ? weight / settled : 0.0; }
 };
 
-/// Counts brought to all rows, and the places that they come from.
+/// Counts scaled up to all rows, and the places that they come from.
 struct RowSample {
   double unoccluded = 0;  ///< pairs with nothing in between, or below the horizon
   double occluded = 0;    ///< pairs that go to the clipping
@@ -55,18 +55,18 @@ struct RowSample {
   OccludedCost cost;           ///< of the occluded pairs
   std::size_t task_bytes = 0;  ///< most that the occluded pairs of a task take, about
   std::vector<SampledPlace> places;
-  /// Open pairs of all places, for each of places where pairs were settled.
+  /// Open pairs of all places over those of places where pairs were settled.
   double all_places = 1;
 };
 
-/// Steps of progress at most.
+/// The most steps of progress.
 inline constexpr std::size_t kSampleSteps = 96;
 
 /// Some rows in up to kSampleSteps places, of large facets and of small ones, against later facets
-/// of many elements or of few: all of these, or every n-th where there are very many. The
-/// work has a bound, in tests and pairs and not by the clock, so that the counts come out the same
-/// in every run. (0.05 to 0.8 s on two threads of a 2.7 GHz Xeon, from a spotted cow to a couch
-/// among cushions.) Steps `progress`; calls its check().
+/// of many elements or of few: all of these, or every n-th if there are very many. The work has a
+/// bound, in tests and pairs and not by the clock, so that the counts come out the same in every
+/// run. (0.05 to 0.8 s on two threads of a 2.7 GHz Xeon, from a spotted cow to a couch among
+/// cushions.) Steps `progress`; calls its check().
 RowSample sampleRows(const ExactScene& scene, double tolerance, Progress& progress);
 /// The same of the rows of the first tasks alone.
 RowSample sampleRows(const ExactScene& scene, std::size_t tasks, double tolerance,

@@ -5,13 +5,13 @@
 namespace radiosity {
 namespace {
 
-/// A task's rows, dense, take no more bytes than this.
+/// A task's rows, dense, take no more bytes than this, if they are more than 8.
 constexpr std::size_t kPanelBytes = std::size_t(1) << 24;
 /// A task has no more rows than this. It has many, because one answer of the descent serves all
 /// rows of a cluster, and clipping is fastest with pairs by the thousand; both gain more than rows
-/// would that stay in the second-level cache.
+/// kept in the second-level cache would.
 constexpr std::size_t kMostRows = 64;
-/// Long enough to fill vectors, short enough that little is computed for nothing.
+/// Long enough to fill vectors, short enough that few values are computed for nothing.
 constexpr Index kChunk = 32;
 
 /// Even a small scene is to give every thread several tasks.
@@ -25,7 +25,7 @@ std::size_t rowsPerTask(const ElementSet& elements) {
                                  kMostRows);
 }
 
-/// Of a task that begins with this element.
+/// The most rows of a task that begins with this element.
 std::size_t mostRows(const ElementSet& elements, Index first, std::size_t most) {
   if (first >= elements.leading_elements) return most;
   return std::clamp<std::size_t>(elements.leading_elements / kLeastLeadingTasks, 1, most);
@@ -59,7 +59,7 @@ RowTasks::RowTasks(const ElementSet& elements) {
     const bool last = r + 1 == ranges_.size();
     // A patch of several elements may lie in several clusters.
     const bool cuts_patch = !last && elements.patch[end - 1] == elements.patch[end];
-    // Those that lead are with none that nobody asked for.
+    // Rows that lead share no task with others, which nobody may have asked for.
     const bool full = last || end == elements.leading_elements ||
                       rows + ranges_[r + 1].size() > mostRows(elements, ranges_[r].first, most);
     if (full && !cuts_patch) {

@@ -25,8 +25,8 @@ class RowTasks {
   std::vector<std::size_t> offset_;  ///< tasks + 1, into ranges_
 };
 
-/// The elements cut into short runs of neighbours, each of one facet: what the closed forms are
-/// asked for at a time.
+/// The elements cut into short runs of neighbours, each of one facet: closed forms are asked for by
+/// whole runs.
 struct ColumnChunks {
   explicit ColumnChunks(const ElementSet& elements);
   std::vector<ElementRange> ranges;

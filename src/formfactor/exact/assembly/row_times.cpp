@@ -11,25 +11,25 @@
 namespace radiosity {
 namespace {
 
-/// Pairs are clipped, to see how long their work takes, in up to so many rounds until this share of
-/// all the work that is foreseen is done, but for no less and no more seconds than these.
-/// (At 1e-6 a single pair past round bodies takes tenths of a second. A few pairs, near to each
-/// other, carry half of the time or more: in gazebo.obj of the lightmapper's examples one pair in
-/// 300 takes 38%. Many short batches meet them.)
+/// Pairs are clipped to time their work, in up to kRounds rounds, until kClipShare of all foreseen
+/// work is done, but for no less than kLeastClipSeconds and no more than kMostClipSeconds. (At 1e-6
+/// a single pair past round bodies takes tenths of a second. A few pairs, near to each other, carry
+/// half of the time or more: in gazebo.obj of the lightmapper's examples one pair in 300 takes 38%.
+/// Many short batches meet them.)
 constexpr std::size_t kRounds = 16;
 constexpr double kClipShare = 0.02;
 constexpr double kLeastClipSeconds = 0.25;
 constexpr double kMostClipSeconds = 0.8;
-/// About so many pairs a round, by what they stand for; from places and classes that stand for less
-/// than this share, none; and no more in a batch than this much work, about a millisecond.
+/// A round clips about kPairsARound pairs, shared out by foreseen work, none from places and
+/// classes with less than kLeastShare of it; a batch has at most kBatchWork, about a millisecond.
 constexpr double kPairsARound = 256;
 constexpr double kLeastShare = 1e-3;
 constexpr double kBatchWork = 1e5;
-/// Batches are taken in an order that jumps about, so that what is left out when the time is up is
-/// like what is not.
+/// Batches are taken in an order that jumps about, so that those left out when the time is up are
+/// like those taken.
 constexpr std::size_t kJump = 7;
 static_assert(kRounds % kJump != 0);
-/// Values in closed form that are computed in a place, of so many rows at a time.
+/// Closed forms computed in a place, and rows at a time.
 constexpr std::size_t kMostValues = 1 << 13;
 constexpr Index kValueRows = 4;
 
@@ -45,14 +45,14 @@ struct PlaceTime {
   BothClocks taken;  ///< by all of it
 };
 
-/// Values in closed form are asked for by whole chunks of columns: see RowAssembly.
+/// Times closed forms by whole chunks of columns: see RowAssembly.
 double unoccludedSeconds(const UnoccludedKernel& kernel, const SampledPlace& place) {
   std::vector<double> values;
   UnoccludedCounts counts;
   double computed = 0;
   const std::size_t blocks = place.blocks.size();
   const double start = processorSeconds();
-  // In an order that jumps about, so that what is left out is like what is not.
+  // An order that jumps about, so that blocks left out are like those taken.
   const auto jump = std::size_t(std::max(1.0, std::round(0.618 * double(blocks))));
   for (std::size_t k = 0; k < blocks && computed < double(kMostValues); ++k) {
     const PairBlock& block = place.blocks[k * jump % blocks];
@@ -69,7 +69,7 @@ double unoccludedSeconds(const UnoccludedKernel& kernel, const SampledPlace& pla
   return computed > 0 ? seconds * (place.unoccluded + place.occluded) / computed : 0.0;
 }
 
-/// A batch of pairs that are neighbours, and share work; batches evenly from all. Pairs are in
+/// A batch of neighbouring pairs, which share work; batches lie evenly among all. Pairs are in
 /// order of their columns.
 std::span<const OccludedPair> batchOf(std::span<const OccludedPair> pairs, std::size_t size,
                                       std::size_t which) {
@@ -78,7 +78,7 @@ std::span<const OccludedPair> batchOf(std::span<const OccludedPair> pairs, std::
   return pairs.subspan((2 * which + 1) * (pairs.size() - size) / (2 * count), size);
 }
 
-/// Clips a batch. Nothing but measured seconds comes of it.
+/// Clips a batch and measures the seconds; the values are dropped.
 void clip(const ExactScene& scene, const ExactKernels& kernels, std::span<const OccludedPair> batch,
           std::span<const Index> occluder_list, double tolerance, ClipTime& clipped) {
   if (batch.empty()) return;
@@ -96,7 +96,7 @@ void clip(const ExactScene& scene, const ExactKernels& kernels, std::span<const 
   clipped.seconds += processorSeconds() - start;
 }
 
-/// Work of the pairs of all tasks for which these stand.
+/// Work of the pairs of all tasks that these pairs stand for.
 double foreseenWork(const SampledPlace& place, const SampledPairs& of_class) {
   return place.share() * of_class.cost.work;
 }
@@ -161,7 +161,7 @@ class ClipRounds {
   std::atomic<double> done_ = 0;  ///< work, in the seconds taken
 };
 
-/// Seconds for each unit of work, of all that was clipped.
+/// Seconds for each unit of work, over all that was clipped.
 double overallPace(const std::vector<PlaceTime>& times) {
   ClipTime all;
   for (const PlaceTime& place : times) {

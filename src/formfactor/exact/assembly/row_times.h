@@ -10,7 +10,7 @@ struct RowTimes {
   double visibility = 0;
   double unoccluded = 0;
   double occluded = 0;
-  /// How much longer the sample took by the clock: other work on the machine.
+  /// The sample's time by the clock over that of processors: other work on the machine.
   double busy = 1;
 };
 

@@ -12,7 +12,7 @@ namespace radiosity {
 
 namespace {
 
-/// For each process: many, so that the slowest is not waited for long.
+/// Blocks for each process: many, so that nobody waits long for the slowest.
 constexpr std::size_t kBlocksAProcess = 16;
 
 /// The top of the tree of sums, as tbb::parallel_deterministic_reduce makes it: halves of halves of

@@ -16,10 +16,10 @@ namespace radiosity {
 /// the same for any number of threads.
 using SumTasks = std::function<RowSums(std::size_t begin, std::size_t end)>;
 
-/// By all processes. Ranges that the tree of sums halves into are handed out, and process 0 adds
-/// their sums up by the same tree: the same bits for any number of processes. Rows are stored where
-/// they were made; what else is known of them (backs) comes to process 0, and so do the sums. The
-/// others get empty sums.
+/// Makes rows by all processes. The tree of sums halves ranges; these are handed out, and process 0
+/// adds their sums up by the same tree: the same bits for any number of processes. Each process
+/// stores the rows that it made; process 0 gets their backs and the sums. The others get empty
+/// sums.
 RowSums shareTasks(Processes& processes, const RowContext& context, const RowTasks& tasks,
                    const SumTasks& sum, Progress& progress);
 

@@ -1,4 +1,4 @@
-// Tasks of the exact method in a journal: what they stored, and their sums.
+// Tasks of the exact method in a journal: their rows and their sums.
 #pragma once
 
 #include <cstddef>
@@ -11,27 +11,27 @@
 
 namespace radiosity {
 
-/// Sums over pairs of rows from the one of rank `first` on, and back. Of bytes of another number of
-/// rows nothing is taken, and false comes back.
+/// Writes sums over pairs of rows from the one of rank `first` on, and reads them back: false, with
+/// `sums` of no use, if the bytes are of another number of rows.
 void putSums(const RowSums& sums, std::size_t first, ByteWriter& bytes);
 bool takeSums(std::size_t first, ByteReader& bytes, RowSums& sums);
 
-/// A block a task: its rows as they are stored, which errors its entries have, the black backs that
-/// they see, and what the task adds to the sums over all pairs, without which the error figures
-/// would not be those of a run in one go.
+/// A block a task: its rows as they are stored, the errors of their entries, the black backs that
+/// they see, and the task's part of the sums over all pairs, which error figures need to be those
+/// of a run in one go.
 class TaskJournal {
  public:
-  /// Keeps all by reference. `journal`: null where nothing is kept. Says how many rows are there.
+  /// Keeps all by reference. `journal`: null if nothing is kept. Tells it how many rows it has.
   TaskJournal(RowJournal* journal, const RowContext& context, const RowTasks& tasks);
 
-  /// That are there.
+  /// The number of rows that the journal has.
   std::size_t rows() const { return found_; }
 
   /// Puts the task's rows where RowAssembly would, and its sums into `sums`, which hold nothing
-  /// yet. False where the journal has no such task: then nothing has changed. Thread-safe for
+  /// yet. False if the journal has no such task: then nothing has changed. Thread-safe for
   /// different tasks.
   bool take(std::size_t task, RowSums& sums) const;
-  /// After RowAssembly has run the task. `sums`: its own and no others.
+  /// Called after RowAssembly has run the task. `sums`: its own and no others.
   void keep(std::size_t task, const RowSums& sums) const;
 
  private:

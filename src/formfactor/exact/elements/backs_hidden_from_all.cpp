@@ -91,7 +91,7 @@ class BacksHiddenFromAll {
       proved = own_polygon_[p] == stamp_ || isOnFrontSide(surface, p);
       return proved;
     };
-    if (surface.is_solid) {  // all that is out of its box is on its front side
+    if (surface.is_solid) {  // all outside of its box is on its front side
       places_.query({surface.lower, surface.upper}, look);
     } else {
       for (Index p = 0; p < mesh_.polygons.size() && look(p); ++p) {
@@ -118,7 +118,7 @@ class BacksHiddenFromAll {
   }
 
   const PatchMesh& mesh_;
-  std::optional<Enclosures> found_;  // where the mesh does not bring them
+  std::optional<Enclosures> found_;  // if the mesh does not have them
   const Enclosures& enclosures_;
   const double coincidence_;
   const std::vector<Index> first_;

@@ -44,7 +44,7 @@ class ClusterBuilder {
     return out;
   }
 
-  /// Where the parts of [begin, end) end, after sorting it into them.
+  /// Sorts [begin, end) into parts and returns their ends.
   std::vector<std::size_t> split(std::size_t begin, std::size_t end) {
     Box2 box;
     for (std::size_t k = begin; k < end; ++k) box.add(elements_[k].middle);

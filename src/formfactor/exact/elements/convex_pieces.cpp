@@ -47,7 +47,7 @@ std::vector<Climb> climbsOf(const std::vector<std::vector<Vec2>>& loops,
   return climbs;
 }
 
-/// Where the edge is at a level: its own corner at its ends.
+/// The point of the edge at a level: its own corner at its ends.
 Vec2 at(const Climb& climb, std::size_t level, double height) {
   if (level == climb.low_level) return climb.low;
   if (level == climb.high_level) return climb.high;
@@ -55,7 +55,7 @@ Vec2 at(const Climb& climb, std::size_t level, double height) {
   return {climb.low.x + (climb.high.x - climb.low.x) * t, height};
 }
 
-/// Between two edges, from one level to another.
+/// Trapezoids between two edges, from one level to another.
 class Trapezoids {
  public:
   Trapezoids(const std::vector<Climb>& climbs, const std::vector<double>& levels)

@@ -21,9 +21,9 @@ struct Piece {
   std::uint8_t count;
 };
 
-/// Corners nearer to their neighbours' line, in a scene of size 1, are on it but for rounding.
+/// Corners this near to their neighbours' line, in a scene of size 1, are on it but for rounding.
 constexpr double kOnLine = 0x1p-44;
-/// Parts of a patch may have so much more or less area than it.
+/// The parts of a patch may have this share more or less area than the patch.
 constexpr double kSameArea = 1e-10;
 
 /// An outline without the corners that its neighbours' edges were cut at.
@@ -170,7 +170,7 @@ class ElementBuilder {
     }
   }
 
-  /// None if they have not the patch's area but for rounding.
+  /// A patch's trapezoids; none if their area is not the patch's but for rounding.
   std::vector<Piece> trapezoidsOf(Index patch, const std::vector<Vec3>& corners) const {
     const Vec3& normal = mesh_.normal[patch];
     const Vec3 middle = corners.front();
@@ -237,7 +237,7 @@ class ElementBuilder {
         element.upper = glm::max(element.upper, frame.flat(corner));
       }
     }
-    // Pieces of one patch share a middle: so they stay next to each other.
+    // Pieces of one patch share a middle, so that they stay next to each other.
     for (std::size_t first = 0; first < pieces.size();) {
       Vec2 lower = flat[first].lower;
       Vec2 upper = flat[first].upper;

@@ -36,7 +36,7 @@ struct Facet {
   Index polygon = 0;  ///< of the mesh
   bool back = false;  ///< the polygon's back side
   /// True: a black back. Its elements are the polygon's own convex pieces, not patches; they absorb
-  /// and return nothing, and are there to tell what is seen from behind from the sky.
+  /// and return nothing, and serve to tell backs from the sky.
   bool black = false;
   Vec3 normal{0.0};   ///< unit, out of the side that carries the elements
   double offset = 0;  ///< dot(normal, x) = offset on the plane
@@ -49,8 +49,8 @@ struct Facet {
 /// change, and nothing depends on the scene's unit or place. Areas are scaled likewise.
 ///
 /// A patch that is a triangle or a convex quadrilateral, but for corners in line with their
-/// neighbours, is one element; any other patch is cut into trapezoids, or its pieces if those are
-/// fewer, of which each is one. Facets are ordered by surface name, polygon index within the
+/// neighbours, is one element. Any other patch is cut into trapezoids or, if they are fewer, into
+/// its own pieces, each an element. Facets are ordered by surface name, polygon index within the
 /// surface and side, black ones after all others; elements within a facet follow a quadtree in the
 /// facet's plane (ties: index within the surface), those of one patch next to each other. So
 /// nothing depends on how patches are numbered.

@@ -10,7 +10,7 @@
 namespace radiosity {
 namespace {
 
-/// Halvings of a cell: an end where an estimate does not fall.
+/// The most halvings of a cell: an end if an estimate does not fall.
 constexpr int kMostLevels = 10;
 
 }  // namespace
@@ -94,8 +94,8 @@ void AdaptiveIntegrator<T>::integrate(std::span<const SampledPair> group,
   }
 }
 
-/// Integrates over a polygon for those whose lines are so few that this takes fewer points than
-/// halving cells; takes them from `members`.
+/// Integrates over a polygon for the members whose critical lines are so few that this takes fewer
+/// points than halving cells; removes them from `members`.
 template <class T>
 void AdaptiveIntegrator<T>::cutAtLines(std::span<const Vec3> polygon, Members& members,
                                        std::span<VisibleFraction> out) {
@@ -124,8 +124,8 @@ double AdaptiveIntegrator<T>::distanceInRadii(const SampledPair& pair) const {
   return distance / elements_.radius[pair.target];
 }
 
-/// Integrates over one cell. Returns the members whose error is too large; to them nothing is
-/// added.
+/// Integrates over one cell. Returns the members whose error is too large; it adds nothing to
+/// these.
 template <class T>
 typename AdaptiveIntegrator<T>::Members AdaptiveIntegrator<T>::integrateCell(
     const SampleCell& cell, std::size_t side, int level, const Members& members,
@@ -204,8 +204,8 @@ void AdaptiveIntegrator<T>::sumCell(const SampleCell& cell, std::size_t side, in
   }
 }
 
-/// Where something may have slipped between a cell's points it is looked from near its corners,
-/// too: before it is cut only for that, near to it, and wherever shadows may end in a step.
+/// Looks from near a cell's corners, too, for members of which something may have slipped between
+/// its points, if their error nears or exceeds what is accepted or their shadows may end in a step.
 template <class T>
 void AdaptiveIntegrator<T>::lookOutside(const SampleCell& cell, double share,
                                         const Members& members, std::span<VisibleFraction> out) {
@@ -235,12 +235,12 @@ void AdaptiveIntegrator<T>::lookOutside(const SampleCell& cell, double share,
       largest = std::max(largest, std::abs(residual));
     }
     const CellError seen = meanErrorOutside(sum.error, area * largest);
-    // An error that was small enough is only ever raised.
+    // An error that was accepted is only ever raised.
     if (exceeds(uncertain_[u], 1) || seen.cautious > sum.error.cautious) sum.error = seen;
   }
 }
 
-/// Integrates over one cell by 3 x 3 points, or over its four parts for those who need it.
+/// Integrates over one cell by 3 x 3 points, or over its four parts for members that need it.
 template <class T>
 void AdaptiveIntegrator<T>::cutCell(const SampleCell& cell, const Members& members, int level,
                                     std::span<VisibleFraction> out) {

@@ -23,7 +23,7 @@ struct VisibleFraction {
   double allowed = 0;    ///< error of the fraction that is accepted
   double change = 1;     ///< see SampledPair
   double far_error = 0;  ///< error of its kernel in the fraction of a half visible target
-  bool near = false;     ///< the target is: rules may agree and all be wrong
+  bool near = false;     ///< the target is near: rules may agree and all be wrong
   bool may_cross = false;     ///< see SampledPair
   bool one_occluder = false;  ///< one alone comes between
   std::size_t points = 0;
@@ -36,21 +36,20 @@ struct VisibleFraction {
 /// Most work for a pair: points times the occluders looked past from each, a few tenths of a
 /// second. Steps of shadows that no halving resolves would take hundreds of times that.
 inline constexpr std::size_t kMostLooks = std::size_t(1) << 20;
-/// Work of all pairs of a task that are evaluated again, some seconds, after which pairs get no
-/// more than in single precision, and state what they miss: of a large face under clutter thousands
-/// of pairs would take the most. Where the tolerance asks for double precision there is no such
-/// bound: many points are what it takes.
+/// Work of all pairs of a task that are evaluated again, some seconds. Later pairs get no more than
+/// in single precision, and state the error left: of a large face under clutter, thousands of pairs
+/// would take the most. There is no such bound if the tolerance asks for double precision, which
+/// needs many points.
 inline constexpr std::size_t kMostLooksOfAll = std::size_t(1) << 24;
-/// In single precision: between critical lines, in double precision, what takes more takes fewer.
+/// Most work for a pair in single precision: others take fewer points between critical lines.
 inline constexpr std::size_t kMostSingleLooks = std::size_t(1) << 12;
 
 /// Root mean square of the error of a visible fraction by 2 x 2 points; `change`: SampledPair's.
 double expectedError(double change);
 
-/// Integrates groups of pairs: by 2 x 2 points where that can be expected to do; where it cannot or
-/// does not, by 3 x 3; and where that does not, by 3 x 3 in each quarter of the cell, and so on;
-/// or, where many points can be expected, between critical lines. Holds scratch memory: one a
-/// thread.
+/// Integrates groups of pairs by 2 x 2 points, if these are expected to do; otherwise, or if they
+/// do not, by 3 x 3 points, then by 3 x 3 in each quarter of the cell, and so on; or, if many
+/// points are expected, between critical lines. Holds scratch memory: one a thread.
 template <class T>
 class AdaptiveIntegrator {
  public:
@@ -117,7 +116,7 @@ class AdaptiveIntegrator {
   std::conditional_t<std::is_same_v<T, double>, CriticalLineQuadrature, Unused> between_lines_{
       view_};
   Vec3 normal_{0.0};
-  bool far_ = false;       ///< the members at work are
+  bool far_ = false;       ///< the members at work are far
   std::size_t looks_ = 0;  ///< of all groups so far
   std::vector<GroupTarget> targets_;
   std::vector<const GroupTarget*> chosen_;

@@ -45,7 +45,7 @@ void BatchCones<T>::build(std::span<const Blocker* const> blockers) {
   plane_[3] = {T(1), T(-1)};
   label_.assign(2, 0);
   for (const Blocker* blocker : blockers) add(*blocker);
-  // Kernels may read the labels of planes that the last cone would have if it had as many as any.
+  // Kernels may read labels past the last cone's planes, up to the most that a cone may have.
   label_.resize(label_.size() + kMostPlanes);
 }
 
@@ -73,7 +73,7 @@ void BatchCones<T>::add(const Blocker& blocker) {
   std::uint32_t written = 0;
   for (std::size_t q = 0; q < points_.count; ++q) {
     if (count[q] == 0 || count[q] > kMostPlanes) {
-      // Nothing bounds what a point within the body sees of it, nor one in a flat body's plane.
+      // No plane bounds the view from a point within the body, nor from one in a flat body's plane.
       const bool all = count[q] == 0 && !body.flat;
       const auto which = all ? ConePlanes<T>::kAllInside : ConePlanes<T>::kNothingInside;
       cones_.push_back({which, 1, count[q] > 0});

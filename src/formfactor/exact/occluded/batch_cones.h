@@ -30,7 +30,7 @@ class BatchCones {
  public:
   explicit BatchCones(const ClipKernels<T>& kernels) : kernels_(kernels) {}
 
-  /// The points of all that follows.
+  /// Sets the points for all that follows.
   void setPoints(std::span<const SamplePoint> points);
   /// True only if the body hides nothing of a convex polygon from any of the points.
   bool misses(const Blocker& blocker, std::span<const Vec3> outline);

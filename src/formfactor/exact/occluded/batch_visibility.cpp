@@ -8,7 +8,7 @@
 namespace radiosity {
 namespace {
 
-/// The largest number of shadows on a target that is told from more.
+/// Counts of shadows on a target end at this number.
 constexpr std::uint8_t kMostCounted = 254;
 constexpr std::uint64_t kUnknownCut = ~std::uint64_t(0);
 /// Added to the shape where shadows overlap.
@@ -16,11 +16,11 @@ constexpr std::uint32_t kOverlap = 0x9e3779b9U;
 /// Planes that may bound the common part of two shadows.
 constexpr std::size_t kMostOwnPlanes = 16;
 
-/// Up to so many targets, cones are not built before it is known that they meet one: seen from a
+/// With up to this many targets, cones are not built before they are known to meet one: from a
 /// small part of an element, most occluders of the whole miss the target. More targets share cones.
 constexpr std::size_t kFewTargets = 4;
 
-/// Up to so many leave most of a vector empty.
+/// Up to this many targets leave most of a vector empty.
 constexpr std::size_t kFewLanes = 8;
 
 }  // namespace
@@ -66,8 +66,8 @@ void BatchVisibility<T>::look(std::span<const SamplePoint> points, const Vec3& o
   settleVisible();
 }
 
-/// Form factors with nothing in between. Few targets share vectors from all points, with the same
-/// bits as any: what kernels see of an eye and a target is their difference.
+/// Computes form factors with nothing in between. Few targets share vectors from all points, with
+/// the same bits: kernels use only the difference of an eye and a target.
 template <class T>
 void BatchVisibility<T>::lookAtWhole() {
   const std::size_t stride = targets_.lanes().count;
@@ -95,7 +95,7 @@ void BatchVisibility<T>::lookAtWhole() {
   }
 }
 
-/// The blockers that each target uses, by target.
+/// Collects the blockers that each target uses, by target.
 template <class T>
 void BatchVisibility<T>::collectBlockedTargets() {
   blocked_targets_.clear();
@@ -160,7 +160,7 @@ void BatchVisibility<T>::castShadows() {
                {form_factor_.data(), word_.data(), cut_.data(), cut_.data() + lanes});
 }
 
-/// Takes away what is hidden, as if no two shadows overlapped.
+/// Subtracts the hidden parts, as if no two shadows overlapped.
 template <class T>
 void BatchVisibility<T>::subtractHidden() {
   shadows_.clear();
@@ -208,7 +208,7 @@ void BatchVisibility<T>::settleVisible() {
   }
 }
 
-/// Puts right what was subtracted more than once.
+/// Corrects for parts that were subtracted more than once.
 template <class T>
 void BatchVisibility<T>::uniteShadows() {
   const auto alone = [&](const Shadow& s) {
@@ -243,7 +243,7 @@ void BatchVisibility<T>::placeCommon() {
   for (const Common& common : common_) common_lane_.push_back(begin[common.planes]++);
 }
 
-/// Makes two shadows a lane; `planes`: how many it has to name.
+/// Fills a lane with the common part of two shadows; `planes`: how many it has to name.
 template <class T>
 void BatchVisibility<T>::setLane(const Common& common, std::size_t lane, std::size_t planes) {
   const std::size_t stride = targets_.lanes().count;
@@ -297,7 +297,7 @@ void BatchVisibility<T>::evaluateCommon() {
                plane_count, form_factor_.data());
 }
 
-/// Gives back what was subtracted twice.
+/// Adds the common parts, which were subtracted twice.
 template <class T>
 void BatchVisibility<T>::addCommon() {
   for (std::size_t k = 0; k < common_.size(); ++k) {
@@ -355,7 +355,7 @@ void BatchVisibility<T>::unite(std::span<Shadow> shadows) {
   const GroupTarget& target = *group_[lane];
   const double noise = kPlaneNoise<T> * glm::distance(points_[point].position, target.frame.origin);
   pieces_.begin(std::span(target.flat).first(target.corner_count));
-  // Edges of shadows that fall on others bound nothing.
+  // A shadow that lies wholly on others bounds nothing.
   ShapeWord<T> shape = 0;
   for (const Shadow& shadow : shadows) {
     addSides(shadow, point, lane);

@@ -34,20 +34,20 @@ class BlockerNumbers {
 
 /// Evaluates all points of a cell against all targets of a group. Every occluder's cone is built
 /// once a point; every target, seen from a point past an occluder, is a lane of the vector kernels.
-/// Where the shadows of two occluders fall on one target, their common part was subtracted twice;
-/// that is put right by another lane: the part inside two cones is the part inside those of
-/// their planes that cut the target. Where more fall on it, they are cut out one after the other
+/// If the shadows of two occluders fall on one target, their common part was subtracted twice.
+/// Another lane corrects that: the part inside two cones is the part inside those of their planes
+/// that cut the target. If more shadows fall on it, they are cut out one after the other
 /// (VisiblePieces). Holds scratch memory: one a thread.
 template <class T>
 class BatchVisibility {
  public:
-  /// The shape where nothing is visible; where all is, it is 0.
+  /// The shape if nothing is visible; it is 0 if all is.
   static constexpr std::uint32_t kAllHiddenShape = 1;
 
   explicit BatchVisibility(const ClipKernels<T>& kernels) : kernels_(kernels), cones_(kernels) {}
 
-  /// Looks from `points`, near `origin` on a surface of normal `normal`, at `targets`. `far`: they
-  /// all are far enough for the kernels for such. The answers stay until the next call.
+  /// Looks from `points`, near `origin` on a surface of normal `normal`, at `targets`. `far`: all
+  /// are far enough for the far kernels. The answers stay until the next call.
   void look(std::span<const SamplePoint> points, const Vec3& origin, const Vec3& normal,
             std::span<const GroupTarget* const> targets, bool far);
 

@@ -11,14 +11,14 @@ namespace {
 /// The share of a flat cell's unseen error that is stated.
 double flatShare(const CellValues& values) {
   const bool four = values.count == 4;
-  // Shadows of one shape have their edges where they are; others come and go at the border.
+  // Shadows of one shape keep their edges; others may come and go at the border.
   const double border = values.one_shape ? 0 : kCellFlat;
   if (border < values.fraction && values.fraction < 1 - border) {
     if (!values.one_occluder) return 1;  // one shadow's edge says nothing of another's
     return four ? kCellInside4 : kCellInside9;
   }
   if (four) return kCellBorder4;
-  // changeIn reckons with the chance that a kink is in the cell.
+  // changeIn() allows for the chance that a kink is in the cell.
   return values.one_shape ? 1 : kCellBorder9 / std::sqrt(values.side);
 }
 

@@ -9,7 +9,7 @@
 namespace radiosity {
 namespace {
 
-/// An end where an estimate does not fall.
+/// The most halvings of a part: an end if an estimate does not fall.
 constexpr int kMostHalvings = 10;
 
 }  // namespace
@@ -31,9 +31,9 @@ void CriticalLineQuadrature::addPart(const CriticalLines::Part& part) {
   }
 }
 
-/// Around a foot the view changes with the direction from it and hardly with the distance.
-/// Where the foot is the corner to which a side of the square shrinks, these are the square's two
-/// axes, and the integrand is smooth (Duffy 1982). `c` is a foot.
+/// Around a foot the view changes with the direction from it and hardly with the distance. If the
+/// foot is the corner to which a side of the square shrinks, these are the square's two axes, and
+/// the integrand is smooth (Duffy 1982). `c` is a foot.
 void CriticalLineQuadrature::addTriangle(const Vec2& a, const Vec2& b, const Vec2& c) {
   for (const bool first : {true, false}) {
     const Vec2& other = first ? a : b;

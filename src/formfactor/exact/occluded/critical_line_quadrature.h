@@ -25,13 +25,13 @@ class CriticalLineQuadrature {
   explicit CriticalLineQuadrature(BatchVisibility<double>& view) : view_(view) {}
 
   /// `polygon`: the part of the sampled element, of unit normal `normal`, that sees the target.
-  /// Adds to `out`, whose `allowed` is set. False, and nothing is added: there are more parts than
-  /// `most_parts` (up to kMostParts). `far`: see BatchVisibility.
+  /// Adds to `out`, whose `allowed` is set. Returns false, with nothing added, if there are more
+  /// parts than `most_parts` (up to kMostParts). `far`: see BatchVisibility.
   bool integrate(std::span<const Vec3> polygon, const Vec3& normal, const GroupTarget& target,
                  bool far, double coincidence, std::size_t most_parts, VisibleFraction& out);
 
  private:
-  /// A part and what it sees.
+  /// A part and its view.
   struct Part : PartValues {
     SampleCell cell;
     int halvings = 0;

@@ -34,7 +34,7 @@ struct Range {
   bool empty() const { return !(begin < end); }
 };
 
-/// Where an edge meets the plane of height 0, as a parameter; outside [0, 1]: nowhere.
+/// The parameter at which an edge meets the plane of height 0; outside [0, 1] if it does not.
 double footOf(double from, double to, double touching) {
   if (std::min(from, to) > touching || std::max(from, to) < touching) return -1;
   if (std::min(from, to) < -touching) return from / (from - to);
@@ -92,7 +92,7 @@ bool CriticalLines::tooManyEdges(std::span<const Blocker> blockers) const {
   return edges > kMostEdges;
 }
 
-/// Eyes that see an edge of the body's outline pass a corner that is farther away.
+/// Cuts where an eye sees an edge of the body's outline pass a corner that is farther away.
 void CriticalLines::edgesPastCorner(const Vec3& corner, const Occluder& body) {
   const double high = height(corner);
   if (high <= coincidence_) {
@@ -104,7 +104,7 @@ void CriticalLines::edgesPastCorner(const Vec3& corner, const Occluder& body) {
     return d > coincidence_ ? 1 : (d < -coincidence_ ? -1 : 0);
   };
   for (const Occluder::Edge& edge : body.edges) {
-    // In the plane of a face, which side of it would be rounding's choice: it may be either.
+    // For a corner in the plane of a face, rounding would choose the side: it may be either.
     if (side(edge.left) * side(edge.right) > 0) continue;
     const Vec3& from = body.corners[edge.from];
     const Vec3& to = body.corners[edge.to];
@@ -120,8 +120,8 @@ void CriticalLines::edgesPastCorner(const Vec3& corner, const Occluder& body) {
   }
 }
 
-/// The same of a corner in the eyes' plane: they see it past where edges of the body meet the
-/// plane.
+/// The same for a corner in the eyes' plane: they see it past the points where edges of the body
+/// meet the plane.
 void CriticalLines::edgesPastFoot(const Vec3& corner, const Occluder& body) {
   const Vec2 at = frame_.flat(corner);
   for (const Occluder::Edge& edge : body.edges) {
@@ -137,7 +137,7 @@ void CriticalLines::edgesPastFoot(const Vec3& corner, const Occluder& body) {
   }
 }
 
-/// Eyes that see a corner of the body pass an edge that is farther away.
+/// Cuts where an eye sees a corner of the body pass an edge that is farther away.
 void CriticalLines::cornersPastEdge(const Segment& edge, const Occluder& body) {
   const double h0 = height(edge.from);
   const double h1 = height(edge.to);
@@ -155,7 +155,7 @@ void CriticalLines::cornersPastEdge(const Segment& edge, const Occluder& body) {
   }
 }
 
-/// Eyes that see a face edge-on: to either side other edges make the outline.
+/// Cuts where an eye sees a face edge-on: to either side other edges make the outline.
 void CriticalLines::facePlanes(const Occluder& body) {
   for (const Occluder::Plane& plane : body.planes) {
     const Vec2 normal(glm::dot(plane.normal, frame_.u), glm::dot(plane.normal, frame_.v));

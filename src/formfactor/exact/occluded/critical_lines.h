@@ -18,7 +18,7 @@ namespace radiosity {
 /// cross on an edge of the target. Holds scratch memory: one a thread.
 class CriticalLines {
  public:
-  /// Edges of all bodies in between. Every edge may be in line with every corner: with more of
+  /// Most edges of all bodies in between. Every edge may be in line with every corner: with more of
   /// them, the search for lines takes as long as the lines save.
   static constexpr std::size_t kMostEdges = 64;
 
@@ -32,9 +32,9 @@ class CriticalLines {
 
   std::span<const Part> parts() const { return {parts_.data(), count_}; }
   Vec3 lift(const Vec2& p) const { return frame_.lift(p); }
-  /// Whether a body's outline, or a corner of the target, stands on the polygon's plane in this
-  /// corner of a part: how much an eye beside it sees depends on which side of it the eye is,
-  /// however near it is.
+  /// True if a body's outline, or a corner of the target, stands on the polygon's plane in this
+  /// corner of a part: the view of an eye beside it depends on the side that the eye is on, however
+  /// near it is.
   bool isFoot(const Vec2& corner) const;
 
  private:

@@ -17,8 +17,8 @@ namespace {
 /// Points of the first rule.
 constexpr double kFirst = 4;
 
-/// Where double precision is asked for and bodies have few edges, elements are cut along critical
-/// lines instead, where it is worth that: into parts of 13 points.
+/// If double precision is asked for and bodies have few edges, elements are cut along critical
+/// lines instead, if that pays: into parts of 13 points.
 constexpr double kCutFrom = kPointsParts * kPartWorth;
 constexpr double kPartPoints = kPointsParts * 13;
 

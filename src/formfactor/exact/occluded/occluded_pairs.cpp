@@ -12,9 +12,9 @@
 namespace radiosity {
 namespace {
 
-/// One pair evaluated from both ends. Where both resolve it, and one was cut short: the result of
-/// the smaller error. Else the one that resolves it better; its error is a share of their
-/// difference, by how badly each resolves the pair: a half where they are alike.
+/// One pair evaluated from both ends. If both resolve it, the result of the smaller error; else
+/// that of the end that resolves it better. If neither does, their difference adds to its error,
+/// with a share by how badly each resolves the pair: a half if they are alike.
 OccludedExchange betterOfBoth(const OccludedExchange& a, const OccludedExchange& b) {
   if (std::max(a.unresolved, b.unresolved) <= kPairResolved) return a.error <= b.error ? a : b;
   const double both = a.unresolved + b.unresolved;
@@ -130,7 +130,7 @@ void OccludedKernel::evaluate(const Batch& batch) const {
 }
 
 void OccludedKernel::evaluateAgain(const Batch& batch) const {
-  // Evaluates those that are wanted from one end, and gives each to take(). Returns their number.
+  // Evaluates the wanted pairs from one end, and gives each to take(). Returns their number.
   const auto again = [&](SampledEnd end, const auto& wanted, const auto& take) {
     std::vector<std::size_t> which;
     std::vector<OccludedPair> some;
@@ -157,7 +157,7 @@ void OccludedKernel::evaluateAgain(const Batch& batch) const {
   const auto replaced = [](const OccludedExchange&, const OccludedExchange& found) {
     return found;
   };
-  // In double precision this end has been looked from already.
+  // In double precision the pairs have been evaluated from this end already.
   const bool single = batch.tolerance >= kSinglePrecision;
   if (single) batch.counts.again += again(SampledEnd::calmer, doubtful, replaced);
   const std::size_t from_both = again(SampledEnd::restless, doubtful, betterOfBoth);

@@ -17,15 +17,15 @@ struct OccludedCounts {
   std::size_t hidden = 0;       ///< found to exchange nothing
   std::size_t cut_short = 0;    ///< kept with a larger error than accepted (kMostLooks)
   std::size_t by_segments = 0;  ///< clipping gave no number: exchangeBySegments() did
-  std::size_t again = 0;  ///< evaluated from both ends in double precision: see OccludedKernel
+  std::size_t again = 0;        ///< evaluated again: see OccludedKernel
   OccludedCounts& operator+=(const OccludedCounts& other);
 };
 
 struct OccludedExchange {
   double exchange = 0;  ///< G, scaled units; 0 <= G <= the unoccluded G, by construction
   double error = 0;     ///< estimate of its absolute error, from embedded rules
-  /// By how much the points' sum of the unoccluded exchange misses its closed form, of that: the
-  /// points resolve the elements' nearness, or they do not.
+  /// The share by which the points' sum of the unoccluded exchange misses its closed form: if
+  /// large, the points do not resolve the elements' nearness.
   double unresolved = 0;
   bool cut_short = false;  ///< kept with a larger error than accepted: it took too much
 };
@@ -54,10 +54,10 @@ double allowedError(const ElementSet& elements, const OccludedPair& pair, double
 /// closed form. So it lies in [0, 1], is exact where nothing or everything is hidden, and errors of
 /// the quadrature from the elements' nearness cancel.
 ///
-/// They do not cancel where the quadrature is all wrong: if a sliver touches a large element, none
-/// of a few points on that lies where the exchange takes place. Pairs whose points miss the
-/// unoccluded value by more than kPairResolved, and pairs that need many points in single
-/// precision, are evaluated again in double precision, from both ends.
+/// They do not cancel if the quadrature is all wrong: if a sliver touches a large element, none of
+/// a few points on the latter lies where the exchange takes place. Pairs whose points miss the
+/// unoccluded value by more than kPairResolved, or that need many points in single precision, are
+/// evaluated again: in double precision, then, if that fails, from the other end.
 class OccludedKernel {
  public:
   /// `tolerance`: as FormFactorOptions::tolerance. Elements and occluders are kept by reference.
@@ -78,7 +78,7 @@ class OccludedKernel {
                         std::span<OccludedExchange> out, const Progress* progress = nullptr) const;
 
  private:
-  /// Some pairs, and where their results go.
+  /// Some pairs, and the place for their results.
   struct Batch {
     double tolerance;
     std::span<const OccludedPair> pairs;

@@ -92,7 +92,7 @@ bool EdgeDistances::seesEdgeOn(Index element, Index occluder) const {
 }
 
 double EdgeDistances::squared(Index element, Index occluder) const {
-  // Rounded either way, so that what is chosen does not depend on the table's size.
+  // Rounded with and without a table, so that the choice does not depend on its size.
   if (!table_.empty()) return table_[occluder * elements_.size() + element];
   return float(edgeDistance2(occluders_.occluders[occluder], elements_.centroid[element]));
 }
@@ -123,7 +123,7 @@ const PairPreparation::Between& PairPreparation::between(Index occluder, Index r
   return found;
 }
 
-/// From similar triangles with their tips on the occluders' edges. The shadow of an edge that
+/// Changes by similar triangles with their tips on the occluders' edges. The shadow of an edge that
 /// touches the target does not move, but other edges of the same occluder may be a target's size
 /// away.
 PairPreparation::EdgeDistancesSquared PairPreparation::shadowChanges(double row_size,
@@ -213,8 +213,8 @@ void PairPreparation::prepare(std::span<const OccludedPair> batch,
 
 std::vector<Vec3> partInFront(const ElementSet& elements, Index element, const Facet& facet) {
   const std::span<const Vec3> outline = elements.outline(element);
-  // A corner that touches the plane is on it: cut off beside it, a sliver as wide as rounding would
-  // be left, of which no rule makes a mean.
+  // A corner that touches the plane is on it: a cut beside it would leave a sliver as wide as
+  // rounding, over which no rule can average.
   const auto height = [&](const Vec3& p) {
     const double d = glm::dot(facet.normal, p) - facet.offset;
     return std::abs(d) <= elements.coincidence ? 0.0 : d;

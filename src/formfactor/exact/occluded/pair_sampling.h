@@ -22,17 +22,16 @@ struct SampledPair {
   bool sampled_cut;    ///< reaches behind the target's plane
   bool target_cut;     ///< reaches behind the sampled element's plane
   /// How far shadows move across the target, in its sizes, from end to end of the sampled element:
-  /// that of the occluder where this is most. Several times that past a thin occluder seen edge-on.
+  /// by the occluder for which this is most. Several times that past a thin occluder seen edge-on.
   float change;
   bool may_cross;  ///< an occluder's edge comes within the sampled element's radius of its centroid
   std::uint32_t blockers_begin, blockers_end;  ///< into PairPreparation::blockers
 };
 
-/// Which end of pairs carries the points. Where there are several occluders, the one whose shadow
-/// moves most counts: a small patch beside one of them and a large one beside another are both far
-/// from their nearest in their own sizes, but from the large one the small is seen or not in a
-/// step. (In the curved scene at 1e-3 the rule halves the error that the distance to the nearest
-/// edge leaves.)
+/// The end of a pair that carries the points. Of several occluders, the one whose shadow moves most
+/// counts: a small patch beside one of them and a large one beside another are both far from their
+/// nearest in their own sizes, but from the large one the small is seen or not in a step. (In the
+/// curved scene at 1e-3 the rule halves the error that the distance to the nearest edge leaves.)
 enum class SampledEnd {
   calmer,    ///< from end to end of it shadows move less across the other one: SampledPair::change
   restless,  ///< the other one
@@ -42,7 +41,7 @@ enum class SampledEnd {
 /// planes of thin occluders.
 class EdgeDistances {
  public:
-  /// `few`: of some pairs only, for which no table is worth making.
+  /// `few`: only some pairs are asked for, and a table would not pay.
   EdgeDistances(const ElementSet& elements, const OccluderSet& occluders, bool few = false);
   /// Square of the distance from the element's centroid to the occluder's nearest edge.
   double squared(Index element, Index occluder) const;
@@ -73,14 +72,14 @@ class PairPreparation {
   std::vector<Blocker> blockers;
 
  private:
-  /// Where an occluder lies between the planes of two facets.
+  /// The position of an occluder relative to the planes of two facets.
   struct Between {
     std::uint32_t stamp = 0;
     bool blocks = false;
     bool cuts_first = false;   ///< reaches behind the first facet's plane
     bool cuts_second = false;  ///< reaches behind the second facet's plane
   };
-  /// Where a pair stands in the order of `pairs`.
+  /// The place of a pair in the order of `pairs`.
   struct SortedPair {
     std::uint64_t key;
     std::uint32_t pair;

@@ -18,7 +18,7 @@ struct PartValues {
   bool one_shape = true;
   bool overlap = false;  ///< of shadows on the target
 
-  /// By 3 x 3 points.
+  /// The integral by 3 x 3 points.
   double integral(const std::array<double, kPoints>& values) const;
   /// Error of the integral of visible minus `fraction` times whole form factor. `near`: see
   /// VisibleFraction. It decides whether the part is halved; a part that is kept states kPartStated

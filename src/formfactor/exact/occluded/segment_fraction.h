@@ -1,4 +1,4 @@
-// The visible fraction of a pair by segments: for pairs that nothing else can tell.
+// The visible fraction of a pair by segments: for pairs that cannot be clipped.
 #pragma once
 
 #include <span>
@@ -8,9 +8,9 @@
 namespace radiosity {
 
 /// Segments join 9 points of each element, in front of each other's planes. The exchange is the
-/// share of them that no occluder meets, times the unoccluded exchange. A pair is hidden where
+/// share of them that no occluder meets, times the unoccluded exchange. A pair is hidden if
 /// occluders meet all of them. The error is that of as many random segments, and at least that of
-/// one. Finite whatever the geometry.
+/// one. Finite for any geometry.
 OccludedExchange exchangeBySegments(const ElementSet& elements, const OccluderSet& occluders,
                                     const OccludedPair& pair, std::span<const Index> occluder_list);
 

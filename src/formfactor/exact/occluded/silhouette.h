@@ -22,8 +22,8 @@ struct BlockingCone {
 
 /// Sets `cone` to the region that `occluder` hides from `eye`, whichever way the eye looks. The
 /// sides are the planes through the eye and the edges between a face that is seen and one that is
-/// not: no projection, so the body may reach below the eye's horizon. `with_faces`: the target's
-/// plane cuts the body. Returns false where nothing is hidden (a flat body seen from its own
+/// not: there is no projection, so the body may reach below the eye's horizon. `with_faces`: the
+/// target's plane cuts the body. Returns false if nothing is hidden (a flat body seen from its own
 /// plane).
 bool blockingCone(const Occluder& occluder, const Vec3& eye, bool with_faces, BlockingCone& cone);
 

@@ -20,7 +20,7 @@ std::uint64_t scramble(std::uint64_t id, std::uint64_t edge) {
 }  // namespace
 
 /// Form factor to the part of the target that `cone` hides; the part itself ends in clipped_[0].
-/// Negative where it hides all of it.
+/// Negative if the cone hides all of the target.
 double VisiblePart::clipToCone(const BlockingCone& cone, const Vec3& normal, Index id,
                                PointView& view) {
   const ConvexPolygon* now = &target_;

@@ -1,4 +1,4 @@
-// How much of a convex polygon a point sees past convex occluders.
+// The part of a convex polygon that a point sees past convex occluders.
 #pragma once
 
 #include <array>
@@ -22,8 +22,8 @@ struct Blocker {
 struct PointView {
   double visible = 0;  ///< form factor to the visible part of the target, 0 to `whole`
   double whole = 0;    ///< form factor to all of it
-  /// A number for the set of edges that bound the hidden part. Where it differs between
-  /// neighbouring points the form factor has a kink between them.
+  /// A number for the set of edges that bound the hidden part. If it differs between neighbouring
+  /// points, the form factor has a kink between them.
   std::uint64_t shape = 0;
 };
 

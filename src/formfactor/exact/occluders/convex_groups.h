@@ -1,4 +1,4 @@
-// Parts of surfaces without a reflex edge: all that a convex solid can be grown over.
+// Parts of surfaces without a reflex edge, over which convex solids can be grown.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ class ConvexGroups {
   /// The first of the polygons joined to this one over edges across which both lie on one plane.
   Index levelWith(Index polygon) const { return level_[polygon]; }
   bool isLarge(Index polygon) const { return size_[group_[polygon]] > kLarge; }
-  /// For a polygon of a large group: whether it lies behind all others' planes.
+  /// For a polygon of a large group: true if each of the group lies behind all others' planes.
   bool isConvex(Index polygon) const { return convex_[group_[polygon]] != 0; }
 
  private:

@@ -30,7 +30,7 @@ bool ConvexSetGrowth::isOn(const OccluderPolygon& polygon, const Occluder::Plane
   return isBehind(all_, polygon, plane) && isBehind(all_, polygon, {-plane.normal, -plane.offset});
 }
 
-/// Adds a polygon, if it may be.
+/// Adds a polygon, if this way of growth allows it.
 void ConvexSetGrowth::join(ConvexSet& set, Index p, Growth way) const {
   if (way == Growth::known) {
     joinKnown(set, p);
@@ -68,7 +68,7 @@ bool ConvexSetGrowth::add(ConvexSet& set, Index p) const {
   return true;
 }
 
-/// `face`: kNone for one of its own.
+/// Appends a polygon. `face`: kNone for a face of its own.
 void ConvexSetGrowth::append(ConvexSet& set, Index p, Index face) const {
   const OccluderPolygon& polygon = all_.polygons[p];
   if (face == kNone) {

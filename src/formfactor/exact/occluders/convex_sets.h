@@ -26,35 +26,35 @@ struct ConvexSet {
   std::vector<Index> polygons() const;
 };
 
-/// How a set is grown.
+/// The way a set is grown.
 enum class Growth {
   greedy,
   careful,  ///< no neighbours in one plane, which may belong to bodies side by side, and none
             ///< with which the hull would not stay empty
-  known,    ///< all that come into question are known to be in convex position
+  known,    ///< all candidates are known to be in convex position
 };
 
-/// Whether a polygon may be a face of a solid; `convex_only`: of one all of whose faces are convex.
+/// True if a polygon may be a face of a solid; `convex_only`: of one with convex faces alone.
 inline bool mayBeFace(const OccluderPolygon& polygon, bool convex_only) {
   return polygon.planar && polygon.one_sided && !polygon.faces_scene &&
          (polygon.convex || !convex_only);
 }
 
-/// Grows convex sets over common edges. It holds references to what it is made of and changes
-/// nothing, so that threads can share it.
+/// Grows convex sets over common edges. It holds references to its arguments and changes nothing,
+/// so that threads can share it.
 class ConvexSetGrowth {
  public:
   ConvexSetGrowth(const OccluderPolygons& all, const OccluderEdgeUsers& users,
                   const ConvexGroups& groups)
       : all_(all), users_(users), groups_(groups) {}
 
-  /// The set of one polygon and of neighbours, and theirs, of its group; `available(p)` says which
+  /// The set of one polygon and of neighbours, and theirs, of its group; `available(p)`: whether p
   /// may join.
   template <class Available>
   ConvexSet grow(Index seed, Growth way, const Available& available) const;
 
   std::optional<Occluder> hullOf(const ConvexSet& set) const;
-  /// Whether a polygon lies on a plane, whichever way it looks.
+  /// True if a polygon lies on a plane, whichever way it looks.
   bool isOn(const OccluderPolygon& polygon, const Occluder::Plane& plane) const;
 
  private:

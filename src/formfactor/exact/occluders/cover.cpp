@@ -32,7 +32,7 @@ void split(const CoverPiece& piece, const Occluder::Plane& plane, CoverPiece& be
   }
 }
 
-/// Whether a piece is too thin to block anything: between lines a coincidence apart.
+/// True if a piece is too thin to block anything: between lines a coincidence apart.
 bool isThin(const CoverPiece& piece, double coincidence) {
   if (piece.size() < 3) return true;
   double length = 0;

@@ -1,4 +1,4 @@
-// Which polygons are nothing but faces of solids.
+// Polygons that are nothing but faces of solids.
 #pragma once
 
 #include <span>
@@ -9,9 +9,9 @@
 
 namespace radiosity {
 
-/// True if faces of the solids, together, cover the polygon: what it blocks they block, right
-/// behind or in front of it. What each face leaves is cut off in convex pieces and handed to the
-/// next. `places`: of the solids' boxes.
+/// True if faces of the solids, together, cover the polygon: they block all that it blocks, right
+/// behind or in front of it. The parts outside a face are cut into convex pieces and handed to the
+/// next face. `places`: of the solids' boxes.
 bool isCoveredBySolids(const OccluderPolygons& all, const OccluderPolygon& polygon,
                        std::span<const Occluder> solids, const BoxTree& places);
 

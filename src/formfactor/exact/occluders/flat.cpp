@@ -131,7 +131,7 @@ class PieceMerger {
     return loop;
   }
 
-  /// Turns one way, but for corners closer than the coincidence to the chord beside them.
+  /// True if a loop turns one way, but for corners closer than the coincidence to their chord.
   bool isConvex(const std::vector<Index>& loop) const {
     for (std::size_t k = 0; k < loop.size(); ++k) {
       const Vec3& a = all_.vertices[loop[k]];
@@ -150,7 +150,7 @@ class PieceMerger {
   std::map<std::vector<Index>, std::size_t> known_;
 };
 
-/// Triangles, or trapezoids on new vertices.
+/// The triangles of a polygon, or trapezoids on new vertices.
 std::vector<std::vector<Index>> convexParts(OccluderPolygons& all, const OccluderPolygon& polygon) {
   std::vector<std::vector<Index>> parts;
   for (const auto& t : all.trianglesOf(polygon)) parts.emplace_back(t.begin(), t.end());
@@ -203,7 +203,7 @@ bool makeFlatOccluder(const OccluderPolygons& all, const FlatPiece& piece, Occlu
   const std::vector<Index> loop =
       planarHull(all.vertices, piece.loop, piece.normal, all.coincidence);
   if (loop.size() < 3) return false;
-  // Corners on one plane, that of a patch that is not quite planar: its vertices' mean.
+  // Puts the corners on one plane, at the mean of their offsets, if a patch is not quite planar.
   double offset = 0;
   for (const Index v : loop) {
     offset += glm::dot(piece.normal, all.vertices[v]) / double(loop.size());

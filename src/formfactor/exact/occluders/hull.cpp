@@ -15,8 +15,8 @@
 namespace radiosity {
 namespace {
 
-/// Radians between two faces at an edge. Planes that are known to the coincidence then cross within
-/// 1,000 of it of the edge.
+/// Least angle of two faces at an edge, in radians. Planes known to the coincidence then cross
+/// within 1,000 coincidences of the edge.
 constexpr double kKnifeAngle = 1e-3;
 
 struct FlatPoint {
@@ -121,7 +121,7 @@ class Wrapping {
     return members;
   }
 
-  /// True where two faces meet back to back but for the coincidence: where their planes cross is
+  /// True if two faces meet back to back but for the coincidence: the crossing of their planes is
   /// not known, and points off the body may be behind all of its planes.
   static bool hasKnifeEdge(const Occluder& occluder) {
     return std::any_of(
@@ -220,7 +220,7 @@ void boundOccluder(Occluder& occluder) {
   }
 }
 
-/// Cones over the faces, from the centre; a face is a fan of triangles over its edges.
+/// Sums cones over the faces, from the centre; a face is a fan of triangles over its edges.
 double volumeOf(const Occluder& occluder) {
   double volume = 0;
   for (const Occluder::Edge& edge : occluder.edges) {

@@ -14,7 +14,7 @@
 namespace radiosity {
 namespace {
 
-/// Sides of each polygon of the mesh.
+/// The facets of each polygon of the mesh.
 std::vector<std::vector<Index>> facetsOfPolygons(const ElementSet& elements, std::size_t polygons) {
   std::vector<std::vector<Index>> facets(polygons);
   for (Index f = 0; f < elements.facets.size(); ++f) {
@@ -31,7 +31,7 @@ void attach(Occluder& solid, Index face, Index facet, const ElementSet& elements
     hidden_facets[facet] = 1;
 }
 
-/// Which solids may be where a polygon is.
+/// Boxes of the solids, to find those at a polygon.
 BoxTree placesOf(const std::vector<Occluder>& solids, double margin) {
   std::vector<Box3> boxes;
   boxes.reserve(solids.size());

@@ -32,12 +32,12 @@ struct Occluder {
       facets;  ///< facets of the ElementSet that lie on its planes (sides of its polygons); sorted
 };
 
-/// Together the occluders block what the polygons block, between any two points that elements see
-/// each other from: a convex solid takes the place of polygons that lie on its surface only where
-/// nothing of the scene is inside it and nothing can be seen through what is missing of its
-/// surface (the contact area under a box on a floor). Every other polygon is a flat occluder or
-/// several, its convex pieces; coplanar neighbours are merged where that gives fewer pieces.
-/// A polygon that cannot block anything (all of the scene lies on one side of its plane) has none.
+/// Together the occluders block the same as the polygons, between any two points that elements see
+/// each other from. A convex solid takes the place of polygons that lie on its surface only if
+/// nothing of the scene is inside it and nothing can be seen through gaps in its surface (the
+/// contact area under a box on a floor). Every other polygon is a flat occluder or several, its
+/// convex pieces; coplanar neighbours are merged if that gives fewer pieces. A polygon that cannot
+/// block anything (all of the scene lies on one side of its plane) has none.
 struct OccluderSet {
   /// Takes n log n time. Throws Cancelled.
   OccluderSet(const PatchMesh& mesh, const ElementSet& elements, Progress& progress);

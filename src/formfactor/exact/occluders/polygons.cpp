@@ -115,7 +115,7 @@ void OccluderPolygons::describe(OccluderPolygon& polygon) const {
 
 void OccluderPolygons::findBounding() {
   for (OccluderPolygon& polygon : polygons) {
-    // A patch that is not planar stands for the plane that it is off by so much.
+    // A patch that is not planar stands for its plane, with its deviation as tolerance.
     const double tolerance = std::max(coincidence, polygon.deviation);
     const bool above = !allBehind(polygon.normal, polygon.offset, tolerance);
     const bool below = !allBehind(-polygon.normal, -polygon.offset, tolerance);

@@ -20,7 +20,7 @@ struct OccluderPolygon {
   /// Into OccluderPolygons::vertices; outer loops counter-clockwise about the normal, holes
   /// clockwise.
   std::vector<std::vector<Index>> loops;
-  std::vector<Index> corners;  ///< of its convex hull: all that a half-space has to be asked
+  std::vector<Index> corners;  ///< of its convex hull: enough to test it against a half-space
   Vec3 normal{0.0};
   double offset = 0;          ///< dot(normal, x) of its plane
   double area = 0;            ///< scaled
@@ -49,7 +49,7 @@ struct OccluderPolygons {
   BoxTree tree;           ///< of the polygons' boxes
   PointTree vertex_tree;  ///< of the scene's vertices
 
-  /// Whether no vertex of the scene lies in front of a plane, farther than `margin`.
+  /// True if no vertex of the scene lies in front of a plane, farther than `margin`.
   bool allBehind(const Vec3& normal, double offset, double margin) const {
     return !vertex_tree.anyAbove(normal, offset + margin);
   }

@@ -102,7 +102,7 @@ void OccluderRegions::lookInto(Index component) {
   if (!lookFromMembers(component) || !lookFromOthers(component)) closed_[component] = 0;
 }
 
-/// False if that cannot be told.
+/// Finds the windings in front of the members; false if one cannot be told.
 bool OccluderRegions::lookFromMembers(Index component) {
   for (const Index p : members_[component]) {
     if (front_winding_.count(side_class_[p]) != 0) continue;
@@ -126,7 +126,7 @@ bool OccluderRegions::lookFromOthers(Index component) {
     if (known) occupied_[component].insert(*doubled / 2);
     return known;
   });
-  // About what is out of its box the surface does not wind.
+  // The surface does not wind about points outside its box.
   if (near < members_.size()) occupied_[component].insert(0);
   return known;
 }

@@ -1,4 +1,4 @@
-// On which side of which closed surface every polygon's front looks.
+// The sides of closed surfaces that the fronts of polygons look into.
 #pragma once
 
 #include <cstdint>
@@ -25,18 +25,18 @@ class OccluderRegions {
 
   /// True if `polygon` belongs to a closed set of polygons and none of the scene's polygons looks
   /// into a region that this set winds about as often as about the points behind `polygon`. Then
-  /// every way from what looks at such a point crosses the surface. Proofs of one scene may take
-  /// kMostSolidAngles; what needs more is not proved.
+  /// every way from a polygon's front to such a point crosses the surface. Proofs of one scene may
+  /// take kMostSolidAngles; polygons that need more are not proved.
   bool isBehindOpaque(Index polygon);
 
  private:
   /// A second or less.
   static constexpr std::size_t kMostSolidAngles = 10000000;
 
-  /// Twice the number of windings about an inner point of a polygon, its own part left out;
-  /// nothing where that is no whole number: it lies on another polygon.
+  /// Twice the number of windings about an inner point of a polygon, its own part left out; nothing
+  /// if that is no whole number: the point lies on another polygon.
   std::optional<int> doubledWinding(Index component, Index polygon);
-  /// Windings about the points in front of every member, and about all other components.
+  /// Finds the windings about the points in front of every member, and about all other components.
   void lookInto(Index component);
   bool lookFromMembers(Index component);
   bool lookFromOthers(Index component);

@@ -19,7 +19,7 @@ namespace {
 double depthBehind(const OccluderPolygons& all, Index front) {
   const OccluderPolygon& polygon = all.polygons[front];
   Occluder shaft;
-  // Lifted off the plane, so that what coincides with the polygon is inside by more than the
+  // Lifted off the plane, so that a polygon that coincides with this one is inside by more than the
   // margin.
   shaft.planes.push_back({polygon.normal, polygon.offset + 3 * all.coincidence});
   const std::vector<Index>& loop = polygon.loops[0];

@@ -40,7 +40,7 @@ struct GroupMemory {
 
 /// A solid that only the closed surface around it makes opaque.
 struct Candidate {
-  Index polygon;  ///< that it was grown from
+  Index polygon;  ///< from which it was grown
   double score;   ///< goes down as others take its faces
   ConvexSolid solid;
 };
@@ -88,7 +88,7 @@ class SolidSearch {
     }
   }
 
-  /// search(g) for all groups, in parallel; in their order, what it returned.
+  /// Runs search(g) for all groups, in parallel; returns the results in the groups' order.
   template <class Found, class Search>
   std::vector<Found> searchAll(const Search& search) {
     std::vector<Found> found(members_.size());
@@ -99,7 +99,7 @@ class SolidSearch {
     return found;
   }
 
-  /// Bodies that stand for themselves, or on something.
+  /// Adds bodies that stand for themselves, or on something.
   void addPlain() {
     using Found = std::vector<ConvexSolid>;
     const Flags before = taken_;
@@ -135,9 +135,9 @@ class SolidSearch {
     return solids;
   }
 
-  /// Bodies that touch others on several sides, so that their faces are cut or merged with others',
-  /// like boards and books. Of those that only the closed surface around them makes opaque, those
-  /// with much volume and most faces first.
+  /// Adds bodies that touch others on several sides, so that their faces are cut or merged with
+  /// others', like boards and books. Of those that only the closed surface around them makes
+  /// opaque, those with most volume times area of polygons on their faces come first.
   void addOpaque() {
     findOpaque();
     using Found = std::vector<Candidate>;
@@ -150,14 +150,14 @@ class SolidSearch {
                        return a.score != b.score ? a.score > b.score : a.polygon < b.polygon;
                      });
     for (Candidate& candidate : candidates) {
-      // Another may have taken its faces by now.
+      // Another candidate may have taken its faces by now.
       if (!(score(candidate.solid) > 0.5 * candidate.score)) continue;
       take(candidate.solid);
       solids_.push_back(std::move(candidate.solid));
     }
   }
 
-  /// One after the other: proofs have a common bound.
+  /// Finds opaque polygons one after the other: proofs have a common bound.
   void findOpaque() {
     opaque_.assign(all_.polygons.size(), 0);
     for (Index p = 0; p < all_.polygons.size(); ++p) {
@@ -203,7 +203,7 @@ class SolidSearch {
     return slab;
   }
 
-  /// `opaque`: a closed surface around the solid may make it one.
+  /// `opaque`: a closed surface around the set may make it a solid.
   std::optional<ConvexSolid> grownSolid(Index seed, bool convex_only, bool opaque,
                                         GroupMemory& memory) const {
     if (isCurved(seed)) return {};
@@ -240,7 +240,7 @@ class SolidSearch {
 
   bool mayJoin(Index p, bool convex_only) const { return mayBeFace(all_.polygons[p], convex_only); }
 
-  /// Part of a curved surface that is no convex body as a whole.
+  /// True for a part of a curved surface that is no convex body as a whole.
   bool isCurved(Index p) const { return groups_.isLarge(p) && !groups_.isConvex(p); }
 
   bool areConvex(const std::vector<Index>& group) const {
@@ -251,7 +251,7 @@ class SolidSearch {
     return mayJoin(p, false) && groups_.of(p) == groups_.of(group.front());
   }
 
-  /// By a solid found before, or by one of the group that is searched.
+  /// True if a solid found before, or one of the group that is searched, has taken the polygon.
   bool isTaken(Index p, const GroupMemory& memory) const {
     return taken_[p] != 0 || memory.taken[place_[p]] != 0;
   }
@@ -275,8 +275,8 @@ class SolidSearch {
   }
 
   /// True if polygons on the body's faces look into it and see more there than backs: each other,
-  /// or what is outside of an open face. (A basin is often two sheets back to back; the outer one
-  /// is in convex position. But a floor may look into the box that stands on it.)
+  /// or the outside of an open face. (A basin is often two sheets back to back; the outer one is in
+  /// convex position. But a floor may look into the box that stands on it.)
   bool isLookedInto(const ConvexSolid& solid, const std::vector<double>& missing) const {
     std::set<Index> looking;
     for (const ConvexSolid::OnFace& on : solid.on_faces) {
@@ -291,7 +291,7 @@ class SolidSearch {
     return false;
   }
 
-  /// `members`: ascending; of them it is known.
+  /// Finds the polygons on the solid's faces. `members`: ascending; their faces are known.
   void findOnFaces(ConvexSolid& solid, const std::vector<ConvexSet::Member>& members) const {
     all_.tree.query(boxAround(solid.body, all_.coincidence), [&](Index p) {
       const auto known =
@@ -317,7 +317,7 @@ class SolidSearch {
 
   double score(const ConvexSolid& solid) const { return areaOnFaces(solid) * volumeOf(solid.body); }
 
-  /// True if nothing gets in or out where the set does not cover the hull.
+  /// True if nothing gets in or out where the set leaves the hull open.
   bool letsNothingIn(const Occluder& hull, const ConvexSet& set, const std::vector<double>& missing,
                      bool opaque) const {
     std::vector<Index> gaps;

@@ -19,18 +19,18 @@ struct ConvexSolid {
   std::vector<OnFace> on_faces;
 };
 
-/// Finds sets of one-sided polygons in convex position (each lies behind all others' planes),
-/// grown over common edges, whose convex hull blocks just what the scene's polygons block:
+/// Finds sets of one-sided polygons in convex position (each lies behind all others' planes), grown
+/// over common edges, whose convex hull blocks just what the scene's polygons block:
 /// - no polygon enters the hull, so that nothing is inside to see or to be seen;
-/// - where the set does not cover a face of the hull, nothing gets in: the whole scene is behind
-///   that face (a box on the floor of a room, contact area dropped); or it is the only such face,
-///   so that whatever goes in has to come out elsewhere, and what is around it is tied to it edge
-///   by edge or covers it (a box on a table); or the polygons belong to a closed surface with the
-///   hull on the side that nobody looks into (a book between books on a board);
-/// - no polygons on its faces look into it and see each other, or out where a face is open (the
+/// - if the set does not cover a face of the hull, nothing gets in: the whole scene is behind that
+///   face (a box on the floor of a room, contact area dropped); or it is the only such face, so
+///   that any way in has to come out elsewhere, and its surroundings are tied to it edge by edge or
+///   cover it (a box on a table); or the polygons belong to a closed surface with the hull on the
+///   side that nobody looks into (a book between books on a board);
+/// - no polygons on its faces look into it and see each other, or out through an open face (the
 ///   inner sheet of a basin that is two sheets back to back).
-/// Where faces were cut at contacts or merged with others', so that such sets are small, slabs
-/// behind single polygons stand in (slabs.h), the more telling one of each first.
+/// If faces were cut at contacts or merged with others', so that such sets are small, slabs behind
+/// single polygons stand in (slabs.h), those with most volume and area first.
 /// A curved surface (ConvexGroups) is a solid if all of it is in convex position; parts of one that
 /// is not are left to be flat. So all takes n log n time.
 /// `taken[p]` becomes 1 for the polygons on the faces of the solids found.

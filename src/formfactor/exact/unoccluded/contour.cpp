@@ -54,8 +54,8 @@ double distanceTo(const Segment& segment, const Vec3& p) {
   return glm::length(offset - along * segment.direction);
 }
 
-/// Where along `outer` its quadrature is to be split, ascending, both ends included: there the
-/// inner integral has its singularities, or the nearest points to them in the complex plane.
+/// Places along `outer` at which its quadrature is split, ascending, both ends included: the inner
+/// integral's singularities, or the nearest points to them in the complex plane.
 struct Splits {
   static constexpr std::size_t kMost = 5;
   std::array<double, kMost> at{};
@@ -76,7 +76,7 @@ Splits findSplits(const Segment& outer, const Segment& inner) {
   const double s0 = glm::dot(offset, outer.direction);
   add(s0);
   add(s0 + inner.length * cosine);
-  // The points of both lines nearest to each other; not of lines that are all but parallel.
+  // The points of both lines nearest to each other; none for lines that are all but parallel.
   const Vec3 normal = glm::cross(outer.direction, inner.direction);
   const double sine2 = glm::dot(normal, normal);
   if (sine2 > 0) add(glm::dot(glm::cross(offset, inner.direction), normal) / sine2);
@@ -136,7 +136,7 @@ double skewEdges(const Segment& outer, const Segment& inner, double inverse_unit
     nodes[k] = gaussNodes(length, std::min(distance[k], distance[k + 1]), digits);
     all += nodes[k];
   }
-  // Far apart, one piece takes fewer.
+  // If singularities are far, one piece takes fewer.
   const double least = *std::min_element(distance.begin(), distance.begin() + splits.count);
   const double at_once = gaussNodes(outer.length, least, digits);
   if (at_once <= std::min<double>(all, kMostGaussNodes)) {
@@ -172,9 +172,9 @@ double meetingEdges(const Segment& a, const Segment& b, double from_a, double fr
 constexpr double kRoundingAngle = 1e-13;
 /// Lines are taken to meet where their distance is below this share of the tolerance.
 constexpr double kNeglected = 1e-4;
-/// Over the sine of the lines' angle: what is lost to cancellation where they meet far away.
+/// Loss to cancellation, over the sine of the lines' angle, if lines meet far away.
 constexpr double kMeetingRounding = 1e-14;
-/// No quadrature is asked for more.
+/// The finest tolerance that a quadrature is asked for.
 constexpr double kFinestTolerance = 1e-15;
 
 /// One term of the sum.
@@ -191,8 +191,8 @@ double parallelPair(const Segment& a, const Segment& b, bool same_way, double in
   return parallelEdges(0, a.length * inverse_unit, t0, t1, h) / (inverse_unit * inverse_unit);
 }
 
-/// If the edges' lines meet. Lines that all but meet are taken to: that changes the integral by
-/// about their distance. `normal`: of both directions.
+/// The integral of edges whose lines meet, else nothing. Lines that all but meet count: that
+/// changes the integral by about their distance. `normal`: across both directions.
 std::optional<double> meetingPair(const Segment& a, const Segment& b, const Vec3& normal,
                                   double inverse_unit, double tolerance) {
   const double sine2 = glm::dot(normal, normal);
@@ -267,7 +267,7 @@ double contourExchange(std::span<const Vec3> a, std::span<const Vec3> b, double 
     for (const Vec3& q : b) unit = std::max(unit, glm::distance(p, q));
   }
   if (!(unit > 0)) return 0;
-  // Terms are larger than their sum; where they are larger than expected, once more.
+  // Terms are larger than their sum. If they are larger than expected, they are computed once more.
   constexpr double kExpectedCancellation = 1e-2;
   const double first = kExpectedCancellation * tolerance;
   const Edges edges_a(a);

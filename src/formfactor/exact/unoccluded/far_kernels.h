@@ -36,7 +36,7 @@
 
 namespace radiosity {
 
-/// Up to which R each rule is good: plain + skew * skew_part.
+/// The largest R for each rule: plain + skew * skew_part.
 template <class T>
 struct RuleLimits {
   std::array<T, kFarRules> plain, skew_part;
@@ -72,7 +72,7 @@ struct FarRow {
   struct Points {
     std::array<T, kFarRulePoints> u, v, height2, weight;  ///< weight: times height; 0 if below
   };
-  /// Makes those of a rule when first asked for; they begin at rule.begin.
+  /// The points of a rule, made when first asked for; they begin at rule.begin.
   const Points& points(const FarRule& rule);
 
  private:

@@ -41,7 +41,7 @@ HWY_INLINE V sumOverColumn(D d, const T* at_u, const T* at_v, const T* weight, s
   return sum;
 }
 
-/// Where a vector of columns lies of the row.
+/// The position of a vector of columns relative to the row.
 template <class V>
 struct Separation {
   V du, dv;   // from the row's centroid to the columns', along the columns' plane

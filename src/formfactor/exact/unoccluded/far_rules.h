@@ -7,9 +7,9 @@
 
 namespace radiosity {
 
-/// Points of one square, for either element, and what pairs of them weigh. Point j of the row is
-/// paired with the first `partners` points i of the column, at a weight of
-/// row_weight * column_weight[weights][i].
+/// Points of one square, for either element, and the weights of their pairs. Point j of the row is
+/// paired with the first `partners` points i of the column, at a weight of row_weight *
+/// column_weight[weights][i].
 struct FarRule {
   struct Point {
     double s, t;

@@ -27,7 +27,7 @@ double distanceToEdges(const Vec3& p, std::span<const Vec3> polygon) {
 }
 
 constexpr int kLeastPoints = 2;
-/// More cost more than contours.
+/// More points cost more than contours.
 constexpr int kMostPoints = 8;
 /// Loss of contours to cancellation, as a share of the square of the pair's extent.
 constexpr double kContourRounding = 1e-16;
@@ -47,7 +47,7 @@ struct PointLanes {
   static_assert(kMost % kLaneAlignment == 0);
   using Lanes = std::array<double, kMost>;
 
-  /// n x n Gauss points of an element, as seen from them `centre` of the polygon.
+  /// Adds the places of the polygon's `centre` as seen from n x n Gauss points of an element.
   void addPoints(const PlanarElement& from, const Vec3& centre, int n) {
     // A triangle is a quadrilateral whose last two corners meet: its map's Jacobian vanishes there.
     const Vec3& c0 = from.outline[0];

@@ -106,7 +106,7 @@ class UnoccludedKernel::Implementation {
                      UnoccludedCounts& counts) const = 0;
 };
 
-/// All that depends on the precision of the distant pairs.
+/// The part of the kernel that depends on the precision of the distant pairs.
 template <class T>
 class UnoccludedKernel::Typed : public UnoccludedKernel::Implementation {
  public:
@@ -160,7 +160,7 @@ class UnoccludedKernel::Typed : public UnoccludedKernel::Implementation {
     UnoccludedCounts& counts;
   };
 
-  /// Some columns, sorted out by where they lie of the rows' plane.
+  /// Some columns, sorted by their side of the rows' plane.
   struct Tile {
     ElementRange elements;
     std::vector<ElementRange> runs;  ///< wholly in front

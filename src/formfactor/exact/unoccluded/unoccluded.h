@@ -16,10 +16,10 @@ struct UnoccludedCounts {
   UnoccludedCounts& operator+=(const UnoccludedCounts& other);
 };
 
-/// Exchange areas of the elements of a set. Each value is the sharpest needed of: second-order
-/// series and product Gauss (far_kernels.h), Lambert's formula over Gauss points and contour
-/// integrals (near_exchange.h). Elements that cross each other's plane by more than coincidence are
-/// clipped first; what lies within coincidence of the other's plane exchanges nothing.
+/// Exchange areas of the elements of a set. Each value takes the first that is sharp enough of:
+/// second-order series and product Gauss (far_kernels.h), Lambert's formula over Gauss points and
+/// contour integrals (near_exchange.h). Elements that cross each other's plane by more than
+/// coincidence are clipped first; parts within it exchange nothing.
 ///
 /// Error: below `tolerance` relative (single precision adds up to 1e-6), by choice of the formula:
 ///
@@ -27,12 +27,12 @@ struct UnoccludedCounts {
 ///     second-order series         farther than about 50 h
 ///     product rules, 16 to 625    from there to about 4 h
 ///     Lambert over Gauss points   from there to touching, or thinner elements
-///     contour integrals           what touches or nearly does
+///     contour integrals           touching or nearly so
 ///
 /// exact_far_kernels_test holds every instruction set to it, exact_unoccluded_test and
-/// exact_closed_forms_test the whole. What contours lose to cancellation is about 1e-16 times the
-/// square of the pair's extent. The values do not depend on the instruction set, nor on how pairs
-/// are put into blocks.
+/// exact_closed_forms_test the whole. Contours lose about 1e-16 times the square of the pair's
+/// extent to cancellation. The values do not depend on the instruction set, nor on how pairs are
+/// put into blocks.
 class UnoccludedKernel {
  public:
   /// Keeps `elements` by reference. `tolerance`: relative, of every single value; 1e-12 to 1e-2;

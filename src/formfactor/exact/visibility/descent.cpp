@@ -60,7 +60,7 @@ void VisibilityDescent::noteFacets(const VisibilityCounts& before) {
   for (const Item& item : items_) of_facets_.left += pairs(top_, item.cluster);
 }
 
-/// Settles a facet by the planes, or by there being nothing in between; else it becomes an item.
+/// Settles a facet by the planes, or if nothing is in between; else it becomes an item.
 void VisibilityDescent::addFacet(Index facet) {
   sink_.poll();
   ++counts_.facet_pairs;
@@ -113,7 +113,7 @@ ShadowPlanes& VisibilityDescent::shadow(Index row, std::size_t depth, Index occl
   return level.shadows[slot];
 }
 
-/// Settles what can be settled at this row cluster, and hands the rest to its children.
+/// Settles the items that can be settled at this row cluster; the rest is for its children.
 void VisibilityDescent::descend(Index row, std::size_t depth, std::size_t first_item,
                                 std::size_t end_item) {
   if (first_item == end_item) return;
@@ -135,8 +135,8 @@ void VisibilityDescent::descend(Index row, std::size_t depth, std::size_t first_
   dropCandidates(first_candidate);
 }
 
-/// Horizon, then candidates. Columns larger than the rows are split, others left to the row's
-/// children.
+/// Settles an item by the horizon, then by candidates. Columns larger than the rows are split,
+/// others left to the row's children.
 void VisibilityDescent::settle(Index row, std::size_t depth, Item item) {
   if (enough()) return;
   sink_.poll();

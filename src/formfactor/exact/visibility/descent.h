@@ -23,7 +23,7 @@ class VisibilityDescent {
   const VisibilityOfFacets& ofFacets() const { return of_facets_; }
 
  private:
-  /// A column cluster that is still open, and what may stand between.
+  /// A column cluster that is still open, and the occluders that may stand between.
   struct Item {
     Index cluster;
     Index first_candidate, end_candidate;  ///< into candidates_
@@ -63,7 +63,7 @@ class VisibilityDescent {
   const ElementSet& elements_;
   VisibilitySink& sink_;
   VisibilityCounts& counts_;
-  VisibilitySample sample_;  ///< most_tests: of counts_, what was in them included
+  VisibilitySample sample_;  ///< most_tests: of all in counts_, earlier ones too
   VisibilityOfFacets of_facets_;
   Index facet_ = 0;
   Index top_ = 0;

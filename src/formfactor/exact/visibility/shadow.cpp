@@ -118,7 +118,7 @@ void ShadowPlanes::findTangentsAtEdges(const Occluder& body) {
       if (!(length > coincidence_ * glm::length(along))) continue;
       const ShadowPlane plane = makePlane(normal * (1 / length), point);
       if (!isAbove(plane)) continue;
-      // Where the edge's line meets the body, turning finds no end.
+      // If the edge's line meets the body, turning finds no end.
       const bool below = std::all_of(body.corners.begin(), body.corners.end(), [&](const Vec3& c) {
         return plane.x * c.x + plane.y * c.y + plane.z * c.z - plane.offset <= coincidence_;
       });
@@ -127,7 +127,7 @@ void ShadowPlanes::findTangentsAtEdges(const Occluder& body) {
   }
 }
 
-/// Whether the light is above a plane, or on it.
+/// True if the light is above a plane, or on it.
 bool ShadowPlanes::isAbove(const ShadowPlane& plane) const {
   const std::array<double, 4> h = heights(plane, light_);
   return h[0] >= -coincidence_ && h[1] >= -coincidence_ && h[2] >= -coincidence_ &&

@@ -20,28 +20,28 @@ enum class ShadowRelation : std::uint8_t {
 /// The shadow of a convex body from a light of convex shape, by planes.
 ///
 /// Outside: the body and the hull of two shapes are apart if a plane separates them (touching
-/// within the coincidence is apart). Tried are the planes that touch both the body and the light:
-/// through an edge of the one and a corner of the other, and the body's own faces. One of them is
-/// enough for another shape on the light's side of it.
+/// within the coincidence is apart). The planes tried touch both the body and the light: through an
+/// edge of the one and a corner of the other, and the body's own faces. One of them is enough for
+/// another shape on the light's side of it.
 ///
-/// Inside: what a convex body hides from a point is convex (for x = p + s (o - p), s >= 1 and o in
-/// the body: a mean of two such points is one), so it is the intersection of half-spaces, below
-/// the faces that the point is in front of and within the planes through the point and the
-/// silhouette. A convex shape whose corners are hidden is hidden; and since that holds of both
-/// ends, corners of both shapes are enough (checked against random segments in
+/// Inside: the region that a convex body hides from a point is convex (for x = p + s (o - p), s >=
+/// 1 and o in the body: a mean of two such points is one). So it is the intersection of
+/// half-spaces, below the faces that the point is in front of and within the planes through the
+/// point and the silhouette. A convex shape whose corners are hidden is hidden; and since that
+/// holds of both ends, corners of both shapes are enough (checked against random segments in
 /// exact_visibility_test).
 class ShadowPlanes {
  public:
   /// `coincidence` as ElementSet's: corners within it of a face count as on the face.
   void build(const ShapeCorners& light, const Occluder& body, double coincidence);
 
-  /// The first 64 separating planes, a bit each: those that may still tell a shape from the body.
-  /// Those that the whole of a shape is below need no second look for its parts.
+  /// The first 64 separating planes, a bit each: set if the plane may still tell a shape from the
+  /// body. A plane that is above the whole of a shape needs no second look for its parts.
   using Planes = std::uint64_t;
   static constexpr Planes kAllPlanes = ~Planes(0);
 
-  /// `open`: kAllPlanes, or the planes left open by a shape that holds this one; planes that fail
-  /// all of this shape are taken out. Not thread-safe: remembers which plane gave the last answer.
+  /// `open`: kAllPlanes, or the planes left open by a shape that holds this one; planes above all
+  /// of this shape are taken out. Not thread-safe: remembers which plane gave the last answer.
   ShadowRelation relation(const VisibilityKernels& kernels, const ShapeCorners& shape,
                           Planes& open);
 

@@ -1,4 +1,4 @@
-// Occluders by place: which may reach into the space between two spheres.
+// Occluders by place: finds those that may reach into the space between two spheres.
 #pragma once
 
 #include <vector>
@@ -21,7 +21,7 @@ class SphereHull {
 
  private:
   Vec3 start_, axis_;
-  double radius_, slope_;  ///< at the start, and what it grows by towards the end
+  double radius_, slope_;  ///< at the start, and its growth towards the end
   double square_ = 0;      ///< of the axis; 0: one sphere holds the other, radius_ is the larger's
   double inverse_square_ = 0, tilt_ = 0;
 };
@@ -37,8 +37,8 @@ class OccluderTree {
  public:
   explicit OccluderTree(const std::vector<Occluder>& occluders);
 
-  /// Appends those that may reach into the hull of two spheres on the fronts of two planes; not
-  /// sorted. Adds the spheres looked at to `tests`.
+  /// Appends the occluders that may reach into the hull of two spheres on the fronts of two planes;
+  /// not sorted. Adds the spheres looked at to `tests`.
   void query(const Sphere& a, const Sphere& b, const HalfSpace& front_of_a,
              const HalfSpace& front_of_b, std::vector<Index>& found, std::size_t& tests) const;
 

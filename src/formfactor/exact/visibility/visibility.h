@@ -1,4 +1,4 @@
-// Which elements see each other wholly, not at all, or past what.
+// Classifies pairs of elements: unoccluded, hidden, or occluded, and by which occluders.
 #pragma once
 
 #include <limits>
@@ -33,12 +33,12 @@ enum class FacetSize { any, small, large };
 /// True of facets of eight elements or more.
 inline bool isLarge(const Facet& facet) { return facet.elements.size() >= 8; }
 
-/// Which pairs of some rows a sample looks at, and how long.
+/// The pairs of some rows that a sample looks at, and its bound.
 struct VisibilitySample {
   FacetSize size = FacetSize::any;
-  std::size_t facet_stride = 1;  ///< every so many-th of these, of the open facets after theirs,
-  std::size_t first_facet = 0;   ///< from this one of them on
-  std::size_t most_tests = std::numeric_limits<std::size_t>::max();  ///< then it stops as it is
+  std::size_t facet_stride = 1;  ///< over the open facets of this size after theirs,
+  std::size_t first_facet = 0;   ///< from this one on
+  std::size_t most_tests = std::numeric_limits<std::size_t>::max();  ///< then it stops
 };
 
 /// The result of the first step of a sample, which looks at facets as a whole.
@@ -57,14 +57,14 @@ class VisibilitySink {
   /// Nothing stands between any element of `rows` and any of `columns`. Some may still be below
   /// another's horizon, or cross its plane.
   virtual void unoccluded(ElementRange rows, ElementRange columns) = 0;
-  /// At least these may stand between; ids ascending, into OccluderSet::occluders, one or more.
+  /// Only these may stand between; ids ascending, into OccluderSet::occluders, one or more.
   virtual void occluded(Index row, Index column, std::span<const Index> occluders) = 0;
 };
 
 /// Classifies pairs of elements by descending two quadtrees at once. The list of occluders that may
 /// stand between two clusters is handed down and thinned out on the way. A whole pair of clusters
-/// is settled at once where nothing is in between, or one convex body hides all. Every answer
-/// but `occluded` is proved; touching within the coincidence blocks nothing.
+/// is settled at once if nothing is in between, or one convex body hides all. Every answer but
+/// `occluded` is proved; touching within the coincidence blocks nothing.
 class Visibility {
  public:
   /// Both are kept by reference. `simd` false: the scalar target, the same answers.
@@ -77,12 +77,12 @@ class Visibility {
   void classify(ElementRange rows, VisibilitySink& sink, VisibilityCounts& counts) const;
 
   /// Classifies the same rows against some of the facets after theirs that are not hidden, to find
-  /// out how much work that is; counts only pairs that it settles. Does nothing where the rows are
-  /// hidden_facets.
+  /// out how much work that is; counts only pairs that it settles. Does nothing if the rows' facet
+  /// is hidden (hidden_facets).
   VisibilityOfFacets classifySome(ElementRange rows, const VisibilitySample& sample,
                                   VisibilitySink& sink, VisibilityCounts& counts) const;
-  /// How many facets after that of `rows` classifySome() chooses from; 0 where the rows are
-  /// hidden_facets.
+  /// The number of facets after that of `rows` from which classifySome() chooses; 0 if the rows'
+  /// facet is hidden.
   std::size_t openFacetsAfter(ElementRange rows, FacetSize size = FacetSize::any) const;
   /// Pairs of `rows` with the elements of these.
   std::size_t openPairs(ElementRange rows, FacetSize size = FacetSize::any) const;
