@@ -34,6 +34,31 @@ FlatPolygon aboveHorizon(const Emitter& emitter, const Vec3& normal, double offs
   return clipToFront(emitter.outline, normal, offset);
 }
 
+/// The form factor from a point to an emitter that faces it, with nothing in between.
+double unblockedFactor(const Emitter& emitter, const Vec3& eye, const Vec3& normal) {
+  const Vec3 to = emitter.centre - eye;
+  const double square = glm::dot(to, to);
+  if (square > kFar * kFar * emitter.radius * emitter.radius) {
+    return -glm::dot(to, normal) * glm::dot(to, emitter.normal) * emitter.area /
+           (std::numbers::pi * square * square);
+  }
+  const FlatPolygon target = aboveHorizon(emitter, normal, glm::dot(normal, eye));
+  return target.count < 3 ? 0.0 : pointToPolygon(eye, normal, target.outline());
+}
+
+/// A point of an emitter by two numbers in [0, 1), spread as they are.
+Vec3 placeOn(const Emitter& emitter, double u, double v) {
+  const auto& o = emitter.outline;
+  if (o.size() == 4) {
+    return (1 - v) * ((1 - u) * o[0] + u * o[1]) + v * ((1 - u) * o[3] + u * o[2]);
+  }
+  if (u + v > 1) {
+    u = 1 - u;
+    v = 1 - v;
+  }
+  return o[0] + u * (o[1] - o[0]) + v * (o[2] - o[0]);
+}
+
 }  // namespace
 
 /// The emitters that an element may see, and the occluders that may be in between.
@@ -49,6 +74,24 @@ struct EmitterLight::Lights : ElementLights {
     kind = seen.empty() ? Kind::dark : candidates.empty() ? Kind::plain : Kind::partial;
     if (seen.size() + candidates.size() > kMostClips) kind = Kind::dear;
   }
+};
+
+/// What emitters would give to a point with nothing in between.
+struct EmitterLight::Unblocked {
+  struct Share {
+    Index emitter;
+    double end;  ///< of what it adds to the sum
+  };
+  std::vector<Share> shares;
+  std::vector<double> whole;  ///< by band
+  double sum = 0;             ///< over the bands
+};
+
+/// Rays from a point to points of emitters, and whether they arrive.
+struct EmitterLight::Looks {
+  std::array<Vec3, kLooks> to;
+  std::array<Index, kLooks> emitter;
+  std::array<std::uint8_t, kLooks> seen;
 };
 
 EmitterLight::EmitterLight(const PatchMesh& mesh, const PatchMaterials& materials,
@@ -237,75 +280,48 @@ double EmitterLight::clipped(const SurfacePoint& point, const Lights& lights,
   return 0;
 }
 
-double EmitterLight::aimed(const SurfacePoint& point, const Lights* lights,
-                           std::span<double> out) const {
-  ++by_rays_;
-  struct Aim {
-    Index emitter;
-    double end;  ///< end of its share in the running sum
-  };
-  thread_local std::vector<Aim> shares;
-  shares.clear();
-  const Vec3 eye = scaled(point.position);
-  const double horizon = glm::dot(point.normal, eye);
-  std::vector<double> whole(out.size(), 0.0);
-  double sum = 0;
-  const auto add = [&](Index e) {
-    const Emitter& emitter = emitters_[e];
-    if (!(glm::dot(emitter.normal, eye) > emitter.offset)) return;
-    double factor = 0;
-    const Vec3 to = emitter.centre - eye;
-    const double square = glm::dot(to, to);
-    if (square > kFar * kFar * emitter.radius * emitter.radius) {
-      factor = -glm::dot(to, point.normal) * glm::dot(to, emitter.normal) * emitter.area /
-               (std::numbers::pi * square * square);
-    } else {
-      const FlatPolygon target = aboveHorizon(emitter, point.normal, horizon);
-      if (target.count >= 3) factor = pointToPolygon(eye, point.normal, target.outline());
-    }
-    if (!(factor > 0)) return;
-    const double* exitance = materials_.emission.data() + emitter.patch * out.size();
-    double light = 0;
-    for (std::size_t b = 0; b < out.size(); ++b) {
-      whole[b] += factor * exitance[b];
-      light += factor * exitance[b];
-    }
-    shares.push_back({e, sum += light});
-  };
-  if (lights == nullptr) {
-    for (Index e = 0; e < emitters_.size(); ++e) add(e);
-  } else {
-    for (const Lights::Seen& seen : lights->seen) add(seen.emitter);
-  }
-  if (!(sum > 0)) return 0;
-  // Emitters get rays in proportion to their light, so each ray stands for the same light.
-  std::array<Vec3, kLooks> to;
+/// From what the emitters would give, where rays go: each stands for as much light.
+EmitterLight::Looks EmitterLight::look(const SurfacePoint& point, const Unblocked& light) const {
+  Looks looks;
   std::array<Index, kLooks> polygon;
-  std::array<Index, kLooks> emitter_of;
-  std::array<std::uint8_t, kLooks> seen;
   std::size_t at = 0;
   for (std::size_t k = 0; k < kLooks; ++k) {
-    while (at + 1 < shares.size() && double(aims_[k][0]) * sum >= shares[at].end) ++at;
-    const Emitter& emitter = emitters_[shares[at].emitter];
-    const auto& o = emitter.outline;
-    double u = aims_[k][1];
-    double v = aims_[k][2];
-    Vec3 place(0.0);
-    if (o.size() == 4) {
-      place = (1 - v) * ((1 - u) * o[0] + u * o[1]) + v * ((1 - u) * o[3] + u * o[2]);
-    } else {
-      if (u + v > 1) {
-        u = 1 - u;
-        v = 1 - v;
-      }
-      place = o[0] + u * (o[1] - o[0]) + v * (o[2] - o[0]);
+    while (at + 1 < light.shares.size() &&
+           double(aims_[k][0]) * light.sum >= light.shares[at].end) {
+      ++at;
     }
-    to[k] = place / elements_.scale + elements_.middle;
+    const Emitter& emitter = emitters_[light.shares[at].emitter];
+    const Vec3 place = placeOn(emitter, aims_[k][1], aims_[k][2]);
+    looks.to[k] = place / elements_.scale + elements_.middle;
     polygon[k] = elements_.facets[emitter.facet].polygon;
-    emitter_of[k] = shares[at].emitter;
+    looks.emitter[k] = light.shares[at].emitter;
   }
-  rays_.see({point.position, point.normal, surface_.owners[point.owners]}, to, polygon, seen);
-  std::vector<double> half(out.size(), 0.0);
+  rays_.see({point.position, point.normal, surface_.owners[point.owners]}, looks.to, polygon,
+            looks.seen);
+  return looks;
+}
+
+void EmitterLight::addUnblocked(const Vec3& eye, const Vec3& normal, Index e,
+                                Unblocked& light) const {
+  const Emitter& emitter = emitters_[e];
+  if (!(glm::dot(emitter.normal, eye) > emitter.offset)) return;
+  const double factor = unblockedFactor(emitter, eye, normal);
+  if (!(factor > 0)) return;
+  const std::size_t bands = light.whole.size();
+  const double* exitance = materials_.emission.data() + emitter.patch * bands;
+  double given = 0;
+  for (std::size_t b = 0; b < bands; ++b) {
+    light.whole[b] += factor * exitance[b];
+    given += factor * exitance[b];
+  }
+  light.shares.push_back({e, light.sum += given});
+}
+
+/// Adds what the looks let through. Returns the square of how far off that may be, from what every
+/// second look says by itself.
+double EmitterLight::addSeen(const SurfacePoint& point, const Unblocked& light, const Looks& looks,
+                             std::span<double> out) const {
+  const double horizon = glm::dot(point.normal, scaled(point.position));
   std::size_t above = 0;
   std::size_t visible = 0;
   std::size_t odd_above = 0;
@@ -313,30 +329,49 @@ double EmitterLight::aimed(const SurfacePoint& point, const Lights* lights,
   std::vector<double> given(out.size(), 0.0);
   std::vector<double> all(out.size(), 0.0);
   for (std::size_t k = 0; k < kLooks; ++k) {
-    if (!(glm::dot(point.normal, scaled(to[k])) > horizon)) continue;
+    if (!(glm::dot(point.normal, scaled(looks.to[k])) > horizon)) continue;
     const double* exitance =
-        materials_.emission.data() + emitters_[emitter_of[k]].patch * out.size();
-    double light = 0;
-    for (std::size_t b = 0; b < out.size(); ++b) light += exitance[b];
+        materials_.emission.data() + emitters_[looks.emitter[k]].patch * out.size();
+    double sum = 0;
+    for (std::size_t b = 0; b < out.size(); ++b) sum += exitance[b];
     for (std::size_t b = 0; b < out.size(); ++b) {
-      all[b] += exitance[b] / light;
-      if (seen[k] != 0) given[b] += exitance[b] / light;
+      all[b] += exitance[b] / sum;
+      if (looks.seen[k] != 0) given[b] += exitance[b] / sum;
     }
     ++above;
-    visible += seen[k];
+    visible += looks.seen[k];
     if (k % 2 == 1) {
       ++odd_above;
-      odd_visible += seen[k];
+      odd_visible += looks.seen[k];
     }
   }
   if (above == 0) return 0;
   for (std::size_t b = 0; b < out.size(); ++b) {
-    if (all[b] > 0) out[b] += whole[b] * given[b] / all[b];
+    if (all[b] > 0) out[b] += light.whole[b] * given[b] / all[b];
   }
-  if (odd_above == 0 || odd_above == above) return sum * sum;
+  if (odd_above == 0 || odd_above == above) return light.sum * light.sum;
   const double off =
-      sum * (double(visible) / double(above) - double(odd_visible) / double(odd_above));
+      light.sum * (double(visible) / double(above) - double(odd_visible) / double(odd_above));
   return off * off;
+}
+
+double EmitterLight::aimed(const SurfacePoint& point, const Lights* lights,
+                           std::span<double> out) const {
+  ++by_rays_;
+  thread_local Unblocked light;
+  light.shares.clear();
+  light.whole.assign(out.size(), 0.0);
+  light.sum = 0;
+  const Vec3 eye = scaled(point.position);
+  if (lights == nullptr) {
+    for (Index e = 0; e < emitters_.size(); ++e) addUnblocked(eye, point.normal, e, light);
+  } else {
+    for (const Lights::Seen& seen : lights->seen) {
+      addUnblocked(eye, point.normal, seen.emitter, light);
+    }
+  }
+  if (!(light.sum > 0)) return 0;
+  return addSeen(point, light, look(point, light), out);
 }
 
 }  // namespace radiosity

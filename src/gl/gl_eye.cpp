@@ -6,6 +6,7 @@
 #include <cstring>
 #include <deque>
 
+#include "gl/light_on_device.h"
 #include "gl/shaders.h"
 
 namespace radiosity::gl {
@@ -45,8 +46,6 @@ struct DrawCall {
   std::uint32_t count, instances, first, base_instance, needed;
 };
 
-GLuint groups(std::size_t count, std::size_t size) { return GLuint((count + size - 1) / size); }
-
 }  // namespace
 
 struct GlEye::OnDevice {
@@ -58,43 +57,6 @@ struct GlEye::OnDevice {
   Buffer vertices, corners, polygons, triangles, grids, cells, nodes, top_sums, side_sums;
   Buffer counts, draw_call;
   std::unique_ptr<Room> room;
-};
-
-/// A GpuField on the device.
-struct GlEye::Light {
-  explicit Light(const GpuField& field, int resolution)
-      : bands(field.bands),
-        eyes(field.eyes),
-        patches(field.patches),
-        means(field.first_of_mean.empty() ? 0 : field.first_of_mean.size() - 1),
-        parts_a_view(field.first_facet.empty()
-                         ? 0
-                         : 3 * std::size_t(resolution) * groups(std::size_t(resolution), 128)) {
-    const auto store = [](Buffer& buffer, const auto& values) { buffer.store(std::span(values)); };
-    store(vertices, field.vertices);
-    store(facets, field.facets);
-    store(first_facet, field.first_facet);
-    store(mean_of, field.mean_of);
-    store(first_of_mean, field.first_of_mean);
-    std::vector<float> values = field.emission;
-    values.insert(values.end(), field.reflectance.begin(), field.reflectance.end());
-    values.insert(values.end(), field.sky.begin(), field.sky.end());
-    store(materials, values);
-    values = field.emission;
-    values.resize((eyes + means) * bands);
-    store(radiosity[0], values);
-    store(radiosity[1], values);
-  }
-
-  std::size_t bands, eyes, patches, means;
-  std::size_t parts_a_view;  ///< sums of 128 pixels; 0: patches have one radiosity
-  Program means_of{{GL_COMPUTE_SHADER, {kMeans}}};
-  Program interpolate{{GL_COMPUTE_SHADER, {kTypes, kPixels, kInterpolate}}};
-  Program gather{{GL_COMPUTE_SHADER, {kTypes, kGather}}};
-  Buffer vertices, facets, first_facet, mean_of, first_of_mean, materials;
-  std::array<Buffer, 2> radiosity;  ///< the one that is gathered, and the next
-  std::size_t now = 0;
-  Buffer parts, irradiance;
 };
 
 const GpuPace& paceOf(const EyeDevice& device) { return device.hardware ? kHardware : kSoftware; }
@@ -158,15 +120,11 @@ void GlEye::store(const GpuScene& scene, const GpuWeights& weights) {
 std::size_t GlEye::largestBlock() const {
   const OnDevice& on = *on_device_;
   std::size_t largest = 0;
-  const auto see = [&](std::initializer_list<const Buffer*> buffers) {
-    for (const Buffer* buffer : buffers) largest = std::max(largest, buffer->bytes());
-  };
-  see({&on.vertices, &on.corners, &on.polygons, &on.triangles, &on.grids, &on.cells, &on.nodes,
-       &on.top_sums, &on.side_sums});
-  if (light_ != nullptr) {
-    see({&light_->vertices, &light_->facets, &light_->first_facet, &light_->mean_of,
-         &light_->first_of_mean, &light_->materials, &light_->radiosity[0]});
+  for (const Buffer* buffer : {&on.vertices, &on.corners, &on.polygons, &on.triangles, &on.grids,
+                               &on.cells, &on.nodes, &on.top_sums, &on.side_sums}) {
+    largest = std::max(largest, buffer->bytes());
   }
+  if (light_ != nullptr) largest = std::max(largest, light_->largestBlock());
   return largest;
 }
 
@@ -218,10 +176,7 @@ void GlEye::makeRoom() {
   room.corners.reserve(3 * kCornerBytes * plan_.triangles);
   room.low.reserve(rows);
   room.high.reserve(rows);
-  if (light_ != nullptr) {
-    light_->irradiance.reserve(irradianceBytes(plan_.views));
-    light_->parts.reserve(partBytes(plan_.views));
-  }
+  if (light_ != nullptr) light_->makeRoom(plan_.views);
   for (std::size_t k = 0; k < pace_.ring; ++k) {
     room.slots.push_back(std::make_unique<Slot>(irradianceBytes(plan_.views) + 2 * rows +
                                                 sizeof(GpuCounts) + sizeof(DrawCall)));
@@ -234,11 +189,11 @@ void GlEye::makeRoom() {
 }
 
 std::size_t GlEye::irradianceBytes(std::size_t views) const {
-  return light_ == nullptr ? 0 : views * light_->bands * sizeof(double);
+  return light_ == nullptr ? 0 : light_->irradianceBytes(views);
 }
 
 std::size_t GlEye::partBytes(std::size_t views) const {
-  return light_ == nullptr ? 0 : light_->parts_a_view * irradianceBytes(views);
+  return light_ == nullptr ? 0 : light_->partBytes(views);
 }
 
 std::size_t GlEye::bytes() const {
@@ -321,42 +276,9 @@ void GlEye::sum(const Batch& batch) {
 /// Gathers light. Call it after sum(), which leaves items in the picture.
 void GlEye::gatherLight(const Batch& batch) {
   const OnDevice& on = *on_device_;
-  Room& room = *on.room;
-  Light& light = *light_;
-  const Slot& slot = *room.slots[batch.slot];
-  const auto patches = std::uint32_t(light.patches);
-  const Buffer& radiosity = light.radiosity[light.now];
-  if (light.parts_a_view > 0) {
-    light.interpolate.useWith({&on.top_sums, &on.side_sums, &slot.views, &light.vertices,
-                               &light.first_facet, &light.facets, &radiosity, &light.parts});
-    glUniform1i(light.interpolate.uniform("resolution"), resolution_);
-    glUniform1i(light.interpolate.uniform("tiles_across"), int(plan_.across));
-    glUniform1ui(light.interpolate.uniform("patches"), patches);
-    glUniform1ui(light.interpolate.uniform("bands"), std::uint32_t(light.bands));
-    glDispatchCompute(groups(std::size_t(resolution_), 128), GLuint(3 * resolution_), batch.count);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  }
-  light.gather.useWith({&room.low, &room.high, &slot.views, &radiosity, &light.parts,
-                        &light.materials, &light.irradiance, &light.radiosity[1 - light.now]});
-  glUniform1ui(light.gather.uniform("patches"), patches);
-  glUniform1ui(light.gather.uniform("items"), items_);
-  glUniform1ui(light.gather.uniform("bands"), std::uint32_t(light.bands));
-  glUniform1ui(light.gather.uniform("eyes"), std::uint32_t(light.eyes));
-  glUniform1ui(light.gather.uniform("part_count"), std::uint32_t(light.parts_a_view));
-  glDispatchCompute(batch.count, 1, 1);
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-}
-
-/// Computes the means of the radiosity that is gathered.
-void GlEye::takeMeans() {
-  const Light& light = *light_;
-  if (light.means == 0) return;
-  light.means_of.useWith({&light.mean_of, &light.first_of_mean, &light.radiosity[light.now]});
-  glUniform1ui(light.means_of.uniform("means"), std::uint32_t(light.means));
-  glUniform1ui(light.means_of.uniform("eyes"), std::uint32_t(light.eyes));
-  glUniform1ui(light.means_of.uniform("bands"), std::uint32_t(light.bands));
-  glDispatchCompute(groups(light.means * light.bands, 64), 1, 1);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  const Room& room = *on.room;
+  light_->gather({on.top_sums, on.side_sums, room.slots[batch.slot]->views, room.low, room.high,
+                  batch.count, items_, int(plan_.across)});
 }
 
 void GlEye::send(const Batch& batch) {
@@ -364,7 +286,7 @@ void GlEye::send(const Batch& batch) {
   Slot& slot = *on.room->slots[batch.slot];
   const std::size_t half = 4 * rowWeights(batch.count);
   std::size_t at = irradianceBytes(batch.count);
-  if (at > 0) slot.rows.copy(light_->irradiance, 0, at);
+  if (at > 0) slot.rows.copy(light_->irradiance(), 0, at);
   slot.rows.copy(on.room->low, at, half);
   slot.rows.copy(on.room->high, at + half, half);
   at += 2 * half;
@@ -466,16 +388,16 @@ std::string GlEye::look(std::size_t count, const Describe& describe, const Take&
 
 std::string GlEye::prepare(const GpuField& field) {
   return onDevice([&] {
-    light_ = std::make_unique<Light>(field, resolution_);
+    light_ = std::make_unique<LightOnDevice>(field, resolution_);
     makeRoom();
   });
 }
 
 std::string GlEye::gather(std::size_t count, const Describe& describe, const Take& take) {
   return onDevice([&] {
-    takeMeans();
+    light_->takeMeans();
     lookAtAll(count, describe, take, true);
-    light_->now = 1 - light_->now;
+    light_->takeNext();
   });
 }
 

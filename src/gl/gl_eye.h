@@ -13,7 +13,9 @@
 
 namespace radiosity::gl {
 
-/// The pace that suits a device.
+class LightOnDevice;
+
+/// What suits a device.
 const GpuPace& paceOf(const EyeDevice& device);
 
 class GlEye final : public GpuEye {
@@ -34,8 +36,7 @@ class GlEye final : public GpuEye {
 
  private:
   struct OnDevice;
-  struct Light;
-  /// A batch of hemicubes on the device: views [first, first + count).
+  /// Hemicubes that the device works on: views [first, first + count).
   struct Batch {
     std::size_t first = 0;
     std::uint32_t count = 0;
@@ -53,7 +54,6 @@ class GlEye final : public GpuEye {
   void draw(const Batch& batch);
   void sum(const Batch& batch);
   void gatherLight(const Batch& batch);
-  void takeMeans();
   void send(const Batch& batch);
   void wait(const Batch& batch) const;
   bool hasOverflowed(const Batch& batch);
@@ -78,8 +78,8 @@ class GlEye final : public GpuEye {
   std::size_t triangle_room_ = 0;             ///< of a view
   BatchPlan plan_;
   std::unique_ptr<OnDevice> on_device_;
-  std::unique_ptr<Light> light_;  ///< null: no light is gathered
-  std::string failure_;           ///< why the device gave up; empty: it works
+  std::unique_ptr<LightOnDevice> light_;  ///< null: none is gathered
+  std::string failure_;                   ///< why the device gave up; empty: it has not
 };
 
 }  // namespace radiosity::gl

@@ -11,6 +11,11 @@
 
 namespace radiosity::gl {
 
+/// Of `size` invocations, for `count` in all.
+inline GLuint groups(std::size_t count, std::size_t size) {
+  return GLuint((count + size - 1) / size);
+}
+
 /// Memory of the device.
 class Buffer {
  public:

@@ -14,6 +14,7 @@
 
 #include "base/parallel.h"
 #include "base/scratch_rows.h"
+#include "matrix/conjugate_residuals.h"
 #include "matrix/residual_progress.h"
 #include "matrix/run_row.h"
 #include "matrix/strong_pairs.h"
@@ -28,30 +29,19 @@ namespace {
 constexpr std::size_t kClosureGrain = 16;
 /// The most Newton steps. One is needed if no entry turns negative, else a handful.
 constexpr int kMostRounds = 30;
-constexpr std::size_t kMostSteps = 2000;
-/// While entries reach 0 or leave it, each step is solved to this share of the rows' shortfall:
-/// such entries would spoil a more exact step (inexact Newton: Dembo, Eisenstat & Steihaug, SIAM J.
-/// Numer. Anal. 19, 1982). If the last step held and freed no entry, the next is solved to the
-/// tolerance.
+/// Each step is solved to this share of the rows' shortfall while entries reach 0 or leave it: they
+/// would spoil a more exact step (inexact Newton: Dembo, Eisenstat & Steihaug, SIAM J. Numer. Anal.
+/// 19, 1982). Where the last step held and freed none, the next is solved to the end.
 constexpr double kForcing = 0.1;
-/// A residual r counts as a null vector if <r, (D + W) r>, with D scaled to 1, is below this share
-/// of its square.
-constexpr double kNull = 1e-10;
-/// The residual must halve within this number of steps; otherwise the target is out of reach.
-constexpr std::size_t kStagnantSteps = 50;
-/// The shortest part of a Newton step that we try.
+/// Shortest part of a Newton step that is tried.
 constexpr double kShortestStep = 1e-6;
 /// Once entries are held at 0, each row's own weight grows by this factor times the largest
 /// shortfall. A row without free entries can then still recover.
 constexpr double kDamping = 1e-2;
 
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-}
-
-/// The problem, by position. Let e_kq be the error of F_kq and w_kq = (A_k e_kq)^2 the squared
-/// error of the exchange area. The minimum of the sum of d_kq^2 / (2 w_kq) over pairs, under sum_q
-/// d_kq = r_k and d_kq >= -G_kq, has
+/// The problem, by position. With e_kq the error of F_kq and w_kq = (A_k e_kq)^2 the squared error
+/// of the exchange area, the least sum of d_kq^2 / (2 w_kq) over pairs under sum_q d_kq = r_k and
+/// d_kq >= -G_kq has
 ///     d_kq = max(-G_kq, w_kq (m_k + m_q))
 /// with a multiplier m per row (the conditions of Karush, Kuhn and Tucker). The m minimise the dual
 ///     f(m) = sum over pairs of phi_kq(m_k + m_q) - sum_k r_k m_k,   phi' = d,
@@ -83,6 +73,7 @@ class LeastSquaresClosure {
   std::vector<double> diagonal();
   void evaluate();
   double largestLack() const;
+  std::vector<double> scaledDiagonal();
   std::vector<double> newtonStep(double tolerance);
 
   ExchangeMatrix& matrix_;
@@ -270,20 +261,23 @@ void LeastSquaresClosure::evaluate() {
   dual_ = std::accumulate(value.begin(), value.end(), 0.0);
 }
 
-/// Conjugate residuals (Stiefel 1955) on the system scaled by the root of D from both sides, with
-/// strong pairs solved directly. The method costs as much as conjugate gradients. Its residual
-/// falls in every step, even if the targets cannot be reached (the matrix is singular if a set of
-/// rows shares uncertain entries only with another set).
+/// D over the square of root_, with what damps the step: 1 while all are free.
+std::vector<double> LeastSquaresClosure::scaledDiagonal() {
+  std::vector<double> own(area_.size(), 1.0);
+  if (held_ == 0) return own;
+  const double damping = kDamping * largestLack();
+  own = diagonal();
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    own[k] = root_[k] > 0 ? own[k] / (root_[k] * root_[k]) + damping : 0;
+  }
+  return own;
+}
+
+/// On the system scaled by the root of D from both sides, with strong pairs solved directly. The
+/// matrix is singular where a set of rows shares uncertain entries only with another set.
 std::vector<double> LeastSquaresClosure::newtonStep(double tolerance) {
   const std::size_t n = area_.size();
-  const double damping = held_ > 0 ? kDamping * largestLack() : 0;
-  std::vector<double> own(n, 1.0);  // D, scaled: 1 while all are free
-  if (held_ > 0) {
-    own = diagonal();
-    for (std::size_t k = 0; k < n; ++k) {
-      own[k] = root_[k] > 0 ? own[k] / (root_[k] * root_[k]) + damping : 0;
-    }
-  }
+  const std::vector<double> own = scaledDiagonal();
   const auto multiply = [&](const std::vector<double>& x) {
     std::vector<double> scaled(n);
     for (std::size_t k = 0; k < n; ++k) scaled[k] = root_[k] > 0 ? x[k] / root_[k] : 0;
@@ -293,12 +287,11 @@ std::vector<double> LeastSquaresClosure::newtonStep(double tolerance) {
     }
     return out;
   };
-  std::vector<double> x(n, 0.0);
-  std::vector<double> residual(n);
+  std::vector<double> right(n);
   for (std::size_t k = 0; k < n; ++k) {
-    residual[k] = root_[k] > 0 ? area_[k] * lacking_[k] / root_[k] : 0;
+    right[k] = root_[k] > 0 ? area_[k] * lacking_[k] / root_[k] : 0;
   }
-  const auto largest = [&] {
+  const auto largest = [&](const std::vector<double>& residual) {
     double most = 0;
     for (std::size_t k = 0; k < n; ++k) {
       if (root_[k] > 0) most = std::max(most, std::abs(residual[k]) * root_[k] / area_[k]);
@@ -306,37 +299,8 @@ std::vector<double> LeastSquaresClosure::newtonStep(double tolerance) {
     return most;
   };
   const StrongPairs strong = strongPairs(own);
-  std::vector<double> corrected = strong.solve(residual);
-  std::vector<double> of_corrected = multiply(corrected);
-  std::vector<double> direction = corrected;
-  std::vector<double> of_direction = of_corrected;
-  double weight = dot(corrected, of_corrected);
-  std::vector<double> history{largest()};
-  const auto stalls = [&] {
-    return history.size() > kStagnantSteps &&
-           history.back() > 0.5 * history[history.size() - 1 - kStagnantSteps];
-  };
-  // If no matrix has the target sums, the residual ends as a null vector, and further steps would
-  // follow rounding.
-  const auto ends = [&] { return !(weight > kNull * dot(residual, corrected)); };
-  while (history.back() > tolerance && !ends() && history.size() < kMostSteps && !stalls()) {
-    const std::vector<double> moved = strong.solve(of_direction);
-    const double step = weight / dot(of_direction, moved);
-    for (std::size_t k = 0; k < n; ++k) {
-      x[k] += step * direction[k];
-      residual[k] -= step * of_direction[k];
-      corrected[k] -= step * moved[k];
-    }
-    progress_.check();
-    of_corrected = multiply(corrected);
-    const double last = std::exchange(weight, dot(corrected, of_corrected));
-    for (std::size_t k = 0; k < n; ++k) {
-      direction[k] = corrected[k] + weight / last * direction[k];
-      of_direction[k] = of_corrected[k] + weight / last * of_direction[k];
-    }
-    history.push_back(largest());
-    ++report_.iterations;
-  }
+  std::vector<double> x = conjugateResiduals({multiply, largest, strong}, std::move(right),
+                                             tolerance, progress_, report_.iterations);
   for (std::size_t k = 0; k < n; ++k) x[k] = root_[k] > 0 ? x[k] / root_[k] : 0;
   return x;
 }

@@ -142,61 +142,67 @@ PairPreparation::EdgeDistancesSquared PairPreparation::shadowChanges(double row_
   return most;
 }
 
-void PairPreparation::prepare(std::span<const OccludedPair> batch,
-                              std::span<const Index> occluder_list, SampledEnd end) {
-  pairs.clear();
-  blockers.clear();
-  for (std::uint32_t k = 0; k < batch.size(); ++k) {
-    const OccludedPair& given = batch[k];
-    const Index row_facet = elements_.facet[given.row];
-    const Index column_facet = elements_.facet[given.column];
-    const Heights row = heightsOver(elements_.outline(given.row), elements_.facets[column_facet]);
-    const Heights column =
-        heightsOver(elements_.outline(given.column), elements_.facets[row_facet]);
-    const double touching = elements_.coincidence;
-    if (row.most <= touching || column.most <= touching) continue;
-    SampledPair pair;
-    pair.pair = k;
-    pair.blockers_begin = std::uint32_t(blockers.size());
-    double at_row = std::numeric_limits<double>::infinity();
-    double at_column = at_row;
-    near_.clear();
-    for (std::uint32_t o = given.occluders_begin; o < given.occluders_end; ++o) {
-      const Index id = occluder_list[o];
-      if (!between(id, row_facet, column_facet).blocks) continue;
-      blockers.push_back({&occluders_.occluders[id], id, false});
-      near_.push_back({distances_.squared(given.row, id), distances_.squared(given.column, id)});
-      at_row = std::min(at_row, near_.back().row);
-      at_column = std::min(at_column, near_.back().column);
-    }
-    pair.blockers_end = std::uint32_t(blockers.size());
-    const double row_size = elements_.radius[given.row];
-    const double column_size = elements_.radius[given.column];
-    const EdgeDistancesSquared change2 = shadowChanges(row_size, column_size);
-    const bool row_is_calmer = change2.row <= kAlike * change2.column;
-    const bool at_row_end = row_is_calmer == (end == SampledEnd::calmer);
-    pair.change = float(std::sqrt(at_row_end ? change2.row : change2.column));
-    const double reach = at_row_end ? row_size : column_size;
-    const Index sampled = at_row_end ? given.row : given.column;
-    const bool few = pair.blockers_end - pair.blockers_begin <= kPairFewBlockers;
-    const bool edge_on =
-        few && std::any_of(blockers.begin() + pair.blockers_begin, blockers.end(),
-                           [&](const Blocker& b) { return distances_.seesEdgeOn(sampled, b.id); });
-    if (edge_on) pair.change *= kPairEdgeOn;
-    pair.may_cross = (at_row_end ? at_row : at_column) <= reach * reach;
-    pair.sampled = sampled;
-    pair.target = at_row_end ? given.column : given.row;
-    const bool row_cut = row.least < -touching;
-    const bool column_cut = column.least < -touching;
-    pair.sampled_cut = at_row_end ? row_cut : column_cut;
-    pair.target_cut = at_row_end ? column_cut : row_cut;
-    for (std::uint32_t b = pair.blockers_begin; b < pair.blockers_end; ++b) {
-      const Between& where = between(blockers[b].id, row_facet, column_facet);
-      blockers[b].cuts_target = at_row_end ? where.cuts_second : where.cuts_first;
-    }
-    pairs.push_back(pair);
+/// Keeps the blockers of a pair, with how far they are from both ends; returns the least of that.
+PairPreparation::EdgeDistancesSquared PairPreparation::addBlockers(
+    const OccludedPair& given, std::span<const Index> occluder_list) {
+  constexpr double kNoEdge = std::numeric_limits<double>::infinity();
+  EdgeDistancesSquared nearest{kNoEdge, kNoEdge};
+  const Index row_facet = elements_.facet[given.row];
+  const Index column_facet = elements_.facet[given.column];
+  near_.clear();
+  for (std::uint32_t o = given.occluders_begin; o < given.occluders_end; ++o) {
+    const Index id = occluder_list[o];
+    if (!between(id, row_facet, column_facet).blocks) continue;
+    blockers.push_back({&occluders_.occluders[id], id, false});
+    near_.push_back({distances_.squared(given.row, id), distances_.squared(given.column, id)});
+    nearest.row = std::min(nearest.row, near_.back().row);
+    nearest.column = std::min(nearest.column, near_.back().column);
   }
-  // One word a pair: comparing fields in three arrays would take longer than clipping.
+  return nearest;
+}
+
+void PairPreparation::addPair(std::uint32_t number, const OccludedPair& given,
+                              std::span<const Index> occluder_list, SampledEnd end) {
+  const Index row_facet = elements_.facet[given.row];
+  const Index column_facet = elements_.facet[given.column];
+  const Heights row = heightsOver(elements_.outline(given.row), elements_.facets[column_facet]);
+  const Heights column = heightsOver(elements_.outline(given.column), elements_.facets[row_facet]);
+  const double touching = elements_.coincidence;
+  if (row.most <= touching || column.most <= touching) return;
+  SampledPair pair;
+  pair.pair = number;
+  pair.blockers_begin = std::uint32_t(blockers.size());
+  const EdgeDistancesSquared nearest = addBlockers(given, occluder_list);
+  pair.blockers_end = std::uint32_t(blockers.size());
+  const double row_size = elements_.radius[given.row];
+  const double column_size = elements_.radius[given.column];
+  const EdgeDistancesSquared change2 = shadowChanges(row_size, column_size);
+  const bool row_is_calmer = change2.row <= kAlike * change2.column;
+  const bool at_row_end = row_is_calmer == (end == SampledEnd::calmer);
+  pair.change = float(std::sqrt(at_row_end ? change2.row : change2.column));
+  const double reach = at_row_end ? row_size : column_size;
+  const Index sampled = at_row_end ? given.row : given.column;
+  const bool few = pair.blockers_end - pair.blockers_begin <= kPairFewBlockers;
+  const bool edge_on =
+      few && std::any_of(blockers.begin() + pair.blockers_begin, blockers.end(),
+                         [&](const Blocker& b) { return distances_.seesEdgeOn(sampled, b.id); });
+  if (edge_on) pair.change *= kPairEdgeOn;
+  pair.may_cross = (at_row_end ? nearest.row : nearest.column) <= reach * reach;
+  pair.sampled = sampled;
+  pair.target = at_row_end ? given.column : given.row;
+  const bool row_cut = row.least < -touching;
+  const bool column_cut = column.least < -touching;
+  pair.sampled_cut = at_row_end ? row_cut : column_cut;
+  pair.target_cut = at_row_end ? column_cut : row_cut;
+  for (std::uint32_t b = pair.blockers_begin; b < pair.blockers_end; ++b) {
+    const Between& where = between(blockers[b].id, row_facet, column_facet);
+    blockers[b].cuts_target = at_row_end ? where.cuts_second : where.cuts_first;
+  }
+  pairs.push_back(pair);
+}
+
+/// One word a pair: comparing fields in three arrays would take longer than clipping.
+void PairPreparation::sortPairs() {
   order_.clear();
   for (std::uint32_t k = 0; k < pairs.size(); ++k) {
     const SampledPair& p = pairs[k];
@@ -209,6 +215,14 @@ void PairPreparation::prepare(std::span<const OccludedPair> batch,
   sorted_.clear();
   for (const SortedPair& place : order_) sorted_.push_back(pairs[place.pair]);
   pairs.swap(sorted_);
+}
+
+void PairPreparation::prepare(std::span<const OccludedPair> batch,
+                              std::span<const Index> occluder_list, SampledEnd end) {
+  pairs.clear();
+  blockers.clear();
+  for (std::uint32_t k = 0; k < batch.size(); ++k) addPair(k, batch[k], occluder_list, end);
+  sortPairs();
 }
 
 std::vector<Vec3> partInFront(const ElementSet& elements, Index element, const Facet& facet) {

@@ -88,6 +88,10 @@ class PairPreparation {
   struct EdgeDistancesSquared {
     double row, column;
   };
+  EdgeDistancesSquared addBlockers(const OccludedPair& given, std::span<const Index> occluder_list);
+  void addPair(std::uint32_t number, const OccludedPair& given,
+               std::span<const Index> occluder_list, SampledEnd end);
+  void sortPairs();
   const Between& between(Index occluder, Index row_facet, Index column_facet);
   /// Squares of SampledPair::change with the points on one end or the other.
   EdgeDistancesSquared shadowChanges(double row_size, double column_size) const;

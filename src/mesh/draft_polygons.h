@@ -1,0 +1,13 @@
+// Polygons from drafts: vertices numbered, faces under them found, all in a fixed order.
+#pragma once
+
+#include "mesh/cell_drafts.h"
+#include "mesh/straighten.h"
+
+namespace radiosity {
+
+/// Vertices and polygons, in an order that does not depend on the order of the file's faces.
+CoarseComplex complexOf(const CellsToMerge& cells, const Drafts& drafts,
+                        const StraightEdges& straight);
+
+}  // namespace radiosity
