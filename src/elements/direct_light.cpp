@@ -301,20 +301,29 @@ EmitterLight::Looks EmitterLight::look(const SurfacePoint& point, const Unblocke
   return looks;
 }
 
-void EmitterLight::addUnblocked(const Vec3& eye, const Vec3& normal, Index e,
+/// Of the emitters that an element may see, or of all.
+void EmitterLight::sumUnblocked(const SurfacePoint& point, const Lights* lights,
                                 Unblocked& light) const {
-  const Emitter& emitter = emitters_[e];
-  if (!(glm::dot(emitter.normal, eye) > emitter.offset)) return;
-  const double factor = unblockedFactor(emitter, eye, normal);
-  if (!(factor > 0)) return;
+  const Vec3 eye = scaled(point.position);
   const std::size_t bands = light.whole.size();
-  const double* exitance = materials_.emission.data() + emitter.patch * bands;
-  double given = 0;
-  for (std::size_t b = 0; b < bands; ++b) {
-    light.whole[b] += factor * exitance[b];
-    given += factor * exitance[b];
+  const auto add = [&](Index e) {
+    const Emitter& emitter = emitters_[e];
+    if (!(glm::dot(emitter.normal, eye) > emitter.offset)) return;
+    const double factor = unblockedFactor(emitter, eye, point.normal);
+    if (!(factor > 0)) return;
+    const double* exitance = materials_.emission.data() + emitter.patch * bands;
+    double given = 0;
+    for (std::size_t b = 0; b < bands; ++b) {
+      light.whole[b] += factor * exitance[b];
+      given += factor * exitance[b];
+    }
+    light.shares.push_back({e, light.sum += given});
+  };
+  if (lights == nullptr) {
+    for (Index e = 0; e < emitters_.size(); ++e) add(e);
+  } else {
+    for (const Lights::Seen& seen : lights->seen) add(seen.emitter);
   }
-  light.shares.push_back({e, light.sum += given});
 }
 
 /// Adds what the looks let through. Returns the square of how far off that may be, from what every
@@ -362,14 +371,7 @@ double EmitterLight::aimed(const SurfacePoint& point, const Lights* lights,
   light.shares.clear();
   light.whole.assign(out.size(), 0.0);
   light.sum = 0;
-  const Vec3 eye = scaled(point.position);
-  if (lights == nullptr) {
-    for (Index e = 0; e < emitters_.size(); ++e) addUnblocked(eye, point.normal, e, light);
-  } else {
-    for (const Lights::Seen& seen : lights->seen) {
-      addUnblocked(eye, point.normal, seen.emitter, light);
-    }
-  }
+  sumUnblocked(point, lights, light);
   if (!(light.sum > 0)) return 0;
   return addSeen(point, light, look(point, light), out);
 }

@@ -60,7 +60,7 @@ class EmitterLight : public FieldLight {
   void thinOut(const ElementShape& shape, const Lights& from, Lights& lights) const;
   bool ownsOccluder(Index owners, Index occluder) const;
   double clipped(const SurfacePoint& point, const Lights& lights, std::span<double> out) const;
-  void addUnblocked(const Vec3& eye, const Vec3& normal, Index e, Unblocked& light) const;
+  void sumUnblocked(const SurfacePoint& point, const Lights* lights, Unblocked& light) const;
   Looks look(const SurfacePoint& point, const Unblocked& light) const;
   double addSeen(const SurfacePoint& point, const Unblocked& light, const Looks& looks,
                  std::span<double> out) const;
