@@ -15,10 +15,10 @@ using Vec2 = glm::dvec2;
 using Vec3 = glm::dvec3;
 using Index = std::uint32_t;
 
-/// "There is no such element": an absent texture, camera, twin.
+/// The index of an element that does not exist: an absent texture, camera or twin.
 inline constexpr Index kNone = 0xffffffffu;
 
-/// Bad input or arguments: a file, the element in it and the cure, on one line. Exit code 2.
+/// Bad input or arguments: one line with the file, the element in it and the cure. Exit code 2.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -30,19 +30,19 @@ class RunError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Thrown out of a long computation after Progress::cancel(); nothing half-written stays.
+/// Thrown out of a long computation after Progress::cancel(); no half-written file remains.
 class Cancelled : public RunError {
  public:
   Cancelled() : RunError("interrupted; nothing was written") {}
 };
 
-/// Where a long computation says how far it is. The default one is silent.
-/// advance() and cancelled() may be called from any thread.
+/// Receives the progress of a long computation. The default one is silent. advance() and
+/// cancelled() may be called from any thread.
 class Progress {
  public:
   virtual ~Progress() = default;
-  /// A stage of `total` about equal steps begins, of which some are `done` already. `steps`: what
-  /// to call them ("rows"); empty: nothing that a person would count.
+  /// Begins a stage of `total` steps of about equal length, of which `done` are done already.
+  /// `steps`: their name ("rows"); empty: a person would not count them.
   virtual void begin(const std::string& /*stage*/, std::size_t /*total*/,
                      const std::string& /*steps*/ = {}, std::size_t /*done*/ = 0) {}
   virtual void advance(std::size_t /*steps*/ = 1) {}
@@ -58,8 +58,8 @@ class Progress {
   std::atomic<bool> cancelled_{false};
 };
 
-/// Limits all later parallel work of the process to `threads` threads (0: all cores).
-/// Results do not depend on it, to the bit.
+/// Limits all later parallel work of the process to `threads` threads (0: all cores). Results have
+/// the same bits for any number.
 void setThreads(int threads);
 
 }  // namespace radiosity

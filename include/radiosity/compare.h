@@ -1,4 +1,4 @@
-// Two lightings of the same surfaces, or two pictures: how far apart, and where.
+// Compares two lightings of the same surfaces, or two pictures.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ enum class LightUnit {
 /// Light on surfaces: triangles with a value at each corner, in cells (patches, faces) over which
 /// values are averaged before they are compared.
 struct LightField {
-  std::string name;  ///< in messages
+  std::string name;  ///< for messages
   std::vector<Vec3> vertices;
   std::vector<std::array<Index, 3>> triangles;  ///< T
   int bands = 3;                                ///< 1 or more
@@ -37,34 +37,34 @@ struct LightField {
   bool relative = false;              ///< no unit: srgb8
 };
 
-/// One value a patch and band: N * bands, W/m^2, row-major. `emission`: likewise, or empty where it
-/// is not known. Errors: InputError where sizes are others.
+/// The light of one value per patch and band: N * bands, W/m^2, row-major. `emission`: likewise, or
+/// empty if unknown. Errors: InputError if a size does not match.
 LightField lightOf(const PatchMesh& mesh, std::span<const double> radiosity, int bands,
                    std::string name, std::span<const double> emission = {});
-/// Three bands.
+/// The same from the colours of a lit mesh, in three bands.
 LightField lightOf(const LitMesh& mesh, LightUnit unit);
 
 struct CompareOptions {
-  bool fit_scale = false;  ///< multiply B by the one factor that brings it nearest to A
-  bool partial = false;    ///< go on where less than 99% of either side's area has a counterpart
-  /// How far apart two points of one surface may be, as a fraction of A's diagonal; 0 to 0.1.
+  bool fit_scale = false;  ///< multiply B by the factor that brings it closest to A
+  bool partial = false;    ///< go on even if less than 99% of either side's area has a counterpart
+  /// The largest distance between matching points, as a fraction of A's diagonal; 0 to 0.1.
   double match = 1e-3;
   void validate() const;
 };
 
-/// Sums over cells, weighted with area; [band].
+/// Sums over cells, weighted with area, by band.
 struct BandSums {
   BandSums() = default;
   explicit BandSums(int bands);
-  double area = 0;         ///< m^2, of what was compared
+  double area = 0;         ///< m^2 that were compared
   std::vector<double> a;   ///< W: integral of A; pictures: sum over pixels
   std::vector<double> b;   ///< of B, scaled
   std::vector<double> aa;  ///< integral of A^2
   std::vector<double> dd;  ///< of (B - A)^2
-  /// Values of all bands; those of B are multiplied by `scale`.
+  /// Adds the values of all bands; those of B are multiplied by `scale`.
   void add(double weight, std::span<const double> of_a, std::span<const double> of_b,
            double scale = 1);
-  /// sqrt(sum dd / sum aa), one band or (-1) all; 0 where both are 0, infinite where A alone is.
+  /// sqrt(sum dd / sum aa) of one band or (-1) all; 0 if sum dd is 0, else infinite if sum aa is 0.
   double relativeL2(int band = -1) const;
 };
 
@@ -75,7 +75,7 @@ struct SurfaceDifference {
 };
 
 struct LargestDifference {
-  Vec3 place{0.0};  ///< metres; of a picture x and y, pixels from the top left
+  Vec3 place{0.0};  ///< metres; in a picture x and y, pixels from the top left
   std::string surface;
   int band = 0;
   double a = 0;
@@ -83,42 +83,42 @@ struct LargestDifference {
 };
 
 struct Comparison {
-  bool cells_of_b = false;           ///< averaged over the cells of B, else of A
+  bool cells_of_b = false;           ///< averages are over the cells of B, else of A
   std::size_t cells = 0;             ///< compared
   double area_a = 0, matched_a = 0;  ///< m^2; of pictures: pixels that show something
   double area_b = 0, matched_b = 0;
-  double clipped = 0;  ///< left out of the matched area: one side is at the top of its range
-  double scale = 1;    ///< B was multiplied by it
-  /// The factor for B that least squares would choose (times `scale`) and what it would leave.
+  double clipped = 0;  ///< matched but not compared: one side is at the top of its range
+  double scale = 1;    ///< the factor by which B was multiplied
+  /// The least-squares factor for B (times `scale`) and the difference that it would leave.
   double fitted_scale = 1;
   double fitted_l2 = 0;
   BandSums sums;
-  /// Sums without emitters, which outweigh all else in `sums`; empty: neither side says what emits,
-  /// or nothing does.
+  /// Sums without emitters, which dominate `sums`. Empty: neither side knows its emitters, or
+  /// nothing emits.
   std::optional<BandSums> without_emitters;
   LargestDifference largest;
   std::vector<SurfaceDifference> surfaces;  ///< in order of their share of the difference
-  /// |B - A| by cell or pixel: Rec. 709 luminance where there are three bands, else the sum of all.
-  /// NaN: not compared.
+  /// |B - A| by cell or pixel: Rec. 709 luminance of three bands, the sum of any other number. NaN:
+  /// not compared.
   std::vector<double> difference;
-  std::vector<Note> notes;  ///< a factor of pi and others, by name
+  std::vector<Note> notes;  ///< a likely wrong factor, such as pi, by name
 
   double relativeL2(int band = -1) const { return sums.relativeL2(band); }
 };
 
-/// Means over the cells of A (of B, where only B is constant on its cells) of both, matched by
-/// position: a point's counterpart is the nearest point of the other side that faces alike. Errors:
-/// InputError where the two cannot be compared (they have other bands, other units), or too little
-/// of them matches; says what to do.
+/// Matches the two by position: a point's counterpart is the nearest point of the other side that
+/// faces alike. Compares means over the cells of A (of B if only B is constant on its cells).
+/// Errors: InputError if the two differ in bands or units, or if too little of them matches; the
+/// message says what to do.
 Comparison compare(const LightField& a, const LightField& b, const CompareOptions& options);
 
-/// Pictures of the same size, pixel by pixel where both show something; values are used as they
-/// stand (srgb8 is decoded). `match` and `partial` do not apply.
+/// Compares pictures of the same size at every pixel where both show something. Values are used as
+/// stored (srgb8 is decoded). `match` and `partial` do not apply.
 Comparison compare(const ImageFile& a, LightUnit a_is, const ImageFile& b, LightUnit b_is,
                    const CompareOptions& options);
 
-/// The cells of the side compared as a mesh to draw `difference` on: patch k is triangle k, with
-/// the difference of its cell (0 where it was not compared).
+/// The cells of the compared side as a mesh to draw `difference` on: patch k is triangle k and
+/// shows the difference of its cell (0 if that was not compared).
 PatchMesh cellMesh(const LightField& side);
 std::vector<double> differenceOnTriangles(const LightField& side, const Comparison& comparison);
 

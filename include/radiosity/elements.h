@@ -15,19 +15,19 @@
 namespace [[gnu::visibility("default")]] radiosity {
 
 struct ElementOptions {
-  /// 1e-4 to 0.5: error of interpolation at which an element is cut, over the irradiance there
-  /// (at least a tenth of the scene's mean), for elements a twentieth of the scene's diagonal long;
-  /// shorter ones are allowed more, in proportion. Indirect light is never refined below three
-  /// times the noise of its rays; vertices whose rays have a spread (standard error over mean) of
-  /// more than seven tolerances take eight times as many.
+  /// 1e-4 to 0.5: the error of interpolation at which an element is cut, relative to the irradiance
+  /// there (at least a tenth of the scene's mean), for elements a twentieth of the scene's diagonal
+  /// long; shorter ones are allowed more, in proportion. Indirect light is never refined below
+  /// three times the noise of its rays. A vertex whose rays have a spread (standard error over
+  /// mean) of more than seven tolerances takes eight times as many rays.
   double tolerance = 0.01;
   /// 1e-5 to 0.1 of the scene's diagonal: no element with a shorter edge is cut.
   double smallest_edge = 0.002;
-  /// 1 or more, of each field: where refinement would take more, what promises least stays coarse.
+  /// 1 or more, in each field. At this limit the elements that promise least stay coarse.
   std::size_t most_vertices = 400000;
-  /// Of the second pass, at a vertex: a power of two, 64 to 4096. The first pass has a quarter.
+  /// Rays per vertex in the second pass: a power of two, 64 to 4096. The first takes a quarter.
   int rays = 512;
-  /// 1 or more, of both passes together: where it would take more, each vertex has fewer rays.
+  /// 1 or more, of both passes together. At this limit each vertex gets fewer rays.
   double most_rays = 1e8;
   double crease = 30;      ///< degrees, 0 to 180; elements across sharper edges share no vertex
   std::uint64_t seed = 1;  ///< of the rays' directions
@@ -36,27 +36,27 @@ struct ElementOptions {
   void validate() const;
 };
 
-/// Where the trees stand: each patch that is a triangle or a convex quadrilateral is one root, of
-/// any other each of its pieces.
+/// The roots of the trees. A patch that is a triangle or a convex quadrilateral is one root; any
+/// other patch has a root for each of its pieces.
 struct ElementRoots {
   std::vector<Index> patch;  ///< R
   std::vector<std::array<Index, 4>>
       corner;                         ///< R, vertices of the mesh; a triangle's fourth: kNone
-  std::vector<std::size_t> of_patch;  ///< N + 1, into the above: roots of each patch
+  std::vector<std::size_t> of_patch;  ///< N + 1, into the arrays above: the roots of each patch
 
   std::size_t size() const { return patch.size(); }
   std::size_t cornerCount(std::size_t root) const { return corner[root][3] == kNone ? 3 : 4; }
 };
 
-/// An element. Its points are its corners, then, where `tested`, the middles of its edges (k: from
-/// corner k to the next) and, of a quadrilateral, its centre. Its four children: of a quadrilateral
-/// child k at corner k, with corners in the same order; of a triangle likewise, the fourth in the
-/// middle, whose corner k is the middle of the edge opposite corner k.
+/// An element. Its points are its corners, then, if `tested`, the middles of its edges (k: from
+/// corner k to the next) and the centre of a quadrilateral. It has four children. Child k lies at
+/// corner k and has its corners in the same order. In a triangle the fourth child lies in the
+/// middle, and its corner k is the middle of the edge opposite corner k.
 struct Element {
   Index first_child = kNone;  ///< kNone: a leaf
   Index first_point = 0;      ///< into ElementField::points
   std::uint8_t corners = 0;   ///< 3 or 4; 0: a root that was not evaluated
-  std::uint8_t tested = 0;    ///< 1: there are middles
+  std::uint8_t tested = 0;    ///< 1: it has points at the middles
 };
 
 /// One kind of light on a forest over the patches.
@@ -67,13 +67,13 @@ struct ElementField {
   std::size_t vertices = 0;       ///< V
 };
 
-/// How direct light was found.
+/// The method of the direct light.
 enum class DirectLight {
-  none,        ///< nothing shines but, maybe, the sky
+  none,        ///< nothing shines, except perhaps the sky
   exact,       ///< clipped exactly
-  partly,      ///< exactly, but in some places by rays to the emitters: too much is in between
-  rays,        ///< by rays to the emitters, which are many
-  hemispheres  ///< with the indirect light: emitters are too many to aim at
+  partly,      ///< clipped exactly, but by rays to the emitters where too much lies in between
+  rays,        ///< by rays to the emitters, since there are many
+  hemispheres  ///< with the indirect light, since there are too many emitters to aim at
 };
 
 struct ElementReport {
@@ -81,15 +81,15 @@ struct ElementReport {
   std::size_t roots = 0;
   std::size_t emitters = 0;           ///< convex pieces
   std::size_t direct_vertices = 0;    ///< evaluated
-  std::size_t direct_by_rays = 0;     ///< of them, by rays to the emitters
+  std::size_t direct_by_rays = 0;     ///< of these, by rays to the emitters
   std::size_t indirect_vertices = 0;  ///< evaluated, in both passes
-  double uniform_vertices = 0;        ///< of a grid of the size of the smallest element
-  std::size_t unrefined = 0;          ///< elements left coarse since there were most_vertices
+  double uniform_vertices = 0;        ///< of a uniform grid as fine as the smallest element
+  std::size_t unrefined = 0;          ///< elements left coarse because of most_vertices
   double rays = 0;
   int rays_a_vertex = 0;  ///< of the second pass
   double edge = 0;        ///< metres: the shortest edge of a leaf
-  /// Root mean square error over the area, relative to that of irradiance: of interpolation, from
-  /// the refinement's checks; of rays, from the difference of their halves.
+  /// Root mean square errors over the area, relative to that of irradiance. Interpolation: from the
+  /// refinement's checks. Rays: from the difference of their halves.
   double interpolation_error = 0;
   double ray_error = 0;
   double seconds_direct = 0;  ///< by the clock
@@ -108,21 +108,21 @@ struct Elements {
 };
 
 /// Evaluates irradiance at element vertices. `irradiance`: N * bands, of the solved patches, W/m^2.
-/// Direct light is found exactly, point to polygon, with what is in between clipped off; indirect
-/// light by rays in two passes, the first pass's elements being the sources of the second.
-/// `wanted`: N, 1: patches whose elements are wanted; empty: all. Others are left out, but for what
-/// these receive from them. The same bits for any number of threads. Errors: InputError for options
-/// out of range and sizes that do not fit. Throws Cancelled.
+/// Direct light is exact, point to polygon, with blocked parts clipped off. Indirect light is found
+/// by rays in two passes; the elements of the first pass are the sources of the second. `wanted`: N
+/// flags, 1: the patch's elements are wanted; empty: all. Other patches are evaluated only as far
+/// as wanted ones receive light from them. The same bits for any number of threads. Errors:
+/// InputError for options out of range and sizes that do not match. Throws Cancelled.
 Elements computeElements(const PatchMesh& mesh, const PatchMaterials& materials,
                          std::span<const double> irradiance, const ElementOptions& options,
                          std::span<const std::uint8_t> wanted, Progress& progress);
 
-/// Irradiance at single points, without interpolation: what elements have at their vertices, and
-/// the limit of what more of them would show. The mesh and the materials are kept by reference. All
-/// calls but the constructor may come from several threads.
+/// Irradiance at single points, without interpolation: the values that elements have at their
+/// vertices, and the limit of ever finer elements. The mesh and the materials must outlive the
+/// object. All calls but the constructor may come from several threads.
 class LightAtPoints {
  public:
-  /// Arguments and errors as of computeElements(). Direct light is found fastest on `wanted`.
+  /// Arguments and errors as in computeElements(). Direct light is found fastest on `wanted`.
   LightAtPoints(const PatchMesh& mesh, const PatchMaterials& materials,
                 std::span<const double> irradiance, const ElementOptions& options,
                 std::span<const std::uint8_t> wanted, Progress& progress);
@@ -135,11 +135,11 @@ class LightAtPoints {
 
   int bands() const;
   const ElementRoots& roots() const;
-  /// Of the sources alone; nothing of it is said of the points.
+  /// The report on the sources alone; it does not include the points.
   const ElementReport& report() const;
   /// Adds the irradiance (bands values, W/m^2) at a point of a root. Indirect light takes `rays`
-  /// rays, a power of two, kFewestRays to kMostRays; which, the point decides. Returns the square
-  /// of the standard error, summed over the bands.
+  /// rays, a power of two, kFewestRays to kMostRays; the point determines their directions. Returns
+  /// the square of the standard error, summed over the bands.
   double add(std::size_t root, const Vec3& at, int rays, std::span<double> sum) const;
 
  private:
@@ -147,24 +147,24 @@ class LightAtPoints {
   std::unique_ptr<Inside> inside_;
 };
 
-/// Finds values of a field at points of patches. All are kept by reference.
+/// Finds values of a field at points of patches. Its arguments must outlive it.
 class ElementLookup {
  public:
   ElementLookup(const PatchMesh& mesh, const ElementRoots& roots);
 
-  /// The root of the patch that holds a point of it.
+  /// The root of the patch that contains the point.
   std::size_t rootAt(std::size_t patch, const Vec3& at) const;
-  /// Where the point lies in the root: (u, v) of a quadrilateral, along the edges that leave
-  /// corner 0; of a triangle, the weights of corners 1 and 2. Points a little outside are moved in.
+  /// The place of the point in the root: (u, v) of a quadrilateral, along the edges that leave
+  /// corner 0; in a triangle the weights of corners 1 and 2. Points a little outside are moved in.
   Vec2 place(std::size_t root, const Vec3& at) const;
-  /// The leaf of a field there; kNone where the root was not evaluated.
+  /// The leaf of a field at `place`; kNone if the root was not evaluated.
   Index leafAt(const ElementField& field, std::size_t root, Vec2 place) const;
-  /// Adds the field's value there to `sum` (bands). False, and nothing is added, where the root was
-  /// not evaluated. C0 along edges that roots share.
+  /// Adds the field's value at `place` to `sum` (bands). Returns false and adds nothing if the root
+  /// was not evaluated. The value is C0 along edges that roots share.
   bool add(const ElementField& field, std::size_t root, Vec2 place, std::span<double> sum) const;
 
  private:
-  /// A point p lies at (dot(u, p) + u0, dot(v, p) + v0), in a parallelogram or a triangle.
+  /// Maps a point p to (dot(u, p) + u0, dot(v, p) + v0), in a parallelogram or a triangle.
   struct Map {
     Vec3 origin{0.0};
     Vec3 u{0.0};

@@ -1,7 +1,7 @@
-// Form factors: F_ij, the fraction of what leaves patch i that reaches patch j. Exact, area to
-// area, with the part that is blocked taken off by clipping; by rays, area to area as well; or by
-// hemicube (Cohen & Greenberg 1985), seen from one eye at each patch's centroid. Where patches
-// share unknowns (PatchMesh::clusters), i and j are clusters.
+// Form factors: F_ij is the fraction of the flux leaving patch i that reaches patch j. The methods:
+// exact, area to area, with blocked parts clipped off; rays, area to area as well; hemicube
+// (Cohen & Greenberg 1985), seen from one eye at each patch's centroid. If patches share unknowns
+// (PatchMesh::clusters), i and j are clusters.
 #pragma once
 
 #include <memory>
@@ -20,7 +20,7 @@ namespace [[gnu::visibility("default")]] radiosity {
 class Processes;
 
 enum class FormFactorMethod {
-  automatic,  ///< exact or rays, whichever a sample of rows says is right; the report says why
+  automatic,  ///< exact or rays, as a sample of rows decides; the report says why
   hemicube,
   exact,
   rays  ///< area to area, by counting cosine-distributed rays
@@ -28,47 +28,47 @@ enum class FormFactorMethod {
 
 enum class ClosureMode {
   off,
-  report,  ///< say how far the rows of a closed scene are from 1, change nothing
-  enforce  ///< change what is not known in closed form until they sum to 1 (closeRows())
+  report,  ///< report how far the rows of a closed scene are from 1, change nothing
+  enforce  ///< change entries not known in closed form until rows sum to 1 (closeRows())
 };
 
-/// What draws hemicubes. Both see the same but for pixels whose centres lie on an edge to within
-/// some 1/256 of a pixel.
+/// The device that draws hemicubes. Both see the same, except in pixels whose centres lie on an
+/// edge to within about 1/256 of a pixel.
 enum class EyeChoice {
   cpu,       ///< the same bits on every machine
-  gl,        ///< OpenGL's z-buffer, in software where there is no other
-  automatic  ///< gl where eyeDevices() finds hardware, else cpu
+  gl,        ///< OpenGL's z-buffer, in software if there is no other
+  automatic  ///< gl if eyeDevices() finds hardware, else cpu
 };
 
 /// A device that can draw hemicubes.
 struct EyeDevice {
-  std::string name;  ///< as its driver has it
+  std::string name;  ///< as its driver gives it
   std::string api;   ///< "OpenGL 4.5 ..."
   bool hardware = false;
 };
 struct EyeDevices {
   std::vector<EyeDevice> devices;  ///< hardware first
-  std::string problem;             ///< where there are none: why
+  std::string problem;             ///< if there are none: the reason
 };
-/// Looks for devices anew at every call, which takes up to a second: drivers are loaded.
+/// Looks for devices anew at every call, which takes up to a second since it loads drivers.
 EyeDevices eyeDevices();
 
 struct FormFactorOptions {
   FormFactorMethod method = FormFactorMethod::automatic;
   /// 1e-12 to 0.1. Exact: the error aimed at for an occluded pair, relative to the mean form factor
-  /// 1/N, which keeps the relative error (L2) of a row below it, mostly far below; closed forms
-  /// hold it, or 1e-5 where it is larger, relative to each value; above kExactTolerance, a tenth of
-  /// it. Rays: the error (L2) of a row over its norm, or over the area-weighted root mean square of
-  /// all norms where that is larger; so the relative error of the matrix is below it. Empty: what
-  /// the method has by default; rays then stop at kMostRaysUnasked, where a row of an open scene,
-  /// which may see next to nothing, would want a thousand times those of a closed one.
+  /// 1/N; it keeps the relative error (L2) of a row below it, mostly far below. Closed forms hold
+  /// it, or 1e-5 if that is smaller, relative to each value; above kExactTolerance, a tenth of it.
+  /// Rays: the error (L2) of a row over its norm, or over the area-weighted root mean square of all
+  /// norms if that is larger; so the relative error of the matrix is below it. Empty: the method's
+  /// default; rays then stop at kMostRaysUnasked, since a row of an open scene may see next to
+  /// nothing and would want a thousand times those of a closed one.
   std::optional<double> tolerance;
-  /// The matrix only says how bright sources are from which light is gathered anew (elements):
-  /// empty means kSourceTolerance, which leaves the error of pictures what it is to .02% of light
-  /// (tests/bench/README.md).
+  /// The matrix only gives the brightness of sources from which light is gathered anew (elements).
+  /// An empty tolerance then means kSourceTolerance, which raises the error of pictures by no more
+  /// than .02% of light (tests/bench/README.md).
   bool sources_only = false;
   ClosureMode closure = ClosureMode::report;  ///< rays: rows are closed unless `off`
-  /// Of the stored values; empty: single, double where the tolerance asks for more than 1e-6.
+  /// Of the stored values. Empty: single, or double if the tolerance is below 1e-6.
   std::optional<Precision> precision;
   int resolution = 256;    ///< hemicube: pixels along an edge of the top face; even, 16 to 4096
   std::uint64_t seed = 1;  ///< rays: of their directions; hemicube: of the turns about each normal
@@ -76,24 +76,24 @@ struct FormFactorOptions {
   EyeChoice eye = EyeChoice::cpu;  ///< hemicube
   bool symmetrize = false;         ///< hemicube: merge both estimates of each pair, then close rows
   /// Hemicube: pairs nearer than two patch sizes get the area-to-area value times the visible
-  /// fraction that the item buffer tells.
+  /// fraction from the item buffer.
   bool near_exact = false;
-  /// Rays: unknowns (patches, or clusters where there are any), ascending, whose exchange with all
-  /// others is exact: those that emit (emittingUnknowns()), since the light of all others rests on
-  /// them. They are left to rays, and the report says so, where exact rows would take more than
-  /// half as long as all rays and more than some seconds, or have more than a million pairs.
+  /// Rays: unknowns (patches, or clusters if there are any), ascending, whose exchange with all
+  /// others is exact: those that emit (emittingUnknowns()), since all other light comes from them.
+  /// They are left to rays, and the report says so, if exact rows would take more than half as long
+  /// as all rays and more than some seconds, or if they have more than a million pairs.
   std::vector<Index> exact_rows;
   std::size_t memory_limit = 0;  ///< bytes; 0: no limit
-  /// A folder on a disk. Rows that do not fit within memory_limit are in a file without a name
-  /// there (ScratchMemory), with the same bits. Empty: refused.
+  /// A folder on a disk. Rows that do not fit within memory_limit go into an unnamed file there
+  /// (ScratchMemory), with the same bits. Empty: such a matrix is refused.
   std::string scratch_folder;
-  std::size_t memory_held = 0;  ///< bytes that others hold: they count towards limit and estimate
+  std::size_t memory_held = 0;  ///< bytes held by others; they count towards limit and estimate
   bool simd = true;             ///< false: Highway's scalar target (same bits)
 
   static constexpr double kExactTolerance = 1e-3;
   static constexpr double kRayTolerance = 1e-2;
   static constexpr double kSourceTolerance = 3e-2;
-  /// Half a minute or so of two cores.
+  /// About half a minute on two cores.
   static constexpr double kMostRaysUnasked = 2e8;
 
   void validate() const;
@@ -113,13 +113,13 @@ struct ExactReport {
   std::size_t black_elements = 0;  ///< pieces of backs that are not patches: they only absorb
   std::size_t facets = 0;          ///< planar sides that carry elements
   std::size_t occluders = 0;
-  std::size_t solids = 0;        ///< of them convex solids, the rest is flat
+  std::size_t solids = 0;        ///< of these, convex solids; the rest is flat
   std::size_t skipped_hull = 0;  ///< polygons that cannot block: all of the scene is on one side
 
   std::size_t no_exchange = 0;  ///< pairs coplanar, back to back, below each other's horizon
-  std::size_t unoccluded = 0;   ///< pairs with nothing in between: no visibility code below them
+  std::size_t unoccluded = 0;   ///< pairs with nothing in between, which skip all visibility code
   std::size_t hidden = 0;       ///< pairs found to exchange nothing
-  std::size_t occluded = 0;     ///< pairs clipped against what is in between
+  std::size_t occluded = 0;     ///< pairs clipped against their occluders
 
   std::size_t facet_pairs = 0;
   std::size_t facet_pairs_no_exchange = 0;  ///< skipped whole, by their planes alone
@@ -129,15 +129,15 @@ struct ExactReport {
   std::size_t contour = 0;  ///< values by contour integrals
   std::size_t lambert = 0;  ///< values by point-to-polygon formula, averaged over points
   std::size_t product = 0;  ///< values by product quadrature
-  std::size_t clipped = 0;  ///< of all: crossing the other's plane, clipped first
+  std::size_t clipped = 0;  ///< of all: pairs that cross the other's plane, clipped first
 
   std::size_t points = 0;      ///< point evaluations of occluded pairs
   std::size_t subdivided = 0;  ///< occluded pairs that needed more than the first rule
   /// Occluded pairs evaluated again in double precision: too near for their points, or intricate.
   std::size_t evaluated_again = 0;
   std::size_t rechecked = 0;  ///< occluded pairs evaluated again to an eighth of the tolerance
-  /// Error over figure that 1% of rows drawn from these pairs exceed; where 1.75 times that is more
-  /// than 1, error figures are raised by so much.
+  /// The ratio of error to figure that 1% of rows drawn from these pairs exceed. If 1.75 times the
+  /// ratio is above 1, error figures are multiplied by it.
   double recheck_ratio = 0;
 
   /// Processor seconds by stage, summed over threads; preparing and finishing by the clock.
@@ -152,18 +152,18 @@ struct ExactReport {
 /// Counts and times of rays.
 struct RayReport {
   std::size_t triangles = 0;
-  std::size_t rays = 0;    ///< cast, all in all
-  std::size_t lost = 0;    ///< of them not counted: they hit the polygon they left
-  std::size_t leaked = 0;  ///< nor these: they got out of a scene that is proved closed
-  /// Rows that are exact, not estimated; empty where FormFactorOptions::exact_rows asked for none.
+  std::size_t rays = 0;    ///< cast in total
+  std::size_t lost = 0;    ///< of these, not counted: they hit the polygon they left
+  std::size_t leaked = 0;  ///< also not counted: they left a scene that is proved closed
+  /// Rows that are exact, not estimated; empty if FormFactorOptions::exact_rows asked for none.
   std::optional<std::size_t> exact_rows;
   int rounds = 0;
-  std::size_t short_rows = 0;  ///< that were given up before they met the tolerance
-  /// What rows were cast to where no tolerance was asked for and kMostRaysUnasked did not suffice
-  /// for the default.
+  std::size_t short_rows = 0;  ///< given up before they met the tolerance
+  /// The tolerance that rows were cast to, if none was asked for and kMostRaysUnasked did not
+  /// suffice for the default.
   std::optional<double> loosened_tolerance;
   double largest_row_figure = 0;  ///< largest of FormFactors::error over the norm of its row
-  /// By the clock, as the others: the tree, the look-up and the exact rows.
+  /// By the clock, like the others: the tree, the look-up and the exact rows.
   double seconds_prepare = 0;
   double seconds_cast = 0;
   double seconds_merge = 0;
@@ -172,46 +172,46 @@ struct RayReport {
 
 /// The report of a computation: its method, counts, times and errors.
 struct FormFactorReport {
-  std::string method_reason;  ///< why this method, where it was chosen automatically
+  std::string method_reason;  ///< why this method, if it was chosen automatically
   std::size_t hemicubes = 0;
   std::size_t empty_rows = 0;           ///< degenerate patches: no hemicube, no elements
   std::size_t polygons = 0;             ///< planar polygons of the mesh
   std::size_t rasterised_polygons = 0;  ///< polygon-face fills, summed over hemicubes and faces
-  std::size_t skipped_own_plane = 0;    ///< polygons never looked at: the eye lies in their plane
+  std::size_t skipped_own_plane = 0;    ///< polygons skipped since the eye lies in their plane
   std::size_t skipped_horizon = 0;      ///< behind the eye's horizon
   std::size_t skipped_facing_away = 0;  ///< back faces of closed solids seen from outside
   std::size_t skipped_face = 0;         ///< polygon-face pairs outside the face's pyramid
-  std::size_t skipped_hidden = 0;       ///< behind what is drawn, or between pixels' centres
+  std::size_t skipped_hidden = 0;       ///< behind drawn polygons, or between pixels' centres
   std::size_t pixels = 0;               ///< resolved, summed over hemicubes
   std::size_t near_pairs = 0;           ///< entries replaced by area-to-area values
-  std::size_t capped = 0;               ///< rows whose near entries were held at a sum of 1
+  std::size_t capped = 0;               ///< rows whose near entries were limited to a sum of 1
   std::string simd_target;              ///< Highway's name, e.g. "AVX3", "SCALAR"
-  double seconds = 0;                   ///< all in all
-  double seconds_plan = 0;       ///< of these, finding out what it will take; preparing included
-  double estimated_seconds = 0;  ///< the others, as they were announced before the run
+  double seconds = 0;                   ///< in total
+  double seconds_plan = 0;              ///< of these, for the plan, including its preparation
+  double estimated_seconds = 0;         ///< the others, as estimated before the run
   std::size_t matrix_bytes = 0;
-  std::size_t estimated_bytes = 0;  ///< as announced before the run
+  std::size_t estimated_bytes = 0;  ///< as estimated before the run
   double reciprocity_residual = 0;  ///< of the raw rows; 0 by construction in the exact method
-  /// max |fronts + backs + sky - 1| over non-empty rows. Exact: raw where the scene is closed; else
-  /// how far fronts + backs exceed 1.
+  /// max |fronts + backs + sky - 1| over non-empty rows. Exact: raw in a closed scene; else the
+  /// amount by which fronts + backs exceed 1.
   double largest_row_error = 0;
-  /// Exact and rays: of the matrix, area-weighted relL2 of F; see FormFactors.
+  /// Exact and rays: area-weighted relL2 of the error of F; see FormFactors.
   double error_figure = 0;
   bool closed = false;  ///< no patch sees the sky
   bool symmetrized = false;
-  ClosureReport closure;          ///< where symmetrized, or exact and closed
-  bool closure_enforced = false;  ///< exact: rows were closed, not only looked at
+  ClosureReport closure;          ///< if symmetrized, or exact and closed
+  bool closure_enforced = false;  ///< exact: rows were closed, not only measured
   ExactReport exact;
   RayReport rays;
   std::vector<Note> notes;  ///< surfaces seen from behind, ...
 };
 
-/// The matrix and each row's three accounts, which sum to 1: seen fronts (the row sum), seen
-/// backs, sky. N values each, 0 in the row of a degenerate patch. Where patches share unknowns
-/// (PatchMesh::clusters) rows are those of clusters, PatchMesh::unknowns() of them. Exact: fronts
-/// and backs are what was computed; sky is 0 in a closed scene, where 1 - fronts - backs is the raw
-/// error of closure, and 1 - fronts - backs in an open one, where rounding and the tolerance may
-/// leave it a little below 0.
+/// The matrix and the three accounts of each row, which sum to 1: seen fronts (the row sum), seen
+/// backs and sky. N values each, 0 in the row of a degenerate patch. If patches share unknowns
+/// (PatchMesh::clusters), rows are those of clusters, PatchMesh::unknowns() of them. Exact: fronts
+/// and backs are as computed. In a closed scene sky is 0, and 1 - fronts - backs is the raw error
+/// of closure. In an open one sky is 1 - fronts - backs, which rounding and the tolerance may leave
+/// a little below 0.
 struct FormFactors {
   ExchangeMatrix matrix;
   std::vector<double> fronts;
@@ -219,56 +219,55 @@ struct FormFactors {
   std::vector<double> sky;
   /// Area-weighted share of the scene's view that ends on each surface's back, by surface.
   std::vector<double> backs_by_surface;
-  /// Exact and rays: N error figures; sqrt(sum_j (F_ij - true F_ij)^2), black backs among the j,
-  /// stays below error[i] in about 99% of rows. Exact: the median of the figures is mostly 4 to 14
-  /// times the true one. Hemicube: empty.
+  /// Exact and rays: N error figures. sqrt(sum_j (F_ij - true F_ij)^2), with black backs among the
+  /// j, stays below error[i] in about 99% of rows. Exact: the median of the figures is mostly 4 to
+  /// 14 times the true one. Hemicube: empty.
   std::vector<double> error;
   std::string method = "hemicube";  ///< or "exact", "rays"
   FormFactorReport report;
 };
 
 /// The plan of a computation, made from a sample of rows before time and memory are spent.
-/// Where `automatic` leaves the choice, it rests on the seconds of exact and of rays. Seconds are
-/// by the clock, on the threads allowed, at the rates that the sample had here and now, without the
-/// time of the plan itself. On scenes that nothing was fitted to they are mostly right within a
-/// factor of 2.
+/// `automatic` chooses by the seconds of exact and of rays. Seconds are by the clock, on the
+/// threads allowed, at the rates that the sample reached on this machine, without the time of the
+/// plan itself. On scenes that nothing was fitted to they are mostly right within a factor of 2.
 struct FormFactorPlan {
   FormFactorMethod method = FormFactorMethod::hemicube;  ///< never automatic
-  std::string reason;                                    ///< where it was automatic
-  std::size_t bytes = 0;         ///< held at once, about; options.memory_held included
+  std::string reason;                                    ///< if it was automatic
+  std::size_t bytes = 0;         ///< about, held at once; options.memory_held included
   std::size_t matrix_bytes = 0;  ///< of these, the matrix
-  /// On the disk in FormFactorOptions::scratch_folder, the matrix among it; 0: all is in memory.
+  /// On the disk in FormFactorOptions::scratch_folder, including the matrix; 0: all is in memory.
   std::size_t scratch_bytes = 0;
   double seconds = 0;
-  /// What the method works to: as FormFactorOptions::tolerance, looser where rays stop before.
+  /// As FormFactorOptions::tolerance, looser if rays stop early.
   double tolerance = 0;
-  double refining = 0;  ///< exact: share of the seconds that goes with 1 / tolerance
-  /// Of rays that stop before: seconds for the default tolerance.
+  double refining = 0;  ///< exact: the share of the seconds that is proportional to 1 / tolerance
+  /// If rays stop early: seconds for the default tolerance.
   std::optional<double> seconds_to_tolerance;
-  /// Seconds of the other one of exact and rays, where both were looked at.
+  /// Seconds of the other one of exact and rays, if both were sampled.
   std::optional<double> other_seconds;
-  /// The mesh, the options and all that the plan prepared: the computation starts from it.
+  /// The mesh, the options and everything that the plan prepared for the computation.
   struct Prepared;
   std::shared_ptr<const Prepared> prepared;
 };
 /// The plan keeps a copy of the mesh (about 160 bytes a patch).
 FormFactorPlan planFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
                                Progress& progress);
-/// The plan shares the mesh, which must not change while the plan is there.
+/// The plan shares the mesh, which must not change while the plan exists.
 FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
                                const FormFactorOptions& options, Progress& progress);
 
-/// All cores; the same bits for any number of them. Hemicube: raw rows, as they were seen, unless
-/// `symmetrize`; exact: a symmetric matrix.
-/// Errors: RunError where the estimate exceeds `memory_limit` (with the numbers).
+/// Computes form factors on all cores, with the same bits for any number of them. Hemicube: raw
+/// rows, as seen, unless `symmetrize`; exact: a symmetric matrix. Errors: RunError if the estimate
+/// exceeds `memory_limit` (with the numbers).
 FormFactors computeFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
                                Progress& progress);
 
-/// The same of a plan, which comes from planFormFactors(), as often as you like. `journal`: where
-/// rows are kept, and rows of an earlier run of the same are found; none: they are not. The same
-/// bits either way. `processes`: those that share the work and, after that, the matrix; the others
-/// are in shareFormFactors() (src/formfactor/shared_factors.h) meanwhile. Errors: also InputError
-/// where the method cannot be shared.
+/// The same from a plan of planFormFactors(), any number of times. `journal`: keeps rows, and
+/// returns rows of an earlier run of the same; none: rows are not kept. The bits are the same
+/// either way. `processes`: they share the work and, after that, the matrix; the others run
+/// shareFormFactors() (src/formfactor/shared_factors.h) meanwhile. Errors: also InputError if the
+/// method cannot be shared.
 FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress,
                                RowJournal* journal = nullptr, Processes* processes = nullptr);
 

@@ -1,6 +1,6 @@
-// Gathering: each patch or vertex looks at the scene through a hemicube and averages what it sees
-// into its irradiance H, sets B = E + rho H, and the passes repeat. No matrix is stored: each pass
-// draws all hemicubes again, since what an eye saw, kept for the next pass, would be its row.
+// Gathering: each patch or vertex looks at the scene through a hemicube, averages the light in view
+// into its irradiance H and sets B = E + rho H; the passes repeat. No matrix is stored: each pass
+// draws all hemicubes again, since the view of an eye, kept for the next pass, would be its row.
 #pragma once
 
 #include <optional>
@@ -23,18 +23,18 @@ struct GatherOptions {
   GatherAt at = GatherAt::vertices;
   int passes = 100;  ///< at most, 1 to 100000; pass k adds the k-th bounce
   /// Stop when the bound of |B* - B| is at most this times the largest emission (pi times the
-  /// radiance of the sky, where that is more), in every band.
-  /// Between 0 and 1. Radiosities are 32-bit floats: below about 1e-6 it is not reached.
+  /// radiance of the sky, if that is more), in every band. Between 0 and 1. Radiosities are 32-bit
+  /// floats: below about 1e-6 it is not reached.
   double tolerance = 1e-4;
   int resolution = 256;    ///< of the hemicube's top face, as in FormFactorOptions
   std::uint64_t seed = 1;  ///< of the random turns about each normal
   bool random_turns = true;
   EyeChoice eye = EyeChoice::cpu;
   double crease = 30;  ///< degrees; a vertex looks once per side that bends less, 0 to 180
-  /// How far an eye on an edge moves away from it, as a share of the distance to the nearest edge
-  /// that does not touch the vertex; above 0, at most 0.5. Along an edge of a room light goes as
-  /// x ln x, whose mean over a patch the straight line from its value at the edge misses by a
-  /// quarter of the patch; from a tenth of the patch it does not.
+  /// The distance that an eye on an edge moves away from it, as a share of the distance to the
+  /// nearest edge that does not touch the vertex; above 0, at most 0.5. Along an edge of a room
+  /// light goes as x ln x. A straight line from the value at the edge misses its mean over a patch
+  /// by a quarter of the patch; one from a tenth of the patch does not.
   double inset = 0.1;
   bool simd = true;  ///< false: Highway's scalar target (same bits)
   void validate() const;
@@ -44,18 +44,18 @@ struct GatherOptions {
 struct GatherPass {
   double seconds = 0;
   double change = 0;  ///< max |B_k - B_(k-1)| / max E, worst band
-  /// An upper bound of |B* - B_k|, W/m^2, worst band, B* being what the passes converge to:
-  /// (q change + rounding) / (1 - q), q = max rho_i fronts_i. Empty where q is 1 or more.
+  /// An upper bound of |B* - B_k|, W/m^2, worst band, B* being the limit of the passes:
+  /// (q change + rounding) / (1 - q), q = max rho_i fronts_i. Empty if q is 1 or more.
   std::optional<double> bound;
-  /// The account of H_k and the B_(k-1) it was gathered from, each eye weighted with the area its
-  /// value stands for. emitted + from_sky = absorbed + to_sky + on_backs + in_flight + imbalance.
+  /// The account of H_k and of the B_(k-1) that it was gathered from, each eye weighted with its
+  /// area. emitted + from_sky = absorbed + to_sky + on_backs + in_flight + imbalance.
   EnergyAccount energy;
   std::vector<double> in_flight;  ///< W a band, still to be reflected: sum of area (B_k - B_(k-1))
 };
 
 enum class GatherStatus {
   converged,   ///< the bound of |B* - B| is within the tolerance; usable
-  pass_limit,  ///< `passes` came first; B has so many bounces
+  pass_limit,  ///< `passes` came first; B has that many bounces
   no_light     ///< E = 0 and the sky is dark: B = 0
 };
 
@@ -69,11 +69,11 @@ struct GatherSummary {
   std::string simd_target;
   double seconds = 0;
   std::string message;      ///< plain words, with numbers
-  std::vector<Note> notes;  ///< on what looked
+  std::vector<Note> notes;  ///< on the device that drew the hemicubes, and others
 };
 
-/// L eyes: the N patches, or the G corner groups of the mesh. An eye that stands for no area
-/// (degenerate patches) does not look: H = 0.
+/// L eyes: the N patches, or the G corner groups of the mesh. An eye without area (degenerate
+/// patches) does not look: H = 0.
 struct Gathered {
   GatherAt at = GatherAt::patches;
   int bands = 3;                  ///< those of the materials
@@ -86,19 +86,19 @@ struct Gathered {
   std::vector<double> backs_by_surface;
   std::vector<double> area;    ///< L, m^2: the area each value stands for; sums to the mesh's area
   std::vector<Vec3> position;  ///< L, of the eyes
-  std::vector<Index> eye_of_corner;  ///< at vertices: of every entry of PatchMesh::corners
+  std::vector<Index> eye_of_corner;  ///< at vertices: the eye of every entry of PatchMesh::corners
   GatherSummary summary;
 };
 
-/// Any number of bands: what is looked up once counts for all of them. Errors: InputError naming
-/// the option or the patch, and of PatchMaterials::requireSizes(); Cancelled.
+/// Gathers any number of bands at once: all use the same views. Errors: InputError naming the
+/// option or the patch, and as PatchMaterials::requireSizes(); Cancelled.
 Gathered gather(const PatchMesh& mesh, const PatchMaterials& materials,
                 const GatherOptions& options, Progress& progress);
 
 /// Area mean of the radiosity over every patch, N * bands.
 std::vector<double> patchRadiosity(const PatchMesh& mesh, const Gathered& gathered);
 
-/// Radiosity at every entry of mesh.corners, * bands: as gathered, or each patch's own.
+/// Radiosity at every entry of mesh.corners, * bands: as gathered, or that of the patch.
 std::vector<double> cornerRadiosity(const PatchMesh& mesh, const Gathered& gathered);
 
 }  // namespace radiosity

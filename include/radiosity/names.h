@@ -70,7 +70,7 @@ inline constexpr NameTable<GatherStatus, 3> kGatherStatusNames{
      {GatherStatus::pass_limit, "pass_limit"},
      {GatherStatus::no_light, "no_light"}}};
 
-/// The word for a value. Throws logic_error where the table lacks it.
+/// The word for a value. Throws logic_error if the table lacks it.
 template <class Enum, std::size_t N>
 std::string nameOf(const NameTable<Enum, N>& table, Enum value) {
   for (const auto& [known, name] : table) {
@@ -79,7 +79,7 @@ std::string nameOf(const NameTable<Enum, N>& table, Enum value) {
   throw std::logic_error("a value has no name");
 }
 
-/// The value that a word stands for; nothing where the word is none of the table's.
+/// The value of a word; nothing if the table lacks the word.
 template <class Enum, std::size_t N>
 std::optional<Enum> named(const NameTable<Enum, N>& table, std::string_view word) {
   for (const auto& [value, name] : table) {

@@ -1,4 +1,4 @@
-// The scene cut into patches: planar, conforming, each knowing where it came from.
+// The scene cut into patches: planar, conforming, each with its origin in the scene.
 #pragma once
 
 #include <array>
@@ -13,10 +13,10 @@
 namespace [[gnu::visibility("default")]] radiosity {
 
 /// Planar polygons: the coarse faces of the scene, coplanar neighbours of a surface merged, cut
-/// where others touch or cross. They are what occludes and what is rasterised. A polygon is one or
-/// more loops: outer ones counter-clockwise about `normal`, holes clockwise; the inside is
-/// even-odd. Neighbouring polygons share their edges vertex for vertex (no T-junctions), except
-/// with faces_as_patches on a file that has them.
+/// where others touch or cross. They are the occluders and are rasterised. A polygon is one or more
+/// loops: outer ones counter-clockwise about `normal`, holes clockwise; the inside is even-odd.
+/// Neighbouring polygons share their edges vertex for vertex (no T-junctions), except with
+/// faces_as_patches on a file that has them.
 struct PlanarPolygons {
   std::vector<std::size_t> loop_offset;    ///< P + 1, into loop_begin: loops of polygon p
   std::vector<std::size_t> corner_offset;  ///< L + 1, into corners: corners of loop l
@@ -24,7 +24,7 @@ struct PlanarPolygons {
   std::vector<Vec3> normal;                ///< P, unit, of the front
   std::vector<Vec3> origin;                ///< P, a point of the plane, inside or near the polygon
   std::vector<Index> surface;              ///< P
-  std::vector<Index> index_in_surface;  ///< P, with surface name: the identity ties are broken by
+  std::vector<Index> index_in_surface;     ///< P; with surface name the identity, which breaks ties
   std::vector<std::uint8_t> back_is_patch;  ///< P, 1: the back carries patches too (two-sided)
 
   std::size_t size() const { return normal.size(); }
@@ -47,17 +47,17 @@ struct ClosedSurface {
 /// Bodies and rooms enclosed by the polygons of a mesh.
 struct Enclosures {
   std::vector<ClosedSurface> surfaces;  ///< bodies and rooms
-  std::vector<Index> surface_of;        ///< P, into surfaces; kNone: of none that is proved
-  /// P, 1: a polygon on the very same corners faces the other way, so that its front hides this
-  /// one's back.
+  std::vector<Index> surface_of;        ///< P, into surfaces; kNone: of no proved surface
+  /// P, 1: a polygon on the same corners faces the other way, so that its front hides this one's
+  /// back.
   std::vector<std::uint8_t> covered;
   bool proved_closed = false;  ///< every patch is on or in a room: none sees the sky
 };
 
-/// Patches that share one unknown, where a scene has more of them than were asked for: each patch
-/// is in one cluster, with others of its surface and side (face clusters: Willmott, Heckbert &
-/// Garland, "Face Cluster Radiosity", 1999). Patches stay what they are for all that is seen and
-/// that blocks; form factors and the system to solve are between clusters.
+/// Clusters of patches that share one unknown, in a scene with more patches than were asked for:
+/// each patch is in one cluster, with others of its surface and side (face clusters: Willmott,
+/// Heckbert & Garland, "Face Cluster Radiosity", 1999). Visibility still goes by patches; form
+/// factors and the system to solve are between clusters.
 struct PatchClusters {
   std::vector<Index> of_patch;     ///< N, each patch's cluster
   std::vector<std::size_t> begin;  ///< K + 1, into patches
@@ -82,21 +82,20 @@ struct PatchMesh {
   std::vector<double> area;                  ///< N, m^2; 0 for a degenerate patch
   std::vector<Index> polygon;                ///< N, into polygons; kNone for a degenerate patch
   std::vector<Index> surface;                ///< N, into surface_names
-  std::vector<Index> index_in_surface;  ///< N; with the surface name: identity, seeds come from it
+  std::vector<Index> index_in_surface;  ///< N; with surface name the identity, which gives seeds
   std::vector<Index> source_face;       ///< N, face of the Scene
   std::vector<std::uint8_t> side;       ///< N, 0 front, 1 back
   std::vector<Index> twin;              ///< N, the patch on the other side, or kNone
   PlanarPolygons polygons;
   std::vector<std::string> surface_names;  ///< as Scene::surfaces, in order
-  /// Enclosures of `polygons`. meshScene() finds them; in a mesh from elsewhere they may be absent:
-  /// whoever needs them then finds them anew. Absent again where vertices or polygons are changed
-  /// by hand.
+  /// Enclosures of `polygons`. meshScene() finds them. A mesh from elsewhere may lack them; each
+  /// user then finds them anew. Code that changes vertices or polygons by hand must reset them.
   std::optional<Enclosures> enclosures;
   /// Absent: every patch is an unknown of its own.
   std::optional<PatchClusters> clusters;
 
   std::size_t size() const { return area.size(); }
-  /// Rows of the form-factor matrix: clusters where there are any, else patches.
+  /// Rows of the form-factor matrix: clusters if there are any, else patches.
   std::size_t unknowns() const { return clusters ? clusters->size() : size(); }
   std::size_t unknownOf(std::size_t patch) const {
     return clusters ? clusters->of_patch[patch] : patch;
@@ -108,8 +107,8 @@ struct PatchMesh {
 };
 
 struct MeshOptions {
-  /// About how many unknowns (both sides counted once); 1 or more. Where outlines alone take more
-  /// cells, cells of a polygon are joined; a polygon is at least one patch. Where that is more than
+  /// About how many unknowns (both sides counted once); 1 or more. If outlines alone take more
+  /// cells, cells of a polygon are joined; a polygon is at least one patch. If that is more than
   /// 1.2 times as many, patches share unknowns (PatchMesh::clusters); a surface has at least one.
   std::size_t patches = 2000;
   double max_edge = 0;            ///< metres; longest patch edge; 0: derived from `patches`
@@ -119,15 +118,15 @@ struct MeshOptions {
   void validate() const;
 };
 
-/// Where area went on one surface, m^2, one side.
+/// The account of the area of one surface, m^2, one side.
 struct SurfaceAreas {
   std::string name;
   double given = 0;       ///< area of the faces in the file
   double kept = 0;        ///< area of the patches (front side)
   double buried = 0;      ///< dropped: in contact, or inside a closed solid
   double overlapped = 0;  ///< dropped: coplanar overlap with a surface that wins
-  double degenerate = 0;  ///< dropped: faces thinner than coincidence; and what welding moved off
-                          ///< (within coincidence of an edge; on to: negative)
+  double degenerate = 0;  ///< dropped: faces thinner than coincidence, and area that welding moved
+                          ///< off (within coincidence of an edge; negative: on to)
 };
 
 /// The report of meshing: every figure that `radiosity mesh` prints.
@@ -144,15 +143,15 @@ struct MeshReport {
   std::size_t nonmanifold_edges = 0;
   std::size_t polygons = 0;
   std::size_t triangles = 0;    ///< patches that are triangles
-  std::size_t quads = 0;        ///< ... that have four corners; others are joined cells, or faces
+  std::size_t quads = 0;        ///< patches with four corners; others are joined cells, or faces
   std::size_t t_junctions = 0;  ///< counted by an independent checker; 0 unless faces_as_patches
   std::size_t crossings = 0;    ///< faces_as_patches: pairs of faces that cross, not repaired
   double smallest_angle = 0;    ///< degrees, over all patches
   std::string smallest_angle_surface;
   double longest_edge = 0;   ///< metres
-  std::size_t clusters = 0;  ///< unknowns that patches share; 0: every patch is one of its own
-  double widest_cone = 0;    ///< degrees; the most a patch's normal is off its cluster's mean
-  std::vector<Note> notes;   ///< repairs, by name
+  std::size_t clusters = 0;  ///< unknowns that patches share; 0: each patch has its own
+  double widest_cone = 0;  ///< degrees; the largest angle of a patch's normal to its cluster's mean
+  std::vector<Note> notes;  ///< repairs, by name
 };
 
 struct MeshResult {
@@ -160,11 +159,11 @@ struct MeshResult {
   MeshReport report;
 };
 
-/// Cuts the scene into patches. Errors: InputError if the scene has no face with area, and of
+/// Cuts the scene into patches. Errors: InputError if the scene has no face with area, and as
 /// validate().
 MeshResult meshScene(const Scene& scene, const MeshOptions& options, Progress& progress);
 
-/// n log n in the polygons, but for rooms that others stand in. Throws Cancelled.
+/// Takes n log n in the polygons, except for rooms that contain others. Throws Cancelled.
 Enclosures findEnclosures(const PatchMesh& mesh, Progress& progress);
 
 /// T-junctions of any mesh: vertices that lie inside an edge of a patch (closer than
@@ -181,7 +180,7 @@ struct PatchMaterials {
   int bands = 3;                    ///< 1 or more
   std::vector<double> reflectance;  ///< N * bands, row-major, 0 to 1
   std::vector<double> emission;     ///< N * bands, exitance, W/m^2
-  std::vector<double> sky;  ///< bands: radiance from where nothing stands, W/m^2/sr; empty: dark
+  std::vector<double> sky;          ///< bands: radiance of the sky, W/m^2/sr; empty: dark
 
   /// Errors: InputError naming the array whose size is not that of `patches` patches, and the size
   /// it should have.
@@ -195,9 +194,9 @@ PatchMaterials patchMaterials(const Scene& scene, const PatchMesh& mesh);
 /// The unknowns, ascending, with a patch that emits in some band. Errors as requireSizes().
 std::vector<Index> emittingUnknowns(const PatchMesh& mesh, const PatchMaterials& materials);
 
-/// Corners of patches that share one value where a field is smooth: at every vertex those whose
-/// patches bend less than `crease` degrees and are reached through such neighbours on the same
-/// side. Neighbours share a surface and an edge on which nothing else stands.
+/// Groups of patch corners that share one value in a smooth field. At every vertex a group holds
+/// corners whose patches bend less than `crease` degrees and are linked by such neighbours on the
+/// same side. Neighbours share a surface and an edge that no other patch touches.
 struct CornerGroups {
   std::vector<Index> of_corner;      ///< the group of every entry of PatchMesh::corners
   std::vector<std::size_t> begin;    ///< G + 1, into corners and patches

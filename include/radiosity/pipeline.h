@@ -1,5 +1,5 @@
-// From a scene to patches, form factors and light in one object: each stage is made when it is
-// asked for, unless a results file has it already. The command line is made of this.
+// One object from a scene to patches, form factors and light. Each stage is made on request, unless
+// a results file has it already. The command line is built on it.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ enum class Stage { mesh, form_factors, solution, gather, elements, heat, basis }
 enum class StageAction {
   reused,      ///< taken from a results file
   computed,    ///< there was none
-  recomputed,  ///< there was one, which does not fit
+  recomputed,  ///< there was one that does not fit
   kept,        ///< not asked for; the results file has it and it still fits
   dropped      ///< not asked for; the results file has one, which no longer fits
 };
@@ -45,7 +45,7 @@ enum class StageAction {
 struct StageEvent {
   Stage stage = Stage::mesh;
   StageAction action = StageAction::computed;
-  /// Reused: the file it comes from. Recomputed and dropped: why, "resolution 256 -> 512".
+  /// Reused: the file it comes from. Recomputed and dropped: the reason, "resolution 256 -> 512".
   std::string detail;
   std::optional<double> seconds;  ///< by the clock; computed and recomputed
 };
@@ -55,52 +55,52 @@ struct StageEvent {
 class PipelineObserver {
  public:
   virtual ~PipelineObserver() = default;
-  /// The scene is there; overrides of one from a results file are applied after this.
+  /// The scene is loaded; overrides of one from a results file are applied after this.
   virtual void opened(const Pipeline& /*pipeline*/) {}
   /// Notes on the scene; for one from a results file, the changes made by overrides.
   virtual void notes(const Pipeline& /*pipeline*/, std::span<const Note> /*notes*/) {}
-  /// The results file `path` was named for its stages and cannot be read, for the reason `why`.
+  /// The results file `path`, whose stages were to be reused, cannot be read, for the reason `why`.
   virtual void notReused(const std::string& /*path*/, const std::string& /*why*/) {}
-  /// Form factors are about to be computed like this.
+  /// Form factors are about to be computed by this plan.
   virtual void planned(const Pipeline& /*pipeline*/, const FormFactorPlan& /*plan*/) {}
-  /// Until they are in a results file, rows of form factors are kept in the file `path` as they are
-  /// computed: whatever ends the run, the next one goes on from there.
+  /// Rows of form factors are kept in the file `path` as they are computed, until they are in a
+  /// results file. If the run ends early, the next one continues from there.
   virtual void keepsRows(const Pipeline& /*pipeline*/, const std::string& /*path*/) {}
-  /// What became of rows that were kept, and why rows are not: "resumed: 1,234 of 2,000 rows ...".
+  /// The fate of kept rows, or why rows are not kept: "resumed: 1,234 of 2,000 rows ...".
   virtual void rows(const Pipeline& /*pipeline*/, const std::string& /*text*/) {}
   virtual void stage(const Pipeline& /*pipeline*/, const StageEvent& /*event*/) {}
 };
 
-/// Rows of form factors are kept in a file as they are computed, for a run that is broken off.
+/// Keeps rows of form factors in a file as they are computed, in case the run is broken off.
 struct JournalOptions {
   std::string path;    ///< as a rule beside the file that save() will write; empty: none
-  bool resume = true;  ///< false: rows that are there are not used, but thrown away
-  /// Only where form factors are foreseen to take so many seconds, or where rows of the same are
-  /// there: less is soon computed again.
+  bool resume = true;  ///< false: rows of an earlier run are thrown away, not used
+  /// Only if form factors are expected to take this many seconds, or if the file has rows of the
+  /// same: less is soon computed again.
   double from_seconds = 10;
 };
 
 /// The options of every stage.
 struct PipelineOptions {
   MeshOptions mesh;
-  FormFactorOptions factors;  ///< memory_held 0: what the process holds is taken
+  FormFactorOptions factors;  ///< memory_held 0: the memory that the process holds is taken
   SolveOptions solve;
   GatherOptions gather;
   ElementOptions elements;
   HeatOptions heat;
   HeatConditions heat_conditions;  ///< of the scene's surfaces: readHeatConditions()
   JournalOptions journal;
-  /// Of basis(), N * bands of mesh() each. Empty: those of the results file, where its light still
-  /// fits; else lightSources().
+  /// Of basis(), N * bands of mesh() each. Empty: those of the results file if its light still
+  /// fits, else lightSources().
   std::vector<LightSource> sources{};
 };
 
 /// A scalar of every patch, to be drawn by renderFalseColour().
 enum class Quantity {
-  radiosity,    ///< luminance of B, W/m^2; of bands that are not three their sum
+  radiosity,    ///< luminance of B, W/m^2; the sum of bands that are not three
   irradiance,   ///< the same of H
-  form_factor,  ///< F from one patch to each; where patches share unknowns, from its cluster to
-                ///< the cluster of each
+  form_factor,  ///< F from one patch to each; if patches share unknowns, from its cluster to the
+                ///< cluster of each
   row_sum       ///< sum of the row of each patch, or of its cluster: fronts seen
 };
 struct ScalarField {
@@ -111,136 +111,135 @@ struct ScalarField {
 /// Scene -> mesh -> form factors -> solution -> elements; scene -> mesh -> gathered light; and mesh
 /// -> form factors -> radiative heat exchange, or light of single lamps.
 ///
-/// mesh(), factors(), solution(), elements(), gathered(), heat() and basis() first make what they
-/// stand on. Each stage has a key, a text of its options and of what it was made from. One with the
-/// same key is reused: from this object where it was made before, else from a results file;
-/// otherwise it is computed, and what stands on the one before is discarded. So options() may be
-/// changed between calls. References that a call returned hold until the stage is made again.
+/// mesh(), factors(), solution(), elements(), gathered(), heat() and basis() first make the stages
+/// that they need. Each stage has a key, a text of its options and its inputs. A stage with the
+/// same key is reused, from this object or else from a results file. Otherwise it is computed, and
+/// stages that depend on the one before are discarded. So options() may be changed between calls. A
+/// returned reference is valid until the stage is made again.
 class Pipeline {
  public:
-  /// Both must outlive it; no observer: nobody is told.
+  /// Both must outlive it. `observer` may be null.
   explicit Pipeline(Progress& progress, PipelineObserver* observer = nullptr);
   Pipeline(const Pipeline&) = delete;
   Pipeline& operator=(const Pipeline&) = delete;
   ~Pipeline();
 
-  // ---- One of these comes first, once.
+  // ---- Opening: one of these comes first, once.
 
-  /// Opens a scene file, or a results file (.h5), whose stages then are reused and whose options
+  /// Opens a scene file, or a results file (.h5), whose stages are then reused and whose options
   /// are in options(). `scene`: for a results file the overrides alone (set, materials_file,
   /// one_sided, two_sided, sky). `reuse`: with a scene file, the results file whose stages are
-  /// reused where they fit the scene and options(), as a rule the one that save() will write; it
-  /// need not be there. Errors: InputError for what cannot be read, for a results file without a
-  /// scene, where `scene` says how a scene file is read ("--unit") and `path` is a results file,
-  /// and for overrides of one with materials of its own (bands()).
+  /// reused if they fit the scene and options(), as a rule the one that save() will write; it need
+  /// not exist. Errors: InputError if a file cannot be read; with a results file also if it has no
+  /// scene, if `scene` has options for reading a scene file ("--unit"), or if `scene` has overrides
+  /// and the file has materials of its own (bands()).
   void open(const std::string& path, const SceneOptions& scene = {}, const std::string& reuse = {});
-  /// A scene in memory, as validate(const Scene&) asks; `reuse` as above.
+  /// Opens a scene in memory that passes validate(const Scene&); `reuse` as above.
   void open(Scene scene, const std::string& reuse = {});
 
-  /// Before the first stage, in process 0 of several (src/base/processes.h), which must outlive
-  /// this: form factors are computed by all of them, and their matrix stays with them. The others
+  /// Call it before the first stage, in process 0 of several (src/base/processes.h), which must
+  /// outlive this. All of them compute form factors, and the matrix stays with them. The others
   /// call serve() meanwhile.
   void share(Processes& processes) { processes_ = &processes; }
-  /// In the others, after open() with what process 0 opened: does a task that process 0 asks for
-  /// (not SharedTask::end), and then what it asks of these rows until it is done with them. Errors:
-  /// RunError where the mesh is not process 0's.
+  /// In the others, after open() with the input of process 0: does a task for process 0 (not
+  /// SharedTask::end), then serves its requests for these rows until it is done with them. Errors:
+  /// RunError if the mesh is not that of process 0.
   void serve(Processes& processes, SharedTask task);
 
-  // ---- Options: those the results file's stages were made with, elsewhere the defaults. To keep
-  // one, leave it; a stage whose options are changed is made again the next time it is asked for.
+  // ---- Options: those of the results file's stages, else the defaults. A stage whose options are
+  // changed is made again at the next request.
 
   PipelineOptions& options() { return options_; }
   const PipelineOptions& options() const { return options_; }
 
-  // ---- Stages. Errors: InputError for options out of range and a scene without area; RunError
-  // where form factors, solution or gathering fail on a scene that was read without a fault, where
+  // ---- Stages. Errors: InputError for options out of range and a scene without area; RunError if
+  // form factors, solution or gathering fail on a scene that was read without a fault, or if
   // memory_limit is exceeded; Cancelled.
 
-  /// InputError also where the results file has materials of its own (bands()) and options() ask
-  /// for another mesh than the one they belong to.
+  /// InputError also if the results file has materials of its own (bands()) and options() ask for a
+  /// mesh other than theirs.
   const MeshResult& mesh();
-  /// Reused ones come without their matrix, which may be large: matrix() reads it.
+  /// Reused form factors come without their matrix, which may be large: matrix() reads it.
   const FormFactors& factors();
-  /// The matrix of factors(). RunError where another run has replaced the file it is in.
+  /// The matrix of factors(). RunError if another run has replaced its file.
   const ExchangeMatrix& matrix();
-  /// Not converging is data: look at its summary.
+  /// The solution, which may not have converged: look at its summary.
   const Solution& solution();
-  /// Light at points after solution(), which must have values; of all patches.
+  /// Light at points of all patches, after solution(), which must have values.
   const Elements& elements();
-  /// By the gather method; stands on the mesh alone.
+  /// Light by the gather method; it needs the mesh alone.
   const Gathered& gathered();
-  /// Radiative heat exchange; stands on form factors, and on options() alone beside them. Errors:
-  /// as solveHeat().
+  /// Radiative heat exchange; it depends on form factors and options() alone. Errors: as
+  /// solveHeat().
   const HeatSolution& heat();
   /// Light of options().sources, each by itself. Errors: as solveBasis().
   const LightBasis& basis();
-  /// The results file's light of single lamps, made with these form factors and this reflectance,
-  /// whatever its sources; null: it has none that fits.
+  /// The results file's light of single lamps, with any sources, if it was made with these form
+  /// factors and this reflectance; null: there is none that fits.
   const LightBasis* basisAtHand();
   /// Materials of the patches of mesh().
   const PatchMaterials& materials();
 
-  // ---- What to draw.
+  // ---- Light and fields to draw.
 
-  /// Of solution(), which must have values, and of gathered(). One band is drawn grey; InputError
-  /// where there are two, or more than three.
+  /// Light of solution(), or of gathered() below; solution() must have values. One band is drawn
+  /// grey; InputError for two bands, or more than three.
   SurfaceLight solvedLight();
-  /// solvedLight() with elements: those of elements(), or, where there are none that fit, of the
-  /// patches `wanted` (as computeElements()) alone, which are computed at every call and not kept.
+  /// solvedLight() with elements: those of elements() or, if none fit, of the patches `wanted` (as
+  /// computeElements()) alone, which are computed at every call and not kept.
   SurfaceLight elementLight(std::span<const std::uint8_t> wanted = {});
   /// solvedLight() with light at points of the patches `wanted`, for gatherRadiance(). Errors: as
   /// computeElements().
   SurfaceLight pointLight(std::span<const std::uint8_t> wanted = {});
   SurfaceLight gatheredLight();
-  /// `patch`: of Quantity::form_factor, below N.
+  /// `patch`: for Quantity::form_factor, below N.
   ScalarField field(Quantity quantity, std::size_t patch = 0);
 
-  // ---- What there is.
+  // ---- Contents.
 
   const Scene& scene() const;
-  /// Of the materials: three, which the scene says, or what the results file opened says itself
-  /// with materials of its own, a row a patch.
+  /// The bands of the materials: three of a scene; or those of the opened results file if it has
+  /// materials of its own, a row a patch.
   int bands() const;
-  /// InputError where nothing in the scene emits and no sky shines. `cure`: what the message says
-  /// to do about it; none: to name a lamp. Materials of the file's own are not looked at: the
-  /// summary of solution() or gathered() says where all is dark.
+  /// Throws InputError if nothing in the scene emits and no sky shines. `cure`: the remedy that the
+  /// message gives; none: to name a lamp. Materials of the file's own are not examined: the summary
+  /// of solution() or gathered() says if all is dark.
   void requireLight(const std::function<std::string()>& cure = {}) const;
   /// The stages made, reused or kept so far; form factors perhaps without their matrix.
   const Results& results() const { return results_; }
-  /// Stages in the results file that nobody has asked for yet.
+  /// Stages in the results file that have not been asked for yet.
   const Results& stored() const { return stored_; }
   bool fromResultsFile() const { return from_results_; }
-  /// Where factors() computed them: they may be dear, so checkpoint() is worth its time.
+  /// True if factors() computed them: they may be expensive, so checkpoint() is worth its time.
   bool factorsComputed() const { return factors_computed_; }
-  /// After mesh(): true where the stages so far fill gaps of the results file opened and replace
+  /// After mesh(): true if the stages so far fill gaps of the opened results file and replace
   /// nothing in it.
   bool onlyAdds() const { return from_results_ && !overridden_ && !replaces_; }
-  /// Where results() differs from the file opened, or from that written since.
+  /// True if results() differs from the file that was opened, or written since.
   bool changed() const { return changed_; }
-  /// Where the file `path` holds results() as they are.
+  /// True if the file `path` holds results() as they are.
   bool isUpToDate(const std::string& path) const;
 
   // ---- The results file.
 
-  /// Completes results() for a file: stages of the results file that nobody asked for are kept
-  /// where they still fit, else dropped; a solution without values (of a singular system) is taken
-  /// out.
+  /// Completes results() for a file. Stages of the results file that were not asked for are kept if
+  /// they still fit, else dropped. A solution without values (of a singular system) is removed.
   void keepLaterStages();
-  /// Where a matrix that is to be read from the file goes; null: in memory.
+  /// The scratch memory for a matrix to be read from the file; null: it goes into memory.
   std::shared_ptr<ScratchMemory> memoryOfStoredMatrix() const;
   /// Reads the matrix of form factors that are there without it. Errors: as matrix().
   void loadMatrix();
-  /// Completes results() and brings the file `path` up to them without writing the form factors
-  /// again: where it is the one opened, or written since, and still has them. False where that
-  /// cannot be: save() it. Errors: as updateResults().
+  /// Completes results() and brings the file `path` up to date without writing the form factors
+  /// again. That needs the file that was opened, or written since, still with these form factors;
+  /// else it returns false: call save(). Errors: as updateResults().
   bool update(const std::string& path);
-  /// Completes results() and writes them, all of them where update() cannot: the file appears whole
-  /// or stays what it was. Errors: as writeResults().
+  /// Completes results() and writes them, all of them if update() cannot: the file appears whole or
+  /// is unchanged. Errors: as writeResults().
   void save(const std::string& path);
-  /// Writes what there is before a later step can fail. Light gathered on the same mesh, which the
-  /// opened file may hold, stays; nothing is dropped yet.
+  /// Writes the stages so far, before a later step can fail. Light gathered on the same mesh, if
+  /// the opened file holds any, stays; nothing is dropped yet.
   void checkpoint(const std::string& path);
-  /// Removes the file of JournalOptions, where there is one for these form factors: they are
+  /// Removes the file of JournalOptions if it has rows of these form factors, which are now
   /// written. save() and checkpoint() do so themselves.
   void discardKeptRows();
 
@@ -268,11 +267,11 @@ class Pipeline {
   void requireOwnMesh(bool reused) const;
   const PatchMaterials& materialsOfMesh();
 
-  /// What a results file holds: the one opened or written last.
+  /// The contents of the results file that was opened or written last.
   struct OnDisk {
     std::string path;
     std::string state;   ///< fileState() then
-    bool scene = false;  ///< it has the scene as it is
+    bool scene = false;  ///< it has the current scene
     /// Empty: none.
     std::string mesh_key, factors_key, solution_key, elements_key, gather_key, heat_key, basis_key;
   };
@@ -295,16 +294,16 @@ class Pipeline {
   const LightBasis& takeStoredBasis();
   void dropEmptySolution();
 
-  Processes* processes_ = nullptr;  ///< null: this one alone
+  Processes* processes_ = nullptr;  ///< null: this process alone
   std::unique_ptr<JournalFile> journal_;
   Progress& progress_;
   PipelineObserver silent_;
   PipelineObserver& observer_;
   PipelineOptions options_;
   Results results_;
-  Results stored_;  ///< a stage that left it, or was discarded, leaves its key: to say what changed
-  std::string name_;          ///< of the scene, for messages
-  std::string source_;        ///< the results file that stages come from
+  Results stored_;      ///< stages taken from it or discarded leave their keys, to say what changed
+  std::string name_;    ///< of the scene, for messages
+  std::string source_;  ///< the results file that stages come from
   std::string source_state_;  ///< when it was read
   OnDisk on_disk_;
   std::string saved_;          ///< the last file that save() or checkpoint() wrote
@@ -317,8 +316,8 @@ class Pipeline {
   bool replaces_ = false;
 };
 
-// ---- Keys of stages that are made without a pipeline, for a results file (Results::mesh_key and
-// the others): a pipeline that opens it with the same options then reuses them.
+// ---- Keys of stages made without a pipeline, for a results file (Results::mesh_key and the
+// others). A pipeline that opens the file with the same options reuses the stages.
 
 std::string keyOfMesh(const MeshOptions& options, const Scene& scene);
 std::string keyOfFactors(const FormFactorOptions& options, const PatchMesh& mesh);

@@ -33,24 +33,24 @@ struct RenderOptions {
   void validate() const;
 };
 
-/// A camera for a scene without one, which shows much of the scene, and of that what is lit: from
-/// inside a room, open or closed, at eye height; else from outside, on the side from which most can
-/// be seen. A room is where nearly all directions end on fronts: a window may be open, a wall may
-/// not be missing. Its name says which: "framed from inside", "framed from outside".
-/// `light`: N values >= 0, what each patch reflects; empty: all are lit alike. `up`: of the scene.
-/// Errors: InputError where sizes differ or the aspect ratio is no positive number.
+/// A camera for a scene without one. It shows much of the scene, and lit parts of it: from inside a
+/// room, open or closed, at eye height; else from outside, on the side from which most can be seen.
+/// It is inside a room if nearly all directions end on fronts: a window may be open, a wall may not
+/// be missing. Its name says which: "framed from inside", "framed from outside". `light`: N
+/// values >= 0, the light that each patch reflects; empty: all are lit alike. `up`: of the scene.
+/// Errors: InputError if sizes differ or the aspect ratio is no positive number.
 Camera framingCamera(const PatchMesh& mesh, bool closed, double aspect,
                      std::span<const double> light = {}, Up up = Up::y);
 
-/// The brightness that is typical of what is lit, sum a v^2 / sum a v over areas a and values v;
-/// 0 where all are 0. N values.
+/// The typical brightness of lit patches, sum a v^2 / sum a v over areas a and values v; 0 if all
+/// values are 0. N values.
 double typicalLight(const PatchMesh& mesh, std::span<const double> light);
 
 /// "eye=x,y,z;target=x,y,z;up=x,y,z;fov=DEGREES" (up and fov may be left out) -> Camera. `up`: of
 /// the scene. InputError says which part is wrong.
 Camera parseCamera(const std::string& text, Up up = Up::y);
 
-/// The camera as parseCamera() reads it, every digit of it.
+/// The camera as text that parseCamera() reads, with every digit.
 std::string cameraText(const Camera& camera);
 
 /// Corner values for Gouraud interpolation: for every entry of mesh.corners, `bands` values, the
@@ -66,15 +66,14 @@ std::vector<double> cornerValues(const PatchMesh& mesh, std::span<const double> 
 std::vector<double> rgbOf(std::span<const double> values, int bands);
 
 /// The picture of a field over the patches (N * 3, row-major, finite): linear values, no tone
-/// mapping. Colour is the mean over the samples that hit, alpha their share. Pixels are square;
-/// where the picture is narrower than the camera's own aspect the vertical field grows, so that
-/// all the camera would show is in it. Errors: InputError naming the option, camera or patch.
+/// mapping. Colour is the mean over the samples that hit, alpha their share. Pixels are square. If
+/// the picture is narrower than the camera's own aspect, the vertical field grows until the picture
+/// shows the camera's whole view. Errors: InputError naming the option, camera or patch.
 Image render(const PatchMesh& mesh, std::span<const double> values, const Camera& camera,
              const RenderOptions& options, Progress& progress);
 
-/// The same from values at the corners (mesh.corners.size() * 3, like cornerValues()), where they
-/// are known better than from the patches around them. Constant patches (not `smooth`) show
-/// `values`.
+/// The same from values at the corners (mesh.corners.size() * 3, like cornerValues()), if they are
+/// known better than from the patches around them. Constant patches (not `smooth`) show `values`.
 Image render(const PatchMesh& mesh, std::span<const double> values, std::span<const double> corners,
              const Camera& camera, const RenderOptions& options, Progress& progress);
 
@@ -87,20 +86,20 @@ Image renderRadiance(const PatchMesh& mesh, std::span<const double> radiosity,
 /// Light on the patches, as pictures show it.
 struct SurfaceLight {
   std::vector<double> patches;  ///< N * 3: radiosity B, W/m^2
-  /// mesh.corners.size() * 3: B where it is known better than from the patches around; or empty.
+  /// mesh.corners.size() * 3: B if it is known better than from the patches around; or empty.
   std::vector<double> corners;
   std::vector<double> reflected;  ///< N: as reflectedLight()
   Vec3 sky{0.0};                  ///< radiance where nothing is hit, W/m^2/sr
-  /// Light at the vertices of elements, drawn instead of the above where an element was evaluated;
-  /// or null.
+  /// Light at the vertices of elements, drawn instead of the above wherever an element was
+  /// evaluated; or null.
   std::shared_ptr<const Elements> elements;
   std::shared_ptr<const LightAtPoints> points;  ///< for gatherRadiance(); or null
-  std::vector<double> reflectance;              ///< with either of them: N * bands, ...
-  std::vector<double> emission;                 ///< ... W/m^2
+  std::vector<double> reflectance;              ///< N * bands, with either of these two
+  std::vector<double> emission;                 ///< likewise, W/m^2
 };
 
-/// N: how bright B - E is, what a patch does not emit itself, at least 0, W/m^2: its luminance, of
-/// bands that are not three their sum. `radiosity`: B, N * materials.bands, W/m^2.
+/// N: how bright the reflected light B - E is, at least 0, W/m^2: its luminance, or the sum of
+/// bands that are not three. `radiosity`: B, N * materials.bands, W/m^2.
 std::vector<double> reflectedLight(std::span<const double> radiosity,
                                    const PatchMaterials& materials);
 
@@ -108,16 +107,16 @@ std::vector<double> reflectedLight(std::span<const double> radiosity,
 /// as rgbOf().
 SurfaceLight surfaceLight(std::span<const double> radiosity, const PatchMaterials& materials);
 
-/// The same with the sky, where it shines, behind all.
+/// The same with the sky, if it shines, behind everything.
 Image renderRadiance(const PatchMesh& mesh, const SurfaceLight& light, const Camera& camera,
                      const RenderOptions& options, Progress& progress);
 
 /// Light that is gathered for every pixel.
 struct PixelGatherOptions {
-  /// 64 to 65536: rays of indirect light, which the pixel's samples share; each of them has a power
+  /// 64 to 65536: rays of indirect light, which the pixel's samples share; each sample has a power
   /// of two, 16 to 4096.
   int rays = 1024;
-  /// 1 or more, of the picture: where it would take more, pixels have fewer rays, but at least 64.
+  /// 1 or more, of the picture. At this limit pixels have fewer rays, but at least 64.
   double most_rays = 2e9;
   void validate() const;
 };
@@ -136,39 +135,38 @@ struct PixelGather {
   PixelGatherReport report;
 };
 
-/// The picture of `light.points`, evaluated where samples of pixels see a patch: four of a pixel
-/// that sees one patch alone, all of others. What renderRadiance() shows of elements is an
-/// interpolation of the same. The same bits for any number of threads. Errors: as render(), and
-/// InputError for options out of range. Throws Cancelled.
+/// The picture of `light.points`, evaluated where samples of pixels see a patch: at four samples of
+/// a pixel that sees one patch alone, at all samples of others. renderRadiance() interpolates the
+/// same light between elements' vertices. The same bits for any number of threads. Errors: as
+/// render(), and InputError for options out of range. Throws Cancelled.
 PixelGather gatherRadiance(const PatchMesh& mesh, const SurfaceLight& light, const Camera& camera,
                            const RenderOptions& options, const PixelGatherOptions& gather,
                            Progress& progress);
 
-/// What gatherRadiance() will take, from one pixel in each 16 x 16 of them: points, rays and
-/// seconds.
+/// Estimates the points, rays and seconds of gatherRadiance() from one pixel in each 16 x 16.
 PixelGatherReport foreseeGather(const PatchMesh& mesh, const SurfaceLight& light,
                                 const Camera& camera, const RenderOptions& options,
                                 const PixelGatherOptions& gather, Progress& progress);
 
-/// N, 1: patches that a picture shows.
+/// N, 1: the picture shows the patch.
 std::vector<std::uint8_t> visiblePatches(const PatchMesh& mesh, const Camera& camera,
                                          const RenderOptions& options, Progress& progress);
 
 /// A lit scene of which a picture shows next to nothing.
 struct UnlitView {
-  double seen = 0;      ///< radiance that more than a hundredth of the picture exceeds, W/m^2/sr
-  double lit = 0;       ///< radiance that is typical of what reflects light, W/m^2/sr
+  double seen = 0;      ///< 99th percentile of radiance over the picture, W/m^2/sr
+  double lit = 0;       ///< typical radiance of lit patches, W/m^2/sr
   Index brightest = 0;  ///< the patch that reflects most
 };
 
-/// Where the scene is lit, but not what is in view: `radiance`, as renderRadiance() drew it, stays
-/// ten stops below what is typical. Automatic exposure makes a picture even of that.
+/// Not empty if the scene is lit but the view is not: `radiance`, as renderRadiance() drew it,
+/// stays ten stops below typical. Automatic exposure makes a picture even of that.
 std::optional<UnlitView> unlitView(const PatchMesh& mesh, const SurfaceLight& light,
                                    const Image& radiance);
 
 /// Exposure value: the picture is multiplied by 2^ev before the sRGB curve. Automatic: the 99th
 /// percentile of luminance over hit pixels maps to 0.8 (emitters clip), unless the median over the
-/// lit ones would fall below 0.1: a large lamp in view then clips too. 0 where nothing is lit.
+/// lit ones would fall below 0.1: a large lamp in view then clips too. 0 if nothing is lit.
 double autoExposure(const Image& image);
 
 /// Multiplies by 2^ev; colours only.
@@ -178,9 +176,9 @@ Image exposed(const Image& image, double ev);
 /// ready for an sRGB file, opaque everywhere. Misses are a mid grey, backs (with show_backs) a dark
 /// one. The legend, a strip at the bottom of the picture under the camera's view, holds title,
 /// unit, colour bar and numbers; pictures narrower than 96 pixels or too low for it have none.
-/// values: N. Range: [low, high] or, where low >= high, that of the values in view; if the highest
-/// is then more than twice the 99th percentile (a lamp), up to that percentile. An end that values
-/// in view lie beyond is marked "<=" or ">=".
+/// values: N. Range: [low, high], or the range of the values in view if low >= high; if the highest
+/// is then more than twice the 99th percentile (a lamp), up to that percentile. An end is marked
+/// "<=" or ">=" if values in view lie beyond it.
 struct FalseColour {
   std::string title;
   std::string unit;

@@ -1,5 +1,5 @@
-// The results file (HDF5) and every format that goes out. Every writer writes a temporary file in
-// the same folder and renames it: a failed run leaves nothing half-written.
+// The results file (HDF5) and all output formats. Every writer writes a temporary file in the same
+// folder and renames it: a failed run leaves no half-written file.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ namespace [[gnu::visibility("default")]] radiosity {
 
 /// The contents of a results file; an absent stage was not computed or was dropped. Each stage has
 /// a `key`: a text of the options that made it and of the stage before it. A stage is reused only
-/// where the key matches.
+/// if the key matches.
 struct Results {
   std::string version;  ///< of the program that wrote it
   std::optional<Scene> scene;
@@ -49,15 +49,15 @@ struct Results {
 /// True for a file that starts with the HDF5 signature (whatever its name).
 bool isResultsFile(const std::string& path);
 
-/// True for an HDF5 file of another program, which is not to be replaced by results.
+/// True for an HDF5 file of another program, which results must not replace.
 bool isForeignHdf5(const std::string& path);
 
-/// The scene in a results file, without its stages; none where it has none or cannot be read.
+/// The scene in a results file, without its stages; none if the file has none or cannot be read.
 std::optional<Scene> sceneInResults(const std::string& path);
 
 /// Reads all stages. InputError: no such file, not a results file, a damaged or foreign dataset
 /// (named). `with_factors` false: the matrix is left out (its accounts and report are read).
-/// `scratch`: where the matrix is to be; null: in memory.
+/// `scratch`: holds the matrix; null: it is in memory.
 Results readResults(const std::string& path, bool with_factors = true,
                     std::shared_ptr<ScratchMemory> scratch = nullptr);
 
@@ -65,14 +65,14 @@ Results readResults(const std::string& path, bool with_factors = true,
 /// things are attributes, arrays are datasets with their unit as an attribute. Layout:
 ///   /              format, format_version, version (of the program)
 ///   /scene         as Scene: vertices, corners, surfaces/, materials/, cameras/, textures/, notes/
-///   /mesh          as PatchMesh; key, geometry_hash, polygons/, report/; where patches share
+///   /mesh          as PatchMesh; key, geometry_hash, polygons/, report/; if patches share
 ///                  unknowns, clusters/of_patch: the row of /form_factors of each patch
 ///   /form_factors  csr_matrix((data, indices, indptr), shape) of scipy: data f32 or f64, indices
 ///                  int32 increasing in a row, indptr int64; row_sum (of data), fronts, backs, sky,
-///                  error (figures of the rows; exact method), area; order where A_i F_ij = A_j
-///                  F_ji was stored once a pair (the patches in the order of storage); normal,
-///                  centroid, surface, surface_names (those of /mesh), or of_patch, where rows are
-///                  of clusters; method, key, geometry_hash, report/
+///                  error (figures of the rows; exact method), area; order (of storage, of the
+///                  patches) if A_i F_ij = A_j F_ji was stored once a pair; normal, centroid,
+///                  surface, surface_names (those of /mesh), or of_patch if rows are of clusters;
+///                  method, key, geometry_hash, report/
 ///   /solution      radiosity, irradiance, reflectance, emission (N x bands), sky (an attribute of
 ///                  bands numbers; none: dark), summary/, key
 ///   /elements      bands, key, report/; roots/ as ElementRoots: patch, corner (R x 4), of_patch;
@@ -81,22 +81,22 @@ Results readResults(const std::string& path, bool with_factors = true,
 ///   /gather        radiosity, irradiance (L x bands, f32; L eyes), backs, sky, area, position;
 ///                  backs_by_surface;
 ///                  eye_of_corner (at vertices: the eye of every entry of /mesh/corners); at, key,
-///                  summary/ with passes/ (a row a pass; bound is NaN where there is none)
+///                  summary/ with passes/ (a row a pass; bound is NaN if there is none)
 ///   /heat          temperature (N), net_flux, convection (N), radiosity, irradiance (N x bands),
-///                  as HeatSolution; condition_table and condition_settings, what it was solved
-///                  for as that was written; key, summary/ with balance_W/
+///                  as HeatSolution; condition_table and condition_settings, the text of the
+///                  conditions; key, summary/ with balance_W/
 ///   /basis         names (S), bands (of one source), radiosity, irradiance, reflectance, emission
 ///                  (N x S * bands, column s * bands + b), sky (S * bands numbers), summary/, key
-/// Bands are as many as rows have columns: three from scene files, any number from a program.
-/// The matrix is written row by row, never copied. Errors: RunError (disk full), Cancelled, those
-/// of PatchMaterials::requireSizes(); `path` then is what it was.
+/// The number of columns is that of bands: three from scene files, any number from a program.
+/// The matrix is written row by row, never copied. Errors: RunError (disk full), Cancelled, and as
+/// PatchMaterials::requireSizes(); `path` is then unchanged.
 void writeResults(const std::string& path, const Results& results, Progress& progress);
-/// The same with form factors that stand elsewhere, in place of results.factors, which is not
-/// looked at: whoever shares them need not copy the matrix.
+/// The same with form factors that are not in results.factors, which is ignored: code that shares
+/// them need not copy the matrix.
 void writeResults(const std::string& path, const Results& results, const FormFactors& factors,
                   Progress& progress);
 
-/// Stages that a file has as they are in `Results`.
+/// Stages of a file that agree with `Results`.
 struct StagesAsStored {
   bool scene = false;
   bool solution = false;  ///< with the materials
@@ -107,13 +107,13 @@ struct StagesAsStored {
 };
 
 /// Brings the results file at `path`, which must have the mesh and the form factors of `results`,
-/// to what `results` says, without writing what it has already: stages that differ are written
-/// behind its end, and the file is switched over to them in one write of its first page. Killed at
-/// any moment it is what it was, or whole. The form factors may be without their matrix. False, and
-/// the file is what it was, where that cannot be: another run extends it or has replaced its form
-/// factors, another program's HDF5 wrote it, or stages replaced in earlier runs take up half of it;
-/// write it whole. Errors: RunError (disk full), those of PatchMaterials::requireSizes(); the file
-/// then is what it was, too.
+/// up to date with `results` without writing again what it has: stages that differ are appended,
+/// and one write of its first page switches the file over to them. If killed at any moment, the
+/// file is unchanged or whole. The form factors may be without their matrix. Returns false, with
+/// the file unchanged, if another run extends it or has replaced its form factors, if another
+/// program's HDF5 wrote it, or if stages replaced in earlier runs take up half of it; then write it
+/// whole. Errors: RunError (disk full), as PatchMaterials::requireSizes(); the file is then
+/// unchanged, too.
 bool updateResults(const std::string& path, const Results& results, const StagesAsStored& stored);
 
 /// Bytes writeResults() will put on disk, within 4 kB.
@@ -130,36 +130,36 @@ void writeMesh(const std::string& path, const PatchMesh& mesh);
 
 /// Lit mesh, glTF 2.0 binary: one node a surface, one primitive a side; white base colour,
 /// KHR_materials_unlit, COLOR_0 = min(1, B / pi * 2^ev), linear: the radiance that writeImage()
-/// shows at the same exposure, which stands in the scene's `extras` as exposure_ev; true B, W/m^2,
-/// in the float attribute _RADIOSITY. Values are interpolated as cornerValues() does. Coordinates
-/// are the scene's; far from the origin a node translation carries them. radiosity: N * 3.
+/// shows at the same exposure (exposure_ev in the scene's `extras`); true B, W/m^2, in the float
+/// attribute _RADIOSITY. Values are interpolated as cornerValues() does. Coordinates are the
+/// scene's; far from the origin a node translation carries them. radiosity: N * 3.
 void writeLitGlb(const std::string& path, const PatchMesh& mesh, std::span<const double> radiosity,
                  double ev, double crease);
 /// The same from radiosities at the corners (mesh.corners.size() * 3).
 void writeLitGlb(const std::string& path, const PatchMesh& mesh, std::span<const double> radiosity,
                  std::span<const double> corners, double ev);
-/// The same of light as pictures show it: of elements, where `light` has some that were evaluated.
-/// Each that neither of their fields cuts further is cut into triangles, with B = E + rho * H at
-/// its corners and linear in between; one whose edges its neighbours cut has corners there, too, so
-/// that triangles meet corner to corner. Returns how many triangles the file has.
+/// The same of light as pictures show it: of elements, if `light` has evaluated ones. An element
+/// that neither field cuts further is cut into triangles, with B = E + rho * H at its corners and
+/// linear in between. An edge that neighbours cut has corners there, too, so that triangles meet
+/// corner to corner. Returns the number of triangles in the file.
 std::size_t writeLitGlb(const std::string& path, const PatchMesh& mesh, const SurfaceLight& light,
                         double ev, double crease);
 
-/// What a mesh says of its lightmap.
+/// The lightmap's entry in the file of a mesh.
 struct LightmapFile {
   std::string image;   ///< the name of the map's file
   double ev = 0;       ///< exposure that suits a picture of the scene
   std::string source;  ///< the glTF file that the scene was read from; empty: another kind of file
 };
 
-/// The scene's own mesh with the map's texture coordinates, glTF 2.0 binary. Of a glTF file: that
-/// file, whose nodes, names, materials, textures, normals, coordinates and extras stay; all is in
-/// one file. A mesh that several nodes have becomes one of each, a vertex between charts several,
-/// a primitive whose backs have charts two, of a one-sided copy of its material. Of other files:
-/// flat triangles, a node a surface, with base colours and emission. The scene's `extras` have
-/// `lightmap`: file, texCoord, shows, unit, radiance (how to make it of a texel), exposure_ev.
-/// Returns the set, TEXCOORD_n: 1, or the first that the file does not have. Errors: InputError for
-/// a source that has changed since, RunError where the file cannot be written.
+/// Writes the scene's own mesh with the map's texture coordinates, glTF 2.0 binary. Of a glTF file:
+/// that file with its nodes, names, materials, textures, normals, coordinates and extras, all in
+/// one file. A mesh of several nodes becomes one per node, a vertex between charts becomes several,
+/// and a primitive whose backs have charts becomes two, of a one-sided copy of its material. Of
+/// other files: flat triangles, a node a surface, with base colours and emission. The scene's
+/// `extras` have `lightmap`: file, texCoord, shows, unit, radiance (how to make it of a texel),
+/// exposure_ev. Returns n of TEXCOORD_n: 1, or the first that the file does not have. Errors:
+/// InputError for a source that has changed since, RunError if the file cannot be written.
 int writeLightmapGlb(const std::string& path, const Scene& scene, const Lightmap& map,
                      const LightmapFile& file);
 
@@ -169,22 +169,22 @@ int writeLightmapGlb(const std::string& path, const Scene& scene, const Lightmap
 void writeImage(const std::string& path, const Image& image, bool display_referred,
                 std::span<const std::pair<std::string, std::string>> metadata = {});
 
-/// Reads an image: numbers as they stand in the file (no curve is undone), alpha divided out where
-/// the format multiplies by it.
+/// Reads an image: numbers as stored (no curve is undone), alpha divided out if the format
+/// multiplies by it.
 Image readImage(const std::string& path);
 
-/// A picture and what its file says of the numbers in it.
+/// A picture and the meaning of its numbers, as its file gives it.
 struct ImageFile {
   Image image;
   bool bytes = false;    ///< whole numbers, mapped to [0, 1]: as a rule sRGB-coded
-  std::string quantity;  ///< as writeImage() was told ("radiance"); empty where nothing is said
+  std::string quantity;  ///< as given to writeImage() ("radiance"); empty: not given
 };
-/// `max_image`: in millions of pixels; a larger image is not unpacked. Errors: InputError for what
-/// is no image or too large, RunError where it does not fit into memory.
+/// `max_image`: in millions of pixels; a larger image is not unpacked. Errors: InputError if the
+/// file is no image or too large, RunError if it does not fit into memory.
 ImageFile readImageFile(const std::string& path, double max_image = 100);
 
-/// A mesh with colours at its vertices, as this or another program wrote it: numbers as they stand
-/// in the file, metres and axes taken as they are.
+/// A mesh with colours at its vertices, of this or another program: numbers as stored in the file,
+/// metres and axes taken as they are.
 struct LitMesh {
   std::string file;
   std::vector<Vec3> vertices;
@@ -201,8 +201,8 @@ struct LitMesh {
 /// (`v x y z r g b`). Errors: InputError for a file without colours (with the cure), a damaged one.
 LitMesh readLitMesh(const std::string& path);
 
-/// Heat exchange by surface: a header with units in its names, then a line a surface, all digits;
-/// cells of what is not known are empty. Errors: as the others.
+/// Writes heat exchange by surface: a header with units in its names, then a line a surface, all
+/// digits; unknown cells are empty. Errors: as the others.
 void writeHeatTable(const std::string& path, std::span<const SurfaceHeat> surfaces);
 /// The same by patch, with its centroid; radiosity and irradiance a column a band.
 void writeHeatPatches(const std::string& path, const HeatSolution& heat, const PatchMesh& mesh);

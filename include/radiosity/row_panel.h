@@ -1,4 +1,4 @@
-// Reading the rows of a matrix: what ExchangeMatrix's templates are made of.
+// Reading the rows of a matrix: the basis of ExchangeMatrix's templates.
 #pragma once
 
 #include <algorithm>
@@ -45,8 +45,8 @@ struct RowView {
 /// Some consecutive rows of a matrix, for reading.
 class RowPanel {
  public:
-  /// first <= last <= N. Symmetric form, and rows of several processes: O(N + entries of the
-  /// triangle), and memory for the entries of the rows.
+  /// first <= last <= N. Takes O(N + entries of the triangle) and memory for the entries of the
+  /// rows in the symmetric form, and for rows of several processes.
   RowPanel(const ExchangeMatrix& matrix, std::size_t first, std::size_t last);
   std::size_t first() const { return first_; }
   std::size_t last() const { return last_; }  ///< one beyond
@@ -69,7 +69,7 @@ class RowPanel {
     }
   }
 
-  /// Bytes that an entry takes in it.
+  /// Bytes per entry.
   static constexpr std::size_t kEntryBytes = sizeof(Index) + sizeof(double);
 
  private:

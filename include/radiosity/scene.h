@@ -39,7 +39,7 @@ struct Material {
   Index texture = kNone;           ///< into Scene::textures; multiplies `reflectance`
   Index emission_texture = kNone;  ///< into Scene::textures; multiplies `emission`
 
-  /// W/m^2/sr: what of `emission` goes in each direction.
+  /// W/m^2/sr: the radiance of `emission`, the same in each direction.
   Vec3 radiance() const { return emission / std::numbers::pi; }
 };
 
@@ -47,8 +47,8 @@ struct Material {
 struct Surface {
   std::string object;  ///< object, group or node name
   Index material = kNone;
-  /// "object/material", or the one name that both have; unique in the scene, results are keyed by
-  /// it
+  /// "object/material", or the one name that both have. It is unique in the scene and the key of
+  /// results.
   std::string name;
 };
 
@@ -62,11 +62,11 @@ struct Camera {
   double aspect = 0.0;        ///< width / height; 0: the picture's own
 };
 
-/// Structure of arrays. F faces are polygons of 3 or more corners (concave ones allowed),
-/// counter-clockwise seen from the front.
-/// The axis that points up: only cameras that nobody gave depend on it.
+/// The axis that points up. Only the defaults of cameras depend on it.
 enum class Up { y, z };
 
+/// Structure of arrays. F faces are polygons of 3 or more corners (concave ones allowed),
+/// counter-clockwise seen from the front.
 struct Scene {
   std::string file;                       ///< where it came from, for messages
   std::vector<Vec3> vertices;             ///< metres
@@ -76,13 +76,13 @@ struct Scene {
                                           ///< the first texel, v grows downwards (as in glTF)
   std::vector<Index> face_surface;        ///< F
   std::vector<std::size_t> face_element;  ///< F: line in an OBJ, ASCII STL or View3D file; number
-                                          ///< of the element in a .msh or .inp; else running face
-                                          ///< or cell, of the primitive in a glTF, of the file
+                                          ///< of the element in a .msh or .inp; else of the face
+                                          ///< or cell in the primitive (glTF) or in the file
   std::vector<Surface> surfaces;
   std::vector<Material> materials;
   std::vector<Texture> textures;
   std::vector<Camera> cameras;
-  /// Radiance W/m^2/sr that comes from every direction in which nothing stands.
+  /// Radiance from every direction without a surface, W/m^2/sr.
   Vec3 sky{0.0};
   Up up = Up::y;
   std::string unit = "m";  ///< the file's unit before conversion: mm, cm, m, in, ft
@@ -97,24 +97,24 @@ struct Scene {
   }
 };
 
-/// A scene of one's own: triangles of vertices in metres, counter-clockwise seen from the front,
-/// each of one material. `triangle_material`: one a triangle, or none where there is one material.
-/// Surfaces are the materials, by name. Errors: as validate().
+/// A scene from data in memory: triangles of vertices in metres, counter-clockwise seen from the
+/// front, each of one material. `triangle_material`: one a triangle, or none if there is one
+/// material. Surfaces are the materials, by name. Errors: as validate().
 Scene sceneOfTriangles(std::span<const Vec3> vertices,
                        std::span<const std::array<Index, 3>> triangles,
                        std::span<const Material> materials,
                        std::span<const Index> triangle_material = {});
 
-/// Whether a scene made by hand keeps what is said of it above: that every index is in range, every
-/// number finite, each reflectance in [0, 1] and each name given once. Errors: InputError that
-/// names the element. meshScene() asks; readers of files have seen to it.
+/// Checks a scene made by hand: every index is in range, every number finite, each reflectance in
+/// [0, 1] and each name given once. Errors: InputError that names the element. meshScene() calls
+/// it; readers of files ensure the same.
 void validate(const Scene& scene);
 
-/// How a file is read. The defaults are the ones the README states.
+/// Options of reading a file. The defaults are those of the README.
 struct SceneOptions {
   std::string unit;                    ///< mm|cm|m|in|ft; empty: the file's, else metres
   bool kd_is_srgb = false;             ///< Kd and base colour of an OBJ are sRGB, linearise them
-  double default_reflectance = 0.5;    ///< where a face has no material; 0 to 1
+  double default_reflectance = 0.5;    ///< of faces without a material; 0 to 1
   bool textures = true;                ///< false: the material's factor alone
   double max_image = 100;              ///< largest texture, in millions of pixels; above 0
   std::vector<std::string> set;        ///< "NAME.PROPERTY=VALUE", see applyOverrides()
@@ -122,7 +122,7 @@ struct SceneOptions {
   std::vector<std::string> one_sided;  ///< material, object or surface names, or "all"
   std::vector<std::string> two_sided;  ///< the same; one_sided is applied first
   std::optional<Vec3> sky;             ///< replaces Scene::sky; finite, >= 0
-  std::optional<Up> up;                ///< replaces Scene::up, which the format decides
+  std::optional<Up> up;                ///< replaces Scene::up, which depends on the format
   /// Throws InputError naming the option and its range.
   void validate() const;
 };
@@ -134,21 +134,21 @@ std::string sceneExtensions();
 /// .gltf, .glb, .stl, .3mf; View3D's .vs3, .v3d; Gmsh's .msh (2.2, 4.1); .inp of CalculiX and
 /// Abaqus; .ply, .off; VTK's .vtk, .vtp, .vtu; by Assimp .dae, .fbx, .3ds, .x3d, .ifc. Named groups
 /// (solids, physical groups, element sets, arrays of cells) are surfaces. Face f of the scene is
-/// face f of the file, but one may be several (View3D's with subsurfaces, triangles of a strip).
-/// Lines and points are left out, volumes where there are faces; where there are none, the skin of
+/// face f of the file, but one may become several (View3D's with subsurfaces, triangles of a
+/// strip). Lines and points are left out, and volumes if there are faces; without faces the skin of
 /// the volumes is the scene. An OBJ has no cameras of its own; a comment line `# camera eye=x,y,z
 /// target=x,y,z up=x,y,z fov=DEGREES` (file units, vertical field of view) is read as one. Errors:
-/// InputError, one line with file, element and cure; RunError where the scene does not fit into
+/// InputError, one line with file, element and cure; RunError if the scene does not fit into
 /// memory.
 Scene loadScene(const std::string& path, const SceneOptions& options = {});
 
 /// Applies `set`, `materials_file`, `one_sided`, `two_sided`, `sky`, `up` to a scene already in
 /// memory (one that came back from a results file). NAME is a surface, material or object, tried in
-/// that order, but the material where a surface has its name only because its object has it too;
-/// PROPERTY is reflectance, emission (exitance, W/m^2), radiance (W/m^2/sr) or tint (what the
-/// reflectance is multiplied by); VALUE is one number or three with commas. Reflectance and
-/// emission replace a texture, tint keeps it. A surface that shares its material gets a copy of its
-/// own. Unknown names are an InputError that lists the names there are.
+/// that order, but the material comes first if a surface has its name only because its object has
+/// it too. PROPERTY is reflectance, emission (exitance, W/m^2), radiance (W/m^2/sr) or tint (a
+/// factor of the reflectance); VALUE is one number or three with commas. Reflectance and emission
+/// replace a texture, tint keeps it. A surface that shares its material gets its own copy. Unknown
+/// names are an InputError that lists the existing ones.
 void applyOverrides(Scene& scene, const SceneOptions& options);
 
 /// One surface as `radiosity info` prints it.
@@ -157,10 +157,10 @@ struct SurfaceInfo {
   std::string material;
   std::size_t faces = 0;
   double area = 0;        ///< m^2, one side
-  Vec3 emitted_power{0};  ///< W per band, both sides where two-sided
+  Vec3 emitted_power{0};  ///< W per band, both sides if two-sided
 };
 
-/// A summary of the scene that was read, with notes on what looks wrong, by name.
+/// A summary of the scene as read, with notes on likely mistakes, by name.
 struct SceneInfo {
   std::vector<SurfaceInfo> surfaces;
   Vec3 lower{0.0};
@@ -174,9 +174,9 @@ struct SceneInfo {
   std::vector<Note> problems;  ///< flipped normals, duplicates, degenerates, overlaps, no emitter
 };
 
-/// A material or surface whose name says that it shines ("ceiling_lamp", "Light.003"); else the
-/// ceiling, by name or as the surface with most area that faces down; else the first surface. A
-/// name that SceneOptions::set takes; empty in a scene without surfaces.
+/// The likely lamp: a material or surface with the name of one ("ceiling_lamp", "Light.003"); else
+/// the ceiling, by name or as the surface with most area that faces down; else the first surface.
+/// The name is one that SceneOptions::set takes; empty in a scene without surfaces.
 std::string likelyLamp(const Scene& scene);
 
 /// Inspects a scene (does not change it). `weld`: coincidence, as a fraction of the diagonal.

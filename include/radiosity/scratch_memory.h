@@ -1,4 +1,4 @@
-// Memory for what does not fit: a file that is mapped.
+// Memory for data that does not fit: a mapped file.
 #pragma once
 
 #include <atomic>
@@ -13,19 +13,19 @@
 
 namespace [[gnu::visibility("default")]] radiosity {
 
-/// Memory that stands in a file without a name, which is gone when the process ends, however it
-/// ends. What was not looked at lately is on the disk alone: those who walk through it say so by
-/// touched(), and where more than `resident` bytes are in memory the process lets go of them all.
+/// Memory in an unnamed file, which is gone when the process ends, however it ends. Pages that were
+/// not used lately are on the disk alone. Code that walks through the memory reports it by
+/// touched(); if more than `resident` bytes are then in memory, the process lets go of them all.
 /// Values stay as they are. Any number of threads.
 class ScratchMemory : public std::pmr::memory_resource {
  public:
-  /// A file in `folder`. RunError, which names the folder, where it cannot be made.
+  /// Makes a file in `folder`. RunError, which names the folder, if that fails.
   ScratchMemory(const std::string& folder, std::size_t resident);
   ~ScratchMemory() override;
   ScratchMemory(const ScratchMemory&) = delete;
   ScratchMemory& operator=(const ScratchMemory&) = delete;
 
-  /// So many bytes of it are being read or written.
+  /// Reports that `bytes` of it are being read or written.
   void touched(std::size_t bytes);
   std::size_t resident() const { return resident_; }
   std::size_t fileBytes() const;
@@ -36,7 +36,7 @@ class ScratchMemory : public std::pmr::memory_resource {
     std::size_t bytes = 0;
   };
 
-  /// RunError where the disk is full.
+  /// RunError if the disk is full.
   void* do_allocate(std::size_t bytes, std::size_t alignment) override;
   void do_deallocate(void* place, std::size_t bytes, std::size_t alignment) override;
   bool do_is_equal(const std::pmr::memory_resource& other) const noexcept override {
@@ -46,7 +46,7 @@ class ScratchMemory : public std::pmr::memory_resource {
 
   std::string folder_;
   std::size_t resident_;
-  std::atomic<std::size_t> others_;  // of mapped files but this one, in memory
+  std::atomic<std::size_t> others_;  // of other mapped files, in memory
   int file_ = -1;
   std::atomic<std::size_t> touched_{0};
   mutable std::mutex mutex_;

@@ -13,8 +13,7 @@
 namespace [[gnu::visibility("default")]] radiosity {
 
 enum class Solver {
-  /// Direct for few unknowns, else cg where the matrix is symmetric, else gmres; under mpirun
-  /// petsc.
+  /// Direct for few unknowns, else cg if the matrix is symmetric, else gmres; under mpirun petsc.
   automatic,
   jacobi,        ///< B <- E + rho F B: a sweep adds a bounce
   gauss_seidel,  ///< the same row by row, with the new values of the rows before; on one thread
@@ -24,16 +23,16 @@ enum class Solver {
   petsc          ///< PETSc's KSP with options of its own, on the rows of several processes (mpirun)
 };
 
-/// Up to so many unknowns Solver::automatic is direct: factoring takes no longer than a dozen
-/// products then, and leaves only rounding.
+/// Solver::automatic is direct up to this many unknowns: factoring then takes no longer than a
+/// dozen products, and leaves only rounding.
 inline constexpr std::size_t kFewUnknowns = 256;
 /// Beyond this the direct solver refuses: a dense matrix of 128 MB a band, factored in seconds.
 inline constexpr std::size_t kMostDirectUnknowns = 4000;
 
 struct SolveOptions {
   Solver solver = Solver::automatic;
-  /// Stop when max_i |r_i| <= tolerance * max_i |E_i| in every band, r the true residual, E what a
-  /// patch emits and what it reflects of the sky. Between 0 and 1; below about 1e-14 rounding keeps
+  /// Stop when max_i |r_i| <= tolerance * max_i |E_i| in every band, with r the true residual and E
+  /// a patch's emission and reflected sky light. Between 0 and 1; below about 1e-14 rounding keeps
   /// it from being reached.
   double tolerance = 1e-6;
   int max_iterations = 10000;  ///< products or sweeps over the matrix; 1 or more
@@ -41,28 +40,29 @@ struct SolveOptions {
 };
 
 enum class SolveStatus {
-  /// |r|_inf <= tolerance |E|_inf in every band, r = E + rho F B - B; usable. Of solvers that are
-  /// accurate in a norm alone (cg, gmres, direct) also |r_i| <= 100 tolerance (E_i + rho_i H_i) for
-  /// every patch, where no E is negative: so rooms that little light reaches are right, too.
+  /// |r|_inf <= tolerance |E|_inf in every band, r = E + rho F B - B; usable. Solvers that are
+  /// accurate in a norm alone (cg, gmres, direct) also hold
+  /// |r_i| <= 100 tolerance (E_i + rho_i H_i) for every patch, unless some E is negative: so rooms
+  /// that little light reaches are right, too.
   converged,
   no_convergence,  ///< the iteration limit came first; B is the last iterate, not usable as it is
   no_light,        ///< nothing emits, no sky shines in: B = 0; usable, but dark
-  singular,        ///< rho = 1 all over a closed room that is lit: no solution; B is empty
+  singular,        ///< rho = 1 everywhere in a closed, lit room: no solution; B is empty
 };
 
-/// Where the light goes, W, one value a band. emitted + from_sky = absorbed + to_sky + on_backs +
-/// imbalance; imbalance is what missing reciprocity of F and the residual leave over, 0 for an
-/// exact F and B.
+/// The account of the light, W, one value a band.
+/// emitted + from_sky = absorbed + to_sky + on_backs + imbalance; imbalance comes from missing
+/// reciprocity of F and from the residual and is 0 for an exact F and B.
 struct EnergyAccount {
   std::vector<double> emitted;
-  std::vector<double> from_sky;  ///< falls on the patches from a sky that shines
+  std::vector<double> from_sky;  ///< falls on the patches from the sky
   std::vector<double> absorbed;
   std::vector<double> to_sky;
   std::vector<double> on_backs;
   std::vector<double> imbalance;
 };
 
-/// Work the scene did not need.
+/// Work skipped because the scene did not need it.
 struct SolveSkips {
   std::size_t black_patches = 0;  ///< reflectance 0 in every band solved: B = E without their rows
   int dark_bands = 0;             ///< no patch emits: B = 0, not solved
@@ -72,7 +72,7 @@ struct SolveSkips {
 struct SolveSummary {
   SolveStatus status = SolveStatus::no_convergence;
   Solver solver = Solver::automatic;  ///< the one that ran; automatic: there was nothing to solve
-  /// Sweeps of Gauss-Seidel, products with the matrix of the others, those that check included.
+  /// Sweeps of Gauss-Seidel, products with the matrix of the other solvers, checks included.
   int iterations = 0;
   std::size_t rows = 0;  ///< rows of the matrix multiplied in them, each for all bands solved
   SolveSkips skipped;
@@ -84,9 +84,9 @@ struct SolveSummary {
   EnergyAccount energy;
   double seconds = 0;
   /// Relative, one an iteration; the last entry is always the true residual. Before that, Jacobi
-  /// and direct: the true residual. Gauss-Seidel: the largest change of the sweep; the true
-  /// residual where that is within tolerance. cg, gmres: the residual that their recurrence
-  /// foresees; the true one where they begin anew.
+  /// and direct: the true residual. Gauss-Seidel: the largest change of the sweep, or the true
+  /// residual if the change is within tolerance. cg, gmres: the residual of their recurrence, or
+  /// the true one at a restart.
   std::vector<double> residual_history;
   std::string message;  ///< plain words, with numbers; says if B is usable
   bool usable() const {
@@ -97,29 +97,29 @@ struct SolveSummary {
 struct Solution {
   int bands = 3;
   std::vector<double> radiosity;   ///< N * bands, row-major, W/m^2
-  std::vector<double> irradiance;  ///< N * bands: H = F B + what the sky sends
+  std::vector<double> irradiance;  ///< N * bands: H = F B + the light of the sky
   SolveSummary summary;
 };
 
 /// `reflectance`, `emission`: N * bands, row-major; 0 <= rho <= 1, E >= 0, finite, else InputError
-/// naming the patch. Needs a matrix of N rows and accounts of N values. What the scene does not
-/// need is not computed, see SolveSkips: B and H have the same bits as if it were. Not converging
+/// naming the patch. Needs a matrix of N rows and accounts of N values. Work that the scene does
+/// not need is skipped, see SolveSkips, and B and H have the same bits as with it. Not converging
 /// is data, not an exception. `group_names[group[i]]` names patch i's surface in messages; both may
-/// be empty. `sky`: radiance from every direction that a row leaves to the sky, W/m^2/sr, a band
-/// each, finite and >= 0; empty: dark. It falls on patch i as pi sky F_i,sky (Lambert's law over a
-/// uniform part of the hemisphere): B = E + rho (F B + pi sky F_sky).
+/// be empty. `sky`: radiance of the sky, W/m^2/sr, a band each, finite and >= 0; empty: dark. It
+/// falls on patch i as pi sky F_i,sky (Lambert's law over a uniform part of the hemisphere):
+/// B = E + rho (F B + pi sky F_sky).
 Solution solve(const FormFactors& factors, std::span<const double> reflectance,
                std::span<const double> emission, int bands, const SolveOptions& options,
                Progress& progress, std::span<const Index> group = {},
                std::span<const std::string> group_names = {}, std::span<const double> sky = {});
 
-/// The same with the materials, of any number of bands, and the surfaces of the mesh that the
-/// factors are of. Where its patches share unknowns (PatchMesh::clusters), a cluster has the mean
+/// The same with the materials, of any number of bands, and the surfaces of the mesh to which the
+/// factors belong. If its patches share unknowns (PatchMesh::clusters), a cluster has the mean
 /// reflectance and emission of its patches by area, and the system between clusters is solved: the
-/// summary, with residual, bound and energy, is of that system. B and H are of patches all the
-/// same, N * bands: H follows place and normal within a cluster by a linear fit to rays, and keeps
-/// the cluster's mean; B = E + rho H with each patch's own E and rho, so that textures stay sharp.
-/// Errors also of PatchMaterials::requireSizes().
+/// summary, with residual, bound and energy, is of that system. B and H are still of patches,
+/// N * bands. Within a cluster H follows place and normal by a linear fit to rays, and keeps the
+/// cluster's mean; B = E + rho H with each patch's own E and rho, so that textures stay sharp.
+/// Errors also as PatchMaterials::requireSizes().
 Solution solve(const FormFactors& factors, const PatchMaterials& materials, const PatchMesh& mesh,
                const SolveOptions& options, Progress& progress);
 

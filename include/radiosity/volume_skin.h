@@ -1,4 +1,4 @@
-// The skin of a mesh of volumes: those faces of its elements that no second element shares.
+// The skin of a mesh of volumes: the faces that belong to one of its elements alone.
 #pragma once
 
 #include <array>
@@ -22,15 +22,15 @@ class VolumeSkin {
 
   /// Adds an element by its corners: 4 of a tetrahedron, 5 of a pyramid, 6 of a wedge, 8 of a
   /// hexahedron, in the order that Gmsh, VTK, Abaqus and CalculiX have in common (either sense of
-  /// rotation). Repeated corners are allowed: a wedge may be written as a hexahedron. False, and
-  /// nothing is added, for another number.
+  /// rotation). Corners may repeat: a wedge may be written as a hexahedron. Returns false and adds
+  /// nothing for another number.
   bool add(std::span<const Index> corners);
   std::size_t size() const { return begin_.size() - 1; }
   void clear();
 
-  /// By volume, then by side, O(n log n). Left out: sides whose corners are less than three, and
-  /// volumes with the corners of an earlier one. `places`: of the vertices. Precondition: every
-  /// corner that was added is an index into them.
+  /// The faces of the skin by volume, then by side, in O(n log n). Sides with fewer than three
+  /// corners, and volumes with the corners of an earlier one, are left out. `places`: of the
+  /// vertices. Precondition: every corner that was added is an index into them.
   std::vector<Face> faces(std::span<const Vec3> places) const;
 
  private:

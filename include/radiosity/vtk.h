@@ -1,4 +1,4 @@
-// Patches with what is known of each, for ParaView and other readers of VTK's files.
+// Patches with their quantities, for ParaView and other readers of VTK's files.
 #pragma once
 
 #include <span>
@@ -23,12 +23,13 @@ struct CellField {
 /// reflectance, and emission (exitance, W/m^2), by band.
 std::vector<CellField> materialFields(const PatchMaterials& materials);
 
-/// row_sum, backs and sky, the three accounts of a row; and error, its figure, where the method has
-/// one. Patches that share an unknown have the row of that.
+/// row_sum, backs and sky, the three accounts of a row; and error, its figure, if the method has
+/// one. Patches that share an unknown have its row.
 std::vector<CellField> factorFields(const PatchMesh& mesh, const FormFactors& factors);
 
-/// By band, W/m^2: radiosity B, irradiance H, and net_flux q = B - H = E - (1 - rho) H, what a
-/// surface gives off beyond what it takes in: above 0 for a lamp, below 0 for what absorbs.
+/// By band, W/m^2: radiosity B, irradiance H, and net_flux, the flux given off in excess of the
+/// flux absorbed, q = B - H = E - (1 - rho) H: above 0 for a lamp, below 0 for an absorbing
+/// surface.
 std::vector<CellField> lightFields(const Solution& solution);
 
 /// temperature, K; radiosity J and irradiance H by band, net_flux and convection, W/m^2.
@@ -36,9 +37,9 @@ std::vector<CellField> heatFields(const HeatSolution& heat);
 
 /// VTK's XML PolyData (.vtp): polygon k is patch k, backs too (the front's corners in reverse);
 /// points in metres, 64 bits. Cell data: patch (its number, from 0), surface (its name), surface_id
-/// (into the field data surface_names), side (0 front, 1 back), unknown (the row of the matrix,
-/// where patches share them), area (m^2), then `fields`, each with its unit. Errors: InputError for
-/// a field of another size, without components, or of a name that there is already; as CheckedFile.
+/// (into the field data surface_names), side (0 front, 1 back), unknown (the row of the matrix, if
+/// patches share them), area (m^2), then `fields`, each with its unit. Errors: InputError for a
+/// field of another size, without components, or with a name that exists already; as CheckedFile.
 void writeVtp(const std::string& path, const PatchMesh& mesh, std::span<const CellField> fields);
 
 }  // namespace radiosity

@@ -46,7 +46,7 @@ double unblockedFactor(const Emitter& emitter, const Vec3& eye, const Vec3& norm
   return target.count < 3 ? 0.0 : pointToPolygon(eye, normal, target.outline());
 }
 
-/// A point of an emitter by two numbers in [0, 1), spread as they are.
+/// A point of an emitter from two numbers in [0, 1), with the same spread.
 Vec3 placeOn(const Emitter& emitter, double u, double v) {
   const auto& o = emitter.outline;
   if (o.size() == 4) {
@@ -76,11 +76,11 @@ struct EmitterLight::Lights : ElementLights {
   }
 };
 
-/// What emitters would give to a point with nothing in between.
+/// The light of emitters at a point with nothing in between.
 struct EmitterLight::Unblocked {
   struct Share {
     Index emitter;
-    double end;  ///< of what it adds to the sum
+    double end;  ///< end of its share in the running sum
   };
   std::vector<Share> shares;
   std::vector<double> whole;  ///< by band
@@ -280,7 +280,7 @@ double EmitterLight::clipped(const SurfacePoint& point, const Lights& lights,
   return 0;
 }
 
-/// From what the emitters would give, where rays go: each stands for as much light.
+/// Aims rays at emitters in proportion to their light, so each ray stands for the same light.
 EmitterLight::Looks EmitterLight::look(const SurfacePoint& point, const Unblocked& light) const {
   Looks looks;
   std::array<Index, kLooks> polygon;
@@ -301,7 +301,7 @@ EmitterLight::Looks EmitterLight::look(const SurfacePoint& point, const Unblocke
   return looks;
 }
 
-/// Of the emitters that an element may see, or of all.
+/// Sums the light of the emitters that an element may see, or of all if `lights` is null.
 void EmitterLight::sumUnblocked(const SurfacePoint& point, const Lights* lights,
                                 Unblocked& light) const {
   const Vec3 eye = scaled(point.position);
@@ -326,8 +326,8 @@ void EmitterLight::sumUnblocked(const SurfacePoint& point, const Lights* lights,
   }
 }
 
-/// Adds what the looks let through. Returns the square of how far off that may be, from what every
-/// second look says by itself.
+/// Adds the light that the looks let through. Returns the square of its error, estimated from every
+/// second look alone.
 double EmitterLight::addSeen(const SurfacePoint& point, const Unblocked& light, const Looks& looks,
                              std::span<double> out) const {
   const double horizon = glm::dot(point.normal, scaled(point.position));

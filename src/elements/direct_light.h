@@ -32,7 +32,8 @@ inline constexpr std::size_t kMostAimedEmitters = 8192;
 /// smoothly as light does.
 class EmitterLight : public FieldLight {
  public:
-  /// Keeps all by reference. `occluders`: null: rays alone, for many emitters.
+  /// Refers to all arguments, which must outlive it. `occluders`: null: rays alone, for many
+  /// emitters.
   EmitterLight(const PatchMesh& mesh, const PatchMaterials& materials,
                const ElementSurface& surface, const ElementSet& elements,
                const OccluderSet* occluders, const std::vector<Emitter>& emitters,

@@ -39,7 +39,7 @@ struct LightAtPoints::Inside {
   std::vector<std::unique_ptr<Rays>> rays;  ///< kFewestRays rays, twice as many, ...
 };
 
-/// Where facets meet smoothly, the normal is interpolated between the corners.
+/// At smooth edges between facets the normal is interpolated between the corners.
 SurfacePoint LightAtPoints::Inside::pointAt(std::size_t root, const Vec3& at,
                                             const Vec2& place) const {
   const ElementSurface& surface = sources.surface();

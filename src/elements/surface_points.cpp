@@ -218,7 +218,7 @@ void ElementSurface::insetCorners(const PatchMesh& mesh) {
   for (std::size_t v = 0; v < points.size(); ++v) {
     const double length = glm::length(inward[v]);
     points[v].position = points[v].place;
-    // Where facets meet smoothly, the plane of one soon leaves the surface of the other.
+    // At a smooth edge, the plane of one facet soon leaves the surface of the other.
     if (points[v].owners >= mesh.polygons.size()) most[v] = std::min(most[v], kLeast * diagonal);
     if (length > 0) points[v].position += inward[v] * (most[v] / length);
   }

@@ -1,4 +1,4 @@
-// Polygons are clipped and drawn: candidates, triangles, pixels.
+// The shaders that clip and draw polygons: candidates, triangles, pixels.
 #include "gl/shaders.h"
 
 namespace radiosity::gl {
@@ -232,10 +232,10 @@ void main() {
 }
 )";
 
-// Depths are inverse distances, of the plane at the pixel's centre: what the rasteriser makes of
-// those of corners depends on where in the target they are. A centre may lie 1/256 of a pixel
-// beside the polygon, where the plane of one that is seen edge-on is anywhere: no further than its
-// corners.
+// Depths are inverse distances of the plane at the pixel's centre. Depths that the rasteriser
+// interpolates between corners would depend on their place in the target. A centre may lie 1/256 of
+// a pixel outside the polygon. There the plane of a polygon seen edge-on may be at any distance, so
+// we limit it to the distances of the corners.
 const char* const kDrawPixel = R"(
 layout(std430, binding = 0) readonly buffer Candidates { Candidate candidates[]; };
 uniform uint polygon_count;

@@ -1,4 +1,4 @@
-// Light is gathered: means, interpolation at pixels, sums.
+// The shaders that gather light: means, interpolation at pixels, sums.
 #include "gl/shaders.h"
 
 namespace radiosity::gl {

@@ -15,7 +15,7 @@ namespace radiosity::gl {
 
 class LightOnDevice;
 
-/// What suits a device.
+/// The pace that suits a device.
 const GpuPace& paceOf(const EyeDevice& device);
 
 class GlEye final : public GpuEye {
@@ -36,7 +36,7 @@ class GlEye final : public GpuEye {
 
  private:
   struct OnDevice;
-  /// Hemicubes that the device works on: views [first, first + count).
+  /// A batch of hemicubes on the device: views [first, first + count).
   struct Batch {
     std::size_t first = 0;
     std::uint32_t count = 0;
@@ -78,8 +78,8 @@ class GlEye final : public GpuEye {
   std::size_t triangle_room_ = 0;             ///< of a view
   BatchPlan plan_;
   std::unique_ptr<OnDevice> on_device_;
-  std::unique_ptr<LightOnDevice> light_;  ///< null: none is gathered
-  std::string failure_;                   ///< why the device gave up; empty: it has not
+  std::unique_ptr<LightOnDevice> light_;  ///< null: no light is gathered
+  std::string failure_;                   ///< why the device gave up; empty: it works
 };
 
 }  // namespace radiosity::gl

@@ -1,4 +1,4 @@
-// Light that hemicubes gather, kept on the device.
+// The light that hemicubes gather, kept on the device.
 #pragma once
 
 #include <array>
@@ -22,22 +22,22 @@ struct GatheredBatch {
   int tiles_across;
 };
 
-/// A GpuField: radiosity, and what turns irradiance into the next one.
+/// A GpuField on the device: its radiosity, and the data that makes the next one from irradiance.
 class LightOnDevice {
  public:
   LightOnDevice(const GpuField& field, int resolution);
 
-  /// Bytes of the largest buffer whose size does not go with the views.
+  /// The bytes of the largest buffer whose size does not depend on the views.
   std::size_t largestBlock() const;
   std::size_t irradianceBytes(std::size_t views) const { return views * bands_ * sizeof(double); }
-  /// Of sums of 128 pixels.
+  /// The bytes of the sums of 128 pixels.
   std::size_t partBytes(std::size_t views) const { return parts_a_view_ * irradianceBytes(views); }
   void makeRoom(std::size_t views);
 
-  /// Of the radiosity that is gathered.
+  /// Computes the means of the radiosity that is gathered.
   void takeMeans();
   void gather(const GatheredBatch& batch);
-  /// The next radiosity is the one that is gathered from now on.
+  /// Makes the next radiosity the one that is gathered.
   void takeNext() { now_ = 1 - now_; }
 
   const Buffer& irradiance() const { return irradiance_; }
@@ -50,7 +50,7 @@ class LightOnDevice {
   Program interpolate_;
   Program gather_;
   Buffer vertices_, facets_, first_facet_, mean_of_, first_of_mean_, materials_;
-  std::array<Buffer, 2> radiosity_;  ///< that is gathered, and the next
+  std::array<Buffer, 2> radiosity_;  ///< the one that is gathered, and the next
   std::size_t now_ = 0;
   Buffer parts_, irradiance_;
 };

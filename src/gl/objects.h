@@ -11,7 +11,7 @@
 
 namespace radiosity::gl {
 
-/// Of `size` invocations, for `count` in all.
+/// The groups of `size` invocations that make `count` in total.
 inline GLuint groups(std::size_t count, std::size_t size) {
   return GLuint((count + size - 1) / size);
 }

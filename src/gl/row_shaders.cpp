@@ -1,4 +1,4 @@
-// Rows are summed from the pixels that were drawn.
+// The shader that sums rows from the pixels of a picture.
 #include "gl/shaders.h"
 
 namespace radiosity::gl {

@@ -1,4 +1,4 @@
-// What several steps have in common.
+// The parts that several shaders share.
 #include "gl/shaders.h"
 
 namespace radiosity::gl {

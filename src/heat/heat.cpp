@@ -32,9 +32,9 @@ HeatSolution solved(const FormFactors& factors, const HeatRows& rows, const Heat
   return solution;
 }
 
-/// Heat where patches share unknowns, as ClusterSolve finds light: what rays find beyond means of
-/// clusters falls on them, too, in a second solution. A cluster has one temperature; irradiance
-/// differs within it, and with it what is reflected.
+/// Solves heat if patches share unknowns, as ClusterSolve solves light. Rays find the irradiance
+/// beyond the means of clusters; a second solution includes it. A cluster has one temperature;
+/// irradiance, and so reflected radiation, differs within it.
 class SharedHeat {
  public:
   /// All are kept by reference.

@@ -29,19 +29,20 @@ namespace {
 constexpr std::size_t kClosureGrain = 16;
 /// The most Newton steps. One is needed if no entry turns negative, else a handful.
 constexpr int kMostRounds = 30;
-/// Each step is solved to this share of the rows' shortfall while entries reach 0 or leave it: they
-/// would spoil a more exact step (inexact Newton: Dembo, Eisenstat & Steihaug, SIAM J. Numer. Anal.
-/// 19, 1982). Where the last step held and freed none, the next is solved to the end.
+/// While entries reach 0 or leave it, each step is solved to this share of the rows' shortfall:
+/// such entries would spoil a more exact step (inexact Newton: Dembo, Eisenstat & Steihaug, SIAM J.
+/// Numer. Anal. 19, 1982). If the last step held and freed no entry, the next is solved to the
+/// tolerance.
 constexpr double kForcing = 0.1;
-/// Shortest part of a Newton step that is tried.
+/// The shortest part of a Newton step that we try.
 constexpr double kShortestStep = 1e-6;
 /// Once entries are held at 0, each row's own weight grows by this factor times the largest
 /// shortfall. A row without free entries can then still recover.
 constexpr double kDamping = 1e-2;
 
-/// The problem, by position. With e_kq the error of F_kq and w_kq = (A_k e_kq)^2 the squared error
-/// of the exchange area, the least sum of d_kq^2 / (2 w_kq) over pairs under sum_q d_kq = r_k and
-/// d_kq >= -G_kq has
+/// The problem, by position. Let e_kq be the error of F_kq and w_kq = (A_k e_kq)^2 the squared
+/// error of the exchange area. The least sum of d_kq^2 / (2 w_kq) over pairs with sum_q d_kq = r_k
+/// and d_kq >= -G_kq has
 ///     d_kq = max(-G_kq, w_kq (m_k + m_q))
 /// with a multiplier m per row (the conditions of Karush, Kuhn and Tucker). The m minimise the dual
 ///     f(m) = sum over pairs of phi_kq(m_k + m_q) - sum_k r_k m_k,   phi' = d,
@@ -261,7 +262,7 @@ void LeastSquaresClosure::evaluate() {
   dual_ = std::accumulate(value.begin(), value.end(), 0.0);
 }
 
-/// D over the square of root_, with what damps the step: 1 while all are free.
+/// D over the square of root_, plus the damping of the step: 1 while all entries are free.
 std::vector<double> LeastSquaresClosure::scaledDiagonal() {
   std::vector<double> own(area_.size(), 1.0);
   if (held_ == 0) return own;
@@ -273,8 +274,8 @@ std::vector<double> LeastSquaresClosure::scaledDiagonal() {
   return own;
 }
 
-/// On the system scaled by the root of D from both sides, with strong pairs solved directly. The
-/// matrix is singular where a set of rows shares uncertain entries only with another set.
+/// Solves on the system scaled by the root of D from both sides, with strong pairs solved directly.
+/// The matrix is singular if a set of rows shares uncertain entries only with another set.
 std::vector<double> LeastSquaresClosure::newtonStep(double tolerance) {
   const std::size_t n = area_.size();
   const std::vector<double> own = scaledDiagonal();

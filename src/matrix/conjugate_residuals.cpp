@@ -9,9 +9,9 @@ namespace radiosity {
 namespace {
 
 constexpr std::size_t kMostSteps = 2000;
-/// A residual r counts as a null vector where <r, A r> is below this share of its square.
+/// A residual r counts as a null vector if <r, A r> is below this share of its square.
 constexpr double kNull = 1e-10;
-/// Steps within which the residual must at least halve; else the right side is out of reach.
+/// The residual must halve within this number of steps; otherwise the right side is out of reach.
 constexpr std::size_t kStagnantSteps = 50;
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
@@ -35,8 +35,8 @@ std::vector<double> conjugateResiduals(const ResidualSystem& system, std::vector
     return history.size() > kStagnantSteps &&
            history.back() > 0.5 * history[history.size() - 1 - kStagnantSteps];
   };
-  // Where nothing has what the right side asks for, the residual ends as a null vector; further
-  // steps would follow rounding.
+  // If the system has no solution, the residual ends as a null vector, and further steps would
+  // follow rounding.
   const auto ends = [&] { return !(weight > kNull * dot(residual, corrected)); };
   while (history.back() > tolerance && !ends() && history.size() < kMostSteps && !stalls()) {
     const std::vector<double> moved = system.strong.solve(of_direction);

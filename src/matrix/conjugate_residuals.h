@@ -17,8 +17,8 @@ struct ResidualSystem {
 };
 
 /// Solves until the residual is no larger than the tolerance, or further steps bring nothing
-/// (Stiefel 1955). It costs what conjugate gradients do, and its residual falls in every step also
-/// where the right side asks for what cannot be had. Steps are added to `iterations`.
+/// (Stiefel 1955). The method costs as much as conjugate gradients. Its residual falls in every
+/// step, even if the system has no solution. Steps are added to `iterations`.
 std::vector<double> conjugateResiduals(const ResidualSystem& system, std::vector<double> right,
                                        double tolerance, Progress& progress, int& iterations);
 

@@ -46,7 +46,7 @@ std::vector<Index> DraftPolygons::sheetsOf(const Draft& draft) const {
   return out;
 }
 
-/// By draft the scene's faces under it: of a sheet that several drafts share, those beside it.
+/// By draft, the scene's faces under it; for a sheet that several drafts share, the faces near it.
 std::vector<std::vector<Index>> DraftPolygons::facesByDraft() const {
   std::vector<std::vector<Index>> drafts_of(cells_.sheets.size());
   for (std::size_t d = 0; d < drafts_.list.size(); ++d) {
@@ -96,7 +96,7 @@ std::vector<std::pair<Index, Index>> DraftPolygons::facesBeside(
   return out;
 }
 
-/// Numbers the vertices that are left by their place in space, not by how they came about.
+/// Numbers the remaining vertices by their place in space, not by their history.
 std::vector<Vec3> DraftPolygons::numberVertices() {
   std::vector<Index> used;
   for (const auto& edge : straight_.edges) used.insert(used.end(), edge.begin(), edge.end());

@@ -1,4 +1,4 @@
-// Polygons from drafts: vertices numbered, faces under them found, all in a fixed order.
+// Polygons from drafts: numbers the vertices and finds the faces under the polygons.
 #pragma once
 
 #include "mesh/cell_drafts.h"

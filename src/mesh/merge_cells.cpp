@@ -13,7 +13,7 @@ namespace radiosity {
 
 namespace {
 
-/// What merging does to the scene, for the report.
+/// The effects of merging on the scene, for the report.
 class MergeAccount {
  public:
   MergeAccount(const CellsToMerge& cells, const Drafts& drafts, const StraightEdges& straight)
@@ -36,7 +36,7 @@ class MergeAccount {
   const StraightEdges& straight_;
 };
 
-/// A sheet goes on on both sides of the edge, and the edge is needed there: it cuts the sheet.
+/// Whether the edge cuts a sheet: the sheet continues on both sides, and the edge is needed there.
 bool MergeAccount::isCutThere(const EdgeSides& s) const {
   if (s.left == kNone || s.right == kNone) return false;
   if (drafts_.recordsOf(s.left).empty() && drafts_.recordsOf(s.right).empty()) return false;
@@ -71,8 +71,8 @@ double MergeAccount::movedArea(const Draft& draft) const {
   return area - std::abs(glm::dot(kept, cells_.planes[draft.plane].normal));
 }
 
-/// The most that straightening can move: a strip of two coincidences along the border. Twice that,
-/// for what is rounded.
+/// The most area that straightening can move: a strip of two coincidences along the border, times
+/// two for rounding.
 double MergeAccount::areaInReach(const Draft& draft) const {
   double length = 0;
   for (const Index e : draft.border) {

@@ -37,8 +37,8 @@ void RegionRefiner::refine() {
   }
 }
 
-/// Judges a point at p that would remove `bad` by the triangles it would make, which are known
-/// beforehand: p joined to the boundary of the zone it is in conflict with (Bowyer-Watson).
+/// Judges a point at p, which would remove `bad`, by the triangles that it would make. They are
+/// known beforehand: p joined to the boundary of its conflict zone (Bowyer-Watson).
 RegionRefiner::Trial RegionRefiner::tryPoint(const RegionTriangulation::Point& p, RegionFace bad) {
   Trial trial;
   RegionTriangulation& cdt = region_.cdt();
@@ -80,8 +80,8 @@ bool RegionRefiner::improve(RegionFace bad, std::vector<RegionFace>& changed) {
     const RegionTriangulation::Point q = pointOf(candidate);
     if (!std::isfinite(q.x()) || !std::isfinite(q.y())) continue;
     const Trial trial = tryPoint(q, bad);
-    // The first candidate is the circumcentre. Clear of the boundary it may go in without a gain of
-    // its own: no edge it makes is shorter than the triangle's radius, so that points spread out
+    // The first candidate is the circumcentre. If it is clear of the boundary, we insert it even
+    // without a gain: no new edge is shorter than the triangle's radius, so that points spread out
     // from small features, farther and farther apart (Ruppert 1995).
     const bool spread = first && trial.clear;
     first = false;

@@ -1,4 +1,4 @@
-// Points inside a region that better the angles of its triangles.
+// Inserts points inside a region that improve the angles of its triangles.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@
 
 namespace radiosity {
 
-/// Delaunay refinement without encroachment rules: instead of reasoning about where a point may
-/// go, candidates are judged by the triangles they would make.
+/// Delaunay refinement without encroachment rules: candidate points are judged by the triangles
+/// that they would make.
 class RegionRefiner {
  public:
   /// Over all rounds it inserts hardly more points than there are now.
@@ -21,9 +21,9 @@ class RegionRefiner {
 
  private:
   struct Trial {
-    RegionFace where;    ///< holds the point
-    double gain = 0;     ///< the smallest angle around it, if that is worth a point; else 0
-    bool clear = false;  ///< removes the bad face and keeps out of the circles over constraints
+    RegionFace where;    ///< the face that contains the point
+    double gain = 0;     ///< the smallest angle around the point if it is worthwhile; else 0
+    bool clear = false;  ///< removes the bad face and is outside the circles over constraints
   };
   Trial tryPoint(const RegionTriangulation::Point& p, RegionFace bad);
   bool improve(RegionFace bad, std::vector<RegionFace>& changed);

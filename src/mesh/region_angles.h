@@ -1,4 +1,4 @@
-// The smallest angles of a region's triangles, as far as they can be bettered.
+// The smallest angles of a region's triangles, as far as they can be improved.
 #pragma once
 
 #include <glm/geometric.hpp>
@@ -9,16 +9,16 @@
 
 namespace radiosity {
 
-/// Triangles with smaller angles are worked on.
+/// Triangles with smaller angles are improved.
 inline const AngleLimit kWantedAngle(25.0);
 
-/// Whether rounding or a move has left a triangle no area, or turned it over.
+/// Whether a triangle has no area or is turned over, after rounding or a move.
 inline bool isTurnedOver(RegionFace f) {
   const Vec2 a = positionOf(f->vertex(0));
   return cross2(positionOf(f->vertex(1)) - a, positionOf(f->vertex(2)) - a) <= 0;
 }
 
-/// The smallest angle that points and moves inside can change: those between two constraints are
+/// The smallest angle that inner points and moves can change: angles between two constraints are
 /// given.
 inline Angle smallestFreeAngle(RegionFace f) {
   const Vec2 p[3] = {positionOf(f->vertex(0)), positionOf(f->vertex(1)), positionOf(f->vertex(2))};
@@ -32,7 +32,7 @@ inline Angle smallestFreeAngle(RegionFace f) {
   return smallest;
 }
 
-/// The smallest free angle of some triangles; below all angles where a triangle is turned over.
+/// The smallest free angle of some triangles; less than any angle if a triangle is turned over.
 class WorstAngle {
  public:
   void add(RegionFace f) {
@@ -46,7 +46,7 @@ class WorstAngle {
   bool isBelow(const WorstAngle& other) const {
     return !other.turned_over_ && (turned_over_ || smallest_.isBelow(other.smallest_));
   }
-  /// -1: one is turned over.
+  /// The angle; -1 if a triangle is turned over.
   double radians() const { return turned_over_ ? -1.0 : smallest_.radians(); }
 
  private:

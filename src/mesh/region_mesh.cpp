@@ -1,4 +1,4 @@
-// Meshes a region: triangles are refined and smoothed by turns, then joined in pairs.
+// Meshes a region: refines and smooths triangles by turns, then joins them in pairs.
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -131,8 +131,8 @@ bool RegionMesher::shorten(const std::vector<Cell>& cells) {
   if (!std::isfinite(region_.longest)) return false;
   std::vector<RegionVertex> vertices(region_.points.size() + mesh_.interior().size());
   for (RegionVertex v : mesh_.cdt().finite_vertex_handles()) vertices[v->info()] = v;
-  // Edges that were meant to be as long, but for rounding, and edges beside pieces that are longer
-  // (of corners too sharp to be cut), stay.
+  // Edges of this length but for rounding stay, and so do edges beside longer pieces (at corners
+  // too sharp to be cut).
   const double limit = std::max(region_.longest * (1 + 1e-9), longestPiece());
   bool found = false;
   for (const Cell& cell : cells) {

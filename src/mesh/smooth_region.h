@@ -1,12 +1,12 @@
-// Moves of points inside a region that better the angles of its triangles.
+// Moves points inside a region to improve the angles of its triangles.
 #pragma once
 
 #include "mesh/triangulated_region.h"
 
 namespace radiosity {
 
-/// Moves vertices inside while that betters the smallest angles around them, a few sweeps at most.
-/// The triangulation is then no longer Delaunay's: takePositions() and triangulate() make it so.
+/// Moves vertices inside as long as that improves the smallest angles around them, in a few sweeps
+/// at most. The triangulation is then not Delaunay: takePositions() and triangulate() make it so.
 void smoothInside(TriangulatedRegion& region);
 
 }  // namespace radiosity

@@ -31,7 +31,7 @@ class DraftStraightener {
   StraightEdges straight_;
 };
 
-/// By needed edge which polygons it borders and which it runs through.
+/// By needed edge, the polygons that it borders and those that it runs through.
 EdgeUses DraftStraightener::usesOfNeeded() const {
   EdgeUses out;
   out.begin.assign(drafts_.needed.size() + 1, 0);
@@ -89,7 +89,7 @@ std::vector<bool> DraftStraightener::draftsAt(const std::vector<Index>& vertices
   return out;
 }
 
-/// Keeps all vertices of a draft; appends those that had gone.
+/// Keeps all vertices of a draft; appends those that had been removed.
 void DraftStraightener::keepCorners(const Draft& draft, std::vector<bool>& keep,
                                     std::vector<Index>& kept) const {
   for (const auto* list : {&draft.border, &draft.inner}) {
@@ -125,8 +125,8 @@ void DraftStraightener::traceDraft(Draft& draft) const {
     std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
     loops.emplace_back(-glm::dot(area, cells_.planes[draft.plane].normal), std::move(loop));
   }
-  // The outer loop is the one that counts positive, and the largest. If none does, welding has
-  // bent a sliver out of its plane.
+  // The outer loop has the largest positive area. If no area is positive, welding has bent a sliver
+  // out of its plane.
   std::sort(loops.begin(), loops.end());
   if (loops.empty() || loops[0].first >= 0) return;
   for (auto& [key, loop] : loops) draft.loops.push_back(std::move(loop));

@@ -1,4 +1,4 @@
-// Loops of polygons in the making, without straight vertices and without edges that cross.
+// The loops of polygons that are being built, without straight vertices and crossing edges.
 #pragma once
 
 #include "mesh/cell_drafts.h"
@@ -6,10 +6,10 @@
 
 namespace radiosity {
 
-/// Straightens the edges that are needed and traces the loops of all drafts. Straightening moves
-/// edges by up to a coincidence, and other edges of a polygon may be hardly farther away: where a
-/// polygon's edges then cross, its vertices are kept. With all of them kept the edges are those of
-/// the arrangement, which cross nowhere but for rounding.
+/// Straightens the needed edges and traces the loops of all drafts. Straightening moves edges by up
+/// to a coincidence, and other edges of a polygon may be hardly farther away. If a polygon's edges
+/// then cross, its vertices are kept. With all vertices kept, the edges are those of the
+/// arrangement, which do not cross except by rounding.
 StraightEdges straightenDrafts(const CellsToMerge& cells, Drafts& drafts);
 
 /// Whether the edges of a draft, inner ones included, do not cross.

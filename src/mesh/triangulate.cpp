@@ -86,7 +86,7 @@ Triangles clipEars(std::span<const Vec2> outline) {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<Index, Kernel>;
-/// How many times the loops wind around a triangle.
+/// The winding number of the loops around a triangle.
 using WindingFaceBase =
     CGAL::Triangulation_face_base_with_info_2<int, Kernel,
                                               CGAL::Constrained_triangulation_face_base_2<Kernel>>;

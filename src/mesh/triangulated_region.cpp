@@ -24,8 +24,8 @@ bool TriangulatedRegion::isPlainTriangle() const {
     return false;
   }
   const auto& p = region_.points;
-  // As corners come, to the bit: rounding may turn a sliver over from one corner and not from
-  // another.
+  // The order of corners matters to the bit: rounding may turn a sliver over in one order and not
+  // in another.
   return CGAL::orientation(pointOf(p[0]), pointOf(p[1]), pointOf(p[2])) == CGAL::LEFT_TURN &&
          cross2(p[1] - p[0], p[2] - p[0]) > 0 && cross2(p[2] - p[1], p[0] - p[1]) > 0 &&
          cross2(p[0] - p[2], p[1] - p[2]) > 0;
@@ -55,8 +55,8 @@ bool TriangulatedRegion::triangulate() {
     v->info() = Index(id);
     return v;
   };
-  // Every second of the points between those already in, again and again: points in a row, one
-  // after the other, would make each insertion flip all edges of the row so far.
+  // We insert every second of the points between those already in, repeatedly. Points in a row,
+  // inserted one after the other, would make each insertion flip all edges of the row so far.
   const std::size_t count = region_.points.size();
   std::vector<RegionVertex> vertices(count);
   vertices[0] = add(region_.points[0], 0, RegionFace());
@@ -74,7 +74,7 @@ bool TriangulatedRegion::triangulate() {
   return true;
 }
 
-/// Faces reached from the left of the loops' pieces without crossing any of them.
+/// Marks the faces that are reached from the left of the loops' pieces without crossing any piece.
 void TriangulatedRegion::markInside() {
   for (RegionFace f : cdt_.all_face_handles()) f->info() = false;
   std::vector<RegionFace> stack;
@@ -124,8 +124,8 @@ bool TriangulatedRegion::tiles() const {
     const Vec2 a = positionOf(f->vertex(0));
     add(positionOf(f->vertex(1)) - a, positionOf(f->vertex(2)) - a, -1.0);
   }
-  // Products and the coordinates they are made of are rounded some times each; a triangle that is
-  // turned over or there twice counts far more.
+  // Products and their coordinates are rounded a few times each. A triangle that is turned over or
+  // there twice makes a far larger difference.
   return std::abs(double(area)) <= 0x1p-46 * terms;
 }
 

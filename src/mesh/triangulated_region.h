@@ -17,7 +17,7 @@
 namespace radiosity {
 
 using RegionKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-/// Vertices know their place among the region's points and those inside, faces whether they lie
+/// A vertex has its place among the region's points and the inner ones; a face knows whether it is
 /// inside.
 using RegionTriangulation = CGAL::Constrained_Delaunay_triangulation_2<
     RegionKernel,
@@ -34,31 +34,31 @@ inline RegionTriangulation::Point pointOf(const Vec2& p) { return {p.x, p.y}; }
 
 class TriangulatedRegion {
  public:
-  /// With the points of a background grid inside; `region` is kept by reference.
+  /// Has the points of a background grid inside. `region` must outlive it.
   explicit TriangulatedRegion(const Region& region);
 
-  /// A triangle without points inside is its own triangulation: all its angles are given, and none
-  /// of its edges may be cut or turned. Its corners begin where the triangulation of three points
-  /// does.
+  /// Whether the region is a triangle without inner points. It is its own triangulation: all its
+  /// angles are given, and none of its edges may be cut or flipped. Its first corner is that of the
+  /// triangulation of three points.
   bool isPlainTriangle() const;
 
-  /// Triangulates anew. False if pieces cross; no points inside can change that.
+  /// Triangulates anew. False if pieces cross, which inner points cannot change.
   bool triangulate();
 
-  /// Whether the triangles inside have the area of the loops: not where the loops touch, or where
-  /// rounding has turned one over.
+  /// Whether the triangles inside have the area of the loops. They have not if loops touch, or if
+  /// rounding has turned a triangle over.
   bool tiles() const;
 
-  /// Adds a point inside, which `where` holds.
+  /// Adds a point inside the face `where`.
   RegionVertex insert(const RegionTriangulation::Point& p, RegionFace where);
 
   /// Keeps the places that vertices inside have been moved to, for the next triangulate().
   void takePositions();
 
-  /// Those inside.
+  /// The triangles inside.
   std::vector<std::array<Index, 3>> triangles() const;
 
-  /// Whether a vertex is no end of a piece: it may be moved.
+  /// Whether a vertex is no end of a piece, so that it may be moved.
   bool isFree(RegionVertex v) const { return v->info() >= region_.points.size(); }
 
   const Region& region() const { return region_; }

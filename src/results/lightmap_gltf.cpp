@@ -51,7 +51,7 @@ LightmapGltf::LightmapGltf(const std::string& source, const Scene& scene, const 
   document_["asset"]["generator"] = "radiosity";
 }
 
-/// Joins all buffers, since a binary file has one. Drops what extensions say of the others (a
+/// Joins all buffers, since a binary file has one. Drops what extensions add about the others (a
 /// second, compressed form).
 void LightmapGltf::joinBuffers() {
   std::vector<std::size_t> begin;

@@ -11,7 +11,7 @@
 
 namespace radiosity {
 
-/// Shifted, then turned about the axis (Rodrigues).
+/// Shifts a point, then turns it about the axis (Rodrigues).
 Vec3 InstancePlacement::of(const Vec3& place) const {
   const Vec3 shifted = place + shift;
   if (degrees == 0) return shifted;

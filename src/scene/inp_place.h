@@ -1,4 +1,4 @@
-// Where a scan of CalculiX's and Abaqus' input stands, and what fields mean there.
+// The current place in the input of CalculiX and Abaqus; reads its fields.
 #pragma once
 
 #include <string>

@@ -21,7 +21,7 @@ namespace radiosity {
 
 namespace {
 
-constexpr int kMostIncludes = 16;  // a file that includes itself never ends
+constexpr int kMostIncludes = 16;  // a file that includes itself would never end
 
 class InpScanner {
  public:
@@ -52,11 +52,11 @@ class InpScanner {
   InpScan scan_;
   InpBodies bodies_{at_, scan_.bodies};
   InpSets sets_{at_, bodies_};
-  InpKeyword current_;                 ///< whose data lines come
-  std::optional<ElementShape> shape_;  ///< of the elements that come
-  bool unfinished_ = false;            ///< the last element goes on in the next line
-  bool in_set_ = false;                ///< the elements that come are members of a set
-  bool has_system_ = false;            ///< coordinates of nodes are another system's
+  InpKeyword current_;                 ///< the keyword of the data lines that follow
+  std::optional<ElementShape> shape_;  ///< of the elements that follow
+  bool unfinished_ = false;            ///< the last element continues in the next line
+  bool in_set_ = false;                ///< the elements that follow are members of a set
+  bool has_system_ = false;            ///< coordinates of nodes are in another system
   FeatureNotes notes_;
 };
 
@@ -159,12 +159,12 @@ void InpScanner::beginElements() {
                type, Severity::warning);
   }
   if (current_.get("elset").empty()) return;
-  // Also of no faces: sets of sets may name it.
+  // Begins the set even if the elements are no faces: other sets may name it.
   sets_.beginIn(bodies_.current(), current_.get("elset"));
   in_set_ = shape_.has_value();
 }
 
-/// Surfaces of nodes, and those that others are cut of, say nothing of sides.
+/// Begins a surface. Surfaces of nodes, and combinations of other surfaces, do not list sides.
 void InpScanner::beginSides() {
   const std::string type = lowerCase(current_.get("type"));
   if (kind_ != InpElements::volumes || (!type.empty() && type != "element")) {
@@ -200,7 +200,7 @@ void InpScanner::node(const std::vector<std::string_view>& fields) {
   if (fields.empty()) return;
   InpNode node{at_.integer(fields[0], "node number"), Vec3(0.0), at_.where()};
   for (std::size_t k = 1; k < std::min<std::size_t>(fields.size(), 4); ++k) {
-    if (fields[k].empty()) continue;  // a coordinate that is left out is 0
+    if (fields[k].empty()) continue;  // a missing coordinate is 0
     node.place[int(k) - 1] = at_.coordinate(fields[k]);
   }
   bodies_.current().nodes.push_back(std::move(node));

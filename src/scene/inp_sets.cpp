@@ -11,10 +11,10 @@ namespace radiosity {
 
 namespace {
 
-/// Sets of sets of sets: what no person means is refused before it fills the memory.
+/// The most members of sets: nested sets that no person means are refused before they fill memory.
 constexpr std::size_t kMostMembers = std::size_t(1) << 24U;
 
-/// The number of a set of that name, which is made where there is none.
+/// The number of the set with this name, which is created if it does not exist.
 std::size_t setIn(InpBody& body, const std::string& name) {
   const auto [place, is_new] = body.set_index.try_emplace(lowerCase(name), body.sets.size());
   if (is_new) body.sets.push_back({name, {}});
@@ -55,8 +55,8 @@ void InpSets::addMembers(const std::vector<std::string_view>& fields) {
   }
 }
 
-/// A set; of the assembly's sets also "INSTANCE.12" and "INSTANCE.SET", which go to a set of that
-/// instance.
+/// Adds the members of a set. Sets of the assembly may also have "INSTANCE.12" and "INSTANCE.SET",
+/// which go to a set of that instance.
 void InpSets::addMembersNamed(std::string_view field) {
   const std::string name = lowerCase(field);
   const std::size_t dot = name.find('.');

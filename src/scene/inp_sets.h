@@ -1,4 +1,4 @@
-// Sets of elements as lines of CalculiX's and Abaqus' input list them.
+// Reads sets of elements in the input of CalculiX and Abaqus.
 #pragma once
 
 #include <cstddef>
@@ -10,20 +10,20 @@
 
 namespace radiosity {
 
-/// The set that members are added to.
+/// Adds members to the current set.
 class InpSets {
  public:
   InpSets(const InpPlace& at, InpBodies& bodies) : at_(at), bodies_(bodies) {}
 
-  /// *ELSET. A set of the assembly is one of the instance whose elements it lists.
+  /// Reads *ELSET. A set of the assembly belongs to the instance whose elements it lists.
   void begin(const InpKeyword& keyword);
-  /// A set of that name of a body.
+  /// Begins a set of a body.
   void beginIn(InpBody& body, const std::string& name);
 
   void addElement(long long number);
-  /// A line of numbers and names.
+  /// Reads a line of numbers and names.
   void addMembers(const std::vector<std::string_view>& fields);
-  /// A line of GENERATE.
+  /// Reads a line of GENERATE.
   void addRange(const std::vector<std::string_view>& fields);
 
  private:
@@ -32,7 +32,7 @@ class InpSets {
 
   const InpPlace& at_;
   InpBodies& bodies_;
-  InpBody* body_ = nullptr;  ///< that set_ is of
+  InpBody* body_ = nullptr;  ///< the body of set_
   std::size_t set_ = 0;
   std::size_t member_count_ = 0;
 };

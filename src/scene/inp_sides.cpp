@@ -9,7 +9,7 @@ namespace radiosity {
 
 namespace {
 
-/// `members`: a set or an element of the body, "INSTANCE.12" where it is an instance.
+/// `members`: a set or an element of the body; "INSTANCE.12" if the body is an instance.
 void addSidesTo(InpBody& body, const InpBodies& bodies, std::string_view members, int side) {
   InpSides sides{{}, side};
   const std::string name = lowerCase(members);

@@ -1,4 +1,4 @@
-// Surfaces of sides of volumes, as lines of CalculiX's and Abaqus' input list them.
+// Reads surfaces of sides of volumes in the input of CalculiX and Abaqus.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace radiosity {
 
-/// *SURFACE. One of the assembly is a share for each instance.
+/// Reads *SURFACE. A surface of the assembly has a part in each instance.
 void beginSurface(InpBodies& bodies, const std::string& name);
 
-/// A line "12, S3" or "SET, S3" of the surface begun last. Other labels (SPOS, EDGE1) are no sides
+/// Reads a line "12, S3" or "SET, S3" of the last surface. Other labels (SPOS, EDGE1) are not sides
 /// of volumes.
 void addSides(InpBodies& bodies, const std::vector<std::string_view>& fields);
 

@@ -52,7 +52,7 @@ std::vector<double> ClusterSolve::radiosityOf(std::span<const double> irradiance
   return radiosity;
 }
 
-/// What falls on fronts beyond what the matrix gives does not get out.
+/// Corrects the account: light that reaches fronts in excess of the matrix does not reach the sky.
 void ClusterSolve::accountFor(std::span<const double> more, EnergyAccount& account) const {
   for (int b = 0; sees_out_ && b < materials_.bands; ++b) {
     const double power = powerOf(factors_.matrix.area(), more, materials_.bands, b);

@@ -24,8 +24,8 @@ namespace {
 /// A cycle ends once it has reduced the 2-norm of its residual by this factor: beyond, the
 /// recurrence may have drifted from the true residual, with which the next cycle begins.
 constexpr double kCycleReduction = 1e-10;
-/// Where w . (I - D S D) w is below this share of w . w, the room neither absorbs nor lets out
-/// light. Such a room is dark (findWhiteRoom()), so there is nothing to solve for.
+/// If w . (I - D S D) w is below this share of w . w, the room neither absorbs nor lets out light.
+/// Such a room is dark (findWhiteRoom()), so there is nothing to solve for.
 constexpr double kNothingLeft = 1e-13;
 /// The least mean reflectance, by area, at which deflation pays. A scene below it in every band
 /// converges as quickly without.

@@ -142,7 +142,7 @@ Fields direct(const System& system, Convergence& convergence) {
       factored[std::size_t(b)].improve(r, radiosity.col(b));
     }
     if (!system.nonnegative) continue;
-    // Where I - rho F has an inverse, but one with negative entries, light grows without bounds.
+    // If I - rho F has an inverse with negative entries, light grows without bounds.
     if (radiosity.minCoeff() < -kNegative * radiosity.maxCoeff()) {
       convergence.giveUp(GaveUp::grows);
       radiosity = emission;

@@ -1,4 +1,4 @@
-// Where the light goes.
+// The energy account of a solution.
 #pragma once
 
 #include <span>

@@ -13,7 +13,7 @@ namespace radiosity {
 
 namespace {
 
-/// How messages tell of a solver's iterations: "12 products of conjugate gradients".
+/// The words for a solver's iterations in messages: "12 products of conjugate gradients".
 std::string_view workOf(Solver solver) {
   switch (solver) {
     case Solver::automatic:

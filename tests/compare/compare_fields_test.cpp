@@ -179,7 +179,7 @@ TEST(CompareFields, PatchesAreComparedWithMeans) {
   }
   const LightField patches = lightOf(mesh, means, 3, "patches");
   const LightField linear = light(square(7, ramp));
-  // Samples of the seven columns do not fall evenly on the four: 1e-3 of the values at most.
+  // The ramp is linear, so both have the same means over the patches, to rounding.
   EXPECT_LT(compare(patches, linear, {}).relativeL2(), 1e-12);
   const Comparison turned = compare(linear, patches, {});
   EXPECT_LT(turned.relativeL2(), 1e-12);

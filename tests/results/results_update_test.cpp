@@ -143,19 +143,21 @@ TEST_F(ResultsUpdate, OverwritesBytesThatAKilledRunLeftBehindTheEnd) {
   EXPECT_TRUE(sample::same(solved, readResults(file())));
 }
 
-// Processes killed after 0 to 20 ms: some before, some within, some after the update.
+// Processes killed after 0 to 20 ms: some before, some within, some after the update. The last one
+// is left alone.
 TEST_F(ResultsUpdate, AKillAtAnyMomentLeavesTheFileAsItWasOrWhole) {
   Results solved = writeUnsolved();
   int done = 0;
   int undone = 0;
-  for (int round = 0; round < 80; ++round) {
+  constexpr int kRounds = 80;
+  for (int round = 0; round < kRounds; ++round) {
     const std::string known = readResults(file()).solution_key;
     solved.solution_key = "round=" + std::to_string(round);
     solved.solution->radiosity[0] = round;
     const pid_t child = fork();
     if (child == 0) _exit(updateResults(file(), solved, kButTheSolution) ? 0 : 1);
     std::this_thread::sleep_for(std::chrono::microseconds(250 * round));
-    kill(child, SIGKILL);
+    if (round + 1 < kRounds) kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
     const Results read = readResults(file());
     ASSERT_TRUE(sample::same(read.factors, solved.factors)) << round;
@@ -168,7 +170,7 @@ TEST_F(ResultsUpdate, AKillAtAnyMomentLeavesTheFileAsItWasOrWhole) {
     }
   }
   EXPECT_GT(undone, 0);
-  EXPECT_GT(done + undone, 79);
+  EXPECT_GT(done, 0);
 }
 
 }  // namespace
