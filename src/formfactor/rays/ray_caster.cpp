@@ -264,10 +264,8 @@ void RayCaster::visitEnd(const RayOrigins& origins, const Batch& batch, std::siz
 
 void RayCaster::visitEnds(const RayOrigins& origins, std::uint64_t seed, std::uint32_t rays,
                           const EndVisitor& visit) const {
-  if (origins.empty()) return;
-  trace(origins, seed, 0, rays, [&](const Batch& batch, std::size_t ray, std::uint32_t item) {
-    visitEnd(origins, batch, ray, item, visit);
-  });
+  Ends ends;
+  visitEnds(origins, seed, rays, ends, visit);
 }
 
 void RayCaster::visitEnds(const RayOrigins& origins, std::uint64_t seed, std::uint32_t rays,
