@@ -74,6 +74,8 @@ struct Scene {
   std::vector<Index> corners;             ///< vertex of each corner
   std::vector<Vec2> texcoords;            ///< one per corner, or empty; (0,0) is the top left of
                                           ///< the first texel, v grows downwards (as in glTF)
+  std::vector<Vec3> colours;              ///< one per corner, or empty: a factor of the material's
+                                          ///< reflectance, 0 to 1, linear between corners
   std::vector<Index> face_surface;        ///< F
   std::vector<std::size_t> face_element;  ///< F: line in an OBJ, ASCII STL or View3D file; number
                                           ///< of the element in a .msh or .inp; else of the face

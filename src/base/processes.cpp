@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 
+#include "base/side_library.h"
 #include "radiosity/base.h"
 
 namespace radiosity {
@@ -12,10 +13,9 @@ namespace radiosity {
 namespace {
 
 Processes& openProcesses() {
-  // The library is found beside this one, whose search path is $ORIGIN. It is never closed. Its
-  // symbols stay private: PETSc brings another HDF5 library than the one that writes results files.
-  void* library = dlopen("libradiosity_distributed.so", RTLD_LAZY | RTLD_LOCAL);
-  void* entry = library == nullptr ? nullptr : dlsym(library, "radiosityProcesses");
+  // PETSc brings another HDF5 library than the one that writes results files, so it matters that
+  // the symbols stay private.
+  void* entry = entryOf("libradiosity_distributed.so", "radiosityProcesses");
   if (entry == nullptr) {
     throw RunError(
         fmt::format("started by mpirun, but libradiosity_distributed.so cannot be used ({}); build "

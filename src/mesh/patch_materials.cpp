@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 
@@ -17,16 +18,23 @@ namespace radiosity {
 
 namespace {
 
-/// A triangle of a face flattened onto a patch's plane, with its texture coordinates.
+/// A triangle of a face flattened onto a patch's plane, with what its corners carry.
 struct Mapped {
   std::array<Vec2, 3> p;
   std::array<Vec2, 3> uv;
+  std::array<Vec3, 3> colour;
 
-  Vec2 map(const Vec2& q) const {
+  Vec2 map(const Vec2& q) const { return between(uv, q); }
+  /// Within 0 and 1, which rounding at an edge of the triangle would leave.
+  Vec3 colourAt(const Vec2& q) const { return glm::clamp(between(colour, q), 0.0, 1.0); }
+
+ private:
+  template <class Value>
+  Value between(const std::array<Value, 3>& value, const Vec2& q) const {
     const double whole = cross2(p[1] - p[0], p[2] - p[0]);
     const double second = cross2(q - p[0], p[2] - p[0]) / whole;
     const double third = cross2(p[1] - p[0], q - p[0]) / whole;
-    return uv[0] + second * (uv[1] - uv[0]) + third * (uv[2] - uv[0]);
+    return value[0] + second * (value[1] - value[0]) + third * (value[2] - value[0]);
   }
 };
 
@@ -45,15 +53,18 @@ class PatchTexture {
   PatchTexture(const Scene& scene, const PatchMesh& mesh, std::span<const TextureMean> textures)
       : scene_(scene), mesh_(mesh), textures_(textures) {}
 
-  /// The area mean of a texture of the scene over patch i. `faces`: the faces that may lie under
-  /// it.
-  Vec3 mean(std::size_t i, Index texture_index, const std::vector<Index>& faces) const {
-    const TextureMean& texture = textures_[texture_index];
+  /// The area mean over patch i of what multiplies its reflectance: a texture of the scene (or
+  /// kNone), and the vertex colours if `coloured`. `faces`: the faces that may lie under the patch.
+  /// Where both vary within one face and patch, the product of their means stands for the mean of
+  /// their product.
+  Vec3 mean(std::size_t i, Index texture_index, bool coloured,
+            const std::vector<Index>& faces) const {
+    const TextureMean* texture = texture_index == kNone ? nullptr : &textures_[texture_index];
     const PlaneFrame frame =
         makeFrame(mesh_.centroid[i], mesh_.normal[i], axisAcross(mesh_.normal[i]));
     Sum sum;
     for (const Candidate& candidate : nearestFirst(i, frame, faces)) {
-      for (const Mapped& triangle : flattened(candidate.face, frame)) {
+      for (const Mapped& triangle : flattened(candidate.face, coloured, frame)) {
         for (std::size_t t = mesh_.piece_offset[i]; t < mesh_.piece_offset[i + 1]; ++t) {
           add(texture, triangle, mesh_.pieces[t], frame, sum);
         }
@@ -61,8 +72,10 @@ class PatchTexture {
       if (sum.area >= kCovered * mesh_.area[i]) break;
     }
     if (sum.area > 0) return sum.colour / sum.area;
-    // No face lies under the patch (the face is almost perpendicular): we take one corner's texel.
-    return texture.at(scene_.texcoords[scene_.face_offset[mesh_.source_face[i]]]);
+    // No face lies under the patch (the face is almost perpendicular): we take one corner's value.
+    const std::size_t corner = scene_.face_offset[mesh_.source_face[i]];
+    return (texture == nullptr ? Vec3(1.0) : texture->at(scene_.texcoords[corner])) *
+           (coloured ? scene_.colours[corner] : Vec3(1.0));
   }
 
  private:
@@ -92,15 +105,19 @@ class PatchTexture {
     return result;
   }
 
-  std::vector<Mapped> flattened(Index face, const PlaneFrame& frame) const {
+  std::vector<Mapped> flattened(Index face, bool coloured, const PlaneFrame& frame) const {
     const auto outline = scene_.face(face);
     std::vector<Vec2> flat;
     flat.reserve(outline.size());
     for (const Index v : outline) flat.push_back(frame.flat(scene_.vertices[v]));
     std::vector<Mapped> result;
-    const Vec2* uv = scene_.texcoords.data() + scene_.face_offset[face];
+    const std::size_t first = scene_.face_offset[face];
     for (const auto& t : triangulateOutline(flat)) {
-      const Mapped triangle{{flat[t[0]], flat[t[1]], flat[t[2]]}, {uv[t[0]], uv[t[1]], uv[t[2]]}};
+      Mapped triangle{{flat[t[0]], flat[t[1]], flat[t[2]]}, {}, {Vec3(1.0), Vec3(1.0), Vec3(1.0)}};
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (!scene_.texcoords.empty()) triangle.uv[k] = scene_.texcoords[first + t[k]];
+        if (coloured) triangle.colour[k] = scene_.colours[first + t[k]];
+      }
       if (cross2(triangle.p[1] - triangle.p[0], triangle.p[2] - triangle.p[0]) > 0) {
         result.push_back(triangle);
       }
@@ -109,7 +126,7 @@ class PatchTexture {
   }
 
   /// Adds the part of a piece of the patch that lies in `triangle`.
-  void add(const TextureMean& texture, const Mapped& triangle, const std::array<Index, 3>& piece,
+  void add(const TextureMean* texture, const Mapped& triangle, const std::array<Index, 3>& piece,
            const PlaneFrame& frame, Sum& sum) const {
     std::vector<Vec2> part;
     part.reserve(piece.size());
@@ -122,7 +139,8 @@ class PatchTexture {
     }
     const double area = polygonArea(part);
     if (!(area > 0)) return;
-    sum.colour += area * meanOver(texture, triangle, part);
+    const Vec3 texel = texture == nullptr ? Vec3(1.0) : meanOver(*texture, triangle, part);
+    sum.colour += area * texel * triangle.colourAt(polygonCentroid(part));
     sum.area += area;
   }
 
@@ -166,19 +184,37 @@ class PatchTexture {
   std::span<const TextureMean> textures_;
 };
 
-bool isTextured(const Scene& scene, Index surface) {
-  const Material& material = scene.materials[scene.surfaces[surface].material];
-  return !scene.texcoords.empty() &&
-         (material.texture != kNone || material.emission_texture != kNone);
-}
+/// Which surfaces have a reflectance or emission that changes from point to point.
+struct Varying {
+  std::vector<bool> textured;
+  std::vector<bool> coloured;
 
-/// For every textured front patch, the faces of its surface whose boxes meet its own.
-std::vector<std::vector<Index>> facesNear(const Scene& scene, const PatchMesh& mesh) {
+  explicit Varying(const Scene& scene)
+      : textured(scene.surfaces.size()), coloured(scene.surfaces.size()) {
+    for (std::size_t s = 0; s < scene.surfaces.size() && !scene.texcoords.empty(); ++s) {
+      const Material& material = scene.materials[scene.surfaces[s].material];
+      textured[s] = material.texture != kNone || material.emission_texture != kNone;
+    }
+    for (std::size_t f = 0; f < scene.faceCount() && !scene.colours.empty(); ++f) {
+      const auto colours =
+          std::span(scene.colours)
+              .subspan(scene.face_offset[f], scene.face_offset[f + 1] - scene.face_offset[f]);
+      const bool white =
+          std::all_of(colours.begin(), colours.end(), [](const Vec3& c) { return c == Vec3(1.0); });
+      if (!white) coloured[scene.face_surface[f]] = true;
+    }
+  }
+  bool at(Index surface) const { return textured[surface] || coloured[surface]; }
+};
+
+/// For every front patch whose material varies, the faces of its surface whose boxes meet its own.
+std::vector<std::vector<Index>> facesNear(const Scene& scene, const PatchMesh& mesh,
+                                          const Varying& varying) {
   std::vector<Index> patches;
   std::vector<Index> first_boxes;
   std::vector<Box3> boxes;
   for (Index i = 0; i < mesh.size(); ++i) {
-    if (mesh.side[i] != 0 || !(mesh.area[i] > 0) || !isTextured(scene, mesh.surface[i])) continue;
+    if (mesh.side[i] != 0 || !(mesh.area[i] > 0) || !varying.at(mesh.surface[i])) continue;
     Box3 box;
     for (const Index v : mesh.outline(i)) box.add(mesh.vertices[v]);
     // Rounding or welding may separate patch and face, so we add a little of the patch's own size.
@@ -190,7 +226,7 @@ std::vector<std::vector<Index>> facesNear(const Scene& scene, const PatchMesh& m
   if (patches.empty()) return near;
   std::vector<Index> faces;
   for (Index f = 0; f < scene.faceCount(); ++f) {
-    if (!isTextured(scene, scene.face_surface[f])) continue;
+    if (!varying.at(scene.face_surface[f])) continue;
     Box3& box = boxes.emplace_back();
     for (const Index v : scene.face(f)) box.add(scene.vertices[v]);
     faces.push_back(f);
@@ -238,17 +274,21 @@ PatchMaterials patchMaterials(const Scene& scene, const PatchMesh& mesh) {
   textures.reserve(scene.textures.size());
   for (const Texture& texture : scene.textures) textures.emplace_back(texture);
   const PatchTexture patch_texture(scene, mesh, textures);
-  const std::vector<std::vector<Index>> near = facesNear(scene, mesh);
+  const Varying varying(scene);
+  const std::vector<std::vector<Index>> near = facesNear(scene, mesh, varying);
   parallelFor(mesh.size(), 64, [&](std::size_t i) {
     const Material& material = scene.materials[scene.surfaces[mesh.surface[i]].material];
     Vec3 reflectance = material.reflectance;
     Vec3 emission = material.emission;
-    if (mesh.side[i] == 0 && mesh.area[i] > 0 && isTextured(scene, mesh.surface[i])) {
-      if (material.texture != kNone) {
-        reflectance *= patch_texture.mean(i, material.texture, near[i]);
+    const Index surface = mesh.surface[i];
+    if (mesh.side[i] == 0 && mesh.area[i] > 0 && varying.at(surface)) {
+      const auto used = [&](Index texture) { return varying.textured[surface] ? texture : kNone; };
+      const Index texture = used(material.texture);
+      if (texture != kNone || varying.coloured[surface]) {
+        reflectance *= patch_texture.mean(i, texture, varying.coloured[surface], near[i]);
       }
-      if (material.emission_texture != kNone) {
-        emission *= patch_texture.mean(i, material.emission_texture, near[i]);
+      if (used(material.emission_texture) != kNone) {
+        emission *= patch_texture.mean(i, material.emission_texture, false, near[i]);
       }
     }
     put(result.reflectance, i, reflectance);

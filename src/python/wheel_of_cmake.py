@@ -47,7 +47,7 @@ def built(folder):
         subprocess.run(["cmake", "-S", ROOT, "-B", folder, "-G", "Ninja",
                         *(f"-D{option}" for option in options)], check=True)
     subprocess.run(["cmake", "--build", folder, "--target", "radiosity", "radiosity_cli",
-                    "radiosity_images", "radiosity_python"], check=True)
+                    "radiosity_images", "radiosity_draco", "radiosity_python"], check=True)
 
 
 def parts(prefix, data):

@@ -84,6 +84,11 @@ class FieldWriter {
   void later(const char* name, const std::vector<std::string>& values) {
     if (!values.empty()) sink_->strings(name, values);
   }
+  /// A vector that older files lack; not written if it is empty.
+  template <class T>
+  void laterRows(const char* name, const std::vector<T>& values) {
+    if (!values.empty()) (*this)(name, values);
+  }
   /// A text that older files lack and that may be longer than an attribute.
   void laterText(const char* name, const std::string& value) {
     if (!value.empty()) sink_->strings(name, {value});
@@ -194,6 +199,11 @@ class FieldReader {
   void later(const char* name, std::vector<std::string>& values) {
     values.clear();
     if (source_->has(name)) values = source_->strings(name);
+  }
+  template <class T>
+  void laterRows(const char* name, std::vector<T>& values) {
+    values.clear();
+    if (source_->has(name)) (*this)(name, values);
   }
   void laterText(const char* name, std::string& value) {
     std::vector<std::string> values;

@@ -31,6 +31,7 @@ void describe(Archive& a, Described<Archive, Scene>& s) {
   a("face_offset", s.face_offset);
   a("corners", s.corners);
   a("texcoords", s.texcoords);
+  a.laterRows("colours", s.colours);
   a("face_surface", s.face_surface);
   a("face_element", s.face_element);
   a.table("surfaces", s.surfaces, [](auto& column) {

@@ -4,22 +4,13 @@
 
 #include <algorithm>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <utility>
 
 #include "base/geometry/box.h"
 #include "results/checked_file.h"
+#include "scene/glb_chunks.h"
 
 namespace radiosity {
-
-namespace {
-
-// Numbers of the specification (glTF 2.0, 4.4).
-constexpr std::uint32_t kMagic = 0x46546C67;
-constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
-constexpr std::uint32_t kBinaryChunk = 0x004E4942;
-
-}  // namespace
 
 Vec3 floatOrigin(std::span<const Vec3> vertices) {
   const Box3 box = boxOf(vertices);
@@ -114,20 +105,10 @@ void writeGlb(const std::string& path, nlohmann::ordered_json document,
   using Json = nlohmann::ordered_json;
   document["buffers"] = Json::array({{{"byteLength", binary.size()}}});
   // A name from an OBJ file need not be valid UTF-8, but JSON must be.
-  std::string json = document.dump(-1, ' ', false, Json::error_handler_t::replace);
-  json.resize(paddedTo4(json.size()), ' ');
-  const std::size_t total = 12 + 8 + json.size() + 8 + binary.size();
-  if (total > std::numeric_limits<std::uint32_t>::max()) {
-    throw RunError(
-        fmt::format("{}: would take {} bytes, glTF binary holds 4 GiB; write less", path, total));
-  }
-  const std::array<std::uint32_t, 5> head = {kMagic, 2, std::uint32_t(total),
-                                             std::uint32_t(json.size()), kJsonChunk};
-  const std::array<std::uint32_t, 2> binary_head = {std::uint32_t(binary.size()), kBinaryChunk};
+  const std::string json = document.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string beginning = glbBeginning(path, json, binary.size());
   CheckedFile file(path);
-  file.write(head.data(), sizeof head);
-  file.write(json);
-  file.write(binary_head.data(), sizeof binary_head);
+  file.write(beginning);
   file.write(binary.data(), binary.size());
   file.commit();
 }

@@ -27,9 +27,6 @@ inline constexpr int kGltfUnsignedInt = 5125;
 inline constexpr int kGltfArrayBuffer = 34962;
 inline constexpr int kGltfElementArrayBuffer = 34963;
 
-/// The next multiple of 4: chunks end and attributes begin there.
-constexpr std::size_t paddedTo4(std::size_t size) { return (size + 3) / 4 * 4; }
-
 /// Attributes of the vertices of one primitive; all but the position may be empty.
 struct GlbVertices {
   std::vector<std::array<float, 3>> position;

@@ -4,15 +4,14 @@
 #include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
-#include <glm/matrix.hpp>
 #include <limits>
 #include <string_view>
 
-#include "base/input_file.h"
 #include "results/glb.h"
 #include "results/gltf_bytes.h"
+#include "scene/glb_chunks.h"
 #include "scene/gltf_nodes.h"
+#include "scene/gltf_placement.h"
 #include "scene/gltf_preflight.h"
 
 namespace radiosity {
@@ -24,7 +23,7 @@ using Json = LightmapGltf::Json;
 constexpr double kSamePlace = 1e-5;
 
 Json documentOf(const std::string& source) {
-  const std::string content = readWholeFile(source);
+  const std::string content = readGltf(source);
   try {
     return Json::parse(gltfJson(source, content));
   } catch (const nlohmann::json::exception&) {
@@ -104,9 +103,16 @@ void LightmapGltf::addMeshes() {
   const Json given = document_.value("meshes", Json::array());
   std::vector<bool> used(given.size(), false);
   std::size_t face = 0;
+  const GltfPlacement placement(file_);
   forEachGltfNode(file_, [&](int number, const glm::dmat4& transform, const std::string& what) {
     const tinygltf::Node& node = file_.model.nodes[std::size_t(number)];
     if (node.mesh < 0) return;
+    if (placement.copies(number, what).size() != 1) {
+      file_.fail(what +
+                 " has copies (EXT_mesh_gpu_instancing), which have no lightmap of their "
+                 "own; export each as a node");
+    }
+    const bool mirrored = placement.isMirrored(number, transform);
     const auto m = std::size_t(node.mesh);
     const tinygltf::Mesh& mesh = file_.at(file_.model.meshes, node.mesh, "mesh", what);
     Json copy = given[m];
@@ -117,11 +123,11 @@ void LightmapGltf::addMeshes() {
         primitives.push_back(given[m]["primitives"][k]);
         continue;
       }
-      const std::vector<Vec3> positions = readGltfPositions(file_, primitive, transform, what);
+      const std::vector<Vec3> positions = placement.positions(number, primitive, transform, what);
       Placed placed{primitive,
                     positions.size(),
-                    readGltfTriangles(file_, primitive, positions.size(), transform, what),
-                    glm::determinant(glm::dmat3(transform)) < 0,
+                    readGltfTriangles(file_, primitive, positions.size(), mirrored, what),
+                    mirrored,
                     face,
                     what};
       face += placed.corners.size() / 3;
@@ -225,10 +231,6 @@ LightmapGltf::Json LightmapGltf::newPrimitive(Json primitive, const Placed& plac
     copyAttributes(primitive["targets"][k], placed.primitive.targets[k], placed, part, turned);
   }
   primitive["indices"] = addIndices(part.corners);
-  if (primitive.contains("extensions")) {
-    primitive["extensions"].erase("KHR_draco_mesh_compression");  // it has the old vertices
-    if (primitive["extensions"].empty()) primitive.erase("extensions");
-  }
   return primitive;
 }
 

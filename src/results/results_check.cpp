@@ -50,6 +50,7 @@ void checkScene(const Checker& check, const Scene& s) {
   check.offsets(s.face_offset, s.faceCount(), s.corners.size(), "/scene/face_offset");
   check.indices(s.corners, s.vertices.size(), false, "/scene/corners");
   if (!s.texcoords.empty()) check.length(s.texcoords, s.corners.size(), "/scene/texcoords");
+  if (!s.colours.empty()) check.length(s.colours, s.corners.size(), "/scene/colours");
   check.indices(s.face_surface, s.surfaces.size(), false, "/scene/face_surface");
   check.length(s.face_element, s.faceCount(), "/scene/face_element");
   for (const Surface& surface : s.surfaces) {

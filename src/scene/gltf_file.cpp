@@ -8,6 +8,8 @@
 #include <new>
 
 #include "base/input_file.h"
+#include "scene/glb_chunks.h"
+#include "scene/gltf_compression.h"
 #include "scene/gltf_preflight.h"
 #include "scene/text.h"
 
@@ -150,23 +152,39 @@ void parse(const std::string& content, GltfFile& file) {
 }  // namespace
 
 bool isSupportedGltfExtension(const std::string& name) {
-  constexpr std::array<std::string_view, 4> kSupported = {
-      "KHR_materials_emissive_strength", "KHR_texture_transform", "KHR_mesh_quantization",
-      "EXT_texture_webp"};
-  return std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end();
+  constexpr std::array<std::string_view, 6> kSupported = {
+      "KHR_materials_emissive_strength",     "KHR_texture_transform", "KHR_mesh_quantization",
+      "KHR_materials_pbrSpecularGlossiness", "EXT_texture_webp",      "EXT_mesh_gpu_instancing"};
+  return isGltfCompression(name) ||
+         std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end();
 }
 
-GltfFile parseGltf(const std::string& path) {
-  const std::string content = readWholeFile(path);
+bool leavesGeometry(const std::string& name) {
+  constexpr std::array<std::string_view, 11> kKinds = {
+      "KHR_materials_",    "KHR_texture_",  "KHR_lights_",     "KHR_xmp",
+      "KHR_animation_",    "EXT_texture_",  "EXT_lights_",     "EXT_structural_metadata",
+      "EXT_mesh_features", "MSFT_texture_", "ADOBE_materials_"};
+  return std::any_of(kKinds.begin(), kKinds.end(),
+                     [&](std::string_view kind) { return name.starts_with(kind); });
+}
+
+std::string readGltf(const std::string& path) {
+  std::string content = readWholeFile(path);
   if (content.size() > std::size_t(std::numeric_limits<unsigned int>::max())) {
     throw InputError(path + ": is larger than 4 GiB; split the scene");
   }
   checkGltf(path, content);
+  return gltfWithoutCompression(path, std::move(content));
+}
+
+GltfFile parseGltfContent(const std::string& path, const std::string& content) {
   GltfFile file;
   file.path = path;
   parse(content, file);
   return file;
 }
+
+GltfFile parseGltf(const std::string& path) { return parseGltfContent(path, readGltf(path)); }
 
 const unsigned char* GltfFile::viewBytes(int view_index, std::size_t offset, std::size_t stride,
                                          std::size_t element, std::size_t count,
@@ -223,6 +241,18 @@ std::vector<double> GltfFile::readNumbers(int accessor_index, int components,
     for (double& value : values) value = std::max(value / normalisation(type), -1.0);
   }
   return values;
+}
+
+std::vector<Vec3> GltfFile::readColours(int accessor, const std::string& what) const {
+  const bool has_alpha = at(model.accessors, accessor, "accessor", what).type == TINYGLTF_TYPE_VEC4;
+  const std::size_t components = has_alpha ? 4 : 3;
+  const std::vector<double> numbers = readNumbers(accessor, int(components), what);
+  std::vector<Vec3> colours;
+  colours.reserve(numbers.size() / components);
+  for (std::size_t k = 0; k < numbers.size(); k += components) {
+    colours.emplace_back(numbers[k], numbers[k + 1], numbers[k + 2]);
+  }
+  return colours;
 }
 
 /// An accessor without a buffer view is zeros but for its sparse values. Refuses one without sparse

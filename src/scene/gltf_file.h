@@ -12,8 +12,12 @@
 
 namespace radiosity {
 
-/// Whether we read an extension; a file must not require any other.
+/// Whether we read an extension.
 bool isSupportedGltfExtension(const std::string& name);
+
+/// Whether an extension is about materials, textures, lights or what else does not move a vertex. A
+/// file that requires one that we do not read can be read without it.
+bool leavesGeometry(const std::string& name);
 
 struct GltfFile {
   std::string path;
@@ -39,6 +43,9 @@ struct GltfFile {
   /// All values of an index accessor.
   std::vector<Index> readIndices(int accessor, const std::string& what) const;
 
+  /// The RGB values of a colour attribute; alpha is ignored.
+  std::vector<Vec3> readColours(int accessor, const std::string& what) const;
+
   /// The encoded image (PNG, JPEG); empty if its file is missing.
   std::span<const unsigned char> imageBytes(const tinygltf::Image& image,
                                             const std::string& what) const;
@@ -52,8 +59,14 @@ struct GltfFile {
                    const std::string& what) const;
 };
 
-/// Parses a file and checks its version and required extensions. Images stay encoded. The content
-/// tells whether the file is binary or JSON.
+/// The content of a glTF file, JSON or binary, with its version and required extensions checked and
+/// its geometry without compression.
+std::string readGltf(const std::string& path);
+
+/// Parses such content; `path` tells where other files lie. Images stay encoded.
+GltfFile parseGltfContent(const std::string& path, const std::string& content);
+
+/// Reads and parses a file.
 GltfFile parseGltf(const std::string& path);
 
 }  // namespace radiosity

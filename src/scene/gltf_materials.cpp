@@ -12,6 +12,9 @@ namespace radiosity {
 
 namespace {
 
+constexpr const char* kTextureTransform = "KHR_texture_transform";
+constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness";
+
 Vec2 pairOf(const tinygltf::Value& value, const Vec2& otherwise) {
   if (!value.IsArray() || value.ArrayLen() != 2) return otherwise;
   return {value.Get(0).GetNumberAsDouble(), value.Get(1).GetNumberAsDouble()};
@@ -34,6 +37,11 @@ class GltfMaterialReader {
   GltfMaterials read();
 
  private:
+  struct Diffuse {
+    Vec3 factor;
+    tinygltf::TextureInfo texture;
+  };
+  Diffuse diffuseOf(const tinygltf::Material& gltf, const std::string& name) const;
   Material convert(const tinygltf::Material& gltf, const std::string& name);
   Vec3 emission(const tinygltf::Material& gltf, const std::string& name) const;
   Index texture(const tinygltf::TextureInfo& info, TextureUse use, const std::string& material);
@@ -57,9 +65,10 @@ GltfMaterials GltfMaterialReader::read() {
     const std::string name =
         names.make(gltf.name.empty() ? fmt::format("material{}", m) : gltf.name);
     scene_.materials.push_back(convert(gltf, name));
+    result.unlit.push_back(gltf.extensions.contains("KHR_materials_unlit"));
     const bool glows_alone = scene_.materials.back().texture == kNone;
     result.texcoords.push_back(
-        texcoords(glows_alone ? gltf.emissiveTexture : gltf.pbrMetallicRoughness.baseColorTexture));
+        texcoords(glows_alone ? gltf.emissiveTexture : diffuseOf(gltf, name).texture));
     noteIgnored(gltf, name);
   }
   return result;
@@ -69,28 +78,49 @@ Material GltfMaterialReader::convert(const tinygltf::Material& gltf, const std::
   Material material;
   material.name = name;
   material.two_sided = gltf.doubleSided;
-  const tinygltf::PbrMetallicRoughness& pbr = gltf.pbrMetallicRoughness;
-  if (pbr.baseColorFactor.size() < 3) {
-    file_.fail(fmt::format("material {}: baseColorFactor is not 4 numbers; correct it", name));
-  }
-  for (int band = 0; band < 3; ++band) {
-    material.reflectance[band] = pbr.baseColorFactor[std::size_t(band)];
-  }
+  const Diffuse diffuse = diffuseOf(gltf, name);
+  material.reflectance = diffuse.factor;
   checkReflectance(file_.path, name, material.reflectance);
   material.emission = emission(gltf, name);
-  if (pbr.baseColorTexture.index >= 0) {
+  if (diffuse.texture.index >= 0) {
     if (options_.textures) {
-      material.texture = texture(pbr.baseColorTexture, TextureUse::reflectance, name);
+      material.texture = texture(diffuse.texture, TextureUse::reflectance, name);
     } else {
       ignored_.add("textures are off; the factor alone counts, material", name);
     }
   }
   material.emission_texture = emissionTexture(gltf, material);
-  if (material.texture == kNone && material.reflectance == Vec3(1.0)) {
-    ignored_.add("reflectance 1, glTF's default base colour: all light is returned, material", name,
-                 Severity::warning);
-  }
   return material;
+}
+
+/// The base colour, or the diffuse colour of KHR_materials_pbrSpecularGlossiness.
+GltfMaterialReader::Diffuse GltfMaterialReader::diffuseOf(const tinygltf::Material& gltf,
+                                                          const std::string& name) const {
+  const tinygltf::PbrMetallicRoughness& pbr = gltf.pbrMetallicRoughness;
+  Diffuse diffuse{Vec3(1.0), pbr.baseColorTexture};
+  const auto extension = gltf.extensions.find(kSpecularGlossiness);
+  if (extension == gltf.extensions.end()) {
+    if (pbr.baseColorFactor.size() < 3) {
+      file_.fail(fmt::format("material {}: baseColorFactor is not 4 numbers; correct it", name));
+    }
+    for (int b = 0; b < 3; ++b) diffuse.factor[b] = pbr.baseColorFactor[std::size_t(b)];
+    return diffuse;
+  }
+  const tinygltf::Value& factor = extension->second.Get("diffuseFactor");
+  if (factor.IsArray()) {
+    if (factor.ArrayLen() < 3) {
+      file_.fail(fmt::format("material {}: diffuseFactor is not 4 numbers; correct it", name));
+    }
+    for (int b = 0; b < 3; ++b) diffuse.factor[b] = factor.Get(b).GetNumberAsDouble();
+  }
+  diffuse.texture = {};
+  const tinygltf::Value& texture = extension->second.Get("diffuseTexture");
+  if (!texture.IsObject()) return diffuse;
+  diffuse.texture.index = texture.Get("index").GetNumberAsInt();
+  if (texture.Has("texCoord")) diffuse.texture.texCoord = texture.Get("texCoord").GetNumberAsInt();
+  const tinygltf::Value& transform = texture.Get("extensions").Get(kTextureTransform);
+  if (transform.IsObject()) diffuse.texture.extensions[kTextureTransform] = transform;
+  return diffuse;
 }
 
 /// The emission texture, if it can be used: a corner of a face has only one pair of texture
@@ -104,7 +134,7 @@ Index GltfMaterialReader::emissionTexture(const tinygltf::Material& gltf,
   }
   const bool alone = material.texture == kNone;
   if (!alone &&
-      !(texcoords(gltf.emissiveTexture) == texcoords(gltf.pbrMetallicRoughness.baseColorTexture))) {
+      !(texcoords(gltf.emissiveTexture) == texcoords(diffuseOf(gltf, material.name).texture))) {
     ignored_.add(
         "the emissive texture has other coordinates than the base colour and is not used, "
         "its factor alone emits, material",
@@ -182,7 +212,7 @@ bool GltfMaterialReader::repeats(const tinygltf::Texture& texture, const std::st
 TexcoordSource GltfMaterialReader::texcoords(const tinygltf::TextureInfo& info) {
   TexcoordSource source;
   source.set = info.texCoord;
-  const auto extension = info.extensions.find("KHR_texture_transform");
+  const auto extension = info.extensions.find(kTextureTransform);
   if (extension == info.extensions.end()) return source;
   const tinygltf::Value& transform = extension->second;
   if (!transform.IsObject()) return source;
@@ -195,7 +225,7 @@ TexcoordSource GltfMaterialReader::texcoords(const tinygltf::TextureInfo& info) 
 
 void GltfMaterialReader::noteIgnored(const tinygltf::Material& gltf, const std::string& name) {
   const tinygltf::PbrMetallicRoughness& pbr = gltf.pbrMetallicRoughness;
-  if (pbr.metallicFactor != 0) {
+  if (pbr.metallicFactor != 0 && !gltf.extensions.contains(kSpecularGlossiness)) {
     ignored_.add("metalness is not used (glTF's default is 1), material", name);
   }
   if (gltf.alphaMode != "OPAQUE") {

@@ -20,6 +20,7 @@ struct TexcoordSource {
 };
 
 struct GltfMaterials {
+  std::vector<bool> unlit;                ///< one per material: its colours are light
   std::vector<TexcoordSource> texcoords;  ///< one per material of the scene
   Index none = kNone;                     ///< the default material; kNone until one is needed
 };

@@ -1,8 +1,6 @@
 #include "scene/gltf_nodes.h"
 
 #include <glm/gtc/quaternion.hpp>
-#include <glm/mat3x3.hpp>
-#include <glm/matrix.hpp>
 #include <utility>
 
 namespace radiosity {
@@ -66,23 +64,32 @@ Transform localTransform(const GltfFile& file, const tinygltf::Node& node,
     for (int k = 0; k < 16; ++k) transform[k / 4][k % 4] = node.matrix[std::size_t(k)];
     return transform;
   }
-  if (sized(node.rotation, 4, "rotation")) {
-    const glm::dquat turn(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
+  const bool turned = sized(node.rotation, 4, "rotation");
+  const bool scaled = sized(node.scale, 3, "scale");
+  const bool moved = sized(node.translation, 3, "translation");
+  return gltfTransform(file, moved ? node.translation.data() : nullptr,
+                       turned ? node.rotation.data() : nullptr,
+                       scaled ? node.scale.data() : nullptr, what);
+}
+
+}  // namespace
+
+glm::dmat4 gltfTransform(const GltfFile& file, const double* translation, const double* rotation,
+                         const double* scale, const std::string& what) {
+  Transform transform(1.0);
+  if (rotation != nullptr) {
+    const glm::dquat turn(rotation[3], rotation[0], rotation[1], rotation[2]);
     const double length = glm::length(turn);
     if (!(length > 0)) file.fail(what + ": rotation is the zero quaternion; correct it");
     // Files usually have 7 digits; we normalise the rotation again so that it keeps lengths.
     transform = glm::mat4_cast(turn / length);
   }
-  if (sized(node.scale, 3, "scale")) {
-    for (int k = 0; k < 3; ++k) transform[k] *= node.scale[std::size_t(k)];
-  }
-  if (sized(node.translation, 3, "translation")) {
-    transform[3] = {node.translation[0], node.translation[1], node.translation[2], 1.0};
+  for (int k = 0; k < 3; ++k) {
+    if (scale != nullptr) transform[k] *= scale[k];
+    if (translation != nullptr) transform[3][k] = translation[k];
   }
   return transform;
 }
-
-}  // namespace
 
 void forEachGltfNode(const GltfFile& file,
                      const std::function<void(int, const glm::dmat4&, const std::string&)>& visit) {
@@ -117,8 +124,7 @@ bool hasTriangles(const tinygltf::Primitive& primitive) {
 }
 
 std::vector<Index> readGltfTriangles(const GltfFile& file, const tinygltf::Primitive& primitive,
-                                     std::size_t vertices, const glm::dmat4& transform,
-                                     const std::string& what) {
+                                     std::size_t vertices, bool mirrored, const std::string& what) {
   std::vector<Index> indices;
   if (primitive.indices >= 0) {
     indices = file.readIndices(primitive.indices, what + ": indices");
@@ -135,25 +141,10 @@ std::vector<Index> readGltfTriangles(const GltfFile& file, const tinygltf::Primi
     file.fail(fmt::format("{}: {} indices do not make triangles; export the scene again", what,
                           indices.size()));
   }
-  if (glm::determinant(glm::dmat3(transform)) < 0) {
+  if (mirrored) {
     for (std::size_t k = 0; k < corners.size(); k += 3) std::swap(corners[k + 1], corners[k + 2]);
   }
   return corners;
-}
-
-std::vector<Vec3> readGltfPositions(const GltfFile& file, const tinygltf::Primitive& primitive,
-                                    const glm::dmat4& transform, const std::string& what) {
-  const std::vector<double> numbers =
-      file.readNumbers(primitive.attributes.at("POSITION"), 3, what + ": POSITION");
-  std::vector<Vec3> positions;
-  for (std::size_t k = 0; k < numbers.size(); k += 3) {
-    positions.emplace_back(transform * glm::dvec4(numbers[k], numbers[k + 1], numbers[k + 2], 1.0));
-    if (!isFinite(positions.back())) {
-      file.fail(fmt::format("{}: vertex {} is not finite; correct the mesh or its transform", what,
-                            k / 3));
-    }
-  }
-  return positions;
 }
 
 }  // namespace radiosity

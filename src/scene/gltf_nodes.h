@@ -1,16 +1,19 @@
 // The node tree of a glTF file and the triangles of its primitives.
 #pragma once
 
-#include <cmath>
 #include <functional>
 #include <glm/mat4x4.hpp>
 #include <string>
 #include <vector>
 
-#include "base/finite.h"
 #include "scene/gltf_file.h"
 
 namespace radiosity {
+
+/// A scale, then a rotation (x, y, z, w), then a translation; null for none. Errors: a rotation
+/// that is the zero quaternion.
+glm::dmat4 gltfTransform(const GltfFile& file, const double* translation, const double* rotation,
+                         const double* scale, const std::string& what);
 
 /// Calls visit(node number, transform to the world, "node NAME") for every node of the default
 /// scene (of all roots if there is none), parents first, children in their order. Errors: a node
@@ -22,13 +25,8 @@ void forEachGltfNode(const GltfFile& file,
 bool hasTriangles(const tinygltf::Primitive& primitive);
 
 /// The vertices, three each, of the triangles of such a primitive, which has `vertices` vertices.
-/// Fronts stay fronts under `transform`: a mirrored node reverses triangles (glTF 2.0, 3.7.4).
+/// `mirrored`: they are turned over, so that fronts stay fronts where a node mirrors its mesh.
 std::vector<Index> readGltfTriangles(const GltfFile& file, const tinygltf::Primitive& primitive,
-                                     std::size_t vertices, const glm::dmat4& transform,
-                                     const std::string& what);
-
-/// The positions under `transform`, all finite.
-std::vector<Vec3> readGltfPositions(const GltfFile& file, const tinygltf::Primitive& primitive,
-                                    const glm::dmat4& transform, const std::string& what);
+                                     std::size_t vertices, bool mirrored, const std::string& what);
 
 }  // namespace radiosity

@@ -6,9 +6,6 @@
 
 namespace radiosity {
 
-/// True for a binary file, with any extension.
-bool isGlb(std::string_view content);
-
 /// The JSON of a .gltf or, once checkGltf() has seen it, of a .glb.
 std::string_view gltfJson(const std::string& path, std::string_view content);
 

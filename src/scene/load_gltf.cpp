@@ -2,11 +2,15 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
+#include <glm/vector_relational.hpp>
 #include <map>
 #include <numbers>
+#include <numeric>
+#include <set>
 
 #include "scene/gltf_materials.h"
 #include "scene/gltf_nodes.h"
+#include "scene/gltf_placement.h"
 #include "scene/readers.h"
 #include "scene/text.h"
 
@@ -19,34 +23,47 @@ using Transform = glm::dmat4;
 class Reader {
  public:
   Reader(const GltfFile& file, const SceneOptions& options, Scene& scene)
-      : file_(file), model_(file.model), options_(options), scene_(scene), builder_(scene) {}
+      : file_(file),
+        model_(file.model),
+        options_(options),
+        placement_(file),
+        scene_(scene),
+        builder_(scene) {}
 
   void read();
 
  private:
   void readNode(int index, const Transform& transform, const std::string& what);
-  void readMesh(const tinygltf::Node& node, const Transform& transform);
-  void readPrimitive(const tinygltf::Primitive& primitive, const std::string& object,
-                     const std::string& what, const Transform& transform);
+  void readMesh(int index);
+  void readPrimitive(const tinygltf::Primitive& primitive, int node, const std::string& object,
+                     const std::string& what);
+  void addFaces(const std::vector<Index>& corners, const std::vector<Index>& vertex_of,
+                const std::vector<Vec2>& texcoords, const std::vector<Vec3>& colours,
+                Index surface);
   void readCamera(const tinygltf::Node& node, const Transform& transform);
-  std::vector<Index> readPositions(const tinygltf::Primitive& primitive, const std::string& what,
-                                   const Transform& transform);
+  std::vector<Index> addVertices(const std::vector<Vec3>& positions);
+  std::vector<Vec3> readColours(const tinygltf::Primitive& primitive, Index material,
+                                const std::string& object, const std::string& what);
   std::vector<Vec2> readTexcoords(const tinygltf::Primitive& primitive, Index material,
                                   std::size_t vertices, const std::string& what) const;
   Index materialOf(const tinygltf::Primitive& primitive, const std::string& object,
                    const std::string& what);
+  void requireCount(std::size_t elements, std::size_t vertices, const std::string& what) const;
+  void noteWhite();
   void noteUnused();
   bool isNoted(const std::string& extension) const;
 
   const GltfFile& file_;
   const tinygltf::Model& model_;
   const SceneOptions& options_;
+  const GltfPlacement placement_;
   Scene& scene_;
   SceneBuilder builder_;
   GltfMaterials materials_;
   UniqueNames object_names_;
   FeatureNotes ignored_;
   std::vector<bool> visited_;
+  std::set<Index> uncoloured_;             ///< materials of primitives without vertex colours
   std::map<Index, std::size_t> faces_of_;  ///< by surface, so far
 };
 
@@ -60,6 +77,7 @@ void Reader::read() {
   forEachGltfNode(file_, [this](int node, const Transform& transform, const std::string& what) {
     readNode(node, transform, what);
   });
+  noteWhite();
   noteUnused();
   if (scene_.faceCount() == 0) {
     file_.fail("no faces: no node of the scene has a mesh of triangles; export meshes");
@@ -71,27 +89,28 @@ void Reader::read() {
 void Reader::readNode(int index, const Transform& transform, const std::string& what) {
   const tinygltf::Node& node = model_.nodes[std::size_t(index)];
   visited_[std::size_t(index)] = true;
-  if (node.mesh >= 0) readMesh(node, transform);
+  if (node.mesh >= 0) readMesh(index);
   if (node.camera >= 0) readCamera(node, transform);
   for (const auto& [extension, value] : node.extensions) {
+    if (isSupportedGltfExtension(extension)) continue;
     ignored_.add(extension + " is not used, node", what.substr(5), Severity::warning);
   }
 }
 
-void Reader::readMesh(const tinygltf::Node& node, const Transform& transform) {
+void Reader::readMesh(int index) {
+  const tinygltf::Node& node = model_.nodes[std::size_t(index)];
   const tinygltf::Mesh& mesh = file_.at(model_.meshes, node.mesh, "mesh", "node " + node.name);
   std::string wanted = node.name.empty() ? mesh.name : node.name;
   if (wanted.empty()) wanted = fmt::format("mesh{}", node.mesh);
   const std::string object = object_names_.make(wanted);
-  if (node.skin >= 0) ignored_.add("skins are not applied, node", object, Severity::warning);
+  if (node.skin >= 0) ignored_.add("skins are in the pose of the file's nodes", object);
   for (std::size_t k = 0; k < mesh.primitives.size(); ++k) {
-    readPrimitive(mesh.primitives[k], object, fmt::format("{}, primitive {}", object, k),
-                  transform);
+    readPrimitive(mesh.primitives[k], index, object, fmt::format("{}, primitive {}", object, k));
   }
 }
 
-void Reader::readPrimitive(const tinygltf::Primitive& primitive, const std::string& object,
-                           const std::string& what, const Transform& transform) {
+void Reader::readPrimitive(const tinygltf::Primitive& primitive, int node,
+                           const std::string& object, const std::string& what) {
   if (!hasTriangles(primitive)) {
     ignored_.add("lines and points have no area and are left out, in", object);
     return;
@@ -100,25 +119,63 @@ void Reader::readPrimitive(const tinygltf::Primitive& primitive, const std::stri
     ignored_.add("meshes without positions are left out, in", object, Severity::warning);
     return;
   }
-  if (!primitive.targets.empty()) ignored_.add("morph targets are not applied, node", object);
-  if (primitive.attributes.contains("COLOR_0")) {
-    ignored_.add("vertex colours do not change the reflectance, node", object, Severity::warning);
-  }
   const Index material = materialOf(primitive, object, what);
-  const std::vector<Index> vertex_of = readPositions(primitive, what, transform);
-  const std::vector<Vec2> texcoords = readTexcoords(primitive, material, vertex_of.size(), what);
-  const std::vector<Index> corners =
-      readGltfTriangles(file_, primitive, vertex_of.size(), transform, what);
-  const Index surface = builder_.surface(object, material);
+  const std::vector<Vec3> colours = readColours(primitive, material, object, what);
+  if (colours.empty()) uncoloured_.insert(material);
+  for (const Transform& copy : placement_.copies(node, what)) {
+    const std::vector<Index> vertex_of =
+        addVertices(placement_.positions(node, primitive, copy, what));
+    const std::vector<Index> corners = readGltfTriangles(file_, primitive, vertex_of.size(),
+                                                         placement_.isMirrored(node, copy), what);
+    const std::vector<Vec2> texcoords = readTexcoords(primitive, material, vertex_of.size(), what);
+    if (!colours.empty()) requireCount(colours.size(), vertex_of.size(), what + ": COLOR_0");
+    addFaces(corners, vertex_of, texcoords, colours, builder_.surface(object, material));
+  }
+}
+
+/// `corners`: vertices of the primitive, three a triangle; `vertex_of`: their numbers in the scene.
+void Reader::addFaces(const std::vector<Index>& corners, const std::vector<Index>& vertex_of,
+                      const std::vector<Vec2>& texcoords, const std::vector<Vec3>& colours,
+                      Index surface) {
   for (std::size_t k = 0; k < corners.size(); k += 3) {
     std::array<Index, 3> triangle = {corners[k], corners[k + 1], corners[k + 2]};
     std::vector<Vec2> uv;
-    if (!texcoords.empty()) {
-      uv = {texcoords[triangle[0]], texcoords[triangle[1]], texcoords[triangle[2]]};
+    std::vector<Vec3> colour;
+    for (const Index corner : triangle) {
+      if (!texcoords.empty()) uv.push_back(texcoords[corner]);
+      if (!colours.empty()) colour.push_back(colours[corner]);
     }
     for (Index& corner : triangle) corner = vertex_of[corner];
-    builder_.addFace(triangle, uv, surface, faces_of_[surface]++);
+    builder_.addFace(triangle, uv, surface, faces_of_[surface]++, colour);
   }
+}
+
+/// Vertex colours as a factor of the reflectance (glTF 2.0, 3.9.2); empty if there are none, or if
+/// they cannot be one.
+std::vector<Vec3> Reader::readColours(const tinygltf::Primitive& primitive, Index material,
+                                      const std::string& object, const std::string& what) {
+  const auto attribute = primitive.attributes.find("COLOR_0");
+  if (attribute == primitive.attributes.end()) return {};
+  if (!options_.textures) {
+    ignored_.add("textures are off; vertex colours do not count, node", object);
+    return {};
+  }
+  if (material < materials_.unlit.size() && materials_.unlit[material]) {
+    ignored_.add(
+        "vertex colours of unlit materials are light and do not change the reflectance, "
+        "node",
+        object, Severity::warning);
+    return {};
+  }
+  std::vector<Vec3> colours = file_.readColours(attribute->second, what + ": COLOR_0");
+  const auto isFactor = [](const Vec3& c) {
+    return glm::all(glm::greaterThanEqual(c, Vec3(0.0))) &&
+           glm::all(glm::lessThanEqual(c, Vec3(1.0)));
+  };
+  if (std::all_of(colours.begin(), colours.end(), isFactor)) return colours;
+  ignored_.add("vertex colours outside 0 to 1 are no reflectance and are not used, node", object,
+               Severity::warning);
+  return {};
 }
 
 Index Reader::materialOf(const tinygltf::Primitive& primitive, const std::string& object,
@@ -139,22 +196,24 @@ Index Reader::materialOf(const tinygltf::Primitive& primitive, const std::string
   return materials_.none;
 }
 
-/// Appends the vertices; returns their numbers in the scene.
-std::vector<Index> Reader::readPositions(const tinygltf::Primitive& primitive,
-                                         const std::string& what, const Transform& transform) {
-  std::vector<Index> vertex_of;
+/// Appends vertices; returns their numbers in the scene.
+std::vector<Index> Reader::addVertices(const std::vector<Vec3>& positions) {
   constexpr std::size_t kMostVertices = std::size_t(1) << 28;
-  for (const Vec3& position : readGltfPositions(file_, primitive, transform, what)) {
-    if (scene_.vertices.size() >= kMostVertices) {
-      file_.fail(
-          fmt::format("has more than {} vertices, each instance with its own; split the "
-                      "scene",
-                      kMostVertices));
-    }
-    vertex_of.push_back(Index(scene_.vertices.size()));
-    scene_.vertices.push_back(position);
+  if (scene_.vertices.size() + positions.size() > kMostVertices) {
+    file_.fail(fmt::format("has more than {} vertices, each instance with its own; split the scene",
+                           kMostVertices));
   }
+  std::vector<Index> vertex_of(positions.size());
+  std::iota(vertex_of.begin(), vertex_of.end(), Index(scene_.vertices.size()));
+  scene_.vertices.insert(scene_.vertices.end(), positions.begin(), positions.end());
   return vertex_of;
+}
+
+void Reader::requireCount(std::size_t elements, std::size_t vertices,
+                          const std::string& what) const {
+  if (elements == vertices) return;
+  file_.fail(fmt::format("{} has {} elements for {} vertices; export the scene again", what,
+                         elements, vertices));
 }
 
 /// Texture coordinates for each vertex, transformed for the material; empty if there are none or if
@@ -168,10 +227,7 @@ std::vector<Vec2> Reader::readTexcoords(const tinygltf::Primitive& primitive, In
   if (attribute == primitive.attributes.end()) return {};
   const std::vector<double> numbers =
       file_.readNumbers(attribute->second, 2, fmt::format("{}: {}", what, name));
-  if (numbers.size() != 2 * vertices) {
-    file_.fail(fmt::format("{}: {} has {} elements for {} vertices; export the scene again", what,
-                           name, numbers.size() / 2, vertices));
-  }
+  requireCount(numbers.size() / 2, vertices, fmt::format("{}: {}", what, name));
   std::vector<Vec2> result;
   for (std::size_t k = 0; k < numbers.size(); k += 2) {
     result.push_back(source.apply({numbers[k], numbers[k + 1]}));
@@ -212,6 +268,15 @@ void Reader::readCamera(const tinygltf::Node& node, const Transform& transform) 
   scene_.cameras.push_back(camera);
 }
 
+void Reader::noteWhite() {
+  for (const Index m : uncoloured_) {
+    const Material& material = scene_.materials[m];
+    if (material.texture != kNone || material.reflectance != Vec3(1.0)) continue;
+    ignored_.add("reflectance 1, glTF's default base colour: all light is returned, material",
+                 material.name, Severity::warning);
+  }
+}
+
 void Reader::noteUnused() {
   for (const tinygltf::Light& light : model_.lights) {
     ignored_.add("punctual lights give no light here, make them surfaces that emit",
@@ -227,7 +292,12 @@ void Reader::noteUnused() {
     ignored_.add("animations are not played", fmt::format("{}", model_.animations.size()));
   }
   for (const std::string& extension : model_.extensionsUsed) {
-    if (!isSupportedGltfExtension(extension) && !isNoted(extension)) {
+    if (isSupportedGltfExtension(extension) || isNoted(extension)) continue;
+    const auto& required = model_.extensionsRequired;
+    if (std::find(required.begin(), required.end(), extension) != required.end()) {
+      ignored_.add("required extensions that are not read; materials may look different", extension,
+                   Severity::warning);
+    } else {
       ignored_.add("optional extensions that are not read", extension);
     }
   }

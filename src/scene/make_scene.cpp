@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <glm/vector_relational.hpp>
 #include <set>
 #include <string>
 
@@ -39,6 +40,14 @@ class Validation {
     const std::size_t texcoords = scene_.texcoords.size();
     require(texcoords == 0 || texcoords == scene_.corners.size(),
             "its texcoords are neither one a corner nor none");
+    require(scene_.colours.empty() || scene_.colours.size() == scene_.corners.size(),
+            "its colours are neither one a corner nor none");
+    for (std::size_t k = 0; k < scene_.colours.size(); ++k) {
+      const Vec3& c = scene_.colours[k];
+      require(glm::all(glm::greaterThanEqual(c, Vec3(0.0))) &&
+                  glm::all(glm::lessThanEqual(c, Vec3(1.0))),
+              "corner", k, "its colour is outside 0 to 1");
+    }
     for (std::size_t f = 0; f < faces; ++f) {
       require(offset[f] <= offset[f + 1], "face", f, "its offsets go down");
     }

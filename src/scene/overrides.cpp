@@ -54,6 +54,7 @@ class Overrides {
   std::string setReflectance(Material& material, const Vec3& value, const Origin& origin);
   std::string setEmission(Material& material, const Vec3& value, const Origin& origin);
   std::string dropTexture(Index& texture, const char* instead) const;
+  std::string dropColours(Index material);
 
   Scene& scene_;
   ByName surfaces_called_;
@@ -141,7 +142,8 @@ void Overrides::setProperty(const std::string& name, const std::string& property
     const std::string change = emission             ? setEmission(material, asked, origin)
                                : property == "tint" ? setTint(material, asked, origin)
                                                     : setReflectance(material, asked, origin);
-    if (said.insert(change).second) note(fmt::format("{}: {}", name, change));
+    const std::string dropped = property == "reflectance" ? dropColours(m) : "";
+    if (said.insert(change).second) note(fmt::format("{}: {}{}", name, change, dropped));
     noteUnused(name, m);
   }
 }
@@ -151,6 +153,19 @@ std::string Overrides::dropTexture(Index& texture, const char* instead) const {
   if (texture == kNone) return {};
   const std::string dropped = scene_.textures[std::exchange(texture, kNone)].name;
   return fmt::format("; its texture {} is dropped{}", dropped, instead);
+}
+
+/// The same for vertex colours.
+std::string Overrides::dropColours(Index material) {
+  bool dropped = false;
+  for (std::size_t f = 0; f < scene_.faceCount() && !scene_.colours.empty(); ++f) {
+    if (scene_.surfaces[scene_.face_surface[f]].material != material) continue;
+    for (std::size_t k = scene_.face_offset[f]; k < scene_.face_offset[f + 1]; ++k) {
+      dropped = dropped || scene_.colours[k] != Vec3(1.0);
+      scene_.colours[k] = Vec3(1.0);
+    }
+  }
+  return dropped ? "; its vertex colours are dropped (tint keeps them)" : "";
 }
 
 std::string Overrides::setReflectance(Material& material, const Vec3& value, const Origin& origin) {

@@ -45,7 +45,7 @@ Index SceneBuilder::surface(const std::string& object, Index material) {
 }
 
 void SceneBuilder::addFace(std::span<const Index> corners, std::span<const Vec2> texcoords,
-                           Index surface, std::size_t element) {
+                           Index surface, std::size_t element, std::span<const Vec3> colours) {
   constexpr std::size_t kMostCorners = std::size_t(1) << 28;
   if (scene_.corners.size() + corners.size() > kMostCorners) {
     throw InputError(fmt::format("{}: its faces have more than {} corners; split the scene",
@@ -61,6 +61,10 @@ void SceneBuilder::addFace(std::span<const Index> corners, std::span<const Vec2>
   } else {
     scene_.texcoords.insert(scene_.texcoords.end(), texcoords.begin(), texcoords.end());
   }
+  if (colours.empty() && scene_.colours.empty()) return;
+  // Faces before the first coloured one are white.
+  scene_.colours.resize(scene_.corners.size() - colours.size(), Vec3(1.0));
+  scene_.colours.insert(scene_.colours.end(), colours.begin(), colours.end());
 }
 
 void SceneBuilder::finish() {

@@ -51,10 +51,10 @@ class SceneBuilder {
   /// The surface of (object, material), made when first asked for.
   Index surface(const std::string& object, Index material);
 
-  /// `texcoords`: one for each corner, or empty. Errors: InputError if there are more than 2^28
-  /// corners: nested instances multiply, and such a scene could not be handled.
+  /// `texcoords`, `colours`: one for each corner, or empty. Errors: InputError if there are more
+  /// than 2^28 corners: nested instances multiply, and such a scene could not be handled.
   void addFace(std::span<const Index> corners, std::span<const Vec2> texcoords, Index surface,
-               std::size_t element);
+               std::size_t element, std::span<const Vec3> colours = {});
 
   /// Names the surfaces. A textured surface with a face that has no texture coordinates falls
   /// back to its material's factor, with a warning.

@@ -51,6 +51,17 @@ class ModelsOfOthersTest(CliTest):
         # Of the many materials "Glas" of the file, all alike, there is one.
         self.assertEqual([m["name"] for m in scene["materials"] if "Glas" in m["name"]], ["Glas"])
 
+    def test_draco_packs_the_same_engine(self):
+        def areas(name):
+            scene = self.report("info", MODELS / "glTF2" / name)["scene"]
+            return {surface["name"]: surface["area_m2"] for surface in scene["surfaces"]}
+        plain = areas("2CylinderEngine-glTF-Binary/2CylinderEngine.glb")
+        packed = areas("draco/2CylinderEngine.gltf")
+        self.assertEqual(list(packed), list(plain))
+        for name, area in plain.items():
+            # Positions are rounded to 1/2048 of a part's extent, thin parts have 5 times that.
+            self.assertAlmostEqual(packed[name] / area, 1, delta=0.0025, msg=name)
+
     def test_form_factors_account_for_all_of_the_view(self):
         for model in MESHED:
             with self.subTest(model):

@@ -23,6 +23,8 @@ inline Scene scene() {
   s.face_offset = {0, 4, 7};
   s.corners = {0, 1, 2, 3, 0, 2, 4};
   s.texcoords = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0.1, 0.2}, {0.3, 0.4}, {-7, 1. / 3}};
+  s.colours.assign(7, Vec3(1.0));
+  s.colours[3] = {0.25, 1. / 3, 0};
   s.face_surface = {1, 0};
   s.face_element = {17, 12345678901};
   s.surfaces = {{"box", 1, "box/red"}, {"", 0, "/white"}};
@@ -462,8 +464,8 @@ inline auto members(const Camera& s) {
   return std::tie(a, b, c, d, e, f);
 }
 inline auto members(const Scene& s) {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o);
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p);
 }
 inline auto members(const PlanarPolygons& s) {
   const auto& [a, b, c, d, e, f, g, h] = s;

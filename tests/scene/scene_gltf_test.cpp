@@ -10,85 +10,20 @@
 #include <numbers>
 
 #include "radiosity/scene.h"
+#include "support/gltf_document.h"
 #include "support/scene_files.h"
 
 namespace radiosity::test {
 namespace {
 
-using Json = nlohmann::json;
-
-std::string base64(const std::string& bytes) {
-  static const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t k = 0; k < bytes.size(); k += 3) {
-    std::uint32_t word = 0;
-    for (std::size_t b = 0; b < 3; ++b) {
-      word = word << 8 | (k + b < bytes.size() ? std::uint8_t(bytes[k + b]) : 0u);
-    }
-    for (std::size_t d = 0; d < 4; ++d) {
-      text += k + d <= bytes.size() ? kDigits[word >> (18 - 6 * d) & 63] : '=';
-    }
-  }
-  return text;
-}
-
-/// A glTF document that grows: one buffer, one view and accessor a call of add().
-struct Document {
-  Json json = {{"asset", {{"version", "2.0"}}}, {"scene", 0}};
-  std::string bytes;
-
-  template <class T>
-  int add(const std::vector<T>& values, int component_type, const char* type, int components) {
-    while (bytes.size() % 4 != 0) bytes += '\0';
-    json["bufferViews"].push_back(
-        {{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", values.size() * sizeof(T)}});
-    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
-    json["accessors"].push_back({{"bufferView", json["bufferViews"].size() - 1},
-                                 {"componentType", component_type},
-                                 {"count", values.size() / std::size_t(components)},
-                                 {"type", type}});
-    return int(json["accessors"].size()) - 1;
-  }
-  int positions(const std::vector<float>& values) { return add(values, 5126, "VEC3", 3); }
-
-  std::string text() {
-    json["buffers"] = {{{"uri", "data:application/octet-stream;base64," + base64(bytes)},
-                        {"byteLength", bytes.size()}}};
-    return json.dump();
-  }
-};
-
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-/// One triangle with corners (0,0,0), (1,0,0), (0,1,0) in a node "tri".
-Document triangle() {
-  Document d;
-  d.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
-  d.json["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", 0}}}}}}}};
-  d.json["nodes"] = {{{"mesh", 0}, {"name", "tri"}}};
-  d.json["scenes"] = {{{"nodes", {0}}}};
-  return d;
-}
-
-class SceneGltf : public SceneFiles {
- protected:
-  Scene load(Document d, const SceneOptions& options = {}) {
-    return loadScene(write("scene.gltf", d.text()), options);
-  }
-  std::string errorOf(Document d) {
-    const std::string file = write("scene.gltf", d.text());
-    return inputErrorOf([&] { loadScene(file); });
-  }
-};
+class SceneGltf : public GltfFiles {};
 
 Vec3 normalOf(const Scene& scene, std::size_t f) {
   const auto face = scene.face(f);
   const Vec3 a = scene.vertices[face[0]];
   return glm::cross(scene.vertices[face[1]] - a, scene.vertices[face[2]] - a);
-}
-
-Vec3 corner(const Scene& scene, std::size_t f, std::size_t k) {
-  return scene.vertices[scene.face(f)[k]];
 }
 
 TEST_F(SceneGltf, ReadsATriangleWithoutMaterial) {
@@ -155,12 +90,35 @@ TEST_F(SceneGltf, RefusesImpossibleMaterialsByName) {
 
 TEST_F(SceneGltf, RefusesUnknownRequiredExtensions) {
   Document d = triangle();
-  d.json["extensionsUsed"] = {"KHR_draco_mesh_compression"};
-  EXPECT_NOTE(load(d).notes, "optional extensions that are not read: KHR_draco_mesh_compression",
+  d.json["extensionsUsed"] = {"EXT_other_geometry"};
+  EXPECT_NOTE(load(d).notes, "optional extensions that are not read: EXT_other_geometry",
               Severity::info);
-  d.json["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+  d.json["extensionsRequired"] = {"EXT_other_geometry"};
   EXPECT_CONTAINS(errorOf(d),
-                  "needs KHR_draco_mesh_compression, which is not supported; export without it");
+                  "needs EXT_other_geometry, which is not supported; export without it");
+}
+
+TEST_F(SceneGltf, ReadsFilesThatRequireExtensionsOfMaterialsAlone) {
+  Document d = triangle();
+  d.json["extensionsUsed"] = {"KHR_materials_unlit", "KHR_texture_basisu"};
+  d.json["extensionsRequired"] = d.json["extensionsUsed"];
+  EXPECT_NOTE(load(d).notes,
+              "required extensions that are not read; materials may look different: "
+              "KHR_materials_unlit, KHR_texture_basisu",
+              Severity::warning);
+}
+
+TEST_F(SceneGltf, ReflectanceIsTheDiffuseColourOfSpecularGlossiness) {
+  Document d = triangle();
+  d.json["materials"] = {
+      {{"name", "red"},
+       {"pbrMetallicRoughness", {{"baseColorFactor", {.9, .9, .9, 1}}}},
+       {"extensions",
+        {{"KHR_materials_pbrSpecularGlossiness", {{"diffuseFactor", {.5, .25, .125, 1}}}}}}}};
+  d.json["meshes"][0]["primitives"][0]["material"] = 0;
+  const Scene scene = load(d);
+  EXPECT_EQ(scene.materialOf(0).reflectance, Vec3(.5, .25, .125));
+  EXPECT_EQ(findNote(scene.notes, "metalness"), nullptr) << "it has none";
 }
 
 TEST_F(SceneGltf, AppliesNestedTransformsInDouble) {
@@ -308,7 +266,7 @@ TEST_F(SceneGltf, ReadsCamerasThroughTheirNodes) {
   EXPECT_NOTE(scene.notes, "orthographic cameras are not used: plan", Severity::warning);
 }
 
-TEST_F(SceneGltf, NamesLightsSkinsColoursAndOtherScenes) {
+TEST_F(SceneGltf, NamesLightsAndOtherScenes) {
   Document d = triangle();
   d.json["extensionsUsed"] = {"KHR_lights_punctual"};
   d.json["extensions"] = {
@@ -317,12 +275,9 @@ TEST_F(SceneGltf, NamesLightsSkinsColoursAndOtherScenes) {
       {{"name", "lightnode"}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
   d.json["nodes"].push_back({{"name", "elsewhere"}, {"mesh", 0}});
   d.json["scenes"] = {{{"nodes", {0, 1}}}, {{"nodes", {2}}}};
-  d.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = 0;
   const Scene scene = load(d);
   EXPECT_EQ(scene.faceCount(), 1u);
   EXPECT_NOTE(scene.notes, "make them surfaces that emit: Bulb", Severity::warning);
-  EXPECT_NOTE(scene.notes, "vertex colours do not change the reflectance, node: tri",
-              Severity::warning);
   EXPECT_NOTE(scene.notes, "not part of the scene that is read, node: elsewhere",
               Severity::warning);
 }

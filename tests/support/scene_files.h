@@ -50,6 +50,10 @@ std::string inputErrorOf(const Action& action) {
   return {};
 }
 
+inline Vec3 corner(const Scene& scene, std::size_t face, std::size_t k) {
+  return scene.vertices[scene.face(face)[k]];
+}
+
 /// The first note whose text contains `part`; null where there is none.
 inline const Note* findNote(const std::vector<Note>& notes, const std::string& part) {
   const auto note = std::find_if(notes.begin(), notes.end(), [&](const Note& n) {

@@ -56,4 +56,18 @@ inline double polygonArea(std::span<const Vec2> polygon) {
   return 0.5 * twice;
 }
 
+/// The centroid of the area; the first corner if there is none.
+inline Vec2 polygonCentroid(std::span<const Vec2> polygon) {
+  Vec2 moment(0.0);
+  double twice = 0;
+  for (std::size_t k = 2; k < polygon.size(); ++k) {
+    const Vec2 a = polygon[k - 1] - polygon[0];
+    const Vec2 b = polygon[k] - polygon[0];
+    const double area = a.x * b.y - a.y * b.x;
+    moment += area / 3 * (a + b);
+    twice += area;
+  }
+  return twice > 0 ? polygon[0] + moment / twice : polygon[0];
+}
+
 }  // namespace radiosity

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/processes.h"
+#include "base/side_library.h"
 
 namespace radiosity {
 
@@ -31,10 +32,8 @@ class NoEyes final : public GpuEyes {
 };
 
 const GpuEyes& openLibrary() {
-  // Found beside this library, which carries $ORIGIN as its search path. Never closed.
-  void* library = dlopen(kLibrary, RTLD_LAZY | RTLD_LOCAL);
-  void* entry = library == nullptr ? nullptr : dlsym(library, "radiosityGpuEyes");
-  if (entry != nullptr) return *reinterpret_cast<const GpuEyes* (*)()>(entry)();
+  if (void* entry = entryOf(kLibrary, "radiosityGpuEyes"))
+    return *reinterpret_cast<const GpuEyes* (*)()>(entry)();
   static const NoEyes none(libraryProblem(dlerror()));
   return none;
 }
