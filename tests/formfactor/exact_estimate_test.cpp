@@ -171,6 +171,33 @@ TEST(Auto, PicksRaysIfExactWouldPassTheMemoryLimit) {
   EXPECT_THROW(computeFormFactors(plan, silent), RunError);
 }
 
+TEST(Auto, RaysTakeThePlaceOfExactThatTakesFarLongerThanForeseen) {
+  const PatchMesh mesh = meshNamed("cornell-box", 1000);
+  Progress silent;
+  const FormFactorOptions options;
+  FormFactorPlan plan = planFormFactors(mesh, options, silent);
+  ASSERT_EQ(plan.method, FormFactorMethod::exact);
+  plan.seconds = -1e3;  // any time is too long
+  const FormFactors f = computeFormFactors(plan, silent);
+  EXPECT_EQ(f.method, "rays");
+  EXPECT_EQ(f.report.method_reason.rfind("exact, which was to take", 0), 0u);
+  ASSERT_FALSE(f.report.notes.empty());
+  FormFactorOptions rays = options;
+  rays.method = FormFactorMethod::rays;
+  const FormFactors direct = computeFormFactors(mesh, rays, silent);
+  for (std::size_t i = 0; i < mesh.size(); i += 7) {
+    for (std::size_t j = 0; j < mesh.size(); j += 3) {
+      ASSERT_EQ(f.matrix.at(i, j), direct.matrix.at(i, j)) << i << ' ' << j;
+    }
+  }
+  // Who asked for exact gets exact.
+  FormFactorOptions exact = options;
+  exact.method = FormFactorMethod::exact;
+  plan = planFormFactors(mesh, exact, silent);
+  plan.seconds = -1e3;
+  EXPECT_EQ(computeFormFactors(plan, silent).method, "exact");
+}
+
 TEST(Plan, CanBeRunSeveralTimes) {
   const PatchMesh mesh = test::roomWithBlock(3).build();
   Progress silent;
