@@ -1,4 +1,4 @@
-// Processor time of a thread, and time by the clock.
+// Processor time of a thread or of the process, and time by the clock.
 #pragma once
 
 #include <chrono>
@@ -10,6 +10,13 @@ namespace radiosity {
 inline double processorSeconds() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
+}
+
+/// Processor seconds of all threads of this process.
+inline double processSeconds() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
   return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
 }
 

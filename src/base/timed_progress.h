@@ -6,17 +6,18 @@
 #include <mutex>
 #include <thread>
 
+#include "base/processor_clock.h"
 #include "radiosity/base.h"
 
 namespace radiosity {
 
 /// Passes its stages on to another progress. It is cancelled when the other is, or after `seconds`
-/// by the clock.
+/// of `clock`.
 class TimedProgress : public Progress {
  public:
-  TimedProgress(Progress& outer, double seconds)
-      : outer_(outer), watch_([this, seconds](const std::stop_token& over) {
-          watch(over, Clock::now() + std::chrono::duration<double>(seconds));
+  TimedProgress(Progress& outer, double seconds, double (*clock)() = clockSeconds)
+      : outer_(outer), watch_([this, clock, end = clock() + seconds](const std::stop_token& over) {
+          watch(over, clock, end);
         }) {}
 
   void begin(const std::string& stage, std::size_t total, const std::string& steps = {},
@@ -37,15 +38,13 @@ class TimedProgress : public Progress {
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::milliseconds kBetweenLooks{10};
 
-  void watch(const std::stop_token& over,
-             std::chrono::time_point<Clock, std::chrono::duration<double>> end) {
+  void watch(const std::stop_token& over, double (*clock)(), double end) {
     std::mutex mutex;
     std::unique_lock lock(mutex);
     std::condition_variable_any waiting;
-    while (!outer_.cancelled() && Clock::now() < end) {
+    while (!outer_.cancelled() && clock() < end) {
       waiting.wait_for(lock, over, kBetweenLooks, [] { return false; });
       if (over.stop_requested()) return;
     }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/figure_text.h"
+#include "base/parallel.h"
 #include "base/processor_clock.h"
 #include "base/timed_progress.h"
 #include "formfactor/cluster_factors.h"
@@ -305,17 +306,18 @@ FormFactors exactOf(const FormFactorPlan& plan, Progress& progress, RowJournal* 
                     Processes* processes) {
   const FormFactorPlan::Prepared& prepared = *plan.prepared;
   FormFactors result =
-      exactFactors(prepared.mesh, *prepared.scene, *prepared.kernels, prepared.estimate,
-                   prepared.options, progress, journal, processes);
+      exactFactors(prepared.mesh, prepared.scene.value(), prepared.kernels.value(),
+                   prepared.estimate, prepared.options, progress, journal, processes);
   result.report.exact.seconds_prepare += prepared.seconds;
   return result;
 }
 
-/// Exact form factors, unless they take far longer than foreseen.
+/// Exact form factors, unless they take far longer than foreseen. Time is that of processors, so
+/// that other work on the machine does not change the method.
 std::optional<FormFactors> exactInTime(const FormFactorPlan& plan, Progress& progress,
                                        RowJournal* journal) {
   const double over = std::max(kOverrunTimes * plan.seconds, kOverrunSeconds);
-  TimedProgress timed(progress, plan.seconds + over);
+  TimedProgress timed(progress, double(allowedThreads()) * (plan.seconds + over), processSeconds);
   try {
     return exactOf(plan, timed, journal, nullptr);
   } catch (const Cancelled&) {

@@ -1,4 +1,5 @@
-// The default camera: renders a tiny picture from each viewpoint and takes the one that shows most.
+// The default camera: takes a tiny picture from each viewpoint, by rays, and keeps the viewpoint
+// that shows most.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,8 +11,9 @@
 
 #include "base/geometry/box.h"
 #include "base/parallel.h"
+#include "formfactor/rays/point_rays.h"
 #include "radiosity/render.h"
-#include "render/item_buffer.h"
+#include "render/view.h"
 
 namespace radiosity {
 namespace {
@@ -36,7 +38,8 @@ Vec3 turnedBack(const Vec3& v) { return {v.x, 0 - v.z, v.y}; }  // avoids -0, wh
 
 PatchMesh turnedUp(const PatchMesh& mesh) {
   PatchMesh turned = mesh;
-  for (auto* const vectors : {&turned.vertices, &turned.centroid, &turned.normal}) {
+  for (auto* const vectors : {&turned.vertices, &turned.centroid, &turned.normal,
+                              &turned.polygons.normal, &turned.polygons.origin}) {
     for (Vec3& v : *vectors) v = turnedUp(v);
   }
   return turned;
@@ -63,13 +66,14 @@ struct Candidate {
   double liked = 1;
 };
 
-/// The mesh and the brightness of each patch: 1 for the typical light of lit patches, or more
-/// light.
+/// The mesh, rays to look at it, and the brightness of each patch: 1 for the typical light of lit
+/// patches, or more light.
 struct LitMesh {
   const PatchMesh& mesh;
+  const PointRays rays;
   std::vector<double> brightness;  ///< N, 0 to 1
 
-  LitMesh(const PatchMesh& patches, std::span<const double> light) : mesh(patches) {
+  LitMesh(const PatchMesh& patches, std::span<const double> light) : mesh(patches), rays(patches) {
     brightness.assign(mesh.size(), 1.0);
     const double typical = light.empty() ? 0 : typicalLight(mesh, light);
     if (!(typical > 0)) return;
@@ -109,34 +113,45 @@ double shown(const PatchMesh& mesh, const std::vector<double>& seen) {
   return sum / total;
 }
 
+/// A tiny picture: where the ray through each pixel's centre ends.
+struct Trial {
+  View view;
+  std::vector<Vec3> ray;  ///< unit vectors
+  std::vector<RayEnd> end;
+
+  Trial(const PointRays& rays, const Camera& camera, int width, int height)
+      : view(makeView(camera, width, height)) {
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        ray.push_back(glm::normalize(view.rayThrough(x + 0.5, y + 0.5)));
+      }
+    }
+    end.resize(ray.size());
+    rays.trace(view.eye, ray, end);
+  }
+};
+
 /// A pixel at depth z sees the area z^2 / (f^2 |n . d|) of a surface with normal n along the ray d
 /// (d.z = 1); f is the focal length in pixels. The visible area of a patch is at most its area.
 Glimpse look(const LitMesh& scene, const Camera& camera, double aspect, double diagonal) {
   const PatchMesh& mesh = scene.mesh;
   const int width = std::max(8, int(std::lround(std::sqrt(kTrialPixels * aspect))));
   const int height = std::max(8, int(std::lround(std::sqrt(kTrialPixels / aspect))));
-  const View view = makeView(camera, width, height);
-  const ItemBuffer items(mesh, view, 1, true);
+  const Trial trial(scene.rays, camera, width, height);
+  const View& view = trial.view;
   std::vector<double> seen(mesh.size(), 0.0);
   Glimpse glimpse;
-  TileItems tile;
-  for (int t = 0; t < items.tileCount(); ++t) {
-    items.resolve(t, tile);
-    for (int y = tile.y; y < tile.y + tile.height; ++y) {
-      for (int x = tile.x; x < tile.x + tile.width; ++x) {
-        const std::size_t k = tile.at(x, y, 0);
-        if (tile.piece[k] == kNone) continue;
-        const double depth = 1 / tile.inverse_depth[k];
-        glimpse.near += depth < 0.04 * diagonal;
-        if (items.seenFromBehind(tile.piece[k])) continue;
-        const Index patch = items.patchOf(tile.piece[k]);
-        const Vec3 ray = view.rayThrough(x + 0.5, y + 0.5);
-        const double cosine = std::abs(glm::dot(mesh.normal[patch], ray));
-        seen[patch] += depth * depth / (view.focal * view.focal * cosine);
-        ++glimpse.fronts;
-        glimpse.lit += scene.brightness[patch];
-      }
-    }
+  for (std::size_t k = 0; k < trial.end.size(); ++k) {
+    const auto& [patch, at] = trial.end[k];
+    if (patch == RayEnd::kSky) continue;
+    const double depth = glm::dot(at - view.eye, view.forward);
+    glimpse.near += depth < 0.04 * diagonal;
+    if (patch >= mesh.size()) continue;  // a back
+    const double along = glm::dot(trial.ray[k], view.forward);
+    const double cosine = std::abs(glm::dot(mesh.normal[patch], trial.ray[k])) / along;
+    seen[patch] += depth * depth / (view.focal * view.focal * cosine);
+    ++glimpse.fronts;
+    glimpse.lit += scene.brightness[patch];
   }
   glimpse.shown = shown(mesh, seen);
   if (glimpse.fronts > 0) glimpse.lit /= glimpse.fronts;
@@ -147,7 +162,7 @@ Glimpse look(const LitMesh& scene, const Camera& camera, double aspect, double d
 
 /// The share of all directions from a point that end on fronts: the share of pixels on the six
 /// faces of a cube, which all count the same.
-double enclosure(const PatchMesh& mesh, const Vec3& eye) {
+double enclosure(const LitMesh& scene, const Vec3& eye) {
   constexpr int kPixels = 16;
   double fronts = 0;
   for (int face = 0; face < 6; ++face) {
@@ -157,13 +172,8 @@ double enclosure(const PatchMesh& mesh, const Vec3& eye) {
     camera.target[face / 2] += (face % 2 == 0 ? 1 : -1) * (1 + std::abs(eye[face / 2]));
     camera.up = face / 2 == 1 ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
     camera.vertical_fov = 90 * kDegree;
-    const ItemBuffer items(mesh, makeView(camera, kPixels, kPixels), 1, true);
-    TileItems tile;
-    for (int t = 0; t < items.tileCount(); ++t) {
-      items.resolve(t, tile);
-      for (const Index piece : tile.piece) {
-        fronts += piece != kNone && !items.seenFromBehind(piece);
-      }
+    for (const RayEnd& end : Trial(scene.rays, camera, kPixels, kPixels).end) {
+      fronts += end.patch < scene.mesh.size();
     }
   }
   return fronts / (6.0 * kPixels * kPixels);
@@ -323,9 +333,7 @@ Scored standInside(const LitMesh& scene, const Box3& box, bool closed, double as
         if (glimpse.fronts < 0.5) return 0.0;
         return glimpse.shown * glimpse.fronts * glimpse.fronts * (1 - glimpse.near) * glimpse.lit;
       },
-      [&](const Camera& camera) {
-        return closed || enclosure(scene.mesh, camera.eye) >= kEnclosed;
-      });
+      [&](const Camera& camera) { return closed || enclosure(scene, camera.eye) >= kEnclosed; });
 }
 
 Scored standOutside(const LitMesh& scene, const Box3& box, double aspect) {

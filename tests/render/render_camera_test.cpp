@@ -9,12 +9,12 @@
 
 #include "radiosity/render.h"
 #include "render/view.h"
-#include "support/quad_mesh.h"
+#include "support/mesh_builder.h"
 
 namespace radiosity {
 namespace {
 
-using test::QuadMesh;
+using test::MeshBuilder;
 
 std::string complaint(const std::string& text) {
   try {
@@ -86,7 +86,7 @@ TEST(View, ANarrowPictureKeepsTheCamerasHorizontalField) {
 }
 
 PatchMesh room(const Vec3& size, bool block_at_the_ends) {
-  QuadMesh builder;
+  MeshBuilder builder;
   builder.box("room", Vec3(0), size, 6, true);
   if (block_at_the_ends) {  // at the place of an eye near the end of the longest extent
     const Vec3 half(0.12 * size.x, 0.4 * size.y, 0.3 * size.z);
@@ -150,7 +150,7 @@ TEST(FramingCamera, NeverStandsInABlock) {
 }
 
 TEST(FramingCamera, AnOpenBoxIsSeenThroughItsOpening) {
-  QuadMesh builder;  // open towards -x
+  MeshBuilder builder;  // open towards -x
   builder.grid("floor", {0, 0, 0}, {0, 0, 2}, {2, 0, 0}, 6, 6);
   builder.grid("ceiling", {0, 2, 0}, {2, 0, 0}, {0, 0, 2}, 6, 6);
   builder.grid("end", {2, 0, 0}, {0, 0, 2}, {0, 2, 0}, 6, 6);
@@ -174,7 +174,7 @@ TEST(FramingCamera, AnOpenBoxIsSeenThroughItsOpening) {
 }
 
 TEST(FramingCamera, ASolidIsSeenFromOutsideEvenIfClosed) {
-  QuadMesh builder;
+  MeshBuilder builder;
   builder.box("solid", {10, 20, 30}, {11, 22, 31.5}, 4);
   const PatchMesh mesh = builder.build();
   for (const bool closed : {true, false}) {
@@ -191,7 +191,7 @@ TEST(FramingCamera, ASolidIsSeenFromOutsideEvenIfClosed) {
 }
 
 TEST(FramingCamera, APlateIsSeenFromItsFront) {
-  QuadMesh builder;
+  MeshBuilder builder;
   builder.grid("plate", {0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 4, 4);  // front towards -x
   const PatchMesh mesh = builder.build();
   EXPECT_GT(fronts(mesh, framingCamera(mesh, false, 1)), 0.3);
@@ -223,7 +223,7 @@ TEST(FramingCamera, StandsAtEyeHeight) {
 
 /// A room with a window in its long wall: 3% of its surface is open.
 PatchMesh roomWithWindow() {
-  QuadMesh builder;
+  MeshBuilder builder;
   builder.grid("floor", {0, 0, 0}, {0, 0, 4}, {8, 0, 0}, 8, 8);
   builder.grid("ceiling", {0, 2.5, 0}, {8, 0, 0}, {0, 0, 4}, 8, 8);
   builder.grid("left", {0, 0, 0}, {0, 2.5, 0}, {0, 0, 4}, 4, 4);
@@ -252,7 +252,7 @@ TEST(FramingCamera, ARoomWithAWindowIsSeenFromInside) {
 TEST(FramingCamera, LooksTowardsTheLitRoom) {
   // Two rooms side by side, the wall between them closed: light in one of them.
   for (const bool first_lit : {true, false}) {
-    QuadMesh builder;
+    MeshBuilder builder;
     builder.box("one", {0, 0, 0}, {5, 2.5, 4}, 6, true);
     builder.box("two", {5, 0, 0}, {10, 2.5, 4}, 6, true);
     const PatchMesh mesh = builder.build();
@@ -274,7 +274,7 @@ TEST(FramingCamera, NeedsALightValueForEachPatch) {
 
 TEST(FramingCamera, NeedsAPositiveAspectAndTakesAnEmptyMesh) {
   EXPECT_THROW(framingCamera(room({1, 1, 1}, false), true, 0), InputError);
-  EXPECT_NO_THROW(makeView(framingCamera(QuadMesh().build(), false, 1), 8, 8));
+  EXPECT_NO_THROW(makeView(framingCamera(MeshBuilder().build(), false, 1), 8, 8));
 }
 
 TEST(Exposure, ThePercentileOfTheHitPixelsGoesToFourFifths) {

@@ -134,6 +134,20 @@ void PointRays::look(const RaySource& from, const HemisphereSet& set, std::size_
   }
 }
 
+void PointRays::trace(const Vec3& from, std::span<const Vec3> along, std::span<RayEnd> ends) const {
+  const FlushDenormals flush;
+  const glm::vec3 start = embree_.place(from * scene_.scale);
+  RTCRayHit16 packet;
+  for (std::size_t first = 0; first < along.size(); first += kRayLanes) {
+    const auto lanes = std::min(std::size_t(kRayLanes), along.size() - first);
+    for (std::size_t k = 0; k < kRayLanes; ++k) {
+      setRay(packet, int(k), start, glm::vec3(along[first + std::min(k, lanes - 1)]));
+    }
+    embree_.trace(packet, int(lanes));
+    for (std::size_t k = 0; k < lanes; ++k) ends[first + k] = endOf(packet, int(k), {});
+  }
+}
+
 void PointRays::see(const RaySource& from, std::span<const Vec3> to, std::span<const Index> there,
                     std::span<std::uint8_t> seen) const {
   const FlushDenormals flush;

@@ -20,7 +20,7 @@ struct RayEnd {
   static constexpr std::uint32_t kBlack = kNone - 2;  ///< a back without patches
   static constexpr std::uint32_t kOwn = kNone - 3;    ///< a polygon that it left from: no true hit
   std::uint32_t patch = kSky;
-  Vec3 at{0.0};  ///< metres; of a hit on a patch
+  Vec3 at{0.0};  ///< metres; of a hit
 };
 
 /// A point of a surface; `own`: the polygons that it lies on, which no ray from it ends on.
@@ -62,6 +62,10 @@ class PointRays {
   /// has set.rays() places.
   void look(const RaySource& from, const HemisphereSet& set, std::size_t number, double turn,
             std::span<RayEnd> ends) const;
+
+  /// Finds where rays from a point in space end, the ray k along the unit vector `along[k]`. `ends`
+  /// has along.size() places; a back without patches is kBlack, with its place.
+  void trace(const Vec3& from, std::span<const Vec3> along, std::span<RayEnd> ends) const;
 
   /// seen[k]: nothing stands between the point and `to[k]`. Hits on the polygon `there[k]` and on
   /// the source's own polygons do not count.
