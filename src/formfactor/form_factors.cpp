@@ -302,24 +302,24 @@ FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
 
 namespace {
 
-FormFactors exactOf(const FormFactorPlan& plan, Progress& progress, RowJournal* journal,
+FormFactors exactOf(const FormFactorPlan::Prepared& prepared, const ExactScene& scene,
+                    const ExactKernels& kernels, Progress& progress, RowJournal* journal,
                     Processes* processes) {
-  const FormFactorPlan::Prepared& prepared = *plan.prepared;
-  FormFactors result =
-      exactFactors(prepared.mesh, prepared.scene.value(), prepared.kernels.value(),
-                   prepared.estimate, prepared.options, progress, journal, processes);
+  FormFactors result = exactFactors(prepared.mesh, scene, kernels, prepared.estimate,
+                                    prepared.options, progress, journal, processes);
   result.report.exact.seconds_prepare += prepared.seconds;
   return result;
 }
 
 /// Exact form factors, unless they take far longer than foreseen. Time is that of processors, so
 /// that other work on the machine does not change the method.
-std::optional<FormFactors> exactInTime(const FormFactorPlan& plan, Progress& progress,
+std::optional<FormFactors> exactInTime(const FormFactorPlan& plan, const ExactScene& scene,
+                                       const ExactKernels& kernels, Progress& progress,
                                        RowJournal* journal) {
   const double over = std::max(kOverrunTimes * plan.seconds, kOverrunSeconds);
   TimedProgress timed(progress, double(allowedThreads()) * (plan.seconds + over), processSeconds);
   try {
-    return exactOf(plan, timed, journal, nullptr);
+    return exactOf(*plan.prepared, scene, kernels, timed, journal, nullptr);
   } catch (const Cancelled&) {
     timed.giveUp();
     return std::nullopt;
@@ -353,11 +353,12 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress, R
   if (prepared.scene && prepared.kernels) {
     // What is shared by processes cannot be given up by one.
     if (processes == nullptr && prepared.options.method == FormFactorMethod::automatic) {
-      std::optional<FormFactors> in_time = exactInTime(plan, progress, journal);
+      std::optional<FormFactors> in_time =
+          exactInTime(plan, *prepared.scene, *prepared.kernels, progress, journal);
       if (!in_time) return raysInstead(plan, watch.seconds(), progress);
       result = std::move(*in_time);
     } else {
-      result = exactOf(plan, progress, journal, processes);
+      result = exactOf(prepared, *prepared.scene, *prepared.kernels, progress, journal, processes);
     }
   } else if (prepared.hemicubes) {
     result = hemicubeFactors(prepared.mesh, *prepared.hemicubes, prepared.hemicube_estimate,
