@@ -226,6 +226,7 @@ void GltfUnpacker::unpackPrimitive(Json& primitive, const std::string& what) {
   keepIndices(*mesh, primitive);
   primitive["mode"] = TINYGLTF_MODE_TRIANGLES;
   primitive["extensions"].erase(kDraco);
+  if (primitive["extensions"].empty()) primitive.erase("extensions");
 }
 
 void GltfUnpacker::unpackAttribute(const DracoMesh& mesh, std::uint32_t id, Json& accessor,

@@ -111,6 +111,12 @@ Material ObjMaterialReader::convert(const MtlMaterial& mtl, const fs::path& fold
     ignored_.add(fmt::format("Kd is 0 beside a map_Kd that is not used: reflectance {}, material",
                              options_.default_reflectance),
                  mtl.name, Severity::warning);
+  } else if (mtl.reflectance_map && options_.textures && material.texture == kNone &&
+             mtl.reflectance == Vec3(1.0)) {
+    // A surface that returns all light is not what the texture was.
+    ignored_.add(fmt::format("Kd is 1 beside a map_Kd that is not used: reflectance {}, material",
+                             options_.default_reflectance),
+                 mtl.name, Severity::warning);
   } else if (mtl.reflectance) {
     material.reflectance = *mtl.reflectance;
     if (options_.kd_is_srgb) {

@@ -38,6 +38,7 @@ double surfaceToSurface(const PatchMesh& mesh, const FormFactors& factors, const
 // ---- Planar values
 
 TEST(ExactValues, PlanarClosedFormsHoldToTenDigits) {
+  ASSERT_FALSE(truth::closedForms().empty());
   for (const truth::ClosedForm& k : truth::closedForms()) {
     MeshBuilder builder;
     builder.polygon("from", {k.from});
