@@ -131,7 +131,8 @@ TEST(FramingCamera, AClosedRoomIsSeenFromAnEndAlongItsLength) {
 TEST(FramingCamera, StandsOnTheFloorIfZIsUp) {
   const PatchMesh mesh = room({8, 2.5, 4}, true);
   PatchMesh lying = mesh;
-  for (auto* const vectors : {&lying.vertices, &lying.centroid, &lying.normal}) {
+  for (auto* const vectors : {&lying.vertices, &lying.centroid, &lying.normal,
+                              &lying.polygons.normal, &lying.polygons.origin}) {
     for (Vec3& v : *vectors) v = {v.x, -v.z, v.y};
   }
   const Camera standing = framingCamera(mesh, true, 1.5);
@@ -208,7 +209,9 @@ TEST(FramingCamera, DoesNotDependOnThreadsOrScale) {
   // Eyes stand at a person's height in scenes as high as a room or hall, else at a share of theirs.
   const auto scaled = [&](double factor) {
     PatchMesh other = mesh;
-    for (Vec3& v : other.vertices) v *= factor;
+    for (auto* const places : {&other.vertices, &other.centroid, &other.polygons.origin}) {
+      for (Vec3& v : *places) v *= factor;
+    }
     for (double& a : other.area) a *= factor * factor;
     return framingCamera(other, true, 1).eye / factor;
   };
