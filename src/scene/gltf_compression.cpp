@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -33,6 +34,8 @@ constexpr const char* kMeshopt = "EXT_meshopt_compression";
 /// The most that a byte is unpacked to, above what any encoder reaches: a damaged size is refused
 /// before memory is taken for it.
 constexpr std::size_t kMostBytesOfOne = 4096;
+/// The most that a binary glTF file holds.
+constexpr std::size_t kMostBytes = std::numeric_limits<std::uint32_t>::max();
 
 /// Replaces the compressed parts of a document by plain ones.
 class GltfUnpacker {
@@ -47,6 +50,7 @@ class GltfUnpacker {
   }
 
   void readBuffers(std::string_view content);
+  Bytes unpacked(const Json& packed, const std::string& what) const;
   void unpackView(Json& view, const std::string& what);
   void unpackPrimitive(Json& primitive, const std::string& what);
   void unpackAttribute(const DracoMesh& mesh, std::uint32_t id, Json& accessor,
@@ -60,8 +64,9 @@ class GltfUnpacker {
   const std::string& path_;
   Json document_;
   std::vector<std::span<const unsigned char>> buffers_;
-  GltfFile source_;  ///< owns the buffers
-  Bytes data_;       ///< the one buffer of the result
+  GltfFile source_;                              ///< owns the buffers
+  Bytes data_;                                   ///< the one buffer of the result
+  std::map<std::size_t, std::size_t> place_of_;  ///< in it, by buffer
   std::map<std::size_t, std::shared_ptr<const DracoMesh>> meshes_;  ///< by compressed buffer view
 };
 
@@ -118,6 +123,11 @@ std::span<const unsigned char> GltfUnpacker::bytesOf(const Json& place,
 std::size_t GltfUnpacker::keep(std::span<const unsigned char> bytes) {
   data_.resize(paddedTo4(data_.size()));
   const std::size_t offset = data_.size();
+  // Packed data may stand for much, and several views for the same.
+  if (bytes.size() > kMostBytes - std::min(offset, kMostBytes)) {
+    throw InputError(path_ +
+                     ": its geometry takes more than 4 GiB without compression; split the scene");
+  }
   data_.insert(data_.end(), bytes.begin(), bytes.end());
   return offset;
 }
@@ -158,31 +168,37 @@ bool undoFilter(Bytes& out, const std::string& filter, std::size_t count, std::s
   return true;
 }
 
+/// The data of a view that meshoptimizer packed, as its extension says.
+Bytes GltfUnpacker::unpacked(const Json& packed, const std::string& what) const {
+  const std::span<const unsigned char> in = bytesOf(packed, what);
+  const auto count = packed.at("count").get<std::size_t>();
+  const auto stride = packed.at("byteStride").get<std::size_t>();
+  if (count == 0 || stride == 0 || count > in.size() * kMostBytesOfOne / stride) {
+    fail(fmt::format("{} cannot be {} elements of {} bytes", what, count, stride));
+  }
+  Bytes bytes(count * stride);
+  if (decodeMeshopt(bytes, packed.at("mode").get<std::string>(), count, stride, in) != 0 ||
+      !undoFilter(bytes, packed.value("filter", "NONE"), count, stride)) {
+    fail(fmt::format("{} cannot be unpacked ({})", what, kMeshopt));
+  }
+  return bytes;
+}
+
 void GltfUnpacker::unpackView(Json& view, const std::string& what) {
-  const bool compressed = view.contains("extensions") && view["extensions"].contains(kMeshopt);
-  Bytes unpacked;
-  std::span<const unsigned char> bytes;
-  if (compressed) {
-    const Json& packed = view["extensions"][kMeshopt];
-    const std::span<const unsigned char> in = bytesOf(packed, what);
-    const auto count = packed.at("count").get<std::size_t>();
-    const auto stride = packed.at("byteStride").get<std::size_t>();
-    if (count == 0 || stride == 0 || count > in.size() * kMostBytesOfOne / stride) {
-      fail(fmt::format("{} cannot be {} elements of {} bytes", what, count, stride));
-    }
-    unpacked.resize(count * stride);
-    if (decodeMeshopt(unpacked, packed.at("mode").get<std::string>(), count, stride, in) != 0 ||
-        !undoFilter(unpacked, packed.value("filter", "NONE"), count, stride)) {
-      fail(fmt::format("{} cannot be unpacked ({})", what, kMeshopt));
-    }
-    bytes = unpacked;
+  if (view.contains("extensions") && view["extensions"].contains(kMeshopt)) {
+    const Bytes bytes = unpacked(view["extensions"][kMeshopt], what);
     view.erase("extensions");
+    view["byteOffset"] = keep(bytes);
+    view["byteLength"] = bytes.size();
   } else {
-    bytes = bytesOf(view, what);
+    // Views may overlap, so we keep each buffer whole, and once.
+    bytesOf(view, what);
+    const auto buffer = view["buffer"].get<std::size_t>();
+    const auto [place, is_new] = place_of_.try_emplace(buffer, 0);
+    if (is_new) place->second = keep(buffers_[buffer]);
+    view["byteOffset"] = place->second + view.value("byteOffset", std::size_t(0));
   }
   view["buffer"] = 0;
-  view["byteOffset"] = keep(bytes);
-  view["byteLength"] = bytes.size();
 }
 
 std::optional<DracoNumber> numberOf(int component_type) {

@@ -28,7 +28,7 @@ CASES = [
     ("gather", "formfactor/hemicube/hemicube.h",
      ["formfactor/form_factors.cpp", "radiosity/results.h"]),
     ("gl", "formfactor/hemicube/gpu_eye.h", ["gather/passes.h", "radiosity/solve.h"]),
-    ("render", "radiosity/patch_mesh.h", ["radiosity/solve.h", "matrix/run_row.h"]),
+    ("render", "formfactor/rays/point_rays.h", ["radiosity/solve.h", "radiosity/gather.h"]),
     ("lightmap", "radiosity/render.h", ["results/glb.h", "radiosity/gather.h"]),
     ("results", "radiosity/gather.h", ["radiosity/compare.h"]),
     ("tables", "results/checked_file.h", ["radiosity/compare.h", "radiosity/pipeline.h"]),
