@@ -38,7 +38,8 @@ struct RenderOptions {
 /// It is inside a room if nearly all directions end on fronts: a window may be open, a wall may not
 /// be missing. Its name says which: "framed from inside", "framed from outside". `light`: N
 /// values >= 0, the light that each patch reflects; empty: all are lit alike. `up`: of the scene.
-/// `mesh`: with its planar polygons, as meshScene() makes it. Errors: InputError if sizes differ or the aspect ratio is no positive number.
+/// `mesh`: with its planar polygons, as meshScene() makes it. Errors: InputError if sizes differ or
+/// the aspect ratio is no positive number.
 Camera framingCamera(const PatchMesh& mesh, bool closed, double aspect,
                      std::span<const double> light = {}, Up up = Up::y);
 
