@@ -120,15 +120,17 @@ void Reader::readPrimitive(const tinygltf::Primitive& primitive, int node,
     return;
   }
   const Index material = materialOf(primitive, object, what);
+  const std::size_t vertices =
+      file_.at(model_.accessors, primitive.attributes.at("POSITION"), "accessor", what).count;
+  const std::vector<Vec2> texcoords = readTexcoords(primitive, material, vertices, what);
   const std::vector<Vec3> colours = readColours(primitive, material, object, what);
   if (colours.empty()) uncoloured_.insert(material);
+  if (!colours.empty()) requireCount(colours.size(), vertices, what + ": COLOR_0");
   for (const Transform& copy : placement_.copies(node, what)) {
     const std::vector<Index> vertex_of =
         addVertices(placement_.positions(node, primitive, copy, what));
     const std::vector<Index> corners = readGltfTriangles(file_, primitive, vertex_of.size(),
                                                          placement_.isMirrored(node, copy), what);
-    const std::vector<Vec2> texcoords = readTexcoords(primitive, material, vertex_of.size(), what);
-    if (!colours.empty()) requireCount(colours.size(), vertex_of.size(), what + ": COLOR_0");
     addFaces(corners, vertex_of, texcoords, colours, builder_.surface(object, material));
   }
 }

@@ -30,6 +30,7 @@ class ObjMaterialReader {
 
  private:
   void readLibrary(const fs::path& path);
+  bool standsForMap(const MtlMaterial& mtl) const;
   Material convert(const MtlMaterial& mtl, const fs::path& folder);
   Index texture(const std::string& material, const char* keyword, TextureUse use, const MtlMap& map,
                 const fs::path& folder);
@@ -94,6 +95,14 @@ void ObjMaterialReader::readLibrary(const fs::path& path) {
   }
 }
 
+/// Whether Kd only stands beside the map: 0, which exporters write and do not mean, or 1, the
+/// factor that leaves the map as it is. A surface that returns all light is not what the map was;
+/// but 1 is what was asked for where textures are off.
+bool ObjMaterialReader::standsForMap(const MtlMaterial& mtl) const {
+  if (!mtl.reflectance_map || !mtl.reflectance) return false;
+  return *mtl.reflectance == Vec3(0.0) || (options_.textures && *mtl.reflectance == Vec3(1.0));
+}
+
 Material ObjMaterialReader::convert(const MtlMaterial& mtl, const fs::path& folder) {
   Material material = defaultMaterial(mtl.name, options_);
   if (mtl.reflectance_map) {
@@ -107,15 +116,9 @@ Material ObjMaterialReader::convert(const MtlMaterial& mtl, const fs::path& fold
   if (material.texture != kNone && mtl.reflectance.value_or(Vec3(0.0)) == Vec3(0.0)) {
     material.reflectance = Vec3(1.0);
     if (mtl.reflectance) noteTextureAlone("Kd", mtl.name);
-  } else if (mtl.reflectance_map && mtl.reflectance == Vec3(0.0)) {
-    ignored_.add(fmt::format("Kd is 0 beside a map_Kd that is not used: reflectance {}, material",
-                             options_.default_reflectance),
-                 mtl.name, Severity::warning);
-  } else if (mtl.reflectance_map && options_.textures && material.texture == kNone &&
-             mtl.reflectance == Vec3(1.0)) {
-    // A surface that returns all light is not what the texture was.
-    ignored_.add(fmt::format("Kd is 1 beside a map_Kd that is not used: reflectance {}, material",
-                             options_.default_reflectance),
+  } else if (material.texture == kNone && standsForMap(mtl)) {
+    ignored_.add(fmt::format("Kd is {} beside a map_Kd that is not used: reflectance {}, material",
+                             mtl.reflectance->x, options_.default_reflectance),
                  mtl.name, Severity::warning);
   } else if (mtl.reflectance) {
     material.reflectance = *mtl.reflectance;
