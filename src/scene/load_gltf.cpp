@@ -8,6 +8,7 @@
 #include <numeric>
 #include <set>
 
+#include "base/finite.h"
 #include "scene/gltf_materials.h"
 #include "scene/gltf_nodes.h"
 #include "scene/gltf_placement.h"

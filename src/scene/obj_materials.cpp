@@ -118,7 +118,7 @@ Material ObjMaterialReader::convert(const MtlMaterial& mtl, const fs::path& fold
     if (mtl.reflectance) noteTextureAlone("Kd", mtl.name);
   } else if (material.texture == kNone && standsForMap(mtl)) {
     ignored_.add(fmt::format("Kd is {} beside a map_Kd that is not used: reflectance {}, material",
-                             mtl.reflectance->x, options_.default_reflectance),
+                             mtl.reflectance.value_or(Vec3(0.0)).x, options_.default_reflectance),
                  mtl.name, Severity::warning);
   } else if (mtl.reflectance) {
     material.reflectance = *mtl.reflectance;
