@@ -391,18 +391,31 @@ TEST(Elements, AnyNumberOfThreadsGivesTheSameBits) {
   EXPECT_EQ(one.direct.points, two.direct.points);
 }
 
-/// Unwanted patches have no elements of indirect light, and change others only at their borders.
+/// Unwanted patches have no elements of indirect light, and that of others stays within the
+/// tolerance.
 TEST(Elements, UnwantedPatchesAreLeftOut) {
   const Scene scene = smallRoom();
-  const Lit all(scene, 300, {}, solved);
+  const ElementOptions options;
+  const Lit all(scene, 300, options, solved);
   std::vector<std::uint8_t> wanted(all.mesh.size());
   for (std::size_t i = 0; i < wanted.size(); ++i) wanted[i] = all.mesh.normal[i].z > 0.5 ? 1 : 0;
   Progress quiet;
   const std::vector<double> irradiance = solved(all.mesh, all.materials);
-  const Elements some = computeElements(all.mesh, all.materials, irradiance, {}, wanted, quiet);
+  const Elements some =
+      computeElements(all.mesh, all.materials, irradiance, options, wanted, quiet);
   EXPECT_LT(some.report.indirect_vertices, all.elements.report.indirect_vertices);
   for (std::size_t r = 0; r < some.roots.size(); ++r) {
     EXPECT_EQ(some.indirect.elements[r].corners != 0, wanted[some.roots.patch[r]] != 0);
+  }
+  const ElementLookup lookup(all.mesh, some.roots);
+  for (std::size_t i = 0; i < all.mesh.size(); ++i) {
+    if (wanted[i] == 0) continue;
+    const Vec3& middle = all.mesh.centroid[i];
+    std::vector<double> kept(std::size_t(some.bands), 0.0);
+    const std::size_t root = lookup.rootAt(i, middle);
+    ASSERT_TRUE(lookup.add(some.indirect, root, lookup.place(root, middle), kept));
+    const double light = all.at(all.elements.indirect, i, middle);
+    EXPECT_NEAR(kept[0], light, options.tolerance * light) << i;
   }
 }
 
