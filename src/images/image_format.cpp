@@ -64,7 +64,7 @@ std::string imageFormatOf(Bytes start, const std::string& name) {
     std::string_view bytes;
     const char* format;
   };
-  constexpr std::array<Mark, 12> kMarks = {{{"\x89PNG"sv, "png"},
+  constexpr std::array<Mark, 13> kMarks = {{{"\x89PNG"sv, "png"},
                                             {"\xff\xd8\xff"sv, "jpeg"},
                                             {"BM"sv, "bmp"},
                                             {"GIF8"sv, "gif"},
@@ -75,7 +75,8 @@ std::string imageFormatOf(Bytes start, const std::string& name) {
                                             {"MM\0+"sv, "tiff"},
                                             {"\x76\x2f\x31\x01"sv, "openexr"},
                                             {"#?"sv, "hdr"},
-                                            {"DDS "sv, "dds"}}};
+                                            {"DDS "sv, "dds"},
+                                            {"\x01\xda"sv, "sgi"}}};
   for (const Mark& mark : kMarks) {
     if (hasAt(start, 0, mark.bytes)) return mark.format;
   }

@@ -93,6 +93,11 @@ Material AssimpMaterialReader::convert(const aiMaterial& given, unsigned number)
     ignored_.add("transparency (opacity) is not used, material", material.name, Severity::warning);
   }
   material.texture = texture(given, material.name);
+  const bool lacks_texture = options_.textures && material.texture == kNone &&
+                             library_.getMaterialTextureCount(&given, aiTextureType_DIFFUSE) > 0;
+  if (lacks_texture && (material.reflectance == Vec3(0.0) || material.reflectance == Vec3(1.0))) {
+    replaceStandIn(material, material.name, "colour", options_, ignored_);
+  }
   if (library_.getMaterialTextureCount(&given, aiTextureType_EMISSIVE) > 0) {
     ignored_.add("emissive textures of this format are not read, the colour alone counts",
                  material.name, Severity::warning);

@@ -86,12 +86,7 @@ Material GltfMaterialReader::convert(const tinygltf::Material& gltf, const std::
     if (options_.textures) {
       material.texture = texture(diffuse.texture, TextureUse::reflectance, name);
       if (material.texture == kNone && material.reflectance == Vec3(1.0)) {
-        // A surface that returns all light is not what the texture was.
-        material.reflectance = Vec3(options_.default_reflectance);
-        ignored_.add(fmt::format("base colour 1 beside a texture that is not used: reflectance {}, "
-                                 "material",
-                                 options_.default_reflectance),
-                     name, Severity::warning);
+        replaceStandIn(material, name, "base colour", options_, ignored_);
       }
     } else {
       ignored_.add("textures are off; the factor alone counts, material", name);

@@ -10,7 +10,7 @@
 namespace radiosity {
 
 GroupedFaces::GroupedFaces(const std::string& path, const SceneOptions& options)
-    : options_(options), builder_(scene_) {
+    : options_(options), builder_(scene_, options) {
   scene_.file = path;
 }
 

@@ -40,7 +40,7 @@ struct PlacedObject {
 class ThreeMfReader {
  public:
   ThreeMfReader(const std::string& path, const SceneOptions& options)
-      : package_(path), builder_(scene_), materials_(package_, options, scene_, notes_) {
+      : package_(path), builder_(scene_, options), materials_(package_, options, scene_, notes_) {
     scene_.file = path;
   }
 

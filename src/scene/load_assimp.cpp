@@ -1,4 +1,5 @@
-// Reads Collada, FBX, 3DS, X3D and IFC by Assimp. Nodes are objects.
+// Reads Collada, FBX, 3DS, X3D, IFC, AC3D, LightWave, DXF, MilkShape and Blitz3D by Assimp. Nodes
+// are objects.
 #include <assimp/ColladaMetaData.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
@@ -6,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <glm/geometric.hpp>
@@ -37,7 +39,7 @@ namespace {
 class AssimpReader {
  public:
   AssimpReader(const std::string& path, const SceneOptions& options)
-      : options_(options), builder_(scene_) {
+      : options_(options), builder_(scene_, options) {
     scene_.file = path;
   }
 
@@ -323,11 +325,34 @@ void requireWhole3ds(const std::string& path) {
   }
 }
 
+/// Assimp loses the sides of AC3D's surfaces: SURF has type and flags, 0x20 being "two-sided".
+void noteTwoSidedAc3d(Scene& scene) {
+  constexpr std::string_view kKeyword = "SURF 0x";
+  constexpr unsigned kTwoSided = 0x20;
+  const std::string content = readWholeFile(scene.file);
+  std::size_t count = 0;
+  for (std::size_t at = content.find(kKeyword); at != std::string::npos;
+       at = content.find(kKeyword, at)) {
+    at += kKeyword.size();
+    unsigned flags = 0;
+    std::from_chars(content.data() + at, content.data() + content.size(), flags, 16);
+    if ((flags & kTwoSided) != 0) ++count;
+  }
+  if (count == 0) return;
+  scene.notes.push_back(
+      {Severity::info, fmt::format("faces that are two-sided in the file are read one-sided ({}); "
+                                   "use --two-sided NAME where backs are seen",
+                                   count)});
+}
+
 }  // namespace
 
 Scene loadAssimp(const std::string& path, const SceneOptions& options) {
-  if (lowerExtension(path) == ".3ds") requireWhole3ds(path);
-  return AssimpReader(path, options).read();
+  const std::string extension = lowerExtension(path);
+  if (extension == ".3ds") requireWhole3ds(path);
+  Scene scene = AssimpReader(path, options).read();
+  if (extension.starts_with(".ac")) noteTwoSidedAc3d(scene);
+  return scene;
 }
 
 }  // namespace radiosity

@@ -29,7 +29,7 @@ class Reader {
         options_(options),
         placement_(file),
         scene_(scene),
-        builder_(scene) {}
+        builder_(scene, options) {}
 
   void read();
 

@@ -89,7 +89,7 @@ Scene loadObj(const std::string& path, const SceneOptions& options) {
   const std::vector<Index> material_of = readObjMaterials(scan, options, scene);
   noteInherited(scan, material_of, scene);
   const Index no_material = addNoMaterial(scan, options, scene);
-  SceneBuilder builder(scene);
+  SceneBuilder builder(scene, options);
   addFaces(scan, material_of, no_material, builder);
   builder.finish();
   return scene;

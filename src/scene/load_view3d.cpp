@@ -28,8 +28,8 @@ constexpr double kOnEdge = 1e-7;
 
 class View3dReader {
  public:
-  View3dReader(const std::string& path, const View3dScan& scan)
-      : scan_(scan), builder_(scene_), holes_(scan.surfaces.size()) {
+  View3dReader(const std::string& path, const View3dScan& scan, const SceneOptions& options)
+      : scan_(scan), builder_(scene_, options), holes_(scan.surfaces.size()) {
     scene_.file = path;
     scene_.notes = scan.notes;
     scene_.vertices = scan.vertices;
@@ -224,9 +224,9 @@ class View3dReader {
 
 }  // namespace
 
-Scene loadView3d(const std::string& path, const SceneOptions&) {
+Scene loadView3d(const std::string& path, const SceneOptions& options) {
   const View3dScan scan = scanView3d(path, readWholeFile(path));
-  return View3dReader(path, scan).read();
+  return View3dReader(path, scan, options).read();
 }
 
 }  // namespace radiosity

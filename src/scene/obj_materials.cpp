@@ -95,9 +95,8 @@ void ObjMaterialReader::readLibrary(const fs::path& path) {
   }
 }
 
-/// Whether Kd only stands beside the map: 0, which exporters write and do not mean, or 1, the
-/// factor that leaves the map as it is. A surface that returns all light is not what the map was;
-/// but 1 is what was asked for where textures are off.
+/// Whether Kd only stands beside the map: 0, which exporters write and do not mean, or 1. But 1 is
+/// what was asked for where textures are off.
 bool ObjMaterialReader::standsForMap(const MtlMaterial& mtl) const {
   if (!mtl.reflectance_map || !mtl.reflectance) return false;
   return *mtl.reflectance == Vec3(0.0) || (options_.textures && *mtl.reflectance == Vec3(1.0));
@@ -117,9 +116,8 @@ Material ObjMaterialReader::convert(const MtlMaterial& mtl, const fs::path& fold
     material.reflectance = Vec3(1.0);
     if (mtl.reflectance) noteTextureAlone("Kd", mtl.name);
   } else if (material.texture == kNone && standsForMap(mtl)) {
-    ignored_.add(fmt::format("Kd is {} beside a map_Kd that is not used: reflectance {}, material",
-                             mtl.reflectance.value_or(Vec3(0.0)).x, options_.default_reflectance),
-                 mtl.name, Severity::warning);
+    material.reflectance = mtl.reflectance.value_or(Vec3(0.0));
+    replaceStandIn(material, mtl.name, "Kd", options_, ignored_);
   } else if (mtl.reflectance) {
     material.reflectance = *mtl.reflectance;
     if (options_.kd_is_srgb) {

@@ -32,7 +32,10 @@ void FeatureNotes::appendTo(std::vector<Note>& notes) const {
   }
 }
 
-SceneBuilder::SceneBuilder(Scene& scene) : scene_(scene) { scene_.face_offset.assign(1, 0); }
+SceneBuilder::SceneBuilder(Scene& scene, const SceneOptions& options)
+    : scene_(scene), options_(options) {
+  scene_.face_offset.assign(1, 0);
+}
 
 Index SceneBuilder::surface(const std::string& object, Index material) {
   const auto [place, is_new] =
@@ -93,6 +96,7 @@ void SceneBuilder::dropUnusableTextures() {
     if (std::exchange(plain.texture, kNone) != kNone) {
       notes.add("texture not used, faces without texture coordinates; the factor alone counts",
                 name, Severity::warning);
+      if (plain.reflectance == Vec3(1.0)) replaceStandIn(plain, name, "factor", options_, notes);
     }
     // A surface that emits all over would be worse than one that does not emit.
     if (std::exchange(plain.emission_texture, kNone) != kNone) {
@@ -112,6 +116,14 @@ Material defaultMaterial(const std::string& name, const SceneOptions& options) {
   material.name = name;
   material.reflectance = Vec3(options.default_reflectance);
   return material;
+}
+
+void replaceStandIn(Material& material, const std::string& name, const char* factor,
+                    const SceneOptions& options, FeatureNotes& notes) {
+  notes.add(fmt::format("{} is {} beside a texture that is not used: reflectance {}, material",
+                        factor, material.reflectance.x, options.default_reflectance),
+            name, Severity::warning);
+  material.reflectance = Vec3(options.default_reflectance);
 }
 
 void checkReflectance(const std::string& where, const std::string& name, const Vec3& reflectance) {

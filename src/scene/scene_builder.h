@@ -46,7 +46,7 @@ class FeatureNotes {
 /// Adds faces to a scene that already has its materials.
 class SceneBuilder {
  public:
-  explicit SceneBuilder(Scene& scene);
+  SceneBuilder(Scene& scene, const SceneOptions& options);
 
   /// The surface of (object, material), made when first asked for.
   Index surface(const std::string& object, Index material);
@@ -57,13 +57,14 @@ class SceneBuilder {
                std::size_t element, std::span<const Vec3> colours = {});
 
   /// Names the surfaces. A textured surface with a face that has no texture coordinates falls
-  /// back to its material's factor, with a warning.
+  /// back to its material's factor, or to the default reflectance if that is 1, with a warning.
   void finish();
 
  private:
   void dropUnusableTextures();
 
   Scene& scene_;
+  const SceneOptions& options_;
   std::map<std::pair<std::string, Index>, Index> surface_of_;
   std::vector<bool> lacks_texcoords_;  ///< by surface
 };
@@ -74,6 +75,12 @@ inline bool isTextured(const Material& material) {
 
 /// A material `name` with the default reflectance.
 Material defaultMaterial(const std::string& name, const SceneOptions& options);
+
+/// Gives `material`, called `name`, the default reflectance in place of its `factor` ("Kd"), with a
+/// note. For a factor that only stands beside a texture, and the texture is not used: 1, which
+/// leaves the texture as it is and alone would return all light, or a 0 that was not meant.
+void replaceStandIn(Material& material, const std::string& name, const char* factor,
+                    const SceneOptions& options, FeatureNotes& notes);
 
 /// Throws InputError "WHERE: material NAME: ..." unless 0 <= rho <= 1 in every band.
 void checkReflectance(const std::string& where, const std::string& name, const Vec3& reflectance);

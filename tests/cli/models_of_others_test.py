@@ -13,13 +13,14 @@ from cli_runner import PROGRAM, CliTest
 
 MODELS = Path("/usr/share/assimp/models")
 READ = {".obj", ".gltf", ".glb", ".stl", ".ply", ".off", ".dae", ".fbx", ".3ds", ".x3d", ".ifc",
-        ".3mf"}
+        ".3mf", ".ac", ".acc", ".lwo", ".dxf", ".ms3d", ".b3d"}
 
 # A few of each format, of at most some thousand faces: spiders, a duck, a rock, boxes.
 MESHED = [
     "OBJ/spider.obj", "OBJ/concave_polygon.obj", "OFF/Wuson.off", "STL/Spider_binary.stl",
     "PLY/cube.ply", "3DS/fels.3ds", "3MF/box.3mf", "Collada/duck.dae", "FBX/spider.fbx", "X3D/HelloX3dTrademark.x3d",
     "glTF2/BoxTextured-glTF-Embedded/BoxTextured.gltf", "glTF2/textureTransform/TextureTransformTest.gltf",
+    "AC/SphereWithLight.ac", "LWO/LWO2/boxuv.lwo", "DXF/wuson.dxf", "MS3D/jeep1.ms3d", "B3D/WusonBlitz.b3d",
 ]
 
 

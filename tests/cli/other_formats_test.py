@@ -1,4 +1,4 @@
-"""OFF, and what Assimp reads: Collada, FBX, 3DS and X3D, with their names, colours and units."""
+"""OFF, and what Assimp reads: Collada, FBX, 3DS, X3D, AC3D and DXF, with their names, colours and units."""
 
 import math
 import os
@@ -11,6 +11,40 @@ import numpy as np
 from PIL import Image
 
 from cli_runner import CliTest
+
+AC3D = """AC3Db
+MATERIAL "paint" rgb 1 1 1  amb 0.2 0.2 0.2  emis 0 0 0  spec 0 0 0  shi 10  trans 0
+OBJECT world
+kids 1
+OBJECT poly
+name "wall"
+texture "paint.rgb"
+numvert 4
+0 0 0
+1 0 0
+1 1 0
+0 1 0
+numsurf 1
+SURF 0x20
+mat 0
+refs 4
+0 0 0
+1 1 0
+2 1 1
+3 0 1
+kids 0
+"""
+
+# A face of one metre above the plane x, y; what follows a number is a group code's value.
+DXF = "\n".join(["0", "SECTION", "2", "ENTITIES", "0", "3DFACE", "8", "roof"] +
+                [word for k, (x, y) in enumerate([(0, 0), (1, 0), (1, 1), (0, 1)])
+                 for word in (f"1{k}", str(x), f"2{k}", str(y), f"3{k}", "2")] + ["0", "ENDSEC", "0", "EOF", ""])
+
+
+def sgi(colour):
+    """One texel of a Silicon Graphics image (.rgb), plane by plane."""
+    return struct.pack(">hbbHHHHII", 474, 0, 1, 3, 1, 1, 3, 0, 255).ljust(512, b"\0") + bytes(colour)
+
 
 SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
 
@@ -157,7 +191,8 @@ class OtherFormats(CliTest):
         run = self.run_program("info", "a.dae")
         self.assertIn("are not there; the colour alone counts, material: paint (C:\\work\\HALVES.PNG)", run.err)
         _, without = self.patches_of()
-        self.assertEqual(off.tolist(), without.tolist())
+        np.testing.assert_array_equal(off, 1)  # Assimp's colour beside a texture, as asked for
+        np.testing.assert_array_equal(without, 0.5)
 
     def test_cameras_of_collada(self):
         self.put("a.dae", TEXTURED)
@@ -272,6 +307,30 @@ class OtherFormats(CliTest):
         self.says(f": is cut off: it says that it has {len(three_ds())} bytes and has {len(three_ds()) - 9}; export "
                   "it again", "a.3ds", three_ds()[:-9])
         self.says(": is no 3DS file; export it again", "a.3ds", "hello world")
+
+    def test_ac3d(self):
+        """A texture of an .rgb file replaces the colour; without it a white colour was not meant."""
+        surface, material = self.only_surface("a.ac", AC3D)
+        self.assertEqual([surface["name"], surface["faces"], surface["area_m2"]], ["wall/paint", 1, 1])
+        self.assertEqual(material["reflectance"], "0.5, 0.5, 0.5")
+        run = self.run_program("info", "a.ac")
+        self.assertIn("textures that are not there; the colour alone counts, material: paint (paint.rgb)", run.err)
+        self.assertIn("colour is 1 beside a texture that is not used: reflectance 0.5, material: paint", run.err)
+        self.assertIn("faces that are two-sided in the file are read one-sided (1); use --two-sided NAME where backs "
+                      "are seen", run.out)
+        (self.folder / "paint.rgb").write_bytes(sgi([255, 0, 255]))
+        surface, material = self.only_surface("a.ac", AC3D.replace("SURF 0x20", "SURF 0x10"))
+        self.assertEqual([material["reflectance"], material["texture"]], ["1, 1, 1", "paint.rgb"])
+        self.run_program("solve", "a.ac", "--patches", "1", "-o", "r.h5")
+        with h5py.File(self.folder / "r.h5") as results:
+            np.testing.assert_array_equal(results["solution/reflectance"], [[1, 0, 1]])
+        self.assertNotIn("two-sided", self.run_program("info", "a.ac").out)
+
+    def test_dxf(self):
+        """Up is z in drawings."""
+        surface, _ = self.only_surface("a.dxf", DXF)
+        self.assertEqual([surface["faces"], surface["area_m2"]], [1, 1])
+        self.assertIn("roof", surface["name"])
 
     def test_fbx(self):
         surface, material = self.only_surface("a.fbx", FBX, "--default-reflectance", ".3")

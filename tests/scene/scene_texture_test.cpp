@@ -250,11 +250,11 @@ TEST_F(SceneTexture, AFactorOfZeroBesideATextureMeansTheTexture) {
   scene = load("Kd 0 0 0\nmap_Kd lost.png\n");
   EXPECT_EQ(scene.materialOf(0).reflectance, Vec3(0.5));
   EXPECT_NOTE(scene.notes,
-              "Kd is 0 beside a map_Kd that is not used: reflectance 0.5, material: paint",
+              "Kd is 0 beside a texture that is not used: reflectance 0.5, material: paint",
               Severity::warning);
   scene = load("Kd 1 1 1\nmap_Kd lost.png\n");
   EXPECT_EQ(scene.materialOf(0).reflectance, Vec3(0.5)) << "it would return all light";
-  EXPECT_NOTE(scene.notes, "Kd is 1 beside a map_Kd that is not used: reflectance 0.5",
+  EXPECT_NOTE(scene.notes, "Kd is 1 beside a texture that is not used: reflectance 0.5",
               Severity::warning);
   SceneOptions off;
   off.textures = false;
@@ -353,7 +353,7 @@ TEST_F(SceneGltfTexture, ReadsImageFilesAndReportsMissingOnes) {
               Severity::warning);
   EXPECT_EQ(load(json).materials[0].reflectance, Vec3(.5)) << "not 1, the factor's default";
   EXPECT_NOTE(load(json).notes,
-              "base colour 1 beside a texture that is not used: reflectance 0.5, material: desk",
+              "base colour is 1 beside a texture that is not used: reflectance 0.5, material: desk",
               Severity::warning);
   write("my wood.png", png(1, {"\x80\xff\x40"}, 2, 8));
   const Scene scene = load(json);
