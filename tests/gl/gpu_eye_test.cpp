@@ -10,6 +10,7 @@
 #include <numeric>
 #include <optional>
 #include <random>
+#include <set>
 
 #include "formfactor/hemicube/gpu_rows.h"
 #include "formfactor/hemicube/gpu_scene.h"
@@ -58,6 +59,7 @@ class BothEyes {
     double row = 0;            ///< sum of |differences| of a row less 2 `weight`, where it is most
     double largest_sky = 0;    ///< by the GPU
     double largest_error = 0;  ///< of a row's sum
+    std::set<Index> polygons;  ///< that the processor shows
   };
 
   Difference compare(const std::vector<PlacedEye>& eyes, const std::vector<std::uint8_t>& hidden) {
@@ -114,6 +116,7 @@ class BothEyes {
     double weight = 0;
     for (int face = 0; face < kFaces; ++face) {
       const std::vector<Index> expected = cpu_.picture(face);
+      all.polygons.insert(expected.begin(), expected.end());
       for (std::size_t k = 0; k < expected.size(); ++k, ++at) {
         if (seen.at(at) == expected[k]) continue;
         const auto resolution = std::size_t(weights.resolution());
@@ -217,13 +220,12 @@ PatchMesh platesAboveAFloor(int count, double size, unsigned seed) {
 
 TEST(GpuEye, DrawsPolygonsSmallerThanAPixel) {
   // A pixel of the top face is 1/16 wide at distance 1; plates are a fourth of that. Most are
-  // missed by all pixel centres, and those that are not are seen in one pixel.
+  // missed by all pixel centres, and those that are not are seen in one pixel, mostly.
   const PatchMesh mesh = platesAboveAFloor(400, 1.0 / 64, 5);
   BothEyes both(mesh, 32);
-  const BothEyes::Difference difference = both.compareAtPatches(mesh, 4);
-  // Nearly every pixel is at an edge, which one in 256 of them or so is too close to.
-  EXPECT_LE(double(difference.polygon), 0.01 * double(difference.pixels));
-  EXPECT_LE(difference.row, 1e-13);
+  const BothEyes::Difference difference = both.compareAtPatches(mesh, 12);
+  expectSame(difference);
+  EXPECT_GT(difference.polygons.size(), 100u);
 }
 
 TEST(GpuEye, DrawsPolygonsThroughTheEyesPlane) {
