@@ -14,6 +14,31 @@
 
 namespace radiosity {
 
+std::optional<Note> whiteMaterials(const Scene& scene) {
+  const auto isWhite = [](const Vec3& colour) { return colour == Vec3(1.0); };
+  const std::span<const Vec3> colours = scene.colours;
+  std::vector<std::uint8_t> seen(scene.materials.size(), 0);
+  for (std::size_t f = 0; f < scene.faceCount(); ++f) {
+    const bool is_coloured =
+        !colours.empty() &&
+        !std::ranges::all_of(colours.subspan(scene.face_offset[f], scene.face(f).size()), isWhite);
+    if (!is_coloured) seen[scene.surfaces[scene.face_surface[f]].material] = 1;
+  }
+  std::set<std::string> white;
+  for (std::size_t m = 0; m < seen.size(); ++m) {
+    const Material& material = scene.materials[m];
+    if (seen[m] == 0 || material.texture != kNone || !isWhite(material.reflectance)) continue;
+    white.insert(material.name);
+  }
+  if (white.empty()) return std::nullopt;
+  const std::vector<std::string> names(white.begin(), white.end());
+  return Note{Severity::warning,
+              fmt::format("reflectance 1: absorbs no light, as nothing real does, and cannot be "
+                          "told from an even sky behind it (white paint has 0.8; --set "
+                          "NAME.reflectance): {}",
+                          joinNames(names))};
+}
+
 SceneChecks::SceneChecks(const Scene& scene, const WeldedFaces& faces)
     : scene_(scene), faces_(faces), doubled_(findDoubledFaces(faces)), is_double_(faces.size(), 0) {
   for (const DoubledFace& pair : doubled_) is_double_[pair.second] = 1;
@@ -65,20 +90,9 @@ void SceneChecks::reportLight(SceneInfo& info) const {
                                      "of it off: {}",
                                      joinNames(textured))});
   }
-  std::set<std::string> white;
-  for (const Surface& surface : scene_.surfaces) {
-    const Material& material = scene_.materials[surface.material];
-    if (material.texture == kNone && material.reflectance == Vec3(1.0)) white.insert(material.name);
-  }
-  if (!white.empty()) {
-    const std::vector<std::string> names(white.begin(), white.end());
-    info.problems.push_back(
-        {Severity::warning,
-         fmt::format(
-             "reflectance 1: absorbs no light, as nothing real does, and cannot be told from "
-             "an even sky behind it (white paint has 0.8): {}",
-             joinNames(names))});
-  }
+  const std::optional<Note> white = whiteMaterials(scene_);
+  const auto isKnown = [&](const Note& note) { return note.text == white->text; };
+  if (white && std::ranges::none_of(scene_.notes, isKnown)) info.problems.push_back(*white);
   if (!absorbs && info.closed) {
     info.problems.push_back({Severity::loud,
                              "the scene is closed and every surface has reflectance 1: light is "

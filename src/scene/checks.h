@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,6 +17,9 @@ namespace radiosity {
 
 /// A place with respect to a closed part.
 enum class Place { inside, on, outside };
+
+/// Names materials that return all light, by reflectance alone; none: nothing.
+std::optional<Note> whiteMaterials(const Scene& scene);
 
 class SceneChecks {
  public:

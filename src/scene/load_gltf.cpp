@@ -6,7 +6,6 @@
 #include <map>
 #include <numbers>
 #include <numeric>
-#include <set>
 
 #include "base/finite.h"
 #include "scene/gltf_materials.h"
@@ -50,7 +49,6 @@ class Reader {
   Index materialOf(const tinygltf::Primitive& primitive, const std::string& object,
                    const std::string& what);
   void requireCount(std::size_t elements, std::size_t vertices, const std::string& what) const;
-  void noteWhite();
   void noteUnused();
   bool isNoted(const std::string& extension) const;
 
@@ -64,7 +62,6 @@ class Reader {
   UniqueNames object_names_;
   FeatureNotes ignored_;
   std::vector<bool> visited_;
-  std::set<Index> uncoloured_;             ///< materials of primitives without vertex colours
   std::map<Index, std::size_t> faces_of_;  ///< by surface, so far
 };
 
@@ -78,7 +75,6 @@ void Reader::read() {
   forEachGltfNode(file_, [this](int node, const Transform& transform, const std::string& what) {
     readNode(node, transform, what);
   });
-  noteWhite();
   noteUnused();
   if (scene_.faceCount() == 0) {
     file_.fail("no faces: no node of the scene has a mesh of triangles; export meshes");
@@ -125,7 +121,6 @@ void Reader::readPrimitive(const tinygltf::Primitive& primitive, int node,
       file_.at(model_.accessors, primitive.attributes.at("POSITION"), "accessor", what).count;
   const std::vector<Vec2> texcoords = readTexcoords(primitive, material, vertices, what);
   const std::vector<Vec3> colours = readColours(primitive, material, object, what);
-  if (colours.empty()) uncoloured_.insert(material);
   if (!colours.empty()) requireCount(colours.size(), vertices, what + ": COLOR_0");
   for (const Transform& copy : placement_.copies(node, what)) {
     const std::vector<Index> vertex_of =
@@ -269,15 +264,6 @@ void Reader::readCamera(const tinygltf::Node& node, const Transform& transform) 
   camera.target = camera.eye + glm::normalize(forward);
   camera.up = glm::normalize(camera.up);
   scene_.cameras.push_back(camera);
-}
-
-void Reader::noteWhite() {
-  for (const Index m : uncoloured_) {
-    const Material& material = scene_.materials[m];
-    if (material.texture != kNone || material.reflectance != Vec3(1.0)) continue;
-    ignored_.add("reflectance 1, glTF's default base colour: all light is returned, material",
-                 material.name, Severity::warning);
-  }
 }
 
 void Reader::noteUnused() {

@@ -7,10 +7,13 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <new>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "base/file_name.h"
 #include "base/input_file.h"
+#include "scene/checks.h"
 #include "scene/readers.h"
 #include "scene/text.h"
 
@@ -120,6 +123,7 @@ Scene loadScene(const std::string& path, const SceneOptions& options) {
   requireExtent(scene);
   noteTextures(scene);
   applyOverrides(scene, options);
+  if (std::optional<Note> white = whiteMaterials(scene)) scene.notes.push_back(std::move(*white));
   return scene;
 }
 

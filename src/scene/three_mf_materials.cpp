@@ -56,9 +56,6 @@ Index ThreeMfMaterials::added(const std::string& name, const std::string& colour
     notes_.add("transparency (the colour's alpha) is not used, material", material.name,
                Severity::warning);
   }
-  if (material.reflectance == Vec3(1.0)) {
-    notes_.add("reflectance 1: all light is returned, material", material.name, Severity::warning);
-  }
   scene_.materials.push_back(std::move(material));
   return place->second;
 }

@@ -70,7 +70,7 @@ TEST_F(SceneGltf, ReadsMaterials) {
               Severity::info);
   EXPECT_NOTE(scene.notes, "transparency (alphaMode) is not used, material: lamp#2",
               Severity::warning);
-  EXPECT_NOTE(scene.notes, "glTF's default base colour: all light is returned, material: lamp#2",
+  EXPECT_NOTE(scene.notes, "reflectance 1: absorbs no light, as nothing real does",
               Severity::warning);
 }
 
