@@ -93,6 +93,7 @@ struct FormFactorOptions {
   static constexpr double kExactTolerance = 1e-3;
   static constexpr double kRayTolerance = 1e-2;
   static constexpr double kSourceTolerance = 3e-2;
+  static constexpr double kSourceSky = 0.1;
   /// About half a minute on two cores.
   static constexpr double kMostRaysUnasked = 2e8;
 
@@ -104,6 +105,10 @@ struct FormFactorOptions {
     if (sources_only) return kSourceTolerance;
     return by == FormFactorMethod::rays ? kRayTolerance : kExactTolerance;
   }
+  /// Rays: the sky's part in the norms that errors are relative to: sqrt(sum_j F_ij^2 + (w
+  /// F_sky)^2). Of sources, if no tolerance is given, it is kSourceSky: bodies that see little but
+  /// the sky are lit by it, or bring little light. Otherwise 0.
+  double skyWeight() const { return sources_only && !tolerance ? kSourceSky : 0; }
 };
 
 /// Counts of work done and skipped by the exact method. A pair is an unordered pair of elements
@@ -195,7 +200,8 @@ struct FormFactorReport {
   /// max |fronts + backs + sky - 1| over non-empty rows. Exact: raw in a closed scene; else the
   /// amount by which fronts + backs exceed 1.
   double largest_row_error = 0;
-  /// Exact and rays: area-weighted relL2 of the error of F; see FormFactors.
+  /// Exact and rays: area-weighted relL2 of the error of F; see FormFactors. Rays that give
+  /// sources: relative to norms in which the sky counts, FormFactorOptions::skyWeight().
   double error_figure = 0;
   bool closed = false;  ///< no patch sees the sky
   bool symmetrized = false;

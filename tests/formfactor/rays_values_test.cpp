@@ -243,6 +243,33 @@ TEST(RayAim, OnlyTheDefaultToleranceIsLoosened) {
   EXPECT_EQ(RayAim(options).most_rays, std::numeric_limits<double>::infinity());
 }
 
+/// Two blocks under the sky see little of each other. The tolerance of 3% of a tenth of the sky
+/// allows errors of .003 (L2) in a row, and the rms error of row sums stays within that here.
+TEST(RayAim, SourcesUnderTheSkyTakeFewRays) {
+  test::MeshBuilder builder;
+  builder.box("low", Vec3(0), Vec3(1), 5);
+  builder.box("high", {4, 0.2, 0}, {5, 1.2, 2}, 5);
+  const PatchMesh mesh = builder.build();
+  FormFactorOptions sources;
+  sources.method = FormFactorMethod::rays;
+  sources.sources_only = true;
+  EXPECT_EQ(sources.skyWeight(), FormFactorOptions::kSourceSky);
+  const FormFactors few = test::computed(mesh, sources);
+  const FormFactors many = test::computed(mesh, byRays(FormFactorOptions::kSourceTolerance));
+  EXPECT_LT(few.report.rays.rays, many.report.rays.rays / 4);
+  EXPECT_LT(few.report.error_figure, FormFactorOptions::kSourceTolerance);
+  FormFactorOptions options;
+  options.method = FormFactorMethod::exact;
+  const FormFactors exact = test::computed(mesh, options);
+  double squares = 0;
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    squares += std::pow(few.fronts[i] - exact.fronts[i], 2) / double(mesh.size());
+  }
+  EXPECT_LT(std::sqrt(squares), 3e-3);
+  sources.tolerance = FormFactorOptions::kSourceTolerance;
+  EXPECT_EQ(sources.skyWeight(), 0) << "a tolerance that was asked for holds for F";
+}
+
 TEST(RayAim, RowsShareTheRaysAllowedAndTheReportNamesTheirTolerance) {
   const PatchMesh mesh = test::roomWithBlock(4).build();
   const RayScene scene(mesh, 1);

@@ -32,6 +32,7 @@ constexpr double kEntrySeconds = 12e-9;
 struct SampledRow {
   RowAccuracy few;
   RowAccuracy many;
+  double sky = 0;  ///< its share of the rays
   double few_entries = 0;
   double entries = 0;
   double visible = 0;  ///< entries that any number of rays would find, about
@@ -63,6 +64,7 @@ SampledRow sampleRow(const RayScene& scene, std::size_t position, const Progress
   scene.cast(position, kManyRays, row, progress);
   sampled.taken = watches.elapsed();
   sampled.many = accuracyAlone(row, scene.size());
+  sampled.sky = row.skyShare();
   sampled.entries = double(row.columns.size());
   sampled.visible = visibleEntries(row);
   return sampled;
@@ -112,9 +114,9 @@ double entriesBy(const SampledRow& row, double rays) {
 class Forecast {
  public:
   Forecast(const std::vector<SampledRow>& rows, std::size_t all, const RayAim& aim)
-      : rows_(rows), order_(orderOf(rows)), tolerance_(aim.tolerance) {
+      : rows_(rows), order_(orderOf(rows)), tolerance_(aim.tolerance), sky_weight_(aim.sky_weight) {
     for (const SampledRow& row : rows) {
-      usual_.add(row.many.norm, row.area);
+      usual_.add(normOf(row), row.area);
       taken_ += row.taken;
     }
     times_ = rows.empty() ? 0.0 : double(all) / double(rows.size());
@@ -149,9 +151,12 @@ class Forecast {
   }
 
  private:
+  double normOf(const SampledRow& row) const {
+    return std::hypot(row.many.norm, sky_weight_ * row.sky);
+  }
   /// Rays of a row in each replicate.
   double raysOf(const SampledRow& row, double loosened) const {
-    const double norm = std::max(row.many.norm, usual_.value());
+    const double norm = std::max(normOf(row), usual_.value());
     if (!(norm > 0)) return 0;
     const double over = row.many.error / (norm * tolerance_ * loosened);
     // Beyond kMostRays rows are given up and miss the tolerance: then this is too long.
@@ -161,6 +166,7 @@ class Forecast {
   const std::vector<SampledRow>& rows_;
   double order_;
   double tolerance_;
+  double sky_weight_;
   UsualNorm usual_;
   BothClocks taken_;
   double times_ = 0;  ///< rows for each sampled one

@@ -84,9 +84,11 @@ void setAccounts(const RayScene& scene, const KnownEntries& known, const std::ve
   });
 }
 
-/// Stores the matrix, its error figures and the error of each entry.
+/// Stores the matrix, its error figures and the error of each entry. `sky_weight`: see
+/// FormFactorOptions::skyWeight().
 void store(const RayScene& scene, const KnownEntries& known, const std::vector<RayRow>& rows,
-           ScratchMemory* scratch, FormFactors& result, UncertainEntries& uncertain) {
+           double sky_weight, ScratchMemory* scratch, FormFactors& result,
+           UncertainEntries& uncertain) {
   const std::size_t n = rows.size();
   std::vector<double> density(n);
   for (std::size_t k = 0; k < n; ++k) {
@@ -137,10 +139,11 @@ void store(const RayScene& scene, const KnownEntries& known, const std::vector<R
     const double figure = row.figure();
     result.error[scene.order()[k]] = figure;
     squares += scene.area()[k] * (row.error * row.error + row.known_error * row.known_error);
-    norms += scene.area()[k] * row.norm * row.norm;
-    if (row.norm > 0) {
+    const double norm = std::hypot(row.norm, sky_weight * result.sky[scene.order()[k]]);
+    norms += scene.area()[k] * norm * norm;
+    if (norm > 0) {
       double& largest = result.report.rays.largest_row_figure;
-      largest = std::max(largest, figure / row.norm);
+      largest = std::max(largest, figure / norm);
     }
   }
   result.report.error_figure = norms > 0 ? std::sqrt(squares / norms) : 0.0;
@@ -232,7 +235,7 @@ FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene,
   UncertainEntries uncertain(n, scratch);
   const double storing = clockSeconds();
   setAccounts(scene, known, rows, scratch.get(), result, sky_error, seen_backs);
-  store(scene, known, rows, scratch.get(), result, uncertain);
+  store(scene, known, rows, options.skyWeight(), scratch.get(), result, uncertain);
   rows = {};
   progress.check();
   const double closing = clockSeconds();

@@ -28,8 +28,9 @@ RayEstimate estimateRays(const RayScene& scene, const FormFactorOptions& options
 /// Casts rows in rounds. Each is continued until its expected error, merged with the other rows'
 /// counts, is below options.toleranceOf(rays) times its norm, or times that of a usual row if that
 /// is larger: the little that an open body sees of itself is not worth a thousand times the rays of
-/// the rest. `known`: rows that need none. `journal` and `processes` may be null. Throws RunError
-/// if the estimate exceeds options.memory_limit.
+/// the rest. Of sources the sky counts in norms (FormFactorOptions::skyWeight()). `known`: rows
+/// that need none. `journal` and `processes` may be null. Throws RunError if the estimate exceeds
+/// options.memory_limit.
 FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene, std::vector<KnownRow> known,
                        const RayEstimate& estimate, const FormFactorOptions& options,
                        Progress& progress, RowJournal* journal, Processes* processes);

@@ -263,8 +263,9 @@ class Rounds {
       if (wanted[k] == 0) continue;
       const RowAccuracy accuracy = common_.moderated(measured[k]);
       before_[k] = now_[k];
-      now_[k] = {rows_[k].rays, accuracy.error, accuracy.norm, accuracy.backs_error,
-                 std::hypot(accuracy.norm, accuracy.backs_norm)};
+      const double norm = std::hypot(accuracy.norm, aim_.sky_weight * rows_[k].skyShare());
+      now_[k] = {rows_[k].rays, accuracy.error, norm, accuracy.backs_error,
+                 std::hypot(norm, accuracy.backs_norm)};
     }
     UsualNorm usual;
     UsualNorm whole;
@@ -322,7 +323,8 @@ std::uint32_t roundedRays(double rays) {
 RayAim::RayAim(const FormFactorOptions& options)
     : tolerance(options.toleranceOf(FormFactorMethod::rays)),
       most_rays(options.tolerance ? std::numeric_limits<double>::infinity()
-                                  : FormFactorOptions::kMostRaysUnasked) {}
+                                  : FormFactorOptions::kMostRaysUnasked),
+      sky_weight(options.skyWeight()) {}
 
 double loosening(double most, const std::function<double(double)>& raysAt) {
   if (raysAt(1) <= most) return 1;

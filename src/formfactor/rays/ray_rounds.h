@@ -32,6 +32,7 @@ struct RayAim {
   double tolerance = 0;  ///< error over norm
   /// Rays of all rows together; if the tolerance needs more, it is loosened for all rows alike.
   double most_rays = 0;
+  double sky_weight = 0;  ///< the sky's part in norms: FormFactorOptions::skyWeight()
 
   explicit RayAim(const FormFactorOptions& options);
 };

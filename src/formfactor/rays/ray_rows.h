@@ -47,6 +47,10 @@ struct RayRow {
   }
   /// Rays that count in both.
   double counted() const { return counted(0) + counted(1); }
+  /// The share of them that the sky has.
+  double skyShare() const {
+    return counted() > 0 ? (double(sky[0]) + double(sky[1])) / counted() : 0.0;
+  }
 };
 
 /// Both estimates of a row's pairs merged, for each replicate: G_ij = (c_ij + c_ji) / (n_i / A_i +
