@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/made.h"
-#include "mesh/cluster_means.h"
+#include "mesh/clusters/cluster_means.h"
 #include "radiosity/matrix_functions.h"
 
 namespace radiosity {

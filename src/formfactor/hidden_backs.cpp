@@ -1,6 +1,6 @@
 #include "formfactor/hidden_backs.h"
 
-#include "mesh/enclosures.h"
+#include "mesh/patches/enclosures.h"
 
 namespace radiosity {
 

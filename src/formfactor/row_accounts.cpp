@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "mesh/canonical_order.h"
+#include "mesh/clusters/canonical_order.h"
 
 namespace radiosity {
 namespace {

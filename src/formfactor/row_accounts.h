@@ -23,8 +23,8 @@ void accountForBacks(const PatchMesh& mesh, std::span<const Index> order,
                      std::span<const double> area,
                      const std::vector<std::vector<SeenBack>>& seen_backs, FormFactors& result);
 
-/// Unknowns in the order of their first patches in canonicalOrder() (mesh/canonical_order.h), and
-/// these patches.
+/// Unknowns in the order of their first patches in canonicalOrder()
+/// (mesh/clusters/canonical_order.h), and these patches.
 struct UnknownOrder {
   std::vector<Index> unknown;
   std::vector<Index> first_patch;

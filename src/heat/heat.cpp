@@ -8,7 +8,7 @@
 #include "formfactor/rays/patch_irradiance.h"
 #include "heat/conditions.h"
 #include "heat/heat_solve.h"
-#include "mesh/cluster_means.h"
+#include "mesh/clusters/cluster_means.h"
 #include "solve/beyond_means.h"
 
 namespace radiosity {

@@ -39,11 +39,11 @@ Pairs pairsOf(std::size_t count, const Progress* progress, const Visit& visit) {
 /// order, so that every pair is visited in one leaf.
 template <class Visit>
 void forPairsOfLeaf(const BoxTree& tree, const BoxTree::Node& leaf, const Visit& visit) {
-  struct Place {
+  struct Step {
     Index node;
     Index first;  // of the tree's order
   };
-  std::vector<Place> stack;
+  std::vector<Step> stack;
   stack.reserve(64);
   stack.push_back({0, 0});
   const auto& boxes = tree.boxes();

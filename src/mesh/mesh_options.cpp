@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "mesh/edge_cuts.h"
+#include "mesh/cells/edge_cuts.h"
 #include "radiosity/patch_mesh.h"
 
 namespace radiosity {

@@ -1,5 +1,5 @@
-#include "mesh/cluster_patches.h"
-#include "mesh/complex.h"
+#include "mesh/clusters/cluster_patches.h"
+#include "mesh/polygons/complex.h"
 
 namespace radiosity {
 

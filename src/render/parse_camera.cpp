@@ -5,7 +5,7 @@
 
 #include "radiosity/render.h"
 #include "render/view.h"
-#include "scene/camera_text.h"
+#include "scene/obj/camera_text.h"
 
 namespace radiosity {
 

@@ -8,7 +8,7 @@
 
 #include "base/geometry/box.h"
 #include "results/checked_file.h"
-#include "scene/glb_chunks.h"
+#include "scene/gltf/glb_chunks.h"
 
 namespace radiosity {
 

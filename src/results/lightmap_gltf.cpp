@@ -9,10 +9,10 @@
 
 #include "results/glb.h"
 #include "results/gltf_bytes.h"
-#include "scene/glb_chunks.h"
-#include "scene/gltf_nodes.h"
-#include "scene/gltf_placement.h"
-#include "scene/gltf_preflight.h"
+#include "scene/gltf/glb_chunks.h"
+#include "scene/gltf/gltf_nodes.h"
+#include "scene/gltf/gltf_placement.h"
+#include "scene/gltf/gltf_preflight.h"
 
 namespace radiosity {
 namespace {

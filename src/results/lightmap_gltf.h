@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "radiosity/lightmap.h"
-#include "scene/gltf_file.h"
+#include "scene/gltf/gltf_file.h"
 
 namespace radiosity {
 

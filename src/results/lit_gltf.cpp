@@ -1,7 +1,7 @@
 // Reads glTF meshes with COLOR_0, or with the _RADIOSITY of this program's lit meshes.
 #include "results/lit_mesh.h"
-#include "scene/gltf_nodes.h"
-#include "scene/gltf_placement.h"
+#include "scene/gltf/gltf_nodes.h"
+#include "scene/gltf/gltf_placement.h"
 
 namespace radiosity {
 

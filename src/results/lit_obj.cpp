@@ -7,7 +7,7 @@
 #include "base/input_file.h"
 #include "base/parse.h"
 #include "results/lit_mesh.h"
-#include "scene/obj_scan.h"
+#include "scene/obj/obj_scan.h"
 #include "scene/text.h"
 
 namespace radiosity {

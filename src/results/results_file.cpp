@@ -12,7 +12,7 @@
 #include "base/atomic_file.h"
 #include "base/input_file.h"
 #include "base/made.h"
-#include "mesh/cluster_patches.h"
+#include "mesh/clusters/cluster_patches.h"
 #include "radiosity/results.h"
 #include "results/fields.h"
 #include "results/h5_reader.h"

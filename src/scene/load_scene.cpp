@@ -13,7 +13,7 @@
 
 #include "base/file_name.h"
 #include "base/input_file.h"
-#include "scene/checks.h"
+#include "scene/checks/checks.h"
 #include "scene/readers.h"
 #include "scene/text.h"
 

@@ -1,7 +1,7 @@
 #include "solve/cluster_solve.h"
 
 #include "formfactor/rays/patch_irradiance.h"
-#include "mesh/cluster_means.h"
+#include "mesh/clusters/cluster_means.h"
 #include "solve/beyond_means.h"
 #include "solve/solve_rows.h"
 

@@ -14,9 +14,9 @@ ROOT = pathlib.Path(os.environ["RADIOSITY_SOURCE_DIR"])
 # (a room, a header that it may include, headers that it may not)
 CASES = [
     ("base", "radiosity/base.h", ["scene/text.h", "radiosity/scene.h"]),
-    ("scene", "base/finite.h", ["mesh/winding.h", "radiosity/patch_mesh.h"]),
+    ("scene", "base/finite.h", ["mesh/bodies/winding.h", "radiosity/patch_mesh.h"]),
     ("mesh", "scene/text.h", ["matrix/run_row.h", "radiosity/form_factors.h"]),
-    ("matrix", "base/finite.h", ["mesh/winding.h", "radiosity/patch_mesh.h"]),
+    ("matrix", "base/finite.h", ["mesh/bodies/winding.h", "radiosity/patch_mesh.h"]),
     ("formfactor_exact", "formfactor/view_scene.h",
      ["formfactor/hemicube/hemicube.h", "radiosity/solve.h"]),
     ("formfactor_hemicube", "formfactor/exact/elements/elements.h",
@@ -34,7 +34,7 @@ CASES = [
     ("tables", "results/checked_file.h", ["radiosity/compare.h", "radiosity/pipeline.h"]),
     ("pipeline", "radiosity/results.h", ["radiosity/compare.h", "radiosity/page.h"]),
     ("page", "results/lit_vertices.h", ["radiosity/compare.h"]),
-    ("cli", "base/figure_text.h", ["mesh/winding.h", "scene/text.h"]),
+    ("cli", "base/figure_text.h", ["mesh/bodies/winding.h", "scene/text.h"]),
 ]
 
 

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <set>
 
-#include "mesh/cluster_patches.h"
+#include "mesh/clusters/cluster_patches.h"
 #include "support/scene_builder.h"
 
 namespace radiosity {

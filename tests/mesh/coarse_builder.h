@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/complex.h"
+#include "mesh/polygons/complex.h"
 #include "support/scene_builder.h"
 
 namespace radiosity::test {

@@ -10,7 +10,7 @@
 #include <set>
 #include <vector>
 
-#include "mesh/complex.h"
+#include "mesh/polygons/complex.h"
 
 namespace radiosity::test {
 

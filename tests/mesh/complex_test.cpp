@@ -1,6 +1,6 @@
 // The contact stage: welding, merging, cutting at contacts, dropping what is buried. Every scene
 // is tried as it is and turned by one radian about a skew axis, where every number is rounded.
-#include "mesh/complex.h"
+#include "mesh/polygons/complex.h"
 
 #include <gtest/gtest.h>
 

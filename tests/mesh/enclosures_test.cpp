@@ -1,5 +1,5 @@
 // Bodies and rooms: the closed surfaces of a mesh.
-#include "mesh/enclosures.h"
+#include "mesh/patches/enclosures.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "mesh/complex.h"
+#include "mesh/polygons/complex.h"
 #include "support/scene_builder.h"
 
 namespace radiosity {

@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include "mesh/complex.h"
+#include "mesh/polygons/complex.h"
 #include "radiosity/patch_mesh.h"
 #include "support/scene_builder.h"
 

@@ -8,13 +8,13 @@
 #include <numbers>
 #include <random>
 
-#include "mesh/box_filter.h"
-#include "mesh/edge_rows.h"
-#include "mesh/face_locator.h"
-#include "mesh/join_cells.h"
-#include "mesh/join_loops.h"
-#include "mesh/sharp_corners.h"
-#include "scene/winding_tree.h"
+#include "mesh/arrangement/box_filter.h"
+#include "mesh/arrangement/edge_rows.h"
+#include "mesh/cells/join_cells.h"
+#include "mesh/cells/join_loops.h"
+#include "mesh/cells/sharp_corners.h"
+#include "mesh/patches/face_locator.h"
+#include "scene/checks/winding_tree.h"
 
 namespace radiosity::test {
 namespace {

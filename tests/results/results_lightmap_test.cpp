@@ -12,7 +12,7 @@
 
 #include "radiosity/lightmap.h"
 #include "radiosity/results.h"
-#include "scene/gltf_file.h"
+#include "scene/gltf/gltf_file.h"
 #include "support/lit_scene.h"
 #include "support/results_folder.h"
 #include "support/scene_builder.h"

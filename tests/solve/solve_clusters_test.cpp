@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "formfactor/cluster_factors.h"
-#include "mesh/cluster_means.h"
+#include "mesh/clusters/cluster_means.h"
 #include "radiosity/matrix_functions.h"
 #include "radiosity/solve.h"
 #include "support/scene_builder.h"

@@ -19,7 +19,7 @@
 #include "formfactor/hemicube/row_builder.h"
 #include "formfactor/row_accounts.h"
 #include "matrix/shared_rows.h"
-#include "mesh/canonical_order.h"
+#include "mesh/clusters/canonical_order.h"
 #include "radiosity/closure.h"
 #include "radiosity/matrix_functions.h"
 

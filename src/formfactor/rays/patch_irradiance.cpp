@@ -8,7 +8,7 @@
 #include "base/parallel.h"
 #include "formfactor/patch_seed.h"
 #include "formfactor/rays/cluster_features.h"
-#include "mesh/cluster_means.h"
+#include "mesh/clusters/cluster_means.h"
 
 namespace radiosity {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "formfactor/patch_seed.h"
 #include "formfactor/row_accounts.h"
-#include "mesh/cluster_means.h"
-#include "mesh/enclosures.h"
+#include "mesh/clusters/cluster_means.h"
+#include "mesh/patches/enclosures.h"
 
 namespace radiosity {
 

@@ -15,8 +15,8 @@
 #include "formfactor/exact/clip_kernels.h"
 #include "formfactor/row_accounts.h"
 #include "matrix/shared_rows.h"
-#include "mesh/canonical_order.h"
-#include "mesh/enclosures.h"
+#include "mesh/clusters/canonical_order.h"
+#include "mesh/patches/enclosures.h"
 #include "radiosity/closure.h"
 
 namespace radiosity {

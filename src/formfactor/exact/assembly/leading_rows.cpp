@@ -12,7 +12,7 @@
 #include "formfactor/exact/error_model.h"
 #include "matrix/run_row.h"
 #include "matrix/uncertain_row.h"
-#include "mesh/cluster_means.h"
+#include "mesh/clusters/cluster_means.h"
 
 namespace radiosity {
 

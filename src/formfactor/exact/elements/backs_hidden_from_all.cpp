@@ -7,7 +7,7 @@
 
 #include "base/geometry/box_tree.h"
 #include "base/geometry/point_tree.h"
-#include "mesh/enclosures.h"
+#include "mesh/patches/enclosures.h"
 
 namespace radiosity {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "formfactor/exact/elements/convex_pieces.h"
 #include "formfactor/exact/occluders/hull.h"
-#include "mesh/join_loops.h"
+#include "mesh/cells/join_loops.h"
 
 namespace radiosity {
 namespace {

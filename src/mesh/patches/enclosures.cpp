@@ -1,0 +1,312 @@
+#include "mesh/patches/enclosures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <compare>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
+#include <numbers>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include "base/geometry/box.h"
+#include "base/geometry/solid_angle.h"
+#include "base/parallel.h"
+#include "base/union_find.h"
+#include "mesh/edge_key.h"
+
+namespace radiosity {
+namespace {
+
+/// The most solid angles of triangles in the proof that a scene is closed: about a second.
+constexpr std::size_t kMostSolidAngles = 10000000;
+
+/// A polygon that runs along an edge, from its smaller vertex to the larger or back.
+struct EdgeUser {
+  std::uint64_t edge = 0;  ///< edgeKey()
+  bool reversed = false;
+  Index polygon = kNone;
+
+  bool isPoint() const { return Index(edge >> 32) == Index(edge); }
+  auto operator<=>(const EdgeUser&) const = default;
+};
+
+/// Calls visit(from, to) for all runs of 0 .. count - 1 whose members are the `same` as their
+/// first.
+template <class Same, class Visit>
+void forRuns(std::size_t count, const Same& same, const Visit& visit) {
+  for (std::size_t from = 0; from < count;) {
+    std::size_t to = from + 1;
+    while (to < count && same(from, to)) ++to;
+    visit(from, to);
+    from = to;
+  }
+}
+
+/// Calls visit(corner) for the corners of all loops of a polygon.
+template <class Visit>
+void forCorners(const PatchMesh& mesh, Index p, const Visit& visit) {
+  const PlanarPolygons& all = mesh.polygons;
+  for (std::size_t l = all.loopBegin(p); l < all.loopEnd(p); ++l) {
+    for (const Index v : all.loop(l)) visit(v);
+  }
+}
+
+/// Visits triangles (first corner of the loop, edge) whose signed sum is the polygons, holes
+/// included.
+template <class Visit>
+void forFans(const PatchMesh& mesh, std::span<const Index> polygons, const Visit& visit) {
+  const PlanarPolygons& all = mesh.polygons;
+  for (const Index p : polygons) {
+    for (std::size_t l = all.loopBegin(p); l < all.loopEnd(p); ++l) {
+      const std::span<const Index> loop = all.loop(l);
+      for (std::size_t k = 1; k + 1 < loop.size(); ++k) {
+        visit(mesh.vertices[loop[0]], mesh.vertices[loop[k]], mesh.vertices[loop[k + 1]]);
+      }
+    }
+  }
+}
+
+class EnclosureSearch {
+ public:
+  EnclosureSearch(const PatchMesh& mesh, Progress& progress)
+      : mesh_(mesh), progress_(progress), first_(firstAtSamePoint(mesh)) {}
+
+  Enclosures run() {
+    found_.surface_of.assign(mesh_.polygons.size(), kNone);
+    findCovered();
+    progress_.check();
+    findSurfaces();
+    progress_.check();
+    found_.proved_closed = provesClosed();
+    return std::move(found_);
+  }
+
+ private:
+  void findCovered() {
+    const std::size_t count = mesh_.polygons.size();
+    std::vector<std::size_t> begin{0};
+    std::vector<Index> corners;
+    begin.reserve(count + 1);
+    corners.reserve(mesh_.polygons.corners.size());
+    for (Index p = 0; p < count; ++p) {
+      forCorners(mesh_, p, [&](Index v) { corners.push_back(first_[v]); });
+      std::sort(corners.begin() + std::ptrdiff_t(begin.back()), corners.end());
+      begin.push_back(corners.size());
+    }
+    const auto cornersOf = [&](Index p) {
+      return std::span(corners).subspan(begin[p], begin[p + 1] - begin[p]);
+    };
+    std::vector<Index> order(count);
+    std::iota(order.begin(), order.end(), Index(0));
+    parallelSort(order, [&](Index a, Index b) {
+      const auto key = std::lexicographical_compare_three_way(
+          cornersOf(a).begin(), cornersOf(a).end(), cornersOf(b).begin(), cornersOf(b).end());
+      return std::is_neq(key) ? std::is_lt(key) : a < b;
+    });
+    const std::vector<Vec3>& normal = mesh_.polygons.normal;
+    found_.covered.assign(count, 0);
+    forRuns(
+        count,
+        [&](std::size_t i, std::size_t k) {
+          return std::ranges::equal(cornersOf(order[i]), cornersOf(order[k]));
+        },
+        [&](std::size_t from, std::size_t to) {
+          const auto same = std::span(order).subspan(from, to - from);
+          for (const Index p : same) {
+            found_.covered[p] = std::ranges::any_of(
+                same, [&](Index q) { return glm::dot(normal[p], normal[q]) < 0; });
+          }
+        });
+  }
+
+  /// Joins polygons across edges that exactly two of them share, once each way. If a set of
+  /// one-sided polygons has only such edges, it is a closed oriented surface; if embedded, it
+  /// separates two regions.
+  void findSurfaces() {
+    std::vector<EdgeUser> users;
+    const PlanarPolygons& all = mesh_.polygons;
+    users.reserve(all.corners.size());
+    for (Index p = 0; p < all.size(); ++p) {
+      for (std::size_t l = all.loopBegin(p); l < all.loopEnd(p); ++l) {
+        const std::span<const Index> loop = all.loop(l);
+        for (std::size_t k = 0, last = loop.size() - 1; k < loop.size(); last = k++) {
+          const Index from = first_[loop[last]];
+          const Index to = first_[loop[k]];
+          users.push_back({edgeKey(from, to), from > to, p});
+        }
+      }
+    }
+    parallelSort(users);
+    UnionFind sets(all.size());
+    std::vector<std::uint8_t> open(all.back_is_patch);
+    forRuns(
+        users.size(), [&](std::size_t i, std::size_t k) { return users[i].edge == users[k].edge; },
+        [&](std::size_t from, std::size_t to) {
+          if (to - from == 2 && !users[from].reversed && users[from + 1].reversed) {
+            sets.unite(users[from].polygon, users[from + 1].polygon);
+            return;
+          }
+          if (to - from == 1 && users[from].isPoint()) return;
+          for (std::size_t k = from; k < to; ++k) open[users[k].polygon] = 1;
+        });
+    std::vector<std::pair<Index, Index>> members(all.size());  // set, polygon
+    for (Index p = 0; p < all.size(); ++p) members[p] = {sets.find(p), p};
+    parallelSort(members);
+    const auto sameSet = [&](std::size_t i, std::size_t k) {
+      return members[i].first == members[k].first;
+    };
+    forRuns(members.size(), sameSet, [&](std::size_t from, std::size_t to) {
+      std::vector<Index> polygons;
+      polygons.reserve(to - from);
+      for (std::size_t k = from; k < to; ++k) polygons.push_back(members[k].second);
+      progress_.check();
+      // Polygons back to back enclose nothing.
+      const bool flat = std::all_of(polygons.begin(), polygons.end(),
+                                    [&](Index p) { return found_.covered[p] != 0; });
+      const bool closed = !flat && std::none_of(polygons.begin(), polygons.end(),
+                                                [&](Index p) { return open[p] != 0; });
+      if (closed && isEmbedded(mesh_, first_, polygons, coincidenceOf(mesh_))) {
+        addSurface(std::move(polygons));
+      }
+    });
+  }
+
+  void addSurface(std::vector<Index> polygons) {
+    ClosedSurface surface;
+    const PlanarPolygons& all = mesh_.polygons;
+    const Vec3 base = mesh_.vertices[all.loop(all.loopBegin(polygons.front())).front()];
+    surface.lower = surface.upper = base;
+    double volume = 0;
+    forFans(mesh_, polygons, [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+      volume += glm::dot(a - base, glm::cross(b - base, c - base));
+      for (const Vec3& v : {a, b, c}) {
+        surface.lower = glm::min(surface.lower, v);
+        surface.upper = glm::max(surface.upper, v);
+      }
+    });
+    surface.is_solid = volume > 0;
+    for (const Index p : polygons) found_.surface_of[p] = Index(found_.surfaces.size());
+    surface.polygons = std::move(polygons);
+    found_.surfaces.push_back(std::move(surface));
+  }
+
+  /// Whether every patch lies on a room or in one. Polygons are cut where they cross. So a set of
+  /// polygons that are joined by vertices not on the rooms lies on one side of each room, and one
+  /// of its points decides.
+  bool provesClosed() {
+    std::vector<const ClosedSurface*> rooms;
+    std::vector<std::uint8_t> on_room(mesh_.polygons.size(), 0);
+    std::size_t corners = 0;
+    for (const ClosedSurface& surface : found_.surfaces) {
+      if (surface.is_solid) continue;
+      rooms.push_back(&surface);
+      for (const Index p : surface.polygons) {
+        on_room[p] = 1;
+        forCorners(mesh_, p, [&](Index) { ++corners; });
+      }
+    }
+    if (rooms.empty()) return false;
+    const std::vector<Vec3> points = onePerSet(on_room);
+    if (points.size() * corners > kMostSolidAngles) return false;
+    return std::all_of(points.begin(), points.end(), [&](const Vec3& point) {
+      progress_.check();
+      return std::any_of(rooms.begin(), rooms.end(), [&](const ClosedSurface* room) {
+        // The number is -1 within a room, but for rounding; on its surface it is not.
+        return std::abs(windingNumber(mesh_, room->polygons, point) + 1) < 0.01;
+      });
+    });
+  }
+
+  std::vector<Vec3> onePerSet(const std::vector<std::uint8_t>& on_room) const {
+    std::vector<std::uint8_t> of_room(mesh_.vertices.size(), 0);
+    for (Index p = 0; p < mesh_.polygons.size(); ++p) {
+      if (on_room[p] != 0) forCorners(mesh_, p, [&](Index v) { of_room[first_[v]] = 1; });
+    }
+    UnionFind sets(mesh_.polygons.size());
+    std::vector<Index> user(mesh_.vertices.size(), kNone);
+    for (Index p = 0; p < mesh_.polygons.size(); ++p) {
+      forCorners(mesh_, p, [&](Index v) {
+        const Index point = first_[v];
+        if (of_room[point] != 0) return;
+        if (user[point] != kNone) sets.unite(p, user[point]);
+        user[point] = p;
+      });
+    }
+    std::vector<std::uint8_t> known(mesh_.polygons.size(), 0);
+    std::vector<Vec3> points;
+    for (std::size_t i = 0; i < mesh_.size(); ++i) {
+      const Index p = mesh_.polygon[i];
+      if (p == kNone || on_room[p] != 0) continue;
+      if (std::exchange(known[sets.find(p)], 1) == 0) points.push_back(mesh_.centroid[i]);
+    }
+    return points;
+  }
+
+  const PatchMesh& mesh_;
+  Progress& progress_;
+  std::vector<Index> first_;
+  Enclosures found_;
+};
+
+}  // namespace
+
+double coincidenceOf(const PatchMesh& mesh) {
+  Box3 box;
+  for (const Vec3& vertex : mesh.vertices) box.add(vertex);
+  return mesh.vertices.empty() ? 0 : MeshOptions().weld * glm::distance(box.low, box.high);
+}
+
+std::vector<Index> firstAtSamePoint(const PatchMesh& mesh) {
+  const auto key = [&](Index v) {
+    const Vec3& p = mesh.vertices[v];
+    return std::tie(p.x, p.y, p.z);
+  };
+  std::vector<Index> order(mesh.vertices.size());
+  std::iota(order.begin(), order.end(), Index(0));
+  parallelSort(order,
+               [&](Index a, Index b) { return key(a) < key(b) || (!(key(b) < key(a)) && a < b); });
+  std::vector<Index> first(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const bool same = k > 0 && key(order[k - 1]) == key(order[k]);
+    first[order[k]] = same ? first[order[k - 1]] : order[k];
+  }
+  return first;
+}
+
+double windingNumber(const PatchMesh& mesh, std::span<const Index> polygons, const Vec3& point) {
+  double angle = 0;
+  const PlanarPolygons& all = mesh.polygons;
+  for (const Index p : polygons) {
+    for (std::size_t l = all.loopBegin(p); l < all.loopEnd(p); ++l) {
+      const std::span<const Index> loop = all.loop(l);
+      const auto corner = [&](std::size_t k) { return mesh.vertices[loop[k]]; };
+      angle += loopSolidAngle(loop.size(), corner, point);
+    }
+  }
+  return angle / (4 * std::numbers::pi);
+}
+
+bool isOnFrontSide(const PatchMesh& mesh, const ClosedSurface& surface, const Vec3& point) {
+  const bool outside_box = glm::any(glm::lessThan(point, surface.lower)) ||
+                           glm::any(glm::greaterThan(point, surface.upper));
+  if (outside_box) return surface.is_solid;
+  // The value is an integer but for rounding, unless the point lies on the surface: then we return
+  // false.
+  const double front = surface.is_solid ? 0 : -1;
+  return std::abs(windingNumber(mesh, surface.polygons, point) - front) < 0.01;
+}
+
+const Enclosures& enclosuresOf(const PatchMesh& mesh, std::optional<Enclosures>& found) {
+  if (mesh.enclosures) return *mesh.enclosures;
+  Progress silent;
+  return found.emplace(findEnclosures(mesh, silent));
+}
+
+Enclosures findEnclosures(const PatchMesh& mesh, Progress& progress) {
+  return EnclosureSearch(mesh, progress).run();
+}
+
+}  // namespace radiosity

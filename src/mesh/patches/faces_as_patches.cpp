@@ -1,0 +1,219 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "base/geometry/plane_frame.h"
+#include "base/geometry/segment.h"
+#include "mesh/patches/face_crossings.h"
+#include "mesh/patches/face_polygons.h"
+#include "mesh/patches/mesh_figures.h"
+#include "mesh/patches/patch_arrays.h"
+#include "mesh/polygons/complex.h"
+#include "mesh/triangulate.h"
+
+namespace radiosity {
+
+namespace {
+
+std::string nameOf(const Scene& scene, Index f) {
+  return fmt::format("face {} ({}, element {})", f, scene.surfaces[scene.face_surface[f]].name,
+                     scene.face_element[f]);
+}
+
+/// The distance of a point from an outline.
+double distanceToOutline(const Vec2& p, std::span<const Vec2> outline) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    nearest =
+        std::min(nearest, distanceToSegment(p, outline[k], outline[(k + 1) % outline.size()]));
+  }
+  return nearest;
+}
+
+bool insideEvenOdd(const Vec2& p, std::span<const Vec2> outline) {
+  bool inside = false;
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const Vec2& a = outline[k];
+    const Vec2& b = outline[(k + 1) % outline.size()];
+    if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * ((p.y - a.y) / (b.y - a.y))) {
+      inside = !inside;
+    }
+  }
+  return inside;
+}
+
+class FacePatches {
+ public:
+  FacePatches(const Scene& scene, const MeshOptions& options, MeshReport& report)
+      : scene_(scene), report_(report) {
+    Vec3 lower(std::numeric_limits<double>::infinity());
+    Vec3 upper = -lower;
+    for (const Index v : scene.corners) {
+      lower = glm::min(lower, scene.vertices[v]);
+      upper = glm::max(upper, scene.vertices[v]);
+    }
+    centre_ = 0.5 * (lower + upper);
+    coincidence_ = options.weld * glm::length(upper - lower);
+  }
+
+  PatchMesh build() {
+    mesh_.vertices = scene_.vertices;
+    for (const Surface& surface : scene_.surfaces) {
+      mesh_.surface_names.push_back(surface.name);
+      report_.surfaces.emplace_back().name = surface.name;
+    }
+    mesh_.corner_offset = mesh_.piece_offset = {0};
+    for (Index f = 0; f < scene_.faceCount(); ++f) append(f);
+    if (report_.degenerate_faces == scene_.faceCount()) {
+      throw InputError(fmt::format("{}: no face has an area", scene_.file));
+    }
+    mergeFaces(scene_, shapes_, coincidence_, mesh_);
+    std::vector<Index> two_sided;
+    for (Index f = 0; f < scene_.faceCount(); ++f) {
+      if (scene_.materialOf(f).two_sided && mesh_.area[f] > 0) two_sided.push_back(f);
+    }
+    appendBacks(mesh_, two_sided);
+    numberWithinSurfaces(mesh_);
+    fillFigures(mesh_, report_);
+    report_.t_junctions = countTJunctions(mesh_, coincidence_);
+    findings();
+    return std::move(mesh_);
+  }
+
+ private:
+  void append(Index f) {
+    const auto outline = scene_.face(f);
+    std::vector<Vec3> p;
+    double longest = 0;
+    Vec3 mean(0.0);
+    for (const Index v : outline) p.push_back(scene_.vertices[v] - centre_);
+    for (const Vec3& a : p) {
+      mean += a / double(p.size());
+      longest = std::max(longest, glm::length(a - p[0]));
+    }
+    const Vec3 area = vectorArea(p.size(), [&](std::size_t k) { return p[k]; });
+    SurfaceAreas& surface = report_.surfaces[scene_.face_surface[f]];
+    surface.given += glm::length(area);
+    FaceShape shape;
+    // The area of a face that fits between two parallel lines a coincidence apart cannot be told
+    // from rounding. Its longest diagonal from one corner is at least half its diameter.
+    const bool degenerate = glm::length(area) <= 0.5 * coincidence_ * longest;
+    if (degenerate) {
+      surface.degenerate += glm::length(area);
+      ++report_.degenerate_faces;
+    } else {
+      shape.area = glm::length(area);
+      shape.normal = area / shape.area;
+      mean = appendPieces(f, p, mean, shape);
+    }
+    shapes_.push_back(shape);
+    mesh_.corners.insert(mesh_.corners.end(), outline.begin(), outline.end());
+    mesh_.corner_offset.push_back(mesh_.corners.size());
+    mesh_.piece_offset.push_back(mesh_.pieces.size());
+    mesh_.centroid.push_back(mean + centre_);
+    mesh_.normal.push_back(shape.normal);
+    mesh_.area.push_back(shape.area);
+    mesh_.surface.push_back(scene_.face_surface[f]);
+    mesh_.source_face.push_back(f);
+    mesh_.side.push_back(0);
+    mesh_.twin.push_back(kNone);
+  }
+
+  /// Appends the triangles of a face; returns its area centroid, moved inside.
+  Vec3 appendPieces(Index f, const std::vector<Vec3>& p, const Vec3& mean, FaceShape& shape) {
+    const PlaneFrame frame = makeFrame(mean, shape.normal, axisAcross(shape.normal));
+    std::vector<Vec2> flat;
+    double deviation = 0;
+    for (const Vec3& a : p) {
+      flat.push_back(frame.flat(a));
+      deviation = std::max(deviation, std::abs(glm::dot(a - mean, shape.normal)));
+    }
+    if (deviation > coincidence_) {
+      shape.planar = false;
+      ++report_.nonplanar_faces;
+      if (deviation > report_.largest_deviation) {
+        report_.largest_deviation = deviation;
+        least_planar_ = f;
+      }
+    }
+    const auto outline = scene_.face(f);
+    const std::size_t n = outline.size();
+    Vec2 moment(0.0);
+    double total = 0;
+    std::vector<Vec2> middles;
+    for (const auto& t : triangulateOutline(flat)) {
+      const double area = 0.5 * cross2(flat[t[1]] - flat[t[0]], flat[t[2]] - flat[t[0]]);
+      const Vec2 middle = (flat[t[0]] + flat[t[1]] + flat[t[2]]) / 3.0;
+      total += area;
+      moment += area * middle;
+      if (area == 0) continue;
+      if (area > 0) middles.push_back(middle);
+      FacePiece piece{f, {outline[t[0]], outline[t[1]], outline[t[2]]}, 0};
+      for (unsigned k = 0; k < 3; ++k) {
+        if ((t[k] + 1) % n == t[(k + 1) % 3]) piece.rim |= 1u << k;
+      }
+      mesh_.pieces.push_back(piece.corners);
+      pieces_.push_back(piece);
+    }
+    Vec2 centroid = moment / total;
+    if (!insideEvenOdd(centroid, flat) || distanceToOutline(centroid, flat) <= coincidence_) {
+      // The face is concave: we take the middle of the nearest piece.
+      centroid = *std::ranges::min_element(middles, [&](const Vec2& a, const Vec2& b) {
+        return glm::length(a - centroid) < glm::length(b - centroid);
+      });
+    }
+    return frame.lift(centroid);
+  }
+
+  void findings() {
+    const auto crossings = findCrossings(scene_, pieces_, coincidence_);
+    report_.crossings = crossings.size();
+    if (!crossings.empty()) {
+      report_.notes.push_back(
+          {Severity::warning,
+           fmt::format("{} pairs of faces cross and are not repaired, first {} and {}",
+                       crossings.size(), nameOf(scene_, crossings[0].first),
+                       nameOf(scene_, crossings[0].second))});
+    }
+    if (report_.t_junctions > 0) {
+      report_.notes.push_back({Severity::warning, fmt::format("{} T-junctions of the file are kept",
+                                                              report_.t_junctions)});
+    }
+    if (report_.nonplanar_faces > 0) {
+      report_.notes.push_back(
+          {Severity::warning,
+           fmt::format("{} faces are not planar, {} by {:g} m: each is one patch on the plane of "
+                       "its vector area",
+                       report_.nonplanar_faces, nameOf(scene_, least_planar_),
+                       report_.largest_deviation)});
+    }
+    if (report_.degenerate_faces > 0) {
+      report_.notes.push_back(
+          {Severity::warning, fmt::format("{} degenerate faces stay as patches without area",
+                                          report_.degenerate_faces)});
+    }
+  }
+
+  const Scene& scene_;
+  MeshReport& report_;
+  Vec3 centre_{0.0};
+  double coincidence_ = 0;
+  PatchMesh mesh_;
+  std::vector<FaceShape> shapes_;
+  std::vector<FacePiece> pieces_;
+  Index least_planar_ = kNone;
+};
+
+}  // namespace
+
+PatchMesh facesAsPatches(const Scene& scene, const MeshOptions& options, MeshReport& report) {
+  options.validate();
+  if (scene.faceCount() == 0) throw InputError(fmt::format("{}: no face has an area", scene.file));
+  return FacePatches(scene, options, report).build();
+}
+
+}  // namespace radiosity

@@ -1,0 +1,358 @@
+// Reads Collada, FBX, 3DS, X3D, IFC, AC3D, LightWave, DXF, MilkShape and Blitz3D by Assimp. Nodes
+// are objects.
+#include <assimp/ColladaMetaData.h>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <glm/geometric.hpp>
+#include <map>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <sstream>
+#include <string_view>
+
+#include "base/file_name.h"
+#include "base/finite.h"
+#include "base/input_file.h"
+#include "scene/assimp/assimp_files.h"
+#include "scene/assimp/assimp_library.h"
+#include "scene/assimp/assimp_materials.h"
+#include "scene/assimp/collada_cameras.h"
+#include "scene/assimp/x3d_document.h"
+#include "scene/assimp/xml_preflight.h"
+#include "scene/mesh_cursor.h"
+#include "scene/readers.h"
+#include "scene/scene_builder.h"
+#include "scene/text.h"
+
+namespace radiosity {
+
+namespace {
+
+class AssimpReader {
+ public:
+  AssimpReader(const std::string& path, const SceneOptions& options)
+      : options_(options), builder_(scene_, options) {
+    scene_.file = path;
+  }
+
+  Scene read() {
+    const std::string extension = lowerExtension(scene_.file);
+    if (extension == ".dae") collada_.emplace(checkXml(scene_.file), notes_);
+    AssimpFiles rewritten([this](const std::string& path) { return rewrittenX3d(path); });
+    const File file = import(extension == ".x3d" ? rewritten.io() : nullptr);
+    if (file == nullptr || file->mRootNode == nullptr) {
+      rewritten.rethrow();
+      const std::string why = library_.getErrorString();
+      if (why.find("mNumMeshes is 0") != std::string::npos) failWithoutFaces();
+      fail(fmt::format("cannot be read ({}); export it again, or as .obj or .glb", onOneLine(why)));
+    }
+    materials_ = readAssimpMaterials(*file, options_, scene_, notes_);
+    scale_ = x3d_.metres_per_unit * metresPerUnit(*file);
+    addNodes(*file);
+    for (Camera viewpoint : x3d_.viewpoints) {
+      const Vec3 forward = viewpoint.target - viewpoint.eye;
+      viewpoint.eye *= scale_;
+      addCamera(viewpoint, forward);
+    }
+    if (scene_.faceCount() == 0) failWithoutFaces();
+    if (file->mNumLights > 0) {
+      scene_.notes.push_back({Severity::warning,
+                              "lights without a surface are left out; make a "
+                              "surface a lamp by --set NAME.radiance=10"});
+    }
+    notes_.appendTo(scene_.notes);
+    builder_.finish();
+    // In all of these formats a texture replaces the colour.
+    for (Material& material : scene_.materials) {
+      if (material.texture != kNone) material.reflectance = Vec3(1.0);
+    }
+    return std::move(scene_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(fmt::format("{}: {}", scene_.file, what));
+  }
+
+  [[noreturn]] void failWithoutFaces() const {
+    fail("no faces; export the scene with its meshes as polygons");
+  }
+
+  using File = std::unique_ptr<const aiScene, void (*)(const aiScene*)>;
+
+  File import(aiFileIO* files) const;
+  std::string rewrittenX3d(const std::string& path);
+  std::string objectName(const aiNode& node, const aiMesh& mesh) const;
+  static double metresPerUnit(const aiScene& file);
+  void addNodes(const aiScene& file);
+  void addMesh(const aiMesh& mesh, const aiNode& node, const aiMatrix4x4& place);
+  Index twoSided(Index material);
+  void addCameras(const aiNode& node, const aiMatrix4x4& place);
+  void addCamera(Camera camera, const Vec3& forward);
+
+  const SceneOptions& options_;
+  const AssimpLibrary& library_ = assimpLibrary();
+  Scene scene_;
+  SceneBuilder builder_;
+  std::vector<AssimpMaterial> materials_;  ///< by number in the file
+  FeatureNotes notes_;
+  double scale_ = 1;
+  std::multimap<std::string, const aiCamera*> camera_of_;  ///< by its node
+  std::optional<ColladaCameras> collada_;                  ///< replaces camera_of_
+  X3dExtras x3d_;
+  std::map<Index, Index> two_sided_;  ///< by material: the same for both sides
+};
+
+AssimpReader::File AssimpReader::import(aiFileIO* files) const {
+  const std::unique_ptr<aiPropertyStore, void (*)(aiPropertyStore*)> wishes(
+      library_.createPropertyStore(), library_.releasePropertyStore);
+  // We want the names that people gave, not ids.
+  library_.setImportPropertyInteger(wishes.get(), AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, 1);
+  // Assimp must not add octahedra for nodes if a file has no meshes.
+  library_.setImportPropertyInteger(wishes.get(), AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
+  return {library_.importFileExWithProperties(
+              scene_.file.c_str(), aiProcess_ValidateDataStructure | aiProcess_TransformUVCoords,
+              files, wishes.get()),
+          library_.releaseImport};
+}
+
+/// The rewritten X3D. Of a file inside another (Inline) only the shapes count.
+std::string AssimpReader::rewrittenX3d(const std::string& path) {
+  if (lowerExtension(path) != ".x3d") return readWholeFile(path);
+  pugi::xml_document document = checkXml(path);
+  if (document.empty()) return readWholeFile(path);
+  X3dExtras extras = rewriteX3d(document, notes_);
+  if (path == scene_.file) x3d_ = std::move(extras);
+  std::ostringstream out;
+  document.save(out, "", pugi::format_raw);
+  return out.str();
+}
+
+/// Whether Assimp invented the name.
+bool isMadeUp(std::string_view name) {
+  return name.empty() || name[0] == '<' || name.starts_with("$ColladaAutoName$");
+}
+
+std::string colladaId(const aiNode& node) {
+  aiString id;
+  const bool known = node.mMetaData != nullptr && node.mMetaData->Get(AI_METADATA_COLLADA_ID, id);
+  return known ? id.C_Str() : "";
+}
+
+/// The name of an object. If an IFC file has an object in several places, such as a window, Assimp
+/// names it after the kind of reference; then the node above has the name.
+std::string AssimpReader::objectName(const aiNode& node, const aiMesh& mesh) const {
+  constexpr std::string_view kReference = "IfcMappedItem";
+  const aiNode* named = &node;
+  while (named->mParent != nullptr && named->mName.C_Str() == kReference) named = named->mParent;
+  for (std::string name :
+       {std::string(named->mName.C_Str()), colladaId(*named), std::string(mesh.mName.C_Str())}) {
+    for (const std::string_view mark : {kX3dTwoSided, kX3dClockwise}) {
+      if (name.starts_with(mark)) name.erase(0, mark.size());
+    }
+    if (!isMadeUp(name)) return name;
+  }
+  return std::filesystem::path(scene_.file).stem().string();
+}
+
+/// The unit of a file in metres. FBX gives it in centimetres; Collada's is in its root node.
+double AssimpReader::metresPerUnit(const aiScene& file) {
+  double centimetres = 0;
+  float single = 0;
+  if (file.mMetaData == nullptr) return 1;
+  if (file.mMetaData->Get("UnitScaleFactor", centimetres)) return centimetres / 100;
+  if (file.mMetaData->Get("UnitScaleFactor", single)) return double(single) / 100;
+  return 1;
+}
+
+/// Adds all nodes, each before its children. (There is no recursion, since chains may have any
+/// length.)
+void AssimpReader::addNodes(const aiScene& file) {
+  for (unsigned c = 0; c < file.mNumCameras; ++c) {
+    camera_of_.emplace(file.mCameras[c]->mName.C_Str(), file.mCameras[c]);
+  }
+  std::vector<std::pair<const aiNode*, aiMatrix4x4>> open = {{file.mRootNode, aiMatrix4x4()}};
+  while (!open.empty()) {
+    const auto [node, above] = open.back();
+    open.pop_back();
+    const aiMatrix4x4 place = above * node->mTransformation;
+    for (unsigned k = 0; k < node->mNumMeshes; ++k) {
+      const aiMesh& mesh = *file.mMeshes[node->mMeshes[k]];
+      addMesh(mesh, *node, place);
+    }
+    addCameras(*node, place);
+    for (unsigned k = node->mNumChildren; k-- > 0;) open.emplace_back(node->mChildren[k], place);
+  }
+}
+
+Index AssimpReader::twoSided(Index material) {
+  if (scene_.materials[material].two_sided) return material;
+  const auto [known, is_new] = two_sided_.emplace(material, Index(scene_.materials.size()));
+  if (is_new) {
+    Material both = scene_.materials[material];
+    both.name += " (two-sided)";
+    both.two_sided = true;
+    scene_.materials.push_back(std::move(both));
+  }
+  return known->second;
+}
+
+void AssimpReader::addMesh(const aiMesh& mesh, const aiNode& node, const aiMatrix4x4& place) {
+  const std::string object = objectName(node, mesh);
+  const std::size_t first = scene_.vertices.size();
+  if (first + mesh.mNumVertices >= kNone) fail("too many vertices; split the scene");
+  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+    const aiVector3D p = place * mesh.mVertices[v];
+    scene_.vertices.push_back(scale_ * Vec3(double(p.x), double(p.y), double(p.z)));
+    if (!isFinite(scene_.vertices.back())) {
+      fail(fmt::format("object {}: a coordinate is not a finite number; export it again", object));
+    }
+  }
+  if (mesh.mColors[0] != nullptr) {
+    notes_.add("colours of vertices do not change the reflectance, in", object, Severity::warning);
+  }
+  const std::string_view marks = node.mName.C_Str();
+  const bool mirrors = place.Determinant() < 0;
+  const bool clockwise = marks.find(kX3dClockwise) != std::string_view::npos;
+  Index material = materials_[mesh.mMaterialIndex].index;
+  if (marks.starts_with(kX3dTwoSided)) material = twoSided(material);
+  const Index surface = builder_.surface(object, material);
+  const aiVector3D* const texcoords = mesh.mTextureCoords[materials_[mesh.mMaterialIndex].set];
+  std::vector<Index> corners;
+  std::vector<Vec2> pairs;
+  for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+    const aiFace& face = mesh.mFaces[f];
+    if (face.mNumIndices < 3) {
+      notes_.add("lines and points have no area and are left out, in", object);
+      continue;
+    }
+    corners.clear();
+    pairs.clear();
+    for (unsigned k = 0; k < face.mNumIndices; ++k) {
+      const unsigned vertex = face.mIndices[mirrors != clockwise ? face.mNumIndices - 1 - k : k];
+      corners.push_back(Index(first + vertex));
+      if (texcoords == nullptr) continue;
+      // Assimp's origin is the bottom left corner.
+      pairs.emplace_back(double(texcoords[vertex].x), 1 - double(texcoords[vertex].y));
+      if (!std::isfinite(pairs.back().x) || !std::isfinite(pairs.back().y)) {
+        fail(fmt::format("object {}: a texture coordinate is not a finite number; export it again",
+                         object));
+      }
+    }
+    builder_.addFace(corners, pairs, surface, f);
+  }
+}
+
+/// Adds the cameras of a node. Assimp's angle is the full horizontal one for all formats.
+void AssimpReader::addCameras(const aiNode& node, const aiMatrix4x4& place) {
+  const auto vectorOf = [](const aiVector3D& v) {
+    return Vec3(double(v.x), double(v.y), double(v.z));
+  };
+  const aiMatrix3x3 turn(place);
+  const auto add = [&](Camera camera, const aiCamera& pose) {
+    const std::string id = colladaId(node);
+    camera.name = isMadeUp(node.mName.C_Str()) && !id.empty() ? id : node.mName.C_Str();
+    camera.eye = scale_ * vectorOf(place * pose.mPosition);
+    camera.up = vectorOf(turn * pose.mUp);
+    addCamera(std::move(camera), vectorOf(turn * pose.mLookAt));
+  };
+  if (collada_) {
+    aiCamera pose;
+    pose.mLookAt = {0, 0, -1};
+    for (const Camera& c : collada_->of(colladaId(node), node.mName.C_Str())) add(c, pose);
+    return;
+  }
+  const auto [first, last] = camera_of_.equal_range(node.mName.C_Str());
+  for (auto it = first; it != last; ++it) {
+    const aiCamera& given = *it->second;
+    // Assimp loses their targets.
+    if (lowerExtension(scene_.file) == ".3ds") {
+      notes_.add("cameras of 3DS files are not used", given.mName.C_Str(), Severity::warning);
+      continue;
+    }
+    Camera camera;
+    camera.aspect = std::max(0.0, double(given.mAspect));
+    const double width = std::tan(0.5 * double(given.mHorizontalFOV));
+    // If the file does not give the height of the picture, we take 4 : 3.
+    camera.vertical_fov = 2 * std::atan(width / (camera.aspect > 0 ? camera.aspect : 4.0 / 3));
+    add(std::move(camera), given);
+  }
+}
+
+/// `camera` has everything but a target.
+void AssimpReader::addCamera(Camera camera, const Vec3& forward) {
+  const bool usable = isFinite(camera.eye) && isFinite(forward) &&
+                      glm::length(glm::cross(forward, camera.up)) > 0 && camera.vertical_fov > 0 &&
+                      camera.vertical_fov < std::numbers::pi;
+  if (!usable) {
+    notes_.add("cameras without a view direction or an angle are not used", camera.name,
+               Severity::warning);
+    return;
+  }
+  camera.target = camera.eye + glm::normalize(forward);
+  camera.up = glm::normalize(camera.up);
+  scene_.cameras.push_back(std::move(camera));
+}
+
+}  // namespace
+
+namespace {
+
+/// Refuses a truncated 3DS file, which Assimp reads as if it were complete. The first chunk has the
+/// length.
+void requireWhole3ds(const std::string& path) {
+  const std::string content = readWholeFile(path);
+  MeshCursor cursor(path, content);
+  cursor.setEncoding(Encoding::little);
+  constexpr long long kMainChunk = 0x4D4D;
+  if (cursor.integer(NumberType::u16, "chunk") != kMainChunk) {
+    throw InputError(path + ": is no 3DS file; export it again");
+  }
+  const long long length = cursor.integer(NumberType::u32, "length");
+  if (length > static_cast<long long>(content.size())) {
+    throw InputError(
+        fmt::format("{}: is cut off: it says that it has {} bytes and has {}; export it "
+                    "again",
+                    path, length, content.size()));
+  }
+}
+
+/// Assimp loses the sides of AC3D's surfaces: SURF has type and flags, 0x20 being "two-sided".
+void noteTwoSidedAc3d(Scene& scene) {
+  constexpr std::string_view kKeyword = "SURF 0x";
+  constexpr unsigned kTwoSided = 0x20;
+  const std::string content = readWholeFile(scene.file);
+  std::size_t count = 0;
+  for (std::size_t at = content.find(kKeyword); at != std::string::npos;
+       at = content.find(kKeyword, at)) {
+    at += kKeyword.size();
+    unsigned flags = 0;
+    std::from_chars(content.data() + at, content.data() + content.size(), flags, 16);
+    if ((flags & kTwoSided) != 0) ++count;
+  }
+  if (count == 0) return;
+  scene.notes.push_back(
+      {Severity::info, fmt::format("faces that are two-sided in the file are read one-sided ({}); "
+                                   "use --two-sided NAME where backs are seen",
+                                   count)});
+}
+
+}  // namespace
+
+Scene loadAssimp(const std::string& path, const SceneOptions& options) {
+  const std::string extension = lowerExtension(path);
+  if (extension == ".3ds") requireWhole3ds(path);
+  Scene scene = AssimpReader(path, options).read();
+  if (extension.starts_with(".ac")) noteTwoSidedAc3d(scene);
+  return scene;
+}
+
+}  // namespace radiosity

@@ -1,0 +1,268 @@
+#include "scene/assimp/x3d_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <cstring>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat4x4.hpp>
+#include <map>
+#include <numbers>
+#include <set>
+#include <string_view>
+#include <vector>
+
+namespace radiosity {
+
+namespace {
+
+const std::set<std::string_view> kGroups = {"Anchor",   "Billboard",  "Collision", "CADAssembly",
+                                            "CADFace",  "CADLayer",   "CADPart",   "Layer",
+                                            "LayerSet", "LayoutGroup"};
+const std::set<std::string_view> kRead = {"Scene",     "Shape",  "Group",  "StaticGroup",
+                                          "Transform", "Switch", "Inline", "LOD"};
+const std::set<std::string_view> kGeometry = {"Arc2D",
+                                              "ArcClose2D",
+                                              "Circle2D",
+                                              "Disk2D",
+                                              "Polyline2D",
+                                              "Polypoint2D",
+                                              "Rectangle2D",
+                                              "TriangleSet2D",
+                                              "Box",
+                                              "Cone",
+                                              "Cylinder",
+                                              "ElevationGrid",
+                                              "Extrusion",
+                                              "Sphere",
+                                              "IndexedFaceSet",
+                                              "IndexedLineSet",
+                                              "LineSet",
+                                              "PointSet",
+                                              "IndexedTriangleSet",
+                                              "IndexedTriangleFanSet",
+                                              "TriangleFanSet",
+                                              "TriangleSet",
+                                              "IndexedTriangleStripSet"};
+const std::set<std::string_view> kBesideGeometry = {
+    "Appearance",     "MetadataSet",     "MetadataString", "MetadataFloat",
+    "MetadataDouble", "MetadataInteger", "MetadataBoolean"};
+
+/// The numbers of an attribute; `otherwise` if it is missing or has another number of values.
+template <std::size_t N>
+std::array<double, N> numbers(const pugi::xml_node& element, const char* name,
+                              const std::array<double, N>& otherwise) {
+  std::array<double, N> out{};
+  const char* at = element.attribute(name).value();
+  for (double& value : out) {
+    at += std::strspn(at, " ,\t\r\n");
+    char* end = nullptr;
+    value = std::strtod(at, &end);
+    if (end == at) return otherwise;
+    at = end;
+  }
+  return out;
+}
+
+Vec3 vectorOf(const pugi::xml_node& element, const char* name, double otherwise) {
+  const auto v = numbers<3>(element, name, {otherwise, otherwise, otherwise});
+  return {v[0], v[1], v[2]};
+}
+
+/// An axis and an angle in radians.
+glm::dmat4 rotationOf(const pugi::xml_node& element, const char* name) {
+  const auto v = numbers<4>(element, name, {0, 0, 1, 0});
+  const Vec3 axis(v[0], v[1], v[2]);
+  if (!(glm::length(axis) > 0)) return glm::dmat4(1.0);
+  return glm::mat4_cast(glm::angleAxis(v[3], glm::normalize(axis)));
+}
+
+glm::dmat4 moved(const Vec3& by) {
+  glm::dmat4 out(1.0);
+  out[3] = glm::dvec4(by, 1.0);
+  return out;
+}
+
+/// T C R SR S -SR -C (ISO/IEC 19775-1, 10.4.4).
+glm::dmat4 transformOf(const pugi::xml_node& element) {
+  if (std::strcmp(element.name(), "Transform") != 0) return glm::dmat4(1.0);
+  const Vec3 centre = vectorOf(element, "center", 0);
+  const Vec3 scale = vectorOf(element, "scale", 1);
+  const glm::dmat4 stretch = rotationOf(element, "scaleOrientation");
+  glm::dmat4 scaled(1.0);
+  for (int k = 0; k < 3; ++k) scaled[k][k] = scale[k];
+  return moved(vectorOf(element, "translation", 0) + centre) * rotationOf(element, "rotation") *
+         stretch * scaled * glm::transpose(stretch) * moved(-centre);
+}
+
+/// Replaces a Cone or Cylinder by an IndexedFaceSet: planar sides, turned outward, between circles
+/// of 32 corners on the true circle. The upper circle of a cone is its apex.
+void replaceRound(pugi::xml_node shape, pugi::xml_node given) {
+  constexpr int kSides = 32;
+  const bool is_cone = std::strcmp(given.name(), "Cone") == 0;
+  const double radius = given.attribute(is_cone ? "bottomRadius" : "radius").as_double(1);
+  const double half = 0.5 * given.attribute("height").as_double(2);
+  std::string points;
+  std::string upper;
+  std::string sides;
+  std::string bottom;
+  std::string top;
+  for (int k = 0; k < kSides; ++k) {
+    const double angle = 2 * std::numbers::pi * k / kSides;
+    const double x = radius * std::sin(angle);
+    const double z = radius * std::cos(angle);
+    points += fmt::format("{} {} {} ", x, -half, z);
+    upper += fmt::format("{} {} {} ", x, half, z);
+    const int next = (k + 1) % kSides;
+    sides += is_cone ? fmt::format("{} {} {} -1 ", k, next, kSides)
+                     : fmt::format("{} {} {} {} -1 ", k, next, kSides + next, kSides + k);
+    bottom += fmt::format("{} ", kSides - 1 - k);
+    top += fmt::format("{} ", kSides + k);
+  }
+  points += is_cone ? fmt::format("0 {} 0", half) : upper;
+  std::string faces;
+  if (given.attribute("side").as_bool(true)) faces += sides;
+  if (given.attribute("bottom").as_bool(true)) faces += bottom + "-1 ";
+  if (!is_cone && given.attribute("top").as_bool(true)) faces += top + "-1 ";
+  pugi::xml_node made = shape.insert_child_before("IndexedFaceSet", given);
+  made.append_attribute("solid") = given.attribute("solid").as_bool(true);
+  made.append_attribute("coordIndex") = faces.c_str();
+  made.append_child("Coordinate").append_attribute("point") = points.c_str();
+  shape.remove_child(given);
+}
+
+class Rewriter {
+ public:
+  explicit Rewriter(FeatureNotes& notes) : notes_(notes) {}
+
+  X3dExtras run(pugi::xml_node root) {
+    collectNames(root);
+    copyUses(root);
+    for (const pugi::xml_node unit : root.child("head").children("unit")) {
+      if (std::strcmp(unit.attribute("category").value(), "length") != 0) continue;
+      extras_.metres_per_unit = unit.attribute("conversionFactor").as_double(1);
+    }
+    rewriteChildren(root.child("Scene"), glm::dmat4(1.0), "");
+    return std::move(extras_);
+  }
+
+ private:
+  void collectNames(const pugi::xml_node& element) {
+    if (const pugi::xml_attribute name = element.attribute("DEF")) {
+      named_.emplace(name.value(), element);
+    }
+    for (const pugi::xml_node child : element.children()) collectNames(child);
+  }
+
+  /// Copies in the order of the file, so that an element has no USE any more when it is copied.
+  void copyUses(pugi::xml_node element) {
+    pugi::xml_node child = element.first_child();
+    while (child) {
+      const auto found = named_.find(child.attribute("USE").value());
+      if (found != named_.end()) {
+        pugi::xml_node copy = element.insert_copy_before(found->second, child);
+        if (const pugi::xml_attribute field = child.attribute("containerField")) {
+          copy.remove_attribute("containerField");
+          copy.append_attribute("containerField") = field.value();
+        }
+        element.remove_child(child);
+        child = copy;
+      }
+      copyUses(child);
+      child = child.next_sibling();
+    }
+  }
+
+  /// `name`: that of the nearest element above with a name.
+  void rewriteChildren(pugi::xml_node parent, const glm::dmat4& place, const std::string& name) {
+    pugi::xml_node next;
+    for (pugi::xml_node child = parent.first_child(); child; child = next) {
+      next = child.next_sibling();
+      rewrite(parent, child, place, name);
+    }
+  }
+
+  void rewrite(pugi::xml_node parent, pugi::xml_node element, const glm::dmat4& place,
+               const std::string& name) {
+    const std::string_view kind = element.name();
+    const std::string own = element.attribute("DEF").value();
+    const std::string& called = own.empty() ? name : own;
+    if (kind == "Viewpoint") return addViewpoint(element, place, called);
+    if (kind == "Shape") return rewriteShape(parent, element, called);
+    if (std::strcmp(element.attribute("containerField").value(), "proxy") == 0) {
+      parent.remove_child(element);  // of a Collision: it is for contact, never visible
+      return;
+    }
+    if (kind == "LOD") {
+      while (element.first_child() != element.last_child()) {
+        element.remove_child(element.last_child());
+      }
+    }
+    if (kind == "LOD" || kGroups.contains(kind)) {
+      element.set_name("Group");
+    } else if (!kRead.contains(kind)) {
+      const bool holds_shapes = element.find_node(
+          [](const pugi::xml_node& below) { return std::strcmp(below.name(), "Shape") == 0; });
+      if (holds_shapes || kind == "ProtoInstance") {
+        notes_.add("elements of X3D that are not read, and what is in them", std::string(kind),
+                   Severity::warning);
+      }
+      return;
+    }
+    rewriteChildren(element, place * transformOf(element), called);
+  }
+
+  void rewriteShape(pugi::xml_node parent, pugi::xml_node shape, const std::string& name) {
+    std::string marks;
+    pugi::xml_node next;
+    for (pugi::xml_node child = shape.first_child(); child; child = next) {
+      next = child.next_sibling();
+      if (child.type() != pugi::node_element) continue;
+      const std::string_view kind = child.name();
+      if (kGeometry.contains(kind)) {
+        if (!child.attribute("solid").as_bool(true)) marks += kX3dTwoSided;
+        if (!child.attribute("ccw").as_bool(true)) marks += kX3dClockwise;
+        if (kind == "Cone" || kind == "Cylinder") replaceRound(shape, child);
+      } else if (!kBesideGeometry.contains(kind)) {
+        notes_.add("shapes of X3D that are not read", std::string(kind), Severity::warning);
+      }
+    }
+    if (!shape.child("Appearance")) shape.prepend_child("Appearance");
+    if (marks.empty() && !shape.attribute("DEF")) return;
+    pugi::xml_node group = parent.insert_child_before("Group", shape);
+    group.append_attribute("DEF") = (marks + name).c_str();
+    group.append_move(shape);
+  }
+
+  void addViewpoint(const pugi::xml_node& element, const glm::dmat4& place,
+                    const std::string& name) {
+    const glm::dmat4 pose =
+        place * moved(vectorOf(element, "position", 0)) * rotationOf(element, "orientation");
+    Camera camera;
+    const std::string description = element.attribute("description").value();
+    camera.name = description.empty() ? name : description;
+    if (camera.name.empty()) camera.name = fmt::format("viewpoint {}", extras_.viewpoints.size());
+    const bool placed = !element.attribute("position").empty();
+    camera.eye = Vec3(pose * glm::dvec4(0, 0, placed ? 0 : 10, 1));
+    camera.target = camera.eye + Vec3(pose * glm::dvec4(0, 0, -1, 0));
+    camera.up = Vec3(pose * glm::dvec4(0, 1, 0, 0));
+    // The smaller angle of the picture: the vertical one, if it is wider than high.
+    camera.vertical_fov = numbers<1>(element, "fieldOfView", {0.7854})[0];
+    extras_.viewpoints.push_back(camera);
+  }
+
+  FeatureNotes& notes_;
+  X3dExtras extras_;
+  std::map<std::string_view, pugi::xml_node> named_;
+};
+
+}  // namespace
+
+X3dExtras rewriteX3d(pugi::xml_document& document, FeatureNotes& notes) {
+  return Rewriter(notes).run(document.document_element());
+}
+
+}  // namespace radiosity
