@@ -61,9 +61,9 @@ class Rounds {
           std::max(loosened_,
                    loosening(aim_.most_rays, [&](double times) { return raysOf(wishes(times)); }));
       rays = wishes(loosened_);
-      if (matrixIsShort()) tighten(rays);
-      journal_.keep(report_.rounds, {rays, before_, now_, common_, usual_norm_, usual_whole_norm_,
-                                     loosened_, tightened_});
+      if (matrixIsShort()) rays = raysForMatrix();
+      journal_.keep(report_.rounds,
+                    {rays, before_, now_, common_, usual_norm_, usual_whole_norm_, loosened_});
     }
     if (processes_ != nullptr) endCasting(*processes_, progress_);
     finish();
@@ -83,7 +83,6 @@ class Rounds {
       usual_norm_ = round->usual_norm;
       usual_whole_norm_ = round->usual_whole_norm;
       loosened_ = round->loosened;
-      tightened_ = round->tightened;
     }
     rays = std::move(targets.back());
     targets.pop_back();
@@ -219,27 +218,57 @@ class Rounds {
   bool matrixIsShort() const {
     bool is_done = loosened_ == 1;
     for (std::size_t k = 0; k < rows_.size() && is_done; ++k) is_done = isGoodEnough(k);
-    return is_done && matrixError() > kMargin * aim_.tolerance;
+    return is_done && matrixSquares() > squaresAllowed(kMargin);
   }
-  double matrixError() const {
-    double squares = 0;
+  /// A row's part of the squared error of the matrix, ||dF||^2 = sum_k A_k e_k^2.
+  double squareOf(std::size_t k) const { return scene_.area()[k] * now_[k].error * now_[k].error; }
+  double matrixSquares() const {
+    double sum = 0;
+    for (std::size_t k = 0; k < rows_.size(); ++k) sum += squareOf(k);
+    return sum;
+  }
+  /// The squared error of a matrix that is off by `share` of the tolerance.
+  double squaresAllowed(double share) const {
     double norms = 0;
     for (std::size_t k = 0; k < rows_.size(); ++k) {
-      squares += scene_.area()[k] * now_[k].error * now_[k].error;
       norms += scene_.area()[k] * now_[k].norm * now_[k].norm;
     }
-    return norms > 0 ? std::sqrt(squares / norms) : 0.0;
+    return share * share * aim_.tolerance * aim_.tolerance * norms;
   }
-  /// Tightens the rows' aim and sets `rays` to what that needs, unless it is more than allowed.
-  void tighten(std::vector<std::uint32_t>& rays) {
-    const double before = tightened_;
-    tightened_ *= kMargin * kMargin * aim_.tolerance / matrixError();
-    std::vector<std::uint32_t> more = wishes(loosened_);
-    if (raysOf(more) <= aim_.most_rays) {
-      rays = std::move(more);
-    } else {
-      tightened_ = before;
+  /// The rays that bring the matrix within the tolerance, none if that takes more than allowed. A
+  /// row's part s_k of the square falls as n_k^-p, p = kUsualOrder. So the sum of all is least for
+  /// its rays if s_k / n_k is the same for all rows that get more (Lagrange): a level, which is
+  /// lowered until the square is small enough.
+  std::vector<std::uint32_t> raysForMatrix() const {
+    constexpr double kStep = 0.8;     // of the level
+    constexpr double kLowest = 1e-9;  // of the highest level
+    const double allowed = squaresAllowed(kMargin * kMargin);
+    double highest = 0;
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      if (rows_[k].rays > 0) highest = std::max(highest, squareOf(k) / rows_[k].rays);
     }
+    std::vector<std::uint32_t> rays(rows_.size(), 0);
+    double squares = std::numeric_limits<double>::infinity();
+    for (double level = highest; squares > allowed && level > kLowest * highest; level *= kStep) {
+      squares = 0;
+      for (std::size_t k = 0; k < rows_.size(); ++k) {
+        rays[k] = raysAtLevel(k, level);
+        const double growth = rays[k] > 0 ? double(rays[k]) / rows_[k].rays : 1.0;
+        squares += squareOf(k) * std::pow(growth, -kUsualOrder);
+      }
+    }
+    if (raysOf(rays) > aim_.most_rays) std::fill(rays.begin(), rays.end(), 0);
+    return rays;
+  }
+  /// The rays that bring s_k / n_k down to a level; 0 if the row has as many.
+  std::uint32_t raysAtLevel(std::size_t k, double level) const {
+    const double n = rows_[k].rays;
+    if (n == 0) return 0;
+    const double growth = std::pow(squareOf(k) / (n * level), 1 / (1 + kUsualOrder));
+    constexpr double kMiddle = 0.75;  // rounding is up, by a half at most
+    const std::uint32_t wanted =
+        std::min(roundedRays(kMiddle * n * std::min(growth, kMostGrowth)), kMostRays);
+    return wanted > rows_[k].rays ? wanted : 0;
   }
   /// All rays, of both replicates, once rows have those wished for.
   double raysOf(const std::vector<std::uint32_t>& wished) const {
@@ -280,7 +309,7 @@ class Rounds {
   }
 
   /// The aim of relative errors.
-  double aim() const { return tightened_ * aim_.tolerance; }
+  double aim() const { return kMargin * aim_.tolerance; }
   bool isGoodEnough(std::size_t k) const { return relativeError(now_[k]) <= aim(); }
 
   void finish() {
@@ -297,7 +326,6 @@ class Rounds {
   const KnownEntries& known_;
   RayAim aim_;
   double loosened_ = 1;
-  double tightened_ = kMargin;  ///< times the tolerance
   RayReport& report_;
   Progress& progress_;
   RoundJournal journal_;

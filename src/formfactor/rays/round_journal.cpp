@@ -16,7 +16,6 @@ void RoundJournal::keep(int round, const RayRound& decided) const {
   bytes.put(decided.usual_norm);
   bytes.put(decided.usual_whole_norm);
   bytes.put(decided.loosened);
-  bytes.put(decided.tightened);
   journal_->keep(RowBlock::ray_round, std::uint64_t(round), bytes.bytes());
 }
 
@@ -33,7 +32,6 @@ std::optional<RayRound> RoundJournal::take(int round) const {
   decided.usual_norm = bytes.get<double>();
   decided.usual_whole_norm = bytes.get<double>();
   decided.loosened = bytes.get<double>();
-  decided.tightened = bytes.get<double>();
   const bool fits =
       decided.rays.size() == rows_ && decided.before.size() == rows_ && decided.now.size() == rows_;
   if (!bytes.isWhole() || !fits) return {};

@@ -31,7 +31,6 @@ struct RayRound {
   double usual_norm = 0;            ///< of the last,
   double usual_whole_norm = 0;      ///< and of fronts and backs
   double loosened = 1;              ///< times the tolerance aimed at
-  double tightened = 1;             ///< the same, for the matrix to keep it
 };
 
 /// A row as bytes, and back.
