@@ -116,15 +116,17 @@ std::shared_ptr<FactorsHandle> fromCsr(const Array<double>& data, const Array<In
                                        const Array<double>& sky, const Array<double>& backs,
                                        const std::vector<std::string>& names, bool single) {
   auto handle = std::make_shared<FactorsHandle>();
-  const py::gil_scoped_release unlocked;
-  ExchangeMatrix matrix(vectorOf(area),
-                        single ? Precision::single_precision : Precision::double_precision);
-  for (std::size_t i = 0; i < matrix.size(); ++i) {
-    const auto first = std::size_t(starts.data()[i]);
-    const auto count = std::size_t(starts.data()[i + 1]) - first;
-    matrix.setRow(i, spanOf(indices).subspan(first, count), spanOf(data).subspan(first, count));
-  }
-  handle->factors = factorsOfMatrix(std::move(matrix), vectorOf(sky), vectorOf(backs));
+  runLong(py::none(), [&](Progress& progress) {
+    ExchangeMatrix matrix(vectorOf(area),
+                          single ? Precision::single_precision : Precision::double_precision);
+    for (std::size_t i = 0; i < matrix.size(); ++i) {
+      progress.check();
+      const auto first = std::size_t(starts.data()[i]);
+      const auto count = std::size_t(starts.data()[i + 1]) - first;
+      matrix.setRow(i, spanOf(indices).subspan(first, count), spanOf(data).subspan(first, count));
+    }
+    handle->factors = factorsOfMatrix(std::move(matrix), vectorOf(sky), vectorOf(backs));
+  });
   handle->names = names;
   return handle;
 }

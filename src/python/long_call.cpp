@@ -64,21 +64,19 @@ class Worker {
     changed_.notify_one();
   }  // the thread's own destructor joins it
 
-  /// Both arguments must live until the work is over.
-  void start(const std::function<void(Progress&)>& work, Progress& progress) {
+  void start(std::function<void()> work) {
     {
       const std::lock_guard lock(mutex_);
-      work_ = &work;
-      progress_ = &progress;
+      work_ = std::move(work);
       failure_ = nullptr;
     }
     changed_.notify_one();
   }
 
   /// True once the work is over.
-  bool wait() {
+  bool wait(std::chrono::milliseconds longest) {
     std::unique_lock lock(mutex_);
-    return over_.wait_for(lock, kBetweenLooks, [this] { return work_ == nullptr; });
+    return over_.wait_for(lock, longest, [this] { return work_ == nullptr; });
   }
 
   /// The exception that the work threw; call it once the work is over.
@@ -93,7 +91,7 @@ class Worker {
       lock.unlock();
       std::exception_ptr failure;
       try {
-        (*work_)(*progress_);
+        work_();
       } catch (...) {
         failure = std::current_exception();
       }
@@ -107,19 +105,19 @@ class Worker {
   std::mutex mutex_;
   std::condition_variable changed_;  // the thread waits for it
   std::condition_variable over_;     // the caller waits for it
-  const std::function<void(Progress&)>* work_ = nullptr;
-  Progress* progress_ = nullptr;
+  std::function<void()> work_;       // empty once it is over
   std::exception_ptr failure_;
   bool ended_ = false;
   std::jthread thread_{[this] { run(); }};  // starts last, ends first
 };
 
-/// The idle workers: at most as many as there were calls at once.
+/// The workers without a call: at most as many as there were calls at once.
 class IdleWorkers {
  public:
   std::unique_ptr<Worker> take() {
     const std::lock_guard lock(mutex_);
     forgetThoseOfTheParent();
+    takeBackThoseLeft();
     if (idle_.empty()) return std::make_unique<Worker>();
     std::unique_ptr<Worker> worker = std::move(idle_.back());
     idle_.pop_back();
@@ -129,17 +127,31 @@ class IdleWorkers {
     const std::lock_guard lock(mutex_);
     idle_.push_back(std::move(worker));
   }
+  /// Keeps a worker whose work is not over yet, though nobody waits for it any more.
+  void leave(std::unique_ptr<Worker> worker) {
+    const std::lock_guard lock(mutex_);
+    left_.push_back(std::move(worker));
+  }
 
  private:
+  void takeBackThoseLeft() {
+    for (std::unique_ptr<Worker>& worker : left_) {
+      if (worker->wait(std::chrono::milliseconds(0))) idle_.push_back(std::move(worker));
+    }
+    std::erase(left_, nullptr);
+  }
   /// A forked process has copies of the workers without their threads, which cannot be joined.
   void forgetThoseOfTheParent() {
     if (std::exchange(process_, getpid()) == getpid()) return;
-    for (std::unique_ptr<Worker>& worker : idle_) static_cast<void>(worker.release());
-    idle_.clear();
+    for (std::vector<std::unique_ptr<Worker>>* workers : {&idle_, &left_}) {
+      for (std::unique_ptr<Worker>& worker : *workers) static_cast<void>(worker.release());
+      workers->clear();
+    }
   }
 
   std::mutex mutex_;
   std::vector<std::unique_ptr<Worker>> idle_;
+  std::vector<std::unique_ptr<Worker>> left_;
   pid_t process_ = getpid();
 };
 
@@ -148,32 +160,60 @@ IdleWorkers& idleWorkers() {
   return workers;
 }
 
-}  // namespace
-
-void runLong(const py::object& report, const std::function<void(Progress&)>& work) {
-  WatchedProgress progress;
+/// Runs `work` on a worker. Every 50 ms `look` is called with Python's lock; if it throws an error
+/// of Python, interrupt() says whether we still wait for the work, and the error is thrown in the
+/// end.
+void runOnWorker(std::function<void()> work, const std::function<void()>& look,
+                 const std::function<bool()>& interrupt) {
   std::optional<py::error_already_set> raised;
   std::exception_ptr failure;
   {
     const py::gil_scoped_release unlocked;
     std::unique_ptr<Worker> worker = idleWorkers().take();
-    worker->start(work, progress);
-    while (!worker->wait()) {
-      if (progress.cancelled()) continue;
+    worker->start(std::move(work));
+    bool waits = true;
+    while (waits && !worker->wait(kBetweenLooks)) {
+      if (raised) continue;
       const py::gil_scoped_acquire locked;
       try {
-        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-        if (!report.is_none()) progress.tell(report);
+        look();
       } catch (const py::error_already_set& error) {
         raised.emplace(error);
-        progress.cancel();
+        waits = interrupt();
       }
     }
-    failure = worker->failure();
-    idleWorkers().giveBack(std::move(worker));
+    if (waits) {
+      failure = worker->failure();
+      idleWorkers().giveBack(std::move(worker));
+    } else {
+      idleWorkers().leave(std::move(worker));
+    }
   }
   if (raised) throw py::error_already_set(std::move(*raised));
   if (failure) std::rethrow_exception(failure);
+}
+
+void handleSignals() {
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+}  // namespace
+
+void runLong(const py::object& report, const std::function<void(Progress&)>& work) {
+  WatchedProgress progress;
+  const auto look = [&] {
+    handleSignals();
+    if (!report.is_none()) progress.tell(report);
+  };
+  const auto cancel = [&] {
+    progress.cancel();
+    return true;
+  };
+  runOnWorker([&] { work(progress); }, look, cancel);
+}
+
+void runWithoutSteps(const std::function<void()>& work) {
+  runOnWorker(work, handleSignals, [] { return false; });
 }
 
 }  // namespace radiosity::python

@@ -16,4 +16,9 @@ namespace radiosity::python {
 /// touch Python objects.
 void runLong(const pybind11::object& report, const std::function<void(Progress&)>& work);
 
+/// The same for work that has no steps at which it could end, such as reading a file. Ctrl-C raises
+/// KeyboardInterrupt at once; the work goes on to its end without effect. So `work` must own all
+/// that it touches.
+void runWithoutSteps(const std::function<void()>& work);
+
 }  // namespace radiosity::python

@@ -16,25 +16,25 @@ namespace radiosity::python {
 namespace {
 
 /// Reads a results file into handles that share the mesh and the form factors.
-py::dict read(const std::string& path, const py::object& report) {
+py::dict read(const std::string& path) {
   // Returns the key of the file.
   const auto kept = [](const std::string& text) { return [text] { return text; }; };
-  Results results;
+  const auto file = std::make_shared<Results>();
   auto mesh = std::make_shared<MeshHandle>();
   auto factors = std::make_shared<FactorsHandle>();
   auto light = std::make_shared<SolutionHandle>();
   auto heat = std::make_shared<HeatHandle>();
-  runLong(report, [&](Progress& progress) {
-    results = readResults(path);
-    progress.check();
-    if (results.scene) mesh->scene = std::make_shared<const Scene>(std::move(*results.scene));
-    if (results.mesh) mesh->result = std::move(*results.mesh);
-    mesh->key = kept(results.mesh_key);
-    if (mesh->scene && results.mesh) {
+  runWithoutSteps([=] {
+    *file = readResults(path);
+    if (file->scene) mesh->scene = std::make_shared<const Scene>(std::move(*file->scene));
+    if (file->mesh) mesh->result = std::move(*file->mesh);
+    mesh->key = kept(file->mesh_key);
+    if (mesh->scene && file->mesh) {
       mesh->materials = patchMaterials(*mesh->scene, mesh->result.mesh);
     }
-    if (results.factors) factors->factors = std::move(*results.factors);
+    if (file->factors) factors->factors = std::move(*file->factors);
   });
+  Results& results = *file;
   factors->key = kept(results.factors_key);
   factors->mesh = mesh;
   py::dict dict;

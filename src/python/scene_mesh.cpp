@@ -11,8 +11,7 @@
 namespace radiosity::python {
 namespace {
 
-std::shared_ptr<Scene> load(const std::string& path, const py::dict& given,
-                            const py::object& report) {
+std::shared_ptr<Scene> load(const std::string& path, const py::dict& given) {
   SceneOptions options;
   const KeywordOptions take(given);
   take("unit", options.unit);
@@ -27,7 +26,7 @@ std::shared_ptr<Scene> load(const std::string& path, const py::dict& given,
   take("sky", sky);
   if (take.has("sky")) options.sky = vec(sky);
   auto scene = std::make_shared<Scene>();
-  runLong(report, [&](Progress&) { *scene = loadScene(path, options); });
+  runWithoutSteps([scene, path, options] { *scene = loadScene(path, options); });
   return scene;
 }
 

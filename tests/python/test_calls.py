@@ -33,6 +33,27 @@ def test_ctrl_c_raises_keyboard_interrupt(slow):
     assert time.monotonic() - start < 0.5 + LONGEST_ANSWER
 
 
+def test_ctrl_c_does_not_wait_until_a_file_is_read(tmp_path):
+    side = 700
+    path = tmp_path / "grid.obj"
+    with path.open("w") as file:
+        for i in range(side + 1):
+            file.writelines(f"v {i} 0 {j}\n" for j in range(side + 1))
+        for corner in range(1, side * (side + 1)):
+            file.write(f"f {corner} {corner + 1} {corner + side + 2}\n")
+    start = time.monotonic()
+    with pytest.warns(UserWarning, match="no material"):
+        rad.load(path)
+    whole = time.monotonic() - start
+    threading.Timer(0.1 * whole, os.kill, (os.getpid(), signal.SIGINT)).start()
+    start = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        rad.load(path)
+    # The signal comes after a tenth, and is seen within 50 ms, a tenth or less.
+    assert time.monotonic() - start < 0.6 * whole
+    assert rad.load(ROOT / "data/cornell-box.obj").surface_names  # while the thread may read on
+
+
 def test_a_signal_handler_may_raise_any_exception(slow):
     def handler(number, frame):
         raise TimeoutError("enough")

@@ -31,8 +31,8 @@ def read(path: Union[str, "os.PathLike[str]"], progress: Progress = None) -> Res
     """Reads a results file (.h5) of this package or the command line, or a matrix of form factors
     alone: MatrixMarket (.mtx), View3D (.vf).
 
-    Arrays of what was read are views of it, no copies. Reading a results file shows no progress, and
-    Ctrl-C raises KeyboardInterrupt only when the file has been read.
+    Arrays of what was read are views of it, no copies. Reading a results file shows no
+    progress.
 
     Errors: InputError, one line with the file and the cure.
 
@@ -45,10 +45,10 @@ def read(path: Union[str, "os.PathLike[str]"], progress: Progress = None) -> Res
     0
     """
     name = path_text("path", path)
-    with reporting(progress) as report:
-        if not _core.is_results(name):
+    if not _core.is_results(name):
+        with reporting(progress) as report:
             return Results(form_factors=FormFactors(_core.read_matrix(name, report)))
-        got = _core.read(name, report)
+    got = _core.read(name)
     scene = Scene._of(got["scene"]) if "scene" in got else None
     mesh = Mesh(got["mesh"]) if "mesh" in got else None
     factors = FormFactors(got["form_factors"], mesh) if "form_factors" in got else None

@@ -11,7 +11,6 @@ from . import _core
 from ._arrays import indices, numbers, path_text, require, texts
 from ._core import InputError
 from ._notes import tell
-from ._progress import Progress, reporting
 
 #: The defaults of materials given as arrays.
 _PLAIN = {"reflectance": 0.5, "emission": 0.0, "two_sided": False}
@@ -171,7 +170,7 @@ def load(path: Union[str, "os.PathLike[str]"], *, unit: Optional[str] = None,
          set: Union[str, Sequence[str]] = (),
          materials_file: Union[None, str, "os.PathLike[str]"] = None,
          one_sided: Union[str, Sequence[str]] = (), two_sided: Union[str, Sequence[str]] = (),
-         sky: Any = None, progress: Progress = None) -> Scene:
+         sky: Any = None) -> Scene:
     """Reads a scene file, its format told by the extension (.obj, .glb, .stl, .msh, .ply, ...).
 
     unit: mm, cm, m, in or ft (default metres). set: "NAME.PROPERTY=VALUE" each, with PROPERTY
@@ -180,8 +179,7 @@ def load(path: Union[str, "os.PathLike[str]"], *, unit: Optional[str] = None,
     radiance, W/m^2/sr, one number or three. The options are those of the command line. What was
     repaired is in Scene.notes, and said by UserWarnings.
 
-    The scene's arrays are views of what was read, no copies. Reading shows no progress, and Ctrl-C
-    raises KeyboardInterrupt only when the file has been read.
+    The scene's arrays are views of what was read, no copies.
 
     Errors: InputError with file, element and cure.
 
@@ -193,7 +191,6 @@ def load(path: Union[str, "os.PathLike[str]"], *, unit: Optional[str] = None,
                    textures=textures, set=texts("set", set), materials_file=materials_path,
                    one_sided=texts("one_sided", one_sided), two_sided=texts("two_sided", two_sided),
                    sky=None if sky is None else _colour("sky", sky))
-    with reporting(progress) as report:
-        scene = Scene._of(_core.load(path_text("path", path), options, report))
+    scene = Scene._of(_core.load(path_text("path", path), options))
     tell(scene.notes)
     return scene
