@@ -149,8 +149,8 @@ Scene loadScene(const std::string& path, const SceneOptions& options = {});
 /// that order, but the material comes first if a surface has its name only because its object has
 /// it too. PROPERTY is reflectance, emission (exitance, W/m^2), radiance (W/m^2/sr) or tint (a
 /// factor of the reflectance); VALUE is one number or three with commas. Reflectance and emission
-/// replace a texture, tint keeps it. A surface that shares its material gets its own copy. Unknown
-/// names are an InputError that lists the existing ones.
+/// replace a texture, tint keeps it. A surface that shares its material gets its own copy. A note
+/// names materials of reflectance 1. Unknown names are an InputError that lists the existing ones.
 void applyOverrides(Scene& scene, const SceneOptions& options);
 
 /// One surface as `radiosity info` prints it.

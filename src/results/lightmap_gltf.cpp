@@ -98,60 +98,110 @@ void LightmapGltf::chooseSet() {
 }
 
 /// Adds meshes in the order in which the scene was read. A mesh of several nodes becomes one mesh
-/// for each node.
+/// for each node or copy.
 void LightmapGltf::addMeshes() {
   const Json given = document_.value("meshes", Json::array());
   std::vector<bool> used(given.size(), false);
   std::size_t face = 0;
   const GltfPlacement placement(file_);
-  forEachGltfNode(file_, [&](int number, const glm::dmat4& transform, const std::string& what) {
+  forEachGltfNode(file_, [&](int number, const glm::dmat4&, const std::string& what) {
     const tinygltf::Node& node = file_.model.nodes[std::size_t(number)];
     if (node.mesh < 0) return;
-    if (placement.copies(number, what).size() != 1) {
-      file_.fail(what +
-                 " has copies (EXT_mesh_gpu_instancing), which have no lightmap of their "
-                 "own; export each as a node");
-    }
-    const bool mirrored = placement.isMirrored(number, transform);
     const auto m = std::size_t(node.mesh);
-    const tinygltf::Mesh& mesh = file_.at(file_.model.meshes, node.mesh, "mesh", what);
-    Json copy = given[m];
-    Json primitives = Json::array();
-    for (std::size_t k = 0; k < mesh.primitives.size(); ++k) {
-      const tinygltf::Primitive& primitive = mesh.primitives[k];
-      if (!hasTriangles(primitive) || !primitive.attributes.contains("POSITION")) {
-        primitives.push_back(given[m]["primitives"][k]);
-        continue;
-      }
-      const std::vector<Vec3> positions = placement.positions(number, primitive, transform, what);
-      Placed placed{primitive,
-                    positions.size(),
-                    readGltfTriangles(file_, primitive, positions.size(), mirrored, what),
-                    mirrored,
-                    face,
-                    what};
-      face += placed.corners.size() / 3;
-      const bool there = face <= scene_.faceCount();
-      if (!there || glm::distance(scene_.vertices[scene_.face(placed.first_face)[0]],
-                                  positions[placed.corners[0]]) >
-                        kSamePlace * (1 + glm::length(positions[placed.corners[0]]))) {
-        file_.fail("has changed since the scene was read from it; start again");
-      }
-      for (Json& one : addPrimitives(given[m]["primitives"][k], placed)) {
-        primitives.push_back(std::move(one));
-      }
-    }
-    copy["primitives"] = std::move(primitives);
-    if (used[m]) {
-      document_["nodes"][std::size_t(number)]["mesh"] = document_["meshes"].size();
-      document_["meshes"].push_back(std::move(copy));
-    } else {
-      document_["meshes"][m] = std::move(copy);
+    const std::vector<glm::dmat4> places = placement.copiesInNode(number, what);
+    std::size_t copy = 0;
+    for (Json& mesh : meshesOf(number, given[m], placement, what, face)) {
+      const std::size_t index = used[m] ? document_["meshes"].size() : m;
       used[m] = true;
+      document_["meshes"][index] = std::move(mesh);
+      if (places.empty()) {
+        document_["nodes"][std::size_t(number)]["mesh"] = index;
+      } else {
+        addCopy(number, index, places[copy++]);
+      }
     }
   });
   if (face != scene_.faceCount()) {
     file_.fail("has changed since the scene was read from it; start again");
+  }
+  forgetInstancing();
+}
+
+/// The mesh of a node, or one for each of its copies. `face`: the scene's first of them; moves on
+/// to the next after them.
+std::vector<LightmapGltf::Json> LightmapGltf::meshesOf(int number, const Json& given,
+                                                       const GltfPlacement& placement,
+                                                       const std::string& what, std::size_t& face) {
+  const std::vector<glm::dmat4> copies = placement.copies(number, what);
+  std::vector<Json> meshes(copies.size(), given);
+  for (Json& mesh : meshes) mesh["primitives"] = Json::array();
+  const tinygltf::Mesh& mesh =
+      file_.at(file_.model.meshes, file_.model.nodes[std::size_t(number)].mesh, "mesh", what);
+  for (std::size_t k = 0; k < mesh.primitives.size(); ++k) {
+    for (std::size_t c = 0; c < copies.size(); ++c) {
+      for (Json& one : primitivesOf(mesh.primitives[k], given["primitives"][k], placement, number,
+                                    copies[c], what, face)) {
+        meshes[c]["primitives"].push_back(std::move(one));
+      }
+    }
+  }
+  return meshes;
+}
+
+/// The primitives that replace one of a node's copy.
+LightmapGltf::Json LightmapGltf::primitivesOf(const tinygltf::Primitive& primitive,
+                                              const Json& given, const GltfPlacement& placement,
+                                              int number, const glm::dmat4& copy,
+                                              const std::string& what, std::size_t& face) {
+  if (!hasTriangles(primitive) || !primitive.attributes.contains("POSITION")) {
+    return Json::array({given});
+  }
+  const std::vector<Vec3> positions = placement.positions(number, primitive, copy, what);
+  const bool mirrored = placement.isMirrored(number, copy);
+  Placed placed{primitive,
+                positions.size(),
+                readGltfTriangles(file_, primitive, positions.size(), mirrored, what),
+                mirrored,
+                face,
+                what};
+  face += placed.corners.size() / 3;
+  const bool there = face <= scene_.faceCount();
+  if (!there || glm::distance(scene_.vertices[scene_.face(placed.first_face)[0]],
+                              positions[placed.corners[0]]) >
+                    kSamePlace * (1 + glm::length(positions[placed.corners[0]]))) {
+    file_.fail("has changed since the scene was read from it; start again");
+  }
+  return addPrimitives(given, placed);
+}
+
+/// Makes a copy of a node one of its children.
+void LightmapGltf::addCopy(int number, std::size_t mesh, const glm::dmat4& place) {
+  Json matrix = Json::array();
+  for (int column = 0; column < 4; ++column) {
+    for (int row = 0; row < 4; ++row) matrix.push_back(place[column][row]);
+  }
+  Json& nodes = document_["nodes"];
+  const std::size_t child = nodes.size();
+  nodes.push_back({{"mesh", mesh}, {"matrix", std::move(matrix)}});
+  Json& node = nodes[std::size_t(number)];
+  node.erase("mesh");
+  if (node.contains("extensions")) node["extensions"].erase(kGltfInstancing);
+  if (node.contains("extensions") && node["extensions"].empty()) node.erase("extensions");
+  node["children"].push_back(child);
+}
+
+/// Removes the extension from the file's lists if no node has it any more.
+void LightmapGltf::forgetInstancing() {
+  for (const Json& node : document_.value("nodes", Json::array())) {
+    if (node.contains("extensions") && node["extensions"].contains(kGltfInstancing)) return;
+  }
+  for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
+    if (!document_.contains(list)) continue;
+    Json& names = document_[list];
+    for (std::size_t k = names.size(); k-- > 0;) {
+      if (names[k] == kGltfInstancing) names.erase(k);
+    }
+    if (names.empty()) document_.erase(list);
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <glm/mat4x4.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -15,9 +16,11 @@
 
 namespace radiosity {
 
+class GltfPlacement;
+
 /// Edits the file's own JSON, so that everything else in it stays. Meshes get coordinates, one mesh
-/// for each node. Vertices on the border of charts are split. A primitive whose backs have charts
-/// becomes two, one for each side.
+/// for each node; copies of a node (kGltfInstancing) become nodes below it. Vertices on the border
+/// of charts are split. A primitive whose backs have charts becomes two, one for each side.
 class LightmapGltf {
  public:
   using Json = nlohmann::ordered_json;
@@ -54,6 +57,13 @@ class LightmapGltf {
   void embedImages();
   void chooseSet();
   void addMeshes();
+  std::vector<Json> meshesOf(int number, const Json& given, const GltfPlacement& placement,
+                             const std::string& what, std::size_t& face);
+  Json primitivesOf(const tinygltf::Primitive& primitive, const Json& given,
+                    const GltfPlacement& placement, int number, const glm::dmat4& copy,
+                    const std::string& what, std::size_t& face);
+  void addCopy(int number, std::size_t mesh, const glm::dmat4& place);
+  void forgetInstancing();
   Json addPrimitives(const Json& given, const Placed& placed);
   void addCorner(Part& part, Index vertex, const LightmapTriangle* triangle, std::size_t k) const;
   Part partOf(const Placed& placed, int side) const;

@@ -13,7 +13,6 @@
 
 #include "base/file_name.h"
 #include "base/input_file.h"
-#include "scene/checks/checks.h"
 #include "scene/readers.h"
 #include "scene/text.h"
 
@@ -123,7 +122,6 @@ Scene loadScene(const std::string& path, const SceneOptions& options) {
   requireExtent(scene);
   noteTextures(scene);
   applyOverrides(scene, options);
-  if (std::optional<Note> white = whiteMaterials(scene)) scene.notes.push_back(std::move(*white));
   return scene;
 }
 

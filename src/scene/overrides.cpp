@@ -10,6 +10,7 @@
 
 #include "base/input_file.h"
 #include "base/parse.h"
+#include "scene/checks/checks.h"
 #include "scene/json_scan.h"
 #include "scene/scene_builder.h"
 #include "scene/surface_names.h"
@@ -284,6 +285,14 @@ void applySet(const std::string& text, Overrides& overrides) {
                         origin);
 }
 
+/// Notes materials of reflectance 1, unless an equal note is there already.
+void noteWhiteMaterials(Scene& scene) {
+  std::optional<Note> white = whiteMaterials(scene);
+  if (!white) return;
+  const auto isSame = [&](const Note& note) { return note.text == white->text; };
+  if (std::ranges::none_of(scene.notes, isSame)) scene.notes.push_back(std::move(*white));
+}
+
 }  // namespace
 
 void applyOverrides(Scene& scene, const SceneOptions& options) {
@@ -310,6 +319,7 @@ void applyOverrides(Scene& scene, const SceneOptions& options) {
     scene.notes = std::move(notes);
     throw;
   }
+  noteWhiteMaterials(scene);
 }
 
 }  // namespace radiosity

@@ -8,11 +8,13 @@
 #include <fstream>
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <vector>
 
 #include "radiosity/lightmap.h"
 #include "radiosity/results.h"
 #include "scene/gltf/gltf_file.h"
+#include "scene/gltf/gltf_placement.h"
 #include "support/lit_scene.h"
 #include "support/results_folder.h"
 #include "support/scene_builder.h"
@@ -283,6 +285,47 @@ TEST_F(LightmapGlb, ChartsDoNotShareVertices) {
   for (const auto& [name, accessor] : block.attributes) {
     EXPECT_EQ(baked.model.accessors[std::size_t(accessor)].count, 24u) << name;
   }
+}
+
+/// The lamp at four places: the floor's corners, as translations.
+TEST_F(LightmapGlb, CopiesOfANodeBecomeNodes) {
+  const std::string source = GltfWriter().write(folder_);
+  Json document;
+  std::ifstream(source) >> document;
+  const Json& floor = document["meshes"][0]["primitives"][0]["attributes"]["POSITION"];
+  document["nodes"][4]["extensions"] = {
+      {kGltfInstancing, {{"attributes", {{"TRANSLATION", floor}}}}}};
+  document["extensionsUsed"] = {kGltfInstancing};
+  document["extensionsRequired"] = {kGltfInstancing};
+  std::ofstream(source) << document;
+  bake(source);
+  const tinygltf::Node& lamp = baked.model.nodes[4];
+  EXPECT_EQ(lamp.mesh, -1);
+  EXPECT_TRUE(lamp.extensions.empty());
+  EXPECT_TRUE(baked.model.extensionsUsed.empty());
+  EXPECT_TRUE(baked.model.extensionsRequired.empty());
+  ASSERT_EQ(lamp.children.size(), 4u);
+  std::set<std::vector<double>> maps;
+  for (const int child : lamp.children) {
+    const int mesh = baked.model.nodes[std::size_t(child)].mesh;
+    const auto& primitives = baked.model.meshes[std::size_t(mesh)].primitives;
+    ASSERT_EQ(primitives.size(), 1u);
+    maps.insert(atCorners(baked, primitives[0], "TEXCOORD_1"));
+  }
+  EXPECT_EQ(maps.size(), 4u) << "each copy has a place in the map";
+  const auto ceiling = [](const Scene& scene) {
+    std::vector<std::array<double, 3>> corners;
+    for (std::size_t f = 0; f < scene.faceCount(); ++f) {
+      for (const Index v : scene.face(f)) {
+        const Vec3& at = scene.vertices[v];
+        if (std::abs(at.y - 2) < 1e-6) corners.push_back({at.x, at.y, at.z});
+      }
+    }
+    std::ranges::sort(corners);
+    return corners;
+  };
+  EXPECT_EQ(ceiling(loadScene(path("out/baked.glb"))), ceiling(lit->scene));
+  EXPECT_EQ(ceiling(lit->scene).size(), 24u);
 }
 
 TEST_F(LightmapGlb, OtherFilesGiveAPlainMesh) {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "radiosity/scene.h"
@@ -35,6 +36,24 @@ class SceneOverride : public SceneFiles {
   }
   std::string file_;
 };
+
+TEST_F(SceneOverride, NamesMaterialsThatBecomeWhiteOnce) {
+  Scene scene = loadWith({"lamp.001.reflectance=1"});
+  const auto whites = [&] {
+    return std::ranges::count_if(scene.notes, [](const Note& note) {
+      return note.text.starts_with("reflectance 1: absorbs no light");
+    });
+  };
+  EXPECT_EQ(whites(), 1);
+  SceneOptions later;
+  later.sky = Vec3(1);
+  applyOverrides(scene, later);
+  EXPECT_EQ(whites(), 1);
+  later.set = {"shelf.reflectance=1"};
+  applyOverrides(scene, later);
+  EXPECT_EQ(whites(), 2);
+  EXPECT_CONTAINS(scene.notes.back().text, "shelf");
+}
 
 TEST_F(SceneOverride, SetsAMaterialForAllItsSurfaces) {
   const Scene scene = loadWith({"white.reflectance=.2,.3,.4"});

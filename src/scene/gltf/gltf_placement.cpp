@@ -11,12 +11,6 @@
 
 namespace radiosity {
 
-namespace {
-
-constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
-
-}  // namespace
-
 GltfPlacement::GltfPlacement(const GltfFile& file)
     : file_(file), world_(file.model.nodes.size(), glm::dmat4(1.0)) {
   forEachGltfNode(file, [this](int node, const glm::dmat4& transform, const std::string&) {
@@ -25,10 +19,17 @@ GltfPlacement::GltfPlacement(const GltfFile& file)
 }
 
 std::vector<glm::dmat4> GltfPlacement::copies(int number, const std::string& what) const {
-  const tinygltf::Node& node = file_.model.nodes[std::size_t(number)];
   const glm::dmat4& own = world_[std::size_t(number)];
-  const auto extension = node.extensions.find(kInstancing);
-  if (extension == node.extensions.end()) return {own};
+  if (!file_.model.nodes[std::size_t(number)].extensions.contains(kGltfInstancing)) return {own};
+  std::vector<glm::dmat4> result = copiesInNode(number, what);
+  for (glm::dmat4& copy : result) copy = own * copy;
+  return result;
+}
+
+std::vector<glm::dmat4> GltfPlacement::copiesInNode(int number, const std::string& what) const {
+  const tinygltf::Node& node = file_.model.nodes[std::size_t(number)];
+  const auto extension = node.extensions.find(kGltfInstancing);
+  if (extension == node.extensions.end()) return {};
   const tinygltf::Value& attributes = extension->second.Get("attributes");
   std::size_t count = 0;
   const auto read = [&](const char* name, int components) -> std::vector<double> {
@@ -50,9 +51,9 @@ std::vector<glm::dmat4> GltfPlacement::copies(int number, const std::string& wha
   std::vector<glm::dmat4> result;
   result.reserve(count);
   for (std::size_t k = 0; k < count; ++k) {
-    result.push_back(own * gltfTransform(file_, move.empty() ? nullptr : &move[3 * k],
-                                         turn.empty() ? nullptr : &turn[4 * k],
-                                         scale.empty() ? nullptr : &scale[3 * k], what));
+    result.push_back(gltfTransform(file_, move.empty() ? nullptr : &move[3 * k],
+                                   turn.empty() ? nullptr : &turn[4 * k],
+                                   scale.empty() ? nullptr : &scale[3 * k], what));
   }
   return result;
 }

@@ -10,13 +10,18 @@
 
 namespace radiosity {
 
+/// The extension of nodes that have copies.
+inline constexpr const char* kGltfInstancing = "EXT_mesh_gpu_instancing";
+
 class GltfPlacement {
  public:
   /// Keeps a reference to the file. Errors: those of forEachGltfNode().
   explicit GltfPlacement(const GltfFile& file);
 
-  /// The transforms of the copies of a node (EXT_mesh_gpu_instancing), or its own alone.
+  /// The transforms of the copies of a node (kGltfInstancing), or its own alone.
   std::vector<glm::dmat4> copies(int node, const std::string& what) const;
+  /// The same relative to the node; empty if the node has no copies but itself.
+  std::vector<glm::dmat4> copiesInNode(int node, const std::string& what) const;
 
   /// The positions of a primitive's vertices in the world, all finite. `copy`: one of copies(). A
   /// skin is in the pose of its nodes (glTF 2.0, 3.7.3.3), and then the node's own transform does
