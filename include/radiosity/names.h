@@ -28,6 +28,9 @@ using NameTable = std::array<std::pair<Enum, std::string_view>, N>;
 inline constexpr NameTable<Severity, 3> kSeverityNames{
     {{Severity::info, "info"}, {Severity::warning, "warning"}, {Severity::loud, "loud"}}};
 inline constexpr NameTable<Up, 2> kUpNames{{{Up::y, "y"}, {Up::z, "z"}}};
+inline constexpr NameTable<VertexColours, 3> kVertexColoursNames{{{VertexColours::unused, "off"},
+                                                                  {VertexColours::linear, "linear"},
+                                                                  {VertexColours::srgb, "srgb"}}};
 inline constexpr NameTable<FormFactorMethod, 4> kMethodNames{
     {{FormFactorMethod::automatic, "auto"},
      {FormFactorMethod::exact, "exact"},

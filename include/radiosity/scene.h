@@ -112,11 +112,17 @@ Scene sceneOfTriangles(std::span<const Vec3> vertices,
 /// it; readers of files ensure the same.
 void validate(const Scene& scene);
 
+/// What the colours of vertices in a file mean. glTF says so itself (linear), other formats do not.
+enum class VertexColours { unused, linear, srgb };
+
 /// Options of reading a file. The defaults are those of the README.
 struct SceneOptions {
-  std::string unit;                    ///< mm|cm|m|in|ft; empty: the file's, else metres
-  bool kd_is_srgb = false;             ///< Kd and base colour of an OBJ are sRGB, linearise them
-  double default_reflectance = 0.5;    ///< of faces without a material; 0 to 1
+  std::string unit;                  ///< mm|cm|m|in|ft; empty: the file's, else metres
+  bool kd_is_srgb = false;           ///< Kd and base colour of an OBJ are sRGB, linearise them
+  double default_reflectance = 0.5;  ///< of faces without a material; 0 to 1
+  /// Of formats that do not say it: factors of the reflectance, or the reflectance itself of faces
+  /// without a material.
+  VertexColours vertex_colours = VertexColours::unused;
   bool textures = true;                ///< false: the material's factor alone
   double max_image = 100;              ///< largest texture, in millions of pixels; above 0
   std::vector<std::string> set;        ///< "NAME.PROPERTY=VALUE", see applyOverrides()

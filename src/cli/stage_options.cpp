@@ -40,6 +40,13 @@ void addSceneOptions(CLI::App& app, Request& r) {
                   defaults.default_reflectance))
       ->check(CLI::Number);
   reading(
+      "--vertex-colours",
+      [&r](const std::string& t) { r.scene.vertex_colours = named(kVertexColoursNames, t).value(); },
+      "off|linear|srgb",
+      "Multiply the reflectance by the colours of vertices, in linear or sRGB numbers; without a "
+      "material they are the reflectance (default off; glTF's are always used, linear)")
+      ->check(CLI::IsMember(namesIn(kVertexColoursNames)));
+  reading(
       "--textures", [&r](const std::string& t) { r.scene.textures = t == "on"; }, "on|off",
       "Average textures over each patch (on, default) or use the material's factor alone")
       ->check(CLI::IsMember({"on", "off"}));

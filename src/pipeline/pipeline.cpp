@@ -38,6 +38,7 @@ const char* readingOption(const SceneOptions& given) {
   if (!given.unit.empty()) return "--unit";
   if (given.kd_is_srgb != defaults.kd_is_srgb) return "--kd-is";
   if (given.default_reflectance != defaults.default_reflectance) return "--default-reflectance";
+  if (given.vertex_colours != defaults.vertex_colours) return "--vertex-colours";
   if (given.textures != defaults.textures) return "--textures";
   return nullptr;
 }

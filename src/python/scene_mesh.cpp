@@ -17,6 +17,7 @@ std::shared_ptr<Scene> load(const std::string& path, const py::dict& given) {
   take("unit", options.unit);
   take("kd_is_srgb", options.kd_is_srgb);
   take("default_reflectance", options.default_reflectance);
+  take.choice("vertex_colours", kVertexColoursNames, options.vertex_colours);
   take("textures", options.textures);
   take("set", options.set);
   take("materials_file", options.materials_file);

@@ -22,14 +22,24 @@ Index GroupedFaces::addVertex(const Vec3& place) {
   return Index(scene_.vertices.size() - 1);
 }
 
+Index GroupedFaces::addVertex(const Vec3& place, const Vec3& colour) {
+  colours_.push_back(colour);
+  return addVertex(place);
+}
+
 void GroupedFaces::addFace(std::span<const Index> corners, const std::string& group,
                            std::size_t element) {
   const auto [place, is_new] = surface_of_.try_emplace(group, kNone);
   if (is_new) {
     scene_.materials.push_back(defaultMaterial(group, options_));
+    if (!colours_.empty()) scene_.materials.back().reflectance = Vec3(1.0);
     place->second = builder_.surface(group, Index(scene_.materials.size() - 1));
   }
-  builder_.addFace(corners, {}, place->second, element);
+  corner_colours_.clear();
+  for (std::size_t k = 0; k < corners.size() && !colours_.empty(); ++k) {
+    corner_colours_.push_back(colours_[corners[k]]);
+  }
+  builder_.addFace(corners, {}, place->second, element, corner_colours_);
 }
 
 void GroupedFaces::addElement(const ElementShape& shape, std::span<const Index> nodes,
@@ -110,9 +120,7 @@ Scene GroupedFaces::finish(const std::string& cure) {
   std::vector<std::string> groups;
   groups.reserve(scene_.surfaces.size());
   for (const Surface& surface : scene_.surfaces) groups.push_back(surface.object);
-  scene_.notes.push_back(
-      {Severity::warning, fmt::format("no material, reflectance {}: {}",
-                                      options_.default_reflectance, joinNames(groups))});
+  scene_.notes.push_back(noMaterialNote(groups, !colours_.empty(), options_));
   noteElements();
   builder_.finish();
   return std::move(scene_);

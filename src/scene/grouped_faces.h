@@ -36,6 +36,8 @@ class GroupedFaces {
   /// Adds a vertex of finite coordinates, in file units. Errors: InputError if there are too many
   /// for an Index.
   Index addVertex(const Vec3& place);
+  /// The same with a colour, which is the reflectance there. All vertices have one, or none has.
+  Index addVertex(const Vec3& place, const Vec3& colour);
   /// `element`: the number of the face in the file, for Scene::face_element.
   void addFace(std::span<const Index> corners, const std::string& group, std::size_t element);
   /// The same for an element of any shape. Lines and points are left out; of curved faces only the
@@ -63,6 +65,8 @@ class GroupedFaces {
   Scene scene_;
   SceneBuilder builder_;
   std::map<std::string, Index> surface_of_;
+  std::vector<Vec3> colours_;         ///< of vertices, or empty
+  std::vector<Vec3> corner_colours_;  ///< of the present face
   std::size_t curved_ = 0;
   std::size_t volumes_ = 0;
   VolumeSkin skin_;  ///< used if there are no faces

@@ -121,6 +121,10 @@ Scene loadScene(const std::string& path, const SceneOptions& options) {
   convertToMetres(scene, options.unit);
   requireExtent(scene);
   noteTextures(scene);
+  if (options.vertex_colours != VertexColours::unused && scene.colours.empty()) {
+    scene.notes.push_back(
+        {Severity::warning, "--vertex-colours: no vertex has a colour that is read"});
+  }
   applyOverrides(scene, options);
   return scene;
 }

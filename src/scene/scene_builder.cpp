@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/srgb.h"
 #include "scene/text.h"
 
 namespace radiosity {
@@ -116,6 +117,26 @@ Material defaultMaterial(const std::string& name, const SceneOptions& options) {
   material.name = name;
   material.reflectance = Vec3(options.default_reflectance);
   return material;
+}
+
+std::optional<Vec3> factorOfColour(const Vec3& colour, VertexColours meaning) {
+  Vec3 factor = colour;
+  for (int band = 0; band < 3; ++band) {
+    if (!(colour[band] >= 0 && colour[band] <= 1)) return std::nullopt;
+    if (meaning == VertexColours::srgb) factor[band] = linearFromSrgb(colour[band]);
+  }
+  return factor;
+}
+
+Note noMaterialNote(const std::vector<std::string>& names, bool coloured,
+                    const SceneOptions& options) {
+  const std::string what =
+      coloured ? fmt::format(
+                     "no material; the colours of vertices are the reflectance, {} where "
+                     "there are none",
+                     options.default_reflectance)
+               : fmt::format("no material, reflectance {}", options.default_reflectance);
+  return {Severity::warning, what + ": " + joinNames(names)};
 }
 
 void replaceStandIn(Material& material, const std::string& name, const char* factor,

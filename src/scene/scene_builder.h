@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -75,6 +76,14 @@ inline bool isTextured(const Material& material) {
 
 /// A material `name` with the default reflectance.
 Material defaultMaterial(const std::string& name, const SceneOptions& options);
+
+/// The factor of the reflectance that a vertex's colour stands for. Empty if a number of it is
+/// outside 0 to 1, so that it stands for none.
+std::optional<Vec3> factorOfColour(const Vec3& colour, VertexColours meaning);
+
+/// The note that objects called `names` have no material. `coloured`: their vertices have colours.
+Note noMaterialNote(const std::vector<std::string>& names, bool coloured,
+                    const SceneOptions& options);
 
 /// Gives `material`, called `name`, the default reflectance in place of its `factor` ("Kd"), with a
 /// note. For a factor that only stands beside a texture, and the texture is not used: 1, which

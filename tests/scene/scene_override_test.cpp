@@ -52,7 +52,7 @@ TEST_F(SceneOverride, NamesMaterialsThatBecomeWhiteOnce) {
   later.set = {"shelf.reflectance=1"};
   applyOverrides(scene, later);
   EXPECT_EQ(whites(), 2);
-  EXPECT_CONTAINS(scene.notes.back().text, "shelf");
+  EXPECT_CONTAINS(scene.notes.back().text, "glow, white");
 }
 
 TEST_F(SceneOverride, SetsAMaterialForAllItsSurfaces) {

@@ -166,14 +166,16 @@ class Scene:
 
 
 def load(path: Union[str, "os.PathLike[str]"], *, unit: Optional[str] = None,
-         kd_is_srgb: bool = False, default_reflectance: float = 0.5, textures: bool = True,
+         kd_is_srgb: bool = False, default_reflectance: float = 0.5,
+         vertex_colours: str = "off", textures: bool = True,
          set: Union[str, Sequence[str]] = (),
          materials_file: Union[None, str, "os.PathLike[str]"] = None,
          one_sided: Union[str, Sequence[str]] = (), two_sided: Union[str, Sequence[str]] = (),
          sky: Any = None) -> Scene:
     """Reads a scene file, its format told by the extension (.obj, .glb, .stl, .msh, .ply, ...).
 
-    unit: mm, cm, m, in or ft (default metres). set: "NAME.PROPERTY=VALUE" each, with PROPERTY
+    unit: mm, cm, m, in or ft (default metres). vertex_colours: off, linear or srgb, how those of
+    formats that do not say it count as reflectance. set: "NAME.PROPERTY=VALUE" each, with PROPERTY
     reflectance, emission (W/m^2), radiance (W/m^2/sr) or tint. one_sided, two_sided: names of
     materials, objects or surfaces, or "all". Each of the three is a list, or one text. sky:
     radiance, W/m^2/sr, one number or three. The options are those of the command line. What was
@@ -188,6 +190,7 @@ def load(path: Union[str, "os.PathLike[str]"], *, unit: Optional[str] = None,
     """
     materials_path = None if materials_file is None else path_text("materials_file", materials_file)
     options = dict(unit=unit, kd_is_srgb=kd_is_srgb, default_reflectance=default_reflectance,
+                   vertex_colours=vertex_colours,
                    textures=textures, set=texts("set", set), materials_file=materials_path,
                    one_sided=texts("one_sided", one_sided), two_sided=texts("two_sided", two_sided),
                    sky=None if sky is None else _colour("sky", sky))

@@ -93,6 +93,7 @@ class AssimpReader {
   std::string objectName(const aiNode& node, const aiMesh& mesh) const;
   static double metresPerUnit(const aiScene& file);
   void addNodes(const aiScene& file);
+  std::vector<Vec3> coloursOf(const aiMesh& mesh, const std::string& object);
   void addMesh(const aiMesh& mesh, const aiNode& node, const aiMatrix4x4& place);
   Index twoSided(Index material);
   void addCameras(const aiNode& node, const aiMatrix4x4& place);
@@ -205,6 +206,32 @@ Index AssimpReader::twoSided(Index material) {
   return known->second;
 }
 
+/// Factors of the reflectance, one a vertex; empty if there are none, or if they are not used.
+std::vector<Vec3> AssimpReader::coloursOf(const aiMesh& mesh, const std::string& object) {
+  const aiColor4D* const given = mesh.mColors[0];
+  if (given == nullptr) return {};
+  if (options_.vertex_colours == VertexColours::unused) {
+    notes_.add(
+        "colours of vertices do not change the reflectance (--vertex-colours srgb or linear uses "
+        "them), in",
+        object, Severity::warning);
+    return {};
+  }
+  std::vector<Vec3> factors;
+  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+    const Vec3 colour(double(given[v].r), double(given[v].g), double(given[v].b));
+    const std::optional<Vec3> factor = factorOfColour(colour, options_.vertex_colours);
+    if (!factor) {
+      fail(
+          fmt::format("object {}: a colour of vertex {} is outside 0 to 1; scale it, or leave out "
+                      "--vertex-colours",
+                      object, v));
+    }
+    factors.push_back(*factor);
+  }
+  return factors;
+}
+
 void AssimpReader::addMesh(const aiMesh& mesh, const aiNode& node, const aiMatrix4x4& place) {
   const std::string object = objectName(node, mesh);
   const std::size_t first = scene_.vertices.size();
@@ -216,9 +243,7 @@ void AssimpReader::addMesh(const aiMesh& mesh, const aiNode& node, const aiMatri
       fail(fmt::format("object {}: a coordinate is not a finite number; export it again", object));
     }
   }
-  if (mesh.mColors[0] != nullptr) {
-    notes_.add("colours of vertices do not change the reflectance, in", object, Severity::warning);
-  }
+  const std::vector<Vec3> colours = coloursOf(mesh, object);
   const std::string_view marks = node.mName.C_Str();
   const bool mirrors = place.Determinant() < 0;
   const bool clockwise = marks.find(kX3dClockwise) != std::string_view::npos;
@@ -228,6 +253,7 @@ void AssimpReader::addMesh(const aiMesh& mesh, const aiNode& node, const aiMatri
   const aiVector3D* const texcoords = mesh.mTextureCoords[materials_[mesh.mMaterialIndex].set];
   std::vector<Index> corners;
   std::vector<Vec2> pairs;
+  std::vector<Vec3> factors;
   for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
     const aiFace& face = mesh.mFaces[f];
     if (face.mNumIndices < 3) {
@@ -236,9 +262,11 @@ void AssimpReader::addMesh(const aiMesh& mesh, const aiNode& node, const aiMatri
     }
     corners.clear();
     pairs.clear();
+    factors.clear();
     for (unsigned k = 0; k < face.mNumIndices; ++k) {
       const unsigned vertex = face.mIndices[mirrors != clockwise ? face.mNumIndices - 1 - k : k];
       corners.push_back(Index(first + vertex));
+      if (!colours.empty()) factors.push_back(colours[vertex]);
       if (texcoords == nullptr) continue;
       // Assimp's origin is the bottom left corner.
       pairs.emplace_back(double(texcoords[vertex].x), 1 - double(texcoords[vertex].y));
@@ -247,7 +275,7 @@ void AssimpReader::addMesh(const aiMesh& mesh, const aiNode& node, const aiMatri
                          object));
       }
     }
-    builder_.addFace(corners, pairs, surface, f);
+    builder_.addFace(corners, pairs, surface, f, factors);
   }
 }
 

@@ -311,6 +311,11 @@ Scene loadGltf(const std::string& path, const SceneOptions& options) {
     scene.notes.push_back(
         {Severity::warning, "sRGB base colours are an option for OBJ; glTF's are linear"});
   }
+  if (options.vertex_colours == VertexColours::srgb) {
+    scene.notes.push_back(
+        {Severity::warning,
+         "sRGB vertex colours are an option for other formats; glTF's are linear"});
+  }
   Reader(file, options, scene).read();
   return scene;
 }

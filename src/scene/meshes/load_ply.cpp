@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 
@@ -42,10 +44,40 @@ std::optional<NumberType> plyTypeNamed(std::string_view name) {
   return std::nullopt;
 }
 
+/// The band of a colour that a property has: 0, 1, 2; kNone for other properties.
+Index bandOf(const Property& property) {
+  constexpr std::string_view kBands[] = {"red", "green", "blue"};
+  const std::string name = lowerCase(property.name);
+  for (Index band = 0; band < 3 && !property.count; ++band) {
+    const std::string_view word = kBands[band];
+    if (name == word || name == word.substr(0, 1) || name == fmt::format("diffuse_{}", word)) {
+      return band;
+    }
+  }
+  return kNone;
+}
+
+/// The largest number of a property of a colour: 1 for fractions.
+double brightest(NumberType type) {
+  if (isFraction(type)) return 1;
+  const bool is_signed =
+      type == NumberType::i8 || type == NumberType::i16 || type == NumberType::i32;
+  return std::exp2(8 * double(sizeOf(type)) - (is_signed ? 1 : 0)) - 1;
+}
+
+bool hasColours(const PlyElement& element) {
+  std::array<bool, 3> found{};
+  for (const Property& property : element.properties) {
+    if (const Index band = bandOf(property); band != kNone) found[band] = true;
+  }
+  return found[0] && found[1] && found[2];
+}
+
 class PlyReader {
  public:
   PlyReader(const std::string& path, std::string_view content, const SceneOptions& options)
-      : cursor_(path, content),
+      : options_(options),
+        cursor_(path, content),
         faces_(path, options),
         stem_(std::filesystem::path(path).stem().string()) {}
 
@@ -80,7 +112,9 @@ class PlyReader {
   void passElement(const PlyElement& element);
   void pass(const Property& property);
   void noteColours();
+  Vec3 factorOf(const Vec3& colour, std::size_t vertex) const;
 
+  const SceneOptions& options_;
   MeshCursor cursor_;
   GroupedFaces faces_;
   std::string stem_;
@@ -150,18 +184,19 @@ void PlyReader::property(const std::vector<std::string_view>& words) {
   elements_.back().properties.push_back(std::move(property));
 }
 
-/// Notes that vertex colours are not used: they may be light, paint or labels, linear or not.
+/// Notes colours that are not used: they may be light, paint or labels, linear or not.
 void PlyReader::noteColours() {
   for (const PlyElement& element : elements_) {
-    for (const Property& property : element.properties) {
-      const std::string name = lowerCase(property.name);
-      if (name != "red" && name != "diffuse_red" && name != "r") continue;
-      faces_.scene().notes.push_back(
-          {Severity::info,
-           fmt::format("colours of each {} are not used: the format does not say what they mean; "
-                       "--set NAME.reflectance=R,G,B does",
-                       element.name)});
-    }
+    const bool of_vertices = element.name == "vertex";
+    if (!hasColours(element)) continue;
+    if (of_vertices && options_.vertex_colours != VertexColours::unused) continue;
+    faces_.scene().notes.push_back(
+        {Severity::info,
+         fmt::format(
+             "colours of each {} are not used: the format does not say what they mean; {} "
+             "does",
+             element.name,
+             of_vertices ? "--vertex-colours srgb or linear" : "--set NAME.reflectance=R,G,B")});
   }
 }
 
@@ -182,20 +217,39 @@ void PlyReader::vertices(const PlyElement& element) {
                                    [&](const Property& p) { return p.name == axis && !p.count; });
     if (!found) cursor_.fail(fmt::format("vertices have no {}; export the file again", axis));
   }
+  const bool coloured = options_.vertex_colours != VertexColours::unused && hasColours(element);
   for (std::size_t k = 0; k < element.count; ++k) {
     Vec3 place(0.0);
+    Vec3 colour(0.0);
     for (const Property& property : element.properties) {
       const std::size_t axis = property.name.size() == 1
                                    ? std::string_view("xyz").find(property.name)
                                    : std::string_view::npos;
-      if (axis == std::string_view::npos || property.count) {
-        pass(property);
-      } else {
+      if (axis != std::string_view::npos && !property.count) {
         place[int(axis)] = cursor_.number(property.type, "coordinate");
+      } else if (const Index band = bandOf(property); coloured && band != kNone) {
+        colour[int(band)] = cursor_.number(property.type, "colour") / brightest(property.type);
+      } else {
+        pass(property);
       }
     }
-    faces_.addVertex(place);
+    if (coloured) {
+      faces_.addVertex(place, factorOf(colour, k));
+    } else {
+      faces_.addVertex(place);
+    }
   }
+}
+
+Vec3 PlyReader::factorOf(const Vec3& colour, std::size_t vertex) const {
+  const std::optional<Vec3> factor = factorOfColour(colour, options_.vertex_colours);
+  if (!factor) {
+    cursor_.fail(
+        fmt::format("the colour of vertex {} is outside 0 to 1; scale it, or leave out "
+                    "--vertex-colours",
+                    vertex));
+  }
+  return *factor;
 }
 
 void PlyReader::faces(const PlyElement& element) {

@@ -28,15 +28,28 @@ std::vector<Vec2> faceTexcoords(const ObjScan& scan, std::size_t face) {
   return result;
 }
 
+/// Colours of a face's corners; empty if the file has none. Corners without one have no effect on
+/// a material; without a material they have the default reflectance.
+std::vector<Vec3> faceColours(const ObjScan& scan, std::size_t face, const SceneOptions& options) {
+  std::vector<Vec3> result;
+  if (scan.colours.empty()) return result;
+  const double none = scan.faces[face].material == kNone ? options.default_reflectance : 1.0;
+  for (std::size_t k = scan.face_offset[face]; k < scan.face_offset[face + 1]; ++k) {
+    const Vec3& colour = scan.colours[scan.corners[k]];
+    result.push_back(factorOfColour(colour, options.vertex_colours).value_or(Vec3(none)));
+  }
+  return result;
+}
+
 void addFaces(const ObjScan& scan, std::span<const Index> material_of, Index no_material,
-              SceneBuilder& builder) {
+              const SceneOptions& options, SceneBuilder& builder) {
   for (std::size_t f = 0; f < scan.faces.size(); ++f) {
     const ObjFace& face = scan.faces[f];
     const std::size_t first = scan.face_offset[f];
     const Index material = face.material == kNone ? no_material : material_of[face.material];
     builder.addFace(std::span(scan.corners).subspan(first, scan.face_offset[f + 1] - first),
                     faceTexcoords(scan, f), builder.surface(scan.objects[face.object], material),
-                    face.line);
+                    face.line, faceColours(scan, f, options));
   }
 }
 
@@ -52,15 +65,14 @@ Index addNoMaterial(const ObjScan& scan, const SceneOptions& options, Scene& sce
     if (bare[k]) names.push_back(scan.objects[k]);
   }
   if (names.empty()) return kNone;
-  scene.notes.push_back(
-      {Severity::warning, fmt::format("no material, reflectance {}: {}",
-                                      options.default_reflectance, joinNames(names))});
+  scene.notes.push_back(noMaterialNote(names, !scan.colours.empty(), options));
   std::string name = "default";
   while (std::any_of(scene.materials.begin(), scene.materials.end(),
                      [&](const Material& m) { return m.name == name; })) {
     name += "#none";
   }
   scene.materials.push_back(defaultMaterial(name, options));
+  if (!scan.colours.empty()) scene.materials.back().reflectance = Vec3(1.0);
   return Index(scene.materials.size() - 1);
 }
 
@@ -80,7 +92,8 @@ void noteInherited(const ObjScan& scan, std::span<const Index> material_of, Scen
 }  // namespace
 
 Scene loadObj(const std::string& path, const SceneOptions& options) {
-  const ObjScan scan = scanObj(path, readWholeFile(path));
+  const ObjScan scan =
+      scanObj(path, readWholeFile(path), options.vertex_colours != VertexColours::unused);
   Scene scene;
   scene.file = path;
   scene.notes = scan.notes;
@@ -90,7 +103,7 @@ Scene loadObj(const std::string& path, const SceneOptions& options) {
   noteInherited(scan, material_of, scene);
   const Index no_material = addNoMaterial(scan, options, scene);
   SceneBuilder builder(scene, options);
-  addFaces(scan, material_of, no_material, builder);
+  addFaces(scan, material_of, no_material, options, builder);
   builder.finish();
   return scene;
 }

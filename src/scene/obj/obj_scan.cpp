@@ -32,6 +32,9 @@ bool contains(const Names& names, std::string_view word) {
   return std::find(names.begin(), names.end(), word) != names.end();
 }
 
+/// Stands for the colour of a vertex that has none.
+const Vec3 kNoColour(std::numeric_limits<double>::quiet_NaN());
+
 /// One of the three lists to which a corner refers.
 struct Referenced {
   const char* what;
@@ -42,7 +45,8 @@ struct Referenced {
 
 class ObjScanner {
  public:
-  explicit ObjScanner(const std::string& file) : file_(file) {}
+  ObjScanner(const std::string& file, bool with_colours)
+      : file_(file), with_colours_(with_colours) {}
 
   void statement(std::size_t line, std::string_view text);
   ObjScan finish();
@@ -53,6 +57,7 @@ class ObjScanner {
   }
   void comment(std::string_view text);
   void numbers(Referenced& list, std::size_t least, std::size_t most, std::string_view meaning);
+  void colour(std::size_t count);
   void face();
   void corner(std::string_view word);
   Index index(std::string_view word, std::string_view corner, Referenced& list);
@@ -64,6 +69,7 @@ class ObjScanner {
   Index currentObject();
 
   const std::string& file_;
+  bool with_colours_;
   std::size_t line_ = 0;
   std::vector<std::string_view> words_;  ///< of the current statement
   Referenced vertices_{"vertex"};
@@ -146,13 +152,30 @@ void ObjScanner::numbers(Referenced& list, std::size_t least, std::size_t most,
   if (++list.count >= kNone) fail(fmt::format("more than {} of one kind; split the scene", kNone));
   if (&list == &vertices_) {
     scan_.vertices.push_back(value);
-    if (count >= 6 && coloured_ != name_) {
-      coloured_ = name_;
-      ignored_.add("colours of vertices are not used: the format does not say what they mean, in",
-                   name_);
-    }
+    if (count >= 6) colour(count);
   }
   if (&list == &texcoords_) scan_.texcoords.emplace_back(value);
+}
+
+/// The last three numbers of the present vertex.
+void ObjScanner::colour(std::size_t count) {
+  if (!with_colours_) {
+    if (coloured_ == name_) return;
+    coloured_ = name_;
+    return ignored_.add(
+        "colours of vertices are not used, since the format does not say what they mean "
+        "(--vertex-colours srgb or linear does), in",
+        name_);
+  }
+  Vec3 value{0.0};
+  for (std::size_t k = 0; k < 3; ++k) {
+    value[int(k)] = parseNumber(words_[count - 2 + k]).value_or(-1);
+    if (value[int(k)] >= 0 && value[int(k)] <= 1) continue;
+    fail(fmt::format("the colour {} is outside 0 to 1; scale it, or leave out --vertex-colours",
+                     words_[count - 2 + k]));
+  }
+  scan_.colours.resize(scan_.vertices.size(), kNoColour);
+  scan_.colours.back() = value;
 }
 
 void ObjScanner::face() {
@@ -282,6 +305,7 @@ ObjScan ObjScanner::finish() {
     throw InputError(fmt::format(
         "{}: no faces (no `f` lines); export the scene with its meshes as polygons", file_));
   }
+  if (!scan_.colours.empty()) scan_.colours.resize(scan_.vertices.size(), kNoColour);
   ignored_.appendTo(scan_.notes);
   return std::move(scan_);
 }
@@ -315,11 +339,11 @@ void forEachStatement(std::string_view text,
   }
 }
 
-ObjScan scanObj(const std::string& file, std::string_view text) {
+ObjScan scanObj(const std::string& file, std::string_view text, bool with_colours) {
   if (text.find('\0') != std::string_view::npos) {
     throw InputError(file + ": is not a text file; export it as Wavefront OBJ");
   }
-  ObjScanner scanner(file);
+  ObjScanner scanner(file, with_colours);
   forEachStatement(text, [&](std::size_t line, std::string_view s) { scanner.statement(line, s); });
   return scanner.finish();
 }

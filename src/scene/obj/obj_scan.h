@@ -29,6 +29,7 @@ struct ObjFace {
 struct ObjScan {
   std::vector<Vec3> vertices;                  ///< file units, correctly rounded
   std::vector<Vec2> texcoords;                 ///< as written: v grows upwards; NaN: no number
+  std::vector<Vec3> colours;                   ///< of vertices, as written; NaN: has none; or empty
   std::vector<ObjFace> faces;                  ///< F, in file order
   std::vector<std::size_t> face_offset = {0};  ///< F + 1, into the two below
   std::vector<Index> corners;                  ///< into vertices
@@ -43,7 +44,8 @@ struct ObjScan {
   std::vector<Note> notes;
 };
 
-/// Errors: InputError "FILE:LINE: what is wrong; cure".
-ObjScan scanObj(const std::string& file, std::string_view text);
+/// Errors: InputError "FILE:LINE: what is wrong; cure", also for colours outside 0 to 1. Without
+/// `with_colours`, those of vertices are noted and left out.
+ObjScan scanObj(const std::string& file, std::string_view text, bool with_colours);
 
 }  // namespace radiosity
