@@ -41,7 +41,9 @@ void addSceneOptions(CLI::App& app, Request& r) {
       ->check(CLI::Number);
   reading(
       "--vertex-colours",
-      [&r](const std::string& t) { r.scene.vertex_colours = named(kVertexColoursNames, t).value(); },
+      [&r](const std::string& t) {
+        r.scene.vertex_colours = named(kVertexColoursNames, t).value();
+      },
       "off|linear|srgb",
       "Multiply the reflectance by the colours of vertices, in linear or sRGB numbers; without a "
       "material they are the reflectance (default off; glTF's are always used, linear)")

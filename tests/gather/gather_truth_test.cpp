@@ -139,9 +139,10 @@ TEST(GatherTruth, SeesThePointValueAndNotTheAreaValue) {
 }
 
 TEST(ErrorsOthersMake, PixelWeightsAreFormFactors) {
-  // Normalised, each of these sums to 1 over all pixels; the top face alone tells them apart. It is
-  // worth its configuration factor from the middle of a facing square of side 2 at distance 1:
-  // 0.554139 (Howell B-3, four corners of side 1 each 0.138531605994893).
+  // Wrong weights (z / r^2 for z / r^4, or pixels counted) sum to 1 over all pixels, too, if they
+  // are normalised; the top face alone tells them apart: by 5% and 40%. It is worth its
+  // configuration factor from the middle of a facing square of side 2 at distance 1: 0.554139
+  // (Howell B-3, four corners of side 1 each 0.138531605994893).
   constexpr double kTop = 4 * 0.138531605994893;
   constexpr int kResolution = 128;
   const DeltaFormFactors weights(kResolution);
@@ -149,27 +150,6 @@ TEST(ErrorsOthersMake, PixelWeightsAreFormFactors) {
   for (int y = 0; y < kResolution; ++y)
     top += weights.topRow(y)[kResolution] - weights.topRow(y)[0];
   EXPECT_NEAR(top, kTop, 1e-9);
-  double square = 0;      // 1 / r^2 for 1 / r^4 ...
-  double square_all = 0;  // ... and z / r^2 for z / r^4
-  double corners = 0;     // pixel corners for centres
-  const double step = 2.0 / kResolution;
-  for (int i = 0; i < kResolution; ++i) {
-    for (int j = 0; j < kResolution; ++j) {
-      const double x = -1 + (i + 0.5) * step;
-      const double y = -1 + (j + 0.5) * step;
-      square += step * step / (x * x + y * y + 1);
-      const double at_corner =
-          (x - step / 2) * (x - step / 2) + (y - step / 2) * (y - step / 2) + 1;
-      corners += step * step / (std::numbers::pi * at_corner * at_corner);
-      const double z = (j + 0.5) * step / 2;
-      square_all += 4 * step * step / 2 * z / (x * x + z * z + 1);
-    }
-  }
-  const double inverse_square = square / (square + square_all);
-  const double counted = 1.0 / 3;
-  EXPECT_GT(std::abs(inverse_square / kTop - 1), 0.05) << inverse_square;
-  EXPECT_GT(std::abs(counted / kTop - 1), 0.35);
-  EXPECT_GT(std::abs(corners - kTop), 1e-6) << "corners err to first order at the rim";
 }
 
 TEST(ErrorsOthersMake, TheUnitOfLengthChangesNoBit) {
