@@ -35,11 +35,11 @@ constexpr std::array kFormats = {
     Format{".vtp", loadVtkXml, Up::z}, Format{".vtu", loadVtkXml, Up::z},
     Format{".dae", loadAssimp},        Format{".fbx", loadAssimp},
     Format{".3ds", loadAssimp},        Format{".x3d", loadAssimp},
-    Format{".ifc", loadAssimp},        Format{".off", loadOff},
-    Format{".3mf", load3mf, Up::z},    Format{".ac", loadAssimp},
-    Format{".acc", loadAssimp},        Format{".lwo", loadAssimp},
-    Format{".dxf", loadAssimp, Up::z}, Format{".ms3d", loadAssimp},
-    Format{".b3d", loadAssimp},
+    Format{".wrl", loadAssimp},        Format{".ifc", loadAssimp},
+    Format{".off", loadOff},           Format{".3mf", load3mf, Up::z},
+    Format{".ac", loadAssimp},         Format{".acc", loadAssimp},
+    Format{".lwo", loadAssimp},        Format{".dxf", loadAssimp, Up::z},
+    Format{".ms3d", loadAssimp},       Format{".b3d", loadAssimp},
 };
 
 Scene readByExtension(const std::string& path, const SceneOptions& options) {

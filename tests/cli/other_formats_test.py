@@ -291,6 +291,9 @@ class OtherFormats(CliTest):
         outer = '<X3D><Scene><Transform translation="5 0 0"><Inline url="inner.x3d"/></Transform></Scene></X3D>'
         surface, _ = self.only_surface("a.x3d", outer)
         self.assertEqual(surface["area_m2"], 1)
+        # The first of several places counts.
+        several = outer.replace('"inner.x3d"', """'"inner.x3d" "http://b/inner.x3d"'""")
+        self.assertEqual(self.only_surface("a.x3d", several)[0]["area_m2"], 1)
         self.says(": is in itself (Inline); take the reference out", "a.x3d", outer.replace("inner", "a"))
         self.assertEqual(self.refuse("info", self.put("a.x3d", outer.replace("inner", "gone"))),
                          "radiosity: gone.x3d: no such file; check the name and the folder")

@@ -1,5 +1,5 @@
-// Reads Collada, FBX, 3DS, X3D, IFC, AC3D, LightWave, DXF, MilkShape and Blitz3D by Assimp. Nodes
-// are objects.
+// Reads Collada, FBX, 3DS, X3D, VRML, IFC, AC3D, LightWave, DXF, MilkShape and Blitz3D by Assimp.
+// Nodes are objects.
 #include <assimp/ColladaMetaData.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
@@ -25,6 +25,7 @@
 #include "scene/assimp/assimp_library.h"
 #include "scene/assimp/assimp_materials.h"
 #include "scene/assimp/collada_cameras.h"
+#include "scene/assimp/vrml_document.h"
 #include "scene/assimp/x3d_document.h"
 #include "scene/assimp/xml_preflight.h"
 #include "scene/mesh_cursor.h"
@@ -46,8 +47,11 @@ class AssimpReader {
   Scene read() {
     const std::string extension = lowerExtension(scene_.file);
     if (extension == ".dae") collada_.emplace(checkXml(scene_.file), notes_);
+    const bool is_vrml = extension == ".wrl";
     AssimpFiles rewritten([this](const std::string& path) { return rewrittenX3d(path); });
-    const File file = import(extension == ".x3d" ? rewritten.io() : nullptr);
+    const File file = is_vrml               ? import(scene_.file + ".x3d", rewritten.io())
+                      : extension == ".x3d" ? import(scene_.file, rewritten.io())
+                                            : import(scene_.file, nullptr);
     if (file == nullptr || file->mRootNode == nullptr) {
       rewritten.rethrow();
       const std::string why = library_.getErrorString();
@@ -88,7 +92,7 @@ class AssimpReader {
 
   using File = std::unique_ptr<const aiScene, void (*)(const aiScene*)>;
 
-  File import(aiFileIO* files) const;
+  File import(const std::string& path, aiFileIO* files) const;
   std::string rewrittenX3d(const std::string& path);
   std::string objectName(const aiNode& node, const aiMesh& mesh) const;
   static double metresPerUnit(const aiScene& file);
@@ -112,7 +116,7 @@ class AssimpReader {
   std::map<Index, Index> two_sided_;  ///< by material: the same for both sides
 };
 
-AssimpReader::File AssimpReader::import(aiFileIO* files) const {
+AssimpReader::File AssimpReader::import(const std::string& path, aiFileIO* files) const {
   const std::unique_ptr<aiPropertyStore, void (*)(aiPropertyStore*)> wishes(
       library_.createPropertyStore(), library_.releasePropertyStore);
   // We want the names that people gave, not ids.
@@ -120,18 +124,21 @@ AssimpReader::File AssimpReader::import(aiFileIO* files) const {
   // Assimp must not add octahedra for nodes if a file has no meshes.
   library_.setImportPropertyInteger(wishes.get(), AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
   return {library_.importFileExWithProperties(
-              scene_.file.c_str(), aiProcess_ValidateDataStructure | aiProcess_TransformUVCoords,
-              files, wishes.get()),
+              path.c_str(), aiProcess_ValidateDataStructure | aiProcess_TransformUVCoords, files,
+              wishes.get()),
           library_.releaseImport};
 }
 
-/// The rewritten X3D. Of a file inside another (Inline) only the shapes count.
+/// The rewritten X3D, or VRML as X3D. Of a file inside another (Inline) only the shapes count.
 std::string AssimpReader::rewrittenX3d(const std::string& path) {
   if (lowerExtension(path) != ".x3d") return readWholeFile(path);
-  pugi::xml_document document = checkXml(path);
+  const std::string vrml = path.substr(0, path.size() - std::string_view(".x3d").size());
+  const bool is_vrml = lowerExtension(vrml) == ".wrl";
+  pugi::xml_document document = is_vrml ? readVrml(vrml, notes_) : checkXml(path);
   if (document.empty()) return readWholeFile(path);
+  if (is_vrml) checkXml(vrml, document);
   X3dExtras extras = rewriteX3d(document, notes_);
-  if (path == scene_.file) x3d_ = std::move(extras);
+  if ((is_vrml ? vrml : path) == scene_.file) x3d_ = std::move(extras);
   std::ostringstream out;
   document.save(out, "", pugi::format_raw);
   return out.str();

@@ -15,6 +15,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/file_name.h"
+
 namespace radiosity {
 
 namespace {
@@ -65,6 +67,26 @@ std::array<double, N> numbers(const pugi::xml_node& element, const char* name,
     at = end;
   }
   return out;
+}
+
+/// The end of the string at the start of `list`, behind its quote.
+std::size_t endOfString(std::string_view list) {
+  std::size_t end = 1;
+  while (end < list.size() && list[end] != '"') end += list[end] == '\\' ? 2 : 1;
+  return std::min(end + 1, list.size());
+}
+
+/// Keeps the first of the places from which an element may be read: Assimp takes the list of them
+/// for one. A VRML file gets .x3d at its end, by which Assimp chooses its reader.
+void keepFirstUrls(pugi::xml_node element) {
+  for (const pugi::xml_node child : element.children()) keepFirstUrls(child);
+  pugi::xml_attribute attribute = element.attribute("url");
+  if (!attribute) return;
+  std::string_view list = attribute.value();
+  list.remove_prefix(std::min(list.find_first_not_of(" ,\t\r\n"), list.size()));
+  std::string url = withoutQuotes(list.starts_with('"') ? list.substr(0, endOfString(list)) : list);
+  if (std::strcmp(element.name(), "Inline") == 0 && lowerExtension(url) == ".wrl") url += ".x3d";
+  attribute.set_value(url.c_str());
 }
 
 Vec3 vectorOf(const pugi::xml_node& element, const char* name, double otherwise) {
@@ -139,6 +161,7 @@ class Rewriter {
   explicit Rewriter(FeatureNotes& notes) : notes_(notes) {}
 
   X3dExtras run(pugi::xml_node root) {
+    keepFirstUrls(root);
     collectNames(root);
     copyUses(root);
     for (const pugi::xml_node unit : root.child("head").children("unit")) {
@@ -260,6 +283,16 @@ class Rewriter {
 };
 
 }  // namespace
+
+std::string withoutQuotes(std::string_view text) {
+  if (!text.starts_with('"')) return std::string(text);
+  std::string result;
+  for (std::size_t k = 1; k < text.size() && text[k] != '"'; ++k) {
+    if (text[k] == '\\' && k + 1 < text.size()) ++k;
+    result += text[k];
+  }
+  return result;
+}
 
 X3dExtras rewriteX3d(pugi::xml_document& document, FeatureNotes& notes) {
   return Rewriter(notes).run(document.document_element());

@@ -22,12 +22,15 @@ struct X3dExtras {
   std::vector<Camera> viewpoints;  ///< in units; the angle is the vertical one
 };
 
+/// The string that stands at the start of `text` in quotes, or the whole text.
+std::string withoutQuotes(std::string_view text);
+
 /// Rewrites the elements in place. USE becomes a copy of the named element. Anchor, Billboard,
 /// Collision, CAD nodes and layers become Group, and LOD becomes its finest level. A shape with a
 /// name, with solid="false" or with ccw="false" gets a Group that says so, and one without
 /// Appearance gets an empty one. Cone and Cylinder, whose faces Assimp turns both ways, become an
-/// IndexedFaceSet of 32 sides. Notes parts that Assimp does not read. `document` must have passed
-/// checkXml(). ISO/IEC 19775-1 and 19776-1.
+/// IndexedFaceSet of 32 sides. Of a list of places the first stays. Notes parts that Assimp does
+/// not read. `document` must have passed checkXml(). ISO/IEC 19775-1 and 19776-1.
 X3dExtras rewriteX3d(pugi::xml_document& document, FeatureNotes& notes);
 
 }  // namespace radiosity

@@ -123,8 +123,12 @@ pugi::xml_document checkXml(const std::string& path) {
   pugi::xml_document document;
   // If the file is not XML, Assimp will say so: it has the same parser.
   if (!document.load_buffer(content.data(), content.size())) return {};
-  References(path).check(document.document_element());
+  checkXml(path, document);
   return document;
+}
+
+void checkXml(const std::string& path, const pugi::xml_document& document) {
+  References(path).check(document.document_element());
 }
 
 }  // namespace radiosity

@@ -13,4 +13,7 @@ namespace radiosity {
 /// elements; and for corners of Collada that are not numbers.
 pugi::xml_document checkXml(const std::string& path);
 
+/// The same checks of a document that was made of the file `path`.
+void checkXml(const std::string& path, const pugi::xml_document& document);
+
 }  // namespace radiosity
