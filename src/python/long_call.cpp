@@ -114,6 +114,7 @@ class Worker {
 /// The workers without a call: at most as many as there were calls at once.
 class IdleWorkers {
  public:
+  ~IdleWorkers() { forgetThoseOfTheParent(); }
   std::unique_ptr<Worker> take() {
     const std::lock_guard lock(mutex_);
     forgetThoseOfTheParent();

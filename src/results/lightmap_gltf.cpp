@@ -109,16 +109,17 @@ void LightmapGltf::addMeshes() {
     if (node.mesh < 0) return;
     const auto m = std::size_t(node.mesh);
     const std::vector<glm::dmat4> places = placement.copiesInNode(number, what);
-    std::size_t copy = 0;
+    std::vector<std::size_t> indices;
     for (Json& mesh : meshesOf(number, given[m], placement, what, face)) {
       const std::size_t index = used[m] ? document_["meshes"].size() : m;
       used[m] = true;
       document_["meshes"][index] = std::move(mesh);
-      if (places.empty()) {
-        document_["nodes"][std::size_t(number)]["mesh"] = index;
-      } else {
-        addCopy(number, index, places[copy++]);
-      }
+      indices.push_back(index);
+    }
+    if (node.extensions.contains(kGltfInstancing)) {
+      addCopies(number, indices, places);
+    } else {
+      document_["nodes"][std::size_t(number)]["mesh"] = indices[0];
     }
   });
   if (face != scene_.faceCount()) {
@@ -174,20 +175,29 @@ LightmapGltf::Json LightmapGltf::primitivesOf(const tinygltf::Primitive& primiti
   return addPrimitives(given, placed);
 }
 
-/// Makes a copy of a node one of its children.
-void LightmapGltf::addCopy(int number, std::size_t mesh, const glm::dmat4& place) {
-  Json matrix = Json::array();
-  for (int column = 0; column < 4; ++column) {
-    for (int row = 0; row < 4; ++row) matrix.push_back(place[column][row]);
-  }
+/// Makes the copies of a node its children, with what belongs to a mesh.
+void LightmapGltf::addCopies(int number, std::span<const std::size_t> meshes,
+                             std::span<const glm::dmat4> places) {
   Json& nodes = document_["nodes"];
-  const std::size_t child = nodes.size();
-  nodes.push_back({{"mesh", mesh}, {"matrix", std::move(matrix)}});
-  Json& node = nodes[std::size_t(number)];
-  node.erase("mesh");
-  if (node.contains("extensions")) node["extensions"].erase(kGltfInstancing);
-  if (node.contains("extensions") && node["extensions"].empty()) node.erase("extensions");
-  node["children"].push_back(child);
+  Json node = nodes[std::size_t(number)];
+  for (std::size_t copy = 0; copy < meshes.size(); ++copy) {
+    Json matrix = Json::array();
+    for (int column = 0; column < 4; ++column) {
+      for (int row = 0; row < 4; ++row) matrix.push_back(places[copy][column][row]);
+    }
+    Json child = {{"mesh", meshes[copy]}, {"matrix", std::move(matrix)}};
+    for (const char* of_mesh : {"name", "skin", "weights"}) {
+      if (nodes[std::size_t(number)].contains(of_mesh)) {
+        child[of_mesh] = nodes[std::size_t(number)][of_mesh];
+      }
+    }
+    node["children"].push_back(nodes.size());
+    nodes.push_back(std::move(child));
+  }
+  for (const char* of_mesh : {"mesh", "skin", "weights"}) node.erase(of_mesh);
+  node["extensions"].erase(kGltfInstancing);
+  if (node["extensions"].empty()) node.erase("extensions");
+  nodes[std::size_t(number)] = std::move(node);
 }
 
 /// Removes the extension from the file's lists if no node has it any more.

@@ -62,7 +62,8 @@ class LightmapGltf {
   Json primitivesOf(const tinygltf::Primitive& primitive, const Json& given,
                     const GltfPlacement& placement, int number, const glm::dmat4& copy,
                     const std::string& what, std::size_t& face);
-  void addCopy(int number, std::size_t mesh, const glm::dmat4& place);
+  void addCopies(int number, std::span<const std::size_t> meshes,
+                 std::span<const glm::dmat4> places);
   void forgetInstancing();
   Json addPrimitives(const Json& given, const Placed& placed);
   void addCorner(Part& part, Index vertex, const LightmapTriangle* triangle, std::size_t k) const;

@@ -131,10 +131,7 @@ std::optional<Vec3> factorOfColour(const Vec3& colour, VertexColours meaning) {
 Note noMaterialNote(const std::vector<std::string>& names, bool coloured,
                     const SceneOptions& options) {
   const std::string what =
-      coloured ? fmt::format(
-                     "no material; the colours of vertices are the reflectance, {} where "
-                     "there are none",
-                     options.default_reflectance)
+      coloured ? "no material; the colours of vertices are the reflectance"
                : fmt::format("no material, reflectance {}", options.default_reflectance);
   return {Severity::warning, what + ": " + joinNames(names)};
 }

@@ -286,6 +286,16 @@ class OtherFormats(CliTest):
         np.testing.assert_allclose(np.array(camera["target_m"].split(", "), float), [2, 0, 1], atol=1e-6)
         self.assertAlmostEqual(float(camera["fov_deg"]), math.degrees(.5), 3)
 
+    def test_x3d_groups_without_shapes(self):
+        """Assimp crashes at empty groups, and fails at sets without corners and at unknown elements."""
+        for empty in ["<Group/>", "<Transform><Group> </Group></Transform>", '<Group DEF="g"/><Group USE="g"/>',
+                      "<Switch/>", "<Anchor/>", "<Group><Shape><Text/></Shape></Group>", "<Unknown/>",
+                      "<Shape><IndexedFaceSet><Coordinate/></IndexedFaceSet></Shape>"]:
+            with self.subTest(empty=empty):
+                surface, _ = self.only_surface("a.x3d", X3D.replace("</Scene>", empty + "</Scene>"))
+                self.assertEqual([surface["name"], surface["area_m2"]], ["wall/material 0", 1])
+                self.assertIn(": no faces", self.refuse("info", self.put("a.x3d", f"<X3D><Scene>{empty}</Scene></X3D>")))
+
     def test_x3d_inline(self):
         self.put("inner.x3d", X3D)
         outer = '<X3D><Scene><Transform translation="5 0 0"><Inline url="inner.x3d"/></Transform></Scene></X3D>'

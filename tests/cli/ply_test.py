@@ -42,6 +42,20 @@ class Ply(CliTest):
         self.put(HEAD + BODY)
         self.assertEqual(self.areas(), {"material_index 5": .5, "material_index 6": .5})
 
+    def test_an_element_is_there_once(self):
+        self.says(":9: there are two elements called vertex; export it again", """ply
+format ascii 1.0
+element vertex 3
+property float x
+property float y
+property float z
+element face 1
+property list uchar int vertex_indices
+element vertex 1
+property uchar red
+end_header
+""")
+
     def test_a_file_without_groups_is_one_surface_named_after_it(self):
         text = (HEAD + BODY).replace("property int material_index\n", "").replace(" 5\n", "\n").replace(" 6\n", "\n")
         self.put(text, "north wall.ply")

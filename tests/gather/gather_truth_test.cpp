@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "formfactor/hemicube/delta_form_factors.h"
 #include "gather_scenes.h"

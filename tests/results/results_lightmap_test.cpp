@@ -295,12 +295,16 @@ TEST_F(LightmapGlb, CopiesOfANodeBecomeNodes) {
   const Json& floor = document["meshes"][0]["primitives"][0]["attributes"]["POSITION"];
   document["nodes"][4]["extensions"] = {
       {kGltfInstancing, {{"attributes", {{"TRANSLATION", floor}}}}}};
+  // The node's weights, which move the lamp's corners, go with its copies.
+  document["meshes"][2]["primitives"][0]["targets"] = {{{"POSITION", floor}}};
+  document["nodes"][4]["weights"] = {0.5};
   document["extensionsUsed"] = {kGltfInstancing};
   document["extensionsRequired"] = {kGltfInstancing};
   std::ofstream(source) << document;
   bake(source);
   const tinygltf::Node& lamp = baked.model.nodes[4];
   EXPECT_EQ(lamp.mesh, -1);
+  EXPECT_TRUE(lamp.weights.empty());
   EXPECT_TRUE(lamp.extensions.empty());
   EXPECT_TRUE(baked.model.extensionsUsed.empty());
   EXPECT_TRUE(baked.model.extensionsRequired.empty());
@@ -308,6 +312,7 @@ TEST_F(LightmapGlb, CopiesOfANodeBecomeNodes) {
   std::set<std::vector<double>> maps;
   for (const int child : lamp.children) {
     const int mesh = baked.model.nodes[std::size_t(child)].mesh;
+    EXPECT_EQ(baked.model.nodes[std::size_t(child)].name, "Lamp");
     const auto& primitives = baked.model.meshes[std::size_t(mesh)].primitives;
     ASSERT_EQ(primitives.size(), 1u);
     maps.insert(atCorners(baked, primitives[0], "TEXCOORD_1"));

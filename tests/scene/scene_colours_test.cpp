@@ -114,11 +114,22 @@ TEST_F(SceneColours, OfOtherFormatsMultiplyTheMaterial) {
   EXPECT_NOTE(plain.notes, "colours of vertices do not change the reflectance", Severity::warning);
 }
 
+TEST_F(SceneColours, OfOtherFormatsAreTheReflectanceWithoutAMaterial) {
+  std::string collada = kCollada;
+  const std::size_t materials = collada.find("<library_effects>");
+  collada.erase(materials, collada.find("<library_geometries>") - materials);
+  const Scene scene = load("a.dae", collada, VertexColours::linear);
+  EXPECT_EQ(scene.colours, std::vector<Vec3>(3, Vec3(0.25, 0.5, 1)));
+  EXPECT_EQ(scene.materialOf(0).reflectance, Vec3(1.0));
+}
+
 TEST_F(SceneColours, OutsideTheRangeAreRefused) {
   EXPECT_CONTAINS(errorOf("a.ply", ply("float", {"0 0 0", "0 128 0", "0 0 0"})),
                   "the colour of vertex 1 is outside 0 to 1; scale it");
   EXPECT_CONTAINS(errorOf("a.obj", "v 0 0 0 0 0 128\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
                   "a.obj:1: the colour 128 is outside 0 to 1; scale it");
+  EXPECT_CONTAINS(errorOf("b.obj", "v 0 0 0 1 0 0 1\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+                  "b.obj:1: a vertex with a colour has 6 numbers, not 7");
   std::string collada = kCollada;
   collada.replace(collada.find("0.25 0.5 1 "), 10, "-.25 0.5 1");
   EXPECT_CONTAINS(errorOf("a.dae", collada), "a colour of vertex 0 is outside 0 to 1; scale it");

@@ -257,7 +257,8 @@ class Rounds {
         squares += squareOf(k) * std::pow(growth, -kUsualOrder);
       }
     }
-    if (raysOf(rays) > aim_.most_rays) std::fill(rays.begin(), rays.end(), 0);
+    // Rows that have the most rays already may keep it from its aim; others would cast in vain.
+    if (squares > allowed || raysOf(rays) > aim_.most_rays) std::fill(rays.begin(), rays.end(), 0);
     return rays;
   }
   /// The rays that bring s_k / n_k down to a level; 0 if the row has as many.

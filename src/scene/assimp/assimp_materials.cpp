@@ -30,7 +30,7 @@ class AssimpMaterialReader {
     for (unsigned m = 0; m < file_.mNumMaterials; ++m) {
       const Material material = convert(*file_.mMaterials[m], m);
       const Index index = added(material);
-      all.push_back({index, set_});
+      all.push_back({index, set_, has_colour_});
     }
     return all;
   }
@@ -51,7 +51,8 @@ class AssimpMaterialReader {
   UniqueNames names_;
   std::map<std::pair<std::string, bool>, LoadedTexture> texture_of_;  ///< by name, repeat
   std::map<std::string, std::vector<Index>> added_;                   ///< by the name in the file
-  unsigned set_ = 0;  ///< of texture coordinates, of the present material
+  unsigned set_ = 0;         ///< of texture coordinates, of the present material
+  bool has_colour_ = false;  ///< the present material
 };
 
 // We write out keys of materials, since AI_MATKEY macros expand to three arguments at once.
@@ -65,6 +66,7 @@ Vec3 AssimpMaterialReader::colour(const aiMaterial& given, const char* key,
 
 Material AssimpMaterialReader::convert(const aiMaterial& given, unsigned number) {
   set_ = 0;
+  has_colour_ = false;
   aiString text;
   std::string name;
   if (library_.getMaterialString(&given, AI_MATKEY_NAME, &text) == AI_SUCCESS) name = text.C_Str();
@@ -72,6 +74,8 @@ Material AssimpMaterialReader::convert(const aiMaterial& given, unsigned number)
   if (name == AI_DEFAULT_MATERIAL_NAME) return defaultMaterial("default", options_);
   if (name.empty()) name = fmt::format("material {}", number);
   Material material = defaultMaterial(name, options_);
+  aiColor4D diffuse;
+  has_colour_ = library_.getMaterialColor(&given, "$clr.diffuse", 0, 0, &diffuse) == AI_SUCCESS;
   material.reflectance = colour(given, "$clr.diffuse", material.reflectance);
   const Vec3 radiance = colour(given, "$clr.emissive", Vec3(0.0));
   checkReflectance(scene_.file, material.name, material.reflectance);

@@ -12,8 +12,9 @@ namespace radiosity {
 
 /// A material of the file in the scene.
 struct AssimpMaterial {
-  Index index;   ///< into Scene::materials
-  unsigned set;  ///< the set of texture coordinates for its texture
+  Index index;      ///< into Scene::materials
+  unsigned set;     ///< the set of texture coordinates for its texture
+  bool has_colour;  ///< false: its reflectance is the default
 };
 
 /// Adds all materials to `scene` and returns the scene's material of each, in the file's order.

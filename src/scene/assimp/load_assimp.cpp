@@ -87,7 +87,11 @@ class AssimpReader {
   }
 
   [[noreturn]] void failWithoutFaces() const {
-    fail("no faces; export the scene with its meshes as polygons");
+    std::vector<Note> left_out;  // of other formats the notes are about parts that are read
+    const std::string extension = lowerExtension(scene_.file);
+    if (extension == ".x3d" || extension == ".wrl") notes_.appendTo(left_out);
+    fail(fmt::format("no faces{}; export the scene with its meshes as polygons",
+                     left_out.empty() ? "" : " (" + left_out.front().text + ")"));
   }
 
   using File = std::unique_ptr<const aiScene, void (*)(const aiScene*)>;
@@ -100,6 +104,7 @@ class AssimpReader {
   std::vector<Vec3> coloursOf(const aiMesh& mesh, const std::string& object);
   void addMesh(const aiMesh& mesh, const aiNode& node, const aiMatrix4x4& place);
   Index twoSided(Index material);
+  Index colouredByVertices(Index material);
   void addCameras(const aiNode& node, const aiMatrix4x4& place);
   void addCamera(Camera camera, const Vec3& forward);
 
@@ -114,6 +119,7 @@ class AssimpReader {
   std::optional<ColladaCameras> collada_;                  ///< replaces camera_of_
   X3dExtras x3d_;
   std::map<Index, Index> two_sided_;  ///< by material: the same for both sides
+  std::map<Index, Index> coloured_;   ///< by material: the same for colours of vertices
 };
 
 AssimpReader::File AssimpReader::import(const std::string& path, aiFileIO* files) const {
@@ -213,6 +219,18 @@ Index AssimpReader::twoSided(Index material) {
   return known->second;
 }
 
+/// The same for a material without a colour: those of vertices are the reflectance.
+Index AssimpReader::colouredByVertices(Index material) {
+  const auto [known, is_new] = coloured_.emplace(material, Index(scene_.materials.size()));
+  if (is_new) {
+    Material coloured = scene_.materials[material];
+    coloured.name += " (vertex colours)";
+    coloured.reflectance = Vec3(1.0);
+    scene_.materials.push_back(std::move(coloured));
+  }
+  return known->second;
+}
+
 /// Factors of the reflectance, one a vertex; empty if there are none, or if they are not used.
 std::vector<Vec3> AssimpReader::coloursOf(const aiMesh& mesh, const std::string& object) {
   const aiColor4D* const given = mesh.mColors[0];
@@ -255,6 +273,9 @@ void AssimpReader::addMesh(const aiMesh& mesh, const aiNode& node, const aiMatri
   const bool mirrors = place.Determinant() < 0;
   const bool clockwise = marks.find(kX3dClockwise) != std::string_view::npos;
   Index material = materials_[mesh.mMaterialIndex].index;
+  if (!colours.empty() && !materials_[mesh.mMaterialIndex].has_colour) {
+    material = colouredByVertices(material);
+  }
   if (marks.starts_with(kX3dTwoSided)) material = twoSided(material);
   const Index surface = builder_.surface(object, material);
   const aiVector3D* const texcoords = mesh.mTextureCoords[materials_[mesh.mMaterialIndex].set];

@@ -210,7 +210,7 @@ class Rewriter {
 
   void rewrite(pugi::xml_node parent, pugi::xml_node element, const glm::dmat4& place,
                const std::string& name) {
-    const std::string_view kind = element.name();
+    const std::string kind = element.name();  // outlives set_name()
     const std::string own = element.attribute("DEF").value();
     const std::string& called = own.empty() ? name : own;
     if (kind == "Viewpoint") return addViewpoint(element, place, called);
@@ -230,12 +230,22 @@ class Rewriter {
       const bool holds_shapes = element.find_node(
           [](const pugi::xml_node& below) { return std::strcmp(below.name(), "Shape") == 0; });
       if (holds_shapes || kind == "ProtoInstance") {
-        notes_.add("elements of X3D that are not read, and what is in them", std::string(kind),
+        notes_.add("elements of X3D that are not read, and what is in them", kind,
                    Severity::warning);
       }
+      // Assimp counts lights, and fails at elements that X3D does not have.
+      if (!kind.ends_with("Light")) parent.remove_child(element);
       return;
     }
     rewriteChildren(element, place * transformOf(element), called);
+    if (kind != "Inline" && !hasElements(element)) parent.remove_child(element);
+  }
+
+  /// Assimp crashes at groups that have none.
+  static bool hasElements(const pugi::xml_node& group) {
+    return std::ranges::any_of(group.children(), [](const pugi::xml_node& child) {
+      return child.type() == pugi::node_element;
+    });
   }
 
   void rewriteShape(pugi::xml_node parent, pugi::xml_node shape, const std::string& name) {
@@ -249,8 +259,11 @@ class Rewriter {
         if (!child.attribute("solid").as_bool(true)) marks += kX3dTwoSided;
         if (!child.attribute("ccw").as_bool(true)) marks += kX3dClockwise;
         if (kind == "Cone" || kind == "Cylinder") replaceRound(shape, child);
+        if (kind.starts_with("Indexed") && isEmptySet(child)) return noteEmpty(parent, shape, name);
       } else if (!kBesideGeometry.contains(kind)) {
         notes_.add("shapes of X3D that are not read", std::string(kind), Severity::warning);
+        parent.remove_child(shape);
+        return;
       }
     }
     if (!shape.child("Appearance")) shape.prepend_child("Appearance");
@@ -258,6 +271,18 @@ class Rewriter {
     pugi::xml_node group = parent.insert_child_before("Group", shape);
     group.append_attribute("DEF") = (marks + name).c_str();
     group.append_move(shape);
+  }
+
+  /// Whether a set has no corners, at which Assimp fails.
+  static bool isEmptySet(const pugi::xml_node& set) {
+    const char* const name = set.attribute("coordIndex") ? "coordIndex" : "index";
+    const std::string_view corners = set.attribute(name).value();
+    return corners.find_first_not_of(" ,\t\r\n") == std::string_view::npos;
+  }
+
+  void noteEmpty(pugi::xml_node parent, pugi::xml_node shape, const std::string& name) {
+    notes_.add("shapes without corners are left out", name.empty() ? "without a name" : name);
+    parent.remove_child(shape);
   }
 
   void addViewpoint(const pugi::xml_node& element, const glm::dmat4& place,

@@ -23,6 +23,7 @@ struct Property {
   std::string name;
   NumberType type;
   std::optional<NumberType> count;  ///< type of the length of a list
+  Index band = kNone;               ///< of a colour: 0, 1, 2
 };
 
 struct PlyElement {
@@ -44,11 +45,11 @@ std::optional<NumberType> plyTypeNamed(std::string_view name) {
   return std::nullopt;
 }
 
-/// The band of a colour that a property has: 0, 1, 2; kNone for other properties.
-Index bandOf(const Property& property) {
+/// The band of a colour that a property of this name has; kNone for other names.
+Index bandNamed(const std::string& property) {
   constexpr std::string_view kBands[] = {"red", "green", "blue"};
-  const std::string name = lowerCase(property.name);
-  for (Index band = 0; band < 3 && !property.count; ++band) {
+  const std::string name = lowerCase(property);
+  for (Index band = 0; band < 3; ++band) {
     const std::string_view word = kBands[band];
     if (name == word || name == word.substr(0, 1) || name == fmt::format("diffuse_{}", word)) {
       return band;
@@ -68,7 +69,7 @@ double brightest(NumberType type) {
 bool hasColours(const PlyElement& element) {
   std::array<bool, 3> found{};
   for (const Property& property : element.properties) {
-    if (const Index band = bandOf(property); band != kNone) found[band] = true;
+    if (property.band != kNone) found[property.band] = true;
   }
   return found[0] && found[1] && found[2];
 }
@@ -153,6 +154,11 @@ void PlyReader::headerLine(const std::vector<std::string_view>& words) {
     if (words[1] == "tristrips") {
       cursor_.fail("strips of triangles are not read; export the faces one by one");
     }
+    const bool is_second = std::ranges::any_of(
+        elements_, [&](const PlyElement& before) { return before.name == words[1]; });
+    if (is_second) {
+      cursor_.fail(fmt::format("there are two elements called {}; export it again", words[1]));
+    }
     elements_.push_back({std::string(words[1]), std::size_t(*count), {}});
   } else if (keyword == "property" && words.size() >= 3 && !elements_.empty()) {
     property(words);
@@ -175,8 +181,11 @@ void PlyReader::property(const std::vector<std::string_view>& words) {
   if (words.size() != (is_list ? 5U : 3U)) {
     cursor_.fail("a property is `TYPE NAME` or `list TYPE TYPE NAME`; export the file again");
   }
-  Property property{std::string(words.back()), typeNamed(words[words.size() - 2]), std::nullopt};
-  if (!is_list) return elements_.back().properties.push_back(std::move(property));
+  Property property{std::string(words.back()), typeNamed(words[words.size() - 2]), {}, kNone};
+  if (!is_list) {
+    property.band = bandNamed(property.name);
+    return elements_.back().properties.push_back(std::move(property));
+  }
   property.count = typeNamed(words[2]);
   if (isFraction(typeNamed(words[2]))) {
     cursor_.fail("the length of a list is a whole number; export the file again");
@@ -227,8 +236,9 @@ void PlyReader::vertices(const PlyElement& element) {
                                    : std::string_view::npos;
       if (axis != std::string_view::npos && !property.count) {
         place[int(axis)] = cursor_.number(property.type, "coordinate");
-      } else if (const Index band = bandOf(property); coloured && band != kNone) {
-        colour[int(band)] = cursor_.number(property.type, "colour") / brightest(property.type);
+      } else if (coloured && property.band != kNone) {
+        colour[int(property.band)] =
+            cursor_.number(property.type, "colour") / brightest(property.type);
       } else {
         pass(property);
       }

@@ -157,7 +157,7 @@ void ObjScanner::numbers(Referenced& list, std::size_t least, std::size_t most,
   if (&list == &texcoords_) scan_.texcoords.emplace_back(value);
 }
 
-/// The last three numbers of the present vertex.
+/// Three numbers after the coordinates of the present vertex.
 void ObjScanner::colour(std::size_t count) {
   if (!with_colours_) {
     if (coloured_ == name_) return;
@@ -167,12 +167,18 @@ void ObjScanner::colour(std::size_t count) {
         "(--vertex-colours srgb or linear does), in",
         name_);
   }
+  if (count != 6) {
+    fail(
+        fmt::format("a vertex with a colour has 6 numbers, not {}; correct the line, or leave out "
+                    "--vertex-colours",
+                    count));
+  }
   Vec3 value{0.0};
   for (std::size_t k = 0; k < 3; ++k) {
-    value[int(k)] = parseNumber(words_[count - 2 + k]).value_or(-1);
+    value[int(k)] = parseNumber(words_[4 + k]).value_or(-1);
     if (value[int(k)] >= 0 && value[int(k)] <= 1) continue;
     fail(fmt::format("the colour {} is outside 0 to 1; scale it, or leave out --vertex-colours",
-                     words_[count - 2 + k]));
+                     words_[4 + k]));
   }
   scan_.colours.resize(scan_.vertices.size(), kNoColour);
   scan_.colours.back() = value;
