@@ -287,10 +287,11 @@ class OtherFormats(CliTest):
         self.assertAlmostEqual(float(camera["fov_deg"]), math.degrees(.5), 3)
 
     def test_x3d_groups_without_shapes(self):
-        """Assimp crashes at empty groups, and fails at sets without corners and at unknown elements."""
+        """Assimp crashes at empty groups and names, and fails at sets without corners and at unknown elements."""
         for empty in ["<Group/>", "<Transform><Group> </Group></Transform>", '<Group DEF="g"/><Group USE="g"/>',
-                      "<Switch/>", "<Anchor/>", "<Group><Shape><Text/></Shape></Group>", "<Unknown/>",
-                      "<Shape><IndexedFaceSet><Coordinate/></IndexedFaceSet></Shape>"]:
+                      "<Switch/>", "<Anchor/>", '<Group DEF=""><Shape DEF="" USE=""/></Group>', "<Group><Shape><Text/></Shape></Group>", "<Unknown/>",
+                      "<Shape><IndexedFaceSet><Coordinate/></IndexedFaceSet></Shape>",
+                      '<Shape><IndexedFaceSet coordIndex="0 1 2 -1"><Color color="1 0 0"/></IndexedFaceSet></Shape>']:
             with self.subTest(empty=empty):
                 surface, _ = self.only_surface("a.x3d", X3D.replace("</Scene>", empty + "</Scene>"))
                 self.assertEqual([surface["name"], surface["area_m2"]], ["wall/material 0", 1])

@@ -76,10 +76,14 @@ std::size_t endOfString(std::string_view list) {
   return std::min(end + 1, list.size());
 }
 
-/// Keeps the first of the places from which an element may be read: Assimp takes the list of them
-/// for one. A VRML file gets .x3d at its end, by which Assimp chooses its reader.
-void keepFirstUrls(pugi::xml_node element) {
-  for (const pugi::xml_node child : element.children()) keepFirstUrls(child);
+/// Repairs what Assimp gets wrong in the attributes of all elements. It crashes at empty names. Of
+/// the places from which an element may be read the first is kept, since it takes the list of them
+/// for one; a VRML file gets .x3d at its end, by which Assimp chooses its reader.
+void repairAttributes(pugi::xml_node element) {
+  for (const pugi::xml_node child : element.children()) repairAttributes(child);
+  for (const char* name : {"DEF", "USE"}) {
+    if (*element.attribute(name).value() == '\0') element.remove_attribute(name);
+  }
   pugi::xml_attribute attribute = element.attribute("url");
   if (!attribute) return;
   std::string_view list = attribute.value();
@@ -161,7 +165,7 @@ class Rewriter {
   explicit Rewriter(FeatureNotes& notes) : notes_(notes) {}
 
   X3dExtras run(pugi::xml_node root) {
-    keepFirstUrls(root);
+    repairAttributes(root);
     collectNames(root);
     copyUses(root);
     for (const pugi::xml_node unit : root.child("head").children("unit")) {
@@ -259,7 +263,7 @@ class Rewriter {
         if (!child.attribute("solid").as_bool(true)) marks += kX3dTwoSided;
         if (!child.attribute("ccw").as_bool(true)) marks += kX3dClockwise;
         if (kind == "Cone" || kind == "Cylinder") replaceRound(shape, child);
-        if (kind.starts_with("Indexed") && isEmptySet(child)) return noteEmpty(parent, shape, name);
+        if (kind.ends_with("Set") && isEmptySet(child)) return noteEmpty(parent, shape, name);
       } else if (!kBesideGeometry.contains(kind)) {
         notes_.add("shapes of X3D that are not read", std::string(kind), Severity::warning);
         parent.remove_child(shape);
@@ -273,8 +277,10 @@ class Rewriter {
     group.append_move(shape);
   }
 
-  /// Whether a set has no corners, at which Assimp fails.
+  /// Whether a set has no corners: Assimp fails or, with colours and no coordinates, crashes.
   static bool isEmptySet(const pugi::xml_node& set) {
+    if (!set.child("Coordinate")) return true;
+    if (!std::string_view(set.name()).starts_with("Indexed")) return false;
     const char* const name = set.attribute("coordIndex") ? "coordIndex" : "index";
     const std::string_view corners = set.attribute(name).value();
     return corners.find_first_not_of(" ,\t\r\n") == std::string_view::npos;
