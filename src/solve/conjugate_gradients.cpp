@@ -107,7 +107,14 @@ class ConjugateGradients {
     convergence_.record(convergence_.history().back());
     coarse_ = roomDots(up_, image_);
     const Sums whole = roomDots(up_, up_);
+    const auto emission = asArray(system_.emission, system_.bands);
+    const Sums lit = roomDots(emission, emission);
     for (std::size_t k = 0; k < coarse_.size(); ++k) {
+      // A dark room stays dark, also a white one whose rows sum to a rounding more than 1.
+      if (!(lit[k] > 0)) {
+        coarse_[k] = 0;
+        continue;
+      }
       if (coarse_[k] < -kNothingLeft * whole[k]) indefinite_ = true;
       coarse_[k] = coarse_[k] > kNothingLeft * whole[k] ? 1 / coarse_[k] : 0.0;
     }

@@ -848,10 +848,14 @@ TEST(TwoSided, ALoneConvexBoxIsSeenFromInside) {
   bothWays(b.scene(), [&](const Built& built) {
     EXPECT_EQ(polygonsOf(built, box), 6u);
     EXPECT_EQ(built.report.hidden_sides, 6u);
+    EXPECT_TRUE(hasNote(built, "closed, two-sided and alone, so it is a room"));
     for (const CoarsePolygon& p : built.complex.polygons) {
       EXPECT_LT(glm::dot(p.normal, built.complex.vertices[p.loops[0][0]]), 0);
     }
   });
+  const Index body = b.surface("body");
+  b.box(body, {2, 0, 0}, {3, 1, 1});
+  bothWays(b.scene(), [](const Built& built) { EXPECT_FALSE(hasNote(built, "so it is a room")); });
 }
 
 /// A room with a turned block, a lamp, a cylinder: something of everything.

@@ -54,6 +54,25 @@ TEST(BrightWalls, TakeAboutADozenSweeps) {
   }
 }
 
+// The inside of a white body that nothing lights, whose rows sum to a rounding more than 1.
+TEST(BrightWalls, OfADarkRoomAreLeftOut) {
+  const std::size_t n = 200;
+  auto [f, area] = rooms(n, 0);
+  f.bottomRightCorner(n / 2, n / 2) *= 1 + 1e-7;
+  std::vector<double> emission(n, 0.0);
+  emission[3] = 1;
+  std::vector<double> reflectance(n, 0.9);
+  std::fill(reflectance.begin() + n / 2, reflectance.end(), 1.0);
+  const auto expected = test::direct(f, reflectance, emission, 1);
+  Progress quiet;
+  const Solution s = solve(test::symmetricFactorsFrom(f, area), reflectance, emission, 1,
+                           test::options(Solver::cg, 1e-8), quiet);
+  ASSERT_EQ(s.summary.status, SolveStatus::converged) << s.summary.message;
+  // A residual of 1e-8 over 1 - rho.
+  EXPECT_LE(test::largestDifference(s.radiosity, expected), 1e-7);
+  for (std::size_t i = n / 2; i < n; ++i) EXPECT_EQ(s.radiosity[i], 0);
+}
+
 // No wall absorbs, one opening lets light out: the spectral radius is 1 but for the opening.
 TEST(BrightWalls, OfReflectanceOneConvergeThroughAnOpening) {
   const std::size_t n = 200;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "mesh/bodies/bodies.h"
+#include "scene/text.h"
 
 namespace radiosity {
 
@@ -45,6 +46,7 @@ class Classifier {
 
   void run(Index cell, std::vector<VisibleCell>& out);
   void writeNotes();
+  void noteLoneRoom();
 
  private:
   std::vector<Layer> layersOf(const PlaneCell& cell) const;
@@ -171,7 +173,20 @@ void Classifier::run(Index number, std::vector<VisibleCell>& out) {
   }
 }
 
+/// A two-sided body that is all there is could be meant to be seen from outside.
+void Classifier::noteLoneRoom() {
+  if (components_.list.size() != 1 || bodies_.rooms().empty()) return;
+  std::set<std::string> names;
+  for (const Sheet& sheet : sheets_) names.insert(scene_.surfaces[sheet.surface].name);
+  report_.notes.push_back(
+      {scene_.sky == Vec3(0.0) ? Severity::info : Severity::warning,
+       fmt::format("closed, two-sided and alone, so it is a room, and its outside has no patches "
+                   "(--one-sided all makes a body of it, if its faces are turned outward): {}",
+                   joinNames(std::vector<std::string>(names.begin(), names.end())))});
+}
+
 void Classifier::writeNotes() {
+  noteLoneRoom();
   std::set<std::string> emitters;
   for (const Surface& surface : scene_.surfaces) {
     if (scene_.materials[surface.material].emission != Vec3(0.0)) emitters.insert(surface.name);
