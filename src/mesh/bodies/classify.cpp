@@ -46,9 +46,9 @@ class Classifier {
 
   void run(Index cell, std::vector<VisibleCell>& out);
   void writeNotes();
-  void noteLoneRoom();
 
  private:
+  void noteLoneRoom();
   std::vector<Layer> layersOf(const PlaneCell& cell) const;
   bool seesNothing(Index cell, Side side) const;
   void dropContacts(Index cell, std::vector<Layer>& layers) const;

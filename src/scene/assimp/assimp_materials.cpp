@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "base/srgb.h"
@@ -38,7 +39,7 @@ class AssimpMaterialReader {
  private:
   Material convert(const aiMaterial& given, unsigned number);
   Index added(Material material);
-  Vec3 colour(const aiMaterial& given, const char* key, const Vec3& otherwise) const;
+  std::optional<Vec3> colour(const aiMaterial& given, const char* key) const;
   Index texture(const aiMaterial& given, const std::string& material);
   LoadedTexture& loaded(const std::string& name, bool repeat);
   TextureResult readImage(const std::string& name);
@@ -57,11 +58,10 @@ class AssimpMaterialReader {
 
 // We write out keys of materials, since AI_MATKEY macros expand to three arguments at once.
 
-Vec3 AssimpMaterialReader::colour(const aiMaterial& given, const char* key,
-                                  const Vec3& otherwise) const {
+std::optional<Vec3> AssimpMaterialReader::colour(const aiMaterial& given, const char* key) const {
   aiColor4D found;
-  if (library_.getMaterialColor(&given, key, 0, 0, &found) != AI_SUCCESS) return otherwise;
-  return {double(found.r), double(found.g), double(found.b)};
+  if (library_.getMaterialColor(&given, key, 0, 0, &found) != AI_SUCCESS) return std::nullopt;
+  return Vec3(double(found.r), double(found.g), double(found.b));
 }
 
 Material AssimpMaterialReader::convert(const aiMaterial& given, unsigned number) {
@@ -74,10 +74,10 @@ Material AssimpMaterialReader::convert(const aiMaterial& given, unsigned number)
   if (name == AI_DEFAULT_MATERIAL_NAME) return defaultMaterial("default", options_);
   if (name.empty()) name = fmt::format("material {}", number);
   Material material = defaultMaterial(name, options_);
-  aiColor4D diffuse;
-  has_colour_ = library_.getMaterialColor(&given, "$clr.diffuse", 0, 0, &diffuse) == AI_SUCCESS;
-  material.reflectance = colour(given, "$clr.diffuse", material.reflectance);
-  const Vec3 radiance = colour(given, "$clr.emissive", Vec3(0.0));
+  const std::optional<Vec3> diffuse = colour(given, "$clr.diffuse");
+  has_colour_ = diffuse.has_value();
+  material.reflectance = diffuse.value_or(material.reflectance);
+  const Vec3 radiance = colour(given, "$clr.emissive").value_or(Vec3(0.0));
   checkReflectance(scene_.file, material.name, material.reflectance);
   checkEmission(scene_.file, material.name, radiance);
   if (options_.kd_is_srgb) {

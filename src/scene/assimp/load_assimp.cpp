@@ -10,6 +10,7 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <map>
 #include <memory>
@@ -105,6 +106,8 @@ class AssimpReader {
   void addMesh(const aiMesh& mesh, const aiNode& node, const aiMatrix4x4& place);
   Index twoSided(Index material);
   Index colouredByVertices(Index material);
+  Index variant(std::map<Index, Index>& known, Index material, const char* mark,
+                const std::function<void(Material&)>& change);
   void addCameras(const aiNode& node, const aiMatrix4x4& place);
   void addCamera(Camera camera, const Vec3& forward);
 
@@ -209,26 +212,27 @@ void AssimpReader::addNodes(const aiScene& file) {
 
 Index AssimpReader::twoSided(Index material) {
   if (scene_.materials[material].two_sided) return material;
-  const auto [known, is_new] = two_sided_.emplace(material, Index(scene_.materials.size()));
-  if (is_new) {
-    Material both = scene_.materials[material];
-    both.name += " (two-sided)";
-    both.two_sided = true;
-    scene_.materials.push_back(std::move(both));
-  }
-  return known->second;
+  const auto turn = [](Material& both) { both.two_sided = true; };
+  return variant(two_sided_, material, " (two-sided)", turn);
 }
 
 /// The same for a material without a colour: those of vertices are the reflectance.
 Index AssimpReader::colouredByVertices(Index material) {
-  const auto [known, is_new] = coloured_.emplace(material, Index(scene_.materials.size()));
+  const auto whiten = [](Material& coloured) { coloured.reflectance = Vec3(1.0); };
+  return variant(coloured_, material, " (vertex colours)", whiten);
+}
+
+/// A changed copy of a material, made once; `known`: those made so far.
+Index AssimpReader::variant(std::map<Index, Index>& known, Index material, const char* mark,
+                            const std::function<void(Material&)>& change) {
+  const auto [place, is_new] = known.emplace(material, Index(scene_.materials.size()));
   if (is_new) {
-    Material coloured = scene_.materials[material];
-    coloured.name += " (vertex colours)";
-    coloured.reflectance = Vec3(1.0);
-    scene_.materials.push_back(std::move(coloured));
+    Material copy = scene_.materials[material];
+    copy.name += mark;
+    change(copy);
+    scene_.materials.push_back(std::move(copy));
   }
-  return known->second;
+  return place->second;
 }
 
 /// Factors of the reflectance, one a vertex; empty if there are none, or if they are not used.
