@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <tuple>
 
 #include "arrays.h"
 #include "handles.h"
@@ -14,12 +16,18 @@
 namespace radiosity::python {
 namespace {
 
-/// `reflectance`, `emission`: (rows, bands); a row is a patch of the mesh or a row of the matrix.
+/// Up to this number of rows the longest step of a solve, the direct solver's factorization of the
+/// matrix, takes less than half a second.
+constexpr std::size_t kShortStepRows = 1200;
+
+/// Reflectance and emission, (rows, bands), and the sky's radiance. A row is a patch of the mesh or
+/// a row of the matrix.
+using GivenMaterials = std::tuple<Array<double>, Array<double>, std::vector<double>>;
+
+/// `given_materials`: empty: those of the scene, which the mesh has.
 std::shared_ptr<SolutionHandle> solveLight(std::shared_ptr<FactorsHandle> factors,
-                                           const Array<double>& reflectance,
-                                           const Array<double>& emission,
-                                           const std::vector<double>& sky, const py::dict& given,
-                                           const py::object& report) {
+                                           const std::optional<GivenMaterials>& given_materials,
+                                           const py::dict& given, const py::object& report) {
   SolveOptions options;
   const KeywordOptions take(given);
   take.choice("solver", kSolverNames, options.solver);
@@ -28,13 +36,19 @@ std::shared_ptr<SolutionHandle> solveLight(std::shared_ptr<FactorsHandle> factor
   options.validate();
   auto handle = std::make_shared<SolutionHandle>();
   handle->factors = std::move(factors);
-  PatchMaterials& materials = handle->materials;
-  materials = {int(emission.shape(1)), vectorOf(reflectance), vectorOf(emission), sky};
   const FactorsHandle& of = *handle->factors;
-  runLong(report, [&](Progress& progress) {
+  PatchMaterials& materials = handle->materials;
+  if (given_materials) {
+    const auto& [reflectance, emission, sky] = *given_materials;
+    materials = {int(emission.shape(1)), vectorOf(reflectance), vectorOf(emission), sky};
+  } else {
+    materials = of.mesh->materials;
+  }
+  const bool short_steps = of.factors.matrix.size() <= kShortStepRows;
+  (short_steps ? runShortSteps : runLong)(report, [&](Progress& progress) {
     if (!of.mesh) {
       handle->solution = solve(of.factors, materials.reflectance, materials.emission,
-                               materials.bands, options, progress, {}, {}, sky);
+                               materials.bands, options, progress, {}, {}, materials.sky);
       return;
     }
     handle->solution = solve(of.factors, materials, of.mesh->result.mesh, options, progress);
@@ -260,6 +274,7 @@ void bindLight(py::module_& module) {
   light_rows("reflectance", [](const S& s) -> const auto& { return s.materials.reflectance; });
   light_rows("emission", [](const S& s) -> const auto& { return s.materials.emission; });
   solution.def_property_readonly("summary", [](const S& s) { return dictOf(s.solution.summary); });
+  solution.def_property_readonly("usable", [](const S& s) { return s.solution.summary.usable(); });
   solution.def_property_readonly(
       "form_factors", [](const S& s) { return std::const_pointer_cast<FactorsHandle>(s.factors); });
 

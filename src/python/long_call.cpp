@@ -198,6 +198,47 @@ void handleSignals() {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
 
+/// Looks for signals at the steps of work on the calling thread.
+class LookingProgress : public WatchedProgress {
+ public:
+  explicit LookingProgress(const py::object& report) : report_(report) {}
+  void begin(const std::string& stage, std::size_t total, const std::string& steps,
+             std::size_t done) override {
+    WatchedProgress::begin(stage, total, steps, done);
+    look();
+  }
+  void advance(std::size_t steps) override {
+    WatchedProgress::advance(steps);
+    look();
+  }
+  /// Throws the error of Python that ended the work, if one did; call it with Python's lock.
+  void rethrow() {
+    if (raised_) throw py::error_already_set(std::move(*raised_));
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void look() {
+    const Clock::time_point now = Clock::now();
+    if (std::this_thread::get_id() != caller_ || raised_ || now < next_) return;
+    next_ = now + kBetweenLooks;
+    const py::gil_scoped_acquire locked;
+    try {
+      handleSignals();
+      if (!report_.is_none()) tell(report_);
+    } catch (const py::error_already_set& error) {
+      raised_.emplace(error);
+      cancel();
+    }
+  }
+
+  const py::object& report_;
+  std::thread::id caller_ = std::this_thread::get_id();
+  Clock::time_point next_ = Clock::now() + kBetweenLooks;
+  std::optional<py::error_already_set> raised_;
+};
+
 }  // namespace
 
 void runLong(const py::object& report, const std::function<void(Progress&)>& work) {
@@ -211,6 +252,21 @@ void runLong(const py::object& report, const std::function<void(Progress&)>& wor
     return true;
   };
   runOnWorker([&] { work(progress); }, look, cancel);
+}
+
+void runShortSteps(const py::object& report, const std::function<void(Progress&)>& work) {
+  LookingProgress progress(report);
+  std::exception_ptr failure;
+  {
+    const py::gil_scoped_release unlocked;
+    try {
+      work(progress);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+  }
+  progress.rethrow();
+  if (failure) std::rethrow_exception(failure);
 }
 
 void runWithoutSteps(const std::function<void()>& work) {

@@ -16,9 +16,14 @@ namespace radiosity::python {
 /// touch Python objects.
 void runLong(const pybind11::object& report, const std::function<void(Progress&)>& work);
 
-/// The same for work that has no steps at which it could end, such as reading a file. Ctrl-C raises
-/// KeyboardInterrupt at once; the work goes on to its end without effect. So `work` must own all
-/// that it touches.
+/// Like runLong(), on the calling thread, for work that takes at most a few tenths of a second from
+/// one of its steps (Progress::advance()) to the next: to hand a solve of milliseconds to another
+/// thread takes longer than 1% of it. Signals and reports are looked at between steps.
+void runShortSteps(const pybind11::object& report, const std::function<void(Progress&)>& work);
+
+/// Like runLong(), for work that has no steps at which it could end, such as reading a file. Ctrl-C
+/// raises KeyboardInterrupt at once; the work goes on to its end without effect. So `work` must own
+/// all that it touches.
 void runWithoutSteps(const std::function<void()>& work);
 
 }  // namespace radiosity::python

@@ -116,11 +116,8 @@ void Convergence::record(double residual, bool everywhere) {
   history_.push_back(residual);
   everywhere_ = everywhere;
   const double way = residual > 0 ? std::log(residual) / std::log(tolerance_) : 1.0;
-  const auto steps = std::size_t(kProgressSteps * std::clamp(way, 0.0, 1.0));
-  if (steps > reported_) {
-    progress_.advance(steps - reported_);
-    reported_ = steps;
-  }
+  const auto steps = std::max(reported_, std::size_t(kProgressSteps * std::clamp(way, 0.0, 1.0)));
+  progress_.advance(steps - std::exchange(reported_, steps));
   progress_.check();
 }
 

@@ -54,6 +54,20 @@ def test_ctrl_c_does_not_wait_until_a_file_is_read(tmp_path):
     assert rad.load(ROOT / "data/cornell-box.obj").surface_names  # while the thread may read on
 
 
+def test_ctrl_c_ends_a_solve_on_the_calling_thread():
+    """Few rows: the solve is not handed to another thread. These sweeps, each of which takes away
+    1e-9 of the error, would take hours."""
+    F = rad.from_csr([[0, 1], [1, 0]], area=[1, 1])
+    told = []
+    threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+    start = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        rad.solve(F, 1 - 1e-9, [1.0, 0.0], solver="jacobi", max_iterations=2**31 - 1,
+                  progress=lambda *step: told.append(step))
+    assert time.monotonic() - start < 0.3 + LONGEST_ANSWER
+    assert told
+
+
 def test_a_signal_handler_may_raise_any_exception(slow):
     def handler(number, frame):
         raise TimeoutError("enough")

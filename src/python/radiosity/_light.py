@@ -151,14 +151,19 @@ def solve(F: FormFactors, reflectance: Any = None, emission: Any = None, *, sky:
     ((24,), 2.0)
     """
     require("F", F, FormFactors, "form factors: rad.form_factors(mesh)")
-    rows = len(F) if F.mesh is None else len(F.mesh)
-    light = materials_of(F.mesh, rows, _meaning_of_rows(F), reflectance, emission, sky)
+    materials = shape = None
+    if F.mesh is None or reflectance is not None or emission is not None or sky is not None:
+        rows = len(F) if F.mesh is None else len(F.mesh)
+        given = materials_of(F.mesh, rows, _meaning_of_rows(F), reflectance, emission, sky)
+        materials, shape = (given.reflectance, given.emission, given.sky), given.shape
+    else:
+        F.mesh._require_scene()
     options = dict(solver=solver, tolerance=tolerance, max_iterations=max_iterations)
     with reporting(progress) as report:
-        handle = _core.solve(F._handle, light.reflectance, light.emission, light.sky, options, report)
-    summary = handle.summary
-    if summary["status"] == "singular":
-        raise RunError(summary["message"])
-    if not summary["usable"]:
+        handle = _core.solve(F._handle, materials, options, report)
+    if not handle.usable:
+        summary = handle.summary
+        if summary["status"] == "singular":
+            raise RunError(summary["message"])
         warn(summary["message"])
-    return Solution(handle, F, light.shape)
+    return Solution(handle, F, shape)

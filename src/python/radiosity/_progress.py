@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import sys
 import time
-from contextlib import contextmanager
-from typing import Callable, Iterator, Optional, Union
+from contextlib import contextmanager, nullcontext
+from typing import Callable, ContextManager, Iterator, Optional, Union
 
 Report = Callable[[str, int, int, str], None]
 #: None: shown if somebody can see it; True and False: always, never; or a function that is called
@@ -50,17 +50,22 @@ def _someone_looks() -> bool:
 
 
 @contextmanager
-def reporting(progress: Progress) -> Iterator[Optional[Report]]:
-    """What a long call of the extension module reports to."""
-    if callable(progress):
-        told = progress
-        yield lambda stage, done, total, steps: told(stage, done, total)
-        return
-    if progress is False or (progress is None and not _someone_looks()):
-        yield None
-        return
+def _shown() -> Iterator[Report]:
     line = _Line()
     try:
         yield line
     finally:
         line.clear()
+
+
+_SILENT: ContextManager[None] = nullcontext()
+
+
+def reporting(progress: Progress) -> ContextManager[Optional[Report]]:
+    """What a long call of the extension module reports to."""
+    if callable(progress):
+        told = progress
+        return nullcontext(lambda stage, done, total, steps: told(stage, done, total))
+    if progress is False or (progress is None and not _someone_looks()):
+        return _SILENT
+    return _shown()
