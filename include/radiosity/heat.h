@@ -147,7 +147,7 @@ ConditionText readConditionText(const std::string& csv_path, std::span<const std
 
 /// Finds conditions by name, as SceneOptions::set finds surfaces, or by a pattern of names: * any
 /// text, ? a character, [abc] one of some. A name goes before a pattern, settings go before the
-/// table, and the name * holds for all surfaces that no other line names. Errors: InputError, one
+/// table, and the name * gives every surface what no other line does. Errors: InputError, one
 /// line with file, line and cure; also for a surface without a condition.
 HeatConditions readHeatConditions(const Scene& scene, const ConditionText& text);
 HeatConditions readHeatConditions(const Scene& scene, const std::string& csv_path,

@@ -12,6 +12,9 @@
 
 namespace [[gnu::visibility("default")]] radiosity {
 
+/// Rows that sum to more than this would send out more light than there is.
+inline constexpr double kMostRowSum = 1 + 1e-4;
+
 struct MatrixFile {
   std::string path;
   NamedFactors factors;            ///< numbered; names are empty if the file has none
@@ -53,7 +56,8 @@ struct MatrixComparison {
   std::size_t column = 0;
   double a = 0;  ///< the values there
   double b = 0;
-  double area_difference = 0;  ///< largest relative one, if both have areas
+  double area_difference = 0;              ///< largest relative one, if both have areas
+  std::optional<std::size_t> renamed_row;  ///< the first, from 0, whose names differ
   MatrixAccount account_a;
   MatrixAccount account_b;
   /// The rows of each name (of surfaces), in order of their share; empty without names.
@@ -70,14 +74,14 @@ struct MatrixComparison {
 MatrixComparison compareMatrices(const MatrixFile& a, const MatrixFile& b, Progress& progress);
 
 /// Reflectance and emission of rows, from a table with a header: `row` (from 1) or `name` (rows of
-/// that name; * for all rows that no other line names), `reflectance` and `emission` (exitance,
+/// that name), * for all rows that no other line names, `reflectance` and `emission` (exitance,
 /// W/m^2); for several bands `reflectance_1`, `reflectance_2`, ... Without reflectance it is 1 -
 /// the file's emissivity. Errors: InputError that names file and line: unknown columns and names,
 /// values out of range, a row given twice or not at all.
 PatchMaterials readRowMaterials(const std::string& path, const MatrixFile& matrix);
 
-/// Areas of rows, m^2: a number a line, or the column area_m2 of a table with a header. Errors: as
-/// above.
+/// Areas of rows, m^2: a number a line, or the column area_m2 of a table with a header, by its
+/// column `row` (from 1) if it has one, else in order. Errors: as above.
 std::vector<double> readAreas(const std::string& path);
 
 /// Form factors from elsewhere, as solve() takes them; `sky` and `backs`: N, the share of each row

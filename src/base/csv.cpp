@@ -12,10 +12,23 @@ namespace radiosity {
 
 namespace {
 
-std::string withoutBlanks(const std::string& text) {
-  const std::size_t begin = text.find_first_not_of(" \t");
-  if (begin == std::string::npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t") + 1 - begin);
+/// Without blanks at its ends, also those that do not break a line (U+00A0), which come from
+/// documents.
+std::string withoutBlanks(std::string_view text) {
+  constexpr std::string_view kBlanks[] = {" ", "\t", "\xc2\xa0"};
+  for (bool more = true; more;) {
+    more = false;
+    for (const std::string_view blank : kBlanks) {
+      if (text.starts_with(blank)) text.remove_prefix(blank.size()), more = true;
+      if (text.ends_with(blank)) text.remove_suffix(blank.size()), more = true;
+    }
+  }
+  return std::string(text);
+}
+
+bool isBlank(const std::vector<std::string>& fields) {
+  return std::ranges::all_of(fields,
+                             [](const auto& field) { return withoutBlanks(field).empty(); });
 }
 
 /// Reads one record at a time; a quoted field may span several lines.
@@ -24,6 +37,9 @@ class CsvReader {
   CsvReader(std::string path, std::string_view text) : path_(std::move(path)), text_(text) {
     constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // spreadsheets write it
     if (text_.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
+    if (text_.starts_with("\xff\xfe") || text_.starts_with("\xfe\xff")) {
+      fail(1, "is UTF-16; save it as UTF-8");
+    }
   }
 
   /// False at the end.
@@ -37,8 +53,7 @@ class CsvReader {
         continue;
       }
       readRecord(row.fields);
-      const bool is_empty = row.fields.size() == 1 && withoutBlanks(row.fields.front()).empty();
-      if (!is_empty) return true;
+      if (!isBlank(row.fields)) return true;
     }
     return false;
   }
@@ -50,7 +65,8 @@ class CsvReader {
  private:
   /// A comment may hold quotes.
   void skipLine() {
-    at_ = std::min(text_.find('\n', at_), text_.size() - 1) + 1;
+    at_ = std::min(text_.find_first_of("\r\n", at_), text_.size() - 1) + 1;
+    if (text_[at_ - 1] == '\r' && at_ < text_.size() && text_[at_] == '\n') ++at_;
     ++line_;
   }
 
@@ -58,14 +74,16 @@ class CsvReader {
     fields.emplace_back();
     while (at_ < text_.size()) {
       const char c = text_[at_++];
-      if (c == '"' && fields.back().empty()) {
+      if (c == '"' && withoutBlanks(fields.back()).empty()) {
+        fields.back().clear();
         readQuoted(fields.back());
       } else if (c == ',') {
         fields.emplace_back();
-      } else if (c == '\n') {
+      } else if (c == '\n' || c == '\r') {
+        if (c == '\r' && at_ < text_.size() && text_[at_] == '\n') ++at_;
         ++line_;
         return;
-      } else if (c != '\r') {
+      } else {
         fields.back() += c;
       }
     }
@@ -137,6 +155,8 @@ CsvTable parseCsv(const std::string& path, std::string_view text) {
   if (!reader.next(row)) reader.fail(1, "there is no header line; name the columns in the first");
   requireCommas(reader, row);
   table.header_line = row.line;
+  // Spreadsheets write the columns that they show, to the last that ever held anything.
+  while (withoutBlanks(row.fields.back()).empty()) row.fields.pop_back();
   for (const std::string& name : row.fields) {
     table.header.push_back(withoutBlanks(name));
     if (std::count(table.header.begin(), table.header.end(), table.header.back()) > 1) {
@@ -145,6 +165,9 @@ CsvTable parseCsv(const std::string& path, std::string_view text) {
     }
   }
   while (reader.next(row)) {
+    while (row.fields.size() > table.header.size() && withoutBlanks(row.fields.back()).empty()) {
+      row.fields.pop_back();
+    }
     if (row.fields.size() != table.header.size()) {
       reader.fail(row.line, fmt::format("{} fields, and the header has {}; give one a column, with "
                                         "commas between them and points in numbers",

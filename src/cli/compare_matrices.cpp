@@ -1,6 +1,8 @@
 // `compare A B` for form factors.
 #include <fmt/format.h>
 
+#include <tuple>
+
 #include "cli/matrix_commands.h"
 #include "cli/words.h"
 
@@ -79,13 +81,33 @@ void reportMatrixComparison(Report& report, const MatrixComparison& c, const Mat
   reportAccount(report, "A", c.account_a);
   reportAccount(report, "B", c.account_b);
   report.number("area_difference", "areas differ by at most", c.area_difference, "(relative)");
-  if (c.area_difference > kSameArea) {
-    const Note note{Severity::warning,
-                    fmt::format("areas of A and B differ by up to {}: are rows in the same order?",
-                                numberText(c.area_difference, 3))};
-    report.notes({&note, 1});
-  }
   reportNames(report, c);
+}
+
+/// Warns of what makes the figures mean something else than they seem to.
+void reportSuspicions(Report& report, const MatrixComparison& c, const MatrixFile& a,
+                      const MatrixFile& b) {
+  std::vector<Note> notes;
+  if (c.area_difference > kSameArea) {
+    notes.push_back({Severity::warning,
+                     fmt::format("areas of A and B differ by up to {}: are rows in the same order?",
+                                 numberText(c.area_difference, 3))});
+  }
+  if (c.renamed_row) {
+    const std::size_t i = *c.renamed_row;
+    notes.push_back({Severity::warning,
+                     fmt::format("row {} is {} in A and {} in B: are rows in the same order?",
+                                 i + 1, a.factors.names[i], b.factors.names[i])});
+  }
+  for (const auto& [side, file, account] :
+       {std::tuple("A", &a, &c.account_a), std::tuple("B", &b, &c.account_b)}) {
+    // Error figures say by how much computed rows may be above 1.
+    if (!file->factors.error.empty() || account->largest_sum <= kMostRowSum) continue;
+    notes.push_back(
+        {Severity::warning, fmt::format("a row of {} sums to {}: form factors sum to 1 at most",
+                                        side, numberText(account->largest_sum))});
+  }
+  report.notes(notes);
 }
 
 /// Reads one side. Areas from --areas are only used for files without areas.
@@ -117,6 +139,7 @@ int compareMatrixFiles(Session& session, OutputSet& files) {
   const MatrixComparison c = compareMatrices(a, b, session.progress);
   const bool a_named = !a.factors.names[c.row].empty();
   reportMatrixComparison(session.report, c, a_named ? a : b);
+  reportSuspicions(session.report, c, a, b);
   if (!request.compare_tolerance) return 0;
   const bool within = c.relative_l2 <= *request.compare_tolerance;
   session.report.text("verdict", "verdict",

@@ -15,6 +15,10 @@ namespace {
 /// The program warns of heat lost on backs, and of the imbalance, above this share of the radiosity
 /// of all surfaces.
 constexpr double kWorthWarning = 1e-4;
+/// The summary names what a sky at 0 K takes above this share of it.
+constexpr double kWorthNaming = 0.01;
+/// Scenes all below this (K) are rare, and common where degrees Celsius were given.
+constexpr double kColdest = 150;
 
 void surfaceTable(Report& report, const std::vector<SurfaceHeat>& surfaces) {
   std::vector<std::vector<std::string>> rows;
@@ -97,9 +101,31 @@ void warnOfLosses(const HeatBalance& b, double given_off, std::vector<Note>& not
   }
 }
 
-void warnings(Report& report, const HeatSummary& s, double given_off) {
+/// Notes temperatures that are right in few scenes: a sky that nobody gave, and degrees Celsius.
+void noteTemperatures(const HeatBalance& b, double given_off,
+                      const std::vector<SurfaceHeat>& surfaces, const HeatOptions& options,
+                      std::vector<Note>& notes) {
+  if (options.sky_temperature == 0 && b.to_sky > kWorthNaming * given_off) {
+    notes.push_back({Severity::info,
+                     fmt::format("the sky is at 0 K and takes {:.3g}% of what all surfaces give "
+                                 "off; --sky-temperature K gives the surroundings theirs",
+                                 100 * b.to_sky / given_off)});
+  }
+  double highest = options.sky_temperature;
+  for (const SurfaceHeat& s : surfaces) highest = std::max(highest, s.highest);
+  if (highest > 0 && highest < kColdest) {
+    notes.push_back(
+        {Severity::info, fmt::format("no temperature is above {} K: they are kelvin, not degrees "
+                                     "Celsius",
+                                     numberText(highest))});
+  }
+}
+
+void warnings(Report& report, const HeatSummary& s, double given_off,
+              const std::vector<SurfaceHeat>& surfaces, const HeatOptions& options) {
   std::vector<Note> notes;
   warnOfLosses(s.balance, given_off, notes);
+  noteTemperatures(s.balance, given_off, surfaces, options, notes);
   if (s.undetermined > 0) {
     notes.push_back(
         {Severity::warning,
@@ -137,7 +163,7 @@ void summarizeHeat(Report& report, const HeatSolution& heat, const FormFactors& 
     report.text("message", "in words", oneLine(s.message));
     report.yesNo("usable", "usable", s.usable());
   }
-  warnings(report, s, given_off);
+  warnings(report, s, given_off, surfaces, options);
 }
 
 }  // namespace radiosity::cli

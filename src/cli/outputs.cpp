@@ -85,6 +85,31 @@ Output patchTableOutput(const std::string& path) {
   return {path, Format::patch_table};
 }
 
+/// A file that the run reads: what it is, and its path.
+struct InputPath {
+  std::string what;
+  std::string path;
+};
+
+std::vector<InputPath> inputsOf(const Request& request) {
+  return {{"the input itself", request.input},
+          {"the second input", request.second},
+          {"the table of --thermal", request.thermal},
+          {"the table of --rows", request.rows},
+          {"the file of --areas", request.areas},
+          {"the table of --basis", request.basis},
+          {"the file of --materials", request.scene.materials_file}};
+}
+
+/// A results file may take up what it was made from; nothing else may replace what is read.
+void requireNoInput(const std::string& path, const Request& request, bool results) {
+  for (const InputPath& input : inputsOf(request)) {
+    if (input.path.empty() || !sameFile(path, input.path)) continue;
+    if (results && input.path == request.input) continue;
+    throw InputError(fmt::format("{}: is {}; write to another name", path, input.what));
+  }
+}
+
 }  // namespace
 
 std::vector<Output> parseOutputs(const Request& request) {
@@ -102,9 +127,7 @@ std::vector<Output> parseOutputs(const Request& request) {
       if (sameFile(path, other.path))
         throw InputError(path + ": named twice as an output; once is enough");
     }
-    if (output.format != Format::results && sameFile(path, request.input)) {
-      throw InputError(path + ": is the input itself; write to another name");
-    }
+    requireNoInput(path, request, output.format == Format::results);
     if (output.format == Format::results && isForeignHdf5(path)) {
       throw InputError(
           path +
@@ -113,9 +136,7 @@ std::vector<Output> parseOutputs(const Request& request) {
     }
     outputs.push_back(output);
   }
-  if (!request.report.empty() && sameFile(request.report, request.input)) {
-    throw InputError(request.report + ": --report would replace the input; use another name");
-  }
+  if (!request.report.empty()) requireNoInput(request.report, request, false);
   return outputs;
 }
 

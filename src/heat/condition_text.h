@@ -25,7 +25,7 @@ struct GivenCondition {
   bool heated() const { return temperature || flux || power; }
 };
 
-/// The name for all surfaces that no other line names.
+/// The name for every surface; it gives what no other line does.
 inline constexpr std::string_view kOthers = "*";
 
 /// Both throw InputError, with the origin, for a text that is not in this form, for a value out of

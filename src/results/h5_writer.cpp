@@ -47,6 +47,14 @@ namespace {
 /// product. Without it an added group would be elsewhere, and the next one could not be added.
 constexpr unsigned kRootLinks = 8;
 constexpr unsigned kRootNames = 160;
+/// The most members and attributes that a group holds in its header. HDF5 keeps more of them in
+/// trees and heaps, which it writes to when it removes the group: outside the file's first page.
+constexpr unsigned kHeaderMembers = 64;
+
+void keepInHeader(hid_t creation) {
+  H5Pset_link_phase_change(creation, kHeaderMembers, kHeaderMembers / 2);
+  H5Pset_attr_phase_change(creation, kHeaderMembers, kHeaderMembers / 2);
+}
 
 Handle accessTo(Disk& disk) {
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
@@ -63,6 +71,7 @@ OutputFile::OutputFile(const std::string& path, std::string shown) : shown_(std:
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation.get(), false);  // of the root group
   H5Pset_est_link_info(creation.get(), kRootLinks, kRootNames);
+  keepInHeader(creation.get());
   file_ = Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
   if (!file_) fail("/");
 }
@@ -109,6 +118,7 @@ Handle OutputGroup::checked(hid_t id, Handle::Close close, const std::string& na
 OutputGroup OutputGroup::group(const std::string& name) {
   const Handle list(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
   H5Pset_obj_track_times(list.get(), false);
+  keepInHeader(list.get());
   Handle id = checked(H5Gcreate2(id_.get(), name.c_str(), H5P_DEFAULT, list.get(), H5P_DEFAULT),
                       H5Gclose, name);
   return {*file_, std::move(id), pathOf(name)};
@@ -245,9 +255,9 @@ bool OutputGroup::says(const std::string& group, const std::string& name,
 // The bytes that HDF5 1.10 takes for each object besides its data, measured on files of ours: the
 // object header with its messages, and the link in its group.
 namespace {
-constexpr std::size_t kGroupBytes = 150;
-constexpr std::size_t kAttributeBytes = 60;
-constexpr std::size_t kDatasetBytes = 300;
+constexpr std::size_t kGroupBytes = 130;
+constexpr std::size_t kAttributeBytes = 35;
+constexpr std::size_t kDatasetBytes = 280;
 constexpr std::size_t kChunkOverhead = 24;  // index entry and checksum
 }  // namespace
 

@@ -53,6 +53,16 @@ double largestAreaDifference(const MatrixFile& a, const MatrixFile& b) {
   return largest;
 }
 
+/// The first row that has a name in both and not the same.
+std::optional<std::size_t> renamedRow(const MatrixFile& a, const MatrixFile& b) {
+  for (std::size_t i = 0; i < a.factors.size(); ++i) {
+    const std::string& one = a.factors.names[i];
+    const std::string& other = b.factors.names[i];
+    if (!one.empty() && !other.empty() && one != other) return i;
+  }
+  return std::nullopt;
+}
+
 /// Calls visit(column, a, b) over the columns in which a row of either has a value.
 template <class Visit>
 void forBoth(const RowPanel& a, const RowPanel& b, std::size_t i, std::vector<double>& row,
@@ -117,6 +127,7 @@ class Comparison {
 
   MatrixComparison finished() {
     result_.relative_l2 = all_.relative();
+    result_.renamed_row = renamedRow(a_, b_);
     result_.area_difference = largestAreaDifference(a_, b_);
     result_.account_a = accountOf(a_);
     result_.account_b = accountOf(b_);

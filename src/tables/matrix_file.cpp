@@ -21,8 +21,6 @@ namespace {
 
 /// A share of the sky below this counts as 0: text in six digits leaves as much.
 constexpr double kClosedWithin = 1e-5;
-/// Rows that sum to more than this would send out more light than there is.
-constexpr double kMostRowSum = 1 + 1e-4;
 /// The largest reciprocity residual without a warning: coarse hemicubes reach a few percent.
 constexpr double kMostUneven = 0.05;
 
@@ -35,10 +33,11 @@ void noteSums(FormFactors& factors) {
   if (largest == factors.fronts.end() || *largest <= kMostRowSum) return;
   const auto above = std::count_if(factors.fronts.begin(), factors.fronts.end(),
                                    [](double sum) { return sum > kMostRowSum; });
-  std::string text = fmt::format("row {} sums to {:.6g}: form factors sum to 1 at most",
-                                 largest - factors.fronts.begin() + 1, *largest);
-  if (above > 1) text += fmt::format(", and {} rows do not", above);
-  factors.report.notes.push_back({Severity::warning, text});
+  factors.report.notes.push_back(
+      {Severity::loud,
+       fmt::format("row {} sums to {:.6g}{}: form factors sum to 1 at most, so light is made here",
+                   largest - factors.fronts.begin() + 1, *largest,
+                   above > 1 ? fmt::format(", and {} rows to more than 1", above) : "")});
 }
 
 void noteReciprocity(FormFactors& factors) {

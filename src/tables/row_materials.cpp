@@ -15,8 +15,18 @@ namespace radiosity {
 
 namespace {
 
-/// The name for every row that no other line names.
+/// Stands for every row that no other line names.
 constexpr const char* kOthers = "*";
+
+/// The row of a line with a column `row`, from 0.
+std::size_t rowOf(const CsvTable& table, const CsvTable::Row& line, std::size_t column,
+                  std::size_t rows) {
+  const std::string& text = line.fields[column];
+  const std::optional<long long> value = parseInteger(text);
+  if (value && *value >= 1 && std::size_t(*value) <= rows) return std::size_t(*value - 1);
+  throw InputError(fmt::format("{}:{}: `{}` is no row: they go from 1 to {}", table.path, line.line,
+                               text, rows));
+}
 
 class RowTable {
  public:
@@ -56,9 +66,9 @@ class RowTable {
     if (missing != line_of_.end()) {
       const auto i = std::size_t(missing - line_of_.begin());
       throw InputError(
-          fmt::format("{}: no line is for row {}{}; add one, or a line with name {} "
+          fmt::format("{}: no line is for row {}{}; add one, or a line with {} {} "
                       "for all others",
-                      table_.path, i + 1, nameText(i), kOthers));
+                      table_.path, i + 1, nameText(i), name_ ? "name" : "row", kOthers));
     }
     return std::move(materials_);
   }
@@ -100,7 +110,9 @@ class RowTable {
     }
   }
 
-  bool isOfOthers(const CsvTable::Row& row) const { return name_ && row.fields[*name_] == kOthers; }
+  bool isOfOthers(const CsvTable::Row& row) const {
+    return row.fields[name_.value_or(row_.value_or(0))] == kOthers;
+  }
 
   double number(const CsvTable::Row& row, std::size_t column, double most) const {
     const std::string& text = row.fields[column];
@@ -128,12 +140,7 @@ class RowTable {
   void take(const CsvTable::Row& row) {
     const std::size_t n = matrix_.factors.size();
     if (!name_) {
-      const std::string& text = row.fields[row_.value_or(0)];
-      const std::optional<long long> value = parseInteger(text);
-      if (!value || *value < 1 || std::size_t(*value) > n) {
-        fail(row.line, fmt::format("`{}` is no row: they go from 1 to {}", text, n));
-      }
-      return set(row, std::size_t(*value - 1));
+      return set(row, rowOf(table_, row, row_.value_or(0), n));
     }
     const std::string& name = row.fields[*name_];
     bool any = false;
@@ -178,6 +185,23 @@ double areaIn(const std::string& path, std::size_t line, std::string_view text) 
       fmt::format("{}:{}: `{}` is no area: a finite number, 0 or more (m^2)", path, line, text));
 }
 
+/// The areas of a table whose lines have the rows' numbers: in any order, each once.
+std::vector<double> areasByRow(const CsvTable& table, std::size_t area) {
+  const std::size_t row = table.column("row").value_or(0);
+  std::vector<double> areas(table.rows.size());
+  std::vector<std::size_t> line_of(table.rows.size(), 0);
+  for (const CsvTable::Row& line : table.rows) {
+    const std::size_t i = rowOf(table, line, row, areas.size());
+    if (line_of[i] != 0) {
+      throw InputError(fmt::format("{}:{}: row {} is given on line {} already; give it once",
+                                   table.path, line.line, i + 1, line_of[i]));
+    }
+    line_of[i] = line.line;
+    areas[i] = areaIn(table.path, line.line, line.fields[area]);
+  }
+  return areas;
+}
+
 }  // namespace
 
 PatchMaterials readRowMaterials(const std::string& path, const MatrixFile& matrix) {
@@ -188,6 +212,7 @@ PatchMaterials readRowMaterials(const std::string& path, const MatrixFile& matri
 std::vector<double> readAreas(const std::string& path) {
   const CsvTable table = readCsv(path);
   const std::optional<std::size_t> named = table.column("area_m2");
+  if (named && table.column("row")) return areasByRow(table, *named);
   std::vector<double> areas;
   areas.reserve(table.rows.size() + 1);
   // Without a header, the first number is in its place.

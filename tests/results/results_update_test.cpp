@@ -59,6 +59,31 @@ TEST_F(ResultsUpdate, AddsASolutionAndTouchesNothingElse) {
   EXPECT_LT(after.size() - before.size(), before.size() / 4) << "the matrix is not in it again";
 }
 
+TEST_F(ResultsUpdate, ReplacesAnyStageAndTouchesNothingElse) {
+  const Results results = sample::results(kSide, Precision::single_precision);
+  const StagesAsStored all{.scene = true,
+                           .solution = true,
+                           .elements = true,
+                           .gathered = true,
+                           .heat = true,
+                           .basis = true};
+  const std::pair<const char*, bool StagesAsStored::*> stages[] = {
+      {"scene", &StagesAsStored::scene},       {"solution", &StagesAsStored::solution},
+      {"elements", &StagesAsStored::elements}, {"gathered", &StagesAsStored::gathered},
+      {"heat", &StagesAsStored::heat},         {"basis", &StagesAsStored::basis}};
+  for (const auto& [name, stage] : stages) {
+    SCOPED_TRACE(name);
+    writeResults(file(), results, progress_);
+    const std::string before = bytes();
+    StagesAsStored stored = all;
+    stored.*stage = false;
+    EXPECT_TRUE(updateResults(file(), results, stored));
+    const std::string after = bytes();
+    EXPECT_TRUE(sample::same(results, readResults(file())));
+    EXPECT_TRUE(before.substr(kPage) == after.substr(kPage, before.size() - kPage));
+  }
+}
+
 TEST_F(ResultsUpdate, ReplacesASolutionManyTimesAndThenAsksForTheWholeFile) {
   Results solved = writeUnsolved();
   const std::size_t whole = bytes().size();

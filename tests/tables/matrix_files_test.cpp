@@ -182,6 +182,11 @@ TEST_F(MatrixFiles, DifferencesEqualThoseWorkedOutByHand) {
   EXPECT_EQ(c.names[0].name, "lamp/light");
   EXPECT_DOUBLE_EQ(c.names[0].relative_l2, std::sqrt(0.02 / 0.08));
   EXPECT_EQ(compareMatrices(a, a, progress_).relative_l2, 0);
+  EXPECT_FALSE(c.renamed_row.has_value());
+  b.factors.names[1] = "";
+  EXPECT_FALSE(compareMatrices(a, b, progress_).renamed_row.has_value()) << "a row without a name";
+  b.factors.names[0] = "another";
+  EXPECT_EQ(compareMatrices(a, b, progress_).renamed_row, 0u);
 }
 
 TEST_F(MatrixFiles, MissingAreasGiveEqualWeightsAndNoReciprocity) {
@@ -209,6 +214,8 @@ TEST_F(MatrixFiles, RowsTakeMaterialsByNumberAndName) {
   const PatchMaterials by_row = readRowMaterials(path("m.csv"), file);
   EXPECT_EQ(by_row.reflectance, (std::vector<double>{1 - .9, 1 - .8, 1 - .7}));
   EXPECT_EQ(by_row.emission, (std::vector<double>{2, 0, 1}));
+  write("m.csv", "row,emission\n*,0\n1,2\n");
+  EXPECT_EQ(readRowMaterials(path("m.csv"), file).emission, (std::vector<double>{2, 0, 0}));
 }
 
 TEST_F(MatrixFiles, RefusesTablesOfRowsThatDoNotFit) {
@@ -234,11 +241,38 @@ TEST_F(MatrixFiles, RefusesTablesOfRowsThatDoNotFit) {
   refused("row,reflectance\n\"1,.5\n", ":2: a quote is opened and not closed");
 }
 
+TEST_F(MatrixFiles, TablesMayComeFromSpreadsheets) {
+  const std::vector<double> both{4, 5};
+  for (const char* text : {"area_m2\r\n4\r\n5\r\n", "area_m2\r4\r5", "area_m2,,\n4,,\n,,\n5,,\n",
+                           "area_m2\xc2\xa0\n4\n 5 \n", "name, area_m2\na, \"4\"\n \"b, c\",5\n",
+                           "\xef\xbb\xbf"
+                           "area_m2\n4\n5\n",
+                           "# areas\rarea_m2\r4\r5\r"}) {
+    write("a.csv", text);
+    EXPECT_EQ(readAreas(path("a.csv")), both) << text;
+  }
+  write("a.csv", std::string("\xff\xfe"
+                             "4\0\n\0",
+                             6));
+  expectError<InputError>(path("a.csv"), ":1: is UTF-16; save it as UTF-8",
+                          [&] { readAreas(path("a.csv")); });
+  write("a.csv", "name,area_m2\na,0,5\n");
+  expectError<InputError>(path("a.csv"), "points in numbers", [&] { readAreas(path("a.csv")); });
+}
+
 TEST_F(MatrixFiles, AreasAreReadFromAListOrAColumn) {
   write("a.txt", "1\n2.5\n\n3\n");
   EXPECT_EQ(readAreas(path("a.txt")), (std::vector<double>{1, 2.5, 3}));
   write("a.csv", "name,area_m2\n\"a, b\",4\nc,5\n");
   EXPECT_EQ(readAreas(path("a.csv")), (std::vector<double>{4, 5}));
+  write("a.csv", "row,area_m2\n2,5\n1,4\n");
+  EXPECT_EQ(readAreas(path("a.csv")), (std::vector<double>{4, 5}));
+  const auto refused = [&](const std::string& text, const char* part) {
+    write("a.csv", text);
+    expectError<InputError>(path("a.csv"), part, [&] { readAreas(path("a.csv")); });
+  };
+  refused("row,area_m2\n2,5\n2,4\n", ":3: row 2 is given on line 2 already");
+  refused("row,area_m2\n1,5\n3,4\n", ":3: `3` is no row: they go from 1 to 2");
   write("a.txt", "1\n-2\n");
   expectError<InputError>(path("a.txt"), ":2: `-2` is no area", [&] { readAreas(path("a.txt")); });
   write("a.csv", "name,area\na,1\n");
