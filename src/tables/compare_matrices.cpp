@@ -127,7 +127,6 @@ class Comparison {
 
   MatrixComparison finished() {
     result_.relative_l2 = all_.relative();
-    result_.renamed_row = renamedRow(a_, b_);
     result_.area_difference = largestAreaDifference(a_, b_);
     result_.account_a = accountOf(a_);
     result_.account_b = accountOf(b_);
@@ -162,7 +161,9 @@ MatrixComparison compareMatrices(const MatrixFile& a, const MatrixFile& b, Progr
         "patches (a results file as input keeps them)",
         a.path, a.factors.size(), b.path, b.factors.size()));
   }
-  return Comparison(a, b).run(progress);
+  MatrixComparison comparison = Comparison(a, b).run(progress);
+  comparison.renamed_row = renamedRow(a, b);
+  return comparison;
 }
 
 }  // namespace radiosity

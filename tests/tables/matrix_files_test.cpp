@@ -243,17 +243,19 @@ TEST_F(MatrixFiles, RefusesTablesOfRowsThatDoNotFit) {
 
 TEST_F(MatrixFiles, TablesMayComeFromSpreadsheets) {
   const std::vector<double> both{4, 5};
-  for (const char* text : {"area_m2\r\n4\r\n5\r\n", "area_m2\r4\r5", "area_m2,,\n4,,\n,,\n5,,\n",
-                           "area_m2\xc2\xa0\n4\n 5 \n", "name, area_m2\na, \"4\"\n \"b, c\",5\n",
-                           "\xef\xbb\xbf"
-                           "area_m2\n4\n5\n",
-                           "# areas\rarea_m2\r4\r5\r"}) {
+  const std::string byte_order_mark = "\xef\xbb\xbf";
+  const std::vector<std::string> tables{"area_m2\r\n4\r\n5\r\n",
+                                        "area_m2\r4\r5",
+                                        "area_m2,,\n4,,\n,,\n5,,\n",
+                                        "area_m2\xc2\xa0\n4\n 5 \n",
+                                        "name, area_m2\na, \"4\"\n \"b, c\",5\n",
+                                        byte_order_mark + "area_m2\n4\n5\n",
+                                        "# areas\rarea_m2\r4\r5\r"};
+  for (const std::string& text : tables) {
     write("a.csv", text);
     EXPECT_EQ(readAreas(path("a.csv")), both) << text;
   }
-  write("a.csv", std::string("\xff\xfe"
-                             "4\0\n\0",
-                             6));
+  write("a.csv", std::string("\xff\xfe\x34\0\n\0", 6));
   expectError<InputError>(path("a.csv"), ":1: is UTF-16; save it as UTF-8",
                           [&] { readAreas(path("a.csv")); });
   write("a.csv", "name,area_m2\na,0,5\n");
