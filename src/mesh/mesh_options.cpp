@@ -14,7 +14,7 @@ void MeshOptions::validate() const {
   }
   if (!(max_edge >= 0) || !std::isfinite(max_edge)) {
     throw InputError(fmt::format(
-        "max-edge: {:g} m is out of range; more than 0, or 0 to derive it from patches", max_edge));
+        "max_edge: {:g} m is out of range; more than 0, or 0 to derive it from patches", max_edge));
   }
   if (!(weld >= 0 && weld <= 1e-2)) {
     throw InputError(fmt::format(

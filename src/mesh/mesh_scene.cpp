@@ -8,7 +8,7 @@ MeshResult meshScene(const Scene& scene, const MeshOptions& options, Progress& p
   validate(scene);
   MeshResult result;
   if (options.faces_as_patches) {
-    result.mesh = facesAsPatches(scene, options, result.report);
+    result.mesh = facesAsPatches(scene, options, result.report, progress);
   } else {
     const CoarseComplex complex = buildComplex(scene, options, result.report, progress);
     result.mesh = subdivide(complex, scene, options, result.report, progress);

@@ -167,7 +167,7 @@ py::dict table(const py::object& self, const std::vector<std::string>& groups,
   dict["entry_error"] = taken(std::move(errors));
   dict["sky"] = taken(std::move(named.sky));
   dict["backs"] = taken(std::move(named.backs));
-  dict["markdown"] = markdown;
+  dict["markdown"] = printable(markdown);
   return dict;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "radiosity/radiosity.h"
+#include "text.h"
 
 namespace radiosity::python {
 

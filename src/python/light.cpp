@@ -247,6 +247,7 @@ double exposure(const py::array_t<float, py::array::c_style>& picture) {
   Image image;
   image.height = int(picture.shape(0));
   image.width = int(picture.shape(1));
+  const py::gil_scoped_release unlocked;
   image.rgba.assign(picture.data(), picture.data() + picture.size());
   return autoExposure(image);
 }

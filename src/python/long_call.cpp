@@ -161,6 +161,35 @@ IdleWorkers& idleWorkers() {
   return workers;
 }
 
+bool pythonEnds() {
+#if PY_VERSION_HEX >= 0x030D0000
+  return Py_IsFinalizing() != 0;
+#else
+  return _Py_IsFinalizing() != 0;
+#endif
+}
+
+/// Gives up Python's lock. At the end of the process Python ends threads that ask for the lock, by
+/// an exception that no destructor and no catch may meet; such a thread waits here for its end
+/// instead.
+class Unlocked {
+ public:
+  Unlocked() = default;
+  ~Unlocked() { lock(); }
+  Unlocked(const Unlocked&) = delete;
+  Unlocked& operator=(const Unlocked&) = delete;
+
+  void lock() {
+    if (state_ == nullptr) return;
+    while (pythonEnds()) std::this_thread::sleep_for(kBetweenLooks);
+    PyEval_RestoreThread(std::exchange(state_, nullptr));
+  }
+  void unlock() { state_ = PyEval_SaveThread(); }
+
+ private:
+  PyThreadState* state_ = PyEval_SaveThread();
+};
+
 /// Runs `work` on a worker. Every 50 ms `look` is called with Python's lock; if it throws an error
 /// of Python, interrupt() says whether we still wait for the work, and the error is thrown in the
 /// end.
@@ -169,19 +198,20 @@ void runOnWorker(std::function<void()> work, const std::function<void()>& look,
   std::optional<py::error_already_set> raised;
   std::exception_ptr failure;
   {
-    const py::gil_scoped_release unlocked;
+    Unlocked unlocked;
     std::unique_ptr<Worker> worker = idleWorkers().take();
     worker->start(std::move(work));
     bool waits = true;
     while (waits && !worker->wait(kBetweenLooks)) {
       if (raised) continue;
-      const py::gil_scoped_acquire locked;
+      unlocked.lock();
       try {
         look();
       } catch (const py::error_already_set& error) {
         raised.emplace(error);
         waits = interrupt();
       }
+      unlocked.unlock();
     }
     if (waits) {
       failure = worker->failure();
@@ -201,7 +231,8 @@ void handleSignals() {
 /// Looks for signals at the steps of work on the calling thread.
 class LookingProgress : public WatchedProgress {
  public:
-  explicit LookingProgress(const py::object& report) : report_(report) {}
+  LookingProgress(const py::object& report, Unlocked& unlocked)
+      : report_(report), unlocked_(unlocked) {}
   void begin(const std::string& stage, std::size_t total, const std::string& steps,
              std::size_t done) override {
     WatchedProgress::begin(stage, total, steps, done);
@@ -223,7 +254,7 @@ class LookingProgress : public WatchedProgress {
     const Clock::time_point now = Clock::now();
     if (std::this_thread::get_id() != caller_ || raised_ || now < next_) return;
     next_ = now + kBetweenLooks;
-    const py::gil_scoped_acquire locked;
+    unlocked_.lock();
     try {
       handleSignals();
       if (!report_.is_none()) tell(report_);
@@ -231,9 +262,11 @@ class LookingProgress : public WatchedProgress {
       raised_.emplace(error);
       cancel();
     }
+    unlocked_.unlock();
   }
 
   const py::object& report_;
+  Unlocked& unlocked_;
   std::thread::id caller_ = std::this_thread::get_id();
   Clock::time_point next_ = Clock::now() + kBetweenLooks;
   std::optional<py::error_already_set> raised_;
@@ -255,16 +288,15 @@ void runLong(const py::object& report, const std::function<void(Progress&)>& wor
 }
 
 void runShortSteps(const py::object& report, const std::function<void(Progress&)>& work) {
-  LookingProgress progress(report);
+  Unlocked unlocked;
+  LookingProgress progress(report, unlocked);
   std::exception_ptr failure;
-  {
-    const py::gil_scoped_release unlocked;
-    try {
-      work(progress);
-    } catch (...) {
-      failure = std::current_exception();
-    }
+  try {
+    work(progress);
+  } catch (...) {
+    failure = std::current_exception();
   }
+  unlocked.lock();
   progress.rethrow();
   if (failure) std::rethrow_exception(failure);
 }

@@ -101,9 +101,9 @@ void bindErrors(py::module_& module) {
     try {
       if (thrown) std::rethrow_exception(std::move(thrown));
     } catch (const InputError& error) {
-      PyErr_SetString(input_error, withKeywords(error.what()).c_str());
+      PyErr_SetObject(input_error, printable(withKeywords(error.what())).ptr());
     } catch (const RunError& error) {
-      PyErr_SetString(run_error, withKeywords(error.what()).c_str());
+      PyErr_SetObject(run_error, printable(withKeywords(error.what())).ptr());
     }
   });
 }

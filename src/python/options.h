@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "radiosity/names.h"
+#include "text.h"
 
 namespace radiosity::python {
 

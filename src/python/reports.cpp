@@ -90,7 +90,7 @@ py::list listOf(const std::vector<Note>& notes) {
   for (const Note& note : notes) {
     py::dict entry;
     entry["severity"] = nameOf(kSeverityNames, note.severity);
-    entry["text"] = withKeywords(note.text);
+    entry["text"] = printable(withKeywords(note.text));
     list.append(entry);
   }
   return list;
@@ -140,7 +140,7 @@ py::dict dictOf(const SolveSummary& summary) {
                       "residual", &S::residual)("error_bound", &S::error_bound)(
                       "seconds", &S::seconds)("residual_history", &S::residual_history)
                       .dict();
-  dict["message"] = withKeywords(summary.message);
+  dict["message"] = printable(withKeywords(summary.message));
   dict["status"] = nameOf(kSolveStatusNames, summary.status);
   dict["solver"] = nameOf(kSolverNames, summary.solver);
   dict["usable"] = summary.usable();
@@ -153,7 +153,7 @@ py::dict dictOf(const GatherSummary& summary) {
   py::dict dict = Fields(summary)("hemicubes", &S::hemicubes)("pixels", &S::pixels)(
                       "closed", &S::closed)("bytes", &S::bytes)("seconds", &S::seconds)
                       .dict();
-  dict["message"] = withKeywords(summary.message);
+  dict["message"] = printable(withKeywords(summary.message));
   dict["status"] = nameOf(kGatherStatusNames, summary.status);
   dict["notes"] = listOf(summary.notes);
   py::list passes;
@@ -169,7 +169,7 @@ py::dict dictOf(const HeatSummary& summary) {
                       "residual", &S::residual)("balance_residual", &S::balance_residual)(
                       "undetermined", &S::undetermined)("seconds", &S::seconds)
                       .dict();
-  dict["message"] = withKeywords(summary.message);
+  dict["message"] = printable(withKeywords(summary.message));
   dict["status"] = nameOf(kHeatStatusNames, summary.status);
   dict["usable"] = summary.usable();
   dict["balance"] = Fields(summary.balance)("radiated", &B::radiated)("to_sky", &B::to_sky)(

@@ -8,6 +8,7 @@
 #include "radiosity/heat.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/solve.h"
+#include "text.h"
 
 namespace radiosity::python {
 

@@ -18,12 +18,12 @@ double metresPer(const std::string& unit) {
 void SceneOptions::validate() const {
   if (!unit.empty()) metresPer(unit);
   if (!(default_reflectance >= 0 && default_reflectance <= 1)) {
-    throw InputError(fmt::format("default reflectance {} is outside 0 to 1", default_reflectance));
+    throw InputError(fmt::format("default_reflectance {} is outside 0 to 1", default_reflectance));
   }
   // A Texture counts its pixels with an int.
   if (!(max_image > 0 && max_image <= 2000)) {
     throw InputError(
-        fmt::format("max image {} is not above 0 and at most 2000 million pixels", max_image));
+        fmt::format("max_image {} is not above 0 and at most 2000 million pixels", max_image));
   }
   for (int band = 0; sky && band < 3; ++band) {
     if ((*sky)[band] >= 0 && std::isfinite((*sky)[band])) continue;

@@ -37,7 +37,7 @@ void noteSums(FormFactors& factors) {
       {Severity::loud,
        fmt::format("row {} sums to {:.6g}{}: form factors sum to 1 at most, so light is made here",
                    largest - factors.fronts.begin() + 1, *largest,
-                   above > 1 ? fmt::format(", and {} rows to more than 1", above) : "")});
+                   above > 1 ? fmt::format(" ({} rows are above 1)", above) : "")});
 }
 
 void noteReciprocity(FormFactors& factors) {

@@ -18,7 +18,8 @@ MeshResult asPatches(const Scene& scene) {
   MeshOptions options;
   options.faces_as_patches = true;
   MeshResult made;
-  made.mesh = facesAsPatches(scene, options, made.report);
+  Progress progress;
+  made.mesh = facesAsPatches(scene, options, made.report, progress);
   return made;
 }
 

@@ -221,7 +221,8 @@ TEST(PatchMaterials, FacesAsPatchesUseTheirOwnFace) {
   MeshOptions options;
   options.faces_as_patches = true;
   MeshReport report;
-  const PatchMesh mesh = facesAsPatches(input.scene(), options, report);
+  Progress progress;
+  const PatchMesh mesh = facesAsPatches(input.scene(), options, report, progress);
   expectNear(rgbAt(patchMaterials(input.scene(), mesh).reflectance, 0), meanOf(texture), 1e-12);
 }
 

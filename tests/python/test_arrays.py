@@ -181,5 +181,5 @@ def test_only_rows_above_one_are_warned_of():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert rad.from_csr([[0, 1], [0.5, 0]], [1, 2]).report["notes"] == []
-    with pytest.warns(UserWarning, match="row 1 sums to 1.5: form factors sum to 1 at most"):
+    with pytest.warns(UserWarning, match=r"row 1 sums to 1.5 \(2 rows are above 1\): form factors sum to 1 at most"):
         rad.from_csr([[0, 1.5], [1.5, 0]], [1, 1])

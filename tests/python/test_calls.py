@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 
+import numpy as np
 import pytest
 
 import radiosity as rad
@@ -66,6 +67,47 @@ def test_ctrl_c_ends_a_solve_on_the_calling_thread():
                   progress=lambda *step: told.append(step))
     assert time.monotonic() - start < 0.3 + LONGEST_ANSWER
     assert told
+
+
+def test_ctrl_c_ends_the_meshing_of_faces_as_they_are():
+    side = 500  # seconds
+    x, y = np.meshgrid(np.arange(side + 1.0), np.arange(side + 1.0))
+    corner = np.arange(side * (side + 1)).reshape(side, side + 1)[:, :-1].reshape(-1, 1)
+    grid = rad.Scene(np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)]),
+                     corner + [0, 1, side + 2, side + 1])
+    told = []
+
+    def interrupt(stage, done, total):
+        told.append((stage, done < total))
+        if stage == "faces as patches" and len(told) == told.index(("faces as patches", True)) + 1:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt):
+        rad.mesh(grid, faces_as_patches=True, progress=interrupt)
+    assert told[-1] == ("faces as patches", True)
+
+
+def test_the_process_ends_while_threads_compute():
+    code = ("import threading, time\n"
+            "import radiosity as rad\n"
+            f"F = rad.form_factors(rad.mesh(rad.load({str(ROOT / 'data/cornell-box.obj')!r}), patches=600))\n"
+            "def work():\n"
+            "    while True: rad.solve(F); rad.form_factors(F.mesh, 0.1)\n"
+            "for _ in range(2): threading.Thread(target=work, daemon=True).start()\n"
+            "time.sleep(0.5)\n")
+    run = subprocess.run([sys.executable, "-W", "ignore", "-c", code], capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+
+
+def test_threads_get_the_same_csr(cornell):
+    F = rad.form_factors(cornell.mesh, 0.1)
+    found = []
+    threads = [threading.Thread(target=lambda: found.append(F.csr)) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert all(csr is found[0] for csr in found)
 
 
 def test_a_signal_handler_may_raise_any_exception(slow):

@@ -177,3 +177,13 @@ def test_arrays_are_drawn_as_radiance(cornell):
     assert set(np.unique(hit[:, :3])) == {0, 1}  # radiance is B / pi
     shown = rad.displayed(image)
     assert shown.min() >= 0 and shown.max() <= 1
+
+
+def test_heat_and_gathered_light_are_drawn(cornell):
+    mesh = cornell.mesh
+    oven = rad.heat(rad.form_factors(mesh, 0.1), 0.8, {"lamp": 1200, "*": 300})
+    seen = rad.gather(mesh, passes=1, resolution=32)
+    for light in (oven, seen):
+        same = rad.render(mesh, light.radiosity, width=8)
+        assert same.max() > 0
+        assert (rad.render(mesh, light, width=8) == same).all()

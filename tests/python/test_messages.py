@@ -1,11 +1,15 @@
 """A wrong argument is named in one line; unused ones are named, too."""
 
+import copy
+import os
+import pickle
 import re
 import sys
 import warnings
 
 import numpy as np
 import pytest
+import scipy.sparse
 
 import radiosity as rad
 from conftest import ROOT
@@ -58,6 +62,26 @@ def ones(F):
     (lambda F: rad.render(F.mesh, ones(F), camera={"eye": (0, 0, 0), "target": (0, 0, 1), "fov": 40}),
      r"^camera: has no property 'fov'; there are: name, .*vertical_fov \(radians\)"),
     (lambda F: rad.displayed(np.zeros((2, 2, 4)), exposure="x"), "^exposure: has dtype <U1"),
+    (lambda F: rad.displayed(np.zeros((2, 2, 4)), exposure=2000), "^exposure: is 2000.0; give stops"),
+    (lambda F: rad.Scene(SQUARE, None), "^faces: is of type NoneType; give"),
+    (lambda F: rad.Scene(SQUARE, []), "^faces: are none; give at least one"),
+    (lambda F: rad.Scene(SQUARE, [0, 1, 2]), "^faces: face 0 is 0; give its corners"),
+    (lambda F: rad.Scene(SQUARE, [[0, 1, 2], 3]), "^faces: face 1 is 3; give its corners"),
+    (lambda F: rad.Scene(SQUARE, [[0, 1, 2]], materials={"surface": {1: 2, "a": 3}}),
+     "^materials: 'surface' has no property 1"),
+    (lambda F: rad.Scene(SQUARE, [[0, 1, 2]], materials={"surface": {"two_sided": "no"}}),
+     "^two_sided of 'surface': is 'no'; give True or False"),
+    (lambda F: rad.Scene(np.ma.masked_equal(SQUARE, 1), [[0, 1, 2]]), "^vertices: has masked entries"),
+    (lambda F: rad.solve(F, 0.5, np.ma.masked_less(ones(F), 2)), "^emission: has masked entries"),
+    (lambda F: rad.heat(F, 0.8, power={"a": 3}, isothermal={"a": "no"}),
+     "^isothermal of 'a': is 'no'; give True or False"),
+    (lambda F: rad.heat(F, {"a": {300: 1, "b": 1}}, 300), "^emissivity of 'a', a temperature: has dtype <U1"),
+    (lambda F: rad.from_csr([[0, 1], [1, 0]], [1, 1], names=3), "^names: is of type int; give 2 texts"),
+    (lambda F: rad.from_csr([[0, 1], [1, 0]], [1, -1]), "^area: row 1 is -1.0; give 0 or more"),
+    (lambda F: rad.load(""), "^path: is ''; give the path of a file"),
+    (lambda F: rad.load("a\0b"), "^path: is 'a.x00b'; give the path of a file"),
+    (lambda F: rad.load(CORNELL, default_reflectance=2), "^default_reflectance 2 is outside 0 to 1"),
+    (lambda F: rad.mesh(F.mesh.scene, max_edge=-1), "^max_edge: -1 m is out of range"),
     (lambda F: rad.load(CORNELL, kd_is_srgb="yes"), "^kd_is_srgb: is 'yes' of type str; give True or False"),
     (lambda F: rad.load(CORNELL, default_reflectance="x"), "^default_reflectance: is 'x' of type str"),
     (lambda F: rad.load(CORNELL, set=[3]), "^set: is of type int; give texts"),
@@ -92,7 +116,6 @@ def test_whole_numbers_may_be_of_any_type(plates):
     (lambda F: rad.render(F.mesh.scene, ones(F)), "^mesh: is of type Scene; give a Mesh"),
     (lambda F: rad.render(F, ones(F)), "^mesh: is of type FormFactors; give a Mesh"),
     (lambda F: rad.render(F.mesh, F), r"^light: is of type FormFactors; give a Solution, rad.solve\(F\)"),
-    (lambda F: rad.render(F.mesh, rad.heat(F, 0.8, 300)), "^light: is of type Heat; give a Solution"),
     (lambda F: rad.render(F.mesh, None), "^light: is of type NoneType; give real numbers"),
     (lambda F: rad.view_factors_from(F.mesh.scene, [[0, 0, 0]], [0, 0, 1]), "^mesh: is of type Scene"),
     (lambda F: rad.gather(F), "^mesh: is of type FormFactors; give a Mesh"),
@@ -219,3 +242,64 @@ def test_a_package_that_is_missing_is_named(plates, monkeypatch):
         plates.mesh.to_meshio()
     with pytest.raises(ImportError, match="^pyvista is not installed; run `pip install pyvista`"):
         plates.mesh.to_pyvista()
+
+
+def test_broken_sparse_matrices_are_refused():
+    """scipy trusts the arrays of a matrix and reads past their ends."""
+    def broken(change):
+        matrix = scipy.sparse.csr_matrix([[0, 1.0], [1.0, 0]])
+        change(matrix)
+        return matrix
+
+    def start(matrix):
+        matrix.indptr[1] = 9
+
+    def column(matrix):
+        matrix.indices = matrix.indices.astype(np.int64)
+        matrix.indices[0] += 2**32
+
+    def negative(matrix):
+        matrix.indices[0] = -1
+
+    for change in (start, column, negative):
+        refused(lambda: rad.from_csr(broken(change), [1, 1]), "^matrix: is no valid csr matrix: ")
+
+
+def test_names_of_other_bytes_than_utf8_are_kept(tmp_path):
+    text = (ROOT / "data/furnace-cube.obj").read_bytes().replace(b"cube_floor", b"Fu\xdfboden")
+    (tmp_path / "cube.obj").write_bytes(text.replace(b"furnace-cube.mtl", b"w\xe4nde.mtl"))
+    (tmp_path / os.fsdecode(b"w\xe4nde.mtl")).write_bytes((ROOT / "data/furnace-cube.mtl").read_bytes())
+    scene = rad.load(tmp_path / "cube.obj")
+    name = "Fu\udcdfboden/wall"
+    assert name in scene.surface_names
+    mesh = rad.mesh(scene, patches=24)
+    F = rad.form_factors(mesh)
+    assert 0 < F.between(name, "cube_north") < 1
+    assert "Fu\\xdfboden" in str(F.table())
+    with_name = rad.load(tmp_path / "cube.obj", set="Fu\udcdfboden.emission=7")
+    assert rad.mesh(with_name, patches=24).emission.max() == 7
+    refused(lambda: F.between("door", name), r"door: no surface.* Fu.xdfboden/wall")
+    refused(lambda: rad.load(tmp_path / "cube.obj", set="door.emission=7"), r"Fu.xdfboden")
+    F.save(tmp_path / os.fsdecode(b"w\xfcrfel.h5"))
+    again = rad.read(os.fsencode(tmp_path) + b"/w\xfcrfel.h5")
+    assert again.mesh.surface_names == mesh.surface_names
+
+
+def test_objects_are_not_pickled_and_copies_are_themselves(plates, tmp_path):
+    light = rad.solve(plates, 0.5, ones(plates))
+    for made in (plates, plates.mesh, plates.mesh.scene, light):
+        assert copy.copy(made) is made and copy.deepcopy(made) is made
+        with pytest.raises(TypeError, match="cannot be pickled; keep it in a results file"):
+            pickle.dumps(made)
+    plates.save(tmp_path / "plates.h5", solution=copy.copy(light))
+    assert rad.read(tmp_path / "plates.h5").solution is not None
+
+
+def test_cells_of_meshio_that_are_not_read_are_named():
+    meshio = pytest.importorskip("meshio")
+    points = np.random.default_rng(1).random((13, 3))
+    mesh = meshio.Mesh(points, [("triangle", [[0, 1, 2]]), ("triangle10", [list(range(3, 13))])])
+    with pytest.warns(UserWarning, match="left out triangle10"):
+        rad.from_meshio(mesh)
+    mesh = meshio.Mesh(points, [("triangle", [[0, 1, 2]])], cell_sets={"a": [[-1]]})
+    refused(lambda: rad.from_meshio(mesh), "^meshio mesh: cell set 'a' has cell -1 of block 0")

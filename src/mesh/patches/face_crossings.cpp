@@ -111,14 +111,15 @@ class CrossingTest {
 
 std::vector<std::pair<Index, Index>> findCrossings(const Scene& scene,
                                                    std::span<const FacePiece> pieces,
-                                                   double coincidence) {
+                                                   double coincidence, Progress& progress) {
   std::vector<Box3> boxes(pieces.size());
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     for (const Index v : pieces[k].corners) boxes[k].add(scene.vertices[v]);
   }
   const CrossingTest test(scene, coincidence);
   std::vector<std::pair<Index, Index>> found;
-  for (const auto& [first, second] : overlappingPairs(boxes)) {
+  for (const auto& [first, second] : overlappingPairs(boxes, &progress)) {
+    progress.check();
     const FacePiece& p = pieces[first];
     const FacePiece& q = pieces[second];
     if (p.face != q.face && test.cross(p, q)) found.push_back(std::minmax(p.face, q.face));

@@ -21,8 +21,9 @@ struct FacePiece {
 /// Pairs of faces (lower first, sorted) that cross: each has corners more than `coincidence` in
 /// front of and behind the other's plane, and they share a segment longer than `coincidence` that
 /// runs inside both outlines. Faces that touch, share an edge or overlap in a plane do not cross.
+/// Throws Cancelled.
 std::vector<std::pair<Index, Index>> findCrossings(const Scene& scene,
                                                    std::span<const FacePiece> pieces,
-                                                   double coincidence);
+                                                   double coincidence, Progress& progress);
 
 }  // namespace radiosity

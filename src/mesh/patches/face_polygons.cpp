@@ -39,7 +39,7 @@ class FaceMerger {
         group_(scene.faceCount(), kNone) {}
 
   /// The group of every face, numbered by first face; kNone for degenerate ones.
-  std::vector<Index> groups() {
+  std::vector<Index> groups(Progress& progress) {
     // We take planes from the largest faces, which define them best.
     std::vector<Index> order(scene_.faceCount());
     std::iota(order.begin(), order.end(), 0u);
@@ -47,6 +47,7 @@ class FaceMerger {
                      [&](Index a, Index b) { return shapes_[a].area > shapes_[b].area; });
     Index count = 0;
     for (const Index f : order) {
+      progress.check();
       if (shapes_[f].area > 0 && group_[f] == kNone) grow(f, count++);
     }
     std::vector<Index> number(count, kNone);
@@ -125,8 +126,8 @@ std::vector<std::vector<Index>> outlineLoops(const std::vector<std::array<Index,
 }  // namespace
 
 void mergeFaces(const Scene& scene, std::span<const FaceShape> shapes, double coincidence,
-                PatchMesh& mesh) {
-  mesh.polygon = FaceMerger(scene, shapes, coincidence).groups();
+                PatchMesh& mesh, Progress& progress) {
+  mesh.polygon = FaceMerger(scene, shapes, coincidence).groups(progress);
   PlanarPolygons& polygons = mesh.polygons;
   polygons.loop_offset = polygons.corner_offset = {0};
   std::vector<std::vector<Index>> members;
@@ -136,6 +137,7 @@ void mergeFaces(const Scene& scene, std::span<const FaceShape> shapes, double co
     members[mesh.polygon[f]].push_back(f);
   }
   for (const auto& faces : members) {
+    progress.check();
     std::unordered_set<std::uint64_t> inside;
     for (const Index f : faces) {
       const auto outline = scene.face(f);

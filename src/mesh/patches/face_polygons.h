@@ -19,8 +19,9 @@ struct FaceShape {
 /// face), lie in one plane within `coincidence` and belong to one surface. A polygon keeps every
 /// vertex of its outline, so that it meets its neighbours vertex for vertex, like the faces.
 /// Degenerate faces get no polygon, faces that are not planar one of their own. Fills mesh.polygon
-/// and mesh.polygons (except index_in_surface), polygons in the order of their first faces.
+/// and mesh.polygons (except index_in_surface), polygons in the order of their first faces. Throws
+/// Cancelled.
 void mergeFaces(const Scene& scene, std::span<const FaceShape> shapes, double coincidence,
-                PatchMesh& mesh);
+                PatchMesh& mesh, Progress& progress);
 
 }  // namespace radiosity

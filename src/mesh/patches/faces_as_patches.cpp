@@ -48,8 +48,9 @@ bool insideEvenOdd(const Vec2& p, std::span<const Vec2> outline) {
 
 class FacePatches {
  public:
-  FacePatches(const Scene& scene, const MeshOptions& options, MeshReport& report)
-      : scene_(scene), report_(report) {
+  FacePatches(const Scene& scene, const MeshOptions& options, MeshReport& report,
+              Progress& progress)
+      : scene_(scene), report_(report), progress_(progress) {
     Vec3 lower(std::numeric_limits<double>::infinity());
     Vec3 upper = -lower;
     for (const Index v : scene.corners) {
@@ -61,17 +62,26 @@ class FacePatches {
   }
 
   PatchMesh build() {
+    // Faces become patches, are merged into polygons, are looked at for T-junctions, for crossings.
+    constexpr std::size_t kParts = 4;
+    const std::size_t faces = scene_.faceCount();
+    progress_.begin("faces as patches", kParts * faces);
     mesh_.vertices = scene_.vertices;
     for (const Surface& surface : scene_.surfaces) {
       mesh_.surface_names.push_back(surface.name);
       report_.surfaces.emplace_back().name = surface.name;
     }
     mesh_.corner_offset = mesh_.piece_offset = {0};
-    for (Index f = 0; f < scene_.faceCount(); ++f) append(f);
-    if (report_.degenerate_faces == scene_.faceCount()) {
+    for (Index f = 0; f < faces; ++f) {
+      progress_.check();
+      append(f);
+      progress_.advance();
+    }
+    if (report_.degenerate_faces == faces) {
       throw InputError(fmt::format("{}: no face has an area", scene_.file));
     }
-    mergeFaces(scene_, shapes_, coincidence_, mesh_);
+    mergeFaces(scene_, shapes_, coincidence_, mesh_, progress_);
+    progress_.advance(faces);
     std::vector<Index> two_sided;
     for (Index f = 0; f < scene_.faceCount(); ++f) {
       if (scene_.materialOf(f).two_sided && mesh_.area[f] > 0) two_sided.push_back(f);
@@ -79,8 +89,12 @@ class FacePatches {
     appendBacks(mesh_, two_sided);
     numberWithinSurfaces(mesh_);
     fillFigures(mesh_, report_);
+    progress_.check();
     report_.t_junctions = countTJunctions(mesh_, coincidence_);
+    progress_.advance(faces);
     findings();
+    progress_.advance(faces);
+    progress_.end();
     return std::move(mesh_);
   }
 
@@ -170,7 +184,7 @@ class FacePatches {
   }
 
   void findings() {
-    const auto crossings = findCrossings(scene_, pieces_, coincidence_);
+    const auto crossings = findCrossings(scene_, pieces_, coincidence_, progress_);
     report_.crossings = crossings.size();
     if (!crossings.empty()) {
       report_.notes.push_back(
@@ -200,6 +214,7 @@ class FacePatches {
 
   const Scene& scene_;
   MeshReport& report_;
+  Progress& progress_;
   Vec3 centre_{0.0};
   double coincidence_ = 0;
   PatchMesh mesh_;
@@ -210,10 +225,11 @@ class FacePatches {
 
 }  // namespace
 
-PatchMesh facesAsPatches(const Scene& scene, const MeshOptions& options, MeshReport& report) {
+PatchMesh facesAsPatches(const Scene& scene, const MeshOptions& options, MeshReport& report,
+                         Progress& progress) {
   options.validate();
   if (scene.faceCount() == 0) throw InputError(fmt::format("{}: no face has an area", scene.file));
-  return FacePatches(scene, options, report).build();
+  return FacePatches(scene, options, report, progress).build();
 }
 
 }  // namespace radiosity

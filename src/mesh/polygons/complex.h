@@ -48,7 +48,8 @@ CoarseComplex buildComplex(const Scene& scene, const MeshOptions& options, MeshR
 PatchMesh subdivide(const CoarseComplex& complex, const Scene& scene, const MeshOptions& options,
                     MeshReport& report, Progress& progress);
 
-/// --faces-as-patches: patch k is face k of the file.
-PatchMesh facesAsPatches(const Scene& scene, const MeshOptions& options, MeshReport& report);
+/// --faces-as-patches: patch k is face k of the file. Throws Cancelled.
+PatchMesh facesAsPatches(const Scene& scene, const MeshOptions& options, MeshReport& report,
+                         Progress& progress);
 
 }  // namespace radiosity

@@ -18,8 +18,9 @@ radiance W/m^2/sr, temperatures K. N is the number of patches. Arrays that belon
 (`mesh.area`, `light.radiosity`, ...) are views of its memory: read only, without a copy, and valid as
 long as they are referred to, also after the object is gone.
 
-Every long call lets other threads run, shows its progress in terminals and notebooks (`progress=False`
-turns that off, a function takes it over) and ends with KeyboardInterrupt on Ctrl-C.
+Every long call lets other threads run and ends with KeyboardInterrupt on Ctrl-C. All but load() and
+from_csr() show their progress in terminals and notebooks; `progress=False` turns that off, and a
+function takes it over: it is called as progress(stage, done, total) about twenty times a second.
 
 Errors: InputError (a ValueError) names the file or argument, the element in it and the cure;
 RunError (a RuntimeError) says why a run failed.
@@ -38,7 +39,7 @@ from ._scene import Scene, load
 
 __all__ = [
     "FormFactors", "Gathered", "Heat", "InputError", "Mesh", "Results", "RunError", "Scene", "Solution",
-    "Table", "displayed", "form_factors", "from_csr", "from_meshio", "from_trimesh", "gather", "heat",
+    "Table", "__version__", "displayed", "form_factors", "from_csr", "from_meshio", "from_trimesh", "gather", "heat",
     "load", "mesh", "read", "render", "set_threads", "solve", "view_factors_from",
 ]
 

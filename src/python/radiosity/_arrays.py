@@ -30,9 +30,38 @@ def texts(name: str, value: Any) -> List[str]:
 def path_text(name: str, value: Any) -> str:
     """The path of a file, as text."""
     try:
-        return os.fsdecode(value)
+        path = os.fsdecode(value)
     except TypeError:
         raise InputError(f"{name}: is of type {type(value).__name__}; give the path of a file") from None
+    if not path or "\0" in path:
+        raise InputError(f"{name}: is {path!r}; give the path of a file")
+    return path
+
+
+def printable(text: str) -> str:
+    """`text` with bytes of a file that are not of UTF-8 as "\\xdf"."""
+    return text.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
+
+
+def yes_or_no(name: str, value: Any) -> bool:
+    """InputError unless it is True or False, of Python or numpy."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise InputError(f"{name}: is {value!r}; give True or False")
+    return bool(value)
+
+
+class Fixed:
+    """An object that does not change once it is made: copies of it are itself."""
+
+    def __copy__(self) -> Any:
+        return self
+
+    def __deepcopy__(self, known: dict) -> Any:
+        return self
+
+    def __reduce__(self) -> Any:
+        raise TypeError(f"{type(self).__name__} cannot be pickled; keep it in a results file: "
+                        "form_factors.save(path, ...), read(path)")
 
 
 def _shape_text(shape: Sequence[Any]) -> str:
@@ -51,6 +80,8 @@ def _require_shape(name: str, array: np.ndarray, shapes: Sequence[Sequence[Optio
 def numbers(name: str, value: Any, shapes: Sequence[Sequence[Optional[int]]], meaning: str = "",
             nan: bool = False) -> np.ndarray:
     """`value` as contiguous float64 of one of the shapes (None: any length), finite unless `nan`."""
+    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+        raise InputError(f"{name}: has masked entries; fill them (value.filled(...)) or leave them out")
     try:
         given = np.asarray(value)
     except ValueError as error:
@@ -58,7 +89,8 @@ def numbers(name: str, value: Any, shapes: Sequence[Sequence[Optional[int]]], me
     if given.dtype.kind == "O" and not given.ndim:
         raise InputError(f"{name}: is of type {type(value).__name__}; give real numbers")
     if given.dtype.kind not in "buif":
-        raise InputError(f"{name}: has dtype {given.dtype}; give real numbers")
+        raise InputError(f"{name}: has dtype {given.dtype}; give real numbers"
+                         f"{', NaN where there is none' if nan else ''}")
     array = np.ascontiguousarray(given, dtype=np.float64) if given.ndim else given.astype(np.float64)
     _require_shape(name, array, shapes, meaning)
     good = ~np.isinf(array) if nan else np.isfinite(array)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import threading
 from dataclasses import dataclass
 from typing import Any, List, Optional, Sequence, Union
 
@@ -10,7 +11,7 @@ import numpy as np
 import scipy.sparse
 
 from . import _core
-from ._arrays import numbers, path_text, require, texts
+from ._arrays import Fixed, numbers, path_text, printable, require, texts
 from ._core import InputError
 from ._mesh import Mesh
 from ._names import surfaces_named
@@ -20,20 +21,25 @@ from ._progress import Progress, reporting
 
 @dataclass(frozen=True)
 class Table:
-    """Form factors between S named surfaces; made by FormFactors.table(). Text of it is Markdown."""
+    """Form factors between S named surfaces; made by FormFactors.table(). Text of it is Markdown.
+
+    names: S texts. area: (S,) m^2, both sides of a two-sided surface. factors: (S, S), where
+    factors[a, b] is the fraction of the light leaving names[a] that reaches names[b]. sky, backs:
+    (S,), the fractions that go to the sky and to black backs. error: (S, S), the error bound of each
+    factor; NaN if the method has no error figures. Arrays are float64, read only.
+    """
 
     names: List[str]
-    #: (S,) m^2, both sides of a two-sided surface
     area: np.ndarray
-    #: (S, S): factors[a, b] is the fraction of the light leaving names[a] that reaches names[b]
     factors: np.ndarray
-    #: (S,): the fraction that goes to the sky
     sky: np.ndarray
-    #: (S,): the fraction that goes to black backs
     backs: np.ndarray
-    #: (S, S): error bound of each factor; NaN if the method has no error figures
     error: np.ndarray
     _text: str = ""
+
+    def __post_init__(self) -> None:
+        for array in (self.area, self.factors, self.sky, self.backs, self.error):
+            array.flags.writeable = False
 
     def __str__(self) -> str:
         return self._text
@@ -53,7 +59,7 @@ class Table:
         return float(weights @ sums / weights.sum()) if weights.any() else 0.0
 
 
-class FormFactors:
+class FormFactors(Fixed):
     """F of shape (rows, rows): F[i, j] is the fraction of what leaves i that reaches j.
 
     Rows are patches of the mesh, or the clusters that share rows (Mesh.cluster); of from_csr() those
@@ -69,6 +75,7 @@ class FormFactors:
         self._mesh = mesh
         self._csr: Optional[scipy.sparse.csr_matrix] = None
         self._table: Optional[Table] = None
+        self._making = threading.Lock()  # of _csr: all threads get the same one
 
     def __len__(self) -> int:
         return len(self._handle.area)
@@ -90,16 +97,21 @@ class FormFactors:
         ((24, 24), True)
         """
         if self._csr is None:
-            with reporting(None) as report:
-                data, indices, starts = _core.csr_arrays(self._handle, report)
-            n = len(self)
-            matrix = scipy.sparse.csr_matrix((data, indices, starts), shape=(n, n), copy=False)
-            matrix.has_sorted_indices = True
-            matrix.has_canonical_format = True
-            for array in (matrix.data, matrix.indices, matrix.indptr):
-                array.flags.writeable = False
-            self._csr = matrix
+            with self._making:
+                if self._csr is None:
+                    self._csr = self._rows()
         return self._csr
+
+    def _rows(self) -> scipy.sparse.csr_matrix:
+        with reporting(None) as report:
+            data, indices, starts = _core.csr_arrays(self._handle, report)
+        n = len(self)
+        matrix = scipy.sparse.csr_matrix((data, indices, starts), shape=(n, n), copy=False)
+        matrix.has_sorted_indices = True
+        matrix.has_canonical_format = True
+        for array in (matrix.data, matrix.indices, matrix.indptr):
+            array.flags.writeable = False
+        return matrix
 
     @property
     def area(self) -> np.ndarray:
@@ -134,11 +146,19 @@ class FormFactors:
 
     @property
     def report(self) -> dict:
-        """What the computation did: seconds, error_figure, closed, reciprocity_residual, ..."""
+        """What the computation did, a dict.
+
+        method_reason: why the method was chosen. closed: no row sees the sky. error_figure: the whole
+        matrix's, relative; largest_row_error: how far a row's sum is above 1, or off 1 if closed.
+        reciprocity_residual: of hemicubes. symmetrized, closure_enforced, closure (a dict: residuals
+        before and after, moves). seconds, seconds_plan, estimated_seconds, matrix_bytes,
+        estimated_bytes. polygons, empty_rows, hemicubes, near_pairs, simd_target. exact, rays: dicts of
+        counts of the work that these methods did or skipped. notes: a dict of severity and text each.
+        """
         return self._handle.report
 
     def table(self, groups: Union[str, Sequence[str]] = (), progress: Progress = None) -> Table:
-        """Form factors between surfaces by name.
+        """Form factors between surfaces by name; new arrays, read only.
 
         groups: "NAME=PATTERN", one or a list: surfaces that match a pattern of the shell under one
         name.
@@ -149,11 +169,12 @@ class FormFactors:
         >>> "boxes" in table.names
         True
         """
+        if not groups and self._table is not None:
+            return self._table
         if self._mesh is None:
             if groups:
                 raise InputError("groups: are of surfaces of a mesh; name the rows in from_csr()")
-            return self._table_of_rows()
-        if not groups and self._table is not None:
+            self._table = self._table_of_rows()
             return self._table
         with reporting(progress) as report:
             got = _core.table(self._handle, texts("groups", groups), report)
@@ -197,7 +218,7 @@ class FormFactors:
             return None
         if not isinstance(getattr(part, "_handle", None), kind):
             raise InputError(f"{name}: is of type {type(part).__name__}; give {cure}")
-        if part.form_factors is not self:
+        if part.form_factors._handle is not self._handle:
             raise InputError(f"{name}: is of other form factors; give one that was made of these")
         return part._handle
 
@@ -211,14 +232,14 @@ class FormFactors:
         area = member.T @ self.area
         each = np.divide(1.0, area, out=np.zeros_like(area), where=area > 0)
         weighted = member.T @ scipy.sparse.diags(self.area)
-        factors = (weighted @ self.csr.astype(np.float64) @ member).toarray() * each[:, None]
+        factors = (weighted @ self._rows().astype(np.float64) @ member).toarray() * each[:, None]
         nothing = np.full(factors.shape, np.nan)
         lines = ["| from | " + " | ".join(names) + " | sky |", "|---" * (len(names) + 2) + "|"]
         sky = (weighted @ self.sky) * each
         for name, row, lost in zip(names, factors, sky):
             lines.append(f"| {name} | " + " | ".join(f"{f:.6g}" for f in row) + f" | {lost:.6g} |")
         return Table(names, area, factors, sky, (weighted @ self.backs) * each, nothing,
-                     "\n".join(lines) + "\n")
+                     printable("\n".join(lines) + "\n"))
 
     def __repr__(self) -> str:
         return f"<FormFactors of {len(self):,} rows, {self.method}>"
@@ -264,7 +285,7 @@ def form_factors(mesh: Mesh, tolerance: Optional[float] = None, *, method: str =
     options = dict(tolerance=tolerance, method=method, closure=closure, precision=precision,
                    resolution=resolution, eye=eye, seed=seed, near_exact=near_exact,
                    symmetrize=symmetrize, memory_limit=memory_limit,
-                   scratch_folder=path_text("scratch_folder", scratch_folder),
+                   scratch_folder=path_text("scratch_folder", scratch_folder) if scratch_folder else "",
                    memory_held=_resident_bytes() if memory_limit else 0)
     with reporting(progress) as report:
         factors = FormFactors(_core.form_factors(mesh._handle, options, report), mesh)
@@ -285,8 +306,19 @@ def _unused(options: dict, method: str) -> List[str]:
     return [name for name, usual in unused.items() if options[name] != usual]
 
 
+def _checked(matrix: Any) -> Any:
+    """InputError where the arrays of a sparse matrix do not fit each other: scipy trusts them."""
+    try:
+        if hasattr(matrix, "check_format"):
+            matrix.check_format(full_check=True)
+    except (ValueError, IndexError, TypeError) as error:
+        raise InputError(f"matrix: is no valid {matrix.format} matrix: {error}; make it anew from "
+                         "its entries") from None
+    return matrix
+
+
 def _shares(name: str, value: Any, rows: int) -> np.ndarray:
-    """What of each row goes somewhere."""
+    """One a row, 0 or more: its area, or what of it goes somewhere."""
     array = numbers(name, value, [(rows,)], "one a row")
     below = np.flatnonzero(array < 0)
     if len(below):
@@ -310,7 +342,7 @@ def from_csr(matrix: Any, area: Any, *, sky: Any = None, backs: Any = None,
     >>> F.between("hot", "cold")
     1.0
     """
-    given = matrix if scipy.sparse.issparse(matrix) else numbers("matrix", matrix, [(None, None)])
+    given = _checked(matrix) if scipy.sparse.issparse(matrix) else numbers("matrix", matrix, [(None, None)])
     if given.dtype.kind not in "buif":
         raise InputError(f"matrix: has dtype {given.dtype}; give real numbers")
     single = getattr(matrix, "dtype", None) == np.float32
@@ -318,7 +350,7 @@ def from_csr(matrix: Any, area: Any, *, sky: Any = None, backs: Any = None,
     n = csr.shape[0]
     if csr.shape != (n, n):
         raise InputError(f"matrix: has shape {csr.shape}; give as many columns as rows")
-    areas = numbers("area", area, [(n,)], "one a row, m^2")
+    areas = _shares("area", area, n)
     if not csr.has_canonical_format or not np.all(csr.data):
         csr = csr.copy()
         csr.sum_duplicates()
@@ -341,6 +373,8 @@ def from_csr(matrix: Any, area: Any, *, sky: Any = None, backs: Any = None,
 def _row_names(names: Optional[Sequence[str]], rows: int) -> List[str]:
     if names is None:
         return []
+    if not hasattr(names, "__iter__"):
+        raise InputError(f"names: is of type {type(names).__name__}; give {rows} texts, one a row")
     given = [names] if isinstance(names, str) else [str(name) for name in names]
     if len(given) != rows:
         raise InputError(f"names: are {len(given)}; give {rows}, one a row")

@@ -18,7 +18,11 @@ from ._scene import Scene
 
 @dataclass(frozen=True)
 class Results:
-    """What a file holds; None for what it does not."""
+    """What a file holds; None for what it does not.
+
+    scene: a Scene. mesh: a Mesh. form_factors: FormFactors, of a matrix in a file without a mesh.
+    solution: a Solution, heat: a Heat, both on these form factors.
+    """
 
     scene: Optional[Scene] = None
     mesh: Optional[Mesh] = None

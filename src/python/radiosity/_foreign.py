@@ -15,6 +15,8 @@ from ._scene import Scene
 
 #: meshio's cells that are faces, and the number of points that are corners
 _FACES = {"triangle": 3, "triangle6": 3, "triangle7": 3, "quad": 4, "quad8": 4, "quad9": 4}
+#: The types of faces begin so, also of those that are not read.
+_SURFACES = ("triangle", "quad", "polygon", "VTK_LAGRANGE_TRIANGLE", "VTK_LAGRANGE_QUADRILATERAL")
 #: The same for cells that are volumes; corners come first, in VTK's order.
 _VOLUMES = {"tetra": 4, "tetra10": 4, "pyramid": 5, "pyramid13": 5, "pyramid14": 5, "wedge": 6,
             "wedge15": 6, "wedge18": 6, "hexahedron": 8, "hexahedron20": 8, "hexahedron24": 8,
@@ -44,6 +46,9 @@ def from_meshio(mesh: Any, materials: Optional[Mapping[Any, Mapping[str, Any]]] 
     if points.shape[1] == 2:
         points = np.column_stack([points, np.zeros(len(points))])
     faces, groups = _cells(mesh, {**_FACES, "polygon": None})
+    lost = sorted({block.type for block in mesh.cells if block.type.startswith(_SURFACES)} - {*_FACES, "polygon"})
+    if lost:
+        warn(f"meshio mesh: left out {', '.join(lost)}, which are not read")
     if not faces:
         volumes, volume_groups = _cells(mesh, _VOLUMES)
         faces, groups = _skin(points, volumes, volume_groups)
@@ -93,6 +98,9 @@ def _groups(mesh: Any, block: int, count: int) -> list:
         names = ["other"] * count
         for name, cells in sets.items():
             for cell in np.asarray(cells, dtype=np.int64).reshape(-1):
+                if not 0 <= cell < count:
+                    raise InputError(f"meshio mesh: cell set {name!r} has cell {cell} of block {block}, "
+                                     f"which has {count}, numbered from 0")
                 names[cell] = name
         return names
     tags = (mesh.cell_data or {}).get("gmsh:physical")

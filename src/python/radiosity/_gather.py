@@ -7,7 +7,7 @@ from typing import Any, List, Optional, Tuple
 import numpy as np
 
 from . import _core
-from ._arrays import require
+from ._arrays import Fixed, require
 from ._light import materials_of
 from ._mesh import Mesh
 from ._notes import tell, warn
@@ -16,7 +16,7 @@ from ._progress import Progress, reporting
 MOST_PASSES = 100  # unless the caller asks for fewer
 
 
-class Gathered:
+class Gathered(Fixed):
     """Light that L eyes gathered, at the vertices or the patches of a mesh; made by gather().
 
     Values of patches have the shape of the emission that they are of: (N,), (N, bands) or
@@ -61,7 +61,8 @@ class Gathered:
 
     @property
     def summary(self) -> dict:
-        """status (converged, pass_limit or no_light), message, passes, hemicubes, closed, seconds, ..."""
+        """What was done, a dict: status (converged, pass_limit or no_light), message, passes (a list of
+        dicts), hemicubes, pixels, closed, bytes, seconds, notes."""
         return self._handle.summary
 
     @property

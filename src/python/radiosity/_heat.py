@@ -8,7 +8,7 @@ from typing import Any, List, Mapping, Optional, Sequence, Union
 import numpy as np
 
 from . import _core
-from ._arrays import numbers, path_text, require
+from ._arrays import Fixed, numbers, path_text, require, yes_or_no
 from ._core import InputError
 from ._factors import FormFactors
 from ._notes import warn
@@ -18,7 +18,7 @@ from ._progress import Progress, reporting
 ByName = Union[float, Mapping[str, Any]]
 
 
-class Heat:
+class Heat(Fixed):
     """Temperatures and fluxes of N patches, or of the rows of a matrix; made by heat()."""
 
     def __init__(self, handle: "_core.Heat", form_factors: FormFactors) -> None:
@@ -52,8 +52,10 @@ class Heat:
 
     @property
     def summary(self) -> dict:
-        """status, usable, iterations, residual, balance (W), message, ... Not converging is no error
-        but a warning: `usable` is False then."""
+        """What the solver did, a dict: status, usable, message, iterations (of Newton's method),
+        linear_steps, residual and balance_residual (relative), undetermined (patches without a
+        temperature), balance (a dict, W: radiated, to_sky, on_backs, imbalance, convected, throughput),
+        seconds. Not converging is no error but a warning: `usable` is False then."""
         return self._handle.summary
 
     @property
@@ -62,8 +64,8 @@ class Heat:
         return self._form_factors
 
     def table(self) -> List[dict]:
-        """A dict a surface: area, mean and extreme temperatures (K), radiosity, net_flux (W/m^2),
-        radiated, convected (W), ..."""
+        """A dict a surface: name, area (m^2), temperature (its mean), lowest, highest (K), radiosity,
+        irradiance, irradiance_error (None: unknown), net_flux (W/m^2), radiated, convected (W)."""
         return _core.heat_table(self._handle)
 
     def __repr__(self) -> str:
@@ -80,7 +82,8 @@ def _emissivity(name: str, value: Any) -> str:
     texts = []
     for band in bands:
         if isinstance(band, Mapping):
-            texts.append(" ".join(f"{_number(name, t)}:{_number(name, band[t])}" for t in sorted(band)))
+            values = {float(numbers(f"{name}, a temperature", T, [()])): eps for T, eps in band.items()}
+            texts.append(" ".join(f"{T!r}:{_number(name, values[T])}" for T in sorted(values)))
         else:
             texts.append(_number(name, band))
     return "; ".join(texts)
@@ -108,20 +111,22 @@ def _settings(given: Mapping[str, Optional[ByName]]) -> List[str]:
             elif kind == "emissivity":
                 texts.append((name, f"{name}.emissivity={_emissivity(f'emissivity of {name!r}', value)}"))
             elif kind == "isothermal":
-                texts.append((name, f"{name}.isothermal={'yes' if value else 'no'}"))
+                texts.append((name, f"{name}.isothermal="
+                                    f"{'yes' if yes_or_no(f'isothermal of {name!r}', value) else 'no'}"))
             else:
                 texts.append((name, f"{name}.{kind}={_number(f'{kind} of {name!r}', value)}"))
     return [text for name, text in sorted(texts, key=lambda pair: pair[0] != "*")]
 
 
 def _of_rows(F: FormFactors, name: str, value: Optional[Any], other: float) -> np.ndarray:
-    """A value a row, of one number, an array, or values by the rows' names."""
+    """A value a row, of one number, an array, or values by the rows' names (* for all others)."""
     if not isinstance(value, Mapping):
         given = numbers(name, other if value is None else value, [(), (len(F),)], "one a row", nan=True)
         return np.ascontiguousarray(np.broadcast_to(given, (len(F),)))
     names = F._handle.names
+    other = value.get("*", other)
     for known in value:
-        if known not in names:
+        if known != "*" and known not in names:
             raise InputError(f"{name} of {known!r}: no row is called so; there are: "
                              f"{', '.join(dict.fromkeys(names)) or 'none'}")
     texts = [value.get(row, other) for row in names]

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, Optional, Tuple
 import numpy as np
 
 from . import _core
-from ._arrays import numbers, require
+from ._arrays import Fixed, numbers, require
 from ._core import InputError, RunError
 from ._factors import FormFactors
 from ._mesh import Mesh
@@ -15,7 +15,7 @@ from ._notes import warn
 from ._progress import Progress, reporting
 
 
-class Solution:
+class Solution(Fixed):
     """Radiosities of N patches, or of the rows of a matrix from elsewhere; made by solve().
 
     Values have the shape of the emission that they are of: (N,), (N, bands) or (N, bands, k).
@@ -49,7 +49,10 @@ class Solution:
 
     @property
     def summary(self) -> dict:
-        """status, usable, solver, iterations, residual, error_bound, energy (W by band), message, ...
+        """What the solver did, a dict: status (converged, no_convergence or no_light), usable,
+        message, solver, iterations, rows (of the matrix that were used), residual and residual_history
+        (relative to the largest emission), error_bound (W/m^2, of |B - B*|; None: unknown), energy
+        (lists by band, W: emitted, from_sky, absorbed, to_sky, on_backs, imbalance), seconds.
 
         Not converging is no error but a warning: `usable` is False then.
         """
@@ -136,7 +139,8 @@ def solve(F: FormFactors, reflectance: Any = None, emission: Any = None, *, sky:
     emission: radiant exitance, W/m^2, (N,), (N, bands) or, for k lamps at once, (N, bands, k);
     default: the scene's, with its sky. reflectance: 0 to 1, one number, (N,) or (N, bands); default:
     the scene's, of 3 bands. sky: radiance, W/m^2/sr, one number or (bands,); default: dark where
-    emission is given. solver: auto, jacobi, gauss-seidel, cg, gmres or direct. tolerance: of the true
+    emission is given. solver: auto, jacobi, gauss-seidel, cg, gmres or direct (petsc runs under mpirun
+    alone). tolerance: of the true
     residual, relative to the largest emission of a band.
 
     Arrays are copied once, as float64; those of the result are views of new ones. A UserWarning says

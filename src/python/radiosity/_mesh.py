@@ -8,7 +8,7 @@ from typing import Any, Mapping, Optional
 import numpy as np
 
 from . import _core
-from ._arrays import numbers, require
+from ._arrays import Fixed, numbers, require
 from ._core import InputError
 from ._names import surfaces_named
 from ._notes import tell
@@ -23,7 +23,7 @@ def _package(name: str, cure: str) -> Any:
         raise ImportError(f"{name} is not installed; {cure}", name=name) from None
 
 
-class Mesh:
+class Mesh(Fixed):
     """N patches, planar polygons, each of one surface; made by mesh().
 
     Fronts come first, then the backs of two-sided patches.
@@ -133,12 +133,17 @@ class Mesh:
 
     @property
     def report(self) -> dict:
-        """What meshing did: counts, areas by surface, notes on repairs."""
+        """What meshing did, a dict: surfaces (a dict each: name, and areas given, kept, buried,
+        overlapped, degenerate, m^2); counts of repairs (welded_vertices, degenerate_faces,
+        duplicate_faces, nonplanar_faces, hidden_sides, cuts, split_edges) and of what is left
+        (t_junctions, crossings, nonmanifold_edges); polygons, triangles, quads, clusters;
+        largest_deviation, longest_edge (m), smallest_angle (degrees); notes: a dict of severity and text
+        each."""
         return self._handle.report
 
     def per_patch(self, by_name: Mapping[str, Any], other: Any = 0.0) -> np.ndarray:
         """Values by the name of a surface, material or object as an array (N,), or (N, bands) where
-        values have bands.
+        values have bands: a new array.
 
         `other`: of the surfaces that are not named. A later name replaces what an earlier one says.
         Errors: InputError for a name that is not there, with those that are.

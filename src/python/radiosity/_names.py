@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import List, Sequence
 
+from ._arrays import printable
 from ._core import InputError
 
 
@@ -15,5 +16,5 @@ def surfaces_named(names: Sequence[str], wanted: str) -> List[int]:
         found = [k for k, name in enumerate(known) if name == wanted]
         if found:
             return found
-    raise InputError(f"{wanted}: no surface, material or object is called so; surfaces are: "
-                     f"{', '.join(names)}")
+    raise InputError(printable(f"{wanted}: no surface, material or object is called so; surfaces are: "
+                               f"{', '.join(names)}"))

@@ -10,6 +10,8 @@ from . import _core
 from ._arrays import numbers, require
 from ._core import InputError
 from ._factors import FormFactors
+from ._gather import Gathered
+from ._heat import Heat
 from ._light import Solution
 from ._mesh import Mesh
 from ._progress import Progress, reporting
@@ -19,7 +21,8 @@ def render(mesh: Mesh, light: Any, width: Optional[int] = None, height: Optional
            camera: Any = None, samples: int = 4, smooth: bool = True, crease: float = 30.0,
            show_backs: bool = False, elements: Optional[bool] = None,
            element_tolerance: Optional[float] = None, progress: Progress = None) -> np.ndarray:
-    """The picture of a Solution, or of radiosities (N,) or (N, 3), W/m^2: (height, width, 4) float32.
+    """The picture of a Solution, of Heat or Gathered light, or of radiosities (N,) or (N, 3), W/m^2:
+    (height, width, 4) float32.
 
     Red, green and blue are radiance, W/m^2/sr, linear; alpha is the share of samples that hit
     something. displayed() makes it ready to be shown. width, height: pixels, 512 by default; a side
@@ -47,10 +50,11 @@ def render(mesh: Mesh, light: Any, width: Optional[int] = None, height: Optional
         if elements:
             raise InputError("elements: need a Solution, which knows the materials; give what solve() "
                              "returned")
-        if hasattr(light, "radiosity") or isinstance(light, FormFactors):
-            raise InputError(f"light: is of type {type(light).__name__}; give a Solution, "
-                             "rad.solve(F), or radiosities of the patches")
-        values = numbers("light", light, [(len(mesh),), (len(mesh), 1), (len(mesh), 3)],
+        if isinstance(light, FormFactors):
+            raise InputError("light: is of type FormFactors; give a Solution, rad.solve(F), or "
+                             "radiosities of the patches")
+        given = light.radiosity if isinstance(light, (Gathered, Heat)) else light
+        values = numbers("light", given, [(len(mesh),), (len(mesh), 1), (len(mesh), 3)],
                          f"N = {len(mesh)}")
         values = values.reshape(len(mesh), -1)
     options = dict(width=width, height=height, samples=samples, smooth=smooth, crease=crease,
@@ -74,6 +78,8 @@ def displayed(image: np.ndarray, exposure: Optional[float] = None) -> np.ndarray
     """
     picture = np.ascontiguousarray(numbers("image", image, [(None, None, 4)]), dtype=np.float32)
     stops = _core.exposure(picture) if exposure is None else float(numbers("exposure", exposure, [()]))
+    if not abs(stops) <= 120:
+        raise InputError(f"exposure: is {stops}; give stops, -120 to 120")
     linear = np.clip(picture[..., :3] * np.float32(2.0**stops), 0, 1)
     coded = np.where(linear <= 0.0031308, 12.92 * linear,
                      1.055 * np.power(linear, 1 / 2.4, dtype=np.float32) - 0.055)

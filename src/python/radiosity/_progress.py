@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 import time
 from contextlib import contextmanager, nullcontext
@@ -34,6 +35,7 @@ class _Line:
         self.write(" ".join(filter(None, [stage, share + count])) + f", {now - self.start:.0f} s")
 
     def write(self, text: str) -> None:
+        text = text[:shutil.get_terminal_size().columns - 1]  # a longer line could not be written over
         sys.stderr.write("\r" + text.ljust(self.width))
         sys.stderr.flush()
         self.width = len(text)

@@ -8,7 +8,7 @@ from typing import Any, Mapping, Optional, Sequence, Union
 import numpy as np
 
 from . import _core
-from ._arrays import indices, numbers, path_text, require, texts
+from ._arrays import Fixed, indices, numbers, path_text, printable, require, texts, yes_or_no
 from ._core import InputError
 from ._notes import tell
 
@@ -21,10 +21,25 @@ def _colour(name: str, value: Any) -> tuple:
     return tuple(float(x) for x in np.broadcast_to(given, 3))
 
 
+def _faces_of(faces: Any) -> list:
+    """A list of sequences of corners."""
+    try:
+        given = list(faces)
+    except TypeError:
+        raise InputError(f"faces: is of type {type(faces).__name__}; give (F, 3), (F, 4) or a sequence "
+                         "of faces") from None
+    if not given:
+        raise InputError("faces: are none; give at least one")
+    for k, face in enumerate(given):
+        if isinstance(face, str) or not hasattr(face, "__len__"):
+            raise InputError(f"faces: face {k} is {face!r}; give its corners, indices of vertices")
+    return given
+
+
 def _corners(faces: Any, vertices: int) -> tuple:
     """Corners and offsets of an (F, k) array, or of a sequence of faces of several lengths."""
     if not isinstance(faces, np.ndarray):
-        faces = list(faces)
+        faces = _faces_of(faces)
         if len({len(face) for face in faces}) > 1:
             lengths = np.array([len(face) for face in faces], dtype=np.uint64)
             flat = np.concatenate([np.asarray(face) for face in faces])
@@ -45,6 +60,8 @@ def _group_of_faces(groups: Any, faces: int) -> tuple:
     if given.shape != (faces,) or given.dtype.kind not in "uiUO":
         raise InputError(f"groups: has shape {given.shape} and dtype {given.dtype}; give one name or "
                          f"number a face, shape ({faces},)")
+    if given.dtype.kind == "O":
+        given = given.astype(str)
     names, first, of_face = np.unique(given, return_index=True, return_inverse=True)
     order = np.argsort(first)
     place = np.empty(len(names), dtype=np.uint32)
@@ -61,8 +78,9 @@ def _materials(names: Sequence[str], given: Optional[Mapping[Any, Mapping[str, A
         known[str(group)] = dict(properties)
     for name, material in known.items():
         if name not in names:
-            raise InputError(f"materials: no group is called {name!r}; there are: {', '.join(names)}")
-        unknown = sorted(set(material) - set(_PLAIN))
+            raise InputError(printable(f"materials: no group is called {name!r}; there are: "
+                                       f"{', '.join(names)}"))
+        unknown = [key for key in material if key not in _PLAIN]
         if unknown:
             raise InputError(f"materials: {name!r} has no property {unknown[0]!r}; there are: "
                              f"{', '.join(_PLAIN)}")
@@ -75,11 +93,12 @@ def _materials(names: Sequence[str], given: Optional[Mapping[Any, Mapping[str, A
             raise InputError(f"reflectance of {name!r}: is {material['reflectance']}; give 0 to 1")
         if not all(E >= 0 for E in emission):
             raise InputError(f"emission of {name!r}: is {material['emission']}; give W/m^2, 0 or more")
-        made.append((name, reflectance, emission, bool(material["two_sided"])))
+        two_sided = yes_or_no(f"two_sided of {name!r}", material["two_sided"])
+        made.append((name, reflectance, emission, two_sided))
     return made
 
 
-class Scene:
+class Scene(Fixed):
     """Faces, their surfaces and materials.
 
     vertices: (V, 3) numbers, metres. faces: (F, 3), (F, 4) or wider whole numbers, or a sequence of
@@ -162,7 +181,7 @@ class Scene:
 
     def __repr__(self) -> str:
         return (f"<Scene of {len(self.face_surface):,} faces on {len(self.surface_names)} surfaces "
-                f"from {self._handle.file}>")
+                f"from {printable(self._handle.file)}>")
 
 
 def load(path: Union[str, "os.PathLike[str]"], *, unit: Optional[str] = None,
