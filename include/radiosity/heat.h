@@ -101,6 +101,7 @@ struct ConditionText {
   std::string origin;                 ///< the file that the table is from, for messages
   std::string table;                  ///< comma-separated, as src/heat/README.md says; empty: none
   std::vector<std::string> settings;  ///< "NAME.PROPERTY=VALUE", which replace cells of the table
+  std::vector<std::string> groups;    ///< "NAME=PATTERN", as groupSurfaces() takes them
   bool empty() const { return table.empty() && settings.empty(); }
 };
 
@@ -141,12 +142,14 @@ struct HeatConditions {
   ConditionText text{};           ///< the text that they were read from; or empty
 };
 
-/// Reads the table at `csv_path` (empty: none) and the settings. Errors: as readWholeFile(), and
-/// InputError if both are empty.
-ConditionText readConditionText(const std::string& csv_path, std::span<const std::string> settings);
+/// Reads the table at `csv_path` (empty: none), the settings and groups. Errors: as
+/// readWholeFile(), and InputError if there are neither a table nor settings.
+ConditionText readConditionText(const std::string& csv_path, std::span<const std::string> settings,
+                                std::span<const std::string> groups = {});
 
 /// Finds conditions by name, as SceneOptions::set finds surfaces, or by a pattern of names: * any
-/// text, ? a character, [abc] one of some. A name goes before a pattern, settings go before the
+/// text, ? a character, [abc] one of some. The name of a group stands for all in it. A name goes
+/// before a pattern and a group, settings go before the
 /// table, and the name * gives every surface what no other line does. Errors: InputError, one
 /// line with file, line and cure; also for a surface without a condition.
 HeatConditions readHeatConditions(const Scene& scene, const ConditionText& text);
@@ -184,6 +187,7 @@ struct SurfaceHeat {
   /// the root mean square of J, as if errors of entries were independent. Empty: unknown.
   std::optional<double> irradiance_error;
 };
+/// Surfaces in one of solution.conditions.groups are one.
 std::vector<SurfaceHeat> heatBySurface(const HeatSolution& solution, const PatchMesh& mesh,
                                        const FormFactors& factors);
 /// The same for the rows of a matrix: rows of one name together, a row without a name by itself.

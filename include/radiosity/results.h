@@ -83,8 +83,8 @@ Results readResults(const std::string& path, bool with_factors = true,
 ///                  eye_of_corner (at vertices: the eye of every entry of /mesh/corners); at, key,
 ///                  summary/ with passes/ (a row a pass; bound is NaN if there is none)
 ///   /heat          temperature (N), net_flux, convection (N), radiosity, irradiance (N x bands),
-///                  as HeatSolution; condition_table and condition_settings, the text of the
-///                  conditions; key, summary/ with balance_W/
+///                  as HeatSolution; condition_table, condition_settings, condition_groups, the
+///                  text of the conditions; key, summary/ with balance_W/
 ///   /basis         names (S), bands (of one source), radiosity, irradiance, reflectance, emission
 ///                  (N x S * bands, column s * bands + b), sky (S * bands numbers), summary/, key
 /// The number of columns is that of bands: three from scene files, any number from a program.

@@ -25,11 +25,13 @@ HeatConditions conditionsFor(Session& session, const Pipeline& pipeline) {
   const std::optional<HeatSolution>& stored = pipeline.stored().heat;
   const bool given = !request.thermal.empty() || !request.conditions.empty();
   if (given || !pipeline.fromResultsFile() || !stored || stored->conditions.empty()) {
-    return readHeatConditions(pipeline.scene(), request.thermal, request.conditions);
+    return readHeatConditions(
+        pipeline.scene(), readConditionText(request.thermal, request.conditions, request.groups));
   }
   session.report.line("conditions", "those in " + request.input);
   ConditionText text = stored->conditions;
   text.origin = request.input + ": /heat/condition_table";
+  if (!request.groups.empty()) text.groups = request.groups;
   return readHeatConditions(pipeline.scene(), text);
 }
 

@@ -23,15 +23,15 @@ int heatMatrixFile(Session& session, OutputSet& files) {
   const Request& request = session.request;
   requireOwnOptions(request, files);
   const HeatOptions options = request.apply(HeatOptions());
-  const ConditionText text = readConditionText(request.thermal, request.conditions);
+  const ConditionText text = readConditionText(request.thermal, request.conditions, request.groups);
   const MatrixFile file = readMatrixInput(session);
   const std::vector<std::string>& names = file.factors.names;
   const HeatConditions conditions = readHeatConditions(names, file.emissivity, text);
   validate(conditions, options);
   const FormFactors factors = reportedFactors(session, file);
-  const HeatSolution heat =
-      solveHeat(factors, HeatRows{conditions.conditions, conditions.of_surface, {}}, options,
-                session.progress);
+  HeatSolution heat = solveHeat(factors, HeatRows{conditions.conditions, conditions.of_surface, {}},
+                                options, session.progress);
+  heat.conditions = text;
   const std::vector<SurfaceHeat> surfaces = heatByName(heat, names, factors);
   summarizeHeat(session.report, heat, factors, surfaces, options, Detail::full);
   files.write(Format::surface_table, "heat exchange by name",

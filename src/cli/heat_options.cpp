@@ -19,6 +19,9 @@ void addHeatOptions(CLI::App& app, Request& r) {
       "Replace what the table says, or do without one: emissivity (one number; one a band, 0.8; "
       "0.3; or against temperature, 300:0.1 800:0.25), temperature, flux, power, convection, "
       "ambient, isothermal. May be repeated");
+  add(app, "Heat", "--group", r.groups, "NAME=PATTERN",
+      "Join surfaces under one name, for conditions and in tables; * and ? stand for any text and "
+      "any character, the first group that matches has the surface. May be repeated");
   add(app, "Heat", "--sky-temperature", r.sky_temperature, "K",
       fmt::format("Temperature of the black sky wherever rays leave the scene (default {:g})",
                   defaults.sky_temperature));

@@ -25,6 +25,7 @@ void describeHeat(Report& report, const Results& stored, const HeatOptions& opti
   std::istringstream table(heat.conditions.table);
   for (std::string line; std::getline(table, line);) lines.push_back(line);
   lines.insert(lines.end(), heat.conditions.settings.begin(), heat.conditions.settings.end());
+  for (const std::string& group : heat.conditions.groups) lines.push_back("group " + group);
   for (std::size_t k = 0; k < std::min(lines.size(), kMostLines); ++k) {
     report.line(k == 0 ? "conditions" : "", lines[k]);
   }

@@ -10,6 +10,13 @@
 
 namespace radiosity {
 
+std::vector<std::string> SurfaceTargets::ownNames() const {
+  std::vector<std::string> names;
+  names.reserve(size());
+  for (const Surface& surface : scene_.surfaces) names.push_back(surface.name);
+  return names;
+}
+
 std::vector<Index> SurfaceTargets::named(const std::string& name) const {
   return surfacesNamed(scene_, name);
 }

@@ -19,6 +19,8 @@ class ConditionTargets {
   virtual std::size_t size() const = 0;
   /// The name of a target in messages.
   virtual std::string nameOf(Index target) const = 0;
+  /// The name of each target, as groups join them; empty for one without.
+  virtual std::vector<std::string> ownNames() const = 0;
   /// The kinds of things that have names: "surface, material or object with faces".
   virtual std::string_view kinds() const = 0;
   /// The targets that `name` stands for literally, ascending.
@@ -36,6 +38,7 @@ class SurfaceTargets : public ConditionTargets {
   explicit SurfaceTargets(const Scene& scene) : scene_(scene) {}
   std::size_t size() const override { return scene_.surfaces.size(); }
   std::string nameOf(Index target) const override { return scene_.surfaces[target].name; }
+  std::vector<std::string> ownNames() const override;
   std::string_view kinds() const override { return "surface, material or object with faces"; }
   std::vector<Index> named(const std::string& name) const override;
   std::vector<Index> matching(const std::string& pattern) const override;
@@ -53,6 +56,7 @@ class RowTargets : public ConditionTargets {
   RowTargets(std::span<const std::string> names, std::span<const double> emissivity);
   std::size_t size() const override { return names_.size(); }
   std::string nameOf(Index target) const override;
+  std::vector<std::string> ownNames() const override { return {names_.begin(), names_.end()}; }
   std::string_view kinds() const override { return "row"; }
   std::vector<Index> named(const std::string& name) const override;
   std::vector<Index> matching(const std::string& pattern) const override;

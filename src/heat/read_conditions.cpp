@@ -10,6 +10,7 @@
 #include "base/near_names.h"
 #include "heat/condition_targets.h"
 #include "heat/condition_text.h"
+#include "radiosity/surface_groups.h"
 #include "scene/text.h"
 
 namespace radiosity {
@@ -29,6 +30,7 @@ class Lines {
  public:
   Lines(const ConditionTargets& targets, const ConditionText& text)
       : targets_(targets), of_target_(targets.size()) {
+    if (!text.groups.empty()) groups_ = groupSurfaces(targets.ownNames(), text.groups);
     if (!text.table.empty()) lines_ = parseConditionTable(text.origin, text.table);
     table_ = lines_.size();
     for (const std::string& setting : text.settings) lines_.push_back(parseSetting(setting));
@@ -96,6 +98,9 @@ class Lines {
     for (std::size_t k = 0; k < lines_.size(); ++k) {
       const GivenCondition& line = lines_[k];
       if (line.name == kOthers) continue;
+      found_[k] = ofGroup(line.name);
+      by_pattern_[k] = !found_[k].empty();
+      if (by_pattern_[k]) continue;
       found_[k] = targets_.named(line.name);
       by_pattern_[k] = found_[k].empty() && isPattern(line.name);
       if (by_pattern_[k]) found_[k] = targets_.matching(line.name);
@@ -103,8 +108,22 @@ class Lines {
     }
   }
 
+  /// The targets in the group of that name; empty: there is none.
+  std::vector<Index> ofGroup(const std::string& name) const {
+    const auto end = groups_.names.begin() + std::ptrdiff_t(groups_.groups);
+    const auto group = std::find(groups_.names.begin(), end, name);
+    std::vector<Index> out;
+    for (Index t = 0; t < groups_.of_surface.size() && group != end; ++t) {
+      if (groups_.of_surface[t] == Index(group - groups_.names.begin())) out.push_back(t);
+    }
+    return out;
+  }
+
   [[noreturn]] void failForName(const GivenCondition& line, bool pattern) const {
-    const std::vector<std::string> known = nearestFirst(line.name, targets_.knownNames());
+    std::vector<std::string> names = targets_.knownNames();
+    const auto groups = groups_.names.begin() + std::ptrdiff_t(groups_.groups);
+    names.insert(names.begin(), groups_.names.begin(), groups);
+    const std::vector<std::string> known = nearestFirst(line.name, names);
     const std::string what = pattern
                                  ? fmt::format("{} matches no {}", line.name, targets_.kinds())
                                  : fmt::format("no {} is called {}", targets_.kinds(), line.name);
@@ -209,6 +228,7 @@ class Lines {
   }
 
   const ConditionTargets& targets_;
+  SurfaceGroups groups_;
   std::vector<GivenCondition> lines_;
   std::size_t table_ = 0;                            ///< number of lines of the table
   std::vector<std::vector<Index>> found_;            ///< by line
@@ -227,8 +247,8 @@ HeatConditions conditionsOf(const ConditionTargets& targets, const ConditionText
 
 }  // namespace
 
-ConditionText readConditionText(const std::string& csv_path,
-                                std::span<const std::string> settings) {
+ConditionText readConditionText(const std::string& csv_path, std::span<const std::string> settings,
+                                std::span<const std::string> groups) {
   if (csv_path.empty() && settings.empty()) {
     throw InputError(
         "no conditions are given: name a table of them, --thermal FILE.csv, or give them by name, "
@@ -238,6 +258,7 @@ ConditionText readConditionText(const std::string& csv_path,
   text.origin = csv_path;
   if (!csv_path.empty()) text.table = readWholeFile(csv_path);
   text.settings.assign(settings.begin(), settings.end());
+  text.groups.assign(groups.begin(), groups.end());
   return text;
 }
 

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "radiosity/heat.h"
+#include "radiosity/surface_groups.h"
 
 namespace radiosity {
 
@@ -83,24 +84,29 @@ std::vector<SurfaceHeat> summed(const HeatSolution& solution, const Parts& parts
 
 std::vector<SurfaceHeat> heatBySurface(const HeatSolution& solution, const PatchMesh& mesh,
                                        const FormFactors& factors) {
-  Parts parts{mesh.area, mesh.surface, {}};
+  const SurfaceGroups groups = groupSurfaces(mesh.surface_names, solution.conditions.groups);
+  std::vector<Index> group;
+  group.reserve(mesh.size());
+  for (const Index surface : mesh.surface) group.push_back(groups.of_surface[surface]);
+  Parts parts{mesh.area, group, {}};
   for (std::size_t i = 0; i < mesh.size() && !factors.error.empty(); ++i) {
     parts.error.push_back(factors.error[mesh.unknownOf(i)]);
   }
-  return summed(solution, parts, mesh.surface_names);
+  return summed(solution, parts, groups.names);
 }
 
 std::vector<SurfaceHeat> heatByName(const HeatSolution& solution,
                                     std::span<const std::string> names,
                                     const FormFactors& factors) {
+  const SurfaceGroups groups = groupSurfaces(names, solution.conditions.groups);
   std::vector<std::string> of_groups;
   std::vector<Index> group(names.size());
   std::unordered_map<std::string, Index> known;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const bool named = !names[i].empty();
+    const std::string& name = groups.names[groups.of_surface[i]];
     const auto next = Index(of_groups.size());
-    group[i] = named ? known.emplace(names[i], next).first->second : next;
-    if (group[i] == next) of_groups.push_back(named ? names[i] : fmt::format("row {}", i + 1));
+    group[i] = name.empty() ? next : known.emplace(name, next).first->second;
+    if (group[i] == next) of_groups.push_back(name.empty() ? fmt::format("row {}", i + 1) : name);
   }
   return summed(solution, {factors.matrix.area(), group, factors.error}, of_groups);
 }

@@ -300,6 +300,7 @@ void addOptional(const std::optional<double>& value, Hash& hash) {
 std::string conditionsHash(const HeatConditions& conditions) {
   Hash hash;
   hash.array(conditions.of_surface);
+  for (const std::string& group : conditions.text.groups) hash.text(group);
   for (const HeatCondition& c : conditions.conditions) {
     for (const Emissivity& e : c.emissivity) {
       hash.array(e.temperatures);

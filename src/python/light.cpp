@@ -72,10 +72,11 @@ HeatOptions heatOptions(const py::dict& given) {
   return options;
 }
 
-/// `settings`: see readHeatConditions().
+/// `settings`, `groups`: see ConditionText.
 std::shared_ptr<HeatHandle> heat(std::shared_ptr<FactorsHandle> factors,
                                  const std::string& table_path,
-                                 const std::vector<std::string>& settings, const py::dict& given,
+                                 const std::vector<std::string>& settings,
+                                 const std::vector<std::string>& groups, const py::dict& given,
                                  const py::object& report) {
   const HeatOptions options = heatOptions(given);
   auto handle = std::make_shared<HeatHandle>();
@@ -84,7 +85,8 @@ std::shared_ptr<HeatHandle> heat(std::shared_ptr<FactorsHandle> factors,
   const MeshHandle& mesh = meshOf(of, "heat by surface names");
   if (!mesh.scene)
     throw InputError("heat: the results file has no scene, whose surfaces have names");
-  const HeatConditions conditions = readHeatConditions(*mesh.scene, table_path, settings);
+  const HeatConditions conditions =
+      readHeatConditions(*mesh.scene, readConditionText(table_path, settings, groups));
   validate(conditions, options);
   runLong(report, [&](Progress& progress) {
     handle->solution = solveHeat(of.factors, conditions, mesh.result.mesh, options, progress);

@@ -366,6 +366,7 @@ void describe(Archive& a, Described<Archive, HeatSolution>& h) {
   a.group("summary", [&](auto& summary) { describe(summary, h.summary); });
   a.laterText("condition_table", h.conditions.table);
   a.later("condition_settings", h.conditions.settings);
+  a.later("condition_groups", h.conditions.groups);
 }
 
 /// Bands of the materials and of the light are those of all sources.

@@ -210,6 +210,22 @@ class Heat(CliTest):
         self.refuse("heat", "box.obj", *SMALL, "--thermal", "walls.csv", "--condition",
                     "*cieling*.flux=0", words=["*cieling* matches no surface", "there are: ceiling"])
 
+    def test_groups_are_named_by_conditions_and_tables(self):
+        group = ["--group", "all=*"]
+        heat = self.heat("box.obj", *SMALL, *group, "--condition", "all.emissivity=.8", "--condition",
+                         "all.temperature=300", "-o", "box.h5")
+        self.assertEqual([(s["name"], s["temperature_K"]) for s in heat["surfaces"]], [("all", 300)])
+        self.assertIn("group all=*", self.run_program("info", "box.h5").out)
+        again = self.report("heat", "box.h5")
+        self.assertEqual(again["stages"]["heat"]["action"], "reused")
+        self.assertEqual([s["name"] for s in again["heat"]["surfaces"]], ["all"])
+        other = self.report("heat", "box.h5", "--group", "all=room*", "--group", "all=ceil*")
+        self.assertEqual(other["stages"]["heat"]["action"], "recomputed")
+        self.run_program("factors", "box.obj", *SMALL, "-o", "box.mtx")
+        heat = self.heat("box.mtx", *group, "--condition", "all.emissivity=.8", "--condition",
+                         "all.temperature=300")
+        self.assertEqual([s["name"] for s in heat["surfaces"]], ["all"])
+
     def test_bands_of_one_emissivity_are_grey(self):
         common = ["box.obj", *SMALL, "--thermal", "walls.csv", "--condition", "wall.flux=100"]
         grey = self.heat(*common)

@@ -227,7 +227,7 @@ TEST(HeatConditionsByName, NamesOverridePatternsAndSettingsOverrideTheTable) {
   const auto temperatures = [](const std::string& table, const std::vector<std::string>& settings) {
     const HeatConditions c = readHeatConditions(
         namedScene(),
-        ConditionText{"t.csv", "surface,emissivity,temperature_K\n" + table, settings});
+        ConditionText{"t.csv", "surface,emissivity,temperature_K\n" + table, settings, {}});
     std::vector<double> out;
     out.reserve(c.of_surface.size());
     for (const Index k : c.of_surface) out.push_back(c.conditions[k].temperature.value_or(0));
@@ -248,11 +248,33 @@ TEST(HeatConditionsByName, NamesOverridePatternsAndSettingsOverrideTheTable) {
             std::string::npos);
 }
 
+TEST(HeatConditionsByName, GroupsAreNamedLikePatterns) {
+  const auto read = [](const std::vector<std::string>& settings) {
+    return readHeatConditions(namedScene(),
+                              ConditionText{"", "", settings, {"box=walls", "box=floor"}});
+  };
+  const HeatConditions c =
+      read({"*.emissivity=.5", "*.flux=0", "box.temperature=400", "floor.emissivity=.7"});
+  const auto of = [&](std::size_t surface) { return c.conditions[c.of_surface[surface]]; };
+  EXPECT_EQ(of(0).temperature, 400);
+  EXPECT_EQ(of(1).temperature, 400);
+  EXPECT_EQ(of(1).emissivity[0].values, std::vector<double>{.7});
+  EXPECT_EQ(of(2).flux, 0);
+  // Power is of a group together.
+  const HeatConditions together = read({"*.emissivity=.5", "lid.temperature=300", "box.power=9"});
+  EXPECT_EQ(together.of_surface[0], together.of_surface[1]);
+  EXPECT_EQ(together.conditions[together.of_surface[0]].name, "box");
+  EXPECT_NE(test::errorOf([&] {
+              read({"*.emissivity=.5", "bix.power=9"});
+            }).find("there are: box"),
+            std::string::npos);
+}
+
 TEST(HeatConditionsByName, RowsAreFoundByNameOrNumber) {
   const std::vector<std::string> names = {"wall", "", "wall", "lid"};
   const std::vector<double> emissivity = {.1, .2, .3, .4};
   const auto read = [&](const std::vector<std::string>& settings) {
-    return readHeatConditions(names, emissivity, ConditionText{"", "", settings});
+    return readHeatConditions(names, emissivity, ConditionText{"", "", settings, {}});
   };
   const HeatConditions c =
       read({"wall.temperature=300", "2.flux=5", "lid.flux=0", "lid.emissivity=.9"});

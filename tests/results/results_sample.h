@@ -402,7 +402,8 @@ inline HeatSolution heat(const PatchMesh& mesh, int bands) {
   }
   h.summary = {HeatStatus::no_convergence, 5,   12345678901,    1e-3, 2e-4, 7,
                {1, 2, 3, 4, 5, 6},         0.5, "not converged"};
-  h.conditions = {"", "surface,emissivity\r\n# ä\n*,0.5\n", {"lamp.temperature=900", "*.flux=0"}};
+  h.conditions = {
+      "", "surface,emissivity\r\n# ä\n*,0.5\n", {"lamp.temperature=900", "*.flux=0"}, {"all=*"}};
   return h;
 }
 

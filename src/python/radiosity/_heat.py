@@ -8,7 +8,7 @@ from typing import Any, List, Mapping, Optional, Sequence, Union
 import numpy as np
 
 from . import _core
-from ._arrays import Fixed, numbers, path_text, require, yes_or_no
+from ._arrays import Fixed, numbers, path_text, require, texts, yes_or_no
 from ._core import InputError
 from ._factors import FormFactors
 from ._notes import warn
@@ -79,14 +79,14 @@ def _number(name: str, value: Any) -> str:
 def _emissivity(name: str, value: Any) -> str:
     """One number, one a band, or a table {K: emissivity}, as text."""
     bands = value if isinstance(value, (list, tuple, np.ndarray)) and np.ndim(value) else [value]
-    texts = []
+    of_bands = []
     for band in bands:
         if isinstance(band, Mapping):
             values = {float(numbers(f"{name}, a temperature", T, [()])): eps for T, eps in band.items()}
-            texts.append(" ".join(f"{T!r}:{_number(name, values[T])}" for T in sorted(values)))
+            of_bands.append(" ".join(f"{T!r}:{_number(name, values[T])}" for T in sorted(values)))
         else:
-            texts.append(_number(name, band))
-    return "; ".join(texts)
+            of_bands.append(_number(name, band))
+    return "; ".join(of_bands)
 
 
 def _by_name(value: Optional[ByName]) -> dict:
@@ -100,22 +100,22 @@ def _settings(given: Mapping[str, Optional[ByName]]) -> List[str]:
     by_property = {name: _by_name(value) for name, value in given.items()}
     heated = {name for kind in ("temperature", "flux", "power", "convection")
               for name, value in by_property[kind].items() if value is not None}
-    texts = []
+    lines = []
     for kind, values in by_property.items():
         for name, value in values.items():
             if value is None:
                 if kind != "temperature":
                     raise InputError(f"{kind} of {name!r}: is None; leave it out")
                 if name not in heated:
-                    texts.append((name, f"{name}.flux=0"))
+                    lines.append((name, f"{name}.flux=0"))
             elif kind == "emissivity":
-                texts.append((name, f"{name}.emissivity={_emissivity(f'emissivity of {name!r}', value)}"))
+                lines.append((name, f"{name}.emissivity={_emissivity(f'emissivity of {name!r}', value)}"))
             elif kind == "isothermal":
-                texts.append((name, f"{name}.isothermal="
+                lines.append((name, f"{name}.isothermal="
                                     f"{'yes' if yes_or_no(f'isothermal of {name!r}', value) else 'no'}"))
             else:
-                texts.append((name, f"{name}.{kind}={_number(f'{kind} of {name!r}', value)}"))
-    return [text for name, text in sorted(texts, key=lambda pair: pair[0] != "*")]
+                lines.append((name, f"{name}.{kind}={_number(f'{kind} of {name!r}', value)}"))
+    return [text for name, text in sorted(lines, key=lambda pair: pair[0] != "*")]
 
 
 def _of_rows(F: FormFactors, name: str, value: Optional[Any], other: float) -> np.ndarray:
@@ -129,13 +129,14 @@ def _of_rows(F: FormFactors, name: str, value: Optional[Any], other: float) -> n
         if known != "*" and known not in names:
             raise InputError(f"{name} of {known!r}: no row is called so; there are: "
                              f"{', '.join(dict.fromkeys(names)) or 'none'}")
-    texts = [value.get(row, other) for row in names]
-    return numbers(name, [np.nan if v is None else v for v in texts], [(len(F),)], nan=True)
+    of_rows = [value.get(row, other) for row in names]
+    return numbers(name, [np.nan if v is None else v for v in of_rows], [(len(F),)], nan=True)
 
 
 def heat(F: FormFactors, emissivity: Any = None, temperature: Any = None, *, flux: Any = None,
          power: Any = None, convection: Any = None, ambient: Any = None, isothermal: Any = None,
-         table: Union[None, str, "os.PathLike[str]"] = None, sky_temperature: float = 0.0,
+         table: Union[None, str, "os.PathLike[str]"] = None,
+         groups: Union[str, Sequence[str]] = (), sky_temperature: float = 0.0,
          band_edges: Sequence[float] = (), band_fractions: Sequence[float] = (),
          tolerance: float = 1e-9, max_iterations: int = 100, progress: Progress = None) -> Heat:
     """Exchanges heat by radiation, with what each surface is given.
@@ -145,6 +146,8 @@ def heat(F: FormFactors, emissivity: Any = None, temperature: Any = None, *, flu
     temperature (K; None: to be found, adiabatic unless flux, power or convection says more), flux
     (W/m^2 supplied), power (W supplied), convection (W/m^2/K) to air of `ambient` (K), isothermal
     (bool). The name "*" is all surfaces that no other names. table: a CSV file of the same.
+    groups: "NAME=PATTERN", one or a list, as in FormFactors.table(); conditions may name them, and
+    Heat.table() has one row for each.
     band_edges: micrometres. Nothing is guessed: a surface without emissivity or condition is an error.
     A UserWarning says where the iterations did not converge.
 
@@ -172,14 +175,15 @@ def heat(F: FormFactors, emissivity: Any = None, temperature: Any = None, *, flu
     conditions = dict(emissivity=emissivity, temperature=temperature, flux=flux, power=power,
                       convection=convection, ambient=ambient, isothermal=isothermal)
     by = _heat_of_rows if F.mesh is None else _heat_by_name
-    found = by(F, conditions, table, options, progress)
+    found = by(F, conditions, table, texts("groups", groups), options, progress)
     summary = found.summary
     if not summary["usable"]:
         warn(summary["message"])
     return found
 
 
-def _heat_by_name(F: FormFactors, given: dict, table: Any, options: dict, progress: Progress) -> Heat:
+def _heat_by_name(F: FormFactors, given: dict, table: Any, groups: List[str], options: dict,
+                  progress: Progress) -> Heat:
     _refuse_arrays(given, len(options["band_fractions"]) or len(options["band_edges"]) + 1)
     settings = _settings(given)
     if not settings and table is None:
@@ -187,7 +191,7 @@ def _heat_by_name(F: FormFactors, given: dict, table: Any, options: dict, progre
                          "power, convection) by surface name, or table=FILE.csv")
     path = "" if table is None else path_text("table", table)
     with reporting(progress) as report:
-        return Heat(_core.heat(F._handle, path, settings, options, report), F)
+        return Heat(_core.heat(F._handle, path, settings, groups, options, report), F)
 
 
 def _refuse_arrays(conditions: dict, bands: int) -> None:
@@ -202,11 +206,13 @@ def _refuse_arrays(conditions: dict, bands: int) -> None:
                              "band), or a dict by surface name")
 
 
-def _heat_of_rows(F: FormFactors, given: dict, table: Any, options: dict, progress: Progress) -> Heat:
+def _heat_of_rows(F: FormFactors, given: dict, table: Any, groups: List[str], options: dict,
+                  progress: Progress) -> Heat:
     refused = [name for name in ("power", "convection", "ambient", "isothermal")
                if given[name] is not None]
-    if table is not None or refused:
-        raise InputError(f"{(refused + ['table'])[0]}: is of surfaces of a mesh; of a matrix give "
+    refused += ["table"] * (table is not None) + ["groups"] * bool(groups)
+    if refused:
+        raise InputError(f"{refused[0]}: is of surfaces of a mesh; of a matrix give "
                          "emissivity, temperature and flux")
     if given["emissivity"] is None:
         raise InputError(f"emissivity: give one number, one a row ({len(F)},), or a dict by name")

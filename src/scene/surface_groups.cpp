@@ -1,11 +1,12 @@
 // Groups surfaces under one name by patterns.
+#include "radiosity/surface_groups.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "base/name_pattern.h"
 #include "base/near_names.h"
-#include "radiosity/tables.h"
 #include "scene/text.h"
 
 namespace radiosity {
@@ -69,7 +70,7 @@ class Grouping {
   }
 
   SurfaceGroups finish() {
-    const std::size_t groups = result_.names.size();
+    const std::size_t groups = result_.groups = result_.names.size();
     for (Index group = 0; group < groups; ++group) {
       if (std::ranges::find(result_.of_surface, group) != result_.of_surface.end()) continue;
       throw InputError(fmt::format(
