@@ -404,6 +404,96 @@ TEST(Contact, OpenContainerOnFloorKeepsBothAndSaysSo) {
   });
 }
 
+/// Appends the prism without its bottom.
+void hood(SceneBuilder& b, Index surface, const std::vector<Vec2>& base, double z0, double z1) {
+  SceneBuilder whole;
+  whole.surface("hood");
+  whole.prism(0, base, z0, z1);
+  const Scene& scene = whole.scene();
+  for (std::size_t f = 0; f < scene.faceCount(); ++f) {
+    if (f == base.size()) continue;  // the bottom
+    std::vector<Vec3> corners;
+    for (const Index c : scene.face(f)) corners.push_back(scene.vertices[c]);
+    b.face(surface, corners);
+  }
+}
+
+/// A floor of 10 x 8 m and a block of 2 x 3 m on it, turned, without a bottom.
+struct HoodOnFloor {
+  SceneBuilder b;
+  Index floor = b.surface("floor");
+  Index block = b.surface("block");
+  Index lamp = b.surface("lamp", 0, 5);
+  explicit HoodOnFloor(double z0 = 0) {
+    b.level(floor, 0, 0, 10, 8, 0);
+    hood(b, block, SceneBuilder::turnedRectangle({4, 4}, 2, 3, 17 * kDegree), z0, 2);
+  }
+};
+
+TEST(Hollows, TheFloorUnderABlockWithoutABottomIsBuried) {
+  for (const double z0 : {0.0, -0.5}) {  // stands on the floor, reaches through it
+    HoodOnFloor scene(z0);
+    bothWays(scene.b.scene(), [&](const Built& built) {
+      EXPECT_EQ(onlyPolygon(built, scene.floor).loops.size(), 2u);
+      expectArea(built.report.surfaces[scene.floor].buried, 6);
+      EXPECT_EQ(built.report.surfaces[scene.block].buried, 0);
+    });
+  }
+}
+
+TEST(Hollows, ALightInsideKeepsTheFloor) {
+  HoodOnFloor scene;
+  scene.b.level(scene.lamp, 3.9, 3.9, 4.1, 4.1, 1, false);  // free, in the block
+  bothWays(scene.b.scene(), [&](const Built& built) {
+    EXPECT_EQ(built.report.surfaces[scene.floor].buried, 0);
+    EXPECT_EQ(onlyPolygon(built, scene.floor).loops.size(), 1u);
+  });
+  HoodOnFloor beside;
+  beside.b.level(beside.lamp, 8, 3.9, 8.2, 4.1, 1, false);
+  bothWays(beside.b.scene(),
+           [&](const Built& built) { expectArea(built.report.surfaces[beside.floor].buried, 6); });
+}
+
+TEST(Hollows, AGapOfAMillimetreKeepsTheFloor) {
+  HoodOnFloor scene(1e-3);
+  bothWays(scene.b.scene(),
+           [&](const Built& built) { EXPECT_EQ(built.report.surfaces[scene.floor].buried, 0); });
+}
+
+TEST(Hollows, ATwoSidedBlockKeepsItsInsideAndTheFloor) {
+  SceneBuilder b;
+  const Index floor = b.surface("floor");
+  const Index block = b.surface("block", 0.5, 0, true);
+  b.level(floor, 0, 0, 10, 8, 0);
+  hood(b, block, SceneBuilder::turnedRectangle({4, 4}, 2, 3, 17 * kDegree), 0, 2);
+  bothWays(b.scene(), [&](const Built& built) {
+    EXPECT_EQ(built.report.surfaces[floor].buried, 0);
+    EXPECT_EQ(onlyPolygon(built, floor).loops.size(), 1u);
+  });
+}
+
+TEST(Hollows, HillsUnderTwoBlocksThatShareAWallAreBuried) {
+  SceneBuilder b;
+  const Index ground = b.surface("ground");
+  const Index blocks = b.surface("blocks");
+  // Two slopes that meet in a ridge along y, and blocks over the ridge.
+  b.face(ground, {{0, 0, 0}, {4, 0, 1}, {4, 8, 1}, {0, 8, 0}});
+  b.face(ground, {{4, 0, 1}, {8, 0, 0}, {8, 8, 0}, {4, 8, 1}});
+  hood(b, blocks, {{3, 2}, {5, 2}, {5, 4}, {3, 4}}, -1, 3);
+  hood(b, blocks, {{3, 4}, {5, 4}, {5, 6}, {3, 6}}, -1, 3);
+  const double under = 8 * std::sqrt(1 + 1. / 16);
+  bothWays(b.scene(),
+           [&](const Built& built) { expectArea(built.report.surfaces[ground].buried, under); });
+}
+
+TEST(Hollows, ADarkRoomSeenFromInsideIsKept) {
+  SceneBuilder b;
+  const Index room = b.surface("room");
+  b.box(room, {0, 0, 0}, {5, 4, 3}, false);
+  bothWays(b.scene(),
+           [&](const Built& built) { EXPECT_EQ(built.report.surfaces[room].buried, 0); });
+}
+
 TEST(Overlap, LampOnUncutCeiling) {
   SceneBuilder b;
   const Index ceiling = b.surface("ceiling");

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "mesh/bodies/bodies.h"
+#include "mesh/bodies/hollows.h"
 #include "scene/text.h"
 
 namespace radiosity {
@@ -35,13 +36,14 @@ class Classifier {
  public:
   Classifier(const Scene& scene, const Arrangement& arrangement, const std::vector<Sheet>& sheets,
              const Components& components, const Winding& winding, const Bodies& bodies,
-             MeshReport& report)
+             const Hollows& hollows, MeshReport& report)
       : scene_(scene),
         arrangement_(arrangement),
         sheets_(sheets),
         components_(components),
         winding_(winding),
         bodies_(bodies),
+        hollows_(hollows),
         report_(report) {}
 
   void run(Index cell, std::vector<VisibleCell>& out);
@@ -65,6 +67,7 @@ class Classifier {
   const Components& components_;
   const Winding& winding_;
   const Bodies& bodies_;
+  const Hollows& hollows_;
   MeshReport& report_;
   std::map<std::pair<std::string, std::string>, double> outdone_;       ///< (loser, winner): m^2
   std::map<std::pair<std::string, std::string>, double> back_to_back_;  ///< m^2
@@ -86,7 +89,7 @@ std::vector<Layer> Classifier::layersOf(const PlaneCell& cell) const {
 }
 
 bool Classifier::seesNothing(Index cell, Side side) const {
-  return bodies_.isWithinAny(cell, side) ||
+  return bodies_.isWithinAny(cell, side) || hollows_.isDark(cell, side) ||
          std::any_of(bodies_.rooms().begin(), bodies_.rooms().end(),
                      [&](Index room) { return winding_.of(room, cell, side) == 0; });
 }
@@ -211,12 +214,14 @@ void Classifier::writeNotes() {
 
 }  // namespace
 
-std::vector<VisibleCell> classify(const Scene& scene, const Arrangement& arrangement,
-                                  const std::vector<Sheet>& sheets, const Components& components,
-                                  const InputFaces& input, MeshReport& report) {
+std::vector<VisibleCell> classify(const Scene& scene, const InputFaces& input,
+                                  const std::vector<Plane>& planes, const EdgeTable& edges,
+                                  const Arrangement& arrangement, const std::vector<Sheet>& sheets,
+                                  const Components& components, MeshReport& report) {
   const Winding winding(arrangement, sheets, components, input.coincidence);
   const Bodies bodies(arrangement, sheets, components, winding, input.coincidence);
-  Classifier classifier(scene, arrangement, sheets, components, winding, bodies, report);
+  const Hollows hollows(scene, input, planes, edges, arrangement, sheets);
+  Classifier classifier(scene, arrangement, sheets, components, winding, bodies, hollows, report);
   std::vector<VisibleCell> out;
   for (std::size_t k = 0; k < arrangement.cells.size(); ++k) classifier.run(Index(k), out);
   classifier.writeNotes();
